@@ -50,8 +50,16 @@ def test_where_bodies_are_as_near_as_a_gap() -> None:
         assert again.keep == 0.25
         same: Any = again.first_contact()
         assert same.translation == 2.75
-    with pytest.raises(check.NoProofError, match="keep a gap"):
-        check.check(found.proof_json())
+    for answer in (found, both, clearance(CUBE, CUBE, DOWN, moving_pose=ABOVE, keep=3.5)):
+        text = answer.proof_json()
+        report = check.check(text)
+        assert report.holds and not report.partly
+        gap = f'"keep":{answer.query.keep!r}'
+        for other in (answer.query.keep - 1e-9, answer.query.keep + 1e-9):
+            with pytest.raises(check.RefusedError):
+                check.check(text.replace(gap, f'"keep":{other!r}'))
+    with pytest.raises(check.NoProofError, match="negative"):
+        check.check(found.proof_json().replace('"keep":0.25', '"keep":-0.25'))
 
 
 def test_solids_keep_gaps() -> None:
@@ -115,6 +123,8 @@ def test_rows_are_answered_as_alone_and_by_the_command_line(batch: Batch) -> Non
             assert answer.to_dict()["translation_bounds"] == line["translation_bounds"]
             assert answer.query.keep == 0.125
             assert spans.translation[i] == line["translation"]
+        report = check.check(answer.proof_json())
+        assert report.holds and not report.partly
     assert columns.counts()["blocked"] > 10
 
 

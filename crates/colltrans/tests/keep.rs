@@ -1,6 +1,7 @@
 //! Casts that keep a gap: what is known in closed form, every family, degenerate bodies, proofs and changed ones.
 
 use colltrans::glam::{DQuat, DVec3};
+use colltrans::observe::{Event, Recording};
 use colltrans::{
     Cast, Clearance, Contact, ConvexPolyhedron, Outcome, Pose, QueryError, Solver, StartedFrom,
     Tracker, WhyFree,
@@ -391,4 +392,28 @@ fn a_slight_gap_that_alone_stops_a_body_is_proven() {
         Outcome::Separated(of) => panic!("{of:?}"),
     };
     cast.verify(&contact.certificate).expect("its own proof");
+}
+
+/// Who observes such a search hears the frame and then planes, each lowest on `M` there; answers are the same.
+#[test]
+fn observers_hear_of_planes() {
+    let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a box");
+    let turn = DQuat::from_xyzw(0.1, 0.2, 0.3, 0.9).normalize();
+    let start = Pose::new(turn, DVec3::new(-3.0, 0.5, 0.25)).expect("a pose");
+    for gap in [0.25, 1e-15] {
+        let cast = Cast::new(cube.at(start), cube.at(Pose::IDENTITY), DVec3::X).expect("a query");
+        let cast = cast.keeping(gap).expect("a gap");
+        let mut heard = Recording::default();
+        let observed = cast.first_contact_observed(&mut heard);
+        assert_eq!(observed, cast.first_contact());
+        let Ok(Outcome::Contact(contact)) = observed else { panic!("{observed:?}") };
+        let Some(Event::Begun(frame)) = heard.events().first() else { panic!("{heard:?}") };
+        assert!((frame.world_from_shadow.z_axis - DVec3::X).length() < 1e-15);
+        let supports = heard.events().iter().filter(|event| matches!(event, Event::Support(_)));
+        let count = supports.count() as u32;
+        assert!(0 < count && count <= contact.steps.supports, "{count} of {:?}", contact.steps);
+        let mut tracked = Recording::default();
+        let again = Tracker::new().first_contact_observed(&cast, &mut tracked);
+        assert_eq!((again, tracked.events().len()), (observed, heard.events().len()));
+    }
 }

@@ -18,6 +18,9 @@ With the moving body ``P``, the fixed one ``Q``, the direction ``d``, all points
   their neighbours is above them by more than ``hull_error`` and rounding. No proof leans on them.
 - *Separation.* ``n' = n (d.d) - d (n.d)`` is orthogonal to ``d``; ``min_Q n'.q > max_P n'.p``
   proves that the bodies never meet. The margin is checked along ``n``.
+- *A gap to be kept*, ``g``: where bodies are said to meet, they are as near as that. ``g |n|`` is taken
+  from what planes prove, and at the upper bound the weighted mean of the pairs is as near. Of solids
+  it is not checked where two facets are.
 - *Distance.* ``min_Q n.q - max_P n.p`` over all vertices proves a gap; the weighted means of the
   pairs, one of each body, a distance that is not exceeded. Of a distance of 0 the differences of
   the pairs enclose the origin.
@@ -63,6 +66,10 @@ _U = Fraction(1, 2**53)
 _UNIT_VECTOR = 32 * _U
 #: Rounding of a coordinate, in sizes of the configuration: the library's noise.
 _NOISE = 32 * _U
+#: A gap of so many noises or less is slight: points that are as near for certain may not be found.
+_SLIGHT = 9
+#: No gap is to be kept.
+_NO_GAP = Fraction()
 #: How far a face may be from its plane, in sizes of the body, beyond its ``hull_error``.
 _PLANE = 256 * _U
 #: How far a pose may be from a rotation.
@@ -292,7 +299,15 @@ def unit(normal: Vector) -> None:
         raise RefusedError("the normal is not a unit vector")
 
 
-def contact(moving: Body, fixed: Body, d: Vector, proof: Any, report: Report, which: str) -> None:
+def contact(
+    moving: Body,
+    fixed: Body,
+    d: Vector,
+    proof: Any,
+    report: Report,
+    which: str,
+    keep: Fraction = _NO_GAP,
+) -> None:
     """Both bounds of a certificate between convex bodies."""
     normal = vector(proof["normal"])
     unit(normal)
@@ -300,10 +315,12 @@ def contact(moving: Body, fixed: Body, d: Vector, proof: Any, report: Report, wh
     if along <= 0:
         raise RefusedError(f"{which}: the normal does not point along the direction")
     lower = number(proof["lower"])
-    proven = (min(fixed.heights(normal)) - max(moving.heights(normal))) / along
-    if lower > proven:
-        raise RefusedError(f"{which}: the plane proves {float(proven)!r}, not {float(lower)!r}")
-    report.holds.append(f"{which}: the bodies meet at no translation below {float(lower)!r}")
+    gap = min(fixed.heights(normal)) - max(moving.heights(normal))
+    if not above(gap - lower * along, keep * keep * dot(normal, normal)):
+        proven = float((gap - keep) / along)
+        raise RefusedError(f"{which}: the plane proves {proven!r}, not {float(lower)!r}")
+    meet = f"are nearer than {float(keep)!r}" if keep else "meet"
+    report.holds.append(f"{which}: the bodies {meet} at no translation below {float(lower)!r}")
 
     weights: list[Fraction] = [number(w) for w in proof["weights"]]
     total = sum(weights, Fraction())
@@ -322,10 +339,17 @@ def contact(moving: Body, fixed: Body, d: Vector, proof: Any, report: Report, wh
     if upper < lower:
         raise RefusedError(f"{which}: the bounds are in the wrong order")
     corners = [minus(fixed.at(q), moving.at(p)) for p, q in ends]
-    noise = _NOISE * Fraction(size(moving, fixed))
+    noise = _NOISE * (Fraction(size(moving, fixed)) + keep)
     mean = (Fraction(), Fraction(), Fraction())
     for corner, weight in zip(corners, weights, strict=True):
         mean = plus(mean, scaled(corner, weight / total))
+    between = minus(mean, scaled(d, upper))
+    if keep and above(keep, dot(between, between)):
+        report.holds.append(f"{which}: the bodies are as near at one of at most {float(upper)!r}")
+        return
+    if keep > _SLIGHT * noise:
+        raise RefusedError(f"{which}: the witness points are not as near as {float(keep)!r}")
+    # Of so slight a gap it may be all that is proven that the bodies meet.
     estimate = dot(mean, d) / dot(d, d)
     off = minus(mean, scaled(d, estimate))
     if dot(off, off) > (3 * noise) ** 2:
@@ -357,34 +381,50 @@ def gaps(moving: Body, fixed: Body, d: Vector, normal: Vector) -> tuple[Fraction
     return along[0], along[1]
 
 
-def slide(moving: Body, fixed: Body, d: Vector, claim: Any, report: Report) -> None:
-    """How much of the bodies is in each other's way at most, seen along the direction."""
+def slide(
+    moving: Body, fixed: Body, d: Vector, claim: Any, report: Report, keep: Fraction = _NO_GAP
+) -> None:
+    """How much of the bodies, and of a gap, is in each other's way at most, seen along the direction."""
     normal, overlap = vector(claim["normal"]), number(claim["overlap"])
     unit(normal)
     if dot(normal, d) ** 2 > _UNIT_VECTOR**2 * dot(d, d):
         raise RefusedError("the normal of the slide is not across the direction")
-    proven = -gaps(moving, fixed, d, normal)[0]
+    proven = keep - gaps(moving, fixed, d, normal)[0]
     if overlap < proven:
         raise RefusedError(f"the bodies overlap by {float(proven)!r} there, not {float(overlap)!r}")
     report.holds.append(
         "the bodies slide along each other: seen along the direction they overlap by at most "
-        f"{float(overlap)!r}"
+        f"{float(overlap)!r}" + (f", with the gap of {float(keep)!r}" if keep else "")
     )
 
 
-def separation(moving: Body, fixed: Body, d: Vector, proof: Any, report: Report) -> None:
+def parted(
+    moving: Body, fixed: Body, d: Vector, normal: Vector, keep: Fraction
+) -> tuple[Fraction, bool]:
+    """The gap along a normal, and whether a plane parallel to the direction proves more than ``keep``."""
+    proven, level = gaps(moving, fixed, d, normal)
+    across = minus(scaled(normal, dot(d, d)), scaled(d, dot(normal, d)))
+    return proven, level > 0 and level * level > keep * keep * dot(across, across)
+
+
+def separation(
+    moving: Body, fixed: Body, d: Vector, proof: Any, report: Report, keep: Fraction = _NO_GAP
+) -> None:
     """A plane between convex bodies."""
     normal, margin = vector(proof["normal"]), number(proof["margin"])
     unit(normal)
-    proven, level = gaps(moving, fixed, d, normal)
-    if level <= 0:
-        raise RefusedError("no plane parallel to the direction lies between the bodies")
-    if not 0 < margin <= proven:
+    proven, is_beyond = parted(moving, fixed, d, normal, keep)
+    if not is_beyond:
+        raise RefusedError("no plane parallel to the direction keeps the bodies apart")
+    if not keep < margin <= proven:
         raise RefusedError(f"the plane proves a margin of {float(proven)!r}, not {float(margin)!r}")
-    report.holds.append(f"the bodies never meet: a gap of {float(margin)!r} is between them")
+    never = f"are never as near as {float(keep)!r}" if keep else "never meet"
+    report.holds.append(f"the bodies {never}: a gap of {float(margin)!r} is between them")
 
 
-def clearance(moving: Body, fixed: Body, d: Vector, claim: Any, report: Report) -> None:
+def clearance(
+    moving: Body, fixed: Body, d: Vector, claim: Any, report: Report, keep: Fraction = _NO_GAP
+) -> None:
     """What can be checked of solids without their trees."""
     certificate = claim["certificate"]
     tolerance = number(certificate["tolerance"])
@@ -392,28 +432,34 @@ def clearance(moving: Body, fixed: Body, d: Vector, claim: Any, report: Report) 
     if plane is not None:
         normal, margin = vector(plane["normal"]), number(plane["margin"])
         unit(normal)
-        proven, level = gaps(moving, fixed, d, normal)
-        if margin <= 0 or (tolerance == 0 and (level <= 0 or margin > proven)):
+        proven, is_beyond = parted(moving, fixed, d, normal, keep)
+        if margin <= keep or (tolerance == 0 and (not is_beyond or margin > proven)):
             raise RefusedError(
                 f"the plane proves a margin of {float(proven)!r}, not {float(margin)!r}"
             )
-        if level > 0:
+        if is_beyond:
             gap = float(min(margin, proven))
-            report.holds.append(f"the bodies never meet: a gap of {gap!r} is between them")
+            never = f"are never as near as {float(keep)!r}" if keep else "never meet"
+            report.holds.append(f"the bodies {never}: a gap of {gap!r} is between them")
         if margin > proven:
             report.unchecked.append(f"the margin of the shrunk bodies, {float(margin)!r}")
     if (stop is None) != (certificate["stop"] is None):
         raise RefusedError("the certificate and the claim do not agree about what stops the body")
-    if stop is not None:
+    if stop is not None and keep:
+        at = [whole(k, len(of.facets)) for k, of in zip(stop["facets"], (moving, fixed), strict=True)]
+        report.unchecked.append(f"where facets {at[0]} and {at[1]} are {float(keep)!r} apart")
+    elif stop is not None:
         facets(moving, fixed, d, stop, tolerance, report)
     if tolerance:
         report.unchecked.append(
             f"what shrinking by {float(tolerance / 2)!r} makes of the bodies, which may be thinner"
         )
     report.partly = True
-    report.unchecked.append("whether the bodies overlap where they are")
+    overlap = "are nearer than the gap" if keep else "overlap"
+    report.unchecked.append(f"whether the bodies {overlap} where they are")
+    come_near = "come as near as the gap" if keep else "meet"
     report.unchecked.append(
-        "that nothing stops the moving body before" if stop else "that no two facets meet"
+        "that nothing stops the moving body before" if stop else f"that no two facets {come_near}"
     )
 
 
@@ -642,6 +688,7 @@ class Scene:
         self.moving = placed(file["moving"])
         self.obstacles = [placed(place) for place in file["obstacles"]]
         self.choices, self.statement = file["choices"], file["statement"]
+        self.keep = gap_to_keep(self.choices)
         self.box = box(self.moving)
         self.report = Report()
 
@@ -747,12 +794,9 @@ class Scene:
     def clearance(self, claim: Any) -> None:
         d = vector(claim["direction"])
         lower = None if claim["lower"] is None else number(claim["lower"])
-        keep = number(self.choices.get("keep", 0.0))
         if not any(d) or (lower is not None and lower < 0):
             raise RefusedError("there is no direction, or a bound is negative")
         claims, stop = self.named(claim["passed"]), claim["stop"]
-        if keep and any("convex" in of for of in claims.values()):
-            raise NoProofError("bodies are to keep a gap: `colltrans verify` checks such a proof")
         bounds = {k: self.passed(k, of, d) for k, of in claims.items()}
         if stop is not None:
             upper = bounds[whole(stop, len(self.obstacles))][1]
@@ -763,7 +807,7 @@ class Scene:
                 raise RefusedError(f"obstacle {stop} is not proven to stop the moving body")
             self.report.holds.append(f"obstacle {stop} stops it by {float(upper)!r}")
         for k, body in enumerate(self.obstacles):
-            bound = bounds[k][0] if k in bounds else box_entry(self.box, box(body), d, keep)
+            bound = bounds[k][0] if k in bounds else box_entry(self.box, box(body), d, self.keep)
             if not beyond(bound, lower) or (bound == 0 and k not in bounds):
                 raise RefusedError(f"obstacle {k} is not proven to stop nothing before")
         never = "never" if lower is None else f"not before a translation of {float(lower)!r}"
@@ -792,7 +836,7 @@ class Scene:
         back, never = scaled(d, Fraction(-1)), (_NEVER, _NEVER)
         if kind == "blocked":
             proof = of["contact"]["certificate"]
-            contact(self.moving, body, d, proof, report, "along the direction")
+            contact(self.moving, body, d, proof, report, "along the direction", self.keep)
             if number(of["distance"]) > max(number(proof["lower"]), Fraction()):
                 raise RefusedError("the distance is larger than what is proven")
             upper = None if proof["upper"] is None else number(proof["upper"])
@@ -800,7 +844,7 @@ class Scene:
         if kind == "overlapping":
             for end, way in ((of["first"], d), (of["last"], back)):
                 proof = end["certificate"]
-                contact(self.moving, body, way, proof, report, "of the overlap")
+                contact(self.moving, body, way, proof, report, "of the overlap", self.keep)
                 if proof["upper"] is None or number(proof["upper"]) >= 0:
                     raise RefusedError("the bodies are not proven to overlap")
             return Fraction(), -math.inf
@@ -808,10 +852,10 @@ class Scene:
             raise NoProofError(f"{kind!r} is no clearance")
         ((why, free),) = of.items()
         if why == "separated":
-            separation(self.moving, body, d, free["certificate"], report)
+            separation(self.moving, body, d, free["certificate"], report, self.keep)
         elif why == "behind":
             proof = free["certificate"]
-            contact(self.moving, body, back, proof, report, "against the direction")
+            contact(self.moving, body, back, proof, report, "against the direction", self.keep)
             if number(proof["lower"]) < -number(proof["rounding"]):
                 raise RefusedError("the bodies are not proven to meet behind only")
         elif why == "slides":
@@ -825,9 +869,9 @@ class Scene:
         unit(normal)
         if dot(normal, d) ** 2 > _UNIT_VECTOR**2 * dot(d, d):
             raise RefusedError("the normal of the slide is not across the direction")
-        noise = _NOISE * Fraction(size(self.moving, body))
+        noise = _NOISE * (Fraction(size(self.moving, body)) + self.keep)
         most = max(number(self.choices.get("graze_tolerance", 0.0)), 8 * noise) + 3 * noise
-        if -gaps(self.moving, body, d, normal)[0] > most:
+        if self.keep - gaps(self.moving, body, d, normal)[0] > most:
             raise RefusedError("the bodies overlap sideways by more than is tolerated")
 
 
@@ -1239,10 +1283,7 @@ def check(text: str) -> Report:
             return Scene(file).check()
         if file["format"] != FORMAT:
             raise NoProofError(f"the format is {file['format']!r}, not {FORMAT!r}")
-        if file.get("keep", 0) != 0:
-            raise NoProofError(
-                "the bodies are to keep a gap: `colltrans verify` checks such a proof"
-            )
+        keep = gap_to_keep(file)
         moving = Body.read(file["moving"], file["moving_pose"])
         fixed = Body.read(file["fixed"], file["fixed_pose"])
         if bool(moving.facets) != bool(fixed.facets):
@@ -1258,13 +1299,13 @@ def check(text: str) -> Report:
         ((kind, claim),) = claims.items()
         if kind in PLACED:
             of_solids = kind in ("solid_distance", "free_directions")
-            if d is not None or bool(moving.facets) != of_solids:
+            if d is not None or keep or bool(moving.facets) != of_solids:
                 raise NoProofError(f"{kind!r} is not claimed of such bodies, or of a direction")
             PLACED[kind](moving, fixed, claim, report)
         elif d is None:
             raise NoProofError("there is no direction")
         else:
-            _claim(kind, claim, moving, fixed, d, report)
+            _claim(kind, claim, (moving, fixed), d, report, keep)
     except (*_MALFORMED, RecursionError) as error:
         if isinstance(error, NoProofError):
             raise
@@ -1289,7 +1330,18 @@ PLACED = {
 }
 
 
-def _claim(kind: str, claim: Any, moving: Body, fixed: Body, d: Vector, report: Report) -> None:
+def gap_to_keep(of: Any) -> Fraction:
+    """The gap that the bodies are to keep, 0 for none."""
+    keep = number(of.get("keep", 0.0))
+    if keep < 0:
+        raise NoProofError(f"the gap to be kept, {float(keep)!r}, is negative")
+    return keep
+
+
+def _claim(
+    kind: str, claim: Any, bodies: tuple[Body, Body], d: Vector, report: Report, keep: Fraction
+) -> None:
+    moving, fixed = bodies
     is_solid = bool(moving.facets)
     if is_solid != (kind == "clearance"):
         raise NoProofError(f"{kind!r} is not claimed of such bodies")
@@ -1298,17 +1350,17 @@ def _claim(kind: str, claim: Any, moving: Body, fixed: Body, d: Vector, report: 
         if not set(claim) <= {"slide", "first", "last"} or not {"first", "last"} & set(claim):
             raise NoProofError("no contact is claimed")
         if "slide" in claim:
-            slide(moving, fixed, d, claim["slide"], report)
+            slide(moving, fixed, d, claim["slide"], report, keep)
         if "first" in claim:
-            contact(moving, fixed, d, claim["first"], report, "along the direction")
+            contact(moving, fixed, d, claim["first"], report, "along the direction", keep)
         if "last" in claim:
             back = scaled(d, Fraction(-1))
-            contact(moving, fixed, back, claim["last"], report, "against the direction")
+            contact(moving, fixed, back, claim["last"], report, "against the direction", keep)
         report.unchecked.append("what is said of rounding, which proves nothing")
     elif kind == "separation":
-        separation(moving, fixed, d, claim, report)
+        separation(moving, fixed, d, claim, report, keep)
     elif is_solid:
-        clearance(moving, fixed, d, claim, report)
+        clearance(moving, fixed, d, claim, report, keep)
     else:
         raise NoProofError(f"{kind!r} is nothing that is claimed")
 

@@ -184,7 +184,9 @@ impl Cast<'_> {
     /// of [`Separated`](crate::Separated) bodies the margin is more than the gap; bodies whose shadows come as
     /// near as the gap to within the graze tolerance are [`Outcome::Grazing`]. Witness points are those that are
     /// the gap apart. Where bodies glide over each other at about the gap, bounds are as far apart as a face that is all
-    /// but along the direction needs to come nearer by more than rounding. A gap of 0 is none. Observers hear nothing of such a search, and the solver makes no difference.
+    /// but along the direction needs to come nearer by more than rounding. A gap of 0 is none. The
+    /// solver makes no difference; observers hear of the planes that are laid, one for each look at how near the bodies are,
+    /// and of no portals.
     ///
     /// # Errors
     /// A gap that is negative, not finite or more than [`MAX_MAGNITUDE`](crate::MAX_MAGNITUDE).

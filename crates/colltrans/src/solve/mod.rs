@@ -97,7 +97,7 @@ fn kept<O: Observer>(
         }
     }
     let last = if focus.features { *last } else { WarmStart::Nothing };
-    keep::convex::search(setting, options, &last, next)
+    keep::convex::search(setting, options, &last, next, observer)
 }
 
 /// Tries turns of the lateral axes from scratch until there is an answer.

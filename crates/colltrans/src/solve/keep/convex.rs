@@ -7,7 +7,7 @@
 //! A *slight* gap, of less than eight noises, leaves no room for a point that is as near for certain. There the bodies are cast as
 //! they are: their own contact is an upper bound, and the plane, lowered by the gap, the lower one.
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 use super::{Line, Look, Near, Plane, Target, Travel, shadow, travel};
 use crate::answer::{
@@ -15,10 +15,11 @@ use crate::answer::{
 };
 use crate::number::noise::Noise;
 use crate::setting::error::{QueryError, Stalled};
+use crate::setting::minkowski::MinkowskiDifference;
 use crate::setting::{Setting, TwoBodies, VertexPair};
 use crate::solve::WarmStart;
 use crate::solve::nearest::{Difference, NearestPairs, nearest};
-use crate::solve::observe::NoObserver;
+use crate::solve::observe::{NoObserver, Observer, Phase, ShadowFrame, Support};
 use crate::solve::options::{Focus, Options};
 
 /// How far apart, in noises over `n.d`, the bounds of an answer may be.
@@ -40,30 +41,51 @@ const STUCK: f64 = 2.0;
 /// By how many noises a margin has to be larger than the gap to be proven without being looked at as a check does.
 const CLEARLY: f64 = 2.0;
 
-/// `M`, and what was found last.
-struct Bodies<'s, 'a> {
+/// `M`, what was found last, and who hears of it.
+struct Bodies<'s, 'a, 'o, O> {
     setting: &'s Setting<'a>,
     noise: Noise,
     pairs: NearestPairs,
+    observer: &'o mut O,
+    /// Support points computed.
+    supports: u32,
 }
 
 /// Three pairs of vertices and their weights.
 type Spot = ([VertexPair; 3], [f64; 3]);
 
-impl Bodies<'_, '_> {
-    /// The plane across a support point.
-    fn plane(&self, normal: DVec3, support: VertexPair, beyond: f64) -> Plane<VertexPair> {
+/// The shadow frame, for observers.
+fn setting_from_shadow(setting: &Setting) -> DMat3 {
+    MinkowskiDifference::new(setting).setting_from_shadow
+}
+
+impl<O: Observer> Bodies<'_, '_, '_, O> {
+    fn begun(&mut self) {
+        let (setting, noise) = (self.setting, self.noise.point());
+        let frame = || ShadowFrame { world_from_shadow: setting_from_shadow(setting), noise };
+        self.observer.begun(frame);
+    }
+
+    /// The plane across a support point, which the observer hears of.
+    fn plane(&mut self, normal: DVec3, support: VertexPair, beyond: f64) -> Plane<VertexPair> {
+        let setting = self.setting;
+        self.observer.support(|| {
+            let to_shadow = setting_from_shadow(setting).transpose();
+            let at = to_shadow * setting.difference(support);
+            Support { normal: to_shadow * normal, at, pair: support }
+        });
         let height = normal.dot(self.setting.difference(support));
         let height = height - self.noise.lowered() - beyond;
         Plane { normal, height, beyond, support }
     }
 }
 
-impl Target for Bodies<'_, '_> {
+impl<O: Observer> Target for Bodies<'_, '_, '_, O> {
     type Support = VertexPair;
     type Spot = Spot;
 
     fn lowest(&mut self, normal: DVec3) -> (Plane<VertexPair>, DVec3) {
+        self.supports += 1;
         let bodies: &TwoBodies = &self.setting.bodies;
         let normals = [bodies.moving_normal(normal), bodies.fixed_normal(normal)];
         let found = VertexPair {
@@ -82,6 +104,7 @@ impl Target for Bodies<'_, '_> {
             // From pairs on a sliver a descent may get nowhere.
             found = nearest(&difference, &NearestPairs::default(), None);
         }
+        self.supports += difference.steps().supports;
         self.pairs = found.pairs();
         let plane = found.plane(&difference);
         let plane = plane.map(|plane| self.plane(plane.gap.normal, plane.lowest, plane.beyond));
@@ -100,38 +123,46 @@ fn mean(corners: &[DVec3; 3], weights: &[f64; 3]) -> DVec3 {
 }
 
 /// Where bodies that are to keep a gap are first as near as that; leaves in `next` where a later search may start.
-pub(crate) fn search(
+pub(crate) fn search<O: Observer>(
     setting: &Setting,
     options: &Options,
     last: &WarmStart,
     next: &mut WarmStart,
+    observer: &mut O,
 ) -> Result<Outcome, QueryError> {
     let size = setting.scale();
     let line = Line::new(setting.unit, options.keep, size);
-    let mut kept = Kept {
-        options,
-        line,
-        bodies: Bodies { setting, noise: line.noise, pairs: NearestPairs::default() },
-        steps: Steps::default(),
-    };
+    let pairs = NearestPairs::default();
+    let bodies = Bodies { setting, noise: line.noise, pairs, observer, supports: 0 };
+    let mut kept = Kept { options, line, bodies, steps: Steps::default() };
+    kept.bodies.begun();
     let start = kept.start(last);
+    kept.bodies.observer.ended(Phase::Setup);
     let found = travel(&mut kept.bodies, &line, start, f64::INFINITY);
+    kept.bodies.observer.ended(Phase::Finish);
     kept.steps.pivots = found.looks;
     *next = WarmStart::Kept { normal: found.plane.normal, pairs: kept.bodies.pairs };
-    kept.outcome(&found)
+    let outcome = kept.outcome(&found);
+    kept.bodies.observer.ended(Phase::Answer);
+    outcome
 }
 
 /// One search under way.
-struct Kept<'s, 'a> {
+struct Kept<'s, 'a, 'o, O> {
     options: &'s Options,
     line: Line,
-    bodies: Bodies<'s, 'a>,
+    bodies: Bodies<'s, 'a, 'o, O>,
     steps: Steps,
 }
 
-type Found<'s, 'a> = Travel<Bodies<'s, 'a>>;
+type Found<'s, 'a, 'o, O> = Travel<Bodies<'s, 'a, 'o, O>>;
 
-impl<'s, 'a> Kept<'s, 'a> {
+impl<'s, 'a, 'o, O: Observer> Kept<'s, 'a, 'o, O> {
+    /// The work done so far.
+    fn steps(&self) -> Steps {
+        Steps { supports: self.bodies.supports, ..self.steps }
+    }
+
     /// The plane to begin with: that of the last search, or one across the line.
     fn start(&mut self, last: &WarmStart) -> Plane<VertexPair> {
         let mut start = self.bodies.lowest(self.line.unit).0;
@@ -147,7 +178,7 @@ impl<'s, 'a> Kept<'s, 'a> {
     }
 
     /// What was found, by how far the shadows are in each other's way.
-    fn outcome(&mut self, found: &Found<'s, 'a>) -> Result<Outcome, QueryError> {
+    fn outcome(&mut self, found: &Found<'s, 'a, 'o, O>) -> Result<Outcome, QueryError> {
         let keep = self.line.keep;
         let least = 8.0 * self.line.noise.point();
         let tolerance = self.options.graze_tolerance.max(least);
@@ -164,7 +195,7 @@ impl<'s, 'a> Kept<'s, 'a> {
             return Err(stalled(Stalled::NoPortal));
         };
         if let Some(certificate) = self.separation(&shadow.plane) {
-            let (solver, steps) = (self.solver(), self.steps);
+            let (solver, steps) = (self.solver(), self.steps());
             return Ok(Outcome::Separated(Separated { certificate, solver, steps }));
         }
         let overlap = keep - if shadow.distance > 0.0 { shadow.plane.height } else { 0.0 };
@@ -182,7 +213,7 @@ impl<'s, 'a> Kept<'s, 'a> {
     }
 
     /// Whether the bodies graze although their shadows overlap: by less than the tolerance, with the gap.
-    fn slides(&self, found: &Found<'s, 'a>, tolerance: f64) -> Option<Grazing> {
+    fn slides(&self, found: &Found<'s, 'a, 'o, O>, tolerance: f64) -> Option<Grazing> {
         let keep = self.line.keep;
         if keep >= tolerance {
             return None;
@@ -214,7 +245,7 @@ impl<'s, 'a> Kept<'s, 'a> {
     }
 
     /// The contact, if its bounds are no farther apart than rounding explains.
-    fn contact(&mut self, found: &Found<'s, 'a>) -> Result<Contact, QueryError> {
+    fn contact(&mut self, found: &Found<'s, 'a, 'o, O>) -> Result<Contact, QueryError> {
         let tolerance = self.line.rounding(&found.plane, WIDEST);
         let upper = found.near.map_or(f64::INFINITY, |near| near.upper);
         if upper - found.lower <= tolerance {
@@ -233,7 +264,7 @@ impl<'s, 'a> Kept<'s, 'a> {
     /// plane is met where a smaller gap is asked for, and the bounds are as far apart as it is slanting. The best
     /// estimate is still where the front edge is met.
     #[cold]
-    fn glided(&mut self, found: &Found<'s, 'a>) -> Option<Contact> {
+    fn glided(&mut self, found: &Found<'s, 'a, 'o, O>) -> Option<Contact> {
         let contact = DEEPER.iter().find_map(|deeper| self.behind_edge(found, *deeper))?;
         let Certificate { lower, upper, .. } = contact.certificate;
         let translation = (found.lower / self.bodies.setting.length).min(upper).max(lower);
@@ -241,7 +272,7 @@ impl<'s, 'a> Kept<'s, 'a> {
     }
 
     /// The same by a plane that is met at a gap that is so many noises smaller.
-    fn behind_edge(&mut self, found: &Found<'s, 'a>, deeper: f64) -> Option<Contact> {
+    fn behind_edge(&mut self, found: &Found<'s, 'a, 'o, O>, deeper: f64) -> Option<Contact> {
         let line = Line { keep: self.line.keep - deeper * self.line.noise.point(), ..self.line };
         let start = self.bodies.lowest(found.plane.normal).0;
         let mut behind = travel(&mut self.bodies, &line, start, f64::INFINITY);
@@ -263,11 +294,11 @@ impl<'s, 'a> Kept<'s, 'a> {
     }
 
     /// The contact of bodies that graze, whatever its bounds.
-    fn grazed(&self, found: &Found<'s, 'a>) -> Contact {
+    fn grazed(&self, found: &Found<'s, 'a, 'o, O>) -> Contact {
         self.contact_of(found, self.line.rounding(&found.plane, WIDEST))
     }
 
-    fn contact_of(&self, found: &Found<'s, 'a>, rounding: f64) -> Contact {
+    fn contact_of(&self, found: &Found<'s, 'a, 'o, O>, rounding: f64) -> Contact {
         let setting = self.bodies.setting;
         let plane = &found.plane;
         let steepness = plane.normal.dot(setting.direction);
@@ -293,7 +324,7 @@ impl<'s, 'a> Kept<'s, 'a> {
                 rounding: rounding / setting.length,
             },
             solver: self.solver(),
-            steps: self.steps,
+            steps: self.steps(),
         }
     }
 

@@ -1,19 +1,24 @@
 """One body among many: numbers, answers beside single queries, rows, threads, bad input."""
 
 import math
+import subprocess
 import threading
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 from colltrans import (
     Blocked,
+    CaseError,
     ConvexPolyhedron,
     InputError,
     Obstacles,
     Pose,
     QueryError,
     Solid,
+    check,
     clearance,
 )
 
@@ -55,6 +60,42 @@ def test_numbers_stay_valid() -> None:
         with pytest.raises(KeyError):
             obstacles.set_poses([second, gone], np.zeros((2, 3)))
     assert obstacles.pose(second).translation.tolist() == [4, 0, 0]
+
+
+def test_answers_save_their_proofs(cli: Path, tmp_path: Path) -> None:
+    obstacles, places = shelf(40)
+    ball = obstacles.add(Solid.from_pieces([CUBE]), [40, 0, 0])
+    where = [10, 10, 30]
+    answers: dict[str, Any] = {
+        "is between": obstacles.nearest(CUBE, where),
+        "farther": obstacles.within(CUBE, 20, where),
+        "none stops": obstacles.clearance(CUBE, DOWN, where),
+        "0.25 away or nearer": obstacles.clearance(CUBE, DOWN, where, keep=0.25),
+        "none ever": obstacles.clearance(CUBE, [0, 0, 1], where, ignore=[ball]),
+    }
+    for said, answer in answers.items():
+        answer.verify()
+        saved = tmp_path / "proof.json"
+        answer.save_proof(saved)
+        told = subprocess.run([cli, "verify", saved], capture_output=True, text=True, check=True)
+        assert told.stdout.startswith("holds") and said in told.stdout, told.stdout
+        report = check.check(answer.proof_json())
+        assert report.holds and not report.partly
+        text = answer.proof_json().replace("10.0,10.0,30.0", "10.0,10.0,29.0")
+        if said != "none ever":
+            with pytest.raises(check.RefusedError):
+                check.check(text)
+    closer, undecided = answers["farther"]
+    assert closer == answers["farther"].closer and undecided == [] == answers["farther"][1]
+    # Of other obstacles nothing is said.
+    obstacles.set_pose(ball, [50, 0, 0])
+    for answer in answers.values():
+        with pytest.raises(CaseError, match="moved or gone"):
+            answer.verify()
+    nearest = obstacles.nearest(CUBE, [60, 0, 0])
+    assert nearest is not None and nearest.obstacle == ball
+    assert check.check(nearest.proof_json()).partly
+    assert len(places) == 40
 
 
 def test_casts_are_those_of_single_queries() -> None:

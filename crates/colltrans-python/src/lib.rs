@@ -10,7 +10,7 @@
 //! 4. answers: `certificate`, `features`, `answer` (what all have in common), `outcome`, `clearance`,
 //!    `solid_answer`, `distance`, `directions`;
 //! 5. those who ask: `questions` (functions, and methods of queries), `tracker` (in sequence), `many` (in
-//!    bulk), `obstacles` (one body among many), `assembly` (many parts).
+//!    bulk), `obstacles` (one body among many) with its `scene_answers`, `assembly` (many parts).
 //!
 //! The package itself is in `python/`; its stub `_colltrans.pyi` has the types.
 
@@ -33,6 +33,7 @@ mod pair;
 mod pose;
 mod query;
 mod questions;
+mod scene_answers;
 mod solid;
 mod solid_answer;
 mod solid_cast;
@@ -59,7 +60,7 @@ mod _colltrans {
     #[pymodule_export]
     use crate::many::{ask_many, ask_pairs};
     #[pymodule_export]
-    use crate::obstacles::{NearestObstacle, ObstacleClearance, Obstacles};
+    use crate::obstacles::Obstacles;
     #[pymodule_export]
     use crate::offset::{OffsetReport, ShrinkReport};
     #[pymodule_export]
@@ -74,6 +75,8 @@ mod _colltrans {
     use crate::questions::{
         cast, clearance, contact_range, depth, directional_depth, distance, intersects, within,
     };
+    #[pymodule_export]
+    use crate::scene_answers::{NearbyObstacles, NearestObstacle, ObstacleClearance};
     #[pymodule_export]
     use crate::solid::Solid;
     #[pymodule_export]

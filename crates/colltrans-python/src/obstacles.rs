@@ -11,18 +11,19 @@ use std::thread::ScopedJoinHandle;
 use std::time::Duration;
 
 use colltrans::glam::DVec3;
-use colltrans::solid::SolidOptions;
-use colltrans::{
-    Among, AnyBody, AnyPlaced, ByKind, Clearance, ClearanceAmong, ObstacleId, Options, QueryError,
-};
-use numpy::{IntoPyArray, PyArray1, PyArrayMethods};
+use colltrans::{Among, AnyBody, ClearanceAmong, ObstacleId, QueryError};
+use numpy::{IntoPyArray, PyArrayMethods};
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{row, vector};
+use crate::arrays::vector;
 use crate::errors::{OrRaise, error, input};
 use crate::pose::{Pose, pose};
+use crate::scene_answers::{
+    Asked, NearbyObstacles, NearestObstacle, ObstacleClearance, keeping, outcome_of, placed,
+    upper_of,
+};
 use crate::solid::Piece;
 
 /// Rows that a thread takes at a time.
@@ -50,45 +51,59 @@ const PATIENCE: Duration = Duration::from_millis(100);
 /// >>> down.outcome, down.obstacle, 3 - 1e-11 < down.distance <= 3
 /// ('blocked', 12, True)
 /// >>> shelf.within(cube, 3.2, [24.25, 0, 4])
-/// ([12, 13], [])
+/// NearbyObstacles(closer=[12, 13], undecided=[])
+/// >>> down.verify()
 /// >>> shelf.remove(12)
 /// >>> shelf.clearance(cube, [0, 0, -1], [24.25, 0, 4])
 /// ObstacleClearance('free', obstacle=None, distance=inf)
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Obstacles {
     /// Whoever waits for it does so without the interpreter's lock.
-    kept: RwLock<colltrans::Obstacles>,
+    kept: RwLock<Kept>,
     /// By the address of their objects, which are kept with them.
     bodies: Mutex<HashMap<usize, (Piece, AnyBody)>>,
+}
+
+/// The obstacles, and how often they have changed.
+#[derive(Default)]
+pub(crate) struct Kept {
+    pub(crate) obstacles: colltrans::Obstacles,
+    pub(crate) changes: u64,
 }
 
 /// Of a chunk of rows the first, and their answers.
 type Parts<T> = Vec<(usize, Vec<T>)>;
 
 impl Obstacles {
-    fn read(&self) -> RwLockReadGuard<'_, colltrans::Obstacles> {
+    pub(crate) fn read(&self) -> RwLockReadGuard<'_, Kept> {
         self.kept.read().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn write(&self) -> RwLockWriteGuard<'_, colltrans::Obstacles> {
-        self.kept.write().unwrap_or_else(PoisonError::into_inner)
+    /// Changes the obstacles.
+    fn change<T>(&self, of: impl FnOnce(&mut colltrans::Obstacles) -> T) -> T {
+        let mut kept: RwLockWriteGuard<'_, Kept> =
+            self.kept.write().unwrap_or_else(PoisonError::into_inner);
+        kept.changes += 1;
+        of(&mut kept.obstacles)
     }
 
     /// Asks about one body, without the interpreter's lock.
     fn ask<T: Send>(
-        &self,
-        py: Python<'_>,
-        (body, at): (&Piece, colltrans::Pose),
-        ignore: &HashSet<u64>,
+        slf: &Bound<'_, Self>,
+        (body, at): (Piece, colltrans::Pose),
+        ignore: HashSet<u64>,
         question: impl FnOnce(&Among<'_>) -> Result<T, QueryError> + Send,
-    ) -> PyResult<T> {
+    ) -> PyResult<(T, Asked)> {
+        let scene = slf.get();
         let asked = || {
-            let kept = self.read();
+            let kept = scene.read();
             let ignored = |id: ObstacleId| ignore.contains(&id.0);
-            Among::new(placed(body, at), &kept)
-                .and_then(|among| question(&among.ignoring(&ignored)))
+            let found = Among::new(placed(&body, at), &kept.obstacles)
+                .and_then(|among| question(&among.ignoring(&ignored)));
+            found.map(|found| (found, kept.changes))
         };
-        py.detach(asked).or_raise()
+        let (found, changes) = slf.py().detach(asked).or_raise()?;
+        Ok((found, Asked { scene: slf.clone().unbind(), changes, body, at, ignore }))
     }
 
     /// Asks rows, on some threads.
@@ -104,7 +119,7 @@ impl Obstacles {
             let kept = self.read();
             let ignored = |id: ObstacleId| ignore.contains(&id.0);
             rows(poses.len(), threads, |k| {
-                Among::new(placed(body, poses[k]), &kept)
+                Among::new(placed(body, poses[k]), &kept.obstacles)
                     .and_then(|among| question(k, &among.ignoring(&ignored)))
                     .map_err(|what| what.to_string())
             })
@@ -119,16 +134,7 @@ fn clearance_keeping(
     before: f64,
     keep: f64,
 ) -> Result<ClearanceAmong, QueryError> {
-    let keeping = among.with_options(Options::default().with_keep(keep))?;
-    let keeping = keeping.with_solid_options(SolidOptions::default().with_keep(keep));
-    keeping.clearance_before(direction, before)
-}
-
-fn placed(body: &Piece, at: colltrans::Pose) -> AnyPlaced<'_> {
-    match body {
-        Piece::Convex(body) => body.get().0.at(at).into(),
-        Piece::Solid(solid) => solid.get().solid.at(at).into(),
-    }
+    keeping(among, keep)?.clearance_before(direction, before)
 }
 
 /// The answers of so many rows, in order.
@@ -277,7 +283,7 @@ impl Obstacles {
     ///     There is no such one.
     fn set_pose(&self, py: Python<'_>, obstacle: u64, pose: &Bound<'_, PyAny>) -> PyResult<()> {
         let at = self::pose(Some(pose), "pose")?;
-        let set = || self.write().set_pose(ObstacleId(obstacle), at);
+        let set = || self.change(|all| all.set_pose(ObstacleId(obstacle), at));
         py.detach(set).map_err(|_| unknown(obstacle))
     }
 
@@ -294,7 +300,7 @@ impl Obstacles {
             return Err(input("poses", what));
         }
         let moves: Vec<_> = obstacles.into_iter().map(ObstacleId).zip(poses).collect();
-        py.detach(|| self.write().set_poses(&moves)).map_err(|what| unknown(what.id.0))
+        py.detach(|| self.change(|all| all.set_poses(&moves))).map_err(|what| unknown(what.id.0))
     }
 
     /// Takes an obstacle away.
@@ -304,7 +310,7 @@ impl Obstacles {
     /// KeyError
     ///     There is no such one.
     fn remove(&self, py: Python<'_>, obstacle: u64) -> PyResult<()> {
-        let removed = py.detach(|| self.write().remove(ObstacleId(obstacle)));
+        let removed = py.detach(|| self.change(|all| all.remove(ObstacleId(obstacle))));
         removed.map(|_| ()).ok_or_else(|| unknown(obstacle))
     }
 
@@ -314,16 +320,16 @@ impl Obstacles {
     /// -------
     /// Pose
     fn pose(&self, py: Python<'_>, obstacle: u64) -> PyResult<Pose> {
-        let at = || self.read().get(ObstacleId(obstacle)).map(|(_, pose)| pose);
+        let at = || self.read().obstacles.get(ObstacleId(obstacle)).map(|(_, pose)| pose);
         py.detach(at).map(Pose).ok_or_else(|| unknown(obstacle))
     }
 
     fn __len__(&self, py: Python<'_>) -> usize {
-        py.detach(|| self.read().len())
+        py.detach(|| self.read().obstacles.len())
     }
 
     fn __contains__(&self, py: Python<'_>, obstacle: u64) -> bool {
-        py.detach(|| self.read().get(ObstacleId(obstacle)).is_some())
+        py.detach(|| self.read().obstacles.get(ObstacleId(obstacle)).is_some())
     }
 
     fn __repr__(&self, py: Python<'_>) -> String {
@@ -352,15 +358,14 @@ impl Obstacles {
     #[pyo3(signature = (body, pose=None, *, ignore=HashSet::new()),
         text_signature = "($self, body, pose=None, *, ignore=())")]
     fn nearest(
-        &self,
-        py: Python<'_>,
+        slf: &Bound<'_, Self>,
         body: &Bound<'_, PyAny>,
         pose: Option<&Bound<'_, PyAny>>,
         #[pyo3(from_py_with = numbers)] ignore: HashSet<u64>,
     ) -> PyResult<Option<NearestObstacle>> {
         let (body, at) = (Piece::of(body, "body")?, self::pose(pose, "pose")?);
-        let found = self.ask(py, (&body, at), &ignore, |among| among.nearest())?;
-        Ok(found.map(NearestObstacle))
+        let (found, asked) = Self::ask(slf, (body, at), ignore, |among| among.nearest())?;
+        Ok(found.map(|found| NearestObstacle { found, asked }))
     }
 
     /// Which obstacles are closer to a body than a length?
@@ -374,22 +379,21 @@ impl Obstacles {
     ///
     /// Returns
     /// -------
-    /// tuple of (list of int, list of int)
-    ///     Those that are, and those of which rounding cannot tell, each in the order in which they came.
+    /// NearbyObstacles
+    ///     Those that are, and those of which rounding cannot tell, each in the order in which they came; it
+    ///     unpacks into the two.
     #[pyo3(signature = (body, length, pose=None, *, ignore=HashSet::new()),
         text_signature = "($self, body, length, pose=None, *, ignore=())")]
     fn within(
-        &self,
-        py: Python<'_>,
+        slf: &Bound<'_, Self>,
         body: &Bound<'_, PyAny>,
         length: f64,
         pose: Option<&Bound<'_, PyAny>>,
         #[pyo3(from_py_with = numbers)] ignore: HashSet<u64>,
-    ) -> PyResult<(Vec<u64>, Vec<u64>)> {
+    ) -> PyResult<NearbyObstacles> {
         let (body, at) = (Piece::of(body, "body")?, self::pose(pose, "pose")?);
-        let found = self.ask(py, (&body, at), &ignore, |among| among.within(length))?;
-        let closer = found.closer.iter().map(|(id, _)| id.0).collect();
-        Ok((closer, found.undecided.iter().map(|(id, _)| id.0).collect()))
+        let (found, asked) = Self::ask(slf, (body, at), ignore, |among| among.within(length))?;
+        Ok(NearbyObstacles { found, length, asked })
     }
 
     /// How far can a body move along a direction, and what stops it?
@@ -413,8 +417,7 @@ impl Obstacles {
         before=None, keep=0.0, ignore=())")]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn clearance(
-        &self,
-        py: Python<'_>,
+        slf: &Bound<'_, Self>,
         body: &Bound<'_, PyAny>,
         direction: &Bound<'_, PyAny>,
         pose: Option<&Bound<'_, PyAny>>,
@@ -426,7 +429,8 @@ impl Obstacles {
         let direction = vector(direction, "direction")?;
         let before = before.unwrap_or(f64::INFINITY);
         let ask = |among: &Among<'_>| clearance_keeping(among, direction, before, keep);
-        self.ask(py, (&body, at), &ignore, ask).map(ObstacleClearance)
+        let (found, asked) = Self::ask(slf, (body, at), ignore, ask)?;
+        Ok(ObstacleClearance { found, direction, keep, asked })
     }
 
     /// :meth:`nearest` of many poses, on some threads.
@@ -518,18 +522,17 @@ impl Obstacles {
             clearance_keeping(among, directions[k.min(directions.len() - 1)], before, keep)
         };
         let found = self.ask_rows(py, (&body, &poses), &ignore, threads, ask)?;
-        let found: Vec<_> = found.into_iter().map(ObstacleClearance).collect();
-        let kind = |one: &ObstacleClearance| match one.outcome() {
+        let kind = |one: &ClearanceAmong| match outcome_of(one) {
             "blocked" => 0_u8,
             "free" => 1,
             _ => 2,
         };
         let columns = PyDict::new(py);
         let outcome: Vec<u8> = found.iter().map(kind).collect();
-        let id = |one: &ObstacleClearance| one.obstacle().map_or(-1, |id| id as i64);
+        let id = |one: &ClearanceAmong| one.stop.map_or(-1, |(id, _)| id.0 as i64);
         let ids: Vec<i64> = found.iter().map(id).collect();
         let distance = found.iter().map(|one| one.distance().unwrap_or(f64::NAN));
-        let upper = found.iter().map(|one| one.upper());
+        let upper = found.iter().map(upper_of);
         columns.set_item("outcome", outcome.into_pyarray(py))?;
         columns.set_item("obstacle", ids.into_pyarray(py))?;
         columns.set_item("distance", distance.collect::<Vec<_>>().into_pyarray(py))?;
@@ -549,7 +552,7 @@ impl Obstacles {
         let made = bodies.iter().map(|body| self.body(body)).collect::<PyResult<Vec<_>>>()?;
         let all = poses.into_iter().enumerate();
         let all = all.map(|(k, at)| (made[k.min(made.len() - 1)].clone(), at));
-        let ids = py.detach(|| self.write().insert_all(all));
+        let ids = py.detach(|| self.change(|kept| kept.insert_all(all)));
         Ok(ids.into_iter().map(|id| id.0).collect())
     }
 
@@ -571,121 +574,4 @@ impl Obstacles {
 /// Numbers of obstacles.
 fn numbers(of: &Bound<'_, PyAny>) -> PyResult<HashSet<u64>> {
     of.try_iter()?.map(|one| one?.extract()).collect()
-}
-
-/// The nearest of many obstacles.
-#[pyclass(frozen, module = "colltrans")]
-pub(crate) struct NearestObstacle(colltrans::Nearest);
-
-#[pymethods]
-impl NearestObstacle {
-    /// int: Which one.
-    #[getter]
-    fn obstacle(&self) -> u64 {
-        self.0.obstacle.0
-    }
-
-    /// float: No obstacle is nearer, rounded down.
-    #[getter]
-    fn lower(&self) -> f64 {
-        self.0.lower
-    }
-
-    /// float: This one is not farther, rounded up.
-    #[getter]
-    fn upper(&self) -> f64 {
-        self.0.distance.upper()
-    }
-
-    /// ndarray of shape (3,): The point of the moving body that is nearest to it, in the world.
-    #[getter]
-    fn on_moving<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.0.distance.on_moving())
-    }
-
-    /// ndarray of shape (3,): Its point that is nearest to the moving body.
-    #[getter]
-    fn on_fixed<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.0.distance.on_fixed())
-    }
-
-    /// ndarray of shape (3,) or None: Unit vector in the world, from the moving body to it, where they are
-    /// apart.
-    #[getter]
-    fn normal<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        self.0.distance.normal().map(|normal| row(py, normal))
-    }
-
-    fn __repr__(&self) -> String {
-        let (obstacle, lower, upper) = (self.obstacle(), self.lower(), self.upper());
-        format!("NearestObstacle(obstacle={obstacle}, lower={lower:?}, upper={upper:?})")
-    }
-}
-
-/// How far a body can move among obstacles, and what stops it.
-#[pyclass(frozen, module = "colltrans")]
-pub(crate) struct ObstacleClearance(ClearanceAmong);
-
-#[pymethods]
-impl ObstacleClearance {
-    /// str: ``"blocked"``, ``"free"`` or ``"overlapping"``.
-    #[getter]
-    fn outcome(&self) -> &'static str {
-        match (self.0.stop, self.0.distance()) {
-            (_, None) => "overlapping",
-            (Some(_), _) => "blocked",
-            (None, _) => "free",
-        }
-    }
-
-    /// int or None: What stops the body, or overlaps it.
-    #[getter]
-    fn obstacle(&self) -> Option<u64> {
-        self.0.stop.map(|(id, _)| id.0)
-    }
-
-    /// float or None: How far the body may safely move past all obstacles, in multiples of the direction; None
-    /// if it overlaps one now.
-    #[getter]
-    fn distance(&self) -> Option<f64> {
-        self.0.distance()
-    }
-
-    /// float: The body is stopped no later, for certain; infinite if nothing stops it, NaN if it overlaps an
-    /// obstacle.
-    #[getter]
-    fn upper(&self) -> f64 {
-        match self.0.stop {
-            None => f64::INFINITY,
-            Some((_, ByKind::Convex(Clearance::Blocked { contact, .. }))) => {
-                contact.certificate.upper
-            }
-            Some((_, ByKind::Solid(Clearance::Blocked { contact, .. }))) => {
-                contact.translation.upper
-            }
-            Some(_) => f64::NAN,
-        }
-    }
-
-    /// ndarray of shape (3,) or None: Unit normal of the contact, from the moving body to what stops it.
-    #[getter]
-    fn normal<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        match self.0.stop {
-            Some((_, ByKind::Convex(Clearance::Blocked { contact, .. }))) => {
-                Some(row(py, contact.normal))
-            }
-            Some((_, ByKind::Solid(Clearance::Blocked { contact, .. }))) => {
-                Some(row(py, contact.normal))
-            }
-            _ => None,
-        }
-    }
-
-    fn __repr__(&self) -> String {
-        let or_none = |text: Option<String>| text.unwrap_or_else(|| "None".into());
-        let obstacle = or_none(self.obstacle().map(|id| id.to_string()));
-        let distance = or_none(self.distance().map(|distance| format!("{distance:?}")));
-        let outcome = self.outcome();
-        format!("ObstacleClearance('{outcome}', obstacle={obstacle}, distance={distance})")
-    }
 }

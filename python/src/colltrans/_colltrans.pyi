@@ -1,6 +1,6 @@
 """The types of the extension."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from os import PathLike
 from typing import Any, Final, Literal, Protocol, TypeAlias, final, overload, type_check_only
 
@@ -33,6 +33,7 @@ __all__ = [
     "FreeDirections",
     "Grazing",
     "Intersection",
+    "NearbyObstacles",
     "NearestObstacle",
     "ObstacleClearance",
     "Obstacles",
@@ -726,7 +727,7 @@ class Obstacles:
         pose: _Pose = None,
         *,
         ignore: Iterable[int] = (),
-    ) -> tuple[list[int], list[int]]: ...
+    ) -> NearbyObstacles: ...
     def clearance(
         self,
         body: ConvexPolyhedron | Solid,
@@ -757,8 +758,25 @@ class Obstacles:
         threads: int | None = None,
     ) -> dict[str, NDArray[Any]]: ...
 
+@type_check_only
+class _Proven:
+    def proof_json(self) -> str: ...
+    def save_proof(self, path: str | PathLike[str]) -> None: ...
+    def verify(self) -> None: ...
+
 @final
-class NearestObstacle:
+class NearbyObstacles(_Proven):
+    @property
+    def closer(self) -> list[int]: ...
+    @property
+    def undecided(self) -> list[int]: ...
+    def __len__(self) -> int: ...
+    def __getitem__(self, at: int, /) -> list[int]: ...
+    def __iter__(self) -> Iterator[list[int]]: ...
+    def __eq__(self, other: object, /) -> bool: ...
+
+@final
+class NearestObstacle(_Proven):
     @property
     def obstacle(self) -> int: ...
     @property
@@ -773,7 +791,7 @@ class NearestObstacle:
     def normal(self) -> _Floats | None: ...
 
 @final
-class ObstacleClearance:
+class ObstacleClearance(_Proven):
     @property
     def outcome(self) -> Literal["blocked", "free", "overlapping"]: ...
     @property

@@ -1,0 +1,321 @@
+//! Answers about one body among many, with the question they are of: from which a proof is made on request.
+
+use std::collections::HashSet;
+use std::path::PathBuf;
+
+use colltrans::glam::DVec3;
+use colltrans::solid::SolidOptions;
+use colltrans::{
+    Among, AnyPlaced, ByKind, CaseError, Clearance, ClearanceAmong, Nearby, ObstacleId, Options,
+    QueryError, SceneProof,
+};
+use numpy::PyArray1;
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+use pyo3::types::{PyIterator, PyTuple};
+
+use crate::answer::save;
+use crate::arrays::row;
+use crate::errors::{OrRaise, error};
+use crate::obstacles::Obstacles;
+use crate::solid::Piece;
+
+/// A body among obstacles, as it was asked about.
+pub(crate) struct Asked {
+    pub(crate) scene: Py<Obstacles>,
+    /// How often the scene had changed by then.
+    pub(crate) changes: u64,
+    pub(crate) body: Piece,
+    pub(crate) at: colltrans::Pose,
+    pub(crate) ignore: HashSet<u64>,
+}
+
+impl Asked {
+    /// A proof of an answer that the obstacles give once more, if they are as they were.
+    fn proof(
+        &self,
+        py: Python<'_>,
+        make: impl FnOnce(&Among<'_>) -> Result<Option<SceneProof>, CaseError> + Send,
+    ) -> PyResult<SceneProof> {
+        let made = py.detach(|| {
+            let kept = self.scene.get().read();
+            if kept.changes != self.changes {
+                return Ok(None);
+            }
+            let ignored = |id: ObstacleId| self.ignore.contains(&id.0);
+            let among = Among::new(placed(&self.body, self.at), &kept.obstacles)?;
+            make(&among.ignoring(&ignored))
+        });
+        let changed = "the obstacles are not those of the answer: some have come, moved or gone";
+        made.or_raise()?.ok_or_else(|| error("CaseError", changed))
+    }
+}
+
+/// A body of either kind where it is.
+pub(crate) fn placed(body: &Piece, at: colltrans::Pose) -> AnyPlaced<'_> {
+    match body {
+        Piece::Convex(body) => body.get().0.at(at).into(),
+        Piece::Solid(solid) => solid.get().solid.at(at).into(),
+    }
+}
+
+/// The same question of a body that is to keep a gap.
+pub(crate) fn keeping<'a>(among: &Among<'a>, keep: f64) -> Result<Among<'a>, QueryError> {
+    let keeping = among.with_options(Options::default().with_keep(keep))?;
+    Ok(keeping.with_solid_options(SolidOptions::default().with_keep(keep)))
+}
+
+/// What all have in common: their proof.
+macro_rules! proven {
+    ($class:ident) => {
+        #[pymethods]
+        impl $class {
+            /// The proof, with all that it is about, as text: the file of ``--save-proof`` with ``--among``,
+            /// which ``colltrans verify`` and ``python -m colltrans.check`` check. The obstacles are asked once
+            /// more for it, all along the direction whatever was asked of ``before``. In it they have the numbers
+            /// of their places, from 0 on, without those that are ignored.
+            ///
+            /// Returns
+            /// -------
+            /// str
+            ///
+            /// Raises
+            /// ------
+            /// CaseError
+            ///     Obstacles have come, moved or gone since, or one is a union of solids that was shrunk or
+            ///     grown as a whole.
+            fn proof_json(&self, py: Python<'_>) -> PyResult<String> {
+                Ok(self.proof(py)?.to_json())
+            }
+
+            /// Writes :meth:`proof_json` as a file.
+            ///
+            /// Parameters
+            /// ----------
+            /// path : str or os.PathLike
+            fn save_proof(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+                save(&path, self.proof_json(py)?)
+            }
+
+            /// Checks the proof: every obstacle, by its box or by what is proven of it.
+            ///
+            /// Raises
+            /// ------
+            /// CertificateError
+            ///     What is not proven.
+            fn verify(&self, py: Python<'_>) -> PyResult<()> {
+                let proof = self.proof(py)?;
+                py.detach(|| proof.check()).or_raise()
+            }
+        }
+    };
+}
+
+/// The nearest of many obstacles.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct NearestObstacle {
+    pub(crate) found: colltrans::Nearest,
+    pub(crate) asked: Asked,
+}
+
+proven!(NearestObstacle);
+
+impl NearestObstacle {
+    fn proof(&self, py: Python<'_>) -> PyResult<SceneProof> {
+        self.asked.proof(py, SceneProof::of_nearest)
+    }
+}
+
+#[pymethods]
+impl NearestObstacle {
+    /// int: Which one.
+    #[getter]
+    fn obstacle(&self) -> u64 {
+        self.found.obstacle.0
+    }
+
+    /// float: No obstacle is nearer, rounded down.
+    #[getter]
+    fn lower(&self) -> f64 {
+        self.found.lower
+    }
+
+    /// float: This one is not farther, rounded up.
+    #[getter]
+    fn upper(&self) -> f64 {
+        self.found.distance.upper()
+    }
+
+    /// ndarray of shape (3,): The point of the moving body that is nearest to it, in the world.
+    #[getter]
+    fn on_moving<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.found.distance.on_moving())
+    }
+
+    /// ndarray of shape (3,): Its point that is nearest to the moving body.
+    #[getter]
+    fn on_fixed<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        row(py, self.found.distance.on_fixed())
+    }
+
+    /// ndarray of shape (3,) or None: Unit vector in the world, from the moving body to it, where they are
+    /// apart.
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        self.found.distance.normal().map(|normal| row(py, normal))
+    }
+
+    fn __repr__(&self) -> String {
+        let (obstacle, lower, upper) = (self.obstacle(), self.lower(), self.upper());
+        format!("NearestObstacle(obstacle={obstacle}, lower={lower:?}, upper={upper:?})")
+    }
+}
+
+/// Which of many obstacles are closer than a length. It unpacks into both lists.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct NearbyObstacles {
+    pub(crate) found: Nearby,
+    pub(crate) length: f64,
+    pub(crate) asked: Asked,
+}
+
+proven!(NearbyObstacles);
+
+impl NearbyObstacles {
+    fn proof(&self, py: Python<'_>) -> PyResult<SceneProof> {
+        self.asked.proof(py, |among| SceneProof::of_within(among, self.length).map(Some))
+    }
+}
+
+#[pymethods]
+impl NearbyObstacles {
+    /// list of int: Those that are at most the length away, in the order in which they came.
+    #[getter]
+    fn closer(&self) -> Vec<u64> {
+        self.found.closer.iter().map(|(id, _)| id.0).collect()
+    }
+
+    /// list of int: Those of which rounding cannot tell.
+    #[getter]
+    fn undecided(&self) -> Vec<u64> {
+        self.found.undecided.iter().map(|(id, _)| id.0).collect()
+    }
+
+    fn __len__(&self) -> usize {
+        2
+    }
+
+    fn __getitem__(&self, at: usize) -> PyResult<Vec<u64>> {
+        match at {
+            0 => Ok(self.closer()),
+            1 => Ok(self.undecided()),
+            _ => Err(PyIndexError::new_err("there are two lists")),
+        }
+    }
+
+    fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyIterator>> {
+        PyTuple::new(py, [self.closer(), self.undecided()])?.try_iter()
+    }
+
+    fn __eq__(&self, other: &Bound<'_, PyAny>) -> bool {
+        let lists = (self.closer(), self.undecided());
+        match other.cast::<Self>() {
+            Ok(other) => lists == (other.get().closer(), other.get().undecided()),
+            Err(_) => other.extract().is_ok_and(|other: (Vec<u64>, Vec<u64>)| other == lists),
+        }
+    }
+
+    fn __repr__(&self) -> String {
+        format!("NearbyObstacles(closer={:?}, undecided={:?})", self.closer(), self.undecided())
+    }
+}
+
+/// How far a body can move among obstacles, and what stops it.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct ObstacleClearance {
+    pub(crate) found: ClearanceAmong,
+    pub(crate) direction: DVec3,
+    pub(crate) keep: f64,
+    pub(crate) asked: Asked,
+}
+
+proven!(ObstacleClearance);
+
+impl ObstacleClearance {
+    fn proof(&self, py: Python<'_>) -> PyResult<SceneProof> {
+        let of = |among: &Among<'_>| {
+            SceneProof::of_clearance(&keeping(among, self.keep)?, self.direction).map(Some)
+        };
+        self.asked.proof(py, of)
+    }
+}
+
+/// Its outcome in a word.
+pub(crate) fn outcome_of(found: &ClearanceAmong) -> &'static str {
+    match (found.stop, found.distance()) {
+        (_, None) => "overlapping",
+        (Some(_), _) => "blocked",
+        (None, _) => "free",
+    }
+}
+
+/// By when the body is stopped for certain.
+pub(crate) fn upper_of(found: &ClearanceAmong) -> f64 {
+    match found.stop {
+        None => f64::INFINITY,
+        Some((_, ByKind::Convex(Clearance::Blocked { contact, .. }))) => contact.certificate.upper,
+        Some((_, ByKind::Solid(Clearance::Blocked { contact, .. }))) => contact.translation.upper,
+        Some(_) => f64::NAN,
+    }
+}
+
+#[pymethods]
+impl ObstacleClearance {
+    /// str: ``"blocked"``, ``"free"`` or ``"overlapping"``.
+    #[getter]
+    fn outcome(&self) -> &'static str {
+        outcome_of(&self.found)
+    }
+
+    /// int or None: What stops the body, or overlaps it.
+    #[getter]
+    fn obstacle(&self) -> Option<u64> {
+        self.found.stop.map(|(id, _)| id.0)
+    }
+
+    /// float or None: How far the body may safely move past all obstacles, in multiples of the direction; None
+    /// if it overlaps one now.
+    #[getter]
+    fn distance(&self) -> Option<f64> {
+        self.found.distance()
+    }
+
+    /// float: The body is stopped no later, for certain; infinite if nothing stops it, NaN if it overlaps an
+    /// obstacle.
+    #[getter]
+    fn upper(&self) -> f64 {
+        upper_of(&self.found)
+    }
+
+    /// ndarray of shape (3,) or None: Unit normal of the contact, from the moving body to what stops it.
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        match self.found.stop {
+            Some((_, ByKind::Convex(Clearance::Blocked { contact, .. }))) => {
+                Some(row(py, contact.normal))
+            }
+            Some((_, ByKind::Solid(Clearance::Blocked { contact, .. }))) => {
+                Some(row(py, contact.normal))
+            }
+            _ => None,
+        }
+    }
+
+    fn __repr__(&self) -> String {
+        let or_none = |text: Option<String>| text.unwrap_or_else(|| "None".into());
+        let obstacle = or_none(self.obstacle().map(|id| id.to_string()));
+        let distance = or_none(self.distance().map(|distance| format!("{distance:?}")));
+        let outcome = self.outcome();
+        format!("ObstacleClearance('{outcome}', obstacle={obstacle}, distance={distance})")
+    }
+}

@@ -254,11 +254,13 @@ fn not_two(meshes: &[PathBuf], among: bool) -> String {
     let [first, rest] = [&meshes[..1], &meshes[1..]].map(|files| {
         files.iter().map(|file| file.display().to_string()).collect::<Vec<_>>().join(" ")
     });
-    let mut message = format!("{} meshes, not two: ", meshes.len());
+    let count = meshes.len();
+    let as_one = format!("`{first} --from {rest}` asks about all of the others as one body");
     if among {
-        message += &format!("`{first} --among {rest}` asks about one body among many, ");
+        let one = format!("`{first} --among {rest}` asks about one body among many");
+        return format!("{count} meshes, not two: {one}, {as_one}");
     }
-    message + &format!("`{first} --from {rest}` asks about all of the others as one body")
+    format!("{count} meshes, not two: {as_one}")
 }
 
 /// The one mesh before --among.

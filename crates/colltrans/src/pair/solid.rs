@@ -148,19 +148,15 @@ impl<'a> Pair<'a, Solid> {
     /// # Errors
     /// As [`Self::distance`].
     pub fn certified_distance(&self) -> Result<(Distance<Solid>, DistanceCertificate), QueryError> {
-        let (mut distance, found) = self.distance_unproven()?;
+        let (mut distance, found) = self.ask(true)?;
         let proof = self.prove(found)?;
         distance.lower = proof.lower;
         distance.gap = distance.gap.map(|_| SolidGap { gap: proof.lower });
         Ok((distance, proof))
     }
 
-    /// The distance to the bit, and what a proof is made of.
-    pub(crate) fn distance_unproven(&self) -> Result<(Distance<Solid>, Unproven), QueryError> {
-        self.ask(true)
-    }
-
-    fn ask(&self, prove: bool) -> Result<(Distance<Solid>, Unproven), QueryError> {
+    /// The distance, and what a proof is made of, where that is wanted.
+    pub(crate) fn ask(&self, prove: bool) -> Result<(Distance<Solid>, Unproven), QueryError> {
         let scene = self.scene()?;
         let said = self.search(&scene, Until::LEAST, prove);
         let distance = self.answer(&scene, &said);
@@ -232,16 +228,8 @@ impl<'a> Pair<'a, Solid> {
         Ok((answer, Some(proof)))
     }
 
-    /// [`Self::within_counted`], and what a proof is made of.
-    #[cfg(feature = "json")]
-    pub(crate) fn within_unproven(
-        &self,
-        length: f64,
-    ) -> Result<((Within<Solid>, SolidSteps), Unproven), QueryError> {
-        self.decide(length, true)
-    }
-
-    fn decide(
+    /// [`Self::within_counted`], and what a proof is made of, where that is wanted.
+    pub(crate) fn decide(
         &self,
         length: f64,
         prove: bool,

@@ -179,7 +179,7 @@ impl ProofFile {
         pair: &Pair<'_, Solid>,
         pieces: [&[&Solid]; 2],
     ) -> Result<(Distance<Solid>, Self), CaseError> {
-        Self::of_search(pair, pieces, |pair| pair.distance_unproven())
+        Self::of_search(pair, pieces, |pair| pair.ask(true))
     }
 
     /// The same of [`Pair::within`] a length.
@@ -191,7 +191,7 @@ impl ProofFile {
         pieces: [&[&Solid]; 2],
         length: f64,
     ) -> Result<((Within<Solid>, SolidSteps), Self), CaseError> {
-        Self::of_search(pair, pieces, |pair| pair.within_unproven(length))
+        Self::of_search(pair, pieces, |pair| pair.decide(length, true))
     }
 
     /// An answer about bodies, and its proof about those that the file has.

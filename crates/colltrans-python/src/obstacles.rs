@@ -415,7 +415,6 @@ impl Obstacles {
     #[pyo3(signature = (body, direction, pose=None, *, before=None, keep=0.0,
         ignore=HashSet::new()), text_signature = "($self, body, direction, pose=None, *, \
         before=None, keep=0.0, ignore=())")]
-    #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn clearance(
         slf: &Bound<'_, Self>,
         body: &Bound<'_, PyAny>,

@@ -35,7 +35,7 @@ impl Asked {
     fn proof(
         &self,
         py: Python<'_>,
-        make: impl FnOnce(&Among<'_>) -> Result<Option<SceneProof>, CaseError> + Send,
+        ask: impl FnOnce(&Among<'_>) -> Result<Option<SceneProof>, CaseError> + Send,
     ) -> PyResult<SceneProof> {
         let made = py.detach(|| {
             let kept = self.scene.get().read();
@@ -44,7 +44,7 @@ impl Asked {
             }
             let ignored = |id: ObstacleId| self.ignore.contains(&id.0);
             let among = Among::new(placed(&self.body, self.at), &kept.obstacles)?;
-            make(&among.ignoring(&ignored))
+            ask(&among.ignoring(&ignored))
         });
         let changed = "the obstacles are not those of the answer: some have come, moved or gone";
         made.or_raise()?.ok_or_else(|| error("CaseError", changed))

@@ -18,9 +18,9 @@ With the moving body ``P``, the fixed one ``Q``, the direction ``d``, all points
   their neighbours is above them by more than ``hull_error`` and rounding. No proof leans on them.
 - *Separation.* ``n' = n (d.d) - d (n.d)`` is orthogonal to ``d``; ``min_Q n'.q > max_P n'.p``
   proves that the bodies never meet. The margin is checked along ``n``.
-- *A gap to be kept*, ``g``: where bodies are said to meet, they are as near as that. ``g |n|`` is taken
-  from what planes prove, and at the upper bound the weighted mean of the pairs is as near. Of solids
-  it is not checked where two facets are.
+- *A gap to be kept*, ``g``: where bodies are said to meet, they are as near as that. ``g |n|`` is
+  taken from what planes prove, and at the upper bound the weighted mean of the pairs is as near. Of
+  solids it is not checked where two facets are.
 - *Distance.* ``min_Q n.q - max_P n.p`` over all vertices proves a gap; the weighted means of the
   pairs, one of each body, a distance that is not exceeded. Of a distance of 0 the differences of
   the pairs enclose the origin.
@@ -384,7 +384,7 @@ def gaps(moving: Body, fixed: Body, d: Vector, normal: Vector) -> tuple[Fraction
 def slide(
     moving: Body, fixed: Body, d: Vector, claim: Any, report: Report, keep: Fraction = _NO_GAP
 ) -> None:
-    """How much of the bodies, and of a gap, is in each other's way at most, seen along the direction."""
+    """How much of the bodies, with a gap, is in each other's way, seen along the direction."""
     normal, overlap = vector(claim["normal"]), number(claim["overlap"])
     unit(normal)
     if dot(normal, d) ** 2 > _UNIT_VECTOR**2 * dot(d, d):
@@ -401,7 +401,7 @@ def slide(
 def parted(
     moving: Body, fixed: Body, d: Vector, normal: Vector, keep: Fraction
 ) -> tuple[Fraction, bool]:
-    """The gap along a normal, and whether a plane parallel to the direction proves more than ``keep``."""
+    """The gap along a normal; whether a plane parallel to the direction proves more than one."""
     proven, level = gaps(moving, fixed, d, normal)
     across = minus(scaled(normal, dot(d, d)), scaled(d, dot(normal, d)))
     return proven, level > 0 and level * level > keep * keep * dot(across, across)
@@ -446,7 +446,9 @@ def clearance(
     if (stop is None) != (certificate["stop"] is None):
         raise RefusedError("the certificate and the claim do not agree about what stops the body")
     if stop is not None and keep:
-        at = [whole(k, len(of.facets)) for k, of in zip(stop["facets"], (moving, fixed), strict=True)]
+        at = [
+            whole(k, len(of.facets)) for k, of in zip(stop["facets"], (moving, fixed), strict=True)
+        ]
         report.unchecked.append(f"where facets {at[0]} and {at[1]} are {float(keep)!r} apart")
     elif stop is not None:
         facets(moving, fixed, d, stop, tolerance, report)

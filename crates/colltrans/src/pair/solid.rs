@@ -151,7 +151,7 @@ impl<'a> Pair<'a, Solid> {
         let (mut distance, found) = self.ask(true)?;
         let proof = self.prove(found)?;
         distance.lower = proof.lower;
-        distance.gap = distance.gap.map(|_| SolidGap { gap: proof.lower });
+        distance.gap = (proof.lower > 0.0).then_some(SolidGap { gap: proof.lower });
         Ok((distance, proof))
     }
 

@@ -18,7 +18,7 @@ mod tests {
 
     use colltrans_testkit::random::Random;
     use colltrans_testkit::shapes::{Mesh, even_rings, extruded, random_hull, ring, ring_points};
-    use colltrans_testkit::solids::{bumpy_ball, slab, washer};
+    use colltrans_testkit::solids::{slab, washer};
     use glam::{DQuat, DVec3};
 
     use crate::{Cast, ConvexPolyhedron, Pose, Solid};
@@ -113,8 +113,11 @@ mod tests {
     #[cfg(feature = "json")]
     #[test]
     fn a_saved_proof_takes_no_second_search() {
+        use colltrans_testkit::solids::bumpy_ball;
+
         use crate::Pair;
         use crate::record::PairQuestion;
+
         let made = |Mesh { vertices, faces }: Mesh| Solid::from_mesh(&vertices, &faces).unwrap();
         let ball = made(bumpy_ball(1_000));
         let plate = made(slab(DVec3::ZERO, DVec3::ONE, [5, 5, 1]));

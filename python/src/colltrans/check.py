@@ -401,7 +401,7 @@ def slide(
 def parted(
     moving: Body, fixed: Body, d: Vector, normal: Vector, keep: Fraction
 ) -> tuple[Fraction, bool]:
-    """The gap along a normal; whether a plane parallel to the direction keeps them apart by more."""
+    """The gap along a normal; whether a plane parallel to the direction keeps more than a gap."""
     proven, level = gaps(moving, fixed, d, normal)
     across = minus(scaled(normal, dot(d, d)), scaled(d, dot(normal, d)))
     return proven, level > 0 and level * level > keep * keep * dot(across, across)

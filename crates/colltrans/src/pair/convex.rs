@@ -83,14 +83,16 @@ impl Pair<'_> {
         let mut found = nearest(&difference, &NearestPairs::default(), Some(length));
         let mut decided = decide(&difference, &found, length);
         if decided.is_none() {
+            let before = found.supports;
             found = nearest(&difference, &found.pairs(), None);
+            found.supports += before;
             decided = decide(&difference, &found, length);
         }
         let answer = match decided {
             Some(decided) => decided,
             None => Within::Undecided(answer(&difference, &found)?),
         };
-        Ok((answer, difference.steps()))
+        Ok((answer, found.steps()))
     }
 
     /// How deep do the bodies overlap: by which least translation, in any direction, are they parted?
@@ -118,7 +120,7 @@ impl Pair<'_> {
         let found = nearest(&difference, &NearestPairs::default(), None);
         if let Some(plane) = found.plane(&difference).filter(|plane| plane.gap.gap > 0.0) {
             let (direction, enclosure) = (-plane.gap.normal, Enclosure::default());
-            let steps = difference.steps();
+            let steps = found.steps();
             return Ok(Depth { lower: 0.0, upper: 0.0, direction, enclosure, steps });
         }
         let best = deepest(&difference, &found);
@@ -129,7 +131,8 @@ impl Pair<'_> {
             return Err(QueryError::NotConverged { reason });
         }
         let (direction, enclosure) = (best.outward, best.enclosure);
-        Ok(Depth { lower, upper, direction, enclosure, steps: difference.steps() })
+        let steps = Steps { supports: best.supports, ..Steps::default() };
+        Ok(Depth { lower, upper, direction, enclosure, steps })
     }
 
     /// The vertex, edge or face of each body that faces the other one: what lies in the planes across the
@@ -205,7 +208,7 @@ fn answer(difference: &Difference, found: &Found) -> Result<Distance, QueryError
         features: plane.map(|plane| facing(bodies, &plane, difference.noise.point())),
         near,
         gap: plane.map(|plane| plane.gap),
-        steps: difference.steps(),
+        steps: found.steps(),
     })
 }
 

@@ -100,11 +100,12 @@ impl<O: Observer> Target for Bodies<'_, '_, '_, O> {
         let moved = self.setting.bodies.moved_by(from);
         let difference = Difference::new(&moved);
         let mut found = nearest(&difference, &self.pairs, None);
+        self.supports += found.supports;
         if found.gap() > STUCK * self.noise.point() {
             // From pairs on a sliver a descent may get nowhere.
             found = nearest(&difference, &NearestPairs::default(), None);
+            self.supports += found.supports;
         }
-        self.supports += difference.steps().supports;
         self.pairs = found.pairs();
         let plane = found.plane(&difference);
         let plane = plane.map(|plane| self.plane(plane.gap.normal, plane.lowest, plane.beyond));

@@ -47,6 +47,8 @@ pub(crate) struct Deepest {
     pub(crate) enclosure: Enclosure,
     /// How far bodies may reach beyond support points along the normal.
     pub(crate) beyond: f64,
+    /// How many lowest points were looked for, with those of the distance.
+    pub(crate) supports: u32,
 }
 
 /// A triangle of the polytope, counter-clockwise as seen from outside.
@@ -78,6 +80,7 @@ pub(crate) fn deepest(difference: &Difference, found: &Found) -> Deepest {
         lower: 0.0,
         enclosure: Enclosure::default(),
         beyond: 0.0,
+        supports: found.supports,
     };
     if let Some(plane) = found.plane(difference) {
         best.note(-plane.gap.normal, -plane.gap.gap, plane.beyond);
@@ -87,6 +90,7 @@ pub(crate) fn deepest(difference: &Difference, found: &Found) -> Deepest {
     if best.upper - best.lower > OPEN * difference.noise.point() {
         // Slivers may leave no way to grow; from elsewhere there are others.
         let first = difference.lowest(-best.outward, None).pair;
+        best.supports += 1;
         grow_from(difference, &[first], &mut best);
     }
     best
@@ -188,6 +192,7 @@ impl<'a> Polytope<'a> {
     fn support(&self, outward: DVec3, near: VertexPair, best: &mut Deepest) -> VertexPair {
         let bodies = self.difference.bodies;
         let climbed = self.difference.lowest(-outward, Some(near));
+        best.supports += 1;
         let normals = [bodies.moving_normal(-outward), bodies.fixed_normal(-outward)];
         let (pair, beyond) = bodies.settled(&normals, climbed.pair);
         let reach = outward.dot(self.difference.point(pair));

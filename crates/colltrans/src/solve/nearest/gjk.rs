@@ -85,6 +85,7 @@ pub(super) fn descend<T: Coordinate>(
         }
         let Some(normal) = unit(simplex.normal(&nearest)).or_else(|| unit(point)) else { return };
         let mut lowest = difference.lowest(normal, found.lowest);
+        found.supports += 1;
         found.note_plane(normal, &lowest);
         if goal.is_reached(found) || simplex.contains(lowest.pair) {
             // Among edges as short as rounding errors a climb may have stuck far away.

@@ -25,8 +25,6 @@ mod gjk;
 mod simplex;
 mod surround;
 
-use std::cell::Cell;
-
 use glam::DVec3;
 
 pub(crate) use self::depth::deepest;
@@ -47,20 +45,12 @@ const NEAR: f64 = 4.0;
 pub(crate) struct Difference<'a> {
     pub(crate) bodies: &'a TwoBodies<'a>,
     pub(crate) noise: Noise,
-    /// How often a lowest point was asked for.
-    supports: Cell<u32>,
 }
 
 impl<'a> Difference<'a> {
     #[inline]
     pub(crate) fn new(bodies: &'a TwoBodies<'a>) -> Self {
-        Self { bodies, noise: bodies.noise(), supports: Cell::new(0) }
-    }
-
-    /// The work done so far.
-    #[inline]
-    pub(crate) fn steps(&self) -> Steps {
-        Steps { supports: self.supports.get(), ..Steps::default() }
+        Self { bodies, noise: bodies.noise() }
     }
 
     /// The point of a pair of vertices.
@@ -72,7 +62,6 @@ impl<'a> Difference<'a> {
     /// The lowest point along a normal, from a pair that may be near.
     #[inline]
     fn lowest(&self, normal: DVec3, near: Option<VertexPair>) -> Corner<f64> {
-        self.supports.set(self.supports.get() + 1);
         let bodies = self.bodies;
         let (in_moving, in_fixed) = (bodies.moving_normal(normal), -bodies.fixed_normal(normal));
         let (moving, fixed) = match near {
@@ -132,6 +121,8 @@ pub(crate) struct Found {
     weights: [f64; 4],
     /// Whether the pairs are four that seem to enclose the origin.
     full: bool,
+    /// How many lowest points were looked for.
+    pub(crate) supports: u32,
 }
 
 impl Found {
@@ -145,6 +136,7 @@ impl Found {
             pairs: [VertexPair::default(); 4],
             weights: [0.0; 4],
             full: false,
+            supports: 0,
         }
     }
 
@@ -185,6 +177,12 @@ impl Found {
         corner
     }
 
+    /// The work done so far.
+    #[inline]
+    pub(crate) fn steps(&self) -> Steps {
+        Steps { supports: self.supports, ..Steps::default() }
+    }
+
     /// What a later descent may begin with.
     #[inline]
     pub(crate) fn pairs(&self) -> NearestPairs {
@@ -211,7 +209,7 @@ pub(crate) fn nearest(difference: &Difference, start: &NearestPairs, than: Optio
     // What is proven is less than what is computed by this, mostly.
     let than = than.map(|than| [than + 3.0 * noise, than - 1.5 * noise]);
     let goal = Goal { gap: noise, than };
-    let mut found = Found::nothing();
+    let mut found = Found { supports: u32::from(start.is_empty()), ..Found::nothing() };
     let simplex = begin(difference, start);
     descend::<f64>(difference, simplex, &goal, &mut found);
     if !goal.is_reached(&found) {
@@ -235,6 +233,7 @@ fn polish(difference: &Difference, found: &mut Found) {
     let Some(normal) = across_simplex(difference, found) else { return };
     let normal = if normal.dot(found.normal) < 0.0 { -normal } else { normal };
     let lowest = difference.lowest(normal, found.lowest);
+    found.supports += 1;
     found.note_plane(normal, &lowest);
     found.settle(difference);
 }

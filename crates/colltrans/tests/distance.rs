@@ -5,7 +5,7 @@ use colltrans::{
     ConvexPolyhedron, Distance, NearPoints, Pair, PlaneGap, Pose, QueryError, VertexId, Within,
 };
 use colltrans_testkit::oracle::nearest::Judge;
-use colltrans_testkit::oracle::settings::{FAMILIES, setting};
+use colltrans_testkit::oracle::settings::{FAMILIES, near_contact, setting};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::random_hull;
 
@@ -351,4 +351,18 @@ fn a_depth_counts_in_lengths_of_its_normals() {
     assert!(pair.verify(&depth).expect("still a proof") <= 1.0);
     depth.lower = 1.0 + 12.0 * unit;
     assert!(pair.verify(&depth).is_err());
+}
+
+/// Bodies with nearly straight chains of vertices, brought near each other as the campaign does: four pairs that
+/// enclose the origin span next to no volume, and rounded weights left the two points that are one apart.
+#[test]
+fn points_that_are_one_are_so_in_thin_overlaps() {
+    for seed in [304_942_693_826, 304_942_696_221, 304_942_709_989] {
+        let setting = setting("nearly-straight", seed);
+        let bodies = setting.bodies().expect("bodies");
+        let mut random = Random::new(seed ^ 0x5eed);
+        let moving = near_contact(&setting, &bodies, &mut random).unwrap_or(setting.moving_pose);
+        let (distance, _) = judged(&bodies.moving, moving, &bodies.fixed, setting.fixed_pose);
+        assert_eq!(distance.upper, 0.0, "{setting}");
+    }
 }

@@ -8,7 +8,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::integer::{LARGE, SMALL, determinant};
+use super::integer::{Integer, LARGE, SMALL, determinant};
 use super::orientation::Terms;
 
 /// Error of a rounded determinant, in its terms' magnitudes, and in the third power of the size.
@@ -50,11 +50,33 @@ fn by_integers<const N: usize>(points: [&Terms; 3]) -> Option<Ordering> {
     determinant(&a, &b, &c).sign()
 }
 
+/// The faces of a tetrahedron, each opposite to a corner.
+fn faces<'a>([a, b, c, d]: &'a [Terms<'a>; 4]) -> [[&'a Terms<'a>; 3]; 4] {
+    [[b, c, d], [a, d, c], [a, b, d], [a, c, b]]
+}
+
 /// Whether a tetrahedron with some volume contains the origin, certainly; on its surface does.
 pub(crate) fn encloses(corners: &[Terms; 4], size: f64) -> bool {
-    let [a, b, c, d] = corners;
-    let signs = [[b, c, d], [a, d, c], [a, b, d], [a, c, b]].map(|face| sign(face, size));
+    let signs = faces(corners).map(|face| sign(face, size));
     let none = |unwanted| signs.iter().all(|sign| *sign != unwanted);
     let some = signs.iter().any(|sign| sign.is_ne());
     some && (none(Ordering::Less) || none(Ordering::Greater))
+}
+
+/// The weights by which the corners of a tetrahedron with some volume have the origin as their mean, to
+/// within a few roundings: the volumes that it spans with the faces, as shares of the whole.
+pub(crate) fn weights_of_origin(corners: &[Terms; 4]) -> Option<[f64; 4]> {
+    shares::<SMALL>(corners).or_else(|| shares::<LARGE>(corners))
+}
+
+#[inline(never)]
+fn shares<const N: usize>(corners: &[Terms; 4]) -> Option<[f64; 4]> {
+    let volumes = faces(corners).map(|face| {
+        let [a, b, c] = face.map(Terms::coordinates::<N>);
+        determinant(&a, &b, &c)
+    });
+    let whole = volumes.iter().fold(Integer::ZERO, |sum, volume| sum.add(volume));
+    whole.sign().filter(|sign| sign.is_ne())?;
+    let [a, b, c, d] = volumes.map(|volume| volume.ratio(&whole));
+    Some([a?, b?, c?, d?])
 }

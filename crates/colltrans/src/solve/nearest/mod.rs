@@ -35,7 +35,7 @@ use crate::answer::{NearPoints, PlaneGap, Steps};
 use crate::number::noise::Noise;
 use crate::number::plane::triangle_normal;
 use crate::number::real::{Real, Twice, Vector};
-use crate::number::volume::encloses;
+use crate::number::volume::{encloses, weights_of_origin};
 use crate::setting::{TwoBodies, VertexPair};
 
 /// Bodies that are so many noises apart, as computed, are near contact.
@@ -334,7 +334,7 @@ impl Found {
         let Self { pairs, weights, .. } = *self;
         let bodies = difference.bodies;
         if self.full && encloses(&pairs.map(|pair| bodies.terms(pair)), bodies.scale()) {
-            return NearPoints { pairs, weights, distance: 0.0 };
+            return meeting(difference, pairs, weights);
         }
         let is_near = self.upper <= NEAR * difference.noise.point();
         let met = if is_near { self.enclosing(difference) } else { None };
@@ -369,6 +369,17 @@ impl Found {
         });
         let pairs =
             made.find(|pairs| encloses(&pairs.map(|pair| bodies.terms(pair)), bodies.scale()))?;
-        Some(NearPoints { pairs, weights, distance: 0.0 })
+        Some(meeting(difference, pairs, weights))
     }
+}
+
+/// Points of bodies that meet, by four pairs that enclose the origin. Where these are nearly in a plane, rounding
+/// leaves points apart that are one: exact volumes tell their weights.
+fn meeting(difference: &Difference, pairs: [VertexPair; 4], mut weights: [f64; 4]) -> NearPoints {
+    let apart: DVec3 = pairs.iter().zip(weights).map(|(p, w)| difference.point(*p) * w).sum();
+    if apart.length() > difference.noise.point() {
+        let corners = pairs.map(|pair| difference.bodies.terms(pair));
+        weights = weights_of_origin(&corners).unwrap_or(weights);
+    }
+    NearPoints { pairs, weights, distance: 0.0 }
 }

@@ -1,10 +1,10 @@
 //! Distances: of settings as they are drawn, brought near contact along their direction, to touch, and to
 //! overlap.
 
-use colltrans::{Outcome, Pair, Pose, QueryError, Within};
+use colltrans::{Pair, Pose, QueryError, Within};
 use colltrans_testkit::oracle::check::Objection;
 use colltrans_testkit::oracle::nearest::Judge;
-use colltrans_testkit::oracle::settings::{Bodies, Setting, setting};
+use colltrans_testkit::oracle::settings::{Bodies, Setting, near_contact, setting};
 use colltrans_testkit::random::Random;
 
 /// Vertices of both bodies up to which depths are compared with the exact one.
@@ -104,33 +104,11 @@ pub(crate) fn examine(family: &str, seed: u64, tally: &mut Tally) {
     tally.settings += 1;
     let Ok(bodies) = setting.bodies() else { return };
     let mut random = Random::new(seed ^ 0x5eed);
-    let moving = moved(&setting, &bodies, &mut random).unwrap_or(setting.moving_pose);
+    let moving = near_contact(&setting, &bodies, &mut random).unwrap_or(setting.moving_pose);
     let verdict = judge(&setting, &bodies, moving, &mut random, tally);
     if let Err(objection) = verdict {
         tally.disagreements.push(format!("{setting} {objection}"));
     }
-}
-
-/// As it is drawn, or brought to a gap, or a depth, along the direction: of `1e-3` to `1e-15` of the size,
-/// or none.
-fn moved(setting: &Setting, bodies: &Bodies, random: &mut Random) -> Option<Pose> {
-    let kind = random.index(8);
-    if kind < 2 {
-        return None;
-    }
-    let cast = setting.query(bodies).ok()?;
-    let Outcome::Contact(contact) = cast.first_contact().ok()? else { return None };
-    let way = cast.direction() * contact.translation;
-    let size = [&bodies.moving, &bodies.fixed]
-        .map(|body| body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max));
-    let gap = 10.0_f64.powf(-random.range(3.0, 15.0)) * (size[0] + size[1]);
-    let back = cast.direction().normalize()
-        * match kind {
-            2..=5 => gap,
-            6 => 0.0,
-            _ => -gap,
-        };
-    setting.moving_pose.translated(way - back).ok()
 }
 
 fn judge(

@@ -207,6 +207,28 @@ impl Draft {
     }
 }
 
+/// Where the moving body is brought to a gap, or a depth, along the direction: of `1e-3` to `1e-15` of the size, or
+/// none. Nothing for those left as they are drawn.
+pub fn near_contact(setting: &Setting, bodies: &Bodies, random: &mut Random) -> Option<Pose> {
+    let kind = random.index(8);
+    if kind < 2 {
+        return None;
+    }
+    let cast = setting.query(bodies).ok()?;
+    let Outcome::Contact(contact) = cast.first_contact().ok()? else { return None };
+    let way = cast.direction() * contact.translation;
+    let size = [&bodies.moving, &bodies.fixed]
+        .map(|body| body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max));
+    let gap = 10.0_f64.powf(-random.range(3.0, 15.0)) * (size[0] + size[1]);
+    let back = cast.direction().normalize()
+        * match kind {
+            2..=5 => gap,
+            6 => 0.0,
+            _ => -gap,
+        };
+    setting.moving_pose.translated(way - back).ok()
+}
+
 /// The setting of a family with a seed: half of them as drawn, half turned as a whole; some with a
 /// direction that is turned around or no unit vector.
 ///

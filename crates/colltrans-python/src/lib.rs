@@ -10,7 +10,8 @@
 //! 4. answers: `certificate`, `features`, `answer` (what all have in common), `outcome`, `clearance`,
 //!    `solid_answer`, `distance`, `directions`;
 //! 5. those who ask: `questions` (functions, and methods of queries), `tracker` (in sequence), `many` (in
-//!    bulk), `obstacles` (one body among many) with its `scene_answers`, `assembly` (many parts).
+//!    bulk), `obstacles` (one body among many) with its `scene` and `scene_answers`,
+//!    `assembly` (many parts).
 //!
 //! The package itself is in `python/`; its stub `_colltrans.pyi` has the types.
 
@@ -33,6 +34,7 @@ mod pair;
 mod pose;
 mod query;
 mod questions;
+mod scene;
 mod scene_answers;
 mod solid;
 mod solid_answer;

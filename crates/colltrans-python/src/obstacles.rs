@@ -6,7 +6,7 @@
 use std::collections::{HashMap, HashSet};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError, RwLock, RwLockReadGuard, RwLockWriteGuard};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::ScopedJoinHandle;
 use std::time::Duration;
 
@@ -20,9 +20,9 @@ use pyo3::types::PyDict;
 use crate::arrays::vector;
 use crate::errors::{OrRaise, error, input};
 use crate::pose::{Pose, pose};
+use crate::scene::{Asked, Scene, keeping};
 use crate::scene_answers::{
-    Asked, NearbyObstacles, NearestObstacle, ObstacleClearance, keeping, outcome_of, placed,
-    upper_of,
+    NearbyObstacles, NearestObstacle, ObstacleClearance, outcome_of, upper_of,
 };
 use crate::solid::Piece;
 
@@ -58,52 +58,30 @@ const PATIENCE: Duration = Duration::from_millis(100);
 /// ObstacleClearance('free', obstacle=None, distance=inf)
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct Obstacles {
-    /// Whoever waits for it does so without the interpreter's lock.
-    kept: RwLock<Kept>,
+    scene: Arc<Scene>,
     /// By the address of their objects, which are kept with them.
     bodies: Mutex<HashMap<usize, (Piece, AnyBody)>>,
-}
-
-/// The obstacles, and how often they have changed.
-#[derive(Default)]
-pub(crate) struct Kept {
-    pub(crate) obstacles: colltrans::Obstacles,
-    pub(crate) changes: u64,
 }
 
 /// Of a chunk of rows the first, and their answers.
 type Parts<T> = Vec<(usize, Vec<T>)>;
 
 impl Obstacles {
-    pub(crate) fn read(&self) -> RwLockReadGuard<'_, Kept> {
-        self.kept.read().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    /// Changes the obstacles.
-    fn change<T>(&self, of: impl FnOnce(&mut colltrans::Obstacles) -> T) -> T {
-        let mut kept: RwLockWriteGuard<'_, Kept> =
-            self.kept.write().unwrap_or_else(PoisonError::into_inner);
-        kept.changes += 1;
-        of(&mut kept.obstacles)
-    }
-
     /// Asks about one body, without the interpreter's lock.
     fn ask<T: Send>(
-        slf: &Bound<'_, Self>,
+        &self,
+        py: Python<'_>,
         (body, at): (Piece, colltrans::Pose),
         ignore: HashSet<u64>,
         question: impl FnOnce(&Among<'_>) -> Result<T, QueryError> + Send,
     ) -> PyResult<(T, Asked)> {
-        let scene = slf.get();
         let asked = || {
-            let kept = scene.read();
-            let ignored = |id: ObstacleId| ignore.contains(&id.0);
-            let found = Among::new(placed(&body, at), &kept.obstacles)
-                .and_then(|among| question(&among.ignoring(&ignored)));
-            found.map(|found| (found, kept.changes))
+            let kept = self.scene.read();
+            let found = kept.ask((&body, at), &ignore, question)?;
+            Ok::<_, QueryError>((found, kept.changes))
         };
-        let (found, changes) = slf.py().detach(asked).or_raise()?;
-        Ok((found, Asked { scene: slf.clone().unbind(), changes, body, at, ignore }))
+        let (found, changes) = py.detach(asked).or_raise()?;
+        Ok((found, Asked { scene: self.scene.clone(), changes, body, at, ignore }))
     }
 
     /// Asks rows, on some threads.
@@ -116,11 +94,9 @@ impl Obstacles {
         question: impl Fn(usize, &Among<'_>) -> Result<T, QueryError> + Sync,
     ) -> PyResult<Vec<T>> {
         py.detach(|| {
-            let kept = self.read();
-            let ignored = |id: ObstacleId| ignore.contains(&id.0);
+            let kept = self.scene.read();
             rows(poses.len(), threads, |k| {
-                Among::new(placed(body, poses[k]), &kept.obstacles)
-                    .and_then(|among| question(k, &among.ignoring(&ignored)))
+                kept.ask((body, poses[k]), ignore, |among| question(k, among))
                     .map_err(|what| what.to_string())
             })
         })
@@ -219,7 +195,7 @@ fn vectors(py: Python<'_>, all: Vec<[f64; 3]>) -> PyResult<Bound<'_, PyAny>> {
 impl Obstacles {
     #[new]
     fn new() -> Self {
-        Self { kept: RwLock::default(), bodies: Mutex::default() }
+        Self { scene: Arc::default(), bodies: Mutex::default() }
     }
 
     /// Adds a body.
@@ -283,7 +259,7 @@ impl Obstacles {
     ///     There is no such one.
     fn set_pose(&self, py: Python<'_>, obstacle: u64, pose: &Bound<'_, PyAny>) -> PyResult<()> {
         let at = self::pose(Some(pose), "pose")?;
-        let set = || self.change(|all| all.set_pose(ObstacleId(obstacle), at));
+        let set = || self.scene.change(|all| all.set_pose(ObstacleId(obstacle), at));
         py.detach(set).map_err(|_| unknown(obstacle))
     }
 
@@ -300,7 +276,8 @@ impl Obstacles {
             return Err(input("poses", what));
         }
         let moves: Vec<_> = obstacles.into_iter().map(ObstacleId).zip(poses).collect();
-        py.detach(|| self.change(|all| all.set_poses(&moves))).map_err(|what| unknown(what.id.0))
+        py.detach(|| self.scene.change(|all| all.set_poses(&moves)))
+            .map_err(|what| unknown(what.id.0))
     }
 
     /// Takes an obstacle away.
@@ -310,7 +287,7 @@ impl Obstacles {
     /// KeyError
     ///     There is no such one.
     fn remove(&self, py: Python<'_>, obstacle: u64) -> PyResult<()> {
-        let removed = py.detach(|| self.change(|all| all.remove(ObstacleId(obstacle))));
+        let removed = py.detach(|| self.scene.change(|all| all.remove(ObstacleId(obstacle))));
         removed.map(|_| ()).ok_or_else(|| unknown(obstacle))
     }
 
@@ -320,16 +297,16 @@ impl Obstacles {
     /// -------
     /// Pose
     fn pose(&self, py: Python<'_>, obstacle: u64) -> PyResult<Pose> {
-        let at = || self.read().obstacles.get(ObstacleId(obstacle)).map(|(_, pose)| pose);
+        let at = || self.scene.read().obstacles.get(ObstacleId(obstacle)).map(|(_, pose)| pose);
         py.detach(at).map(Pose).ok_or_else(|| unknown(obstacle))
     }
 
     fn __len__(&self, py: Python<'_>) -> usize {
-        py.detach(|| self.read().obstacles.len())
+        py.detach(|| self.scene.read().obstacles.len())
     }
 
     fn __contains__(&self, py: Python<'_>, obstacle: u64) -> bool {
-        py.detach(|| self.read().obstacles.get(ObstacleId(obstacle)).is_some())
+        py.detach(|| self.scene.read().obstacles.get(ObstacleId(obstacle)).is_some())
     }
 
     fn __repr__(&self, py: Python<'_>) -> String {
@@ -358,13 +335,14 @@ impl Obstacles {
     #[pyo3(signature = (body, pose=None, *, ignore=HashSet::new()),
         text_signature = "($self, body, pose=None, *, ignore=())")]
     fn nearest(
-        slf: &Bound<'_, Self>,
+        &self,
+        py: Python<'_>,
         body: &Bound<'_, PyAny>,
         pose: Option<&Bound<'_, PyAny>>,
         #[pyo3(from_py_with = numbers)] ignore: HashSet<u64>,
     ) -> PyResult<Option<NearestObstacle>> {
         let (body, at) = (Piece::of(body, "body")?, self::pose(pose, "pose")?);
-        let (found, asked) = Self::ask(slf, (body, at), ignore, |among| among.nearest())?;
+        let (found, asked) = self.ask(py, (body, at), ignore, |among| among.nearest())?;
         Ok(found.map(|found| NearestObstacle { found, asked }))
     }
 
@@ -385,14 +363,15 @@ impl Obstacles {
     #[pyo3(signature = (body, length, pose=None, *, ignore=HashSet::new()),
         text_signature = "($self, body, length, pose=None, *, ignore=())")]
     fn within(
-        slf: &Bound<'_, Self>,
+        &self,
+        py: Python<'_>,
         body: &Bound<'_, PyAny>,
         length: f64,
         pose: Option<&Bound<'_, PyAny>>,
         #[pyo3(from_py_with = numbers)] ignore: HashSet<u64>,
     ) -> PyResult<NearbyObstacles> {
         let (body, at) = (Piece::of(body, "body")?, self::pose(pose, "pose")?);
-        let (found, asked) = Self::ask(slf, (body, at), ignore, |among| among.within(length))?;
+        let (found, asked) = self.ask(py, (body, at), ignore, |among| among.within(length))?;
         Ok(NearbyObstacles { found, length, asked })
     }
 
@@ -415,8 +394,10 @@ impl Obstacles {
     #[pyo3(signature = (body, direction, pose=None, *, before=None, keep=0.0,
         ignore=HashSet::new()), text_signature = "($self, body, direction, pose=None, *, \
         before=None, keep=0.0, ignore=())")]
+    #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn clearance(
-        slf: &Bound<'_, Self>,
+        &self,
+        py: Python<'_>,
         body: &Bound<'_, PyAny>,
         direction: &Bound<'_, PyAny>,
         pose: Option<&Bound<'_, PyAny>>,
@@ -428,7 +409,7 @@ impl Obstacles {
         let direction = vector(direction, "direction")?;
         let before = before.unwrap_or(f64::INFINITY);
         let ask = |among: &Among<'_>| clearance_keeping(among, direction, before, keep);
-        let (found, asked) = Self::ask(slf, (body, at), ignore, ask)?;
+        let (found, asked) = self.ask(py, (body, at), ignore, ask)?;
         Ok(ObstacleClearance { found, direction, keep, asked })
     }
 
@@ -551,7 +532,7 @@ impl Obstacles {
         let made = bodies.iter().map(|body| self.body(body)).collect::<PyResult<Vec<_>>>()?;
         let all = poses.into_iter().enumerate();
         let all = all.map(|(k, at)| (made[k.min(made.len() - 1)].clone(), at));
-        let ids = py.detach(|| self.change(|kept| kept.insert_all(all)));
+        let ids = py.detach(|| self.scene.change(|kept| kept.insert_all(all)));
         Ok(ids.into_iter().map(|id| id.0).collect())
     }
 

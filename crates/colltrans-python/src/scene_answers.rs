@@ -1,14 +1,9 @@
 //! Answers about one body among many, with the question they are of: from which a proof is made on request.
 
-use std::collections::HashSet;
 use std::path::PathBuf;
 
 use colltrans::glam::DVec3;
-use colltrans::solid::SolidOptions;
-use colltrans::{
-    Among, AnyPlaced, ByKind, CaseError, Clearance, ClearanceAmong, Nearby, ObstacleId, Options,
-    QueryError, SceneProof,
-};
+use colltrans::{Among, ByKind, Clearance, ClearanceAmong, Nearby, SceneProof};
 use numpy::PyArray1;
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
@@ -16,54 +11,8 @@ use pyo3::types::{PyIterator, PyTuple};
 
 use crate::answer::save;
 use crate::arrays::row;
-use crate::errors::{OrRaise, error};
-use crate::obstacles::Obstacles;
-use crate::solid::Piece;
-
-/// A body among obstacles, as it was asked about.
-pub(crate) struct Asked {
-    pub(crate) scene: Py<Obstacles>,
-    /// How often the scene had changed by then.
-    pub(crate) changes: u64,
-    pub(crate) body: Piece,
-    pub(crate) at: colltrans::Pose,
-    pub(crate) ignore: HashSet<u64>,
-}
-
-impl Asked {
-    /// A proof of an answer that the obstacles give once more, if they are as they were.
-    fn proof(
-        &self,
-        py: Python<'_>,
-        ask: impl FnOnce(&Among<'_>) -> Result<Option<SceneProof>, CaseError> + Send,
-    ) -> PyResult<SceneProof> {
-        let made = py.detach(|| {
-            let kept = self.scene.get().read();
-            if kept.changes != self.changes {
-                return Ok(None);
-            }
-            let ignored = |id: ObstacleId| self.ignore.contains(&id.0);
-            let among = Among::new(placed(&self.body, self.at), &kept.obstacles)?;
-            ask(&among.ignoring(&ignored))
-        });
-        let changed = "the obstacles are not those of the answer: some have come, moved or gone";
-        made.or_raise()?.ok_or_else(|| error("CaseError", changed))
-    }
-}
-
-/// A body of either kind where it is.
-pub(crate) fn placed(body: &Piece, at: colltrans::Pose) -> AnyPlaced<'_> {
-    match body {
-        Piece::Convex(body) => body.get().0.at(at).into(),
-        Piece::Solid(solid) => solid.get().solid.at(at).into(),
-    }
-}
-
-/// The same question of a body that is to keep a gap.
-pub(crate) fn keeping<'a>(among: &Among<'a>, keep: f64) -> Result<Among<'a>, QueryError> {
-    let keeping = among.with_options(Options::default().with_keep(keep))?;
-    Ok(keeping.with_solid_options(SolidOptions::default().with_keep(keep)))
-}
+use crate::errors::OrRaise;
+use crate::scene::{Asked, keeping};
 
 /// What all have in common: their proof.
 macro_rules! proven {

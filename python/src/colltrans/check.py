@@ -376,9 +376,26 @@ def size(moving: Body, fixed: Body) -> float:
 
 def gaps(moving: Body, fixed: Body, d: Vector, normal: Vector) -> tuple[Fraction, Fraction]:
     """Between the bodies along a normal, and along what of it is orthogonal to the direction."""
-    level = minus(scaled(normal, dot(d, d)), scaled(d, dot(normal, d)))
-    along = [min(fixed.heights(n)) - max(moving.heights(n)) for n in (normal, level)]
+    along = [min(fixed.heights(n)) - max(moving.heights(n)) for n in (normal, across(d, normal))]
     return along[0], along[1]
+
+
+def across(d: Vector, normal: Vector) -> Vector:
+    """What of a normal is orthogonal to the direction, ``d.d`` times as long."""
+    return minus(scaled(normal, dot(d, d)), scaled(d, dot(normal, d)))
+
+
+def sideways(moving: Body, fixed: Body, d: Vector, normal: Vector, keep: Fraction) -> Fraction:
+    """How much of the bodies, with a gap, is in each other's way along a normal across."""
+    unit(normal)
+    if dot(normal, d) ** 2 > _UNIT_VECTOR**2 * dot(d, d):
+        raise RefusedError("the normal of the slide is not across the direction")
+    return keep - gaps(moving, fixed, d, normal)[0]
+
+
+def never_near(keep: Fraction) -> str:
+    """What a plane between bodies that keeps a gap says of them."""
+    return f"are never as near as {float(keep)!r}" if keep else "never meet"
 
 
 def slide(
@@ -386,10 +403,7 @@ def slide(
 ) -> None:
     """How much of the bodies, with a gap, is in each other's way, seen along the direction."""
     normal, overlap = vector(claim["normal"]), number(claim["overlap"])
-    unit(normal)
-    if dot(normal, d) ** 2 > _UNIT_VECTOR**2 * dot(d, d):
-        raise RefusedError("the normal of the slide is not across the direction")
-    proven = keep - gaps(moving, fixed, d, normal)[0]
+    proven = sideways(moving, fixed, d, normal, keep)
     if overlap < proven:
         raise RefusedError(f"the bodies overlap by {float(proven)!r} there, not {float(overlap)!r}")
     report.holds.append(
@@ -403,8 +417,8 @@ def parted(
 ) -> tuple[Fraction, bool]:
     """The gap along a normal; whether a plane parallel to the direction keeps more than a gap."""
     proven, level = gaps(moving, fixed, d, normal)
-    across = minus(scaled(normal, dot(d, d)), scaled(d, dot(normal, d)))
-    return proven, level > 0 and level * level > keep * keep * dot(across, across)
+    of = across(d, normal)
+    return proven, level > 0 and level * level > keep * keep * dot(of, of)
 
 
 def separation(
@@ -418,8 +432,9 @@ def separation(
         raise RefusedError("no plane parallel to the direction keeps the bodies apart")
     if not keep < margin <= proven:
         raise RefusedError(f"the plane proves a margin of {float(proven)!r}, not {float(margin)!r}")
-    never = f"are never as near as {float(keep)!r}" if keep else "never meet"
-    report.holds.append(f"the bodies {never}: a gap of {float(margin)!r} is between them")
+    report.holds.append(
+        f"the bodies {never_near(keep)}: a gap of {float(margin)!r} is between them"
+    )
 
 
 def clearance(
@@ -439,8 +454,7 @@ def clearance(
             )
         if is_beyond:
             gap = float(min(margin, proven))
-            never = f"are never as near as {float(keep)!r}" if keep else "never meet"
-            report.holds.append(f"the bodies {never}: a gap of {gap!r} is between them")
+            report.holds.append(f"the bodies {never_near(keep)}: a gap of {gap!r} is between them")
         if margin > proven:
             report.unchecked.append(f"the margin of the shrunk bodies, {float(margin)!r}")
     if (stop is None) != (certificate["stop"] is None):
@@ -868,12 +882,10 @@ class Scene:
 
     def slides(self, body: Body, d: Vector, normal: Vector) -> None:
         """That bodies overlap sideways by no more than is tolerated, to within rounding."""
-        unit(normal)
-        if dot(normal, d) ** 2 > _UNIT_VECTOR**2 * dot(d, d):
-            raise RefusedError("the normal of the slide is not across the direction")
+        overlap = sideways(self.moving, body, d, normal, self.keep)
         noise = _NOISE * (Fraction(size(self.moving, body)) + self.keep)
         most = max(number(self.choices.get("graze_tolerance", 0.0)), 8 * noise) + 3 * noise
-        if self.keep - gaps(self.moving, body, d, normal)[0] > most:
+        if overlap > most:
             raise RefusedError("the bodies overlap sideways by more than is tolerated")
 
 

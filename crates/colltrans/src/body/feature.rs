@@ -81,9 +81,13 @@ pub(crate) fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, nois
     let (first, count) = body.plane_candidates(vertex, outward);
     let wrapped = |i: usize| if i >= neighbours.len() { i - neighbours.len() } else { i };
     // Bit `k`: whether the candidate `k` is in the plane. Without branches: none is predictable.
-    let mut hits = 0_u32;
-    for k in 0..count {
-        hits |= u32::from(in_plane(neighbours[wrapped(first + k)])) << k;
+    let (mut hits, mut bit) = (0_u32, 0);
+    let (before, from_first) = neighbours.split_at(first);
+    for part in [from_first, before] {
+        for &w in part.iter().take(count - bit) {
+            hits |= u32::from(in_plane(w)) << bit;
+            bit += 1;
+        }
     }
     if hits == 0 {
         return Own::Vertex(vertex);

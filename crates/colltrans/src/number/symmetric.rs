@@ -34,6 +34,12 @@ impl Symmetric {
         }
     }
 
+    /// `self + t`, of the identity `t` times.
+    #[inline]
+    pub(crate) fn plus_diagonal(&self, t: f64) -> Self {
+        Self { xx: self.xx + t, yy: self.yy + t, zz: self.zz + t, ..*self }
+    }
+
     #[inline]
     pub(crate) fn apply(&self, v: DVec3) -> DVec3 {
         DVec3::new(

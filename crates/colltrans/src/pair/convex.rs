@@ -117,7 +117,8 @@ impl Pair<'_> {
     /// ```
     pub fn depth(&self) -> Result<Depth, QueryError> {
         let difference = Difference::new(&self.bodies);
-        let found = nearest(&difference, &NearestPairs::default(), None);
+        let mut found = nearest(&difference, &difference.first_pair(), None);
+        found.supports += 1;
         if let Some(plane) = found.plane(&difference).filter(|plane| plane.gap.gap > 0.0) {
             let (direction, enclosure) = (-plane.gap.normal, Enclosure::default());
             let steps = found.steps();
@@ -214,7 +215,13 @@ fn answer(difference: &Difference, found: &Found) -> Result<Distance, QueryError
 
 /// The points of the moving and of the fixed body that are near, in the world, rounded.
 pub(crate) fn points(bodies: &TwoBodies, near: &NearPoints) -> [DVec3; 2] {
-    let [p, q] = bodies.weighted(&near.pairs, &near.weights);
+    let [mut p, mut q] = [DVec3::ZERO; 2];
+    for (pair, &weight) in
+        near.pairs.iter().zip(&near.weights).filter(|(_, weight)| **weight != 0.0)
+    {
+        let ends = bodies.vertices(*pair);
+        (p, q) = (p + ends[0] * weight, q + ends[1] * weight);
+    }
     let origin = bodies.translations[0];
     [bodies.moving_matrix * p + origin, bodies.fixed_matrix * q + bodies.offset + origin]
 }

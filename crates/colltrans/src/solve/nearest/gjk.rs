@@ -89,10 +89,12 @@ pub(super) fn descend<T: Coordinate>(
         found.note_plane(normal, &lowest);
         if goal.is_reached(found) || simplex.contains(lowest.pair) {
             // Among edges as short as rounding errors a climb may have stuck far away.
-            lowest = found.settle(difference);
-            if goal.is_reached(found) || simplex.contains(lowest.pair) {
+            found.settle(difference);
+            let settled = found.lowest.unwrap_or_default();
+            if goal.is_reached(found) || simplex.contains(settled) {
                 return;
             }
+            lowest = difference.corner(settled);
         }
         simplex.push(T::of_corner(difference, &lowest));
     }

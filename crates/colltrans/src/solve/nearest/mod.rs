@@ -25,21 +25,30 @@ mod gjk;
 mod simplex;
 mod surround;
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
 pub(crate) use self::depth::deepest;
 use self::gjk::{Goal, descend, unit};
 use self::simplex::{Corner, Simplex};
 pub(crate) use self::surround::surrounds;
 use crate::answer::{NearPoints, PlaneGap, Steps};
+use crate::body::{ConvexPolyhedron, Inertia};
 use crate::number::noise::Noise;
 use crate::number::plane::triangle_normal;
 use crate::number::real::{Real, Twice, Vector};
+use crate::number::symmetric::Symmetric;
 use crate::number::volume::{encloses, weights_of_origin};
 use crate::setting::{TwoBodies, VertexPair};
 
 /// Bodies that are so many noises apart, as computed, are near contact.
 const NEAR: f64 = 4.0;
+
+/// Steps to a guess (measured), and how far its last point may be off the ellipsoid, as a share.
+const GUESSES: usize = 6;
+const NEARLY: f64 = 0.01;
+
+/// Round bodies with no more vertices are not worth a guess (measured).
+const FEW: usize = 20;
 
 /// `M` in the setting frame.
 pub(crate) struct Difference<'a> {
@@ -79,13 +88,71 @@ impl<'a> Difference<'a> {
         Corner { at: Vector(self.point(pair).to_array()), pair }
     }
 
-    /// A direction in which the fixed body may be.
-    fn guess(&self) -> DVec3 {
+    /// From the centre of the moving body to that of the fixed one.
+    fn center(&self) -> DVec3 {
         let bodies = self.bodies;
         let [p, q] = [bodies.moving.inertia().center, bodies.fixed.inertia().center];
-        let toward = bodies.fixed_matrix * q - bodies.moving_matrix * p + bodies.offset;
-        toward.try_normalize().unwrap_or(DVec3::X)
+        bodies.fixed_matrix * q - bodies.moving_matrix * p + bodies.offset
     }
+
+    /// A pair to begin with where bodies overlap: the polytope that a depth grows from is wide, as one that
+    /// begins near the shortest way out would not be.
+    pub(crate) fn first_pair(&self) -> NearestPairs {
+        let pair = self.lowest(toward(self.center()), None).pair;
+        NearestPairs { pairs: [pair; 3], count: 1 }
+    }
+
+    /// A direction in which the fixed body may be, of any length: across the shortest way between the
+    /// inertia ellipsoids, nearly, or from centre to centre.
+    fn guess(&self) -> DVec3 {
+        let bodies = self.bodies;
+        let [p, q] = [bodies.moving.inertia(), bodies.fixed.inertia()];
+        let center = self.center();
+        let few = |body: &ConvexPolyhedron| body.vertices().len() <= FEW;
+        if few(bodies.moving) && few(bodies.fixed) && p.round && q.round {
+            return toward(center);
+        }
+        let of = |inertia: &Inertia, rotation: &DMat3| {
+            Symmetric::gram(&inertia.axes_by_factor(&rotation.transpose()))
+        };
+        let [a, b] = [of(p, &bodies.moving_matrix), of(q, &bodies.fixed_matrix)];
+        toward(between(&a, &b, center, q.radius / p.radius))
+    }
+}
+
+/// A direction, or any where there is none.
+#[inline]
+fn toward(v: DVec3) -> DVec3 {
+    if v.length_squared() > 0.0 && v.is_finite() { v } else { DVec3::X }
+}
+
+/// The way across the nearest points of two ellipsoids with the matrices `A` and `B` whose centres are `c` apart.
+///
+/// Both are replaced by one, `K = (1 + r) A + (1 + 1/r) B`, which contains their sum, and touches it along `y`
+/// if `r^2 = y.B y / y.A y`. The point of it nearest to the origin is `t y` where `(K + t) y = c` and
+/// `f(t) = sqrt(y.K y)` is 1. `1 / f` is nearly linear, of a ball exactly so: Newton's steps are taken on it,
+/// and `r` follows.
+#[inline]
+fn between(a: &Symmetric, b: &Symmetric, center: DVec3, mut r: f64) -> DVec3 {
+    let (mut t, mut across) = (0.0_f64, center);
+    for _ in 0..GUESSES {
+        let k = a.combine(1.0 + r, b, 1.0 + 1.0 / r);
+        let (inverse, det) = k.plus_diagonal(t).adjugate();
+        let y = inverse.apply(center) * (1.0 / det);
+        let ky = k.apply(y);
+        let square = y.dot(ky);
+        let slope = ky.dot(inverse.apply(y)) * (1.0 / det);
+        let next = t + (square.sqrt() - 1.0) * square / slope;
+        let ratio = (b.square(y) / a.square(y)).sqrt();
+        if !(next.is_finite() && ratio > 0.0 && ratio.is_finite()) {
+            break;
+        }
+        (t, r, across) = (next.max(0.0), ratio, y);
+        if (square - 1.0).abs() < NEARLY {
+            break;
+        }
+    }
+    across
 }
 
 /// Up to three pairs of vertices to begin a descent with: those that the last one ended with.
@@ -117,6 +184,7 @@ pub(crate) struct Found {
     beyond: Option<f64>,
     /// The distance of the points as computed.
     upper: f64,
+    /// Those with a weight come first; the others mean nothing.
     pairs: [VertexPair; 4],
     weights: [f64; 4],
     /// Whether the pairs are four that seem to enclose the origin.
@@ -161,20 +229,16 @@ impl Found {
     }
 
     /// The lowest point along the normal of the plane, whatever a climb has made of it.
-    fn settle(&mut self, difference: &Difference) -> Corner<f64> {
-        let pair = self.lowest.unwrap_or_default();
-        if self.beyond.is_some() {
-            return difference.corner(pair);
-        }
+    #[inline]
+    fn settle(&mut self, difference: &Difference) {
+        let Some(pair) = self.lowest.filter(|_| self.beyond.is_none()) else { return };
         let bodies = difference.bodies;
         let normals = [bodies.moving_normal(self.normal), bodies.fixed_normal(self.normal)];
         let (settled, beyond) = bodies.settled(&normals, pair);
         (self.lowest, self.beyond) = (Some(settled), Some(beyond));
-        let corner = difference.corner(settled);
         if settled != pair {
-            self.lower = self.normal.dot(corner.at.value());
+            self.lower = self.normal.dot(difference.point(settled));
         }
-        corner
     }
 
     /// The work done so far.
@@ -218,6 +282,7 @@ pub(crate) fn nearest(difference: &Difference, start: &NearestPairs, than: Optio
     if !goal.is_reached(&found) {
         descend_with_more_digits(difference, &goal, &mut found);
     }
+    found.settle(difference);
     found
 }
 
@@ -281,11 +346,8 @@ impl Found {
     /// The best plane, if there is one.
     #[inline]
     pub(crate) fn plane(&self, difference: &Difference) -> Option<Plane> {
-        self.lowest?;
-        let mut settled = *self;
-        let lowest = settled.settle(difference).pair;
-        let (normal, beyond) = (self.normal, settled.beyond?);
-        let gap = (settled.lower - difference.noise.lowered() - beyond).next_down();
+        let (normal, lowest, beyond) = (self.normal, self.lowest?, self.beyond?);
+        let gap = (self.lower - difference.noise.lowered() - beyond).next_down();
         Some(Plane { gap: PlaneGap { normal, gap }, lowest, beyond })
     }
 
@@ -331,7 +393,12 @@ impl Found {
     /// The points, with what they prove.
     #[inline]
     pub(crate) fn near(&self, difference: &Difference) -> NearPoints {
-        let Self { pairs, weights, .. } = *self;
+        let Self { mut pairs, weights, .. } = *self;
+        for k in 1..4 {
+            if weights[k] == 0.0 {
+                pairs[k] = pairs[0];
+            }
+        }
         let bodies = difference.bodies;
         if self.full && encloses(&pairs.map(|pair| bodies.terms(pair)), bodies.scale()) {
             return meeting(difference, pairs, weights);

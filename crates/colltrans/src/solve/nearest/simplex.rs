@@ -19,7 +19,9 @@ pub(super) struct Corner<T> {
 /// Up to four points of `M`, each with a weight.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Simplex<T> {
-    corners: [Corner<T>; 4],
+    at: [Vector<T>; 4],
+    pairs: [VertexPair; 4],
+    /// Zero beyond the corners that are there.
     weights: [T; 4],
     count: usize,
 }
@@ -29,7 +31,7 @@ impl<T: Real> Simplex<T> {
     pub(super) fn new(corner: Corner<T>) -> Self {
         let mut weights = [T::ZERO; 4];
         weights[0] = T::of(1.0);
-        Self { corners: [corner; 4], weights, count: 1 }
+        Self { at: [corner.at; 4], pairs: [corner.pair; 4], weights, count: 1 }
     }
 
     /// Of up to three corners; `None` of none.
@@ -42,12 +44,9 @@ impl<T: Real> Simplex<T> {
     /// Adds a corner, to a simplex of fewer than four.
     #[inline]
     pub(super) fn push(&mut self, corner: Corner<T>) {
-        self.corners[self.count] = corner;
+        self.at[self.count] = corner.at;
+        self.pairs[self.count] = corner.pair;
         self.count += 1;
-    }
-
-    pub(super) fn corners(&self) -> &[Corner<T>] {
-        &self.corners[..self.count]
     }
 
     /// Whether it is a tetrahedron, which contains the origin once [`Self::reduce`] has left it so.
@@ -57,25 +56,24 @@ impl<T: Real> Simplex<T> {
 
     #[inline]
     pub(super) fn contains(&self, pair: VertexPair) -> bool {
-        self.corners().iter().any(|corner| corner.pair == pair)
+        self.pairs[..self.count].contains(&pair)
     }
 
-    /// All four pairs, in place of missing ones the first, and their weights.
+    /// Four pairs and their weights; those without a weight mean nothing.
+    #[inline]
     pub(super) fn weighted(&self) -> ([VertexPair; 4], [f64; 4]) {
-        let pair = |k: usize| self.corners[if k < self.count { k } else { 0 }].pair;
-        let weight = |k: usize| if k < self.count { self.weights[k].value() } else { 0.0 };
-        (std::array::from_fn(pair), std::array::from_fn(weight))
+        (self.pairs, self.weights.map(T::value))
     }
 
     /// Drops what the nearest point does without, and returns that point.
     #[inline]
     pub(super) fn reduce(&mut self) -> Vector<T> {
-        let [a, b, c, d] = self.corners.map(|corner| corner.at);
+        let [a, b, c, d] = &self.at;
         self.weights = match self.count {
             1 => [T::of(1.0), T::ZERO, T::ZERO, T::ZERO],
-            2 => segment(&a, &b),
-            3 => triangle(&a, &b, &c),
-            _ => tetrahedron([&a, &b, &c, &d]),
+            2 => segment(a, b),
+            3 => triangle(a, b, c),
+            _ => tetrahedron([a, b, c, d]),
         };
         self.keep_weighted()
     }
@@ -83,8 +81,7 @@ impl<T: Real> Simplex<T> {
     /// The same of a tetrahedron too flat for its volume to tell.
     #[cold]
     pub(super) fn reduce_to_face(&mut self) -> Vector<T> {
-        let [a, b, c, d] = self.corners.map(|corner| corner.at);
-        self.weights = nearest_face([&a, &b, &c, &d]);
+        self.weights = nearest_face(self.at.each_ref());
         self.keep_weighted()
     }
 
@@ -96,12 +93,14 @@ impl<T: Real> Simplex<T> {
         for k in 0..self.count {
             let weight = self.weights[k];
             if weight > T::ZERO {
-                nearest = nearest.plus(&self.corners[k].at.times(weight));
-                self.corners[kept] = self.corners[k];
+                nearest = nearest.plus(&self.at[k].times(weight));
+                self.at[kept] = self.at[k];
+                self.pairs[kept] = self.pairs[k];
                 self.weights[kept] = weight;
                 kept += 1;
             }
         }
+        self.weights[kept..].fill(T::ZERO);
         self.count = kept.max(1);
         nearest
     }
@@ -109,15 +108,15 @@ impl<T: Real> Simplex<T> {
     /// The direction across the simplex from the origin's side, of any length, for its nearest point.
     #[inline]
     pub(super) fn normal(&self, nearest: &Vector<T>) -> DVec3 {
-        let [a, b, c, _] = self.corners.map(|corner| corner.at);
+        let [a, b, c, _] = &self.at;
         match self.count {
             2 => {
-                let edge = b.minus(&a);
+                let edge = b.minus(a);
                 let along = nearest.dot(&edge) / edge.dot(&edge);
                 nearest.minus(&edge.times(along)).value()
             }
             3 => {
-                let normal = b.minus(&a).cross(&c.minus(&a)).value();
+                let normal = b.minus(a).cross(&c.minus(a)).value();
                 if normal.dot(nearest.value()) < 0.0 { -normal } else { normal }
             }
             _ => nearest.value(),

@@ -215,13 +215,7 @@ fn answer(difference: &Difference, found: &Found) -> Result<Distance, QueryError
 
 /// The points of the moving and of the fixed body that are near, in the world, rounded.
 pub(crate) fn points(bodies: &TwoBodies, near: &NearPoints) -> [DVec3; 2] {
-    let [mut p, mut q] = [DVec3::ZERO; 2];
-    for (pair, &weight) in
-        near.pairs.iter().zip(&near.weights).filter(|(_, weight)| **weight != 0.0)
-    {
-        let ends = bodies.vertices(*pair);
-        (p, q) = (p + ends[0] * weight, q + ends[1] * weight);
-    }
+    let [p, q] = bodies.weighted(&near.pairs, &near.weights);
     let origin = bodies.translations[0];
     [bodies.moving_matrix * p + origin, bodies.fixed_matrix * q + bodies.offset + origin]
 }

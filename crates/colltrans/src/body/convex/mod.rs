@@ -55,6 +55,9 @@ pub struct ConvexPolyhedron {
     pub(crate) solid: OnceLock<Box<Result<Solid, SolidError>>>,
 }
 
+/// Bodies with more vertices than this are worth the better guess from ellipsoids (measured).
+const FEW: usize = 20;
+
 impl ConvexPolyhedron {
     /// The vertices, in the body frame.
     pub fn vertices(&self) -> &[DVec3] {
@@ -193,6 +196,12 @@ impl ConvexPolyhedron {
     #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
     pub(crate) fn support_from(&self, direction: DVec3, near: u32) -> u32 {
         self.support.extreme_from(&self.vertices, &self.topology, direction, near)
+    }
+
+    /// Whether a guess from its inertia ellipsoid is hardly better than one from a ball.
+    #[inline]
+    pub(crate) fn is_like_ball(&self) -> bool {
+        self.vertices.len() <= FEW && self.inertia.round
     }
 
     /// Positions among the neighbours of `vertex` that may lie in its supporting plane along

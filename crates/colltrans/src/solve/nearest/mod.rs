@@ -32,7 +32,7 @@ use self::gjk::{Goal, descend, unit};
 use self::simplex::{Corner, Simplex};
 pub(crate) use self::surround::surrounds;
 use crate::answer::{NearPoints, PlaneGap, Steps};
-use crate::body::{ConvexPolyhedron, Inertia};
+use crate::body::Inertia;
 use crate::number::noise::Noise;
 use crate::number::plane::triangle_normal;
 use crate::number::real::{Real, Twice, Vector};
@@ -46,9 +46,6 @@ const NEAR: f64 = 4.0;
 /// Steps to a guess (measured), and how far its last point may be off the ellipsoid, as a share.
 const GUESSES: usize = 6;
 const NEARLY: f64 = 0.01;
-
-/// Round bodies with no more vertices are not worth a guess (measured).
-const FEW: usize = 20;
 
 /// `M` in the setting frame.
 pub(crate) struct Difference<'a> {
@@ -108,8 +105,7 @@ impl<'a> Difference<'a> {
         let bodies = self.bodies;
         let [p, q] = [bodies.moving.inertia(), bodies.fixed.inertia()];
         let center = self.center();
-        let few = |body: &ConvexPolyhedron| body.vertices().len() <= FEW;
-        if few(bodies.moving) && few(bodies.fixed) && p.round && q.round {
+        if bodies.moving.is_like_ball() && bodies.fixed.is_like_ball() {
             return toward(center);
         }
         let of = |inertia: &Inertia, rotation: &DMat3| {

@@ -14,7 +14,6 @@
 
 use glam::{DMat2, DVec2, DVec3};
 
-use crate::body::ConvexPolyhedron;
 use crate::number::symmetric::Symmetric;
 use crate::setting::minkowski::MinkowskiDifference;
 use crate::setting::{Setting, VertexPair};
@@ -57,16 +56,12 @@ const HASTE: f64 = 8.0;
 /// Bodies with more vertices than this have faces so small that a finer fit pays (measured).
 const FINE: usize = 256;
 
-/// Bodies with more vertices than this are worth the better guess from ellipsoids (measured).
-const FEW: usize = 20;
-
 impl FirstNormal {
     /// The guess that suits the bodies.
     #[inline]
     pub(crate) fn new(difference: &MinkowskiDifference) -> Self {
         let setting = difference.setting;
-        let simple = |body: &ConvexPolyhedron| body.vertices().len() <= FEW && body.inertia().round;
-        if simple(setting.moving) && simple(setting.fixed) {
+        if setting.moving.is_like_ball() && setting.fixed.is_like_ball() {
             Self::from_spheres(difference)
         } else {
             Self::from_ellipsoids(difference)

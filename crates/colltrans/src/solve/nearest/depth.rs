@@ -32,8 +32,8 @@ const MOST: usize = 2_000;
 /// How far apart bounds may be, in noises, before another polytope is tried.
 const OPEN: f64 = 8.0;
 
-/// Points that most polytopes have room for.
-const ROOM: usize = 32;
+/// Points that there is room for at first: few enough for allocators to be quick.
+const ROOM: usize = 12;
 
 /// The best plane, and the polytope.
 pub(crate) struct Deepest {
@@ -59,6 +59,15 @@ struct Triangle {
     height: f64,
     /// Whether nothing of `M` lies beyond it.
     done: bool,
+    /// Whether the point that is about to join sees it.
+    seen: bool,
+}
+
+/// A vertex of `M`.
+#[derive(Clone, Copy)]
+struct Point {
+    at: DVec3,
+    pair: VertexPair,
 }
 
 /// A polytope of points of `M`.
@@ -68,7 +77,6 @@ struct Polytope<'a> {
     pairs: Vec<VertexPair>,
     triangles: Vec<Triangle>,
     /// Kept for its memory.
-    seen: Vec<bool>,
     rim: Vec<[u32; 2]>,
 }
 
@@ -122,12 +130,11 @@ impl<'a> Polytope<'a> {
             difference,
             points: Vec::with_capacity(ROOM),
             pairs: Vec::with_capacity(ROOM),
-            triangles: Vec::with_capacity(2 * ROOM),
-            seen: Vec::with_capacity(2 * ROOM),
+            triangles: Vec::with_capacity(ROOM),
             rim: Vec::with_capacity(ROOM),
         };
         for pair in pairs {
-            new.add(*pair);
+            new.add(Point { at: difference.point(*pair), pair: *pair });
         }
         if new.points.len() < 4 || new.thickness() <= 8.0 * difference.noise.point() {
             new.points.truncate(1);
@@ -147,11 +154,9 @@ impl<'a> Polytope<'a> {
         Some(new)
     }
 
-    fn add(&mut self, pair: VertexPair) -> DVec3 {
-        let point = self.difference.point(pair);
-        self.points.push(point);
-        self.pairs.push(pair);
-        point
+    fn add(&mut self, corner: Point) {
+        self.points.push(corner.at);
+        self.pairs.push(corner.pair);
     }
 
     /// The height of the fourth point over the others.
@@ -177,10 +182,10 @@ impl<'a> Polytope<'a> {
             };
             let (mut farthest, mut most) = (None, 8.0 * self.difference.noise.point());
             for outward in axes.into_iter().flat_map(|axis| [axis, -axis]) {
-                let pair = self.support(outward, self.pairs[0], best);
-                let away = outward.dot(self.difference.point(pair) - first);
+                let point = self.support(outward, self.pairs[0], best);
+                let away = outward.dot(point.at - first);
                 if away > most {
-                    (farthest, most) = (Some(pair), away);
+                    (farthest, most) = (Some(point), away);
                 }
             }
             self.add(farthest?);
@@ -188,24 +193,30 @@ impl<'a> Polytope<'a> {
         Some(())
     }
 
-    /// The point farthest along a unit vector, from a pair that may be near; how far that is, is noted.
-    fn support(&self, outward: DVec3, near: VertexPair, best: &mut Deepest) -> VertexPair {
+    /// The point farthest along a unit vector, from a pair that may be near; how far that is, is noted. A climb
+    /// may have stuck before it, where that makes no difference yet.
+    fn support(&self, outward: DVec3, near: VertexPair, best: &mut Deepest) -> Point {
+        let noise = self.difference.noise;
         let bodies = self.difference.bodies;
-        let climbed = self.difference.lowest(-outward, Some(near));
-        best.supports += 1;
         let normals = [bodies.moving_normal(-outward), bodies.fixed_normal(-outward)];
-        let (pair, beyond) = bodies.settled(&normals, climbed.pair);
-        let reach = outward.dot(self.difference.point(pair));
-        let raised = (reach + self.difference.noise.lowered() + beyond).next_up();
+        let found = self.difference.climbed(&normals, Some(near));
+        best.supports += 1;
+        let at = self.difference.point(found);
+        if outward.dot(at) >= best.upper {
+            return Point { at, pair: found };
+        }
+        let (pair, beyond) = bodies.settled(&normals, found);
+        let at = if pair == found { at } else { self.difference.point(pair) };
+        let raised = (outward.dot(at) + noise.lowered() + beyond).next_up();
         best.note(outward, raised, beyond);
-        pair
+        Point { at, pair }
     }
 
     fn push(&mut self, corners: [u32; 3]) {
         let at = corners.map(|k| self.points[k as usize]);
         let normal = unit(triangle_normal(at)).unwrap_or(DVec3::ZERO);
         let height = self.height(corners, normal);
-        self.triangles.push(Triangle { corners, normal, height, done: false });
+        self.triangles.push(Triangle { corners, normal, height, done: false, seen: false });
     }
 
     fn height(&self, corners: [u32; 3], normal: DVec3) -> f64 {
@@ -216,11 +227,8 @@ impl<'a> Polytope<'a> {
     fn grow(&mut self, best: &mut Deepest) {
         let noise = self.difference.noise.point();
         for _ in 0..MOST {
-            let least = |a: &usize, b: &usize| {
-                self.triangles[*a].height.total_cmp(&self.triangles[*b].height)
-            };
-            let Some(nearest) = (0..self.triangles.len()).min_by(least) else { return };
-            let Triangle { corners, normal, height, done } = self.triangles[nearest];
+            let nearest = self.nearest();
+            let Triangle { corners, normal, height, done, .. } = self.triangles[nearest];
             if best.upper - height <= 2.5 * noise || best.upper == 0.0 {
                 return;
             }
@@ -230,12 +238,23 @@ impl<'a> Polytope<'a> {
                 }
                 continue;
             }
-            let pair = self.support(normal, self.pairs[corners[0] as usize], best);
-            let beyond = normal.dot(self.difference.point(pair)) - height;
-            if beyond <= noise || self.pairs.contains(&pair) || !self.insert(nearest, pair) {
+            let point = self.support(normal, self.pairs[corners[0] as usize], best);
+            let beyond = normal.dot(point.at) - height;
+            if beyond <= noise || self.pairs.contains(&point.pair) || !self.insert(nearest, point) {
                 self.triangles[nearest].done = true;
             }
         }
+    }
+
+    /// The triangle of the least height, the first of several.
+    fn nearest(&self) -> usize {
+        let (mut nearest, mut least) = (0, f64::INFINITY);
+        for (which, triangle) in self.triangles.iter().enumerate() {
+            if triangle.height < least {
+                (nearest, least) = (which, triangle.height);
+            }
+        }
+        nearest
     }
 
     /// Takes for a triangle, whose own normal is of no use, that of a neighbour if it is higher for that.
@@ -260,39 +279,37 @@ impl<'a> Polytope<'a> {
 
     /// Replaces what a new point sees, the triangle it was found for in any case, by a fan. `false`, and
     /// nothing changes, if that would not be a surface any more.
-    fn insert(&mut self, nearest: usize, pair: VertexPair) -> bool {
-        let at = self.difference.point(pair);
+    fn insert(&mut self, nearest: usize, point: Point) -> bool {
         let noise = self.difference.noise.point();
-        let (mut seen, mut rim) = (std::mem::take(&mut self.seen), std::mem::take(&mut self.rim));
-        let sees = |t: &Triangle| t.normal.dot(at - self.points[t.corners[0] as usize]) > noise;
-        seen.clear();
-        seen.extend(self.triangles.iter().map(sees));
-        seen[nearest] = true;
-        let is_surface = self.widen_rim(at, &mut seen, &mut rim);
+        for triangle in &mut self.triangles {
+            triangle.seen = triangle.normal.dot(point.at) - triangle.height > noise;
+        }
+        self.triangles[nearest].seen = true;
+        let mut rim = std::mem::take(&mut self.rim);
+        let is_surface = self.widen_rim(point.at, &mut rim);
         if is_surface {
-            let mut keep = seen.iter().map(|seen| !seen);
-            self.triangles.retain(|_| keep.next().unwrap_or(true));
+            self.triangles.retain(|triangle| !triangle.seen);
             let new = self.points.len() as u32;
-            self.add(pair);
+            self.add(point);
             for &[x, y] in &rim {
                 self.push([x, y, new]);
             }
         }
-        (self.seen, self.rim) = (seen, rim);
+        self.rim = rim;
         is_surface
     }
 
     /// The rim of the triangles seen, and more of them where the fan would be without area: the triangle
     /// beyond goes as well. `false` if the rim is not one polygon.
-    fn widen_rim(&self, at: DVec3, seen: &mut [bool], rim: &mut Vec<[u32; 2]>) -> bool {
+    fn widen_rim(&mut self, at: DVec3, rim: &mut Vec<[u32; 2]>) -> bool {
         loop {
-            self.find_rim(seen, rim);
+            self.find_rim(rim);
             let flat = rim.iter().find(|[x, y]| self.is_flat(*x, *y, at));
             let Some(&[x, y]) = flat else { break };
             let beyond =
                 |t: &Triangle| (0..3).any(|k| [t.corners[k], t.corners[(k + 1) % 3]] == [y, x]);
-            match self.triangles.iter().position(beyond) {
-                Some(other) if !seen[other] => seen[other] = true,
+            match self.triangles.iter_mut().find(|t| beyond(t)) {
+                Some(other) if !other.seen => other.seen = true,
                 _ => return false,
             }
         }
@@ -301,9 +318,9 @@ impl<'a> Polytope<'a> {
     }
 
     /// Directed edges of the triangles seen whose opposite is of none of them.
-    fn find_rim(&self, seen: &[bool], rim: &mut Vec<[u32; 2]>) {
+    fn find_rim(&self, rim: &mut Vec<[u32; 2]>) {
         rim.clear();
-        for (triangle, _) in self.triangles.iter().zip(seen).filter(|(_, seen)| **seen) {
+        for triangle in self.triangles.iter().filter(|triangle| triangle.seen) {
             let [a, b, c] = triangle.corners;
             for [x, y] in [[a, b], [b, c], [c, a]] {
                 match rim.iter().position(|edge| *edge == [y, x]) {
@@ -319,7 +336,7 @@ impl<'a> Polytope<'a> {
         let [x, y] = [x, y].map(|k| self.points[k as usize]);
         let edge = y - x;
         let noise = self.difference.noise.point();
-        edge.cross(at - x).length() <= noise * edge.length()
+        edge.cross(at - x).length_squared() <= noise * noise * edge.length_squared()
     }
 
     /// The least height as a bound, if the surface is around the origin, exactly.
@@ -336,7 +353,7 @@ impl<'a> Polytope<'a> {
             normals: self.triangles.iter().map(|t| t.normal).collect(),
         };
         // Closed it is: a fan takes the place of what has the same rim.
-        if winds(self.difference.bodies, &enclosure) {
+        if winds(self.difference.bodies, &self.points, &enclosure) {
             best.lower = lower;
             best.enclosure = enclosure;
         }

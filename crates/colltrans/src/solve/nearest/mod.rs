@@ -69,7 +69,16 @@ impl<'a> Difference<'a> {
     #[inline]
     fn lowest(&self, normal: DVec3, near: Option<VertexPair>) -> Corner<f64> {
         let bodies = self.bodies;
-        let (in_moving, in_fixed) = (bodies.moving_normal(normal), -bodies.fixed_normal(normal));
+        self.corner(
+            self.climbed(&[bodies.moving_normal(normal), bodies.fixed_normal(normal)], near),
+        )
+    }
+
+    /// The pair of it, along a normal that is given in both bodies' frames.
+    #[inline]
+    fn climbed(&self, normals: &[DVec3; 2], near: Option<VertexPair>) -> VertexPair {
+        let bodies = self.bodies;
+        let (in_moving, in_fixed) = (normals[0], -normals[1]);
         let (moving, fixed) = match near {
             Some(near) => (
                 bodies.moving.support_from(in_moving, near.moving.0),
@@ -77,7 +86,7 @@ impl<'a> Difference<'a> {
             ),
             None => (bodies.moving.support(in_moving).0, bodies.fixed.support(in_fixed).0),
         };
-        self.corner(VertexPair::of(moving, fixed))
+        VertexPair::of(moving, fixed)
     }
 
     #[inline]

@@ -7,19 +7,21 @@
 
 use std::cmp::Ordering;
 
+use glam::DVec3;
+
 use crate::answer::Enclosure;
 use crate::number::volume;
 use crate::setting::TwoBodies;
 
 /// Whether it does, if no triangle contains the origin.
 pub(crate) fn surrounds(bodies: &TwoBodies, surface: &Enclosure) -> bool {
-    is_closed(&surface.triangles) && winds(bodies, surface)
+    let points: Vec<_> = surface.pairs.iter().map(|pair| bodies.difference(*pair)).collect();
+    is_closed(&surface.triangles) && winds(bodies, &points, surface)
 }
 
-/// The same of a surface that is closed.
-pub(super) fn winds(bodies: &TwoBodies, surface: &Enclosure) -> bool {
+/// The same of a surface that is closed, with the points of its pairs.
+pub(super) fn winds(bodies: &TwoBodies, points: &[DVec3], surface: &Enclosure) -> bool {
     let size = bodies.scale();
-    let points: Vec<_> = surface.pairs.iter().map(|pair| bodies.difference(*pair)).collect();
     let mut some = false;
     for corners in &surface.triangles {
         let rounded = volume::rounded_sign(corners.map(|k| points[k as usize]), size);

@@ -150,6 +150,7 @@ mod answer;
 mod body;
 mod cast;
 pub mod free;
+pub mod motion;
 mod number;
 mod pair;
 #[cfg(feature = "json")]

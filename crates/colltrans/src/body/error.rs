@@ -239,3 +239,39 @@ pub enum PoseError {
         translation: DVec3,
     },
 }
+
+/// Why a motion is none.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum MotionError {
+    /// A vector is not finite or out of range, or an axis is zero.
+    #[error(
+        "the {what} {:?} is zero, not finite or has a component outside the exact range \
+         (0, or a magnitude from 2^-200 to 2^200)",
+        .vector.to_array()
+    )]
+    Number {
+        /// Which one.
+        what: &'static str,
+        /// As given, or as it follows.
+        vector: DVec3,
+    },
+    /// The angle is not finite, or larger than 1e5 in a piece or for a whole unit of time.
+    #[error("the angle {angle} is not a number from -1e5 to 1e5 (radians)")]
+    Angle {
+        /// The angle as given, in a unit of time.
+        angle: f64,
+    },
+    /// No poses to go through.
+    #[error("a motion needs at least one pose")]
+    NoPoses,
+    /// A time that is not from 0 to 1, or not in order.
+    #[error("the time {time} is not from 0 to 1, or not after the one before it")]
+    Time {
+        /// The time as given.
+        time: f64,
+    },
+    /// A pose on the way is none.
+    #[error("a pose on the way is none: {0}")]
+    Pose(#[from] PoseError),
+}

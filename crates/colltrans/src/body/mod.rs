@@ -6,6 +6,7 @@ pub(crate) mod error;
 mod feature;
 mod id;
 pub(crate) mod inertia;
+pub(crate) mod motion;
 pub(crate) mod placed;
 pub(crate) mod pose;
 pub(crate) mod solid;

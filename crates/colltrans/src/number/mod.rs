@@ -1,6 +1,7 @@
 //! Arithmetic: the range of numbers, the bounds of their rounding errors, and decisions that
 //! rounding cannot make.
 
+pub(crate) mod angle;
 pub(crate) mod determinant;
 mod double;
 pub(crate) mod error_free;

@@ -57,6 +57,12 @@
 //!   the result's is off by `4 u r` for the differences, `2 u r` for the products, `2 u r` for the
 //!   first sum, `2 u r` for the last one and `2 u r` because the rounded `s + t` is at most 1; its
 //!   length by `10 u r` more: together less than `(12 sqrt(3) + 10) u r < 32 u r`.
+//! - *Pose.* Of a motion a sine and `1 - cos` are off by `2 u`, an axis by `4 u` from length 1, a cross
+//!   product by `3 u` of its factors: `z + sin (k x z) + (1 - cos) k x (k x z)` is off by `10 u |z|` for the
+//!   second term, `28 u |z|` for the third one and `8 u |z|` for the sums, less than `48 u |z|`; three
+//!   columns of a rotation together move a point by `48 sqrt(3) u` of its distance from the frame's origin,
+//!   less than [`POSE`]. Sine and `1 - cos` are at most the angle, and so is what they make of an arm. A way,
+//!   a sum with it and one with another body's are off by less than [`WAY`].
 //! - *Section.* A sum of a few products in section coordinates, with a margin for the errors of
 //!   their factors. Only guesses hang on it.
 
@@ -118,6 +124,12 @@ pub(crate) const COPLANAR: f64 = 64.0 * ROUNDING;
 
 /// Bound on the error of a point's distance from a triangle's, in multiples of the largest coordinate.
 pub(crate) const WITNESS: f64 = 32.0 * ROUNDING;
+
+/// Bound on the error of a point that was turned, in multiples of its distance from the origin of its frame.
+pub(crate) const POSE: f64 = 96.0 * ROUNDING;
+
+/// The same of a displacement.
+pub(crate) const WAY: f64 = 8.0 * ROUNDING;
 
 /// Relative rounding error of sums in section coordinates.
 pub(crate) const SECTION: f64 = 128.0 * ROUNDING;
@@ -202,8 +214,8 @@ impl Noise {
         MEAN[1] * self.0
     }
 
-    /// Whether a gap to be kept, that the size has been made larger by, leaves no room for points that are so near for
-    /// certain.
+    /// Whether a gap to be kept, that the size has been made larger by, leaves no room for points that are so
+    /// near for certain.
     pub(crate) fn is_slight(self, keep: f64) -> bool {
         keep <= SLIGHT * self.0
     }

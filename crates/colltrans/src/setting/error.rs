@@ -111,6 +111,9 @@ pub enum Stalled {
     /// direction that separates.
     #[error("no portal was found")]
     NoPortal,
+    /// A motion was looked at more often than was ever seen to be needed.
+    #[error("the motion was looked at too often")]
+    Motion,
     /// Portals followed each other without an end.
     #[error("portals followed each other in a circle")]
     Cycle,

@@ -82,6 +82,19 @@ impl<'a, B> TwoBodies<'a, B> {
         Self { offset, offset_error: error, ..*self }
     }
 
+    /// The same bodies with other rotations, displaced by so much from where they are.
+    pub(crate) fn carried(&self, rotations: [DMat3; 2], by: [DVec3; 2]) -> Self {
+        let mut moved = self.moved_by(by[0] - by[1]);
+        for k in 0..3 {
+            if moved.offset[k].abs() < MIN_MAGNITUDE {
+                moved.offset[k] = 0.0;
+            }
+        }
+        let [p, q] = self.translations;
+        let [moving_matrix, fixed_matrix] = rotations;
+        Self { moving_matrix, fixed_matrix, translations: [p + by[0], q + by[1]], ..moved }
+    }
+
     /// `t_Q - t_P`, and what rounding took from it.
     #[inline]
     pub(crate) fn exact_offset(&self) -> [DVec3; 2] {

@@ -1,0 +1,57 @@
+//! One plane for an interval: each vertex on its arc.
+//!
+//! Notation. As [`bend`](super::bend). Along a fixed normal `n` a point `z` of a body is at `n.E z`, a
+//! sinusoid of the angle: with `w` where it is at the beginning, `n.w_along + cos n.w_across + sin n.(k x
+//! w)`. The axes drift apart evenly. The least gap over an interval is at least that of both extremes apart:
+//! of the fixed body's lowest point at any time, the moving one's highest, and the axes'.
+
+use glam::DVec3;
+
+use super::bend::across;
+use super::span::{Instant, Span};
+
+/// Sums here are off by less than this share of the sizes.
+const ROUNDED: f64 = 1e-14;
+
+/// How much of the gap that a plane leaves at the first of two times is lost until the second, at most.
+pub(super) fn lost(span: &Span, ends: [&Instant; 2], normal: DVec3) -> f64 {
+    let h = ends[1].time - ends[0].time;
+    let drift = normal.dot(span.drift()) * h;
+    let sizes =
+        (0..2).map(|which| span.piece(which).arm.length() + span.body(which).inertia().reach);
+    let size = sizes.sum::<f64>() + span.drift().length() * h;
+    let risen = rise(span, ends, 0, normal) + rise(span, ends, 1, -normal);
+    // What rises is computed of places that may be off at both ends.
+    risen - drift.min(0.0) + 2.0 * span.error + ROUNDED * size
+}
+
+/// By how much the highest point of a body along a normal rises within an interval, at most.
+fn rise(span: &Span, ends: [&Instant; 2], which: usize, normal: DVec3) -> f64 {
+    let (piece, body) = (span.piece(which), span.body(which));
+    let angle = piece.rate * (ends[1].time - ends[0].time);
+    if angle == 0.0 {
+        return 0.0;
+    }
+    let moved = ends.map(|end| &end.moved[which]);
+    // More than half a turn has its peak for certain, or is taken to have it.
+    let around = angle.abs() >= 3.0;
+    let [n, side] = [across(normal, piece.axis), normal.cross(piece.axis) * angle.signum()];
+    let along = normal - n;
+    let (mut highest, mut before) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+    for v in body.vertices() {
+        let first = moved[0].arm + moved[0].rotation * *v;
+        let last = moved[1].arm + moved[1].rotation * *v;
+        // The slopes at both ends tell whether the peak is between them.
+        let peak = around || (side.dot(first) > 0.0 && side.dot(last) < 0.0);
+        let here = normal.dot(first);
+        let top = if peak {
+            let (a, b) = (n.dot(first), side.dot(first));
+            along.dot(first) + (a * a + b * b).sqrt()
+        } else {
+            here.max(normal.dot(last))
+        };
+        highest = highest.max(top);
+        before = before.max(here);
+    }
+    highest - before
+}

@@ -1,0 +1,281 @@
+//! Motions that turn: when do two convex bodies first touch?
+//!
+//! A [`Motion`] says where a body is at every time from 0 to 1: it slides, turns, unscrews, is thrown, or
+//! goes through poses. A [`MotionCast`] answers when two such bodies first meet, with bounds on that time
+//! that are bounds, or proves that they never do.
+//!
+//! ```
+//! use colltrans::glam::DVec3;
+//! use colltrans::motion::{Motion, MotionCast, MotionOutcome};
+//! use colltrans::{ConvexPolyhedron, Pose};
+//!
+//! // A door, 1 wide, swings by 90 degrees about the z axis; a post stands in its way at 45 degrees.
+//! let door = ConvexPolyhedron::cuboid(DVec3::new(0.0, -0.02, 0.0), DVec3::new(1.0, 0.02, 2.0))?;
+//! let post = ConvexPolyhedron::cuboid(DVec3::splat(-0.05), DVec3::splat(0.05))?;
+//! let swing = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, std::f64::consts::FRAC_PI_2)?;
+//! let there = Pose::from_translation(DVec3::new(0.6, 0.6, 1.0))?;
+//!
+//! let cast = MotionCast::new(door.along(&swing), post.at(there))?;
+//! let MotionOutcome::Contact(contact) = cast.first_contact()? else { panic!("no contact") };
+//! assert!(0.4 < contact.lower && contact.lower <= contact.upper && contact.upper < 0.5);
+//! assert!(contact.upper - contact.lower < 1e-11);
+//! assert!(cast.verify(&contact.proof).is_ok());
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # What is promised
+//!
+//! Answers hold of the motion *as the real function of its numbers*, not of poses computed from it: at each
+//! time before `lower` the bodies do not meet, and at the time `upper` they do. What a computed pose may be
+//! off is taken off every gap, and that bodies meet is claimed where they overlap by more than that.
+//!
+//! # Method
+//!
+//! Notation. A *plane* at a time is a unit normal `n` with the gap `s = min_Q n.q - max_P n.p` that it leaves
+//! then. In a *span* both bodies spin evenly. The search proves a span
+//!
+//! - *between two planes* by how far supporting planes may bend in between (`bend`): two gaps bound all times
+//!   in between, whatever the normals;
+//! - *by one plane* over vertices that stay below it on their arcs (`arc`).
+//!
+//! `search` proposes times, by Newton's method at the end, and `look` asks the distance at one. This is
+//! conservative advancement (Mirtich) with a bound of second order: a rotation is a translation to first
+//! order only, so that steps shrink with the square root of what is left, not with what is left.
+//!
+//! The modules, each using only those before it: `span`, `bend` and `arc`, `look`, `search`, `verify`.
+
+mod arc;
+mod bend;
+mod look;
+mod search;
+mod span;
+mod verify;
+
+use glam::DVec3;
+
+pub use self::look::Met;
+use self::search::{Advanced, End, advance};
+use self::span::Span;
+pub use self::verify::MotionProofError;
+use crate::answer::Distance;
+pub use crate::body::error::MotionError;
+use crate::body::motion::Piece;
+pub use crate::body::motion::{Motion, Moving};
+use crate::body::{ConvexPolyhedron, Features, Pose};
+use crate::pair::Pair;
+use crate::setting::check_keep;
+use crate::setting::error::{QueryError, Stalled};
+
+impl ConvexPolyhedron {
+    /// This body and a motion, for a [`MotionCast`].
+    pub fn along<'a>(&'a self, motion: &'a Motion) -> Moving<'a> {
+        Moving { body: self, motion: std::borrow::Cow::Borrowed(motion) }
+    }
+}
+
+/// Two convex bodies, either of which may move, from time 0 to 1.
+#[derive(Debug, Clone)]
+pub struct MotionCast<'a> {
+    moving: Moving<'a>,
+    fixed: Moving<'a>,
+    keep: f64,
+}
+
+/// When the bodies first meet.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+#[non_exhaustive]
+pub enum MotionOutcome {
+    /// They do, at a time between two bounds.
+    Contact(MotionContact),
+    /// They come nearer to each other than rounding can tell. Proven is that they do not meet before; not
+    /// that they meet, and nothing of later times.
+    Grazing(MotionContact),
+    /// They do not: proven of the whole motion.
+    Free(MotionFree),
+    /// They overlap at time 0.
+    Overlapping(MotionContact),
+}
+
+/// A first contact, or what may be one.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct MotionContact {
+    /// Up to this time the bodies do not meet; 0 if they overlap at the start.
+    pub lower: f64,
+    /// At this time they do; infinite (`null` in JSON) where that is not proven.
+    #[cfg_attr(feature = "serde", serde(with = "crate::written::or_infinite"))]
+    pub upper: f64,
+    /// The poses at the lower bound, to rounding.
+    pub poses: [Pose; 2],
+    /// The points of both bodies that are nearest to each other then, in the world, rounded.
+    pub points: [DVec3; 2],
+    /// Unit normal in the world, from the moving body to the fixed one, at that time.
+    pub normal: Option<DVec3>,
+    /// What faces each other across it.
+    pub features: Option<Features>,
+    /// What proves the bounds.
+    pub proof: MotionProof,
+    /// How much work it was.
+    pub steps: MotionSteps,
+}
+
+/// No contact.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct MotionFree {
+    /// What proves it.
+    pub proof: MotionProof,
+    /// How much work it was.
+    pub steps: MotionSteps,
+}
+
+/// How much work an answer was.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct MotionSteps {
+    /// Times at which the bodies were looked at.
+    pub looks: u32,
+    /// Support points asked for by distances then.
+    pub supports: u32,
+}
+
+/// What proves an answer: planes, and that the bodies meet.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct MotionProof {
+    /// For each span of time in which both bodies spin evenly, up to that in which they meet: planes in the
+    /// order of their times, each joined to the next one. None, if they meet when it begins.
+    pub spans: Vec<Vec<PlaneAt>>,
+    /// That the bodies meet at a time.
+    pub meeting: Option<Meeting>,
+}
+
+/// A plane between the bodies at a time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct PlaneAt {
+    /// When.
+    pub time: f64,
+    /// Unit normal in the world, from the moving body to the fixed one.
+    pub normal: DVec3,
+    /// At most the gap that it leaves, less the gap to be kept, in world units.
+    pub gap: f64,
+    /// Whether this plane alone proves all times up to the next one, by the arcs of all vertices; else both
+    /// together do.
+    pub alone: bool,
+}
+
+/// That the bodies meet at a time, or are not farther apart than the gap to be kept.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Meeting {
+    /// When.
+    pub time: f64,
+    /// Why.
+    pub met: Met,
+}
+
+impl<'a> MotionCast<'a> {
+    /// Of two bodies [along](ConvexPolyhedron::along) a motion or [at](ConvexPolyhedron::at) a pose.
+    ///
+    /// # Errors
+    /// None today: what a body and a motion admit, a cast does.
+    pub fn new(
+        moving: impl Into<Moving<'a>>,
+        fixed: impl Into<Moving<'a>>,
+    ) -> Result<Self, QueryError> {
+        Ok(Self { moving: moving.into(), fixed: fixed.into(), keep: 0.0 })
+    }
+
+    /// The same with a gap to be kept, in world units: what counts is when the bodies are no farther apart.
+    ///
+    /// # Errors
+    /// A gap that is negative, not finite or out of range.
+    pub fn keeping(self, gap: f64) -> Result<Self, QueryError> {
+        check_keep(gap)?;
+        Ok(Self { keep: gap, ..self })
+    }
+
+    /// When do the bodies first meet?
+    ///
+    /// # Errors
+    /// A search that does not end: never seen.
+    pub fn first_contact(&self) -> Result<MotionOutcome, QueryError> {
+        let (mut proof, mut steps) = (MotionProof::default(), MotionSteps::default());
+        for span in self.spans() {
+            let Advanced { planes, end, looks, supports } = advance(&span, self.keep);
+            steps.looks += looks;
+            steps.supports += supports;
+            proof.spans.push(planes);
+            match end {
+                End::Free => {}
+                End::Met(time, met) => {
+                    proof.meeting = Some(Meeting { time, met });
+                    return contact(&span, proof, steps);
+                }
+                End::Blurred => return contact(&span, proof, steps),
+                End::Stalled => return Err(QueryError::NotConverged { reason: Stalled::Motion }),
+            }
+        }
+        Ok(MotionOutcome::Free(MotionFree { proof, steps }))
+    }
+
+    /// Checks a proof without a search: all vertices are looked at. Returns up to which time the bodies are
+    /// proven not to meet, and when they are proven to, infinity if that is not claimed.
+    ///
+    /// # Errors
+    /// What is not proven.
+    pub fn verify(&self, proof: &MotionProof) -> Result<[f64; 2], MotionProofError> {
+        verify::verify(self, proof)
+    }
+
+    /// The times in which both bodies spin evenly, one after the other.
+    fn spans(&self) -> impl Iterator<Item = Span<'a>> + '_ {
+        let pieces = [self.moving.motion.pieces(), self.fixed.motion.pieces()];
+        let mut times: Vec<f64> = pieces.into_iter().flatten().map(|piece| piece.since).collect();
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        times.push(1.0);
+        let ends: Vec<[f64; 2]> = times.windows(2).map(|pair| [pair[0], pair[1]]).collect();
+        let bodies = [self.moving.body, self.fixed.body];
+        ends.into_iter().map(move |[from, to]| {
+            Span::new(bodies, pieces.map(|all| piece_at(all, from)), [from, to])
+        })
+    }
+}
+
+/// The piece that a time belongs to.
+fn piece_at(pieces: &[Piece], time: f64) -> &Piece {
+    &pieces[pieces.partition_point(|piece| piece.since <= time).max(1) - 1]
+}
+
+/// What is to be said where the bodies meet, or may.
+fn contact(
+    span: &Span,
+    proof: MotionProof,
+    steps: MotionSteps,
+) -> Result<MotionOutcome, QueryError> {
+    let lower = proof.spans.iter().flatten().last().map_or(0.0, |plane| plane.time);
+    let upper = proof.meeting.as_ref().map_or(f64::INFINITY, |meeting| meeting.time);
+    let bodies = span.instant(lower).bodies;
+    let poses = [bodies.moving_placed().pose, bodies.fixed_placed().pose];
+    let Distance { on_moving, on_fixed, normal, features, .. } = Pair { bodies }.distance()?;
+    let points = [on_moving, on_fixed];
+    let starts = upper == 0.0;
+    let contact = MotionContact { lower, upper, poses, points, normal, features, proof, steps };
+    Ok(if starts {
+        MotionOutcome::Overlapping(contact)
+    } else if upper.is_finite() {
+        MotionOutcome::Contact(contact)
+    } else {
+        MotionOutcome::Grazing(contact)
+    })
+}

@@ -1,0 +1,275 @@
+//! From the beginning of a span to its end, or to where the bodies meet.
+//!
+//! Notation. *Left* is the last plane up to which all is proven, `s` its gap and `rate` how fast that closes;
+//! `K` is the last `C / h^2`. The *floor* is a gap that rounding may make of none, the *pad* the time in
+//! which one closes.
+//!
+//! Invariant. All planes in the list are joined, each to the next one. `end` is the end of the span, or the
+//! first time seen at which the bodies meet or are not told apart; those that wait on the stack are planes
+//! between left and `end`, the earliest on top.
+//!
+//! Where a step is to go: as far as the bound reaches, if the gap closes as it does now; but not beyond where
+//! it closes, by Newton: from the left first a little before that, so that a plane is there and the next step
+//! is quadratically nearer; when left is as near as rounding tells a little beyond, where the bodies meet.
+//! What is not joined waits, and time is halved. A search never ends because an estimate is small.
+
+use super::PlaneAt;
+use super::arc;
+use super::bend::{Climbing, SPARE, bend, most_bend, usual};
+use super::look::{Look, Looker, Met};
+use super::span::Span;
+use crate::body::ConvexPolyhedron;
+
+/// More steps than were ever seen.
+const MOST: usize = 20_000;
+
+/// Which share of the step that the bound allows is taken.
+const STEP: f64 = 0.95;
+
+/// A search ends when the bodies meet so many pads after the last plane.
+const WIDTH: f64 = 40.0;
+
+/// Bodies with more vertices have none looked at on its arc.
+const ARCS: usize = 1_000;
+
+/// How often a time after a blur is doubled to find bodies that meet.
+const BEYOND: i32 = 48;
+
+/// How a span ends.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum End {
+    /// With its last plane.
+    Free,
+    /// The bodies meet at a time, as is proven.
+    Met(f64, Met),
+    /// They come nearer than rounding can tell; that they meet is not proven.
+    Blurred,
+    /// Too many steps: never seen.
+    Stalled,
+}
+
+/// What has become of a span.
+#[derive(Debug, Clone)]
+pub(super) struct Advanced {
+    /// In the order of their times; none if there is none at the beginning.
+    pub(super) planes: Vec<PlaneAt>,
+    pub(super) end: End,
+    pub(super) looks: u32,
+    pub(super) supports: u32,
+}
+
+/// What is at the end of what is searched.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Ahead {
+    /// The end of the span.
+    Nothing,
+    /// Bodies that meet, or are not told apart.
+    Something,
+}
+
+struct Search<'s, 'a> {
+    span: &'s Span<'a>,
+    looker: Looker,
+    planes: Vec<PlaneAt>,
+    left: Look<'a>,
+    stack: Vec<Look<'a>>,
+    end: f64,
+    ahead: Ahead,
+    /// `K`.
+    curvature: f64,
+}
+
+/// Proves as much of a span as it can.
+pub(super) fn advance(span: &Span, keep: f64) -> Advanced {
+    let mut looker = Looker::new(keep);
+    let left = looker.look(span, span.from);
+    let mut search = Search {
+        span,
+        planes: Vec::new(),
+        left,
+        stack: Vec::new(),
+        end: span.to,
+        ahead: Ahead::Nothing,
+        curvature: usual(span),
+        looker,
+    };
+    let end = if left.is_apart() {
+        search.note(&left, false);
+        search.run()
+    } else {
+        search.met_from(span.from)
+    };
+    let Search { planes, looker: Looker { looks, supports, .. }, .. } = search;
+    Advanced { planes, end, looks, supports }
+}
+
+impl<'a> Search<'_, 'a> {
+    fn run(&mut self) -> End {
+        for _ in 0..MOST {
+            if let Some(next) = self.stack.last().copied() {
+                if self.joins(&next) {
+                    self.stack.pop();
+                    self.go_on(&next);
+                } else if !self.halve(next.time()) {
+                    return self.met_from(self.left.time());
+                }
+                continue;
+            }
+            if self.ahead == Ahead::Nothing && self.left.time() >= self.end {
+                return End::Free;
+            }
+            if self.ahead == Ahead::Something && self.is_narrow() {
+                return self.met_from(self.end);
+            }
+            if self.swings_on() {
+                continue;
+            }
+            let time = self.next_time();
+            self.visit(time);
+        }
+        End::Stalled
+    }
+
+    fn note(&mut self, look: &Look<'a>, alone: bool) {
+        if let Some(last) = self.planes.last_mut() {
+            last.alone = alone;
+        }
+        let Look { normal, gap, .. } = *look;
+        self.planes.push(PlaneAt { time: look.time(), normal, gap, alone: false });
+    }
+
+    fn go_on(&mut self, look: &Look<'a>) {
+        self.note(look, false);
+        self.left = *look;
+    }
+
+    /// Whether all between left and a later plane is proven.
+    fn joins(&mut self, next: &Look) -> bool {
+        let enough = most_bend([self.left.gap, next.gap], 2.0 * SPARE);
+        let normals = [self.left.normal, next.normal];
+        let found = bend(self.span, [&self.left.at, &next.at], normals, enough, &Climbing);
+        let h = next.time() - self.left.time();
+        if h > 0.0 {
+            self.curvature = (found.max(0.0) / h / h).max(1e-3 * usual(self.span));
+        }
+        h == 0.0 || found <= enough
+    }
+
+    /// Looks in the middle before a time; `false` if there is none.
+    fn halve(&mut self, until: f64) -> bool {
+        let middle = self.left.time() + 0.5 * (until - self.left.time());
+        let is_between = middle > self.left.time() && middle < until;
+        if is_between {
+            self.visit(middle);
+        }
+        is_between
+    }
+
+    fn visit(&mut self, time: f64) {
+        let look = self.looker.look(self.span, time);
+        if look.is_apart() {
+            self.stack.push(look);
+        } else {
+            self.stack.clear();
+            (self.end, self.ahead) = (time, Ahead::Something);
+        }
+    }
+
+    /// The time in which a gap of one floor closes.
+    fn pad(&self) -> f64 {
+        let Look { rate, floor, .. } = self.left;
+        let rate = rate.max((self.curvature * floor).sqrt());
+        if rate > 0.0 { floor / rate } else { f64::INFINITY }
+    }
+
+    /// Whether left is as near to the end as rounding tells.
+    fn is_narrow(&self) -> bool {
+        let width = self.end - self.left.time();
+        let ulps = 4.0 * f64::EPSILON * self.end;
+        width <= ulps || (self.left.gap <= 2.0 * self.left.floor && width <= WIDTH * self.pad())
+    }
+
+    /// Where to look next.
+    fn next_time(&self) -> f64 {
+        let Look { gap, rate, floor, .. } = self.left;
+        let (from, end) = (self.left.time(), self.end);
+        let root = gap.sqrt();
+        let c = STEP * (0.5 * self.curvature).sqrt();
+        let step = if rate > c * root {
+            let off = gap / rate;
+            let error = self.curvature * off * off / (2.0 * rate);
+            if gap <= 2.0 * floor {
+                off + (2.0 * error).max(2.0 * self.pad())
+            } else {
+                let before = off - (2.0 * error).max(self.pad());
+                if before > 0.0 { before } else { 0.5 * off }
+            }
+        } else if c > 0.0 {
+            (2.0 * c * root - rate) / (c * c)
+        } else {
+            f64::INFINITY
+        };
+        let time = from + step;
+        let between = |time: f64| time > from && time < end;
+        match self.ahead {
+            Ahead::Nothing if time >= end || time.is_nan() => end,
+            _ if between(time) => time,
+            _ => (from + 0.5 * (end - from)).max(from.next_up()).min(end),
+        }
+    }
+
+    /// Goes on by the plane at left alone, where that leads farther than the bound.
+    fn swings_on(&mut self) -> bool {
+        let (from, span) = (self.left.time(), self.span);
+        let vertices = |which: usize| ConvexPolyhedron::vertices(span.body(which)).len();
+        let turns = (0..2).any(|which| span.piece(which).rate != 0.0);
+        if !turns || vertices(0) + vertices(1) > ARCS {
+            return false;
+        }
+        let step = self.next_time() - from;
+        let mut length = self.end - from;
+        while length > 2.0 * step {
+            let at = span.instant(from + length);
+            let lost = arc::lost(span, [&self.left.at, &at], self.left.normal);
+            // Some of the gap has to be left, for the next plane to lead on.
+            if lost < 0.75 * self.left.gap {
+                return self.swing_to(from + length);
+            }
+            length *= 0.5;
+        }
+        false
+    }
+
+    fn swing_to(&mut self, time: f64) -> bool {
+        let next = self.looker.look(self.span, time);
+        let normal = self.left.normal;
+        let gap = next.at.bodies.proven_gap(normal) - self.looker.keep - self.span.error;
+        if !(gap > 0.0 && next.is_apart()) {
+            return false;
+        }
+        self.note(&Look { normal, gap, ..next }, true);
+        self.go_on(&next);
+        true
+    }
+
+    /// That the bodies meet, from a time on at which they may; doubled steps later, as long as they do not
+    /// part.
+    fn met_from(&mut self, time: f64) -> End {
+        let pad = self.pad();
+        let ulp = 2.0 * f64::EPSILON * time.max(f64::EPSILON);
+        let first = if pad.is_finite() { pad.max(ulp) } else { ulp };
+        for k in -1..BEYOND {
+            let later = if k < 0 { time } else { time + first * 2.0_f64.powi(k) };
+            if later > self.span.to {
+                break;
+            }
+            if let Some(met) = self.looker.met(self.span, later) {
+                return End::Met(later, met);
+            }
+            if self.looker.look(self.span, later).is_apart() && later > self.left.time() {
+                break;
+            }
+        }
+        End::Blurred
+    }
+}

@@ -1,0 +1,141 @@
+//! Checks of proofs about motions: nothing of the search is used, all vertices are looked at.
+//!
+//! What is checked: planes stand in the order of their times, from the beginning of their span on; each has
+//! its gap then, less what computed poses may be off; each is joined to the next. That bodies meet is checked
+//! where they are then, and has to hold with as much to spare.
+
+use super::bend::{Looking, SPARE, bend, most_bend};
+use super::look::Met;
+use super::span::{Instant, Span};
+use super::{Meeting, MotionCast, MotionProof, PlaneAt, arc};
+use crate::answer::CertificateError;
+use crate::number::noise;
+use crate::pair::Pair;
+use thiserror::Error;
+
+/// What of a proof about a motion is not proven.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum MotionProofError {
+    /// A plane is not at a time, or not a plane.
+    #[error(
+        "plane {index} of span {span} is not in order: planes begin where the span does, times do not \
+         go back, normals have length 1, and a span begins where the one before it ended"
+    )]
+    Plane {
+        /// Of which span.
+        span: usize,
+        /// Which one.
+        index: usize,
+    },
+    /// A plane has not the gap that is claimed.
+    #[error("plane {index} of span {span} proves a gap of {proven}, not {claimed}")]
+    Gap {
+        /// Of which span.
+        span: usize,
+        /// Which one.
+        index: usize,
+        /// What is proven.
+        proven: f64,
+        /// What is claimed.
+        claimed: f64,
+    },
+    /// A plane is not joined to the next one: in between the bodies may meet.
+    #[error("planes {index} and {} of span {span} do not prove the time in between", .index + 1)]
+    Join {
+        /// Of which span.
+        span: usize,
+        /// The first of them.
+        index: usize,
+    },
+    /// That the bodies meet is not proven.
+    #[error("that the bodies meet at {time} is not proven{}", because(.reason.as_ref()))]
+    Meeting {
+        /// When they are to.
+        time: f64,
+        /// Why not; nothing if they do too little.
+        reason: Option<CertificateError>,
+    },
+}
+
+fn because(reason: Option<&CertificateError>) -> String {
+    reason.map(|reason| format!(": {reason}")).unwrap_or_default()
+}
+
+pub(super) fn verify(cast: &MotionCast, proof: &MotionProof) -> Result<[f64; 2], MotionProofError> {
+    let mut reached = 0.0;
+    let mut last = None;
+    for (which, span) in cast.spans().enumerate() {
+        let Some(planes) = proof.spans.get(which) else { break };
+        let begins = planes.first().is_none_or(|first| first.time == span.from);
+        let follows = which == 0 || reached == span.from;
+        if !begins || !follows {
+            return Err(MotionProofError::Plane { span: which, index: 0 });
+        }
+        chain(&span, which, cast.keep, planes)?;
+        reached = planes.last().map_or(reached, |plane| plane.time);
+        last = Some(span);
+    }
+    let count = cast.spans().count();
+    if proof.spans.len() > count {
+        return Err(MotionProofError::Plane { span: count, index: 0 });
+    }
+    let Some(Meeting { time, met }) = &proof.meeting else { return Ok([reached, f64::INFINITY]) };
+    let span = last.filter(|span| (span.from..=span.to).contains(time) && *time >= reached);
+    let span = span.ok_or(MotionProofError::Meeting { time: *time, reason: None })?;
+    meets(&span, cast.keep, *time, met)?;
+    Ok([reached, *time])
+}
+
+/// Each plane with its gap, each joined to the next.
+fn chain(span: &Span, which: usize, keep: f64, planes: &[PlaneAt]) -> Result<(), MotionProofError> {
+    let mut before: Option<(&PlaneAt, Instant)> = None;
+    for (index, plane) in planes.iter().enumerate() {
+        let PlaneAt { time, normal, gap, .. } = *plane;
+        let is_unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
+        let is_later = before.is_none_or(|(last, _)| last.time <= time) && time <= span.to;
+        if !is_unit || !is_later {
+            return Err(MotionProofError::Plane { span: which, index });
+        }
+        let at = span.instant(time);
+        let proven = at.bodies.proven_gap(normal) - keep - span.error;
+        if !(gap > 0.0 && gap <= proven) {
+            return Err(MotionProofError::Gap { span: which, index, proven, claimed: gap });
+        }
+        if let Some((last, from)) = &before
+            && !is_joined(span, [last, plane], [from, &at])
+        {
+            return Err(MotionProofError::Join { span: which, index: index - 1 });
+        }
+        before = Some((plane, at));
+    }
+    Ok(())
+}
+
+fn is_joined(span: &Span, planes: [&PlaneAt; 2], ends: [&Instant; 2]) -> bool {
+    if ends[0].time == ends[1].time {
+        return true;
+    }
+    let [a, b] = planes;
+    if a.alone {
+        return a.normal == b.normal && a.gap > arc::lost(span, ends, a.normal);
+    }
+    let enough = most_bend([a.gap, b.gap], SPARE);
+    bend(span, ends, [a.normal, b.normal], enough, &Looking) <= enough
+}
+
+fn meets(span: &Span, keep: f64, time: f64, met: &Met) -> Result<(), MotionProofError> {
+    let pair = Pair { bodies: span.instant(time).bodies };
+    let fails = |reason| MotionProofError::Meeting { time, reason };
+    let is_met = match met {
+        Met::Deep(depth) => {
+            pair.verify(&**depth).map_err(|reason| fails(Some(reason)))?;
+            depth.lower > span.error
+        }
+        Met::Near(near) => {
+            pair.verify(near).map_err(|reason| fails(Some(reason)))?;
+            near.distance + span.error <= keep
+        }
+    };
+    if is_met { Ok(()) } else { Err(fails(None)) }
+}

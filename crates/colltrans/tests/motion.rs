@@ -1,0 +1,335 @@
+//! Motions that turn: closed forms, samples on the way, proofs and changed ones, work.
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use colltrans::glam::{DQuat, DVec3};
+use colltrans::motion::{
+    Meeting, Motion, MotionCast, MotionContact, MotionOutcome, MotionProof, MotionProofError,
+};
+use colltrans::{Cast, ConvexPolyhedron, Outcome, Pair, Pose};
+use colltrans_testkit::oracle::settings::{FAMILIES, setting};
+use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::random_hull;
+
+fn cuboid(half: [f64; 3]) -> ConvexPolyhedron {
+    let half = DVec3::from_array(half);
+    ConvexPolyhedron::cuboid(-half, half).expect("a box")
+}
+
+fn at(x: f64, y: f64, z: f64) -> Pose {
+    Pose::from_translation(DVec3::new(x, y, z)).expect("a pose")
+}
+
+fn hull(n: usize, random: &mut Random) -> ConvexPolyhedron {
+    ConvexPolyhedron::from_points(&random_hull(n, random).vertices).expect("a body")
+}
+
+/// A motion of some kind, by up to an angle, through about where the other body is.
+fn any_motion(random: &mut Random, most: f64) -> Motion {
+    let from = random.direction() * random.range(2.5, 5.0);
+    let pose = Pose::new(random.rotation(), from).expect("a pose");
+    let to = random.vector() * 1.5;
+    let angle = random.range(-most, most);
+    let way = (to - from) * random.range(0.5, 2.0);
+    match random.index(5) {
+        0 => Motion::turn(pose, random.vector() * 3.0, random.direction(), angle),
+        1 => {
+            let rise = random.range(-3.0, 3.0);
+            Motion::screw(pose, random.vector() * 3.0, random.direction(), angle, rise)
+        }
+        2 => Motion::thrown(pose, from, way, random.direction() * angle),
+        3 => Motion::slide(pose, way),
+        _ => {
+            let poses = [(); 3]
+                .map(|()| Pose::new(random.rotation(), random.vector() * 4.0).expect("a pose"));
+            Motion::through(&[pose, poses[0], poses[1], poses[2]])
+        }
+    }
+    .expect("a motion")
+}
+
+/// How deep the bodies are in each other at a time, for certain; and that they are not apart.
+fn overlap(cast: [(&ConvexPolyhedron, &Motion); 2], time: f64) -> f64 {
+    let [(p, along), (q, other)] = cast;
+    let [a, b] = [along, other].map(|motion| motion.at(time).expect("a pose"));
+    Pair::new(p.at(a), q.at(b)).expect("a pair").depth().expect("a depth").lower
+}
+
+/// The answer, after all checks that can be made of it.
+fn judged(bodies: [&ConvexPolyhedron; 2], motions: [&Motion; 2], keep: f64) -> MotionOutcome {
+    let cast = MotionCast::new(bodies[0].along(motions[0]), bodies[1].along(motions[1]));
+    let cast = cast.and_then(|cast| cast.keeping(keep)).expect("a cast");
+    let outcome = cast.first_contact().expect("an answer");
+    let proof = proof(&outcome);
+    let [lower, upper] = cast.verify(proof).unwrap_or_else(|error| panic!("{error}: {outcome:?}"));
+    let both = [(bodies[0], motions[0]), (bodies[1], motions[1])];
+    match &outcome {
+        MotionOutcome::Contact(contact) => {
+            assert_eq!([contact.lower, contact.upper], [lower, upper]);
+        }
+        MotionOutcome::Grazing(contact) => assert_eq!(contact.lower, lower),
+        MotionOutcome::Overlapping(_) => assert_eq!([lower, upper], [0.0; 2]),
+        MotionOutcome::Free(_) => assert_eq!([lower, upper], [1.0, f64::INFINITY]),
+        _ => unreachable!("all outcomes"),
+    }
+    for k in 0..if upper == 0.0 { 0 } else { 100 } {
+        let time = lower * f64::from(k) / 100.0;
+        if keep > 0.0 {
+            let [a, b] = motions.map(|motion| motion.at(time).expect("a pose"));
+            let pair = Pair::new(bodies[0].at(a), bodies[1].at(b)).expect("a pair");
+            let distance = pair.distance().expect("a distance");
+            assert!(distance.upper > keep * (1.0 - 1e-12) - 1e-12, "{time}: {outcome:?}");
+        } else {
+            assert!(overlap(both, time) < 1e-12, "{time}: {outcome:?}");
+        }
+    }
+    if keep == 0.0 && upper <= 1.0 {
+        assert!(overlap(both, upper) > 0.0, "{outcome:?}");
+    }
+    outcome
+}
+
+fn proof(outcome: &MotionOutcome) -> &MotionProof {
+    match outcome {
+        MotionOutcome::Contact(contact)
+        | MotionOutcome::Grazing(contact)
+        | MotionOutcome::Overlapping(contact) => &contact.proof,
+        MotionOutcome::Free(free) => &free.proof,
+        _ => unreachable!("all outcomes"),
+    }
+}
+
+fn contact(outcome: MotionOutcome) -> MotionContact {
+    match outcome {
+        MotionOutcome::Contact(contact) => contact,
+        other => panic!("no contact: {other:?}"),
+    }
+}
+
+#[test]
+fn random_motions_are_right() {
+    let (mut contacts, mut free, mut looks, mut widths) = (0, 0, Vec::new(), Vec::new());
+    for seed in 0..400 {
+        let mut random = Random::new(seed);
+        let n = random.pick(&[4, 8, 16, 32, 128]);
+        let [p, q] = [hull(n, &mut random), hull(n, &mut random)];
+        let most = random.pick(&[1.0, 6.0, 6.0, 100.0]);
+        let along = any_motion(&mut random, most);
+        let still = Motion::still(Pose::new(random.rotation(), DVec3::ZERO).expect("a pose"));
+        let other = if random.one_in(3) { any_motion(&mut random, most) } else { still };
+        let keep = if random.one_in(4) { random.pick(&[1e-9, 0.01, 0.3]) } else { 0.0 };
+        match judged([&p, &q], [&along, &other], keep) {
+            MotionOutcome::Contact(contact) => {
+                contacts += 1;
+                looks.push(contact.steps.looks);
+                widths.push(contact.upper - contact.lower);
+            }
+            MotionOutcome::Free(_) => free += 1,
+            _ => {}
+        }
+    }
+    looks.sort_unstable();
+    widths.sort_by(f64::total_cmp);
+    println!("{contacts} contacts, {free} free; looks {looks:?}; widths {widths:?}");
+    assert!(contacts > 100 && free > 50, "{contacts} {free}");
+}
+
+#[test]
+fn a_door_in_its_frame() {
+    // The door turns about z at the origin; a post's edge is at the angle at which its corner is hit.
+    let door = ConvexPolyhedron::cuboid(DVec3::new(0.0, -0.125, 0.0), DVec3::new(1.0, 0.125, 2.0));
+    let door = door.expect("a box");
+    let swing = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, PI).expect("a motion");
+    // The far face y = 0.125 reaches the half plane x < 0.5 in the plane y = 0.5 with its corner on it: sin
+    // a.
+    let wall = ConvexPolyhedron::cuboid(DVec3::new(-9.0, 0.5, -1.0), DVec3::new(9.0, 1.0, 3.0));
+    let still = Motion::still(Pose::IDENTITY);
+    let found = contact(judged([&door, &wall.expect("a box")], [&swing, &still], 0.0));
+    // The corner (1, 1/8) is at the height sin a + cos a / 8 = 1/2.
+    let (r, phase) = ((1.0_f64 + 1.0 / 64.0).sqrt(), 0.125_f64.atan());
+    let expected = ((0.5 / r).asin() - phase) / PI;
+    assert!(found.lower <= expected && expected <= found.upper);
+    assert!(found.upper - found.lower < 2e-12, "{:e}", found.upper - found.lower);
+}
+
+#[test]
+fn a_slide_is_the_linear_cast() {
+    let mut random = Random::new(5);
+    let mut contacts = 0;
+    for _ in 0..200 {
+        let [p, q] = [hull(16, &mut random), hull(16, &mut random)];
+        let pose = Pose::new(random.rotation(), random.direction() * 4.0).expect("a pose");
+        let by = random.direction() * 3.0 - pose.translation();
+        let cast = Cast::new(p.at(pose), q.at(Pose::IDENTITY), by).expect("a cast");
+        let slide = Motion::slide(pose, by).expect("a motion");
+        let motions = [&slide, &Motion::still(Pose::IDENTITY)];
+        let outcome = judged([&p, &q], motions, 0.0);
+        match (cast.first_contact().expect("an answer"), outcome) {
+            (Outcome::Contact(linear), MotionOutcome::Contact(found)) => {
+                contacts += 1;
+                assert!(found.lower <= linear.certificate.upper);
+                assert!(linear.certificate.lower <= found.upper);
+            }
+            (Outcome::Contact(linear), MotionOutcome::Free(_)) => {
+                assert!(linear.certificate.upper > 1.0 || linear.certificate.upper < 0.0);
+            }
+            (Outcome::Separated(_), MotionOutcome::Free(_)) => {}
+            (linear, found) => panic!("{linear:?}, but {found:?}"),
+        }
+    }
+    assert!(contacts > 40, "{contacts}");
+}
+
+#[test]
+fn a_pin_beside_a_wall_turns_by_one_plane() {
+    let rim = |k: usize| DQuat::from_rotation_z(TAU * k as f64 / 48.0) * DVec3::X;
+    let corners: Vec<DVec3> =
+        (0..48).flat_map(|k| [rim(k) + DVec3::Z, rim(k) - DVec3::Z]).collect();
+    let pin = ConvexPolyhedron::from_points(&corners).expect("a pin");
+    let wall = cuboid([1.0, 9.0, 9.0]);
+    let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, TAU).expect("a motion");
+    for gap in [1e-2, 1e-6, 1e-9, 1e-12] {
+        let still = Motion::still(at(2.0 + gap, 0.0, 0.0));
+        let MotionOutcome::Free(free) = judged([&pin, &wall], [&turn, &still], 0.0) else {
+            panic!("not free at {gap}");
+        };
+        assert!(free.steps.looks <= 4, "{} looks at {gap}", free.steps.looks);
+    }
+}
+
+#[test]
+fn blades_past_a_tip() {
+    let blade = cuboid([1.0, 0.05, 0.2]);
+    let tip = ConvexPolyhedron::from_points(&[
+        DVec3::new(0.0, 0.0, 0.0),
+        DVec3::new(1.0, 0.3, 0.2),
+        DVec3::new(1.0, -0.3, 0.2),
+        DVec3::new(1.0, 0.0, -0.3),
+    ])
+    .expect("a tip");
+    let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, PI).expect("a motion");
+    let reach = (1.0_f64 + 0.05 * 0.05).sqrt();
+    for gap in [1e-1, 1e-3, 1e-6, 1e-9] {
+        let pose = Pose::new(DQuat::from_rotation_z(FRAC_PI_2), DVec3::Y * (reach + gap));
+        let motion = Motion::still(pose.expect("a pose"));
+        let outcome = judged([&blade, &tip], [&turn, &motion], 0.0);
+        let MotionOutcome::Free(free) = outcome else { panic!("{gap}: {outcome:?}") };
+        println!("{gap:e}: {} looks", free.steps.looks);
+    }
+    for depth in [1e-1, 1e-3, 1e-6, 1e-9] {
+        let pose = Pose::new(DQuat::from_rotation_z(FRAC_PI_2), DVec3::Y * (reach - depth));
+        let found =
+            contact(judged([&blade, &tip], [&turn, &Motion::still(pose.expect("a pose"))], 0.0));
+        assert!(found.steps.looks < 100, "{} looks", found.steps.looks);
+        println!("{depth:e}: {} looks, width {:e}", found.steps.looks, found.upper - found.lower);
+    }
+}
+
+#[test]
+fn the_start_is_told() {
+    let cube = cuboid([0.5; 3]);
+    let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 1.0).expect("a motion");
+    let near = Motion::still(at(0.75, 0.0, 0.0));
+    let outcome = judged([&cube, &cube], [&turn, &near], 0.0);
+    assert!(matches!(outcome, MotionOutcome::Overlapping(_)), "{outcome:?}");
+}
+
+#[test]
+fn both_carried_by_one_motion_stay_as_they_are() {
+    let mut random = Random::new(17);
+    for _ in 0..50 {
+        let [p, q] = [hull(12, &mut random), hull(12, &mut random)];
+        let [a, b] = [random.direction() * 2.5, random.direction() * -2.5];
+        let [a, b] = [a, b].map(|t| Pose::new(random.rotation(), t).expect("a pose"));
+        let apart = Pair::new(p.at(a), q.at(b)).expect("a pair").distance().expect("a distance");
+        let (point, axis) = (random.vector() * 3.0, random.direction());
+        let both = [a, b].map(|pose| Motion::screw(pose, point, axis, 3.0, 1.0).expect("a motion"));
+        let outcome = judged([&p, &q], [&both[0], &both[1]], 0.0);
+        assert_eq!(matches!(outcome, MotionOutcome::Free(_)), apart.lower > 0.0, "{outcome:?}");
+    }
+}
+
+#[test]
+fn far_from_the_origin_costs_nothing() {
+    let cube = cuboid([0.5; 3]);
+    let found = |far: DVec3| {
+        let pose = Pose::from_translation(far + DVec3::X * 3.0).expect("a pose");
+        let motion = Motion::thrown(pose, pose.translation(), DVec3::X * -3.0, DVec3::Z * 2.0);
+        let still = Motion::still(Pose::from_translation(far).expect("a pose"));
+        let found = contact(judged([&cube, &cube], [&motion.expect("a motion"), &still], 0.0));
+        [found.lower, found.upper]
+    };
+    assert_eq!(found(DVec3::ZERO), found(DVec3::splat(2.0_f64.powi(30))));
+}
+
+#[test]
+fn changed_proofs_are_refused() {
+    let mut random = Random::new(23);
+    let mut refused = 0;
+    for _ in 0..60 {
+        let [p, q] = [hull(10, &mut random), hull(10, &mut random)];
+        let along = any_motion(&mut random, 4.0);
+        let still = Motion::still(Pose::IDENTITY);
+        let cast = MotionCast::new(p.along(&along), q.along(&still)).expect("a cast");
+        let outcome = cast.first_contact().expect("an answer");
+        let told = proof(&outcome).clone();
+        if told.spans.iter().all(Vec::is_empty) {
+            continue;
+        }
+        let mut check = |change: &dyn Fn(&mut MotionProof)| {
+            let mut changed = told.clone();
+            change(&mut changed);
+            if changed != told {
+                let result = cast.verify(&changed);
+                assert!(result.is_err() || result == cast.verify(&told), "{changed:?}");
+                refused += u32::from(result.is_err());
+            }
+        };
+        check(&|proof| proof.spans[0][0].time = 1e-3);
+        check(&|proof| proof.spans[0][0].gap *= 1.0 + 1e-6);
+        check(&|proof| proof.spans[0][0].normal = -proof.spans[0][0].normal);
+        check(&|proof| proof.spans[0][0].normal *= 2.0);
+        check(&|proof| {
+            let last = proof.spans[0].len() - 1;
+            proof.spans[0].drain(1..last.max(1));
+        });
+        check(&|proof| {
+            if let Some(Meeting { time, .. }) = &mut proof.meeting {
+                *time *= 0.5;
+            }
+        });
+    }
+    assert!(refused > 200, "{refused}");
+    let cube = cuboid([0.5; 3]);
+    let (along, still) = (Motion::still(at(3.0, 0.0, 0.0)), Motion::still(Pose::IDENTITY));
+    let cast = MotionCast::new(cube.along(&along), cube.along(&still)).expect("a cast");
+    let found = cast.first_contact().expect("an answer");
+    let mut turned = proof(&found).clone();
+    turned.spans.push(turned.spans[0].clone());
+    assert!(matches!(cast.verify(&turned), Err(MotionProofError::Plane { span: 1, .. })));
+}
+
+#[test]
+fn all_families_turn() {
+    let mut contacts = 0;
+    for (family, _) in FAMILIES {
+        for seed in 0..6 {
+            let setting = setting(family, seed);
+            let bodies = setting.bodies().expect("bodies");
+            let cast = setting.query(&bodies).expect("a query");
+            let mut random = Random::new(seed);
+            let (a, b) = (cast.moving_pose(), cast.fixed_pose());
+            let between = a.translation().lerp(b.translation(), random.unit());
+            let angle = random.range(-6.0, 6.0);
+            let Ok(turn) = Motion::turn(a, between, random.direction(), angle) else { continue };
+            let still = Motion::still(b);
+            let cast = MotionCast::new(cast.moving().along(&turn), cast.fixed().along(&still));
+            let cast = cast.expect("a cast");
+            let outcome = cast.first_contact().unwrap_or_else(|e| panic!("{family} {seed}: {e}"));
+            let checked = cast.verify(proof(&outcome));
+            assert!(checked.is_ok(), "{family} {seed}: {checked:?}");
+            contacts += u32::from(matches!(outcome, MotionOutcome::Contact(_)));
+        }
+    }
+    println!("{contacts}");
+}

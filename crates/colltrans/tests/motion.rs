@@ -235,6 +235,36 @@ fn the_start_is_told() {
 }
 
 #[test]
+fn what_rests_may_turn_leave_and_not_sink() {
+    let (part, table) = (cuboid([0.5; 3]), cuboid([5.0, 5.0, 1.0]));
+    let still = Motion::still(at(0.0, 0.0, -1.5));
+    let asked = |motion: &Motion, depth: f64| {
+        let cast = MotionCast::new(part.along(motion), table.along(&still)).expect("a cast");
+        let cast = cast.tolerating(depth).expect("a depth");
+        let outcome = cast.first_contact().expect("an answer");
+        cast.verify(proof(&outcome)).unwrap_or_else(|error| panic!("{error}: {outcome:?}"));
+        outcome
+    };
+    let here = Pose::IDENTITY;
+    let turning = Motion::turn(here, DVec3::ZERO, DVec3::Z, TAU).expect("a motion");
+    let leaving = Motion::screw(here, DVec3::ZERO, DVec3::Z, 3.0, 2.0).expect("a motion");
+    let tipping = Motion::turn(here, DVec3::new(0.5, 0.0, -0.5), DVec3::Y, 1.0).expect("a motion");
+    let sinking = Motion::slide(here, DVec3::NEG_Z).expect("a motion");
+    for depth in [1e-12, 1e-9, 1e-3] {
+        for motion in [&turning, &leaving, &tipping] {
+            let outcome = asked(motion, depth);
+            let MotionOutcome::Free(free) = &outcome else { panic!("{depth}: {outcome:?}") };
+            assert!(free.steps.looks < 40, "{} looks at {depth}", free.steps.looks);
+        }
+        let found = contact(asked(&sinking, depth));
+        assert!(found.lower <= depth && depth <= found.upper && found.upper < depth + 1e-12);
+    }
+    for motion in [&turning, &leaving, &tipping, &sinking] {
+        assert!(matches!(asked(motion, 0.0), MotionOutcome::Grazing(found) if found.lower == 0.0));
+    }
+}
+
+#[test]
 fn both_carried_by_one_motion_stay_as_they_are() {
     let mut random = Random::new(17);
     for _ in 0..50 {

@@ -79,7 +79,8 @@ pub(super) fn bend(
     let h = ends[1].time - ends[0].time;
     let dn = normals[1] - normals[0];
     let drift = 2.0 * h * dn.dot(span.drift());
-    let drift = drift + ROUNDED * 2.0 * h * dn.length() * span.drift().length();
+    let tolerated = 2.0 * (-span.keep).max(0.0) * dn.length_squared() * (1.0 + ROUNDED);
+    let drift = drift + tolerated + ROUNDED * 2.0 * h * dn.length() * span.drift().length();
     let turns = [0, 1].map(|which| Turning::new(span, ends, normals, which, h));
     let loose = drift + turns.iter().map(Turning::loose).sum::<f64>();
     if loose <= enough {

@@ -1,10 +1,10 @@
 //! The distance at one time: a plane, or an overlap.
 
 use super::span::{Instant, Span};
-use crate::answer::{Depth, NearPoints};
+use crate::answer::{Depth, NearPoints, PlaneGap};
 use crate::pair::Pair;
-use crate::setting::TwoBodies;
-use crate::solve::nearest::{Difference, Found, NearestPairs, nearest};
+use crate::setting::VertexPair;
+use crate::solve::nearest::{Difference, NearestPairs, nearest};
 use glam::DVec3;
 
 /// What is to be seen at a time.
@@ -38,26 +38,21 @@ impl Look<'_> {
     serde(rename_all = "snake_case")
 )]
 pub enum Met {
-    /// They overlap.
+    /// They overlap, deeper than is tolerated.
     Deep(Box<Depth>),
     /// Two points are no farther apart than what is to be kept.
     Near(NearPoints),
 }
 
 /// What is asked again and again, and what is kept from one time to the next.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Looker {
-    pub(super) keep: f64,
     pairs: NearestPairs,
     pub(super) looks: u32,
     pub(super) supports: u32,
 }
 
 impl Looker {
-    pub(super) fn new(keep: f64) -> Self {
-        Self { keep, pairs: NearestPairs::default(), looks: 0, supports: 0 }
-    }
-
     pub(super) fn look<'a>(&mut self, span: &Span<'a>, time: f64) -> Look<'a> {
         let at = span.instant(time);
         let difference = Difference::new(&at.bodies);
@@ -69,36 +64,50 @@ impl Looker {
             self.pairs = pairs;
         }
         let plane = found.best_plane(&difference).map(|plane| plane.gap);
+        let (plane, points) = match plane {
+            Some(plane) if plane.gap > 0.0 || span.keep >= 0.0 => (Some(plane), found.points()),
+            _ if span.keep < 0.0 => self.least_overlap(&difference),
+            _ => (None, found.points()),
+        };
         let floor = 4.0 * difference.noise.point() + span.error;
         let (normal, gap) =
             plane.map_or((DVec3::X, f64::NEG_INFINITY), |plane| (plane.normal, plane.gap));
-        let gap = gap - self.keep - span.error;
-        let rate = if gap > 0.0 { closing(span, &at, &found, normal) } else { 0.0 };
+        let gap = gap - span.keep - span.error;
+        let rate = if gap > 0.0 { closing(span, &at, &points, normal) } else { 0.0 };
         Look { at, normal, gap, rate, floor }
+    }
+
+    /// The plane by which the bodies overlap least, with its depth as a negative gap, and the points there.
+    fn least_overlap(&mut self, difference: &Difference) -> (Option<PlaneGap>, MeanPair) {
+        let pair = Pair { bodies: *difference.bodies };
+        let plane = pair.depth().ok().map(|depth| {
+            self.supports += depth.steps.supports;
+            PlaneGap { normal: -depth.direction, gap: -depth.upper }
+        });
+        let there =
+            plane.map_or_else(VertexPair::default, |plane| difference.lowest_pair(plane.normal));
+        (plane, ([there; 3], [1.0, 0.0, 0.0]))
     }
 
     /// What proves that the real bodies meet at a time.
     pub(super) fn met(&mut self, span: &Span, time: f64) -> Option<Met> {
-        let at = span.instant(time);
+        let pair = Pair { bodies: span.instant(time).bodies };
         self.looks += 1;
-        proof_that_met(&at.bodies, self.keep, span.error)
+        if span.keep > 0.0 {
+            let near = pair.distance().ok()?.near;
+            return (near.distance + span.error <= span.keep).then_some(Met::Near(near));
+        }
+        let depth = pair.depth().ok()?;
+        (depth.lower > span.error - span.keep).then(|| Met::Deep(Box::new(depth)))
     }
 }
 
-fn proof_that_met(bodies: &TwoBodies, keep: f64, error: f64) -> Option<Met> {
-    let pair = Pair { bodies: *bodies };
-    if keep > 0.0 {
-        let near = pair.distance().ok()?.near;
-        return (near.distance + error <= keep).then_some(Met::Near(near));
-    }
-    let depth = pair.depth().ok()?;
-    (depth.lower > error).then(|| Met::Deep(Box::new(depth)))
-}
+/// Means of pairs of vertices: pairs and weights.
+type MeanPair = ([VertexPair; 3], [f64; 3]);
 
-/// How fast the nearest points come together along a normal.
-fn closing(span: &Span, at: &Instant, found: &Found, normal: DVec3) -> f64 {
-    let (pairs, weights) = found.points();
-    let means = at.bodies.weighted(&pairs, &weights);
+/// How fast such points come together along a normal.
+fn closing(span: &Span, at: &Instant, (pairs, weights): &MeanPair, normal: DVec3) -> f64 {
+    let means = at.bodies.weighted(pairs, weights);
     let velocity = |which: usize| {
         let moved = &at.moved[which];
         span.piece(which).velocity_of(moved.arm + moved.rotation * means[which])

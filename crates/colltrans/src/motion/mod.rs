@@ -62,6 +62,7 @@ pub use crate::body::error::MotionError;
 use crate::body::motion::Piece;
 pub use crate::body::motion::{Motion, Moving};
 use crate::body::{ConvexPolyhedron, Features, Pose};
+use crate::number::range::MAX_MAGNITUDE;
 use crate::pair::Pair;
 use crate::setting::check_keep;
 use crate::setting::error::{QueryError, Stalled};
@@ -78,6 +79,7 @@ impl ConvexPolyhedron {
 pub struct MotionCast<'a> {
     moving: Moving<'a>,
     fixed: Moving<'a>,
+    /// A gap to be kept; negative a depth that is tolerated.
     keep: f64,
 }
 
@@ -196,12 +198,26 @@ impl<'a> MotionCast<'a> {
     }
 
     /// The same with a gap to be kept, in world units: what counts is when the bodies are no farther apart.
+    /// In the place of a depth that is tolerated.
     ///
     /// # Errors
     /// A gap that is negative, not finite or out of range.
     pub fn keeping(self, gap: f64) -> Result<Self, QueryError> {
         check_keep(gap)?;
         Ok(Self { keep: gap, ..self })
+    }
+
+    /// The same with a depth that is tolerated, in world units: bodies count as meeting where every
+    /// translation that parts them is longer. So a part may rest on a table and turn there, or leave it; with
+    /// no tolerance, what touches at time 0 is *grazing* then, as rounding cannot tell it from an overlap.
+    ///
+    /// # Errors
+    /// A depth that is negative, not finite or out of range.
+    pub fn tolerating(self, depth: f64) -> Result<Self, QueryError> {
+        if !(0.0..=MAX_MAGNITUDE).contains(&depth) {
+            return Err(QueryError::Tolerance { tolerance: depth });
+        }
+        Ok(Self { keep: -depth, ..self })
     }
 
     /// When do the bodies first meet?
@@ -211,7 +227,7 @@ impl<'a> MotionCast<'a> {
     pub fn first_contact(&self) -> Result<MotionOutcome, QueryError> {
         let (mut proof, mut steps) = (MotionProof::default(), MotionSteps::default());
         for span in self.spans() {
-            let Advanced { planes, end, looks, supports } = advance(&span, self.keep);
+            let Advanced { planes, end, looks, supports } = advance(&span);
             steps.looks += looks;
             steps.supports += supports;
             proof.spans.push(planes);
@@ -247,7 +263,7 @@ impl<'a> MotionCast<'a> {
         let ends: Vec<[f64; 2]> = times.windows(2).map(|pair| [pair[0], pair[1]]).collect();
         let bodies = [self.moving.body, self.fixed.body];
         ends.into_iter().map(move |[from, to]| {
-            Span::new(bodies, pieces.map(|all| piece_at(all, from)), [from, to])
+            Span::new(bodies, pieces.map(|all| piece_at(all, from)), [from, to], self.keep)
         })
     }
 }

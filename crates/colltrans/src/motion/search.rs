@@ -80,8 +80,8 @@ struct Search<'s, 'a> {
 }
 
 /// Proves as much of a span as it can.
-pub(super) fn advance(span: &Span, keep: f64) -> Advanced {
-    let mut looker = Looker::new(keep);
+pub(super) fn advance(span: &Span) -> Advanced {
+    let mut looker = Looker::default();
     let left = looker.look(span, span.from);
     let mut search = Search {
         span,
@@ -243,7 +243,7 @@ impl<'a> Search<'_, 'a> {
     fn swing_to(&mut self, time: f64) -> bool {
         let next = self.looker.look(self.span, time);
         let normal = self.left.normal;
-        let gap = next.at.bodies.proven_gap(normal) - self.looker.keep - self.span.error;
+        let gap = next.at.bodies.proven_gap(normal) - self.span.keep - self.span.error;
         if !(gap > 0.0 && next.is_apart()) {
             return false;
         }

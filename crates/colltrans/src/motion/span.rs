@@ -16,6 +16,8 @@ pub(super) struct Span<'a> {
     pub(super) to: f64,
     /// How far the motion's points may be from where they are computed, for both bodies together.
     pub(super) error: f64,
+    /// The gap to be kept; negative a depth that is tolerated.
+    pub(super) keep: f64,
 }
 
 /// Both bodies at a time.
@@ -31,11 +33,19 @@ impl<'a> Span<'a> {
         bodies: [&'a ConvexPolyhedron; 2],
         pieces: [&Piece; 2],
         [from, to]: [f64; 2],
+        keep: f64,
     ) -> Self {
         let [moving, fixed] = [0, 1].map(|k| Placed { body: bodies[k], pose: pieces[k].start });
         let error = |k: usize| pieces[k].error(bodies[k].inertia().reach, to - pieces[k].since);
         let start = TwoBodies::new(moving, fixed);
-        Self { start, pieces: pieces.map(|piece| *piece), from, to, error: error(0) + error(1) }
+        Self {
+            start,
+            pieces: pieces.map(|piece| *piece),
+            from,
+            to,
+            error: error(0) + error(1),
+            keep,
+        }
     }
 
     pub(super) fn instant(&self, time: f64) -> Instant<'a> {

@@ -72,7 +72,7 @@ pub(super) fn verify(cast: &MotionCast, proof: &MotionProof) -> Result<[f64; 2],
         if !begins || !follows {
             return Err(MotionProofError::Plane { span: which, index: 0 });
         }
-        chain(&span, which, cast.keep, planes)?;
+        chain(&span, which, planes)?;
         reached = planes.last().map_or(reached, |plane| plane.time);
         last = Some(span);
     }
@@ -83,12 +83,12 @@ pub(super) fn verify(cast: &MotionCast, proof: &MotionProof) -> Result<[f64; 2],
     let Some(Meeting { time, met }) = &proof.meeting else { return Ok([reached, f64::INFINITY]) };
     let span = last.filter(|span| (span.from..=span.to).contains(time) && *time >= reached);
     let span = span.ok_or(MotionProofError::Meeting { time: *time, reason: None })?;
-    meets(&span, cast.keep, *time, met)?;
+    meets(&span, *time, met)?;
     Ok([reached, *time])
 }
 
 /// Each plane with its gap, each joined to the next.
-fn chain(span: &Span, which: usize, keep: f64, planes: &[PlaneAt]) -> Result<(), MotionProofError> {
+fn chain(span: &Span, which: usize, planes: &[PlaneAt]) -> Result<(), MotionProofError> {
     let mut before: Option<(&PlaneAt, Instant)> = None;
     for (index, plane) in planes.iter().enumerate() {
         let PlaneAt { time, normal, gap, .. } = *plane;
@@ -98,7 +98,7 @@ fn chain(span: &Span, which: usize, keep: f64, planes: &[PlaneAt]) -> Result<(),
             return Err(MotionProofError::Plane { span: which, index });
         }
         let at = span.instant(time);
-        let proven = at.bodies.proven_gap(normal) - keep - span.error;
+        let proven = at.bodies.proven_gap(normal) - span.keep - span.error;
         if !(gap > 0.0 && gap <= proven) {
             return Err(MotionProofError::Gap { span: which, index, proven, claimed: gap });
         }
@@ -124,17 +124,17 @@ fn is_joined(span: &Span, planes: [&PlaneAt; 2], ends: [&Instant; 2]) -> bool {
     bend(span, ends, [a.normal, b.normal], enough, &Looking) <= enough
 }
 
-fn meets(span: &Span, keep: f64, time: f64, met: &Met) -> Result<(), MotionProofError> {
+fn meets(span: &Span, time: f64, met: &Met) -> Result<(), MotionProofError> {
     let pair = Pair { bodies: span.instant(time).bodies };
     let fails = |reason| MotionProofError::Meeting { time, reason };
     let is_met = match met {
         Met::Deep(depth) => {
             pair.verify(&**depth).map_err(|reason| fails(Some(reason)))?;
-            depth.lower > span.error
+            depth.lower > span.error - span.keep
         }
         Met::Near(near) => {
             pair.verify(near).map_err(|reason| fails(Some(reason)))?;
-            near.distance + span.error <= keep
+            near.distance + span.error <= span.keep
         }
     };
     if is_met { Ok(()) } else { Err(fails(None)) }

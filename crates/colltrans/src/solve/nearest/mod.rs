@@ -89,6 +89,11 @@ impl<'a> Difference<'a> {
         VertexPair::of(moving, fixed)
     }
 
+    /// A pair of support points along a normal.
+    pub(crate) fn lowest_pair(&self, normal: DVec3) -> VertexPair {
+        self.lowest(normal, None).pair
+    }
+
     #[inline]
     fn corner(&self, pair: VertexPair) -> Corner<f64> {
         Corner { at: Vector(self.point(pair).to_array()), pair }

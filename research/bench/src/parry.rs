@@ -8,9 +8,8 @@ use colltrans_testkit::timing::Stopwatch;
 use glam::DVec3;
 use parry3d_f64::math as parry_math;
 use parry3d_f64::query::{self, ShapeCastOptions, cast_shapes};
-use parry3d_f64::shape::{
-    Compound, ConvexPolyhedron as ParryPolyhedron, Shape, SharedShape, TriMesh,
-};
+pub use parry3d_f64::shape::ConvexPolyhedron as ParryPolyhedron;
+use parry3d_f64::shape::{Compound, Shape, SharedShape, TriMesh};
 
 use crate::report::Times;
 
@@ -131,4 +130,31 @@ pub fn compound(poses: &[Pose], half: impl Fn(usize) -> DVec3) -> Compound {
         (pose(at), SharedShape::cuboid(half.x, half.y, half.z))
     };
     Compound::new(poses.iter().enumerate().map(boxed).collect())
+}
+
+/// A body that spins about a point that moves evenly, and one at rest, in parry's types.
+pub struct Spin {
+    moving: query::NonlinearRigidMotion,
+    fixed: query::NonlinearRigidMotion,
+}
+
+impl Spin {
+    /// The point and both velocities in the world.
+    pub fn new(start: &Pose, center: DVec3, velocity: DVec3, spin: DVec3, there: &Pose) -> Self {
+        let own = start.matrix().transpose() * (center - start.translation());
+        let moving = query::NonlinearRigidMotion::new(
+            pose(start),
+            vector(own),
+            vector(velocity),
+            vector(spin),
+        );
+        Self { moving, fixed: query::NonlinearRigidMotion::constant_position(pose(there)) }
+    }
+
+    /// Asks parry: the time of impact from 0 to 1, if there is one.
+    pub fn cast(&self, moving: &impl Shape, fixed: &impl Shape) -> Option<f64> {
+        query::cast_shapes_nonlinear(&self.moving, moving, &self.fixed, fixed, 0.0, 1.0, true)
+            .ok()?
+            .map(|hit| hit.time_of_impact)
+    }
 }

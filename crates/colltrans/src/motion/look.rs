@@ -63,7 +63,7 @@ impl Looker {
         if !pairs.is_empty() {
             self.pairs = pairs;
         }
-        let plane = found.best_plane(&difference).map(|plane| plane.gap);
+        let plane = found.plane(&difference).map(|plane| plane.gap);
         let (plane, points) = match plane {
             Some(plane) if plane.gap > 0.0 || span.keep >= 0.0 => (Some(plane), found.points()),
             _ if span.keep < 0.0 => self.least_overlap(&difference),

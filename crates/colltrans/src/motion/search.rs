@@ -32,6 +32,14 @@ const WIDTH: f64 = 40.0;
 /// Bodies with more vertices have none looked at on its arc.
 const ARCS: usize = 1_000;
 
+/// Steps of which so many would be needed are short.
+const SHORT: f64 = 64.0;
+
+/// One plane alone is tried so many steps ahead, and may lose such a share of its gap, for the next one to
+/// lead on.
+const SWING: f64 = 4.0;
+const KEPT: f64 = 0.75;
+
 /// How often a time after a blur is doubled to find bodies that meet.
 const BEYOND: i32 = 48;
 
@@ -101,6 +109,12 @@ pub(super) fn advance(span: &Span) -> Advanced {
     };
     let Search { planes, looker: Looker { looks, supports, .. }, .. } = search;
     Advanced { planes, end, looks, supports }
+}
+
+/// How many vertices of a body move on arcs.
+fn turning_vertices(span: &Span, which: usize) -> usize {
+    let turns = span.piece(which).rate != 0.0;
+    if turns { ConvexPolyhedron::vertices(span.body(which)).len() } else { 0 }
 }
 
 impl<'a> Search<'_, 'a> {
@@ -218,26 +232,33 @@ impl<'a> Search<'_, 'a> {
         }
     }
 
-    /// Goes on by the plane at left alone, where that leads farther than the bound.
+    /// Goes on by the plane at left alone, where that leads farther than the bound: tried from a few steps
+    /// on, and twice as far as long as that is proven.
     fn swings_on(&mut self) -> bool {
         let (from, span) = (self.left.time(), self.span);
-        let vertices = |which: usize| ConvexPolyhedron::vertices(span.body(which)).len();
-        let turns = (0..2).any(|which| span.piece(which).rate != 0.0);
-        if !turns || vertices(0) + vertices(1) > ARCS {
+        let Look { gap, rate, .. } = self.left;
+        let vertices: usize = (0..2).map(|which| turning_vertices(span, which)).sum();
+        let step = self.next_time() - from;
+        let mut length = (SWING * step).min(self.end - from);
+        // As fast as the gap closes now, there is not enough left of it; but steps that are so short are
+        // many.
+        let closes = rate * length >= KEPT * gap && SHORT * step > self.end - from;
+        if vertices == 0 || closes || vertices > ARCS {
             return false;
         }
-        let step = self.next_time() - from;
-        let mut length = self.end - from;
-        while length > 2.0 * step {
+        let mut farthest = None;
+        loop {
             let at = span.instant(from + length);
-            let lost = arc::lost(span, [&self.left.at, &at], self.left.normal);
-            // Some of the gap has to be left, for the next plane to lead on.
-            if lost < 0.75 * self.left.gap {
-                return self.swing_to(from + length);
+            if arc::lost(span, [&self.left.at, &at], self.left.normal) >= KEPT * gap {
+                break;
             }
-            length *= 0.5;
+            farthest = Some(length);
+            if from + length >= self.end {
+                break;
+            }
+            length = (2.0 * length).min(self.end - from);
         }
-        false
+        farthest.is_some_and(|length| self.swing_to((from + length).min(self.end)))
     }
 
     fn swing_to(&mut self, time: f64) -> bool {

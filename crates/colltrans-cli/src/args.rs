@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 mod assembly;
 mod directions;
 mod help;
+mod motion;
 mod placed;
 mod values;
 
@@ -20,8 +21,9 @@ pub(crate) use assembly::AssemblyArguments;
 pub(crate) use directions::DirectionsArguments;
 use help::{
     ASSEMBLY_FORMAT, BATCH_FORMAT, CAST_EXAMPLES, CLEARANCE_ANSWERS, DIRECTIONS_ANSWERS,
-    DISTANCE_ANSWERS, EXIT_CODES, fitted, formats,
+    DISTANCE_ANSWERS, EXIT_CODES, MOTION_ANSWERS, fitted, formats,
 };
+pub(crate) use motion::MotionArguments;
 pub(crate) use placed::{PlacedArguments, WithinArguments};
 pub(crate) use values::{Angles, Place, direction};
 use values::{angles, bytes, factor, length, picture, place, proof, solver, start, threads};
@@ -79,6 +81,12 @@ pub(crate) enum Command {
     /// takes them.
     #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[DISTANCE_ANSWERS, &formats(), EXIT_CODES]))]
     Within(Box<WithinArguments>),
+    /// Say when a mesh that turns, unscrews, swings or is thrown first touches another
+    ///
+    /// With proven bounds on the time, from 0 at the start to 1 at the end of the motion; or that it never
+    /// does, proven of the whole motion and not of samples. Both meshes are convex.
+    #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[MOTION_ANSWERS, &formats(), EXIT_CODES]))]
+    Motion(Box<MotionArguments>),
     /// Answer every query of a file with one JSON object a line
     #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[BATCH_FORMAT, EXIT_CODES]))]
     Batch(BatchArguments),

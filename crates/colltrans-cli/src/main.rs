@@ -22,6 +22,7 @@ mod distance;
 mod failure;
 mod info;
 mod inputs;
+mod motion;
 mod numbers;
 mod outputs;
 mod picture;
@@ -60,6 +61,7 @@ fn main() -> ExitCode {
         Command::Within(arguments) => {
             distance::run(&arguments.placed, PairQuestion::Within(arguments.length))
         }
+        Command::Motion(arguments) => motion::run(&arguments),
         Command::Batch(arguments) => batch::run(&arguments),
         Command::Assembly(arguments) => assembly::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),

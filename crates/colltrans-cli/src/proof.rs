@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use colltrans::free::FreeDirections;
+use colltrans::motion::MotionProofFile;
 use colltrans::record::FreeRecord;
 use colltrans::{
     CaseError, CertificateError, DistanceStatement, ProofFile, SceneProof, SceneStatement,
@@ -52,7 +53,7 @@ pub(crate) fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
         }
         Err(error) => {
             if arguments.json {
-                let told = json!({ "holds": false, "message": error.to_string() });
+                let told = json!({ "holds": false, "message": error });
                 print_json(&format!("{told}\n"))?;
             }
             Err(Failure::new(Code::Refused, format!("{place}: the proof does not hold: {error}")))
@@ -62,40 +63,52 @@ pub(crate) fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
 
 /// A proof of either format.
 enum Saved {
-    OfTwo(Box<ProofFile>),
-    OfMany(Box<SceneProof>),
+    Two(Box<ProofFile>),
+    Many(Box<SceneProof>),
+    Motion(Box<MotionProofFile>),
 }
 
 impl Saved {
     fn read(text: &str) -> Result<Self, CaseError> {
         match ProofFile::from_json(text) {
             Err(CaseError::Format { found, known }) => match SceneProof::from_json(text) {
-                Err(CaseError::Format { .. }) => Err(CaseError::Format { found, known }),
-                proof => Ok(Self::OfMany(Box::new(proof?))),
+                Err(CaseError::Format { .. }) => match MotionProofFile::from_json(text) {
+                    Err(CaseError::Format { .. }) => Err(CaseError::Format { found, known }),
+                    proof => Ok(Self::Motion(Box::new(proof?))),
+                },
+                proof => Ok(Self::Many(Box::new(proof?))),
             },
-            proof => Ok(Self::OfTwo(Box::new(proof?))),
+            proof => Ok(Self::Two(Box::new(proof?))),
         }
     }
 
     /// Checks it; what it says of all directions, if that is what it is about.
-    fn check(&self) -> Result<Option<FreeRecord>, CertificateError> {
+    fn check(&self) -> Result<Option<FreeRecord>, String> {
         match self {
-            Self::OfTwo(proof) => checked(proof),
-            Self::OfMany(proof) => proof.check().map(|()| None),
+            Self::Two(proof) => checked(proof).map_err(|error| error.to_string()),
+            Self::Many(proof) => proof.check().map(|()| None).map_err(|error| error.to_string()),
+            Self::Motion(proof) => proof.check().map(|_| None).map_err(|error| error.to_string()),
         }
     }
 
     fn words(&self) -> String {
         match self {
-            Self::OfTwo(proof) => proof.to_string(),
-            Self::OfMany(proof) => proof.to_string(),
+            Self::Two(proof) => proof.to_string(),
+            Self::Many(proof) => proof.to_string(),
+            Self::Motion(proof) => proof.to_string(),
         }
     }
 
     fn told(&self, free: Option<&FreeRecord>) -> Value {
         match self {
-            Self::OfTwo(proof) => told(proof, free),
-            Self::OfMany(proof) => told_of_many(proof),
+            Self::Two(proof) => told(proof, free),
+            Self::Many(proof) => told_of_many(proof),
+            Self::Motion(proof) => {
+                let bounds = proof.check().unwrap_or_default();
+                let upper = bounds[1].is_finite().then_some(bounds[1]);
+                let time = json!({ "lower": bounds[0], "upper": upper });
+                json!({ "holds": true, "statement": proof.to_string(), "time": time })
+            }
         }
     }
 }

@@ -72,6 +72,7 @@
 //! | [`Pair::distance`] | how far apart are they, and where? | [`Distance`] |
 //! | [`Pair::within`] | are they closer than a length? | [`Within`] |
 //! | [`Pair::depth`] | which least translation parts them? | [`Depth`] |
+//! | [`motion::MotionCast::first_contact`] | of bodies that turn: when do they first meet? | [`motion::MotionOutcome`] |
 //! | [`Among::nearest`] | which of many is nearest? | [`Nearest`] |
 //! | [`Among::within`] | which of many are closer than a length? | [`Nearby`] |
 //! | [`Among::clearance`] | which of many is hit first, and how far is it? | [`ClearanceAmong`] |
@@ -142,7 +143,8 @@
 //! The modules, each using only those before it: `number` (arithmetic and its errors), `body` (poses,
 //! polyhedra and their indices), `setting` (two placed bodies, a direction, and `M`), `answer`
 //! (outcomes and certificates), `solve` (the two solvers, nearest points, and [`observe`]), `cast` and
-//! `pair` (the queries), `among` (many fixed bodies), [`free`] (all directions), `proof_file` and `tracker`. `written` and `record` say how
+//! `pair` (the queries), `among` (many fixed bodies), [`free`] (all directions), `proof_file`, [`motion`] (bodies that
+//! turn) and `tracker`. `written` and `record` say how
 //! all of them are written. [`solid`] holds what is of solids alone.
 
 mod among;
@@ -218,6 +220,11 @@ pub struct Solids;
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/directions.md")]
 pub struct Directions;
+
+/// The examples of `docs/motion.md`, compiled and run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/motion.md")]
+pub struct Motions;
 
 /// The examples of `docs/among.md`, compiled and run as tests.
 #[cfg(doctest)]

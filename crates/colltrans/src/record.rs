@@ -6,6 +6,7 @@
 //! that there are the answers themselves, which the feature `serde` writes whole, and `ProofFile`.
 
 mod free;
+mod motion;
 
 use derive_where::derive_where;
 use glam::DVec3;
@@ -25,6 +26,7 @@ use crate::setting::error::QueryError;
 use crate::solve::observe::{NoObserver, Observer};
 use crate::written::{UnknownName, named};
 pub use free::{BlockedByRecord, FreeRecord, FreeRegionRecord};
+pub use motion::{MotionRecord, TimeRecord};
 
 /// An answer; fields that do not apply are left out, numbers that are infinite are `null`.
 ///
@@ -215,6 +217,16 @@ pub struct FeaturesRecord {
     pub moving: FeatureRecord,
     /// Of the fixed body.
     pub fixed: FeatureRecord,
+}
+
+impl FeaturesRecord {
+    /// Of two bodies.
+    pub(crate) fn of<B: Body>(features: Features, [moving, fixed]: [&B; 2]) -> Self {
+        Self {
+            moving: FeatureRecord::of(features.moving, moving),
+            fixed: FeatureRecord::of(features.fixed, fixed),
+        }
+    }
 }
 
 /// A feature by the vertices of the input.
@@ -541,10 +553,9 @@ impl Record {
             upper: Some(distance.upper),
             points: Some([coordinates(distance.on_moving), coordinates(distance.on_fixed)]),
             normal: distance.normal.map(coordinates),
-            features: distance.features.map(|Features { moving, fixed }| FeaturesRecord {
-                moving: FeatureRecord::of(moving, pair.moving()),
-                fixed: FeatureRecord::of(fixed, pair.fixed()),
-            }),
+            features: distance
+                .features
+                .map(|features| FeaturesRecord::of(features, [pair.moving(), pair.fixed()])),
             ..Self::default()
         }
     }

@@ -188,6 +188,27 @@ Examples:
     colltrans directions ring.stl --from housing.stl shaft.stl --save-proof ring.json
     colltrans verify ring.json";
 
+pub(super) const MOTION_ANSWERS: &str = "\
+Answers:
+  contact      the bodies first meet at a time between two bounds; point, normal and what touches
+  grazing      they come nearer than rounding can tell; not before the time, and nothing is said after it
+  free         they never meet throughout the motion
+  overlapping  they overlap when it begins
+
+With --json one object:
+  outcome   one of these
+  time      {\"lower\", \"upper\"}: not before the first, and at the second they do; 0 is the start of the
+            motion, 1 its end
+  point normal features   as of `cast`, at that time
+  looks planes   how often the bodies were looked at, and planes in the proof
+
+Examples:
+  Does a door that swings by 90 degrees about the z axis hit a post?
+    colltrans motion door.stl post.stl --turn 0,0,0 z 90
+  A bolt is unscrewed by two turns, 3 up:
+    colltrans motion bolt.stl plate.stl --screw 0,0,0 z 720 3 --save-proof bolt.json
+    colltrans verify bolt.json";
+
 pub(super) const DISTANCE_ANSWERS: &str = "\
 Answers of distance:
   apart        so far, between two bounds that are proven, with the points that are nearest, the
@@ -341,6 +362,7 @@ mod tests {
             CLEARANCE_ANSWERS,
             DIRECTIONS_ANSWERS,
             DISTANCE_ANSWERS,
+            MOTION_ANSWERS,
             BATCH_FORMAT,
             ASSEMBLY_FORMAT,
         ];

@@ -42,6 +42,14 @@ fn axis(name: &str) -> Option<DVec3> {
 }
 
 /// A solver by its name.
+/// Three numbers.
+pub(crate) fn vector(text: &str) -> Result<DVec3, String> {
+    match numbers(text)?.as_slice() {
+        &[x, y, z] => Ok(DVec3::new(x, y, z)),
+        other => Err(format!("{} numbers, not 3 (x,y,z)", other.len())),
+    }
+}
+
 pub(crate) fn solver() -> impl TypedValueParser<Value = Solver> {
     let named = |solver: Solver, what| PossibleValue::new(solver.name()).help(what);
     PossibleValuesParser::new([

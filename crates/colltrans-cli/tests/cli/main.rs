@@ -9,6 +9,7 @@ mod directions;
 mod distance;
 mod example_parts;
 mod keep;
+mod motion;
 mod newcomers;
 mod picture;
 mod proof;

@@ -46,6 +46,8 @@
 
 mod arc;
 mod bend;
+#[cfg(feature = "json")]
+mod file;
 mod look;
 mod search;
 mod span;
@@ -53,6 +55,8 @@ mod verify;
 
 use glam::DVec3;
 
+#[cfg(feature = "json")]
+pub use self::file::MotionProofFile;
 pub use self::look::Met;
 use self::search::{Advanced, End, advance};
 use self::span::Span;
@@ -185,6 +189,24 @@ pub struct Meeting {
     pub met: Met,
 }
 
+impl MotionOutcome {
+    /// What proves it.
+    pub const fn proof(&self) -> &MotionProof {
+        match self {
+            Self::Contact(of) | Self::Grazing(of) | Self::Overlapping(of) => &of.proof,
+            Self::Free(of) => &of.proof,
+        }
+    }
+
+    /// How much work it was.
+    pub const fn steps(&self) -> MotionSteps {
+        match self {
+            Self::Contact(of) | Self::Grazing(of) | Self::Overlapping(of) => of.steps,
+            Self::Free(of) => of.steps,
+        }
+    }
+}
+
 impl<'a> MotionCast<'a> {
     /// Of two bodies [along](ConvexPolyhedron::along) a motion or [at](ConvexPolyhedron::at) a pose.
     ///
@@ -218,6 +240,11 @@ impl<'a> MotionCast<'a> {
             return Err(QueryError::Tolerance { tolerance: depth });
         }
         Ok(Self { keep: -depth, ..self })
+    }
+
+    /// The moving and the fixed body.
+    pub fn bodies(&self) -> [&'a ConvexPolyhedron; 2] {
+        [self.moving.body, self.fixed.body]
     }
 
     /// When do the bodies first meet?
@@ -261,7 +288,7 @@ impl<'a> MotionCast<'a> {
         times.dedup();
         times.push(1.0);
         let ends: Vec<[f64; 2]> = times.windows(2).map(|pair| [pair[0], pair[1]]).collect();
-        let bodies = [self.moving.body, self.fixed.body];
+        let bodies = self.bodies();
         ends.into_iter().map(move |[from, to]| {
             Span::new(bodies, pieces.map(|all| piece_at(all, from)), [from, to], self.keep)
         })

@@ -135,7 +135,7 @@ impl StatementRecord {
 }
 
 /// A file of this format, as it is read: some editors begin one with a byte-order mark.
-pub(super) fn said<'a>(text: &'a str, known: &'static str) -> Result<&'a str, CaseError> {
+pub(crate) fn said<'a>(text: &'a str, known: &'static str) -> Result<&'a str, CaseError> {
     #[derive(Deserialize)]
     struct Named {
         format: String,
@@ -145,7 +145,7 @@ pub(super) fn said<'a>(text: &'a str, known: &'static str) -> Result<&'a str, Ca
     if found == known { Ok(text) } else { Err(CaseError::Format { found, known }) }
 }
 
-pub(super) fn convex_body(
+pub(crate) fn convex_body(
     record: &BodyRecord,
     which: &'static str,
 ) -> Result<ConvexPolyhedron, CaseError> {

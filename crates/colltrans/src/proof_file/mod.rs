@@ -26,6 +26,7 @@ use crate::pair::Pair;
 use crate::pair::solid::Unproven;
 use crate::setting::error::QueryError;
 use file::{Pieces, again};
+pub(crate) use file::{convex_body, said};
 pub use scene::{SceneProof, SceneStatement};
 use statement::options;
 pub use statement::{

@@ -128,10 +128,10 @@ fn read_directions(file: &Path) -> Result<Vec<DVec3>, Failure> {
 fn ask(
     question: Question,
     cast: &Cast<'_>,
-    [moving, fixed]: [&Part; 2],
+    parts: [&Part; 2],
 ) -> Result<(Answer, Line), QueryError> {
     let answer = question.ask(cast)?;
-    let hull = Hulls::of(moving.excess, fixed.excess);
+    let hull = Hulls::of(parts);
     Ok((answer, Line { hull, ..answer.record(cast).into() }))
 }
 
@@ -166,9 +166,7 @@ fn scan<'a>(
     let (count, mut failed) = (casts.len(), 0);
     if !as_json {
         print(&report::scan_head(question))?;
-        for (name, excess) in
-            Hulls::of(parts[0].excess, parts[1].excess).iter().flat_map(Hulls::named)
-        {
+        for (name, excess) in Hulls::of(parts).iter().flat_map(Hulls::named) {
             note(&format!("{name}: {excess}"));
         }
     }

@@ -102,13 +102,17 @@ impl From<colltrans::free::FreeError> for Failure {
 
 impl From<colltrans::QueryError> for Failure {
     fn from(error: colltrans::QueryError) -> Self {
-        use colltrans::QueryError::{Direction, GrazeTolerance, Keep, Length, NothingLeft};
+        use colltrans::QueryError::{
+            Direction, GrazeTolerance, Keep, Length, NoSolid, NothingLeft, Obstacle,
+        };
         let code = match error {
             Direction { .. }
             | GrazeTolerance { .. }
             | Keep { .. }
             | Length { .. }
             | NothingLeft { .. } => Code::Usage,
+            NoSolid(_) => Code::Input,
+            Obstacle { ref reason, .. } if matches!(**reason, NoSolid(_)) => Code::Input,
             _ => Code::Query,
         };
         Self::new(code, error.to_string())

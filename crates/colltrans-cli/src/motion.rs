@@ -21,7 +21,7 @@ pub(crate) fn run(arguments: &MotionArguments) -> Result<(), Failure> {
     let parts = parts.map_err(|error| Failure::new(Code::Input, body::refusal(&error)))?;
     arguments.places.notes().iter().flatten().for_each(|text| note(text));
     parts.iter().flat_map(|part| &part.notes).for_each(|text| note(text));
-    if let Some(hulls) = Hulls::of(parts[0].excess, parts[1].excess) {
+    if let Some(hulls) = Hulls::of(parts.each_ref()) {
         hulls.named().for_each(|(name, excess)| note(&format!("{name}: {excess}")));
     }
     let cast = MotionCast::new(parts[0].body.along(&motion), parts[1].body.at(there))?;

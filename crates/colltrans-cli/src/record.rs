@@ -6,6 +6,7 @@ use colltrans_mesh::body::Excess;
 use serde::Serialize;
 use serde_json::value::RawValue;
 
+use crate::body::Part;
 use crate::numbers::{six_digits, unit_vector};
 use crate::terminal::plain_json;
 
@@ -28,12 +29,17 @@ pub(crate) struct Hulls {
     pub(crate) moving: Option<Excess>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) fixed: Option<Excess>,
+    /// How far points of the parts may be beyond their hulls, as those that are so near to one are dropped.
+    #[serde(skip)]
+    pub(crate) dropped: f64,
 }
 
 impl Hulls {
-    /// `None` where the bodies are what they were made of.
-    pub(crate) fn of(moving: Option<Excess>, fixed: Option<Excess>) -> Option<Self> {
-        (moving.is_some() || fixed.is_some()).then_some(Self { moving, fixed })
+    /// Of the moving and the fixed body; `None` where they are what they were made of.
+    pub(crate) fn of(parts: [&Part; 2]) -> Option<Self> {
+        let [moving, fixed] = parts.map(|part| part.excess);
+        let dropped = parts.map(|part| part.body.hull_error()).into_iter().sum();
+        (moving.is_some() || fixed.is_some()).then_some(Self { moving, fixed, dropped })
     }
 
     /// Those that there are, by name.
@@ -127,7 +133,7 @@ mod tests {
     fn a_hull_is_told_beside_the_record() {
         let excess =
             Excess { hull_volume: 0.1, part_volume: None, is_closed: false, depth: Some(2.0) };
-        let hull = Hulls::of(None, Some(excess));
+        let hull = Some(Hulls { moving: None, fixed: Some(excess), dropped: 0.0 });
         let text = Line { hull, notes: vec!["a".into()], ..Line::default() }.json();
         let hull = r#""hull":{"fixed":{"hull_volume":0.1,"depth":2.0}},"notes":["a"]"#;
         assert_eq!(text, format!("{{\"outcome\":\"error\",{hull}}}\n"));

@@ -244,7 +244,7 @@ pub(crate) fn hulls(text: &mut String, told: &Line) {
     for (name, excess) in hulls.named() {
         line(text, name, &excess.to_string());
     }
-    let Hulls { moving, fixed } = hulls;
+    let Hulls { moving, fixed, dropped } = hulls;
     let whose = match (moving, fixed) {
         (Some(_), Some(_)) => "the parts themselves",
         (Some(_), None) => "the moving part itself",
@@ -274,6 +274,11 @@ pub(crate) fn hulls(text: &mut String, told: &Line) {
         }
     };
     line(text, "so this is", &meaning);
+    if *dropped > 0.0 {
+        let near =
+            format!("that is {} beyond a hull at most, and was dropped", six_digits(*dropped));
+        line(text, "but for", &format!("what of {whose} {near}"));
+    }
 }
 
 pub(crate) fn line(text: &mut String, name: &str, value: &str) {

@@ -66,6 +66,8 @@ _U = Fraction(1, 2**53)
 _UNIT_VECTOR = 32 * _U
 #: Rounding of a coordinate, in sizes of the configuration: the library's noise.
 _NOISE = 32 * _U
+#: What rounding can make of the difference of two bounds, in noises, for bodies widened sideways too.
+_MOST_ROUNDING = 256
 #: A gap of so many noises or less is slight: points that are as near for certain may not be found.
 _SLIGHT = 9
 #: No gap is to be kept.
@@ -175,8 +177,8 @@ class Body:
                     facets.append((corners[0], corners[1], corners[2]))
         else:
             raise NoProofError(f"a body is convex or made of pieces, not {kind!r}")
-        if not points:
-            raise NoProofError("a body without points")
+        if not points or (kind == "pieces" and not facets):
+            raise NoProofError("a body without points or facets")
         return points, facets
 
     @classmethod
@@ -199,6 +201,11 @@ class Body:
         v = self.points[k]
         x, y, z = (dot(row, v) for row in self.rows)
         return plus((x, y, z), self.offset)
+
+    @property
+    def is_convex(self) -> bool:
+        """Whether it is the hull of its points; others are made of facets."""
+        return not self.facets
 
     def facet(self, k: int) -> Triangle:
         a, b, c = self.facets[k]
@@ -520,7 +527,7 @@ def mean(points: Sequence[Vector], weights: Sequence[Any]) -> Vector:
     """The weighted mean."""
     shares = [number(w) for w in weights]
     total = sum(shares, Fraction())
-    if len(shares) != len(points) or min(shares) < 0 or total <= 0:
+    if len(shares) != len(points) or min(shares) < 0 or abs(total - 1) > _UNIT_VECTOR:
         raise RefusedError("the weights are not those of a mean")
     found = (Fraction(), Fraction(), Fraction())
     for point, share in zip(points, shares, strict=True):
@@ -595,6 +602,8 @@ def solid_distance(moving: Body, fixed: Body, claim: Any, report: Report) -> Non
     else:
         report.partly = True
         report.unchecked.append("that the bodies have a point in common")
+    if number(claim["lower"]) < 0:
+        raise RefusedError("a distance is not negative")
     if number(claim["lower"]) > 0:
         report.partly = True
         report.unchecked.append(f"that they are at least {claim['lower']!r} apart")
@@ -730,6 +739,8 @@ class Scene:
         ((kind, content),) = claim.items()
         if kind not in kinds:
             raise NoProofError(f"{kind!r} is no kind of bodies")
+        if (kind == "convex") != (self.moving.is_convex and self.obstacles[k].is_convex):
+            raise RefusedError(f"obstacle {k}: a {kind} claim about bodies that are not")
         scratch = Report()
         try:
             found = kinds[kind](self.obstacles[k], content, scratch)
@@ -813,6 +824,11 @@ class Scene:
         if not any(d) or (lower is not None and lower < 0):
             raise RefusedError("there is no direction, or a bound is negative")
         claims, stop = self.named(claim["passed"]), claim["stop"]
+        graze = number(self.choices.get("graze_tolerance", 0.0))
+        if graze > 0:
+            self.report.holds.append(
+                f"who overlaps sideways by no more than {float(graze)!r} counts as passed"
+            )
         bounds = {k: self.passed(k, of, d) for k, of in claims.items()}
         if stop is not None:
             upper = bounds[whole(stop, len(self.obstacles))][1]
@@ -872,6 +888,7 @@ class Scene:
         elif why == "behind":
             proof = free["certificate"]
             contact(self.moving, body, back, proof, report, "against the direction", self.keep)
+            self.rounding(body, back, proof)
             if number(proof["lower"]) < -number(proof["rounding"]):
                 raise RefusedError("the bodies are not proven to meet behind only")
         elif why == "slides":
@@ -879,6 +896,13 @@ class Scene:
         else:
             raise NoProofError(f"{why!r} is no reason")
         return never
+
+    def rounding(self, body: Body, d: Vector, proof: Any) -> None:
+        """That no more is said of rounding than it explains."""
+        noise = _NOISE * (Fraction(size(self.moving, body)) + self.keep)
+        most = _MOST_ROUNDING * noise + 2 * self.keep
+        if not 0 <= number(proof["rounding"]) * dot(vector(proof["normal"]), d) <= most:
+            raise RefusedError("more is said of rounding than it explains")
 
     def slides(self, body: Body, d: Vector, normal: Vector) -> None:
         """That bodies overlap sideways by no more than is tolerated, to within rounding."""

@@ -85,7 +85,10 @@ pub(crate) fn clearance(arguments: &ClearanceArguments) -> Result<(), Failure> {
     record.tolerance = tolerance;
     let error = record.obstacle.map_or(0.0, |obstacle| scene.error(asked.pose, obstacle));
     let is_default = arguments.tolerance.is_none();
-    asked.say(&scene, record, |told| words::clearance(told, direction, error, is_default))?;
+    let graze = arguments.pair.graze_tolerance;
+    asked.say(&scene, record, |told| {
+        words::clearance(told, direction, error, is_default) + &words::grazed(graze)
+    })?;
     asked.save(|| SceneProof::of_clearance(&among, direction).map(Some))
 }
 

@@ -77,6 +77,16 @@ pub(super) fn clearance(told: &Line, direction: DVec3, error: f64, is_default: b
     text
 }
 
+/// Who passes by a tolerance that was asked for.
+pub(super) fn grazed(tolerance: f64) -> String {
+    let mut text = String::new();
+    if tolerance > 0.0 {
+        let by = format!("who overlaps sideways by no more than {} is passed", number(tolerance));
+        line(&mut text, "grazing", &by);
+    }
+    text
+}
+
 fn blocked(text: &mut String, record: &Record, direction: DVec3, error: f64) {
     let [far, length] = safe(record.distance, direction);
     line(text, "distance", &format!("{far} times the direction, a length of {length}"));

@@ -18,8 +18,8 @@ pub(crate) struct PlacedArguments {
     /// The meshes of the other body, in place: parts, that need not be convex
     #[arg(long, num_args = 1.., value_name = "FIXED")]
     from: Vec<PathBuf>,
-    /// The other bodies, of which the nearest is looked for, or all that are closer than a length: meshes, each
-    /// in place, and files of obstacles (.jsonl)
+    /// Of distance and within: the other bodies, of which the nearest is looked for, or all that are closer than
+    /// a length: meshes, each in place, and files of obstacles (.jsonl)
     ///
     /// A line of such a file is {"body": BODY, "pose": POSE, "name": "..."}, with a BODY and a POSE as in
     /// `batch --help`; a body that occurs many times is kept once.

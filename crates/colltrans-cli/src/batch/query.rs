@@ -344,7 +344,7 @@ fn of_pair(
 /// The line of an answer about convex bodies.
 fn of_parts(record: Record, parts: [&Part; 2]) -> AnswerLine {
     let notes = parts.into_iter().flat_map(|part| part.notes.clone()).collect();
-    let hull = Hulls::of(parts[0].excess, parts[1].excess);
+    let hull = Hulls::of(parts);
     AnswerLine { hull, notes, ..record.into() }
 }
 

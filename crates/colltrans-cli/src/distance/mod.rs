@@ -52,7 +52,7 @@ fn convex(
     let [moving, fixed] = [0, 1].map(|k| parts[k].body.at(poses[k]));
     let pair = Pair::new(moving, fixed)?;
     let answer = question.ask(&pair)?;
-    let hull = Hulls::of(parts[0].excess, parts[1].excess);
+    let hull = Hulls::of(parts.each_ref());
     let told = Line { hull, ..answer.record(&pair).into() };
     say(arguments, question, &told, 0.0)?;
     if let (Some(path), Some(proof)) = (&arguments.save_proof, answer.proof(&pair)) {

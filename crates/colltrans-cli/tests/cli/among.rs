@@ -181,3 +181,68 @@ fn options_of_other_commands_are_told() {
     assert!(unknown.contains("similar argument exists: '--from'"), "{unknown}");
     refused(folder, &two("cast", &["--direction", "x", "--keep", "1e70"]), 2, &["to be kept"]);
 }
+
+/// How the independent checker ends; nothing where there is no Python.
+fn checked(folder: &std::path::Path, proof: &Value) -> Option<i32> {
+    std::fs::write(folder.join("proof.json"), proof.to_string()).unwrap();
+    let checker = crate::support::data().join("../python/src/colltrans/check.py");
+    let mut python = std::process::Command::new("python3");
+    python.args(["-I", "-S"]).arg(checker).arg("proof.json").current_dir(folder);
+    python.output().ok().and_then(|output| output.status.code())
+}
+
+#[test]
+fn proofs_that_say_more_than_rounding_explains_are_refused() {
+    let folder = folder();
+    let folder = folder.path();
+    let behind = r#"{"body":{"mesh":"cube.off"},"pose":{"translation":[-1,0,0]}}"#;
+    std::fs::write(folder.join("behind.jsonl"), behind).unwrap();
+    let ask = ["clearance", "cube.off", "--among", "behind.jsonl", "--direction", "1,0,0"];
+    let mut proof = saved(folder, &ask);
+    assert!(checked(folder, &proof).is_none_or(|code| code == 0));
+    // Moved ahead, and said to be behind to within rounding.
+    proof["obstacles"][0]["pose"]["translation"] = json!([3.0, 0.0, 0.0]);
+    let free = &mut proof["statement"]["clearance"]["passed"][0][1]["convex"]["free"];
+    let certificate = &mut free["behind"]["certificate"];
+    certificate["lower"] = json!(-1e3);
+    certificate["rounding"] = json!(1e4);
+    certificate["upper"] = Value::Null;
+    assert!(checked(folder, &proof).is_none_or(|code| code == 6));
+    assert_eq!(run(folder, &["verify", "proof.json"]).status.code(), Some(6));
+}
+
+#[test]
+fn bodies_are_asked_as_what_they_are() {
+    let folder = folder();
+    let folder = folder.path();
+    scene(folder);
+    let asked = ["distance", "cube.off", "--among", "scene.jsonl", "--moving-pose", "0,40,5"];
+    let mut proof = saved(folder, &asked);
+    // Weights may not mix vertices of a body that is not convex.
+    let pairs: Vec<Value> = (0..4).map(|k| json!({ "moving": k, "fixed": k })).collect();
+    let near = json!({ "convex": {
+        "pairs": pairs, "weights": [0.25, 0.25, 0.25, 0.25], "distance": 100.0,
+    }});
+    proof["statement"] = json!({ "nearest": {
+        "lower": 0.0, "obstacle": proof["statement"]["nearest"]["obstacle"], "near": near, "apart": [],
+    }});
+    assert!(checked(folder, &proof).is_none_or(|code| code == 6));
+    assert_eq!(run(folder, &["verify", "proof.json"]).status.code(), Some(6));
+    let segment = r#"{"body":{"points":[[0,0,9],[1,0,9]]}}"#;
+    std::fs::write(folder.join("segment.jsonl"), segment).unwrap();
+    refused(folder, &["distance", "dent.off", "--among", "segment.jsonl"], 3, &["obstacle 0"]);
+}
+
+#[test]
+fn a_graze_tolerance_is_said() {
+    let folder = folder();
+    let folder = folder.path();
+    let aside = r#"{"body":{"mesh":"cube.off"},"pose":{"translation":[3,0.75,0]}}"#;
+    std::fs::write(folder.join("aside.jsonl"), aside).unwrap();
+    let ask = ["clearance", "cube.off", "--among", "aside.jsonl", "--direction", "1,0,0"];
+    let graze = ["--graze-tolerance", "0.5", "--save-proof", "proof.json"];
+    let text = answered(folder, &[&ask[..], &graze].concat());
+    assert!(text.contains("who overlaps sideways by no more than 0.5 is passed"), "{text}");
+    let text = answered(folder, &["verify", "proof.json"]);
+    assert!(text.contains("passed where they overlap sideways by no more than 0.5"), "{text}");
+}

@@ -271,3 +271,16 @@ fn the_page_shows_what_is_printed() {
     }
     assert_eq!(count, 3);
 }
+
+#[test]
+fn what_a_hull_has_dropped_is_said() {
+    let folder = folder();
+    let folder = folder.path();
+    let near = "OFF\n5 3 0\n0 0 0\n1 0 0\n0.5 1e-16 0\n0 1 0\n1 1 1\n3 0 1 3\n3 1 4 3\n3 0 2 4\n";
+    std::fs::write(folder.join("near.off"), near).unwrap();
+    let ask =
+        ["within", "near.off", "cube.off", "--hull", "--moving-pose", "9,0,0", "--length", "3"];
+    let text = answered(folder, &ask);
+    let told = "but for      what of the moving part itself";
+    assert_eq!(text.contains(told), text.contains("proven for"), "{text}");
+}

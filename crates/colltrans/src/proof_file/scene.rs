@@ -306,11 +306,17 @@ fn kept(placed: AnyPlaced<'_>) -> AnyBody {
 impl fmt::Display for SceneProof {
     /// Its statement in words, in one line.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Choices { keep, tolerance, .. } = self.scene.choices;
+        let Choices { keep, tolerance, graze_tolerance, .. } = self.scene.choices;
         write!(f, "of {} obstacles, ", self.obstacles())?;
         if let SceneStatement::Clearance(_) = self.statement {
             if keep > 0.0 {
                 write!(f, "counted as met where they are {keep:?} away or nearer, ")?;
+            }
+            if graze_tolerance > 0.0 {
+                write!(
+                    f,
+                    "passed where they overlap sideways by no more than {graze_tolerance:?}, "
+                )?;
             }
             if let Some(tolerance) = tolerance.filter(|by| *by > 0.0) {
                 write!(f, "solids shrunk by {:?} each, ", tolerance / 2.0)?;

@@ -9,6 +9,12 @@ use super::crossing::{Bracket, Chain, Crossing, is_horizontal};
 use super::side::Side;
 use crate::body::convex::sections::{Turn, next_clockwise, next_counter_clockwise};
 
+/// Steps of a walk before the body's chains, if it has some, tell where it leads (measured).
+pub(super) const PATIENCE: usize = 2;
+
+/// A vertex of more edges is not looked around for the best one, if there are chains.
+const FAN: usize = 16;
+
 /// A face with more vertices is replaced by the part between two mesh edges.
 pub(super) const FACE_SIDES: usize = 6;
 
@@ -98,15 +104,25 @@ impl Section<'_> {
     fn reach(&self, from: u32, score: impl Fn(f64) -> f64) -> Option<u32> {
         let topology = self.side.topology;
         let mut up = from;
-        for _ in 0..=self.limit {
+        for step in 0..=self.limit {
             let (low, high) = (topology.half_edge(up).origin, topology.target(up));
-            if self.side.level(high) <= self.x {
-                up = self.best_edge(high, 1.0, &score)?;
+            let (vertex, sign) = if self.side.level(high) <= self.x {
+                (high, 1.0)
             } else if self.side.level(low) > self.x {
-                up = topology.half_edge(self.best_edge(low, -1.0, &score)?).twin;
+                (low, -1.0)
             } else {
                 return Some(up);
+            };
+            if let Some(search) = self.side.search(self.x) {
+                if let Some(found) = search.along_faces(up) {
+                    return Some(found);
+                }
+                if step == PATIENCE || topology.outgoing(vertex).len() > FAN {
+                    return search.near(up);
+                }
             }
+            let h = self.best_edge(vertex, sign, &score)?;
+            up = if sign > 0.0 { h } else { topology.half_edge(h).twin };
         }
         None
     }
@@ -130,13 +146,63 @@ impl Section<'_> {
         found
     }
 
+    /// The last vertex in the direction of `chain` for which `holds`, by the body's chains: it does for
+    /// `from`, for those after it up to some vertex, and for none beyond on the way around.
+    pub(super) fn skip(
+        &self,
+        chain: Chain,
+        from: &Crossing,
+        mut holds: impl FnMut(&Crossing) -> bool,
+    ) -> Option<Crossing> {
+        let search = self.side.search(self.x)?;
+        let mut last = *from;
+        search.last(from.up, self.side.turn_up(chain), |up| {
+            let crossing = self.crossing(up);
+            let found = holds(&crossing);
+            last = if found { crossing } else { last };
+            found
+        })?;
+        Some(last)
+    }
+
+    /// Down the chain opposite to `chain` and up it, if the polygon falls towards it at `from`: the last
+    /// vertex from which it does.
+    fn skip_down(&self, chain: Chain, from: &Crossing) -> Option<Crossing> {
+        self.skip(chain, from, |v| v.h() <= from.h() && !chain.ascends(self.direction(chain, v)))
+    }
+
+    /// Up a chain: the last vertex not above height `h` from which it ascends.
+    fn skip_up_to(&self, chain: Chain, from: &Crossing, h: f64) -> Option<Crossing> {
+        self.skip(chain, from, |v| {
+            (from.h()..=h).contains(&v.h()) && chain.ascends(self.direction(chain, v))
+        })
+    }
+
+    /// Down a chain: the last vertex above height `h` to which it ascends.
+    fn skip_down_to(&self, chain: Chain, from: &Crossing, h: f64) -> Option<Crossing> {
+        let other = chain.opposite();
+        self.skip(other, from, |v| {
+            let below = -self.direction(other, v);
+            v.h() > h && v.h() <= from.h() && chain.ascends(below) && !is_horizontal(below)
+        })
+    }
+
     /// The lowest vertex, from an edge upwards that crosses a level nearby.
     pub(super) fn bottom(&self, from: u32) -> Option<Bottom> {
         let vertex = self.crossing(self.reach(from, |h| h)?);
         let directions = [Chain::Left, Chain::Right].map(|chain| self.direction(chain, &vertex));
         let mut bottom = Bottom { vertex, directions };
-        for _ in 0..self.limit {
+        for step in 0..self.limit {
             let [left, right] = bottom.directions;
+            let falls = if Chain::Left.ascends(left) { Chain::Right } else { Chain::Left };
+            if step % 8 == PATIENCE
+                && !falls.ascends(bottom.directions[usize::from(falls == Chain::Right)])
+                && let Some(vertex) = self.skip_down(falls, &bottom.vertex)
+            {
+                let directions = [Chain::Left, Chain::Right].map(|c| self.direction(c, &vertex));
+                bottom = Bottom { vertex, directions };
+                continue;
+            }
             if !Chain::Left.ascends(left) {
                 let vertex = self.up(Chain::Left, &bottom.vertex);
                 let ahead = self.direction(Chain::Left, &vertex);
@@ -168,9 +234,20 @@ impl Section<'_> {
         if !chain.ascends(bracket.direction) {
             bracket = self.any_edge(chain, start)?;
         }
-        for _ in 0..self.limit {
+        self.move_to(chain, h, bracket)
+    }
+
+    /// The edge of a chain at height `h`, from another of its edges.
+    pub(super) fn move_to(&self, chain: Chain, h: f64, from: Bracket) -> Option<Located> {
+        let mut bracket = from;
+        for step in 0..self.limit {
             if bracket.low.h() <= h {
                 return self.climb(chain, bracket, h);
+            }
+            if step % 8 == PATIENCE
+                && let Some(low) = self.skip_down_to(chain, &bracket.low, h)
+            {
+                bracket = Bracket::new(low, self.up(chain, &low));
             }
             match self.retreat(chain, &bracket) {
                 Some(below) => bracket = below,
@@ -183,7 +260,12 @@ impl Section<'_> {
     /// From an edge that is not above height `h`, or the chain's first, up to the one there.
     fn climb(&self, chain: Chain, from: Bracket, h: f64) -> Option<Located> {
         let mut bracket = from;
-        for _ in 0..self.limit {
+        for step in 0..self.limit {
+            if step % 8 == PATIENCE
+                && let Some(low) = self.skip_up_to(chain, &bracket.low, h)
+            {
+                bracket = Bracket::new(low, self.up(chain, &low));
+            }
             if bracket.high.h() > h && !is_horizontal(bracket.direction) {
                 return Some(Located::Edge(bracket));
             }
@@ -210,7 +292,13 @@ impl Section<'_> {
     fn any_edge(&self, chain: Chain, start: Crossing) -> Option<Bracket> {
         // Around the bottom or back over the top: whichever is shorter.
         let (mut ahead, mut back) = (start, start);
-        for _ in 0..self.limit {
+        for step in 0..self.limit {
+            if step % 8 == PATIENCE
+                && let Some(last) = self.skip_down(chain, &ahead)
+            {
+                // On the opposite chain: past its bottom.
+                ahead = self.up(chain, &last);
+            }
             let below = Bracket::new(self.down(chain, &back), back);
             if chain.ascends(below.direction) {
                 return Some(below);

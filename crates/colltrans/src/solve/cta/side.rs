@@ -8,7 +8,7 @@ use std::cell::Cell;
 use glam::{DVec2, DVec3};
 
 use super::crossing::Chain;
-use crate::body::convex::sections::{AxisSections, SectionMap, Turn};
+use crate::body::convex::sections::{AxisSections, Search, SectionMap, Turn};
 use crate::body::topology::Topology;
 
 /// Levels that are this many mean edges apart are near (measured).
@@ -70,6 +70,13 @@ impl<'a> Side<'a> {
 
     pub(super) fn count(&self, iterations: u32) {
         self.iterations.set(self.iterations.get() + iterations);
+    }
+
+    /// A search in the chains at a level, if the body has some.
+    pub(super) fn search(&self, x: f64) -> Option<Search<'a, impl Fn(u32) -> f64, impl Fn(u32)>> {
+        let chains = self.sections.chains()?;
+        let topology = self.topology;
+        Some(Search { chains, topology, x, level: |v| self.level(v), count: |n| self.count(n) })
     }
 
     /// Lowest and highest level.

@@ -13,6 +13,7 @@
 //! Counter-clockwise is meant as seen from the tip of the axis.
 
 mod axes;
+mod chains;
 mod snapshots;
 mod walk;
 
@@ -20,6 +21,8 @@ use glam::DVec3;
 
 use crate::body::topology::Topology;
 pub(crate) use axes::{AXES, AXIS_LENGTH, AxisPair};
+pub(crate) use chains::Search;
+use snapshots::RING;
 pub(crate) use snapshots::{AxisSections, SectionMap, Snapshot, Turn};
 pub(crate) use walk::{next_clockwise, next_counter_clockwise};
 
@@ -32,7 +35,15 @@ pub(crate) struct SectionIndex {
 impl SectionIndex {
     /// For the vertices of a body of dimension 3 and its topology.
     pub(crate) fn build(vertices: &[DVec3], topology: &Topology) -> Self {
-        Self { axes: AXES.iter().map(|&a| AxisSections::build(vertices, topology, a)).collect() }
+        let build = |&a| AxisSections::build(vertices, topology, a, RING);
+        Self { axes: AXES.iter().map(build).collect() }
+    }
+
+    /// The same, with chains however few edges sections have.
+    #[cfg(test)]
+    pub(crate) fn with_chains(vertices: &[DVec3], topology: &Topology) -> Self {
+        let build = |&a| AxisSections::build(vertices, topology, a, 0.0);
+        Self { axes: AXES.iter().map(build).collect() }
     }
 
     /// The sections across axis `index` of [`AXES`].

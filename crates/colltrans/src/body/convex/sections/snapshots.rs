@@ -19,6 +19,7 @@
 
 use glam::{DVec2, DVec3};
 
+use super::chains::Chains;
 use super::walk::next_counter_clockwise;
 use crate::body::topology::Topology;
 
@@ -29,6 +30,10 @@ const EDGES_PER_ENTRY: usize = 4;
 /// A snapshot holds every `s`-th edge of the section, `s` being this share of the root of how many
 /// there are (measured).
 const STRIDE: f64 = 1.0 / 3.0;
+
+/// Sections of more edges than this share of the root of all vertices make chains worth their bytes
+/// (measured): those of a sphere have about 3 times the root.
+pub(super) const RING: f64 = 8.0;
 
 /// Candidates of one round of the search for an extreme entry.
 const CANDIDATES: usize = 16;
@@ -54,14 +59,33 @@ impl Entry {
 
 /// What sections are built from.
 #[derive(Clone, Copy)]
-struct Mesh<'a> {
+pub(super) struct Mesh<'a> {
     vertices: &'a [DVec3],
-    topology: &'a Topology,
+    pub(super) topology: &'a Topology,
     /// Level of each vertex.
     levels: &'a [f64],
 }
 
 impl Mesh<'_> {
+    /// Whether a half-edge runs upwards.
+    pub(super) fn is_up(&self, h: u32) -> bool {
+        let [from, to] = [self.topology.half_edge(h).origin, self.topology.target(h)];
+        self.levels[from as usize] < self.levels[to as usize]
+    }
+
+    /// How many edges a section has at most, of vertices from the lowest.
+    fn widest(&self, order: &[(f64, u32)]) -> usize {
+        let widths = order.iter().scan(0, |width: &mut usize, &(level, v)| {
+            for &end in self.topology.neighbours(v) {
+                let other = self.levels[end as usize];
+                *width += usize::from(other > level);
+                *width -= usize::from(other < level).min(*width);
+            }
+            Some(*width)
+        });
+        widths.max().unwrap_or(0)
+    }
+
     /// Where a mesh edge, by a half-edge upwards, crosses a level.
     fn crossing(&self, up: u32, level: f64) -> DVec3 {
         let [low, high] = [self.topology.half_edge(up).origin, self.topology.target(up)];
@@ -94,9 +118,9 @@ struct Climbs<'a> {
 }
 
 impl<'a> Climbs<'a> {
-    fn new(mesh: &'a Mesh<'a>) -> Self {
+    fn new(mesh: &'a Mesh<'a>, highest: Vec<Option<u32>>) -> Self {
         let known = vec![(u32::MAX, 0); mesh.vertices.len()];
-        Self { mesh, highest: mesh.highest_edges(), known, passed: Vec::new() }
+        Self { mesh, highest, known, passed: Vec::new() }
     }
 
     /// The edge that crosses `to`, or the last one below it, on climb number `number`.
@@ -142,14 +166,17 @@ pub(crate) struct AxisSections {
     starts: Vec<u32>,
     /// Each snapshot counter-clockwise.
     entries: Vec<Entry>,
+    /// For sections of many edges.
+    chains: Option<Box<Chains>>,
 }
 
 impl AxisSections {
-    pub(super) fn build(vertices: &[DVec3], topology: &Topology, axis: DVec3) -> Self {
+    pub(super) fn build(vertices: &[DVec3], topology: &Topology, axis: DVec3, ring: f64) -> Self {
         let vertex_levels: Vec<f64> = vertices.iter().map(|&v| axis.dot(v)).collect();
         let mut order: Vec<(f64, u32)> =
             vertex_levels.iter().zip(0..).map(|(&level, v)| (level, v)).collect();
-        order.sort_unstable_by(|p, q| p.0.total_cmp(&q.0));
+        // Total: the same snapshots wherever it runs.
+        order.sort_unstable_by(|p, q| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1)));
         let (plane, origin) = scaled_plane(vertices, axis);
         let range = [order[0].0, order[order.len() - 1].0];
         let across = 1.0 / plane[0].length();
@@ -163,10 +190,15 @@ impl AxisSections {
             halfway: Vec::new(),
             starts: vec![0],
             entries: Vec::new(),
+            chains: None,
         };
         let mesh = Mesh { vertices, topology, levels: &vertex_levels };
+        let highest = mesh.highest_edges();
+        if mesh.widest(&order) as f64 > ring * (vertices.len() as f64).sqrt() {
+            sections.chains = Some(Box::new(Chains::build(&mesh, &order, &highest)));
+        }
         sections.take_snapshots(&mesh, &order);
-        sections.find_ways(&mesh);
+        sections.find_ways(Climbs::new(&mesh, highest));
         sections.halfway.shrink_to_fit();
         sections.levels.shrink_to_fit();
         sections.starts.shrink_to_fit();
@@ -235,8 +267,8 @@ impl AxisSections {
     }
 
     /// Climbs from every entry to the next snapshot, or the top.
-    fn find_ways(&mut self, mesh: &Mesh) {
-        let mut climbs = Climbs::new(mesh);
+    fn find_ways(&mut self, mut climbs: Climbs) {
+        let mesh = climbs.mesh;
         for index in 0..self.halfway.len() {
             let from = self.halfway[index];
             let to = self.halfway.get(index + 1).map_or(self.range[1], |&next| next);
@@ -286,6 +318,12 @@ impl AxisSections {
         size_of::<f64>() * (self.levels.capacity() + self.halfway.capacity())
             + size_of::<u32>() * self.starts.capacity()
             + size_of::<Entry>() * self.entries.capacity()
+            + self.chains.as_ref().map_or(0, |chains| size_of::<Chains>() + chains.heap_bytes())
+    }
+
+    /// The chains, if sections have many edges.
+    pub(crate) fn chains(&self) -> Option<&Chains> {
+        self.chains.as_deref()
     }
 }
 

@@ -2,7 +2,9 @@ use glam::{DVec2, DVec3};
 
 use super::bodies::{Random, cone, cuboid, ellipsoid, prism};
 use crate::body::ConvexPolyhedron;
-use crate::body::convex::sections::{SectionIndex, next_clockwise, next_counter_clockwise};
+use crate::body::convex::sections::{
+    Search, SectionIndex, Turn, next_clockwise, next_counter_clockwise,
+};
 
 fn bodies() -> Vec<ConvexPolyhedron> {
     vec![
@@ -181,6 +183,48 @@ fn snapshots_show_the_points_of_their_own_level() {
                     let point = low + (high - low) * share;
                     let expected = constants + DVec2::from_array(covectors.map(|c| c.dot(point)));
                     assert!((snapshot.point(k) - expected).length() < 1e-5 * size);
+                }
+            }
+        }
+    }
+}
+
+/// The section at a level, counter-clockwise.
+fn ring(body: &ConvexPolyhedron, axis: DVec3, x: f64) -> Vec<u32> {
+    let above = |v: u32| axis.dot(body.vertices()[v as usize]) > x;
+    let first = crossing(body, axis, x)[0];
+    let next = |&up: &u32| Some(next_counter_clockwise(body.topology(), up, above));
+    let rest = std::iter::successors(next(&first), next).take_while(|&up| up != first);
+    std::iter::once(first).chain(rest).collect()
+}
+
+#[test]
+fn searches_in_chains_agree_with_walks() {
+    let mut random = Random(5);
+    for body in bodies() {
+        let index = SectionIndex::with_chains(body.vertices(), body.topology());
+        for (i, axis) in crate::body::convex::sections::AXES.into_iter().enumerate() {
+            for x in levels(&body, axis, &mut random) {
+                let ring = ring(&body, axis, x);
+                let search = Search {
+                    chains: index.axis(i).chains().expect("chains"),
+                    topology: body.topology(),
+                    x,
+                    level: |v| axis.dot(body.vertices()[v as usize]),
+                    count: |_| {},
+                };
+                // An edge that crosses the level, from any.
+                let any = random.index(body.topology().half_edges().len()) as u32;
+                assert!(ring.contains(&search.near(any).expect("an edge")));
+                for _ in 0..20 {
+                    let (from, many) = (random.index(ring.len()), random.index(ring.len()));
+                    for turn in [Turn::CounterClockwise, Turn::Clockwise] {
+                        let step = if turn == Turn::Clockwise { ring.len() - 1 } else { 1 };
+                        let at = |k: usize| ring[(from + k * step) % ring.len()];
+                        let held: Vec<u32> = (0..=many).map(at).collect();
+                        let found = search.last(at(0), turn, |up| held.contains(&up));
+                        assert_eq!(found, Some(at(many)), "{turn:?}, {many} of {}", ring.len());
+                    }
                 }
             }
         }

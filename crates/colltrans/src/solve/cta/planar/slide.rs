@@ -11,7 +11,10 @@ use glam::DVec2;
 use super::{Crossing, Planar};
 use crate::number::noise;
 use crate::solve::cta::crossing::{Bracket, Chain};
-use crate::solve::cta::section::Section;
+use crate::solve::cta::section::{Located, PATIENCE, Section};
+
+/// Steps of Newton's method at most.
+const NEWTON_STEPS: usize = 4;
 
 /// Two edges that cross, and where.
 pub(super) fn crossing_edges(edges: &[Bracket; 2]) -> Planar {
@@ -62,12 +65,92 @@ impl<'a, 'b> Slide<'a, 'b> {
         Some([edge(0)?, edge(1)?])
     }
 
+    /// From two edges towards where the gap closes, by Newton's method: on a convex gap steps come from
+    /// below but for the first. Only for bodies with chains, where a walk may be long.
+    fn approach(&self, from: &[Bracket; 2]) -> [Bracket; 2] {
+        let mut edges = *from;
+        if !self.has_chains() {
+            return edges;
+        }
+        for _ in 0..NEWTON_STEPS {
+            let h = crossing_of(&edges).x;
+            let is_there = edges.iter().all(|edge| edge.low.h() <= h && h <= edge.high.h());
+            if is_there || !self.closes(&edges) {
+                break;
+            }
+            let Some(next) = self.at(h, &edges) else { break };
+            edges = next;
+        }
+        edges
+    }
+
+    /// The edges at a height, from others on the same chains.
+    fn at(&self, h: f64, from: &[Bracket; 2]) -> Option<[Bracket; 2]> {
+        let edge = |body: usize| {
+            Some(self.sections[body].move_to(self.chains[body], h, from[body])?.edge())
+        };
+        Some([edge(0)?, edge(1)?])
+    }
+
+    fn has_chains(&self) -> bool {
+        self.sections.iter().any(|section| section.side.sections.chains().is_some())
+    }
+
+    /// Far along the chain of a body, up it or down: to its last vertex where the gap is still positive and
+    /// falls, or still does not, and the other chain's edge at that height.
+    fn skip(&self, body: usize, is_up: bool, from: &[Bracket; 2]) -> Option<[Bracket; 2]> {
+        let section = &self.sections[body];
+        let chain = self.chains[body];
+        let mut other = from[1 - body];
+        let along = if is_up { chain } else { chain.opposite() };
+        let start = from[body].low.h();
+        let last = section.skip(along, &from[body].low, |v| {
+            if if is_up { v.h() < start } else { v.h() > start } {
+                return false;
+            }
+            let edge = Bracket::new(*v, section.up(chain, v));
+            let Some(Located::Edge(beside)) =
+                self.sections[1 - body].move_to(self.chains[1 - body], v.h(), other)
+            else {
+                return false;
+            };
+            let mut edges = [edge; 2];
+            edges[1 - body] = beside;
+            let falls = beside.low.h() > v.h()
+                || chain.ascends(edge.direction)
+                    && self.is_beyond(body, v, &edges)
+                    && self.closes(&edges);
+            let ahead = if is_up { falls } else { !falls && self.retreat(body, &edge).is_some() };
+            other = if ahead { beside } else { other };
+            ahead
+        })?;
+        if last.up == from[body].low.up {
+            return None;
+        }
+        let mut edges = [Bracket::new(last, section.up(chain, &last)); 2];
+        let before = &from[1 - body];
+        edges[1 - body] = if is_up && other.low.h() < before.low.h() { *before } else { other };
+        Some(edges)
+    }
+
     /// From any edges, down to where the gap is positive and falls, and up from there.
     pub(super) fn settle(&self, from: &[Bracket; 2]) -> Option<Slid> {
-        let mut edges = *from;
-        for _ in 0..self.limit() {
+        let mut edges = self.approach(from);
+        for step in 1..=self.limit() {
             let upper = higher(&edges);
             let lower = 1 - upper;
+            if step % PATIENCE == 0 {
+                let top = edges[lower].high.h();
+                if edges[upper].low.h() <= top {
+                    edges = self.skip(upper, false, &edges).unwrap_or(edges);
+                } else if self.has_chains() {
+                    let section = &self.sections[upper];
+                    edges[upper] = section.move_to(self.chains[upper], top, edges[upper])?.edge();
+                }
+                if higher(&edges) != upper {
+                    continue;
+                }
+            }
             if edges[upper].low.h() > edges[lower].high.h() {
                 if let Some(below) = self.retreat(upper, &edges[upper]) {
                     edges[upper] = below;
@@ -104,7 +187,11 @@ impl<'a, 'b> Slide<'a, 'b> {
         let mut edges = *from;
         // The body whose vertex was passed last.
         let mut passed = higher(&edges);
-        for _ in 0..self.limit() {
+        for step in 1..=self.limit() {
+            if step % PATIENCE == 0 {
+                let ending = usize::from(edges[1].high.h() < edges[0].high.h());
+                edges = self.skip(ending, true, &edges).unwrap_or(edges);
+            }
             if !self.closes(&edges) {
                 return Some(self.separated(&edges[1 - passed], edges.map(|edge| edge.low)));
             }

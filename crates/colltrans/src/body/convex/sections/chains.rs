@@ -1,0 +1,292 @@
+//! Chains: the faces of a body from left to right, and a tree over the edges between them. Of a section
+//! whose edges are many they tell one in a part of it at once, where snapshots would let a walk pass
+//! hundreds.
+//!
+//! Every section is cut where the *cut* passes it, a climb from the lowest vertex to the top; what is left is a
+//! row of faces, counter-clockwise. One order of all faces, their *ranks*, holds for the rows of all levels (faces
+//! are monotone, so the relation "beside it, to the left" has no cycle once the cut is made). For each
+//! number `k` the edges between faces of ranks below `k` and others form a chain, which is monotone too:
+//! each level crosses one edge of it. Over ranks stands a binary tree, whose nodes are the numbers that
+//! halve it: `node(l, r)` of two ranks, the one with the most trailing zeros in `l + 1..=r`. An edge between
+//! faces of ranks `l < r` is kept in that one node alone, so all take `O(n)`; the spans of a node's edges
+//! are disjoint, as they are of one chain (Lee and Preparata's search in a planar subdivision, 1977).
+//!
+//! Invariant of a search: between two edges of a section the faces have ranks from `l` to `r`, those
+//! next to either edge. If `l < r`, then `node(l, r)` keeps an edge that the level crosses, and it is
+//! between the two: one look halves the ranks that are left. Rounding in the levels may hide it: then
+//! there is no answer, and a walk has to do.
+
+use super::snapshots::{Mesh, Turn};
+use crate::body::topology::Topology;
+
+/// A face of more sides is searched along its boundary.
+const MANY_SIDES: u32 = 8;
+
+/// No rank yet.
+const NONE: u32 = u32::MAX;
+
+/// The chains across one axis.
+#[derive(Debug, Clone)]
+pub(crate) struct Chains {
+    /// Of each face.
+    ranks: Vec<u32>,
+    /// First edge of each node, and one past the end.
+    starts: Vec<u32>,
+    /// The half-edges upwards of each node, from the lowest.
+    edges: Vec<u32>,
+    /// Those of the cut.
+    cut: Vec<u32>,
+}
+
+/// One level's search in the chains.
+pub(crate) struct Search<'a, L, C> {
+    pub(crate) chains: &'a Chains,
+    pub(crate) topology: &'a Topology,
+    pub(crate) x: f64,
+    /// The level of a vertex.
+    pub(crate) level: L,
+    /// Is told of so many steps.
+    pub(crate) count: C,
+}
+
+impl Chains {
+    /// For vertices from the lowest, and the edge from each that leads highest.
+    pub(super) fn build(mesh: &Mesh, order: &[(f64, u32)], highest: &[Option<u32>]) -> Self {
+        let cut = cut(mesh, order[0].1, highest);
+        let ranks = ranks(mesh, &cut);
+        let count = ranks.len();
+        let mut chains = Self { ranks, starts: vec![0; count + 2], edges: Vec::new(), cut };
+        let mut is_cut = vec![false; mesh.topology.half_edges().len()];
+        chains.cut.iter().for_each(|&up| is_cut[up as usize] = true);
+        let of_vertex = |&(_, v): &(f64, u32)| mesh.topology.outgoing(v).iter().copied();
+        let ups =
+            || order.iter().flat_map(of_vertex).filter(|&h| mesh.is_up(h) && !is_cut[h as usize]);
+        // How many each node has; then where its next one goes.
+        for up in ups() {
+            if let Some(node) = chains.node_of(mesh.topology, up) {
+                chains.starts[node as usize + 1] += 1;
+            }
+        }
+        for k in 1..chains.starts.len() {
+            chains.starts[k] += chains.starts[k - 1];
+        }
+        chains.edges = vec![0; chains.starts[count + 1] as usize];
+        for up in ups() {
+            if let Some(node) = chains.node_of(mesh.topology, up) {
+                chains.edges[chains.starts[node as usize] as usize] = up;
+                chains.starts[node as usize] += 1;
+            }
+        }
+        // Each start is where the node ended, which is where the next one begins.
+        chains.starts.rotate_right(1);
+        chains.starts[0] = 0;
+        chains
+    }
+
+    /// The rank of the face on the clockwise side of an edge, and on the other.
+    fn beside(&self, topology: &Topology, up: u32) -> [u32; 2] {
+        let edge = topology.half_edge(up);
+        [edge.face, topology.half_edge(edge.twin).face].map(|face| self.ranks[face as usize])
+    }
+
+    fn node_of(&self, topology: &Topology, up: u32) -> Option<u32> {
+        let [left, right] = self.beside(topology, up);
+        // Rounding may have left a cycle.
+        (left < right).then(|| node(left, right))
+    }
+
+    pub(super) fn heap_bytes(&self) -> usize {
+        let Self { ranks, starts, edges, cut } = self;
+        let counts = [ranks, starts, edges, cut].map(Vec::capacity);
+        size_of::<u32>() * counts.iter().sum::<usize>()
+    }
+}
+
+/// The node that parts two ranks, the lesser first.
+fn node(left: u32, right: u32) -> u32 {
+    let bits = (left ^ right).ilog2();
+    right >> bits << bits
+}
+
+/// A climb from the lowest vertex, by the edges that lead highest.
+fn cut(mesh: &Mesh, lowest: u32, highest: &[Option<u32>]) -> Vec<u32> {
+    let ahead = |&up: &u32| highest[mesh.topology.target(up) as usize];
+    std::iter::successors(highest[lowest as usize], ahead).collect()
+}
+
+/// The ranks of all faces: each after those beside it on its clockwise side. First come, first served, so
+/// that neighbours of neighbours have ranks as near as may be.
+fn ranks(mesh: &Mesh, cut: &[u32]) -> Vec<u32> {
+    let topology = mesh.topology;
+    let faces = topology.face_count() as u32;
+    let mut is_cut = vec![false; topology.half_edges().len()];
+    for &up in cut {
+        is_cut[up as usize] = true;
+        is_cut[topology.half_edge(up).twin as usize] = true;
+    }
+    let is_down = |h: &u32| mesh.is_up(topology.half_edge(*h).twin) && !is_cut[*h as usize];
+    let mut waiting: Vec<u32> =
+        (0..faces).map(|face| topology.face(face).filter(is_down).count() as u32).collect();
+    let mut ranks = vec![NONE; faces as usize];
+    let mut queue: Vec<u32> = (0..faces).filter(|&face| waiting[face as usize] == 0).collect();
+    let mut served = 0;
+    while let Some(&face) = queue.get(served) {
+        ranks[face as usize] = served as u32;
+        served += 1;
+        for h in topology.face(face).filter(|&h| mesh.is_up(h) && !is_cut[h as usize]) {
+            let next = topology.half_edge(topology.half_edge(h).twin).face as usize;
+            waiting[next] -= 1;
+            if waiting[next] == 0 {
+                queue.push(next as u32);
+            }
+        }
+    }
+    // What rounding has left in a cycle comes last.
+    let rest = ranks.iter_mut().filter(|rank| **rank == NONE);
+    rest.zip(served as u32..).for_each(|(rank, last)| *rank = last);
+    ranks
+}
+
+impl<L: Fn(u32) -> f64, C: Fn(u32)> Search<'_, L, C> {
+    /// The edge of a node that crosses the level.
+    fn of_node(&self, node: u32) -> Option<u32> {
+        let Chains { starts, edges, .. } = self.chains;
+        let [from, to] = [node, node + 1].map(|k| starts[k as usize] as usize);
+        self.crossing(&edges[from..to])
+    }
+
+    /// The one of a chain's edges that crosses the level.
+    fn crossing(&self, edges: &[u32]) -> Option<u32> {
+        (self.count)(edges.len().checked_ilog2().unwrap_or(0));
+        let below = |up: &u32| (self.level)(self.topology.half_edge(*up).origin) <= self.x;
+        let last = edges[..edges.partition_point(below)].last();
+        let found = last.filter(|&&up| (self.level)(self.topology.target(up)) > self.x);
+        // Who looks at a crossing counts it.
+        (self.count)(u32::from(found.is_none()));
+        found.copied()
+    }
+
+    /// An edge that crosses the level on a face of many sides beside one that does not.
+    pub(crate) fn along_faces(&self, up: u32) -> Option<u32> {
+        let beside = [up, self.topology.half_edge(up).twin];
+        beside.into_iter().find_map(|h| self.along_face(h))
+    }
+
+    /// Along the boundary of a face of many sides, whose levels rise once and fall once: steps of growing
+    /// length towards the level, then halving.
+    fn along_face(&self, from: u32) -> Option<u32> {
+        let topology = self.topology;
+        let face = topology.face(topology.half_edge(from).face);
+        let sides = face.len() as u32;
+        if sides <= MANY_SIDES {
+            return None;
+        }
+        let level = |h: u32| (self.level)(topology.half_edge(h).origin);
+        let is_below = level(from) <= self.x;
+        let next = topology.next(from);
+        // On and on in the turn in which levels come nearer.
+        let is_forward = (level(from) < level(next)) == is_below;
+        let first = if is_forward { from } else { next };
+        let at = |steps: u32| {
+            let offset = if is_forward { steps } else { sides - steps };
+            face.start + (first - face.start + offset) % sides
+        };
+        let is_past = |h: u32| (level(h) <= self.x) != is_below;
+        let comes_nearer = |steps: u32| (level(at(steps)) < level(at(steps + 1))) == is_below;
+        let is_ahead = |steps: u32| !is_past(at(steps)) && comes_nearer(steps);
+        let (mut low, mut high) = (0, 1);
+        while high < sides && is_ahead(high) {
+            (self.count)(1);
+            (low, high) = (high, (2 * high).min(sides));
+        }
+        while high - low > 1 {
+            (self.count)(1);
+            let middle = u32::midpoint(low, high);
+            if is_ahead(middle) { low = middle } else { high = middle }
+        }
+        if high >= sides || !is_past(at(high)) {
+            return None;
+        }
+        let edge = if is_forward { at(low) } else { at(high) };
+        let is_up = level(edge) <= self.x;
+        Some(if is_up { edge } else { topology.half_edge(edge).twin })
+    }
+
+    /// Ranks of the faces behind and ahead of an edge.
+    fn beside(&self, up: u32, turn: Turn) -> [u32; 2] {
+        let [left, right] = self.chains.beside(self.topology, up);
+        match turn {
+            Turn::CounterClockwise => [left, right],
+            Turn::Clockwise => [right, left],
+        }
+    }
+
+    /// An edge that crosses the level near one that crosses another.
+    pub(crate) fn near(&self, up: u32) -> Option<u32> {
+        let [face, _] = self.beside(up, Turn::CounterClockwise);
+        let faces = self.chains.ranks.len() as u32;
+        let above = (0..=faces.ilog2()).map(|bits| (face >> bits | 1) << bits);
+        let found = above.filter(|&node| node < faces).find_map(|node| self.of_node(node));
+        found.or_else(|| self.crossing(&self.chains.cut))
+    }
+
+    /// The last edge from `start` on for which `holds`: it does for `start`, for those after it up to some
+    /// edge, and for none beyond that on the way around.
+    pub(crate) fn last(
+        &self,
+        start: u32,
+        turn: Turn,
+        mut holds: impl FnMut(u32) -> bool,
+    ) -> Option<u32> {
+        let end = self.beside(start, turn)[0];
+        let mut last = start;
+        let mut ahead = self.beside(start, turn)[1];
+        let mut bits = 0;
+        // Larger and larger parts of the section, up to an edge for which it does not hold.
+        let mut behind = loop {
+            let Some(node) = self.beyond(ahead, bits, turn) else { break None };
+            bits += 1;
+            let Some(up) = node.and_then(|node| self.of_node(node)) else { continue };
+            if !holds(up) {
+                break Some(self.beside(up, turn)[0]);
+            }
+            last = up;
+            ahead = self.beside(up, turn)[1];
+        };
+        if behind.is_none() {
+            // Over the cut, and at most to where the search began.
+            let cut = self.crossing(&self.chains.cut)?;
+            behind = Some(if cut == start {
+                end
+            } else if holds(cut) {
+                last = cut;
+                ahead = self.beside(cut, turn)[1];
+                end
+            } else {
+                self.beside(cut, turn)[0]
+            });
+        }
+        let mut behind = behind?;
+        while ahead != behind {
+            let up = self.of_node(node(ahead.min(behind), ahead.max(behind)))?;
+            if holds(up) {
+                last = up;
+                ahead = self.beside(up, turn)[1];
+            } else {
+                behind = self.beside(up, turn)[0];
+            }
+        }
+        Some(last)
+    }
+
+    /// The node of height `bits` over a rank, if it is ahead of it; `None` above the root.
+    fn beyond(&self, rank: u32, bits: u32, turn: Turn) -> Option<Option<u32>> {
+        let faces = self.chains.ranks.len() as u32;
+        if bits > faces.ilog2() {
+            return None;
+        }
+        let node = (rank >> bits | 1) << bits;
+        let is_ahead = (rank >> bits & 1 == 0) == (turn == Turn::CounterClockwise);
+        Some((is_ahead && node < faces).then_some(node))
+    }
+}

@@ -9,8 +9,10 @@ use super::crossing::{Bracket, Chain, Crossing, is_horizontal};
 use super::side::Side;
 use crate::body::convex::sections::{Turn, next_clockwise, next_counter_clockwise};
 
-/// Steps of a walk before the body's chains, if it has some, tell where it leads (measured).
+/// Steps of a walk before the body's chains, if it has some, tell where it leads, and between two such
+/// questions.
 pub(super) const PATIENCE: usize = 2;
+const AGAIN: usize = 8;
 
 /// A vertex of more edges is not looked around for the best one, if there are chains.
 const FAN: usize = 16;
@@ -195,7 +197,7 @@ impl Section<'_> {
         for step in 0..self.limit {
             let [left, right] = bottom.directions;
             let falls = if Chain::Left.ascends(left) { Chain::Right } else { Chain::Left };
-            if step % 8 == PATIENCE
+            if step % AGAIN == PATIENCE
                 && !falls.ascends(bottom.directions[usize::from(falls == Chain::Right)])
                 && let Some(vertex) = self.skip_down(falls, &bottom.vertex)
             {
@@ -244,7 +246,7 @@ impl Section<'_> {
             if bracket.low.h() <= h {
                 return self.climb(chain, bracket, h);
             }
-            if step % 8 == PATIENCE
+            if step % AGAIN == PATIENCE
                 && let Some(low) = self.skip_down_to(chain, &bracket.low, h)
             {
                 bracket = Bracket::new(low, self.up(chain, &low));
@@ -261,7 +263,7 @@ impl Section<'_> {
     fn climb(&self, chain: Chain, from: Bracket, h: f64) -> Option<Located> {
         let mut bracket = from;
         for step in 0..self.limit {
-            if step % 8 == PATIENCE
+            if step % AGAIN == PATIENCE
                 && let Some(low) = self.skip_up_to(chain, &bracket.low, h)
             {
                 bracket = Bracket::new(low, self.up(chain, &low));
@@ -293,7 +295,7 @@ impl Section<'_> {
         // Around the bottom or back over the top: whichever is shorter.
         let (mut ahead, mut back) = (start, start);
         for step in 0..self.limit {
-            if step % 8 == PATIENCE
+            if step % AGAIN == PATIENCE
                 && let Some(last) = self.skip_down(chain, &ahead)
             {
                 // On the opposite chain: past its bottom.

@@ -578,6 +578,21 @@ fn planar_problems_do_not_walk_along_sections() {
     }
 }
 
+/// Sections of about as many edges as the body: chains, not walks.
+#[test]
+fn planar_problems_of_rings_grow_as_the_logarithm_of_the_vertices() {
+    for count in [3200, 12_800, 51_200] {
+        let ellipsoids = work_per_problem(&similar(count, false), 0.0, 100)[0];
+        for (name, body, most) in
+            [("prism", prism(count / 2, DVec3::ONE), 2.6), ("cone", cone(count, DVec3::ONE), 3.2)]
+        {
+            let work = work_per_problem(&[body.clone(), body], 0.0, 100)[0];
+            println!("{name} of {count}: {work:.1} iterations, ellipsoids {ellipsoids:.1}");
+            assert!(work < most * ellipsoids, "{name} of {count}: {work} {ellipsoids}");
+        }
+    }
+}
+
 /// Two ellipsoids with faces as long as wide, or a hundred times as long.
 fn similar(count: usize, thin: bool) -> [ConvexPolyhedron; 2] {
     let mut random = Random(31);

@@ -31,9 +31,9 @@ const EDGES_PER_ENTRY: usize = 4;
 /// there are (measured).
 const STRIDE: f64 = 1.0 / 3.0;
 
-/// Sections of more edges than this share of the root of all vertices make chains worth their bytes
-/// (measured): those of a sphere have about 3 times the root.
-pub(super) const RING: f64 = 8.0;
+/// Sections of more edges than so many times the root of all vertices have chains: those of spheres have about
+/// 3 times the root, those of long thin faces up to 18 times, and walks from snapshots serve both better.
+pub(super) const RING: f64 = 24.0;
 
 /// Candidates of one round of the search for an extreme entry.
 const CANDIDATES: usize = 16;

@@ -416,6 +416,18 @@ fn planar_problems_agree_with_brute_force() {
     }
 }
 
+/// Sections of so many edges that their bodies have chains.
+#[test]
+fn planar_problems_of_rings_agree_with_brute_force() {
+    let mut random = Random(6);
+    let (p, q) = (&cone(800, DVec3::ONE), &cone(700, DVec3::new(1.0, 0.7, 1.3)));
+    for round in 0..5 {
+        let poses = [random_pose(&mut random, 1.0), random_pose(&mut random, 1.0)];
+        let setting = Setting::new(p.at(poses[0]), q.at(poses[1]), random.unit()).unwrap();
+        check_planar(&setting, &mut random, &format!("round {round}"));
+    }
+}
+
 /// The least height common to two polygons, by all vertices and all pairs of edges; infinite if
 /// they have nothing in common.
 fn least_common_height(polygons: &[Vec<Crossing>; 2]) -> f64 {

@@ -241,18 +241,18 @@ impl<L: Fn(u32) -> f64, C: Fn(u32)> Search<'_, L, C> {
         let end = self.beside(start, turn)[0];
         let mut last = start;
         let mut ahead = self.beside(start, turn)[1];
-        let mut bits = 0;
         // Larger and larger parts of the section, up to an edge for which it does not hold.
-        let mut behind = loop {
-            let Some(node) = self.beyond(ahead, bits, turn) else { break None };
-            bits += 1;
+        let mut behind = None;
+        for bits in 0..=self.chains.ranks.len().ilog2() {
+            let node = self.beyond(ahead, bits, turn);
             let Some(up) = node.and_then(|node| self.of_node(node)) else { continue };
             if !holds(up) {
-                break Some(self.beside(up, turn)[0]);
+                behind = Some(self.beside(up, turn)[0]);
+                break;
             }
             last = up;
             ahead = self.beside(up, turn)[1];
-        };
+        }
         if behind.is_none() {
             // Over the cut, and at most to where the search began.
             let cut = self.crossing(&self.chains.cut)?;
@@ -279,14 +279,10 @@ impl<L: Fn(u32) -> f64, C: Fn(u32)> Search<'_, L, C> {
         Some(last)
     }
 
-    /// The node of height `bits` over a rank, if it is ahead of it; `None` above the root.
-    fn beyond(&self, rank: u32, bits: u32, turn: Turn) -> Option<Option<u32>> {
-        let faces = self.chains.ranks.len() as u32;
-        if bits > faces.ilog2() {
-            return None;
-        }
+    /// The node of height `bits` over a rank, if it is ahead of it.
+    fn beyond(&self, rank: u32, bits: u32, turn: Turn) -> Option<u32> {
         let node = (rank >> bits | 1) << bits;
         let is_ahead = (rank >> bits & 1 == 0) == (turn == Turn::CounterClockwise);
-        Some((is_ahead && node < faces).then_some(node))
+        (is_ahead && (node as usize) < self.chains.ranks.len()).then_some(node)
     }
 }

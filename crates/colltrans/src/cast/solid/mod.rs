@@ -1,8 +1,10 @@
 //! How far a solid can move from where it is.
 //!
 //! With a tolerance `L` both bodies are shrunk by `L / 2`. If their interiors then share a point, they
-//! overlap, and the least tolerance with which they do not is found from above: doubled until there is
-//! one, then halved between the two.
+//! overlap, and the least tolerance with which they do not is found from above. The place that shows an overlap
+//! is asked first, alone, with which tolerance it is gone: doubled until it is, then halved between the two. With
+//! that the bodies are asked; if they overlap in another place, that one is next. Where the tolerance is not small,
+//! facets may come to overlap again: there the bodies are asked each time, unless the last place tells.
 
 mod proof;
 #[cfg(feature = "serde")]
@@ -32,8 +34,10 @@ pub use verify::SolidProof;
 const NOISES: f64 = 8.0;
 /// The least tolerance is found to this share of itself.
 const TOLERANCE_ACCURACY: f64 = 1e-12;
-/// Doublings and halvings of a tolerance.
+/// Halvings of a tolerance.
 const MOST_HALVINGS: usize = 128;
+/// Places of an overlap that are asked for their tolerance, one after the other; then the bodies are asked each time.
+const MOST_PLACES: usize = 24;
 
 /// What an overlap at the start means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
@@ -469,7 +473,7 @@ impl<'a> Cast<'a, Solid> {
 
     /// Where the bodies, shrunk by half the tolerance, overlap, and by how much; `None` if they do not:
     /// what [`Clearance::Overlapping`] tells, and what an answer with [`StartOverlap::Ignore`] has
-    /// ignored. It costs some fifty times as much as [`Self::overlaps`], for the least tolerance.
+    /// ignored. It costs several times as much as [`Self::overlaps`], for the least tolerance.
     ///
     /// ```
     /// use colltrans::glam::DVec3;
@@ -516,33 +520,40 @@ impl<'a> Cast<'a, Solid> {
 
     pub(crate) fn least_tolerance_counting(&self, steps: &mut SolidSteps) -> Option<f64> {
         let bare = self.scene(0.0);
-        if overlap::find(&bare, steps).is_none() {
-            return Some(0.0);
-        }
+        let Some(mut place) = overlap::find(&bare, steps) else { return Some(0.0) };
         if !(self.moving().is_closed() && self.fixed().is_closed()) {
             return None;
         }
         // Shrunk by more than there is of it, a body is inside out.
         let vanishes = |tolerance: f64| self.check_left(tolerance).is_err();
-        let mut free = |tolerance: f64| {
-            let half = tolerance / 2.0;
-            vanishes(tolerance) || overlap::find(&bare.shrunk(half, half), steps).is_none()
-        };
-        let (mut low, mut high) = (0.0, bare.noise);
-        while !free(high) {
-            (low, high) = (high, 2.0 * high);
-            if high > bare.size() {
-                return None;
-            }
-        }
-        for _ in 0..MOST_HALVINGS {
-            let middle = low + 0.5 * (high - low);
-            if high - low <= TOLERANCE_ACCURACY * high || middle <= low || middle >= high {
+        let shrunk = |tolerance: f64| bare.shrunk(tolerance / 2.0, tolerance / 2.0);
+        // As long as shrinking turns nothing inside out, what is free with one tolerance is so with more.
+        let most = 2.0 * self.moving().shrinking().most.min(self.fixed().shrinking().most);
+        let mut overlapping = 0.0;
+        for _ in 0..MOST_PLACES {
+            let is_gone = |tolerance| {
+                tolerance > overlapping && !overlap::is_overlap(&shrunk(tolerance), place)
+            };
+            let Some(least) = least_of_all([bare.noise, most], is_gone) else { break };
+            if vanishes(least) {
                 break;
             }
-            if free(middle) { high = middle } else { low = middle }
+            let Some(next) = overlap::find(&shrunk(least), steps) else { return Some(least) };
+            (place, overlapping) = (next, least);
         }
-        (!vanishes(high)).then_some(high)
+        let is_free = |tolerance| {
+            if vanishes(tolerance) {
+                return true;
+            }
+            let shrunk = shrunk(tolerance);
+            if overlap::is_overlap(&shrunk, place) {
+                return false;
+            }
+            let found = overlap::find(&shrunk, steps);
+            place = found.unwrap_or(place);
+            found.is_none()
+        };
+        least_of_all([bare.noise, bare.size()], is_free).filter(|least| !vanishes(*least))
     }
 
     /// The translation after which the bodies, as they are, never meet again, in multiples of the
@@ -559,6 +570,26 @@ impl<'a> Cast<'a, Solid> {
         let found = first(&scene, Aim::Least, f64::INFINITY, workspace, steps)?;
         Some(found.bounded(&scene).negated().clamped())
     }
+}
+
+/// The least of all tolerances, from above, from which on something holds: doubled from the first end until it
+/// does, then halved between the last two; `None` if that is beyond the second end.
+fn least_of_all([first, last]: [f64; 2], mut holds: impl FnMut(f64) -> bool) -> Option<f64> {
+    let (mut low, mut high) = (0.0, first);
+    while !holds(high) {
+        (low, high) = (high, 2.0 * high);
+        if high > last {
+            return None;
+        }
+    }
+    for _ in 0..MOST_HALVINGS {
+        let middle = low + 0.5 * (high - low);
+        if high - low <= TOLERANCE_ACCURACY * high || middle <= low || middle >= high {
+            break;
+        }
+        *(if holds(middle) { &mut high } else { &mut low }) = middle;
+    }
+    Some(high)
 }
 
 /// The least gap below a limit.

@@ -1,9 +1,11 @@
-//! How much is looked at for an answer: bounds on support points, which no machine disturbs.
+//! How much is looked at for an answer: bounds on support points and pairs of nodes, which no machine
+//! disturbs.
 
-use colltrans::glam::DVec3;
-use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose};
+use colltrans::glam::{DQuat, DVec3};
+use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, Solid};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{Mesh, ring_sphere};
+use colltrans_testkit::solids::{bumpy_ball, slab};
 
 const CASTS: u32 = 400;
 
@@ -45,4 +47,61 @@ fn ellipsoids_are_met_at_once() {
         let mean = supports(&ellipsoid(axes));
         assert!(mean < 2.4, "{axes}: {mean} support points");
     }
+}
+
+/// The pairs of nodes that an answer about solids took.
+fn nodes(clearance: &Clearance<Solid>) -> u32 {
+    match clearance {
+        Clearance::Free(free) => free.steps.nodes,
+        Clearance::Blocked { contact, .. } => contact.steps.nodes,
+        Clearance::Overlapping(overlap) => overlap.steps.nodes,
+    }
+}
+
+/// Which of a node's facets lie in a side of its box says at the root that nothing blocks a body that is lifted
+/// off another one.
+#[test]
+fn flat_faces_part_at_once() {
+    let body = slab(DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.25), [40, 40, 2]);
+    let body = Solid::from_mesh(&body.vertices, &body.faces).expect("a slab");
+    let quarter = DQuat::from_rotation_arc(DVec3::Z, DVec3::X);
+    for rotation in [DQuat::IDENTITY, quarter] {
+        let rotation = Pose::new(rotation, DVec3::ZERO).expect("a pose");
+        let at = rotation.transform_vector(DVec3::new(0.125, 0.0625, 0.25));
+        let above = Pose::new(rotation.rotation(), at).expect("a pose");
+        let cast = |way| Cast::new(body.at(above), body.at(rotation), way).expect("a query");
+        let lifted = cast(rotation.transform_vector(DVec3::Z)).clearance().expect("an answer");
+        assert!(lifted.is_free() && nodes(&lifted) <= 2, "{lifted:?}");
+        let pressed = cast(rotation.transform_vector(DVec3::NEG_Z)).clearance().expect("an answer");
+        assert_eq!(pressed.distance(), Some(0.0));
+    }
+}
+
+/// The least tolerance of an overlap takes a few looks at the bodies, not one for each binary digit.
+#[test]
+fn least_tolerances_take_a_few_looks() {
+    let body = bumpy_ball(4_000);
+    let body = Solid::from_mesh(&body.vertices, &body.faces).expect("a ball");
+    let mut random = Random::new(5);
+    let (mut sunk, mut sum) = (0, 0);
+    for _ in 0..40 {
+        let direction = random.direction();
+        let [start, target] = [-direction * 4.0, DVec3::ZERO]
+            .map(|at| Pose::new(random.rotation(), at).expect("a pose"));
+        let cast = |start| Cast::new(body.at(start), body.at(target), direction).expect("a query");
+        let Some(distance) = cast(start).clearance().expect("an answer").distance() else {
+            continue;
+        };
+        let at = start.translation() + direction * (distance + 1e-6);
+        let inside = Pose::new(start.rotation(), at).expect("a pose");
+        if let Clearance::Overlapping(found) = cast(inside).clearance().expect("an answer") {
+            let least = found.least_tolerance.expect("it is small");
+            assert!(least > 0.0 && least < 1e-5, "{least}");
+            sunk += 1;
+            sum += found.steps.nodes;
+        }
+    }
+    assert!(sunk > 20, "{sunk} overlaps");
+    let mean = f64::from(sum) / f64::from(sunk);
+    assert!(mean < 1000.0, "{mean} pairs of nodes");
 }

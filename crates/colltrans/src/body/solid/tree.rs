@@ -13,7 +13,7 @@
 
 use std::thread;
 
-use glam::{DVec3, Vec3Swizzles};
+use glam::{BVec3, DVec3, Vec3Swizzles};
 
 use super::cuts::{CUTS, Reach};
 use crate::body::Aabb;
@@ -45,7 +45,12 @@ pub(crate) struct Node {
     pub(crate) count: u32,
     /// What the facets leave free of the box's corners and edges.
     pub(crate) cuts: [u8; CUTS],
+    /// Which of the box's six sides, the lower ones first, may hold a facet that looks into the box.
+    pub(crate) inward: u8,
 }
+
+/// All six sides.
+const ALL_SIDES: u8 = 0b11_1111;
 
 impl Node {
     pub(crate) fn is_leaf(&self) -> bool {
@@ -81,6 +86,19 @@ impl Item {
         let normal = if area > 0.0 { normal / area } else { DVec3::ZERO };
         Self { facet, bounds: Aabb::of_points(corners), normal, area, doubt }
     }
+
+    /// Of the sides of a box that holds it, the one that it lies in if it looks into the box, or may do so.
+    fn inward(&self, bounds: &Aabb) -> u8 {
+        let Aabb { low, high } = self.bounds;
+        let flat = low.cmpeq(high);
+        let away = |way: f64| {
+            let outward = (self.normal * way).cmpgt(DVec3::ZERO);
+            if self.doubt < 1.0 { outward } else { BVec3::FALSE }
+        };
+        let lower = flat & low.cmpeq(bounds.low) & !away(-1.0);
+        let upper = flat & high.cmpeq(bounds.high) & !away(1.0);
+        (lower.bitmask() | upper.bitmask() << 3) as u8
+    }
 }
 
 impl Boxed for Item {
@@ -98,7 +116,8 @@ impl Boxed for Item {
 /// Twice the area times the unit normal, and how far rounding may have turned it, as a sine.
 ///
 /// The error of each component is at most 8 roundings of the terms it is made of; what of it lies
-/// along the normal turns nothing. Facets in planes of the axes have terms that vanish, and no error.
+/// along the normal turns nothing, if it cannot turn it around. Facets in planes of the axes have terms that
+/// vanish, and no error.
 pub(crate) fn normal([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
     let (u, v) = (b - a, c - a);
     let area = u.cross(v);
@@ -106,7 +125,7 @@ pub(crate) fn normal([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
     let terms = DVec3::new(x.y * y.z + x.z * y.y, x.z * y.x + x.x * y.z, x.x * y.y + x.y * y.x);
     let error = terms * (4.0 * f64::EPSILON);
     let length = area.length_squared();
-    if length == 0.0 {
+    if length <= error.length_squared() {
         return (area, ANY);
     }
     let size = area.abs();
@@ -152,6 +171,7 @@ pub(super) fn open_nodes(nodes: &mut [Node], is_open: impl Fn(usize) -> bool) {
         };
         if open {
             nodes[at].spread = OPEN;
+            nodes[at].inward = ALL_SIDES;
         }
     }
 }
@@ -250,6 +270,7 @@ impl Builder<'_> {
             first,
             count: items.len() as u32,
             cuts: [0; CUTS],
+            inward: items.iter().fold(0, |sides, item| sides | item.inward(&bounds)),
         };
         // A surface that looks to all sides has no axis to speak of.
         if sum.length() > 0.25 * total {

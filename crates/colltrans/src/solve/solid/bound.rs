@@ -23,7 +23,7 @@ pub enum Reason {
     FixedFacesAway,
     /// The interiors of their shadows are disjoint.
     ShadowsApart,
-    /// The largest gap is negative: they part.
+    /// No gap is positive, and no two facets have one of zero all over: they part.
     Parting,
     /// The least gap is not smaller than the answer.
     NotBefore,
@@ -71,7 +71,13 @@ pub(crate) fn dismissed(a: &Projected, b: &Projected, limit: f64, parting: bool)
     if least >= limit {
         return Some(Reason::NotBefore);
     }
-    (parting && largest < 0.0).then_some(Reason::Parting)
+    (parting && parts(a, b, largest)).then_some(Reason::Parting)
+}
+
+/// Whether no pair of facets under two nodes counts, whose gaps are at most `largest` by their boxes: none has
+/// a positive gap, nor one that is zero all over, which only level facets have where the boxes meet.
+fn parts(a: &Projected, b: &Projected, largest: f64) -> bool {
+    largest < 0.0 || largest == 0.0 && !(a.may_be_level() && b.may_be_level())
 }
 
 /// The least gap that a pair of facets under two nodes can have, as a length.
@@ -117,7 +123,7 @@ pub(crate) fn holds(scene: &Scene, p: Profile, q: Profile, reason: Reason, limit
         Reason::MovingFacesAway => a.looks_back(),
         Reason::FixedFacesAway => b.looks_ahead(),
         Reason::ShadowsApart => boxes_apart(a, b) || p.is_apart_along_axes(q),
-        Reason::Parting => box_gaps(a, b)[1] < 0.0 || slab_gaps(scene, a, b)[1] < 0.0,
+        Reason::Parting => parts(a, b, box_gaps(a, b)[1]) || slab_gaps(scene, a, b)[1] < 0.0,
         Reason::NotBefore => {
             let along_axes = p.gap_along_axes(q);
             along_axes.max(box_gaps(a, b)[0]).max(least_slab_gap(scene, a, b)) >= limit

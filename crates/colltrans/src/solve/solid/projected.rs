@@ -32,6 +32,9 @@ pub(crate) struct Projected {
     along: f64,
     /// Facing can be told if `|along|` reaches this.
     spread: f64,
+    /// Whether a facet that looks into the box may lie in the side where that starts along the direction, of the
+    /// moving body, or ends, of the fixed one.
+    inward: bool,
 }
 
 impl Projected {
@@ -48,6 +51,7 @@ impl Projected {
             slab: [node.slab[0] + shift - noise, node.slab[1] + shift + noise],
             along: node.axis.dot(side.along),
             spread: f64::from(node.spread),
+            inward: scene.keeps() || side.inward & node.inward != 0,
         };
         if let Some(shrinking) = side.shrinking {
             projected.shrink(shrinking, side.amount, at);
@@ -132,6 +136,12 @@ impl Projected {
     /// Whether its slab bounds heights.
     pub(crate) fn has_heights(&self) -> bool {
         self.slab[1] < f64::INFINITY && self.axis.z.abs() > STEEP
+    }
+
+    /// Whether it may have a level facet where its box has no more than a plane in common with one that it
+    /// leaves behind, and the facet blocks.
+    pub(crate) fn may_be_level(&self) -> bool {
+        self.inward
     }
 
     /// Whether it has no facet that looks along the direction.

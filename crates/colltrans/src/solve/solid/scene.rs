@@ -52,6 +52,9 @@ pub(crate) struct Side<'a> {
     pub(crate) aligned: [bool; 3],
     /// The direction in the body frame, at length 1.
     pub(crate) along: DVec3,
+    /// As bits, the side of a node's box where it starts along the direction, of the moving body, or ends, of the
+    /// fixed one; all of them where that is no side, or not exactly.
+    pub(crate) inward: u8,
 }
 
 /// A setting of two solids, shrunk and seen along its direction.
@@ -103,7 +106,8 @@ impl<'a> Scene<'a> {
         let resized = |side: &Side<'a>, amount| {
             let amount = if side.solid.can_shrink() { amount } else { 0.0 };
             let shrinking = (amount != 0.0).then(|| side.solid.shrinking());
-            Side { amount, shrinking, ..*side }
+            let inward = inward(side.along, side.aligned, side.moving, amount);
+            Side { amount, shrinking, inward, ..*side }
         };
         Self { moving: resized(&self.moving, moving), fixed: resized(&self.fixed, fixed), ..*self }
     }
@@ -136,6 +140,7 @@ impl<'a> Side<'a> {
         // What is of sheets alone stays as it is, and exact.
         let amount = if solid.can_shrink() { amount } else { 0.0 };
         let unit = |row: DVec3| permuting && is_axis(row);
+        let aligned = [unit(rows.x_axis), unit(rows.y_axis), unit(rows.z_axis)];
         Self {
             solid,
             moving,
@@ -148,8 +153,9 @@ impl<'a> Side<'a> {
             view_offset: frame * offset[0],
             permutes: permuting,
             defect: defect(matrix),
-            aligned: [unit(rows.x_axis), unit(rows.y_axis), unit(rows.z_axis)],
+            aligned,
             along: rows.z_axis,
+            inward: inward(rows.z_axis, aligned, moving, amount),
         }
     }
 
@@ -283,6 +289,16 @@ fn frame_along(unit: DVec3) -> DMat3 {
         _ => unit.any_orthonormal_vector(),
     };
     DMat3::from_cols(x, unit.cross(x), unit).transpose()
+}
+
+/// [`Side::inward`] of a body that is shrunk by so much.
+fn inward(along: DVec3, aligned: [bool; 3], moving: bool, amount: f64) -> u8 {
+    if !aligned[2] || amount != 0.0 {
+        return u8::MAX;
+    }
+    let axis = along.abs().max_position();
+    let upper = (along[axis] < 0.0) == moving;
+    1 << (axis + if upper { 3 } else { 0 })
 }
 
 fn is_axis(v: DVec3) -> bool {

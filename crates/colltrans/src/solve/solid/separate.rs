@@ -6,9 +6,14 @@
 //! simplex of points of `D`, its point `v` nearest to the origin, the lowest point of `D` along `v`.
 //! It ends as soon as that point is above the origin by more than rounding: then `v` is a normal, and
 //! nothing of the search is needed to check it. Lowest points come from the bodies' trees.
+//!
+//! Most bodies that pass each other are told apart by their boxes, which are asked first: by the direction across
+//! the shadow of one of six axes that parts them most. Boxes say no more than the bodies, so such a margin is
+//! proven by the vertices as well.
 
 use glam::{DVec2, DVec3};
 
+use super::projected::Projected;
 use super::scene::{Scene, Side};
 use super::search::children;
 use crate::answer::{CertificateError, Separation};
@@ -19,10 +24,42 @@ const MOST_ROUNDS: usize = 32;
 /// Rounding of a gap, in multiples of the noise of coordinates: half of it for each of two points that
 /// are taken for the farthest, and what computing them takes.
 const ROUNDING: f64 = 4.0;
+/// The same of boxes, besides: their middles and extents are off by less than a noise of the query frame, and
+/// heights of vertices, by which the margin is checked, by less than another.
+const BOXES: f64 = 2.0;
 
 /// A separating plane of the bodies as they are shrunk, if rounding can tell that there is one; not
 /// always where large faces are apart by no more than they were shrunk.
 pub(crate) fn separation(scene: &Scene) -> Option<Separation> {
+    between_boxes(scene).or_else(|| between_hulls(scene))
+}
+
+/// The plane between the boxes of both bodies that leaves the most room, along an edge of one of them.
+fn between_boxes(scene: &Scene) -> Option<Separation> {
+    let sides = [&scene.moving, &scene.fixed];
+    let boxes = sides.map(|side| Projected::new(scene, side, 0).local);
+    let middles = [0, 1].map(|k| sides[k].view * boxes[k].center() + sides[k].view_offset);
+    let apart = middles[1] - middles[0];
+    let mut best = Separation { normal: DVec3::ZERO, margin: 0.0 };
+    for axis in sides.into_iter().flat_map(|s| [s.view.x_axis, s.view.y_axis, s.view.z_axis]) {
+        let Some(across) = axis.truncate().perp().try_normalize() else { continue };
+        let across = across.extend(0.0);
+        let half = |k: usize| {
+            let local: DVec3 = sides[k].view.transpose() * across;
+            0.5 * local.abs().dot(boxes[k].size())
+        };
+        let away = apart.dot(across);
+        let margin = away.abs() - half(0) - half(1) - (ROUNDING + BOXES) * scene.noise;
+        if margin > best.margin {
+            best = Separation { normal: across * away.signum(), margin };
+        }
+    }
+    let normal = (scene.frame.transpose() * best.normal).normalize_or_zero();
+    let margin = best.margin - closing(scene, normal);
+    (margin > scene.keep).then_some(Separation { normal, margin })
+}
+
+fn between_hulls(scene: &Scene) -> Option<Separation> {
     let middle =
         |side: &Side| (side.view * side.solid.bounds().center() + side.view_offset).truncate();
     let mut v = middle(&scene.fixed) - middle(&scene.moving);
@@ -78,9 +115,12 @@ fn facing_sides<'s, 'a>(scene: &'s Scene<'a>, normal: DVec3) -> [Farthest<'s, 'a
 /// The margin that the two prove.
 fn margin_along(scene: &Scene, normal: DVec3, [p, q]: &[Farthest; 2]) -> f64 {
     let fixed = normal.dot(scene.fixed.offset[0]) - q.reach();
-    // A normal that is not quite orthogonal lets the gap close as far away as the bodies reach.
-    let closing = (normal.dot(scene.setting.direction) / scene.setting.length).abs() * scene.size();
-    fixed - p.reach() - ROUNDING * scene.noise - closing
+    fixed - p.reach() - ROUNDING * scene.noise - closing(scene, normal)
+}
+
+/// How far a normal that is not quite orthogonal lets the gap close as far away as the bodies reach.
+fn closing(scene: &Scene, normal: DVec3) -> f64 {
+    (normal.dot(scene.setting.direction) / scene.setting.length).abs() * scene.size()
 }
 
 /// Leaves that are looked into for one farthest vertex. More are needed where a large flat face is

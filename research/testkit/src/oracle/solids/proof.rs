@@ -81,14 +81,17 @@ pub(super) fn once<R>([m, n]: [usize; 2], claims: &[Claim<R>]) -> Result<(), Str
 }
 
 fn holds(judge: &Judge, reason: Reason, lower: f64, gaps: &Gaps, [f, g]: [&Triangle; 2]) -> bool {
-    let negative = |gaps: &Gaps| {
-        gaps.range.as_ref().is_none_or(|[_, largest]| *largest < Ratio::from_f64(0.0))
+    let parts = |gaps: &Gaps| {
+        let zero = Ratio::from_f64(0.0);
+        gaps.range
+            .as_ref()
+            .is_none_or(|[least, largest]| *largest < zero || *largest == zero && *least < zero)
     };
     match reason {
         Reason::MovingFacesAway => judge.facing(f) != Ordering::Greater,
         Reason::FixedFacesAway => judge.facing(g) != Ordering::Less,
         Reason::ShadowsApart => gaps.range.is_none(),
-        Reason::Parting => !gaps.front || negative(gaps),
+        Reason::Parting => !gaps.front || parts(gaps),
         Reason::NotBefore | Reason::Examined => gaps
             .contribution()
             .is_none_or(|value| lower.is_finite() && value >= Ratio::from_f64(lower)),

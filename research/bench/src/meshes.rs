@@ -9,7 +9,7 @@ use colltrans_testkit::shapes::Mesh;
 /// Where meshes are, and which pairs are wanted.
 #[derive(Debug, Args)]
 pub struct MeshArguments {
-    /// A folder with `trimesh/teapot.stl` and the like
+    /// A folder with `trimesh/teapot.stl`, `gearbox/key.stl` and the like
     #[arg(long, value_name = "DIR", default_value = "../shared/data")]
     data: PathBuf,
     /// Only the rows whose names contain this
@@ -32,7 +32,7 @@ impl MeshArguments {
     ) -> Vec<(String, [Mesh; 2])> {
         let folder = self.data.join("trimesh");
         let read = |[a, b]: &[&str; 2]| {
-            let name = format!("{a} x {b}");
+            let name = [a, b].map(|file| file.rsplit('/').next().unwrap_or(file)).join(" x ");
             self.wants(&name).then(|| {
                 Some((name, [load(&folder.join(a))?, load(&folder.join(b))?].map(centered)))
             })?

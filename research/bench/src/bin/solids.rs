@@ -1,16 +1,17 @@
 //! `solids`: meshes that are not convex, beside `parry3d-f64`'s cast of two triangle meshes.
 //!
 //! Three groups. *Pairs*: random rotations and directions, the moving mesh starting beside the fixed
-//! one; each query is timed alone, both libraries on the same settings, fifty at a time in turns: a
-//! query of a library behind one of the other would find the caches full of the other's. *Growth*: the same
-//! bumpy ball in more and more facets. *Flat*: two slabs with many facets in one plane, resting,
-//! sliding, parting, and with a gap.
+//! one. *Growth*: the same bumpy ball in more and more facets. *Flat*: two slabs, of few facets or many in one
+//! plane, resting, sliding, parting, with a gap, and passing over each other. Of all each query is timed
+//! alone, both libraries on the same settings, fifty at a time in turns: a query of a library behind one of the other
+//! would find the caches full of the other's.
 //!
-//! A pair starts in three ways. *Far*: the moving mesh is 1.05 times the sum of the radii before the fixed
+//! A pair starts in four ways. *Far*: the moving mesh is 1.05 times the sum of the radii before the fixed
 //! one, up to 0.7 times it aside, whether they meet or not. *Near*: of these settings those that meet,
 //! the moving mesh put forward to [`NEAR`] times the sum before it meets the fixed one. *Near miss*: those
 //! that meet, started as far, the moving mesh put aside along a random axis until it misses the fixed one
-//! by at most [`MISS`] times the sum, found by halving between none and twice the sum.
+//! by at most [`MISS`] times the sum, found by halving between none and twice the sum. *Touching*: put forward until it
+//! meets the fixed one, and by [`SUNK`] times the sum more.
 
 use std::process::ExitCode;
 
@@ -43,6 +44,8 @@ const AGREEMENT: f64 = 1e-4;
 /// which they miss each other narrowly.
 const NEAR: f64 = 0.02;
 const MISS: f64 = 0.01;
+/// The same: how deep bodies overlap that touch.
+const SUNK: f64 = 1e-6;
 /// Queries of one library in a row.
 const BLOCK: usize = 50;
 
@@ -50,14 +53,12 @@ fn main() -> ExitCode {
     let command = Command::parse();
     let mut rows = Vec::new();
     println!(
-        "{:<44} {:>9} {:>11} {:>11} {:>9} {:>11} {:>6} {:>5}",
-        "pair", "facets", "ours", "mean", "p99", "parry", "ratio", "hits"
+        "{:<48} {:>9} {:>11} {:>11} {:>9} {:>11} {:>8} {:>5}",
+        "what", "facets", "ours", "mean", "p99", "parry", "ratio", "hits"
     );
     for pair in pairs(&command) {
         for start in Start::ALL {
-            let row = pair.measure(&command.arguments, start);
-            print_pair(&row);
-            rows.push(row);
+            rows.push(pair.measure(&command.arguments, start));
         }
     }
     if command.meshes.wants("growth") {
@@ -69,17 +70,17 @@ fn main() -> ExitCode {
     report::write("solids", &command.arguments, &rows)
 }
 
-fn print_pair(row: &Value) {
+fn print(row: &Value) {
     let number = |name: &str| row[name].as_f64().unwrap_or(f64::NAN);
     println!(
-        "{:<44} {:>9} {:>8.1} us {:>8.1} us {:>6.0} us {:>8.0} us {:>6.1} {:>5}",
+        "{:<48} {:>9} {:>8.2} us {:>8.2} us {:>6.0} us {:>8.1} us {:>8.2} {:>5}",
         row["name"].as_str().unwrap_or(""),
         row["facets"],
         number("median_ns") / 1e3,
         number("mean_ns") / 1e3,
         number("p99_ns") / 1e3,
-        number("parry_mean_ns") / 1e3,
-        number("ratio"),
+        number("parry_median_ns") / 1e3,
+        number("ratio_of_medians"),
         row["hits"],
     );
 }
@@ -105,6 +106,10 @@ fn pairs(command: &Command) -> Vec<Pair> {
         ["featuretype.STL", "plate_holes.STL"],
         ["featuretype.STL", "featuretype.STL"],
         ["angle_block.STL", "plate_holes.STL"],
+        ["unit_cube.STL", "unit_cube.STL"],
+        ["7_8ths_cube.stl", "cylinder.stl"],
+        ["../gearbox/key.stl", "../gearbox/gear.stl"],
+        ["../gearbox/front_outer.stl", "../gearbox/front_ball_0.stl"],
     ];
     let pairs = command.meshes.pairs(made, &files).into_iter();
     pairs.map(|(name, bodies)| Pair { name, bodies }).collect()
@@ -120,16 +125,18 @@ enum Start {
     Far,
     Near,
     NearMiss,
+    Touching,
 }
 
 impl Start {
-    const ALL: [Self; 3] = [Self::Far, Self::Near, Self::NearMiss];
+    const ALL: [Self; 4] = [Self::Far, Self::Near, Self::NearMiss, Self::Touching];
 
     fn name(self) -> &'static str {
         match self {
             Self::Far => "far",
             Self::Near => "near",
             Self::NearMiss => "near miss",
+            Self::Touching => "touching",
         }
     }
 }
@@ -197,8 +204,12 @@ impl Pair {
                 return Some(placement);
             }
             let distance = placement.distance(bodies, &mut workspace)?;
-            if start == Start::Near {
-                return Some(placement.moved(placement.direction * (distance - NEAR * reach)));
+            let forward =
+                |by: f64| Some(placement.moved(placement.direction * (distance + by * reach)));
+            match start {
+                Start::Near => return forward(-NEAR),
+                Start::Touching => return forward(SUNK),
+                Start::Far | Start::NearMiss => {}
             }
             let aside = random.direction().reject_from_normalized(placement.direction);
             Some(placement.missing(aside.normalize_or_zero() * reach, bodies, &mut workspace))
@@ -210,63 +221,73 @@ impl Pair {
     fn measure(&self, arguments: &Arguments, start: Start) -> Value {
         let [a, b] = &self.bodies;
         let (Some(p), Some(q)) = (solid(a), solid(b)) else { return Value::Null };
-        let (r, f) = (
-            triangle_mesh(p.vertices(), p.triangles()),
-            triangle_mesh(q.vertices(), q.triangles()),
-        );
-        let radii = [radius(a), radius(b)];
         let count = if arguments.quick || start != Start::Far { 60 } else { 300 };
-        let stopwatch = Stopwatch::new();
-        let (mut ours, mut theirs) = (Times::default(), Times::default());
-        let (mut hits, mut apart) = (0, 0);
-        let mut workspace = Workspace::default();
-        let placements = self.placements([&p, &q], start, count, arguments.seed);
-        // What a solid prepares in its first query is no part of the others.
-        placements.first().and_then(|first| first.distance([&p, &q], &mut workspace));
-        for block in placements.chunks(BLOCK) {
-            let mut distances = Vec::with_capacity(BLOCK);
-            for Placement { poses: [s, t], direction } in block {
-                let Ok(cast) = Cast::new(p.at(*s), q.at(*t), *direction) else {
-                    distances.push(None);
-                    continue;
-                };
-                let (answer, time) = stopwatch.time(|| cast.clearance_in(&mut workspace));
-                ours.add(time);
-                distances.push(answer.ok().and_then(|a| a.distance()).filter(|d| d.is_finite()));
-            }
-            for (Placement { poses: [s, t], direction }, distance) in block.iter().zip(distances) {
-                let placed = ParrySetting::placed([s, t], *direction);
-                let (other, time) = stopwatch.time(|| placed.cast(&r, &f));
-                theirs.add(time);
-                hits += usize::from(distance.is_some());
-                let agree = match (distance, other) {
-                    (Some(x), Some(y)) => (x - y).abs() <= AGREEMENT * (radii[0] + radii[1]),
-                    (None, None) => true,
-                    _ => false,
-                };
-                apart += usize::from(!agree);
-            }
-        }
-        ours.sort();
-        theirs.sort();
         let name = match start {
             Start::Far => self.name.clone(),
             _ => format!("{}, {}", self.name, start.name()),
         };
-        let mut row = ours.to_json();
-        row.insert("group".into(), json!("pairs"));
-        row.insert("name".into(), json!(name));
-        row.insert("start".into(), json!(start.name()));
-        row.insert("facets".into(), json!(p.triangles().len() + q.triangles().len()));
-        row.insert("settings".into(), json!(count));
-        row.insert("hits".into(), json!(hits));
-        row.insert("answers_apart".into(), json!(apart));
-        row.insert("parry_median_ns".into(), json!(theirs.median()));
-        row.insert("parry_mean_ns".into(), json!(theirs.mean()));
-        row.insert("ratio".into(), json!(theirs.mean() / ours.mean()));
-        row.insert("ratio_of_medians".into(), json!(theirs.median() / ours.median()));
-        Value::Object(row)
+        let placements = self.placements([&p, &q], start, count, arguments.seed);
+        let mut row = compare("pairs", &name, [&p, &q], &placements);
+        row["start"] = json!(start.name());
+        row
     }
+}
+
+/// Times both libraries on the same settings; the row is printed too.
+fn compare(group: &str, name: &str, [p, q]: [&Solid; 2], placements: &[Placement]) -> Value {
+    let meshes = [p, q].map(|body| triangle_mesh(body.vertices(), body.triangles()));
+    let size: f64 = [p, q].map(|body| body.bounds().size().length()).into_iter().sum();
+    let stopwatch = Stopwatch::new();
+    let (mut ours, mut theirs) = (Times::default(), Times::default());
+    let (mut hits, mut apart) = (0, 0);
+    let mut workspace = Workspace::default();
+    // What a solid prepares in its first query is no part of the others.
+    placements.first().and_then(|first| first.distance([p, q], &mut workspace));
+    for block in placements.chunks(BLOCK) {
+        let mut distances = Vec::with_capacity(BLOCK);
+        for Placement { poses: [s, t], direction } in block {
+            let Ok(cast) = Cast::new(p.at(*s), q.at(*t), *direction) else {
+                distances.push(None);
+                continue;
+            };
+            let (answer, time) = stopwatch.time(|| cast.clearance_in(&mut workspace));
+            ours.add(time);
+            let distance = match answer {
+                Ok(Clearance::Overlapping(_)) => Some(0.0),
+                Ok(answer) => answer.distance().filter(|d| d.is_finite()),
+                Err(_) => None,
+            };
+            distances.push(distance);
+        }
+        for (Placement { poses: [s, t], direction }, distance) in block.iter().zip(distances) {
+            let placed = ParrySetting::placed([s, t], *direction);
+            let (other, time) = stopwatch.time(|| placed.cast(&meshes[0], &meshes[1]));
+            theirs.add(time);
+            hits += usize::from(distance.is_some());
+            let agree = match (distance, other) {
+                (Some(x), Some(y)) => (x - y).abs() <= AGREEMENT * size,
+                (None, None) => true,
+                _ => false,
+            };
+            apart += usize::from(!agree);
+        }
+    }
+    ours.sort();
+    theirs.sort();
+    let mut row = ours.to_json();
+    row.insert("group".into(), json!(group));
+    row.insert("name".into(), json!(name));
+    row.insert("facets".into(), json!(p.triangles().len() + q.triangles().len()));
+    row.insert("settings".into(), json!(placements.len()));
+    row.insert("hits".into(), json!(hits));
+    row.insert("answers_apart".into(), json!(apart));
+    row.insert("parry_median_ns".into(), json!(theirs.median()));
+    row.insert("parry_mean_ns".into(), json!(theirs.mean()));
+    row.insert("ratio".into(), json!(theirs.mean() / ours.mean()));
+    row.insert("ratio_of_medians".into(), json!(theirs.median() / ours.median()));
+    let row = Value::Object(row);
+    print(&row);
+    row
 }
 
 /// The same body in more and more facets.
@@ -275,45 +296,26 @@ fn growth(arguments: &Arguments) -> Vec<Value> {
         if arguments.quick { &[16_000, 1_000_000] } else { &[16_000, 64_000, 256_000, 1_000_000] };
     let stopwatch = Stopwatch::new();
     let mut rows = Vec::new();
-    println!("\n{:<28} {:>11} {:>11} {:>11} {:>8}", "growth", "build", "median", "mean", "B/facet");
     for &size in sizes {
         let mesh = bumpy_ball(size);
         let (body, build) = stopwatch.time(|| solid(&mesh));
         let Some(body) = body else { continue };
         let mut random = Random::stream(arguments.seed, &[7]);
-        let mut workspace = Workspace::default();
-        let mut times = Times::default();
-        for _ in 0..if arguments.quick { 300 } else { 2_000 } {
-            let Placement { poses, direction } = Placement::draw([1.2, 1.2], &mut random);
-            if let Ok(cast) = Cast::new(body.at(poses[0]), body.at(poses[1]), direction) {
-                times.add(stopwatch.time(|| cast.clearance_in(&mut workspace)).1);
-            }
-        }
-        times.sort();
-        let facets = body.triangles().len();
-        let bytes = body.memory_bytes() as f64 / facets as f64;
-        println!(
-            "{facets:<28} {:>8.1} ms {:>8.1} us {:>8.1} us {bytes:>8.0}",
-            build / 1e6,
-            times.median() / 1e3,
-            times.mean() / 1e3
-        );
-        let mut row = times.to_json();
-        row.insert("group".into(), json!("growth"));
-        row.insert("facets".into(), json!(facets));
-        row.insert("build_ns".into(), json!(build));
-        row.insert("bytes_per_facet".into(), json!(bytes));
-        rows.push(Value::Object(row));
+        let count = if arguments.quick { 20 } else { 100 };
+        let placements: Vec<Placement> =
+            (0..count).map(|_| Placement::draw([1.2, 1.2], &mut random)).collect();
+        let mut row = compare("growth", "bumpy ball", [&body, &body], &placements);
+        let bytes = body.memory_bytes() as f64 / body.triangles().len() as f64;
+        println!("    built in {:.1} ms, {bytes:.0} bytes a facet", build / 1e6);
+        row["build_ns"] = json!(build);
+        row["bytes_per_facet"] = json!(bytes);
+        rows.push(row);
     }
     rows
 }
 
-/// Two slabs of 131,000 facets each.
+/// A slab on another one, at random places.
 fn flat(arguments: &Arguments) -> Vec<Value> {
-    let mesh = slab(DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.25), [180, 180, 4]);
-    let Some(body) = solid(&mesh) else { return Vec::new() };
-    let stopwatch = Stopwatch::new();
-    let mut workspace = Workspace::default();
     let oblique = DQuat::from_xyzw(0.1, 0.7, -0.2, 0.3).normalize();
     let cases = [
         ("resting", 0.25, DVec3::NEG_Z),
@@ -321,39 +323,26 @@ fn flat(arguments: &Arguments) -> Vec<Value> {
         ("sliding aslant", 0.25, DVec3::new(0.6, 0.8, 0.0)),
         ("parting", 0.25, DVec3::Z),
         ("gap 1", 1.25, DVec3::NEG_Z),
+        ("gap 1e-3", 0.251, DVec3::NEG_Z),
+        ("passing over at 1e-6", 0.250_001, DVec3::X),
     ];
-    println!("\n{:<28} {:>11}   {} facets each", "flat on flat", "median", body.triangles().len());
     let mut rows = Vec::new();
-    for (name, height, direction) in cases {
-        for (turned, rotation) in [("", DQuat::IDENTITY), (", turned", oblique)] {
-            let at = DVec3::new(0.125, 0.0625, height);
-            let (Ok(above), Ok(below)) =
-                (Pose::new(rotation, rotation * at), Pose::new(rotation, DVec3::ZERO))
-            else {
-                continue;
-            };
-            let way = rotation * direction;
-            let Ok(cast) = Cast::new(body.at(above), body.at(below), way) else { continue };
-            let answer = cast.clearance().expect("an answer");
-            let mut times = Times::default();
-            for _ in 0..if arguments.quick { 20 } else { 200 } {
-                times.add(stopwatch.time(|| cast.clearance_in(&mut workspace)).1);
+    for parts in [[1, 1, 1], [4, 4, 1], [40, 40, 2], [180, 180, 4]] {
+        let mesh = slab(DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.25), parts);
+        let Some(body) = solid(&mesh) else { continue };
+        for (name, height, direction) in cases {
+            for (turned, rotation) in [("", DQuat::IDENTITY), (", turned", oblique)] {
+                let mut random = Random::stream(arguments.seed, &[9]);
+                let pose = |at| Pose::new(rotation, rotation * at).unwrap_or(Pose::IDENTITY);
+                let mut aside = || random.range(-0.4, 0.4);
+                let placements: Vec<Placement> = (0..if arguments.quick { 50 } else { 200 })
+                    .map(|_| Placement {
+                        poses: [pose(DVec3::new(aside(), aside(), height)), pose(DVec3::ZERO)],
+                        direction: rotation * direction,
+                    })
+                    .collect();
+                rows.push(compare("flat", &format!("{name}{turned}"), [&body; 2], &placements));
             }
-            times.sort();
-            let said = match answer {
-                Clearance::Free(_) => "free".into(),
-                Clearance::Blocked { distance, .. } => format!("blocked at {distance}"),
-                Clearance::Overlapping(overlap) => {
-                    format!("overlapping {:?}", overlap.least_tolerance)
-                }
-            };
-            println!("{:<28} {:>8.1} us   {said}", format!("{name}{turned}"), times.median() / 1e3);
-            let mut row = times.to_json();
-            row.insert("group".into(), json!("flat"));
-            row.insert("name".into(), json!(format!("{name}{turned}")));
-            row.insert("facets".into(), json!(body.triangles().len()));
-            row.insert("answer".into(), json!(said));
-            rows.push(Value::Object(row));
         }
     }
     rows

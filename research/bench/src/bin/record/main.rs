@@ -347,14 +347,17 @@ fn solids(page: &mut String, run: &Value) -> Result<(), Failure> {
     page.push_str("\n## Solids that are not convex\n");
     provenance(page, run)?;
     page.push_str(
-        "Times in µs. Of pairs *x* is parry3d-f64's `cast_shapes` of two `TriMesh` over ours, on the \
-         same settings in the same run, by medians (by means). *flat*: a plate of many facets on \
-         another, as its name says.\n\n\
+        "Times in µs. *x* is parry3d-f64's `cast_shapes` of two `TriMesh` over ours, on the \
+         same settings in the same run, by medians (by means): the least first, and those without \
+         first of all. *flat*: a plate on another, as its name says.\n\n\
          | what | facets | median | mean | parry, median | x |\n\
          |---|---:|---:|---:|---:|---:|\n",
     );
     let micros = |row: &Value, key: &str| rounded(number(row, &[key]) / 1e3);
-    for row in rows(run) {
+    let ratio_of = |row: &Value| row["ratio_of_medians"].as_f64().unwrap_or(0.0);
+    let mut sorted: Vec<&Value> = rows(run).iter().collect();
+    sorted.sort_by(|a, b| ratio_of(a).total_cmp(&ratio_of(b)));
+    for row in sorted {
         let group = text(row, "group");
         let name = if group == "pairs" {
             text(row, "name").into()
@@ -385,8 +388,9 @@ fn solids(page: &mut String, run: &Value) -> Result<(), Failure> {
     if rows(run).iter().any(|row| text(row, "start") == "near") {
         page.push_str(
             "\n*Near*: settings that meet, started 0.02 times the sum of the radii before. *Near miss*: such \
-             settings moved aside until they miss, by at most 0.01 times the sum. All others: 1.05 times \
-             it before each other, and up to 0.7 times it aside.\n",
+             settings moved aside until they miss, by at most 0.01 times the sum. *Touching*: put \
+             forward until they meet, and a millionth of the sum more. All others: 1.05 times it before each \
+             other, and up to 0.7 times it aside.\n",
         );
     }
     Ok(())

@@ -285,11 +285,7 @@ impl<'a> Cast<'a, Solid> {
 
     /// The tolerance that is used, as a length.
     pub fn tolerance(&self) -> f64 {
-        self.options.tolerance.unwrap_or_else(|| {
-            let scene = self.scene(0.0);
-            let squared = scene.moving.permutes && scene.fixed.permutes;
-            if squared { 0.0 } else { NOISES * scene.noise }
-        })
+        self.options.tolerance.unwrap_or_else(|| default_tolerance(&self.scene(0.0)))
     }
 
     pub(crate) fn scene(&self, tolerance: f64) -> Scene<'a> {
@@ -297,17 +293,29 @@ impl<'a> Cast<'a, Solid> {
     }
 
     pub(crate) fn asked(&self) -> Scene<'a> {
-        self.scene(self.tolerance())
+        self.asked_with_tolerance().0
+    }
+
+    /// The bodies shrunk by half the tolerance, and that.
+    fn asked_with_tolerance(&self) -> (Scene<'a>, f64) {
+        if let Some(tolerance) = self.options.tolerance {
+            return (self.scene(tolerance), tolerance);
+        }
+        let bare = self.scene(0.0);
+        let tolerance = default_tolerance(&bare);
+        let asked =
+            if tolerance == 0.0 { bare } else { bare.resized(tolerance / 2.0, self.options.keep) };
+        (asked, tolerance)
     }
 
     /// The same, of bodies that the default tolerance leaves something of.
     pub(crate) fn asked_of_something(&self) -> Result<Scene<'a>, QueryError> {
-        let tolerance = self.tolerance();
+        let (scene, tolerance) = self.asked_with_tolerance();
         // One that was given was checked then.
         if self.options.tolerance.is_none() {
             self.check_left(tolerance)?;
         }
-        Ok(self.scene(tolerance))
+        Ok(scene)
     }
 
     /// How far the moving body can move from where it is.
@@ -570,6 +578,12 @@ impl<'a> Cast<'a, Solid> {
         let found = first(&scene, Aim::Least, f64::INFINITY, workspace, steps)?;
         Some(found.bounded(&scene).negated().clamped())
     }
+}
+
+/// The tolerance of bodies for which none was given, which `bare` has as they are.
+fn default_tolerance(bare: &Scene) -> f64 {
+    let squared = bare.moving.permutes && bare.fixed.permutes;
+    if squared { 0.0 } else { NOISES * bare.noise }
 }
 
 /// The least of all tolerances, from above, from which on something holds: doubled from the first end until it

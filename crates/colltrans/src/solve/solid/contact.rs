@@ -19,7 +19,7 @@
 //! where rounding cannot tell in poses that turn, the place is that of their planes at the contact
 //! point, unless these are all but on edge. Then all that is known from above is that the shrunk bodies
 //! overlap beyond their own upper bound, and from below that the two facets do not meet before the least
-//! gap at any corner that their common shadow may have ([`leaf::least_in_doubt`]); where that says too
+//! gap at any corner that their common shadow may have ([`Opposed::least_in_doubt`]); where that says too
 //! little, whole numbers decide after all. The lower bound is never larger than that of the shrunk bodies.
 //!
 //! So, of [`SolidContact::translation`]: up to `lower` the shrunk bodies do not overlap, which is
@@ -31,10 +31,10 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::leaf::{self, Gap, Meeting, listed, nearest_after};
+use super::leaf::{Gap, Meeting, Opposed, listed, nearest_after};
 use super::rim;
 use super::scene::{Corner, Scene, Side};
-use super::search::{Aim, Found, exact_gap};
+use super::search::{Aim, Found, exact_gap_of};
 use crate::answer::{Bounded, SolidSteps};
 use crate::body::Feature;
 use crate::body::solid::Solid;
@@ -220,11 +220,12 @@ pub(crate) fn true_place(
         let place = bounded(bare, gap, gap.0);
         Bounded { lower: place.lower.min(shrunk.lower), ..place }
     };
+    let facets = Opposed::new(bare, pair);
+    let gap = facets.as_ref().and_then(|facets| facets.least_gap(bare));
     if bare.keeps() {
-        return leaf::gap_of(bare, pair).map_or(shrunk, known);
+        return gap.map_or(shrunk, known);
     }
-    let exact = leaf::gap_of(bare, pair).or_else(|| rim::least_gap_of(bare, &Gap::counts, pair));
-    if let Some(gap) = exact {
+    if let Some(gap) = gap.or_else(|| rim::least_gap_of(bare, &Gap::counts, pair)) {
         return known(gap);
     }
     let slope = normal.dot(bare.setting.direction);
@@ -234,13 +235,16 @@ pub(crate) fn true_place(
     let [back, error] =
         if steep { [0.0, noise] } else { [normal.dot(shift), bare.noise].map(|x| x / slope) };
     let value = (shrunk.value + back).min(shrunk.value);
-    let mut least = leaf::least_in_doubt(bare, pair) / bare.setting.length;
-    if least < value - ENOUGH * noise {
-        if let Some(gap) = exact_gap(bare, Aim::Stop, pair) {
-            return known(gap);
+    // They do not meet as they are, unless they look at each other.
+    let mut least = f64::INFINITY;
+    if let Some(facets) = facets {
+        least = facets.least_in_doubt(bare) / bare.setting.length;
+        if least < value - ENOUGH * noise {
+            if let Some(gap) = exact_gap_of(bare, Aim::Stop, &facets) {
+                return known(gap);
+            }
+            least = f64::INFINITY;
         }
-        // They do not meet as they are.
-        least = f64::INFINITY;
     }
     let lower = (least - noise).min(value - error).min(shrunk.lower);
     Bounded { value, lower, upper: shrunk.upper }

@@ -78,6 +78,9 @@ pub(crate) fn each_gap_of(scene: &Scene, [s, t]: [u32; 2], take: &mut dyn FnMut(
         open.then(|| Upright::new(scene, moving, t as usize)).flatten()
     };
     let (f, g) = (upright(true, s), upright(false, t));
+    if f.is_none() && g.is_none() {
+        return;
+    }
     let front = Facet::facing(scene, true, s as usize, Greater);
     let back = Facet::facing(scene, false, t as usize, Less);
     each_gap(scene, (f.as_slice(), front.as_slice()), (g.as_slice(), back.as_slice()), take);

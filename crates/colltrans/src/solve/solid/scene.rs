@@ -14,6 +14,8 @@
 //! A pose's matrix `R` may be off a rotation by `1e-6`. Then what lies along an axis `n` of the body frame does not lie
 //! along `R n` as far: [`Side::skew`] says by how much, and a facet's normal is turned by [`Side::defect`] at most.
 
+use std::cell::OnceCell;
+
 use glam::{DMat3, DVec3};
 
 use crate::body::pose::rotation_defect;
@@ -75,17 +77,25 @@ impl<'a> Scene<'a> {
     pub(crate) fn new(setting: &Setting<'a, Solid>, [moving, fixed]: [f64; 2], keep: f64) -> Self {
         let frame = frame_along(setting.direction / setting.length);
         let at_origin = [DVec3::ZERO; 2];
-        let mut moving =
+        let moving =
             Side::new((setting.moving, moving, true), setting.moving_matrix, at_origin, frame);
         let offset = setting.exact_offset();
         let fixed = Side::new((setting.fixed, fixed, false), setting.fixed_matrix, offset, frame);
+        let mut scene = Self { setting: *setting, moving, fixed, frame, keep, noise: 0.0 };
+        scene.measure(keep);
+        scene
+    }
+
+    /// Sets what depends on how large the bodies are, and how near they may come.
+    fn measure(&mut self, keep: f64) {
+        let Self { setting, moving, fixed, .. } = self;
         let size = moving.reach() + fixed.reach() + setting.offset.length();
         let keep = if Noise::of(size + keep).is_slight(keep) { 0.0 } else { keep };
         // Along axes that a pose stretches, and rounded.
         let stretch = 1.0 + 2.0 * moving.defect.max(fixed.defect) + 16.0 * f64::EPSILON;
         moving.swell = keep * stretch;
-        let noise = Noise::of(size + keep).point();
-        Self { setting: *setting, moving, fixed, frame, keep, noise }
+        self.noise = Noise::of(size + keep).point();
+        self.keep = keep;
     }
 
     /// Whether a gap is to be kept.
@@ -110,6 +120,13 @@ impl<'a> Scene<'a> {
             Side { amount, shrinking, inward, ..*side }
         };
         Self { moving: resized(&self.moving, moving), fixed: resized(&self.fixed, fixed), ..*self }
+    }
+
+    /// The same with both bodies shrunk by so much, as [`Self::new`] has it with these amounts.
+    pub(crate) fn resized(&self, amount: f64, keep: f64) -> Self {
+        let mut scene = self.shrunk(amount, amount);
+        scene.measure(keep);
+        scene
     }
 
     /// Whether both bodies have the axes of the query frame.
@@ -257,6 +274,40 @@ impl ExactPoint for Corner {
     fn fine(&self, scene: &Scene) -> Fine {
         let side = scene.side(self.moving);
         Fine::placed(&side.matrix, side.offset, &[(1.0, self.local)])
+    }
+}
+
+/// A corner of which more than one sign is asked: where it is in twice the usual precision is found once.
+pub(crate) struct Remembered<'c> {
+    corner: &'c Corner,
+    fine: OnceCell<Fine>,
+}
+
+impl<'c> Remembered<'c> {
+    pub(crate) fn new(corner: &'c Corner) -> Self {
+        Self { corner, fine: OnceCell::new() }
+    }
+}
+
+impl ExactPoint for Remembered<'_> {
+    fn at(&self) -> DVec3 {
+        self.corner.at
+    }
+
+    fn is_exact(&self) -> bool {
+        self.corner.exact
+    }
+
+    fn world(&self, scene: &Scene) -> Option<DVec3> {
+        self.corner.world(scene)
+    }
+
+    fn wide<const N: usize>(&self, scene: &Scene) -> [Integer<N>; 3] {
+        self.corner.wide(scene)
+    }
+
+    fn fine(&self, scene: &Scene) -> Fine {
+        *self.fine.get_or_init(|| self.corner.fine(scene))
     }
 }
 

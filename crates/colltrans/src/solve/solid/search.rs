@@ -11,10 +11,11 @@ use std::collections::BinaryHeap;
 use std::ops::Range;
 
 use super::bound::{Profile, Reason, dismissed, least_gap};
-use super::leaf::{self, Facet, Gap, Meeting, Wanted};
+use super::leaf::{self, Facet, Gap, Meeting, Opposed, Wanted};
 use super::projected::Projected;
 use super::rim::{self, Upright};
 use super::scene::{Scene, Side};
+use super::separate;
 use super::separating_axes::{Reach, SeparatingAxes};
 use crate::answer::SolidSteps;
 use crate::body::solid::tree::Node;
@@ -273,6 +274,11 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
             (self.cut)([0, 0], reason);
             return None;
         }
+        if !scene.is_aligned() && separate::shadows_apart(scene, &p, &q) {
+            self.steps.nodes += 1;
+            (self.cut)([0, 0], Reason::ShadowsApart);
+            return None;
+        }
         let query =
             Query { scene, axes: (!scene.is_aligned()).then(|| SeparatingAxes::new(scene)) };
         seen[0].start(&query, true);
@@ -404,16 +410,16 @@ pub(crate) fn node_rounding(scene: &Scene) -> f64 {
 /// The gap of two facets that block each other, the moving body's first, exact but for its last roundings,
 /// with its error: of their shadows, or of what is on edge.
 pub(crate) fn exact_gap(scene: &Scene, aim: Aim, pair: [u32; 2]) -> Option<(f64, f64)> {
-    let [s, t] = pair.map(|triangle| triangle as usize);
-    let f = Facet::facing(scene, true, s, Ordering::Greater);
-    let g = Facet::facing(scene, false, t, Ordering::Less);
-    let (Some(f), Some(g)) = (f, g) else {
+    let Some(facets) = Opposed::new(scene, pair) else {
         return rim::least_gap_of(scene, &|gap| aim.value(gap).is_some(), pair);
     };
-    let gap = leaf::gap(scene, &f, &g, f64::INFINITY, aim.wanted())?;
+    exact_gap_of(scene, aim, &facets)
+}
+
+/// The same of two facets that look the right way.
+pub(crate) fn exact_gap_of(scene: &Scene, aim: Aim, facets: &Opposed) -> Option<(f64, f64)> {
+    let gap = facets.exact_gap(scene, aim.wanted())?;
     aim.value(&gap)?;
-    let is_sharp = gap.at == Meeting::Near;
-    let gap = if is_sharp { gap } else { leaf::sharpened(scene, &f, &g) };
     Some((gap.least, gap.error))
 }
 

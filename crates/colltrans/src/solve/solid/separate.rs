@@ -31,13 +31,21 @@ const BOXES: f64 = 2.0;
 /// A separating plane of the bodies as they are shrunk, if rounding can tell that there is one; not
 /// always where large faces are apart by no more than they were shrunk.
 pub(crate) fn separation(scene: &Scene) -> Option<Separation> {
-    between_boxes(scene).or_else(|| between_hulls(scene))
+    let [p, q] = [&scene.moving, &scene.fixed].map(|side| Projected::new(scene, side, 0));
+    between_boxes(scene, &p, &q).or_else(|| between_hulls(scene))
+}
+
+/// Whether the boxes of two bodies are so far apart that the separating axes of their query, by which a proof is
+/// checked, say so as well: they take a node for 2 noises more than it is along each coordinate.
+pub(crate) fn shadows_apart(scene: &Scene, p: &Projected, q: &Projected) -> bool {
+    let clear = |found: Separation| found.margin > ROUNDING * scene.noise;
+    !scene.keeps() && between_boxes(scene, p, q).is_some_and(clear)
 }
 
 /// The plane between the boxes of both bodies that leaves the most room, along an edge of one of them.
-fn between_boxes(scene: &Scene) -> Option<Separation> {
+fn between_boxes(scene: &Scene, p: &Projected, q: &Projected) -> Option<Separation> {
     let sides = [&scene.moving, &scene.fixed];
-    let boxes = sides.map(|side| Projected::new(scene, side, 0).local);
+    let boxes = [p.local, q.local];
     let middles = [0, 1].map(|k| sides[k].view * boxes[k].center() + sides[k].view_offset);
     let apart = middles[1] - middles[0];
     let mut best = Separation { normal: DVec3::ZERO, margin: 0.0 };

@@ -7,7 +7,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::super::scene::{Corner, Scene, Side};
+use super::super::scene::{Corner, Remembered, Scene, Side};
 use super::super::sign::rough_turn;
 use crate::body::Aabb;
 use crate::body::solid::Solid;
@@ -184,12 +184,16 @@ impl Turns {
 
     /// Makes all signs exact.
     pub(super) fn resolve(&mut self, scene: &Scene, sides: &Facet, corners: &Facet) {
+        if self.are_certain() {
+            return;
+        }
+        let of_sides = sides.corners.each_ref().map(Remembered::new);
+        let of_corners = corners.corners.each_ref().map(Remembered::new);
         for k in 0..3 {
-            let [a, b] = sides.side(k);
-            for j in 0..3 {
-                let turn = &mut self.0[k][j];
+            let [a, b] = [&of_sides[k], &of_sides[(k + 1) % 3]];
+            for (turn, corner) in self.0[k].iter_mut().zip(&of_corners) {
                 if turn.value.abs() <= turn.error {
-                    turn.sign = scene.turn(a, b, &corners.corners[j]);
+                    turn.sign = scene.turn(a, b, corner);
                 }
             }
         }

@@ -147,66 +147,84 @@ pub(crate) fn sharpened(scene: &Scene, f: &Facet, g: &Facet) -> Gap {
     exact(scene, f, g, &of_f, &of_g, |_| true)
 }
 
-/// The least gap of two triangles, the moving body's first, where they certainly block each other, and
-/// its error; `None` as well where only whole numbers could tell that, which would take longer than a
-/// search.
-pub(crate) fn gap_of(scene: &Scene, [moving, fixed]: [u32; 2]) -> Option<(f64, f64)> {
-    let f = Facet::facing(scene, true, moving as usize, Ordering::Greater)?;
-    let g = Facet::facing(scene, false, fixed as usize, Ordering::Less)?;
-    if scene.keeps() {
-        let gap = keep::gap(scene, &f, &g, f64::INFINITY, Wanted::All)?;
-        return Some((gap.least, gap.error));
-    }
-    let mut of_f = Turns::unless_apart(scene, &f, &g)?;
-    let mut of_g = Turns::unless_apart(scene, &g, &f)?;
-    if scene.is_aligned() {
-        // Coordinates are exact, and so are signs of them, at no cost.
-        of_f.resolve(scene, &f, &g);
-        of_g.resolve(scene, &g, &f);
-        let separated = (0..3).any(|k| separates(scene, &f, k, &g) || separates(scene, &g, k, &f));
-        if separated {
-            return None;
-        }
-    } else if !of_f.are_certain() || !of_g.are_certain() {
-        return None;
-    }
-    match rounded(scene, &f, &g, &of_f, &of_g).judge(SHARP * scene.noise, false) {
-        Rounded::Known(gap) if !gap.counts() => None,
-        Rounded::Known(gap) if gap.error <= FINE * scene.noise => Some((gap.least, gap.error)),
-        // Slivers.
-        Rounded::Known(_) => Some((least_exactly(scene, &f, &g).0, 0.0)),
-        Rounded::Beyond(_) => None,
-    }
+/// Two facets, one that looks along the direction, of the moving body, and one that looks against it.
+pub(crate) struct Opposed {
+    f: Facet,
+    g: Facet,
 }
 
-/// Two triangles, the moving body's first, have no smaller gap than this where the interiors of their
-/// shadows overlap, whatever rounding leaves in doubt; infinite if they face away or certainly do not
-/// overlap.
-pub(crate) fn least_in_doubt(scene: &Scene, [moving, fixed]: [u32; 2]) -> f64 {
-    let f = Facet::facing(scene, true, moving as usize, Ordering::Greater);
-    let g = Facet::facing(scene, false, fixed as usize, Ordering::Less);
-    let (Some(f), Some(g)) = (&f, &g) else { return f64::INFINITY };
-    let of_f = Turns::unless_apart(scene, f, g);
-    let of_g = Turns::unless_apart(scene, g, f);
-    let (Some(of_f), Some(of_g)) = (of_f, of_g) else { return f64::INFINITY };
-    // The gap is linear over either facet, so nowhere less than at the corners of one; and least at a
-    // corner of the common shadow, which is one of those that may be.
-    let anywhere = f.least_off(g, -1.0).max(g.least_off(f, 1.0));
-    let mut least = f64::INFINITY;
-    let mut add = |(value, error): (f64, f64)| least = least.min(value - error);
-    for k in 0..3 {
-        if of_g.may_contain(k) {
-            add(g.height_above(f.corners[k].at));
+impl Opposed {
+    /// Two triangles, if they do.
+    pub(crate) fn new(scene: &Scene, [moving, fixed]: [u32; 2]) -> Option<Self> {
+        let f = Facet::facing(scene, true, moving as usize, Ordering::Greater)?;
+        let g = Facet::facing(scene, false, fixed as usize, Ordering::Less)?;
+        Some(Self { f, g })
+    }
+
+    /// Their least gap, where they certainly block each other, and its error; `None` as well where only whole
+    /// numbers could tell that, which would take longer than a search.
+    pub(crate) fn least_gap(&self, scene: &Scene) -> Option<(f64, f64)> {
+        let Self { f, g } = self;
+        if scene.keeps() {
+            let gap = keep::gap(scene, f, g, f64::INFINITY, Wanted::All)?;
+            return Some((gap.least, gap.error));
         }
-        if of_f.may_contain(k) {
-            let (height, error) = f.height_above(g.corners[k].at);
-            add((-height, error));
+        let mut of_f = Turns::unless_apart(scene, f, g)?;
+        let mut of_g = Turns::unless_apart(scene, g, f)?;
+        if scene.is_aligned() {
+            // Coordinates are exact, and so are signs of them, at no cost.
+            of_f.resolve(scene, f, g);
+            of_g.resolve(scene, g, f);
+            let separated = (0..3).any(|k| separates(scene, f, k, g) || separates(scene, g, k, f));
+            if separated {
+                return None;
+            }
+        } else if !of_f.are_certain() || !of_g.are_certain() {
+            return None;
         }
-        for j in (0..3).filter(|&j| may_cross(&of_f, &of_g, [k, j])) {
-            add(crossing(scene, [f, g], [k, j], &of_f, &of_g));
+        match rounded(scene, f, g, &of_f, &of_g).judge(SHARP * scene.noise, false) {
+            Rounded::Known(gap) if !gap.counts() => None,
+            Rounded::Known(gap) if gap.error <= FINE * scene.noise => Some((gap.least, gap.error)),
+            // Slivers.
+            Rounded::Known(_) => Some((least_exactly(scene, f, g).0, 0.0)),
+            Rounded::Beyond(_) => None,
         }
     }
-    least.max(anywhere)
+
+    /// They have no smaller gap than this where the interiors of their shadows overlap, whatever rounding leaves in
+    /// doubt; infinite if they certainly do not overlap.
+    pub(crate) fn least_in_doubt(&self, scene: &Scene) -> f64 {
+        let Self { f, g } = self;
+        let of_f = Turns::unless_apart(scene, f, g);
+        let of_g = Turns::unless_apart(scene, g, f);
+        let (Some(of_f), Some(of_g)) = (of_f, of_g) else { return f64::INFINITY };
+        // The gap is linear over either facet, so nowhere less than at the corners of one; and least at a
+        // corner of the common shadow, which is one of those that may be.
+        let anywhere = f.least_off(g, -1.0).max(g.least_off(f, 1.0));
+        let mut least = f64::INFINITY;
+        let mut add = |(value, error): (f64, f64)| least = least.min(value - error);
+        for k in 0..3 {
+            if of_g.may_contain(k) {
+                add(g.height_above(f.corners[k].at));
+            }
+            if of_f.may_contain(k) {
+                let (height, error) = f.height_above(g.corners[k].at);
+                add((-height, error));
+            }
+            for j in (0..3).filter(|&j| may_cross(&of_f, &of_g, [k, j])) {
+                add(crossing(scene, [f, g], [k, j], &of_f, &of_g));
+            }
+        }
+        least.max(anywhere)
+    }
+
+    /// Their gap where it is wanted, exact but for its last roundings.
+    pub(crate) fn exact_gap(&self, scene: &Scene, wanted: Wanted) -> Option<Gap> {
+        let found = gap(scene, &self.f, &self.g, f64::INFINITY, wanted)?;
+        // Taken exactly already, or a gap that is kept, which is sharp.
+        let sharp = found.error == 0.0 || found.at == Meeting::Near;
+        Some(if sharp { found } else { sharpened(scene, &self.f, &self.g) })
+    }
 }
 
 #[cfg(test)]
@@ -256,7 +274,8 @@ mod tests {
                 && gap(&scene, &f, &g, f64::INFINITY, Wanted::All).is_some()
             {
                 let least = sharpened(&scene, &f, &g).least;
-                let possible = least_in_doubt(&scene, [0, 0]);
+                let opposed = Opposed::new(&scene, [0, 0]).expect("both look the right way");
+                let possible = opposed.least_in_doubt(&scene);
                 prop_assert!(possible <= least + scene.noise, "{possible}, but {least}");
                 if let Some((exact, _)) = exact_gap(&scene, Aim::Stop, [0, 0]) {
                     prop_assert_eq!(exact, least);

@@ -145,6 +145,7 @@
 //! (outcomes and certificates), `solve` (the two solvers, nearest points, and [`observe`]), `cast` and
 //! `pair` (the queries), `among` (many fixed bodies), [`free`] (all directions), `proof_file`, [`motion`] (bodies that
 //! turn) and `tracker`. `written` and `record` say how
+//! `pair` (the queries), `among` (many fixed bodies), [`free`] (all directions), [`ways`] (several moves), `proof_file` and `tracker`. `written` and `record` say how
 //! all of them are written. [`solid`] holds what is of solids alone.
 
 mod among;
@@ -163,6 +164,7 @@ mod setting;
 pub mod solid;
 mod solve;
 mod tracker;
+pub mod ways;
 mod work;
 mod written;
 

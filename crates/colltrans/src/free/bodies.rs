@@ -10,13 +10,13 @@ use crate::solve::solid::scene::{Corner, Scene, Side};
 
 /// What bounds some facets of one body, in the setting frame.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct View {
-    pub(super) low: DVec3,
-    pub(super) high: DVec3,
+pub(crate) struct View {
+    pub(crate) low: DVec3,
+    pub(crate) high: DVec3,
     /// A unit vector, or 0.
-    pub(super) axis: DVec3,
+    pub(crate) axis: DVec3,
     /// All facets' normals differ from the axis by at most this sine; any, from 1 on.
-    pub(super) spread: f64,
+    pub(crate) spread: f64,
     /// Along the axis.
     pub(super) slab: [f64; 2],
     /// The first part, and how many there are: none of a facet.
@@ -25,32 +25,32 @@ pub(super) struct View {
 
 impl View {
     /// The parts, as numbers of views.
-    pub(super) fn parts(&self) -> std::ops::Range<u32> {
+    pub(crate) fn parts(&self) -> std::ops::Range<u32> {
         self.parts[0]..self.parts[0] + self.parts[1]
     }
 
-    pub(super) fn is_facet(&self) -> bool {
+    pub(crate) fn is_facet(&self) -> bool {
         self.parts[1] == 0
     }
 
-    pub(super) fn size(&self) -> f64 {
+    pub(crate) fn size(&self) -> f64 {
         (self.high - self.low).length_squared()
     }
 }
 
 /// Two solids, the moving one first.
-pub(super) struct Bodies<'a> {
+pub(crate) struct Bodies<'a> {
     /// Along `z`: then its query frame is the setting frame.
     pub(super) scene: Scene<'a>,
     corners: [Vec<Corner>; 2],
-    pub(super) views: [Vec<View>; 2],
+    pub(crate) views: [Vec<View>; 2],
     /// Whether a turned normal is exact.
     pub(super) permutes: [bool; 2],
 }
 
 impl<'a> Bodies<'a> {
     /// Of a scene along `z`.
-    pub(super) fn new(scene: Scene<'a>) -> Self {
+    pub(crate) fn new(scene: Scene<'a>) -> Self {
         let sides = [&scene.moving, &scene.fixed];
         let corners = sides.map(|side| {
             let count = side.solid.vertices().len() as u32;
@@ -61,18 +61,18 @@ impl<'a> Bodies<'a> {
         Self { scene, corners, views, permutes }
     }
 
-    pub(super) fn corner(&self, spot: Spot) -> &Corner {
+    pub(crate) fn corner(&self, spot: Spot) -> &Corner {
         &self.corners[usize::from(!spot.moving)][spot.vertex as usize]
     }
 
     /// The corners of a triangle.
-    pub(super) fn spots(&self, moving: bool, triangle: u32) -> [Spot; 3] {
+    pub(crate) fn spots(&self, moving: bool, triangle: u32) -> [Spot; 3] {
         let solid = self.scene.side(moving).solid;
         solid.triangles()[triangle as usize].map(|vertex| Spot { moving, vertex })
     }
 
     /// The triangle of a view.
-    pub(super) fn triangle(&self, moving: bool, view: u32) -> u32 {
+    pub(crate) fn triangle(&self, moving: bool, view: u32) -> u32 {
         view - self.scene.side(moving).solid.nodes().len() as u32
     }
 }

@@ -19,7 +19,7 @@ const U: f64 = f64::EPSILON / 2.0;
 
 /// A vertex of one of the bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Spot {
+pub(crate) struct Spot {
     pub(super) moving: bool,
     pub(super) vertex: u32,
 }

@@ -24,6 +24,8 @@ mod rest;
 mod search;
 mod window;
 
+pub(crate) use bodies::{Bodies, View};
+
 pub use answer::{CellKind, FreeArc, FreeCell, FreeDirections, FreePiece, FreePoint, Verdict};
 pub use blocker::{CellBlocker, DirectionCell};
 pub use error::FreeError;

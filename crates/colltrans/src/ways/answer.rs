@@ -1,0 +1,278 @@
+//! The answer: legs with their proofs, and their check.
+
+use std::sync::atomic::AtomicBool;
+
+use glam::DVec3;
+
+use super::candidates::directions;
+use super::options::{Searched, WayOptions};
+use super::pairs::{Pair, displaced};
+use super::search::{Group, Move, Scale, Search, border};
+use crate::answer::CertificateError;
+use crate::body::Placed;
+use crate::body::solid::{AsSolid, Solid};
+use crate::cast::Cast;
+use crate::cast::solid::{SolidCertificate, SolidOptions, StartProof};
+use crate::free::FreeError;
+use crate::setting::error::QueryError;
+
+/// The share of the tolerance that is planned with.
+const SLACK: f64 = 0.8;
+/// Where casts of legs that end do, in multiples of their motion: beyond 1, so that rounding leaves it proven to 1.
+const END: f64 = 1.0 + 1.0 / (1 << 30) as f64;
+/// Bodies that are searched together, at most.
+const MOST_BODIES: usize = Group::BITS as usize - 1;
+
+/// Moves one after another, the last without an end.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WayOut {
+    /// What to do, in order.
+    pub legs: Vec<Leg>,
+    /// The tolerance: all bodies are shrunk by half of it.
+    pub tolerance: f64,
+    /// What was searched.
+    pub searched: Searched,
+}
+
+/// A move: some of the bodies, as one, along a line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Leg {
+    /// Who moves, positions in increasing order. With the last leg they are gone.
+    pub bodies: Vec<usize>,
+    /// Where to, of length 1 but for rounding.
+    pub direction: DVec3,
+    /// How far; infinite for the last leg.
+    pub travel: f64,
+    /// By which vector, exactly; for the last leg the direction.
+    pub motion: DVec3,
+    /// For each body that moves and each that stays.
+    pub proofs: Vec<LegProof>,
+}
+
+/// Why a body does not hit another on a leg.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LegProof {
+    /// The one that moves, and the other.
+    pub bodies: [usize; 2],
+    /// Of the cast along the motion, before a little more than 1, or without an end.
+    pub certificate: SolidCertificate,
+}
+
+/// Is there a way out in several moves?
+#[derive(Debug, Clone, PartialEq)]
+pub enum WaysOut {
+    /// This one.
+    Found(WayOut),
+    /// None was found. That is no proof that there is none.
+    NotFound {
+        /// What was searched.
+        searched: Searched,
+    },
+}
+
+impl WaysOut {
+    /// How can a body leave another one by translations? Bodies of either kind; a convex one as the solid that it is.
+    ///
+    /// The first body is 0 and moves; the second one, 1, is fixed.
+    ///
+    /// # Errors
+    /// Bodies that no cast can be asked about; open shells; an overlap where they are (with 0.8 of the tolerance).
+    ///
+    /// ```
+    /// use colltrans::glam::DVec3;
+    /// use colltrans::ways::{WayOptions, WaysOut};
+    /// use colltrans::{ConvexPolyhedron, Pose, Solid};
+    ///
+    /// // A bar in a channel that is closed at the top but for a window at its end.
+    /// let block = |low: [f64; 3], high: [f64; 3]| {
+    ///     ConvexPolyhedron::cuboid(DVec3::from(low), DVec3::from(high))
+    /// };
+    /// let walls = [
+    ///     block([-1.0, -1.0, -1.0], [9.0, 4.0, 0.0])?,
+    ///     block([-1.0, -1.0, 0.0], [9.0, 0.0, 3.0])?,
+    ///     block([-1.0, 3.0, 0.0], [9.0, 4.0, 3.0])?,
+    ///     block([-1.0, 0.0, 0.0], [0.0, 3.0, 3.0])?,
+    ///     block([8.0, 0.0, 0.0], [9.0, 3.0, 3.0])?,
+    ///     block([-1.0, -1.0, 3.0], [5.0, 4.0, 4.0])?,
+    /// ];
+    /// let channel = Solid::from_pieces(&walls)?;
+    /// let bar = block([0.5, 0.5, 0.5], [2.5, 2.5, 2.5])?;
+    /// let at = Pose::IDENTITY;
+    /// let WaysOut::Found(way) = WaysOut::of(&bar.at(at), &channel.at(at), &WayOptions::default())?
+    /// else {
+    ///     unreachable!("along x, then up")
+    /// };
+    /// assert_eq!(way.legs.len(), 2);
+    /// assert_eq!(way.legs[1].travel, f64::INFINITY);
+    /// let bar = Solid::from_pieces([&bar])?;
+    /// way.verify(&[bar.at(at), channel.at(at)])?;
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn of<A: AsSolid, B: AsSolid>(
+        moving: &Placed<'_, A>,
+        fixed: &Placed<'_, B>,
+        options: &WayOptions,
+    ) -> Result<Self, FreeError> {
+        let a = moving.body.as_solid().map_err(QueryError::from)?.at(moving.pose);
+        let b = fixed.body.as_solid().map_err(QueryError::from)?.at(fixed.pose);
+        Self::among(&[a, b], &[1], options, None)
+    }
+
+    /// How do some of several bodies leave the others? Those that are fixed stay; of the others, any may move, alone
+    /// or several as one, before some of them leave. Ends with [`FreeError::Cancelled`] once the flag is set.
+    ///
+    /// Legs are told as moves against a *base* that stays: what is fixed, or else the largest body. There is nothing to
+    /// be found of fewer than two bodies, and more than 63 are not searched.
+    ///
+    /// # Errors
+    /// As [`Self::of`], of any pair.
+    pub fn among(
+        bodies: &[Placed<'_, Solid>],
+        fixed: &[usize],
+        options: &WayOptions,
+        cancel: Option<&AtomicBool>,
+    ) -> Result<Self, FreeError> {
+        if !(2..=MOST_BODIES).contains(&bodies.len()) {
+            return Ok(Self::NotFound { searched: Searched::default() });
+        }
+        let tolerance = tolerance(bodies, options)?;
+        let mut pairs = Vec::new();
+        for j in 1..bodies.len() {
+            for i in 0..j {
+                pairs.push(Pair::new([bodies[i], bodies[j]], SLACK * tolerance)?);
+            }
+        }
+        let mask = fixed.iter().fold(0, |mask, &k| mask | 1 << k);
+        let base = fixed.first().copied().unwrap_or_else(|| largest(bodies));
+        let directions = directions(bodies, &options.directions);
+        let who = (bodies.len(), mask | 1 << base, base);
+        let scale = scale(bodies, base, tolerance, options.step);
+        let mut search = Search::new(pairs, who, directions, scale, options, cancel);
+        let found = search.run(|moves| certified(bodies, moves, tolerance))?;
+        let searched = search.searched;
+        Ok(match found {
+            Some(legs) => Self::Found(WayOut { legs, tolerance, searched }),
+            None => Self::NotFound { searched },
+        })
+    }
+}
+
+impl WayOut {
+    /// Checks all legs against the bodies, placed as they were asked about; no search plays a part. A place is a pose
+    /// displaced by the sum of the motions so far, rounded where the pose itself is no whole multiple of their grid.
+    ///
+    /// # Errors
+    /// What is not proven.
+    pub fn verify(&self, bodies: &[Placed<'_, Solid>]) -> Result<(), FreeError> {
+        let mut at = vec![DVec3::ZERO; bodies.len()];
+        for (k, leg) in self.legs.iter().enumerate() {
+            let last = k + 1 == self.legs.len();
+            let group = leg.bodies.iter().fold(0, |mask, &b| mask | 1 << b);
+            let pairs = border(group, bodies.len());
+            let told: Vec<[usize; 2]> = leg.proofs.iter().map(|proof| proof.bodies).collect();
+            if pairs.is_empty() || told != pairs || (leg.travel == f64::INFINITY) != last {
+                return Err(CertificateError::Cover { entry: 0 }.into());
+            }
+            for LegProof { bodies: [i, j], certificate } in &leg.proofs {
+                let by = at[*i] - at[*j];
+                let cast = of_leg([bodies[*i], bodies[*j]], by, leg.motion, last, self.tolerance)?;
+                cast.verify(certificate)?;
+                if !passes(certificate, last) {
+                    let claimed = if last { f64::INFINITY } else { 1.0 };
+                    let proven = certificate.lower;
+                    return Err(CertificateError::Bound { proven, claimed }.into());
+                }
+            }
+            leg.bodies.iter().for_each(|&b| at[b] += leg.motion);
+        }
+        Ok(())
+    }
+}
+
+/// The cast of a leg.
+fn of_leg<'a>(
+    pair: [Placed<'a, Solid>; 2],
+    by: DVec3,
+    motion: DVec3,
+    last: bool,
+    tolerance: f64,
+) -> Result<Cast<'a, Solid>, QueryError> {
+    let end = (!last).then_some(END);
+    let options = SolidOptions::default().with_tolerance(tolerance).with_before(end);
+    displaced(pair, by, motion)?.with_options(options)
+}
+
+/// Whether nothing is overlapped at the start, and nothing hit on the way.
+fn passes(certificate: &SolidCertificate, last: bool) -> bool {
+    let end = if last { f64::INFINITY } else { 1.0 };
+    matches!(certificate.start, StartProof::Apart(_))
+        && certificate.stop.is_none()
+        && certificate.lower >= end
+}
+
+/// The legs of a plan, if all of them can be proven.
+fn certified(
+    bodies: &[Placed<'_, Solid>],
+    moves: &[Move],
+    tolerance: f64,
+) -> Result<Option<Vec<Leg>>, FreeError> {
+    let mut at = vec![DVec3::ZERO; bodies.len()];
+    let mut legs = Vec::new();
+    for (k, &Move { group, motion }) in moves.iter().enumerate() {
+        let last = k + 1 == moves.len();
+        let mut proofs = Vec::new();
+        for [i, j] in border(group, bodies.len()) {
+            let cast = of_leg([bodies[i], bodies[j]], at[i] - at[j], motion, last, tolerance)?;
+            let certificate = cast.certified_clearance()?.1;
+            if !passes(&certificate, last) {
+                return Ok(None);
+            }
+            proofs.push(LegProof { bodies: [i, j], certificate });
+        }
+        let own: Vec<usize> = (0..bodies.len()).filter(|k| group >> k & 1 == 1).collect();
+        own.iter().for_each(|&b| at[b] += motion);
+        let travel = if last { f64::INFINITY } else { motion.length() };
+        legs.push(Leg { bodies: own, direction: motion.normalize(), travel, motion, proofs });
+    }
+    Ok(Some(legs))
+}
+
+/// That of all casts: the one given, or the largest default one.
+fn tolerance(bodies: &[Placed<'_, Solid>], options: &WayOptions) -> Result<f64, QueryError> {
+    if let Some(given) = options.tolerance {
+        return Ok(given);
+    }
+    let mut most = 0.0_f64;
+    for j in 1..bodies.len() {
+        for i in 0..j {
+            most = most.max(Cast::new(bodies[i], bodies[j], DVec3::Z)?.tolerance());
+        }
+    }
+    Ok(most)
+}
+
+fn volume_of_box(body: &Placed<'_, Solid>) -> f64 {
+    body.body.bounds().size().element_product()
+}
+
+fn largest(bodies: &[Placed<'_, Solid>]) -> usize {
+    let volume = |k: &usize| volume_of_box(&bodies[*k]);
+    (0..bodies.len()).rev().max_by(|a, b| volume(a).total_cmp(&volume(b))).unwrap_or(0)
+}
+
+fn scale(bodies: &[Placed<'_, Solid>], base: usize, tolerance: f64, step: f64) -> Scale {
+    let size = |body: &Placed<'_, Solid>| body.body.bounds().size().max_element();
+    let far: f64 = bodies.iter().map(size).sum::<f64>() * 2.0;
+    let others = bodies.iter().enumerate().filter(|(k, _)| *k != base);
+    let least = others.map(|(_, body)| size(body)).fold(f64::INFINITY, f64::min);
+    let step = step * least;
+    // With no tolerance there is no slack: then only the sums have to be exact.
+    let off = if tolerance > 0.0 { (0.1 * tolerance).min(0.1 * step) } else { 1e-6 * step };
+    let fine = if tolerance > 0.0 { off / 16.0 } else { far * f64::EPSILON * 4096.0 };
+    Scale { far, step, grain: step, off, grid: power_of_two(fine) }
+}
+
+/// The largest power of two up to a number.
+fn power_of_two(x: f64) -> f64 {
+    f64::from_bits(x.max(f64::MIN_POSITIVE).to_bits() & (0x7ff << 52))
+}

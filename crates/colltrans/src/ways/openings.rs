@@ -1,0 +1,243 @@
+//! Where along a first move a second one is possible.
+//!
+//! `A` has moved by `s` and goes along `d`. At `t` it turns and goes along `e`, as far as `far`. Facets `f` of `A` and
+//! `g` of `B` with `n_f.e > 0 > n_g.e` are in its way where `t d + tau e`, `0 < tau < far`, is inside of the convex
+//! `g - f - s`: a polygon in `(t, tau)`, whose shadow is an **open interval of `t`**. What all intervals leave is
+//! closed: openings, single values too. An interval is not cut to the range of `t`, for then its cut end would be an
+//! opening. Of nodes the box of differences is sliced likewise, and a pair whose interval is covered is dropped; the
+//! widest are looked at first.
+
+use glam::DVec3;
+
+use crate::free::{Bodies, View};
+
+/// An open interval.
+type Span = [f64; 2];
+
+/// A question about two bodies.
+pub(super) struct Question {
+    /// The displacement of the moving body against the other.
+    pub(super) from: DVec3,
+    /// The first direction, and the second, of length 1 and not parallel.
+    pub(super) along: [DVec3; 2],
+    /// How far along the first.
+    pub(super) end: f64,
+    /// How far along the second.
+    pub(super) far: f64,
+}
+
+impl Question {
+    /// The values of `t` where the second direction is blocked: disjoint open intervals, in order. Adds to `looks`.
+    pub(super) fn blocked(&self, bodies: &Bodies, looks: &mut u64) -> Vec<Span> {
+        let mut blocked = Vec::new();
+        let mut stack = vec![([0_u32, 0], [0.0, self.end])];
+        while let Some((pair, span)) = stack.pop() {
+            if covers(&blocked, span) {
+                continue;
+            }
+            let [a, b] = [0, 1].map(|k| &bodies.views[k][pair[k] as usize]);
+            if a.is_facet() && b.is_facet() {
+                if let Some(span) = self.of_facets(bodies, pair) {
+                    add(&mut blocked, span);
+                }
+                continue;
+            }
+            let first = b.is_facet() || (!a.is_facet() && a.size() >= b.size());
+            let parts = if first { a.parts() } else { b.parts() };
+            let pairs = parts.map(|k| if first { [k, pair[1]] } else { [pair[0], k] });
+            let mut found: Vec<([u32; 2], Span)> = Vec::new();
+            for pair in pairs {
+                *looks += 1;
+                let views = [0, 1].map(|k| &bodies.views[k][pair[k] as usize]);
+                found.extend(self.of_nodes(views).map(|span| (pair, span)));
+            }
+            found.sort_by(|x, y| (x.1[1] - x.1[0]).total_cmp(&(y.1[1] - y.1[0])));
+            stack.append(&mut found);
+        }
+        blocked
+    }
+
+    /// An interval that holds those of all facets of two nodes, cut to the range.
+    fn of_nodes(&self, [a, b]: [&View; 2]) -> Option<Span> {
+        let [d, e] = self.along;
+        let looks_away = |axis: DVec3, spread: f64| spread < 1.0 && axis.dot(e) <= -spread;
+        if looks_away(a.axis, a.spread) || looks_away(-b.axis, b.spread) {
+            return None;
+        }
+        let (low, high) = (b.low - a.high - self.from, b.high - a.low - self.from);
+        let mut polygon = Polygon::new([self.end, self.far]);
+        for k in 0..3 {
+            polygon.cut([d[k], e[k]], high[k]);
+            polygon.cut([-d[k], -e[k]], -low[k]);
+        }
+        polygon.range()
+    }
+
+    /// The interval of two facets, if it meets the range.
+    fn of_facets(&self, bodies: &Bodies, pair: [u32; 2]) -> Option<Span> {
+        let [d, e] = self.along;
+        let normal = |k: usize| bodies.views[k][pair[k] as usize].axis;
+        if normal(0).dot(e) <= FLAT || normal(1).dot(e) >= -FLAT {
+            return None;
+        }
+        let corners = [true, false].map(|moving| {
+            let triangle = bodies.triangle(moving, pair[usize::from(!moving)]);
+            bodies.spots(moving, triangle).map(|spot| bodies.corner(spot).at)
+        });
+        let across = d.cross(e);
+        let scale = across.length_squared().recip();
+        // Differences: their height over the plane of both directions, and their place in it.
+        let mut differences = [(0.0, [0.0; 2]); 9];
+        for (k, difference) in differences.iter_mut().enumerate() {
+            let v = corners[1][k % 3] - corners[0][k / 3] - self.from;
+            let place = [v.cross(e).dot(across) * scale, d.cross(v).dot(across) * scale];
+            *difference = (across.dot(v), place);
+        }
+        let span = shadow(&slice(&differences), self.far)?;
+        (span[1] > 0.0 && span[0] < self.end).then_some(span)
+    }
+}
+
+/// Facets that a direction slides along to within this sine do not block it.
+const FLAT: f64 = 1e-12;
+
+/// Corners, and more, of the slice at height 0; nothing if all are on one side.
+fn slice(differences: &[(f64, [f64; 2]); 9]) -> Vec<[f64; 2]> {
+    let mut points = Vec::with_capacity(20);
+    if !differences.iter().any(|x| x.0 > 0.0) {
+        return points;
+    }
+    for (h, p) in differences.iter().filter(|x| x.0 < 0.0) {
+        for (i, q) in differences.iter().filter(|x| x.0 >= 0.0) {
+            let share = h / (h - i);
+            points.push([0, 1].map(|k| p[k] + share * (q[k] - p[k])));
+        }
+    }
+    points
+}
+
+/// The range of the first coordinate over the part of a hull whose second one is between 0 and `far`.
+fn shadow(points: &[[f64; 2]], far: f64) -> Option<Span> {
+    let mut span = [f64::INFINITY, f64::NEG_INFINITY];
+    let mut put = |t: f64| span = [span[0].min(t), span[1].max(t)];
+    for p in points {
+        if p[1] > 0.0 && p[1] < far {
+            put(p[0]);
+        }
+        for q in points {
+            for limit in [0.0, far] {
+                if p[1] < limit && q[1] > limit {
+                    put(p[0] + (limit - p[1]) / (q[1] - p[1]) * (q[0] - p[0]));
+                }
+            }
+        }
+    }
+    (span[0] < span[1]).then_some(span)
+}
+
+/// A convex polygon in `(t, tau)`, of up to ten corners.
+struct Polygon {
+    corners: [[f64; 2]; 12],
+    count: usize,
+}
+
+impl Polygon {
+    /// The rectangle from the origin.
+    fn new([t, tau]: [f64; 2]) -> Self {
+        let mut corners = [[0.0; 2]; 12];
+        corners[1] = [t, 0.0];
+        corners[2] = [t, tau];
+        corners[3] = [0.0, tau];
+        Self { corners, count: 4 }
+    }
+
+    /// Keeps what has `a.x <= c`.
+    fn cut(&mut self, a: [f64; 2], c: f64) {
+        let height = |p: &[f64; 2]| c - a[0] * p[0] - a[1] * p[1];
+        let (old, count) = (self.corners, self.count);
+        self.count = 0;
+        for k in 0..count {
+            let (p, q) = (old[k], old[(k + 1) % count]);
+            let (u, v) = (height(&p), height(&q));
+            if u >= 0.0 {
+                self.push(p);
+            }
+            if (u > 0.0 && v < 0.0) || (u < 0.0 && v > 0.0) {
+                let share = u / (u - v);
+                self.push([0, 1].map(|k| p[k] + share * (q[k] - p[k])));
+            }
+        }
+    }
+
+    fn push(&mut self, p: [f64; 2]) {
+        // A line adds one corner to a convex polygon: ten are the most of six.
+        if self.count < self.corners.len() {
+            self.corners[self.count] = p;
+            self.count += 1;
+        }
+    }
+
+    fn range(&self) -> Option<Span> {
+        let corners = &self.corners[..self.count];
+        let least = corners.iter().map(|p| p[0]).reduce(f64::min)?;
+        let most = corners.iter().map(|p| p[0]).reduce(f64::max)?;
+        Some([least, most])
+    }
+}
+
+fn covers(set: &[Span], span: Span) -> bool {
+    set.iter().any(|s| s[0] <= span[0] && span[1] <= s[1])
+}
+
+/// Joins an open interval to disjoint ones. Those that touch stay apart: what is between them is an opening.
+pub(super) fn add(set: &mut Vec<Span>, mut span: Span) {
+    set.retain(|s| {
+        let apart = s[1] <= span[0] || span[1] <= s[0];
+        if !apart {
+            span = [span[0].min(s[0]), span[1].max(s[1])];
+        }
+        apart
+    });
+    let at = set.partition_point(|s| s[0] < span[0]);
+    set.insert(at, span);
+}
+
+/// What blocked intervals leave of `[0, end]`.
+pub(super) fn open(blocked: &[Span], end: f64) -> Vec<Span> {
+    let (mut open, mut at) = (Vec::new(), 0.0_f64);
+    for &[low, high] in blocked {
+        if low >= at {
+            open.push([at, low.min(end)]);
+        }
+        at = at.max(high);
+    }
+    if at <= end {
+        open.push([at, end]);
+    }
+    open
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_between_two_that_touch_is_open() {
+        let mut set = Vec::new();
+        for span in [[3.0, 5.0], [0.0, 1.0], [1.0, 2.0], [4.0, 9.0]] {
+            add(&mut set, span);
+        }
+        assert_eq!(set, [[0.0, 1.0], [1.0, 2.0], [3.0, 9.0]]);
+        assert_eq!(open(&set, 7.0), [[0.0, 0.0], [1.0, 1.0], [2.0, 3.0]]);
+    }
+
+    #[test]
+    fn a_polygon_is_cut_to_its_range() {
+        let mut polygon = Polygon::new([4.0, 4.0]);
+        polygon.cut([1.0, 1.0], 2.0);
+        polygon.cut([-1.0, 0.0], -0.5);
+        assert_eq!(polygon.range(), Some([0.5, 2.0]));
+        polygon.cut([1.0, 0.0], 0.0);
+        assert_eq!(polygon.range(), None);
+    }
+}

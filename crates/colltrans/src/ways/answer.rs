@@ -142,11 +142,12 @@ impl WaysOut {
                 pairs.push(Pair::new([bodies[i], bodies[j]], SLACK * tolerance)?);
             }
         }
-        let mask = fixed.iter().fold(0, |mask, &k| mask | 1 << k);
-        let base = fixed.first().copied().unwrap_or_else(|| largest(bodies));
+        let mask = fixed.iter().filter(|&&k| k < bodies.len()).fold(0, |mask, &k| mask | 1 << k);
+        let stays = fixed.iter().copied().find(|&k| k < bodies.len());
+        let base = stays.unwrap_or_else(|| largest(bodies));
         let directions = directions(bodies, &options.directions);
         let who = (bodies.len(), mask | 1 << base, base);
-        let scale = scale(bodies, base, tolerance, options.step);
+        let scale = scale(bodies, tolerance, options.step);
         let mut search = Search::new(pairs, who, directions, scale, options, cancel);
         let found = search.run(|moves| certified(bodies, moves, tolerance))?;
         let searched = search.searched;
@@ -164,13 +165,20 @@ impl WayOut {
     /// # Errors
     /// What is not proven.
     pub fn verify(&self, bodies: &[Placed<'_, Solid>]) -> Result<(), FreeError> {
+        if self.legs.is_empty() {
+            return Err(CertificateError::Cover { entry: 0 }.into());
+        }
         let mut at = vec![DVec3::ZERO; bodies.len()];
         for (k, leg) in self.legs.iter().enumerate() {
             let last = k + 1 == self.legs.len();
-            let group = leg.bodies.iter().fold(0, |mask, &b| mask | 1 << b);
+            let travel = if last { f64::INFINITY } else { leg.motion.length() };
+            let told_well = leg.travel == travel && leg.direction == leg.motion.normalize();
+            let all = (1..=MOST_BODIES).contains(&bodies.len());
+            let own = leg.bodies.iter().filter(|&&b| all && b < bodies.len());
+            let group = own.fold(0, |mask, &b| mask | 1 << b);
             let pairs = border(group, bodies.len());
             let told: Vec<[usize; 2]> = leg.proofs.iter().map(|proof| proof.bodies).collect();
-            if pairs.is_empty() || told != pairs || (leg.travel == f64::INFINITY) != last {
+            if pairs.is_empty() || told != pairs || !told_well || leg.bodies != members(group) {
                 return Err(CertificateError::Cover { entry: 0 }.into());
             }
             for LegProof { bodies: [i, j], certificate } in &leg.proofs {
@@ -183,20 +191,27 @@ impl WayOut {
                     return Err(CertificateError::Bound { proven, claimed }.into());
                 }
             }
-            leg.bodies.iter().for_each(|&b| at[b] += leg.motion);
+            for &b in &leg.bodies {
+                at[b] += leg.motion;
+            }
         }
         Ok(())
     }
 }
 
+/// The bodies of a group.
+fn members(group: Group) -> Vec<usize> {
+    (0..MOST_BODIES).filter(|k| group >> k & 1 == 1).collect()
+}
+
 /// The cast of a leg.
-fn of_leg<'a>(
-    pair: [Placed<'a, Solid>; 2],
+fn of_leg(
+    pair: [Placed<'_, Solid>; 2],
     by: DVec3,
     motion: DVec3,
     last: bool,
     tolerance: f64,
-) -> Result<Cast<'a, Solid>, QueryError> {
+) -> Result<Cast<'_, Solid>, QueryError> {
     let end = (!last).then_some(END);
     let options = SolidOptions::default().with_tolerance(tolerance).with_before(end);
     displaced(pair, by, motion)?.with_options(options)
@@ -229,8 +244,10 @@ fn certified(
             }
             proofs.push(LegProof { bodies: [i, j], certificate });
         }
-        let own: Vec<usize> = (0..bodies.len()).filter(|k| group >> k & 1 == 1).collect();
-        own.iter().for_each(|&b| at[b] += motion);
+        let own = members(group);
+        for &b in &own {
+            at[b] += motion;
+        }
         let travel = if last { f64::INFINITY } else { motion.length() };
         legs.push(Leg { bodies: own, direction: motion.normalize(), travel, motion, proofs });
     }
@@ -260,12 +277,10 @@ fn largest(bodies: &[Placed<'_, Solid>]) -> usize {
     (0..bodies.len()).rev().max_by(|a, b| volume(a).total_cmp(&volume(b))).unwrap_or(0)
 }
 
-fn scale(bodies: &[Placed<'_, Solid>], base: usize, tolerance: f64, step: f64) -> Scale {
+fn scale(bodies: &[Placed<'_, Solid>], tolerance: f64, step: f64) -> Scale {
     let size = |body: &Placed<'_, Solid>| body.body.bounds().size().max_element();
-    let far: f64 = bodies.iter().map(size).sum::<f64>() * 2.0;
-    let others = bodies.iter().enumerate().filter(|(k, _)| *k != base);
-    let least = others.map(|(_, body)| size(body)).fold(f64::INFINITY, f64::min);
-    let step = step * least;
+    let far = bodies.iter().map(size).sum::<f64>() * 2.0;
+    let step = step * bodies.iter().map(size).fold(0.0, f64::max);
     // With no tolerance there is no slack: then only the sums have to be exact.
     let off = if tolerance > 0.0 { (0.1 * tolerance).min(0.1 * step) } else { 1e-6 * step };
     let fine = if tolerance > 0.0 { off / 16.0 } else { far * f64::EPSILON * 4096.0 };

@@ -29,9 +29,11 @@ pub(super) fn directions(bodies: &[Placed<'_, Solid>], given: &[DVec3]) -> Vec<D
         }
         axes.truncate(MOST);
     } else {
-        given.iter().for_each(|&d| put(&mut axes, d));
+        for &d in given {
+            put(&mut axes, d);
+        }
     }
-    axes.iter().flat_map(|&axis| [axis, -axis]).collect()
+    axes.iter().flat_map(|&axis| [axis, DVec3::ZERO - axis]).collect()
 }
 
 /// The axes of a body that most of its area faces, in the world, the largest first.

@@ -16,7 +16,7 @@ pub struct WayOptions {
     pub places: usize,
     /// Pairs of nodes that openings look at, at most, all in all; a little more, as one is ended once it is begun.
     pub looks: u64,
-    /// A move is worth making if it is this share of the size of the smallest body that may move.
+    /// A move is worth making if it is this share of the size of the largest body.
     pub step: f64,
     /// Directions to try, with their opposites; none: those of large facets of all bodies, and across two of these.
     pub directions: Vec<DVec3>,
@@ -60,7 +60,7 @@ impl WayOptions {
         Self { looks, ..self }
     }
 
-    /// With a least move, as a share of the smallest body's size.
+    /// With a least move, as a share of the largest body's size.
     #[must_use]
     pub fn with_step(self, step: f64) -> Self {
         Self { step, ..self }

@@ -98,11 +98,11 @@ impl<'a> Pair<'a> {
 }
 
 /// The cast of one body against another, displaced by a vector.
-pub(super) fn displaced<'a>(
-    [a, b]: [Placed<'a, Solid>; 2],
+pub(super) fn displaced(
+    [a, b]: [Placed<'_, Solid>; 2],
     by: DVec3,
     d: DVec3,
-) -> Result<Cast<'a, Solid>, QueryError> {
+) -> Result<Cast<'_, Solid>, QueryError> {
     let pose = a.pose.translated(by).map_err(|_| QueryError::Direction { direction: by })?;
     Cast::new(a.body.at(pose), b, d)
 }

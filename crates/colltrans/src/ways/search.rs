@@ -177,7 +177,7 @@ impl<'s, 'a> Search<'s, 'a> {
         let mut found = Vec::new();
         for (k, d) in self.directions.iter().enumerate() {
             for (group, turned) in self.groups(&rooms[k], f64::INFINITY) {
-                found.push(Move { group, motion: if turned { -*d } else { *d } });
+                found.push(Move { group, motion: if turned { DVec3::ZERO - *d } else { *d } });
             }
         }
         found.sort_by_key(|way| way.group.count_ones());
@@ -222,7 +222,9 @@ impl<'s, 'a> Search<'s, 'a> {
                     if pairs.len() > 1 {
                         put(&open(&blocked, room), off, step, &mut stops);
                     }
-                    blocked.into_iter().for_each(|span| add(&mut joint, span));
+                    for span in blocked {
+                        add(&mut joint, span);
+                    }
                 }
                 put(&open(&joint, room), off, step, &mut stops);
             }

@@ -87,6 +87,26 @@ impl Motion {
         Self::of(Piece { velocity: by, ..Piece::resting(pose) })
     }
 
+    /// By the numbers that define it: from a point of the axis to the origin of the body's frame leads `arm`; the body
+    /// turns about the axis by `angle` in radians, and the axis moves by `way`, in world units.
+    ///
+    /// The axis counts as if its length were exactly 1, and is one divided by its length here, unless that is 1 to
+    /// rounding.
+    ///
+    /// # Errors
+    /// As [`Self::turn`].
+    pub fn about(
+        pose: Pose,
+        arm: DVec3,
+        axis: DVec3,
+        angle: f64,
+        way: DVec3,
+    ) -> Result<Self, MotionError> {
+        let is_unit = (axis.length() - 1.0).abs() <= noise::UNIT_VECTOR;
+        let axis = if is_unit { axis } else { unit(axis)? };
+        Self::of(Piece { arm, axis, rate: angle, velocity: way, ..Piece::resting(pose) })
+    }
+
     /// A turn about an axis through a point of the world, by an angle in radians, counter-clockwise as seen
     /// against the axis.
     ///

@@ -6,7 +6,8 @@
 //! [`scene`] in exact coordinates ([`exact`]), and for a sample against the linear programme
 //! ([`simplex`]) and the exact sideways overlap ([`shadow`]). Algorithms that compute distances are
 //! judged by [`distance`], answers of the library about distance and depth by [`nearest`], about one
-//! body among many by [`among`], casts that keep a gap by [`keep`].
+//! body among many by [`among`], casts that keep a gap by [`keep`], bodies that
+//! turn by [`motion`].
 
 pub mod among;
 pub mod check;
@@ -15,6 +16,7 @@ pub mod exact;
 pub mod fuzz;
 pub mod input;
 pub mod keep;
+pub mod motion;
 pub mod nearest;
 pub mod scene;
 pub mod sequences;

@@ -3,7 +3,7 @@
 //! many sequences of settings, each asked of trackers, whose answers are judged in the same way and
 //! compared with those of one-off queries. Or bodies alone, nearly flat ones, each with a cast onto it.
 //! Or distances of settings as they are, near contact and overlapping. Or scenes, one body among many. Or casts
-//! that keep a gap. Or all free directions of solids, each held against casts along some of them.
+//! that keep a gap. Or motions that turn. Or all free directions of solids, each held against casts along some of them.
 //! In all of them bodies are held against the points that they were made of, in exact arithmetic, so
 //! that answers are judged for the input.
 //!
@@ -14,6 +14,7 @@ mod casts;
 mod distances;
 mod free;
 mod keeping;
+mod motions;
 mod scenes;
 mod sequences;
 mod solids;
@@ -41,6 +42,7 @@ campaign --distances N [--seed S] [--only FAMILY]
 campaign --scenes N [--seed S] [--only FAMILY]
 campaign --keeping N [--seed S] [--only FAMILY]
 campaign --solid-keeping N [--seed S] [--only FAMILY]
+campaign --motions N [--seed S] [--only FAMILY]
 campaign --case FAMILY:SEED | FAMILY:SEED:STEP
 ";
 
@@ -51,6 +53,7 @@ struct Arguments {
     solid_distances: Option<u64>,
     solid_keeping: Option<u64>,
     free: Option<u64>,
+    motions: Option<u64>,
     bodies: Option<u64>,
     distances: Option<u64>,
     scenes: Option<u64>,
@@ -96,6 +99,8 @@ fn main() -> ExitCode {
         run(&arguments, NEARLY_FLAT, count, bodies::examine)
     } else if let Some(count) = arguments.distances {
         run(&arguments, &families, count, distances::examine)
+    } else if let Some(count) = arguments.motions {
+        run(&arguments, &families, count, motions::examine)
     } else if let Some(count) = arguments.scenes {
         run(&arguments, &among::FAMILIES, count, scenes::examine)
     } else if let Some(count) = arguments.keeping {
@@ -123,6 +128,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
         solid_distances: None,
         solid_keeping: None,
         free: None,
+        motions: None,
         bodies: None,
         distances: None,
         scenes: None,
@@ -141,6 +147,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
             "--distances" => arguments.distances = Some(number(&value)?),
             "--keeping" => arguments.keeping = Some(number(&value)?),
             "--solid-keeping" => arguments.solid_keeping = Some(number(&value)?),
+            "--motions" => arguments.motions = Some(number(&value)?),
             "--free" => arguments.free = Some(number(&value)?),
             "--solid-distances" => arguments.solid_distances = Some(number(&value)?),
             "--scenes" => arguments.scenes = Some(number(&value)?),

@@ -1,0 +1,168 @@
+//! Motions that turn: the bodies of a setting, one of them or both turning, unscrewing or thrown, with gaps
+//! to be kept and depths that are tolerated. All proofs are checked by the library, a sample with the motion
+//! as a real function.
+
+use colltrans::motion::{Motion, MotionCast, MotionOutcome};
+use colltrans::{Pose, QueryError};
+use colltrans_testkit::oracle::check::Objection;
+use colltrans_testkit::oracle::motion::{Judge, Spin};
+use colltrans_testkit::oracle::settings::setting;
+use colltrans_testkit::random::Random;
+use glam::DVec3;
+
+/// One setting in so many is judged in whole numbers.
+const SAMPLE: u64 = 100;
+
+/// What became of the settings of one family.
+#[derive(Debug, Default, Clone)]
+pub(crate) struct Tally {
+    settings: u64,
+    contacts: u64,
+    grazing: u64,
+    free: u64,
+    overlapping: u64,
+    looks: u64,
+    most_looks: u32,
+    judged: u64,
+    /// Without an answer.
+    open: u64,
+    disagreements: Vec<String>,
+}
+
+impl crate::Tally for Tally {
+    const CHUNK: u64 = 64;
+
+    fn header() -> String {
+        let heads = ["settings", "contacts", "grazing", "free", "overlap"];
+        let rest = ["looks", "most", "judged", "open", "wrong"];
+        heads.iter().chain(&rest).map(|head| format!("{head:>9} ")).collect::<Vec<_>>().concat()
+    }
+
+    fn line(&self) -> String {
+        let looks = self.looks as f64 / self.settings.max(1) as f64;
+        let counts = [self.settings, self.contacts, self.grazing, self.free, self.overlapping]
+            .map(|count| format!("{count:>9} "))
+            .concat();
+        let Self { most_looks, judged, open, .. } = self;
+        let wrong = self.disagreements.len();
+        format!("{counts}{looks:>9.2} {most_looks:>9} {judged:>9} {open:>9} {wrong:>9} ")
+    }
+
+    fn merge(mut self, other: Self) -> Self {
+        self.settings += other.settings;
+        self.contacts += other.contacts;
+        self.grazing += other.grazing;
+        self.free += other.free;
+        self.overlapping += other.overlapping;
+        self.looks += other.looks;
+        self.most_looks = self.most_looks.max(other.most_looks);
+        self.judged += other.judged;
+        self.open += other.open;
+        self.disagreements.extend(other.disagreements);
+        self
+    }
+
+    fn disagreements(&self) -> &[String] {
+        &self.disagreements
+    }
+}
+
+/// Lets the bodies of a setting move, and judges the answer.
+pub(crate) fn examine(family: &str, seed: u64, tally: &mut Tally) {
+    let setting = setting(family, seed);
+    tally.settings += 1;
+    let Ok(bodies) = setting.bodies() else { return };
+    let Ok(cast) = setting.query(&bodies) else { return };
+    let mut random = Random::new(seed ^ 0x0710_7104);
+    let poses = [cast.moving_pose(), cast.fixed_pose()];
+    let reach = |body: &colltrans::ConvexPolyhedron| {
+        body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max)
+    };
+    let [p, q] = [cast.moving(), cast.fixed()];
+    let size = reach(p) + reach(q);
+    let way = cast.direction().normalize_or_zero() * size;
+    let Some(moving) = spin(poses[0], poses[1], way, size, &mut random) else { return };
+    let fixed = if random.one_in(3) {
+        spin(poses[1], poses[0], -way, size, &mut random)
+    } else {
+        Some(rest(poses[1]))
+    };
+    let Some(fixed) = fixed else { return };
+    let keep = match random.index(6) {
+        0 => size * 10.0_f64.powf(random.range(-12.0, -0.5)),
+        1 => -size * 10.0_f64.powf(random.range(-12.0, -1.0)),
+        _ => 0.0,
+    };
+    let judge = Judge { bodies: [p, q], spins: [moving, fixed], keep };
+    if let Err(Objection(what)) = examined(&judge, seed % SAMPLE == 0, tally) {
+        tally.disagreements.push(format!("{family}:{seed} {what}"));
+    }
+}
+
+fn rest(start: Pose) -> Spin {
+    Spin { start, arm: DVec3::ZERO, axis: DVec3::Z, angle: 0.0, way: DVec3::ZERO }
+}
+
+/// The numbers of a motion, and their motion.
+fn spin(start: Pose, other: Pose, way: DVec3, size: f64, random: &mut Random) -> Option<Spin> {
+    let axis = random.direction();
+    let (from, to) = (start.translation(), other.translation());
+    let between = from.lerp(to, random.range(-0.5, 1.5)) + random.vector() * size;
+    let angle = random.range(-1.0, 1.0) * random.pick(&[1e-6, 1.0, 6.0, 6.0, 100.0]);
+    let unit = axis / axis.length();
+    let spin = match random.index(4) {
+        0 => Spin { start, arm: from - between, axis: unit, angle, way: DVec3::ZERO },
+        1 => {
+            let way = unit * (random.range(-1.0, 1.0) * size);
+            Spin { start, arm: from - between, axis: unit, angle, way }
+        }
+        2 => Spin { way: way * random.range(0.2, 4.0), ..rest(start) },
+        _ => {
+            let omega = axis * angle;
+            let (axis, angle) = (omega / omega.length(), omega.length());
+            let way = (to - from) * random.range(0.2, 2.0) + way * random.range(-0.5, 0.5);
+            Spin { start, arm: DVec3::ZERO, axis, angle, way }
+        }
+    };
+    (spin.axis.is_finite() && spin.way.is_finite()).then_some(spin)
+}
+
+/// The library's own motion of these numbers.
+fn motion(spin: &Spin) -> Option<Motion> {
+    let Spin { start, arm, axis, angle, way } = spin;
+    Motion::about(*start, *arm, *axis, *angle, *way).ok()
+}
+
+fn examined(judge: &Judge, in_whole_numbers: bool, tally: &mut Tally) -> Result<(), Objection> {
+    let [Some(moving), Some(fixed)] = judge.spins.each_ref().map(motion) else { return Ok(()) };
+    let cast = MotionCast::new(judge.bodies[0].along(&moving), judge.bodies[1].along(&fixed));
+    let kept = cast.and_then(|cast| {
+        if judge.keep < 0.0 { cast.tolerating(-judge.keep) } else { cast.keeping(judge.keep) }
+    });
+    let cast = kept.map_err(|e| Objection(e.to_string()))?;
+    let outcome = match cast.first_contact() {
+        Ok(outcome) => outcome,
+        Err(QueryError::NotConverged { reason }) => {
+            tally.open += 1;
+            eprintln!("no answer: {reason}");
+            return Ok(());
+        }
+        Err(e) => return Err(Objection(e.to_string())),
+    };
+    cast.verify(outcome.proof()).map_err(|e| Objection(e.to_string()))?;
+    let looks = outcome.steps().looks;
+    tally.looks += u64::from(looks);
+    tally.most_looks = tally.most_looks.max(looks);
+    match &outcome {
+        MotionOutcome::Contact(_) => tally.contacts += 1,
+        MotionOutcome::Grazing(_) => tally.grazing += 1,
+        MotionOutcome::Overlapping(_) => tally.overlapping += 1,
+        _ => tally.free += 1,
+    }
+    let planes: usize = outcome.proof().spans.iter().map(Vec::len).sum();
+    if in_whole_numbers && planes < 60 && judge.bodies.iter().all(|b| b.vertices().len() < 60) {
+        tally.judged += 1;
+        judge.check(&outcome)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,313 @@
+//! Judges first contacts of bodies that turn, with the motion as the real function of its numbers.
+//!
+//! Numbers are whole multiples of `2^-480`: sums are exact, products, roots, sine and cosine are off by a few
+//! of these units, which is nothing beside the `2^-60` of a size that an answer leaves. Nothing of the
+//! library is used but answers and vertices.
+//!
+//! - *Planes.* Each has the gap that is claimed of it, at its time.
+//! - *In between.* At times between two of them the plane between both, `(1 - x) n_a + x n_b`, or the one
+//!   that is to prove it alone, parts the bodies.
+//! - *Meeting.* All triangles of the surface that proves a depth have the origin below them, where the real
+//!   motion has the bodies: as they surround it where they were computed, they do on the way from there.
+
+use std::ops::{Add, Mul, Neg, Sub};
+use std::sync::LazyLock;
+
+use colltrans::motion::{Meeting, Met, MotionOutcome, PlaneAt};
+use colltrans::{ConvexPolyhedron, Pose};
+use dashu_int::IBig;
+use glam::DVec3;
+
+use crate::oracle::check::Objection;
+use crate::oracle::exact::Dyadic;
+
+/// Fractional bits.
+const BITS: usize = 480;
+
+/// Times in between two planes that are looked at.
+const BETWEEN: i64 = 6;
+
+/// A multiple of `2^-480`.
+#[derive(Debug, Clone, PartialEq, PartialOrd)]
+pub struct Fixed(IBig);
+
+impl Fixed {
+    fn new(x: f64) -> Self {
+        let exact = Dyadic::new(x);
+        let finest = -(BITS as i32);
+        if exact.exponent() >= finest || exact.is_zero() {
+            return Self(exact.in_units_of(finest));
+        }
+        Self(IBig::ZERO)
+    }
+
+    fn whole(n: i64) -> Self {
+        Self(IBig::from(n) << BITS)
+    }
+
+    fn zero() -> Self {
+        Self(IBig::ZERO)
+    }
+
+    fn over(&self, by: &Self) -> Self {
+        Self((self.0.clone() << BITS) / by.0.clone())
+    }
+
+    /// Newton's method on whole numbers, from above.
+    fn sqrt(&self) -> Self {
+        let target = self.0.clone() << BITS;
+        if target <= IBig::ZERO {
+            return Self::zero();
+        }
+        let mut root: IBig = IBig::ONE << ((BITS + 700) / 2 + 260);
+        loop {
+            let next: IBig = (root.clone() + target.clone() / root.clone()) >> 1;
+            if next >= root {
+                return Self(root);
+            }
+            root = next;
+        }
+    }
+}
+
+impl Add for Fixed {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self(self.0 + other.0)
+    }
+}
+
+impl Sub for Fixed {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self(self.0 - other.0)
+    }
+}
+
+impl Neg for Fixed {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self(-self.0)
+    }
+}
+
+impl Mul for &Fixed {
+    type Output = Fixed;
+    fn mul(self, other: Self) -> Fixed {
+        Fixed((&self.0 * &other.0) >> BITS)
+    }
+}
+
+type Vector = [Fixed; 3];
+
+fn vector(v: DVec3) -> Vector {
+    v.to_array().map(Fixed::new)
+}
+
+fn plus(a: &Vector, b: &Vector) -> Vector {
+    std::array::from_fn(|k| a[k].clone() + b[k].clone())
+}
+
+fn minus(a: &Vector, b: &Vector) -> Vector {
+    std::array::from_fn(|k| a[k].clone() - b[k].clone())
+}
+
+fn times(a: &Vector, by: &Fixed) -> Vector {
+    a.each_ref().map(|x| x * by)
+}
+
+fn dot(a: &Vector, b: &Vector) -> Fixed {
+    &a[0] * &b[0] + &a[1] * &b[1] + &a[2] * &b[2]
+}
+
+fn cross(a: &Vector, b: &Vector) -> Vector {
+    let part = |i: usize, j: usize| &a[i] * &b[j] - &a[j] * &b[i];
+    [part(1, 2), part(2, 0), part(0, 1)]
+}
+
+/// `pi`, by Machin's formula.
+static PI: LazyLock<Fixed> = LazyLock::new(|| {
+    let arctan = |n: i64| {
+        let (mut sum, mut power) = (Fixed::zero(), Fixed::whole(1).over(&Fixed::whole(n)));
+        for k in 0..240_i64 {
+            let term = power.over(&Fixed::whole(2 * k + 1));
+            sum = if k % 2 == 0 { sum + term } else { sum - term };
+            power = power.over(&Fixed::whole(n * n));
+        }
+        sum
+    };
+    &Fixed::whole(16) * &arctan(5) - &Fixed::whole(4) * &arctan(239)
+});
+
+/// Sine and cosine, by Taylor's series of what whole turns leave.
+fn sin_cos(angle: &Fixed) -> [Fixed; 2] {
+    let turn = &Fixed::whole(2) * &PI;
+    let turns: IBig = angle.0.clone() / turn.0.clone();
+    let r = angle.clone() - Fixed(turns * turn.0);
+    let (mut sums, mut term) = ([Fixed::zero(), Fixed::zero()], Fixed::whole(1));
+    for k in 0..160_i64 {
+        let which = (1 - k % 2) as usize;
+        let signed = if k % 4 < 2 { term.clone() } else { -term.clone() };
+        sums[which] = sums[which].clone() + signed;
+        term = (&term * &r).over(&Fixed::whole(k + 1));
+    }
+    sums
+}
+
+/// What a body does, by the numbers that define it: from `start` it turns about an axis through a point that
+/// is `arm` back from the origin of its frame, by `angle`, and moves by `way`, in a unit of time.
+#[derive(Debug, Clone)]
+pub struct Spin {
+    /// Where it is at time 0.
+    pub start: Pose,
+    /// From a point of the axis to the origin of the body's frame.
+    pub arm: DVec3,
+    /// Of any length near 1.
+    pub axis: DVec3,
+    /// In radians.
+    pub angle: f64,
+    /// Of the axis.
+    pub way: DVec3,
+}
+
+/// The vertices of a body where the real motion has them.
+fn placed(body: &ConvexPolyhedron, spin: &Spin, time: f64) -> Vec<Vector> {
+    let t = Fixed::new(time);
+    let axis = vector(spin.axis);
+    let length = dot(&axis, &axis).sqrt();
+    let axis = axis.map(|x| x.over(&length));
+    let [sin, cos] = sin_cos(&(&Fixed::new(spin.angle) * &t));
+    let turned = |z: &Vector| {
+        let side = cross(&axis, z);
+        let along = times(&axis, &(&dot(&axis, z) * &(Fixed::whole(1) - cos.clone())));
+        plus(&plus(&times(z, &cos), &times(&side, &sin)), &along)
+    };
+    let arm = vector(spin.arm);
+    let base = minus(&plus(&vector(spin.start.translation()), &times(&vector(spin.way), &t)), &arm);
+    let columns = [0, 1, 2].map(|k| vector(spin.start.matrix().col(k)));
+    let place = |y: &DVec3| {
+        let y = vector(*y);
+        let z = (0..3).fold(arm.clone(), |z, k| plus(&z, &times(&columns[k], &y[k])));
+        plus(&base, &turned(&z))
+    };
+    body.vertices().iter().map(place).collect()
+}
+
+/// Two bodies and what they do.
+#[derive(Debug)]
+pub struct Judge<'a> {
+    /// The moving and the fixed body.
+    pub bodies: [&'a ConvexPolyhedron; 2],
+    /// Their motions.
+    pub spins: [Spin; 2],
+    /// The gap to be kept; negative a depth that is tolerated.
+    pub keep: f64,
+}
+
+impl Judge<'_> {
+    fn places(&self, time: f64) -> [Vec<Vector>; 2] {
+        [0, 1].map(|k| placed(self.bodies[k], &self.spins[k], time))
+    }
+
+    /// Whether a normal of any length leaves more than the gap to be kept, and so much more.
+    fn parts(&self, [p, q]: &[Vec<Vector>; 2], normal: &Vector, more: f64) -> bool {
+        let low = q.iter().map(|x| dot(normal, x)).reduce(|a, b| if b < a { b } else { a });
+        let high = p.iter().map(|x| dot(normal, x)).reduce(|a, b| if b > a { b } else { a });
+        let (Some(low), Some(high)) = (low, high) else { return false };
+        let asked = &(Fixed::new(self.keep) + Fixed::new(more)) * &dot(normal, normal).sqrt();
+        low - high >= asked
+    }
+
+    /// Whether an answer is right, by its proof.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn check(&self, outcome: &MotionOutcome) -> Result<(), Objection> {
+        let proof = outcome.proof();
+        let object = |what: String| Err(Objection(what));
+        for planes in &proof.spans {
+            for plane in planes {
+                if !self.parts(&self.places(plane.time), &vector(plane.normal), plane.gap) {
+                    return object(format!(
+                        "the plane at {} has no gap of {:e}",
+                        plane.time, plane.gap
+                    ));
+                }
+            }
+            for pair in planes.windows(2) {
+                self.between(&pair[0], &pair[1])?;
+            }
+        }
+        let reached = proof.spans.iter().flatten().last().map(|plane| plane.time);
+        let claimed = match outcome {
+            MotionOutcome::Contact(of) | MotionOutcome::Grazing(of) => of.lower,
+            MotionOutcome::Overlapping(_) => return self.meets(proof.meeting.as_ref()),
+            _ => 1.0,
+        };
+        if reached.unwrap_or(0.0) != claimed {
+            return object(format!("proven up to {reached:?}, claimed up to {claimed}"));
+        }
+        match (outcome, &proof.meeting) {
+            (MotionOutcome::Contact(of), Some(meeting)) if of.upper == meeting.time => {
+                self.meets(Some(meeting))
+            }
+            (MotionOutcome::Contact(_), _) => object("a contact that is not proven".into()),
+            _ => Ok(()),
+        }
+    }
+
+    fn between(&self, a: &PlaneAt, b: &PlaneAt) -> Result<(), Objection> {
+        for k in 1..BETWEEN {
+            let share = k as f64 / BETWEEN as f64;
+            let time = a.time + share * (b.time - a.time);
+            if time <= a.time || time >= b.time {
+                continue;
+            }
+            let x = (Fixed::new(time) - Fixed::new(a.time))
+                .over(&(Fixed::new(b.time) - Fixed::new(a.time)));
+            let [n, m] = [a, b].map(|plane| vector(plane.normal));
+            let mixed = plus(&n, &times(&minus(&m, &n), &x));
+            let normal = if a.alone { &n } else { &mixed };
+            if !self.parts(&self.places(time), normal, 0.0) {
+                return Err(Objection(format!("no plane parts the bodies at {time}")));
+            }
+        }
+        Ok(())
+    }
+
+    fn meets(&self, meeting: Option<&Meeting>) -> Result<(), Objection> {
+        let Some(Meeting { time, met }) = meeting else {
+            return Err(Objection("that the bodies meet is not proven".into()));
+        };
+        let places = self.places(*time);
+        let difference = |pair: &colltrans::VertexPair| {
+            minus(&places[1][pair.fixed.index()], &places[0][pair.moving.index()])
+        };
+        let holds = match met {
+            Met::Deep(depth) => {
+                let surface = &depth.enclosure;
+                let least = Fixed::new((-self.keep).max(0.0));
+                surface.triangles.iter().zip(&surface.normals).all(|(corners, normal)| {
+                    let normal = vector(*normal);
+                    let asked = &least * &dot(&normal, &normal).sqrt();
+                    corners
+                        .iter()
+                        .all(|k| dot(&normal, &difference(&surface.pairs[*k as usize])) > asked)
+                })
+            }
+            Met::Near(near) => {
+                let total: f64 = near.weights.iter().sum();
+                let weight = |w: f64| Fixed::new(w).over(&Fixed::new(total));
+                let apart = near
+                    .pairs
+                    .iter()
+                    .zip(near.weights)
+                    .fold([0; 3].map(|_| Fixed::zero()), |sum, (pair, w)| {
+                        plus(&sum, &times(&difference(pair), &weight(w)))
+                    });
+                dot(&apart, &apart).sqrt() <= Fixed::new(self.keep)
+            }
+        };
+        if holds { Ok(()) } else { Err(Objection(format!("the bodies do not meet at {time}"))) }
+    }
+}

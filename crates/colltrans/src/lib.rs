@@ -143,9 +143,8 @@
 //! The modules, each using only those before it: `number` (arithmetic and its errors), `body` (poses,
 //! polyhedra and their indices), `setting` (two placed bodies, a direction, and `M`), `answer`
 //! (outcomes and certificates), `solve` (the two solvers, nearest points, and [`observe`]), `cast` and
-//! `pair` (the queries), `among` (many fixed bodies), [`free`] (all directions), `proof_file`, [`motion`] (bodies that
-//! turn) and `tracker`. `written` and `record` say how
-//! `pair` (the queries), `among` (many fixed bodies), [`free`] (all directions), [`ways`] (several moves), `proof_file` and `tracker`. `written` and `record` say how
+//! `pair` (the queries), `among` (many fixed bodies), [`free`] (all directions), [`ways`] (several moves),
+//! `proof_file`, [`motion`] (bodies that turn) and `tracker`. `written` and `record` say how
 //! all of them are written. [`solid`] holds what is of solids alone.
 
 mod among;

@@ -61,7 +61,6 @@ pub use self::look::Met;
 use self::search::{Advanced, End, advance};
 use self::span::Span;
 pub use self::verify::MotionProofError;
-use crate::answer::Distance;
 pub use crate::body::error::MotionError;
 use crate::body::motion::Piece;
 pub use crate::body::motion::{Motion, Moving};
@@ -119,8 +118,9 @@ pub struct MotionContact {
     pub upper: f64,
     /// The poses at the lower bound, to rounding.
     pub poses: [Pose; 2],
-    /// The points of both bodies that are nearest to each other then, in the world, rounded.
-    pub points: [DVec3; 2],
+    /// The points of both bodies that are nearest to each other then, in the world, rounded; none where the distance
+    /// has no answer.
+    pub points: Option<[DVec3; 2]>,
     /// Unit normal in the world, from the moving body to the fixed one, at that time.
     pub normal: Option<DVec3>,
     /// What faces each other across it.
@@ -262,9 +262,9 @@ impl<'a> MotionCast<'a> {
                 End::Free => {}
                 End::Met(time, met) => {
                     proof.meeting = Some(Meeting { time, met });
-                    return contact(&span, proof, steps);
+                    return Ok(contact(&span, proof, steps));
                 }
-                End::Blurred => return contact(&span, proof, steps),
+                End::Blurred => return Ok(contact(&span, proof, steps)),
                 End::Stalled => return Err(QueryError::NotConverged { reason: Stalled::Motion }),
             }
         }
@@ -301,24 +301,22 @@ fn piece_at(pieces: &[Piece], time: f64) -> &Piece {
 }
 
 /// What is to be said where the bodies meet, or may.
-fn contact(
-    span: &Span,
-    proof: MotionProof,
-    steps: MotionSteps,
-) -> Result<MotionOutcome, QueryError> {
+fn contact(span: &Span, proof: MotionProof, steps: MotionSteps) -> MotionOutcome {
     let lower = proof.spans.iter().flatten().last().map_or(0.0, |plane| plane.time);
     let upper = proof.meeting.as_ref().map_or(f64::INFINITY, |meeting| meeting.time);
     let bodies = span.instant(lower).bodies;
     let poses = [bodies.moving_placed().pose, bodies.fixed_placed().pose];
-    let Distance { on_moving, on_fixed, normal, features, .. } = Pair { bodies }.distance()?;
-    let points = [on_moving, on_fixed];
+    // What is proven does not hang on it.
+    let near = Pair { bodies }.distance().ok();
+    let points = near.map(|near| [near.on_moving, near.on_fixed]);
+    let (normal, features) = near.map_or((None, None), |near| (near.normal, near.features));
     let starts = upper == 0.0;
     let contact = MotionContact { lower, upper, poses, points, normal, features, proof, steps };
-    Ok(if starts {
+    if starts {
         MotionOutcome::Overlapping(contact)
     } else if upper.is_finite() {
         MotionOutcome::Contact(contact)
     } else {
         MotionOutcome::Grazing(contact)
-    })
+    }
 }

@@ -64,7 +64,7 @@ impl MotionRecord {
         let upper = upper.is_finite().then_some(*upper);
         Self {
             time: Some(TimeRecord { lower: *lower, upper }),
-            point: Some(coordinates(points[0])),
+            point: points.map(|points| coordinates(points[0])),
             normal: normal.map(coordinates),
             features: contact.features.map(|of| FeaturesRecord::of(of, cast.bodies())),
             ..self

@@ -59,7 +59,7 @@ impl Fixed {
         if target <= IBig::ZERO {
             return Self::zero();
         }
-        let mut root: IBig = IBig::ONE << ((BITS + 700) / 2 + 260);
+        let mut root: IBig = IBig::ONE << (2 * BITS);
         loop {
             let next: IBig = (root.clone() + target.clone() / root.clone()) >> 1;
             if next >= root {

@@ -2,9 +2,9 @@
 //! whose edges are many they tell one in a part of it at once, where snapshots would let a walk pass
 //! hundreds.
 //!
-//! Every section is cut where the *cut* passes it, a climb from the lowest vertex to the top; what is left is a
-//! row of faces, counter-clockwise. One order of all faces, their *ranks*, holds for the rows of all levels (faces
-//! are monotone, so the relation "beside it, to the left" has no cycle once the cut is made). For each
+//! Every section is cut where the *cut* passes it, a climb from the lowest vertex to the top; what is left
+//! is a row of faces, counter-clockwise. One order of all faces, their *ranks*, holds for the rows of all
+//! levels (faces are monotone, so the relation "beside it, to the left" has no cycle once the cut is made). For each
 //! number `k` the edges between faces of ranks below `k` and others form a chain, which is monotone too:
 //! each level crosses one edge of it. Over ranks stands a binary tree, whose nodes are the numbers that
 //! halve it: `node(l, r)` of two ranks, the one with the most trailing zeros in `l + 1..=r`. An edge between

@@ -31,8 +31,9 @@ const EDGES_PER_ENTRY: usize = 4;
 /// there are (measured).
 const STRIDE: f64 = 1.0 / 3.0;
 
-/// Bodies with a section of more edges than so many times the root of all vertices have chains. With 8, ellipsoids of
-/// 20,000 vertices and 16 meridians had them too, and took 103 iterations a planar problem in place of 63.
+/// Bodies with a section of more edges than so many times the root of all vertices have chains. With 8,
+/// ellipsoids of 20,000 vertices and 16 meridians had them too, and took 103 iterations a planar problem in
+/// place of 63.
 pub(super) const RING: f64 = 24.0;
 
 /// Candidates of one round of the search for an extreme entry.

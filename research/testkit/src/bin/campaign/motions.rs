@@ -94,7 +94,7 @@ pub(crate) fn examine(family: &str, seed: u64, tally: &mut Tally) {
         _ => 0.0,
     };
     let judge = Judge { bodies: [p, q], spins: [moving, fixed], keep };
-    if let Err(Objection(what)) = examined(&judge, seed % SAMPLE == 0, tally) {
+    if let Err(Objection(what)) = examined(&judge, seed.is_multiple_of(SAMPLE), tally) {
         tally.disagreements.push(format!("{family}:{seed} {what}"));
     }
 }

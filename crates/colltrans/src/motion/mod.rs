@@ -250,7 +250,7 @@ impl<'a> MotionCast<'a> {
     /// When do the bodies first meet?
     ///
     /// # Errors
-    /// A search that does not end: never seen.
+    /// A search that does not end: seen of bodies that are nearly straight lines, two in a million settings.
     pub fn first_contact(&self) -> Result<MotionOutcome, QueryError> {
         let (mut proof, mut steps) = (MotionProof::default(), MotionSteps::default());
         for span in self.spans() {

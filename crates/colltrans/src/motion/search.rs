@@ -20,7 +20,7 @@ use super::look::{Look, Looker, Met};
 use super::span::Span;
 use crate::body::ConvexPolyhedron;
 
-/// More steps than were ever seen.
+/// More steps than an answer has taken.
 const MOST: usize = 20_000;
 
 /// Which share of the step that the bound allows is taken.
@@ -52,7 +52,7 @@ pub(super) enum End {
     Met(f64, Met),
     /// They come nearer than rounding can tell; that they meet is not proven.
     Blurred,
-    /// Too many steps: never seen.
+    /// Too many steps.
     Stalled,
 }
 

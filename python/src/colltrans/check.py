@@ -66,7 +66,7 @@ _U = Fraction(1, 2**53)
 _UNIT_VECTOR = 32 * _U
 #: Rounding of a coordinate, in sizes of the configuration: the library's noise.
 _NOISE = 32 * _U
-#: What rounding can make of the difference of two bounds, in noises, for bodies widened sideways too.
+#: What rounding makes of the difference of two bounds at most, in noises, of widened bodies too.
 _MOST_ROUNDING = 256
 #: A gap of so many noises or less is slight: points that are as near for certain may not be found.
 _SLIGHT = 9

@@ -33,7 +33,7 @@ test("it opens solved, without a complaint, and is small", async () => {
   const total = loaded.reduce((sum, [, n]) => sum + n, 0);
   console.log(`${loaded.map(([file, n]) => `${file} ${n}`).join(", ")}: ${total} bytes with brotli`);
   // 393,965 when this was written; other compilers make a little more of it.
-  assert.ok(total < 402_000, `${total} bytes`);
+  assert.ok(total < 409_000, `${total} bytes`);
   assert.ok(!read.has("colltrans_assembly.wasm"));
 });
 

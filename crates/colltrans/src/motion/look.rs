@@ -1,6 +1,7 @@
 //! The distance at one time: a plane, or an overlap.
 
-use super::span::{Instant, Span};
+use super::course::Course;
+use super::span::Instant;
 use crate::answer::{Depth, NearPoints, PlaneGap};
 use crate::pair::Pair;
 use crate::setting::VertexPair;
@@ -9,8 +10,8 @@ use glam::DVec3;
 
 /// What is to be seen at a time.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Look<'a> {
-    pub(super) at: Instant<'a>,
+pub(super) struct Look<'a, M> {
+    pub(super) at: Instant<'a, M>,
     pub(super) normal: DVec3,
     /// The real motion's gap beyond what is to be kept, at least; not positive if that is not proven.
     pub(super) gap: f64,
@@ -20,7 +21,7 @@ pub(super) struct Look<'a> {
     pub(super) floor: f64,
 }
 
-impl Look<'_> {
+impl<M> Look<'_, M> {
     pub(super) fn time(&self) -> f64 {
         self.at.time
     }
@@ -53,8 +54,9 @@ pub(super) struct Looker {
 }
 
 impl Looker {
-    pub(super) fn look<'a>(&mut self, span: &Span<'a>, time: f64) -> Look<'a> {
-        let at = span.instant(time);
+    pub(super) fn look<'a, C: Course<'a>>(&mut self, course: &C, time: f64) -> Look<'a, C::Moved> {
+        let at = course.instant(time);
+        let [keep, error] = [course.keep(), course.error()];
         let difference = Difference::new(&at.bodies);
         let found = nearest(&difference, &self.pairs, None);
         self.looks += 1;
@@ -65,15 +67,15 @@ impl Looker {
         }
         let plane = found.plane(&difference).map(|plane| plane.gap);
         let (plane, points) = match plane {
-            Some(plane) if plane.gap > 0.0 || span.keep >= 0.0 => (Some(plane), found.points()),
-            _ if span.keep < 0.0 => self.least_overlap(&difference),
+            Some(plane) if plane.gap > 0.0 || keep >= 0.0 => (Some(plane), found.points()),
+            _ if keep < 0.0 => self.least_overlap(&difference),
             _ => (None, found.points()),
         };
-        let floor = 4.0 * difference.noise.point() + span.error;
+        let floor = 4.0 * difference.noise.point() + error;
         let (normal, gap) =
             plane.map_or((DVec3::X, f64::NEG_INFINITY), |plane| (plane.normal, plane.gap));
-        let gap = gap - span.keep - span.error;
-        let rate = if gap > 0.0 { closing(span, &at, &points, normal) } else { 0.0 };
+        let gap = gap - keep - error;
+        let rate = if gap > 0.0 { closing(course, &at, &points, normal) } else { 0.0 };
         Look { at, normal, gap, rate, floor }
     }
 
@@ -90,15 +92,16 @@ impl Looker {
     }
 
     /// What proves that the real bodies meet at a time.
-    pub(super) fn met(&mut self, span: &Span, time: f64) -> Option<Met> {
-        let pair = Pair { bodies: span.instant(time).bodies };
+    pub(super) fn met<'a>(&mut self, course: &impl Course<'a>, time: f64) -> Option<Met> {
+        let pair = Pair { bodies: course.instant(time).bodies };
+        let [keep, error] = [course.keep(), course.error()];
         self.looks += 1;
-        if span.keep > 0.0 {
+        if keep > 0.0 {
             let near = pair.distance().ok()?.near;
-            return (near.distance + span.error <= span.keep).then_some(Met::Near(near));
+            return (near.distance + error <= keep).then_some(Met::Near(near));
         }
         let depth = pair.depth().ok()?;
-        (depth.lower > span.error - span.keep).then(|| Met::Deep(Box::new(depth)))
+        (depth.lower > error - keep).then(|| Met::Deep(Box::new(depth)))
     }
 }
 
@@ -106,11 +109,13 @@ impl Looker {
 type MeanPair = ([VertexPair; 3], [f64; 3]);
 
 /// How fast such points come together along a normal.
-fn closing(span: &Span, at: &Instant, (pairs, weights): &MeanPair, normal: DVec3) -> f64 {
+fn closing<'a, C: Course<'a>>(
+    course: &C,
+    at: &Instant<'a, C::Moved>,
+    (pairs, weights): &MeanPair,
+    normal: DVec3,
+) -> f64 {
     let means = at.bodies.weighted(pairs, weights);
-    let velocity = |which: usize| {
-        let moved = &at.moved[which];
-        span.piece(which).velocity_of(moved.arm + moved.rotation * means[which])
-    };
+    let velocity = |which: usize| course.velocity(at, which, means[which]);
     normal.dot(velocity(0) - velocity(1))
 }

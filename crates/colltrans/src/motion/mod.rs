@@ -42,10 +42,11 @@
 //! conservative advancement (Mirtich) with a bound of second order: a rotation is a translation to first
 //! order only, so that steps shrink with the square root of what is left, not with what is left.
 //!
-//! The modules, each using only those before it: `span`, `bend` and `arc`, `look`, `search`, `verify`.
+//! The modules, each using only those before it: `span`, `bend` and `arc`, `course`, `look`, `search`, `verify`.
 
 mod arc;
 mod bend;
+mod course;
 #[cfg(feature = "json")]
 mod file;
 mod look;

@@ -14,11 +14,9 @@
 //! What is not joined waits, and time is halved. A search never ends because an estimate is small.
 
 use super::PlaneAt;
-use super::arc;
-use super::bend::{Climbing, SPARE, bend, most_bend, usual};
+use super::bend::{Climbing, SPARE, most_bend};
+use super::course::Course;
 use super::look::{Look, Looker, Met};
-use super::span::Span;
-use crate::body::ConvexPolyhedron;
 
 /// More steps than an answer has taken.
 const MOST: usize = 20_000;
@@ -75,12 +73,12 @@ enum Ahead {
     Something,
 }
 
-struct Search<'s, 'a> {
-    span: &'s Span<'a>,
+struct Search<'s, 'a, C: Course<'a>> {
+    course: &'s C,
     looker: Looker,
     planes: Vec<PlaneAt>,
-    left: Look<'a>,
-    stack: Vec<Look<'a>>,
+    left: Look<'a, C::Moved>,
+    stack: Vec<Look<'a, C::Moved>>,
     end: f64,
     ahead: Ahead,
     /// `K`.
@@ -88,36 +86,31 @@ struct Search<'s, 'a> {
 }
 
 /// Proves as much of a span as it can.
-pub(super) fn advance(span: &Span) -> Advanced {
+pub(super) fn advance<'a>(course: &impl Course<'a>) -> Advanced {
+    let [from, to] = course.times();
     let mut looker = Looker::default();
-    let left = looker.look(span, span.from);
+    let left = looker.look(course, from);
     let mut search = Search {
-        span,
+        course,
         planes: Vec::new(),
         left,
         stack: Vec::new(),
-        end: span.to,
+        end: to,
         ahead: Ahead::Nothing,
-        curvature: usual(span),
+        curvature: course.usual(),
         looker,
     };
     let end = if left.is_apart() {
         search.note(&left, false);
         search.run()
     } else {
-        search.met_from(span.from)
+        search.met_from(from)
     };
     let Search { planes, looker: Looker { looks, supports, .. }, .. } = search;
     Advanced { planes, end, looks, supports }
 }
 
-/// How many vertices of a body move on arcs.
-fn turning_vertices(span: &Span, which: usize) -> usize {
-    let turns = span.piece(which).rate != 0.0;
-    if turns { ConvexPolyhedron::vertices(span.body(which)).len() } else { 0 }
-}
-
-impl<'a> Search<'_, 'a> {
+impl<'a, C: Course<'a>> Search<'_, 'a, C> {
     fn run(&mut self) -> End {
         for _ in 0..MOST {
             if let Some(next) = self.stack.last().copied() {
@@ -144,7 +137,7 @@ impl<'a> Search<'_, 'a> {
         End::Stalled
     }
 
-    fn note(&mut self, look: &Look<'a>, alone: bool) {
+    fn note(&mut self, look: &Look<'a, C::Moved>, alone: bool) {
         if let Some(last) = self.planes.last_mut() {
             last.alone = alone;
         }
@@ -152,19 +145,20 @@ impl<'a> Search<'_, 'a> {
         self.planes.push(PlaneAt { time: look.time(), normal, gap, alone: false });
     }
 
-    fn go_on(&mut self, look: &Look<'a>) {
+    fn go_on(&mut self, look: &Look<'a, C::Moved>) {
         self.note(look, false);
         self.left = *look;
     }
 
     /// Whether all between left and a later plane is proven.
-    fn joins(&mut self, next: &Look) -> bool {
+    fn joins(&mut self, next: &Look<'a, C::Moved>) -> bool {
         let enough = most_bend([self.left.gap, next.gap], 2.0 * SPARE);
         let normals = [self.left.normal, next.normal];
-        let found = bend(self.span, [&self.left.at, &next.at], normals, enough, &Climbing);
+        let ends = [&self.left.at, &next.at];
+        let found = self.course.bend(ends, normals, enough, &Climbing);
         let h = next.time() - self.left.time();
         if h > 0.0 {
-            self.curvature = (found.max(0.0) / h / h).max(1e-3 * usual(self.span));
+            self.curvature = (found.max(0.0) / h / h).max(1e-3 * self.course.usual());
         }
         h == 0.0 || found <= enough
     }
@@ -180,7 +174,7 @@ impl<'a> Search<'_, 'a> {
     }
 
     fn visit(&mut self, time: f64) {
-        let look = self.looker.look(self.span, time);
+        let look = self.looker.look(self.course, time);
         if look.is_apart() {
             self.stack.push(look);
         } else {
@@ -235,9 +229,9 @@ impl<'a> Search<'_, 'a> {
     /// Goes on by the plane at left alone, where that leads farther than the bound: tried from a few steps
     /// on, and twice as far as long as that is proven.
     fn swings_on(&mut self) -> bool {
-        let (from, span) = (self.left.time(), self.span);
+        let (from, course) = (self.left.time(), self.course);
         let Look { gap, rate, .. } = self.left;
-        let vertices: usize = (0..2).map(|which| turning_vertices(span, which)).sum();
+        let vertices = course.arcs();
         let step = self.next_time() - from;
         let mut length = (SWING * step).min(self.end - from);
         // As fast as the gap closes now, there is not enough left of it; but steps that are so short are
@@ -248,8 +242,8 @@ impl<'a> Search<'_, 'a> {
         }
         let mut farthest = None;
         loop {
-            let at = span.instant(from + length);
-            if arc::lost(span, [&self.left.at, &at], self.left.normal) >= KEPT * gap {
+            let at = course.instant(from + length);
+            if course.lost([&self.left.at, &at], self.left.normal) >= KEPT * gap {
                 break;
             }
             farthest = Some(length);
@@ -262,9 +256,9 @@ impl<'a> Search<'_, 'a> {
     }
 
     fn swing_to(&mut self, time: f64) -> bool {
-        let next = self.looker.look(self.span, time);
+        let next = self.looker.look(self.course, time);
         let normal = self.left.normal;
-        let gap = next.at.bodies.proven_gap(normal) - self.span.keep - self.span.error;
+        let gap = self.course.proven_gap(&next.at, normal);
         if !(gap > 0.0 && next.is_apart()) {
             return false;
         }
@@ -281,13 +275,13 @@ impl<'a> Search<'_, 'a> {
         let first = if pad.is_finite() { pad.max(ulp) } else { ulp };
         for k in -1..BEYOND {
             let later = if k < 0 { time } else { time + first * 2.0_f64.powi(k) };
-            if later > self.span.to {
+            if later > self.course.times()[1] {
                 break;
             }
-            if let Some(met) = self.looker.met(self.span, later) {
+            if let Some(met) = self.looker.met(self.course, later) {
                 return End::Met(later, met);
             }
-            if self.looker.look(self.span, later).is_apart() && later > self.left.time() {
+            if self.looker.look(self.course, later).is_apart() && later > self.left.time() {
                 break;
             }
         }

@@ -20,12 +20,12 @@ pub(super) struct Span<'a> {
     pub(super) keep: f64,
 }
 
-/// Both bodies at a time.
+/// Both bodies at a time, and what else a course knows of it.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Instant<'a> {
+pub(super) struct Instant<'a, M = [Moved; 2]> {
     pub(super) time: f64,
     pub(super) bodies: TwoBodies<'a>,
-    pub(super) moved: [Moved; 2],
+    pub(super) moved: M,
 }
 
 impl<'a> Span<'a> {

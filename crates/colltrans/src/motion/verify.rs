@@ -4,10 +4,11 @@
 //! its gap then, less what computed poses may be off; each is joined to the next. That bodies meet is checked
 //! where they are then, and has to hold with as much to spare.
 
-use super::bend::{Looking, SPARE, bend, most_bend};
+use super::bend::Looking;
+use super::course::Course;
 use super::look::Met;
-use super::span::{Instant, Span};
-use super::{Meeting, MotionCast, MotionProof, PlaneAt, arc};
+use super::span::Instant;
+use super::{Meeting, MotionCast, MotionProof, PlaneAt};
 use crate::answer::CertificateError;
 use crate::number::noise;
 use crate::pair::Pair;
@@ -88,22 +89,27 @@ pub(super) fn verify(cast: &MotionCast, proof: &MotionProof) -> Result<[f64; 2],
 }
 
 /// Each plane with its gap, each joined to the next.
-fn chain(span: &Span, which: usize, planes: &[PlaneAt]) -> Result<(), MotionProofError> {
-    let mut before: Option<(&PlaneAt, Instant)> = None;
+fn chain<'a, C: Course<'a>>(
+    course: &C,
+    which: usize,
+    planes: &[PlaneAt],
+) -> Result<(), MotionProofError> {
+    let to = course.times()[1];
+    let mut before: Option<(&PlaneAt, Instant<C::Moved>)> = None;
     for (index, plane) in planes.iter().enumerate() {
         let PlaneAt { time, normal, gap, .. } = *plane;
         let is_unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
-        let is_later = before.is_none_or(|(last, _)| last.time <= time) && time <= span.to;
+        let is_later = before.is_none_or(|(last, _)| last.time <= time) && time <= to;
         if !is_unit || !is_later {
             return Err(MotionProofError::Plane { span: which, index });
         }
-        let at = span.instant(time);
-        let proven = at.bodies.proven_gap(normal) - span.keep - span.error;
+        let at = course.instant(time);
+        let proven = course.proven_gap(&at, normal);
         if !(gap > 0.0 && gap <= proven) {
             return Err(MotionProofError::Gap { span: which, index, proven, claimed: gap });
         }
         if let Some((last, from)) = &before
-            && !is_joined(span, [last, plane], [from, &at])
+            && !course.joins([last, plane], [from, &at], &Looking)
         {
             return Err(MotionProofError::Join { span: which, index: index - 1 });
         }
@@ -112,29 +118,18 @@ fn chain(span: &Span, which: usize, planes: &[PlaneAt]) -> Result<(), MotionProo
     Ok(())
 }
 
-fn is_joined(span: &Span, planes: [&PlaneAt; 2], ends: [&Instant; 2]) -> bool {
-    if ends[0].time == ends[1].time {
-        return true;
-    }
-    let [a, b] = planes;
-    if a.alone {
-        return a.normal == b.normal && a.gap > arc::lost(span, ends, a.normal);
-    }
-    let enough = most_bend([a.gap, b.gap], SPARE);
-    bend(span, ends, [a.normal, b.normal], enough, &Looking) <= enough
-}
-
-fn meets(span: &Span, time: f64, met: &Met) -> Result<(), MotionProofError> {
-    let pair = Pair { bodies: span.instant(time).bodies };
+fn meets<'a>(course: &impl Course<'a>, time: f64, met: &Met) -> Result<(), MotionProofError> {
+    let pair = Pair { bodies: course.instant(time).bodies };
+    let [keep, error] = [course.keep(), course.error()];
     let fails = |reason| MotionProofError::Meeting { time, reason };
     let is_met = match met {
         Met::Deep(depth) => {
             pair.verify(&**depth).map_err(|reason| fails(Some(reason)))?;
-            depth.lower > span.error - span.keep
+            depth.lower > error - keep
         }
         Met::Near(near) => {
             pair.verify(near).map_err(|reason| fails(Some(reason)))?;
-            near.distance + span.error <= span.keep
+            near.distance + error <= keep
         }
     };
     if is_met { Ok(()) } else { Err(fails(None)) }

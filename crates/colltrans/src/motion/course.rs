@@ -1,0 +1,123 @@
+//! What a search and a check ask of two bodies that move during a span of time.
+//!
+//! Notation. As [`bend`](super::bend). A *course* says where the bodies are, how far computed places may be off,
+//! and how far supporting planes may bend: whoever has that of another kind of motion has the search.
+
+use glam::DVec3;
+
+use super::bend::{SPARE, Supports, bend, most_bend, usual};
+use super::span::{Instant, Span};
+use super::{PlaneAt, arc};
+use crate::body::ConvexPolyhedron;
+use crate::body::motion::Moved;
+
+/// Two bodies during a span of time.
+pub(super) trait Course<'a> {
+    /// What else is known of a time.
+    type Moved: Copy;
+
+    /// The times between which it holds.
+    fn times(&self) -> [f64; 2];
+
+    /// How far points may be from where they are computed, for both bodies together.
+    fn error(&self) -> f64;
+
+    /// The gap to be kept; negative a depth that is tolerated.
+    fn keep(&self) -> f64;
+
+    /// Where the bodies are.
+    fn instant(&self, time: f64) -> Instant<'a, Self::Moved>;
+
+    /// The velocity of a point of the moving body (0) or the fixed one (1), in its body's frame.
+    fn velocity(&self, at: &Instant<'a, Self::Moved>, which: usize, point: DVec3) -> DVec3;
+
+    /// `C` between two planes, at least, as far as one cares: a loose one if that is at most `enough`.
+    fn bend(
+        &self,
+        ends: [&Instant<'a, Self::Moved>; 2],
+        normals: [DVec3; 2],
+        enough: f64,
+        supports: &impl Supports,
+    ) -> f64;
+
+    /// `C` of an interval at most, per its square, if the normal hardly turns.
+    fn usual(&self) -> f64;
+
+    /// How many vertices move on arcs that [`Self::lost`] knows; none if it knows nothing.
+    fn arcs(&self) -> usize;
+
+    /// How much of the gap that a plane leaves at the first of two times is lost until the second, at most.
+    fn lost(&self, ends: [&Instant<'a, Self::Moved>; 2], normal: DVec3) -> f64;
+
+    /// What a plane proves at a time of the gap beyond what is to be kept, over all vertices.
+    fn proven_gap(&self, at: &Instant<'a, Self::Moved>, normal: DVec3) -> f64 {
+        at.bodies.proven_gap(normal) - self.keep() - self.error()
+    }
+
+    /// Whether two planes prove the time between them.
+    fn joins(
+        &self,
+        planes: [&PlaneAt; 2],
+        ends: [&Instant<'a, Self::Moved>; 2],
+        supports: &impl Supports,
+    ) -> bool {
+        if ends[0].time == ends[1].time {
+            return true;
+        }
+        let [a, b] = planes;
+        if a.alone {
+            return a.normal == b.normal && a.gap > self.lost(ends, a.normal);
+        }
+        let enough = most_bend([a.gap, b.gap], SPARE);
+        self.bend(ends, [a.normal, b.normal], enough, supports) <= enough
+    }
+}
+
+impl<'a> Course<'a> for Span<'a> {
+    type Moved = [Moved; 2];
+
+    fn times(&self) -> [f64; 2] {
+        [self.from, self.to]
+    }
+
+    fn error(&self) -> f64 {
+        self.error
+    }
+
+    fn keep(&self) -> f64 {
+        self.keep
+    }
+
+    fn instant(&self, time: f64) -> Instant<'a> {
+        Span::instant(self, time)
+    }
+
+    fn velocity(&self, at: &Instant, which: usize, point: DVec3) -> DVec3 {
+        let moved = &at.moved[which];
+        self.piece(which).velocity_of(moved.arm + moved.rotation * point)
+    }
+
+    fn bend(
+        &self,
+        ends: [&Instant<'a>; 2],
+        normals: [DVec3; 2],
+        enough: f64,
+        supports: &impl Supports,
+    ) -> f64 {
+        bend(self, ends, normals, enough, supports)
+    }
+
+    fn usual(&self) -> f64 {
+        usual(self)
+    }
+
+    fn arcs(&self) -> usize {
+        let turning = |which: usize| self.piece(which).rate != 0.0;
+        let vertices = |which: usize| ConvexPolyhedron::vertices(self.body(which)).len();
+        (0..2).filter(|which| turning(*which)).map(vertices).sum()
+    }
+
+    fn lost(&self, ends: [&Instant<'a>; 2], normal: DVec3) -> f64 {
+        arc::lost(self, ends, normal)
+    }
+}

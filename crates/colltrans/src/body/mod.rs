@@ -4,6 +4,7 @@ mod aabb;
 pub(crate) mod convex;
 pub(crate) mod error;
 mod feature;
+mod hull;
 mod id;
 pub(crate) mod inertia;
 pub(crate) mod motion;
@@ -18,6 +19,7 @@ pub use convex::{ConvexPolyhedron, ConvexityDefect, OffsetReport, convexity_defe
 pub(crate) use convex::{LargeFace, greatest_on_cycle};
 pub(crate) use feature::feature;
 pub use feature::{Feature, Features};
+pub(crate) use hull::Hull;
 pub use id::{FaceId, InputFacet, InputVertex, ObstacleId, VertexId};
 pub(crate) use inertia::Inertia;
 pub use placed::{Body, Placed};

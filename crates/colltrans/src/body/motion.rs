@@ -12,6 +12,7 @@
 //! A motion of several pieces begins each where the numbers of that piece say, which is where the one before
 //! it ends, to rounding.
 
+use derive_where::derive_where;
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::body::error::MotionError;
@@ -320,7 +321,8 @@ fn flushed(v: DVec3) -> DVec3 {
 }
 
 /// A body and its motion, from [`ConvexPolyhedron::along`](crate::ConvexPolyhedron::along).
-#[derive(Debug, Clone)]
+#[derive(Debug)]
+#[derive_where(Clone)]
 pub struct Moving<'a, B = crate::ConvexPolyhedron> {
     /// The body.
     pub body: &'a B,

@@ -9,16 +9,21 @@ use glam::DVec3;
 
 use super::bend::across;
 use super::span::{Instant, Span};
+use crate::body::Hull;
+use crate::body::motion::Moved;
 
 /// Sums here are off by less than this share of the sizes.
 const ROUNDED: f64 = 1e-14;
 
 /// How much of the gap that a plane leaves at the first of two times is lost until the second, at most.
-pub(super) fn lost(span: &Span, ends: [&Instant; 2], normal: DVec3) -> f64 {
+pub(super) fn lost<B: Hull>(
+    span: &Span<B>,
+    ends: [&Instant<[Moved; 2], B>; 2],
+    normal: DVec3,
+) -> f64 {
     let h = ends[1].time - ends[0].time;
     let drift = normal.dot(span.drift()) * h;
-    let sizes =
-        (0..2).map(|which| span.piece(which).arm.length() + span.body(which).inertia().reach);
+    let sizes = (0..2).map(|which| span.piece(which).arm.length() + span.body(which).reach());
     let size = sizes.sum::<f64>() + span.drift().length() * h;
     let risen = rise(span, ends, 0, normal) + rise(span, ends, 1, -normal);
     // What rises is computed of places that may be off at both ends.
@@ -26,7 +31,12 @@ pub(super) fn lost(span: &Span, ends: [&Instant; 2], normal: DVec3) -> f64 {
 }
 
 /// By how much the highest point of a body along a normal rises within an interval, at most.
-fn rise(span: &Span, ends: [&Instant; 2], which: usize, normal: DVec3) -> f64 {
+fn rise<B: Hull>(
+    span: &Span<B>,
+    ends: [&Instant<[Moved; 2], B>; 2],
+    which: usize,
+    normal: DVec3,
+) -> f64 {
     let (piece, body) = (span.piece(which), span.body(which));
     let angle = piece.rate * (ends[1].time - ends[0].time);
     if angle == 0.0 {
@@ -38,7 +48,7 @@ fn rise(span: &Span, ends: [&Instant; 2], which: usize, normal: DVec3) -> f64 {
     let [n, side] = [across(normal, piece.axis), normal.cross(piece.axis) * angle.signum()];
     let along = normal - n;
     let (mut highest, mut before) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
-    for v in body.vertices() {
+    for v in body.corners() {
         let first = moved[0].arm + moved[0].rotation * *v;
         let last = moved[1].arm + moved[1].rotation * *v;
         // The slopes at both ends tell whether the peak is between them.

@@ -26,6 +26,8 @@
 use glam::DVec3;
 
 use super::span::{Instant, Span};
+use crate::body::motion::Moved;
+use crate::body::{ConvexPolyhedron, Hull};
 
 /// Sums here are off by less than this share of their terms.
 const ROUNDED: f64 = 1e-13;
@@ -39,16 +41,16 @@ pub(super) fn most_bend([a, b]: [f64; 2], spare: f64) -> f64 {
     2.0 * roots * roots
 }
 
-/// How a support point along a direction of the body's frame is asked: at most so far below the true one.
-pub(super) trait Supports {
-    fn reach(&self, body: &crate::ConvexPolyhedron, normal: DVec3) -> f64;
+/// How far a body reaches along a direction of its frame, of any length: at least.
+pub(super) trait Supports<B> {
+    fn reach(&self, body: &B, normal: DVec3) -> f64;
 }
 
 /// By climbing.
 pub(super) struct Climbing;
 
-impl Supports for Climbing {
-    fn reach(&self, body: &crate::ConvexPolyhedron, normal: DVec3) -> f64 {
+impl Supports<ConvexPolyhedron> for Climbing {
+    fn reach(&self, body: &ConvexPolyhedron, normal: DVec3) -> f64 {
         let length = normal.length();
         if length == 0.0 {
             return 0.0;
@@ -59,22 +61,22 @@ impl Supports for Climbing {
     }
 }
 
-/// By a look at all vertices.
+/// By a look at all corners.
 pub(super) struct Looking;
 
-impl Supports for Looking {
-    fn reach(&self, body: &crate::ConvexPolyhedron, normal: DVec3) -> f64 {
-        body.vertices().iter().map(|v| normal.dot(*v)).fold(f64::NEG_INFINITY, f64::max)
+impl<B: Hull> Supports<B> for Looking {
+    fn reach(&self, body: &B, normal: DVec3) -> f64 {
+        body.corners().iter().map(|v| normal.dot(*v)).fold(f64::NEG_INFINITY, f64::max)
     }
 }
 
 /// `C` between two planes, at least, as far as one cares: a loose one if that is at most `enough`.
-pub(super) fn bend(
-    span: &Span,
-    ends: [&Instant; 2],
+pub(super) fn bend<'a, B: Hull>(
+    span: &Span<'a, B>,
+    ends: [&Instant<'a, [Moved; 2], B>; 2],
     normals: [DVec3; 2],
     enough: f64,
-    supports: &impl Supports,
+    supports: &impl Supports<B>,
 ) -> f64 {
     let h = ends[1].time - ends[0].time;
     let dn = normals[1] - normals[0];
@@ -90,28 +92,28 @@ pub(super) fn bend(
 }
 
 /// `C` of an interval of this length at most, per its square, if the normal hardly turns.
-pub(super) fn usual(span: &Span) -> f64 {
+pub(super) fn usual<B: Hull>(span: &Span<B>) -> f64 {
     let of = |which: usize| {
         let piece = span.piece(which);
-        let reach = span.body(which).inertia().reach + across(piece.arm, piece.axis).length();
+        let reach = span.body(which).reach() + across(piece.arm, piece.axis).length();
         piece.rate * piece.rate * reach
     };
     of(0) + of(1)
 }
 
 /// A body that turns in an interval, and the `W` of its ends.
-struct Turning<'s> {
+struct Turning<'s, 'a, B> {
     which: usize,
-    span: &'s Span<'s>,
-    ends: [&'s Instant<'s>; 2],
+    span: &'s Span<'a, B>,
+    ends: [&'s Instant<'a, [Moved; 2], B>; 2],
     bends: [DVec3; 2],
     angle: f64,
 }
 
-impl<'s> Turning<'s> {
+impl<'s, 'a, B: Hull> Turning<'s, 'a, B> {
     fn new(
-        span: &'s Span,
-        ends: [&'s Instant; 2],
+        span: &'s Span<'a, B>,
+        ends: [&'s Instant<'a, [Moved; 2], B>; 2],
         normals: [DVec3; 2],
         which: usize,
         h: f64,
@@ -133,11 +135,11 @@ impl<'s> Turning<'s> {
             return 0.0;
         }
         let piece = self.span.piece(self.which);
-        let reach = self.span.body(self.which).inertia().reach;
+        let reach = self.span.body(self.which).reach();
         self.most() * (reach + across(piece.arm, piece.axis).length()) * (1.0 + 1e-6)
     }
 
-    fn tight(&self, supports: &impl Supports) -> f64 {
+    fn tight(&self, supports: &impl Supports<B>) -> f64 {
         // Beyond that arcs are no arcs any more.
         if self.angle == 0.0 || self.angle > 2.0 {
             return self.loose();
@@ -151,7 +153,7 @@ impl<'s> Turning<'s> {
                 most = most.max(bend.dot(moved.arm) + reach);
             }
         }
-        let size = body.inertia().reach + self.span.piece(self.which).arm.length();
+        let size = body.reach() + self.span.piece(self.which).arm.length();
         let most = most + ROUNDED * self.most() * size;
         // cos(x) >= 1 - x^2 / 2.
         let widest = 1.0 / (1.0 - 0.125 * self.angle * self.angle);

@@ -5,14 +5,17 @@
 
 use glam::DVec3;
 
+use super::answer::PlaneAt;
+use super::arc;
 use super::bend::{SPARE, Supports, bend, most_bend, usual};
 use super::span::{Instant, Span};
-use super::{PlaneAt, arc};
-use crate::body::ConvexPolyhedron;
+use crate::body::Hull;
 use crate::body::motion::Moved;
 
 /// Two bodies during a span of time.
 pub(super) trait Course<'a> {
+    /// What the bodies are.
+    type Body: Hull + 'a;
     /// What else is known of a time.
     type Moved: Copy;
 
@@ -26,31 +29,36 @@ pub(super) trait Course<'a> {
     fn keep(&self) -> f64;
 
     /// Where the bodies are.
-    fn instant(&self, time: f64) -> Instant<'a, Self::Moved>;
+    fn instant(&self, time: f64) -> Instant<'a, Self::Moved, Self::Body>;
 
     /// The velocity of a point of the moving body (0) or the fixed one (1), in its body's frame.
-    fn velocity(&self, at: &Instant<'a, Self::Moved>, which: usize, point: DVec3) -> DVec3;
+    fn velocity(
+        &self,
+        at: &Instant<'a, Self::Moved, Self::Body>,
+        which: usize,
+        point: DVec3,
+    ) -> DVec3;
 
     /// `C` between two planes, at least, as far as one cares: a loose one if that is at most `enough`.
     fn bend(
         &self,
-        ends: [&Instant<'a, Self::Moved>; 2],
+        ends: [&Instant<'a, Self::Moved, Self::Body>; 2],
         normals: [DVec3; 2],
         enough: f64,
-        supports: &impl Supports,
+        supports: &impl Supports<Self::Body>,
     ) -> f64;
 
     /// `C` of an interval at most, per its square, if the normal hardly turns.
     fn usual(&self) -> f64;
 
-    /// How many vertices move on arcs that [`Self::lost`] knows; none if it knows nothing.
+    /// How many corners move on arcs that [`Self::lost`] knows; none if it knows nothing.
     fn arcs(&self) -> usize;
 
     /// How much of the gap that a plane leaves at the first of two times is lost until the second, at most.
-    fn lost(&self, ends: [&Instant<'a, Self::Moved>; 2], normal: DVec3) -> f64;
+    fn lost(&self, ends: [&Instant<'a, Self::Moved, Self::Body>; 2], normal: DVec3) -> f64;
 
-    /// What a plane proves at a time of the gap beyond what is to be kept, over all vertices.
-    fn proven_gap(&self, at: &Instant<'a, Self::Moved>, normal: DVec3) -> f64 {
+    /// What a plane proves at a time of the gap beyond what is to be kept, over all corners.
+    fn proven_gap(&self, at: &Instant<'a, Self::Moved, Self::Body>, normal: DVec3) -> f64 {
         at.bodies.proven_gap(normal) - self.keep() - self.error()
     }
 
@@ -58,8 +66,8 @@ pub(super) trait Course<'a> {
     fn joins(
         &self,
         planes: [&PlaneAt; 2],
-        ends: [&Instant<'a, Self::Moved>; 2],
-        supports: &impl Supports,
+        ends: [&Instant<'a, Self::Moved, Self::Body>; 2],
+        supports: &impl Supports<Self::Body>,
     ) -> bool {
         if ends[0].time == ends[1].time {
             return true;
@@ -73,7 +81,8 @@ pub(super) trait Course<'a> {
     }
 }
 
-impl<'a> Course<'a> for Span<'a> {
+impl<'a, B: Hull> Course<'a> for Span<'a, B> {
+    type Body = B;
     type Moved = [Moved; 2];
 
     fn times(&self) -> [f64; 2] {
@@ -88,21 +97,21 @@ impl<'a> Course<'a> for Span<'a> {
         self.keep
     }
 
-    fn instant(&self, time: f64) -> Instant<'a> {
+    fn instant(&self, time: f64) -> Instant<'a, [Moved; 2], B> {
         Span::instant(self, time)
     }
 
-    fn velocity(&self, at: &Instant, which: usize, point: DVec3) -> DVec3 {
+    fn velocity(&self, at: &Instant<'a, [Moved; 2], B>, which: usize, point: DVec3) -> DVec3 {
         let moved = &at.moved[which];
         self.piece(which).velocity_of(moved.arm + moved.rotation * point)
     }
 
     fn bend(
         &self,
-        ends: [&Instant<'a>; 2],
+        ends: [&Instant<'a, [Moved; 2], B>; 2],
         normals: [DVec3; 2],
         enough: f64,
-        supports: &impl Supports,
+        supports: &impl Supports<B>,
     ) -> f64 {
         bend(self, ends, normals, enough, supports)
     }
@@ -113,11 +122,11 @@ impl<'a> Course<'a> for Span<'a> {
 
     fn arcs(&self) -> usize {
         let turning = |which: usize| self.piece(which).rate != 0.0;
-        let vertices = |which: usize| ConvexPolyhedron::vertices(self.body(which)).len();
-        (0..2).filter(|which| turning(*which)).map(vertices).sum()
+        let corners = |which: usize| self.body(which).corners().len();
+        (0..2).filter(|which| turning(*which)).map(corners).sum()
     }
 
-    fn lost(&self, ends: [&Instant<'a>; 2], normal: DVec3) -> f64 {
+    fn lost(&self, ends: [&Instant<'a, [Moved; 2], B>; 2], normal: DVec3) -> f64 {
         arc::lost(self, ends, normal)
     }
 }

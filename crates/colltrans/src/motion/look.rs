@@ -1,17 +1,23 @@
 //! The distance at one time: a plane, or an overlap.
 
+use derive_where::derive_where;
+use glam::DVec3;
+
+use super::answer::{Met, MotionSteps};
+use super::bend::{Climbing, Supports};
 use super::course::Course;
 use super::span::Instant;
-use crate::answer::{Depth, NearPoints, PlaneGap};
+use crate::answer::PlaneGap;
+use crate::body::{ConvexPolyhedron, Hull};
 use crate::pair::Pair;
 use crate::setting::VertexPair;
 use crate::solve::nearest::{Difference, NearestPairs, nearest};
-use glam::DVec3;
 
 /// What is to be seen at a time.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Look<'a, M> {
-    pub(super) at: Instant<'a, M>,
+#[derive(Debug)]
+#[derive_where(Clone, Copy; M)]
+pub(super) struct Look<'a, M, B = ConvexPolyhedron> {
+    pub(super) at: Instant<'a, M, B>,
     pub(super) normal: DVec3,
     /// The real motion's gap beyond what is to be kept, at least; not positive if that is not proven.
     pub(super) gap: f64,
@@ -21,7 +27,7 @@ pub(super) struct Look<'a, M> {
     pub(super) floor: f64,
 }
 
-impl<M> Look<'_, M> {
+impl<M, B> Look<'_, M, B> {
     pub(super) fn time(&self) -> f64 {
         self.at.time
     }
@@ -31,36 +37,48 @@ impl<M> Look<'_, M> {
     }
 }
 
-/// What proves that the bodies are too near at a time.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-pub enum Met {
-    /// They overlap, deeper than is tolerated.
-    Deep(Box<Depth>),
-    /// Two points are no farther apart than what is to be kept.
-    Near(NearPoints),
+/// Who looks: how far bodies are apart at a time, and that they meet.
+pub(super) trait Looker<B: Hull> {
+    /// What proves that they meet.
+    type Met;
+    /// How it is asked how far they reach.
+    type Supports: Supports<B>;
+    const SUPPORTS: Self::Supports;
+
+    fn look<'a, C>(&mut self, course: &C, time: f64) -> Look<'a, C::Moved, B>
+    where
+        B: 'a,
+        C: Course<'a, Body = B>;
+
+    /// What proves that the real bodies meet at a time.
+    fn met<'a, C>(&mut self, course: &C, time: f64) -> Option<Self::Met>
+    where
+        B: 'a,
+        C: Course<'a, Body = B>;
 }
 
-/// What is asked again and again, and what is kept from one time to the next.
+/// Looks at convex bodies: what is asked again and again, and what is kept from one time to the next.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Looker {
+pub(super) struct ConvexLooker {
     pairs: NearestPairs,
-    pub(super) looks: u32,
-    pub(super) supports: u32,
+    pub(super) steps: MotionSteps,
 }
 
-impl Looker {
-    pub(super) fn look<'a, C: Course<'a>>(&mut self, course: &C, time: f64) -> Look<'a, C::Moved> {
+impl Looker<ConvexPolyhedron> for ConvexLooker {
+    type Met = Met;
+    type Supports = Climbing;
+    const SUPPORTS: Climbing = Climbing;
+
+    fn look<'a, C>(&mut self, course: &C, time: f64) -> Look<'a, C::Moved>
+    where
+        C: Course<'a, Body = ConvexPolyhedron>,
+    {
         let at = course.instant(time);
         let [keep, error] = [course.keep(), course.error()];
         let difference = Difference::new(&at.bodies);
         let found = nearest(&difference, &self.pairs, None);
-        self.looks += 1;
-        self.supports += found.supports;
+        self.steps.looks += 1;
+        self.steps.supports += found.supports;
         let pairs = found.pairs();
         if !pairs.is_empty() {
             self.pairs = pairs;
@@ -75,27 +93,22 @@ impl Looker {
         let (normal, gap) =
             plane.map_or((DVec3::X, f64::NEG_INFINITY), |plane| (plane.normal, plane.gap));
         let gap = gap - keep - error;
-        let rate = if gap > 0.0 { closing(course, &at, &points, normal) } else { 0.0 };
+        let (pairs, weights) = &points;
+        let rate = if gap > 0.0 {
+            closing(course, &at, at.bodies.weighted(pairs, weights), normal)
+        } else {
+            0.0
+        };
         Look { at, normal, gap, rate, floor }
     }
 
-    /// The plane by which the bodies overlap least, with its depth as a negative gap, and the points there.
-    fn least_overlap(&mut self, difference: &Difference) -> (Option<PlaneGap>, MeanPair) {
-        let pair = Pair { bodies: *difference.bodies };
-        let plane = pair.depth().ok().map(|depth| {
-            self.supports += depth.steps.supports;
-            PlaneGap { normal: -depth.direction, gap: -depth.upper }
-        });
-        let there =
-            plane.map_or_else(VertexPair::default, |plane| difference.lowest_pair(plane.normal));
-        (plane, ([there; 3], [1.0, 0.0, 0.0]))
-    }
-
-    /// What proves that the real bodies meet at a time.
-    pub(super) fn met<'a>(&mut self, course: &impl Course<'a>, time: f64) -> Option<Met> {
+    fn met<'a, C>(&mut self, course: &C, time: f64) -> Option<Met>
+    where
+        C: Course<'a, Body = ConvexPolyhedron>,
+    {
         let pair = Pair { bodies: course.instant(time).bodies };
         let [keep, error] = [course.keep(), course.error()];
-        self.looks += 1;
+        self.steps.looks += 1;
         if keep > 0.0 {
             let near = pair.distance().ok()?.near;
             return (near.distance + error <= keep).then_some(Met::Near(near));
@@ -105,17 +118,30 @@ impl Looker {
     }
 }
 
+impl ConvexLooker {
+    /// The plane by which the bodies overlap least, with its depth as a negative gap, and the points there.
+    fn least_overlap(&mut self, difference: &Difference) -> (Option<PlaneGap>, MeanPair) {
+        let pair = Pair { bodies: *difference.bodies };
+        let plane = pair.depth().ok().map(|depth| {
+            self.steps.supports += depth.steps.supports;
+            PlaneGap { normal: -depth.direction, gap: -depth.upper }
+        });
+        let there =
+            plane.map_or_else(VertexPair::default, |plane| difference.lowest_pair(plane.normal));
+        (plane, ([there; 3], [1.0, 0.0, 0.0]))
+    }
+}
+
 /// Means of pairs of vertices: pairs and weights.
 type MeanPair = ([VertexPair; 3], [f64; 3]);
 
-/// How fast such points come together along a normal.
-fn closing<'a, C: Course<'a>>(
+/// How fast points, given in the bodies' frames, come together along a normal.
+pub(super) fn closing<'a, C: Course<'a>>(
     course: &C,
-    at: &Instant<'a, C::Moved>,
-    (pairs, weights): &MeanPair,
+    at: &Instant<'a, C::Moved, C::Body>,
+    points: [DVec3; 2],
     normal: DVec3,
 ) -> f64 {
-    let means = at.bodies.weighted(pairs, weights);
-    let velocity = |which: usize| course.velocity(at, which, means[which]);
+    let velocity = |which: usize| course.velocity(at, which, points[which]);
     normal.dot(velocity(0) - velocity(1))
 }

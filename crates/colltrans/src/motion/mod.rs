@@ -42,8 +42,10 @@
 //! conservative advancement (Mirtich) with a bound of second order: a rotation is a translation to first
 //! order only, so that steps shrink with the square root of what is left, not with what is left.
 //!
-//! The modules, each using only those before it: `span`, `bend` and `arc`, `course`, `look`, `search`, `verify`.
+//! The modules, each using only those before it: `answer`, `span`, `bend` and `arc`, `course`,
+//! `look`, `search`, `verify`.
 
+mod answer;
 mod arc;
 mod bend;
 mod course;
@@ -54,18 +56,20 @@ mod search;
 mod span;
 mod verify;
 
-use glam::DVec3;
+use derive_where::derive_where;
 
+pub use self::answer::{
+    Meeting, Met, MotionContact, MotionFree, MotionOutcome, MotionProof, MotionSteps, PlaneAt,
+};
 #[cfg(feature = "json")]
 pub use self::file::MotionProofFile;
-pub use self::look::Met;
+use self::look::ConvexLooker;
 use self::search::{Advanced, End, advance};
-use self::span::Span;
+use self::span::{Span, spans};
 pub use self::verify::MotionProofError;
+use crate::body::ConvexPolyhedron;
 pub use crate::body::error::MotionError;
-use crate::body::motion::Piece;
 pub use crate::body::motion::{Motion, Moving};
-use crate::body::{ConvexPolyhedron, Features, Pose};
 use crate::number::range::MAX_MAGNITUDE;
 use crate::pair::Pair;
 use crate::setting::check_keep;
@@ -78,148 +82,39 @@ impl ConvexPolyhedron {
     }
 }
 
-/// Two convex bodies, either of which may move, from time 0 to 1.
-#[derive(Debug, Clone)]
-pub struct MotionCast<'a> {
-    moving: Moving<'a>,
-    fixed: Moving<'a>,
-    /// A gap to be kept; negative a depth that is tolerated.
+/// Two bodies, either of which may move, from time 0 to 1.
+#[derive(Debug)]
+#[derive_where(Clone)]
+pub struct MotionCast<'a, B = ConvexPolyhedron> {
+    moving: Moving<'a, B>,
+    fixed: Moving<'a, B>,
+    /// A gap to be kept; negative, of convex bodies, a depth that is tolerated.
     keep: f64,
 }
 
-/// When the bodies first meet.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-#[non_exhaustive]
-pub enum MotionOutcome {
-    /// They do, at a time between two bounds.
-    Contact(MotionContact),
-    /// They come nearer to each other than rounding can tell. Proven is that they do not meet before; not
-    /// that they meet, and nothing of later times.
-    Grazing(MotionContact),
-    /// They do not: proven of the whole motion.
-    Free(MotionFree),
-    /// They overlap at time 0.
-    Overlapping(MotionContact),
-}
-
-/// A first contact, or what may be one.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub struct MotionContact {
-    /// Up to this time the bodies do not meet; 0 if they overlap at the start.
-    pub lower: f64,
-    /// At this time they do; infinite (`null` in JSON) where that is not proven.
-    #[cfg_attr(feature = "serde", serde(with = "crate::written::or_infinite"))]
-    pub upper: f64,
-    /// The poses at the lower bound, to rounding.
-    pub poses: [Pose; 2],
-    /// The points of both bodies that are nearest to each other then, in the world, rounded; none where the distance
-    /// has no answer.
-    pub points: Option<[DVec3; 2]>,
-    /// Unit normal in the world, from the moving body to the fixed one, at that time.
-    pub normal: Option<DVec3>,
-    /// What faces each other across it.
-    pub features: Option<Features>,
-    /// What proves the bounds.
-    pub proof: MotionProof,
-    /// How much work it was.
-    pub steps: MotionSteps,
-}
-
-/// No contact.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub struct MotionFree {
-    /// What proves it.
-    pub proof: MotionProof,
-    /// How much work it was.
-    pub steps: MotionSteps,
-}
-
-/// How much work an answer was.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub struct MotionSteps {
-    /// Times at which the bodies were looked at.
-    pub looks: u32,
-    /// Support points asked for by distances then.
-    pub supports: u32,
-}
-
-/// What proves an answer: planes, and that the bodies meet.
-#[derive(Debug, Clone, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct MotionProof {
-    /// For each span of time in which both bodies spin evenly, up to that in which they meet: planes in the
-    /// order of their times, each joined to the next one. None, if they meet when it begins.
-    pub spans: Vec<Vec<PlaneAt>>,
-    /// That the bodies meet at a time.
-    pub meeting: Option<Meeting>,
-}
-
-/// A plane between the bodies at a time.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct PlaneAt {
-    /// When.
-    pub time: f64,
-    /// Unit normal in the world, from the moving body to the fixed one.
-    pub normal: DVec3,
-    /// At most the gap that it leaves, less the gap to be kept, in world units.
-    pub gap: f64,
-    /// Whether this plane alone proves all times up to the next one, by the arcs of all vertices; else both
-    /// together do.
-    pub alone: bool,
-}
-
-/// That the bodies meet at a time, or are not farther apart than the gap to be kept.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct Meeting {
-    /// When.
-    pub time: f64,
-    /// Why.
-    pub met: Met,
-}
-
-impl MotionOutcome {
-    /// What proves it.
-    pub const fn proof(&self) -> &MotionProof {
-        match self {
-            Self::Contact(of) | Self::Grazing(of) | Self::Overlapping(of) => &of.proof,
-            Self::Free(of) => &of.proof,
-        }
-    }
-
-    /// How much work it was.
-    pub const fn steps(&self) -> MotionSteps {
-        match self {
-            Self::Contact(of) | Self::Grazing(of) | Self::Overlapping(of) => of.steps,
-            Self::Free(of) => of.steps,
-        }
-    }
-}
-
-impl<'a> MotionCast<'a> {
+impl<'a, B> MotionCast<'a, B> {
     /// Of two bodies [along](ConvexPolyhedron::along) a motion or [at](ConvexPolyhedron::at) a pose.
     ///
     /// # Errors
     /// None today: what a body and a motion admit, a cast does.
     pub fn new(
-        moving: impl Into<Moving<'a>>,
-        fixed: impl Into<Moving<'a>>,
+        moving: impl Into<Moving<'a, B>>,
+        fixed: impl Into<Moving<'a, B>>,
     ) -> Result<Self, QueryError> {
         Ok(Self { moving: moving.into(), fixed: fixed.into(), keep: 0.0 })
     }
 
+    /// The moving and the fixed body.
+    pub fn bodies(&self) -> [&'a B; 2] {
+        [self.moving.body, self.fixed.body]
+    }
+
+    fn motions(&self) -> [&Motion; 2] {
+        [&self.moving.motion, &self.fixed.motion]
+    }
+}
+
+impl MotionCast<'_> {
     /// The same with a gap to be kept, in world units: what counts is when the bodies are no farther apart.
     /// In the place of a depth that is tolerated.
     ///
@@ -243,21 +138,16 @@ impl<'a> MotionCast<'a> {
         Ok(Self { keep: -depth, ..self })
     }
 
-    /// The moving and the fixed body.
-    pub fn bodies(&self) -> [&'a ConvexPolyhedron; 2] {
-        [self.moving.body, self.fixed.body]
-    }
-
     /// When do the bodies first meet?
     ///
     /// # Errors
     /// A search that does not end: seen of bodies that are nearly straight lines, two in a million settings.
     pub fn first_contact(&self) -> Result<MotionOutcome, QueryError> {
         let (mut proof, mut steps) = (MotionProof::default(), MotionSteps::default());
-        for span in self.spans() {
-            let Advanced { planes, end, looks, supports } = advance(&span);
-            steps.looks += looks;
-            steps.supports += supports;
+        for span in spans(self.bodies(), self.motions(), self.keep) {
+            let mut looker = ConvexLooker::default();
+            let Advanced { planes, end } = advance(&span, &mut looker);
+            steps += looker.steps;
             proof.spans.push(planes);
             match end {
                 End::Free => {}
@@ -280,25 +170,6 @@ impl<'a> MotionCast<'a> {
     pub fn verify(&self, proof: &MotionProof) -> Result<[f64; 2], MotionProofError> {
         verify::verify(self, proof)
     }
-
-    /// The times in which both bodies spin evenly, one after the other.
-    fn spans(&self) -> impl Iterator<Item = Span<'a>> + '_ {
-        let pieces = [self.moving.motion.pieces(), self.fixed.motion.pieces()];
-        let mut times: Vec<f64> = pieces.into_iter().flatten().map(|piece| piece.since).collect();
-        times.sort_by(f64::total_cmp);
-        times.dedup();
-        times.push(1.0);
-        let ends: Vec<[f64; 2]> = times.windows(2).map(|pair| [pair[0], pair[1]]).collect();
-        let bodies = self.bodies();
-        ends.into_iter().map(move |[from, to]| {
-            Span::new(bodies, pieces.map(|all| piece_at(all, from)), [from, to], self.keep)
-        })
-    }
-}
-
-/// The piece that a time belongs to.
-fn piece_at(pieces: &[Piece], time: f64) -> &Piece {
-    &pieces[pieces.partition_point(|piece| piece.since <= time).max(1) - 1]
 }
 
 /// What is to be said where the bodies meet, or may.

@@ -13,10 +13,10 @@
 //! is quadratically nearer; when left is as near as rounding tells a little beyond, where the bodies meet.
 //! What is not joined waits, and time is halved. A search never ends because an estimate is small.
 
-use super::PlaneAt;
-use super::bend::{Climbing, SPARE, most_bend};
+use super::answer::PlaneAt;
+use super::bend::{SPARE, most_bend};
 use super::course::Course;
-use super::look::{Look, Looker, Met};
+use super::look::{Look, Looker};
 
 /// More steps than an answer has taken.
 const MOST: usize = 20_000;
@@ -43,11 +43,11 @@ const BEYOND: i32 = 48;
 
 /// How a span ends.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum End {
+pub(super) enum End<M> {
     /// With its last plane.
     Free,
     /// The bodies meet at a time, as is proven.
-    Met(f64, Met),
+    Met(f64, M),
     /// They come nearer than rounding can tell; that they meet is not proven.
     Blurred,
     /// Too many steps.
@@ -56,12 +56,10 @@ pub(super) enum End {
 
 /// What has become of a span.
 #[derive(Debug, Clone)]
-pub(super) struct Advanced {
+pub(super) struct Advanced<M> {
     /// In the order of their times; none if there is none at the beginning.
     pub(super) planes: Vec<PlaneAt>,
-    pub(super) end: End,
-    pub(super) looks: u32,
-    pub(super) supports: u32,
+    pub(super) end: End<M>,
 }
 
 /// What is at the end of what is searched.
@@ -73,12 +71,12 @@ enum Ahead {
     Something,
 }
 
-struct Search<'s, 'a, C: Course<'a>> {
+struct Search<'s, 'a, C: Course<'a>, L> {
     course: &'s C,
-    looker: Looker,
+    looker: &'s mut L,
     planes: Vec<PlaneAt>,
-    left: Look<'a, C::Moved>,
-    stack: Vec<Look<'a, C::Moved>>,
+    left: Look<'a, C::Moved, C::Body>,
+    stack: Vec<Look<'a, C::Moved, C::Body>>,
     end: f64,
     ahead: Ahead,
     /// `K`.
@@ -86,9 +84,11 @@ struct Search<'s, 'a, C: Course<'a>> {
 }
 
 /// Proves as much of a span as it can.
-pub(super) fn advance<'a>(course: &impl Course<'a>) -> Advanced {
+pub(super) fn advance<'a, C: Course<'a>, L: Looker<C::Body>>(
+    course: &C,
+    looker: &mut L,
+) -> Advanced<L::Met> {
     let [from, to] = course.times();
-    let mut looker = Looker::default();
     let left = looker.look(course, from);
     let mut search = Search {
         course,
@@ -106,12 +106,11 @@ pub(super) fn advance<'a>(course: &impl Course<'a>) -> Advanced {
     } else {
         search.met_from(from)
     };
-    let Search { planes, looker: Looker { looks, supports, .. }, .. } = search;
-    Advanced { planes, end, looks, supports }
+    Advanced { planes: search.planes, end }
 }
 
-impl<'a, C: Course<'a>> Search<'_, 'a, C> {
-    fn run(&mut self) -> End {
+impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
+    fn run(&mut self) -> End<L::Met> {
         for _ in 0..MOST {
             if let Some(next) = self.stack.last().copied() {
                 if self.joins(&next) {
@@ -137,7 +136,7 @@ impl<'a, C: Course<'a>> Search<'_, 'a, C> {
         End::Stalled
     }
 
-    fn note(&mut self, look: &Look<'a, C::Moved>, alone: bool) {
+    fn note(&mut self, look: &Look<'a, C::Moved, C::Body>, alone: bool) {
         if let Some(last) = self.planes.last_mut() {
             last.alone = alone;
         }
@@ -145,17 +144,17 @@ impl<'a, C: Course<'a>> Search<'_, 'a, C> {
         self.planes.push(PlaneAt { time: look.time(), normal, gap, alone: false });
     }
 
-    fn go_on(&mut self, look: &Look<'a, C::Moved>) {
+    fn go_on(&mut self, look: &Look<'a, C::Moved, C::Body>) {
         self.note(look, false);
         self.left = *look;
     }
 
     /// Whether all between left and a later plane is proven.
-    fn joins(&mut self, next: &Look<'a, C::Moved>) -> bool {
+    fn joins(&mut self, next: &Look<'a, C::Moved, C::Body>) -> bool {
         let enough = most_bend([self.left.gap, next.gap], 2.0 * SPARE);
         let normals = [self.left.normal, next.normal];
         let ends = [&self.left.at, &next.at];
-        let found = self.course.bend(ends, normals, enough, &Climbing);
+        let found = self.course.bend(ends, normals, enough, &L::SUPPORTS);
         let h = next.time() - self.left.time();
         if h > 0.0 {
             self.curvature = (found.max(0.0) / h / h).max(1e-3 * self.course.usual());
@@ -231,13 +230,13 @@ impl<'a, C: Course<'a>> Search<'_, 'a, C> {
     fn swings_on(&mut self) -> bool {
         let (from, course) = (self.left.time(), self.course);
         let Look { gap, rate, .. } = self.left;
-        let vertices = course.arcs();
+        let corners = course.arcs();
         let step = self.next_time() - from;
         let mut length = (SWING * step).min(self.end - from);
         // As fast as the gap closes now, there is not enough left of it; but steps that are so short are
         // many.
         let closes = rate * length >= KEPT * gap && SHORT * step > self.end - from;
-        if vertices == 0 || closes || vertices > ARCS {
+        if corners == 0 || closes || corners > ARCS {
             return false;
         }
         let mut farthest = None;
@@ -269,7 +268,7 @@ impl<'a, C: Course<'a>> Search<'_, 'a, C> {
 
     /// That the bodies meet, from a time on at which they may; doubled steps later, as long as they do not
     /// part.
-    fn met_from(&mut self, time: f64) -> End {
+    fn met_from(&mut self, time: f64) -> End<L::Met> {
         let pad = self.pad();
         let ulp = 2.0 * f64::EPSILON * time.max(f64::EPSILON);
         let first = if pad.is_finite() { pad.max(ulp) } else { ulp };

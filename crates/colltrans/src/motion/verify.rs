@@ -4,12 +4,13 @@
 //! its gap then, less what computed poses may be off; each is joined to the next. That bodies meet is checked
 //! where they are then, and has to hold with as much to spare.
 
+use super::MotionCast;
+use super::answer::{Meeting, Met, MotionProof, PlaneAt};
 use super::bend::Looking;
 use super::course::Course;
-use super::look::Met;
-use super::span::Instant;
-use super::{Meeting, MotionCast, MotionProof, PlaneAt};
+use super::span::{Instant, spans};
 use crate::answer::CertificateError;
+use crate::body::ConvexPolyhedron;
 use crate::number::noise;
 use crate::pair::Pair;
 use thiserror::Error;
@@ -66,18 +67,19 @@ fn because(reason: Option<&CertificateError>) -> String {
 pub(super) fn verify(cast: &MotionCast, proof: &MotionProof) -> Result<[f64; 2], MotionProofError> {
     let mut reached = 0.0;
     let mut last = None;
-    for (which, span) in cast.spans().enumerate() {
+    let spans = spans(cast.bodies(), cast.motions(), cast.keep);
+    let count = spans.len();
+    for (which, span) in spans.into_iter().enumerate() {
         let Some(planes) = proof.spans.get(which) else { break };
         let begins = planes.first().is_none_or(|first| first.time == span.from);
         let follows = which == 0 || reached == span.from;
         if !begins || !follows {
             return Err(MotionProofError::Plane { span: which, index: 0 });
         }
-        chain(&span, which, planes)?;
+        chain(&span, planes).map_err(|broken| broken.of(which))?;
         reached = planes.last().map_or(reached, |plane| plane.time);
         last = Some(span);
     }
-    let count = cast.spans().count();
     if proof.spans.len() > count {
         return Err(MotionProofError::Plane { span: count, index: 0 });
     }
@@ -88,37 +90,61 @@ pub(super) fn verify(cast: &MotionCast, proof: &MotionProof) -> Result<[f64; 2],
     Ok([reached, *time])
 }
 
+/// What of a list of planes is not proven.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Broken {
+    Plane { index: usize },
+    Gap { index: usize, proven: f64, claimed: f64 },
+    Join { index: usize },
+}
+
+impl Broken {
+    fn of(self, span: usize) -> MotionProofError {
+        match self {
+            Self::Plane { index } => MotionProofError::Plane { span, index },
+            Self::Gap { index, proven, claimed } => {
+                MotionProofError::Gap { span, index, proven, claimed }
+            }
+            Self::Join { index } => MotionProofError::Join { span, index },
+        }
+    }
+}
+
+/// A plane, and the time that it is at.
+type Seen<'a, 'p, C> =
+    (&'p PlaneAt, Instant<'a, <C as Course<'a>>::Moved, <C as Course<'a>>::Body>);
+
 /// Each plane with its gap, each joined to the next.
-fn chain<'a, C: Course<'a>>(
-    course: &C,
-    which: usize,
-    planes: &[PlaneAt],
-) -> Result<(), MotionProofError> {
+pub(super) fn chain<'a, C: Course<'a>>(course: &C, planes: &[PlaneAt]) -> Result<(), Broken> {
     let to = course.times()[1];
-    let mut before: Option<(&PlaneAt, Instant<C::Moved>)> = None;
+    let mut before: Option<Seen<C>> = None;
     for (index, plane) in planes.iter().enumerate() {
         let PlaneAt { time, normal, gap, .. } = *plane;
         let is_unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
         let is_later = before.is_none_or(|(last, _)| last.time <= time) && time <= to;
         if !is_unit || !is_later {
-            return Err(MotionProofError::Plane { span: which, index });
+            return Err(Broken::Plane { index });
         }
         let at = course.instant(time);
         let proven = course.proven_gap(&at, normal);
         if !(gap > 0.0 && gap <= proven) {
-            return Err(MotionProofError::Gap { span: which, index, proven, claimed: gap });
+            return Err(Broken::Gap { index, proven, claimed: gap });
         }
         if let Some((last, from)) = &before
             && !course.joins([last, plane], [from, &at], &Looking)
         {
-            return Err(MotionProofError::Join { span: which, index: index - 1 });
+            return Err(Broken::Join { index: index - 1 });
         }
         before = Some((plane, at));
     }
     Ok(())
 }
 
-fn meets<'a>(course: &impl Course<'a>, time: f64, met: &Met) -> Result<(), MotionProofError> {
+fn meets<'a, C: Course<'a, Body = ConvexPolyhedron>>(
+    course: &C,
+    time: f64,
+    met: &Met,
+) -> Result<(), MotionProofError> {
     let pair = Pair { bodies: course.instant(time).bodies };
     let [keep, error] = [course.keep(), course.error()];
     let fails = |reason| MotionProofError::Meeting { time, reason };

@@ -7,7 +7,7 @@
 use derive_where::derive_where;
 use glam::{DMat3, DVec3};
 
-use crate::body::{ConvexPolyhedron, Placed, Pose};
+use crate::body::{ConvexPolyhedron, Hull, Placed, Pose};
 use crate::number::error_free::{difference_error, sum_error};
 use crate::number::extent;
 use crate::number::noise::Noise;
@@ -102,11 +102,11 @@ impl<'a, B> TwoBodies<'a, B> {
     }
 }
 
-impl TwoBodies<'_> {
+impl<B: Hull> TwoBodies<'_, B> {
     /// The size `S` of the configuration: `|q - p|` is at most this for all its points.
     #[inline]
     pub(crate) fn scale(&self) -> f64 {
-        self.moving.inertia().reach + self.fixed.inertia().reach + self.offset.length()
+        self.moving.reach() + self.fixed.reach() + self.offset.length()
     }
 
     /// The bounds on rounding errors that belong to the size.
@@ -115,6 +115,21 @@ impl TwoBodies<'_> {
         Noise::of(self.scale())
     }
 
+    /// At most `min_Q n.q - max_P n.p`, and less by hardly more than a rounding: all corners are looked at.
+    pub(crate) fn distance_along(&self, normal: DVec3) -> f64 {
+        let fixed = (self.fixed.corners(), &self.fixed_matrix);
+        let moving = (self.moving.corners(), &self.moving_matrix);
+        extent::distance(normal, fixed, moving, self.exact_offset())
+    }
+
+    /// The gap that a plane proves, in world units, rounded down: what a check accepts.
+    pub(crate) fn proven_gap(&self, normal: DVec3) -> f64 {
+        let [_, square] = extent::dot(normal, normal);
+        (self.distance_along(normal) / square.sqrt().next_up()).next_down()
+    }
+}
+
+impl TwoBodies<'_> {
     /// A pair's vertices, in the frames of the moving and the fixed body.
     #[inline]
     pub(crate) fn vertices(&self, pair: VertexPair) -> [DVec3; 2] {
@@ -180,18 +195,5 @@ impl TwoBodies<'_> {
             moving: (&self.moving_matrix, p),
             offset: [self.offset, self.offset_error],
         }
-    }
-
-    /// At most `min_Q n.q - max_P n.p`, and less by hardly more than a rounding: all vertices are looked at.
-    pub(crate) fn distance_along(&self, normal: DVec3) -> f64 {
-        let fixed = (self.fixed.vertices(), &self.fixed_matrix);
-        let moving = (self.moving.vertices(), &self.moving_matrix);
-        extent::distance(normal, fixed, moving, self.exact_offset())
-    }
-
-    /// The gap that a plane proves, in world units, rounded down: what a check accepts.
-    pub(crate) fn proven_gap(&self, normal: DVec3) -> f64 {
-        let [_, square] = extent::dot(normal, normal);
-        (self.distance_along(normal) / square.sqrt().next_up()).next_down()
     }
 }

@@ -1,0 +1,26 @@
+//! What a plane is held against: the corners that a body is the convex hull of, or lies within the hull of.
+
+use glam::DVec3;
+
+use super::ConvexPolyhedron;
+
+/// A body, or a part of one, by its corners.
+pub(crate) trait Hull {
+    /// In the body's frame; at least one.
+    fn corners(&self) -> &[DVec3];
+
+    /// The largest distance of a corner from the origin of that frame, or more.
+    fn reach(&self) -> f64;
+}
+
+impl Hull for ConvexPolyhedron {
+    #[inline]
+    fn corners(&self) -> &[DVec3] {
+        self.vertices()
+    }
+
+    #[inline]
+    fn reach(&self) -> f64 {
+        self.inertia().reach
+    }
+}

@@ -1,0 +1,148 @@
+//! When bodies that turn first meet, and what proves it.
+
+use glam::DVec3;
+
+use crate::answer::{Depth, NearPoints};
+use crate::body::{Features, Pose};
+
+/// When the bodies first meet.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+#[non_exhaustive]
+pub enum MotionOutcome<P = MotionProof> {
+    /// They do, at a time between two bounds.
+    Contact(MotionContact<P>),
+    /// They come nearer to each other than rounding can tell. Proven is that they do not meet before; not
+    /// that they meet, and nothing of later times.
+    Grazing(MotionContact<P>),
+    /// They do not: proven of the whole motion.
+    Free(MotionFree<P>),
+    /// They overlap at time 0.
+    Overlapping(MotionContact<P>),
+}
+
+/// A first contact, or what may be one.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct MotionContact<P = MotionProof> {
+    /// Up to this time the bodies do not meet; 0 if they overlap at the start.
+    pub lower: f64,
+    /// At this time they do; infinite (`null` in JSON) where that is not proven.
+    #[cfg_attr(feature = "serde", serde(with = "crate::written::or_infinite"))]
+    pub upper: f64,
+    /// The poses at the lower bound, to rounding.
+    pub poses: [Pose; 2],
+    /// The points of both bodies that are nearest to each other then, in the world, rounded; none where the distance
+    /// has no answer.
+    pub points: Option<[DVec3; 2]>,
+    /// Unit normal in the world, from the moving body to the fixed one, at that time.
+    pub normal: Option<DVec3>,
+    /// What faces each other across it.
+    pub features: Option<Features>,
+    /// What proves the bounds.
+    pub proof: P,
+    /// How much work it was.
+    pub steps: MotionSteps,
+}
+
+/// No contact.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct MotionFree<P = MotionProof> {
+    /// What proves it.
+    pub proof: P,
+    /// How much work it was.
+    pub steps: MotionSteps,
+}
+
+/// How much work an answer was.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct MotionSteps {
+    /// Times at which the bodies were looked at.
+    pub looks: u32,
+    /// Support points asked for by distances then.
+    pub supports: u32,
+}
+
+impl std::ops::AddAssign for MotionSteps {
+    fn add_assign(&mut self, other: Self) {
+        self.looks += other.looks;
+        self.supports += other.supports;
+    }
+}
+
+/// What proves an answer: planes, and that the bodies meet.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct MotionProof {
+    /// For each span of time in which both bodies spin evenly, up to that in which they meet: planes in the
+    /// order of their times, each joined to the next one. None, if they meet when it begins.
+    pub spans: Vec<Vec<PlaneAt>>,
+    /// That the bodies meet at a time.
+    pub meeting: Option<Meeting>,
+}
+
+/// A plane between the bodies at a time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct PlaneAt {
+    /// When.
+    pub time: f64,
+    /// Unit normal in the world, from the moving body to the fixed one.
+    pub normal: DVec3,
+    /// At most the gap that it leaves, less the gap to be kept, in world units.
+    pub gap: f64,
+    /// Whether this plane alone proves all times up to the next one, by the arcs of all vertices; else both
+    /// together do.
+    pub alone: bool,
+}
+
+/// What proves that the bodies are too near at a time.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum Met {
+    /// They overlap, deeper than is tolerated.
+    Deep(Box<Depth>),
+    /// Two points are no farther apart than what is to be kept.
+    Near(NearPoints),
+}
+
+/// That the bodies meet at a time, or are not farther apart than the gap to be kept.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Meeting {
+    /// When.
+    pub time: f64,
+    /// Why.
+    pub met: Met,
+}
+
+impl<P> MotionOutcome<P> {
+    /// What proves it.
+    pub const fn proof(&self) -> &P {
+        match self {
+            Self::Contact(of) | Self::Grazing(of) | Self::Overlapping(of) => &of.proof,
+            Self::Free(of) => &of.proof,
+        }
+    }
+
+    /// How much work it was.
+    pub const fn steps(&self) -> MotionSteps {
+        match self {
+            Self::Contact(of) | Self::Grazing(of) | Self::Overlapping(of) => of.steps,
+            Self::Free(of) => of.steps,
+        }
+    }
+}

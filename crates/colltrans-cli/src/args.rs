@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 mod assembly;
 mod directions;
+mod groups;
 mod help;
 mod motion;
 mod placed;
@@ -21,7 +22,7 @@ pub(crate) use assembly::AssemblyArguments;
 pub(crate) use directions::DirectionsArguments;
 use help::{
     ASSEMBLY_FORMAT, BATCH_FORMAT, CAST_EXAMPLES, CLEARANCE_ANSWERS, DIRECTIONS_ANSWERS,
-    DISTANCE_ANSWERS, EXIT_CODES, MOTION_ANSWERS, fitted, formats,
+    DISTANCE_ANSWERS, EXIT_CODES, MOTION_ANSWERS, SETUP_EXAMPLES, fitted, formats,
 };
 pub(crate) use motion::MotionArguments;
 pub(crate) use placed::{PlacedArguments, WithinArguments};
@@ -34,7 +35,7 @@ use values::{angles, bytes, factor, length, picture, place, proof, solver, start
 /// --direction -z`, with proven bounds. Parts that have holes and hollows: `colltrans clearance MOVING
 /// --from FIXED --direction -z`. How far apart two bodies are: `colltrans distance A B`.
 #[derive(Debug, Parser)]
-#[command(name = "colltrans", version, max_term_width = help::WIDEST, after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[CAST_EXAMPLES, &formats(), EXIT_CODES]))]
+#[command(name = "colltrans", version, max_term_width = help::WIDEST, help_template = groups::template(&Command::augment_subcommands(clap::Command::new("colltrans"))), after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[CAST_EXAMPLES, &formats(), EXIT_CODES]))]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -110,6 +111,12 @@ pub(crate) enum Command {
     /// Says in one line what is proven of the bodies in the file; exit code 6 if it does not hold.
     #[command(after_help = fitted(&[EXIT_CODES]))]
     Verify(VerifyArguments),
+    /// Install completions for shells, and man pages
+    ///
+    /// For bash, zsh and fish, where they look for them under a prefix; zsh may have to be told of the folder
+    /// (`fpath+=~/.local/share/zsh/site-functions`). What is written is said, file by file.
+    #[command(after_help = fitted(&[SETUP_EXAMPLES, EXIT_CODES]))]
+    Setup(SetupArguments),
 }
 
 #[derive(Debug, Args)]
@@ -519,6 +526,16 @@ pub(crate) struct VerifyArguments {
     /// Answer as JSON
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SetupArguments {
+    /// Where to: files go to share/man/man1 and the like below [default: ~/.local]
+    #[arg(long, value_name = "FOLDER")]
+    pub(crate) prefix: Option<PathBuf>,
+    /// Write nothing, print the completions for one shell
+    #[arg(long, value_name = "SHELL", conflicts_with = "prefix")]
+    pub(crate) print: Option<clap_complete::Shell>,
 }
 
 #[derive(Debug, Args)]

@@ -8,7 +8,7 @@
 //! [`directions`] asks for all directions at once, [`distance`] two bodies where they are, in the same ways, [`among`] one
 //! body among many. [`info`] looks at one mesh, [`assembly`] at many parts. [`clearance`] asks two convex meshes by way of [`cast`], all
 //! others as parts, which [`solid`] makes of files; [`progress`] shows how far work is. [`proof`]
-//! saves proofs and checks saved ones.
+//! saves proofs and checks saved ones. [`setup`] installs man pages and completions.
 
 mod among;
 mod args;
@@ -31,6 +31,7 @@ mod proof;
 mod record;
 mod replay;
 mod report;
+mod setup;
 mod solid;
 mod terminal;
 
@@ -67,6 +68,7 @@ fn main() -> ExitCode {
         Command::Info(arguments) => info::run(&arguments),
         Command::Replay(arguments) => replay::run(&arguments),
         Command::Verify(arguments) => proof::verify(&arguments),
+        Command::Setup(arguments) => setup::run(&arguments),
     };
     match result {
         Ok(()) => ExitCode::SUCCESS,

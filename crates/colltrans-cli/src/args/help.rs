@@ -122,6 +122,14 @@ Examples:
   Many directions, one JSON object a line:
     printf 'x\\n-x\\n1,1,0\\n' | colltrans cast a.obj b.obj --directions - --json";
 
+pub(super) const SETUP_EXAMPLES: &str = "\
+Examples:
+  For oneself, and for all users of a machine:
+    colltrans setup
+    sudo colltrans setup --prefix /usr/local
+  For a shell that looks elsewhere:
+    colltrans setup --print powershell >> $PROFILE";
+
 pub(super) const CLEARANCE_ANSWERS: &str = "\
 Answers for convex bodies:
   blocked      the body can go so far, and then touches the other; 0 if it touches now and would

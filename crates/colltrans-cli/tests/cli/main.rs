@@ -15,4 +15,5 @@ mod picture;
 mod proof;
 mod readme;
 mod replay;
+mod setup;
 mod support;

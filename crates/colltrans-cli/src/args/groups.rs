@@ -52,9 +52,11 @@ impl Group {
         let line = |name: &&str| {
             let command = all.find_subcommand(name);
             let about = command.and_then(Command::get_about).map(ToString::to_string);
-            let aliases = command.into_iter().flat_map(Command::get_visible_aliases);
-            let aliases: String = aliases.map(|alias| format!(" (or `{alias}`)")).collect();
-            format!("  {name:width$}  {}{aliases}", about.unwrap_or_default())
+            let mut line = format!("  {name:width$}  {}", about.unwrap_or_default());
+            for alias in command.into_iter().flat_map(Command::get_visible_aliases) {
+                line.extend([" (or `", alias, "`)"]);
+            }
+            line
         };
         let lines: Vec<_> = self.commands.iter().map(line).collect();
         let text = format!("{}:\n{}", self.question, lines.join("\n"));

@@ -109,6 +109,13 @@ pub(crate) fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
 
+/// The same of a count.
+#[cfg(feature = "serde")]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde calls")]
+pub(crate) fn is_none(count: &u64) -> bool {
+    *count == 0
+}
+
 /// The same of a lower bound.
 #[cfg(feature = "serde")]
 pub(crate) mod or_minus_infinite {

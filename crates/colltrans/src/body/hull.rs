@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use super::ConvexPolyhedron;
+use super::solid::Solid;
 
 /// A body, or a part of one, by its corners.
 pub(crate) trait Hull {
@@ -22,5 +23,15 @@ impl Hull for ConvexPolyhedron {
     #[inline]
     fn reach(&self) -> f64 {
         self.inertia().reach
+    }
+}
+
+impl Hull for Solid {
+    fn corners(&self) -> &[DVec3] {
+        self.vertices()
+    }
+
+    fn reach(&self) -> f64 {
+        Self::reach(self)
     }
 }

@@ -5,7 +5,7 @@ use glam::DVec3;
 use crate::answer::{Depth, NearPoints};
 use crate::body::{Features, Pose};
 
-/// When the bodies first meet.
+/// When the bodies first meet. Of solids a proof is made when it is asked for: till then it is `()`.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -70,12 +70,20 @@ pub struct MotionSteps {
     pub looks: u32,
     /// Support points asked for by distances then.
     pub supports: u32,
+    /// Of solids, pairs of nodes of both trees, each in an interval of time.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "crate::written::is_none"))]
+    pub nodes: u64,
+    /// Of solids, pairs of facets whose distance was looked at on their way.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "crate::written::is_none"))]
+    pub leaves: u64,
 }
 
 impl std::ops::AddAssign for MotionSteps {
     fn add_assign(&mut self, other: Self) {
         self.looks += other.looks;
         self.supports += other.supports;
+        self.nodes += other.nodes;
+        self.leaves += other.leaves;
     }
 }
 

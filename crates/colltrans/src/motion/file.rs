@@ -60,7 +60,7 @@ impl MotionProofFile {
     fn cast(&self) -> MotionCast<'_> {
         let side =
             |k: usize| Moving { body: &self.bodies[k], motion: Cow::Borrowed(&self.motions[k]) };
-        MotionCast { moving: side(0), fixed: side(1), keep: self.keep }
+        MotionCast { moving: side(0), fixed: side(1), keep: self.keep, tolerance: None }
     }
 
     /// As a file: numbers that read back as the same bits.

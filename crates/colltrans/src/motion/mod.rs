@@ -53,6 +53,7 @@ mod course;
 mod file;
 mod look;
 mod search;
+mod solid;
 mod span;
 mod verify;
 
@@ -65,6 +66,7 @@ pub use self::answer::{
 pub use self::file::MotionProofFile;
 use self::look::ConvexLooker;
 use self::search::{Advanced, End, advance};
+pub use self::solid::{FacetsMeeting, FacetsMet, MotionCover, SolidMotionProof, SpanProof};
 use self::span::{Span, spans};
 pub use self::verify::MotionProofError;
 use crate::body::ConvexPolyhedron;
@@ -82,7 +84,7 @@ impl ConvexPolyhedron {
     }
 }
 
-/// Two bodies, either of which may move, from time 0 to 1.
+/// Two bodies, either of which may move, from time 0 to 1: convex ones, or [solids](crate::Solid).
 #[derive(Debug)]
 #[derive_where(Clone)]
 pub struct MotionCast<'a, B = ConvexPolyhedron> {
@@ -90,10 +92,13 @@ pub struct MotionCast<'a, B = ConvexPolyhedron> {
     fixed: Moving<'a, B>,
     /// A gap to be kept; negative, of convex bodies, a depth that is tolerated.
     keep: f64,
+    /// By half of which solids are shrunk; none stands for what rounding can do.
+    tolerance: Option<f64>,
 }
 
 impl<'a, B> MotionCast<'a, B> {
-    /// Of two bodies [along](ConvexPolyhedron::along) a motion or [at](ConvexPolyhedron::at) a pose.
+    /// Of two bodies [along](ConvexPolyhedron::along) a motion or [at](ConvexPolyhedron::at) a pose, both convex or
+    /// both solids. One of each kind: [`Self::between`](MotionCast::between).
     ///
     /// # Errors
     /// None today: what a body and a motion admit, a cast does.
@@ -101,7 +106,7 @@ impl<'a, B> MotionCast<'a, B> {
         moving: impl Into<Moving<'a, B>>,
         fixed: impl Into<Moving<'a, B>>,
     ) -> Result<Self, QueryError> {
-        Ok(Self { moving: moving.into(), fixed: fixed.into(), keep: 0.0 })
+        Ok(Self { moving: moving.into(), fixed: fixed.into(), keep: 0.0, tolerance: None })
     }
 
     /// The moving and the fixed body.

@@ -51,6 +51,18 @@ impl<'a, B: Hull> Span<'a, B> {
         }
     }
 
+    /// Other bodies, which are parts of these, during a part of the time.
+    pub(super) fn part<'b, C>(&self, bodies: [&'b C; 2], [from, to]: [f64; 2]) -> Span<'b, C> {
+        let Self { start, pieces, error, keep, .. } = self;
+        let (start, pieces) = (start.holding(bodies), *pieces);
+        Span { start, pieces, from, to, error: *error, keep: *keep }
+    }
+
+    /// The same bodies up to a time.
+    pub(super) fn until(&self, to: f64) -> Self {
+        Self { to, ..self.clone() }
+    }
+
     pub(super) fn instant(&self, time: f64) -> Instant<'a, [Moved; 2], B> {
         let moved = self.pieces.map(|piece| piece.at(time));
         let bodies = self.start.carried(moved.map(|m| m.rotation), moved.map(|m| m.by));

@@ -50,6 +50,25 @@ pub enum MotionProofError {
         /// The first of them.
         index: usize,
     },
+    /// Another tolerance than that which is asked about.
+    #[error("the proof is of a tolerance of {claimed}, not {asked}")]
+    Tolerance {
+        /// What is claimed.
+        claimed: f64,
+        /// What is asked about.
+        asked: f64,
+    },
+    /// What solids do when the motion begins is not proven.
+    #[error("whether the solids overlap when the motion begins is not proven")]
+    Start,
+    /// Not all pairs of facets are parted at all times.
+    #[error("entry {entry} of the cover of span {span} does not hold, or does not fit the bodies")]
+    Cover {
+        /// Of which span.
+        span: usize,
+        /// Which one.
+        entry: usize,
+    },
     /// That the bodies meet is not proven.
     #[error("that the bodies meet at {time} is not proven{}", because(.reason.as_ref()))]
     Meeting {

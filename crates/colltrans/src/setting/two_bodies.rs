@@ -95,6 +95,12 @@ impl<'a, B> TwoBodies<'a, B> {
         Self { moving_matrix, fixed_matrix, translations: [p + by[0], q + by[1]], ..moved }
     }
 
+    /// Other bodies in their places.
+    pub(crate) fn holding<'b, C>(&self, [moving, fixed]: [&'b C; 2]) -> TwoBodies<'b, C> {
+        let Self { moving_matrix, fixed_matrix, translations, offset, offset_error, .. } = *self;
+        TwoBodies { moving, moving_matrix, fixed, fixed_matrix, translations, offset, offset_error }
+    }
+
     /// `t_Q - t_P`, and what rounding took from it.
     #[inline]
     pub(crate) fn exact_offset(&self) -> [DVec3; 2] {

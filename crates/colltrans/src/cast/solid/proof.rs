@@ -248,7 +248,7 @@ impl Cast<'_, Solid> {
         Ok((self.answer(&scene, found.as_ref(), steps), certificate))
     }
 
-    fn prove_start(&self, scene: &Scene, steps: &mut SolidSteps) -> StartProof {
+    pub(crate) fn prove_start(&self, scene: &Scene, steps: &mut SolidSteps) -> StartProof {
         // An overlap that is the answer is looked for, to be named.
         let options = self.options();
         let is_answer =

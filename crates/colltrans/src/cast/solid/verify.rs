@@ -76,7 +76,11 @@ impl Cast<'_, Solid> {
         }
     }
 
-    fn verify_start(&self, scene: &Scene, start: &StartProof) -> Result<(), CertificateError> {
+    pub(crate) fn verify_start(
+        &self,
+        scene: &Scene,
+        start: &StartProof,
+    ) -> Result<(), CertificateError> {
         let assumed = self.options().overlapping;
         let holds = match start {
             StartProof::Assumed => assumed.is_some(),

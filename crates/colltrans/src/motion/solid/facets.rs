@@ -1,0 +1,140 @@
+//! Two facets on their way: how far apart, and that they cross.
+//!
+//! A distance is that of two triangles in closed form ([`triangle`]), whose plane is a guess as any other: a look
+//! takes of it what it proves. That they *cross* is an edge of one that passes through the other: five volumes
+//! have signs, and keep them wherever the points are that computed ones stand for. Points of two facets are off by
+//! less than `e` each, noise and motion together; for vectors `x, y, z` between them the volume then is by less
+//! than `8 e (|y||z| + |x||z| + |x||y| + e (|x| + |y| + |z| + e)) + 48 u |x||y||z|` in the maximum norm.
+
+use glam::DVec3;
+
+use super::super::answer::MotionSteps;
+use super::super::bend::Looking;
+use super::super::course::Course;
+use super::super::look::{Look, Looker, closing};
+use super::super::span::Instant;
+use super::tree::Facet;
+use crate::answer::are_weights;
+use crate::solve::solid::nearest::triangle::{self, Corners, GAP, LENGTH};
+
+/// What proves that two facets meet.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum FacetsMet {
+    /// An edge of one passes through the other, by more than computed places may be off.
+    Crossing {
+        /// Whether the edge is one of the moving body's facet.
+        moving: bool,
+        /// Which one, from this corner to the next: 0, 1 or 2.
+        edge: u8,
+    },
+    /// Two points are no farther apart than the gap to be kept.
+    Near {
+        /// The weights of the corners of either facet.
+        weights: [[f64; 3]; 2],
+    },
+}
+
+/// Looks at two facets.
+#[derive(Debug, Clone, Default)]
+pub(super) struct FacetLooker {
+    pub(super) steps: MotionSteps,
+}
+
+/// The corners of both facets in the setting frame.
+pub(super) fn corners<M>(at: &Instant<'_, M, Facet>) -> [Corners; 2] {
+    let bodies = &at.bodies;
+    let [f, g] = [bodies.moving.corners, bodies.fixed.corners];
+    [f.map(|v| bodies.moving_matrix * v), g.map(|v| bodies.fixed_matrix * v + bodies.offset)]
+}
+
+impl Looker<Facet> for FacetLooker {
+    type Met = FacetsMet;
+    type Supports = Looking;
+    const SUPPORTS: Looking = Looking;
+
+    fn look<'a, C>(&mut self, course: &C, time: f64) -> Look<'a, C::Moved, Facet>
+    where
+        C: Course<'a, Body = Facet>,
+    {
+        self.steps.looks += 1;
+        let at = course.instant(time);
+        let noise = at.bodies.noise().point();
+        let [f, g] = corners(&at);
+        let found = triangle::nearest(&f, &g, noise);
+        let gap = found.gap - GAP * noise - course.keep() - course.error();
+        let rate = if gap > 0.0 {
+            let [p, q] = [at.bodies.moving.corners, at.bodies.fixed.corners];
+            let points =
+                [triangle::mean(&p, found.weights[0]), triangle::mean(&q, found.weights[1])];
+            closing(course, &at, points, found.normal)
+        } else {
+            0.0
+        };
+        Look { at, normal: found.normal, gap, rate, floor: 4.0 * noise + course.error() }
+    }
+
+    fn met<'a, C>(&mut self, course: &C, time: f64) -> Option<FacetsMet>
+    where
+        C: Course<'a, Body = Facet>,
+    {
+        self.steps.looks += 1;
+        let at = course.instant(time);
+        if course.keep() > 0.0 {
+            let [f, g] = corners(&at);
+            let weights = triangle::nearest(&f, &g, at.bodies.noise().point()).weights;
+            let met = FacetsMet::Near { weights: weights.map(|w| w.to_array()) };
+            return holds(course, &at, met).then_some(met);
+        }
+        let edges = [true, false].into_iter().flat_map(|moving| (0..3).map(move |k| (moving, k)));
+        edges
+            .map(|(moving, edge)| FacetsMet::Crossing { moving, edge })
+            .find(|met| holds(course, &at, *met))
+    }
+}
+
+/// Whether two facets meet at a time, for certain.
+pub(super) fn holds<'a, C: Course<'a, Body = Facet>>(
+    course: &C,
+    at: &Instant<'a, C::Moved, Facet>,
+    met: FacetsMet,
+) -> bool {
+    let (noise, [f, g]) = (at.bodies.noise().point(), corners(at));
+    match met {
+        FacetsMet::Crossing { moving, edge } => {
+            let (own, other) = if moving { (f, g) } else { (g, f) };
+            let k = edge as usize % 3;
+            course.keep() == 0.0 && pierces(own[k], own[(k + 1) % 3], other, noise + course.error())
+        }
+        FacetsMet::Near { weights } => {
+            let length = triangle::length(&f, &g, weights.map(DVec3::from_array));
+            weights.iter().all(|weights| are_weights(&weights[..]))
+                && length + LENGTH * noise + course.error() <= course.keep()
+        }
+    }
+}
+
+/// Whether a segment passes through a triangle, wherever its points are to within `e`.
+fn pierces(p: DVec3, q: DVec3, [a, b, c]: Corners, e: f64) -> bool {
+    let [below, above] = [p, q].map(|end| sign([b - a, c - a, end - a], e));
+    if below == 0 || below + above != 0 {
+        return false;
+    }
+    let way = q - p;
+    let turns = [(a, b), (b, c), (c, a)].map(|(u, v)| sign([way, u - p, v - p], e));
+    turns[0] != 0 && turns == [turns[0]; 3]
+}
+
+/// The sign of the volume of three vectors between such points, 0 if it is not certain.
+fn sign([x, y, z]: [DVec3; 3], e: f64) -> i32 {
+    let [l, m, n] = [x, y, z].map(|v| v.abs().max_element());
+    let value = x.cross(y).dot(z);
+    let pairs = l * m + m * n + n * l;
+    let rounded = 24.0 * f64::EPSILON * l * m * n;
+    let error = 8.0 * e * (pairs + e * (l + m + n + e)) + rounded;
+    if value.abs() > error { value.signum() as i32 } else { 0 }
+}

@@ -1,0 +1,314 @@
+//! Solids that turn: when do two of them first touch?
+//!
+//! Both are shrunk by half a tolerance, as for casts, so that what fits may turn in what holds it. Whether they
+//! overlap when the motion begins is decided exactly, insides and all; from then on surfaces have to meet before
+//! insides do. Which facets meet first is asked of both trees of boxes and of time.
+//!
+//! The modules, each using only those before it: `tree` (a shrunk solid), `window` (two parts in an interval, and
+//! one plane), `facets` (two facets, as convex bodies), `search`, `proof` (the search written down), `verify`.
+
+mod facets;
+mod proof;
+mod search;
+mod tree;
+mod verify;
+mod window;
+
+use std::borrow::Cow;
+
+use glam::DVec3;
+
+use self::facets::FacetLooker;
+pub use self::facets::FacetsMet;
+pub use self::proof::{FacetsMeeting, MotionCover, SolidMotionProof, SpanProof};
+use self::search::{Found, Search, Written};
+use self::tree::Tree;
+use self::window::Frame;
+use super::answer::{MotionContact, MotionFree, MotionOutcome, MotionSteps};
+use super::look::Looker;
+use super::span::{Span, spans};
+use super::verify::MotionProofError;
+use super::{Motion, MotionCast, Moving};
+use crate::answer::SolidSteps;
+use crate::body::Features;
+use crate::body::solid::{AsSolid, Solid};
+use crate::cast::Cast;
+use crate::cast::solid::{SolidOptions, StartProof};
+use crate::number::noise::Noise;
+use crate::setting::error::QueryError;
+use crate::setting::{Setting, check_keep};
+use crate::solve::solid::nearest::{Spot, points_of};
+use crate::solve::solid::overlap::{self, Overlap};
+use crate::solve::solid::scene::Scene;
+
+/// The default tolerance, in multiples of what two points may be off each other: noise, and motion.
+const TOLERANCE: f64 = 32.0;
+
+/// How often a time after a contact is doubled, from so many roundings on, to find facets that cross.
+const BEYOND: i32 = 48;
+const FIRST: f64 = 4.0 * f64::EPSILON;
+
+/// How often a proof up to a contact is tried, each time a little shorter.
+const MOST_CUTS: i32 = 40;
+
+impl Solid {
+    /// This body and a motion, for a [`MotionCast`].
+    pub fn along<'a>(&'a self, motion: &'a Motion) -> Moving<'a, Self> {
+        Moving { body: self, motion: Cow::Borrowed(motion) }
+    }
+}
+
+/// Solids that turn. Answers are as of convex bodies, of both bodies shrunk by half the tolerance.
+impl<'a> MotionCast<'a, Solid> {
+    /// Between bodies of either kind, as solids: a solid and a convex polyhedron, say.
+    ///
+    /// # Errors
+    /// A point or a segment.
+    ///
+    /// ```
+    /// use colltrans::glam::DVec3;
+    /// use colltrans::motion::{Motion, MotionCast, MotionOutcome};
+    /// use colltrans::{ConvexPolyhedron, Pose, Solid};
+    ///
+    /// let bar = ConvexPolyhedron::cuboid(DVec3::new(0.0, -0.1, 0.0), DVec3::new(2.0, 0.1, 0.2))?;
+    /// let post = ConvexPolyhedron::cuboid(DVec3::splat(-0.1), DVec3::splat(0.3))?;
+    /// let far = ConvexPolyhedron::cuboid(DVec3::splat(5.0), DVec3::splat(6.0))?;
+    /// let scene = Solid::from_pieces([&post, &far])?;
+    /// let swing = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, std::f64::consts::PI)?;
+    /// let there = Motion::still(Pose::from_translation(DVec3::Y * 1.5)?);
+    /// let cast = MotionCast::between(bar.along(&swing), scene.along(&there))?;
+    /// let MotionOutcome::Contact(contact) = cast.first_contact()? else { panic!("no contact") };
+    /// assert!(contact.lower < 0.5 && contact.upper - contact.lower < 1e-11);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn between<A: AsSolid, B: AsSolid>(
+        moving: Moving<'a, A>,
+        fixed: Moving<'a, B>,
+    ) -> Result<Self, QueryError> {
+        let (p, q) = (moving.body.as_solid()?, fixed.body.as_solid()?);
+        Self::new(
+            Moving { body: p, motion: moving.motion },
+            Moving { body: q, motion: fixed.motion },
+        )
+    }
+
+    /// The same with a gap to be kept, in world units: what counts is when the bodies, shrunk, are no farther apart.
+    ///
+    /// # Errors
+    /// A gap that is negative, not finite or out of range.
+    pub fn keeping(self, gap: f64) -> Result<Self, QueryError> {
+        check_keep(gap)?;
+        Ok(Self { keep: gap, ..self })
+    }
+
+    /// The same with both bodies shrunk by half of this length. Without it they are by what rounding can do to a fit:
+    /// what touches may part, slide and turn, and is stopped where it is pushed.
+    ///
+    /// # Errors
+    /// A length that is negative or not finite, or that leaves nothing of a closed body.
+    pub fn tolerating(self, tolerance: f64) -> Result<Self, QueryError> {
+        let cast = Self { tolerance: Some(tolerance), ..self };
+        cast.start().map(|_| cast)
+    }
+
+    /// The tolerance that is used, as a length.
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance.unwrap_or_else(|| self.usual_tolerance())
+    }
+
+    /// When do the bodies first meet? No proof is made: see [`Self::certified_first_contact`].
+    ///
+    /// # Errors
+    /// A body so thin that the default tolerance leaves nothing of it.
+    pub fn first_contact(&self) -> Result<MotionOutcome<()>, QueryError> {
+        let tolerance = self.tolerance();
+        let (start, mut steps) = (self.start()?, MotionSteps::default());
+        if overlap::find(&start.asked_of_something()?, &mut SolidSteps::default()).is_some() {
+            return Ok(MotionOutcome::Overlapping(self.overlapping((), steps)));
+        }
+        let trees = self.trees(tolerance);
+        for span in spans(trees.each_ref(), self.motions(), self.keep) {
+            let (found, _) = searched(&span, false, &mut steps);
+            if let Some(found) = found {
+                let found = self.confirmed(&span, found, tolerance, &mut steps);
+                return Ok(self.contact(&span, &found, tolerance, steps, |_| ()));
+            }
+        }
+        Ok(MotionOutcome::Free(MotionFree { proof: (), steps }))
+    }
+
+    /// The same with its proof, which [`Self::verify`] checks without a search. A contact takes a search more: from
+    /// the start to it.
+    ///
+    /// # Errors
+    /// As [`Self::first_contact`].
+    pub fn certified_first_contact(&self) -> Result<MotionOutcome<SolidMotionProof>, QueryError> {
+        let tolerance = self.tolerance();
+        let cast = self.start()?;
+        let start = cast.prove_start(&cast.asked_of_something()?, &mut SolidSteps::default());
+        let mut proof = SolidMotionProof { tolerance, start, spans: Vec::new(), meeting: None };
+        let mut steps = MotionSteps::default();
+        if matches!(proof.start, StartProof::Overlapping(_)) {
+            return Ok(MotionOutcome::Overlapping(self.overlapping(proof, steps)));
+        }
+        let trees = self.trees(tolerance);
+        for span in spans(trees.each_ref(), self.motions(), self.keep) {
+            let (found, written) = searched(&span, true, &mut steps);
+            let Some(found) = found else {
+                proof.spans.push(SpanProof::new(span.to, written));
+                continue;
+            };
+            let mut found = self.confirmed(&span, found, tolerance, &mut steps);
+            let (lower, written) = up_to(&span, found.lower, &mut steps);
+            found.lower = lower;
+            proof.spans.push(SpanProof::new(lower, written));
+            return Ok(self.contact(&span, &found, tolerance, steps, |meeting| SolidMotionProof {
+                meeting,
+                ..proof
+            }));
+        }
+        Ok(MotionOutcome::Free(MotionFree { proof, steps }))
+    }
+
+    /// Checks a proof without a search. Returns up to which time the bodies, shrunk, are proven not to meet, and when
+    /// they are proven to, infinity if that is not claimed.
+    ///
+    /// # Errors
+    /// What is not proven.
+    pub fn verify(&self, proof: &SolidMotionProof) -> Result<[f64; 2], MotionProofError> {
+        verify::verify(self, proof)
+    }
+
+    /// The bodies where they start; of no direction.
+    fn start(&self) -> Result<Cast<'a, Solid>, QueryError> {
+        let bodies = self.bodies();
+        let [p, q] = self.motions().map(|motion| motion.pieces()[0].start);
+        let options = SolidOptions::default().with_tolerance(self.tolerance()).with_keep(self.keep);
+        Cast::new(bodies[0].at(p), bodies[1].at(q), DVec3::Z)?.with_options(options)
+    }
+
+    /// What rounding can do to a fit, of bodies as they are.
+    fn usual_tolerance(&self) -> f64 {
+        let (bodies, motions) = (self.bodies(), self.motions());
+        let off = spans(bodies, motions, 0.0).into_iter().map(|span| {
+            let ends = [span.from, span.to].map(|time| span.instant(time).bodies.scale());
+            Noise::of(ends[0].max(ends[1])).point() + span.error
+        });
+        TOLERANCE * off.fold(0.0, f64::max)
+    }
+
+    fn trees(&self, tolerance: f64) -> [Tree<'a>; 2] {
+        self.bodies().map(|solid| Tree::new(solid, 0.5 * tolerance))
+    }
+
+    /// The same with two facets that meet for certain, if there are some soon after.
+    fn confirmed(
+        &self,
+        span: &Span<Tree>,
+        found: Found,
+        tolerance: f64,
+        steps: &mut MotionSteps,
+    ) -> Found {
+        if found.met.is_some() {
+            return found;
+        }
+        let mut looker = FacetLooker::default();
+        let mut met = None;
+        for k in -1..BEYOND {
+            let more = if k < 0 { 0.0 } else { FIRST * 2.0_f64.powi(k) };
+            let time = found.lower + more;
+            if time > span.to {
+                break;
+            }
+            let scene = self.scene(span, time, tolerance);
+            let place = scene.and_then(|scene| overlap::find(&scene, &mut SolidSteps::default()));
+            let [s, t] = match place {
+                Some(Overlap::Facets(s, t)) => [s, t],
+                Some(_) => continue,
+                None => found.triangles,
+            };
+            let facets = [span.body(0).facet(s), span.body(1).facet(t)];
+            let part = span.part(facets.each_ref(), [span.from, span.to]);
+            met = looker.met(&part, time).map(|met| (time, [s, t], met));
+            let parted = place.is_none() && k >= 0 && looker.look(&part, time).is_apart();
+            if met.is_some() || parted {
+                break;
+            }
+        }
+        *steps += looker.steps;
+        Found { met, ..found }
+    }
+
+    /// The bodies at a time, shrunk.
+    fn scene(&self, span: &Span<Tree>, time: f64, tolerance: f64) -> Option<Scene<'a>> {
+        let bodies = span.instant(time).bodies.holding(self.bodies());
+        let setting = Setting::of(bodies, DVec3::Z).ok()?;
+        Some(Scene::new(&setting, [0.5 * tolerance; 2], self.keep))
+    }
+
+    /// What is to be said where the bodies meet, or may.
+    fn contact<P>(
+        &self,
+        span: &Span<Tree>,
+        found: &Found,
+        tolerance: f64,
+        steps: MotionSteps,
+        proof: impl FnOnce(Option<FacetsMeeting>) -> P,
+    ) -> MotionOutcome<P> {
+        let meeting =
+            found.met.map(|(time, triangles, met)| FacetsMeeting { time, triangles, met });
+        let (lower, upper) = (found.lower, meeting.map_or(f64::INFINITY, |meeting| meeting.time));
+        let bodies = span.instant(lower).bodies;
+        let [p, q] = [bodies.moving_matrix, bodies.fixed_matrix];
+        let poses = [0, 1].map(|k| crate::Pose::checked([p, q][k], bodies.translations[k]));
+        // What is proven does not hang on it.
+        let scene = self.scene(span, lower, tolerance);
+        let spot = scene.as_ref().map(|scene| Spot::of(scene, found.triangles));
+        let points = spot.zip(self.scene(span, lower, 0.0)).map(|(spot, scene)| {
+            points_of(&scene, spot.triangles, spot.nearest.weights)
+                .map(|point| point + bodies.translations[0])
+        });
+        let seen = spot.zip(scene).filter(|(spot, _)| spot.nearest.gap > 0.0);
+        let normal = seen.as_ref().map(|(spot, _)| spot.nearest.normal);
+        let features = seen.map(|(spot, scene)| {
+            let [moving, fixed] = spot.features(&scene);
+            Features { moving, fixed }
+        });
+        let proof = proof(meeting);
+        let contact = MotionContact { lower, upper, poses, points, normal, features, proof, steps };
+        if upper.is_finite() {
+            MotionOutcome::Contact(contact)
+        } else {
+            MotionOutcome::Grazing(contact)
+        }
+    }
+
+    /// What is said of bodies that overlap when the motion begins.
+    fn overlapping<P>(&self, proof: P, steps: MotionSteps) -> MotionContact<P> {
+        let poses = self.motions().map(|motion| motion.pieces()[0].start);
+        let (points, normal, features) = (None, None, None);
+        MotionContact { lower: 0.0, upper: 0.0, poses, points, normal, features, proof, steps }
+    }
+}
+
+/// Searches a span.
+fn searched(span: &Span<Tree>, writes: bool, steps: &mut MotionSteps) -> (Option<Found>, Written) {
+    let mut search = Search::new(Frame::new(span), writes);
+    search.run();
+    *steps += search.steps;
+    (search.found, search.written.unwrap_or_default())
+}
+
+/// What proves a span up to a time, or to a little before where that cannot be written down.
+fn up_to(span: &Span<Tree>, mut until: f64, steps: &mut MotionSteps) -> (f64, Written) {
+    for k in 0..MOST_CUTS {
+        if until <= span.from {
+            break;
+        }
+        let (found, written) = searched(&span.until(until), true, steps);
+        let Some(found) = found else { return (until, written) };
+        let less = if found.lower < until { 0.0 } else { f64::EPSILON * 2.0_f64.powi(k) };
+        until = (found.lower - less).max(span.from);
+    }
+    (span.from, Written::default())
+}

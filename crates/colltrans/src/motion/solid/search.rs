@@ -1,0 +1,239 @@
+//! Down both trees and through time, earlier times first.
+//!
+//! What is open is a stack of pairs of parts, each in an interval. A pair that no plane parts throughout is split:
+//! its time, where the parts move farther than they are large or turn much; else the larger part. Two facets
+//! that are left are asked as two convex bodies are.
+//!
+//! Invariant. Every pair of facets is parted up to the end of the span, or up to the earliest contact found so far,
+//! but for what is open. What lies later than that is not looked at.
+
+use super::super::answer::{MotionSteps, PlaneAt};
+use super::super::search::{Advanced, End, advance};
+use super::facets::{FacetLooker, FacetsMet};
+use super::tree::{Below, Tree};
+use super::window::{Frame, Part, Plane, Snap, normal};
+
+/// Longer arcs are halved at once.
+const TURN: f64 = 0.7;
+
+/// Time is halved while parts move by more than so many times their size; facets by more.
+const WAYS: f64 = 2.0;
+const FACET_WAYS: f64 = 8.0;
+
+/// Intervals that are shorter are not halved: what is open there is asked facet by facet.
+const SHORTEST: f64 = 1e-9;
+
+/// What became of a pair of parts in an interval.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Entry {
+    /// Its time is halved.
+    Halved,
+    /// The moving (0) or the fixed (1) part is split in two.
+    Split(u8),
+    /// A plane parts them throughout.
+    Parted(Plane),
+    /// Two facets, parted by a list of planes.
+    Listed,
+}
+
+/// A proof, as it is written down: entries in preorder, and the lists of planes that they speak of.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Written {
+    pub(super) entries: Vec<Entry>,
+    pub(super) lists: Vec<Vec<PlaneAt>>,
+}
+
+/// The earliest contact found.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Found {
+    /// All facets are apart before.
+    pub(super) lower: f64,
+    /// Those that are not from then on.
+    pub(super) triangles: [u32; 2],
+    /// When some are seen to meet, and why.
+    pub(super) met: Option<(f64, [u32; 2], FacetsMet)>,
+}
+
+/// A pair of parts in an interval, which nothing is known of yet.
+#[derive(Debug, Clone, Copy)]
+struct Open {
+    parts: [u32; 2],
+    /// Where its ends are among the snaps, and how many of these are to be kept for what is open.
+    ends: [u32; 2],
+    snaps: u32,
+}
+
+/// A search through a span under way.
+pub(super) struct Search<'s, 'a> {
+    frame: Frame<'s, 'a>,
+    trees: [&'a Tree<'a>; 2],
+    snaps: Vec<Snap>,
+    stack: Vec<Open>,
+    /// What parted the last pair.
+    last: Plane,
+    pub(super) found: Option<Found>,
+    pub(super) written: Option<Written>,
+    pub(super) steps: MotionSteps,
+}
+
+impl<'s, 'a> Search<'s, 'a> {
+    /// Of a span; what is proven is written down if so said.
+    pub(super) fn new(frame: Frame<'s, 'a>, writes: bool) -> Self {
+        let trees = [frame.span.body(0), frame.span.body(1)];
+        let snaps = vec![frame.snap(frame.span.from), frame.snap(frame.span.to)];
+        Self {
+            frame,
+            trees,
+            snaps,
+            stack: Vec::new(),
+            last: Plane::Middles,
+            found: None,
+            written: writes.then(Written::default),
+            steps: MotionSteps::default(),
+        }
+    }
+
+    pub(super) fn run(&mut self) {
+        self.stack.push(Open { parts: [0, 0], ends: [0, 1], snaps: 2 });
+        while let Some(open) = self.stack.pop() {
+            self.snaps.truncate(open.snaps as usize);
+            self.visit(open);
+        }
+    }
+
+    fn visit(&mut self, Open { parts: at, ends: [from, mut to], .. }: Open) {
+        if let Some(Found { lower, .. }) = self.found {
+            if self.time(from) >= lower {
+                return;
+            }
+            if self.time(to) > lower {
+                self.snaps.push(self.frame.snap(lower));
+                to = self.snaps.len() as u32 - 1;
+            }
+        }
+        self.steps.nodes += 1;
+        let parts = [0, 1].map(|k| Part::of(self.trees[k], at[k]));
+        if let Some(plane) = self.parted([from, to], parts.each_ref()) {
+            self.last = plane;
+            self.write(Entry::Parted(plane));
+            return;
+        }
+        let ends = [&self.snaps[from as usize], &self.snaps[to as usize]];
+        let nodes = [0, 1].map(|k| self.trees[k].node(at[k]));
+        let sizes = nodes.map(|node| node.half.length());
+        let way = self.frame.way(ends, parts.each_ref()) / sizes[0].max(sizes[1]);
+        let turns = (0..2).any(|k| self.frame.angle(k, ends) > TURN);
+        let is_long = ends[1].time - ends[0].time >= SHORTEST;
+        let below = nodes.map(|node| node.below);
+        if let [Below::Facet(s), Below::Facet(t)] = below {
+            if is_long && (turns || way > FACET_WAYS) {
+                self.halve(at, [from, to]);
+            } else {
+                self.ask([s, t], [from, to], parts.each_ref());
+            }
+        } else if is_long && (turns || way > WAYS) {
+            self.halve(at, [from, to]);
+        } else {
+            self.split(at, [from, to], below, sizes[0] >= sizes[1]);
+        }
+    }
+
+    fn time(&self, snap: u32) -> f64 {
+        self.snaps[snap as usize].time
+    }
+
+    fn write(&mut self, entry: Entry) {
+        if let Some(written) = &mut self.written {
+            written.entries.push(entry);
+        }
+    }
+
+    /// The plane that parts two parts throughout an interval.
+    fn parted(&self, ends: [u32; 2], parts: [&Part; 2]) -> Option<Plane> {
+        let ends = ends.map(|k| &self.snaps[k as usize]);
+        let holds = |plane: Plane| {
+            let normal = normal(ends, parts, plane);
+            normal.is_some_and(|normal| self.frame.parts(ends, parts, normal))
+        };
+        if holds(self.last) {
+            return Some(self.last);
+        }
+        let facets = parts.map(|part| part.facet().is_some());
+        let across = [0, 1].into_iter().filter(|k| facets[*k as usize]).map(Plane::Across);
+        let axes = [1, 0].into_iter().flat_map(|which| (0..3).map(move |k| Plane::Axis(which, k)));
+        let boxes = !(facets[0] && facets[1]);
+        let edges = (0..9).filter(|_| !boxes).map(|k| Plane::Edges(k / 3, k % 3));
+        std::iter::once(Plane::Middles)
+            .chain(across)
+            .chain(axes.filter(|_| boxes))
+            .chain(edges)
+            .find(|plane| *plane != self.last && holds(*plane))
+    }
+
+    fn halve(&mut self, parts: [u32; 2], [from, to]: [u32; 2]) {
+        self.write(Entry::Halved);
+        let [a, b] = [self.time(from), self.time(to)];
+        self.snaps.push(self.frame.snap(middle(a, b)));
+        let snaps = self.snaps.len() as u32;
+        let half = |ends| Open { parts, ends, snaps };
+        self.stack.extend([half([snaps - 1, to]), half([from, snaps - 1])]);
+    }
+
+    /// Splits one part in two: that which is not a facet, or the moving one if so said.
+    fn split(&mut self, at: [u32; 2], ends: [u32; 2], below: [Below; 2], moving: bool) {
+        let (which, first) = match below {
+            [Below::Nodes(first), Below::Facet(_)] => (0, first),
+            [Below::Nodes(first), Below::Nodes(_)] if moving => (0, first),
+            [_, Below::Nodes(first)] => (1, first),
+            [_, Below::Facet(_)] => return,
+        };
+        self.write(Entry::Split(which));
+        let snaps = self.snaps.len() as u32;
+        let part = |k: u32| {
+            let parts = if which == 0 { [k, at[1]] } else { [at[0], k] };
+            Open { parts, ends, snaps }
+        };
+        self.stack.extend([part(first + 1), part(first)]);
+    }
+
+    /// Two facets in an interval, as two convex bodies.
+    fn ask(&mut self, triangles: [u32; 2], ends: [u32; 2], parts: [&Part; 2]) {
+        let [Some(f), Some(g)] = parts.map(Part::facet) else { return };
+        let times = ends.map(|k| self.time(k));
+        let span = self.frame.span.part([f, g], times);
+        let mut looker = FacetLooker::default();
+        let Advanced { planes, end } = advance(&span, &mut looker);
+        self.steps.leaves += 1;
+        self.steps += looker.steps;
+        let lower = planes.last().map_or(times[0], |plane| plane.time);
+        match end {
+            End::Free => {
+                self.write(Entry::Listed);
+                if let Some(written) = &mut self.written {
+                    written.lists.push(planes);
+                }
+            }
+            End::Met(time, met) => self.take(lower, triangles, Some((time, triangles, met))),
+            End::Blurred | End::Stalled => self.take(lower, triangles, None),
+        }
+    }
+
+    fn take(&mut self, lower: f64, triangles: [u32; 2], met: Option<(f64, [u32; 2], FacetsMet)>) {
+        let Some(before) = &mut self.found else {
+            self.found = Some(Found { lower, triangles, met });
+            return;
+        };
+        if lower < before.lower {
+            (before.lower, before.triangles) = (lower, triangles);
+        }
+        let is_earlier = |new: f64| before.met.is_none_or(|(time, ..)| new < time);
+        if met.is_some_and(|(time, ..)| is_earlier(time)) {
+            before.met = met;
+        }
+    }
+}
+
+/// The time at which an interval is halved.
+pub(super) fn middle(from: f64, to: f64) -> f64 {
+    from + 0.5 * (to - from)
+}

@@ -1,0 +1,128 @@
+//! Checks of proofs about solids that turn: nothing of the search is used.
+//!
+//! Each entry of a cover is taken by itself: the plane that it names, or its list, which is checked as one of convex
+//! bodies is. Whether the bodies overlap at the start is checked as for a cast, that they meet where they are then.
+
+use super::super::span::{Span, spans};
+use super::super::verify::{MotionProofError, chain};
+use super::facets;
+use super::proof::{FacetsMeeting, SolidMotionProof, SpanProof};
+use super::search::{Entry, middle};
+use super::tree::{Below, Tree};
+use super::window::{Frame, Part, Snap, normal};
+use crate::body::solid::Solid;
+use crate::cast::solid::StartProof;
+use crate::motion::MotionCast;
+
+pub(super) fn verify(
+    cast: &MotionCast<Solid>,
+    proof: &SolidMotionProof,
+) -> Result<[f64; 2], MotionProofError> {
+    let (claimed, asked) = (proof.tolerance, cast.tolerance());
+    if claimed != asked {
+        return Err(MotionProofError::Tolerance { claimed, asked });
+    }
+    let start = cast.start().ok();
+    let scene = start.as_ref().and_then(|start| Some((start, start.asked_of_something().ok()?)));
+    let Some((start, scene)) = scene else { return Err(MotionProofError::Start) };
+    if matches!(proof.start, StartProof::Assumed)
+        || start.verify_start(&scene, &proof.start).is_err()
+    {
+        return Err(MotionProofError::Start);
+    }
+    if matches!(proof.start, StartProof::Overlapping(_)) {
+        let plain = proof.spans.is_empty() && proof.meeting.is_none();
+        return if plain { Ok([0.0; 2]) } else { Err(MotionProofError::Start) };
+    }
+    let trees = cast.trees(claimed);
+    let all = spans(trees.each_ref(), cast.motions(), cast.keep);
+    if proof.spans.len() > all.len() {
+        return Err(MotionProofError::Cover { span: all.len(), entry: 0 });
+    }
+    let mut reached = 0.0;
+    for (which, (span, part)) in all.iter().zip(&proof.spans).enumerate() {
+        let is_within = reached == span.from && (span.from..=span.to).contains(&part.until);
+        let covered = if is_within { covers(span, part) } else { Err(0) };
+        covered.map_err(|entry| MotionProofError::Cover { span: which, entry })?;
+        reached = part.until;
+    }
+    let Some(meeting) = &proof.meeting else { return Ok([reached, f64::INFINITY]) };
+    let FacetsMeeting { time, .. } = *meeting;
+    let span = all.get(proof.spans.len().wrapping_sub(1));
+    let meets = span.is_some_and(|span| time >= reached && meets(span, meeting));
+    if meets { Ok([reached, time]) } else { Err(MotionProofError::Meeting { time, reason: None }) }
+}
+
+/// Walks down both trees and through time as the entries say.
+///
+/// # Errors
+/// The number of the entry that does not hold, or at which the cover does not fit the trees.
+fn covers(span: &Span<Tree>, SpanProof { until, cover, lists }: &SpanProof) -> Result<(), usize> {
+    if *until == span.from {
+        return if cover.is_empty() && lists.is_empty() { Ok(()) } else { Err(0) };
+    }
+    let span = span.until(*until);
+    let frame = Frame::new(&span);
+    let trees = [span.body(0), span.body(1)];
+    let mut lists = lists.iter();
+    let mut stack = vec![([0, 0], [frame.snap(span.from), frame.snap(*until)])];
+    for (number, entry) in cover.0.iter().enumerate() {
+        let Some((at, ends)) = stack.pop() else { return Err(number) };
+        match *entry {
+            Entry::Halved => {
+                let half = frame.snap(middle(ends[0].time, ends[1].time));
+                stack.extend([(at, [half, ends[1]]), (at, [ends[0], half])]);
+            }
+            Entry::Split(which) => {
+                let which = usize::from(which);
+                let Below::Nodes(first) = trees[which].node(at[which]).below else {
+                    return Err(number);
+                };
+                let part = |k: u32| if which == 0 { [k, at[1]] } else { [at[0], k] };
+                stack.extend([(part(first + 1), ends), (part(first), ends)]);
+            }
+            Entry::Parted(plane) => {
+                let parts = [0, 1].map(|k| Part::of(trees[k], at[k]));
+                let ends = [&ends[0], &ends[1]];
+                let normal = normal(ends, parts.each_ref(), plane);
+                if !normal.is_some_and(|normal| frame.parts(ends, parts.each_ref(), normal)) {
+                    return Err(number);
+                }
+            }
+            Entry::Listed => {
+                let parts = [0, 1].map(|k| Part::of(trees[k], at[k]));
+                let holds = is_listed(&span, parts.each_ref(), &ends, lists.next());
+                if !holds {
+                    return Err(number);
+                }
+            }
+        }
+    }
+    if stack.is_empty() && lists.next().is_none() { Ok(()) } else { Err(cover.len()) }
+}
+
+/// Whether a list of planes parts two facets throughout an interval.
+fn is_listed(
+    span: &Span<Tree>,
+    parts: [&Part; 2],
+    ends: &[Snap; 2],
+    planes: Option<&Vec<super::super::PlaneAt>>,
+) -> bool {
+    let [Some(f), Some(g)] = parts.map(Part::facet) else { return false };
+    let Some(planes) = planes else { return false };
+    let [from, to] = [ends[0].time, ends[1].time];
+    let reaches = planes.first().is_some_and(|plane| plane.time == from)
+        && planes.last().is_some_and(|plane| plane.time == to);
+    reaches && chain(&span.part([f, g], [from, to]), planes).is_ok()
+}
+
+/// Whether two facets meet when it is said.
+fn meets(span: &Span<Tree>, FacetsMeeting { time, triangles, met }: &FacetsMeeting) -> bool {
+    let known = |k: usize| (triangles[k] as usize) < span.body(k).solid.triangles().len();
+    if !(known(0) && known(1) && (span.from..=span.to).contains(time)) {
+        return false;
+    }
+    let [f, g] = [0, 1].map(|k| span.body(k).facet(triangles[k]));
+    let part = span.part([&f, &g], [span.from, span.to]);
+    facets::holds(&part, &part.instant(*time), *met)
+}

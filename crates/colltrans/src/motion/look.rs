@@ -119,6 +119,11 @@ impl Looker<ConvexPolyhedron> for ConvexLooker {
 }
 
 impl ConvexLooker {
+    /// Nothing is known of the next bodies.
+    pub(super) fn forget(&mut self) {
+        self.pairs = NearestPairs::default();
+    }
+
     /// The plane by which the bodies overlap least, with its depth as a negative gap, and the points there.
     fn least_overlap(&mut self, difference: &Difference) -> (Option<PlaneGap>, MeanPair) {
         let pair = Pair { bodies: *difference.bodies };

@@ -52,6 +52,7 @@ mod course;
 #[cfg(feature = "json")]
 mod file;
 mod look;
+pub mod path;
 mod search;
 mod solid;
 mod span;

@@ -164,18 +164,27 @@ fn meets<'a, C: Course<'a, Body = ConvexPolyhedron>>(
     time: f64,
     met: &Met,
 ) -> Result<(), MotionProofError> {
+    let fails = |reason| MotionProofError::Meeting { time, reason };
+    let is_met = is_met(course, time, met).map_err(|reason| fails(Some(reason)))?;
+    if is_met { Ok(()) } else { Err(fails(None)) }
+}
+
+/// Whether bodies are proven to meet at a time.
+pub(super) fn is_met<'a, C: Course<'a, Body = ConvexPolyhedron>>(
+    course: &C,
+    time: f64,
+    met: &Met,
+) -> Result<bool, CertificateError> {
     let pair = Pair { bodies: course.instant(time).bodies };
     let [keep, error] = [course.keep(), course.error()];
-    let fails = |reason| MotionProofError::Meeting { time, reason };
-    let is_met = match met {
+    Ok(match met {
         Met::Deep(depth) => {
-            pair.verify(&**depth).map_err(|reason| fails(Some(reason)))?;
+            pair.verify(&**depth)?;
             depth.lower > error - keep
         }
         Met::Near(near) => {
-            pair.verify(near).map_err(|reason| fails(Some(reason)))?;
+            pair.verify(near)?;
             near.distance + error <= keep
         }
-    };
-    if is_met { Ok(()) } else { Err(fails(None)) }
+    })
 }

@@ -339,6 +339,11 @@ impl<'a> Pair<'a, Solid> {
         }
     }
 
+    /// Whether a shell of one body lies inside the other one, of bodies whose surfaces do not cross.
+    pub(crate) fn is_nested(&self) -> Result<bool, QueryError> {
+        Ok(nested(&self.scene()?).is_some())
+    }
+
     fn scene(&self) -> Result<Scene<'a>, QueryError> {
         let setting = Setting::of(self.bodies, DVec3::Z)?;
         Ok(Scene::new(&setting, [0.0; 2], 0.0))

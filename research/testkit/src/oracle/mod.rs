@@ -18,6 +18,7 @@ pub mod input;
 pub mod keep;
 pub mod motion;
 pub mod nearest;
+pub mod path;
 pub mod scene;
 pub mod sequences;
 pub mod settings;

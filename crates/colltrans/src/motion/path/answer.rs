@@ -1,0 +1,184 @@
+//! Answers about paths, and what proves them.
+
+use glam::DVec3;
+
+use super::super::answer::{Met, MotionSteps, PlaneAt};
+use super::mechanism::Place;
+use crate::body::{Features, Pose};
+
+/// What the bodies of a mechanism do on a path.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+#[non_exhaustive]
+pub enum PathOutcome {
+    /// Two of them meet, at a time between two bounds, and none before.
+    Contact(PathContact),
+    /// Two come nearer to each other than rounding can tell. Proven is that none meet before; not that they meet,
+    /// and nothing of later times.
+    Grazing(PathContact),
+    /// None meet: proven of the whole path.
+    Free(PathFree),
+    /// Two of them overlap where the path begins.
+    Overlapping(PathContact),
+}
+
+/// A first contact, or what may be one.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct PathContact {
+    /// Up to this time no two of the bodies meet.
+    pub lower: f64,
+    /// At this time these two do; infinite (`null` in JSON) where that is not proven.
+    #[cfg_attr(feature = "serde", serde(with = "crate::written::or_infinite"))]
+    pub upper: f64,
+    /// Where on the path that is.
+    pub place: Place,
+    /// Which two bodies, by their numbers.
+    pub pair: [usize; 2],
+    /// Where they are then, to rounding.
+    pub poses: [Pose; 2],
+    /// The points of both that are nearest to each other then, in the world, rounded; none where the distance has no
+    /// answer.
+    pub points: Option<[DVec3; 2]>,
+    /// Unit normal in the world, from the first to the second.
+    pub normal: Option<DVec3>,
+    /// What faces each other across it, of bodies that are convex.
+    pub features: Option<Features>,
+    /// What proves the bounds.
+    pub proof: PathProof,
+    /// How much work it was.
+    pub steps: MotionSteps,
+}
+
+/// No contact.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[non_exhaustive]
+pub struct PathFree {
+    /// What proves it.
+    pub proof: PathProof,
+    /// How much work it was.
+    pub steps: MotionSteps,
+}
+
+/// What proves an answer: planes between the bodies of each pair, and that two meet.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct PathProof {
+    /// For each pair, in the order in which they are asked about.
+    pub covers: Vec<Cover>,
+    /// That two bodies meet.
+    pub meeting: Option<PathMeeting>,
+}
+
+/// What proves that two pieces do not meet up to some place: steps, each from where the last one ends.
+#[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Cover {
+    /// One after the other.
+    pub steps: Vec<Step>,
+}
+
+/// A step of a cover.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum Step {
+    /// Planes between both pieces: within a row each is joined to the next; the last one of a stretch and the first one
+    /// of the next prove all between them by their gaps.
+    Planes(Vec<Stretch>),
+    /// Each part of one piece for itself.
+    Parts {
+        /// Which piece is taken apart, the first (0) or the second one (1).
+        which: usize,
+        /// Up to where, at most.
+        until: Place,
+        /// For each of its parts.
+        covers: Vec<Cover>,
+    },
+}
+
+/// Planes on the way from a row to the next one. Their times are shares of that way; normals are in the frame that
+/// both bodies share.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct Stretch {
+    /// The row.
+    pub row: usize,
+    /// In the order of their times.
+    pub planes: Vec<PlaneAt>,
+}
+
+/// That two bodies meet.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct PathMeeting {
+    /// The number of the pair among those that are asked about.
+    pub pair: usize,
+    /// Where on the path.
+    pub place: Place,
+    /// Why.
+    pub how: How,
+}
+
+/// Why two bodies meet.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum How {
+    /// Pieces of them do.
+    Pieces {
+        /// Their numbers.
+        pieces: [usize; 2],
+        /// What proves it.
+        met: Met,
+    },
+    /// One is inside the other one, or a part of it is: only where the path begins.
+    Inside,
+}
+
+impl PathOutcome {
+    /// What proves it.
+    pub const fn proof(&self) -> &PathProof {
+        match self {
+            Self::Contact(of) | Self::Grazing(of) | Self::Overlapping(of) => &of.proof,
+            Self::Free(of) => &of.proof,
+        }
+    }
+
+    /// How much work it was.
+    pub const fn steps(&self) -> MotionSteps {
+        match self {
+            Self::Contact(of) | Self::Grazing(of) | Self::Overlapping(of) => of.steps,
+            Self::Free(of) => of.steps,
+        }
+    }
+}
+
+impl PathProof {
+    /// How many planes it has.
+    pub fn planes(&self) -> usize {
+        self.covers.iter().map(Cover::planes).sum()
+    }
+}
+
+impl Cover {
+    fn planes(&self) -> usize {
+        let of = |step: &Step| match step {
+            Step::Planes(stretches) => stretches.iter().map(|stretch| stretch.planes.len()).sum(),
+            Step::Parts { covers, .. } => covers.iter().map(Self::planes).sum::<usize>(),
+        };
+        self.steps.iter().map(of).sum()
+    }
+}

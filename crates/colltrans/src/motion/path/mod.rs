@@ -1,0 +1,351 @@
+//! Paths of joints: when do two bodies that a mechanism carries first touch, each other or what stands around?
+//!
+//! A [`Mechanism`] is frames in frames, each moved by a joint; a [`JointPath`] has rows of joint values, and each
+//! joint goes evenly from row to row. A [`PathCast`] answers which two of its bodies first meet, with bounds on the
+//! time that are bounds, or proves that none do on the whole path.
+//!
+//! ```
+//! use colltrans::glam::DVec3;
+//! use colltrans::motion::path::{Frame, Joint, JointPath, Mechanism, PathBody, PathCast, PathOutcome};
+//! use colltrans::{ConvexPolyhedron, Pose};
+//!
+//! // An arm of two links in a plane, each of length 1: both joints turn about z.
+//! let link = ConvexPolyhedron::cuboid(DVec3::new(0.1, -0.05, -0.05), DVec3::new(1.0, 0.05, 0.05))?;
+//! let joint = Joint::Turning(DVec3::Z);
+//! let elbow = Pose::from_translation(DVec3::X)?;
+//! let arm = Mechanism::new(vec![
+//!     Frame { parent: None, origin: Pose::IDENTITY, joint },
+//!     Frame { parent: Some(0), origin: elbow, joint },
+//! ])?;
+//! // A thin wall stands in its way; the rows are far apart.
+//! let wall = ConvexPolyhedron::cuboid(DVec3::new(-9.0, 1.5, -9.0), DVec3::new(9.0, 1.5001, 9.0))?;
+//! let path = JointPath::evenly(vec![vec![0.0, 0.0], vec![std::f64::consts::PI, 0.0]])?;
+//! let bodies = vec![
+//!     PathBody::carried(0, link.at(Pose::IDENTITY)),
+//!     PathBody::carried(1, link.at(Pose::IDENTITY)),
+//!     PathBody::standing(wall.at(Pose::IDENTITY)),
+//! ];
+//! let cast = PathCast::new(&arm, &path, bodies, vec![[0, 2], [1, 2]])?;
+//! let PathOutcome::Contact(contact) = cast.first_contact()? else { panic!("no contact") };
+//! // The corner (2, 1/20) is at the height 2 sin a + cos a / 20 = 3/2.
+//! let angle = (1.5 / 4.0025_f64.sqrt()).asin() - (0.05_f64 / 2.0).atan();
+//! let time = angle / std::f64::consts::PI;
+//! assert_eq!(contact.pair, [1, 2]);
+//! assert!(contact.lower <= time && time <= contact.upper && contact.upper - contact.lower < 1e-11);
+//! assert_eq!(cast.verify(&contact.proof)?, [contact.lower, contact.upper]);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! # What is promised
+//!
+//! As of other motions: answers hold of the path as the real function of its numbers, not of places computed from it.
+//! Before `lower` no two bodies of a pair meet, and at `upper` two do. Two frames of one mechanism are looked at from
+//! the frame that both stand in: only the joints between them count.
+//!
+//! # Method
+//!
+//! Planes between the bodies, as of other motions, and two ways to prove the time between two of them: from row to
+//! row by how far supporting planes may bend, which a [chain](chain) of joints bounds; over many rows by how far the
+//! bodies move. Bodies that are not convex are taken apart into boxes and facets, where they come near. That closed
+//! bodies do not begin one inside the other is decided exactly; later their surfaces would have met.
+//!
+//! The modules, each using only those before it: `mechanism`, `chain`, `shape`, `couple`, `answer`, `follow`,
+//! `cover`, `verify`.
+
+mod answer;
+mod chain;
+mod couple;
+mod cover;
+mod follow;
+mod mechanism;
+mod shape;
+mod verify;
+
+use crate::Solid;
+use crate::among::{AnyPlaced, ByKind};
+use crate::body::{Placed, Pose};
+use crate::number::range::MAX_MAGNITUDE;
+use crate::pair::Pair;
+use crate::setting::check_keep;
+use crate::setting::error::{QueryError, Stalled};
+use crate::solid::AsSolid;
+
+pub use self::answer::{
+    Cover, How, PathContact, PathFree, PathMeeting, PathOutcome, PathProof, Step, Stretch,
+};
+use self::chain::Chain;
+use self::couple::Couple;
+use self::cover::{Search, Stop};
+pub use self::mechanism::{Frame, Joint, JointPath, Mechanism, PathError, Place};
+use self::shape::Shape;
+pub use self::verify::PathProofError;
+use super::answer::MotionSteps;
+use super::course::Course;
+
+/// A body that a mechanism carries, or that stands in the world.
+#[derive(Debug, Clone, Copy)]
+pub struct PathBody<'a> {
+    /// The frame that carries it; none is the world.
+    pub frame: Option<usize>,
+    /// The body, and where it is in that frame.
+    pub placed: AnyPlaced<'a>,
+}
+
+impl<'a> PathBody<'a> {
+    /// Carried by a frame, in which it has a pose.
+    pub fn carried(frame: usize, placed: impl Into<AnyPlaced<'a>>) -> Self {
+        Self { frame: Some(frame), placed: placed.into() }
+    }
+
+    /// In the world.
+    pub fn standing(placed: impl Into<AnyPlaced<'a>>) -> Self {
+        Self { frame: None, placed: placed.into() }
+    }
+}
+
+/// Bodies of a mechanism on a path, and which pairs of them are not to meet.
+#[derive(Debug)]
+pub struct PathCast<'a> {
+    mechanism: &'a Mechanism,
+    path: &'a JointPath,
+    frames: Vec<Option<usize>>,
+    shapes: Vec<Shape<'a>>,
+    pairs: Vec<[usize; 2]>,
+    keep: f64,
+}
+
+impl<'a> PathCast<'a> {
+    /// Of bodies, and pairs of their numbers.
+    ///
+    /// # Errors
+    /// Rows that are not of the mechanism's joints; a frame or a body that does not exist; a place out of range; a
+    /// point or a segment where a solid may enclose it.
+    pub fn new(
+        mechanism: &'a Mechanism,
+        path: &'a JointPath,
+        bodies: Vec<PathBody<'a>>,
+        pairs: Vec<[usize; 2]>,
+    ) -> Result<Self, PathError> {
+        path.check(mechanism)?;
+        for (body, PathBody { frame, .. }) in bodies.iter().enumerate() {
+            if let Some(frame) = frame.filter(|frame| *frame >= mechanism.frames().len()) {
+                return Err(PathError::Frame { body, frame });
+            }
+        }
+        let count = bodies.len();
+        if let Some(pair) = pairs.iter().find(|[a, b]| a == b || *a >= count || *b >= count) {
+            return Err(PathError::Pair { pair: *pair });
+        }
+        let frames = bodies.iter().map(|body| body.frame).collect();
+        let shapes = bodies.into_iter().map(|body| Shape::new(body.placed)).collect();
+        let cast = Self { mechanism, path, frames, shapes, pairs, keep: 0.0 };
+        for body in 0..count {
+            let chain = cast.chain(body, &mechanism.above(cast.frames[body]));
+            if chain.size.is_nan() || chain.size > MAX_MAGNITUDE {
+                return Err(PathError::Far { body });
+            }
+        }
+        for (k, pair) in cast.pairs.iter().enumerate() {
+            if let Err(reason) = nested(&cast, k) {
+                return Err(PathError::Query { pair: *pair, reason: reason.into() });
+            }
+        }
+        Ok(cast)
+    }
+
+    /// The same with a gap to be kept, in world units: what counts is when two bodies are no farther apart.
+    ///
+    /// # Errors
+    /// A gap that is negative, not finite or out of range.
+    pub fn keeping(self, gap: f64) -> Result<Self, PathError> {
+        check_keep(gap).map_err(|_| PathError::Keep { gap })?;
+        Ok(Self { keep: gap, ..self })
+    }
+
+    /// The pairs that are asked about.
+    pub fn pairs(&self) -> &[[usize; 2]] {
+        &self.pairs
+    }
+
+    /// Where a body is in the world, to rounding.
+    pub fn pose(&self, body: usize, place: Place) -> Pose {
+        let chain = self.chain(body, &self.mechanism.above(self.frames[body]));
+        chain.at(self.path, place.row, place.share).0
+    }
+
+    /// Which two bodies of a pair first meet, and when?
+    ///
+    /// # Errors
+    /// A search that does not end.
+    pub fn first_contact(&self) -> Result<PathOutcome, PathError> {
+        let (mut proof, mut steps) = (PathProof::default(), MotionSteps::default());
+        let mut until = Place::at_row(self.path.last());
+        let mut reached = until;
+        let mut stopped: Option<(usize, Stop)> = None;
+        for (k, pair) in self.pairs.iter().enumerate() {
+            let couple = self.couple(k);
+            let query =
+                |reason: QueryError| PathError::Query { pair: *pair, reason: reason.into() };
+            if nested(self, k).map_err(query)? {
+                let meeting = PathMeeting { pair: k, place: Place::START, how: How::Inside };
+                return Ok(self.overlapping(meeting, proof, steps));
+            }
+            let mut search = Search::new(&couple, self.shapes_of(k), until);
+            proof.covers.push(search.cover([0, 0], Place::START, until));
+            steps.looks += search.looker.steps.looks;
+            steps.supports += search.looker.steps.supports;
+            match search.stop {
+                None => {}
+                Some((_, Stop::Stalled)) => {
+                    return Err(query(QueryError::NotConverged { reason: Stalled::Motion }));
+                }
+                Some((place, stop)) => {
+                    (until, reached) = (place, reached.min_of(search.reached));
+                    stopped = Some((k, stop));
+                }
+            }
+        }
+        Ok(self.outcome(stopped, reached, proof, steps))
+    }
+
+    /// Checks a proof without a search: all vertices are looked at. Returns up to which time no two bodies are proven
+    /// to meet, and when two are proven to, infinity if that is not claimed.
+    ///
+    /// # Errors
+    /// What is not proven.
+    pub fn verify(&self, proof: &PathProof) -> Result<[f64; 2], PathProofError> {
+        verify::verify(self, proof)
+    }
+
+    fn chain(&self, body: usize, frames: &[usize]) -> Chain {
+        let shape = &self.shapes[body];
+        Chain::new(self.mechanism, frames, self.path, shape.pose(), shape.corners())
+    }
+
+    /// The frames that both bodies of a pair stand in, and those that each does beyond.
+    fn beyond(&self, pair: usize) -> (Vec<usize>, [Vec<usize>; 2]) {
+        let above = self.pairs[pair].map(|body| self.mechanism.above(self.frames[body]));
+        let shared = above[0].iter().zip(&above[1]).take_while(|(a, b)| a == b).count();
+        let rest = above.each_ref().map(|frames| frames[shared..].to_vec());
+        (above[0][..shared].to_vec(), rest)
+    }
+
+    fn couple(&self, pair: usize) -> Couple<'_> {
+        let (_, frames) = self.beyond(pair);
+        let chains = [0, 1].map(|k| self.chain(self.pairs[pair][k], &frames[k]));
+        Couple::new(self.path, chains, self.keep)
+    }
+
+    fn shapes_of(&self, pair: usize) -> [&Shape<'_>; 2] {
+        self.pairs[pair].map(|body| &self.shapes[body])
+    }
+
+    /// What is to be said of the first stop.
+    fn outcome(
+        &self,
+        stopped: Option<(usize, Stop)>,
+        reached: Place,
+        mut proof: PathProof,
+        steps: MotionSteps,
+    ) -> PathOutcome {
+        match stopped {
+            None => PathOutcome::Free(PathFree { proof, steps }),
+            Some((pair, Stop::Met(place, pieces, met))) => {
+                let meeting = PathMeeting { pair, place, how: How::Pieces { pieces, met } };
+                if place == Place::START {
+                    return self.overlapping(meeting, proof, steps);
+                }
+                proof.meeting = Some(meeting);
+                let upper = self.path.time(place)[1];
+                PathOutcome::Contact(self.contact(pair, reached, upper, proof, steps))
+            }
+            Some((pair, _)) => {
+                PathOutcome::Grazing(self.contact(pair, reached, f64::INFINITY, proof, steps))
+            }
+        }
+    }
+
+    /// Where the path begins with two bodies that overlap: nothing is said of the others.
+    fn overlapping(
+        &self,
+        meeting: PathMeeting,
+        mut proof: PathProof,
+        steps: MotionSteps,
+    ) -> PathOutcome {
+        let pair = meeting.pair;
+        proof.covers = vec![Cover::default(); self.pairs.len()];
+        proof.meeting = Some(meeting);
+        let upper = self.path.ends()[0];
+        PathOutcome::Overlapping(self.contact(pair, Place::START, upper, proof, steps))
+    }
+
+    fn contact(
+        &self,
+        pair: usize,
+        place: Place,
+        upper: f64,
+        proof: PathProof,
+        steps: MotionSteps,
+    ) -> PathContact {
+        let (shared, _) = self.beyond(pair);
+        let bodies = self.pairs[pair];
+        let chain = Chain::new(self.mechanism, &shared, self.path, Pose::IDENTITY, &[]);
+        let (world, _) = chain.at(self.path, place.row, place.share);
+        let near = self.near(pair, place, proof.meeting.as_ref());
+        let lower = self.path.time(place)[0];
+        let poses = bodies.map(|body| self.pose(body, place));
+        let points = near.map(|near| near.0.map(|point| world.transform_point(point)));
+        let normal = near.and_then(|near| near.1).map(|normal| world.transform_vector(normal));
+        let features = near.and_then(|near| near.2);
+        PathContact {
+            lower,
+            upper,
+            place,
+            pair: bodies,
+            poses,
+            points,
+            normal,
+            features,
+            proof,
+            steps,
+        }
+    }
+
+    /// The points of a pair that are nearest to each other at a place, in the frame that both share.
+    fn near(&self, pair: usize, place: Place, meeting: Option<&PathMeeting>) -> Option<Near> {
+        let couple = self.couple(pair);
+        let shapes = self.shapes_of(pair);
+        let pieces = match meeting.map(|meeting| &meeting.how) {
+            Some(How::Pieces { pieces, .. }) => *pieces,
+            _ if shapes.iter().all(|shape| shape.count() == 1) => [0, 0],
+            _ => return None,
+        };
+        let bodies = [shapes[0].piece(pieces[0]), shapes[1].piece(pieces[1])];
+        let course = couple.course(bodies, place.row, [place.share; 2]);
+        let near = Pair { bodies: course.instant(place.share).bodies }.distance().ok()?;
+        let convex = shapes.iter().all(|shape| shape.count() == 1);
+        let features = near.features.filter(|_| convex);
+        Some(([near.on_moving, near.on_fixed], near.normal, features))
+    }
+}
+
+/// Points, normal and features.
+type Near = ([glam::DVec3; 2], Option<glam::DVec3>, Option<crate::body::Features>);
+
+/// Whether one body of a pair is inside the other one where the path begins, or a part of it is; of bodies whose
+/// surfaces are apart.
+fn nested(cast: &PathCast, pair: usize) -> Result<bool, QueryError> {
+    let shapes = cast.shapes_of(pair);
+    if shapes.iter().all(|shape| matches!(shape.placed, ByKind::Convex(_))) {
+        return Ok(false);
+    }
+    let couple = cast.couple(pair);
+    let placed = |k: usize| -> Result<Placed<'_, Solid>, QueryError> {
+        let (pose, _) = couple.chains[k].at(cast.path, 0, 0.0);
+        Ok(match shapes[k].placed {
+            ByKind::Convex(placed) => AsSolid::as_solid(placed.body)?.at(pose),
+            ByKind::Solid(placed) => placed.body.at(pose),
+        })
+    };
+    Pair::new(placed(0)?, placed(1)?)?.is_nested()
+}

@@ -1,0 +1,89 @@
+//! A body as pieces that are convex: itself, or the boxes of a solid's tree and its facets.
+//!
+//! Piece 0 is all of it. Pieces of a solid are numbered as the nodes of its tree, each with the box of its facets,
+//! and then the facets; boxes are a little larger than they are, so that rounding leaves nothing outside. Points
+//! of a piece that a hull leaves out by rounding are within its `hull_error`, which counts as an error of its place.
+
+use std::sync::OnceLock;
+
+use glam::DVec3;
+
+use crate::among::{AnyPlaced, ByKind};
+use crate::body::solid::Solid;
+use crate::body::{Aabb, ConvexPolyhedron, Pose};
+
+/// By which share of its size a box is made larger.
+const LARGER: f64 = 1e-9;
+
+/// A placed body and its pieces, made when they are first asked for.
+#[derive(Debug)]
+pub(super) struct Shape<'a> {
+    pub(super) placed: AnyPlaced<'a>,
+    made: Vec<OnceLock<ConvexPolyhedron>>,
+}
+
+impl<'a> Shape<'a> {
+    pub(super) fn new(placed: AnyPlaced<'a>) -> Self {
+        let count = match placed {
+            ByKind::Convex(_) => 0,
+            ByKind::Solid(solid) => solid.body.nodes().len() + solid.body.triangles().len(),
+        };
+        Self { placed, made: (0..count).map(|_| OnceLock::new()).collect() }
+    }
+
+    pub(super) fn pose(&self) -> Pose {
+        match self.placed {
+            ByKind::Convex(placed) => placed.pose,
+            ByKind::Solid(placed) => placed.pose,
+        }
+    }
+
+    /// The points that it is the hull of, or lies within the hull of.
+    pub(super) fn corners(&self) -> &'a [DVec3] {
+        match self.placed {
+            ByKind::Convex(placed) => placed.body.vertices(),
+            ByKind::Solid(placed) => placed.body.vertices(),
+        }
+    }
+
+    /// How many pieces there are.
+    pub(super) fn count(&self) -> usize {
+        self.made.len().max(1)
+    }
+
+    /// A piece, by its number.
+    pub(super) fn piece(&self, number: usize) -> &ConvexPolyhedron {
+        match self.placed {
+            ByKind::Convex(placed) => placed.body,
+            ByKind::Solid(placed) => {
+                self.made[number].get_or_init(|| piece_of(placed.body, number))
+            }
+        }
+    }
+
+    /// The pieces that a piece is made of; none, if it is itself one of the body's.
+    pub(super) fn parts(&self, number: usize) -> Vec<usize> {
+        let ByKind::Solid(placed) = self.placed else { return Vec::new() };
+        let nodes = placed.body.nodes();
+        match nodes.get(number) {
+            None => Vec::new(),
+            Some(node) if node.is_leaf() => node.facets().map(|f| nodes.len() + f).collect(),
+            Some(node) => {
+                let first = number + node.skip as usize;
+                vec![first, first + 1]
+            }
+        }
+    }
+}
+
+fn piece_of(solid: &Solid, number: usize) -> ConvexPolyhedron {
+    let nodes = solid.nodes();
+    if let Some(node) = nodes.get(number) {
+        let Aabb { low, high } = node.bounds;
+        let size = low.abs().max(high.abs()).max_element();
+        let by = DVec3::splat(size * LARGER);
+        return ConvexPolyhedron::cuboid(low - by, high + by).expect("a box that is wide");
+    }
+    let corners = solid.triangles()[number - nodes.len()].map(|v| solid.vertices()[v as usize]);
+    ConvexPolyhedron::from_points(&corners).expect("the corners of a facet")
+}

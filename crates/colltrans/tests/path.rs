@@ -1,0 +1,376 @@
+//! Paths of joints: closed forms, samples on the way, a joint that is a motion, solids, proofs and changed ones, work.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use colltrans::glam::{DQuat, DVec3};
+use colltrans::motion::path::{
+    Frame, Joint, JointPath, Mechanism, PathBody, PathCast, PathContact, PathError, PathOutcome,
+    PathProof, PathProofError, Place, Step,
+};
+use colltrans::motion::{Motion, MotionCast, MotionOutcome};
+use colltrans::{ConvexPolyhedron, Pose, Solid};
+use colltrans_testkit::oracle::path::Arm;
+use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::{block, random_hull};
+
+fn at(x: f64, y: f64, z: f64) -> Pose {
+    Pose::from_translation(DVec3::new(x, y, z)).expect("a pose")
+}
+
+fn cuboid(low: [f64; 3], high: [f64; 3]) -> ConvexPolyhedron {
+    ConvexPolyhedron::cuboid(low.into(), high.into()).expect("a box")
+}
+
+/// An arm in a plane: links of length 1 along x, joints about z.
+fn planar(links: usize) -> Mechanism {
+    let frame = |k: usize| Frame {
+        parent: k.checked_sub(1),
+        origin: at(if k == 0 { 0.0 } else { 1.0 }, 0.0, 0.0),
+        joint: Joint::Turning(DVec3::Z),
+    };
+    Mechanism::new((0..links).map(frame).collect()).expect("an arm")
+}
+
+fn contact(outcome: PathOutcome) -> PathContact {
+    match outcome {
+        PathOutcome::Contact(contact) => contact,
+        other => panic!("no contact: {other:?}"),
+    }
+}
+
+#[test]
+fn random_arms_are_right() {
+    let (mut contacts, mut free, mut others) = (0, 0, 0);
+    for seed in 0..300 {
+        let outcome = Arm::random(seed, false).judge(60);
+        match outcome.unwrap_or_else(|wrong| panic!("{seed}: {}", wrong.0)) {
+            PathOutcome::Contact(of) => {
+                contacts += 1;
+                let width = of.upper - of.lower;
+                assert!(width < 1e-9, "{width:e} at {seed}");
+            }
+            PathOutcome::Free(_) => free += 1,
+            _ => others += 1,
+        }
+    }
+    assert!(contacts > 40 && free > 60, "{contacts} {free} {others}");
+}
+
+#[test]
+fn arms_of_solids_are_right() {
+    let (mut contacts, mut free) = (0, 0);
+    for seed in 0..60 {
+        let outcome = Arm::random(seed, true).judge(30);
+        match outcome.unwrap_or_else(|wrong| panic!("{seed}: {}", wrong.0)) {
+            PathOutcome::Contact(_) => contacts += 1,
+            PathOutcome::Free(_) => free += 1,
+            _ => {}
+        }
+    }
+    assert!(contacts > 8 && free > 8, "{contacts} {free}");
+}
+
+#[test]
+fn one_joint_is_a_turn() {
+    let mut random = Random::new(3);
+    let (mut contacts, mut free) = (0, 0);
+    for _ in 0..200 {
+        let [p, q] = [(); 2].map(|()| {
+            let points = random_hull(12, &mut random).vertices;
+            ConvexPolyhedron::from_points(&points).expect("a body")
+        });
+        let pose = Pose::new(random.rotation(), random.direction() * 3.0).expect("a pose");
+        let (point, axis) = (random.vector() * 2.0, random.direction());
+        let angle = random.range(-6.0, 6.0);
+        let turn = Motion::turn(pose, point, axis, angle).expect("a motion");
+        // Where it comes by, more or less.
+        let by = turn.at(random.unit()).expect("a pose").translation() + random.vector() * 2.0;
+        let there = at(by.x, by.y, by.z);
+        let cast = MotionCast::new(p.along(&turn), q.at(there)).expect("a cast");
+        let origin = Pose::from_translation(point).expect("a pose");
+        let frame = Frame { parent: None, origin, joint: Joint::Turning(axis) };
+        let mechanism = Mechanism::new(vec![frame]).expect("a joint");
+        let path = JointPath::evenly(vec![vec![0.0], vec![angle]]).expect("a path");
+        let own = pose.translated(-point).expect("a pose");
+        let bodies = vec![PathBody::carried(0, p.at(own)), PathBody::standing(q.at(there))];
+        let asked = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
+        let found = asked.first_contact().expect("an answer");
+        match (cast.first_contact().expect("an answer"), found) {
+            (MotionOutcome::Contact(a), PathOutcome::Contact(b)) => {
+                contacts += 1;
+                assert!(a.lower <= b.upper && b.lower <= a.upper, "{a:?} {b:?}");
+                assert!(b.upper - b.lower < 1e-9, "{:e}", b.upper - b.lower);
+            }
+            (MotionOutcome::Free(_), PathOutcome::Free(_)) => free += 1,
+            (MotionOutcome::Overlapping(_), PathOutcome::Overlapping(_)) => {}
+            (a, b) => panic!("{a:?}, but {b:?}"),
+        }
+    }
+    assert!(contacts > 40 && free > 40, "{contacts} {free}");
+}
+
+#[test]
+fn two_links_reach_a_wall_at_a_known_time() {
+    // Both joints turn by a: the tip's far corner (1, 1/8) of the second link is at the height
+    // sin a + sin 2a + cos 2a / 8.
+    let link = cuboid([0.2, -0.125, -0.1], [1.0, 0.125, 0.1]);
+    let wall = cuboid([-9.0, 0.75, -9.0], [9.0, 0.76, 9.0]);
+    let height = |a: f64| a.sin() + (2.0 * a).sin() + (2.0 * a).cos() / 8.0;
+    let (mut low, mut high) = (0.0, 0.4);
+    for _ in 0..100 {
+        let middle = 0.5 * (low + high);
+        if height(middle) < 0.75 { low = middle } else { high = middle }
+    }
+    let mechanism = planar(2);
+    let path = JointPath::new(vec![2.0, 4.0], vec![vec![0.0, 0.0], vec![1.0, 1.0]]);
+    let path = path.expect("a path");
+    let bodies = vec![
+        PathBody::carried(0, link.at(Pose::IDENTITY)),
+        PathBody::carried(1, link.at(Pose::IDENTITY)),
+        PathBody::standing(wall.at(Pose::IDENTITY)),
+    ];
+    let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 2], [1, 2]]).expect("a cast");
+    let found = contact(cast.first_contact().expect("an answer"));
+    let expected = 2.0 + 2.0 * low;
+    assert!(found.lower <= expected + 1e-14 && expected <= found.upper + 1e-14, "{found:?}");
+    assert!(found.upper - found.lower < 1e-12, "{:e}", found.upper - found.lower);
+    assert_eq!(found.pair, [1, 2]);
+    let points = found.points.expect("points");
+    assert!((points[1].y - 0.75).abs() < 1e-9 && points[0].distance(points[1]) < 1e-9);
+    assert!((found.normal.expect("a normal").y - 1.0).abs() < 1e-6);
+}
+
+#[test]
+fn a_thin_wire_between_samples_is_found() {
+    // A wire, a thousandth thick, where an arm sweeps by at 90 degrees a row: samples at a hundred times in each row
+    // have the tip on both sides of it and never in it.
+    let link = cuboid([0.0, -0.002, -0.002], [1.0, 0.002, 0.002]);
+    let angle: f64 = 0.5 * FRAC_PI_2 + 0.5 * FRAC_PI_2 / 100.0;
+    let tip = DVec3::new(angle.cos(), angle.sin(), 0.0) * 1.9;
+    let wire = cuboid([-0.001, -0.001, -1.0], [0.001, 0.001, 1.0]);
+    let arm = Arm {
+        frames: planar(2).frames().to_vec(),
+        rows: vec![vec![0.0, 0.0], vec![FRAC_PI_2, 0.0]],
+        bodies: vec![],
+        pairs: vec![],
+        keep: 0.0,
+    };
+    let with = Arm {
+        bodies: vec![
+            (Some(1), colltrans_testkit::oracle::path::Body::Convex(link), Pose::IDENTITY),
+            (None, colltrans_testkit::oracle::path::Body::Convex(wire), at(tip.x, tip.y, 0.0)),
+        ],
+        pairs: vec![[0, 1]],
+        ..arm
+    };
+    let seen = (0..=100).filter(|k| {
+        let place = Place { row: 0, share: f64::from(*k) / 100.0 };
+        with.gap([0, 1], place).expect("a gap") <= 0.0
+    });
+    assert_eq!(seen.count(), 0, "sampling misses it");
+    let found = contact(with.judge(100).expect("an answer"));
+    assert!(0.5 < found.lower && found.upper < 0.51, "{} {}", found.lower, found.upper);
+}
+
+#[test]
+fn what_is_carried_together_never_meets() {
+    // Two links of an arm that another joint carries, with a joint between them that rests: nothing moves.
+    let cube = cuboid([-0.4; 3], [0.4; 3]);
+    let mechanism = planar(3);
+    let rows = (0..1000).map(|k| vec![f64::from(k) * 0.1, 0.0, f64::from(k)]).collect();
+    let path = JointPath::evenly(rows).expect("a path");
+    let bodies = vec![
+        PathBody::carried(0, cube.at(Pose::IDENTITY)),
+        PathBody::carried(1, cube.at(Pose::IDENTITY)),
+    ];
+    let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
+    let outcome = cast.first_contact().expect("an answer");
+    assert!(matches!(outcome, PathOutcome::Free(_)), "{outcome:?}");
+    assert_eq!(outcome.steps().looks, 2);
+    assert_eq!(cast.verify(outcome.proof()), Ok([999.0, f64::INFINITY]));
+}
+
+#[test]
+fn far_paths_take_few_looks() {
+    // A hand that waves, 1,000 rows, 3 away from a wall.
+    let hand = cuboid([0.0, -0.1, -0.1], [1.0, 0.1, 0.1]);
+    let wall = cuboid([5.0, -9.0, -9.0], [6.0, 9.0, 9.0]);
+    let mechanism = planar(2);
+    let rows: Vec<Vec<f64>> =
+        (0..1000).map(|k| vec![(f64::from(k) * 0.02).sin(), (f64::from(k) * 0.03).cos()]).collect();
+    let bodies = || {
+        vec![
+            PathBody::carried(1, hand.at(Pose::IDENTITY)),
+            PathBody::standing(wall.at(Pose::IDENTITY)),
+        ]
+    };
+    let path = JointPath::evenly(rows.clone()).expect("a path");
+    let cast = PathCast::new(&mechanism, &path, bodies(), vec![[0, 1]]).expect("a cast");
+    let outcome = cast.first_contact().expect("an answer");
+    assert!(matches!(outcome, PathOutcome::Free(_)), "{outcome:?}");
+    assert!(outcome.steps().looks < 60, "{} looks", outcome.steps().looks);
+    // Near all the time: two looks a row.
+    let near = PathCast::new(&mechanism, &path, bodies(), vec![[0, 1]]).expect("a cast");
+    let near = near.keeping(2.99).expect("a gap");
+    let outcome = near.first_contact().expect("an answer");
+    assert!(outcome.steps().looks < 2_500, "{} looks", outcome.steps().looks);
+    near.verify(outcome.proof()).expect("a proof");
+}
+
+#[test]
+fn a_hand_in_a_box_is_free_until_it_meets_a_side() {
+    // A closed box with a hollow inside: no convex obstacle says that.
+    let outer = block([-2.0; 3], [2.0; 3]);
+    let inner = block([-1.5; 3], [1.5; 3]).reversed();
+    let mesh = outer.joined(&inner).triangulated();
+    let hollow = Solid::from_mesh(&mesh.vertices, &mesh.faces).expect("a solid");
+    let hand = cuboid([0.5, -0.1, -0.1], [1.0, 0.1, 0.1]);
+    let mechanism = Mechanism::new(vec![
+        Frame { parent: None, origin: Pose::IDENTITY, joint: Joint::Turning(DVec3::Z) },
+        Frame { parent: Some(0), origin: Pose::IDENTITY, joint: Joint::Sliding(DVec3::X) },
+    ])
+    .expect("an arm");
+    let rows = vec![vec![0.0, 0.0], vec![20.0 * PI, 0.0], vec![20.0 * PI, 1.0]];
+    let path = JointPath::evenly(rows).expect("a path");
+    let bodies = vec![
+        PathBody::carried(1, hand.at(Pose::IDENTITY)),
+        PathBody::standing(hollow.at(Pose::IDENTITY)),
+    ];
+    let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
+    let found = contact(cast.first_contact().expect("an answer"));
+    assert!(found.lower <= 1.5 && 1.5 <= found.upper && found.upper - found.lower < 1e-11);
+    assert_eq!(cast.verify(&found.proof), Ok([found.lower, found.upper]));
+    // In the wall itself no surface is near, and yet it overlaps.
+    let thick = Solid::from_mesh(
+        &block([-2.0; 3], [2.0; 3]).triangulated().vertices,
+        &block([-2.0; 3], [2.0; 3]).triangulated().faces,
+    );
+    let thick = thick.expect("a solid");
+    let bodies = vec![
+        PathBody::carried(1, hand.at(Pose::IDENTITY)),
+        PathBody::standing(thick.at(Pose::IDENTITY)),
+    ];
+    let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
+    let outcome = cast.first_contact().expect("an answer");
+    assert!(matches!(outcome, PathOutcome::Overlapping(_)), "{outcome:?}");
+    assert_eq!(cast.verify(outcome.proof()), Ok([0.0, 0.0]));
+}
+
+#[test]
+fn a_path_of_one_row_is_a_place() {
+    let cube = cuboid([-0.4; 3], [0.4; 3]);
+    let mechanism = planar(2);
+    let asked = |angle: f64| {
+        let path = JointPath::evenly(vec![vec![angle, 0.0]]).expect("a path");
+        let bodies = vec![
+            PathBody::carried(1, cube.at(Pose::IDENTITY)),
+            PathBody::standing(cube.at(at(1.0, 0.0, 0.0))),
+        ];
+        let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
+        cast.first_contact().expect("an answer")
+    };
+    assert!(matches!(asked(0.5), PathOutcome::Overlapping(_)));
+    assert!(matches!(asked(FRAC_PI_2), PathOutcome::Free(_)));
+}
+
+/// All planes of a proof.
+fn planes(proof: &mut PathProof) -> Vec<&mut colltrans::motion::PlaneAt> {
+    let steps = proof.covers.iter_mut().flat_map(|cover| &mut cover.steps);
+    let stretches = steps.flat_map(|step| match step {
+        Step::Planes(stretches) => stretches.iter_mut(),
+        Step::Parts { .. } => [].iter_mut(),
+    });
+    stretches.flat_map(|stretch| &mut stretch.planes).collect()
+}
+
+#[test]
+fn changed_proofs_are_refused() {
+    let link = cuboid([0.2, -0.125, -0.1], [1.0, 0.125, 0.1]);
+    let wall = cuboid([-9.0, 0.75, -9.0], [9.0, 0.76, 9.0]);
+    let mechanism = planar(2);
+    let rows = vec![vec![0.0, 0.0], vec![0.1, 0.05], vec![1.0, 1.0]];
+    let path = JointPath::evenly(rows).expect("a path");
+    let bodies = vec![
+        PathBody::carried(0, link.at(Pose::IDENTITY)),
+        PathBody::carried(1, link.at(Pose::IDENTITY)),
+        PathBody::standing(wall.at(Pose::IDENTITY)),
+    ];
+    let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 2], [1, 2]]).expect("a cast");
+    let found = contact(cast.first_contact().expect("an answer"));
+    let proof = &found.proof;
+    let count = proof.planes();
+    assert!(count > 6, "{count}");
+    for k in 0..count {
+        let mut larger = proof.clone();
+        planes(&mut larger)[k].gap *= 1.5;
+        assert!(matches!(cast.verify(&larger), Err(PathProofError::Gap { .. })), "{k}");
+        let mut turned = proof.clone();
+        let plane = &mut planes(&mut turned)[k];
+        plane.normal = DQuat::from_rotation_z(1.0) * plane.normal;
+        assert!(cast.verify(&turned).is_err(), "{k}");
+        let mut later = proof.clone();
+        planes(&mut later)[k].time += 0.01;
+        assert!(cast.verify(&later).is_err(), "{k}");
+    }
+    let mut sooner = proof.clone();
+    sooner.meeting.as_mut().expect("a meeting").place.share = 0.05;
+    assert!(cast.verify(&sooner).is_err());
+    let mut less = proof.clone();
+    less.covers.pop();
+    assert!(matches!(cast.verify(&less), Err(PathProofError::Pairs { .. })));
+    // Without its steps a cover proves nothing: not wrong, but of no time.
+    let mut empty = proof.clone();
+    empty.covers[0].steps.clear();
+    assert_eq!(cast.verify(&empty).map(|bounds| bounds[0]), Ok(0.0));
+}
+
+#[test]
+fn planes_that_are_left_out_are_missed() {
+    let link = cuboid([0.2, -0.125, -0.1], [1.0, 0.125, 0.1]);
+    let wall = cuboid([-9.0, 0.75, -9.0], [9.0, 0.76, 9.0]);
+    let mechanism = planar(2);
+    let path = JointPath::evenly(vec![vec![0.0, 0.0], vec![-6.0, 6.0]]).expect("a path");
+    let bodies = vec![
+        PathBody::carried(1, link.at(Pose::IDENTITY)),
+        PathBody::standing(wall.at(Pose::IDENTITY)),
+    ];
+    let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
+    let found = contact(cast.first_contact().expect("an answer"));
+    let mut proof = found.proof;
+    let Step::Planes(stretches) = &mut proof.covers[0].steps[0] else { panic!("no planes") };
+    let planes = &mut stretches[0].planes;
+    assert!(planes.len() > 4, "{}", planes.len());
+    planes.drain(1..planes.len() - 1);
+    assert!(matches!(cast.verify(&proof), Err(PathProofError::Join { .. })), "{proof:?}");
+}
+
+#[test]
+fn what_is_wrong_is_told() {
+    let z = Joint::Turning(DVec3::Z);
+    let frame = |parent, joint| Frame { parent, origin: Pose::IDENTITY, joint };
+    assert_eq!(Mechanism::new(vec![frame(Some(0), z)]), Err(PathError::Parent { frame: 0 }));
+    let none = Joint::Sliding(DVec3::ZERO);
+    assert!(matches!(Mechanism::new(vec![frame(None, none)]), Err(PathError::Axis { .. })));
+    assert!(matches!(JointPath::evenly(vec![]), Err(PathError::Rows { .. })));
+    let twice = JointPath::new(vec![1.0, 1.0], vec![vec![0.0], vec![0.0]]);
+    assert!(matches!(twice, Err(PathError::Time { row: 1, .. })));
+    let uneven = JointPath::evenly(vec![vec![0.0], vec![]]);
+    assert!(matches!(uneven, Err(PathError::Row { row: 1, values: 0, joints: 1 })));
+    let mechanism = planar(2);
+    let cube = cuboid([-0.4; 3], [0.4; 3]);
+    let asked = |rows: Vec<Vec<f64>>, frame: usize, pair: [usize; 2]| {
+        let path = JointPath::evenly(rows).expect("a path");
+        let bodies = vec![
+            PathBody::carried(frame, cube.at(Pose::IDENTITY)),
+            PathBody::standing(cube.at(Pose::IDENTITY)),
+        ];
+        PathCast::new(&mechanism, &path, bodies, vec![pair]).map(drop)
+    };
+    let row = vec![vec![0.0, 0.0]];
+    assert!(matches!(asked(vec![vec![0.0]], 0, [0, 1]), Err(PathError::Row { joints: 2, .. })));
+    assert!(matches!(asked(vec![vec![0.0, f64::NAN]], 0, [0, 1]), Err(PathError::Value { .. })));
+    assert!(matches!(asked(vec![vec![0.0, 2e5]], 0, [0, 1]), Err(PathError::Value { .. })));
+    assert!(matches!(asked(row.clone(), 7, [0, 1]), Err(PathError::Frame { frame: 7, .. })));
+    assert!(matches!(asked(row.clone(), 0, [1, 1]), Err(PathError::Pair { .. })));
+    assert_eq!(asked(row, 0, [0, 1]), Ok(()));
+}

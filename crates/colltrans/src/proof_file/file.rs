@@ -154,7 +154,7 @@ pub(crate) fn convex_body(
 
 #[derive(Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum BodyFile {
+pub(crate) enum BodyFile {
     Convex(BodyRecord),
     Pieces(Vec<PieceRecord>),
 }
@@ -162,7 +162,7 @@ pub(super) enum BodyFile {
 /// A mesh that a solid is made of.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(super) struct PieceRecord {
+pub(crate) struct PieceRecord {
     vertices: Vec<[f64; 3]>,
     triangles: Vec<[u32; 3]>,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]

@@ -25,9 +25,10 @@ use crate::free::{FreeDirections, FreeError};
 use crate::pair::Pair;
 use crate::pair::solid::Unproven;
 use crate::setting::error::QueryError;
+pub(crate) use file::{BodyFile, convex_body, said};
 use file::{Pieces, again};
-pub(crate) use file::{convex_body, said};
 pub use scene::{SceneProof, SceneStatement};
+pub(crate) use scene::{Written, kept};
 use statement::options;
 pub use statement::{
     Contacts, DistanceStatement, FreeStatement, Slide, SolidStatement, Statement, Stop,

@@ -81,8 +81,8 @@ struct Scene {
 
 /// A body, made of what is written of it.
 #[derive(Debug, Clone)]
-struct Written {
-    body: AnyBody,
+pub(crate) struct Written {
+    pub(crate) body: AnyBody,
     /// Of a solid.
     pieces: Vec<PieceRecord>,
 }
@@ -261,7 +261,7 @@ impl Scene {
 
 impl Written {
     /// A body as it is read back from a file.
-    fn again(body: &AnyBody, which: &'static str) -> Result<Self, CaseError> {
+    pub(crate) fn again(body: &AnyBody, which: &'static str) -> Result<Self, CaseError> {
         let ByKind::Solid(solid) = body else {
             return Ok(Self { body: body.clone(), pieces: Vec::new() });
         };
@@ -277,7 +277,7 @@ impl Written {
         Ok(Self { body: AnyBody::from(union(&pieces, "one")?), pieces })
     }
 
-    fn of(file: BodyFile) -> Result<Self, CaseError> {
+    pub(crate) fn of(file: BodyFile) -> Result<Self, CaseError> {
         match file {
             BodyFile::Convex(record) => {
                 let body = AnyBody::from(convex_body(&record, "one")?);
@@ -287,7 +287,7 @@ impl Written {
         }
     }
 
-    fn file(&self) -> BodyFile {
+    pub(crate) fn file(&self) -> BodyFile {
         match &self.body {
             ByKind::Convex(body) => BodyFile::Convex(BodyRecord::of(body)),
             ByKind::Solid(_) => BodyFile::Pieces(self.pieces.clone()),
@@ -296,7 +296,7 @@ impl Written {
 }
 
 /// The body, to be kept.
-fn kept(placed: AnyPlaced<'_>) -> AnyBody {
+pub(crate) fn kept(placed: AnyPlaced<'_>) -> AnyBody {
     match placed {
         ByKind::Convex(placed) => AnyBody::from(ConvexPolyhedron::clone(placed.body)),
         ByKind::Solid(placed) => AnyBody::from(Solid::clone(placed.body)),

@@ -47,6 +47,9 @@ pub struct Arm {
 impl Arm {
     /// An arm of one to seven joints, turning and sliding, on a path of a few rows through a few obstacles; of solids
     /// that are not convex, if those are asked for.
+    ///
+    /// # Panics
+    /// Never: what is made is a body, or a pose.
     pub fn random(seed: u64, solids: bool) -> Self {
         let mut random = Random::new(seed ^ 0x0a23_77f1);
         let count = 1 + random.index(7);
@@ -74,7 +77,9 @@ impl Arm {
         let mut row: Vec<f64> = (0..joints).map(|_| random.range(-1.0, 1.0)).collect();
         let mut all = vec![row.clone()];
         for _ in 0..rows {
-            row.iter_mut().for_each(|value| *value += random.range(-most, most));
+            for value in &mut row {
+                *value += random.range(-most, most);
+            }
             all.push(row.clone());
         }
         let mut bodies = Vec::new();
@@ -87,7 +92,7 @@ impl Arm {
         }
         let carried = bodies.len();
         let mut arm = Self { frames, rows: all, bodies, pairs: Vec::new(), keep: 0.0 };
-        for _ in 0..1 + random.index(3) {
+        for _ in 0..=random.index(3) {
             // Where a body comes by, more or less.
             let size = random.pick(&[0.02, 0.2, 0.5]);
             let place = Place { row: random.index(rows), share: random.unit() };
@@ -133,6 +138,9 @@ impl Arm {
     }
 
     /// By how much two bodies are apart, or overlap if that is negative; solids that overlap by an infinite depth.
+    ///
+    /// # Errors
+    /// No pose, or no answer of the library.
     pub fn gap(&self, pair: [usize; 2], place: Place) -> Result<f64, Objection> {
         let places = self.places(place);
         let pose = |k: usize| {

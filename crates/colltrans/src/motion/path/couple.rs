@@ -60,12 +60,16 @@ impl<'a> Couple<'a> {
         (b - a) * RAISED + 4.0 * f64::EPSILON * b < gaps[0] + gaps[1]
     }
 
-    /// The last place at a row, or the end, up to which both move by less than so much; none behind that place.
+    /// The place, not after the end, up to which both move by such a length, or hardly less.
     pub(super) fn within(&self, from: Place, until: Place, length: f64) -> Place {
         let most = self.way_to(from) + length;
-        let row = self.ways.partition_point(|way| *way < most).saturating_sub(1);
-        let row = Place::at_row(row.min(until.row));
-        if self.way_to(until) < most { until } else { row }
+        if self.way_to(until) <= most {
+            return until;
+        }
+        let row = self.ways.partition_point(|way| *way <= most).saturating_sub(1);
+        let (here, next) = (self.ways[row], self.ways.get(row + 1).unwrap_or(&f64::INFINITY));
+        let share = ((most - here) / (next - here)).clamp(0.0, 1.0);
+        Place { row, share }.settled()
     }
 
     /// Pieces of the bodies from a row to the next one.

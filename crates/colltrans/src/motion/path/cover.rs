@@ -1,8 +1,8 @@
 //! Two bodies along a path, by their pieces.
 //!
-//! Pieces that hold others, boxes, are only kept apart where that is cheap: by gaps, or from row to row by two
-//! planes. Where they are not, for some rows, the larger one is taken apart, and its parts are followed for these
-//! rows, and so on down to the bodies' own pieces.
+//! Pieces that hold others, boxes, are only kept apart where that is cheap: in steps that are not small beside them.
+//! Where they are not, for a while, the larger one is taken apart, and its parts are followed for that while, and so
+//! on down to the bodies' own pieces.
 //!
 //! Invariant. Up to where a cover ends, no two points of the pieces meet; it ends where it is to, or where two of
 //! the bodies' own pieces meet, or may.
@@ -17,6 +17,9 @@ use super::follow::{Fate, Pieces, Way};
 use super::mechanism::Place;
 use super::shape::Shape;
 use crate::body::ConvexPolyhedron;
+
+/// Steps of boxes are not smaller than such a share of their size.
+const SMALL: f64 = 0.25;
 
 /// What ends the search.
 #[derive(Debug)]
@@ -81,11 +84,12 @@ impl<'p> Search<'p> {
 
     fn by_parts(&mut self, numbers: [usize; 2], which: usize, from: Place, until: Place) -> Cover {
         let pieces = self.pieces(numbers);
+        let size = pieces.pieces.iter().map(|piece| extent(piece)).fold(0.0, f64::max);
         let (mut steps, mut here) = (Vec::new(), from);
         loop {
             self.looker.forget();
             let until = self.until(until);
-            let way = self.coarsely(&pieces, here, until);
+            let way = self.coarsely(&pieces, size, here, until);
             if let Some((place, _)) = way.end() {
                 here = place.settled();
                 steps.push(Step::Planes(way.stretches));
@@ -93,7 +97,7 @@ impl<'p> Search<'p> {
             if here >= until.settled() && !steps.is_empty() {
                 break;
             }
-            let next = self.apart_again(&pieces, here, until);
+            let next = self.apart_again(&pieces, size, here, until);
             let parts = self.shapes[which].parts(numbers[which]);
             let covers = parts.into_iter().map(|part| {
                 let mut below = numbers;
@@ -111,8 +115,8 @@ impl<'p> Search<'p> {
         Cover { steps }
     }
 
-    /// As far as gaps lead, or two planes from row to row.
-    fn coarsely(&mut self, pieces: &Pieces, from: Place, until: Place) -> Way {
+    /// As far as gaps lead, in steps that are not small beside the pieces, or two planes for such a step.
+    fn coarsely(&mut self, pieces: &Pieces, size: f64, from: Place, until: Place) -> Way {
         let mut way = Way::default();
         let Some(plane) = pieces.plane(&mut self.looker, from) else { return way };
         way.note(from.row, plane);
@@ -121,41 +125,43 @@ impl<'p> Search<'p> {
             if here >= until.settled() {
                 break;
             }
-            if let Some((place, plane)) = pieces.leap(&mut self.looker, (here, gap), until) {
+            let least = self.couple.within(here, until, SMALL * size);
+            if let Some((place, plane)) = pieces.leap(&mut self.looker, (here, gap), least, until) {
                 way.leap_to(place.row, plane);
                 continue;
             }
-            let Some([first, last]) = self.across_row(pieces, here, until) else { break };
+            let next = self.couple.within(here, until, size);
+            let next = if next.row == here.row { next.share } else { 1.0 };
+            let Some([first, last]) = self.two_planes(pieces, here, next) else { break };
             way.note(here.row, first);
             way.note(here.row, last);
         }
         way
     }
 
-    /// Planes at a place and at the end of its row that prove what is between them.
-    fn across_row(&mut self, pieces: &Pieces, from: Place, until: Place) -> Option<[PlaneAt; 2]> {
-        let to = if until.row == from.row { until.share } else { 1.0 };
+    /// Planes at a place and at one in the same row that prove what is between them.
+    fn two_planes(&mut self, pieces: &Pieces, from: Place, to: f64) -> Option<[PlaneAt; 2]> {
+        if to <= from.share {
+            return None;
+        }
         let end = Place { row: from.row, share: to };
-        let planes = [from, end].map(|place| pieces.plane(&mut self.looker, place));
-        let [Some(first), Some(last)] = planes else { return None };
+        let first = pieces.plane(&mut self.looker, from)?;
+        let last = pieces.plane(&mut self.looker, end)?;
         let course = pieces.couple.course(pieces.pieces, from.row, [from.share, to]);
         let ends = [from.share, to].map(|share| course.instant(share));
         course.joins([&first, &last], [&ends[0], &ends[1]], &Climbing).then_some([first, last])
     }
 
-    /// The next row, or one of the next ones in growing steps, at which pieces are apart that are not before; or the
-    /// end.
-    fn apart_again(&mut self, pieces: &Pieces, from: Place, until: Place) -> Place {
-        let mut rows = 1;
+    /// A place at which pieces are apart that are not before, in growing steps; or the end.
+    fn apart_again(&mut self, pieces: &Pieces, size: f64, from: Place, until: Place) -> Place {
+        let mut step = size;
         loop {
-            let place = Place::at_row(from.row + rows);
-            if place >= until {
-                return until;
-            }
-            if pieces.plane(&mut self.looker, place).is_some() {
+            let place = self.couple.within(from, until, step);
+            let later = place > from;
+            if place >= until || later && pieces.plane(&mut self.looker, place).is_some() {
                 return place;
             }
-            rows *= 2;
+            step *= 2.0;
         }
     }
 }
@@ -176,5 +182,5 @@ fn which_to_part(shapes: [&Shape; 2], pieces: [usize; 2]) -> Option<usize> {
 
 fn extent(piece: &ConvexPolyhedron) -> f64 {
     let corners = piece.vertices();
-    corners.iter().map(|v| v.distance_squared(corners[0])).fold(0.0, f64::max)
+    corners.iter().map(|v| v.distance(corners[0])).fold(0.0, f64::max)
 }

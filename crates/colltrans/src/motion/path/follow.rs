@@ -74,14 +74,14 @@ impl Pieces<'_> {
         look.is_apart().then_some(PlaneAt { time, normal, gap, alone: false })
     }
 
-    /// From a place with a plane to one as far as gaps alone prove, if that is not before the next row: the plane there.
+    /// From a place with a plane to one as far as gaps alone prove, if that is not before `least`: the plane there.
     pub(super) fn leap(
         &self,
         looker: &mut ConvexLooker,
         (from, gap): (Place, f64),
+        least: Place,
         until: Place,
     ) -> Option<(Place, PlaneAt)> {
-        let least = Place::at_row(from.row + 1).min_of(until);
         let mut tried = None;
         for share in FAR {
             let place = self.couple.within(from, until, share * gap);
@@ -117,8 +117,10 @@ impl Pieces<'_> {
                 Some((place, gap)) => (place.settled(), gap),
                 None => (from, 0.0),
             };
+            // Near each other the search within a row leads farther.
+            let next = Place::at_row(here.0.row + 1).min_of(until);
             if here.1 > 0.0
-                && let Some((place, plane)) = self.leap(looker, here, until)
+                && let Some((place, plane)) = self.leap(looker, here, next, until)
             {
                 way.leap_to(place.row, plane);
                 continue;

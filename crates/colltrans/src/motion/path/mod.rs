@@ -50,12 +50,14 @@
 //! bodies do not begin one inside the other is decided exactly; later their surfaces would have met.
 //!
 //! The modules, each using only those before it: `mechanism`, `chain`, `shape`, `couple`, `answer`, `follow`,
-//! `cover`, `verify`.
+//! `cover`, `verify`, `file`.
 
 mod answer;
 mod chain;
 mod couple;
 mod cover;
+#[cfg(feature = "json")]
+mod file;
 mod follow;
 mod mechanism;
 mod shape;
@@ -76,6 +78,8 @@ pub use self::answer::{
 use self::chain::Chain;
 use self::couple::Couple;
 use self::cover::{Search, Stop};
+#[cfg(feature = "json")]
+pub use self::file::{PathCheckError, PathFileError, PathProofFile};
 pub use self::mechanism::{Frame, Joint, JointPath, Mechanism, PathError, Place};
 use self::shape::Shape;
 pub use self::verify::PathProofError;

@@ -1,0 +1,225 @@
+//! Robots that move: links with their bodies, each in its own frame, and the joints between them.
+//!
+//! A link stands in the frame of the joint that leads to it, or in the world. Rotations are made of the angles that
+//! the file gives, once: their nine entries define where a joint is from then on.
+
+use std::collections::HashMap;
+
+use colltrans::motion::path::{Frame, Joint, Mechanism};
+use colltrans::{AnyBody, Pose};
+use colltrans_mesh::body::{self, BodyOptions};
+use glam::{DAffine3, DVec3};
+
+use super::files::Source;
+use super::urdf::{self, Gathered};
+use super::xml::Element;
+use super::{contents, in_file};
+use crate::error::{AssemblyError, ReadError};
+use crate::part::Piece;
+use crate::robot::{Kind, Link, Mimic, Robot, RobotJoint};
+
+/// Sides of what is round.
+const SIDES: f64 = 64.0;
+
+pub(super) fn read(source: Source) -> Result<Robot, ReadError> {
+    let (element, bytes) = urdf::robot(&source)?;
+    let joints = urdf::joints(&source, &element)?;
+    // Rings, links that do not exist, and second parents are told there.
+    urdf::places(&source, &element, &joints)?;
+    let mut made =
+        Made { source: &source, frames: Vec::new(), of_link: HashMap::new(), joints: Vec::new() };
+    let above: HashMap<&str, (&str, &urdf::Joint)> =
+        joints.iter().map(|(name, joint)| (joint.child, (*name, joint))).collect();
+    let names: Vec<&str> =
+        element.all("link").map(|link| urdf::named(&source, link)).collect::<Result<_, _>>()?;
+    for name in &names {
+        // Up to a link that has its frame, and down again.
+        let mut way = vec![*name];
+        while let Some((_, joint)) = above.get(way[way.len() - 1])
+            && !made.of_link.contains_key(joint.parent)
+        {
+            way.push(joint.parent);
+        }
+        for link in way.into_iter().rev() {
+            made.link(link, above.get(link).copied())?;
+        }
+    }
+    let mechanism =
+        Mechanism::new(made.frames).map_err(|e| contents(source.path, "joints", e.to_string()))?;
+    let joints = mimics(&source, made.joints, &joints)?;
+    let mut gathered = Gathered::new(&source, bytes);
+    let mut links = Vec::new();
+    let mut notes = Vec::new();
+    for link in element.all("link") {
+        let name = urdf::named(&source, link)?;
+        let pieces = gathered.pieces(link, name, DAffine3::IDENTITY)?;
+        let mut bodies = Vec::new();
+        for piece in &pieces {
+            let (body, said) = any_body(piece).map_err(|refused| {
+                in_file(source.path)(AssemblyError::Part { part: name.into(), source: refused })
+            })?;
+            notes.extend(said.into_iter().map(|said| format!("link {name}: {said}")));
+            bodies.push(body);
+        }
+        notes.extend(round(link).map(|said| format!("link {name}: {said}")));
+        links.push(Link { name: name.into(), frame: made.of_link[name], bodies });
+    }
+    let Gathered { missing, notes: left_out, .. } = gathered;
+    if let Some(capsule) = left_out.first() {
+        let reason = format!("{capsule}; give it as a cylinder and two spheres");
+        return Err(contents(source.path, "links", reason));
+    }
+    if !missing.is_empty() && !source.options.skip_missing {
+        return Err(ReadError::Missing { path: source.path.into(), missing });
+    }
+    notes.extend(missing.iter().map(|file| format!("{file} cannot be found and is left out")));
+    if links.iter().all(|link| link.bodies.is_empty()) {
+        let holds = format!("none of its {} links collides with anything", links.len());
+        return Err(ReadError::NoParts { path: source.path.into(), holds });
+    }
+    let name = element.get("name").unwrap_or_default().to_owned();
+    Ok(Robot { name, links, joints, mechanism, notes, files: source.into_files() })
+}
+
+/// Frames in the making.
+struct Made<'a> {
+    source: &'a Source<'a>,
+    frames: Vec<Frame>,
+    of_link: HashMap<&'a str, Option<usize>>,
+    joints: Vec<RobotJoint>,
+}
+
+impl<'a> Made<'a> {
+    /// The frame of a link, below one that is known.
+    fn link(
+        &mut self,
+        link: &'a str,
+        above: Option<(&str, &urdf::Joint<'a>)>,
+    ) -> Result<(), ReadError> {
+        if self.of_link.contains_key(link) {
+            return Ok(());
+        }
+        let Some((name, joint)) = above else {
+            self.of_link.insert(link, None);
+            return Ok(());
+        };
+        let refused = |reason: String| contents(self.source.path, format!("joint {name}"), reason);
+        let (kind, moves) = moves(joint.element).map_err(refused)?;
+        let DAffine3 { matrix3, translation } = joint.origin;
+        let origin = Pose::from_matrix(matrix3, translation).map_err(|e| refused(e.to_string()))?;
+        let frame = self.frames.len();
+        self.frames.push(Frame { parent: self.of_link[joint.parent], origin, joint: moves });
+        self.of_link.insert(link, Some(frame));
+        if let Some(kind) = kind {
+            let limits =
+                limits(joint.element).map_err(refused)?.filter(|_| kind != Kind::Continuous);
+            self.joints.push(RobotJoint { name: name.into(), frame, kind, limits, mimic: None });
+        }
+        Ok(())
+    }
+}
+
+/// How a joint moves.
+fn moves(element: &Element) -> Result<(Option<Kind>, Joint), String> {
+    let axis = match element.first("axis") {
+        Some(axis) => axis.numbers::<3>("xyz")?.unwrap_or([1.0, 0.0, 0.0]),
+        None => [1.0, 0.0, 0.0],
+    };
+    let axis = DVec3::from_array(axis);
+    let kind = element.need("type")?;
+    if matches!(kind, "revolute" | "continuous" | "prismatic")
+        && !(axis.length() > 0.0 && axis.is_finite())
+    {
+        return Err(format!("its axis {:?} is none", axis.to_array()));
+    }
+    match kind {
+        "fixed" => Ok((None, Joint::Fixed)),
+        "revolute" => Ok((Some(Kind::Revolute), Joint::Turning(axis))),
+        "continuous" => Ok((Some(Kind::Continuous), Joint::Turning(axis))),
+        "prismatic" => Ok((Some(Kind::Prismatic), Joint::Sliding(axis))),
+        other => {
+            Err(format!("it is {other}: a path has one value for a joint, that turns or slides"))
+        }
+    }
+}
+
+/// Its limits, if there are any.
+fn limits(element: &Element) -> Result<Option<[f64; 2]>, String> {
+    let Some(limit) = element.first("limit") else { return Ok(None) };
+    let lower = limit.numbers::<1>("lower")?.map_or(0.0, |[x]| x);
+    let upper = limit.numbers::<1>("upper")?.map_or(0.0, |[x]| x);
+    Ok((lower != 0.0 || upper != 0.0).then_some([lower, upper]))
+}
+
+/// Joints with what they follow.
+fn mimics(
+    source: &Source,
+    mut joints: Vec<RobotJoint>,
+    elements: &urdf::Joints,
+) -> Result<Vec<RobotJoint>, ReadError> {
+    let places: HashMap<String, usize> =
+        joints.iter().enumerate().map(|(k, joint)| (joint.name.clone(), k)).collect();
+    for k in 0..joints.len() {
+        let name = joints[k].name.clone();
+        let refused = |reason: String| contents(source.path, format!("joint {name}"), reason);
+        let Some(mimic) = elements[name.as_str()].element.first("mimic") else { continue };
+        let of = mimic.need("joint").map_err(refused)?;
+        let joint = *places
+            .get(of)
+            .ok_or_else(|| refused(format!("it follows {of}, which is no joint that moves")))?;
+        let number = |what: &str, default: f64| {
+            let found = mimic.numbers::<1>(what).map_err(refused)?;
+            Ok(found.map_or(default, |[x]| x))
+        };
+        let (multiplier, offset) = (number("multiplier", 1.0)?, number("offset", 0.0)?);
+        joints[k].mimic = Some(Mimic { joint, multiplier, offset });
+    }
+    for k in 0..joints.len() {
+        let mut at = k;
+        for _ in 0..joints.len() {
+            let Some(mimic) = joints[at].mimic else { break };
+            at = mimic.joint;
+        }
+        if joints[at].mimic.is_some() {
+            let place = format!("joint {}", joints[k].name);
+            return Err(contents(
+                source.path,
+                place,
+                "the joints that follow each other form a ring",
+            ));
+        }
+    }
+    Ok(joints)
+}
+
+/// A piece as a body in the frame of its link: convex if it is, else a solid, and what is to be said of it.
+fn any_body(piece: &Piece) -> Result<(AnyBody, Vec<String>), body::Refused> {
+    let mut mesh = piece.mesh.clone();
+    for vertex in &mut mesh.vertices {
+        *vertex = piece.world_from_piece.transform_point3(*vertex);
+    }
+    if piece.world_from_piece.matrix3.determinant() < 0.0 {
+        mesh.faces.iter_mut().for_each(|face| face.reverse());
+    }
+    crate::robot::body_of(&mesh, &BodyOptions::default())
+}
+
+/// What is said of shapes that are round.
+fn round(link: &Element) -> impl Iterator<Item = String> + '_ {
+    let half = std::f64::consts::PI / SIDES;
+    let shapes = link.all("collision").filter_map(|of| of.first("geometry")?.children.first());
+    shapes.filter_map(move |shape| {
+        let share = match shape.name.as_str() {
+            "cylinder" => 1.0 - half.cos(),
+            "sphere" => 1.0 - half.cos() * half.cos(),
+            _ => return None,
+        };
+        let radius = shape.numbers::<1>("radius").ok()??[0];
+        Some(format!(
+            "a {} of radius {radius} is taken as a polyhedron of {SIDES} sides inside it, up to {:.1e} \
+             smaller",
+            shape.name,
+            share * radius
+        ))
+    })
+}

@@ -1,0 +1,116 @@
+//! From rows of a file to the values of a robot's joints: by name or by order, with those that rest and those that
+//! follow others.
+
+use std::collections::BTreeMap;
+
+use colltrans::motion::path::JointPath;
+
+use super::{Kind, Robot, RobotError, RobotJoint, Table};
+
+/// Where the values of a joint come from.
+#[derive(Debug, Clone, Copy)]
+enum From {
+    Column(usize),
+    Rest(f64),
+    Follows,
+}
+
+impl Robot {
+    /// The path of all joints, of a table and of joints that rest, by name; and what is to be said of it: values beyond
+    /// the limits, which are taken as they are.
+    ///
+    /// # Errors
+    /// A joint without values, a column that is of none, rows of a wrong length, times that do not grow.
+    pub fn path(
+        &self,
+        table: &Table,
+        rest: &BTreeMap<String, f64>,
+    ) -> Result<(JointPath, Vec<String>), RobotError> {
+        let sources = self.sources(table, rest)?;
+        let rows = table.rows.iter().map(|row| self.row(row, &sources)).collect();
+        let path = match &table.times {
+            Some(times) => JointPath::new(times.clone(), rows)?,
+            None => JointPath::evenly(rows)?,
+        };
+        let beyond = self.joints.iter().enumerate();
+        let notes = beyond.filter_map(|(k, joint)| exceeded(joint, k, &path)).collect();
+        Ok((path, notes))
+    }
+
+    /// Names of the joints that move by themselves, in their order.
+    fn own(&self, but: &BTreeMap<String, f64>) -> Vec<&str> {
+        let own = self.joints.iter().filter(|joint| joint.mimic.is_none());
+        own.map(|joint| joint.name.as_str()).filter(|name| !but.contains_key(*name)).collect()
+    }
+
+    fn sources(
+        &self,
+        table: &Table,
+        rest: &BTreeMap<String, f64>,
+    ) -> Result<Vec<From>, RobotError> {
+        let own = self.own(&BTreeMap::new());
+        if let Some(joint) = rest.keys().find(|name| !own.contains(&name.as_str())) {
+            return Err(RobotError::Joint { joint: joint.clone(), joints: own.join(", ") });
+        }
+        let given = self.own(rest);
+        let columns: Vec<&str> = match &table.names {
+            Some(names) => names.iter().map(String::as_str).collect(),
+            None => {
+                let values = table.rows.first().map_or(0, Vec::len);
+                if values != given.len() {
+                    let (count, joints) = (given.len(), given.join(", "));
+                    return Err(RobotError::Values { values, count, joints });
+                }
+                given.clone()
+            }
+        };
+        if let Some(column) = columns.iter().find(|column| !given.contains(column)) {
+            return Err(RobotError::Column { column: (*column).into(), joints: given.join(", ") });
+        }
+        let source = |joint: &RobotJoint| {
+            if joint.mimic.is_some() {
+                return Ok(From::Follows);
+            }
+            if let Some(value) = rest.get(&joint.name) {
+                return Ok(From::Rest(*value));
+            }
+            let column = columns.iter().position(|column| *column == joint.name);
+            column
+                .map(From::Column)
+                .ok_or_else(|| RobotError::NoValues { joint: joint.name.clone() })
+        };
+        self.joints.iter().map(source).collect()
+    }
+
+    fn row(&self, row: &[f64], sources: &[From]) -> Vec<f64> {
+        let value = |k: usize| self.value(k, row, sources);
+        (0..self.joints.len()).map(value).collect()
+    }
+
+    /// Joints follow each other in no ring.
+    fn value(&self, joint: usize, row: &[f64], sources: &[From]) -> f64 {
+        match (sources[joint], self.joints[joint].mimic) {
+            (From::Column(column), _) => row[column],
+            (From::Rest(value), _) => value,
+            (From::Follows, Some(mimic)) => {
+                mimic.multiplier * self.value(mimic.joint, row, sources) + mimic.offset
+            }
+            (From::Follows, None) => 0.0,
+        }
+    }
+}
+
+/// What is said of values beyond the limits of a joint.
+fn exceeded(joint: &RobotJoint, column: usize, path: &JointPath) -> Option<String> {
+    let [lower, upper] = joint.limits?;
+    let beyond = |row: &&Vec<f64>| !(lower..=upper).contains(&row[column]);
+    let count = path.rows().iter().filter(beyond).count();
+    let first = path.rows().iter().position(|row| beyond(&row))?;
+    let unit = if joint.kind == Kind::Prismatic { "m" } else { "rad" };
+    let (value, of) = (path.rows()[first][column], path.rows().len());
+    Some(format!(
+        "joint {} is beyond its limits, {lower} to {upper} {unit}, in {count} of {of} rows: first in row \
+         {first}, with {value}",
+        joint.name
+    ))
+}

@@ -1,0 +1,197 @@
+//! Rows of joint values, as files have them: CSV, or JSON.
+//!
+//! CSV: numbers with commas between them, a row a line; a first line that has none names the columns, of which one may
+//! be `time`. Empty lines and what follows a `#` count for nothing. JSON: a list of rows, or what ROS calls a
+//! trajectory, `{"joint_names": [..], "points": [{"positions": [..], "time_from_start": ..}]}`.
+
+use serde::Deserialize;
+use thiserror::Error;
+
+/// Rows of values.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Table {
+    /// The names of the columns, if they have some.
+    pub names: Option<Vec<String>>,
+    /// The times of the rows, if they have some.
+    pub times: Option<Vec<f64>>,
+    /// The rows.
+    pub rows: Vec<Vec<f64>>,
+}
+
+/// What is wrong with a file of rows.
+#[derive(Debug, Clone, PartialEq, Eq, Error)]
+#[error("{place}: {reason}")]
+pub struct TableError {
+    /// Where.
+    pub place: String,
+    /// What.
+    pub reason: String,
+}
+
+fn wrong(place: impl Into<String>, reason: impl Into<String>) -> TableError {
+    TableError { place: place.into(), reason: reason.into() }
+}
+
+/// Names of a column of times.
+const TIMES: [&str; 3] = ["time", "t", "time_from_start"];
+
+impl Table {
+    /// Of a text in either format, told by how it begins.
+    ///
+    /// # Errors
+    /// What is wrong with it, and where.
+    pub fn parse(text: &str) -> Result<Self, TableError> {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let table = match text.trim_start().chars().next() {
+            Some('[' | '{') => Self::json(text)?,
+            _ => Self::csv(text)?,
+        };
+        if table.rows.is_empty() {
+            return Err(wrong("end of file", "there are no rows"));
+        }
+        Ok(table)
+    }
+
+    fn csv(text: &str) -> Result<Self, TableError> {
+        let mut table = Self::default();
+        let mut first: Option<(usize, usize)> = None;
+        for (k, line) in text.lines().enumerate() {
+            let content = line.split('#').next().unwrap_or_default().trim();
+            if content.is_empty() {
+                continue;
+            }
+            let place = format!("line {}", k + 1);
+            let fields: Vec<&str> = content.split(',').map(str::trim).collect();
+            let numbers: Vec<Option<f64>> = fields.iter().map(|field| field.parse().ok()).collect();
+            if first.is_none() && numbers.iter().all(Option::is_none) {
+                table.names = Some(fields.iter().map(|name| (*name).to_owned()).collect());
+                first = Some((k, fields.len()));
+                continue;
+            }
+            let (_, columns) = *first.get_or_insert((k, fields.len()));
+            if fields.len() != columns {
+                let reason = format!("it has {} values, where {columns} stand above", fields.len());
+                return Err(wrong(place, reason));
+            }
+            let row: Option<Vec<f64>> = numbers.into_iter().collect();
+            let row = row.filter(|row| row.iter().all(|x| x.is_finite()));
+            let row = row.ok_or_else(|| wrong(place, format!("`{content}` are not numbers")))?;
+            table.rows.push(row);
+        }
+        table.take_times();
+        Ok(table)
+    }
+
+    /// The column of times becomes the times.
+    fn take_times(&mut self) {
+        let Some(names) = &mut self.names else { return };
+        let is_time = |name: &String| TIMES.contains(&name.to_ascii_lowercase().as_str());
+        let Some(column) = names.iter().position(is_time) else { return };
+        names.remove(column);
+        self.times = Some(self.rows.iter_mut().map(|row| row.remove(column)).collect());
+    }
+
+    fn json(text: &str) -> Result<Self, TableError> {
+        let at = |e: &serde_json::Error| {
+            wrong(format!("line {} column {}", e.line(), e.column()), crate::read::plain(e))
+        };
+        let read: Json = serde_json::from_str(text).map_err(|e| at(&e))?;
+        let (names, points) = match read {
+            Json::Rows(rows) => return Self { rows, ..Self::default() }.even(),
+            Json::Trajectory { joint_names, points } => (joint_names, points),
+        };
+        let timed = points.iter().filter(|point| point.time_from_start.is_some()).count();
+        if timed != 0 && timed != points.len() {
+            return Err(wrong("points", "some have a time_from_start, and some have none"));
+        }
+        let times: Vec<f64> =
+            points.iter().filter_map(|point| Some(point.time_from_start?.seconds())).collect();
+        let rows = points.into_iter().map(|point| point.positions).collect();
+        Self { names: Some(names), times: (timed > 0).then_some(times), rows }.even()
+    }
+
+    fn even(self) -> Result<Self, TableError> {
+        let columns = self.names.as_ref().map(Vec::len).or(self.rows.first().map(Vec::len));
+        match self.rows.iter().position(|row| Some(row.len()) != columns) {
+            None => Ok(self),
+            Some(k) => {
+                let (found, wanted) = (self.rows[k].len(), columns.unwrap_or(0));
+                Err(wrong(format!("row {}", k + 1), format!("it has {found} values, not {wanted}")))
+            }
+        }
+    }
+}
+
+#[derive(Deserialize)]
+#[serde(
+    untagged,
+    expecting = "it is neither a list of rows nor {\"joint_names\": [..], \"points\": [..]}"
+)]
+enum Json {
+    Rows(Vec<Vec<f64>>),
+    Trajectory { joint_names: Vec<String>, points: Vec<Point> },
+}
+
+#[derive(Deserialize)]
+struct Point {
+    positions: Vec<f64>,
+    time_from_start: Option<Duration>,
+}
+
+/// Seconds, or as ROS has them.
+#[derive(Deserialize, Clone, Copy)]
+#[serde(untagged)]
+enum Duration {
+    Seconds(f64),
+    Two {
+        #[serde(alias = "sec")]
+        secs: f64,
+        #[serde(alias = "nanosec")]
+        nsecs: f64,
+    },
+}
+
+impl Duration {
+    fn seconds(self) -> f64 {
+        match self {
+            Self::Seconds(seconds) => seconds,
+            Self::Two { secs, nsecs } => secs + nsecs * 1e-9,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn rows_are_read() {
+        let plain = Table::parse("0, 1\n# a comment\n\n2,3 # two\n").unwrap();
+        assert_eq!(plain, Table { rows: vec![vec![0.0, 1.0], vec![2.0, 3.0]], ..Table::default() });
+        let named = Table::parse("time,a,b\n0,1,2\n0.5,3,4\n").unwrap();
+        assert_eq!(named.names.as_deref(), Some(&["a".to_owned(), "b".into()][..]));
+        assert_eq!(named.times, Some(vec![0.0, 0.5]));
+        assert_eq!(named.rows, [[1.0, 2.0], [3.0, 4.0]]);
+        assert_eq!(Table::parse("[[0, 1], [2, 3]]").unwrap(), plain);
+        let ros = r#"{"joint_names": ["a"], "points": [
+            {"positions": [1], "time_from_start": {"sec": 1, "nanosec": 500000000}},
+            {"positions": [2], "time_from_start": 2}]}"#;
+        let ros = Table::parse(ros).unwrap();
+        assert_eq!((ros.times, ros.rows), (Some(vec![1.5, 2.0]), vec![vec![1.0], vec![2.0]]));
+    }
+
+    #[test]
+    fn what_is_wrong_is_told_with_its_place() {
+        let told = |text: &str| Table::parse(text).unwrap_err().to_string();
+        assert_eq!(told("a,b\n1,2\n1\n"), "line 3: it has 1 values, where 2 stand above");
+        assert_eq!(told("1,2\n1,x\n"), "line 2: `1,x` are not numbers");
+        assert_eq!(told("a,b\n"), "end of file: there are no rows");
+        assert_eq!(told("1,inf\n"), "line 1: `1,inf` are not numbers");
+        assert_eq!(told("[[1, 2], [1]]"), "row 2: it has 1 values, not 2");
+        assert!(told("{\"points\": []}").contains("it is neither a list of rows nor"));
+        assert!(told("[[1, 2").contains("line 1"));
+        let mixed = r#"{"joint_names": ["a"], "points": [
+            {"positions": [1], "time_from_start": 1}, {"positions": [2]}]}"#;
+        assert!(told(mixed).contains("some have none"));
+    }
+}

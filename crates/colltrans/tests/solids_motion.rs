@@ -1,14 +1,17 @@
 //! Solids that turn: closed forms, convex bodies as solids against the convex search, exact solids at times on the
 //! way, threads; proofs and changed ones; work.
 
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use colltrans::glam::DVec3;
-use colltrans::motion::{Motion, MotionCast, MotionContact, MotionOutcome, SolidMotionProof};
-use colltrans::{Cast, ConvexPolyhedron, Pose, Solid};
+use colltrans::glam::{DQuat, DVec3};
+use colltrans::motion::{
+    Motion, MotionCast, MotionContact, MotionCover, MotionOutcome, SolidMotionProof,
+};
+use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose, Solid};
+use colltrans_testkit::oracle::solids::turning;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{Mesh, block, random_hull};
-use colltrans_testkit::solids::thread;
+use colltrans_testkit::solids::{pin, thread, washer};
 
 fn solid(mesh: &Mesh) -> Solid {
     Solid::from_mesh(&mesh.vertices, &mesh.faces).expect("a solid")
@@ -24,6 +27,14 @@ fn still() -> Motion {
 
 /// The answer with its proof, after all checks that can be made of it.
 fn judged(cast: &MotionCast<Solid>, motions: [&Motion; 2]) -> MotionOutcome<SolidMotionProof> {
+    judged_keeping(cast, motions, 0.0)
+}
+
+fn judged_keeping(
+    cast: &MotionCast<Solid>,
+    motions: [&Motion; 2],
+    gap: f64,
+) -> MotionOutcome<SolidMotionProof> {
     let plain = cast.first_contact().expect("an answer");
     let outcome = cast.certified_first_contact().expect("an answer");
     let [lower, upper] = cast.verify(outcome.proof()).unwrap_or_else(|error| panic!("{error}"));
@@ -46,13 +57,15 @@ fn judged(cast: &MotionCast<Solid>, motions: [&Motion; 2]) -> MotionOutcome<Soli
     let overlaps = |time: f64| {
         let [a, b] = motions.map(|motion| motion.at(time).expect("a pose"));
         let cast = Cast::new(bodies[0].at(a), bodies[1].at(b), DVec3::Z).expect("a cast");
-        cast.with_tolerance(cast_tolerance(&outcome)).expect("a tolerance").overlaps()
+        let cast = cast.with_tolerance(cast_tolerance(&outcome)).expect("a tolerance");
+        cast.keeping(gap).expect("a gap").overlaps()
     };
     for k in 0..if upper == 0.0 { 0 } else { 50 } {
         let time = lower * f64::from(k) / 50.0;
         assert!(!overlaps(time), "overlap at {time} of {lower}");
     }
-    if upper <= 1.0 {
+    // Nearer for certain than a gap is more than as near.
+    if upper <= 1.0 && gap == 0.0 {
         assert!(overlaps(upper), "no overlap at {upper}");
     }
     outcome
@@ -137,4 +150,229 @@ fn a_door_in_its_frame() {
     let expected = ((0.5 / r).asin() - phase) / FRAC_PI_2;
     assert!((found.lower - expected).abs() < 1e-11, "{} {expected}", found.lower);
     assert!(found.upper - found.lower < 1e-11, "{:e}", found.upper - found.lower);
+}
+
+/// A block with a slot along x that is 0.5 wide and high, from the bodies that make it.
+fn lock() -> Solid {
+    let walls = [
+        block([0.0, 0.25, -1.0], [1.0, 1.0, 1.0]),
+        block([0.0, -1.0, -1.0], [1.0, -0.25, 1.0]),
+        block([0.0, -0.25, 0.25], [1.0, 0.25, 1.0]),
+        block([0.0, -0.25, -1.0], [1.0, 0.25, -0.25]),
+    ];
+    solid(&walls[1..].iter().fold(walls[0].clone(), Mesh::joined))
+}
+
+#[test]
+fn a_key_in_its_lock() {
+    // Its blade is 0.4 by 0.2 in a square slot of 0.5: the farthest corner is at r = sqrt(0.2) / 2 < 0.25, so it
+    // turns; one of 0.6 by 0.2 does not: its corner (0.3, 0.1), at the angle p, is at the slot's side once
+    // r sin(a + p) = 0.25.
+    let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::X, PI).expect("a motion");
+    let (lock, rest) = (lock(), still());
+    let key = |half: f64| solid(&block([-1.0, -half, -0.1], [0.5, half, 0.1]));
+    let (small, large) = (key(0.2), key(0.24));
+    let cast = MotionCast::new(small.along(&turn), lock.along(&rest)).expect("a cast");
+    assert!(matches!(judged(&cast, [&turn, &rest]), MotionOutcome::Free(_)));
+    let cast = MotionCast::new(large.along(&turn), lock.along(&rest)).expect("a cast");
+    let found = contact(judged(&cast, [&turn, &rest]));
+    // The corner (0.24, -0.1) comes to y = 0.25.
+    let r = 0.24_f64.hypot(0.1);
+    let expected = ((0.1 / r).asin() - (0.25 / r).acos()) / PI;
+    assert!((found.lower - expected).abs() < 1e-11, "{} {expected}", found.lower);
+    assert!(found.upper - found.lower < 1e-11, "{:e}", found.upper - found.lower);
+    assert!((found.points.expect("points")[0].x - 0.25).abs() < 0.3);
+}
+
+#[test]
+fn what_touches_parts_slides_and_is_stopped() {
+    // A step stands on a plate with a hole; nothing is between them.
+    let step =
+        solid(&block([0.0; 3], [2.0, 1.0, 1.0]).joined(&block([0.0, 0.0, 1.0], [1.0, 1.0, 2.0])));
+    let plate = solid(&block([-4.0, -4.0, -1.0], [4.0, 4.0, 0.0]));
+    let rest = still();
+    let asked = |motion: Motion| {
+        let cast = MotionCast::new(step.along(&motion), plate.along(&rest)).expect("a cast");
+        judged(&cast, [&motion, &rest])
+    };
+    let here = Pose::IDENTITY;
+    let turned = Motion::turn(here, DVec3::new(0.3, 0.2, 0.0), DVec3::Z, TAU).expect("a motion");
+    let slid = Motion::slide(here, DVec3::X).expect("a motion");
+    let raised = Motion::screw(here, DVec3::ZERO, DVec3::Z, 3.0, 1.0).expect("a motion");
+    let tipped = Motion::turn(here, DVec3::X * 2.0, DVec3::Y, 1.0).expect("a motion");
+    for free in [turned, slid, raised, tipped] {
+        let outcome = asked(free);
+        assert!(matches!(outcome, MotionOutcome::Free(_)), "{outcome:?}");
+    }
+    let pushed = Motion::screw(here, DVec3::ZERO, DVec3::Z, 1.0, -1.0).expect("a motion");
+    let levered = Motion::turn(here, DVec3::new(1.0, 0.0, 0.0), DVec3::Y, 1.0).expect("a motion");
+    for blocked in [pushed, levered] {
+        let found = contact(asked(blocked));
+        assert!(found.lower < 1e-11 && found.upper < 1e-11, "{} {}", found.lower, found.upper);
+    }
+    // Without a tolerance a touch is not told from an overlap.
+    let turned = Motion::turn(here, DVec3::ZERO, DVec3::Z, 1.0).expect("a motion");
+    let cast = MotionCast::new(step.along(&turned), plate.along(&rest)).expect("a cast");
+    let cast = cast.tolerating(0.0).expect("a tolerance");
+    let MotionOutcome::Grazing(found) = judged(&cast, [&turned, &rest]) else {
+        panic!("not grazing")
+    };
+    assert_eq!(found.lower, 0.0);
+}
+
+#[test]
+fn what_holds_a_body_is_told_at_the_start() {
+    let ring = solid(&washer([1.0, 3.0], [-0.5, 0.5], 24));
+    let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 1.0).expect("a motion");
+    let rest = still();
+    // A pin of the same corners fits, but may not turn, unless both are smaller by the height of a chord.
+    let fitting = solid(&pin(1.0, [-1.0, 1.0], 24));
+    let cast = MotionCast::new(fitting.along(&turn), ring.along(&rest)).expect("a cast");
+    assert!(contact(judged(&cast, [&turn, &rest])).upper < 1e-4);
+    let chord = 1.0 - (PI / 24.0).cos();
+    let cast = cast.tolerating(1.1 * chord).expect("a tolerance");
+    assert!(matches!(judged(&cast, [&turn, &rest]), MotionOutcome::Free(_)));
+    // Inside the material no surfaces cross.
+    let ball = solid(&block([1.5, -0.25, -0.25], [2.0, 0.25, 0.25]));
+    let cast = MotionCast::new(ball.along(&turn), ring.along(&rest)).expect("a cast");
+    assert!(matches!(judged(&cast, [&turn, &rest]), MotionOutcome::Overlapping(_)));
+    // In a hole that is closed all round it turns.
+    let hollow = solid(&block([-2.0; 3], [2.0; 3]).joined(&block([-1.0; 3], [1.0; 3]).reversed()));
+    let inner = solid(&block([-0.5; 3], [0.5; 3]));
+    let cast = MotionCast::new(inner.along(&turn), hollow.along(&rest)).expect("a cast");
+    assert!(matches!(judged(&cast, [&turn, &rest]), MotionOutcome::Free(_)));
+    assert!(cast.clone().tolerating(1.0).is_err(), "nothing is left of the inner one");
+    // A gap is kept: the corner, at 0.5 sqrt(2) from the axis, comes as near as 1 - 0.5 sqrt(2).
+    let gap = 1.0 - 0.5_f64.sqrt();
+    let asked = |gap: f64| {
+        let cast = cast.clone().keeping(gap).expect("a gap");
+        judged_keeping(&cast, [&turn, &rest], gap)
+    };
+    assert!(matches!(asked(gap - 1e-9), MotionOutcome::Free(_)));
+    assert!((contact(asked(gap + 1e-9)).lower - FRAC_PI_2 / 2.0).abs() < 1e-3);
+}
+
+#[test]
+fn a_slide_is_the_linear_cast() {
+    let mut random = Random::new(11);
+    let ell =
+        solid(&block([0.0; 3], [3.0, 1.0, 1.0]).joined(&block([0.0, 1.0, 0.0], [1.0, 3.0, 1.0])));
+    let mut contacts = 0;
+    for _ in 0..60 {
+        let place = |random: &mut Random, far: f64| {
+            Pose::new(random.rotation(), random.direction() * far).expect("a pose")
+        };
+        let (a, b) = (place(&mut random, 6.0), place(&mut random, 0.5));
+        let by = random.vector() * 2.0 - a.translation() * 1.5;
+        let linear = Cast::new(ell.at(a), ell.at(b), by).expect("a cast");
+        let (slide, rest) = (Motion::slide(a, by).expect("a motion"), Motion::still(b));
+        let cast = MotionCast::new(ell.along(&slide), ell.along(&rest)).expect("a cast");
+        match (linear.first_contact().expect("an answer"), judged(&cast, [&slide, &rest])) {
+            (Outcome::Contact(one), MotionOutcome::Contact(two)) => {
+                contacts += 1;
+                assert!((one.translation.value - two.lower).abs() < 1e-9, "{one:?} {two:?}");
+            }
+            (Outcome::Contact(one), MotionOutcome::Free(_)) => {
+                assert!(!(-1e-9..1.0).contains(&one.translation.value), "{one:?}");
+            }
+            (Outcome::Separated(_), MotionOutcome::Free(_)) => {}
+            (one, two) => panic!("{one:?} {two:?}"),
+        }
+    }
+    assert!(contacts > 15, "{contacts}");
+}
+
+#[test]
+fn both_carried_by_one_motion_stay_as_they_are() {
+    // A hook around a bar, 1e-3 apart, far from the axis.
+    let hook = solid(
+        &block([0.0; 3], [3.0, 1.0, 1.0])
+            .joined(&block([0.0, 1.0, 0.0], [1.0, 3.0, 1.0]))
+            .joined(&block([0.0, 3.0, 0.0], [3.0, 4.0, 1.0])),
+    );
+    let bar = solid(&block([1.001, 1.001, -4.0], [2.0, 2.999, 4.0]));
+    let pose = Pose::new(DQuat::from_rotation_x(0.4), DVec3::new(9.0, 1.0, 2.0)).expect("a pose");
+    let (point, axis) = (DVec3::new(-1.0, 2.0, 0.5), DVec3::new(1.0, 2.0, 3.0));
+    let both = [0, 1].map(|_| Motion::screw(pose, point, axis, 5.0, 1.0).expect("a motion"));
+    let cast = MotionCast::new(hook.along(&both[0]), bar.along(&both[1])).expect("a cast");
+    let outcome = judged(&cast, [&both[0], &both[1]]);
+    assert!(matches!(outcome, MotionOutcome::Free(_)), "{outcome:?}");
+}
+
+#[test]
+fn changed_proofs_are_refused() {
+    let mut refused = 0;
+    let bolt = solid(&thread([1.0, 0.1, 0.5], [0.0, 2.0], [10, 16], None));
+    let nut = solid(&thread([1.05, 0.1, 0.5], [0.6, 1.4], [10, 6], Some(1.5)));
+    let rest = still();
+    for factor in [1.0, 0.9, 0.0] {
+        let turn = Motion::screw(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 3.0, 0.5 * factor);
+        let turn = turn.expect("a motion");
+        let cast = MotionCast::new(bolt.along(&turn), nut.along(&rest)).expect("a cast");
+        let outcome = cast.certified_first_contact().expect("an answer");
+        let told = outcome.proof();
+        let mut check = |change: &dyn Fn(&mut SolidMotionProof)| {
+            let mut changed = told.clone();
+            change(&mut changed);
+            if changed != *told {
+                let all = cast.verify(told).expect("a proof");
+                match cast.verify(&changed) {
+                    Err(_) => refused += 1,
+                    Ok(less) => assert!(less[0] <= all[0] && less[1] >= all[1], "{less:?}"),
+                }
+            }
+        };
+        check(&|proof| proof.tolerance *= 2.0);
+        check(&|proof| proof.spans[0].until *= 1.0 - 1e-6);
+        check(&|proof| proof.spans[0].until = (proof.spans[0].until * (1.0 + 1e-6)).min(1.0));
+        check(&|proof| proof.spans.push(proof.spans[0].clone()));
+        check(&|proof| {
+            proof.spans[0].lists.pop();
+        });
+        check(&|proof| {
+            if let Some(plane) = proof.spans[0].lists.iter_mut().flatten().next() {
+                plane.gap *= 1.001;
+            }
+        });
+        check(&|proof| {
+            if let Some(meeting) = &mut proof.meeting {
+                meeting.time *= 0.999;
+            }
+        });
+        check(&|proof| {
+            if let Some(meeting) = &mut proof.meeting {
+                meeting.triangles = [u32::MAX; 2];
+            }
+        });
+        // Letters of the cover, changed and left out.
+        let cover = String::from(told.spans[0].cover.clone());
+        assert_eq!(MotionCover::try_from(cover.clone()).as_ref(), Ok(&told.spans[0].cover));
+        let letters: Vec<char> = cover.chars().collect();
+        let mut random = Random::new(7);
+        for _ in 0..60 {
+            let mut changed = letters.clone();
+            let at = random.index(changed.len());
+            if random.one_in(4) {
+                changed.remove(at);
+            } else {
+                changed[at] = random.pick(&['T', 'P', 'Q', 'L', 'm', 'x', 'y', 'p', 'q', '5']);
+            }
+            let cover = MotionCover::try_from(changed.into_iter().collect::<String>());
+            let cover = cover.expect("a cover");
+            check(&|proof| proof.spans[0].cover = cover.clone());
+        }
+    }
+    assert!(refused > 100, "{refused}");
+}
+
+#[test]
+fn all_families_turn() {
+    let families =
+        turning::FAMILIES.into_iter().chain(["grid", "mould", "sheets", "balls", "thin"]);
+    for family in families.chain(["convex-boxes", "convex-face-face", "convex-identical"]) {
+        for seed in 0..12 {
+            let seen = turning::examine(family, seed);
+            assert!(seen.is_ok(), "{family}:{seed} {seen:?}");
+        }
+    }
 }

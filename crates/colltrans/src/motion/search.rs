@@ -232,26 +232,29 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
         let Look { gap, rate, .. } = self.left;
         let corners = course.arcs();
         let step = self.next_time() - from;
-        let mut length = (SWING * step).min(self.end - from);
+        let (end, rest) = (self.end, self.end - from);
+        // The sum of both may be rounded to before the end.
+        let at = |length: f64| if length >= rest { end } else { from + length };
+        let mut length = (SWING * step).min(rest);
         // As fast as the gap closes now, there is not enough left of it; but steps that are so short are
         // many.
-        let closes = rate * length >= KEPT * gap && SHORT * step > self.end - from;
+        let closes = rate * length >= KEPT * gap && SHORT * step > rest;
         if corners == 0 || closes || corners > ARCS {
             return false;
         }
         let mut farthest = None;
         loop {
-            let at = course.instant(from + length);
-            if course.lost([&self.left.at, &at], self.left.normal) >= KEPT * gap {
+            let next = course.instant(at(length));
+            if course.lost([&self.left.at, &next], self.left.normal) >= KEPT * gap {
                 break;
             }
             farthest = Some(length);
-            if from + length >= self.end {
+            if length >= rest {
                 break;
             }
-            length = (2.0 * length).min(self.end - from);
+            length = (2.0 * length).min(rest);
         }
-        farthest.is_some_and(|length| self.swing_to((from + length).min(self.end)))
+        farthest.is_some_and(|length| self.swing_to(at(length)))
     }
 
     fn swing_to(&mut self, time: f64) -> bool {

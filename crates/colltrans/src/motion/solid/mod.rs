@@ -5,9 +5,10 @@
 //! insides do. Which facets meet first is asked of both trees of boxes and of time.
 //!
 //! The modules, each using only those before it: `tree` (a shrunk solid), `window` (two parts in an interval, and
-//! one plane), `facets` (two facets, as convex bodies), `search`, `proof` (the search written down), `verify`.
+//! one plane), `facets` (two facets, as convex bodies), `search`, `meeting` (some that meet), `proof` (the search written down), `verify`.
 
 mod facets;
+mod meeting;
 mod proof;
 mod search;
 mod tree;
@@ -20,12 +21,12 @@ use glam::DVec3;
 
 use self::facets::FacetLooker;
 pub use self::facets::FacetsMet;
+use self::meeting::{Seen, seen};
 pub use self::proof::{FacetsMeeting, MotionCover, SolidMotionProof, SpanProof};
 use self::search::{Found, Search, Written};
 use self::tree::Tree;
 use self::window::Frame;
 use super::answer::{MotionContact, MotionFree, MotionOutcome, MotionSteps};
-use super::look::Looker;
 use super::span::{Span, spans};
 use super::verify::MotionProofError;
 use super::{Motion, MotionCast, Moving};
@@ -38,7 +39,7 @@ use crate::number::noise::Noise;
 use crate::setting::error::QueryError;
 use crate::setting::{Setting, check_keep};
 use crate::solve::solid::nearest::{Spot, points_of};
-use crate::solve::solid::overlap::{self, Overlap};
+use crate::solve::solid::overlap;
 use crate::solve::solid::scene::Scene;
 
 /// The default tolerance, in multiples of what two points may be off each other: noise, and motion.
@@ -47,6 +48,9 @@ const TOLERANCE: f64 = 32.0;
 /// How often a time after a contact is doubled, from so many roundings on, to find facets that cross.
 const BEYOND: i32 = 48;
 const FIRST: f64 = 4.0 * f64::EPSILON;
+
+/// How long after a contact facets that are apart are looked at further.
+const SOON: f64 = 1e-6;
 
 /// How often a proof up to a contact is tried, each time a little shorter.
 const MOST_CUTS: i32 = 40;
@@ -130,7 +134,7 @@ impl<'a> MotionCast<'a, Solid> {
         for span in spans(trees.each_ref(), self.motions(), self.keep) {
             let (found, _) = searched(&span, false, &mut steps);
             if let Some(found) = found {
-                let found = self.confirmed(&span, found, tolerance, &mut steps);
+                let found = Self::confirmed(&span, found, &mut steps);
                 return Ok(self.contact(&span, &found, tolerance, steps, |_| ()));
             }
         }
@@ -158,7 +162,7 @@ impl<'a> MotionCast<'a, Solid> {
                 proof.spans.push(SpanProof::new(span.to, written));
                 continue;
             };
-            let mut found = self.confirmed(&span, found, tolerance, &mut steps);
+            let mut found = Self::confirmed(&span, found, &mut steps);
             let (lower, written) = up_to(&span, found.lower, &mut steps);
             found.lower = lower;
             proof.spans.push(SpanProof::new(lower, written));
@@ -202,37 +206,26 @@ impl<'a> MotionCast<'a, Solid> {
     }
 
     /// The same with two facets that meet for certain, if there are some soon after.
-    fn confirmed(
-        &self,
-        span: &Span<Tree>,
-        found: Found,
-        tolerance: f64,
-        steps: &mut MotionSteps,
-    ) -> Found {
+    fn confirmed(span: &Span<Tree>, found: Found, steps: &mut MotionSteps) -> Found {
         if found.met.is_some() {
             return found;
         }
-        let mut looker = FacetLooker::default();
-        let mut met = None;
+        let (frame, mut looker) = (Frame::new(span), FacetLooker::default());
+        let (mut met, mut was_open) = (None, false);
         for k in -1..BEYOND {
             let more = if k < 0 { 0.0 } else { FIRST * 2.0_f64.powi(k) };
             let time = found.lower + more;
             if time > span.to {
                 break;
             }
-            let scene = self.scene(span, time, tolerance);
-            let place = scene.and_then(|scene| overlap::find(&scene, &mut SolidSteps::default()));
-            let [s, t] = match place {
-                Some(Overlap::Facets(s, t)) => [s, t],
-                Some(_) => continue,
-                None => found.triangles,
-            };
-            let facets = [span.body(0).facet(s), span.body(1).facet(t)];
-            let part = span.part(facets.each_ref(), [span.from, span.to]);
-            met = looker.met(&part, time).map(|met| (time, [s, t], met));
-            let parted = place.is_none() && k >= 0 && looker.look(&part, time).is_apart();
-            if met.is_some() || parted {
-                break;
+            match seen(&frame, time, &mut looker) {
+                Seen::Met(pair, how) => {
+                    met = Some((time, pair, how));
+                    break;
+                }
+                Seen::Open => was_open = true,
+                Seen::Apart if was_open || more > SOON => break,
+                Seen::Apart => {}
             }
         }
         *steps += looker.steps;

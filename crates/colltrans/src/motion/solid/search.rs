@@ -10,18 +10,39 @@
 use super::super::answer::{MotionSteps, PlaneAt};
 use super::super::search::{Advanced, End, advance};
 use super::facets::{FacetLooker, FacetsMet};
-use super::tree::{Below, Tree};
-use super::window::{Frame, Part, Plane, Snap, normal};
+use super::tree::{Below, Node, Tree};
+use super::window::{Frame, Part, Plane, Snap, Window};
 
 /// Longer arcs are halved at once.
 const TURN: f64 = 0.7;
 
 /// Time is halved while parts move by more than so many times their size; facets by more.
-const WAYS: f64 = 2.0;
+const WAYS: f64 = 4.0;
 const FACET_WAYS: f64 = 8.0;
 
 /// Intervals that are shorter are not halved: what is open there is asked facet by facet.
 const SHORTEST: f64 = 1e-9;
+
+/// The planes that are tried, in this order: those of facets where there are some.
+const PLANES: [Plane; 3] = [Plane::Middles, Plane::Across(0), Plane::Across(1)];
+const AXES: [Plane; 6] = {
+    use Plane::Axis;
+    [Axis(1, 0), Axis(1, 1), Axis(1, 2), Axis(0, 0), Axis(0, 1), Axis(0, 2)]
+};
+const EDGES: [Plane; 9] = {
+    use Plane::Edges;
+    [
+        Edges(0, 0),
+        Edges(0, 1),
+        Edges(0, 2),
+        Edges(1, 0),
+        Edges(1, 1),
+        Edges(1, 2),
+        Edges(2, 0),
+        Edges(2, 1),
+        Edges(2, 2),
+    ]
+};
 
 /// What became of a pair of parts in an interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -113,16 +134,18 @@ impl<'s, 'a> Search<'s, 'a> {
         }
         self.steps.nodes += 1;
         let parts = [0, 1].map(|k| Part::of(self.trees[k], at[k]));
-        if let Some(plane) = self.parted([from, to], parts.each_ref()) {
+        let ends = [&self.snaps[from as usize], &self.snaps[to as usize]];
+        let window = self.frame.window(ends, parts.each_ref());
+        let facets = parts.each_ref().map(|part| part.facet().is_some());
+        if let Some(plane) = parted(&window, facets, self.last) {
             self.last = plane;
             self.write(Entry::Parted(plane));
             return;
         }
-        let ends = [&self.snaps[from as usize], &self.snaps[to as usize]];
         let nodes = [0, 1].map(|k| self.trees[k].node(at[k]));
         let sizes = nodes.map(|node| node.half.length());
-        let way = self.frame.way(ends, parts.each_ref()) / sizes[0].max(sizes[1]);
-        let turns = (0..2).any(|k| self.frame.angle(k, ends) > TURN);
+        let way = window.way() / sizes[0].max(sizes[1]);
+        let turns = window.turn() > TURN;
         let is_long = ends[1].time - ends[0].time >= SHORTEST;
         let below = nodes.map(|node| node.below);
         if let [Below::Facet(s), Below::Facet(t)] = below {
@@ -133,8 +156,11 @@ impl<'s, 'a> Search<'s, 'a> {
             }
         } else if is_long && (turns || way > WAYS) {
             self.halve(at, [from, to]);
-        } else {
-            self.split(at, [from, to], below, sizes[0] >= sizes[1]);
+        } else if let Some((which, [first, second])) = split(at, nodes) {
+            self.write(Entry::Split(which));
+            let (ends, snaps) = ([from, to], self.snaps.len() as u32);
+            let open = |parts| Open { parts, ends, snaps };
+            self.stack.extend([open(second), open(first)]);
         }
     }
 
@@ -148,28 +174,6 @@ impl<'s, 'a> Search<'s, 'a> {
         }
     }
 
-    /// The plane that parts two parts throughout an interval.
-    fn parted(&self, ends: [u32; 2], parts: [&Part; 2]) -> Option<Plane> {
-        let ends = ends.map(|k| &self.snaps[k as usize]);
-        let holds = |plane: Plane| {
-            let normal = normal(ends, parts, plane);
-            normal.is_some_and(|normal| self.frame.parts(ends, parts, normal))
-        };
-        if holds(self.last) {
-            return Some(self.last);
-        }
-        let facets = parts.map(|part| part.facet().is_some());
-        let across = [0, 1].into_iter().filter(|k| facets[*k as usize]).map(Plane::Across);
-        let axes = [1, 0].into_iter().flat_map(|which| (0..3).map(move |k| Plane::Axis(which, k)));
-        let boxes = !(facets[0] && facets[1]);
-        let edges = (0..9).filter(|_| !boxes).map(|k| Plane::Edges(k / 3, k % 3));
-        std::iter::once(Plane::Middles)
-            .chain(across)
-            .chain(axes.filter(|_| boxes))
-            .chain(edges)
-            .find(|plane| *plane != self.last && holds(*plane))
-    }
-
     fn halve(&mut self, parts: [u32; 2], [from, to]: [u32; 2]) {
         self.write(Entry::Halved);
         let [a, b] = [self.time(from), self.time(to)];
@@ -177,23 +181,6 @@ impl<'s, 'a> Search<'s, 'a> {
         let snaps = self.snaps.len() as u32;
         let half = |ends| Open { parts, ends, snaps };
         self.stack.extend([half([snaps - 1, to]), half([from, snaps - 1])]);
-    }
-
-    /// Splits one part in two: that which is not a facet, or the moving one if so said.
-    fn split(&mut self, at: [u32; 2], ends: [u32; 2], below: [Below; 2], moving: bool) {
-        let (which, first) = match below {
-            [Below::Nodes(first), Below::Facet(_)] => (0, first),
-            [Below::Nodes(first), Below::Nodes(_)] if moving => (0, first),
-            [_, Below::Nodes(first)] => (1, first),
-            [_, Below::Facet(_)] => return,
-        };
-        self.write(Entry::Split(which));
-        let snaps = self.snaps.len() as u32;
-        let part = |k: u32| {
-            let parts = if which == 0 { [k, at[1]] } else { [at[0], k] };
-            Open { parts, ends, snaps }
-        };
-        self.stack.extend([part(first + 1), part(first)]);
     }
 
     /// Two facets in an interval, as two convex bodies.
@@ -231,6 +218,37 @@ impl<'s, 'a> Search<'s, 'a> {
             before.met = met;
         }
     }
+}
+
+/// Which of two nodes is split, the larger one that is no facet, and the pairs that come of it.
+pub(super) fn split(at: [u32; 2], nodes: [&Node; 2]) -> Option<(u8, [[u32; 2]; 2])> {
+    let moving = nodes[0].half.length() >= nodes[1].half.length();
+    let (which, first) = match nodes.map(|node| node.below) {
+        [Below::Nodes(first), Below::Facet(_)] => (0, first),
+        [Below::Nodes(first), Below::Nodes(_)] if moving => (0, first),
+        [_, Below::Nodes(first)] => (1, first),
+        [_, Below::Facet(_)] => return None,
+    };
+    let part = |k: u32| if which == 0 { [k, at[1]] } else { [at[0], k] };
+    Some((which, [part(first), part(first + 1)]))
+}
+
+/// The plane that parts two parts throughout an interval, of which it is told whether they are facets: that which
+/// parted the last two first.
+pub(super) fn parted(window: &Window, facets: [bool; 2], last: Plane) -> Option<Plane> {
+    if window.is_parted_by(last) {
+        return Some(last);
+    }
+    let holds = |plane: &Plane| *plane != last && window.is_parted_by(*plane);
+    let both = facets == [true; 2];
+    let first: &[Plane] = match facets {
+        [false, false] => &PLANES[..1],
+        [true, false] => &PLANES[..2],
+        [true, true] => &PLANES[..3],
+        [false, true] => &[PLANES[0], PLANES[2]],
+    };
+    let rest = if both { &EDGES[..] } else { &AXES[..] };
+    first.iter().chain(rest).copied().find(holds)
 }
 
 /// The time at which an interval is halved.

@@ -9,7 +9,7 @@ use super::facets;
 use super::proof::{FacetsMeeting, SolidMotionProof, SpanProof};
 use super::search::{Entry, middle};
 use super::tree::{Below, Tree};
-use super::window::{Frame, Part, Snap, normal};
+use super::window::{Frame, Part, Snap};
 use crate::body::solid::Solid;
 use crate::cast::solid::StartProof;
 use crate::motion::MotionCast;
@@ -84,8 +84,8 @@ fn covers(span: &Span<Tree>, SpanProof { until, cover, lists }: &SpanProof) -> R
             Entry::Parted(plane) => {
                 let parts = [0, 1].map(|k| Part::of(trees[k], at[k]));
                 let ends = [&ends[0], &ends[1]];
-                let normal = normal(ends, parts.each_ref(), plane);
-                if !normal.is_some_and(|normal| frame.parts(ends, parts.each_ref(), normal)) {
+                let window = frame.window(ends, parts.each_ref());
+                if !window.is_parted_by(plane) {
                     return Err(number);
                 }
             }

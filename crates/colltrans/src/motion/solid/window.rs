@@ -38,11 +38,9 @@ pub(super) struct Snap {
 #[derive(Debug, Clone, Copy)]
 struct Place {
     rotation: DMat3,
-    /// From a point of its axis to its origin.
+    /// From a point of its axis to its origin, and how much of that is along the axis.
     arm: DVec3,
-    /// Its axis, in its own frame and in the world.
-    axis: DVec3,
-    along: DVec3,
+    along: f64,
 }
 
 /// What is the same for all parts and intervals of a span.
@@ -88,29 +86,64 @@ impl Part {
             Self::Facet(facet) => Some(facet),
         }
     }
+}
+
+/// A part where it is at a time, as vectors with the axes of the world from its body's origin: the corners of a
+/// facet, or the middle of a box and the halves of its edges.
+#[derive(Debug, Clone, Copy)]
+struct Seen {
+    vectors: [DVec3; 4],
+    /// How much of each is along the body's axis.
+    along: [f64; 4],
+    is_facet: bool,
+}
+
+impl Seen {
+    #[inline]
+    fn new(part: &Part, rotation: &DMat3, axis: DVec3) -> Self {
+        let vectors = match part {
+            Part::Box(node) => {
+                let half = node.half;
+                let [x, y, z] = [rotation.x_axis, rotation.y_axis, rotation.z_axis];
+                [*rotation * node.middle, x * half.x, y * half.y, z * half.z]
+            }
+            Part::Facet(facet) => {
+                let [a, b, c] = facet.corners.map(|v| *rotation * v);
+                [a, b, c, DVec3::ZERO]
+            }
+        };
+        let along = vectors.map(|v| v.dot(axis));
+        Self { vectors, along, is_facet: part.facet().is_some() }
+    }
 
     #[inline]
     fn middle(&self) -> DVec3 {
-        match self {
-            Self::Box(node) => node.middle,
-            Self::Facet(Facet { corners: [a, b, c], .. }) => (*a + *b + *c) / 3.0,
-        }
+        let [a, b, c, _] = self.vectors;
+        if self.is_facet { (a + b + c) / 3.0 } else { a }
     }
 
-    /// The least and the largest height along a direction of any length.
+    /// The largest height along a normal, and along the part of it across the axis, if such a share of it is
+    /// along that.
     #[inline]
-    fn range(&self, along: DVec3) -> [f64; 2] {
-        match self {
-            Self::Box(node) => {
-                let (at, reach) = (along.dot(node.middle), along.abs().dot(node.half));
-                [at - reach, at + reach]
-            }
-            Self::Facet(facet) => {
-                let [a, b, c] = facet.corners.map(|v| along.dot(v));
-                [a.min(b).min(c), a.max(b).max(c)]
-            }
+    fn reach(&self, normal: DVec3, share: f64) -> [f64; 2] {
+        let [a, b, c, d] = self.vectors.map(|v| normal.dot(v));
+        let [k, l, m, n] = self.along.map(|along| share * along);
+        if self.is_facet {
+            [a.max(b).max(c), (a - k).max(b - l).max(c - m)]
+        } else {
+            let side = (a - k) + ((b - l).abs() + (c - m).abs() + (d - n).abs());
+            [a + (b.abs() + c.abs() + d.abs()), side]
         }
     }
+}
+
+/// Two parts in an interval.
+#[derive(Debug, Clone)]
+pub(super) struct Window<'w, 's, 'a> {
+    frame: &'w Frame<'s, 'a>,
+    ends: [&'w Snap; 2],
+    /// Of the moving and of the fixed part, at both ends.
+    seen: [[Seen; 2]; 2],
 }
 
 impl<'s, 'a> Frame<'s, 'a> {
@@ -131,66 +164,85 @@ impl<'s, 'a> Frame<'s, 'a> {
         let at = self.span.instant(time);
         let rotations = [at.bodies.moving_matrix, at.bodies.fixed_matrix];
         let place = |k: usize| {
-            let (rotation, Moved { arm, .. }, along) =
-                (rotations[k], at.moved[k], self.piece(k).axis);
-            Place { rotation, arm, axis: rotation.transpose() * along, along }
+            let (rotation, Moved { arm, .. }) = (rotations[k], at.moved[k]);
+            Place { rotation, arm, along: arm.dot(self.piece(k).axis) }
         };
         Snap { time, places: [place(0), place(1)], offset: at.bodies.offset }
     }
 
-    pub(super) fn piece(&self, which: usize) -> &Piece {
+    fn piece(&self, which: usize) -> &Piece {
         self.span.piece(which)
     }
 
-    /// By how much a body turns between two times.
-    pub(super) fn angle(&self, which: usize, [a, b]: [&Snap; 2]) -> f64 {
-        (self.piece(which).rate * (b.time - a.time)).abs()
-    }
-
-    /// How far the middles of two parts move, together, at most.
-    pub(super) fn way(&self, ends: [&Snap; 2], parts: [&Part; 2]) -> f64 {
-        let of = |which: usize, middle: DVec3| {
-            let (piece, place) = (self.piece(which), &ends[0].places[which]);
-            let from_axis = across(place.arm + place.rotation * middle, piece.axis);
-            from_axis.length() * self.angle(which, ends)
-        };
-        let drift = self.span.drift().length() * (ends[1].time - ends[0].time);
-        of(0, parts[0].middle()) + of(1, parts[1].middle()) + drift
-    }
-
-    /// Whether a plane parts two parts throughout an interval, in which neither turns by more than [`ARC`].
+    /// Two parts between two times.
     #[inline]
-    pub(super) fn parts(&self, ends: [&Snap; 2], [p, q]: [&Part; 2], normal: DVec3) -> bool {
+    pub(super) fn window<'w>(
+        &'w self,
+        ends: [&'w Snap; 2],
+        parts: [&Part; 2],
+    ) -> Window<'w, 's, 'a> {
+        let seen = |which: usize| {
+            let (part, piece) = (parts[which], self.piece(which));
+            let at = |end: &Snap| Seen::new(part, &end.places[which].rotation, piece.axis);
+            let first = at(ends[0]);
+            [first, if piece.rate == 0.0 { first } else { at(ends[1]) }]
+        };
+        Window { frame: self, ends, seen: [seen(0), seen(1)] }
+    }
+}
+
+impl Window<'_, '_, '_> {
+    /// By how much a body turns.
+    #[inline]
+    fn angle(&self, which: usize) -> f64 {
+        (self.frame.piece(which).rate * (self.ends[1].time - self.ends[0].time)).abs()
+    }
+
+    /// The larger of both angles.
+    pub(super) fn turn(&self) -> f64 {
+        self.angle(0).max(self.angle(1))
+    }
+
+    /// How far the middles of both parts move together, at most.
+    pub(super) fn way(&self) -> f64 {
+        let of = |which: usize| {
+            let (piece, place) = (self.frame.piece(which), &self.ends[0].places[which]);
+            let from_axis = across(place.arm + self.seen[which][0].middle(), piece.axis);
+            from_axis.length() * self.angle(which)
+        };
+        let drift = self.frame.span.drift().length() * (self.ends[1].time - self.ends[0].time);
+        of(0) + of(1) + drift
+    }
+
+    /// Whether a plane parts both throughout; it does not tell where one turns by more than [`ARC`].
+    #[inline]
+    pub(super) fn is_parted(&self, normal: DVec3) -> bool {
+        let shares = [0, 1].map(|k| normal.dot(self.frame.piece(k).axis));
         let mut gaps = [0.0; 2];
         // How far the parts reach along what supporting planes bend by.
         let mut most = [f64::NEG_INFINITY; 2];
-        for (k, end) in ends.into_iter().enumerate() {
+        for (k, end) in self.ends.into_iter().enumerate() {
             let [moving, fixed] = &end.places;
-            let (u, v) =
-                (moving.rotation.transpose() * normal, fixed.rotation.transpose() * normal);
-            let ([_, high], [low, _]) = (p.range(u), q.range(v));
-            gaps[k] = (normal.dot(end.offset) + low) - high - self.lowered;
+            let [high, side] = self.seen[0][k].reach(normal, shares[0]);
+            let [low, back] = self.seen[1][k].reach(-normal, -shares[1]);
+            gaps[k] = normal.dot(end.offset) - low - high - self.frame.lowered;
             if gaps[k] <= 0.0 {
                 return false;
             }
-            let share = |which: usize| normal.dot(self.piece(which).axis);
-            if self.piece(0).rate != 0.0 {
-                most[0] =
-                    most[0].max(moving.sideways(normal, u, share(0), |across| p.range(across)[1]));
-            }
-            if self.piece(1).rate != 0.0 {
-                let least = |across: DVec3| q.range(across)[0];
-                most[1] = most[1].max(-fixed.sideways(normal, v, share(1), least));
-            }
+            let arms = [
+                normal.dot(moving.arm) - shares[0] * moving.along,
+                shares[1] * fixed.along - normal.dot(fixed.arm),
+            ];
+            most = [most[0].max(side + arms[0]), most[1].max(back + arms[1])];
         }
-        let c = self.bends(0, ends, most[0]) + self.bends(1, ends, most[1]);
+        let c = self.bend(0, most[0]) + self.bend(1, most[1]);
         c <= most_bend(gaps, SPARE)
     }
 
-    /// `C` of a body that reaches so far along `n_across` at the ends, at most.
+    /// `C` of a body that reaches so far at the ends, at most.
     #[inline]
-    fn bends(&self, which: usize, ends: [&Snap; 2], most: f64) -> f64 {
-        let angle = self.angle(which, ends);
+    fn bend(&self, which: usize, most: f64) -> f64 {
+        let angle = self.angle(which);
         if angle == 0.0 {
             return 0.0;
         }
@@ -198,54 +250,47 @@ impl<'s, 'a> Frame<'s, 'a> {
             return f64::INFINITY;
         }
         // What is computed is off by less than the last term.
-        let most = most + 1e-13 * (self.span.body(which).reach() + self.piece(which).arm.length());
+        let size = self.frame.span.body(which).reach() + self.frame.piece(which).arm.length();
+        let most = most + 1e-13 * size;
         // cos(x) >= 1 - x^2 / 2.
         let most = if most > 0.0 { most / (1.0 - 0.125 * angle * angle) } else { most };
         angle * angle * most
     }
-}
 
-impl Place {
-    /// How far a part reaches from its axis along the part of a normal across that, which has such a `share`
-    /// along it and is `own` in the body's frame.
+    /// The normal of a plane, from the moving to the fixed part; none if they have none of its kind.
     #[inline]
-    fn sideways(&self, normal: DVec3, own: DVec3, share: f64, reach: impl Fn(DVec3) -> f64) -> f64 {
-        // The axis is a unit vector to rounding.
-        let arm = normal.dot(self.arm) - share * self.along.dot(self.arm);
-        arm + reach(own - self.axis * share)
+    pub(super) fn normal(&self, plane: Plane) -> Option<DVec3> {
+        let place =
+            |k: usize| self.seen[1][k].middle() + self.ends[k].offset - self.seen[0][k].middle();
+        let apart = place(0) + place(1);
+        // A direction of a body, halfway, twice.
+        let axis = |which: usize, k: usize| {
+            let [a, b] = self.ends.map(|end| end.places[which].rotation.col(k));
+            a + b
+        };
+        let edge = |which: usize, k: usize| {
+            let [a, b] = &self.seen[which];
+            let next = (k + 1) % 3;
+            let along = (a.vectors[next] - a.vectors[k]) + (b.vectors[next] - b.vectors[k]);
+            a.is_facet.then_some(along)
+        };
+        let along = match plane {
+            Plane::Middles => apart,
+            Plane::Axis(which, k) => axis(which as usize, k as usize),
+            Plane::Across(which) => edge(which as usize, 0)?.cross(edge(which as usize, 1)?),
+            Plane::Edges(i, j) => edge(0, i as usize)?.cross(edge(1, j as usize)?),
+        };
+        let square = along.length_squared();
+        if !(square > 1e-280 && square < 1e280) {
+            return None;
+        }
+        let normal = along / square.sqrt();
+        Some(if normal.dot(apart) < 0.0 { -normal } else { normal })
     }
-}
 
-/// The normal of a plane, from the moving to the fixed part; none if they have none of its kind.
-pub(super) fn normal(ends: [&Snap; 2], parts: [&Part; 2], plane: Plane) -> Option<DVec3> {
-    let place = |snap: &Snap| {
-        let [p, q] = &snap.places;
-        q.rotation * parts[1].middle() + snap.offset - p.rotation * parts[0].middle()
-    };
-    let apart = place(ends[0]) + place(ends[1]);
-    // A direction of a body, halfway.
-    let turned = |which: usize, v: DVec3| {
-        ends[0].places[which].rotation * v + ends[1].places[which].rotation * v
-    };
-    let edge = |which: usize, k: usize| {
-        let corners = parts[which].facet()?.corners;
-        Some(corners[(k + 1) % 3] - corners[k])
-    };
-    let along = match plane {
-        Plane::Middles => apart,
-        Plane::Axis(which, k) => turned(which as usize, DVec3::AXES[k as usize]),
-        Plane::Across(which) => {
-            let which = which as usize;
-            turned(which, edge(which, 0)?.cross(edge(which, 1)?))
-        }
-        Plane::Edges(i, j) => {
-            turned(0, edge(0, i as usize)?).cross(turned(1, edge(1, j as usize)?))
-        }
-    };
-    let square = along.length_squared();
-    if !(square > 1e-280 && square < 1e280) {
-        return None;
+    /// Whether a plane of this name parts both throughout.
+    #[inline]
+    pub(super) fn is_parted_by(&self, plane: Plane) -> bool {
+        self.normal(plane).is_some_and(|normal| self.is_parted(normal))
     }
-    let normal = along / square.sqrt();
-    Some(if normal.dot(apart) < 0.0 { -normal } else { normal })
 }

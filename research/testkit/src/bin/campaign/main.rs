@@ -3,7 +3,7 @@
 //! many sequences of settings, each asked of trackers, whose answers are judged in the same way and
 //! compared with those of one-off queries. Or bodies alone, nearly flat ones, each with a cast onto it.
 //! Or distances of settings as they are, near contact and overlapping. Or scenes, one body among many. Or casts
-//! that keep a gap. Or motions that turn. Or all free directions of solids, each held against casts along some of them.
+//! that keep a gap. Or motions that turn, of convex bodies or of solids. Or all free directions of solids, each held against casts along some of them.
 //! In all of them bodies are held against the points that they were made of, in exact arithmetic, so
 //! that answers are judged for the input.
 //!
@@ -43,6 +43,7 @@ campaign --scenes N [--seed S] [--only FAMILY]
 campaign --keeping N [--seed S] [--only FAMILY]
 campaign --solid-keeping N [--seed S] [--only FAMILY]
 campaign --motions N [--seed S] [--only FAMILY]
+campaign --solid-motions N [--seed S] [--only FAMILY]
 campaign --case FAMILY:SEED | FAMILY:SEED:STEP
 ";
 
@@ -52,6 +53,7 @@ struct Arguments {
     solids: Option<u64>,
     solid_distances: Option<u64>,
     solid_keeping: Option<u64>,
+    solid_motions: Option<u64>,
     free: Option<u64>,
     motions: Option<u64>,
     bodies: Option<u64>,
@@ -92,6 +94,9 @@ fn main() -> ExitCode {
     if let Some(count) = arguments.solid_keeping {
         return exit_code(solids::keeping(count, arguments.seed, arguments.only.as_deref()));
     }
+    if let Some(count) = arguments.solid_motions {
+        return exit_code(solids::motions(count, arguments.seed, arguments.only.as_deref()));
+    }
     let families: Vec<&str> = FAMILIES.iter().map(|f| f.0).collect();
     exit_code(if let Some(directions) = arguments.free {
         run(&arguments, &solids::FAMILIES, directions.div_ceil(free::DIRECTIONS), free::examine)
@@ -127,6 +132,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
         solids: None,
         solid_distances: None,
         solid_keeping: None,
+        solid_motions: None,
         free: None,
         motions: None,
         bodies: None,
@@ -147,6 +153,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
             "--distances" => arguments.distances = Some(number(&value)?),
             "--keeping" => arguments.keeping = Some(number(&value)?),
             "--solid-keeping" => arguments.solid_keeping = Some(number(&value)?),
+            "--solid-motions" => arguments.solid_motions = Some(number(&value)?),
             "--motions" => arguments.motions = Some(number(&value)?),
             "--free" => arguments.free = Some(number(&value)?),
             "--solid-distances" => arguments.solid_distances = Some(number(&value)?),

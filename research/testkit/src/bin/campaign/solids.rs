@@ -7,7 +7,7 @@ use std::time::Instant;
 use colltrans_testkit::oracle::settings;
 pub(crate) use colltrans_testkit::oracle::solids::settings::FAMILIES;
 use colltrans_testkit::oracle::solids::settings::Setting;
-use colltrans_testkit::oracle::solids::{Seen, as_solids, keep, nearest, sheets};
+use colltrans_testkit::oracle::solids::{Seen, as_solids, keep, nearest, sheets, turning};
 use rayon::prelude::*;
 
 use super::SHOWN;
@@ -33,6 +33,12 @@ impl Kind for nearest::Seen {
 }
 
 impl Kind for keep::Seen {
+    fn column(self) -> usize {
+        self as usize
+    }
+}
+
+impl Kind for turning::Seen {
     fn column(self) -> usize {
         self as usize
     }
@@ -72,25 +78,36 @@ pub(crate) fn run(count: u64, seed: u64, only: Option<&str>) -> bool {
 
 /// Examines distances of so many settings, the same number of each family; `true` if nothing disagrees.
 pub(crate) fn distances(count: u64, seed: u64, only: Option<&str>) -> bool {
-    of_meshes(["touching", "inside", "near", "apart"], count, seed, only, |name, seed| {
+    of_meshes(["touching", "inside", "near", "apart"], &[], count, seed, only, |name, seed| {
         nearest::Setting::draw(name, seed)?.map(|setting| setting.examine()).transpose()
     })
 }
 
 /// The same of casts that keep a gap.
 pub(crate) fn keeping(count: u64, seed: u64, only: Option<&str>) -> bool {
-    of_meshes(["nearer", "free", "blocked", ""], count, seed, only, keep::examine)
+    of_meshes(["nearer", "free", "blocked", ""], &[], count, seed, only, keep::examine)
+}
+
+/// The same of what turns.
+pub(crate) fn motions(count: u64, seed: u64, only: Option<&str>) -> bool {
+    let heads = ["overlapping", "free", "grazing", "contact"];
+    of_meshes(heads, &turning::FAMILIES, count, seed, only, turning::examine)
 }
 
 fn of_meshes<Seen: Kind>(
     [a, b, c, d]: [&str; 4],
+    more: &[&'static str],
     count: u64,
     seed: u64,
     only: Option<&str>,
     examine: impl Fn(&str, u64) -> Result<Option<Seen>, String> + Sync,
 ) -> bool {
     let convex = settings::FAMILIES.iter().map(|f| format!("convex-{}", f.0));
-    let known = FAMILIES.into_iter().chain(sheets::FAMILIES).chain(nearest::MESHES);
+    let known = FAMILIES
+        .into_iter()
+        .chain(sheets::FAMILIES)
+        .chain(nearest::MESHES)
+        .chain(more.iter().copied());
     let all: Vec<String> = known.map(str::to_owned).chain(convex).collect();
     let wanted: Vec<&String> =
         all.iter().filter(|name| only.is_none_or(|only| only == name.as_str())).collect();

@@ -1,6 +1,7 @@
 //! What solids are judged by: bodies of cubes, whose motions are known without facets ([`cells`]), the
 //! rule over all pairs of facets in exact arithmetic ([`facets`]), proofs judged in fractions
-//! ([`proof`]), distances over all pairs of facets ([`nearest`]), casts that keep a gap ([`keep`]), free directions ([`free`]), and settings full of ties ([`settings`]); the same for open surfaces, bodies of cubes
+//! ([`proof`]), distances over all pairs of facets ([`nearest`]), casts that keep a gap ([`keep`]), free directions ([`free`]), first contacts of
+//! what turns ([`turning`]), and settings full of ties ([`settings`]); the same for open surfaces, bodies of cubes
 //! and of squares ([`squares`], [`sheets`]).
 
 pub mod cells;
@@ -13,6 +14,7 @@ pub mod proof;
 pub mod settings;
 pub mod sheets;
 pub mod squares;
+pub mod turning;
 
 use colltrans::{Bounded, Cast, Pose, Solid};
 use glam::DVec3;

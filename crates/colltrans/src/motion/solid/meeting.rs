@@ -1,0 +1,52 @@
+//! Two facets that meet at one time, for certain: of all that no plane parts then.
+//!
+//! Facets that have passed each other are apart again, as those of a face that has sunk into another: it is all pairs
+//! that tell.
+
+use super::super::look::Looker;
+use super::facets::{FacetLooker, FacetsMet};
+use super::search::{parted, split};
+use super::tree::Below;
+use super::window::{Frame, Part, Plane};
+
+/// What all facets do at a time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Seen {
+    /// These two meet for certain.
+    Met([u32; 2], FacetsMet),
+    /// Some are not told apart.
+    Open,
+    /// All are apart.
+    Apart,
+}
+
+/// Looks through both trees.
+pub(super) fn seen(frame: &Frame, time: f64, looker: &mut FacetLooker) -> Seen {
+    let trees = [frame.span.body(0), frame.span.body(1)];
+    let snap = frame.snap(time);
+    let mut all = Seen::Apart;
+    let mut stack = vec![[0, 0]];
+    while let Some(at) = stack.pop() {
+        let parts = [0, 1].map(|k| Part::of(trees[k], at[k]));
+        let window = frame.window([&snap, &snap], parts.each_ref());
+        let facets = parts.each_ref().map(Part::facet);
+        if parted(&window, facets.map(|facet| facet.is_some()), Plane::Middles).is_some() {
+            continue;
+        }
+        let nodes = [0, 1].map(|k| trees[k].node(at[k]));
+        if let ([Some(f), Some(g)], [Below::Facet(s), Below::Facet(t)]) =
+            (facets, nodes.map(|node| node.below))
+        {
+            let span = frame.span.part([f, g], [frame.span.from, frame.span.to]);
+            if let Some(met) = looker.met(&span, time) {
+                return Seen::Met([s, t], met);
+            }
+            if !looker.look(&span, time).is_apart() {
+                all = Seen::Open;
+            }
+        } else if let Some((_, pairs)) = split(at, nodes) {
+            stack.extend(pairs);
+        }
+    }
+    all
+}

@@ -1,0 +1,273 @@
+//! Judges first contacts of solids that turn: by the library's exact decision about solids at times on the way, by
+//! the convex search where both are convex, and by themselves with the bodies swapped.
+
+use colltrans::motion::{Motion, MotionCast, MotionOutcome, SolidMotionProof};
+use colltrans::{Cast, ConvexPolyhedron, Pose, Solid};
+use glam::DVec3;
+
+use super::nearest;
+use crate::random::Random;
+use crate::shapes::random_hull;
+use crate::solids::{pin, thread, washer};
+
+/// Families beside those of distances: hulls against the convex search, pins in holes, threads in nuts.
+pub const FAMILIES: [&str; 3] = ["hulls", "pins", "threads"];
+
+/// Times before a contact at which solids are asked.
+const TIMES: u32 = 100;
+
+/// More pairs of facets than this are not asked.
+const MOST_PAIRS: usize = 400_000;
+
+/// Contacts of convex bodies and of the same as solids agree to within this, besides their bounds, where bodies are
+/// about 1 large: solids are shrunk a little.
+const AGREEMENT: f64 = 1e-7;
+
+/// What came out, for statistics.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Seen {
+    /// The bodies overlap when the motion begins.
+    Overlapping,
+    /// They never meet.
+    Free,
+    /// They come nearer than rounding can tell.
+    Grazing,
+    /// They meet.
+    Contact,
+}
+
+/// Two solids and what they do.
+#[derive(Debug, Clone)]
+pub struct Turning {
+    solids: [Solid; 2],
+    motions: [Motion; 2],
+    tolerance: Option<f64>,
+    keep: f64,
+    convex: Option<[ConvexPolyhedron; 2]>,
+}
+
+/// Asks the library and compares; nothing of bodies that are no solids.
+///
+/// # Errors
+/// What disagrees.
+pub fn examine(family: &str, seed: u64) -> Result<Option<Seen>, String> {
+    let Some(turning) = Turning::draw(family, seed)? else { return Ok(None) };
+    if turning.solids.iter().map(|s| s.triangles().len()).product::<usize>() > MOST_PAIRS {
+        return Ok(None);
+    }
+    turning.examine()
+}
+
+impl Turning {
+    /// The setting of a family for a seed.
+    ///
+    /// # Errors
+    /// An unknown family; a body that the library refuses.
+    pub fn draw(family: &str, seed: u64) -> Result<Option<Self>, String> {
+        let random = &mut Random::stream(seed, &[family.len() as u64, 0x7047]);
+        match family {
+            "hulls" => hulls(random).map(Some),
+            "pins" => pins(random).map(Some),
+            "threads" => threads(random).map(Some),
+            _ => {
+                let Some(setting) = nearest::Setting::draw(family, seed)? else { return Ok(None) };
+                let nearest::Setting { solids, poses } = setting;
+                let size = solids.iter().map(|s| s.bounds().size().length()).fold(0.0, f64::max);
+                let way = poses[1].translation() - poses[0].translation();
+                let moving = motion(poses[0], way, size, random)?;
+                let fixed = if random.one_in(3) {
+                    motion(poses[1], -way, size, random)?
+                } else {
+                    Motion::still(poses[1])
+                };
+                let tolerance = random.one_in(4).then(|| size * random.pick(&[1e-9, 1e-4, 1e-2]));
+                let keep = if random.one_in(6) { size * random.pick(&[1e-6, 1e-2]) } else { 0.0 };
+                let motions = [moving, fixed];
+                Ok(Some(Self { solids, motions, tolerance, keep, convex: None }))
+            }
+        }
+    }
+
+    fn cast(&self, swapped: bool) -> Result<Option<MotionCast<'_, Solid>>, String> {
+        let [a, b] = [0, 1].map(|k| self.solids[k].along(&self.motions[k]));
+        let [moving, fixed] = if swapped { [b, a] } else { [a, b] };
+        let cast = MotionCast::<Solid>::new(moving, fixed).and_then(|cast| cast.keeping(self.keep));
+        let cast = cast.map_err(|e| e.to_string())?;
+        // A tolerance may leave nothing.
+        let tolerance = self.tolerance.unwrap_or_else(|| cast.tolerance());
+        Ok(cast.tolerating(tolerance).ok())
+    }
+
+    fn examine(&self) -> Result<Option<Seen>, String> {
+        let Some(cast) = self.cast(false)? else { return Ok(None) };
+        let plain = cast.first_contact().map_err(|e| e.to_string())?;
+        let outcome = cast.certified_first_contact().map_err(|e| e.to_string())?;
+        let [lower, upper] = cast.verify(outcome.proof()).map_err(|e| e.to_string())?;
+        let claimed = bounds(&outcome);
+        if claimed != [lower, upper] {
+            return Err(format!("proven {lower} to {upper}, claimed {claimed:?}"));
+        }
+        agree(bounds(&plain), claimed, 0.0).map_err(|e| format!("with its proof: {e}"))?;
+        let swapped = self.cast(true)?.ok_or("swapped, nothing is left")?;
+        let swapped = swapped.first_contact().map_err(|e| e.to_string())?;
+        agree(bounds(&swapped), claimed, 1e-9).map_err(|e| format!("swapped: {e}"))?;
+        self.on_the_way(&outcome, [lower, upper])?;
+        if let Some([p, q]) = &self.convex {
+            let [a, b] = &self.motions;
+            let cast = MotionCast::new(p.along(a), q.along(b)).map_err(|e| e.to_string())?;
+            let found = cast.first_contact().map_err(|e| e.to_string())?;
+            agree(bounds(&found), claimed, AGREEMENT).map_err(|e| format!("convex: {e}"))?;
+        }
+        Ok(Some(match outcome {
+            MotionOutcome::Overlapping(_) => Seen::Overlapping,
+            MotionOutcome::Free(_) => Seen::Free,
+            MotionOutcome::Grazing(_) => Seen::Grazing,
+            _ => Seen::Contact,
+        }))
+    }
+
+    /// Exact solids at times before the contact, and at it.
+    fn on_the_way(
+        &self,
+        outcome: &MotionOutcome<SolidMotionProof>,
+        [lower, upper]: [f64; 2],
+    ) -> Result<(), String> {
+        if matches!(outcome, MotionOutcome::Overlapping(_)) {
+            return Ok(());
+        }
+        let overlaps = |time: f64| -> Result<bool, String> {
+            let [a, b] = [0, 1].map(|k| self.motions[k].at(time).map_err(|e| e.to_string()));
+            let cast = Cast::new(self.solids[0].at(a?), self.solids[1].at(b?), DVec3::Z);
+            let tolerance = outcome.proof().tolerance;
+            let cast = cast.and_then(|cast| cast.with_tolerance(tolerance)?.keeping(self.keep));
+            Ok(cast.map_err(|e| e.to_string())?.overlaps())
+        };
+        for k in 0..=TIMES {
+            let time = lower * f64::from(k) / f64::from(TIMES);
+            if overlaps(time)? {
+                return Err(format!("free up to {lower}, but an overlap at {time}"));
+            }
+        }
+        // As near as a gap to be kept is not nearer, where rounding decides.
+        if upper <= 1.0 && self.keep == 0.0 && !overlaps(upper)? {
+            return Err(format!("met at {upper}, but no overlap"));
+        }
+        Ok(())
+    }
+}
+
+/// The bounds of an answer's time.
+fn bounds<P>(outcome: &MotionOutcome<P>) -> [f64; 2] {
+    match outcome {
+        MotionOutcome::Contact(of)
+        | MotionOutcome::Grazing(of)
+        | MotionOutcome::Overlapping(of) => [of.lower, of.upper],
+        _ => [1.0, f64::INFINITY],
+    }
+}
+
+/// Whether two enclosures of one time have one in common, or are as near as this.
+fn agree(one: [f64; 2], other: [f64; 2], within: f64) -> Result<(), String> {
+    let apart = one[0] > other[1] + within || other[0] > one[1] + within;
+    // Only one of both may be free.
+    let free = |bounds: [f64; 2]| bounds == [1.0, f64::INFINITY];
+    let meets = |bounds: [f64; 2]| bounds[1] <= 1.0 - within;
+    if apart || free(one) && meets(other) || free(other) && meets(one) {
+        return Err(format!("{one:?}, not {other:?}"));
+    }
+    Ok(())
+}
+
+/// A turn, a screw, a slide, a throw or a way over poses, of a body about so large.
+fn motion(pose: Pose, way: DVec3, size: f64, random: &mut Random) -> Result<Motion, String> {
+    let at = pose.translation();
+    let axis = if random.one_in(2) { random.pick(&DVec3::AXES) } else { random.direction() };
+    let point = if random.one_in(3) { at } else { at + random.vector() * size };
+    let angle = random.range(-1.0, 1.0) * random.pick(&[1e-6, 1.0, 6.0, 6.0, 30.0]);
+    match random.index(5) {
+        0 => Motion::turn(pose, point, axis, angle),
+        1 => Motion::screw(pose, point, axis, angle, random.range(-1.0, 1.0) * size),
+        2 => Motion::slide(pose, way * random.range(-2.0, 2.0) + random.vector() * size),
+        3 => {
+            let velocity = way * random.range(0.0, 2.0) + random.vector() * size;
+            Motion::thrown(pose, point, velocity, axis * angle)
+        }
+        _ => {
+            let next = |random: &mut Random| {
+                Pose::new(random.rotation(), at + random.vector() * size * 2.0)
+            };
+            let poses = [next(random), next(random)].map(|pose| pose.map_err(|e| e.to_string()));
+            let [a, b] = poses;
+            Motion::through(&[pose, a?, b?])
+        }
+    }
+    .map_err(|e| e.to_string())
+}
+
+/// Convex bodies past each other.
+fn hulls(random: &mut Random) -> Result<Turning, String> {
+    let body = |random: &mut Random| {
+        let n = random.pick(&[4, 8, 16, 40]);
+        ConvexPolyhedron::from_points(&random_hull(n, random).vertices).map_err(|e| e.to_string())
+    };
+    let convex = [body(random)?, body(random)?];
+    let from = random.direction() * random.range(2.5, 5.0);
+    let pose = Pose::new(random.rotation(), from).map_err(|e| e.to_string())?;
+    let way = (random.vector() * 1.5 - from) * random.range(0.5, 2.0);
+    let spin = random.direction() * random.range(0.1, 6.0);
+    let moving = Motion::thrown(pose, from, way, spin).map_err(|e| e.to_string())?;
+    let still =
+        Motion::still(Pose::new(random.rotation(), DVec3::ZERO).map_err(|e| e.to_string())?);
+    let fixed = if random.one_in(3) { motion(Pose::IDENTITY, from, 2.0, random)? } else { still };
+    let solid = |body: &ConvexPolyhedron| Solid::from_convex(body).map_err(|e| e.to_string());
+    let solids = [solid(&convex[0])?, solid(&convex[1])?];
+    Ok(Turning {
+        solids,
+        motions: [moving, fixed],
+        tolerance: None,
+        keep: 0.0,
+        convex: Some(convex),
+    })
+}
+
+/// A pin that turns in a hole, and maybe leaves it or tips over.
+fn pins(random: &mut Random) -> Result<Turning, String> {
+    let sides = random.int(3, 24) as usize;
+    let hole = random.pick(&[1.0, 1.01, 1.1, 1.5]);
+    let of = |mesh: crate::shapes::Mesh| {
+        Solid::from_mesh(&mesh.vertices, &mesh.faces).map_err(|e| e.to_string())
+    };
+    let solids = [
+        of(pin(1.0, [-1.0, random.range(0.2, 1.5)], sides))?,
+        of(washer([hole, 2.0], [-0.5, 0.5], random.pick(&[sides, 16, 24])))?,
+    ];
+    let (pose, rise) = (Pose::IDENTITY, random.pick(&[0.0, 0.0, 1.0, 3.0]));
+    let angle = random.range(-1.0, 1.0) * random.pick(&[0.1, 1.0, 6.0]);
+    let tips = random.one_in(3);
+    let axis = if tips { DVec3::Z + random.vector() * random.pick(&[1e-6, 0.1]) } else { DVec3::Z };
+    let moving = Motion::screw(pose, DVec3::ZERO, axis, angle, rise).map_err(|e| e.to_string())?;
+    let tolerance = random.one_in(2).then(|| random.pick(&[1e-6, 0.01, 0.05]));
+    let motions = [moving, Motion::still(pose)];
+    Ok(Turning { solids, motions, tolerance, keep: 0.0, convex: None })
+}
+
+/// A bolt in a nut, of the right pitch or not.
+fn threads(random: &mut Random) -> Result<Turning, String> {
+    let sides = random.int(6, 14) as usize;
+    let of = |mesh: crate::shapes::Mesh| {
+        Solid::from_mesh(&mesh.vertices, &mesh.faces).map_err(|e| e.to_string())
+    };
+    let gap = random.pick(&[0.02, 0.05, 0.1]);
+    let solids = [
+        of(thread([1.0, 0.1, 0.5], [0.0, 2.0], [sides, 16], None))?,
+        of(thread([1.0 + gap, 0.1, 0.5], [0.6, 1.4], [sides, 6], Some(1.5)))?,
+    ];
+    let turns = random.range(-0.6, 0.6);
+    let pitch = 0.5 * random.pick(&[1.0, 1.0, 0.95, 1.1, 0.0]);
+    let angle = turns * std::f64::consts::TAU;
+    let pose = Pose::IDENTITY;
+    let moving = Motion::screw(pose, DVec3::ZERO, DVec3::Z, angle, turns * pitch);
+    let tolerance = random.one_in(2).then(|| random.pick(&[1e-3, 0.03]));
+    let motions = [moving.map_err(|e| e.to_string())?, Motion::still(pose)];
+    Ok(Turning { solids, motions, tolerance, keep: 0.0, convex: None })
+}

@@ -303,13 +303,13 @@ export class AssemblyTab {
       const { size, unit: of } = this.facts;
       const last = plan.plan.length - 1;
       const places = new Map(this.facts.parts.map(({ name }, k) => [name, k]));
-      this.moves = plan.plan.map(({ parts, direction, travel }, k) => {
-        // The last part stays, for there is nothing to take it out of.
-        const way = k === last && travel === 0 ? 0 : travel + 0.35 * size;
-        return { parts: parts.map((name) => places.get(name)!), way: times(direction, way) };
-      });
+      this.moves = plan.plan.map(({ path, back = [], travel }, k) => [...path, ...back].map((leg, l) => {
+        // With the last move of its path a step leaves; the last part stays, for there is nothing to take it out of.
+        const leaves = l === path.length - 1 && !(k === last && travel === 0);
+        return { parts: leg.parts.map((name) => places.get(name)!), way: times(leg.direction, leg.travel + (leaves ? 0.35 * size : 0)) };
+      }));
       this.player.show(
-        plan.plan.map(({ parts, direction, travel }) => `${parts.join(", ")} along ${arrow(direction)}${travel ? `, ${short(travel, 4)} ${of ?? ""}` : ""}`),
+        plan.plan.map(({ parts, path, direction, travel }) => `${parts.join(", ")} ${severally(path)}along ${arrow(direction)}${travel ? `, ${short(travel, 4)} ${of ?? ""}` : ""}`),
         `${this.facts.parts.length} parts, ${plan.plan.length} steps; point at a part for its name.`);
     } catch (error) {
       if (turn === this.turn) this.refuse(error);
@@ -485,9 +485,9 @@ export class AssemblyTab {
       refill(this.planCard, h("div", { class: "row" }, h("button", { class: "small main", disabled: !!this.busy || !this.fit, onclick: () => void this.askPlan() }, "Plan the disassembly")));
       return;
     }
-    const rows = plan.plan.map(({ parts, direction, travel, within, surfaces }, k) =>
+    const rows = plan.plan.map(({ parts, path, direction, travel, within, surfaces }, k) =>
       h("li", {}, h("button", { class: "link", onclick: () => this.player.go(k + 1) },
-        `${within === undefined ? "" : `of step ${within + 1}: `}${parts.join(", ")} ${travel ? `along ${arrow(direction)}` : "stays"}`),
+        `${within === undefined ? "" : `of step ${within + 1}: `}${parts.join(", ")} ${travel ? `${severally(path)}along ${arrow(direction)}` : "stays"}`),
         ...(surfaces ? [h("small", {}, ` rests on an open surface: ${surfaces.join(", ")}`)] : [])));
     const stuck = plan.stuck.map(({ parts, because }) => h("p", { class: "proof" }, `${parts.join(", ")}: ${because}.`));
     refill(this.planCard, h("p", { class: "proof" }, `${plan.directions} directions were asked for all parts; each step was checked again, pair by pair.`), h("ol", {}, ...rows), ...stuck);
@@ -539,3 +539,6 @@ function arrow(d: Vec): string {
   const names = ["x", "y", "z"].flatMap((name, k) => (Math.abs(Math.abs(d[k]!) / length(d) - 1) < 1e-12 ? [`${d[k]! > 0 ? "+" : "−"}${name}`] : []));
   return names[0] ?? `(${shown(d)})`;
 }
+
+/** Before where a step leads to, if it has more moves than one. */
+const severally = (path: unknown[]) => (path.length > 1 ? `in ${path.length} moves, the last ` : "");

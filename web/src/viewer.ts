@@ -2,7 +2,7 @@
 //
 // A script without modules, put into a page that holds its data: it works from a file, offline.
 
-import { Parts } from "./assembly/parts";
+import { type Move, Parts } from "./assembly/parts";
 import { Player } from "./assembly/player";
 import { h } from "./dom";
 import { short } from "./math";
@@ -11,8 +11,8 @@ interface Data {
   unit: string;
   size: number;
   parts: { name: string; colour: [number, number, number]; fixed: boolean; vertices: string; triangles: string }[];
-  /** `way`: how far the parts are moved in the picture. */
-  steps: { parts: number[]; way: [number, number, number]; along: string; travel: number }[];
+  /** `legs`: how the parts are moved in the picture; `moves`: how many of them take the parts out. */
+  steps: { parts: number[]; legs: Move; moves: number; along: string; travel: number }[];
 }
 
 const STYLE = `
@@ -34,12 +34,13 @@ function show(host: HTMLElement, { parts, steps, size, unit }: Data) {
   const view = h("div", { class: "view" });
   host.append(view);
   const seen = new Parts(view);
-  const player = new Player((t) => seen.place(steps, t));
+  const moves = steps.map(({ legs }) => legs);
+  const player = new Player((t) => seen.place(moves, t));
   host.append(player.element);
   seen.show(parts.map((part) => ({ ...part, vertices: new Float32Array(bytes(part.vertices)), triangles: new Uint32Array(bytes(part.triangles)) })), size);
   const names = (all: number[]) => all.map((part) => parts[part]?.name).join(", ");
   player.show(
-    steps.map((step) => `${names(step.parts)} along ${step.along}${step.travel ? `, ${short(step.travel, 4)} ${unit}` : ""}`),
+    steps.map((step) => `${names(step.parts)} ${step.moves > 1 ? `in ${step.moves} moves, the last ` : ""}along ${step.along}${step.travel ? `, ${short(step.travel, 4)} ${unit}` : ""}`),
     `${parts.length} parts, ${steps.length} steps; point at a part for its name.`,
   );
 }

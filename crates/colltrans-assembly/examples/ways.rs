@@ -32,6 +32,10 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             way.verify(&bodies)?;
             println!("{seconds:.4} s, {:?}", way.searched);
         }
+        WaysOut::Proven(proof) => {
+            proof.verify(&bodies[0], &bodies[1])?;
+            println!("no way: {seconds:.4} s, proven in {} cells", proof.cells());
+        }
         WaysOut::NotFound { searched } => println!("not found: {seconds:.4} s, {searched:?}"),
     }
     Ok(())

@@ -463,18 +463,24 @@ impl<'a> Bodies<'a> {
     /// A product `p . d` is off by `3 u` of its terms' absolute sum `s`, so a difference of two by `4 u` of both
     /// sums; in multiples of a direction whose length is 1 up to `4 u`, it is off by `8 u` of itself more.
     pub fn past(&self, a: usize, b: usize, d: DVec3) -> Bounded {
+        self.past_displaced(a, DVec3::ZERO, b, d)
+    }
+
+    /// The same from where the first one is displaced by `by`.
+    pub(crate) fn past_displaced(&self, a: usize, by: DVec3, b: usize, d: DVec3) -> Bounded {
         const U: f64 = f64::EPSILON / 2.0;
         let (u, v) = d.any_orthonormal_pair();
         let (mut terms, mut reach) = (0.0_f64, 0.0_f64);
-        let mut around = |part: usize| {
+        let mut around = |part: usize, by: DVec3| {
             let vertices = self.assembly.parts()[part].solid().vertices().iter();
             Aabb::of_points(vertices.map(|p| {
+                let p = *p + by;
                 terms = terms.max(p.abs().dot(d.abs()));
                 reach = reach.max(p.abs().max_element());
                 DVec3::new(p.dot(u), p.dot(v), p.dot(d))
             }))
         };
-        let (moving, fixed) = (around(a), around(b));
+        let (moving, fixed) = (around(a, by), around(b, DVec3::ZERO));
         // Three terms of at most this each, and axes that are rounded.
         let flush = 32.0 * U * reach;
         let apart = |k: usize| (fixed.low[k] - moving.high[k]).max(moving.low[k] - fixed.high[k]);
@@ -482,7 +488,9 @@ impl<'a> Bodies<'a> {
             return Bounded { value: 0.0, lower: 0.0, upper: 0.0 };
         }
         let way = fixed.high.z - moving.low.z;
-        let error = U * (9.0 * terms + 9.0 * way.abs());
+        // A displaced vertex is rounded once more.
+        let sums = if by == DVec3::ZERO { 9.0 } else { 10.0 };
+        let error = U * (sums * terms + 9.0 * way.abs());
         let [value, lower, upper] = [way, way - error, way + error].map(|x| x.max(0.0));
         Bounded { value, lower, upper }
     }

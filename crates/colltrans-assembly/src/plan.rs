@@ -13,13 +13,15 @@
 mod certify;
 mod hold;
 mod loose;
+mod options;
 mod replay;
+mod several;
 mod single;
+mod step;
 
 use std::collections::{BTreeMap, HashSet};
 
 use colltrans::Bounded;
-use colltrans::solid::StartOverlap;
 use glam::DVec3;
 use petgraph::unionfind::UnionFind;
 
@@ -29,50 +31,19 @@ use crate::candidates::Finer;
 use crate::error::AssemblyError;
 use crate::map::{MapOptions, way_out};
 use crate::matrix::{Matrix, bits};
-use crate::part::Assembly;
 use crate::sphere::Sphere;
 use crate::watch::{Stage, Tally, Watch};
 
 use certify::{Proof, Prover};
 pub use hold::Hold;
+pub use options::PlanOptions;
+use several::Aside;
+pub use several::Moves;
 use single::Single;
-
-/// A group that is taken out.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct Step {
-    /// Positions of the parts, in increasing order.
-    pub parts: Vec<usize>,
-    /// Where to, of length 1.
-    pub direction: DVec3,
-    /// How far until it lies wholly beyond what is left; 0 if nothing is ahead. What the boxes of their
-    /// shadows miss by more than rounding is not ahead.
-    pub travel: Bounded,
-    /// For a step that takes a group apart: the step that took the group out.
-    pub within: Option<usize>,
-    /// What the step does not speak of: of each pair the first part moves and the second stays, and
-    /// their overlap at the start, or all that they do, is ignored on request.
-    pub ignored: Vec<[usize; 2]>,
-    /// The open surfaces that it rests on, in increasing order: of the group, and of what is left and in
-    /// its way or beside it. What they block is known; what is inside of them is not.
-    pub surfaces: Vec<usize>,
-}
-
-impl Step {
-    /// What it does not speak of, in words; `None` if there is nothing.
-    pub fn ignores(&self, assembly: &Assembly) -> Option<String> {
-        let pair = |p: &[usize; 2]| assembly.names(p).join(" and ");
-        let named: Vec<String> = self.ignored.iter().take(MOST_NAMED).map(pair).collect();
-        let more = match self.ignored.len().saturating_sub(MOST_NAMED) {
-            0 => String::new(),
-            more => format!(" and {more} more pairs"),
-        };
-        (!named.is_empty()).then(|| format!("ignored: {}{more}", named.join(", ")))
-    }
-}
+pub use step::{Leg, Step};
 
 /// Parts of which no group leaves along any of the directions asked, or along any at all where that is
-/// [proven](Self::proven). That several motions part them is not excluded.
+/// [proven](Self::proven); of several moves none were found, or looked for.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Stuck {
@@ -83,6 +54,8 @@ pub struct Stuck {
     /// If it is proven that no direction at all takes any group of them from the others: the cells of the sphere that
     /// prove it. Else nothing is said of directions that were not asked.
     pub proven: Option<usize>,
+    /// What is known of several moves.
+    pub moves: Moves,
     /// For each part, the least sets of others that hold it.
     pub holds: Vec<Hold>,
     /// Pairs that overlap with this fit, and so never move apart.
@@ -101,36 +74,6 @@ pub struct Plan {
     pub left: Vec<usize>,
     /// What none of the directions asked takes apart.
     pub stuck: Vec<Stuck>,
-}
-
-/// Choices for a plan.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub struct PlanOptions {
-    /// What overlaps at the start mean: parts that overlap move as one, or what they do later counts.
-    pub start: StartOverlap,
-    /// How many directions to sample for what no other direction moves; 0 for none.
-    pub samples: usize,
-}
-
-impl Default for PlanOptions {
-    fn default() -> Self {
-        Self { start: StartOverlap::Refuse, samples: 162 }
-    }
-}
-
-impl PlanOptions {
-    /// The same with another [`start`](Self::start).
-    #[must_use]
-    pub fn with_start(self, start: StartOverlap) -> Self {
-        Self { start, ..self }
-    }
-
-    /// The same with another [`samples`](Self::samples).
-    #[must_use]
-    pub fn with_samples(self, samples: usize) -> Self {
-        Self { samples, ..self }
-    }
 }
 
 /// Takes everything apart along the directions of a matrix of all parts, and, for what those do not
@@ -197,8 +140,6 @@ fn base(bodies: &Bodies) -> Vec<bool> {
     base
 }
 
-/// Pairs that are ignored are named up to so many for a step.
-const MOST_NAMED: usize = 4;
 /// Of the finer directions of what is stuck, at most so many are asked.
 const MOST_FINER: usize = 64;
 /// Of the parts that are stuck, a sphere is refined for at most so many.
@@ -222,6 +163,14 @@ struct Planner<'a> {
 struct Way {
     parts: Vec<usize>,
     direction: DVec3,
+    /// What is moved aside before, if anything is.
+    aside: Option<Aside>,
+}
+
+impl Way {
+    fn straight(parts: Vec<usize>, direction: DVec3) -> Self {
+        Self { parts, direction, aside: None }
+    }
 }
 
 #[cfg(test)]
@@ -250,9 +199,8 @@ impl Planner<'_> {
             }
             let mut asked: HashSet<[u64; 3]> =
                 matrix.directions().iter().copied().map(bits).collect();
-            let alone = single
-                .first()
-                .map(|(k, part)| Way { parts: vec![part], direction: matrix.directions()[k] });
+            let alone =
+                single.first().map(|(k, part)| Way::straight(vec![part], matrix.directions()[k]));
             let mut way = alone.or_else(|| self.smallest(matrix, &alive, left.len()));
             if way.is_none() {
                 way = self.search_finer(&left, &alive, matrix, &mut asked)?;
@@ -261,8 +209,12 @@ impl Planner<'_> {
             if way.is_none() {
                 (way, proven) = self.prove(&left, &alive, &mut asked)?;
             }
+            let mut moves = None;
+            if way.is_none() {
+                (way, moves) = self.several(&left, matrix)?;
+            }
             let Some(way) = way else {
-                self.explain(&left, matrix, asked.len(), proven);
+                self.explain(&left, matrix, (asked.len(), proven, moves));
                 let alone = within.is_none() && !self.plan.steps.is_empty();
                 if alone && !left.iter().any(|&k| self.fixed(k)) {
                     // All others are gone: what is left comes out, as one.
@@ -291,13 +243,24 @@ impl Planner<'_> {
     ) -> Result<(), AssemblyError> {
         let travel = replay::checked(self.bodies, &way, left, self.options.start)?;
         let at = self.plan.steps.len();
-        let Way { parts, direction } = way;
+        let Way { parts, direction, aside } = way;
         let start = self.options.start;
         let pairs = parts.iter().flat_map(|&a| left.iter().map(move |&b| [a, b]));
         let ignored = pairs.filter(|&[a, b]| self.bodies.lets_pass(a, b, start)).collect();
         let surfaces = self.surfaces(&parts, left, direction);
-        let moved = parts.clone();
-        self.plan.steps.push(Step { parts: moved, direction, travel, within, ignored, surfaces });
+        let (mut path, back) =
+            aside.map_or_else(Default::default, |aside| (aside.legs, aside.back));
+        path.push(Leg { parts: parts.clone(), direction, travel: travel.value });
+        self.plan.steps.push(Step {
+            parts: parts.clone(),
+            direction,
+            travel,
+            path,
+            back,
+            within,
+            ignored,
+            surfaces,
+        });
         for _ in &parts {
             self.tally.step()?;
         }
@@ -313,10 +276,18 @@ impl Planner<'_> {
     fn finish(&mut self, left: &[usize], matrix: &Matrix, within: Option<usize>) {
         if within.is_none() {
             let direction = matrix.directions().first().copied().unwrap_or(DVec3::Z);
-            let (parts, ignored, surfaces) = (left.to_vec(), Vec::new(), Vec::new());
             let travel = Bounded { value: 0.0, lower: 0.0, upper: 0.0 };
-            let step = Step { parts, direction, travel, within, ignored, surfaces };
-            self.plan.steps.push(step);
+            let leg = Leg { parts: left.to_vec(), direction, travel: 0.0 };
+            self.plan.steps.push(Step {
+                parts: left.to_vec(),
+                direction,
+                travel,
+                path: vec![leg],
+                back: Vec::new(),
+                within,
+                ignored: Vec::new(),
+                surfaces: Vec::new(),
+            });
         }
     }
 
@@ -346,7 +317,7 @@ impl Planner<'_> {
                 let based = parts.iter().any(|&p| self.base[p]);
                 let key = (parts.len(), based, k);
                 if best.as_ref().is_none_or(|b| key < b.0) {
-                    best = Some((key, Way { parts, direction }));
+                    best = Some((key, Way::straight(parts, direction)));
                 }
             }
             if best.as_ref().is_some_and(|b| b.0.0 == 1 && !b.0.1) {
@@ -410,7 +381,7 @@ impl Planner<'_> {
         alive: &[bool],
         matrix: &Matrix,
     ) -> Result<Option<Way>, AssemblyError> {
-        let PlanOptions { start, samples } = self.options;
+        let PlanOptions { start, samples, .. } = self.options;
         if samples == 0 {
             return Ok(None);
         }
@@ -423,7 +394,7 @@ impl Planner<'_> {
         let options = MapOptions { samples, start, ..MapOptions::default() };
         for parts in groups {
             if let Some(direction) = way_out(self.bodies, &parts, alive, options, self.watch)? {
-                return Ok(Some(Way { parts, direction }));
+                return Ok(Some(Way::straight(parts, direction)));
             }
         }
         Ok(None)
@@ -480,13 +451,39 @@ impl Planner<'_> {
         Ok((way, None))
     }
 
-    fn explain(&mut self, left: &[usize], matrix: &Matrix, asked: usize, proven: Option<usize>) {
+    /// A way in several moves, or what is known of them.
+    fn several(
+        &self,
+        left: &[usize],
+        matrix: &Matrix,
+    ) -> Result<(Option<Way>, Option<Moves>), AssemblyError> {
+        if left.iter().all(|&k| self.fixed(k)) {
+            return Ok((None, None));
+        }
+        let options = (self.options, self.prover.is_some());
+        Ok(match several::search(self.bodies, left, matrix, options, self.watch)? {
+            Ok(aside) => {
+                let (parts, direction) = (aside.parts.clone(), aside.direction);
+                (Some(Way { parts, direction, aside: Some(aside) }), None)
+            }
+            Err(moves) => (None, Some(moves)),
+        })
+    }
+
+    fn explain(
+        &mut self,
+        left: &[usize],
+        matrix: &Matrix,
+        (asked, proven, moves): (usize, Option<usize>, Option<Moves>),
+    ) {
         let movable = left.iter().any(|&k| !self.fixed(k));
         if !movable {
             return;
         }
         let fixed = left.iter().any(|&k| self.fixed(k));
-        self.plan.stuck.push(hold::explain(self.bodies, left, matrix, asked, fixed, proven));
+        let moves = moves.unwrap_or(Moves::NotAsked("all parts are fixed"));
+        let known = (asked, proven, moves);
+        self.plan.stuck.push(hold::explain(self.bodies, left, matrix, fixed, known));
     }
 
     fn fixed(&self, part: usize) -> bool {
@@ -504,6 +501,7 @@ impl Planner<'_> {
 
 #[cfg(test)]
 mod tests {
+    use colltrans::solid::StartOverlap;
     use colltrans_mesh::Mesh;
     use colltrans_testkit::shapes::block;
     use glam::DAffine3;

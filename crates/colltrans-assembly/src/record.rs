@@ -15,7 +15,7 @@ use crate::liaisons::Liaison;
 use crate::map::{Region, RemovalMap};
 use crate::matrix::{Matrix, Meeting};
 use crate::part::{Assembly, Part};
-use crate::plan::{Plan, Step, Stuck};
+use crate::plan::{Leg, Moves, Plan, Step, Stuck};
 use crate::rooms::PartRoom;
 use crate::start::{Overlap, Start};
 
@@ -119,7 +119,11 @@ fn step(assembly: &Assembly, step: &Step) -> Value {
         "direction": step.direction.to_array(),
         "travel": step.travel.value,
         "travel_bounds": step.travel.bounds(),
+        "path": legs(assembly, &step.path),
     });
+    if !step.back.is_empty() {
+        told["back"] = legs(assembly, &step.back);
+    }
     if !step.ignored.is_empty() {
         let pairs: Vec<_> = step.ignored.iter().map(|pair| assembly.names(pair)).collect();
         told["ignored"] = json!(pairs);
@@ -131,6 +135,30 @@ fn step(assembly: &Assembly, step: &Step) -> Value {
         told["surfaces"] = json!(assembly.names(&step.surfaces));
     }
     told
+}
+
+fn legs(assembly: &Assembly, legs: &[Leg]) -> Value {
+    let told = |leg: &Leg| {
+        json!({
+            "parts": assembly.names(&leg.parts),
+            "direction": leg.direction.to_array(),
+            "travel": leg.travel,
+        })
+    };
+    legs.iter().map(told).collect()
+}
+
+fn moves(moves: &Moves) -> Value {
+    match moves {
+        Moves::NotAsked(why) => json!({ "not_asked": why }),
+        Moves::Proven { cells } => json!({ "proven": cells }),
+        Moves::NotFound { legs, searched } => json!({
+            "legs": legs,
+            "directions": searched.directions,
+            "places": searched.places,
+            "complete": searched.complete,
+        }),
+    }
 }
 
 fn stuck(bodies: &Bodies, stuck: &Stuck) -> Value {
@@ -148,6 +176,7 @@ fn stuck(bodies: &Bodies, stuck: &Stuck) -> Value {
             Some(cells) => json!({ "proven": cells }),
             None => json!({ "asked": stuck.directions }),
         },
+        "moves": moves(&stuck.moves),
         "holds": holds.collect::<Vec<_>>(),
     })
 }

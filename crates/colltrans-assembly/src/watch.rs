@@ -55,6 +55,11 @@ impl<'a> Watch<'a> {
         Self { progress: Some(progress), ..self }
     }
 
+    /// What is set to cancel.
+    pub(crate) const fn flag(&self) -> Option<&'a AtomicBool> {
+        self.cancel
+    }
+
     pub(crate) fn check(&self) -> Result<(), AssemblyError> {
         let cancelled = self.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed));
         if cancelled { Err(AssemblyError::Cancelled) } else { Ok(()) }

@@ -69,7 +69,11 @@ fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
     let matrix = Matrix::new(&bodies, &found.directions(), &all, overlap, watch)?;
     let more = more_rooms(&bodies, &given, overlap, watch)?;
     let samples = if arguments.only { 0 } else { PlanOptions::default().samples };
-    let options = PlanOptions::default().with_start(overlap).with_samples(samples);
+    let options = PlanOptions::default()
+        .with_start(overlap)
+        .with_samples(samples)
+        .with_legs(arguments.legs)
+        .with_looks(arguments.work.looks());
     let plan = if arguments.prove { disassemble_proving } else { disassemble };
     let plan = plan(&bodies, &matrix, &found.finer, options, watch)?;
     let maps = maps(&bodies, &groups, &found, overlap, watch)?;

@@ -18,7 +18,7 @@ use colltrans_assembly::candidates::{Candidates, Choice, candidates, unit};
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{PlanOptions, Step, disassemble};
+use colltrans_assembly::plan::{Leg, PlanOptions, Step, disassemble};
 use colltrans_assembly::read::{Geometry, ReadOptions};
 use colltrans_assembly::rooms::{PartRoom, rooms};
 use colltrans_assembly::{AssemblyError, Bodies, Fit, Ignored, Part, Piece, Watch};
@@ -33,11 +33,22 @@ const PATIENCE: Duration = Duration::from_millis(50);
 
 /// A vector, and the distance and the part (-1 for none) of rooms along it.
 type RoomRow = (Vec<f64>, Vec<i64>);
-/// Parts, direction, travel and its bounds, the step that took the group out, the pairs that are ignored, and the
-/// surfaces it rests on.
-type StepRow = (Vec<usize>, [f64; 3], f64, [f64; 2], Option<usize>, Vec<[usize; 2]>, Vec<usize>);
-/// Parts, and for each of some parts the sets that hold it.
-type StuckRow = (Vec<usize>, usize, Vec<(usize, Vec<Vec<usize>>)>);
+/// Parts, direction and travel of a move.
+type LegRow = (Vec<usize>, [f64; 3], f64);
+/// Parts, direction, travel and its bounds, the moves out and back, the step that took the group out, the pairs that
+/// are ignored, and the surfaces it rests on.
+type StepRow = (
+    Vec<usize>,
+    [f64; 3],
+    f64,
+    [f64; 2],
+    [Vec<LegRow>; 2],
+    Option<usize>,
+    Vec<[usize; 2]>,
+    Vec<usize>,
+);
+/// Parts, how many directions were asked, why they are stuck, and for each of some parts the sets that hold it.
+type StuckRow = (Vec<usize>, usize, String, Vec<(usize, Vec<Vec<usize>>)>);
 
 /// How tight the parts are, and what overlaps mean.
 #[derive(Clone, Copy)]
@@ -227,29 +238,40 @@ impl Assembly {
         py: Python<'_>,
         directions: &Bound<'_, PyAny>,
         samples: usize,
+        legs: usize,
         tolerance: Option<f64>,
         ignore_overlaps: bool,
     ) -> PyResult<(Vec<StepRow>, Vec<usize>, Vec<StuckRow>)> {
         let given = points(directions, "directions")?;
         let choices = Choices::new(tolerance, ignore_overlaps);
-        let plan = self.ask(py, choices, |bodies, watch| {
+        let (plan, because) = self.ask(py, choices, |bodies, watch| {
             let found = found(bodies, &given, watch)?;
             let all = vec![true; bodies.len()];
             let matrix = Matrix::new(bodies, &found.directions(), &all, choices.start, watch)?;
-            let options = PlanOptions::default().with_start(choices.start).with_samples(samples);
-            disassemble(bodies, &matrix, &found.finer, options, watch)
+            let options = PlanOptions::default()
+                .with_start(choices.start)
+                .with_samples(samples)
+                .with_legs(legs);
+            let plan = disassemble(bodies, &matrix, &found.finer, options, watch)?;
+            let because = plan.stuck.iter().map(|stuck| stuck.because(bodies));
+            let because: Vec<String> = because.collect();
+            Ok((plan, because))
         })?;
         let steps = plan.steps.into_iter();
         let row = |s: Step| {
             let (direction, travel) = (s.direction.to_array(), s.travel);
-            (s.parts, direction, travel.value, travel.bounds(), s.within, s.ignored, s.surfaces)
+            let leg = |leg: Leg| (leg.parts, leg.direction.to_array(), leg.travel);
+            let legs = [s.path, s.back].map(|all| all.into_iter().map(leg).collect());
+            let (travel, bounds) = (travel.value, travel.bounds());
+            (s.parts, direction, travel, bounds, legs, s.within, s.ignored, s.surfaces)
         };
         let steps = steps.map(row).collect();
-        let stuck = plan.stuck.into_iter().map(|stuck| {
+        let stuck = plan.stuck.into_iter().zip(because).map(|(stuck, because)| {
             let sets = |by: Vec<(Vec<usize>, DVec3)>| by.into_iter().map(|(set, _)| set).collect();
             (
                 stuck.parts,
                 stuck.directions,
+                because,
                 stuck.holds.into_iter().map(|h| (h.part, sets(h.by))).collect(),
             )
         });

@@ -8,7 +8,7 @@
 //! 3. queries as values: `query` between convex bodies, `solid_cast` between solids, `pair` without a
 //!    direction;
 //! 4. answers: `certificate`, `features`, `answer` (what all have in common), `outcome`, `clearance`,
-//!    `solid_answer`, `distance`, `directions`;
+//!    `solid_answer`, `distance`, `directions`, `ways`;
 //! 5. those who ask: `questions` (functions, and methods of queries), `tracker` (in sequence), `many` (in
 //!    bulk), `obstacles` (one body among many) with its `scene` and `scene_answers`,
 //!    `assembly` (many parts).
@@ -41,6 +41,7 @@ mod solid_answer;
 mod solid_cast;
 mod solver;
 mod tracker;
+mod ways;
 
 /// The module.
 #[pyo3::pymodule(gil_used = false)]
@@ -89,4 +90,6 @@ mod _colltrans {
     use crate::solver::Cta;
     #[pymodule_export]
     use crate::tracker::Tracker;
+    #[pymodule_export]
+    use crate::ways::{WaysOut, ways_out};
 }

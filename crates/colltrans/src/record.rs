@@ -7,6 +7,7 @@
 
 mod free;
 mod motion;
+mod ways;
 
 use derive_where::derive_where;
 use glam::DVec3;
@@ -27,6 +28,7 @@ use crate::solve::observe::{NoObserver, Observer};
 use crate::written::{UnknownName, named};
 pub use free::{BlockedByRecord, FreeRecord, FreeRegionRecord};
 pub use motion::{MotionRecord, TimeRecord};
+pub use ways::{LegRecord, WaysRecord};
 
 /// An answer; fields that do not apply are left out, numbers that are infinite are `null`.
 ///

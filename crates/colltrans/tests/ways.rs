@@ -2,8 +2,9 @@
 
 use colltrans::free::FreeError;
 use colltrans::glam::{DMat3, DVec3, EulerRot};
-use colltrans::ways::{WayOptions, WayOut, WaysOut};
-use colltrans::{ConvexPolyhedron, Pose, Solid};
+use colltrans::ways::{NoWay, Order, WayOptions, WayOut, WaysOut};
+use colltrans::{Cast, ConvexPolyhedron, Placed, Pose, Solid};
+use colltrans_testkit::random::Random;
 
 fn solid(blocks: &[[[f64; 3]; 2]]) -> Solid {
     let block = |[low, high]: &[[f64; 3]; 2]| {
@@ -37,7 +38,7 @@ fn found(bodies: &[Solid; 2], pose: Pose, options: &WayOptions) -> Option<WayOut
             way.verify(&[a, b]).unwrap();
             Some(way)
         }
-        WaysOut::NotFound { .. } => None,
+        _ => None,
     }
 }
 
@@ -66,15 +67,132 @@ fn a_window_as_long_as_the_key_is_found_in_any_rotation() {
 }
 
 #[test]
-fn a_window_that_is_too_short_is_none() {
+fn a_window_that_is_too_short_is_no_way_which_is_proven() {
     let bodies = slot([14.0, 15.9]);
     let [a, b] = bodies.each_ref().map(|solid| solid.at(Pose::IDENTITY));
-    let WaysOut::NotFound { searched } =
-        WaysOut::of(&a, &b, &WayOptions::default().with_places(200)).unwrap()
-    else {
+    let proof = no_way(&a, &b);
+    assert!(proof.cells() < 4_000, "{}", proof.cells());
+    // Without cells it is said what was searched, and nothing more.
+    let options = WayOptions::default().with_places(20).with_cells(0);
+    let WaysOut::NotFound { searched } = WaysOut::of(&a, &b, &options).unwrap() else {
         panic!("it is closed in")
     };
-    assert!(searched.places > 0 && searched.directions == 6);
+    assert!(searched.places > 0 && searched.directions == 6, "{searched:?}");
+}
+
+fn no_way(a: &Placed<'_, Solid>, b: &Placed<'_, Solid>) -> NoWay {
+    let WaysOut::Proven(proof) = WaysOut::of(a, b, &WayOptions::default()).unwrap() else {
+        panic!("it is closed in")
+    };
+    proof.verify(a, b).unwrap();
+    proof
+}
+
+/// A closed box around a room from 0 to 4, with another one behind a wall at `x` from 4 to 5 if there are two; holes
+/// are square, in the middle: of the first room's roof, of the wall between and of the second room's roof.
+fn chambers(two: bool, holes: [f64; 3]) -> Solid {
+    let far = if two { 9.0 } else { 4.0 };
+    let mut blocks = vec![
+        [[-1.0, -1.0, -1.0], [far + 1.0, 5.0, 0.0]],
+        [[-1.0, -1.0, 0.0], [0.0, 5.0, 4.0]],
+        [[far, -1.0, 0.0], [far + 1.0, 5.0, 4.0]],
+        [[0.0, -1.0, 0.0], [far, 0.0, 4.0]],
+        [[0.0, 4.0, 0.0], [far, 5.0, 4.0]],
+    ];
+    let mut roof = |from: f64, to: f64, hole: f64| {
+        let (x, h) = (0.5 * (from + to), 0.5 * hole);
+        blocks
+            .extend([[[from, -1.0, 4.0], [x - h, 5.0, 5.0]], [[x + h, -1.0, 4.0], [to, 5.0, 5.0]]]);
+        if hole > 0.0 {
+            blocks.extend([
+                [[x - h, -1.0, 4.0], [x + h, 2.0 - h, 5.0]],
+                [[x - h, 2.0 + h, 4.0], [x + h, 5.0, 5.0]],
+            ]);
+        }
+    };
+    roof(-1.0, if two { 4.5 } else { 5.0 }, holes[0]);
+    if two {
+        roof(4.5, 10.0, holes[2]);
+        let h = 0.5 * holes[1];
+        blocks.extend([
+            [[4.0, 0.0, 0.0], [5.0, 2.0 - h, 4.0]],
+            [[4.0, 2.0 + h, 0.0], [5.0, 4.0, 4.0]],
+        ]);
+        if h > 0.0 {
+            blocks.extend([
+                [[4.0, 2.0 - h, 0.0], [5.0, 2.0 + h, 2.0 - h]],
+                [[4.0, 2.0 - h, 2.0 + h], [5.0, 2.0 + h, 4.0]],
+            ]);
+        }
+    }
+    solid(&blocks)
+}
+
+#[test]
+fn a_cube_in_a_box_leaves_through_holes_that_are_large_enough_and_else_it_is_proven() {
+    let cube = solid(&[[[0.5, 0.75, 0.5], [1.5, 1.75, 1.5]]]);
+    let at = Pose::IDENTITY;
+    for (two, holes) in [
+        (false, [0.0, 0.0, 0.0]),
+        (false, [0.9, 0.0, 0.0]),
+        (true, [0.0, 1.1, 0.0]),
+        (true, [0.0, 0.9, 1.5]),
+    ] {
+        let walls = chambers(two, holes);
+        let proof = no_way(&cube.at(at), &walls.at(at));
+        assert!(proof.cells() < 4_000, "{holes:?}: {}", proof.cells());
+        // Within the walls of the proof they overlap, wherever.
+        let mut random = Random::new(7);
+        for (k, &(cell, _)) in proof.walls.iter().enumerate() {
+            let [low, high] = proof.room.corners(cell);
+            let share = DVec3::new(random.unit(), random.unit(), random.unit());
+            let by = if k % 2 == 0 { low + share * (high - low) } else { low };
+            let moved = cube.at(Pose::from_translation(by).unwrap());
+            let cast = Cast::new(moved, walls.at(at), DVec3::Z).unwrap();
+            assert!(cast.with_tolerance(proof.tolerance).unwrap().overlaps(), "{cell:?} {by}");
+        }
+    }
+    // Where two coordinates have to be right at once, cells in which nothing meets lead there.
+    for (two, holes, legs) in [(false, [1.1, 0.0, 0.0], 3), (true, [0.0, 1.1, 1.5], 5)] {
+        let found = found(&[cube.clone(), chambers(two, holes)], at, &WayOptions::default());
+        let way = found.expect("a way");
+        assert!((2..=legs).contains(&way.legs.len()), "{holes:?}: {:?}", way.legs.len());
+    }
+}
+
+#[test]
+fn proofs_of_no_way_that_were_changed_are_refused() {
+    let cube = solid(&[[[0.5, 0.75, 0.5], [1.5, 1.75, 1.5]]]);
+    let (walls, at) = (chambers(false, [0.9, 0.0, 0.0]), Pose::IDENTITY);
+    let (a, b) = (cube.at(at), walls.at(at));
+    let proof = no_way(&a, &b);
+    let refused = |change: &dyn Fn(&mut NoWay)| {
+        let mut changed = proof.clone();
+        change(&mut changed);
+        assert!(matches!(changed.verify(&a, &b), Err(FreeError::NotProven(_))));
+    };
+    for k in (0..proof.walls.len()).step_by(7) {
+        refused(&|proof| {
+            proof.walls.remove(k);
+        });
+        refused(&|proof| proof.walls[k].1.edge.1 = 3);
+        refused(&|proof| proof.walls[k].1.edge.0 = u32::MAX);
+        refused(&|proof| proof.walls[k].0 = proof.rooms[0]);
+        refused(&|proof| proof.walls[k].1.facet = u32::MAX);
+        refused(&|proof| proof.walls[k].0.depth = 99);
+    }
+    for k in 0..proof.rooms.len() {
+        refused(&|proof| {
+            proof.rooms.remove(k);
+        });
+    }
+    refused(&|proof| proof.rooms.clear());
+    refused(&|proof| proof.room.side *= 1.5);
+    refused(&|proof| proof.room.side = f64::NAN);
+    refused(&|proof| proof.room.low.x -= 3.0);
+    // A hole that lets the cube through is another body.
+    let open = chambers(false, [1.1, 0.0, 0.0]);
+    assert!(matches!(proof.verify(&a, &open.at(at)), Err(FreeError::NotProven(_))));
 }
 
 #[test]
@@ -133,4 +251,69 @@ fn what_is_cancelled_says_so() {
     let flag = std::sync::atomic::AtomicBool::new(true);
     let answer = WaysOut::among(&placed, &[1], &WayOptions::default(), Some(&flag));
     assert_eq!(answer, Err(FreeError::Cancelled));
+}
+
+/// A channel along x with a block in it, whose only way out is a shaft that leads up askew at its far end.
+fn skew_shaft() -> [Solid; 2] {
+    // The shaft's walls are sheared by (0.3, 0.2) for 1 of z, in a roof 3 thick.
+    let at = |x: f64, y: f64, z: f64| DVec3::new(x + 0.3 * (z - 1.2), y + 0.2 * (z - 1.2), z);
+    let sheared = |low: [f64; 2], high: [f64; 2]| {
+        let corners = [1.2, 4.2].map(|z| {
+            [[low[0], low[1]], [high[0], low[1]], [low[0], high[1]], [high[0], high[1]]]
+                .map(|[x, y]| at(x, y, z))
+        });
+        ConvexPolyhedron::from_points(&corners.concat()).unwrap()
+    };
+    let block = |low: [f64; 3], high: [f64; 3]| {
+        ConvexPolyhedron::cuboid(DVec3::from(low), DVec3::from(high)).unwrap()
+    };
+    let walls = [
+        block([-1.0, -1.0, -1.0], [9.0, 2.2, 0.0]),
+        block([-1.0, -1.0, 0.0], [0.0, 2.2, 1.2]),
+        block([8.0, -1.0, 0.0], [9.0, 2.2, 1.2]),
+        block([0.0, -1.0, 0.0], [8.0, 0.0, 1.2]),
+        block([0.0, 1.2, 0.0], [8.0, 2.2, 1.2]),
+        sheared([-1.0, -1.0], [6.0, 2.2]),
+        sheared([7.2, -1.0], [9.0, 2.2]),
+        sheared([6.0, -1.0], [7.2, 0.0]),
+        sheared([6.0, 1.2], [7.2, 2.2]),
+    ];
+    [solid(&[[[0.1, 0.1, 0.1], [0.7, 0.7, 1.1]]]), Solid::from_pieces(&walls).unwrap()]
+}
+
+#[test]
+fn a_last_leg_that_no_candidate_has_is_found_among_free_directions() {
+    let [cube, channel] = skew_shaft();
+    let at = Pose::IDENTITY;
+    // Candidates are the normals of walls; the shaft's direction is across two of them, unless only axes are given.
+    let axes = vec![DVec3::X, DVec3::Y, DVec3::Z];
+    let options = WayOptions::default().with_directions(axes).with_legs(2);
+    let way = found(&[cube, channel], at, &options).expect("along the channel, then up askew");
+    assert_eq!(way.legs.len(), 2);
+    let last = way.legs[1].direction;
+    assert!(last.x > 0.2 && last.y > 0.1 && last.z > 0.8, "{last}");
+    assert!(way.searched.free_sets > 0);
+}
+
+#[test]
+fn new_regions_first_finds_ways_too() {
+    let options = WayOptions::default().with_order(Order::NewestFirst);
+    let way = found(&slot([14.0, 17.0]), Pose::IDENTITY, &options).unwrap();
+    assert_eq!(way.legs.len(), 2);
+}
+
+#[test]
+fn bodies_that_overlap_move_as_one_unless_there_are_two() {
+    let [key, plate] = slot([14.0, 17.0]);
+    // A knob that is pressed onto the key's stem.
+    let knob = solid(&[[[0.4, -0.6, 2.5], [2.6, 0.6, 3.5]]]);
+    let placed = [&key, &knob, &plate].map(|solid| solid.at(Pose::IDENTITY));
+    let WaysOut::Found(way) = WaysOut::among(&placed, &[], &WayOptions::default(), None).unwrap()
+    else {
+        panic!("as the key alone")
+    };
+    way.verify(&placed).unwrap();
+    assert!(way.legs.iter().all(|leg| leg.bodies == [0, 1]), "{:?}", way.legs);
+    let two = WaysOut::among(&placed[..2], &[], &WayOptions::default(), None);
+    assert!(matches!(two, Err(FreeError::Overlapping { .. })));
 }

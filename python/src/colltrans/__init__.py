@@ -49,6 +49,7 @@ from colltrans._colltrans import (
     SolidOverlapping,
     Steps,
     Tracker,
+    WaysOut,
     Within,
     cast,
     clearance,
@@ -59,9 +60,10 @@ from colltrans._colltrans import (
     free_directions,
     intersects,
     read,
+    ways_out,
     within,
 )
-from colltrans.assembly import Assembly, Blocking, Plan, RemovalMap, Rooms, Step, Stuck
+from colltrans.assembly import Assembly, Blocking, Move, Plan, RemovalMap, Rooms, Step, Stuck
 from colltrans.columns import ClearanceColumns, Columns, ContactColumns, Failed, RangeColumns
 from colltrans.errors import (
     AssemblyError,
@@ -120,6 +122,7 @@ __all__ = [
     "InputError",
     "Intersection",
     "MeshError",
+    "Move",
     "NearbyObstacles",
     "NearestObstacle",
     "NotConvergedError",
@@ -153,6 +156,7 @@ __all__ = [
     "Steps",
     "Stuck",
     "Tracker",
+    "WaysOut",
     "Within",
     "WithinColumns",
     "cast",
@@ -171,6 +175,7 @@ __all__ = [
     "picture",
     "read",
     "show",
+    "ways_out",
     "within",
     "within_many",
 ]

@@ -55,6 +55,7 @@ __all__ = [
     "SolidOverlapping",
     "Steps",
     "Tracker",
+    "WaysOut",
     "Within",
     "ask_many",
     "ask_pairs",
@@ -67,6 +68,7 @@ __all__ = [
     "free_directions",
     "intersects",
     "read",
+    "ways_out",
     "within",
 ]
 _SolidClearance: TypeAlias = SolidBlocked | SolidFree | SolidOverlapping
@@ -185,6 +187,7 @@ class Assembly:
         self,
         directions: ArrayLike,
         samples: int,
+        legs: int,
         tolerance: float | None,
         ignore_overlaps: bool,
     ) -> tuple[
@@ -194,13 +197,14 @@ class Assembly:
                 list[float],
                 float,
                 list[float],
+                list[list[tuple[list[int], list[float], float]]],
                 int | None,
                 list[list[int]],
                 list[int],
             ]
         ],
         list[int],
-        list[tuple[list[int], int, list[tuple[int, list[list[int]]]]]],
+        list[tuple[list[int], int, str, list[tuple[int, list[list[int]]]]]],
     ]: ...
     def removal_map(
         self,
@@ -1088,6 +1092,40 @@ def free_directions(
     depth: int = 26,
     looks: int = 20_000_000,
 ) -> FreeDirections: ...
+
+@final
+class WaysOut:
+    @property
+    def moving(self) -> ConvexPolyhedron | Solid: ...
+    @property
+    def fixed(self) -> ConvexPolyhedron | Solid: ...
+    @property
+    def moving_pose(self) -> Pose: ...
+    @property
+    def fixed_pose(self) -> Pose: ...
+    @property
+    def outcome(self) -> Literal["found", "none", "not_found"]: ...
+    @property
+    def legs(self) -> list[tuple[list[float], float]]: ...
+    @property
+    def tolerance(self) -> float | None: ...
+    @property
+    def cells(self) -> int | None: ...
+    def verify(self) -> None: ...
+    def to_dict(self) -> dict[str, Any]: ...
+
+def ways_out(
+    moving: ConvexPolyhedron | Solid,
+    fixed: ConvexPolyhedron | Solid,
+    *,
+    moving_pose: _Pose = None,
+    fixed_pose: _Pose = None,
+    tolerance: float | None = None,
+    legs: int = 12,
+    directions: ArrayLike | None = None,
+    looks: int = 50_000_000,
+    cells: int = 20_000,
+) -> WaysOut: ...
 def read(
     path: str | PathLike[str],
     *,

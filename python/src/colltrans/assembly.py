@@ -63,6 +63,24 @@ class Blocking:
 
 
 @dataclass(frozen=True)
+class Move:
+    """A straight move of some parts, as one.
+
+    Attributes
+    ----------
+    parts : list of str
+    direction : tuple of float
+        Of length 1.
+    travel : float
+        How far.
+    """
+
+    parts: list[str]
+    direction: tuple[float, ...]
+    travel: float
+
+
+@dataclass(frozen=True)
 class Step:
     """A group that is taken out.
 
@@ -75,6 +93,11 @@ class Step:
         How far, a length, until it lies wholly beyond what is left; 0 if nothing is ahead.
     travel_bounds : tuple of float
         At least and at most the travel, proven.
+    path : list of Move
+        The moves, in order, of the parts or of others that make room: with the last one the parts leave,
+        along `direction` for `travel`. Mostly there is no other.
+    back : list of Move
+        How what made room goes back to its place once they have left.
     within : int or None
         For a step that takes a group apart, the position of the step that took the group out.
     ignored : list of tuple of (str, str)
@@ -88,6 +111,8 @@ class Step:
     direction: tuple[float, ...]
     travel: float
     travel_bounds: tuple[float, ...]
+    path: list[Move]
+    back: list[Move]
     within: int | None
     ignored: list[tuple[str, str]]
     surfaces: list[str]
@@ -95,21 +120,24 @@ class Step:
 
 @dataclass(frozen=True)
 class Stuck:
-    """Parts that no single straight motion along the directions asked takes apart.
+    """Parts that no single straight motion along the directions asked takes apart, nor several moves that were found.
 
-    Along other directions, or in several moves, they may come apart.
+    Along other directions, or in more moves, they may come apart.
 
     Attributes
     ----------
     parts : list of str
     directions : int
         How many different directions were asked.
+    because : str
+        Why, in words: also what was searched for several moves.
     holds : dict of str to list of list of str
         For each part the least sets of others that hold it.
     """
 
     parts: list[str]
     directions: int
+    because: str
     holds: dict[str, list[list[str]]]
 
 
@@ -327,10 +355,11 @@ class Assembly:
         directions: ArrayLike = (),
         *,
         samples: int = 162,
+        legs: int = 2,
         tolerance: float | None = None,
         ignore_overlaps: bool = False,
     ) -> Plan:
-        """Takes apart what single straight moves along the directions asked take apart.
+        """Takes apart what straight moves take apart.
 
         The smallest groups come first.
 
@@ -340,6 +369,9 @@ class Assembly:
             Those to try; without any they are found from the parts' contacts and axes.
         samples : int
             How many directions to sample for what no other moves; 0 for none.
+        legs : int
+            How many moves, one after another, may take out what no single one does; parts may make room
+            and go back. 1 for none.
         tolerance, ignore_overlaps
             As for :meth:`rooms`.
 
@@ -347,8 +379,13 @@ class Assembly:
         -------
         Plan
         """
-        steps, left, stuck = self._assembly.plan(directions, samples, tolerance, ignore_overlaps)
+        plan = self._assembly.plan(directions, samples, legs, tolerance, ignore_overlaps)
+        steps, left, stuck = plan
         names = self.parts
+
+        def moves(all_of: list[tuple[list[int], list[float], float]]) -> list[Move]:
+            return [Move(self._names(parts), tuple(d), travel) for parts, d, travel in all_of]
+
         return Plan(
             [
                 Step(
@@ -356,20 +393,23 @@ class Assembly:
                     tuple(d),
                     travel,
                     tuple(travel_bounds),
+                    moves(path),
+                    moves(back),
                     within,
                     [(names[a], names[b]) for a, b in ignored],
                     self._names(surfaces),
                 )
-                for parts, d, travel, travel_bounds, within, ignored, surfaces in steps
+                for parts, d, travel, travel_bounds, (path, back), within, ignored, surfaces in steps
             ],
             self._names(left),
             [
                 Stuck(
                     self._names(parts),
                     directions,
+                    because,
                     {names[part]: [self._names(group) for group in sets] for part, sets in holds},
                 )
-                for parts, directions, holds in stuck
+                for parts, directions, because, holds in stuck
             ],
         )
 

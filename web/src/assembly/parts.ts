@@ -17,11 +17,8 @@ export interface Part {
   triangles: Uint32Array;
 }
 
-/** Parts that move together; `way`: how far they are moved in the picture. */
-export interface Move {
-  parts: number[];
-  way: Vec;
-}
+/** Moves one after another, each of parts that move together; `way`: how far they are moved in the picture. */
+export type Move = { parts: number[]; way: Vec }[];
 
 /** A colour for each part, spread by the golden angle: as in the report. */
 export function tint(part: number): Vec {
@@ -120,12 +117,12 @@ export class Parts {
   /** Everything where it is after `t` of the moves. */
   place(moves: Move[], t: number) {
     for (const { group } of this.parts) group.position.set(0, 0, 0);
-    moves.forEach(({ parts, way }, k) => {
-      const share = Math.min(1, Math.max(0, t - k));
+    moves.forEach((legs, k) => legs.forEach(({ parts, way }, leg) => {
+      const share = Math.min(1, Math.max(0, (t - k) * legs.length - leg));
       // Slow at either end.
       const eased = share * share * (3 - 2 * share);
       for (const part of parts) this.parts[part]?.group.position.addScaledVector(new Vector3(...way), eased);
-    });
+    }));
     this.widen();
     this.render();
   }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use glam::DVec3;
 
-use super::Stuck;
+use super::{Moves, Stuck};
 use crate::blocking::Blocking;
 use crate::bodies::Bodies;
 use crate::matrix::Matrix;
@@ -27,9 +27,8 @@ pub(super) fn explain(
     bodies: &Bodies,
     left: &[usize],
     matrix: &Matrix,
-    directions: usize,
     fixed: bool,
-    proven: Option<usize>,
+    (directions, proven, moves): (usize, Option<usize>, Moves),
 ) -> Stuck {
     let mut among = vec![false; bodies.len()];
     for &k in left {
@@ -53,7 +52,7 @@ pub(super) fn explain(
     }
     overlapping.sort_unstable();
     overlapping.dedup();
-    Stuck { parts: left.to_vec(), directions, proven, holds, overlapping, fixed }
+    Stuck { parts: left.to_vec(), directions, proven, moves, holds, overlapping, fixed }
 }
 
 fn keep_least(sets: &mut Vec<(Vec<usize>, DVec3)>, set: Vec<usize>, d: DVec3) {
@@ -95,6 +94,7 @@ impl Stuck {
                 format!("{} and {} overlap with this tolerance{more}", name(*a), name(*b))
             }
         };
+        text.push_str(&self.moves.words());
         let easiest =
             self.holds.iter().filter(|h| !h.by.is_empty()).min_by_key(|h| h.by[0].0.len());
         if let Some(hold) = easiest {
@@ -108,5 +108,31 @@ impl Stuck {
             );
         }
         text
+    }
+}
+
+impl Moves {
+    /// What goes on after what is said of a single move.
+    fn words(&self) -> String {
+        let several = |count: usize, one: &str, more: &str| match count {
+            1 => format!("1 {one}"),
+            count => format!("{count} {more}"),
+        };
+        match self {
+            Self::NotAsked(why) => format!("; several moves were not looked for: {why}"),
+            Self::Proven { cells } => format!(
+                "; nor do several moves, whichever, which is proven in {cells} cells of displacements"
+            ),
+            Self::NotFound { legs, searched } => {
+                let places = several(searched.places, "place", "places");
+                let end =
+                    if searched.complete { "" } else { ", where the limit of work was reached" };
+                format!(
+                    "; up to {legs} moves one after another, searched from {places} along {} directions{end}, \
+                     were not found either",
+                    searched.directions
+                )
+            }
+        }
     }
 }

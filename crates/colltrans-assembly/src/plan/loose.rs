@@ -86,7 +86,7 @@ pub(super) fn smallest(
         known.put_back(*d, answers);
     }
     let best = found?.into_iter().flatten().min_by_key(|x| x.0);
-    Ok(best.map(|((_, _, k), parts)| Way { parts, direction: directions[k] }))
+    Ok(best.map(|((_, _, k), parts)| Way::straight(parts, directions[k])))
 }
 
 /// A group with its size, whether the base is in it, and the position of its direction.

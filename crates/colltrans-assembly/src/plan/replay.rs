@@ -5,6 +5,7 @@ use colltrans::solid::{StartOverlap, Workspace};
 use glam::DVec3;
 
 use super::Way;
+use super::several::Aside;
 use crate::bodies::{Bodies, Room};
 use crate::error::AssemblyError;
 
@@ -21,9 +22,22 @@ pub(super) fn checked(
     others: &[usize],
     start: StartOverlap,
 ) -> Result<Bounded, AssemblyError> {
+    match &way.aside {
+        None => straight(bodies, way, others, start),
+        Some(aside) => several(bodies, aside, others),
+    }
+}
+
+/// Of a single move.
+fn straight(
+    bodies: &Bodies,
+    way: &Way,
+    others: &[usize],
+    start: StartOverlap,
+) -> Result<Bounded, AssemblyError> {
     let d = way.direction;
     let mut workspace = Workspace::default();
-    let mut travel = Bounded { value: 0.0, lower: 0.0, upper: 0.0 };
+    let mut travel = NOTHING;
     let mut there = vec![false; bodies.len()];
     for &part in others {
         there[part] = true;
@@ -54,6 +68,45 @@ pub(super) fn checked(
     }
     Ok(travel)
 }
+
+/// Of several moves, whose proofs have been checked: each is looked at in a few places.
+fn several(bodies: &Bodies, aside: &Aside, others: &[usize]) -> Result<Bounded, AssemblyError> {
+    let mut all = [&aside.parts[..], others].concat();
+    all.sort_unstable();
+    let mut at = vec![DVec3::ZERO; bodies.len()];
+    let pairs = |moving: &[usize]| {
+        let outside = all.iter().filter(|part| !moving.contains(part));
+        let outside: Vec<usize> = outside.copied().collect();
+        moving.iter().flat_map(|&a| outside.iter().map(move |&b| [a, b])).collect::<Vec<_>>()
+    };
+    let look = |[a, b]: [usize; 2], by: DVec3, motion: DVec3| {
+        // Parts that overlap as they are moved as one, or the step was refused.
+        let met = |share: &&f64| bodies.overlaps_displaced(a, by + motion * **share, b);
+        let found = PLACES.iter().find(met);
+        let length = motion.length();
+        let why = |share| refused(bodies, [a, b], motion / length, share * length);
+        found.map_or(Ok(()), |share| Err(why(share)))
+    };
+    for (leg, motion) in aside.legs.iter().zip(&aside.motions) {
+        for [a, b] in pairs(&leg.parts) {
+            look([a, b], at[a] - at[b], *motion)?;
+        }
+        for &part in &leg.parts {
+            at[part] += *motion;
+        }
+    }
+    let (d, leaving) = (aside.direction, pairs(&aside.parts));
+    let past = |travel, &[a, b]: &[usize; 2]| {
+        larger(travel, bodies.past_displaced(a, at[a] - at[b], b, d))
+    };
+    let travel = leaving.iter().fold(NOTHING, past);
+    for [a, b] in leaving {
+        look([a, b], at[a] - at[b], d * travel.value)?;
+    }
+    Ok(travel)
+}
+
+const NOTHING: Bounded = Bounded { value: 0.0, lower: 0.0, upper: 0.0 };
 
 /// The larger one of two numbers.
 fn larger(a: Bounded, b: Bounded) -> Bounded {

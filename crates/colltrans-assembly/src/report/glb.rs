@@ -8,10 +8,10 @@ use serde_json::{Value, json};
 
 use super::tint;
 use crate::part::{Assembly, Part};
-use crate::plan::Plan;
+use crate::plan::{Leg, Plan};
 use colltrans::Aabb;
 
-/// Seconds of a step, and of the pause before it.
+/// Seconds of a move, and of the pause before a step.
 const STEP: f64 = 1.6;
 const PAUSE: f64 = 0.4;
 /// What has come out is put away so far beyond its travel, as a share of the assembly's size, or
@@ -80,17 +80,20 @@ fn channels(
     let (mut channels, mut samplers) = (Vec::new(), Vec::new());
     for part in 0..assembly.parts().len() {
         let (mut at, mut times, mut places) = (DVec3::ZERO, vec![0.0], vec![DVec3::ZERO]);
+        let mut time = 0.0;
         for (k, step) in plan.steps.iter().enumerate() {
+            time += PAUSE;
             // The last part stays where it is: there is nothing to take it out of.
-            if !step.parts.contains(&part) || k + 1 == plan.steps.len() && step.travel.value == 0.0
-            {
-                continue;
+            let stays = k + 1 == plan.steps.len() && step.is_last();
+            for (leg, motion) in step.shown(parked[k]) {
+                if leg.parts.contains(&part) && !stays {
+                    times.extend([time, time + STEP]);
+                    places.push(at);
+                    at += motion;
+                    places.push(at);
+                }
+                time += STEP;
             }
-            let start = k as f64 * (STEP + PAUSE) + PAUSE;
-            times.extend([start, start + STEP]);
-            places.push(at);
-            at += step.direction * parked[k];
-            places.push(at);
         }
         if places.len() == 1 {
             continue;
@@ -108,19 +111,23 @@ fn channels(
     (channels, samplers)
 }
 
-/// How far each step's parts are put away: so far that nothing that comes after is put there too.
+/// How far beyond its travel each step's parts are put away: so far that nothing that comes after is put there too.
 fn parked(assembly: &Assembly, plan: &Plan, size: f64) -> Vec<f64> {
     let mut distances = vec![0.0; plan.steps.len()];
     let mut taken: Vec<Aabb> = Vec::new();
     // What comes out last stays nearest, so that nothing passes it.
     for (k, step) in plan.steps.iter().enumerate().rev() {
-        distances[k] = step.travel.value + NEAREST * size;
+        distances[k] = NEAREST * size;
         let boxes = step.parts.iter().map(|&p| assembly.parts()[p].bounds());
         let Some(group) = boxes.reduce(|a, b| a.join(&b)).filter(|_| step.within.is_none()) else {
             continue;
         };
-        let at = |distance: f64| {
-            let by = step.direction * distance;
+        // Where the first part of the group ends, as its others do but for what goes back.
+        let own = |leg: &&Leg| leg.parts.contains(&step.parts[0]);
+        let (last, before) = step.path.split_last().expect("a step has a move");
+        let aside: DVec3 = before.iter().filter(own).map(|leg| leg.direction * leg.travel).sum();
+        let at = |beyond: f64| {
+            let by = aside + last.direction * (last.travel + beyond);
             Aabb { low: group.low + by, high: group.high + by }
         };
         for _ in 0..MOST_MOVES {

@@ -12,6 +12,7 @@ use super::{Findings, arrow, graph, short, viewer};
 use crate::blocking::Blocking;
 use crate::map;
 use crate::part::Part;
+use crate::plan::{Leg, Step};
 use crate::rooms::PartRoom;
 
 const STYLE: &str = "body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:70em;\
@@ -21,7 +22,7 @@ text-align:left;vertical-align:top}th{background:#f3f5f8}td.n{text-align:right}\
 td.free{background:#fde3c4}td.overlapping{background:#eac8c8}.wide{overflow-x:auto}\
 .steps{display:grid;grid-template-columns:repeat(auto-fill,minmax(20em,1fr));gap:1em}\
 .graphs{grid-template-columns:repeat(auto-fill,minmax(min(30em,100%),1fr))}.steps figure{margin:0;border:1px solid #ddd;padding:.5em}figure svg{width:100%;height:auto}\
-figcaption{font-size:13px}.warn{background:#fff3e0;border-left:4px solid #f6963a;padding:.5em 1em}";
+figcaption{font-size:13px}.moves{margin:.3em 0 0;padding-left:1.6em}.warn{background:#fff3e0;border-left:4px solid #f6963a;padding:.5em 1em}";
 
 /// Tables of rooms and pictures of graphs are cut off here; the JSON has all.
 const MOST_ROWS: usize = 200;
@@ -163,8 +164,17 @@ fn step_figure(f: &Findings, k: usize, gone: &[bool]) -> Markup {
             figcaption {
                 b { (k + 1) "." } " " (f.bodies.assembly().names(&step.parts).join(", "))
                 @if let Some(w) = step.within { " (of the group of step " (w + 1) ")" }
-                ": " (arrow(step.direction))
-                @if step.travel.value > 0.0 { ", " (short(step.travel.value)) }
+                ": "
+                @if step.path.len() > 1 {
+                    "in " (step.path.len()) " moves"
+                    ol.moves {
+                        @for leg in &step.path { (leg_item(f, leg, "")) }
+                        @for leg in &step.back { (leg_item(f, leg, "back: ")) }
+                    }
+                } @else {
+                    (arrow(step.direction))
+                    @if step.travel.value > 0.0 { ", " (short(step.travel.value)) }
+                }
                 @if !step.surfaces.is_empty() {
                     "; rests on an open surface: "
                     (f.bodies.assembly().names(&step.surfaces).join(", "))
@@ -177,7 +187,14 @@ fn step_figure(f: &Findings, k: usize, gone: &[bool]) -> Markup {
     }
 }
 
-/// What is left, pale, and what moves, on its way out.
+fn leg_item(f: &Findings, leg: &Leg, before: &str) -> Markup {
+    let names = f.bodies.assembly().names(&leg.parts).join(", ");
+    html! {
+        li { (before) (names) ": " (arrow(leg.direction)) @if leg.travel > 0.0 { ", " (short(leg.travel)) } }
+    }
+}
+
+/// What is left, pale, and what moves, on its way out; what made room where it is then.
 fn step_picture(f: &Findings, k: usize, gone: &[bool]) -> String {
     let step = &f.plan.steps[k];
     let parts = f.bodies.assembly().parts();
@@ -185,7 +202,7 @@ fn step_picture(f: &Findings, k: usize, gone: &[bool]) -> String {
     let by = step.direction
         * (step.travel.value * 0.5)
             .clamp(0.12 * (high - low).length(), 0.5 * (high - low).length());
-    let last = step.travel.value == 0.0 && step.within.is_none() && k + 1 == f.plan.steps.len();
+    let last = step.is_last() && k + 1 == f.plan.steps.len();
     let by = if last { DVec3::ZERO } else { by };
     let group = step.within.map(|w| &f.plan.steps[w].parts);
     let there = |p: usize| match group {
@@ -201,24 +218,40 @@ fn step_picture(f: &Findings, k: usize, gone: &[bool]) -> String {
         .filter(|&p| there(p))
         .map(|p| {
             let moves = step.parts.contains(&p);
-            Shown {
-                part: &parts[p],
-                color: p,
-                by: if moves { by } else { DVec3::ZERO },
-                pale: !moves,
-            }
+            let by = aside(step, p) + if moves { by } else { DVec3::ZERO };
+            Shown { part: &parts[p], color: p, by, pale: !moves }
         })
         .collect();
-    let middle = step.parts.iter().map(|&p| f.bodies.bounds(p)).reduce(|a, b| a.join(&b));
-    let arrows: Vec<Arrow> = middle
-        .filter(|_| !last)
-        .map(|b| Arrow {
-            from: b.center(),
-            to: b.center() + by + step.direction * 0.1 * (high - low).length(),
-        })
-        .into_iter()
-        .collect();
+    let long = step.direction * 0.1 * (high - low).length();
+    let arrows = if last { Vec::new() } else { arrows(f, step, by + long) };
     scene::svg(&shown, &arrows)
+}
+
+/// By how much a part has been moved before the last move of a step.
+fn aside(step: &Step, part: usize) -> DVec3 {
+    let before = &step.path[..step.path.len() - 1];
+    let own = before.iter().filter(|leg| leg.parts.contains(&part));
+    own.map(|leg| leg.direction * leg.travel).sum()
+}
+
+/// An arrow for each move of a step, from the middle of what moves; the last one by `out`.
+fn arrows(f: &Findings, step: &Step, out: DVec3) -> Vec<Arrow> {
+    let mut at = vec![DVec3::ZERO; f.bodies.len()];
+    let mut arrows = Vec::new();
+    for (k, leg) in step.path.iter().enumerate() {
+        let bounds = |&part: &usize| {
+            let Aabb { low, high } = f.bodies.bounds(part);
+            Aabb { low: low + at[part], high: high + at[part] }
+        };
+        let Some(all) = leg.parts.iter().map(bounds).reduce(|a, b| a.join(&b)) else { continue };
+        let from = all.center();
+        let by = if k + 1 == step.path.len() { out } else { leg.direction * leg.travel };
+        arrows.push(Arrow { from, to: from + by });
+        for &part in &leg.parts {
+            at[part] += by;
+        }
+    }
+    arrows
 }
 
 fn stuck(f: &Findings) -> Markup {

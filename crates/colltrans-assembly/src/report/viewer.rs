@@ -54,11 +54,14 @@ fn data(f: &Findings) -> Value {
     let count = f.plan.steps.len();
     let steps = f.plan.steps.iter().enumerate().map(|(k, step)| {
         // As in the animation: the last part stays, for there is nothing to take it out of.
-        let stays = k + 1 == count && step.travel.value == 0.0;
-        let way = if stays { 0.0 } else { step.travel.value + 0.35 * size };
+        let beyond = if k + 1 == count && step.is_last() { 0.0 } else { 0.35 * size };
+        let legs = step
+            .shown(beyond)
+            .map(|(leg, motion)| json!({ "parts": leg.parts, "way": motion.to_array() }));
         json!({
             "parts": step.parts,
-            "way": (step.direction * way).to_array(),
+            "legs": legs.collect::<Vec<_>>(),
+            "moves": step.path.len(),
             "along": arrow(step.direction),
             "travel": step.travel.value,
         })

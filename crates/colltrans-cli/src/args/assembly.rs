@@ -7,7 +7,7 @@ use clap::Args;
 use colltrans::glam::DVec3;
 
 use super::directions::WorkArguments;
-use super::values::{direction, length, samples, threads};
+use super::values::{direction, legs, length, samples, threads};
 
 #[derive(Debug, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
@@ -48,6 +48,9 @@ pub(crate) struct AssemblyArguments {
     /// proof; where there is none, ask more directions
     #[arg(long, conflicts_with = "only")]
     pub(crate) prove: bool,
+    /// How many moves, one after another, may take out what no single one does; parts may make room and go back
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = legs)]
+    pub(crate) legs: usize,
     /// Parts that overlap at the start do not block each other until contacts that begin later
     #[arg(long)]
     pub(crate) ignore_overlaps: bool,

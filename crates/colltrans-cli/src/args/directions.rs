@@ -55,6 +55,10 @@ impl WorkArguments {
     pub(crate) fn options(self) -> FreeOptions {
         FreeOptions::DEFAULT.with_depth(self.depth).with_looks(self.looks)
     }
+
+    pub(crate) fn looks(self) -> u64 {
+        self.looks
+    }
 }
 
 impl DirectionsArguments {

@@ -344,15 +344,17 @@ With --json:
    "rooms": [{"part", "direction", "outcome", "distance", "by", "point", "normal",
      "translation", "translation_bounds", "shrunk_distance", "shrunk_distance_bounds" (or "kept_distance", "kept_distance_bounds")}],
    "plan": [{"parts": [...], "direction": [x, y, z], "travel", "travel_bounds",
-     "within", "ignored", "surfaces"}],
+     "path": [{"parts", "direction", "travel"}], "back", "within", "ignored", "surfaces"}],
    "left": [...], "stuck": [{"parts": [...], "because", "directions", "proof": {"proven": cells} or
-     {"asked": directions}, "holds"}],
+     {"asked": directions}, "moves": {"legs", "directions", "places", "complete"} or
+     {"proven": cells} or {"not_asked": why}, "holds"}],
    "maps": [...], "free": [...] (of --free: as of `directions --help`, with "parts")}
   Directions have length 1, so distances are lengths; distance is safe to move by, proven: what stops
   the part has not met in its true place (translation), and the parts, shrunk by half the tolerance
   each or grown by half the length to keep, do not overlap, which they do from grown_ or
   shrunk_distance on. The two of _bounds enclose the number, proven. outcome is "free", "blocked" or
-  "overlapping". A step with "within" takes apart the group that step (from 0) took out.
+  "overlapping". A step with "within" takes apart the group that step (from 0) took out. "path" is
+  its moves, in order: with the last one its parts leave. What made room before goes "back".
 
 With -o DIR: report.html, disassembly.glb, assembly.json, matrix.csv (who meets whom), and for each
 map a .svg, .png and .json, for each part of --free the proof."#;

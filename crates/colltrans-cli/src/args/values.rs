@@ -12,6 +12,9 @@ const UNIT_LENGTH: f64 = 1e-6;
 /// How far it may be from 1 at all: what two digits make of it.
 const FEW_DIGITS: f64 = 0.02;
 
+/// Moves that one step may have.
+const MOST_LEGS: usize = 1_000;
+
 /// A direction: three numbers, or an axis by its name.
 pub(crate) fn direction(text: &str) -> Result<DVec3, String> {
     if let Some(axis) = axis(text.trim()) {
@@ -228,6 +231,14 @@ const MOST_THREADS: usize = 1024;
 
 /// Samples of the sphere, each asked of every part.
 const MOST_SAMPLES: usize = 655_362;
+
+/// How many moves there may be.
+pub(crate) fn legs(text: &str) -> Result<usize, String> {
+    match text.parse() {
+        Ok(count) if (1..=MOST_LEGS).contains(&count) => Ok(count),
+        _ => Err(format!("a number from 1 to {MOST_LEGS} is needed")),
+    }
+}
 
 pub(crate) fn samples(text: &str) -> Result<usize, String> {
     match text.parse::<usize>() {

@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
+use colltrans_assembly::plan::Leg;
 use colltrans_assembly::report::{Findings, facts, glb, html};
 use colltrans_assembly::{Assembly, Fit};
 use colltrans_assembly::{map, record};
@@ -126,9 +127,22 @@ fn summary(f: &Findings) -> String {
     for (k, step) in f.plan.steps.iter().enumerate() {
         let within =
             step.within.map_or(String::new(), |w| format!(", of the group of step {}", w + 1));
-        let [x, y, z] = step.direction.to_array();
-        let way = format!("{} along {x},{y},{z}", step.travel.value);
-        let _ = writeln!(text, "  {}. {}{within}: {way}", k + 1, names(&step.parts));
+        let way = |leg: &Leg| {
+            let [x, y, z] = leg.direction.to_array();
+            format!("{} along {x},{y},{z}", leg.travel)
+        };
+        let head = format!("  {}. {}{within}: ", k + 1, names(&step.parts));
+        if let [leg] = &step.path[..] {
+            let _ = writeln!(text, "{head}{}", way(leg));
+        } else {
+            let _ = writeln!(text, "{head}in {} moves", step.path.len());
+            for leg in &step.path {
+                let _ = writeln!(text, "     {}: {}", names(&leg.parts), way(leg));
+            }
+            for leg in &step.back {
+                let _ = writeln!(text, "     back {}: {}", names(&leg.parts), way(leg));
+            }
+        }
         if let Some(ignored) = step.ignores(assembly) {
             let _ = writeln!(text, "     {}", shown(ignored));
         }

@@ -71,6 +71,21 @@ impl<'a> Bodies<'a> {
         solid.triangles()[triangle as usize].map(|vertex| Spot { moving, vertex })
     }
 
+    /// How many triangles a body has.
+    pub(crate) fn count(&self, moving: bool) -> u32 {
+        self.scene.side(moving).solid.triangles().len() as u32
+    }
+
+    /// No coordinate is larger, and how far one may be off.
+    pub(crate) fn reach(&self) -> [f64; 2] {
+        let of = |corner: &Corner| corner.at.abs().max_element();
+        let noise = self.scene.noise;
+        let all = self.corners.iter().flatten();
+        let off = |corner: &Corner| if corner.exact { 0.0 } else { noise };
+        let most = all.clone().map(off).fold(0.0, f64::max);
+        [all.map(of).fold(0.0, f64::max) + most, most]
+    }
+
     /// The triangle of a view.
     pub(crate) fn triangle(&self, moving: bool, view: u32) -> u32 {
         view - self.scene.side(moving).solid.nodes().len() as u32

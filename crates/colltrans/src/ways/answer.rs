@@ -5,12 +5,13 @@ use std::sync::atomic::AtomicBool;
 use glam::DVec3;
 
 use super::candidates::directions;
+use super::enclosed::{Cells, NoWay, enclosed};
 use super::options::{Searched, WayOptions};
-use super::pairs::{Pair, displaced};
-use super::search::{Group, Move, Scale, Search, border};
+use super::pairs::{Pair, around, displaced};
+use super::search::{Group, Move, Run, Scale, Search, border};
 use crate::answer::CertificateError;
-use crate::body::Placed;
 use crate::body::solid::{AsSolid, Solid};
+use crate::body::{Aabb, Placed};
 use crate::cast::Cast;
 use crate::cast::solid::{SolidCertificate, SolidOptions, StartProof};
 use crate::free::FreeError;
@@ -63,6 +64,8 @@ pub struct LegProof {
 pub enum WaysOut {
     /// This one.
     Found(WayOut),
+    /// There is none by translations, of two bodies, which is proven.
+    Proven(NoWay),
     /// None was found. That is no proof that there is none.
     NotFound {
         /// What was searched.
@@ -121,11 +124,12 @@ impl WaysOut {
     /// How do some of several bodies leave the others? Those that are fixed stay; of the others, any may move, alone
     /// or several as one, before some of them leave. Ends with [`FreeError::Cancelled`] once the flag is set.
     ///
-    /// Legs are told as moves against a *base* that stays: what is fixed, or else the largest body. There is nothing to
-    /// be found of fewer than two bodies, and more than 63 are not searched.
+    /// Legs are told as moves against a *base* that stays: what is fixed, or else the largest body. Of more than two,
+    /// bodies that overlap where they are move as one. There is nothing to be found of fewer than two bodies, and more
+    /// than 63 are not searched.
     ///
     /// # Errors
-    /// As [`Self::of`], of any pair.
+    /// As [`Self::of`]; of more than two bodies none for overlaps.
     pub fn among(
         bodies: &[Placed<'_, Solid>],
         fixed: &[usize],
@@ -136,11 +140,16 @@ impl WaysOut {
             return Ok(Self::NotFound { searched: Searched::default() });
         }
         let tolerance = tolerance(bodies, options)?;
+        let boxes: Vec<Aabb> = bodies.iter().map(around).collect();
         let mut pairs = Vec::new();
         for j in 1..bodies.len() {
             for i in 0..j {
-                pairs.push(Pair::new([bodies[i], bodies[j]], SLACK * tolerance)?);
+                let both = [bodies[i], bodies[j]];
+                pairs.push(Pair::new(both, [boxes[i], boxes[j]], SLACK * tolerance)?);
             }
+        }
+        if let [Pair { overlap: Some(place), .. }] = pairs[..] {
+            return Err(FreeError::Overlapping { place });
         }
         let mask = fixed.iter().filter(|&&k| k < bodies.len()).fold(0, |mask, &k| mask | 1 << k);
         let stays = fixed.iter().copied().find(|&k| k < bodies.len());
@@ -149,9 +158,34 @@ impl WaysOut {
         let who = (bodies.len(), mask | 1 << base, base);
         let scale = scale(bodies, tolerance, options.step);
         let mut search = Search::new(pairs, who, directions, scale, options, cancel);
-        let found = search.run(|moves| certified(bodies, moves, tolerance))?;
+        let provable = bodies.len() == 2 && options.cells > 0;
+        let first = if provable { WayOptions::PLACES_FIRST } else { usize::MAX };
+        let mut run = search.run(first, |moves| certified(bodies, moves, tolerance))?;
+        if provable && !matches!(run, Run::Found(_)) {
+            let placed = [bodies[0], bodies[1]];
+            match enclosed(placed, tolerance, scale.far, options.cells, cancel)? {
+                Cells::Proven(proof) => return Ok(Self::Proven(proof)),
+                Cells::Way(places) => {
+                    let way = (&places[..], scale.grid, if base == 1 { 1.0 } else { -1.0 });
+                    let certified = |moves: &[Move]| certified(bodies, moves, tolerance);
+                    if let Some(legs) = search.shortened(1 - base, way, certified)? {
+                        let searched = search.searched;
+                        return Ok(Self::Found(WayOut { legs, tolerance, searched }));
+                    }
+                }
+                Cells::Spent => (),
+            }
+        }
+        if matches!(run, Run::Paused) {
+            run = search.run(usize::MAX, |moves| certified(bodies, moves, tolerance))?;
+        }
+        let legs = match run {
+            Run::Found(legs) => Some(legs),
+            Run::Ended => search.askew(|moves| certified(bodies, moves, tolerance))?,
+            Run::Paused => None,
+        };
         let searched = search.searched;
-        Ok(match found {
+        Ok(match legs {
             Some(legs) => Self::Found(WayOut { legs, tolerance, searched }),
             None => Self::NotFound { searched },
         })

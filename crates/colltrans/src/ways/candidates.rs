@@ -12,28 +12,32 @@ const MOST: usize = 13;
 /// Axes whose cross product is shorter than this are one.
 const ALIKE: f64 = 1e-6;
 
-/// Directions of length 1, each with its opposite.
+/// Directions of length 1, each with its opposite: those given, or of large facets.
 pub(super) fn directions(bodies: &[Placed<'_, Solid>], given: &[DVec3]) -> Vec<DVec3> {
     let mut axes = Vec::new();
-    if given.is_empty() {
-        for body in bodies {
-            for axis in large(body) {
-                put(&mut axes, axis);
-            }
-        }
-        for k in 0..axes.len().min(MOST) {
-            for l in 0..k {
-                let across = axes[l].cross(axes[k]);
-                put(&mut axes, across);
-            }
-        }
-        axes.truncate(MOST);
-    } else {
-        for &d in given {
-            put(&mut axes, d);
+    for &d in given {
+        put(&mut axes, d);
+    }
+    let axes = if given.is_empty() { of_large_facets(bodies) } else { axes };
+    axes.iter().flat_map(|&axis| [axis, DVec3::ZERO - axis]).collect()
+}
+
+/// Axes of length 1: normals of the largest facets of each body, and what is across two of them; 13 at most.
+pub fn of_large_facets(bodies: &[Placed<'_, Solid>]) -> Vec<DVec3> {
+    let mut axes = Vec::new();
+    for body in bodies {
+        for axis in large(body) {
+            put(&mut axes, axis);
         }
     }
-    axes.iter().flat_map(|&axis| [axis, DVec3::ZERO - axis]).collect()
+    for k in 0..axes.len().min(MOST) {
+        for l in 0..k {
+            let across = axes[l].cross(axes[k]);
+            put(&mut axes, across);
+        }
+    }
+    axes.truncate(MOST);
+    axes
 }
 
 /// The axes of a body that most of its area faces, in the world, the largest first.

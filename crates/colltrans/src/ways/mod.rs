@@ -10,10 +10,15 @@
 
 mod answer;
 mod candidates;
+mod cells;
+mod enclosed;
 mod openings;
 mod options;
 mod pairs;
 mod search;
 
 pub use answer::{Leg, LegProof, WayOut, WaysOut};
-pub use options::{Searched, WayOptions};
+pub use candidates::of_large_facets;
+pub use cells::{Crossing, Room, RoomCell};
+pub use enclosed::NoWay;
+pub use options::{Order, Searched, WayOptions};

@@ -9,6 +9,7 @@
 
 use glam::DVec3;
 
+use crate::body::Aabb;
 use crate::free::{Bodies, View};
 
 /// An open interval.
@@ -59,12 +60,22 @@ impl Question {
 
     /// An interval that holds those of all facets of two nodes, cut to the range.
     fn of_nodes(&self, [a, b]: [&View; 2]) -> Option<Span> {
-        let [d, e] = self.along;
+        let [_, e] = self.along;
         let looks_away = |axis: DVec3, spread: f64| spread < 1.0 && axis.dot(e) <= -spread;
         if looks_away(a.axis, a.spread) || looks_away(-b.axis, b.spread) {
             return None;
         }
-        let (low, high) = (b.low - a.high - self.from, b.high - a.low - self.from);
+        self.of_differences(b.low - a.high - self.from, b.high - a.low - self.from)
+    }
+
+    /// An interval that holds those of all facets in two boxes, cut to the range.
+    pub(super) fn of_boxes(&self, [a, b]: [&Aabb; 2]) -> Option<Span> {
+        self.of_differences(b.low - a.high - self.from, b.high - a.low - self.from)
+    }
+
+    /// The interval of a box of differences, cut to the range.
+    fn of_differences(&self, low: DVec3, high: DVec3) -> Option<Span> {
+        let [d, e] = self.along;
         let mut polygon = Polygon::new([self.end, self.far]);
         for k in 0..3 {
             polygon.cut([d[k], e[k]], high[k]);

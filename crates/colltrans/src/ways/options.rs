@@ -12,10 +12,17 @@ pub struct WayOptions {
     pub tolerance: Option<f64>,
     /// At most so many legs, the last one included.
     pub legs: usize,
+    /// In which order places are left.
+    pub order: Order,
     /// At most so many places are left along all directions.
     pub places: usize,
+    /// At most so many casts of two bodies, all in all; a little more, as a place is ended once it is begun.
+    pub casts: usize,
     /// Pairs of nodes that openings look at, at most, all in all; a little more, as one is ended once it is begun.
     pub looks: u64,
+    /// With two bodies of which no way out is found at [`PLACES_FIRST`](Self::PLACES_FIRST) places: at most so many cells
+    /// of displacements to prove that there is none; 0 for no such proof.
+    pub cells: usize,
     /// A move is worth making if it is this share of the size of the largest body.
     pub step: f64,
     /// Directions to try, with their opposites; none: those of large facets of all bodies, and across two of these.
@@ -27,8 +34,11 @@ impl Default for WayOptions {
         Self {
             tolerance: None,
             legs: 12,
+            order: Order::FewestLegs,
             places: 2_000,
+            casts: 200_000,
             looks: 50_000_000,
+            cells: 20_000,
             step: 0.02,
             directions: Vec::new(),
         }
@@ -36,6 +46,9 @@ impl Default for WayOptions {
 }
 
 impl WayOptions {
+    /// Places that are left before it is tried to prove that there is no way.
+    pub const PLACES_FIRST: usize = 100;
+
     /// With a tolerance, a length, or the default one. It is checked where it is used.
     #[must_use]
     pub fn with_tolerance(self, tolerance: impl Into<Option<f64>>) -> Self {
@@ -46,6 +59,18 @@ impl WayOptions {
     #[must_use]
     pub fn with_legs(self, legs: usize) -> Self {
         Self { legs, ..self }
+    }
+
+    /// With an order.
+    #[must_use]
+    pub fn with_order(self, order: Order) -> Self {
+        Self { order, ..self }
+    }
+
+    /// With a number of casts.
+    #[must_use]
+    pub fn with_casts(self, casts: usize) -> Self {
+        Self { casts, ..self }
     }
 
     /// With a number of places.
@@ -60,6 +85,12 @@ impl WayOptions {
         Self { looks, ..self }
     }
 
+    /// With a number of cells for a proof that there is no way; 0 for none.
+    #[must_use]
+    pub fn with_cells(self, cells: usize) -> Self {
+        Self { cells, ..self }
+    }
+
     /// With a least move, as a share of the largest body's size.
     #[must_use]
     pub fn with_step(self, step: f64) -> Self {
@@ -71,6 +102,21 @@ impl WayOptions {
     pub fn with_directions(self, directions: Vec<DVec3>) -> Self {
         Self { directions, ..self }
     }
+}
+
+/// In which order places are left.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum Order {
+    /// The fewest legs first: breadth first.
+    #[default]
+    FewestLegs,
+    /// Those in regions where few places are, and with few legs: best first.
+    NewestFirst,
 }
 
 /// What was searched.
@@ -88,6 +134,8 @@ pub struct Searched {
     pub openings: usize,
     /// Pairs of nodes looked at for them.
     pub looks: u64,
+    /// Pairs of bodies of which all free directions were asked for, for a skew last leg.
+    pub free_sets: usize,
     /// Whether all places that these moves lead to were left: no limit ended the search.
     pub complete: bool,
 }

@@ -7,8 +7,8 @@ use glam::DVec3;
 use super::openings::Question;
 use super::options::Searched;
 use crate::answer::{Clearance, SolidSteps};
-use crate::body::Placed;
 use crate::body::solid::Solid;
+use crate::body::{Aabb, Placed};
 use crate::cast::Cast;
 use crate::cast::solid::SolidOptions;
 use crate::free::{Bodies, FreeError};
@@ -27,31 +27,42 @@ type OpeningKey = ([u64; 3], [usize; 2], [u64; 2]);
 /// Two bodies, as they are planned with.
 pub(super) struct Pair<'a> {
     placed: [Placed<'a, Solid>; 2],
-    tolerance: f64,
-    bodies: Bodies<'a>,
+    /// In the world, a little larger than the bodies.
+    boxes: [Aabb; 2],
+    pub(super) tolerance: f64,
+    /// Where they overlap as they are, if they do: then they move as one.
+    pub(super) overlap: Option<overlap::Overlap>,
+    /// Made when openings are first asked for.
+    bodies: Option<Bodies<'a>>,
     rooms: HashMap<Key, f64>,
     blocked: HashMap<OpeningKey, Vec<[f64; 2]>>,
     workspace: Workspace,
 }
 
 impl<'a> Pair<'a> {
+    /// Of bodies with their [boxes](around).
+    ///
     /// # Errors
-    /// Bodies that cannot be asked about, are open or overlap.
-    pub(super) fn new(placed: [Placed<'a, Solid>; 2], tolerance: f64) -> Result<Self, FreeError> {
-        let options = SolidOptions::default().with_tolerance(tolerance);
-        let cast = Cast::new(placed[0], placed[1], DVec3::Z)?.with_options(options)?;
+    /// Bodies that cannot be asked about, or are open.
+    pub(super) fn new(
+        placed: [Placed<'a, Solid>; 2],
+        boxes: [Aabb; 2],
+        tolerance: f64,
+    ) -> Result<Self, FreeError> {
         for (which, body) in [("moving", &placed[0]), ("fixed", &placed[1])] {
             if !body.body.is_closed() {
                 return Err(FreeError::Open { which });
             }
         }
-        let scene = cast.asked_of_something()?;
-        if let Some(place) = overlap::find(&scene, &mut SolidSteps::default()) {
-            return Err(FreeError::Overlapping { place });
-        }
-        let bodies = Bodies::new(scene);
+        let cast = standing(placed, tolerance)?;
+        let overlap = if boxes[0].meets(&boxes[1]) {
+            overlap::find(&cast.asked_of_something()?, &mut SolidSteps::default())
+        } else {
+            None
+        };
         let (rooms, blocked) = (HashMap::new(), HashMap::new());
-        Ok(Self { placed, tolerance, bodies, rooms, blocked, workspace: Workspace::default() })
+        let (bodies, workspace) = (None, Workspace::default());
+        Ok(Self { placed, boxes, tolerance, overlap, bodies, rooms, blocked, workspace })
     }
 
     /// How far the first body, displaced by `by`, goes along a direction of length 1.
@@ -61,21 +72,56 @@ impl<'a> Pair<'a> {
         (number, d): (usize, DVec3),
         searched: &mut Searched,
     ) -> Result<f64, QueryError> {
+        if self.overlap.is_some() {
+            return Ok(0.0);
+        }
+        if !self.may_meet(by, d) {
+            return Ok(f64::INFINITY);
+        }
         let key = (bits(by), number);
         if let Some(&room) = self.rooms.get(&key) {
             return Ok(room);
         }
+        let room = self.room_along(by, d, searched)?;
+        self.rooms.insert(key, room);
+        Ok(room)
+    }
+
+    /// The same along any direction of length 1, asked anew.
+    pub(super) fn room_along(
+        &mut self,
+        by: DVec3,
+        d: DVec3,
+        searched: &mut Searched,
+    ) -> Result<f64, QueryError> {
         searched.casts += 1;
         let options =
             SolidOptions::default().with_tolerance(self.tolerance).with_overlapping(false);
         let cast = displaced(self.placed, by, d)?.with_options(options)?;
-        let room = match cast.clearance_in(&mut self.workspace)? {
+        Ok(match cast.clearance_in(&mut self.workspace)? {
             Clearance::Blocked { contact, .. } => contact.shrunk_distance.value.max(0.0),
             Clearance::Free(_) => f64::INFINITY,
             Clearance::Overlapping(_) => 0.0,
-        };
-        self.rooms.insert(key, room);
-        Ok(room)
+        })
+    }
+
+    /// Whether the box of the first, displaced by `by`, meets that of the second along a direction.
+    fn may_meet(&self, by: DVec3, d: DVec3) -> bool {
+        let [a, b] = &self.boxes;
+        let (mut enter, mut exit) = (0.0_f64, f64::INFINITY);
+        for k in 0..3 {
+            let (low, high) = (b.low[k] - a.high[k] - by[k], b.high[k] - a.low[k] - by[k]);
+            if d[k] == 0.0 {
+                if low > 0.0 || high < 0.0 {
+                    return false;
+                }
+                continue;
+            }
+            let (x, y) = (low / d[k], high / d[k]);
+            enter = enter.max(x.min(y));
+            exit = exit.min(x.max(y));
+        }
+        enter <= exit
     }
 
     /// Where along the first of two directions the first body cannot go `far` along the second.
@@ -86,15 +132,57 @@ impl<'a> Pair<'a> {
         along: [DVec3; 2],
         [end, far]: [f64; 2],
         searched: &mut Searched,
-    ) -> &[[f64; 2]] {
-        let bodies = &self.bodies;
+    ) -> Result<&[[f64; 2]], QueryError> {
+        let question = Question { from: by, along, end, far };
+        let [a, b] = &self.boxes;
+        if question.of_boxes([a, b]).is_none() {
+            return Ok(&[]);
+        }
+        let bodies = match &mut self.bodies {
+            Some(bodies) => bodies,
+            none => {
+                let scene = standing(self.placed, self.tolerance)?.asked_of_something()?;
+                none.insert(Bodies::new(scene))
+            }
+        };
         let ask = || {
             searched.openings += 1;
-            Question { from: by, along, end, far }.blocked(bodies, &mut searched.looks)
+            question.blocked(bodies, &mut searched.looks)
         };
         let key = (bits(by), numbers, [end.to_bits(), far.to_bits()]);
-        self.blocked.entry(key).or_insert_with(ask)
+        Ok(self.blocked.entry(key).or_insert_with(ask))
     }
+
+    /// Of directions from a number on nothing is kept.
+    pub(super) fn forget_rooms(&mut self, from: usize) {
+        self.rooms.retain(|key, _| key.1 < from);
+    }
+
+    /// The first one displaced by `by`, and the second.
+    pub(super) fn placed(&self, by: DVec3) -> Result<[Placed<'a, Solid>; 2], QueryError> {
+        let [a, b] = self.placed;
+        Ok([a.body.at(moved(a, by)?), b])
+    }
+}
+
+/// The box of a placed body, in the world, larger by more than rounding.
+pub(super) fn around(body: &Placed<'_, Solid>) -> Aabb {
+    let pose = &body.pose;
+    let points = body.body.vertices().iter().map(|v| pose.transform_point(*v));
+    let tight = Aabb::of_points(points);
+    tight.grown(1e-12 * tight.low.abs().max(tight.high.abs()).max_element())
+}
+
+/// Both where they are.
+pub(super) fn standing(
+    [a, b]: [Placed<'_, Solid>; 2],
+    tolerance: f64,
+) -> Result<Cast<'_, Solid>, QueryError> {
+    Cast::new(a, b, DVec3::Z)?.with_options(SolidOptions::default().with_tolerance(tolerance))
+}
+
+fn moved(a: Placed<'_, Solid>, by: DVec3) -> Result<crate::Pose, QueryError> {
+    a.pose.translated(by).map_err(|_| QueryError::Direction { direction: by })
 }
 
 /// The cast of one body against another, displaced by a vector.
@@ -103,6 +191,5 @@ pub(super) fn displaced(
     by: DVec3,
     d: DVec3,
 ) -> Result<Cast<'_, Solid>, QueryError> {
-    let pose = a.pose.translated(by).map_err(|_| QueryError::Direction { direction: by })?;
-    Cast::new(a.body.at(pose), b, d)
+    Cast::new(a.body.at(moved(a, by)?), b, d)
 }

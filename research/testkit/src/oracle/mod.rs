@@ -7,10 +7,11 @@
 //! ([`simplex`]) and the exact sideways overlap ([`shadow`]). Algorithms that compute distances are
 //! judged by [`distance`], answers of the library about distance and depth by [`nearest`], about one
 //! body among many by [`among`], casts that keep a gap by [`keep`], bodies that
-//! turn by [`motion`].
+//! turn by [`motion`], burrs by [`cubes`].
 
 pub mod among;
 pub mod check;
+pub mod cubes;
 pub mod distance;
 pub mod exact;
 pub mod fuzz;

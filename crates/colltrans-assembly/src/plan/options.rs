@@ -1,0 +1,50 @@
+//! Choices.
+
+use colltrans::solid::StartOverlap;
+
+/// Choices for a plan.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct PlanOptions {
+    /// What overlaps at the start mean: parts that overlap move as one, or what they do later counts.
+    pub start: StartOverlap,
+    /// How many directions to sample for what no other direction moves; 0 for none.
+    pub samples: usize,
+    /// How many moves, one after another, may take out what no single one does; 1 for none.
+    pub legs: usize,
+    /// Work for those of what is stuck together, each time: pairs of nodes looked at, as of
+    /// [`WayOptions`](colltrans::ways::WayOptions).
+    pub looks: u64,
+}
+
+impl Default for PlanOptions {
+    fn default() -> Self {
+        Self { start: StartOverlap::Refuse, samples: 162, legs: 2, looks: 20_000_000 }
+    }
+}
+
+impl PlanOptions {
+    /// The same with another [`start`](Self::start).
+    #[must_use]
+    pub fn with_start(self, start: StartOverlap) -> Self {
+        Self { start, ..self }
+    }
+
+    /// The same with another [`samples`](Self::samples).
+    #[must_use]
+    pub fn with_samples(self, samples: usize) -> Self {
+        Self { samples, ..self }
+    }
+
+    /// The same with another number of [`legs`](Self::legs).
+    #[must_use]
+    pub fn with_legs(self, legs: usize) -> Self {
+        Self { legs, ..self }
+    }
+
+    /// The same with another amount of [work](Self::looks).
+    #[must_use]
+    pub fn with_looks(self, looks: u64) -> Self {
+        Self { looks, ..self }
+    }
+}

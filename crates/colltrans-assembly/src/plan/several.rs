@@ -1,0 +1,189 @@
+//! Several moves, where no single one takes anything out.
+//!
+//! [`WaysOut`] looks for legs that take some parts away from the others, and proves them. What was moved aside goes
+//! back along the same lines, the last leg first, once they have left. Back along a leg each pair of parts is in the
+//! same places as along it, so the same proofs hold: of what is still there and, by itself, of what has left. So all
+//! parts stand where they stood, and one matrix answers for every state of a plan. Nothing is lost by that: whatever
+//! the parts that are left can do with others there, they can do without them.
+
+use colltrans::ways::{self, Searched, WayOptions, WayOut, WaysOut, of_large_facets};
+use colltrans::{Placed, Pose, Solid, free::FreeError, solid::StartOverlap};
+use glam::DVec3;
+
+use super::{Leg, PlanOptions};
+use crate::blocking::Blocking;
+use crate::bodies::Bodies;
+use crate::error::AssemblyError;
+use crate::matrix::Matrix;
+use crate::watch::Watch;
+
+/// Axes that are tried, at most.
+const MOST_AXES: usize = 13;
+/// Parts, at most.
+const MOST_PARTS: usize = 63;
+/// Axes whose cross product is shorter are one.
+const ALIKE: f64 = 1e-6;
+
+/// What is known of several moves, one after another, where no single one takes anything out.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub enum Moves {
+    /// They were not looked for, and why.
+    NotAsked(&'static str),
+    /// Of two parts, which is proven: no translations one after another take one from the other.
+    Proven {
+        /// Cells of displacements that prove it.
+        cells: usize,
+    },
+    /// Of up to so many moves none were found. That is no proof that there are none.
+    NotFound {
+        /// Moves, the last one included.
+        legs: usize,
+        /// What was searched.
+        searched: Searched,
+    },
+}
+
+/// Moves that take a group out, the last one apart.
+pub(super) struct Aside {
+    /// Those before the last one.
+    pub(super) legs: Vec<Leg>,
+    /// The same, as vectors.
+    pub(super) motions: Vec<DVec3>,
+    /// What goes back afterwards.
+    pub(super) back: Vec<Leg>,
+    /// The group, and where to.
+    pub(super) parts: Vec<usize>,
+    pub(super) direction: DVec3,
+}
+
+/// Moves that take some of the parts that are left out, or what is known of them; of two parts, if asked for, a proof
+/// that there are none.
+pub(super) fn search(
+    bodies: &Bodies,
+    left: &[usize],
+    matrix: &Matrix,
+    (options, proving): (PlanOptions, bool),
+    watch: Watch,
+) -> Result<Result<Aside, Moves>, AssemblyError> {
+    if let Some(why) = not_asked(bodies, left, options) {
+        return Ok(Err(Moves::NotAsked(why)));
+    }
+    let parts = bodies.assembly().parts();
+    let placed: Vec<_> = left.iter().map(|&k| parts[k].solid().at(Pose::IDENTITY)).collect();
+    let fixed: Vec<usize> = (0..left.len()).filter(|&k| parts[left[k]].fixed()).collect();
+    let legs = options.legs;
+    let cells = if proving { WayOptions::default().cells } else { 0 };
+    let options = WayOptions::default()
+        .with_cells(cells)
+        .with_tolerance(bodies.fit().tolerance())
+        .with_legs(legs)
+        .with_looks(options.looks)
+        .with_directions(directions(bodies, left, &placed, matrix));
+    let found = WaysOut::among(&placed, &fixed, &options, watch.flag());
+    let way = match found {
+        Ok(WaysOut::Found(way)) => way,
+        Ok(WaysOut::Proven(proof)) => {
+            let [a, b] = [&placed[0], &placed[1]];
+            proof.verify(a, b).map_err(refused)?;
+            return Ok(Err(Moves::Proven { cells: proof.cells() }));
+        }
+        Ok(WaysOut::NotFound { searched }) => return Ok(Err(Moves::NotFound { legs, searched })),
+        Err(FreeError::Overlapping { .. }) => {
+            let why = "they overlap with 0.8 of the tolerance, with which moves are planned";
+            return Ok(Err(Moves::NotAsked(why)));
+        }
+        Err(error) => return Err(refused(error)),
+    };
+    way.verify(&placed).map_err(refused)?;
+    Ok(Ok(aside(bodies.len(), left, &way)))
+}
+
+fn refused(error: FreeError) -> AssemblyError {
+    match error {
+        FreeError::Cancelled => AssemblyError::Cancelled,
+        other => AssemblyError::Free(other),
+    }
+}
+
+/// Why several moves are not looked for: parts that do not stop each other as they are, among others.
+fn not_asked(bodies: &Bodies, left: &[usize], options: PlanOptions) -> Option<&'static str> {
+    let assembly = bodies.assembly();
+    let pairs = || left.iter().flat_map(|&a| left.iter().map(move |&b| [a, b]));
+    let ignored = |[a, b]: [usize; 2]| assembly.ignored(a, b).is_some();
+    let lets_pass = options.start == StartOverlap::Ignore;
+    if options.legs < 2 {
+        Some("no more than one was asked for")
+    } else if bodies.fit().tolerance() < 0.0 {
+        Some("the parts are to be kept apart")
+    } else if left.len() > MOST_PARTS {
+        Some("there are more than 63 parts")
+    } else if left.iter().any(|&k| assembly.parts()[k].is_surface()) {
+        Some("there are open surfaces among them")
+    } else if pairs().any(|p| ignored(p) || lets_pass && bodies.overlaps(p[0], p[1])) {
+        Some("overlaps among them are ignored")
+    } else {
+        None
+    }
+}
+
+/// Axes of large facets, and those of the matrix if anything can move by a step along one of them.
+fn directions(
+    bodies: &Bodies,
+    left: &[usize],
+    placed: &[Placed<'_, Solid>],
+    matrix: &Matrix,
+) -> Vec<DVec3> {
+    let mut axes = of_large_facets(placed);
+    if anything_moves(bodies, left, matrix) {
+        for &d in matrix.directions() {
+            if axes.len() < MOST_AXES && !axes.iter().any(|a| a.cross(d).length() < ALIKE) {
+                axes.push(d);
+            }
+        }
+    }
+    axes
+}
+
+/// Whether a group can go by a step along a direction of the matrix.
+fn anything_moves(bodies: &Bodies, left: &[usize], matrix: &Matrix) -> bool {
+    let mut among = vec![false; bodies.len()];
+    for &k in left {
+        among[k] = true;
+    }
+    let size = |&k: &usize| bodies.bounds(k).size().max_element();
+    let step = WayOptions::default().step * left.iter().map(size).fold(0.0, f64::max);
+    let fixed = |k: &usize| bodies.assembly().parts()[*k].fixed();
+    (0..matrix.directions().len()).any(|k| {
+        let met = matrix.meetings(k).iter().filter(|m| m.displaced_distance() < step);
+        let graph = Blocking::from_arcs(met.map(|m| (m.moving, m.fixed)), &among);
+        graph.removable().iter().any(|g| g.len() < left.len() && !g.iter().any(fixed))
+    })
+}
+
+/// The moves with the numbers of all parts, and how what made room goes back.
+fn aside(count: usize, left: &[usize], way: &WayOut) -> Aside {
+    let parts = |leg: &ways::Leg| leg.bodies.iter().map(|&k| left[k]).collect::<Vec<_>>();
+    let (last, before) = way.legs.split_last().expect("a way has a leg");
+    let (mut at, mut legs, mut back) = (vec![DVec3::ZERO; count], Vec::new(), Vec::new());
+    for leg in before {
+        let parts = parts(leg);
+        for &part in &parts {
+            at[part] += leg.motion;
+        }
+        legs.push(Leg { parts, direction: leg.direction, travel: leg.travel });
+    }
+    let gone = parts(last);
+    // What left as it stood need not go back.
+    let as_it_stood = gone.iter().all(|&part| at[part] == at[gone[0]]);
+    for leg in legs.iter().rev() {
+        let mut moved = leg.parts.clone();
+        moved.retain(|part| !(as_it_stood && gone.contains(part)));
+        if !moved.is_empty() {
+            let direction = DVec3::ZERO - leg.direction;
+            back.push(Leg { parts: moved, direction, travel: leg.travel });
+        }
+    }
+    let motions = before.iter().map(|leg| leg.motion).collect();
+    Aside { legs, motions, back, parts: gone, direction: last.direction }
+}

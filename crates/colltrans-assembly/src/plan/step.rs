@@ -1,0 +1,74 @@
+//! A step of a plan: a group that is taken out, in one straight move or in several.
+
+use colltrans::Bounded;
+use glam::DVec3;
+
+use crate::part::Assembly;
+
+/// Pairs that are ignored are named up to so many for a step.
+const MOST_NAMED: usize = 4;
+
+/// A straight move of some parts, as one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Leg {
+    /// Positions of the parts, in increasing order.
+    pub parts: Vec<usize>,
+    /// Where to, of length 1.
+    pub direction: DVec3,
+    /// How far.
+    pub travel: f64,
+}
+
+/// A group that is taken out.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Step {
+    /// Positions of the parts, in increasing order.
+    pub parts: Vec<usize>,
+    /// Where to, of length 1; of several moves that of the one which takes them out.
+    pub direction: DVec3,
+    /// How far until it lies wholly beyond what is left; 0 if nothing is ahead. What the boxes of their
+    /// shadows miss by more than rounding is not ahead. Of several moves that of the last one.
+    pub travel: Bounded,
+    /// The moves that take the group out, in order: of it, or of parts that make room. With the last one the group
+    /// leaves, along `direction` for `travel`; mostly there is no other.
+    pub path: Vec<Leg>,
+    /// How what made room goes back to its place, by the same ways reversed, once the group has left; and parts of the
+    /// group, if it left with one moved against another. So after each step what is left stands where it stood.
+    pub back: Vec<Leg>,
+    /// For a step that takes a group apart: the step that took the group out.
+    pub within: Option<usize>,
+    /// What the step does not speak of: of each pair the first part moves and the second stays, and
+    /// their overlap at the start, or all that they do, is ignored on request.
+    pub ignored: Vec<[usize; 2]>,
+    /// The open surfaces that it rests on, in increasing order: of the group, and of what is left and in
+    /// its way or beside it. What they block is known; what is inside of them is not.
+    pub surfaces: Vec<usize>,
+}
+
+impl Step {
+    /// What it does not speak of, in words; `None` if there is nothing.
+    pub fn ignores(&self, assembly: &Assembly) -> Option<String> {
+        let pair = |p: &[usize; 2]| assembly.names(p).join(" and ");
+        let named: Vec<String> = self.ignored.iter().take(MOST_NAMED).map(pair).collect();
+        let more = match self.ignored.len().saturating_sub(MOST_NAMED) {
+            0 => String::new(),
+            more => format!(" and {more} more pairs"),
+        };
+        (!named.is_empty()).then(|| format!("ignored: {}{more}", named.join(", ")))
+    }
+
+    /// Whether there is nothing that it leads away from: the last part of all, or the last parts as one.
+    pub fn is_last(&self) -> bool {
+        self.travel.value == 0.0 && self.within.is_none() && self.path.len() == 1
+    }
+
+    /// All moves, as a picture shows them: the group goes `beyond` its travel before anything goes back.
+    pub fn shown(&self, beyond: f64) -> impl Iterator<Item = (&Leg, DVec3)> {
+        let last = self.path.len() - 1;
+        self.path.iter().chain(&self.back).enumerate().map(move |(k, leg)| {
+            let travel = if k == last { leg.travel + beyond } else { leg.travel };
+            (leg, leg.direction * travel)
+        })
+    }
+}

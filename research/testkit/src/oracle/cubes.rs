@@ -1,0 +1,143 @@
+//! The judge of burrs: pieces of unit cubes that move by whole units, all moves tried.
+//!
+//! A state is how far each piece is displaced; one piece stays. A move takes any of the others, as one, some units
+//! along an axis, and ends where it would hit. Breadth first, so the first move after which a group is wholly beyond
+//! the others' box has the fewest moves before it. Between whole places nothing changes: a cube that moves by one unit
+//! passes through the two cells it begins and ends in and no others.
+
+use std::collections::{HashSet, VecDeque};
+
+type Cell = [i32; 3];
+
+/// Pieces of unit cubes, by their lowest corners.
+#[derive(Debug, Clone)]
+pub struct Cubes {
+    /// The cells of each piece.
+    pub pieces: Vec<Vec<Cell>>,
+}
+
+/// A group of pieces that leaves, after so many moves, its own included.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Leaves {
+    /// The moves.
+    pub moves: usize,
+    /// The pieces, a bit each.
+    pub group: u32,
+}
+
+impl Cubes {
+    /// The fewest moves after which some pieces have left the others; `None` if no moves do that.
+    pub fn level(&self) -> Option<Leaves> {
+        let all: Vec<usize> = (0..self.pieces.len()).collect();
+        self.level_among(&all, usize::MAX)
+    }
+
+    /// Whether everything can be taken apart, piece by piece and group by group.
+    pub fn comes_apart(&self) -> bool {
+        let mut groups = vec![(0..self.pieces.len()).collect::<Vec<_>>()];
+        while let Some(group) = groups.pop() {
+            if group.len() < 2 {
+                continue;
+            }
+            // With what has left gone, whatever could be done with it can be done without it.
+            let Some(Leaves { group: gone, .. }) = self.level_among(&group, usize::MAX) else {
+                return false;
+            };
+            let (out, rest) = group.iter().partition(|&&k| gone >> k & 1 == 1);
+            groups.extend([out, rest]);
+        }
+        true
+    }
+
+    /// The same of some pieces, with at most so many moves.
+    pub fn level_among(&self, among: &[usize], most: usize) -> Option<Leaves> {
+        let count = among.len();
+        if count < 2 {
+            return None;
+        }
+        let far = self.extent();
+        let start = vec![[0; 3]; count];
+        let (mut seen, mut queue) = (HashSet::from([start.clone()]), VecDeque::from([(start, 0)]));
+        while let Some((at, moves)) = queue.pop_front() {
+            if moves == most {
+                continue;
+            }
+            // The last one stays.
+            for group in 1..(1_u32 << (count - 1)) {
+                for (axis, sign) in (0..3).flat_map(|axis| [(axis, 1), (axis, -1)]) {
+                    let mut to = at.clone();
+                    for steps in 1.. {
+                        for (k, place) in to.iter_mut().enumerate() {
+                            place[axis] += if group >> k & 1 == 1 { sign } else { 0 };
+                        }
+                        if self.hits(among, &to, group) {
+                            break;
+                        }
+                        if steps > 2 * far {
+                            let own = (0..count).filter(|k| group >> k & 1 == 1);
+                            let group = own.map(|k| 1 << among[k]).sum();
+                            return Some(Leaves { moves: moves + 1, group });
+                        }
+                        if seen.insert(to.clone()) {
+                            queue.push_back((to.clone(), moves + 1));
+                        }
+                    }
+                }
+            }
+        }
+        None
+    }
+
+    fn extent(&self) -> i32 {
+        let all = || self.pieces.iter().flatten().flatten();
+        all().max().unwrap_or(&0) - all().min().unwrap_or(&0) + 1
+    }
+
+    /// Whether a piece of a group has a cell in common with one outside.
+    fn hits(&self, among: &[usize], at: &[Cell], group: u32) -> bool {
+        let cells = |inside: bool| {
+            let own = (0..among.len()).filter(move |k| (group >> k & 1 == 1) == inside);
+            own.flat_map(move |k| {
+                let cells = &self.pieces[among[k]];
+                cells.iter().map(move |c| [0, 1, 2].map(|axis| c[axis] + at[k][axis]))
+            })
+        };
+        let outside: HashSet<Cell> = cells(false).collect();
+        cells(true).any(|cell| outside.contains(&cell))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn bar(from: Cell, to: Cell) -> Vec<Cell> {
+        let mut cells = Vec::new();
+        for x in from[0]..to[0] {
+            for y in from[1]..to[1] {
+                cells.extend((from[2]..to[2]).map(|z| [x, y, z]));
+            }
+        }
+        cells
+    }
+
+    #[test]
+    fn closed_forms() {
+        let beside = Cubes { pieces: vec![bar([0, 0, 0], [1, 1, 1]), bar([1, 0, 0], [2, 1, 1])] };
+        assert_eq!(beside.level(), Some(Leaves { moves: 1, group: 1 }));
+        // A key in a slot: along it, and then up.
+        let mut slot = bar([0, 0, 0], [7, 3, 3]);
+        let hollow = |c: &Cell| {
+            let inside = (1..6).contains(&c[0]) && c[1] == 1;
+            inside && (c[2] == 1 || (c[2] == 2 && c[0] >= 4))
+        };
+        slot.retain(|c| !hollow(c));
+        let key = Cubes { pieces: vec![bar([1, 1, 1], [3, 2, 2]), slot.clone()] };
+        assert_eq!(key.level(), Some(Leaves { moves: 2, group: 1 }));
+        assert!(key.comes_apart());
+        // Longer than the opening.
+        let stuck = Cubes { pieces: vec![bar([1, 1, 1], [4, 2, 2]), slot] };
+        assert_eq!(stuck.level(), None);
+        assert!(!stuck.comes_apart());
+    }
+}

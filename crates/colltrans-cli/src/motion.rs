@@ -1,90 +1,152 @@
-//! `colltrans motion`: when two convex meshes, of which one turns, first meet.
+//! `colltrans motion`: when convex meshes that turn first meet others.
 
+use colltrans::glam::DVec3;
 use colltrans::motion::{Motion, MotionCast, MotionOutcome, MotionProofFile};
-use colltrans::record::{Ending, FeaturesRecord, MotionRecord, TimeRecord};
+use colltrans::record::{Ending, FeaturesRecord, Record, TimeRecord};
 
-use crate::args::MotionArguments;
-use crate::body;
-use crate::cast;
-use crate::failure::{Code, Failure, note, print, print_json};
+use crate::args::{MotionArguments, Sides};
+use crate::body::{self, Part};
+use crate::failure::{Code, Failure, note, print};
 use crate::numbers::{counted, known, known_vector, number, unit_vector};
 use crate::proof::{self, refuse_proof};
-use crate::record::Hulls;
-use crate::report::{feature, line};
+use crate::record::{Hulls, Line};
+use crate::replay;
+use crate::report::{feature, hulls, kept, line};
 
 pub(crate) fn run(arguments: &MotionArguments) -> Result<(), Failure> {
-    let files = [&*arguments.moving, &*arguments.fixed];
-    refuse_proof(arguments.save_proof.as_deref(), None, &files)?;
-    let [start, there] = arguments.places.poses()?;
-    let motion = arguments.motion(start)?;
-    let parts = cast::load(files, &arguments.body_options());
-    let parts = parts.map_err(|error| Failure::new(Code::Input, body::refusal(&error)))?;
-    arguments.places.notes().iter().flatten().for_each(|text| note(text));
-    parts.iter().flat_map(|part| &part.notes).for_each(|text| note(text));
-    if let Some(hulls) = Hulls::of(parts.each_ref()) {
-        hulls.named().for_each(|(name, excess)| note(&format!("{name}: {excess}")));
+    let Sides { files, .. } = arguments.sides()?;
+    let inputs: Vec<&_> = files.into_iter().flatten().map(AsRef::as_ref).collect();
+    refuse_proof(arguments.save_proof.as_deref(), None, &inputs)?;
+    if arguments.save_proof.is_some() && inputs.len() > 2 {
+        let why = "--save-proof is of two meshes; ask about the one that touches alone";
+        return Err(Failure::new(Code::Usage, why));
     }
-    let cast = MotionCast::new(parts[0].body.along(&motion), parts[1].body.at(there))?;
-    let cast = if arguments.tolerance > 0.0 {
-        cast.tolerating(arguments.tolerance)?
-    } else {
-        cast.keeping(arguments.keep)?
+    let motions = arguments.motions()?;
+    let options = arguments.body_options();
+    let load = |k: usize| -> Result<Vec<Part>, Failure> {
+        let parts = files[k].iter().map(|file| body::load(file, &options[k]));
+        let parts: Result<_, _> = parts.collect();
+        parts.map_err(|error| Failure::new(Code::Input, body::refusal(&error)))
     };
-    let outcome = cast.first_contact()?;
-    let record = MotionRecord::of(&outcome, &cast);
-    if arguments.json {
-        let written = serde_json::to_string(&record);
-        print_json(&format!(
-            "{}\n",
-            written.map_err(|e| Failure::output("standard output", &e.into()))?
-        ))?;
-    } else {
-        print(&words(&record, &outcome, &motion))?;
-    }
+    let parts = [load(0)?, load(1)?];
+    arguments.places.notes().iter().flatten().for_each(|text| note(text));
+    parts.iter().flatten().flat_map(|part| &part.notes).for_each(|text| note(text));
+    let found = first_of_all(arguments, [&parts[0], &parts[1]], &motions)?;
+    let Found { mut told, pair, cast, outcome } = found;
+    let name =
+        |k: usize| Some(files[k][pair[k]].display().to_string()).filter(|_| files[k].len() > 1);
+    (told.record.moving, told.record.fixed) = (name(0), name(1));
+    print(&if arguments.json { told.json() } else { words(&told, cast.motions()) })?;
     match &arguments.save_proof {
         Some(path) => proof::save_text(path, &MotionProofFile::of(&cast, &outcome).to_json()),
         None => Ok(()),
     }
 }
 
-/// The readable answer.
-fn words(record: &MotionRecord, outcome: &MotionOutcome, motion: &Motion) -> String {
+/// The answer of two of the meshes.
+struct Found<'a> {
+    told: Line,
+    /// Which ones.
+    pair: [usize; 2],
+    cast: MotionCast<'a>,
+    outcome: MotionOutcome,
+}
+
+/// What comes first of all pairs: an overlap when the motion begins, else the least time, else nothing.
+fn first_of_all<'a>(
+    arguments: &MotionArguments,
+    parts: [&'a [Part]; 2],
+    motions: &'a [Motion; 2],
+) -> Result<Found<'a>, Failure> {
+    let mut first: Option<Found<'a>> = None;
+    for (i, moving) in parts[0].iter().enumerate() {
+        for (j, fixed) in parts[1].iter().enumerate() {
+            let cast =
+                MotionCast::new(moving.body.along(&motions[0]), fixed.body.along(&motions[1]))?;
+            let cast = if arguments.tolerance > 0.0 {
+                cast.tolerating(arguments.tolerance)?
+            } else {
+                cast.keeping(arguments.keep)?
+            };
+            let outcome = cast.first_contact();
+            let outcome = outcome.map_err(|error| replay::motion_failure(error, &cast))?;
+            let hull = Hulls::of([moving, fixed]);
+            let told = Line { hull, ..Record::of_motion(&outcome, &cast).into() };
+            let found = Found { told, pair: [i, j], cast, outcome };
+            if first.as_ref().is_none_or(|first| found.begins() < first.begins()) {
+                first = Some(found);
+            }
+        }
+    }
+    // The command line has asked for at least one on each side.
+    first.ok_or_else(|| Failure::new(Code::Usage, "no meshes"))
+}
+
+impl Found<'_> {
+    /// From when on the bodies may meet.
+    fn begins(&self) -> f64 {
+        match (self.told.record.outcome, self.told.record.time) {
+            (Ending::Overlapping, _) => f64::NEG_INFINITY,
+            (_, time) => time.map_or(f64::INFINITY, |time| time.lower),
+        }
+    }
+}
+
+/// The readable answer; `motions` are those of both bodies.
+pub(crate) fn words(told: &Line, motions: [&Motion; 2]) -> String {
+    let record = &told.record;
     let mut text = String::from(match record.outcome {
         Ending::Contact => "contact\n",
         Ending::Grazing => "grazing: the bodies come nearer than rounding can tell\n",
         Ending::Overlapping => "overlapping: the bodies overlap when the motion begins\n",
         _ => "free: the bodies never meet throughout the motion\n",
     });
-    if let Some(TimeRecord { lower, upper }) = record.time {
-        if let Some(upper) = upper {
-            let value = lower + 0.5 * (upper - lower);
-            line(&mut text, "time", &format!("{} of the motion", known(value, upper - lower)));
-            line(&mut text, "bounds", &format!("{} to {}", number(lower), number(upper)));
-        } else {
-            line(&mut text, "no earlier", &number(lower));
+    for (name, file) in [("moving mesh", &record.moving), ("fixed mesh", &record.fixed)] {
+        if let Some(file) = file {
+            line(&mut text, name, file);
         }
-        if let Ok(pose) = motion.at(lower) {
-            let q = pose.rotation();
-            let rotation = [q.x, q.y, q.z, q.w].map(|x| known(x, 1e-14)).join(",");
-            let place = known_vector(pose.translation(), 1e-14);
-            line(&mut text, "pose", &format!("{place},{rotation}"));
+    }
+    if let Some(time) = record.time {
+        times(&mut text, time);
+        pose(&mut text, "pose", motions[0], time.lower);
+        if *motions[1] != Motion::still(motions[1].start()) {
+            pose(&mut text, "fixed pose", motions[1], time.lower);
         }
     }
     if let Some(point) = record.point {
         line(&mut text, "point", &known_vector(point.into(), 1e-12));
     }
     if let Some(normal) = record.normal {
-        line(&mut text, "normal", &unit_vector(normal.into()));
+        line(&mut text, "normal", &unit_vector(DVec3::from_array(normal)));
     }
     if let Some(FeaturesRecord { moving, fixed }) = &record.features {
         line(&mut text, "moving", &feature(moving));
         line(&mut text, "fixed", &feature(fixed));
     }
-    let looks = counted(outcome.steps().looks as usize, "look", "looks");
-    line(
-        &mut text,
-        "proof",
-        &format!("{}, found in {looks}", counted(record.planes, "plane", "planes")),
-    );
+    if let (Some(planes), Some(looks)) = (record.planes, record.looks) {
+        let [planes, looks] =
+            [counted(planes, "plane", "planes"), counted(looks as usize, "look", "looks")];
+        line(&mut text, "proof", &format!("{planes}, found in {looks}"));
+    }
+    kept(&mut text, record);
+    hulls(&mut text, told);
     text
+}
+
+fn times(text: &mut String, TimeRecord { lower, upper }: TimeRecord) {
+    if let Some(upper) = upper {
+        let value = lower + 0.5 * (upper - lower);
+        line(text, "time", &format!("{} of the motion", known(value, upper - lower)));
+        line(text, "bounds", &format!("{} to {}", number(lower), number(upper)));
+    } else {
+        line(text, "no earlier", &number(lower));
+    }
+}
+
+/// Where a body is at a time.
+fn pose(text: &mut String, name: &str, motion: &Motion, time: f64) {
+    let Ok(pose) = motion.at(time) else { return };
+    let q = pose.rotation();
+    let rotation = [q.x, q.y, q.z, q.w].map(|x| known(x, 1e-14)).join(",");
+    line(text, name, &format!("{},{rotation}", known_vector(pose.translation(), 1e-14)));
 }

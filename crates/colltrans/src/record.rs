@@ -27,7 +27,7 @@ use crate::setting::error::QueryError;
 use crate::solve::observe::{NoObserver, Observer};
 use crate::written::{UnknownName, named};
 pub use free::{BlockedByRecord, FreeRecord, FreeRegionRecord};
-pub use motion::{MotionRecord, TimeRecord};
+pub use motion::TimeRecord;
 pub use ways::{LegRecord, WaysRecord};
 
 /// An answer; fields that do not apply are left out, numbers that are infinite are `null`.
@@ -70,6 +70,9 @@ pub struct Record {
     /// Proven: beyond the second they never meet.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub exit_bounds: Option<[f64; 2]>,
+    /// Of a motion: when they first meet, in parts of it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time: Option<TimeRecord>,
     /// Of bodies where they are: a length that their distance, or depth, is not below. Proven.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lower: Option<f64>,
@@ -107,7 +110,7 @@ pub struct Record {
     /// Of convex bodies: what rounding alone can make of the bounds' difference.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rounding: Option<f64>,
-    /// Of solids: the one that was used, a length.
+    /// Of solids: the one that was used, a length. Of a motion of convex bodies: the depth that is tolerated.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub tolerance: Option<f64>,
     /// The gap that is kept, a length: the bodies count as meeting where they are as near as that.
@@ -138,6 +141,12 @@ pub struct Record {
     /// Of convex bodies: how much work it was.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub steps: Option<Steps>,
+    /// Of a motion: how many times of it were looked at.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub looks: Option<u32>,
+    /// Of a motion: how many planes the proof has.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub planes: Option<usize>,
     /// For people: what is wrong.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub message: Option<String>,

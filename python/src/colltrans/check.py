@@ -32,6 +32,10 @@ With the moving body ``P``, the fixed one ``Q``, the direction ``d``, all points
   distance of solids the two points are checked, not that no others are nearer.
 - *One body among many.* Every obstacle is looked at: by what is claimed of it, as above, or else by
   the boxes of both bodies, how far they are apart or when one meets the other on its way.
+- *Motions.* Of bodies that turn, at each plane's time, the gap that it leaves over all vertices,
+  with sine and cosine to 36 digits; between two planes how far the heights of vertices bend from
+  their chords, or how far each rises on its arc; at the time of contact, a surface around the
+  origin as for a depth.
 - *All directions.* Two facets ``f`` and ``g`` block an open cone: ``n_f.d > 0``, ``n_g.d < 0``, and
   ``d`` inside the cone of the nine differences ``g - f``. A cell that they block has its four
   corners in it. What cones leave of any other cell is convex pieces, whose corners are vector
@@ -50,12 +54,14 @@ import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cache
 from itertools import combinations, pairwise, product
 from pathlib import Path
 from typing import Any, TypeAlias
 
 FORMAT = "colltrans proof 1"
 SCENE_FORMAT = "colltrans scene proof 1"
+MOTION_FORMAT = "colltrans motion proof 1"
 Vector: TypeAlias = tuple[Fraction, Fraction, Fraction]
 Matrix: TypeAlias = tuple[Vector, Vector, Vector]
 Triangle: TypeAlias = tuple[Vector, Vector, Vector]
@@ -1305,6 +1311,380 @@ def solid_angle(corners: list[Whole]) -> float:
     return total
 
 
+#: Sines, cosines and roots are known to within this, or to this share of them.
+_TINY = Fraction(1, 2**120)
+#: Binary digits behind the point in what they are computed with.
+_DIGITS = 160
+_ZERO: Vector = (Fraction(), Fraction(), Fraction())
+
+
+def root_above(square: Fraction) -> Fraction:
+    """At least the root of a number, by a share of no more than `_TINY`."""
+    if square <= 0:
+        return Fraction()
+    size = (square.numerator.bit_length() - square.denominator.bit_length()) // 2
+    places = _DIGITS - size
+    scale = Fraction(2) ** (2 * places)
+    return Fraction(math.isqrt(math.ceil(square * scale)) + 1) / Fraction(2) ** places
+
+
+@cache
+def quarter_turn() -> int:
+    """Half of pi with twice the digits, by Machin's formula."""
+    one = 1 << (2 * _DIGITS)
+
+    def arctan(n: int) -> int:
+        total, power, k = 0, one // n, 0
+        while power:
+            total += (-power if k % 2 else power) // (2 * k + 1)
+            power, k = power // (n * n), k + 1
+        return total
+
+    return 2 * (4 * arctan(5) - arctan(239))
+
+
+@cache
+def sine_cosine(angle: Fraction) -> tuple[Fraction, Fraction]:
+    """Of an angle in radians, by Taylor's series of what is left of quarter turns."""
+    one = 1 << _DIGITS
+    fine = math.floor(angle * (1 << (2 * _DIGITS)))
+    quarters = round(Fraction(fine, quarter_turn()))
+    left = (fine - quarters * quarter_turn()) >> _DIGITS
+    cos, sin, term, k = 0, 0, one, 0
+    while term:
+        signed = -term if k % 4 > 1 else term
+        cos, sin = (cos, sin + signed) if k % 2 else (cos + signed, sin)
+        k += 1
+        term = term * abs(left) // (k * one)
+    sin = -sin if left < 0 else sin
+    sin, cos = ((sin, cos), (cos, -sin), (-sin, -cos), (-cos, sin))[quarters % 4]
+    return Fraction(sin, one), Fraction(cos, one)
+
+
+@dataclass
+class Spin:
+    """A convex body while it spins evenly: where ``y`` is, ``place + way (t - since) + E y``.
+
+    ``y`` runs over ``arm + R v``: from a point of the axis to the vertices when it begins. ``E`` is
+    the turn by ``rate (t - since)`` about the axis, which counts as if its length were 1.
+    """
+
+    body: Body
+    since: Fraction
+    arm: Vector
+    axis: Vector
+    rate: Fraction
+    way: Vector
+    #: The squared length of the axis, and one over its length.
+    square: Fraction
+    inverse: Fraction
+    #: At most so far is a point from the axis, and from that point of it.
+    radius: Fraction
+    reach: Fraction
+
+    @classmethod
+    def read(cls, points: list[Vector], piece: Any) -> Spin:
+        body = Body.placed(points, [], piece["start"])
+        arm, axis = vector(piece["arm"]), vector(piece["axis"])
+        rate, way = number(piece["rate"]), vector(piece["velocity"])
+        unit(axis)
+        if abs(rate) > _MOST_TURN:
+            raise NoProofError(f"a turn by {float(rate)!r}")
+        square = dot(axis, axis)
+        ways = [plus(arm, minus(body.at(k), body.offset)) for k in range(len(points))]
+        beside = [cross(axis, y) for y in ways]
+        return cls(
+            body,
+            number(piece["since"]),
+            arm,
+            axis,
+            rate,
+            way,
+            square,
+            1 / root_above(square),
+            root_above(max(dot(y, y) for y in beside) / square),
+            root_above(max(dot(y, y) for y in ways)),
+        )
+
+    def back(self, n: Vector, time: Fraction) -> Vector:
+        """A direction of the world in the body's, when the spin began: ``E' n``."""
+        if self.rate == 0:
+            return n
+        sin, cos = sine_cosine(self.rate * (time - self.since))
+        beside = cross(self.axis, n)
+        found = minus(n, scaled(beside, sin * self.inverse))
+        return plus(found, scaled(cross(self.axis, beside), (1 - cos) / self.square))
+
+    def along(self, n: Vector, time: Fraction) -> list[Fraction]:
+        """``n . E y`` of all points."""
+        u = self.back(n, time)
+        base = dot(u, self.arm) - dot(u, self.body.offset)
+        return [base + height for height in self.body.heights(u)]
+
+    def foot(self, n: Vector, time: Fraction) -> Fraction:
+        """What all heights along a normal have in common."""
+        start = minus(self.body.offset, self.arm)
+        return dot(n, plus(start, scaled(self.way, time - self.since)))
+
+    def at(self, k: int, time: Fraction) -> Vector:
+        """A point in the world."""
+        x, y, z = (
+            self.foot(e, time) + self.one(k, e, time)
+            for e in (
+                (Fraction(1), Fraction(0), Fraction(0)),
+                (Fraction(0), Fraction(1), Fraction(0)),
+                (Fraction(0), Fraction(0), Fraction(1)),
+            )
+        )
+        return x, y, z
+
+    def one(self, k: int, n: Vector, time: Fraction) -> Fraction:
+        u = self.back(n, time)
+        return dot(u, plus(self.arm, minus(self.body.at(k), self.body.offset)))
+
+    def off(self, n: Vector) -> Fraction:
+        """How far ``n . E y`` may be from what is computed, for sine, cosine and root."""
+        return 16 * _TINY * root_above(dot(n, n)) * self.reach if self.rate else Fraction()
+
+    def across(self, n: Vector) -> Vector:
+        """What of it is across the axis."""
+        return minus(n, scaled(self.axis, dot(n, self.axis) / self.square))
+
+    def bend(self, ends: Sequence[Plane], sign: int) -> tuple[Fraction, Fraction]:
+        """At most ``W . E y`` between two planes, loosely, and as tightly as it is known.
+
+        ``W = sign (alpha^2 n_across + 2 alpha k x dn)`` is affine in the time, and ``E y`` across
+        the axis a combination of those at both ends, with weights whose sum is at least 1, and at
+        most one over the cosine of half the angle ``alpha``.
+        """
+        a, b = ends
+        alpha = self.rate * (b.time - a.time)
+        if alpha == 0:
+            return Fraction(), Fraction()
+        dn = minus(b.normal, a.normal)
+        sideways = scaled(cross(self.axis, dn), 2 * alpha * self.inverse)
+        ways = [
+            scaled(plus(scaled(self.across(end.normal), alpha * alpha), sideways), Fraction(sign))
+            for end in ends
+        ]
+        longest = root_above(max(dot(w, w) for w in ways))
+        room = 64 * _TINY * (longest + abs(alpha)) * self.reach
+        loose = longest * self.radius + room
+        if abs(alpha) > 3:
+            return loose, loose
+        most = max(max(self.along(w, end.time)) for w in ways for end in ends) + room
+        least = sine_cosine(alpha / 2)[1] - _TINY
+        return loose, min(loose, most / least if most > 0 else most)
+
+    def rise(self, n: Vector, begin: Fraction, end: Fraction) -> Fraction:
+        """By how much the highest point along a normal rises between two times, at most."""
+        angle = abs(self.rate * (end - begin))
+        if angle == 0:
+            return Fraction()
+        sign = 1 if self.rate > 0 else -1
+        side = scaled(cross(n, self.axis), sign * self.inverse)
+        around, off = self.across(n), self.off(n)
+        sin, cos = sine_cosine(angle) if angle < 3 else (Fraction(), Fraction())
+        highest, before = None, None
+        rows = (self.along(v, begin) for v in (n, around, side))
+        for height, a, b in zip(*rows, strict=True):
+            top, rest = height, height - a
+            slope = b * cos - a * sin
+            if angle >= 3 or (b > -off and slope < 2 * off):
+                top = rest + root_above(a * a + b * b)
+            elif angle < 3:
+                top = max(top, rest + a * cos + b * sin)
+            highest = top if highest is None else max(highest, top)
+            before = height if before is None else max(before, height)
+        assert highest is not None and before is not None
+        return highest - before + 8 * off
+
+
+#: The largest angle of a motion.
+_MOST_TURN = 10**5
+
+
+@dataclass(frozen=True)
+class Plane:
+    """A normal at a time, and the gap that is claimed beyond what is to be kept."""
+
+    time: Fraction
+    normal: Vector
+    gap: Fraction
+    alone: bool
+
+    @classmethod
+    def read(cls, of: Any) -> Plane:
+        if not isinstance(of["alone"], bool):
+            raise NoProofError("a plane proves alone or not")
+        return cls(number(of["time"]), vector(of["normal"]), number(of["gap"]), of["alone"])
+
+
+@dataclass
+class Span:
+    """Two spins at once."""
+
+    moving: Spin
+    fixed: Spin
+    begin: Fraction
+    end: Fraction
+    #: A gap to be kept; negative a depth that is tolerated.
+    keep: Fraction
+
+    def gap(self, n: Vector, time: Fraction) -> Fraction:
+        """``min_Q n.q - max_P n.p``, at least."""
+        p, q = self.moving, self.fixed
+        highest, lowest = max(p.along(n, time)), min(q.along(n, time))
+        between = q.foot(n, time) - p.foot(n, time)
+        return between + lowest - highest - p.off(n) - q.off(n)
+
+    def has(self, plane: Plane) -> bool:
+        """Whether it leaves the gap that is claimed, beyond the one to be kept."""
+        square = dot(plane.normal, plane.normal)
+        spare = self.gap(plane.normal, plane.time) - plane.gap
+        if self.keep > 0:
+            return above(spare, self.keep * self.keep * square)
+        # A depth that is tolerated adds to it.
+        return spare >= 0 or spare * spare <= self.keep * self.keep * square
+
+    def joins(self, a: Plane, b: Plane) -> bool:
+        """Whether planes prove all times between them.
+
+        With ``n = (1 - x) n_a + x n_b`` a point ``y`` of a body is at the height ``n . E y``, whose
+        second derivative by ``x`` is ``-W . E y``: above its chord by at most ``C x (1 - x) / 2``,
+        and so is the highest. Together with ``Q``, turned round, and with ``n`` times the way
+        between the axes, the gap is at least ``(1 - x) a + x b - C x (1 - x) / 2``. The gap to be
+        kept times the length of ``n`` is below its chord; a depth that is tolerated times it is
+        above its chord less the depth times ``|dn|^2 x (1 - x)``.
+        """
+        if a.time == b.time:
+            return True
+        if a.alone:
+            return a.normal == b.normal and a.gap > self.lost(a, b)
+        dn = minus(b.normal, a.normal)
+        drift = minus(self.fixed.way, self.moving.way)
+        c = 2 * dot(dn, drift) * (b.time - a.time)
+        if self.keep < 0:
+            c -= 2 * self.keep * dot(dn, dn) * (1 + Fraction(1, 2**40))
+        p, q = self.moving.bend((a, b), 1), self.fixed.bend((a, b), -1)
+        return any(stays(a.gap, b.gap, c + x + y) for x, y in zip(p, q, strict=True))
+
+    def lost(self, a: Plane, b: Plane) -> Fraction:
+        """How much of the gap of one plane, along its normal, is lost until another."""
+        drift = dot(a.normal, minus(self.fixed.way, self.moving.way)) * (b.time - a.time)
+        risen = self.moving.rise(a.normal, a.time, b.time)
+        sunk = self.fixed.rise(scaled(a.normal, Fraction(-1)), a.time, b.time)
+        return risen + sunk - min(drift, Fraction())
+
+    def ends(self, pairs: Any, time: Fraction) -> list[tuple[Vector, Vector]]:
+        """The points that pairs of vertices name, at a time."""
+        p, q = self.moving, self.fixed
+        return [
+            (
+                p.at(whole(pair["moving"], len(p.body.points)), time),
+                q.at(whole(pair["fixed"], len(q.body.points)), time),
+            )
+            for pair in pairs
+        ]
+
+    def meets(self, met: Any, time: Fraction) -> None:
+        """That the bodies overlap deeper than is tolerated, or are as near as is to be kept."""
+        off = sum((spin.off(_ONES) for spin in (self.moving, self.fixed)), Fraction())
+        ((kind, claim),) = met.items()
+        if kind == "deep" and self.keep <= 0:
+            surface = claim["enclosure"]
+            corners = [minus(q, p) for p, q in self.ends(surface["pairs"], time)]
+            # Points that are moved by less than they are away go round the origin as before.
+            enclosure(corners, surface, off - self.keep)
+        elif kind == "near" and self.keep > 0:
+            ends = self.ends(claim["pairs"], time)
+            p, q = (mean([end[k] for end in ends], claim["weights"]) for k in (0, 1))
+            between = minus(q, p)
+            if not above(self.keep - off, dot(between, between)):
+                raise RefusedError(f"the points are not as near as {float(self.keep)!r}")
+        else:
+            raise RefusedError(f"{kind!r} does not say that the bodies meet")
+
+
+_ONES: Vector = (Fraction(1), Fraction(1), Fraction(1))
+
+
+def stays(a: Fraction, b: Fraction, c: Fraction) -> bool:
+    """Whether ``(1 - x) a + x b - c x (1 - x) / 2`` is positive from 0 to 1.
+
+    It is if ``sqrt a + sqrt b > sqrt(c / 2)``.
+    """
+    over = c / 2 - a - b
+    return min(a, b) > 0 and (over < 0 or over * over < 4 * a * b)
+
+
+def spans(file: Any) -> list[Span]:
+    """The times in which both bodies spin evenly, one after the other."""
+    sides = []
+    for side in ("moving", "fixed"):
+        points = [vector(v) for v in file[side]["vertices"]]
+        described(points, file[side])
+        spins = [Spin.read(points, piece) for piece in file[f"{side}_motion"]]
+        times = [spin.since for spin in spins]
+        if not times or times[0] != 0 or times[-1] > 1 or sorted(set(times)) != times:
+            raise NoProofError("the pieces of a motion are not in the order of their times")
+        sides.append(spins)
+    keep = number(file.get("keep", 0.0))
+    borders = [*sorted({spin.since for side in sides for spin in side}), Fraction(1)]
+    found = []
+    for begin, end in pairwise(borders):
+        p, q = (max((s for s in side if s.since <= begin), key=lambda s: s.since) for side in sides)
+        found.append(Span(p, q, begin, end, keep))
+    return found
+
+
+def motion(file: Any) -> Report:
+    """When two convex bodies that move first meet."""
+    all_spans, proof, report = spans(file), file["proof"], Report()
+    claimed = proof["spans"]
+    if len(claimed) > len(all_spans):
+        raise RefusedError("there are more spans than the motions have")
+    reached = Fraction()
+    for span, planes in zip(all_spans, claimed, strict=False):
+        read = [Plane.read(plane) for plane in planes]
+        if reached != span.begin or (read and read[0].time != span.begin):
+            raise RefusedError("a span does not begin where the one before it ended")
+        reached = chain(span, read)
+    keep = all_spans[0].keep
+    meet = "meet" if keep == 0 else f"are as near as {float(keep)!r}"
+    if keep < 0:
+        meet = f"overlap by more than {float(-keep)!r}"
+    if any(claimed):
+        told = "throughout the motion" if reached == 1 else f"up to the time {float(reached)!r}"
+        report.holds.append(f"the bodies never {meet} {told}")
+    meeting = proof["meeting"]
+    if meeting is not None:
+        time = number(meeting["time"])
+        if not claimed or not reached <= time <= all_spans[len(claimed) - 1].end:
+            raise RefusedError(f"that the bodies {meet} is said of another time")
+        all_spans[len(claimed) - 1].meets(meeting["met"], time)
+        report.holds.append(f"the bodies {meet} at the time {float(time)!r}")
+        if "deep" in meeting["met"]:
+            report.unchecked.append("how deep they are then, which is of poses that are rounded")
+    return report
+
+
+def chain(span: Span, planes: list[Plane]) -> Fraction:
+    """Planes each of which has its gap and is joined to the next; up to which time."""
+    before = None
+    for plane in planes:
+        unit(plane.normal)
+        at = float(plane.time)
+        if not span.begin <= plane.time <= span.end or (before and plane.time < before.time):
+            raise RefusedError(f"the plane at {at!r} is not in the order of times")
+        if plane.gap <= 0 or not span.has(plane):
+            raise RefusedError(f"the plane at {at!r} does not leave a gap of {float(plane.gap)!r}")
+        if before is not None and not span.joins(before, plane):
+            raise RefusedError(f"the times from {float(before.time)!r} to {at!r} are not proven")
+        before = plane
+    return span.begin if before is None else before.time
+
+
 def check(text: str) -> Report:
     """Checks a proof as it was written.
 
@@ -1319,6 +1699,8 @@ def check(text: str) -> Report:
         file = json.loads(text.removeprefix("\ufeff"), object_pairs_hook=_once)
         if file["format"] == SCENE_FORMAT:
             return Scene(file).check()
+        if file["format"] == MOTION_FORMAT:
+            return motion(file)
         if file["format"] != FORMAT:
             raise NoProofError(f"the format is {file['format']!r}, not {FORMAT!r}")
         keep = gap_to_keep(file)

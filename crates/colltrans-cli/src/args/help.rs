@@ -203,16 +203,23 @@ Answers:
   free         they never meet throughout the motion
   overlapping  they overlap when it begins
 
+Of several meshes it is the first contact of any two, and says of which.
+
 With --json one object:
   outcome   one of these
   time      {\"lower\", \"upper\"}: not before the first, and at the second they do; 0 is the start of the
             motion, 1 its end
   point normal features   as of `cast`, at that time
+  moving fixed   of several meshes: which
+  keep tolerance   as they were asked for
   looks planes   how often the bodies were looked at, and planes in the proof
 
 Examples:
   Does a door that swings by 90 degrees about the z axis hit a post?
     colltrans motion door.stl post.stl --turn 0,0,0 z 90
+  Which of three machines does a crane hit first, while a cart comes the other way?
+    colltrans motion hook.stl --from lathe.stl press.stl saw.stl --turn 0,0,0 z 180
+    colltrans motion hook.stl cart.stl --turn 0,0,0 z 180 --fixed-slide -2,0,0
   A bolt is unscrewed by two turns, 3 up:
     colltrans motion bolt.stl plate.stl --screw 0,0,0 z 720 3 --save-proof bolt.json
     colltrans verify bolt.json";
@@ -255,11 +262,12 @@ Examples:
 
 pub(super) const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON object:
   {"id": any, "moving": BODY, "fixed": BODY, "moving_pose": POSE, "fixed_pose": POSE,
-   "direction": [x,y,z], "query": "contact"|"clearance"|"distance"|"depth"|"within",
-   "length": L (of "within"),
+   "direction": [x,y,z], "query": "contact"|"clearance"|"distance"|"depth"|"within"|"motion",
+   "length": L (of "within"), "moving_motion": MOTION, "fixed_motion": MOTION (of "motion"),
    "graze_tolerance": L, "solver": "auto"|"cta"|"portal" (of convex bodies),
    "start": "center"|"ellipsoids", "until": "exit"|SHARE (of "cta"),
-   "tolerance": L, "ignore_start_overlaps": true|false (of solids), "keep": GAP}
+   "tolerance": L (of solids and motions), "ignore_start_overlaps": true|false (of solids),
+   "keep": GAP}
   BODY = {"points": [[x,y,z],...]} (their convex hull)
        or {"mesh": "path", "hull": true|false, "scale": FACTOR}
        or {"solid": "path", "scale": FACTOR, "open": BOOL} (need not be convex; open: nor closed)
@@ -267,8 +275,15 @@ pub(super) const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON ob
   query is "contact", as of `colltrans cast`, or "clearance", as of `colltrans clearance`. Solids are
   not asked for "contact"; "clearance" is the default there. "distance", "depth" and "within" are those
   of the commands, of bodies of any kind where they are.
+  "motion" is `colltrans motion` of convex bodies, of which one or both move.
   POSE = {"translation": [x,y,z], "rotation": [qx,qy,qz,qw]}, either may be missing
-moving and fixed are required, and the direction of "contact" and "clearance". Paths are relative to the folder of the query file, or to
+  MOTION = {"slide": {"by": [x,y,z]}}
+       or {"turn": {"point": [x,y,z], "axis": [x,y,z], "angle": RADIANS}}
+       or {"screw": {"point": [x,y,z], "axis": [x,y,z], "angle": RADIANS, "rise": L}}
+       or {"thrown": {"center": [x,y,z], "velocity": [x,y,z], "angular_velocity": [x,y,z]}}
+       or {"between": {"from": POSE, "to": POSE}} or {"through": {"poses": [POSE,...]}}
+       or {"still": {}}, from the pose of the body on, unless it has its own
+moving and fixed are required, the direction of "contact" and "clearance", and a MOTION of "motion". Paths are relative to the folder of the query file, or to
 the current folder for standard input. Blank lines are skipped, unknown fields are errors.
 
 Each result is one JSON object with those of these fields that apply:
@@ -276,7 +291,9 @@ Each result is one JSON object with those of these fields that apply:
   outcome      "contact", "grazing", "separated" or "error"; of a clearance: "blocked", "slides",
                "behind", "separated" or "overlapping"; of solids: "free", "blocked" or "overlapping";
                of a distance: "apart" or "meeting"; of a depth: "overlapping", "touching"
-               or "apart"; within: "closer", "farther" or "undecided"
+               or "apart"; within: "closer", "farther" or "undecided"; of a motion: "contact",
+               "grazing", "free" or "overlapping"
+  time         of a motion: {"lower", "upper"}, from 0 at its start to 1 at its end; proven
   direction    with --directions: the direction as it was read; of a depth: the unit vector along
                which the moving body leaves by the shortest way
   lower upper  of a distance or a depth: at least and at most that, proven; of "closer" the upper one

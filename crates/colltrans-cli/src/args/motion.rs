@@ -8,18 +8,22 @@ use colltrans::glam::DVec3;
 use colltrans::motion::{Motion, MotionError};
 use colltrans_mesh::body::BodyOptions;
 
-use super::values::{place, vector};
-use super::{BodyArguments, HullArguments, PlaceArguments, direction, length, proof};
+use super::values::{Place, place, vector};
+use super::{BodyArguments, HullArguments, PlaceArguments, Sides, Taken, direction, length, proof};
 use crate::failure::{Code, Failure};
 
 #[derive(Debug, Args)]
 pub(crate) struct MotionArguments {
-    /// The mesh that moves
-    pub(crate) moving: PathBuf,
-    /// The mesh that stays
-    pub(crate) fixed: PathBuf,
+    /// The mesh that moves and the one that it may meet; with --from all that move, together
+    #[arg(required = true, value_name = "MESH")]
+    meshes: Vec<PathBuf>,
+    /// The meshes that it may meet: the answer is of the first one met
+    #[arg(long, num_args = 1.., value_name = "FIXED")]
+    from: Vec<PathBuf>,
     #[command(flatten)]
     motion: KindArguments,
+    #[command(flatten)]
+    fixed_motion: FixedArguments,
     /// A gap to be kept: ask when the meshes are first as near as that, not when they touch
     #[arg(long, value_name = "GAP", allow_hyphen_values = true, value_parser = length, default_value = "0")]
     pub(crate) keep: f64,
@@ -32,7 +36,7 @@ pub(crate) struct MotionArguments {
     /// Print the answer as one JSON object
     #[arg(long)]
     pub(crate) json: bool,
-    /// Write the proof of the answer, with the bodies and their motion, as one file that `colltrans
+    /// Write the proof of the answer, with the bodies and their motions, as one file that `colltrans
     /// verify` checks
     #[arg(long, value_name = "OUT.json", value_parser = proof)]
     pub(crate) save_proof: Option<PathBuf>,
@@ -62,39 +66,132 @@ struct KindArguments {
     /// length of SPIN, about its direction
     #[arg(long, num_args = 3, value_names = ["CENTER", "WAY", "SPIN"], allow_hyphen_values = true)]
     thrown: Option<Vec<String>>,
+    /// The screw from where the mesh is to another pose, written like --moving-pose, by the shorter turn
+    #[arg(long, value_name = "POSE", allow_hyphen_values = true, value_parser = place)]
+    to: Option<Place>,
     /// Screws from pose to pose in equal times: a JSON file of poses, [[x,y,z,qx,qy,qz,qw], ...], instead
     /// of --moving-pose
     #[arg(long, value_name = "POSES.json", conflicts_with_all = ["moving_pose", "moving_rpy"])]
     through: Option<PathBuf>,
 }
 
+/// What the other mesh does, if it moves as well.
+#[derive(Debug, Args)]
+#[group(required = false, multiple = false)]
+#[command(next_help_heading = "What the fixed mesh does in the same time, if it moves as well")]
+struct FixedArguments {
+    /// Written like --turn
+    #[arg(id = "fixed_turn", long = "fixed-turn", num_args = 3, value_names = ["POINT", "AXIS", "ANGLE"], allow_hyphen_values = true)]
+    turn: Option<Vec<String>>,
+    /// Written like --screw
+    #[arg(id = "fixed_screw", long = "fixed-screw", num_args = 4, value_names = ["POINT", "AXIS", "ANGLE", "RISE"], allow_hyphen_values = true)]
+    screw: Option<Vec<String>>,
+    /// Written like --slide
+    #[arg(id = "fixed_slide", long = "fixed-slide", value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector)]
+    slide: Option<DVec3>,
+    /// Written like --thrown
+    #[arg(id = "fixed_thrown", long = "fixed-thrown", num_args = 3, value_names = ["CENTER", "WAY", "SPIN"], allow_hyphen_values = true)]
+    thrown: Option<Vec<String>>,
+    /// Written like --to
+    #[arg(id = "fixed_to", long = "fixed-to", value_name = "POSE", allow_hyphen_values = true, value_parser = place)]
+    to: Option<Place>,
+    /// Written like --through
+    #[arg(id = "fixed_through", long = "fixed-through", value_name = "POSES.json", conflicts_with_all = ["fixed_pose", "fixed_rpy"])]
+    through: Option<PathBuf>,
+}
+
+/// A kind of motion, as it is written.
+enum Kind<'a> {
+    Still,
+    Turn([&'a str; 3]),
+    Screw([&'a str; 4]),
+    Slide(DVec3),
+    Thrown([&'a str; 3]),
+    To(Place),
+    Through(&'a Path),
+}
+
 impl MotionArguments {
-    /// How both files become convex bodies.
+    /// Who moves, and whom it may meet.
+    pub(crate) fn sides(&self) -> Result<Sides<'_>, Failure> {
+        Sides::of(&self.meshes, &self.from, Taken::Convex, false)
+    }
+
+    /// How the files of both sides become convex bodies.
     pub(crate) fn body_options(&self) -> [BodyOptions; 2] {
         self.hulls.body_options(self.body, &self.places)
     }
 
-    /// What the moving mesh does from a pose on.
-    pub(crate) fn motion(&self, pose: Pose) -> Result<Motion, Failure> {
-        let KindArguments { turn, screw, slide, thrown, through } = &self.motion;
-        if let Some(path) = through {
-            return Ok(Motion::through(&poses(path)?)?);
-        }
-        let made = if let Some([point, axis, angle]) = turn.as_deref() {
-            let (point, axis) = (at("--turn", vector(point))?, at("--turn", direction(axis))?);
-            Motion::turn(pose, point, axis, radians("--turn", angle)?)
-        } else if let Some([point, axis, angle, rise]) = screw.as_deref() {
-            let (point, axis) = (at("--screw", vector(point))?, at("--screw", direction(axis))?);
-            let rise = at("--screw", number(rise))?;
-            Motion::screw(pose, point, axis, radians("--screw", angle)?, rise)
-        } else if let Some([center, way, spin]) = thrown.as_deref() {
-            let [center, way, spin] = [center, way, spin].map(|text| at("--thrown", vector(text)));
-            Motion::thrown(pose, center?, way?, spin?.map(f64::to_radians))
-        } else {
-            Motion::slide(pose, slide.unwrap_or_default())
-        };
-        Ok(made?)
+    /// What both sides do.
+    pub(crate) fn motions(&self) -> Result<[Motion; 2], Failure> {
+        let [start, there] = self.places.poses()?;
+        Ok([
+            self.motion.kind().motion("--", start)?,
+            self.fixed_motion.kind().motion("--fixed-", there)?,
+        ])
     }
+}
+
+impl KindArguments {
+    fn kind(&self) -> Kind<'_> {
+        let Self { turn, screw, slide, thrown, to, through } = self;
+        Kind::of([turn, screw, thrown].map(Option::as_deref), *slide, *to, through.as_deref())
+    }
+}
+
+impl FixedArguments {
+    fn kind(&self) -> Kind<'_> {
+        let Self { turn, screw, slide, thrown, to, through } = self;
+        Kind::of([turn, screw, thrown].map(Option::as_deref), *slide, *to, through.as_deref())
+    }
+}
+
+impl<'a> Kind<'a> {
+    /// The one that is there.
+    fn of(
+        [turn, screw, thrown]: [Option<&'a [String]>; 3],
+        slide: Option<DVec3>,
+        to: Option<Place>,
+        through: Option<&'a Path>,
+    ) -> Self {
+        let turn = of_words(turn).map(Self::Turn);
+        let screw = of_words(screw).map(Self::Screw);
+        let thrown = of_words(thrown).map(Self::Thrown);
+        let others = slide.map(Self::Slide).or(to.map(Self::To)).or(through.map(Self::Through));
+        turn.or(screw).or(thrown).or(others).unwrap_or(Self::Still)
+    }
+
+    /// The motion from a pose on, of options that begin in this way.
+    fn motion(&self, option: &str, pose: Pose) -> Result<Motion, Failure> {
+        let named = |name: &str| format!("{option}{name}");
+        Ok(match *self {
+            Self::Still => Motion::still(pose),
+            Self::Turn([point, axis, angle]) => {
+                let name = named("turn");
+                let (point, axis) = (at(&name, vector(point))?, at(&name, direction(axis))?);
+                Motion::turn(pose, point, axis, radians(&name, angle)?)?
+            }
+            Self::Screw([point, axis, angle, rise]) => {
+                let name = named("screw");
+                let (point, axis) = (at(&name, vector(point))?, at(&name, direction(axis))?);
+                let rise = at(&name, number(rise))?;
+                Motion::screw(pose, point, axis, radians(&name, angle)?, rise)?
+            }
+            Self::Slide(by) => Motion::slide(pose, by)?,
+            Self::Thrown(words) => {
+                let [center, way, spin] = words.map(|text| at(&named("thrown"), vector(text)));
+                Motion::thrown(pose, center?, way?, spin?.map(f64::to_radians))?
+            }
+            Self::To(place) => Motion::between(pose, at(&named("to"), place.pose(None, "--to"))?)?,
+            Self::Through(path) => Motion::through(&poses(path)?)?,
+        })
+    }
+}
+
+/// As many words as an option has.
+fn of_words<const N: usize>(words: Option<&[String]>) -> Option<[&str; N]> {
+    let words: Vec<&str> = words?.iter().map(String::as_str).collect();
+    words.try_into().ok()
 }
 
 impl From<MotionError> for Failure {

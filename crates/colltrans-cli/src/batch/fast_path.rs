@@ -25,10 +25,12 @@ pub(super) fn read(text: &str) -> Option<Query<'_, &str>> {
         id: found.id,
         moving: found.moving?,
         fixed: found.fixed?,
-        moving_pose: found.moving_pose.unwrap_or_default(),
-        fixed_pose: found.fixed_pose.unwrap_or_default(),
+        moving_pose: found.moving_pose,
+        fixed_pose: found.fixed_pose,
         direction: found.direction,
         question: found.question,
+        moving_motion: None,
+        fixed_motion: None,
         length: found.length,
         graze_tolerance: found.graze_tolerance,
         solver: found.solver,
@@ -258,6 +260,7 @@ mod tests {
         let Query { moving_pose, fixed_pose, direction, graze_tolerance, length, keep, .. } = query;
         let numbers = [moving_pose, fixed_pose]
             .into_iter()
+            .flatten()
             .flat_map(|pose| pose.translation.into_iter().chain(pose.rotation))
             .chain(direction.iter().flatten().copied())
             .chain(*graze_tolerance)

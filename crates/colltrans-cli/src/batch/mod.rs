@@ -2,12 +2,13 @@
 //!
 //! Data flow: [`pipeline`] hands chunks of lines to threads and puts their results back in
 //! order, holding only a bounded number of chunks; [`query`] reads and answers one line, with
-//! [`fast_path`] for lines of the usual form;
+//! [`fast_path`] for lines of the usual form and [`motion`] for bodies that turn;
 //! [`cache`] builds bodies that occur again once, [`recent`] finds them by their words; [`results`]
 //! keeps what is read from being overwritten.
 
 mod cache;
 mod fast_path;
+mod motion;
 mod pipeline;
 mod query;
 mod recent;

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use colltrans::glam::{DQuat, DVec3};
+use colltrans::motion::Motion;
 use colltrans::record::{PairQuestion, Question, Record};
 use colltrans::{Cast, ConvexPolyhedron, Narrowing, Options, Pair, Pose, Solver};
 use colltrans_assembly::read::plain;
@@ -14,6 +15,7 @@ use serde_json::value::RawValue;
 
 use super::cache::{Built, Cache, Key, Shape};
 use super::fast_path;
+use super::motion;
 use super::pipeline::Line;
 use super::recent::Recent;
 use super::source::{Asked, BodySource, PoseSource, Query};
@@ -198,12 +200,18 @@ fn guarded<T>(number: u64, answer: impl FnOnce() -> Result<T, String>) -> Result
 fn solve<B>(query: &Query<'_, B>, [moving, fixed]: [Built; 2]) -> Result<AnswerLine, String> {
     let moving = moving.map_err(|e| format!("moving: {e}"))?;
     let fixed = fixed.map_err(|e| format!("fixed: {e}"))?;
-    let moving_pose = query.moving_pose.pose().map_err(|e| format!("moving_pose: {e}"))?;
-    let fixed_pose = query.fixed_pose.pose().map_err(|e| format!("fixed_pose: {e}"))?;
-    let poses = [moving_pose, fixed_pose];
+    let pose = |pose: Option<PoseSource>, name| {
+        pose.unwrap_or_default().pose().map_err(|e| format!("{name}: {e}"))
+    };
+    let poses = [pose(query.moving_pose, "moving_pose")?, pose(query.fixed_pose, "fixed_pose")?];
     let shapes = [&*moving, &*fixed];
     match (query.asked()?, shapes) {
         (Ask::Pair(question), shapes) => of_pair(question, shapes, poses),
+        (Ask::Motion(motions), [Shape::Convex(moving), Shape::Convex(fixed)]) => {
+            let parts = [moving, fixed];
+            Ok(of_parts(motion::first_contact(query, parts, &motions)?, parts))
+        }
+        (Ask::Motion(_), _) => Err(r#"a "motion" is of convex bodies"#.into()),
         (Ask::Cast(direction), [Shape::Convex(moving), Shape::Convex(fixed)]) => {
             query.of_convex([moving, fixed], poses, direction)
         }
@@ -215,33 +223,52 @@ impl<B> Query<'_, B> {
     /// What is asked, with all that it needs and nothing else.
     fn asked(&self) -> Result<Ask, String> {
         let question = match self.question {
+            None | Some(Asked::Contact | Asked::Clearance) => {
+                self.refuse(&["length", "moving_motion", "fixed_motion"])?;
+                let direction = self.direction.ok_or("missing field `direction`")?;
+                return Ok(Ask::Cast(DVec3::from_array(direction)));
+            }
+            Some(Asked::Motion) => {
+                self.refuse(&[&OF_CASTS[..], &["length"]].concat())?;
+                return Ok(Ask::Motion(Box::new(motion::motions(self)?)));
+            }
             Some(Asked::Distance) => PairQuestion::Distance,
             Some(Asked::Depth) => PairQuestion::Depth,
             Some(Asked::Within) => {
                 PairQuestion::Within(self.length.ok_or(r#""within" needs a `length`"#)?)
             }
-            None | Some(Asked::Contact | Asked::Clearance) => {
-                if self.length.is_some() {
-                    return Err(r#"`length` is for "query": "within""#.into());
-                }
-                let direction = self.direction.ok_or("missing field `direction`")?;
-                return Ok(Ask::Cast(DVec3::from_array(direction)));
-            }
         };
-        let of_casts = [
-            ("direction", self.direction.is_some()),
-            ("graze_tolerance", self.graze_tolerance.is_some()),
-            ("solver", self.solver.is_some()),
-            ("start", self.start.is_some()),
-            ("until", self.until.is_some()),
-            ("keep", self.keep.is_some()),
-            ("tolerance", self.tolerance.is_some()),
-            ("ignore_start_overlaps", self.ignore_start_overlaps.is_some()),
-            ("length", self.length.is_some() && self.question != Some(Asked::Within)),
-        ];
-        match of_casts.iter().find(|(_, given)| *given) {
-            Some((field, _)) => Err(format!("`{field}` is not for this query")),
-            None => Ok(Ask::Pair(question)),
+        self.refuse(&OF_CASTS)?;
+        self.refuse(&["keep", "tolerance", "moving_motion", "fixed_motion"])?;
+        if !matches!(question, PairQuestion::Within(_)) {
+            self.refuse(&["length"])?;
+        }
+        Ok(Ask::Pair(question))
+    }
+
+    /// An error for the first of these fields that is there.
+    fn refuse(&self, fields: &[&str]) -> Result<(), String> {
+        let is_there = |field: &&&str| match **field {
+            "direction" => self.direction.is_some(),
+            "graze_tolerance" => self.graze_tolerance.is_some(),
+            "solver" => self.solver.is_some(),
+            "start" => self.start.is_some(),
+            "until" => self.until.is_some(),
+            "keep" => self.keep.is_some(),
+            "tolerance" => self.tolerance.is_some(),
+            "ignore_start_overlaps" => self.ignore_start_overlaps.is_some(),
+            "length" => self.length.is_some(),
+            "moving_motion" => self.moving_motion.is_some(),
+            "fixed_motion" => self.fixed_motion.is_some(),
+            _ => false,
+        };
+        match fields.iter().find(is_there) {
+            Some(field @ &"length") => Err(format!(r#"`{field}` is for "query": "within""#)),
+            Some(field @ (&"moving_motion" | &"fixed_motion")) => {
+                Err(format!(r#"`{field}` is for "query": "motion""#))
+            }
+            Some(field) => Err(format!("`{field}` is not for this query")),
+            None => Ok(()),
         }
     }
 
@@ -316,11 +343,16 @@ impl<B> Query<'_, B> {
     }
 }
 
-/// What is asked of two bodies: where they are, or along a direction.
+/// What is asked of two bodies: where they are, along a direction, or along motions.
 enum Ask {
     Pair(PairQuestion),
     Cast(DVec3),
+    Motion(Box<[Motion; 2]>),
 }
+
+/// Fields that only queries with a direction have.
+const OF_CASTS: [&str; 6] =
+    ["direction", "graze_tolerance", "solver", "start", "until", "ignore_start_overlaps"];
 
 /// Of bodies where they are.
 fn of_pair(

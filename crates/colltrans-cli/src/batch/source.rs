@@ -6,6 +6,8 @@ use colltrans::{NarrowFrom, Solver, Until};
 use serde::Deserialize;
 use serde_json::value::RawValue;
 
+use super::motion::MotionSource;
+
 /// A line. Its bodies are read, or what is written of them.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object that holds a query")]
@@ -14,13 +16,14 @@ pub(super) struct Query<'a, Body> {
     pub(super) id: Option<&'a RawValue>,
     pub(super) moving: Body,
     pub(super) fixed: Body,
-    #[serde(default)]
-    pub(super) moving_pose: PoseSource,
-    #[serde(default)]
-    pub(super) fixed_pose: PoseSource,
+    pub(super) moving_pose: Option<PoseSource>,
+    pub(super) fixed_pose: Option<PoseSource>,
     pub(super) direction: Option<[f64; 3]>,
     #[serde(rename = "query")]
     pub(super) question: Option<Asked>,
+    /// Of [`Asked::Motion`].
+    pub(super) moving_motion: Option<MotionSource>,
+    pub(super) fixed_motion: Option<MotionSource>,
     /// Of [`Asked::Within`].
     pub(super) length: Option<f64>,
     pub(super) graze_tolerance: Option<f64>,
@@ -42,6 +45,7 @@ pub(super) enum Asked {
     Distance,
     Depth,
     Within,
+    Motion,
 }
 
 #[derive(Debug, Deserialize)]
@@ -55,7 +59,7 @@ pub(crate) struct BodySource {
     pub(super) scale: Option<f64>,
 }
 
-#[derive(Deserialize)]
+#[derive(Debug, Clone, Copy, Deserialize)]
 #[serde(deny_unknown_fields, default, expecting = "an object that holds a pose")]
 pub(crate) struct PoseSource {
     pub(super) translation: [f64; 3],

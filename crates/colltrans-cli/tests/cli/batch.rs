@@ -353,3 +353,85 @@ fn a_batch_that_is_killed_leaves_no_results() {
         std::fs::remove_file(written).unwrap();
     }
 }
+
+#[test]
+fn motions_are_asked_in_lines() {
+    let line = |body: &str, more: &str| {
+        format!(r#"{{"id":1,"moving":{body},"fixed":{BOX},"query":"motion",{more}}}"#)
+    };
+    let asked = |more: &str| line(BOX, more);
+    let there = r#""fixed_pose":{"translation":[3,0.1,0.1]}"#;
+    let turn = r#"{"turn":{"point":[0,0,0],"axis":[0,0,1],"angle":6}}"#;
+    let good = [
+        (r#"{"slide":{"by":[4,0,0]}}"#, "contact"),
+        (r#"{"screw":{"point":[1.5,0,0],"axis":[0,0,1],"angle":3.5,"rise":0.5}}"#, "contact"),
+        (turn, "free"),
+        (
+            r#"{"thrown":{"center":[0,0,0],"velocity":[4,0,0],"angular_velocity":[1,2,3]}}"#,
+            "contact",
+        ),
+        (r#"{"between":{"from":{},"to":{"translation":[8,0,0],"rotation":[0,0,1,0]}}}"#, "free"),
+        (r#"{"between":{"from":{},"to":{"translation":[8,0,0],"rotation":[1,0,0,0]}}}"#, "contact"),
+        (r#"{"through":{"poses":[{},{"translation":[0,5,0]},{"translation":[8,5,0]}]}}"#, "free"),
+        (r#"{"still":{}}"#, "free"),
+    ];
+    let text: Vec<String> = good
+        .iter()
+        .map(|(motion, _)| asked(&format!(r#""moving_motion":{motion},{there}"#)))
+        .chain([
+            asked(&format!(r#""fixed_motion":{{"slide":{{"by":[-4,0,0]}}}},{there}"#)),
+            asked(&format!(r#""moving_motion":{turn},"fixed_motion":{turn},{there},"keep":0.5"#)),
+            asked(&format!(r#""moving_motion":{turn}"#)),
+        ])
+        .collect();
+    let (output, results) = run(&text.join("\n"), &[]);
+    assert_eq!(output.status.code(), Some(0), "{}", stdout(&output));
+    let outcomes: Vec<&str> = results.iter().map(|r| r["outcome"].as_str().unwrap()).collect();
+    let known: Vec<&str> = good.iter().map(|(_, outcome)| *outcome).collect();
+    assert_eq!(outcomes, [&known[..], &["contact", "free", "overlapping"]].concat());
+    let [lower, upper] = ["lower", "upper"].map(|end| results[0]["time"][end].as_f64().unwrap());
+    assert!(lower <= 0.5 && 0.5 <= upper && upper - lower < 1e-13, "{}", results[0]);
+    assert_eq!(results[0]["normal"], serde_json::json!([1.0, 0.0, 0.0]));
+    assert_eq!(results[0]["features"]["fixed"]["kind"], "face");
+    assert_eq!(results[9]["keep"], 0.5);
+
+    let solid = r#"{"solid":"cube.off"}"#;
+    let moved = format!(r#""moving_motion":{turn}"#);
+    let bad = [
+        (asked(there), "\"motion\" needs a `moving_motion` or a `fixed_motion`"),
+        (asked(&format!(r#"{moved},"direction":[1,0,0]"#)), "`direction` is not for this query"),
+        (asked(&format!(r#"{moved},"keep":1,"tolerance":1"#)), "either `keep` or `tolerance`"),
+        (asked(&format!(r#"{moved},"keep":-1"#)), "-1"),
+        (asked(&moved.replace("axis\":[0,0,1]", "axis\":[0,0,0]")), "moving_motion: the axis"),
+        (asked(&moved.replace("6", "1e9")), "moving_motion: the angle"),
+        (asked(&moved.replace("\"axis\":[0,0,1],", "")), "missing field `axis`"),
+        (asked(&moved.replace("turn", "twist")), "unknown word `twist`"),
+        (asked(r#""moving_motion":{"through":{"poses":[]}}"#), "at least one pose"),
+        (
+            asked(r#""moving_motion":{"through":{"poses":[{},{"rotation":[0,0,0,3]}]}}"#),
+            "moving_motion: pose 1: ",
+        ),
+        (
+            asked(r#""moving_motion":{"through":{"poses":[{}]}},"moving_pose":{}"#),
+            "`between` and `through` have their own poses",
+        ),
+        (line(solid, &moved), "a \"motion\" is of convex bodies"),
+        (
+            asked(&moved).replace("\"motion\"", "\"distance\""),
+            "`moving_motion` is for \"query\": \"motion\"",
+        ),
+        (
+            asked(&format!(r#"{moved},"direction":[1,0,0]"#)).replace(r#""query":"motion","#, ""),
+            "`moving_motion` is for \"query\": \"motion\"",
+        ),
+    ];
+    let text: Vec<&str> = bad.iter().map(|(line, _)| line.as_str()).collect();
+    let (output, results) = run(&text.join("\n"), &[]);
+    assert_eq!(output.status.code(), Some(1));
+    for (k, ((line, why), result)) in bad.iter().zip(&results).enumerate() {
+        let message = result["message"].as_str().unwrap();
+        assert_eq!((&result["outcome"], &result["id"]), (&"error".into(), &1.into()), "{line}");
+        assert!(message.contains(why), "{message}, not {why}: {line}");
+        assert!(message.starts_with(&format!("line {}", k + 1)), "{message}");
+    }
+}

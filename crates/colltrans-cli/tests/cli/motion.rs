@@ -2,6 +2,9 @@
 
 use std::fs;
 
+use colltrans::glam::DVec3;
+use colltrans::motion::{Motion, MotionCast, MotionOutcome};
+use colltrans::{ConvexPolyhedron, Pose};
 use serde_json::{Value, json};
 
 use crate::support::{answered, data, folder, json as read, refused, run, stderr};
@@ -57,6 +60,82 @@ fn poses_are_gone_through() {
         let output = run(folder.path(), &ask);
         assert!(stderr(&output).contains(why), "{}", stderr(&output));
     }
+}
+
+#[test]
+fn both_may_move() {
+    let apart = ["--fixed-pose=4,0.2,0.1", "--slide", "2,0,0"];
+    assert_eq!(told(&apart)["outcome"], "free");
+    let met = told(&[&apart[..], &["--fixed-slide=-2,0,0"]].concat());
+    let [lower, upper] = ["lower", "upper"].map(|end| met["time"][end].as_f64().unwrap());
+    assert!(lower <= 0.75 && 0.75 <= upper && upper - lower < 1e-13, "{met}");
+    // The same turn about the same axis carries both.
+    let carried = ["--fixed-pose=2,0,0", "--turn", "1.5,0.5,0", "z", "200"];
+    assert_eq!(told(&carried)["outcome"], "contact");
+    let both = [&carried[..], &["--fixed-turn", "1.5,0.5,0", "z", "200"]].concat();
+    assert_eq!(told(&both)["outcome"], "free");
+    let to = ["--moving-pose=-4,0,0", "--to", "4,0,0", "--fixed-to", "0,1,0"];
+    assert_eq!(told(&to)["outcome"], "contact");
+    let folder = folder();
+    let words = ["motion", "cube.off", "cube.off"];
+    let text = answered(folder.path(), &[&words[..], &to[..]].concat());
+    assert!(text.contains("\n  fixed pose   0,"), "{text}");
+}
+
+#[test]
+fn the_first_of_several_is_told() {
+    let folder = folder();
+    let cube = fs::read_to_string(folder.path().join("cube.off")).unwrap();
+    let lines: Vec<&str> = cube.lines().collect();
+    // The same cube, farther away.
+    let moved = |by: f64| {
+        let mut out = vec![lines[0].to_owned(), lines[1].to_owned()];
+        let count: usize = lines[1].split_whitespace().next().unwrap().parse().unwrap();
+        for line in &lines[2..2 + count] {
+            let x: Vec<f64> = line.split_whitespace().map(|x| x.parse().unwrap()).collect();
+            out.push(format!("{} {} {}", x[0] + by, x[1], x[2]));
+        }
+        out.extend(lines[2 + count..].iter().map(ToString::to_string));
+        out.join("\n")
+    };
+    for (name, by) in [("near.off", 4.0), ("far.off", 6.0), ("aside.off", -9.0)] {
+        fs::write(folder.path().join(name), moved(by)).unwrap();
+    }
+    let ask = |more: &[&str]| {
+        let words = ["motion", "cube.off", "--slide", "8,0.1,0.1", "--json", "--from"];
+        read(&answered(folder.path(), &[&words[..], more].concat()))
+    };
+    let found = ask(&["far.off", "near.off", "aside.off"]);
+    assert_eq!((&found["outcome"], &found["fixed"]), (&json!("contact"), &json!("near.off")));
+    assert_eq!(found["time"], ask(&["near.off"])["time"]);
+    assert!(ask(&["near.off"]).get("fixed").is_none());
+    assert_eq!(ask(&["aside.off", "aside.off"])["outcome"], "free");
+    let words = ["motion", "cube.off", "--slide", "1,0,0", "--from", "far.off", "near.off"];
+    refused(
+        folder.path(),
+        &[&words[..], &["--save-proof", "proof.json"]].concat(),
+        2,
+        &["--save-proof is of two meshes"],
+    );
+}
+
+#[test]
+fn a_saved_question_is_answered_again() {
+    let folder = folder();
+    let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).unwrap();
+    let start = Pose::from_translation(DVec3::new(-4.0, 0.5, 0.0)).unwrap();
+    let screw = Motion::screw(start, DVec3::Z, DVec3::X, 0.5, 8.0).unwrap();
+    let cast = MotionCast::new(cube.along(&screw), cube.at(Pose::IDENTITY)).unwrap();
+    let cast = cast.keeping(0.125).unwrap();
+    fs::write(folder.path().join("case.json"), cast.to_json()).unwrap();
+    let found = read(&answered(folder.path(), &["replay", "case.json", "--json"]));
+    let MotionOutcome::Contact(contact) = cast.first_contact().unwrap() else { panic!("{found}") };
+    assert_eq!(found["time"], json!({ "lower": contact.lower, "upper": contact.upper }));
+    assert_eq!(found["keep"], 0.125);
+    assert!(answered(folder.path(), &["replay", "case.json"]).starts_with("contact\n  time"));
+    let broken = cast.to_json().replace("\"rate\":0.5", "\"rate\":1e9");
+    fs::write(folder.path().join("case.json"), broken).unwrap();
+    refused(folder.path(), &["replay", "case.json"], 3, &["is not a number from -1e5 to 1e5"]);
 }
 
 #[test]

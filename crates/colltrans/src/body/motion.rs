@@ -201,6 +201,11 @@ impl Motion {
         Ok(Pose::from_matrix(rotation, piece.start.translation() + by)?)
     }
 
+    /// Where the body is at time 0.
+    pub fn start(&self) -> Pose {
+        self.pieces[0].start
+    }
+
     pub(crate) fn pieces(&self) -> &[Piece] {
         &self.pieces
     }

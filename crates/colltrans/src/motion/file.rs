@@ -1,8 +1,9 @@
-//! A proof about a motion with all that it is about, as one file.
+//! A question about a motion, and a proof with all that it is about, as files.
 
 use std::borrow::Cow;
 use std::fmt;
 
+use serde::de::Error as _;
 use serde::{Deserialize, Serialize};
 
 use super::{Motion, MotionCast, MotionOutcome, MotionProof, MotionProofError, Moving};
@@ -12,8 +13,85 @@ use crate::cast::replay::BodyRecord;
 use crate::proof_file::{convex_body, said};
 use crate::setting::error::QueryError;
 
-/// What a file of this version calls itself.
-const FORMAT: &str = "colltrans motion proof 1";
+/// What files of this version call themselves.
+const PROOF: &str = "colltrans motion proof 1";
+const CASE: &str = "colltrans motion case 1";
+
+/// A question about a motion that owns its bodies, read from a file.
+///
+/// ```
+/// use colltrans::glam::DVec3;
+/// use colltrans::motion::{Motion, MotionCase, MotionCast};
+/// use colltrans::{ConvexPolyhedron, Pose};
+///
+/// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+/// let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 2.0)?;
+/// let cast = MotionCast::new(cube.along(&turn), cube.at(Pose::from_translation(DVec3::X * 1.2)?))?;
+///
+/// let saved: String = cast.to_json();
+/// let case = MotionCase::from_json(&saved)?;
+/// assert_eq!(case.cast().first_contact()?, cast.first_contact()?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct MotionCase {
+    bodies: Box<[ConvexPolyhedron; 2]>,
+    motions: [Motion; 2],
+    keep: f64,
+}
+
+impl MotionCase {
+    fn of(cast: &MotionCast) -> Self {
+        Self {
+            bodies: Box::new(cast.bodies().map(ConvexPolyhedron::clone)),
+            motions: cast.motions().map(Motion::clone),
+            keep: cast.keep,
+        }
+    }
+
+    /// The question.
+    pub fn cast(&self) -> MotionCast<'_> {
+        let side =
+            |k: usize| Moving { body: &self.bodies[k], motion: Cow::Borrowed(&self.motions[k]) };
+        MotionCast { moving: side(0), fixed: side(1), keep: self.keep, tolerance: None }
+    }
+
+    /// From what [`MotionCast::to_json`] has written.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn from_json(text: &str) -> Result<Self, CaseError> {
+        let text = said(text, CASE).map_err(|error| match error {
+            CaseError::Proof(error) => CaseError::Syntax(error),
+            error => error,
+        })?;
+        let asked: Asked = serde_json::from_str(text)?;
+        match asked.proof {
+            None => Self::read(asked),
+            Some(_) => Err(serde_json::Error::unknown_field("proof", &[]).into()),
+        }
+    }
+
+    fn read(asked: Asked) -> Result<Self, CaseError> {
+        let Asked { moving, moving_motion, fixed, fixed_motion, keep, .. } = asked;
+        if !keep.is_finite() {
+            return Err(QueryError::Keep { gap: keep }.into());
+        }
+        let bodies = [convex_body(&moving, "moving")?, convex_body(&fixed, "fixed")?];
+        Ok(Self { bodies: Box::new(bodies), motions: [moving_motion, fixed_motion], keep })
+    }
+}
+
+impl MotionCast<'_> {
+    /// The question as a file: bodies, their motions and what is to be kept, exact in bits.
+    /// [`MotionCase::from_json`] reads it.
+    ///
+    /// # Panics
+    /// Never: all numbers can be written.
+    pub fn to_json(&self) -> String {
+        serde_json::to_string(&Asked::of(self, CASE)).expect("numbers and names")
+    }
+}
 
 /// A proof that owns its bodies and their motions: whoever has the file can check what it says, without a search.
 ///
@@ -32,21 +110,14 @@ const FORMAT: &str = "colltrans motion proof 1";
 /// ```
 #[derive(Debug, Clone)]
 pub struct MotionProofFile {
-    bodies: Box<[ConvexPolyhedron; 2]>,
-    motions: [Motion; 2],
-    keep: f64,
+    case: MotionCase,
     proof: MotionProof,
 }
 
 impl MotionProofFile {
     /// Of an answer; `cast` is the one that was asked.
     pub fn of(cast: &MotionCast, outcome: &MotionOutcome) -> Self {
-        Self {
-            bodies: Box::new([cast.moving.body.clone(), cast.fixed.body.clone()]),
-            motions: [&cast.moving, &cast.fixed].map(|side| side.motion.clone().into_owned()),
-            keep: cast.keep,
-            proof: outcome.proof().clone(),
-        }
+        Self { case: MotionCase::of(cast), proof: outcome.proof().clone() }
     }
 
     /// Checks it, as [`MotionCast::verify`] does.
@@ -54,13 +125,7 @@ impl MotionProofFile {
     /// # Errors
     /// What is not proven.
     pub fn check(&self) -> Result<[f64; 2], MotionProofError> {
-        self.cast().verify(&self.proof)
-    }
-
-    fn cast(&self) -> MotionCast<'_> {
-        let side =
-            |k: usize| Moving { body: &self.bodies[k], motion: Cow::Borrowed(&self.motions[k]) };
-        MotionCast { moving: side(0), fixed: side(1), keep: self.keep, tolerance: None }
+        self.case.cast().verify(&self.proof)
     }
 
     /// As a file: numbers that read back as the same bits.
@@ -68,10 +133,8 @@ impl MotionProofFile {
     /// # Panics
     /// Never: all numbers can be written.
     pub fn to_json(&self) -> String {
-        let [moving, fixed] = self.bodies.each_ref().map(BodyRecord::of);
-        let [moving_motion, fixed_motion] = self.motions.clone();
-        let (format, keep, proof) = (FORMAT.into(), self.keep, self.proof.clone());
-        let file = File { format, moving, moving_motion, fixed, fixed_motion, keep, proof };
+        let asked = Asked::of(&self.case.cast(), PROOF);
+        let file = Asked { proof: Some(self.proof.clone()), ..asked };
         serde_json::to_string(&file).expect("numbers and names")
     }
 
@@ -80,14 +143,11 @@ impl MotionProofFile {
     /// # Errors
     /// What is wrong with it.
     pub fn from_json(text: &str) -> Result<Self, CaseError> {
-        let text = said(text, FORMAT)?;
-        let file: File = serde_json::from_str(text).map_err(CaseError::Proof)?;
-        if !file.keep.is_finite() {
-            return Err(QueryError::Keep { gap: file.keep }.into());
-        }
-        let bodies = [convex_body(&file.moving, "moving")?, convex_body(&file.fixed, "fixed")?];
-        let motions = [file.moving_motion, file.fixed_motion];
-        Ok(Self { bodies: Box::new(bodies), motions, keep: file.keep, proof: file.proof })
+        let text = said(text, PROOF)?;
+        let mut file: Asked = serde_json::from_str(text).map_err(CaseError::Proof)?;
+        let missing = || CaseError::Proof(serde_json::Error::missing_field("proof"));
+        let proof = file.proof.take().ok_or_else(missing)?;
+        Ok(Self { case: MotionCase::read(file)?, proof })
     }
 }
 
@@ -96,7 +156,7 @@ impl fmt::Display for MotionProofFile {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let meeting = self.proof.meeting.as_ref().map(|meeting| meeting.time);
         let reached = self.proof.spans.iter().flatten().last().map(|plane| plane.time);
-        let meet = match self.keep {
+        let meet = match self.case.keep {
             keep if keep > 0.0 => format!("come as near as {keep}"),
             keep if keep < 0.0 => format!("overlap by more than {}", -keep),
             _ => "meet".into(),
@@ -113,9 +173,10 @@ impl fmt::Display for MotionProofFile {
     }
 }
 
+/// What is asked, and of a proof what is claimed.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct Asked {
     format: String,
     moving: BodyRecord,
     moving_motion: Motion,
@@ -123,5 +184,15 @@ struct File {
     fixed_motion: Motion,
     #[serde(default, skip_serializing_if = "crate::written::is_zero")]
     keep: f64,
-    proof: MotionProof,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    proof: Option<MotionProof>,
+}
+
+impl Asked {
+    fn of(cast: &MotionCast, format: &str) -> Self {
+        let [moving, fixed] = cast.bodies().map(BodyRecord::of);
+        let [moving_motion, fixed_motion] = cast.motions().map(Motion::clone);
+        let (format, keep) = (format.into(), cast.keep);
+        Self { format, moving, moving_motion, fixed, fixed_motion, keep, proof: None }
+    }
 }

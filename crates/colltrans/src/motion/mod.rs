@@ -64,7 +64,7 @@ pub use self::answer::{
     Meeting, Met, MotionContact, MotionFree, MotionOutcome, MotionProof, MotionSteps, PlaneAt,
 };
 #[cfg(feature = "json")]
-pub use self::file::MotionProofFile;
+pub use self::file::{MotionCase, MotionProofFile};
 use self::look::ConvexLooker;
 use self::search::{Advanced, End, advance};
 pub use self::solid::{FacetsMeeting, FacetsMet, MotionCover, SolidMotionProof, SpanProof};
@@ -110,17 +110,28 @@ impl<'a, B> MotionCast<'a, B> {
         Ok(Self { moving: moving.into(), fixed: fixed.into(), keep: 0.0, tolerance: None })
     }
 
+    /// The gap that is kept; 0 if there is none.
+    pub fn keep(&self) -> f64 {
+        self.keep.max(0.0)
+    }
+
+    /// What the moving and the fixed body do.
+    pub fn motions(&self) -> [&Motion; 2] {
+        [&self.moving.motion, &self.fixed.motion]
+    }
+
     /// The moving and the fixed body.
     pub fn bodies(&self) -> [&'a B; 2] {
         [self.moving.body, self.fixed.body]
     }
-
-    fn motions(&self) -> [&Motion; 2] {
-        [&self.moving.motion, &self.fixed.motion]
-    }
 }
 
 impl MotionCast<'_> {
+    /// The depth that is tolerated; 0 if none is.
+    pub fn tolerance(&self) -> f64 {
+        (-self.keep).max(0.0)
+    }
+
     /// The same with a gap to be kept, in world units: what counts is when the bodies are no farther apart.
     /// In the place of a depth that is tolerated.
     ///

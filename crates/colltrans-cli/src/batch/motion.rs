@@ -1,0 +1,93 @@
+//! What a body does, as a line of a batch says it, and when two such bodies first meet.
+
+use colltrans::glam::DVec3;
+use colltrans::motion::{Motion, MotionCast};
+use colltrans::record::Record;
+use serde::Deserialize;
+
+use super::source::{PoseSource, Query};
+use crate::body::Part;
+use crate::replay;
+
+/// One kind of motion; angles are in radians.
+#[derive(Debug, Deserialize)]
+#[serde(
+    rename_all = "snake_case",
+    rename_all_fields = "snake_case",
+    deny_unknown_fields,
+    expecting = "an object that holds a motion"
+)]
+pub(super) enum MotionSource {
+    Still {},
+    Slide { by: [f64; 3] },
+    Turn { point: [f64; 3], axis: [f64; 3], angle: f64 },
+    Screw { point: [f64; 3], axis: [f64; 3], angle: f64, rise: f64 },
+    Thrown { center: [f64; 3], velocity: [f64; 3], angular_velocity: [f64; 3] },
+    Between { from: PoseSource, to: PoseSource },
+    Through { poses: Vec<PoseSource> },
+}
+
+impl MotionSource {
+    /// From a pose on, unless it has its own.
+    fn motion(&self, pose: Option<&PoseSource>) -> Result<Motion, String> {
+        let v = DVec3::from_array;
+        let has_own = matches!(self, Self::Between { .. } | Self::Through { .. });
+        if has_own && pose.is_some() {
+            return Err("`between` and `through` have their own poses".into());
+        }
+        let start = pose.copied().unwrap_or_default().pose()?;
+        let motion = match self {
+            Self::Still {} => Ok(Motion::still(start)),
+            Self::Slide { by } => Motion::slide(start, v(*by)),
+            Self::Turn { point, axis, angle } => Motion::turn(start, v(*point), v(*axis), *angle),
+            Self::Screw { point, axis, angle, rise } => {
+                Motion::screw(start, v(*point), v(*axis), *angle, *rise)
+            }
+            Self::Thrown { center, velocity, angular_velocity } => {
+                Motion::thrown(start, v(*center), v(*velocity), v(*angular_velocity))
+            }
+            Self::Between { from, to } => Motion::between(from.pose()?, to.pose()?),
+            Self::Through { poses } => {
+                let pose = |(k, pose): (usize, &PoseSource)| {
+                    pose.pose().map_err(|what| format!("pose {k}: {what}"))
+                };
+                let poses: Vec<_> = poses.iter().enumerate().map(pose).collect::<Result<_, _>>()?;
+                Motion::through(&poses)
+            }
+        };
+        motion.map_err(|error| error.to_string())
+    }
+}
+
+/// What both bodies of a line do; one of which nothing is said rests where it is.
+pub(super) fn motions<B>(query: &Query<'_, B>) -> Result<[Motion; 2], String> {
+    if query.moving_motion.is_none() && query.fixed_motion.is_none() {
+        return Err(r#""motion" needs a `moving_motion` or a `fixed_motion`"#.into());
+    }
+    let of = |motion: Option<&MotionSource>, pose, name: &str| {
+        let motion = motion.unwrap_or(&MotionSource::Still {});
+        motion.motion(pose).map_err(|what| format!("{name}: {what}"))
+    };
+    Ok([
+        of(query.moving_motion.as_ref(), query.moving_pose.as_ref(), "moving_motion")?,
+        of(query.fixed_motion.as_ref(), query.fixed_pose.as_ref(), "fixed_motion")?,
+    ])
+}
+
+/// When convex bodies first meet.
+pub(super) fn first_contact<B>(
+    query: &Query<'_, B>,
+    [moving, fixed]: [&Part; 2],
+    motions: &[Motion; 2],
+) -> Result<Record, String> {
+    let cast = MotionCast::new(moving.body.along(&motions[0]), fixed.body.along(&motions[1]));
+    let cast = match (query.keep, query.tolerance) {
+        (Some(_), Some(_)) => return Err("a motion has either `keep` or `tolerance`".into()),
+        (None, Some(depth)) => cast.and_then(|cast| cast.tolerating(depth)),
+        (keep, None) => cast.and_then(|cast| cast.keeping(keep.unwrap_or_default())),
+    };
+    let cast = cast.map_err(|error| error.to_string())?;
+    let found = cast.first_contact();
+    let found = found.map_err(|error| replay::motion_failure(error, &cast).into_message())?;
+    Ok(Record::of_motion(&found, &cast))
+}

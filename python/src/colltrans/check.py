@@ -1486,8 +1486,8 @@ class Spin:
         around, off = self.across(n), self.off(n)
         sin, cos = sine_cosine(angle) if angle < 3 else (Fraction(), Fraction())
         highest, before = None, None
-        rows = (self.along(v, begin) for v in (n, around, side))
-        for height, a, b in zip(*rows, strict=True):
+        heights, across, ahead = (self.along(v, begin) for v in (n, around, side))
+        for height, a, b in zip(heights, across, ahead, strict=True):
             top, rest = height, height - a
             slope = b * cos - a * sin
             if angle >= 3 or (b > -off and slope < 2 * off):

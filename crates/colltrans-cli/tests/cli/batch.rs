@@ -403,7 +403,7 @@ fn motions_are_asked_in_lines() {
         (asked(&format!(r#"{moved},"keep":1,"tolerance":1"#)), "either `keep` or `tolerance`"),
         (asked(&format!(r#"{moved},"keep":-1"#)), "-1"),
         (asked(&moved.replace("axis\":[0,0,1]", "axis\":[0,0,0]")), "moving_motion: the axis"),
-        (asked(&moved.replace("6", "1e9")), "moving_motion: the angle"),
+        (asked(&moved.replace('6', "1e9")), "moving_motion: the angle"),
         (asked(&moved.replace("\"axis\":[0,0,1],", "")), "missing field `axis`"),
         (asked(&moved.replace("turn", "twist")), "unknown word `twist`"),
         (asked(r#""moving_motion":{"through":{"poses":[]}}"#), "at least one pose"),

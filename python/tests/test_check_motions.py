@@ -1,0 +1,179 @@
+"""The checker in fractions, on saved proofs of motions that turn: also forged ones.
+
+Like ``test_check`` it needs neither the extension nor what other tests share.
+"""
+
+import json
+import math
+import random
+from collections.abc import Callable
+from fractions import Fraction
+from typing import Any
+
+import pytest
+from test_check import changed, check, proof, refused
+
+ALL = ["contact", "free", "kept", "through", "alone", "sinking"]
+
+
+@pytest.mark.parametrize(
+    ("name", "holds"),
+    [
+        ("contact", ["never meet up to the time 0.28739254482", "meet at the time 0.28739254482"]),
+        ("free", ["the bodies never meet throughout the motion"]),
+        (
+            "kept",
+            ["never are as near as 0.25 up to", "are as near as 0.25 at the time 0.4911185688"],
+        ),
+        ("through", ["the bodies never meet throughout the motion"]),
+        ("alone", ["the bodies never meet throughout the motion"]),
+        ("sinking", ["never overlap by more than 0.001 up to", "by more than 0.001 at the time"]),
+    ],
+)
+def test_a_proof_holds(name: str, holds: list[str]) -> None:
+    report = check.check(json.dumps(proof(f"motion_{name}")))
+    assert len(report.holds) == len(holds) and not report.partly
+    assert all(words in line for words, line in zip(holds, report.holds, strict=True))
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_no_plane_may_say_more_than_it_leaves(name: str) -> None:
+    file = proof(f"motion_{name}")
+    for s, planes in enumerate(file["proof"]["spans"]):
+        for k in range(len(planes)):
+            way = ("proof", "spans", s, k)
+            assert refused(changed(file, (*way, "gap"), lambda x: x + 1e-12 * (1 + abs(x))))
+            assert refused(changed(file, (*way, "gap"), lambda x: -x))
+            assert refused(changed(file, (*way, "normal"), lambda n: [-x for x in n]))
+            assert refused(changed(file, (*way, "normal"), lambda n: [2 * x for x in n]))
+            if planes[k]["time"] > 0:
+                assert refused(changed(file, (*way, "time"), lambda x: -x))
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_planes_that_are_needed_may_not_be_dropped(name: str) -> None:
+    file = proof(f"motion_{name}")
+    for s, planes in enumerate(file["proof"]["spans"]):
+        # The first says where the span begins; all but the last at once leave the motion unproven.
+        without = json.loads(json.dumps(file))
+        without["proof"]["spans"][s] = planes[1:]
+        assert planes[1]["time"] == planes[0]["time"] or refused(without)
+        without["proof"]["spans"][s] = [{**planes[0], "alone": False}, planes[-1]]
+        assert name in {"sinking", "through"} or refused(without)
+    if len(file["proof"]["spans"]) > 1:
+        del file["proof"]["spans"][0]
+        assert refused(file)
+
+
+def test_one_plane_alone_needs_the_arcs() -> None:
+    file = proof("motion_alone")
+    way = ("proof", "spans", 0, 0, "alone")
+    assert refused(changed(file, way, lambda alone: not alone))
+    assert refused(changed(file, way, lambda alone: 1))
+    # Of the contact no plane is enough alone.
+    file = proof("motion_contact")
+    for k in range(len(file["proof"]["spans"][0]) - 1):
+        assert refused(changed(file, ("proof", "spans", 0, k, "alone"), lambda alone: True))
+
+
+@pytest.mark.parametrize("name", ["contact", "kept", "sinking"])
+def test_the_time_of_contact_may_not_be_moved(name: str) -> None:
+    file = proof(f"motion_{name}")
+    time = file["proof"]["meeting"]["time"]
+    reached = file["proof"]["spans"][-1][-1]["time"]
+    assert refused(changed(file, ("proof", "meeting", "time"), lambda t: 0.5 * t))
+    # Just after the last plane they do not meet yet.
+    assert refused(changed(file, ("proof", "meeting", "time"), lambda t: reached))
+    assert refused(changed(file, ("proof", "meeting", "time"), lambda t: 1.5))
+    assert refused(changed(file, ("proof", "spans", -1, -1, "time"), lambda t: time + 1e-6))
+    kind = next(iter(file["proof"]["meeting"]["met"]))
+    if kind == "near":
+        way: tuple[Any, ...] = ("proof", "meeting", "met", "near", "pairs", 0, "moving")
+    else:
+        way = ("proof", "meeting", "met", "deep", "enclosure", "triangles", 0, 0)
+    assert refused(changed(file, way, lambda k: k + 1))
+    other = {"near": "deep", "deep": "near"}[kind]
+    met = file["proof"]["meeting"]["met"]
+    assert refused(changed(file, ("proof", "meeting", "met"), lambda _: {other: met[kind]}))
+
+
+@pytest.mark.parametrize(
+    ("part", "by"),
+    [
+        (("rate",), lambda x: 1.02 * x + 1e-3),
+        (("arm", 1), lambda x: x + 0.05),
+        (("arm", 0), lambda x: x + 0.05),
+        (("axis",), lambda axis: [-x for x in axis]),
+        (("axis",), lambda axis: [2 * x for x in axis]),
+        (("velocity", 1), lambda x: x + 0.05),
+        (("start", "translation", 0), lambda x: x + 0.05),
+        (("start", "translation", 1), lambda x: x - 0.05),
+        (("since",), lambda x: x + 0.25),
+        (("rate",), lambda x: 1e6),
+    ],
+)
+def test_every_number_of_a_motion_counts(part: tuple[Any, ...], by: Callable[[Any], Any]) -> None:
+    file = proof("motion_contact")
+    assert refused(changed(file, ("moving_motion", 0, *part), by))
+
+
+def test_other_bodies_are_refused() -> None:
+    file = proof("motion_contact")
+    for side in ("moving", "fixed"):
+        for factor in (0.99, 1.01):
+            larger = json.loads(json.dumps(file))
+            vertices = larger[side]["vertices"]
+            larger[side]["vertices"] = [[factor * x for x in v] for v in vertices]
+            assert refused(larger)
+    swapped = {**file, "moving": file["fixed"], "fixed": file["moving"]}
+    assert refused(swapped)
+    assert refused({**file, "keep": 0.01}) and refused({**file, "keep": -0.01})
+    assert refused({**proof("motion_kept"), "keep": 0.26})
+    assert refused({**proof("motion_sinking"), "keep": -0.0009})
+    two = proof("motion_free")
+    two["moving_motion"].append({**two["moving_motion"][0], "since": 0.5})
+    assert refused(two)
+
+
+def test_what_is_no_proof_is_refused() -> None:
+    file = proof("motion_contact")
+    for name in ("moving", "fixed", "moving_motion", "fixed_motion", "proof"):
+        assert refused({k: v for k, v in file.items() if k != name})
+    assert refused({**file, "moving_motion": []})
+    assert refused({**file, "keep": "0"})
+    # It says nothing, which holds.
+    assert check.check(json.dumps({**file, "proof": {"spans": [], "meeting": None}})).holds == []
+
+
+def test_sine_and_cosine_are_enclosed() -> None:
+    drawn = random.Random(5)
+    for scale in (1e-9, 0.8, 6.0, 1e5):
+        for _ in range(50):
+            angle = Fraction(drawn.uniform(-scale, scale))
+            sin, cos = check.sine_cosine(angle)
+            assert abs(sin * sin + cos * cos - 1) < check._TINY
+            assert math.isclose(float(sin), math.sin(angle), rel_tol=1e-15, abs_tol=1e-18)
+            assert math.isclose(float(cos), math.cos(angle), rel_tol=1e-15, abs_tol=1e-18)
+            half = check.sine_cosine(angle / 2)
+            assert abs(sin - 2 * half[0] * half[1]) < check._TINY
+
+
+def test_a_root_is_one_from_above() -> None:
+    for x in (Fraction(0), Fraction(2), Fraction(1, 3), Fraction(10) ** 40, Fraction(7, 10**60)):
+        root = check.root_above(x)
+        assert x <= root * root <= x * (1 + check._TINY)
+
+
+def test_between_two_planes_the_chord_bound_is_exact() -> None:
+    drawn = random.Random(7)
+    seen = set()
+    for _ in range(2_000):
+        a, b = (Fraction(drawn.uniform(0.0, 1.0)) for _ in range(2))
+        c = Fraction(drawn.uniform(-1.0, 8.0))
+        parts = [Fraction(k, 400) for k in range(401)]
+        least = min((1 - x) * a + x * b - c * x * (1 - x) / 2 for x in parts)
+        stays = check.stays(a, b, c)
+        # Samples are above the least value, by the bend between two of them at most.
+        assert not (stays and least <= 0) and (stays or least < abs(c) / 2 / 400**2)
+        seen.add(stays)
+    assert seen == {True, False}

@@ -85,8 +85,9 @@ pub(crate) enum Command {
     /// Say when a mesh that turns, unscrews, swings or is thrown first touches another
     ///
     /// With proven bounds on the time, from 0 at the start to 1 at the end of the motion; or that it never
-    /// does, proven of the whole motion and not of samples. All meshes are convex; the other one may move as
-    /// well.
+    /// does, proven of the whole motion and not of samples. Both sides may move. Convex meshes are asked as
+    /// convex bodies, with a proof; all others as parts with their holes and hollows, as `clearance` takes
+    /// them.
     #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[MOTION_ANSWERS, &formats(), EXIT_CODES]))]
     Motion(Box<MotionArguments>),
     /// Answer every query of a file with one JSON object a line

@@ -1,46 +1,117 @@
-//! `colltrans motion`: when convex meshes that turn first meet others.
+//! `colltrans motion`: when meshes that turn first meet others. Convex ones are asked as convex bodies, all
+//! others as parts.
 
+use std::path::PathBuf;
+
+use colltrans::Pose;
 use colltrans::glam::DVec3;
 use colltrans::motion::{Motion, MotionCast, MotionOutcome, MotionProofFile};
 use colltrans::record::{Ending, FeaturesRecord, Record, TimeRecord};
+use colltrans_mesh::body::LoadError;
 
-use crate::args::{MotionArguments, Sides};
-use crate::body::{self, Part};
+use crate::args::{MotionArguments, Sides, Taken};
+use crate::body::{self, Part, is_part};
+use crate::clearance;
 use crate::failure::{Code, Failure, note, print};
+use crate::inputs::refuse_picture;
 use crate::numbers::{counted, known, known_vector, number, unit_vector};
+use crate::outputs;
+use crate::picture::{Moved, draw_motion};
 use crate::proof::{self, refuse_proof};
 use crate::record::{Hulls, Line};
 use crate::replay;
 use crate::report::{feature, hulls, kept, line};
+use crate::solid::{PartsMotion, surface_of};
 
 pub(crate) fn run(arguments: &MotionArguments) -> Result<(), Failure> {
-    let Sides { files, .. } = arguments.sides()?;
+    let Sides { files, taken } = arguments.sides()?;
     let inputs: Vec<&_> = files.into_iter().flatten().map(AsRef::as_ref).collect();
-    refuse_proof(arguments.save_proof.as_deref(), None, &inputs)?;
-    if arguments.save_proof.is_some() && inputs.len() > 2 {
+    let picture = arguments.picture.as_deref();
+    refuse_picture(picture, &inputs)?;
+    refuse_proof(arguments.save_proof.as_deref(), picture, &inputs)?;
+    let motions = arguments.motions()?;
+    if taken != Taken::Parts {
+        let options = arguments.body_options();
+        let load = |k: usize| -> Result<Vec<Part>, LoadError> {
+            files[k].iter().map(|file| body::load(file, &options[k])).collect()
+        };
+        match load(0).and_then(|moving| Ok([moving, load(1)?])) {
+            Ok(parts) => return convex(arguments, files, &parts, &motions),
+            Err(error) if taken == Taken::AsTheyAre && is_part(&error) => {}
+            Err(error) => return Err(Failure::new(Code::Input, body::refusal(&error))),
+        }
+    }
+    parts(arguments, files, &motions)
+}
+
+/// Asked of convex meshes.
+fn convex(
+    arguments: &MotionArguments,
+    files: [&[PathBuf]; 2],
+    parts: &[Vec<Part>; 2],
+    motions: &[Motion; 2],
+) -> Result<(), Failure> {
+    if arguments.save_proof.is_some() && files.iter().any(|side| side.len() > 1) {
         let why = "--save-proof is of two meshes; ask about the one that touches alone";
         return Err(Failure::new(Code::Usage, why));
     }
-    let motions = arguments.motions()?;
-    let options = arguments.body_options();
-    let load = |k: usize| -> Result<Vec<Part>, Failure> {
-        let parts = files[k].iter().map(|file| body::load(file, &options[k]));
-        let parts: Result<_, _> = parts.collect();
-        parts.map_err(|error| Failure::new(Code::Input, body::refusal(&error)))
-    };
-    let parts = [load(0)?, load(1)?];
-    arguments.places.notes().iter().flatten().for_each(|text| note(text));
-    parts.iter().flatten().flat_map(|part| &part.notes).for_each(|text| note(text));
-    let found = first_of_all(arguments, [&parts[0], &parts[1]], &motions)?;
+    if arguments.tolerance.is_some() && arguments.keep > 0.0 {
+        let why = "convex meshes have either --keep or --tolerance";
+        return Err(Failure::new(Code::Usage, why));
+    }
+    tell(arguments, parts.iter().flatten().flat_map(|part| &part.notes));
+    let found = first_of_all(arguments, [&parts[0], &parts[1]], motions)?;
     let Found { mut told, pair, cast, outcome } = found;
     let name =
         |k: usize| Some(files[k][pair[k]].display().to_string()).filter(|_| files[k].len() > 1);
     (told.record.moving, told.record.fixed) = (name(0), name(1));
     print(&if arguments.json { told.json() } else { words(&told, cast.motions()) })?;
-    match &arguments.save_proof {
-        Some(path) => proof::save_text(path, &MotionProofFile::of(&cast, &outcome).to_json()),
+    if let Some(path) = &arguments.save_proof {
+        proof::save_text(path, &MotionProofFile::of(&cast, &outcome).to_json())?;
+    }
+    let surface = |k: usize, pose: &Pose, origin| surface_of(&parts[k][pair[k]].body, pose, origin);
+    draw(arguments, &told.record, motions, &surface)
+}
+
+/// Asked of parts that need not be convex.
+fn parts(
+    arguments: &MotionArguments,
+    files: [&[PathBuf]; 2],
+    motions: &[Motion; 2],
+) -> Result<(), Failure> {
+    if arguments.save_proof.is_some() {
+        let why = "--save-proof is of convex meshes; --hull takes their hulls";
+        return Err(Failure::new(Code::Usage, why));
+    }
+    let bodies = clearance::load(files, &arguments.part_options())?;
+    tell(arguments, bodies.iter().flat_map(|body| &body.notes));
+    let MotionArguments { tolerance, keep, .. } = *arguments;
+    let asked = PartsMotion { bodies: [&bodies[0], &bodies[1]], motions, tolerance, keep };
+    let told = Line::from(asked.ask()?);
+    print(&if arguments.json { told.json() } else { words(&told, motions.each_ref()) })?;
+    let surface = |k: usize, pose: &Pose, origin| bodies[k].surface(pose, origin);
+    draw(arguments, &told.record, motions, &surface)
+}
+
+fn draw(
+    arguments: &MotionArguments,
+    record: &Record,
+    motions: &[Motion; 2],
+    surface: &dyn Fn(usize, &Pose, DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>),
+) -> Result<(), Failure> {
+    match &arguments.picture {
+        Some(path) => {
+            let moved = Moved { record, motions: motions.each_ref(), surface };
+            outputs::write(path, draw_motion(moved).as_bytes())
+        }
         None => Ok(()),
     }
+}
+
+/// What was changed about the poses and mended in the files.
+fn tell<'a>(arguments: &MotionArguments, mended: impl Iterator<Item = &'a String>) {
+    arguments.places.notes().iter().flatten().for_each(|text| note(text));
+    mended.for_each(|text| note(text));
 }
 
 /// The answer of two of the meshes.
@@ -63,10 +134,9 @@ fn first_of_all<'a>(
         for (j, fixed) in parts[1].iter().enumerate() {
             let cast =
                 MotionCast::new(moving.body.along(&motions[0]), fixed.body.along(&motions[1]))?;
-            let cast = if arguments.tolerance > 0.0 {
-                cast.tolerating(arguments.tolerance)?
-            } else {
-                cast.keeping(arguments.keep)?
+            let cast = match arguments.tolerance {
+                Some(depth) => cast.tolerating(depth)?,
+                None => cast.keeping(arguments.keep)?,
             };
             let outcome = cast.first_contact();
             let outcome = outcome.map_err(|error| replay::motion_failure(error, &cast))?;
@@ -127,6 +197,9 @@ pub(crate) fn words(told: &Line, motions: [&Motion; 2]) -> String {
         let [planes, looks] =
             [counted(planes, "plane", "planes"), counted(looks as usize, "look", "looks")];
         line(&mut text, "proof", &format!("{planes}, found in {looks}"));
+    }
+    if let Some(tolerance) = record.tolerance {
+        line(&mut text, "tolerance", &number(tolerance));
     }
     kept(&mut text, record);
     hulls(&mut text, told);

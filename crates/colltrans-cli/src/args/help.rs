@@ -275,7 +275,7 @@ pub(super) const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON ob
   query is "contact", as of `colltrans cast`, or "clearance", as of `colltrans clearance`. Solids are
   not asked for "contact"; "clearance" is the default there. "distance", "depth" and "within" are those
   of the commands, of bodies of any kind where they are.
-  "motion" is `colltrans motion` of convex bodies, of which one or both move.
+  "motion" is `colltrans motion`, of bodies of any kind, of which one or both move.
   POSE = {"translation": [x,y,z], "rotation": [qx,qy,qz,qw]}, either may be missing
   MOTION = {"slide": {"by": [x,y,z]}}
        or {"turn": {"point": [x,y,z], "axis": [x,y,z], "angle": RADIANS}}

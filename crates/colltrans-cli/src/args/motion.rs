@@ -9,7 +9,9 @@ use colltrans::motion::{Motion, MotionError};
 use colltrans_mesh::body::BodyOptions;
 
 use super::values::{Place, place, vector};
-use super::{BodyArguments, HullArguments, PlaceArguments, Sides, Taken, direction, length, proof};
+use super::{
+    BodyArguments, HullArguments, PlaceArguments, Sides, Taken, UNCLEAN, direction, length, proof,
+};
 use crate::failure::{Code, Failure};
 
 #[derive(Debug, Args)]
@@ -27,21 +29,29 @@ pub(crate) struct MotionArguments {
     /// A gap to be kept: ask when the meshes are first as near as that, not when they touch
     #[arg(long, value_name = "GAP", allow_hyphen_values = true, value_parser = length, default_value = "0")]
     pub(crate) keep: f64,
-    /// How deep the meshes may overlap: ask when they first do by more
+    /// How deep the meshes may overlap: ask when they first do by more [default: 0; of parts, what the
+    /// files' precision asks for]
     ///
-    /// In the unit of the meshes. What rests on something and turns there needs a little, as rounding
-    /// cannot tell a touch from an overlap.
-    #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length, conflicts_with = "keep", default_value = "0")]
-    pub(crate) tolerance: f64,
+    /// In the unit of the meshes. Of convex meshes, in the place of --keep: what rests on something and
+    /// turns there needs a little, as rounding cannot tell a touch from an overlap. Parts are shrunk by
+    /// half of it; a curved fit needs the chord errors of both together.
+    #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length)]
+    pub(crate) tolerance: Option<f64>,
     /// Print the answer as one JSON object
     #[arg(long)]
     pub(crate) json: bool,
-    /// Write the proof of the answer, with the bodies and their motions, as one file that `colltrans
-    /// verify` checks
+    /// Draw the moving mesh at the start, where it touches and at the end as an SVG picture
+    #[arg(long, value_name = "OUT.svg", value_parser = picture)]
+    pub(crate) picture: Option<PathBuf>,
+    /// Of two convex meshes: write the proof of the answer, with the bodies and their motions, as one file
+    /// that `colltrans verify` checks
     #[arg(long, value_name = "OUT.json", value_parser = proof)]
     pub(crate) save_proof: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) places: PlaceArguments,
+    /// Take surfaces that are not closed, as sheets and scans are: without an inside
+    #[arg(long, help_heading = UNCLEAN)]
+    open: bool,
     #[command(flatten)]
     hulls: HullArguments,
     #[command(flatten)]
@@ -114,7 +124,15 @@ enum Kind<'a> {
 impl MotionArguments {
     /// Who moves, and whom it may meet.
     pub(crate) fn sides(&self) -> Result<Sides<'_>, Failure> {
-        Sides::of(&self.meshes, &self.from, Taken::Convex, false)
+        let clash = "--convex-tolerance and --hull are for convex meshes, --open is for parts";
+        let taken = Taken::of([self.hulls.asks_convex(self.body), self.open], clash)?;
+        Sides::of(&self.meshes, &self.from, taken, false)
+    }
+
+    /// How the files of both sides are read as parts.
+    pub(crate) fn part_options(&self) -> [BodyOptions; 2] {
+        [self.places.moving_scale, self.places.fixed_scale]
+            .map(|scale| self.body.options(scale).with_open(self.open))
     }
 
     /// How the files of both sides become convex bodies.

@@ -24,7 +24,7 @@ use crate::body::{self, Part};
 use crate::inputs::Watched;
 use crate::record::{Hulls, Line as AnswerLine};
 use crate::replay;
-use crate::solid::{self, PartsPair, PartsQuery};
+use crate::solid::{self, PartsMotion, PartsPair, PartsQuery};
 
 /// What all lines of a batch have in common.
 pub(crate) struct Batch {
@@ -211,7 +211,13 @@ fn solve<B>(query: &Query<'_, B>, [moving, fixed]: [Built; 2]) -> Result<AnswerL
             let parts = [moving, fixed];
             Ok(of_parts(motion::first_contact(query, parts, &motions)?, parts))
         }
-        (Ask::Motion(_), _) => Err(r#"a "motion" is of convex bodies"#.into()),
+        (Ask::Motion(motions), shapes) => {
+            let [moving, fixed] = as_solids(shapes)?;
+            let bodies = [moving.get(), fixed.get()];
+            let keep = query.keep.unwrap_or_default();
+            let asked = PartsMotion { bodies, motions: &motions, tolerance: query.tolerance, keep };
+            Ok(of_bodies(asked.ask().map_err(|e| e.to_string())?, bodies))
+        }
         (Ask::Cast(direction), [Shape::Convex(moving), Shape::Convex(fixed)]) => {
             query.of_convex([moving, fixed], poses, direction)
         }
@@ -369,8 +375,13 @@ fn of_pair(
     let [moving, fixed] = as_solids(shapes)?;
     let bodies = [moving.get(), fixed.get()];
     let record = PartsPair { bodies, poses }.ask(question).map_err(|e| e.to_string())?;
+    Ok(of_bodies(record, bodies))
+}
+
+/// The line of an answer about solids.
+fn of_bodies(record: Record, bodies: [&solid::Body; 2]) -> AnswerLine {
     let notes = bodies.into_iter().flat_map(|body| body.notes.clone()).collect();
-    Ok(AnswerLine { notes, ..without_names(record).into() })
+    AnswerLine { notes, ..without_names(record).into() }
 }
 
 /// The line of an answer about convex bodies.

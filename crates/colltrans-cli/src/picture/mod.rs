@@ -13,12 +13,13 @@
 //! hides nothing.
 //!
 //! Parts that need not be convex have no such order: [`parts`] draws them by a buffer of depths, as
-//! [`pair`] does two bodies of any kind where they are.
+//! [`pair`] does two bodies of any kind where they are, and [`motion`] bodies that turn.
 //!
 //! Order: [`subject`] (what is to be shown) -> [`viewpoint`] (from where) -> [`layout`]
 //! (how large, by [`size`]) -> [`solid`] and [`notes`] (the drawing) -> [`Page`].
 
 mod layout;
+mod motion;
 mod notes;
 mod pair;
 mod parts;
@@ -32,6 +33,7 @@ use colltrans::glam::{DVec2, DVec3};
 use colltrans_picture::{FIXED, FIXED_MARK, MOVING, MOVING_MARK, Page, View};
 
 use layout::Layout;
+pub(crate) use motion::{Moved, draw_motion};
 use notes::Notes;
 pub(crate) use pair::{Shown, draw_pair};
 pub(crate) use parts::draw_solids;
@@ -52,6 +54,8 @@ struct Cast {
     stop: Solid,
     /// Q.
     fixed: Solid,
+    /// P at other times, of a motion.
+    ghosts: Vec<Solid>,
     /// From `start` to `stop`, as drawn.
     way: DVec3,
     /// The way is drawn shorter than it is.
@@ -101,7 +105,8 @@ impl Cast {
         let shown = subject.stop.clamp(-longest, longest);
         let way = unit * shown;
         let start = (shown.abs() > 0.01 * size).then(|| stop.moved(-way));
-        Self { start, stop, fixed, way, is_broken: shown != subject.stop }
+        let ghosts = Vec::new();
+        Self { start, stop, fixed, ghosts, way, is_broken: shown != subject.stop }
     }
 
     /// From back to front.

@@ -197,6 +197,9 @@ impl Notes<'_> {
         if self.cast.start.is_some() {
             entries.push(("#dce7f5", MOVING.fine, "moving, at the start"));
         }
+        if !self.cast.ghosts.is_empty() {
+            entries.push(("#dce7f5", MOVING.fine, "moving, at the start and the end"));
+        }
         entries.push(("#9db8de", MOVING.line, stop));
         entries.push(("#d9cfbe", FIXED.line, "fixed"));
         if marks.is_some() {

@@ -7,6 +7,7 @@
 
 mod ask;
 mod free;
+mod motion;
 mod pair;
 
 use std::fmt::Write as _;
@@ -22,6 +23,7 @@ use crate::body::{hint, of_file, refusal};
 use crate::numbers::counted;
 pub(crate) use ask::{Answer, PartsQuery};
 pub(crate) use free::{FreeAnswer, PartsFree};
+pub(crate) use motion::PartsMotion;
 pub(crate) use pair::PartsPair;
 
 /// A body of one piece or several.

@@ -382,20 +382,24 @@ fn motions_are_asked_in_lines() {
             asked(&format!(r#""fixed_motion":{{"slide":{{"by":[-4,0,0]}}}},{there}"#)),
             asked(&format!(r#""moving_motion":{turn},"fixed_motion":{turn},{there},"keep":0.5"#)),
             asked(&format!(r#""moving_motion":{turn}"#)),
+            line(r#"{"solid":"cube.off"}"#, &format!(r#""moving_motion":{},{there}"#, good[1].0)),
         ])
         .collect();
     let (output, results) = run(&text.join("\n"), &[]);
     assert_eq!(output.status.code(), Some(0), "{}", stdout(&output));
     let outcomes: Vec<&str> = results.iter().map(|r| r["outcome"].as_str().unwrap()).collect();
     let known: Vec<&str> = good.iter().map(|(_, outcome)| *outcome).collect();
-    assert_eq!(outcomes, [&known[..], &["contact", "free", "overlapping"]].concat());
+    assert_eq!(outcomes, [&known[..], &["contact", "free", "overlapping", "contact"]].concat());
+    let [convex, solid] = [&results[1], &results[results.len() - 1]];
+    let apart =
+        convex["time"]["lower"].as_f64().unwrap() - solid["time"]["lower"].as_f64().unwrap();
+    assert!(apart.abs() < 1e-11 && solid["tolerance"].as_f64().unwrap() < 1e-11, "{solid}");
     let [lower, upper] = ["lower", "upper"].map(|end| results[0]["time"][end].as_f64().unwrap());
     assert!(lower <= 0.5 && 0.5 <= upper && upper - lower < 1e-13, "{}", results[0]);
     assert_eq!(results[0]["normal"], serde_json::json!([1.0, 0.0, 0.0]));
     assert_eq!(results[0]["features"]["fixed"]["kind"], "face");
     assert_eq!(results[9]["keep"], 0.5);
 
-    let solid = r#"{"solid":"cube.off"}"#;
     let moved = format!(r#""moving_motion":{turn}"#);
     let bad = [
         (asked(there), "\"motion\" needs a `moving_motion` or a `fixed_motion`"),
@@ -415,7 +419,6 @@ fn motions_are_asked_in_lines() {
             asked(r#""moving_motion":{"through":{"poses":[{}]}},"moving_pose":{}"#),
             "`between` and `through` have their own poses",
         ),
-        (line(solid, &moved), "a \"motion\" is of convex bodies"),
         (
             asked(&moved).replace("\"motion\"", "\"distance\""),
             "`moving_motion` is for \"query\": \"motion\"",

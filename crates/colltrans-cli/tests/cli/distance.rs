@@ -235,7 +235,7 @@ fn lines_that_do_not_fit_their_query_are_refused() {
     let wrong = [
         (r#""query":"within""#, "needs a `length`"),
         (r#""query":"within","length":-1"#, "the length -1 is negative"),
-        (r#""query":"distance","length":1"#, "`length` is not for this query"),
+        (r#""query":"distance","length":1"#, r#"`length` is for "query": "within""#),
         (r#""query":"distance","direction":[1,0,0]"#, "`direction` is not for this query"),
         (r#""query":"depth","tolerance":0"#, "`tolerance` is not for this query"),
         (r#""direction":[1,0,0],"length":1"#, r#"`length` is for "query": "within""#),

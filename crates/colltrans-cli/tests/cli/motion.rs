@@ -120,6 +120,66 @@ fn the_first_of_several_is_told() {
 }
 
 #[test]
+fn a_picture_has_the_start_the_contact_and_the_end() {
+    let folder = folder();
+    let draw = |more: &[&str]| {
+        let words = ["motion", "cube.off", "cube.off", "--picture", "motion.svg"];
+        answered(folder.path(), &[&words[..], more].concat());
+        let svg = fs::read_to_string(folder.path().join("motion.svg")).unwrap();
+        is_whole(&svg);
+        svg
+    };
+    let met =
+        draw(&["--moving-pose=2,0,0", "--fixed-pose=-2,0.1,0", "--turn", "0,0,0", "z", "180"]);
+    assert!(met.contains("Contact at 0.7") && met.contains("at the start and the end"), "{met}");
+    // A ghost is a group of its own: two of them, one where it starts in contact.
+    let ghosts = |svg: &str| svg.matches(r#"<g opacity="0.75">"#).count();
+    assert_eq!(ghosts(&met), 2);
+    let free = draw(&["--moving-pose=2,0,0", "--turn", "5,0,0", "z", "90"]);
+    assert!(free.contains("Free: the bodies never meet") && ghosts(&free) == 1);
+    let over = draw(&["--slide", "3,0,0"]);
+    assert!(over.contains("Overlapping") && ghosts(&over) == 1);
+    let words = ["motion", "cube.off", "cube.off", "--slide", "1,0,0", "--picture", "cube.off"];
+    refused(folder.path(), &words, 2, &["pictures are written as SVG"]);
+}
+
+/// Every group that is opened is closed.
+fn is_whole(svg: &str) {
+    assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"));
+    assert_eq!(svg.matches("<g").count(), svg.matches("</g>").count());
+}
+
+#[test]
+fn parts_with_holes_turn() {
+    let folder = folder();
+    let [bolt, plate] = ["bolt.stl", "plate.off"].map(|name| data().join(name));
+    let [bolt, plate] = [bolt.to_str().unwrap(), plate.to_str().unwrap()];
+    let ask = |more: &[&str]| {
+        let words = ["motion", bolt, plate, "--moving-pose=0,0,9", "--json"];
+        read(&answered(folder.path(), &[&words[..], more].concat()))
+    };
+    // It goes down its hole while it turns, as far as it does when it does not.
+    let down = ask(&["--screw", "0,0,0", "z", "90", "-20"]);
+    assert_eq!(down["fixed"], json!(plate));
+    let straight = ask(&["--slide", "0,0,-20"]);
+    let [a, b] = [&down, &straight].map(|found| found["time"]["lower"].as_f64().unwrap());
+    assert!((a - 0.45).abs() < 1e-6 && (b - 0.45).abs() < 1e-6, "{down} {straight}");
+    assert_eq!(ask(&["--screw", "0,0,0", "z", "-90", "20"])["outcome"], "free");
+    assert!(ask(&["--slide", "0,0,1"])["tolerance"].as_f64().unwrap() > 1e-7);
+    let text = answered(
+        folder.path(),
+        &["motion", bolt, plate, "--moving-pose=0,0,9", "--screw", "0,0,0", "z", "90", "-20"],
+    );
+    assert!(text.contains("\n  moving mesh  ") && text.contains("\n  tolerance    "), "{text}");
+    refused(
+        folder.path(),
+        &["motion", bolt, plate, "--slide", "1,0,0", "--save-proof", "proof.json"],
+        2,
+        &["--save-proof is of convex meshes"],
+    );
+}
+
+#[test]
 fn a_saved_question_is_answered_again() {
     let folder = folder();
     let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).unwrap();
@@ -171,12 +231,7 @@ fn what_is_wrong_is_said() {
     assert!(ask(&["--turn", "0,0,0", "z", "x"]).contains("--turn: `x` is not a number"));
     assert!(ask(&["--turn", "0,0,0", "z", "1e9"]).contains("is not a number from -1e5 to 1e5"));
     assert!(ask(&["--slide", "1,0,0", "--turn", "0,0,0", "z", "1"]).contains("cannot be used"));
-    let bolt = data().join("bolt.stl");
-    let bolt = bolt.to_str().unwrap();
-    refused(
-        folder.path(),
-        &["motion", bolt, "cube.off", "--slide", "1,0,0"],
-        3,
-        &["is not convex"],
-    );
+    let keeps = ["--slide", "1,0,0", "--keep", "1", "--tolerance", "1"];
+    assert!(ask(&keeps).contains("either --keep or --tolerance"));
+    assert!(ask(&["--slide", "1,0,0", "--open", "--hull"]).contains("--open is for parts"));
 }

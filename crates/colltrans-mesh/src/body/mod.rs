@@ -12,6 +12,7 @@ mod orient;
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
+use colltrans::motion::{MotionCast, Moving};
 use colltrans::solid::{SolidError, SolidOptions, StartOverlap};
 use colltrans::{BuildError, Cast, ConvexPolyhedron, Placed, QueryError, Solid, TopologyError};
 use glam::DVec3;
@@ -286,4 +287,23 @@ pub fn between<'a>(
     cast.with_options(
         SolidOptions::default().with_start_overlap(start_overlap).with_tolerance(tolerance),
     )
+}
+
+/// The same of solids that turn.
+///
+/// # Errors
+/// As of [`MotionCast::new`] and of its tolerance.
+pub fn between_motions<'a>(
+    moving: Moving<'a, Solid>,
+    fixed: Moving<'a, Solid>,
+    precisions: [f64; 2],
+    tolerance: Option<f64>,
+) -> Result<MotionCast<'a, Solid>, QueryError> {
+    let cast = MotionCast::new(moving, fixed)?;
+    let of_files = PRECISIONS * (precisions[0] + precisions[1]);
+    match tolerance {
+        Some(tolerance) => cast.tolerating(tolerance),
+        None if of_files > cast.tolerance() => cast.tolerating(of_files),
+        None => Ok(cast),
+    }
 }

@@ -2,7 +2,9 @@
 
 use serde::Serialize;
 
-use super::{Ending, FeaturesRecord, Record, coordinates};
+use super::{Ending, FeaturesRecord, Record, coordinates, open_ones};
+use crate::body::Body;
+use crate::body::solid::Solid;
 use crate::motion::{MotionCast, MotionContact, MotionOutcome};
 
 /// Bounds of a time, from 0 at the start of a motion to 1 at its end.
@@ -16,16 +18,22 @@ pub struct TimeRecord {
 }
 
 impl Record {
-    /// Of [`MotionCast::first_contact`]; `cast` is the one that was asked.
+    /// Of [`MotionCast::first_contact`] of convex bodies; `cast` is the one that was asked.
     pub fn of_motion(outcome: &MotionOutcome, cast: &MotionCast<'_>) -> Self {
-        let proof = outcome.proof();
-        let record = Self {
-            looks: Some(outcome.steps().looks),
-            planes: Some(proof.spans.iter().map(Vec::len).sum()),
-            tolerance: Some(cast.tolerance()).filter(|depth| *depth > 0.0),
-            ..Self::default()
-        }
-        .keeping(cast.keep());
+        let planes = outcome.proof().spans.iter().map(Vec::len).sum();
+        let tolerance = Some(cast.tolerance()).filter(|depth| *depth > 0.0);
+        Self { planes: Some(planes), tolerance, ..Self::of_motions(outcome, cast) }
+    }
+
+    /// Of the first contact of solids, with or without a proof; `cast` is the one that was asked.
+    pub fn of_solid_motion<P>(outcome: &MotionOutcome<P>, cast: &MotionCast<'_, Solid>) -> Self {
+        let surfaces = open_ones(cast.bodies()[0], cast.bodies()[1]);
+        Self { tolerance: Some(cast.tolerance()), surfaces, ..Self::of_motions(outcome, cast) }
+    }
+
+    fn of_motions<P, B: Body>(outcome: &MotionOutcome<P>, cast: &MotionCast<'_, B>) -> Self {
+        let looks = Some(outcome.steps().looks);
+        let record = Self { looks, ..Self::default() }.keeping(cast.keep());
         match outcome {
             MotionOutcome::Contact(contact) => record.touching(Ending::Contact, contact, cast),
             MotionOutcome::Grazing(contact) => record.touching(Ending::Grazing, contact, cast),
@@ -35,7 +43,12 @@ impl Record {
     }
 
     /// With when, where and what.
-    fn touching(self, outcome: Ending, contact: &MotionContact, cast: &MotionCast<'_>) -> Self {
+    fn touching<P, B: Body>(
+        self,
+        outcome: Ending,
+        contact: &MotionContact<P>,
+        cast: &MotionCast<'_, B>,
+    ) -> Self {
         let MotionContact { lower, upper, points, normal, features, .. } = contact;
         let upper = upper.is_finite().then_some(*upper);
         Self {

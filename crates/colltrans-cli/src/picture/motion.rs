@@ -1,0 +1,139 @@
+//! A picture of bodies that turn: the moving one at the start and at the end as ghosts, and where it first touches,
+//! with the way of its middle. The other one is where it is then.
+
+use colltrans::Pose;
+use colltrans::glam::DVec3;
+use colltrans::motion::Motion;
+use colltrans::record::{Ending, FeaturesRecord, Record, TimeRecord};
+use colltrans_picture::{MOVING, Page, Stroke, edges};
+
+use super::Cast;
+use super::layout::Layout;
+use super::notes::Notes;
+use super::parts::Eye;
+use super::solid::Solid;
+use super::subject::{Subject, components, short};
+use super::viewpoint;
+
+/// Pieces of the way that is drawn.
+const WAY: u32 = 96;
+
+/// Vertices of a body at a pose, relative to a point, and triangles.
+type Surface = (Vec<DVec3>, Vec<[u32; 3]>);
+
+/// What is drawn.
+#[derive(Clone, Copy)]
+pub(crate) struct Moved<'a> {
+    pub(crate) record: &'a Record,
+    /// Of the moving body (0) and of the fixed one (1).
+    pub(crate) motions: [&'a Motion; 2],
+    pub(crate) surface: &'a dyn Fn(usize, &Pose, DVec3) -> Surface,
+}
+
+/// The SVG file of an answer.
+pub(crate) fn draw_motion(moved: Moved<'_>) -> String {
+    let Moved { record, motions, surface } = moved;
+    let place = |k: usize, time: f64| motions[k].at(time).unwrap_or_else(|_| motions[k].start());
+    let stop = match (record.time, record.outcome) {
+        (Some(TimeRecord { lower, .. }), _) => lower,
+        (None, Ending::Overlapping) => 0.0,
+        _ => 1.0,
+    };
+    let subject = subject(&moved, place(1, stop));
+    let body = |k: usize, time: f64| surface(k, &place(k, time), subject.origin);
+    let solid = |time: f64| {
+        let (vertices, triangles) = body(0, time);
+        Solid::of_triangles(vertices, &triangles)
+    };
+    let [(_, moving), (fixed, fixed_triangles)] = [body(0, stop), body(1, stop)];
+    let ghosts = [0.0, 1.0].into_iter().filter(|time| *time != stop).map(solid).collect();
+    let cast = Cast {
+        start: None,
+        stop: solid(stop),
+        fixed: Solid::of_triangles(fixed, &fixed_triangles),
+        ghosts,
+        way: DVec3::ZERO,
+        is_broken: false,
+    };
+    let way = way(&cast, |time| place(0, time), stop, subject.origin);
+    let along = way.first().zip(way.last()).map_or(DVec3::X, |([a, _], [_, b])| *b - *a);
+    let along = along.try_normalize().unwrap_or(DVec3::X);
+    let view = viewpoint::choose([&cast.stop, &cast.fixed], along, subject.normal);
+    let layout = Layout::of(&cast, &subject, &view);
+    let eye = Eye { view: &view, layout: &layout };
+    let mut page = Page::new(layout.window);
+    page.open_group(r#"clip-path="url(#window)""#);
+    eye.draw(&mut page, &cast, [&edges(&moving), &edges(&fixed_triangles)]);
+    let seen = way.iter().map(|ends| ends.map(|p| layout.on_page(view.project(p))));
+    page.segments(Stroke::dashed(MOVING.line, 1.1, "5 4"), seen);
+    page.close_group();
+    Notes { cast: &cast, subject: &subject, layout: &layout, view: &view }.draw(&mut page, along);
+    page.finish(layout.size, layout.window, &subject.headline)
+}
+
+/// The way of the moving body's middle, in pieces.
+fn way(cast: &Cast, place: impl Fn(f64) -> Pose, stop: f64, origin: DVec3) -> Vec<[DVec3; 2]> {
+    let middle = cast.stop.ball().0;
+    let at_stop = place(stop);
+    let own = at_stop.matrix().transpose() * (middle + origin - at_stop.translation());
+    let at = |k: u32| {
+        let pose = place(f64::from(k) / f64::from(WAY));
+        pose.matrix() * own + pose.translation() - origin
+    };
+    (0..WAY).map(|k| [at(k), at(k + 1)]).collect()
+}
+
+/// What the picture has to tell.
+fn subject(moved: &Moved<'_>, fixed: Pose) -> Subject {
+    let record = moved.record;
+    let point = record.point.map(DVec3::from);
+    // Without a point the middle of the fixed body.
+    let origin = point.unwrap_or_else(|| {
+        let (vertices, _) = (moved.surface)(1, &fixed, DVec3::ZERO);
+        vertices.iter().sum::<DVec3>() / vertices.len().max(1) as f64
+    });
+    Subject {
+        origin,
+        stop: 0.0,
+        normal: record.normal.map_or(DVec3::ZERO, DVec3::from),
+        touches: point.is_some() && record.normal.is_some(),
+        marks: None,
+        margin: None,
+        link: None,
+        meets: false,
+        is_still: true,
+        way: String::new(),
+        headline: headline(record),
+        details: details(record),
+    }
+}
+
+fn headline(record: &Record) -> String {
+    match (record.outcome, record.time) {
+        (Ending::Contact, Some(time)) => format!("Contact at {} of the motion", short(time.lower)),
+        (Ending::Grazing, Some(time)) => {
+            format!("Grazing: perhaps a contact at {} of the motion", short(time.lower))
+        }
+        (Ending::Overlapping, _) => "Overlapping: the bodies overlap when it begins".into(),
+        _ => "Free: the bodies never meet throughout the motion".into(),
+    }
+}
+
+fn details(record: &Record) -> Vec<String> {
+    let mut details = Vec::new();
+    if let (Some(FeaturesRecord { moving, fixed }), Some(normal)) =
+        (&record.features, record.normal)
+    {
+        let normal = components(normal.into());
+        details.push(format!(
+            "{} of the moving body on {} of the fixed body; normal n = {normal}",
+            moving.kind, fixed.kind
+        ));
+    }
+    if let Some(TimeRecord { lower, upper: Some(upper) }) = record.time {
+        // The difference itself changes with the last bits of a search.
+        let within = (upper - lower).max(1e-15);
+        details.push(format!("proven lower and upper bound of the time agree to {within:.0e}"));
+    }
+    details
+}

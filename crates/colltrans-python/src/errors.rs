@@ -5,6 +5,7 @@
 
 use std::fmt::Display;
 
+use colltrans::motion::MotionError;
 use colltrans::solid::SolidError;
 use colltrans::{BuildError, CaseError, CertificateError, PoseError, QueryError};
 use colltrans_assembly::{AssemblyError, ReadError};
@@ -60,7 +61,7 @@ raised! {
     PoseError: PoseError;
     CertificateError: CertificateError;
     CaseError: CaseError;
-    QueryError: QueryError;
+    QueryError: QueryError, MotionError;
     AssemblyError: AssemblyError, ReadError;
 }
 

@@ -8,7 +8,7 @@
 //! 3. queries as values: `query` between convex bodies, `solid_cast` between solids, `pair` without a
 //!    direction;
 //! 4. answers: `certificate`, `features`, `answer` (what all have in common), `outcome`, `clearance`,
-//!    `solid_answer`, `distance`, `directions`, `ways`;
+//!    `solid_answer`, `distance`, `directions`, `ways`, `motion` (queries and answers about bodies that turn);
 //! 5. those who ask: `questions` (functions, and methods of queries), `tracker` (in sequence), `many` (in
 //!    bulk), `obstacles` (one body among many) with its `scene` and `scene_answers`,
 //!    `assembly` (many parts).
@@ -27,6 +27,7 @@ mod errors;
 mod features;
 mod frozen;
 mod many;
+mod motion;
 mod obstacles;
 mod offset;
 mod outcome;
@@ -61,7 +62,9 @@ mod _colltrans {
     #[pymodule_export]
     use crate::features::{Feature, Features, Steps};
     #[pymodule_export]
-    use crate::many::{ask_many, ask_pairs};
+    use crate::many::{ask_many, ask_motions, ask_pairs};
+    #[pymodule_export]
+    use crate::motion::{FirstContact, Motion, MotionCast, first_contact};
     #[pymodule_export]
     use crate::obstacles::Obstacles;
     #[pymodule_export]

@@ -14,6 +14,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 use colltrans::glam::{DMat3, DQuat, DVec3};
+use colltrans::motion::Motion;
 use colltrans::record::{PairQuestion, Record};
 use colltrans::solid::AsSolid;
 use colltrans::{
@@ -29,6 +30,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::coordinates;
 use crate::body;
+use crate::motion::{EITHER, convex_cast, solid_cast};
 use crate::solid::Solid;
 use crate::solver::options_of;
 
@@ -99,6 +101,7 @@ enum Question {
     Distance,
     Depth,
     Within,
+    Motion,
 }
 
 impl Question {
@@ -110,6 +113,7 @@ impl Question {
             "distance" => Ok(Self::Distance),
             "depth" => Ok(Self::Depth),
             "within" => Ok(Self::Within),
+            "motion" => Ok(Self::Motion),
             _ => Err(PyValueError::new_err(format!("no question {name:?}"))),
         }
     }
@@ -144,14 +148,14 @@ impl Question {
                 OVERLAP,
             ],
             Self::Depth => &[AT_LEAST, AT_MOST, LEAST_TOLERANCE],
-            Self::Distance | Self::Within => &[AT_LEAST, AT_MOST],
+            Self::Distance | Self::Within | Self::Motion => &[AT_LEAST, AT_MOST],
         }
     }
 
     /// The columns of vectors that they fill.
     const fn vectors(self) -> &'static [usize] {
         match self {
-            Self::Contact | Self::Range | Self::Clearance => &[NORMAL, POINT],
+            Self::Contact | Self::Range | Self::Clearance | Self::Motion => &[NORMAL, POINT],
             Self::Distance | Self::Within => &[NORMAL, ON_MOVING, ON_FIXED],
             Self::Depth => &[DIRECTION],
         }
@@ -167,6 +171,7 @@ impl Question {
             Self::Distance => &["apart", "meeting", "error"],
             Self::Depth => &["overlapping", "touching", "apart", "error"],
             Self::Within => &["closer", "farther", "undecided", "error"],
+            Self::Motion => &["contact", "grazing", "free", "overlapping", "error"],
         }
     }
 
@@ -215,14 +220,16 @@ impl Row {
         let outcome = question.outcomes().iter().position(|known| *known == name);
         let mut row = Self { outcome: outcome.unwrap_or_default() as u8, ..Self::NONE };
         let overlap = record.start_overlaps.first().and_then(|overlap| overlap.least_tolerance);
-        let numbers =
-            [(AT_LEAST, record.lower), (AT_MOST, record.upper), (LEAST_TOLERANCE, overlap)];
+        let lower = record.lower.or(record.time.map(|time| time.lower));
+        let upper = record.upper.or(record.time.and_then(|time| time.upper));
+        let numbers = [(AT_LEAST, lower), (AT_MOST, upper), (LEAST_TOLERANCE, overlap)];
         for (which, number) in numbers {
             row = number.map_or(row, |number| row.with(which, number));
         }
         let [from, to] = [0, 1].map(|k| record.points.map(|points| points[k]));
         let vectors = [
             (NORMAL, record.normal),
+            (POINT, record.point),
             (ON_MOVING, from),
             (ON_FIXED, to),
             (DIRECTION, record.direction),
@@ -281,21 +288,29 @@ impl Row {
 #[derive(Clone, Copy)]
 enum AnyBody<'a> {
     Convex(&'a ConvexPolyhedron),
-    Solid(&'a colltrans::Solid),
+    Solid(&'a colltrans::Solid, f64),
 }
 
 impl<'a> AnyBody<'a> {
     fn convex(self) -> Result<&'a ConvexPolyhedron, String> {
         match self {
             Self::Convex(body) => Ok(body),
-            Self::Solid(_) => Err("a solid is asked for its clearance or distance".into()),
+            Self::Solid(..) => Err("a solid is asked for its clearance or distance".into()),
         }
     }
 
     fn solid(self) -> Result<&'a colltrans::Solid, String> {
         match self {
             Self::Convex(body) => body.as_solid().map_err(|what| what.to_string()),
-            Self::Solid(solid) => Ok(solid),
+            Self::Solid(solid, _) => Ok(solid),
+        }
+    }
+
+    /// How far its file rounds coordinates.
+    fn precision(self) -> f64 {
+        match self {
+            Self::Convex(_) => 0.0,
+            Self::Solid(_, precision) => precision,
         }
     }
 }
@@ -376,11 +391,51 @@ enum With<'a> {
         options: Options,
     },
     Length(Table<'a>),
+    Motion {
+        motions: [Motions<'a>; 2],
+        keeps: Table<'a>,
+        /// NaN stands for none.
+        tolerances: Table<'a>,
+    },
+}
+
+/// What a body does in each row.
+enum Motions<'a> {
+    /// One for all, or one for each.
+    Listed(Vec<&'a Motion>),
+    /// By three numbers a slide; by eight a screw: point, axis, angle, rise; by nine what is thrown: center,
+    /// velocity and angular velocity; from the pose on.
+    Numbers(Table<'a>),
+}
+
+impl Motions<'_> {
+    fn get(&self, row: usize, start: &Table<'_>) -> Result<Motion, String> {
+        let table = match self {
+            Self::Listed(all) => return Ok(all[if all.len() == 1 { 0 } else { row }].clone()),
+            Self::Numbers(table) => table,
+        };
+        let (pose, of) = (start.pose(row)?, table.row(row));
+        let three = |k: usize| DVec3::from_slice(&of[3 * k..]);
+        match of {
+            [_, _, _] => Motion::slide(pose, three(0)),
+            [.., angle, rise] if of.len() == 8 => {
+                Motion::screw(pose, three(0), three(1), *angle, *rise)
+            }
+            _ => Motion::thrown(pose, three(0), three(1), three(2)),
+        }
+        .map_err(|what| format!("{}: {what}", table.name))
+    }
 }
 
 impl Work<'_> {
     fn answer(&self, row: usize) -> Result<Row, String> {
         let (moving, fixed) = (self.bodies[0].get(row)?, self.bodies[1].get(row)?);
+        if let With::Motion { motions, keeps, tolerances } = &self.with {
+            let of = |k: usize| motions[k].get(row, &self.poses[k]);
+            let (motions, tolerance) = ([of(0)?, of(1)?], tolerances.row(row)[0]);
+            let tolerance = Some(tolerance).filter(|tolerance| !tolerance.is_nan());
+            return moved([moving, fixed], motions.each_ref(), keeps.row(row)[0], tolerance);
+        }
         let (at, to) = (self.poses[0].pose(row)?, self.poses[1].pose(row)?);
         let With::Direction { directions, graze_tolerances, keeps, options } = &self.with else {
             return self.answer_placed([moving, fixed], [at, to], row);
@@ -425,6 +480,28 @@ impl Work<'_> {
         catch_unwind(AssertUnwindSafe(|| self.answer(row)))
             .unwrap_or_else(|_| Err("internal error; please report it".into()))
     }
+}
+
+/// When bodies that move first meet.
+fn moved(
+    bodies: [AnyBody<'_>; 2],
+    motions: [&Motion; 2],
+    keep: f64,
+    tolerance: Option<f64>,
+) -> Result<Row, String> {
+    let record = if let [AnyBody::Convex(p), AnyBody::Convex(q)] = bodies {
+        if tolerance.is_some() && keep != 0.0 {
+            return Err(EITHER.into());
+        }
+        convex_cast([p, q], motions, keep, tolerance)
+            .and_then(|cast| Ok(Record::of_motion(&cast.first_contact()?, &cast)))
+    } else {
+        let solids = [bodies[0].solid()?, bodies[1].solid()?];
+        let precisions = bodies.map(AnyBody::precision);
+        solid_cast(solids, motions, precisions, keep, tolerance)
+            .and_then(|cast| Ok(Record::of_solid_motion(&cast.first_contact()?, &cast)))
+    };
+    record.map(|record| Row::of_record(Question::Motion, &record)).map_err(|what| what.to_string())
 }
 
 /// A chunk's part of every column.
@@ -531,7 +608,8 @@ fn bodies<'a>(of: &'a [Bound<'_, PyAny>]) -> PyResult<Vec<Result<AnyBody<'a>, St
             return Ok(Err(item.to_string()));
         }
         if let Ok(solid) = item.cast::<Solid>() {
-            return Ok(Ok(AnyBody::Solid(&solid.get().solid)));
+            let solid = solid.get();
+            return Ok(Ok(AnyBody::Solid(&solid.solid, solid.precision)));
         }
         Ok(Ok(AnyBody::Convex(&item.cast::<body::ConvexPolyhedron>()?.get().0)))
     };
@@ -589,6 +667,54 @@ pub(crate) fn ask_pairs<'py>(
     let with = With::Length(table("length", &length, n)?);
     let question = Question::called(question)?;
     answered(py, n, question, [&moving, &fixed], [&moving_pose, &fixed_pose], with, threads)
+}
+
+/// What bodies do: motions, or a table of numbers.
+#[derive(FromPyObject)]
+pub(crate) enum MotionSide<'py> {
+    Listed(Vec<Bound<'py, crate::motion::Motion>>),
+    Numbers(PyReadonlyArray2<'py, f64>),
+}
+
+/// The same of bodies that move: what `colltrans.motions` calls.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "they are columns")]
+pub(crate) fn ask_motions<'py>(
+    py: Python<'py>,
+    n: usize,
+    moving: Side<'py>,
+    fixed: Side<'py>,
+    moving_motion: MotionSide<'py>,
+    fixed_motion: MotionSide<'py>,
+    moving_pose: PyReadonlyArray2<'py, f64>,
+    fixed_pose: PyReadonlyArray2<'py, f64>,
+    keep: PyReadonlyArray2<'py, f64>,
+    tolerance: PyReadonlyArray2<'py, f64>,
+    threads: Option<usize>,
+) -> PyResult<Answered<'py>> {
+    let with = With::Motion {
+        motions: [
+            motions("moving_motion", &moving_motion, n)?,
+            motions("fixed_motion", &fixed_motion, n)?,
+        ],
+        keeps: table("keep", &keep, n)?,
+        tolerances: table("tolerance", &tolerance, n)?,
+    };
+    let (sides, poses) = ([&moving, &fixed], [&moving_pose, &fixed_pose]);
+    answered(py, n, Question::Motion, sides, poses, with, threads)
+}
+
+/// One motion for all rows, or one for each.
+fn motions<'a>(name: &'static str, of: &'a MotionSide<'_>, n: usize) -> PyResult<Motions<'a>> {
+    match of {
+        MotionSide::Numbers(numbers) => table(name, numbers, n).map(Motions::Numbers),
+        MotionSide::Listed(all) if all.len() == n || all.len() == 1 => {
+            Ok(Motions::Listed(all.iter().map(|motion| &motion.get().0).collect()))
+        }
+        MotionSide::Listed(all) => {
+            Err(PyValueError::new_err(format!("{name}: {} motions", all.len())))
+        }
+    }
 }
 
 fn answered<'py>(
@@ -650,7 +776,8 @@ fn table<'a>(
     let (rows, width) = (of.shape()[0], of.shape()[1]);
     let widths: &[usize] = match name {
         "direction" => &[3],
-        "graze_tolerance" | "keep" | "length" => &[1],
+        "graze_tolerance" | "keep" | "length" | "tolerance" => &[1],
+        "moving_motion" | "fixed_motion" => &[3, 8, 9],
         _ => &[3, 7, 12, 16],
     };
     if (rows != n && rows != 1) || !widths.contains(&width) {

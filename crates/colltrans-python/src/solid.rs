@@ -136,7 +136,7 @@ impl Piece {
 pub(crate) struct Solid {
     pub(crate) solid: colltrans::Solid,
     /// How far apart vertices may be written that were meant to be one.
-    precision: f64,
+    pub(crate) precision: f64,
     notes: Vec<String>,
     source: Arc<Source>,
 }

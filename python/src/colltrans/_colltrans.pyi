@@ -30,9 +30,12 @@ __all__ = [
     "Distance",
     "Feature",
     "Features",
+    "FirstContact",
     "FreeDirections",
     "Grazing",
     "Intersection",
+    "Motion",
+    "MotionCast",
     "NearbyObstacles",
     "NearestObstacle",
     "ObstacleClearance",
@@ -58,6 +61,7 @@ __all__ = [
     "WaysOut",
     "Within",
     "ask_many",
+    "ask_motions",
     "ask_pairs",
     "cast",
     "clearance",
@@ -65,6 +69,7 @@ __all__ = [
     "depth",
     "directional_depth",
     "distance",
+    "first_contact",
     "free_directions",
     "intersects",
     "read",
@@ -638,6 +643,105 @@ class Pair:
     def __getnewargs_ex__(self) -> tuple[Any, dict[str, Any]]: ...
     def show(self, **options: Any) -> Any: ...
 
+@final
+class Motion:
+    @staticmethod
+    def still(pose: _Pose = None) -> Motion: ...
+    @staticmethod
+    def slide(by: ArrayLike, *, pose: _Pose = None) -> Motion: ...
+    @staticmethod
+    def turn(point: ArrayLike, axis: ArrayLike, angle: float, *, pose: _Pose = None) -> Motion: ...
+    @staticmethod
+    def screw(
+        point: ArrayLike, axis: ArrayLike, angle: float, rise: float, *, pose: _Pose = None
+    ) -> Motion: ...
+    @staticmethod
+    def thrown(
+        center: ArrayLike, velocity: ArrayLike, angular_velocity: ArrayLike, *, pose: _Pose = None
+    ) -> Motion: ...
+    @staticmethod
+    def between(start: ArrayLike | Pose, end: ArrayLike | Pose) -> Motion: ...
+    @staticmethod
+    def through(poses: Iterable[ArrayLike | Pose]) -> Motion: ...
+    @staticmethod
+    def about(
+        arm: ArrayLike, axis: ArrayLike, angle: float, way: ArrayLike, *, pose: _Pose = None
+    ) -> Motion: ...
+    def at(self, time: float) -> Pose: ...
+    @property
+    def start(self) -> Pose: ...
+    def __eq__(self, other: object, /) -> bool: ...
+    def __ne__(self, other: object, /) -> bool: ...
+    def __reduce__(self) -> tuple[Any, Any]: ...
+    @staticmethod
+    def _of(text: str) -> Motion: ...
+
+_Motion: TypeAlias = Motion | _Pose
+
+@final
+class MotionCast:
+    def __new__(
+        cls,
+        moving: ConvexPolyhedron | Solid,
+        fixed: ConvexPolyhedron | Solid,
+        *,
+        moving_motion: _Motion = None,
+        fixed_motion: _Motion = None,
+        keep: float = 0.0,
+        tolerance: float | None = None,
+    ) -> MotionCast: ...
+    def first_contact(self) -> FirstContact: ...
+    def to_json(self) -> str: ...
+    @staticmethod
+    def from_json(text: str) -> MotionCast: ...
+    @property
+    def moving(self) -> ConvexPolyhedron | Solid: ...
+    @property
+    def fixed(self) -> ConvexPolyhedron | Solid: ...
+    @property
+    def moving_motion(self) -> Motion: ...
+    @property
+    def fixed_motion(self) -> Motion: ...
+    @property
+    def keep(self) -> float: ...
+    @property
+    def tolerance(self) -> float: ...
+    def show(self, **options: Any) -> Any: ...
+    def __getnewargs_ex__(self) -> tuple[Any, dict[str, Any]]: ...
+
+@final
+class FirstContact(_Answer):
+    __match_args__: Final = ("outcome", "lower", "upper")
+    @property
+    def query(self) -> MotionCast: ...
+    @property
+    def outcome(self) -> Literal["contact", "grazing", "free", "overlapping"]: ...
+    @property
+    def lower(self) -> float: ...
+    @property
+    def upper(self) -> float | None: ...
+    @property
+    def poses(self) -> tuple[Pose, Pose] | None: ...
+    @property
+    def point(self) -> _Floats | None: ...
+    @property
+    def normal(self) -> _Floats | None: ...
+    @property
+    def features(self) -> Features | None: ...
+    @property
+    def looks(self) -> int: ...
+    def verify(self) -> None: ...
+
+def first_contact(
+    moving: ConvexPolyhedron | Solid,
+    fixed: ConvexPolyhedron | Solid,
+    moving_motion: _Motion,
+    fixed_motion: _Motion = None,
+    *,
+    keep: float = 0.0,
+    tolerance: float | None = None,
+) -> FirstContact: ...
+
 @type_check_only
 class _PairAnswer(_Answer):
     @property
@@ -1145,6 +1249,18 @@ def ask_many(
     graze_tolerance: _Floats,
     keep: _Floats,
     solver: _Solver,
+    threads: int | None,
+) -> tuple[dict[str, NDArray[Any]], list[str], dict[int, str]]: ...
+def ask_motions(
+    n: int,
+    moving: tuple[list[Any], NDArray[np.int64] | None],
+    fixed: tuple[list[Any], NDArray[np.int64] | None],
+    moving_motion: list[Motion] | _Floats,
+    fixed_motion: list[Motion] | _Floats,
+    moving_pose: _Floats,
+    fixed_pose: _Floats,
+    keep: _Floats,
+    tolerance: _Floats,
     threads: int | None,
 ) -> tuple[dict[str, NDArray[Any]], list[str], dict[int, str]]: ...
 def ask_pairs(

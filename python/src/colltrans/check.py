@@ -1450,17 +1450,18 @@ class Spin:
         """What of it is across the axis."""
         return minus(n, scaled(self.axis, dot(n, self.axis) / self.square))
 
-    def bend(self, ends: Sequence[Plane], sign: int) -> tuple[Fraction, Fraction]:
-        """At most ``W . E y`` between two planes, loosely, and as tightly as it is known.
+    def bend(self, ends: Sequence[Plane], sign: int, tightly: bool) -> Fraction:
+        """At most ``W . E y`` between two planes.
 
         ``W = sign (alpha^2 n_across + 2 alpha k x dn)`` is affine in the time, and ``E y`` across
         the axis a combination of those at both ends, with weights whose sum is at least 1, and at
-        most one over the cosine of half the angle ``alpha``.
+        most one over the cosine of half the angle ``alpha``. Loosely it is the longer ``W`` times
+        the distance of the farthest point from the axis.
         """
         a, b = ends
         alpha = self.rate * (b.time - a.time)
         if alpha == 0:
-            return Fraction(), Fraction()
+            return Fraction()
         dn = minus(b.normal, a.normal)
         sideways = scaled(cross(self.axis, dn), 2 * alpha * self.inverse)
         ways = [
@@ -1469,12 +1470,11 @@ class Spin:
         ]
         longest = root_above(max(dot(w, w) for w in ways))
         room = 64 * _TINY * (longest + abs(alpha)) * self.reach
-        loose = longest * self.radius + room
-        if abs(alpha) > 3:
-            return loose, loose
+        if not tightly or abs(alpha) > 3:
+            return longest * self.radius + room
         most = max(max(self.along(w, end.time)) for w in ways for end in ends) + room
         least = sine_cosine(alpha / 2)[1] - _TINY
-        return loose, min(loose, most / least if most > 0 else most)
+        return most / least if most > 0 else most
 
     def rise(self, n: Vector, begin: Fraction, end: Fraction) -> Fraction:
         """By how much the highest point along a normal rises between two times, at most."""
@@ -1566,8 +1566,14 @@ class Span:
         c = 2 * dot(dn, drift) * (b.time - a.time)
         if self.keep < 0:
             c -= 2 * self.keep * dot(dn, dn) * (1 + Fraction(1, 2**40))
-        p, q = self.moving.bend((a, b), 1), self.fixed.bend((a, b), -1)
-        return any(stays(a.gap, b.gap, c + x + y) for x, y in zip(p, q, strict=True))
+        return any(
+            stays(
+                a.gap,
+                b.gap,
+                c + self.moving.bend((a, b), 1, tightly) + self.fixed.bend((a, b), -1, tightly),
+            )
+            for tightly in (False, True)
+        )
 
     def lost(self, a: Plane, b: Plane) -> Fraction:
         """How much of the gap of one plane, along its normal, is lost until another."""

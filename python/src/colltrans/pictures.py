@@ -22,8 +22,10 @@ from colltrans._colltrans import (
     Depth,
     DirectionalDepth,
     Distance,
+    FirstContact,
     Grazing,
     Intersection,
+    MotionCast,
     OverlapDepth,
     Overlapping,
     Pair,
@@ -101,19 +103,11 @@ def picture(answer: Any) -> Any:
         answer = answer.clearance()
     elif isinstance(answer, Pair):
         answer = answer.distance()
-    query, marks = _said(answer)
-    moving = _placed(query.moving, query.moving_pose)
-    fixed = _placed(query.fixed, query.fixed_pose)
+    elif isinstance(answer, MotionCast):
+        answer = answer.first_contact()
     figure = go.Figure()
-    figure.add_traces(list(_body(go, moving, "moving", MOVING, 1.0)))
-    figure.add_traces(list(_body(go, fixed, "fixed", FIXED, 1.0)))
-    size = float(np.ptp(np.vstack([moving[0], fixed[0]]), axis=0).max()) or 1.0
-    for mark in marks:
-        if isinstance(mark, _Link):
-            line = {"color": TOUCH, "width": 6}
-            figure.add_trace(_line(go, *mark.ends, line, mark.name))
-        else:
-            figure.add_traces(list(_drawn(go, mark, moving, size)))
+    moved = isinstance(answer, FirstContact)
+    figure.add_traces(list(_moved(go, answer) if moved else _asked(go, answer)))
     axes = {axis: {"showbackground": False} for axis in ("xaxis", "yaxis", "zaxis")}
     figure.update_layout(
         title=repr(answer),
@@ -122,6 +116,40 @@ def picture(answer: Any) -> Any:
         margin={"l": 0, "r": 0, "t": 40, "b": 0},
     )
     return figure
+
+
+def _asked(go: Any, answer: Any) -> Iterator[Any]:
+    """Both bodies where they are, and what the answer says."""
+    query, marks = _said(answer)
+    moving = _placed(query.moving, query.moving_pose)
+    fixed = _placed(query.fixed, query.fixed_pose)
+    yield from _body(go, moving, "moving", MOVING, 1.0)
+    yield from _body(go, fixed, "fixed", FIXED, 1.0)
+    size = float(np.ptp(np.vstack([moving[0], fixed[0]]), axis=0).max()) or 1.0
+    for mark in marks:
+        if isinstance(mark, _Link):
+            yield _line(go, *mark.ends, {"color": TOUCH, "width": 6}, mark.name)
+        else:
+            yield from _drawn(go, mark, moving, size)
+
+
+def _moved(go: Any, answer: FirstContact) -> Iterator[Any]:
+    """The moving body at the start, where it touches, and at the end; the other one then."""
+    query, at = answer.query, 1.0 if answer.poses is None else answer.lower
+    fixed = _placed(query.fixed, query.fixed_motion.at(at))
+    yield from _body(go, _placed(query.moving, query.moving_motion.start), "moving", MOVING, 1.0)
+    yield from _body(go, fixed, "fixed", FIXED, 1.0)
+    ghosts = {"end": 1.0} if answer.poses is None else {f"{answer.outcome} at {at:.6g}": at}
+    for name, time in {**ghosts, "end": 1.0}.items():
+        yield from _body(go, _placed(query.moving, query.moving_motion.at(time)), name, MOVING, 0.3)
+    if answer.point is not None:
+        x, y, z = answer.point.reshape(3, 1)
+        marker = {"color": TOUCH, "size": 6}
+        yield go.Scatter3d(x=x, y=y, z=z, mode="markers", marker=marker, name="point")
+        if answer.normal is not None:
+            size = float(np.ptp(fixed[0], axis=0).max()) or 1.0
+            tip = answer.point + answer.normal * (size / 4)
+            yield _line(go, answer.point, tip, {"color": TOUCH, "width": 6}, "normal")
 
 
 def show(answer: Any, *, file: str | PathLike[str] | None = None) -> None:

@@ -26,6 +26,7 @@ from colltrans.bulk.bodies import Bodies, file_digest
 from colltrans.columns import Table
 from colltrans.errors import ColltransError, InputError
 from colltrans.many import cast_many, clearance_many, contact_range_many
+from colltrans.motions import motion_many
 from colltrans.pairs import depth_many, distance_many, within_many
 
 #: Of bodies where they are, without a direction.
@@ -35,6 +36,7 @@ QUESTIONS: dict[str, Any] = {
     "range": contact_range_many,
     "clearance": clearance_many,
     **PLACED,
+    "motion": motion_many,
 }
 #: Rows that are in memory at once.
 BATCH = 65_536
@@ -47,7 +49,9 @@ REFUSED = "colltrans: refused"
 class Options:
     """What is asked of every row."""
 
-    question: Literal["contact", "range", "clearance", "distance", "depth", "within"] = "range"
+    question: Literal["contact", "range", "clearance", "distance", "depth", "within", "motion"] = (
+        "range"
+    )
     solver: Literal["auto", "cta", "portal"] = "auto"
     threads: int | None = None
 
@@ -79,7 +83,9 @@ def answer_table(queries: Any, bodies: Bodies, options: Options = Options()) -> 
     queries : pyarrow.Table or pyarrow.RecordBatch
         Columns ``moving`` and ``fixed`` (keys of bodies), ``direction`` (3 numbers), and, if there
         are any, ``moving_pose``, ``fixed_pose`` (3 or 7 numbers), ``graze_tolerance``, ``keep`` and
-        ``id``. A distance, a depth and *within* have no ``direction``, the last has ``length``.
+        ``id``. A distance, a depth and *within* have no ``direction``, the last has ``length``. A
+        motion has ``moving_screw``, ``fixed_screw`` or both, 8 numbers each: a point and the axis,
+        the angle in radians and the rise; and ``keep``, if there is one.
     bodies : Bodies
     options : Options
 
@@ -101,7 +107,17 @@ def answer_table(queries: Any, bodies: Bodies, options: Options = Options()) -> 
         arguments[f"{side}_index"] = index.astype(np.int64)
         if f"{side}_pose" in queries.schema.names:
             arguments[f"{side}_pose"] = _vectors(queries, f"{side}_pose", (7, 3))
-    if options.question == "within":
+    if options.question == "motion":
+        screws = [name for name in SCREWS if name in queries.schema.names]
+        if not screws:
+            raise InputError(f"the queries have neither {' nor '.join(SCREWS)}")
+        for name in screws:
+            motion = _screws(_vectors(queries, name, (8,)))
+            arguments[name.replace("screw", "motion")] = {"screw": motion}
+        arguments.setdefault("moving_motion", None)
+        if "keep" in queries.schema.names:
+            arguments["keep"] = _numbers_of(queries, "keep", 0.0)
+    elif options.question == "within":
         sides.append(_numbers_of(queries, "length", np.nan))
     elif options.question not in PLACED:
         arguments["solver"] = options.solver
@@ -117,6 +133,15 @@ def answer_table(queries: Any, bodies: Bodies, options: Options = Options()) -> 
         answers = answers.add_column(0, "id", _column(queries, "id"))
     assert answers.num_rows == count
     return answers
+
+
+def _screws(table: np.ndarray[Any, Any]) -> dict[str, np.ndarray[Any, Any]]:
+    return {
+        "point": table[:, :3],
+        "axis": table[:, 3:6],
+        "angle": table[:, 6],
+        "rise": table[:, 7],
+    }
 
 
 def _column(queries: Any, name: str) -> Any:
@@ -162,7 +187,9 @@ def _vectors(queries: Any, name: str, widths: tuple[int, ...]) -> np.ndarray[Any
     )
     table = np.full((len(rows), width), np.nan)
     for place, row in zip(table, rows, strict=True):
-        if row is None and name != "direction":
+        if row is None and name in SCREWS:
+            place[:] = REST
+        elif row is None and name != "direction":
             place[:] = (0, 0, 0, 0, 0, 0, 1)[:width]
         elif row is not None and len(row) == width and None not in row:
             place[:] = row
@@ -277,9 +304,20 @@ def _batches(path: Path, columns: list[str] | None = None) -> Iterator[Any]:
 
 SIDES = ("moving", "fixed")
 #: Lists of numbers, and how many there may be.
-LISTS = {"direction": (3,), "moving_pose": (3, 7), "fixed_pose": (3, 7)}
+LISTS = {
+    "direction": (3,),
+    "moving_pose": (3, 7),
+    "fixed_pose": (3, 7),
+    "moving_screw": (8,),
+    "fixed_screw": (8,),
+}
+SCREWS = ("moving_screw", "fixed_screw")
+#: A screw that moves nothing: what a row without one does.
+REST = (0, 0, 0, 0, 0, 1, 0, 0)
 NUMBERS = ("graze_tolerance", "keep", "length")
 FIELDS = {"id", *SIDES, *LISTS, *NUMBERS}
+#: A screw or a turn as `colltrans batch` reads it, by the fields that follow each other.
+MOTIONS = {"moving_motion": "moving_screw", "fixed_motion": "fixed_screw"}
 
 
 def _row(line: bytes, number: int) -> dict[str, Any]:
@@ -301,6 +339,7 @@ def _query(row: Any) -> dict[str, Any]:
     """What a line asks. What it asks beside that is refused, for its answer would be another."""
     if not isinstance(row, dict):
         raise ValueError("no object")
+    row = {MOTIONS.get(name, name): _plain(value, name) for name, value in row.items()}
     for name in row.keys() - FIELDS:
         raise ValueError(f"the field {name!r} is not for files in bulk")
     query: dict[str, Any] = {side: _key(row.get(side), side) for side in SIDES}
@@ -313,6 +352,23 @@ def _query(row: Any) -> dict[str, Any]:
         if row.get(name) is not None:
             (query[name],) = _numbers([row[name]], name)
     return query
+
+
+def _plain(value: Any, name: str) -> Any:
+    """A motion as the numbers of its screw; anything else as it is."""
+    if name not in MOTIONS:
+        return value
+    kind = next(iter(value)) if isinstance(value, dict) and len(value) == 1 else None
+    if kind not in ("screw", "turn") or not isinstance(value[kind], dict):
+        raise ValueError(f'{name}: no {{"screw": ...}} and no {{"turn": ...}}')
+    fields = {"rise": 0.0, **value[kind]} if kind == "turn" else value[kind]
+    if fields.keys() != {"point", "axis", "angle", "rise"}:
+        raise ValueError(f"{name}: {kind!r} has other fields")
+    point, axis = (_numbers(fields[part], f"{name}.{part}") for part in ("point", "axis"))
+    rest = _numbers([fields["angle"], fields["rise"]], f"{name}.angle")
+    if (len(point), len(axis)) != (3, 3):
+        raise ValueError(f"{name}: a point and an axis have three numbers each")
+    return [*point, *axis, *rest]
 
 
 def _key(value: Any, side: str) -> str:

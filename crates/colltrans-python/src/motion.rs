@@ -1,0 +1,618 @@
+//! What a body does, and when two such bodies first meet.
+
+use colltrans::motion::{self, MotionCase, MotionOutcome, MotionProofFile};
+use colltrans::record::Record;
+use colltrans::{ConvexPolyhedron, QueryError, Solid};
+use colltrans_mesh::body::between_motions;
+use numpy::PyArray1;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use serde::{Deserialize, Serialize};
+
+use crate::answer::{Answer, answer, object};
+use crate::arrays::{row, vector};
+use crate::body;
+use crate::errors::{OrRaise, error, query_error};
+use crate::features::{Feature, Features};
+use crate::frozen::{Options, Shown, pickled, show};
+use crate::pair::Of;
+use crate::pose::{Pose, pose};
+use crate::solid::Piece;
+use crate::solid_cast::patiently;
+
+/// Where a body is at every time from 0 to 1: it rests, slides, turns, unscrews, is thrown, or goes
+/// through poses.
+///
+/// Made by :meth:`still`, :meth:`slide`, :meth:`turn`, :meth:`screw`, :meth:`thrown`, :meth:`between`,
+/// :meth:`through` and :meth:`about`. Angles are in radians. Answers hold of the motion as the real
+/// function of its numbers.
+///
+/// Examples
+/// --------
+/// >>> import math
+/// >>> from colltrans import Motion
+/// >>> door = Motion.turn([0, 0, 0], [0, 0, 1], math.pi / 2)
+/// >>> door.at(1).rotation.round(12)[0]
+/// array([ 0., -1.,  0.])
+#[pyclass(frozen, eq, module = "colltrans")]
+#[derive(Clone, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub(crate) struct Motion(pub(crate) motion::Motion);
+
+pickled!(Motion);
+
+#[pymethods]
+impl Motion {
+    /// None: the body rests at a pose.
+    #[staticmethod]
+    #[pyo3(signature = (pose=None))]
+    fn still(pose: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        Ok(Self(motion::Motion::still(crate::pose::pose(pose, "pose")?)))
+    }
+
+    /// A translation from a pose on, by a vector in world units.
+    ///
+    /// Raises
+    /// ------
+    /// QueryError
+    ///     A vector that is not finite or out of range; so do all others.
+    #[staticmethod]
+    #[pyo3(signature = (by, *, pose=None))]
+    fn slide(by: &Bound<'_, PyAny>, pose: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        motion::Motion::slide(crate::pose::pose(pose, "pose")?, vector(by, "by")?)
+            .or_raise()
+            .map(Self)
+    }
+
+    /// A turn about an axis through a point of the world, counter-clockwise as seen against the axis.
+    #[staticmethod]
+    #[pyo3(signature = (point, axis, angle, *, pose=None))]
+    fn turn(
+        point: &Bound<'_, PyAny>,
+        axis: &Bound<'_, PyAny>,
+        angle: f64,
+        pose: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        Self::screw(point, axis, angle, 0.0, pose)
+    }
+
+    /// A turn about an axis, which itself moves along its own direction by ``rise``.
+    #[staticmethod]
+    #[pyo3(signature = (point, axis, angle, rise, *, pose=None))]
+    fn screw(
+        point: &Bound<'_, PyAny>,
+        axis: &Bound<'_, PyAny>,
+        angle: f64,
+        rise: f64,
+        pose: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let (point, axis) = (vector(point, "point")?, vector(axis, "axis")?);
+        motion::Motion::screw(crate::pose::pose(pose, "pose")?, point, axis, angle, rise)
+            .or_raise()
+            .map(Self)
+    }
+
+    /// A point of the body, given in the world, goes straight by ``velocity``, and the body turns about it
+    /// by the angular velocity's length in radians, about its direction.
+    #[staticmethod]
+    #[pyo3(signature = (center, velocity, angular_velocity, *, pose=None))]
+    fn thrown(
+        center: &Bound<'_, PyAny>,
+        velocity: &Bound<'_, PyAny>,
+        angular_velocity: &Bound<'_, PyAny>,
+        pose: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let (center, velocity) = (vector(center, "center")?, vector(velocity, "velocity")?);
+        let spin = vector(angular_velocity, "angular_velocity")?;
+        motion::Motion::thrown(crate::pose::pose(pose, "pose")?, center, velocity, spin)
+            .or_raise()
+            .map(Self)
+    }
+
+    /// The screw from one pose to another, by the shorter turn; it ends there to rounding.
+    #[staticmethod]
+    fn between(start: &Bound<'_, PyAny>, end: &Bound<'_, PyAny>) -> PyResult<Self> {
+        motion::Motion::between(pose(Some(start), "start")?, pose(Some(end), "end")?)
+            .or_raise()
+            .map(Self)
+    }
+
+    /// Screws from each pose to the next one, in equal times.
+    ///
+    /// Parameters
+    /// ----------
+    /// poses : sequence
+    ///     Of array_like or :class:`Pose` each.
+    #[staticmethod]
+    fn through(poses: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let each = poses.try_iter()?.map(|item| pose(Some(&item?), "poses"));
+        let poses = each.collect::<PyResult<Vec<_>>>()?;
+        motion::Motion::through(&poses).or_raise().map(Self)
+    }
+
+    /// By the numbers that define it: the way from a point of the axis to the origin of the body's frame,
+    /// the axis, the angle, and the way of the axis.
+    #[staticmethod]
+    #[pyo3(signature = (arm, axis, angle, way, *, pose=None))]
+    fn about(
+        arm: &Bound<'_, PyAny>,
+        axis: &Bound<'_, PyAny>,
+        angle: f64,
+        way: &Bound<'_, PyAny>,
+        pose: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let start = crate::pose::pose(pose, "pose")?;
+        let (arm, axis, way) = (vector(arm, "arm")?, vector(axis, "axis")?, vector(way, "way")?);
+        motion::Motion::about(start, arm, axis, angle, way).or_raise().map(Self)
+    }
+
+    /// Where the body is at a time from 0 to 1, to rounding.
+    fn at(&self, time: f64) -> PyResult<Pose> {
+        self.0.at(time).or_raise().map(Pose)
+    }
+
+    /// Pose: Where the body is at time 0.
+    #[getter]
+    fn start(&self) -> Pose {
+        Pose(self.0.start())
+    }
+
+    fn __repr__(&self) -> String {
+        let t = self.0.start().translation().to_array().map(|c| c + 0.0);
+        format!("Motion(from {t:?})")
+    }
+}
+
+/// What an argument says about what a body does: a motion, or a pose at which it rests.
+fn motion_of(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<motion::Motion> {
+    match of.map(Bound::cast::<Motion>) {
+        Some(Ok(motion)) => Ok(motion.get().0.clone()),
+        _ => Ok(motion::Motion::still(pose(of, name)?)),
+    }
+}
+
+/// Two bodies and what they do, as a value: asked when they first meet, saved and replayed.
+///
+/// Parameters
+/// ----------
+/// moving, fixed : ConvexPolyhedron or Solid
+///     If one of them is a solid, both are asked as solids.
+/// moving_motion, fixed_motion : Motion, array_like or Pose, optional
+///     What they do; a pose stands for rest.
+/// keep : float
+///     A gap to be kept, a length: asked is when the bodies are first as near as that.
+/// tolerance : float, optional
+///     Of convex bodies, a depth that is tolerated, in the place of ``keep``: asked is when they first
+///     overlap by more. Solids are shrunk by half of it; by default by what the precision of their files,
+///     and rounding, ask for.
+///
+/// Raises
+/// ------
+/// QueryError, PoseError, InputError
+///     An argument that is refused.
+///
+/// Examples
+/// --------
+/// >>> import math
+/// >>> from colltrans import ConvexPolyhedron, Motion, MotionCast
+/// >>> door = ConvexPolyhedron.cuboid([0, -0.02, 0], [1, 0.02, 2])
+/// >>> post = ConvexPolyhedron.cuboid([0.55, 0.55, 0], [0.65, 0.65, 2])
+/// >>> swing = Motion.turn([0, 0, 0], [0, 0, 1], math.pi / 2)
+/// >>> found = MotionCast(door, post, moving_motion=swing).first_contact()
+/// >>> found.outcome, round(found.lower, 9), found.upper - found.lower < 1e-11
+/// ('contact', 0.432115832, True)
+/// >>> found.verify()
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct MotionCast {
+    bodies: [Piece; 2],
+    motions: [motion::Motion; 2],
+    keep: f64,
+    tolerance: Option<f64>,
+}
+
+/// The library's cast.
+type Asked<'a> = Of<motion::MotionCast<'a>, motion::MotionCast<'a, Solid>>;
+
+/// The bodies, and all else by name.
+type Arguments<'py> = ((Py<PyAny>, Py<PyAny>), Bound<'py, PyDict>);
+
+impl MotionCast {
+    pub(crate) fn of(
+        bodies: [&Bound<'_, PyAny>; 2],
+        motions: [Option<&Bound<'_, PyAny>>; 2],
+        keep: f64,
+        tolerance: Option<f64>,
+    ) -> PyResult<Self> {
+        Ok(Self {
+            bodies: [Piece::of(bodies[0], "moving")?, Piece::of(bodies[1], "fixed")?],
+            motions: [
+                motion_of(motions[0], "moving_motion")?,
+                motion_of(motions[1], "fixed_motion")?,
+            ],
+            keep,
+            tolerance,
+        })
+    }
+
+    /// The library's.
+    fn asked(&self) -> PyResult<Asked<'_>> {
+        let [a, b] = &self.motions;
+        if let [Piece::Convex(p), Piece::Convex(q)] = &self.bodies {
+            let (p, q): (&ConvexPolyhedron, &ConvexPolyhedron) = (&p.get().0, &q.get().0);
+            return convex_cast([p, q], [a, b], self.keep, self.tolerance)
+                .or_raise()
+                .map(Of::Convex);
+        }
+        let [p, q] = [self.bodies[0].solid().or_raise()?, self.bodies[1].solid().or_raise()?];
+        let precisions = [0, 1].map(|i| self.bodies[i].precision());
+        solid_cast([p, q], [a, b], precisions, self.keep, self.tolerance).or_raise().map(Of::Solids)
+    }
+
+    /// Asks the library; without the interpreter's lock, as it may take long.
+    pub(crate) fn first(slf: &Bound<'_, Self>) -> PyResult<Found> {
+        let query = slf.clone().unbind();
+        patiently(slf.py(), &slf.get().bodies, move || match query.get().asked()? {
+            Of::Convex(cast) => {
+                let found = cast.first_contact();
+                found.map(Of::Convex).map_err(|what| query_error(&what, || cast.to_json()))
+            }
+            Of::Solids(cast) => cast.first_contact().or_raise().map(Of::Solids),
+        })
+    }
+}
+
+pub(crate) const EITHER: &str = "convex bodies have either keep or tolerance";
+
+/// Of convex bodies.
+pub(crate) fn convex_cast<'a>(
+    [p, q]: [&'a ConvexPolyhedron; 2],
+    [a, b]: [&'a motion::Motion; 2],
+    keep: f64,
+    tolerance: Option<f64>,
+) -> Result<motion::MotionCast<'a>, QueryError> {
+    let cast = motion::MotionCast::new(p.along(a), q.along(b))?;
+    match tolerance {
+        // Both: what is to be kept is refused where it is none, and one takes the place of the other.
+        Some(depth) => cast.keeping(keep)?.tolerating(depth),
+        None => cast.keeping(keep),
+    }
+}
+
+/// Of solids.
+pub(crate) fn solid_cast<'a>(
+    [p, q]: [&'a Solid; 2],
+    [a, b]: [&'a motion::Motion; 2],
+    precisions: [f64; 2],
+    keep: f64,
+    tolerance: Option<f64>,
+) -> Result<motion::MotionCast<'a, Solid>, QueryError> {
+    between_motions(p.along(a), q.along(b), precisions, tolerance)?.keeping(keep)
+}
+
+#[pymethods]
+impl MotionCast {
+    #[new]
+    #[pyo3(signature = (moving, fixed, *, moving_motion=None, fixed_motion=None, keep=0.0,
+        tolerance=None))]
+    fn new(
+        moving: &Bound<'_, PyAny>,
+        fixed: &Bound<'_, PyAny>,
+        moving_motion: Option<&Bound<'_, PyAny>>,
+        fixed_motion: Option<&Bound<'_, PyAny>>,
+        keep: f64,
+        tolerance: Option<f64>,
+    ) -> PyResult<Self> {
+        let query = Self::of([moving, fixed], [moving_motion, fixed_motion], keep, tolerance)?;
+        if let [Piece::Convex(_), Piece::Convex(_)] = query.bodies
+            && tolerance.is_some()
+            && keep != 0.0
+        {
+            return Err(error("QueryError", EITHER));
+        }
+        query.asked()?;
+        Ok(query)
+    }
+
+    /// When do the bodies first meet? See :func:`first_contact`.
+    fn first_contact(slf: &Bound<'_, Self>) -> PyResult<FirstContact> {
+        Ok(FirstContact { found: Self::first(slf)?, query: slf.clone().unbind() })
+    }
+
+    /// The question as text, of convex bodies: bodies, motions and what is to be kept, exact in bits.
+    ///
+    /// ``colltrans replay`` of the command line reads the same.
+    fn to_json(&self) -> PyResult<String> {
+        match self.asked()? {
+            Of::Convex(cast) => Ok(cast.to_json()),
+            Of::Solids(_) => Err(error("CaseError", "a motion of solids has no file")),
+        }
+    }
+
+    /// From what `to_json`, or the command line, has written.
+    #[staticmethod]
+    fn from_json(py: Python<'_>, text: &str) -> PyResult<Self> {
+        let saved = MotionCase::from_json(text).or_raise()?;
+        let cast = saved.cast();
+        let [p, q] = cast.bodies();
+        let [a, b] = cast.motions();
+        let piece = |body: &ConvexPolyhedron| {
+            Ok::<_, PyErr>(Piece::Convex(Py::new(py, body::ConvexPolyhedron::from(body.clone()))?))
+        };
+        Ok(Self {
+            bodies: [piece(p)?, piece(q)?],
+            motions: [a.clone(), b.clone()],
+            keep: cast.keep(),
+            tolerance: Some(cast.tolerance()).filter(|depth| *depth > 0.0),
+        })
+    }
+
+    /// ConvexPolyhedron or Solid: The moving body.
+    #[getter]
+    fn moving(&self, py: Python<'_>) -> Py<PyAny> {
+        self.bodies[0].object(py)
+    }
+
+    /// ConvexPolyhedron or Solid: The fixed body.
+    #[getter]
+    fn fixed(&self, py: Python<'_>) -> Py<PyAny> {
+        self.bodies[1].object(py)
+    }
+
+    /// Motion: What the moving body does.
+    #[getter]
+    fn moving_motion(&self) -> Motion {
+        Motion(self.motions[0].clone())
+    }
+
+    /// Motion: What the fixed body does.
+    #[getter]
+    fn fixed_motion(&self) -> Motion {
+        Motion(self.motions[1].clone())
+    }
+
+    /// float: The gap to be kept; 0 if there is none.
+    #[getter]
+    fn keep(&self) -> f64 {
+        self.keep
+    }
+
+    /// float: The depth that is tolerated; of solids the tolerance that is used.
+    #[getter]
+    fn tolerance(&self) -> PyResult<f64> {
+        Ok(match self.asked()? {
+            Of::Convex(cast) => cast.tolerance(),
+            Of::Solids(cast) => cast.tolerance(),
+        })
+    }
+
+    /// A picture of the bodies at the start, where they touch and at the end: see :func:`colltrans.show`.
+    #[pyo3(signature = (**options))]
+    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
+        show(slf, options)
+    }
+
+    /// The arguments that make it once more, for `pickle` and `copy`.
+    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<Arguments<'py>> {
+        let named = PyDict::new(py);
+        named.set_item("moving_motion", self.moving_motion())?;
+        named.set_item("fixed_motion", self.fixed_motion())?;
+        named.set_item("keep", self.keep)?;
+        named.set_item("tolerance", self.tolerance)?;
+        Ok(((self.moving(py), self.fixed(py)), named))
+    }
+
+    fn __repr__(&self) -> &'static str {
+        match self.bodies {
+            [Piece::Convex(_), Piece::Convex(_)] => "MotionCast(of convex bodies)",
+            _ => "MotionCast(of solids)",
+        }
+    }
+}
+
+/// An answer; those of solids are proven when that is asked for.
+type Found = Of<MotionOutcome, MotionOutcome<()>>;
+
+/// When two bodies that move first meet, from 0 at the start of the motion to 1 at its end.
+///
+/// ``outcome`` is ``"contact"``: they do not meet before ``lower``, and at ``upper`` they do;
+/// ``"grazing"``: they come nearer than rounding can tell, not before ``lower``, and nothing is said
+/// after it; ``"free"``: they never meet throughout the motion; ``"overlapping"``: they overlap when it
+/// begins.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct FirstContact {
+    found: Found,
+    query: Py<MotionCast>,
+}
+
+answer!(FirstContact("outcome", "lower", "upper") of Found, MotionCast, |it| it.found.clone());
+
+/// What there is of a contact, of either kind.
+macro_rules! contact {
+    ($of:expr, $contact:ident => $value:expr) => {
+        match &$of {
+            Of::Convex(MotionOutcome::Contact($contact) | MotionOutcome::Grazing($contact)) => {
+                Some($value)
+            }
+            Of::Solids(MotionOutcome::Contact($contact) | MotionOutcome::Grazing($contact)) => {
+                Some($value)
+            }
+            _ => None,
+        }
+    };
+}
+
+impl FirstContact {
+    fn told(&self, py: Python<'_>) -> PyResult<Record> {
+        self.found.record(self.query.bind(py))
+    }
+}
+
+#[pymethods]
+impl FirstContact {
+    /// str: ``"contact"``, ``"grazing"``, ``"free"`` or ``"overlapping"``.
+    #[getter]
+    fn outcome(&self, py: Python<'_>) -> PyResult<&'static str> {
+        Ok(self.told(py)?.outcome.name())
+    }
+
+    /// float: The bodies do not meet before: 1 if they never do, 0 if they overlap when the motion begins.
+    #[getter]
+    fn lower(&self) -> f64 {
+        let free = matches!(
+            self.found,
+            Of::Convex(MotionOutcome::Free(_)) | Of::Solids(MotionOutcome::Free(_))
+        );
+        let none = if free { 1.0 } else { 0.0 };
+        contact!(self.found, contact => contact.lower).unwrap_or(none)
+    }
+
+    /// float or None: At this time they do meet; None where that is not proven, or they never do.
+    #[getter]
+    fn upper(&self) -> Option<f64> {
+        let overlapping = matches!(
+            self.found,
+            Of::Convex(MotionOutcome::Overlapping(_)) | Of::Solids(MotionOutcome::Overlapping(_))
+        );
+        let upper =
+            contact!(self.found, contact => contact.upper).filter(|upper| upper.is_finite());
+        upper.or(overlapping.then_some(0.0))
+    }
+
+    /// tuple of (Pose, Pose) or None: Where both bodies are at ``lower``, to rounding; None if they never
+    /// meet or overlap at the start.
+    #[getter]
+    fn poses(&self) -> Option<(Pose, Pose)> {
+        contact!(self.found, contact => (Pose(contact.poses[0]), Pose(contact.poses[1])))
+    }
+
+    /// ndarray of shape (3,) or None: The point of the fixed body that is nearest then, in the world.
+    #[getter]
+    fn point<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        contact!(self.found, contact => contact.points)?.map(|points| row(py, points[1]))
+    }
+
+    /// ndarray of shape (3,) or None: Unit normal in the world, from the moving body to the fixed one.
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        contact!(self.found, contact => contact.normal)?.map(|normal| row(py, normal))
+    }
+
+    /// Features or None: What of each body faces the other one.
+    #[getter]
+    fn features(&self) -> PyResult<Option<Features>> {
+        let features = contact!(self.found, contact => contact.features).flatten();
+        let Some(colltrans::Features { moving, fixed }) = features else { return Ok(None) };
+        let of = |moving, fixed| Ok(Some(Features { moving, fixed }));
+        match self.query.get().asked()? {
+            Of::Convex(cast) => {
+                let [p, q] = cast.bodies();
+                of(Feature::of(moving, p), Feature::of(fixed, q))
+            }
+            Of::Solids(cast) => {
+                let [p, q] = cast.bodies();
+                of(Feature::of(moving, p), Feature::of(fixed, q))
+            }
+        }
+    }
+
+    /// int: At how many times the bodies were looked at.
+    #[getter]
+    fn looks(&self) -> u32 {
+        match &self.found {
+            Of::Convex(found) => found.steps().looks,
+            Of::Solids(found) => found.steps().looks,
+        }
+    }
+
+    /// Checks the proof against the bodies alone; between solids they are asked once more for it.
+    ///
+    /// Raises
+    /// ------
+    /// CertificateError
+    ///     What is not proven.
+    fn verify(&self, py: Python<'_>) -> PyResult<()> {
+        let (query, found) = (self.query.clone_ref(py), self.found.clone());
+        let refused = |what: motion::MotionProofError| error("CertificateError", what);
+        patiently(py, &self.query.get().bodies, move || {
+            match (query.get().asked()?, &found) {
+                (Of::Convex(cast), Of::Convex(found)) => cast.verify(found.proof()),
+                (Of::Solids(cast), _) => {
+                    cast.verify(cast.certified_first_contact().or_raise()?.proof())
+                }
+                _ => return Err(other_bodies()),
+            }
+            .map(|_| ())
+            .map_err(refused)
+        })
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let outcome = self.outcome(py)?;
+        let upper = self.upper().map_or_else(|| "None".into(), |upper| format!("{upper:?}"));
+        Ok(format!("FirstContact({outcome:?}, lower={:?}, upper={upper})", self.lower()))
+    }
+}
+
+/// An answer that is not of the bodies that it comes with.
+fn other_bodies() -> PyErr {
+    error("CaseError", "an answer of other bodies")
+}
+
+impl Answer for Found {
+    type Query = MotionCast;
+
+    fn object<'py>(self, query: &Bound<'py, MotionCast>) -> PyResult<Bound<'py, PyAny>> {
+        object(query.py(), FirstContact { found: self, query: query.clone().unbind() })
+    }
+
+    fn record(&self, query: &Bound<'_, MotionCast>) -> PyResult<Record> {
+        match (self, query.get().asked()?) {
+            (Self::Convex(found), Of::Convex(cast)) => Ok(Record::of_motion(found, &cast)),
+            (Self::Solids(found), Of::Solids(cast)) => Ok(Record::of_solid_motion(found, &cast)),
+            _ => Err(other_bodies()),
+        }
+    }
+
+    fn proof(&self, query: &Bound<'_, MotionCast>) -> PyResult<String> {
+        match (self, query.get().asked()?) {
+            (Self::Convex(found), Of::Convex(cast)) => {
+                Ok(MotionProofFile::of(&cast, found).to_json())
+            }
+            _ => Err(error("CaseError", "the proof of a motion of solids has no file")),
+        }
+    }
+}
+
+/// When do two bodies that move first meet?
+///
+/// Parameters
+/// ----------
+/// moving, fixed, moving_motion, fixed_motion, keep, tolerance
+///     As for :class:`MotionCast`.
+///
+/// Returns
+/// -------
+/// FirstContact
+///
+/// Examples
+/// --------
+/// >>> from colltrans import ConvexPolyhedron, Motion, first_contact
+/// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+/// >>> slide = Motion.slide([8, 0, 0], pose=[-4, 0.5, 0])
+/// >>> found = first_contact(cube, cube, slide)
+/// >>> found.lower <= 0.375 <= found.upper, found.normal
+/// (True, array([1., 0., 0.]))
+#[pyfunction]
+#[pyo3(signature = (moving, fixed, moving_motion, fixed_motion=None, *, keep=0.0, tolerance=None))]
+pub(crate) fn first_contact(
+    py: Python<'_>,
+    moving: &Bound<'_, PyAny>,
+    fixed: &Bound<'_, PyAny>,
+    moving_motion: &Bound<'_, PyAny>,
+    fixed_motion: Option<&Bound<'_, PyAny>>,
+    keep: f64,
+    tolerance: Option<f64>,
+) -> PyResult<FirstContact> {
+    let query = MotionCast::new(moving, fixed, Some(moving_motion), fixed_motion, keep, tolerance)?;
+    MotionCast::first_contact(&Bound::new(py, query)?)
+}

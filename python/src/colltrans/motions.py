@@ -1,0 +1,250 @@
+"""Bodies that move, in bulk: when they first meet; columns out."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from colltrans import _arrays, _colltrans
+from colltrans._colltrans import FirstContact, Motion
+from colltrans.columns import Table
+from colltrans.errors import InputError
+from colltrans.queries import (
+    AnyBodies,
+    Floats,
+    Poses,
+    body_list,
+    checked_threads,
+    column,
+    count_of,
+    pose_table,
+    row_of,
+)
+
+#: A motion for all rows, one for each, or one kind of them with its numbers as arrays.
+Motions: TypeAlias = Motion | Sequence[Motion] | Mapping[str, Mapping[str, ArrayLike]] | None
+
+#: The kinds that have arrays, and how many numbers each of theirs has.
+KINDS: dict[str, dict[str, int]] = {
+    "slide": {"by": 3},
+    "turn": {"point": 3, "axis": 3, "angle": 1},
+    "screw": {"point": 3, "axis": 3, "angle": 1, "rise": 1},
+    "thrown": {"center": 3, "velocity": 3, "angular_velocity": 3},
+}
+
+
+@dataclass(frozen=True)
+class MotionQueries:
+    """What was asked: tables with one row or as many as there are queries."""
+
+    bodies: tuple[list[Any], list[Any]]
+    indices: tuple[NDArray[np.int64] | None, NDArray[np.int64] | None]
+    #: Lists of motions, or tables of 3 (slides), 8 (screws) or 9 numbers (what is thrown).
+    motions: tuple[list[Motion] | Floats, list[Motion] | Floats]
+    poses: tuple[Floats, Floats]
+    keep: Floats
+    #: NaN stands for none.
+    tolerance: Floats
+    count: int
+
+    def ask_all(self, threads: int | None) -> dict[str, Any]:
+        (moving, fixed), (moving_index, fixed_index) = self.bodies, self.indices
+        columns, outcomes, errors = _colltrans.ask_motions(
+            self.count,
+            (moving, moving_index),
+            (fixed, fixed_index),
+            *self.motions,
+            *self.poses,
+            self.keep,
+            self.tolerance,
+            threads,
+        )
+        return {**columns, "outcomes": tuple(outcomes), "errors": errors, "_queries": self}
+
+    def ask(self, question: Any, i: int) -> Any:
+        """One of them, alone."""
+        moving, fixed = (
+            bodies[0 if index is None else index[i]]
+            for bodies, index in zip(self.bodies, self.indices, strict=True)
+        )
+        motions = (
+            one_of(motions, poses, i)
+            for motions, poses in zip(self.motions, self.poses, strict=True)
+        )
+        tolerance = float(row_of(self.tolerance, i)[0])
+        choices = {} if np.isnan(tolerance) else {"tolerance": tolerance}
+        return question(moving, fixed, *motions, keep=float(row_of(self.keep, i)[0]), **choices)
+
+
+def one_of(motions: list[Motion] | Floats, poses: Floats, i: int) -> Motion:
+    """The motion of a row."""
+    if isinstance(motions, list):
+        return motions[i if len(motions) > 1 else 0]
+    row, pose = row_of(motions, i).ravel(), row_of(poses, i)
+    if len(row) == 3:
+        return Motion.slide(row, pose=pose)
+    if len(row) == 8:
+        return Motion.screw(row[:3], row[3:6], float(row[6]), float(row[7]), pose=pose)
+    return Motion.thrown(row[:3], row[3:6], row[6:], pose=pose)
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class MotionColumns(Table[FirstContact]):
+    """The answers of :func:`motion_many`; see :class:`Table`.
+
+    Attributes
+    ----------
+    lower, upper : ndarray of shape (N,)
+        Of contacts, proven bounds of their times, from 0 at the start of the motion to 1 at its
+        end: the bodies do not meet before the first, and do at the second.
+    normal : ndarray of shape (N, 3)
+        Unit normals, in the world, from the moving body to the fixed one.
+    point : ndarray of shape (N, 3)
+        Contact points on the fixed body, in the world.
+    """
+
+    lower: Floats
+    upper: Floats
+    normal: Floats
+    point: Floats
+
+    _question = staticmethod(_colltrans.first_contact)
+
+    def _is_row(self, answer: Any, i: int) -> bool:
+        if answer is None:
+            return False
+        told = answer.to_dict()
+        found = [told.get("time", {}).get(name, np.nan) for name in ("lower", "upper")]
+        same = np.array_equal([self.lower[i], self.upper[i]], found, equal_nan=True)
+        return same and self.outcomes[self.outcome[i]] == told["outcome"]
+
+
+def motion_many(
+    moving: AnyBodies,
+    fixed: AnyBodies,
+    moving_motion: Motions,
+    fixed_motion: Motions = None,
+    *,
+    moving_pose: Poses = None,
+    fixed_pose: Poses = None,
+    moving_index: ArrayLike | None = None,
+    fixed_index: ArrayLike | None = None,
+    keep: ArrayLike = 0.0,
+    tolerance: ArrayLike | None = None,
+    threads: int | None = None,
+) -> MotionColumns:
+    """:func:`first_contact` for every row.
+
+    Parameters
+    ----------
+    moving, fixed, moving_index, fixed_index, threads
+        As for :func:`distance_many`.
+    moving_motion, fixed_motion : Motion, sequence of them, or dict
+        What the bodies do: one motion for all rows, one for each, or ``{"screw": {"point", "axis",
+        "angle", "rise"}}``, ``{"turn": {"point", "axis", "angle"}}``, ``{"slide": {"by"}}`` or
+        ``{"thrown": {"center", "velocity", "angular_velocity"}}`` with arrays of one row for all,
+        or one for each. None stands for rest.
+    moving_pose, fixed_pose : array_like, Pose or object with ``as_matrix()``, optional
+        Where such a motion begins, or where a body rests, as for :func:`cast_many`. Motions that
+        are objects have their own.
+    keep : float or array_like of shape (N,)
+        A gap to be kept, a length.
+    tolerance : float or array_like of shape (N,), optional
+        As for :class:`MotionCast`.
+
+    Returns
+    -------
+    MotionColumns
+
+    Raises
+    ------
+    InputError
+        Arrays whose shapes do not go together. Wrong numbers in a row are errors of that row.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from colltrans import ConvexPolyhedron, motion_many
+    >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+    >>> turn = {"turn": {"point": [0, 0, 0], "axis": [0, 0, 1], "angle": np.array([1, 2, 3, 4e5])}}
+    >>> columns = motion_many(cube, cube, turn, moving_pose=[2, 0, 0], fixed_pose=[-1, 2, 0])
+    >>> columns
+    MotionColumns(4 rows: 2 contact, 1 free, 1 error)
+    >>> columns.lower.round(6)
+    array([     nan, 0.553574, 0.36905 ,      nan])
+    """
+    bodies = [
+        body_list(side, index, name)
+        for side, index, name in (
+            (moving, moving_index, "moving"),
+            (fixed, fixed_index, "fixed"),
+        )
+    ]
+    poses = (pose_table(moving_pose, "moving_pose"), pose_table(fixed_pose, "fixed_pose"))
+    motions = (
+        motion_table(moving_motion, moving_pose, "moving_motion"),
+        motion_table(fixed_motion, fixed_pose, "fixed_motion"),
+    )
+    none = np.full((1, 1), np.nan)
+    tables: dict[str, Any] = {
+        "moving_motion": motions[0],
+        "fixed_motion": motions[1],
+        "moving_pose": poses[0],
+        "fixed_pose": poses[1],
+        "keep": column(keep, "keep"),
+        "tolerance": none if tolerance is None else column(tolerance, "tolerance"),
+    }
+    indices = (bodies[0][1], bodies[1][1])
+    queries = MotionQueries(
+        bodies=(bodies[0][0], bodies[1][0]),
+        indices=indices,
+        motions=motions,
+        poses=poses,
+        keep=tables["keep"],
+        tolerance=tables["tolerance"],
+        count=count_of(tables, indices),
+    )
+    return MotionColumns(**queries.ask_all(checked_threads(threads)))
+
+
+def motion_table(motions: Motions, pose: Poses, name: str) -> list[Motion] | Floats:
+    """A list of one motion or several, or a table of the numbers of one kind."""
+    if motions is None:
+        return np.zeros((1, 3))
+    if isinstance(motions, Mapping):
+        return numbers_of(motions, name)
+    listed = [motions] if isinstance(motions, Motion) else list(motions)
+    if any(not isinstance(motion, Motion) for motion in listed):
+        raise TypeError(f"{name}: neither a Motion, nor a list of them, nor a dict of arrays")
+    if pose is not None:
+        raise InputError(f"{name}: a motion has its own pose; give no other one")
+    return listed
+
+
+def numbers_of(motions: Mapping[str, Mapping[str, ArrayLike]], name: str) -> Floats:
+    """The arrays of a kind side by side."""
+    if len(motions) != 1 or next(iter(motions)) not in KINDS:
+        raise InputError(f"{name}: one of {', '.join(KINDS)}, not {', '.join(map(str, motions))}")
+    ((kind, given),) = motions.items()
+    known = KINDS[kind]
+    if given.keys() != known.keys():
+        raise InputError(f"{name}: {kind!r} has {', '.join(known)}, not {', '.join(given)}")
+    parts = []
+    for part, width in known.items():
+        array = _arrays.floats(given[part], f"{name}.{part}")
+        array = array.reshape(-1, 1) if width == 1 and array.ndim < 2 else np.atleast_2d(array)
+        if array.ndim != 2 or array.shape[1] != width:
+            shape = np.shape(given[part])
+            wanted = "a number or (N,)" if width == 1 else f"({width},) or (N, {width})"
+            raise InputError(f"{name}.{part}: an array of shape {shape}, not {wanted}")
+        parts.append(array)
+    if kind == "turn":
+        parts.append(np.zeros((1, 1)))
+    rows = {len(part) for part in parts if len(part) != 1}
+    if len(rows) > 1:
+        raise InputError(f"{name}: arrays of {', '.join(map(str, sorted(rows)))} rows")
+    count = next(iter(rows), 1)
+    table = np.hstack([np.broadcast_to(part, (count, part.shape[1])) for part in parts])
+    return np.require(table, np.float64, ["C", "A"])

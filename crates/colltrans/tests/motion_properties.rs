@@ -1,0 +1,280 @@
+//! What always holds of motions that turn, and families that are hard: tips that graze, fast spins, faces that are
+//! parallel.
+
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+use colltrans::glam::{DMat3, DQuat, DVec3};
+use colltrans::motion::{Motion, MotionCast, MotionContact, MotionOutcome};
+use colltrans::{ConvexPolyhedron, Pose};
+use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::random_hull;
+
+fn hull(n: usize, random: &mut Random) -> ConvexPolyhedron {
+    ConvexPolyhedron::from_points(&random_hull(n, random).vertices).expect("a body")
+}
+
+fn cuboid(half: [f64; 3]) -> ConvexPolyhedron {
+    let half = DVec3::from_array(half);
+    ConvexPolyhedron::cuboid(-half, half).expect("a box")
+}
+
+fn at(x: f64, y: f64, z: f64) -> Pose {
+    Pose::from_translation(DVec3::new(x, y, z)).expect("a pose")
+}
+
+/// The answer, whose proof holds.
+fn answered([p, q]: [&ConvexPolyhedron; 2], [a, b]: [&Motion; 2]) -> MotionOutcome {
+    let cast = MotionCast::new(p.along(a), q.along(b)).expect("a cast");
+    let outcome = cast.first_contact().expect("an answer");
+    cast.verify(outcome.proof()).unwrap_or_else(|error| panic!("{error}: {outcome:?}"));
+    outcome
+}
+
+fn contact(outcome: MotionOutcome) -> MotionContact {
+    match outcome {
+        MotionOutcome::Contact(contact) => contact,
+        other => panic!("no contact: {other:?}"),
+    }
+}
+
+/// Bounds of a time: of an answer that is none, from its end on.
+fn bounds(outcome: &MotionOutcome) -> [f64; 2] {
+    match outcome {
+        MotionOutcome::Contact(contact) | MotionOutcome::Grazing(contact) => {
+            [contact.lower, contact.upper]
+        }
+        MotionOutcome::Free(_) => [1.0, f64::INFINITY],
+        _ => [0.0; 2],
+    }
+}
+
+/// That two answers are about one time, which may be known to be off by so much.
+fn agree(a: &MotionOutcome, b: &MotionOutcome, off: f64) {
+    let [x, y] = [a, b].map(bounds);
+    assert!(x[0] <= y[1] + off && y[0] <= x[1] + off, "{a:?}, but {b:?}");
+}
+
+struct Setting {
+    bodies: [ConvexPolyhedron; 2],
+    start: Pose,
+    other: Pose,
+    point: DVec3,
+    axis: DVec3,
+    angle: f64,
+    rise: f64,
+}
+
+impl Setting {
+    fn new(random: &mut Random) -> Self {
+        let n = random.pick(&[4, 8, 20]);
+        let from = random.direction() * random.range(2.2, 4.0);
+        Self {
+            bodies: [hull(n, random), hull(n, random)],
+            start: Pose::new(random.rotation(), from).expect("a pose"),
+            other: Pose::new(random.rotation(), DVec3::ZERO).expect("a pose"),
+            point: random.vector() * 2.0,
+            axis: random.direction(),
+            angle: random.range(-6.0, 6.0),
+            rise: random.range(-2.0, 2.0),
+        }
+    }
+
+    fn screw(&self, start: Pose) -> Motion {
+        Motion::screw(start, self.point, self.axis, self.angle, self.rise).expect("a motion")
+    }
+
+    fn outcome(&self) -> MotionOutcome {
+        let [p, q] = &self.bodies;
+        answered([p, q], [&self.screw(self.start), &Motion::still(self.other)])
+    }
+}
+
+/// Settings of a seed, and their answers.
+fn settings(seed: u64, count: usize) -> impl Iterator<Item = (Setting, MotionOutcome)> {
+    let mut random = Random::new(seed);
+    (0..count).map(move |_| {
+        let setting = Setting::new(&mut random);
+        let outcome = setting.outcome();
+        (setting, outcome)
+    })
+}
+
+#[test]
+fn bodies_may_be_swapped() {
+    let mut contacts = 0;
+    for (setting, outcome) in settings(1, 300) {
+        let [p, q] = &setting.bodies;
+        let motions = [&Motion::still(setting.other), &setting.screw(setting.start)];
+        agree(&outcome, &answered([q, p], motions), 0.0);
+        contacts += u32::from(matches!(outcome, MotionOutcome::Contact(_)));
+    }
+    assert!(contacts > 20, "{contacts}");
+}
+
+#[test]
+fn a_motion_in_pieces_is_the_motion() {
+    for (setting, outcome) in settings(2, 150) {
+        let [p, q] = &setting.bodies;
+        let screw = setting.screw(setting.start);
+        // Each is less than half a turn, which is the shorter way.
+        let poses: Vec<Pose> =
+            (0..=4).map(|k| screw.at(0.25 * f64::from(k)).expect("a pose")).collect();
+        let pieces = Motion::through(&poses).expect("a motion");
+        let found = answered([p, q], [&pieces, &Motion::still(setting.other)]);
+        // Poses in between are rounded, and what grazes may be touched or not.
+        let is_told = |of: &MotionOutcome| !matches!(of, MotionOutcome::Grazing(_));
+        let [x, y] = [&outcome, &found].map(bounds);
+        let slow = x[1] - x[0] > 1e-11 || y[1] - y[0] > 1e-11;
+        if is_told(&outcome) && is_told(&found) && !slow {
+            agree(&outcome, &found, 1e-10);
+        }
+    }
+}
+
+#[test]
+fn carried_by_a_pose_it_is_the_same() {
+    let mut random = Random::new(77);
+    for (setting, outcome) in settings(3, 150) {
+        let [p, q] = &setting.bodies;
+        let turn = DMat3::from_quat(random.rotation());
+        let carry = Pose::from_matrix(turn, random.vector() * 3.0).expect("a pose");
+        let carried = |pose: &Pose| carry.compose(pose).expect("a pose");
+        let (point, axis) = (carry.transform_point(setting.point), turn * setting.axis);
+        let screw =
+            Motion::screw(carried(&setting.start), point, axis, setting.angle, setting.rise);
+        let still = Motion::still(carried(&setting.other));
+        let found = answered([p, q], [&screw.expect("a motion"), &still]);
+        let [x, y] = [&outcome, &found].map(bounds);
+        if x[1] - x[0] < 1e-11 && y[1] - y[0] < 1e-11 {
+            agree(&outcome, &found, 1e-10);
+        }
+    }
+}
+
+#[test]
+fn whole_turns_more_bring_nothing_earlier() {
+    let mut contacts = 0;
+    for (setting, _) in settings(4, 300) {
+        let [p, q] = &setting.bodies;
+        let still = Motion::still(setting.other);
+        let turn = |angle: f64| {
+            let turn = Motion::turn(setting.start, setting.point, setting.axis, angle);
+            answered([p, q], [&turn.expect("a motion"), &still])
+        };
+        let once = turn(TAU);
+        for whole in [2.0, 5.0, 40.0] {
+            let more = turn(whole * TAU);
+            match (&once, &more) {
+                (MotionOutcome::Free(_), found) => {
+                    assert!(matches!(found, MotionOutcome::Free(_)), "{found:?}");
+                }
+                (MotionOutcome::Contact(first), MotionOutcome::Contact(found)) => {
+                    contacts += 1;
+                    let off = 1e-14;
+                    assert!(whole * found.lower <= first.upper + off, "{first:?} {found:?}");
+                    assert!(first.lower <= whole * found.upper + off, "{first:?} {found:?}");
+                }
+                (MotionOutcome::Overlapping(_), MotionOutcome::Overlapping(_)) => {}
+                (MotionOutcome::Grazing(_), _) | (_, MotionOutcome::Grazing(_)) => {}
+                (one, other) => panic!("{one:?}, but {other:?}"),
+            }
+        }
+    }
+    assert!(contacts > 80, "{contacts}");
+}
+
+/// A blade whose tip is at 1 from the axis, and a wall that it reaches into by a depth.
+fn tip_and_wall(depth: f64) -> [ConvexPolyhedron; 2] {
+    let blade: Vec<DVec3> = [(0.0, -0.05), (0.0, 0.05), (1.0, 0.0)]
+        .into_iter()
+        .flat_map(|(x, y)| [DVec3::new(x, y, -0.1), DVec3::new(x, y, 0.1)])
+        .collect();
+    let wall =
+        ConvexPolyhedron::cuboid(DVec3::new(1.0 - depth, -2.0, -2.0), DVec3::new(3.0, 2.0, 2.0));
+    [ConvexPolyhedron::from_points(&blade).expect("a blade"), wall.expect("a wall")]
+}
+
+#[test]
+fn tips_that_graze_are_met_at_their_time() {
+    let start = Pose::new(DQuat::from_rotation_z(-1.0), DVec3::ZERO).expect("a pose");
+    let swing = Motion::turn(start, DVec3::ZERO, DVec3::Z, 2.0).expect("a motion");
+    let still = Motion::still(Pose::IDENTITY);
+    for k in 3..=13 {
+        let depth = 10.0_f64.powi(-k);
+        let [blade, wall] = tip_and_wall(depth);
+        // What rounding has made of it.
+        let depth = 1.0 - wall.vertices().iter().map(|v| v.x).fold(f64::INFINITY, f64::min);
+        let found = contact(answered([&blade, &wall], [&swing, &still]));
+        // cos a = 1 - depth.
+        let angle = 2.0 * (0.5 * depth).sqrt().asin();
+        let expected = 0.5 * (1.0 - angle);
+        let off = 1e-15 / angle.sin();
+        assert!(found.lower <= expected + off, "1e-{k}: {expected} {found:?}");
+        assert!(expected <= found.upper + off, "1e-{k}: {expected} {found:?}");
+        let width = found.upper - found.lower;
+        assert!(width < 1e-12 / angle.sin(), "1e-{k}: {width:e}");
+        assert!(found.steps.looks <= 100, "1e-{k}: {} looks", found.steps.looks);
+
+        let [blade, wall] = tip_and_wall(-depth);
+        let outcome = answered([&blade, &wall], [&swing, &still]);
+        let is_free = matches!(outcome, MotionOutcome::Free(_));
+        let is_grazing = matches!(outcome, MotionOutcome::Grazing(_));
+        assert!(is_free || (k >= 13 && is_grazing), "1e-{k}: {outcome:?}");
+    }
+}
+
+#[test]
+fn fast_spins_are_met_in_their_first_turn() {
+    let [blade, wall] = tip_and_wall(1e-3);
+    let still =
+        Motion::still(Pose::new(DQuat::from_rotation_z(FRAC_PI_2), DVec3::ZERO).expect("a pose"));
+    // The wall is turned by a quarter: the tip reaches it where the sine is 1 - depth.
+    let depth = 1.0 - wall.vertices().iter().map(|v| v.x).fold(f64::INFINITY, f64::min);
+    let reached = FRAC_PI_2 - 2.0 * (0.5 * depth).sqrt().asin();
+    for angle in [2.0, 100.0, 1e4, 1e5] {
+        let spin = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, angle).expect("a motion");
+        let found = contact(answered([&blade, &wall], [&spin, &still]));
+        let expected = reached / angle;
+        let off = 1e-13 * expected;
+        assert!(found.lower <= expected + off && expected <= found.upper + off, "{found:?}");
+        assert!(found.upper - found.lower < 1e-11, "{found:?}");
+    }
+    // Past it: a thousand turns, each of which comes as near.
+    let [blade, wall] = tip_and_wall(-1e-3);
+    let spin = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 1e3 * TAU).expect("a motion");
+    let outcome = answered([&blade, &wall], [&spin, &still]);
+    let MotionOutcome::Free(free) = &outcome else { panic!("{outcome:?}") };
+    assert!(free.steps.looks <= 40_000, "{} looks", free.steps.looks);
+}
+
+#[test]
+fn faces_that_are_parallel() {
+    let [part, plate] = [cuboid([0.5, 0.5, 0.25]), cuboid([4.0, 4.0, 0.25])];
+    for k in 2..=11 {
+        let gap = 10.0_f64.powi(-k);
+        let start = at(0.25, 0.5, 0.5 + gap);
+        // Turned and slid in its plane it never comes nearer.
+        for way in [DVec3::ZERO, DVec3::new(0.5, -0.25, 0.0)] {
+            let turn = Motion::thrown(start, start.translation(), way, DVec3::Z * 5.0);
+            let still = Motion::still(Pose::IDENTITY);
+            let outcome = answered([&part, &plate], [&turn.expect("a motion"), &still]);
+            let MotionOutcome::Free(free) = &outcome else { panic!("{gap}: {outcome:?}") };
+            assert!(free.steps.looks <= 10, "{} looks at {gap}", free.steps.looks);
+        }
+        // Screwed down it meets the plate face to face, when the gap is closed.
+        let down = Motion::screw(start, DVec3::ZERO, DVec3::Z, 4.0, -4.0 * gap).expect("a motion");
+        let still = Motion::still(Pose::IDENTITY);
+        let found = contact(answered([&part, &plate], [&down, &still]));
+        let off = 1e-15 / gap;
+        assert!(found.lower <= 0.25 + off && 0.25 <= found.upper + off, "{gap}: {found:?}");
+        assert!(found.upper - found.lower < 1e-13 / gap, "{gap}: {found:?}");
+        // And tilted by no more than the gap allows, by an edge.
+        let tilt = Motion::turn(start, start.translation(), DVec3::Y, 0.5).expect("a motion");
+        let found = contact(answered([&part, &plate], [&tilt, &still]));
+        // 0.5 sin a + 0.25 cos a = 0.25 + gap.
+        let (r, phase) = ((0.25_f64 + 0.0625).sqrt(), 0.5_f64.atan());
+        let angle = ((0.25 + gap) / r).asin() - phase;
+        let expected = angle / 0.5;
+        assert!((found.lower - expected).abs() < 1e-12, "{gap}: {expected} {found:?}");
+    }
+}

@@ -48,6 +48,11 @@ fn keep_corpus() {
 }
 
 #[test]
+fn motion_corpus() {
+    fuzz::corpus("motion", 12).for_each(|bytes| fuzz::motion(&bytes));
+}
+
+#[test]
 fn among_corpus() {
     fuzz::corpus("among", 6).for_each(|bytes| fuzz::among(&bytes));
 }

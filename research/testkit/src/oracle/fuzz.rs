@@ -5,6 +5,7 @@
 //! which reaches every special value and magnitude, or as small whole numbers, which reaches every
 //! tie.
 
+mod motions;
 mod pairs;
 
 use std::fs;
@@ -20,6 +21,7 @@ use crate::oracle::solids::encloses;
 use crate::oracle::solids::facets::{rule, triangles};
 use crate::oracle::solids::proof::{MOST_PAIRS, approve};
 use crate::oracle::tracked::{Finding, Lanes};
+pub use motions::motion;
 pub use pairs::{among, depth, distance, keep, within};
 
 /// Points of a body: more would only make a run slower.

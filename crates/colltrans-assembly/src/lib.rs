@@ -7,6 +7,9 @@
 //! [`blocking`] (the graph) -> [`plan`] (steps, and what is stuck) ; [`map`] (one part, all
 //! directions) -> [`record`] (JSON) -> [`report`] (pictures, one HTML file, an animation).
 //!
+//! [`robot`] is of a robot that moves: what its links and joints are, as [`read`] makes it of URDF, and what of it is
+//! asked.
+//!
 //! Lengths are in the unit of the files. Directions have length 1, so distances are lengths.
 //! Everything is the same on any number of threads. The memory of a run is that of the parts, 100
 //! bytes for each pair of parts that meets along a direction asked, and on each thread up to 50 kB for
@@ -36,6 +39,8 @@ pub mod read;
 pub mod record;
 #[cfg(feature = "report")]
 pub mod report;
+#[cfg(feature = "files")]
+pub mod robot;
 pub mod rooms;
 pub mod sphere;
 pub mod start;
@@ -43,4 +48,6 @@ pub mod start;
 pub use bodies::{Bodies, Fit, Room, Stop};
 pub use error::{AssemblyError, ReadError};
 pub use part::{Assembly, Ignored, Part, Piece};
+#[cfg(feature = "files")]
+pub use robot::Robot;
 pub use watch::{Stage, Watch};

@@ -8,6 +8,7 @@ mod directions;
 mod groups;
 mod help;
 mod motion;
+mod path;
 mod placed;
 mod values;
 
@@ -22,9 +23,10 @@ pub(crate) use assembly::AssemblyArguments;
 pub(crate) use directions::DirectionsArguments;
 use help::{
     ASSEMBLY_FORMAT, BATCH_FORMAT, CAST_EXAMPLES, CLEARANCE_ANSWERS, DIRECTIONS_ANSWERS,
-    DISTANCE_ANSWERS, EXIT_CODES, MOTION_ANSWERS, SETUP_EXAMPLES, fitted, formats,
+    DISTANCE_ANSWERS, EXIT_CODES, MOTION_ANSWERS, PATH_ANSWERS, SETUP_EXAMPLES, fitted, formats,
 };
 pub(crate) use motion::MotionArguments;
+pub(crate) use path::PathArguments;
 pub(crate) use placed::{PlacedArguments, WithinArguments};
 pub(crate) use values::{Angles, Place, direction};
 use values::{angles, bytes, factor, length, picture, place, proof, solver, start, threads};
@@ -90,6 +92,12 @@ pub(crate) enum Command {
     /// them.
     #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[MOTION_ANSWERS, &formats(), EXIT_CODES]))]
     Motion(Box<MotionArguments>),
+    /// Say which links of a robot first meet on a path of joint values, each other or a scene
+    ///
+    /// With proven bounds on the time; or that none do, proven of the whole path and not of samples. The robot is a
+    /// URDF file, the path has rows of joint values, in radians and metres as URDF has them.
+    #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[PATH_ANSWERS, &formats(), EXIT_CODES]))]
+    Path(Box<PathArguments>),
     /// Answer every query of a file with one JSON object a line
     #[command(after_help = fitted(&[EXIT_CODES]), after_long_help = fitted(&[BATCH_FORMAT, EXIT_CODES]))]
     Batch(BatchArguments),

@@ -25,6 +25,7 @@ mod inputs;
 mod motion;
 mod numbers;
 mod outputs;
+mod path;
 mod picture;
 mod progress;
 mod proof;
@@ -63,6 +64,7 @@ fn main() -> ExitCode {
             distance::run(&arguments.placed, PairQuestion::Within(arguments.length))
         }
         Command::Motion(arguments) => motion::run(&arguments),
+        Command::Path(arguments) => path::run(&arguments),
         Command::Batch(arguments) => batch::run(&arguments),
         Command::Assembly(arguments) => assembly::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),

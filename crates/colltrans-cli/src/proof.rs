@@ -4,6 +4,7 @@ use std::path::Path;
 
 use colltrans::free::FreeDirections;
 use colltrans::motion::MotionProofFile;
+use colltrans::motion::path::{PathFileError, PathProofFile};
 use colltrans::record::FreeRecord;
 use colltrans::{
     CaseError, CertificateError, DistanceStatement, ProofFile, SceneProof, SceneStatement,
@@ -66,19 +67,28 @@ enum Saved {
     Two(Box<ProofFile>),
     Many(Box<SceneProof>),
     Motion(Box<MotionProofFile>),
+    Path(Box<PathProofFile>),
 }
 
 impl Saved {
-    fn read(text: &str) -> Result<Self, CaseError> {
-        match ProofFile::from_json(text) {
-            Err(CaseError::Format { found, known }) => match SceneProof::from_json(text) {
-                Err(CaseError::Format { .. }) => match MotionProofFile::from_json(text) {
-                    Err(CaseError::Format { .. }) => Err(CaseError::Format { found, known }),
-                    proof => Ok(Self::Motion(Box::new(proof?))),
-                },
-                proof => Ok(Self::Many(Box::new(proof?))),
-            },
-            proof => Ok(Self::Two(Box::new(proof?))),
+    /// The first format that it is in.
+    fn read(text: &str) -> Result<Self, PathFileError> {
+        let other = |error: &CaseError| matches!(error, CaseError::Format { .. });
+        let first = match ProofFile::from_json(text) {
+            Err(error) if other(&error) => error,
+            proof => return Ok(Self::Two(Box::new(proof?))),
+        };
+        match SceneProof::from_json(text) {
+            Err(error) if other(&error) => {}
+            proof => return Ok(Self::Many(Box::new(proof?))),
+        }
+        match MotionProofFile::from_json(text) {
+            Err(error) if other(&error) => {}
+            proof => return Ok(Self::Motion(Box::new(proof?))),
+        }
+        match PathProofFile::from_json(text) {
+            Err(PathFileError::Case(error)) if other(&error) => Err(first.into()),
+            proof => Ok(Self::Path(Box::new(proof?))),
         }
     }
 
@@ -88,6 +98,7 @@ impl Saved {
             Self::Two(proof) => checked(proof).map_err(|error| error.to_string()),
             Self::Many(proof) => proof.check().map(|()| None).map_err(|error| error.to_string()),
             Self::Motion(proof) => proof.check().map(|_| None).map_err(|error| error.to_string()),
+            Self::Path(proof) => proof.check().map(|_| None).map_err(|error| error.to_string()),
         }
     }
 
@@ -96,6 +107,7 @@ impl Saved {
             Self::Two(proof) => proof.to_string(),
             Self::Many(proof) => proof.to_string(),
             Self::Motion(proof) => proof.to_string(),
+            Self::Path(proof) => proof.to_string(),
         }
     }
 
@@ -104,13 +116,19 @@ impl Saved {
             Self::Two(proof) => told(proof, free),
             Self::Many(proof) => told_of_many(proof),
             Self::Motion(proof) => {
-                let bounds = proof.check().unwrap_or_default();
-                let upper = bounds[1].is_finite().then_some(bounds[1]);
-                let time = json!({ "lower": bounds[0], "upper": upper });
-                json!({ "holds": true, "statement": proof.to_string(), "time": time })
+                told_of_time(&proof.to_string(), proof.check().unwrap_or_default())
+            }
+            Self::Path(proof) => {
+                told_of_time(&proof.to_string(), proof.check().unwrap_or_default())
             }
         }
     }
+}
+
+/// What is proven of a time.
+fn told_of_time(statement: &str, [lower, upper]: [f64; 2]) -> Value {
+    let upper = upper.is_finite().then_some(upper);
+    json!({ "holds": true, "statement": statement, "time": { "lower": lower, "upper": upper } })
 }
 
 /// What is proven of one body among many, in the fields of answers.

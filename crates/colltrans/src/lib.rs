@@ -73,6 +73,7 @@
 //! | [`Pair::within`] | are they closer than a length? | [`Within`] |
 //! | [`Pair::depth`] | which least translation parts them? | [`Depth`] |
 //! | [`motion::MotionCast::first_contact`] | of bodies that turn: when do they first meet? | [`motion::MotionOutcome`] |
+//! | [`motion::path::PathCast::first_contact`] | of bodies that joints carry: which first meet, and when? | [`motion::path::PathOutcome`] |
 //! | [`Among::nearest`] | which of many is nearest? | [`Nearest`] |
 //! | [`Among::within`] | which of many are closer than a length? | [`Nearby`] |
 //! | [`Among::clearance`] | which of many is hit first, and how far is it? | [`ClearanceAmong`] |
@@ -226,6 +227,11 @@ pub struct Directions;
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/motion.md")]
 pub struct Motions;
+
+/// The examples of `docs/paths.md`, compiled and run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/paths.md")]
+pub struct Paths;
 
 /// The examples of `docs/among.md`, compiled and run as tests.
 #[cfg(doctest)]

@@ -7,6 +7,7 @@
 
 mod free;
 mod motion;
+mod path;
 mod ways;
 
 use derive_where::derive_where;
@@ -28,6 +29,7 @@ use crate::solve::observe::{NoObserver, Observer};
 use crate::written::{UnknownName, named};
 pub use free::{BlockedByRecord, FreeRecord, FreeRegionRecord};
 pub use motion::TimeRecord;
+pub use path::PathRecord;
 pub use ways::{LegRecord, WaysRecord};
 
 /// An answer; fields that do not apply are left out, numbers that are infinite are `null`.

@@ -11,7 +11,11 @@ mod gltf;
 #[cfg(feature = "files")]
 mod manifest;
 #[cfg(feature = "files")]
+mod robot;
+#[cfg(feature = "files")]
 mod shapes;
+#[cfg(feature = "files")]
+mod srdf;
 #[cfg(feature = "files")]
 mod threemf;
 #[cfg(feature = "files")]
@@ -148,6 +152,28 @@ pub fn read_from(
         _ if is_known(path) => folder::read_file(source),
         _ => Err(ReadError::UnknownSource { path: path.into() }),
     }
+}
+
+/// Reads a robot that moves, from a URDF file: links with their bodies, and joints.
+///
+/// # Errors
+/// What cannot be read, with the file and the place; joints that have not one value; a robot without geometry.
+#[cfg(feature = "files")]
+pub fn robot(path: impl AsRef<Path>, options: &ReadOptions) -> Result<crate::Robot, ReadError> {
+    let path = path.as_ref();
+    let folders = files::Folders::of(path, options);
+    robot::read(Source::new(path, options, &files::Given { path, files: &folders }))
+}
+
+/// Reads which links are not held against each other, from an SRDF file.
+///
+/// # Errors
+/// What cannot be read, with the file and the place.
+#[cfg(feature = "files")]
+pub fn disabled(path: impl AsRef<Path>) -> Result<Vec<[String; 2]>, ReadError> {
+    let (path, options) = (path.as_ref(), ReadOptions::default());
+    let folders = files::Folders::of(path, &options);
+    srdf::read(&Source::new(path, &options, &files::Given { path, files: &folders }))
 }
 
 /// Reads a GLB file that is in memory, of which nothing lies elsewhere.

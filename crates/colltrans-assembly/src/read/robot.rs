@@ -159,34 +159,29 @@ fn mimics(
 ) -> Result<Vec<RobotJoint>, ReadError> {
     let places: HashMap<String, usize> =
         joints.iter().enumerate().map(|(k, joint)| (joint.name.clone(), k)).collect();
-    for k in 0..joints.len() {
-        let name = joints[k].name.clone();
+    for RobotJoint { name, mimic, .. } in &mut joints {
         let refused = |reason: String| contents(source.path, format!("joint {name}"), reason);
-        let Some(mimic) = elements[name.as_str()].element.first("mimic") else { continue };
-        let of = mimic.need("joint").map_err(refused)?;
-        let joint = *places
-            .get(of)
+        let Some(found) = elements[name.as_str()].element.first("mimic") else { continue };
+        let of = found.need("joint").map_err(refused)?;
+        let place = places.get(of).copied();
+        let joint = place
             .ok_or_else(|| refused(format!("it follows {of}, which is no joint that moves")))?;
         let number = |what: &str, default: f64| {
-            let found = mimic.numbers::<1>(what).map_err(refused)?;
-            Ok(found.map_or(default, |[x]| x))
+            let number = found.numbers::<1>(what).map_err(refused)?;
+            Ok::<f64, ReadError>(number.map_or(default, |[x]| x))
         };
         let (multiplier, offset) = (number("multiplier", 1.0)?, number("offset", 0.0)?);
-        joints[k].mimic = Some(Mimic { joint, multiplier, offset });
+        *mimic = Some(Mimic { joint, multiplier, offset });
     }
-    for k in 0..joints.len() {
-        let mut at = k;
+    for joint in &joints {
+        let mut at = joint;
         for _ in 0..joints.len() {
-            let Some(mimic) = joints[at].mimic else { break };
-            at = mimic.joint;
+            let Some(mimic) = at.mimic else { break };
+            at = &joints[mimic.joint];
         }
-        if joints[at].mimic.is_some() {
-            let place = format!("joint {}", joints[k].name);
-            return Err(contents(
-                source.path,
-                place,
-                "the joints that follow each other form a ring",
-            ));
+        if at.mimic.is_some() {
+            let reason = "the joints that follow each other form a ring";
+            return Err(contents(source.path, format!("joint {}", joint.name), reason));
         }
     }
     Ok(joints)

@@ -14,21 +14,10 @@ use crate::error::ReadError;
 use crate::part::{Assembly, Part, Piece};
 
 pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
-    let text = source.text()?;
-    let refused = |(place, reason)| contents(source.path, format!("URDF: {place}"), reason);
-    let robot = Element::parse(&text).map_err(refused)?;
-    if robot.name != "robot" {
-        let reason = format!("it is not a robot: its first element is {}, not robot", robot.name);
-        return Err(contents(source.path, format!("URDF: line {}", robot.line), reason));
-    }
-    let macros = |e: &&Element| e.name.starts_with("xacro:");
-    if let Some(found) = robot.children.iter().find(macros) {
-        let reason = format!("{} is a macro; run xacro first", found.name);
-        return Err(contents(source.path, format!("URDF: line {}", found.line), reason));
-    }
+    let (robot, bytes) = robot(&source)?;
     let joints = joints(&source, &robot)?;
     let places = places(&source, &robot, &joints)?;
-    let mut gathered = Gathered::new(&source, text.len());
+    let mut gathered = Gathered::new(&source, bytes);
     for link in robot.all("link") {
         let name = named(&source, link)?;
         gathered.link(link, name, places[name])?;
@@ -51,22 +40,57 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     Ok(notes.into_iter().fold(assembly, Assembly::with_note))
 }
 
+/// The robot of a file, and how many bytes that has.
+pub(super) fn robot(source: &Source) -> Result<(Element, usize), ReadError> {
+    let text = source.text()?;
+    let refused = |(place, reason)| contents(source.path, format!("URDF: {place}"), reason);
+    let robot = Element::parse(&text).map_err(refused)?;
+    if robot.name != "robot" {
+        let reason = format!("it is not a robot: its first element is {}, not robot", robot.name);
+        return Err(contents(source.path, format!("URDF: line {}", robot.line), reason));
+    }
+    let macros = |e: &&Element| e.name.starts_with("xacro:");
+    if let Some(found) = robot.children.iter().find(macros) {
+        let reason = format!("{} is a macro; run xacro first", found.name);
+        return Err(contents(source.path, format!("URDF: line {}", found.line), reason));
+    }
+    Ok((robot, text.len()))
+}
+
 /// Parts in the making.
-struct Gathered<'a> {
+pub(super) struct Gathered<'a> {
     source: &'a Source<'a>,
     budget: Budget,
     parts: Vec<Part>,
-    missing: Vec<String>,
-    notes: Vec<String>,
+    pub(super) missing: Vec<String>,
+    pub(super) notes: Vec<String>,
 }
 
 impl<'a> Gathered<'a> {
-    fn new(source: &'a Source<'a>, bytes: usize) -> Self {
+    pub(super) fn new(source: &'a Source<'a>, bytes: usize) -> Self {
         let (parts, missing, notes) = (Vec::new(), Vec::new(), Vec::new());
         Self { source, budget: Budget::of(bytes), parts, missing, notes }
     }
 
     fn link(&mut self, link: &Element, name: &str, world: DAffine3) -> Result<(), ReadError> {
+        let pieces = self.pieces(link, name, world)?;
+        if !pieces.is_empty() {
+            let refused =
+                |reason: String| contents(self.source.path, format!("link {name}"), reason);
+            self.budget.place().map_err(refused)?;
+            let part = Part::new(name, &pieces).map_err(in_file(self.source.path))?;
+            self.parts.push(part);
+        }
+        Ok(())
+    }
+
+    /// The geometry of a link that stands somewhere.
+    pub(super) fn pieces(
+        &mut self,
+        link: &Element,
+        name: &str,
+        world: DAffine3,
+    ) -> Result<Vec<Piece>, ReadError> {
         let which = match self.source.options.geometry {
             Geometry::Collision => "collision",
             Geometry::Visual => "visual",
@@ -89,14 +113,7 @@ impl<'a> Gathered<'a> {
                 }
             }
         }
-        if !pieces.is_empty() {
-            let refused =
-                |reason: String| contents(self.source.path, format!("link {name}"), reason);
-            self.budget.place().map_err(refused)?;
-            let part = Part::new(name, &pieces).map_err(in_file(self.source.path))?;
-            self.parts.push(part);
-        }
-        Ok(())
+        Ok(pieces)
     }
 
     fn mesh(
@@ -152,13 +169,13 @@ fn solid(shape: &Element, at: DAffine3) -> Result<Piece, String> {
     }
 }
 
-fn named<'a>(source: &Source, element: &'a Element) -> Result<&'a str, ReadError> {
+pub(super) fn named<'a>(source: &Source, element: &'a Element) -> Result<&'a str, ReadError> {
     let refused = |e| contents(source.path, format!("URDF: line {}", element.line), e);
     element.need("name").map_err(refused)
 }
 
 /// The pose of an element that may have an origin.
-fn origin(element: &Element) -> Result<DAffine3, String> {
+pub(super) fn origin(element: &Element) -> Result<DAffine3, String> {
     let Some(origin) = element.first("origin") else { return Ok(DAffine3::IDENTITY) };
     let xyz = origin.numbers::<3>("xyz")?.unwrap_or_default();
     let rpy = origin.numbers::<3>("rpy")?.unwrap_or_default();
@@ -175,17 +192,17 @@ fn origin(element: &Element) -> Result<DAffine3, String> {
 }
 
 /// A joint.
-struct Joint<'a> {
-    element: &'a Element,
-    parent: &'a str,
-    child: &'a str,
-    origin: DAffine3,
+pub(super) struct Joint<'a> {
+    pub(super) element: &'a Element,
+    pub(super) parent: &'a str,
+    pub(super) child: &'a str,
+    pub(super) origin: DAffine3,
 }
 
 /// Joints by their names.
-type Joints<'a> = HashMap<&'a str, Joint<'a>>;
+pub(super) type Joints<'a> = HashMap<&'a str, Joint<'a>>;
 
-fn joints<'a>(source: &Source, robot: &'a Element) -> Result<Joints<'a>, ReadError> {
+pub(super) fn joints<'a>(source: &Source, robot: &'a Element) -> Result<Joints<'a>, ReadError> {
     let mut joints = HashMap::new();
     for element in robot.all("joint") {
         let name = named(source, element)?;
@@ -213,7 +230,7 @@ fn joints<'a>(source: &Source, robot: &'a Element) -> Result<Joints<'a>, ReadErr
 }
 
 /// Where each link is: root links at the world's origin.
-fn places<'a>(
+pub(super) fn places<'a>(
     source: &Source,
     robot: &'a Element,
     joints: &Joints<'a>,

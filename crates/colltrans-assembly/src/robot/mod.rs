@@ -136,17 +136,14 @@ pub enum RobotError {
 /// # Errors
 /// What is wrong with its surface.
 pub fn body_of(mesh: &Mesh, options: &BodyOptions) -> Result<(AnyBody, Vec<String>), Refused> {
-    match body::convex(mesh, options) {
-        Ok(convex) => {
-            let notes = convex.notes.iter().map(ToString::to_string).collect();
-            Ok((convex.body.into(), notes))
-        }
-        Err(_) => {
-            let solid = body::solid(mesh, &options.with_open(true))?;
-            let notes = solid.notes.iter().map(ToString::to_string).collect();
-            Ok((solid.body.into(), notes))
-        }
+    fn told(notes: &[body::Note]) -> Vec<String> {
+        notes.iter().map(ToString::to_string).collect()
     }
+    if let Ok(convex) = body::convex(mesh, options) {
+        return Ok((convex.body.into(), told(&convex.notes)));
+    }
+    let solid = body::solid(mesh, &options.with_open(true))?;
+    Ok((solid.body.into(), told(&solid.notes)))
 }
 
 impl Robot {

@@ -53,16 +53,15 @@ impl Robot {
             return Err(RobotError::Joint { joint: joint.clone(), joints: own.join(", ") });
         }
         let given = self.own(rest);
-        let columns: Vec<&str> = match &table.names {
-            Some(names) => names.iter().map(String::as_str).collect(),
-            None => {
-                let values = table.rows.first().map_or(0, Vec::len);
-                if values != given.len() {
-                    let (count, joints) = (given.len(), given.join(", "));
-                    return Err(RobotError::Values { values, count, joints });
-                }
-                given.clone()
+        let columns: Vec<&str> = if let Some(names) = &table.names {
+            names.iter().map(String::as_str).collect()
+        } else {
+            let values = table.rows.first().map_or(0, Vec::len);
+            if values != given.len() {
+                let (count, joints) = (given.len(), given.join(", "));
+                return Err(RobotError::Values { values, count, joints });
             }
+            given.clone()
         };
         if let Some(column) = columns.iter().find(|column| !given.contains(column)) {
             return Err(RobotError::Column { column: (*column).into(), joints: given.join(", ") });

@@ -15,7 +15,7 @@ struct Group {
 const GROUPS: [Group; 4] = [
     Group {
         question: "How far, or when",
-        commands: &["cast", "clearance", "motion"],
+        commands: &["cast", "clearance", "motion", "path"],
         example: "colltrans clearance drawer.stl --from cabinet.stl --direction -y",
     },
     Group {

@@ -224,6 +224,39 @@ Examples:
     colltrans motion bolt.stl plate.stl --screw 0,0,0 z 720 3 --save-proof bolt.json
     colltrans verify bolt.json";
 
+pub(super) const PATH_ANSWERS: &str = "\
+Rows of a path:
+  CSV       a row a line; a first line of names says which joint each column is of, one may be `time`;
+            without names there is a value for each joint that moves by itself, in the order of the
+            robot's file. What follows a # counts for nothing
+  JSON      a list of rows, or what ROS has: {\"joint_names\": [...], \"points\": [{\"positions\": [...],
+            \"time_from_start\": ...}]}
+  Joints that follow others (mimic) have no values of their own. One row is a place, not a path.
+
+Answers:
+  contact      two bodies first meet at a time between two bounds, and no others before: who, where on
+               the path, the point and the normal
+  grazing      two come nearer than rounding can tell; none meet before, and nothing is said after it
+  free         none meet on the whole path
+  overlapping  two overlap where it begins
+
+With --json one object:
+  outcome   one of these
+  time      {\"lower\", \"upper\"}: none meet before the first, and at the second two do; in the times of
+            the path, or in rows from 0 if it has none
+  place     {\"row\", \"share\"}: which share of the way from that row to the next one is done at lower
+  pair      the names of the two: links, or meshes of the scene
+  point normal   where the first is nearest to the second then, and the direction to it, in the world
+  pairs looks planes   how many pairs of bodies were asked about, how often two were looked at, and planes
+            in the proof
+
+Examples:
+  Is this path free, of the links and of two meshes that stand around?
+    colltrans path arm.urdf path.csv table.stl wall.stl --srdf arm.srdf
+  With a gap of 5 mm kept, fingers that rest, and a proof for somebody else:
+    colltrans path arm.urdf path.csv --joint finger=0.02 --keep 0.005 --save-proof path.json
+    colltrans verify path.json";
+
 pub(super) const DISTANCE_ANSWERS: &str = "\
 Answers of distance:
   apart        so far, between two bounds that are proven, with the points that are nearest, the
@@ -390,6 +423,7 @@ mod tests {
             DIRECTIONS_ANSWERS,
             DISTANCE_ANSWERS,
             MOTION_ANSWERS,
+            PATH_ANSWERS,
             BATCH_FORMAT,
             ASSEMBLY_FORMAT,
         ];

@@ -11,6 +11,7 @@ mod example_parts;
 mod keep;
 mod motion;
 mod newcomers;
+mod path;
 mod picture;
 mod proof;
 mod readme;

@@ -7,7 +7,7 @@
 //! ([`simplex`]) and the exact sideways overlap ([`shadow`]). Algorithms that compute distances are
 //! judged by [`distance`], answers of the library about distance and depth by [`nearest`], about one
 //! body among many by [`among`], casts that keep a gap by [`keep`], bodies that
-//! turn by [`motion`], burrs by [`cubes`].
+//! turn by [`motion`], bodies that joints carry by [`path`], burrs by [`cubes`].
 
 pub mod among;
 pub mod check;

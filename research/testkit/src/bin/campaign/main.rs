@@ -3,7 +3,8 @@
 //! many sequences of settings, each asked of trackers, whose answers are judged in the same way and
 //! compared with those of one-off queries. Or bodies alone, nearly flat ones, each with a cast onto it.
 //! Or distances of settings as they are, near contact and overlapping. Or scenes, one body among many. Or casts
-//! that keep a gap. Or motions that turn, of convex bodies or of solids. Or all free directions of solids, each held against casts along some of them.
+//! that keep a gap. Or motions that turn, of convex bodies or of solids. Or arms on paths. Or all free directions of
+//! solids, each held against casts along some of them.
 //! In all of them bodies are held against the points that they were made of, in exact arithmetic, so
 //! that answers are judged for the input.
 //!
@@ -15,6 +16,7 @@ mod distances;
 mod free;
 mod keeping;
 mod motions;
+mod paths;
 mod scenes;
 mod sequences;
 mod solids;
@@ -44,6 +46,7 @@ campaign --keeping N [--seed S] [--only FAMILY]
 campaign --solid-keeping N [--seed S] [--only FAMILY]
 campaign --motions N [--seed S] [--only FAMILY]
 campaign --solid-motions N [--seed S] [--only FAMILY]
+campaign --paths N [--seed S] [--only FAMILY]
 campaign --case FAMILY:SEED | FAMILY:SEED:STEP
 ";
 
@@ -56,6 +59,7 @@ struct Arguments {
     solid_motions: Option<u64>,
     free: Option<u64>,
     motions: Option<u64>,
+    paths: Option<u64>,
     bodies: Option<u64>,
     distances: Option<u64>,
     scenes: Option<u64>,
@@ -106,6 +110,8 @@ fn main() -> ExitCode {
         run(&arguments, &families, count, distances::examine)
     } else if let Some(count) = arguments.motions {
         run(&arguments, &families, count, motions::examine)
+    } else if let Some(count) = arguments.paths {
+        run(&arguments, &paths::FAMILIES, count, paths::examine)
     } else if let Some(count) = arguments.scenes {
         run(&arguments, &among::FAMILIES, count, scenes::examine)
     } else if let Some(count) = arguments.keeping {
@@ -135,6 +141,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
         solid_motions: None,
         free: None,
         motions: None,
+        paths: None,
         bodies: None,
         distances: None,
         scenes: None,
@@ -155,6 +162,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
             "--solid-keeping" => arguments.solid_keeping = Some(number(&value)?),
             "--solid-motions" => arguments.solid_motions = Some(number(&value)?),
             "--motions" => arguments.motions = Some(number(&value)?),
+            "--paths" => arguments.paths = Some(number(&value)?),
             "--free" => arguments.free = Some(number(&value)?),
             "--solid-distances" => arguments.solid_distances = Some(number(&value)?),
             "--scenes" => arguments.scenes = Some(number(&value)?),

@@ -1,0 +1,224 @@
+//! Robots that move: what is read of URDF and SRDF, rows by names and by order, pairs; a wire that samples miss.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use colltrans::motion::path::{Joint, JointPath, PathBody, PathCast, PathOutcome};
+use colltrans::{AnyBody, Pose};
+use colltrans_assembly::ReadError;
+use colltrans_assembly::read::{ReadOptions, disabled, robot};
+use colltrans_assembly::robot::{Kind, Robot, RobotError, Table, body_of};
+use colltrans_mesh::body::{BodyOptions, load};
+use glam::{DAffine3, DVec3};
+
+fn data(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../data").join(name)
+}
+
+fn arm() -> Robot {
+    robot(data("arm.urdf"), &ReadOptions::default()).expect("a robot")
+}
+
+/// A robot of a text.
+fn of(text: &str) -> Result<Robot, ReadError> {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("robot.urdf");
+    std::fs::write(&file, format!("<robot name=\"r\">{text}</robot>")).unwrap();
+    robot(&file, &ReadOptions::default())
+}
+
+/// A link with a cube.
+fn link(name: &str) -> String {
+    format!(
+        "<link name=\"{name}\"><collision><geometry><box size=\"1 1 1\"/></geometry></collision></link>"
+    )
+}
+
+fn joint(name: &str, kind: &str, [parent, child]: [&str; 2], rest: &str) -> String {
+    format!(
+        "<joint name=\"{name}\" type=\"{kind}\"><parent link=\"{parent}\"/><child link=\"{child}\"/>\
+         {rest}</joint>"
+    )
+}
+
+#[test]
+fn links_and_joints_are_those_of_the_file() {
+    let arm = arm();
+    assert_eq!(arm.name(), "arm");
+    let links: Vec<_> = arm.links().iter().map(|link| (&*link.name, link.frame)).collect();
+    assert_eq!(links, [("base", None), ("upper", Some(0)), ("fore", Some(1)), ("tool", Some(2))]);
+    let joints: Vec<_> = arm.joints().iter().map(|j| (&*j.name, j.kind, j.limits)).collect();
+    assert_eq!(
+        joints,
+        [
+            ("shoulder", Kind::Revolute, Some([-3.0, 3.0])),
+            ("elbow", Kind::Continuous, None),
+            ("reach", Kind::Prismatic, Some([0.0, 0.1])),
+        ]
+    );
+    let frames = arm.mechanism().frames();
+    assert_eq!(frames[2].joint, Joint::Sliding(DVec3::X));
+    assert_eq!(frames[1].origin.translation(), DVec3::X * 0.5);
+    assert!(arm.links().iter().all(|link| matches!(link.bodies[..], [AnyBody::Convex(_)])));
+    assert!(arm.notes()[0].contains("a cylinder of radius 0.002"), "{:?}", arm.notes());
+}
+
+#[test]
+fn frames_stand_where_the_assembly_reader_has_the_links() {
+    // The same file in one configuration, read as parts that stand in the world.
+    let arm = arm();
+    let values = [("shoulder", 0.7), ("elbow", -0.4), ("reach", 0.05)];
+    let joints: BTreeMap<String, f64> = values.map(|(name, x)| (name.to_owned(), x)).into();
+    let options = ReadOptions::default().with_joints(joints);
+    let parts = colltrans_assembly::read::read(data("arm.urdf"), &options).expect("parts");
+    let path = JointPath::evenly(vec![values.map(|(_, x)| x).to_vec()]).expect("a path");
+    let bodies = arm.links().iter().flat_map(|link| {
+        let body =
+            move |body| PathBody { frame: link.frame, placed: AnyBody::at(body, Pose::IDENTITY) };
+        link.bodies.iter().map(body)
+    });
+    let cast = PathCast::new(arm.mechanism(), &path, bodies.collect(), vec![]).expect("a cast");
+    let start = colltrans::motion::path::Place { row: 0, share: 0.0 };
+    for (k, part) in parts.parts().iter().enumerate() {
+        let AnyBody::Convex(body) = &arm.links()[k].bodies[0] else { panic!("not convex") };
+        let pose = cast.pose(k, start);
+        let place = DAffine3::from_mat3_translation(pose.matrix(), pose.translation());
+        for v in body.vertices() {
+            let at = place.transform_point3(*v);
+            let off = |w: &DVec3| w.distance(at);
+            let least = part.solid().vertices().iter().map(off).fold(f64::INFINITY, f64::min);
+            assert!(least < 1e-12, "{least:e} of {}", part.name());
+        }
+    }
+}
+
+#[test]
+fn rows_are_by_name_or_by_order() {
+    let arm = arm();
+    let none = BTreeMap::new();
+    let path = |text: &str, rest: &BTreeMap<String, f64>| {
+        arm.path(&Table::parse(text).expect("a table"), rest)
+    };
+    let (by_order, notes) = path("0.1,0.2,0.05\n0.3,0.4,0.05\n", &none).expect("a path");
+    assert_eq!(by_order.rows(), [[0.1, 0.2, 0.05], [0.3, 0.4, 0.05]]);
+    assert!(notes.is_empty());
+    let (by_name, _) =
+        path("reach,time,elbow,shoulder\n0.05,2,0.2,0.1\n0.05,4,0.4,0.3\n", &none).expect("a path");
+    assert_eq!(by_name.rows(), by_order.rows());
+    assert_eq!(by_name.times(), [2.0, 4.0]);
+    let rest = BTreeMap::from([("reach".to_owned(), 0.05)]);
+    assert_eq!(path("0.1,0.2\n0.3,0.4\n", &rest).expect("a path").0.rows(), by_order.rows());
+    let (_, notes) = path("0,0,0\n0,0,0.2\n4,0,0.3\n", &none).expect("a path");
+    assert_eq!(notes.len(), 2);
+    assert!(
+        notes[1].contains(
+            "joint reach is beyond its limits, 0 to 0.1 m, in 2 of 3 rows: first in row 1"
+        )
+    );
+    let told = |text: &str, rest: &BTreeMap<String, f64>| path(text, rest).unwrap_err().to_string();
+    assert!(told("elbow,reach\n0,0\n", &none).contains("no values for joint shoulder"));
+    assert!(told("wrist,elbow\n0,0\n", &none).contains("column wrist is of no joint"));
+    assert!(told("0,0\n", &none).contains("rows have 2 values, and 3 joints have one each"));
+    assert!(told("0,0,0\n", &rest).contains("rows have 3 values, and 2 joints"));
+    let wrong = BTreeMap::from([("wrist".to_owned(), 0.0)]);
+    assert!(told("0,0,0\n", &wrong).contains("joint wrist is none that moves by itself"));
+    assert!(
+        told("time,shoulder,elbow,reach\n1,0,0,0\n1,0,0,0\n", &none)
+            .contains("not after the one before")
+    );
+}
+
+#[test]
+fn joints_follow_others() {
+    let follows = "<axis xyz=\"0 1 0\"/><mimic joint=\"b\" multiplier=\"-2\" offset=\"0.5\"/>";
+    let of_b = joint("b", "prismatic", ["base", "left"], "<axis xyz=\"0 1 0\"/>");
+    let text = link("base") + &link("left") + &link("right");
+    let hand = of(&(text.clone() + &of_b + &joint("a", "prismatic", ["base", "right"], follows)));
+    let hand = hand.expect("a hand");
+    let table = Table::parse("0.25\n0.5\n").expect("rows");
+    let (path, _) = hand.path(&table, &BTreeMap::new()).expect("a path");
+    assert_eq!(path.rows(), [[0.25, 0.0], [0.5, -0.5]]);
+    let ring = |of: &str| format!("<mimic joint=\"{of}\"/>");
+    let ring = of(&(text
+        + &joint("b", "prismatic", ["base", "left"], &ring("a"))
+        + &joint("a", "prismatic", ["base", "right"], &ring("b"))));
+    assert!(ring.unwrap_err().to_string().contains("form a ring"));
+}
+
+#[test]
+fn pairs_leave_out_neighbours_or_what_srdf_says() {
+    let arm = arm();
+    // base, upper, fore, tool: one joint between each two.
+    assert_eq!(arm.pairs(None).expect("pairs"), [[0, 2], [0, 3], [1, 3]]);
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("arm.srdf");
+    let text = "<robot name=\"arm\"><disable_collisions link1=\"tool\" link2=\"base\" reason=\"Never\"/>\
+                <disable_collisions link1=\"base\" link2=\"upper\"/></robot>";
+    std::fs::write(&file, text).unwrap();
+    let listed = disabled(&file).expect("a list");
+    assert_eq!(arm.pairs(Some(&listed)).expect("pairs"), [[0, 2], [1, 2], [1, 3], [2, 3]]);
+    let unknown = [["hand".to_owned(), "base".to_owned()]];
+    assert!(matches!(arm.pairs(Some(&unknown)), Err(RobotError::Unknown { .. })));
+    std::fs::write(&file, "<robot><disable_collisions link1=\"a\"/></robot>").unwrap();
+    let told = disabled(&file).unwrap_err().to_string();
+    assert!(told.contains("<disable_collisions> has no attribute link2"), "{told}");
+    // What a fixed joint holds together never moves against each other.
+    let held =
+        of(&(link("a") + &link("b") + &joint("j", "fixed", ["a", "b"], ""))).expect("a robot");
+    assert_eq!(held.pairs(Some(&[])).expect("pairs"), Vec::<[usize; 2]>::new());
+    assert_eq!(held.moving_between(1, None), 0);
+}
+
+#[test]
+fn what_cannot_move_is_told() {
+    let two = link("a") + &link("b");
+    let told = |text: String| of(&text).unwrap_err().to_string();
+    let floating = told(two.clone() + &joint("j", "floating", ["a", "b"], ""));
+    assert!(floating.contains("joint j: it is floating: a path has one value"), "{floating}");
+    let axis = told(two.clone() + &joint("j", "revolute", ["a", "b"], "<axis xyz=\"0 0 0\"/>"));
+    assert!(axis.contains("joint j: its axis [0.0, 0.0, 0.0] is none"), "{axis}");
+    let mimic = joint("j", "revolute", ["a", "b"], "<mimic joint=\"k\"/>");
+    assert!(told(two.clone() + &mimic).contains("it follows k, which is no joint that moves"));
+    let none = "<link name=\"a\"/>".to_owned();
+    assert!(told(none).contains("none of its 1 links collides with anything"));
+    let capsule = "<link name=\"a\"><collision><geometry><capsule radius=\"1\" length=\"1\"/></geometry>\
+                   </collision></link>";
+    assert!(told(two + capsule).contains("a second link has this name"));
+    assert!(told(capsule.to_owned()).contains("give it as a cylinder and two spheres"));
+}
+
+#[test]
+fn a_wire_that_all_samples_miss_is_found() {
+    let arm = arm();
+    let table = Table::parse(&std::fs::read_to_string(data("arm.csv")).unwrap()).expect("rows");
+    let (path, _) = arm.path(&table, &BTreeMap::new()).expect("a path");
+    let options = BodyOptions::default();
+    let wire = load(data("wire.obj"), &options, |mesh, options| body_of(&mesh, options));
+    let (wire, _) = wire.expect("a wire");
+    let asked = |path: &JointPath| {
+        let bodies = arm.links().iter().flat_map(|link| {
+            let body = move |body| PathBody {
+                frame: link.frame,
+                placed: AnyBody::at(body, Pose::IDENTITY),
+            };
+            link.bodies.iter().map(body)
+        });
+        let bodies: Vec<_> =
+            bodies.chain([PathBody { frame: None, placed: wire.at(Pose::IDENTITY) }]).collect();
+        let cast = PathCast::new(arm.mechanism(), path, bodies, vec![[1, 4], [2, 4], [3, 4]]);
+        cast.expect("a cast").first_contact().expect("an answer")
+    };
+    for pair in path.rows().windows(2) {
+        for k in 0..=100 {
+            let share = f64::from(k) / 100.0;
+            let row = pair[0].iter().zip(&pair[1]).map(|(a, b)| a + (b - a) * share).collect();
+            let sample = asked(&JointPath::evenly(vec![row]).expect("a row"));
+            assert!(matches!(sample, PathOutcome::Free(_)), "{sample:?}");
+        }
+    }
+    let PathOutcome::Contact(contact) = asked(&path) else { panic!("the tool passes the wire") };
+    assert_eq!(contact.pair, [3, 4]);
+    assert!(
+        0.603 < contact.lower && contact.upper < 0.604 && contact.upper - contact.lower < 1e-12
+    );
+}

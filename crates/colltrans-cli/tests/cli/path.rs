@@ -1,0 +1,117 @@
+//! `colltrans path`.
+
+use std::fs;
+
+use serde_json::{Value, json};
+
+use crate::support::{answered, data, folder, json as read, run, stderr};
+
+/// The files of the arm, its path and a wire in its way.
+fn files() -> [String; 3] {
+    ["arm.urdf", "arm.csv", "wire.obj"].map(|name| data().join(name).to_str().unwrap().to_owned())
+}
+
+#[test]
+fn a_wire_in_the_way_is_met() {
+    let (folder, [arm, rows, wire]) = (folder(), files());
+    let text = answered(folder.path(), &["path", &arm, &rows, &wire]);
+    assert!(
+        text.starts_with("contact\n  bodies       tool, wire\n  time         0.60356132767"),
+        "{text}"
+    );
+    let told = read(&answered(folder.path(), &["path", &arm, &rows, &wire, "--json"]));
+    assert_eq!((&told["pair"], &told["pairs"]), (&json!(["tool", "wire"]), &json!(6)));
+    assert_eq!(told["place"]["row"], 0);
+    let free = ["path", &arm, &rows, &wire, "--ignore", "wire, tool", "--json"];
+    assert_eq!(read(&answered(folder.path(), &free))["outcome"], "free");
+    let alone = answered(folder.path(), &["path", &arm, &rows]);
+    assert!(alone.starts_with("free: no two bodies meet on the whole path"), "{alone}");
+    let small = ["path", &arm, &rows, &wire, "--scene-scale", "0.001", "--json"];
+    assert_eq!(read(&answered(folder.path(), &small))["outcome"], "free");
+}
+
+#[test]
+fn what_is_not_asked_is_said() {
+    let (folder, [arm, rows, wire]) = (folder(), files());
+    let said = stderr(&run(folder.path(), &["path", &arm, &rows, &wire]));
+    assert!(said.contains("3 pairs of links with one joint between them are not held"), "{said}");
+    assert!(said.contains("links that no joint moves are not held against the scene"), "{said}");
+    assert!(said.contains("a cylinder of radius 0.002 is taken as a polyhedron"), "{said}");
+    let srdf = folder.path().join("arm.srdf");
+    let pair = |a: &str, b: &str| format!("<disable_collisions link1=\"{a}\" link2=\"{b}\"/>");
+    let pairs = [("base", "upper"), ("upper", "fore"), ("fore", "tool")].map(|(a, b)| pair(a, b));
+    fs::write(&srdf, format!("<robot>{}</robot>", pairs.concat())).unwrap();
+    let with = ["path", &arm, &rows, "--srdf", "arm.srdf", "--json"];
+    assert_eq!(read(&answered(folder.path(), &with))["pairs"], 3);
+    fs::write(folder.path().join("far.csv"), "shoulder,elbow,reach\n0,0,0\n3.5,0,0\n").unwrap();
+    let said = stderr(&run(folder.path(), &["path", &arm, "far.csv"]));
+    assert!(
+        said.contains("joint shoulder is beyond its limits, -3 to 3 rad, in 1 of 2 rows"),
+        "{said}"
+    );
+}
+
+#[test]
+fn what_is_wrong_is_told() {
+    let (folder, [arm, rows, wire]) = (folder(), files());
+    fs::write(folder.path().join("short.csv"), "0,0\n").unwrap();
+    fs::write(folder.path().join("text.csv"), "0,0,x\n").unwrap();
+    for (arguments, code, why) in [
+        (
+            vec!["path", &arm, "short.csv"],
+            3,
+            "short.csv: rows have 2 values, and 3 joints have one each",
+        ),
+        (vec!["path", &arm, "text.csv"], 3, "text.csv: line 1: `0,0,x` are not numbers"),
+        (vec!["path", &arm, "none.csv"], 3, "none.csv: cannot be read"),
+        (vec!["path", &wire, &rows], 3, "URDF"),
+        (vec!["path", &arm, &rows, "--ignore", "tool"], 2, "--ignore tool: not A,B"),
+        (
+            vec!["path", &arm, &rows, "--ignore", "tool,hand"],
+            2,
+            "there is no hand; there are base, upper",
+        ),
+        (vec!["path", &arm, &rows, "--joint", "reach"], 2, "--joint reach: not NAME=VALUE"),
+        (
+            vec!["path", &arm, &rows, "--joint", "reach=0"],
+            3,
+            "column reach is of no joint that moves",
+        ),
+        (vec!["path", &arm, &rows, &rows], 3, "arm.csv"),
+    ] {
+        let output = run(folder.path(), &arguments);
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {}", stderr(&output));
+        assert!(stderr(&output).contains(why), "{arguments:?}: {}", stderr(&output));
+    }
+}
+
+#[test]
+fn a_proof_is_checked_elsewhere() {
+    let (folder, [arm, rows, wire]) = (folder(), files());
+    let file = folder.path().join("proof.json");
+    answered(folder.path(), &["path", &arm, &rows, &wire, "--save-proof", "proof.json"]);
+    let text = answered(folder.path(), &["verify", "proof.json"]);
+    let said =
+        "holds: of 6 pairs, tool and wire are the first to meet, at a time between 0.60356132";
+    assert!(text.starts_with(said), "{text}");
+    let told = read(&answered(folder.path(), &["verify", "proof.json", "--json"]));
+    assert!(told["time"]["upper"].as_f64().unwrap() < 0.6036, "{told}");
+    let proof: Value = serde_json::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
+    let changed = |change: &dyn Fn(&mut Value)| {
+        let mut proof = proof.clone();
+        change(&mut proof);
+        fs::write(&file, proof.to_string()).unwrap();
+        let output = run(folder.path(), &["verify", "proof.json"]);
+        assert_eq!(output.status.code(), Some(6), "{}", stderr(&output));
+    };
+    changed(&|proof| proof["path"]["rows"][1][0] = json!(0.95));
+    changed(&|proof| proof["pairs"] = json!([[1, 3]]));
+    changed(&|proof| proof["said"]["lower"] = json!(0.7));
+    changed(&|proof| proof["frames"][1]["origin"]["translation"] = json!([0.6, 0.0, 0.0]));
+    answered(folder.path(), &["path", &arm, &rows, "--save-proof", "proof.json"]);
+    let text = answered(folder.path(), &["verify", "proof.json"]);
+    assert!(
+        text.starts_with("holds: of 3 pairs, none meet on the whole path, up to the time 2"),
+        "{text}"
+    );
+}

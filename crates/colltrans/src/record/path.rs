@@ -1,0 +1,66 @@
+//! A first contact on a path of joints, as front ends write it.
+
+use serde::Serialize;
+
+use super::{Ending, TimeRecord, coordinates};
+use crate::motion::path::{PathCast, PathContact, PathOutcome, Place};
+
+/// Which two bodies first meet on a path, and when. Fields that do not apply are left out.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[non_exhaustive]
+pub struct PathRecord {
+    /// `contact`; `grazing`: nearer than rounding can tell; `free` throughout; `overlapping` where the path begins.
+    pub outcome: Ending,
+    /// Of a contact, in the times of the path; of a grazing one the upper bound is missing.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time: Option<TimeRecord>,
+    /// Where that is between two rows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub place: Option<Place>,
+    /// The names of the two bodies.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub pair: Option<[String; 2]>,
+    /// Where the first one is nearest to the second then, in the world.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub point: Option<[f64; 3]>,
+    /// Unit vector in the world, from the first to the second.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub normal: Option<[f64; 3]>,
+    /// How many pairs of bodies were asked about.
+    pub pairs: usize,
+    /// How often two bodies were looked at.
+    pub looks: u32,
+    /// Planes in the proof.
+    pub planes: usize,
+}
+
+impl PathRecord {
+    /// Of an answer; `cast` is the one that was asked, `names` are those of its bodies.
+    pub fn of(outcome: &PathOutcome, cast: &PathCast<'_>, names: &[String]) -> Self {
+        let ending = match outcome {
+            PathOutcome::Contact(_) => Ending::Contact,
+            PathOutcome::Grazing(_) => Ending::Grazing,
+            PathOutcome::Free(_) => Ending::Free,
+            PathOutcome::Overlapping(_) => Ending::Overlapping,
+        };
+        let (looks, planes) = (outcome.steps().looks, outcome.proof().planes());
+        let pairs = cast.pairs().len();
+        let record = Self { outcome: ending, pairs, looks, planes, ..Self::default() };
+        let name = |body: usize| names.get(body).cloned().unwrap_or_default();
+        match outcome {
+            PathOutcome::Contact(of) | PathOutcome::Grazing(of) | PathOutcome::Overlapping(of) => {
+                let PathContact { lower, upper, place, pair, points, normal, .. } = of;
+                let upper = upper.is_finite().then_some(*upper);
+                Self {
+                    time: Some(TimeRecord { lower: *lower, upper }),
+                    place: Some(*place),
+                    pair: Some(pair.map(name)),
+                    point: points.map(|points| coordinates(points[0])),
+                    normal: normal.map(coordinates),
+                    ..record
+                }
+            }
+            PathOutcome::Free(_) => record,
+        }
+    }
+}

@@ -1,0 +1,146 @@
+//! `paths`: a six-axis arm on a path of 1,000 rows among 50 obstacles, with the proof and its check.
+//!
+//! Links are ellipsoids of 100 vertices, obstacles are ellipsoids of 50 vertices, or bumpy balls of 1,000 triangles that
+//! are not convex, around the arm where it passes by. Those that the path meets are taken out one by one, and others
+//! come in their places, until 50 are left and the path is free; that one is measured. No other library
+//! is asked: none gives an answer between samples.
+
+use std::process::ExitCode;
+
+use colltrans::motion::path::{
+    Frame, Joint, JointPath, Mechanism, PathBody, PathCast, PathError, PathOutcome,
+};
+use colltrans::{AnyBody, ConvexPolyhedron, Pose, Solid};
+use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::random_hull;
+use colltrans_testkit::solids::bumpy_ball;
+use colltrans_testkit::timing::{Stopwatch, median};
+use glam::DVec3;
+
+/// Rows of the path, obstacles, and how often each is measured.
+const ROWS: usize = 1_000;
+const OBSTACLES: usize = 50;
+const TIMES: usize = 11;
+
+fn main() -> ExitCode {
+    println!(
+        "{:<10} {:>8} {:>8} {:>8} {:>10} {:>10}",
+        "obstacles", "pairs", "looks", "planes", "ms", "check, ms"
+    );
+    for (name, solids) in [("convex", false), ("solids", true)] {
+        if let Err(error) = measured(name, solids) {
+            eprintln!("{name}: {error}");
+            return ExitCode::FAILURE;
+        }
+    }
+    ExitCode::SUCCESS
+}
+
+fn measured(name: &str, solids: bool) -> Result<(), PathError> {
+    let mut random = Random::new(5);
+    let (arm, links) = (arm()?, links(&mut random));
+    let path = JointPath::evenly(rows())?;
+    let mut obstacles: Vec<(AnyBody, Pose)> = Vec::new();
+    loop {
+        while obstacles.len() < OBSTACLES {
+            obstacles.push(obstacle(solids, &mut random));
+        }
+        let cast = cast(&arm, &path, &links, &obstacles)?;
+        let outcome = cast.first_contact()?;
+        match &outcome {
+            PathOutcome::Contact(of) | PathOutcome::Grazing(of) | PathOutcome::Overlapping(of) => {
+                // Links do not meet each other on this path.
+                let hit = of.pair[1] - links.len();
+                drop(outcome);
+                drop(cast);
+                obstacles.remove(hit);
+            }
+            _ => {
+                let time = || Stopwatch::new().time(|| cast.first_contact().map(drop)).1;
+                let check = || Stopwatch::new().time(|| cast.verify(outcome.proof()).is_ok()).1;
+                let [taken, checked] = [
+                    (0..TIMES).map(|_| time()).collect::<Vec<_>>(),
+                    (0..TIMES).map(|_| check()).collect(),
+                ]
+                .map(|all| 1e-6 * median(&all));
+                let (pairs, planes) = (cast.pairs().len(), outcome.proof().planes());
+                let looks = outcome.steps().looks;
+                println!(
+                    "{name:<10} {pairs:>8} {looks:>8} {planes:>8} {taken:>10.1} {checked:>10.1}"
+                );
+                return Ok(());
+            }
+        }
+    }
+}
+
+/// Shoulder, elbow and wrist of three joints each way, as many arms have them, in metres.
+fn arm() -> Result<Mechanism, PathError> {
+    let (turns, tips) = (Joint::Turning(DVec3::Z), Joint::Turning(DVec3::Y));
+    let frames = [
+        ([0.0, 0.0, 0.1], turns),
+        ([0.0, 0.14, 0.0], tips),
+        ([0.0, -0.12, 0.425], tips),
+        ([0.0, 0.0, 0.39], tips),
+        ([0.0, 0.09, 0.0], turns),
+        ([0.0, 0.0, 0.095], tips),
+    ];
+    let frame = |(k, (at, joint)): (usize, ([f64; 3], Joint))| {
+        let origin = Pose::from_translation(DVec3::from_array(at))?;
+        Ok(Frame { parent: k.checked_sub(1), origin, joint })
+    };
+    Mechanism::new(frames.into_iter().enumerate().map(frame).collect::<Result<_, PathError>>()?)
+}
+
+fn links(random: &mut Random) -> Vec<AnyBody> {
+    [0.1, 0.425, 0.39, 0.05, 0.08, 0.1]
+        .map(|length| {
+            let points = random_hull(100, random).vertices;
+            let along = |v: &DVec3| DVec3::new(v.x * 0.06, v.y * 0.06, (v.z + 1.0) * 0.5 * length);
+            let points: Vec<DVec3> = points.iter().map(along).collect();
+            ConvexPolyhedron::from_points(&points).expect("a link").into()
+        })
+        .into()
+}
+
+fn rows() -> Vec<Vec<f64>> {
+    let row = |k: usize| {
+        let t = std::f64::consts::TAU * k as f64 / ROWS as f64;
+        let twice = (2.0 * t).sin();
+        vec![t, 0.7 * twice, 0.9 * (3.0 * t).cos(), twice, t, (5.0 * t).sin()]
+    };
+    (0..ROWS).map(row).collect()
+}
+
+fn obstacle(solids: bool, random: &mut Random) -> (AnyBody, Pose) {
+    let size = random.range(0.03, 0.1);
+    let body = if solids {
+        let mesh = bumpy_ball(1_000).mapped(|v| v * size).triangulated();
+        Solid::from_mesh(&mesh.vertices, &mesh.faces).expect("a solid").into()
+    } else {
+        let points: Vec<DVec3> =
+            random_hull(50, random).vertices.iter().map(|v| *v * size).collect();
+        ConvexPolyhedron::from_points(&points).expect("a body").into()
+    };
+    let (way, far) = (random.direction(), random.range(0.5, 1.3));
+    let at = DVec3::new(way.x, way.y, way.z.abs()) * far;
+    (body, Pose::new(random.rotation(), at).expect("a pose"))
+}
+
+/// All links against all obstacles, and those against each other that are no neighbours.
+fn cast<'a>(
+    arm: &'a Mechanism,
+    path: &'a JointPath,
+    links: &'a [AnyBody],
+    obstacles: &'a [(AnyBody, Pose)],
+) -> Result<PathCast<'a>, PathError> {
+    let carried = links.iter().enumerate();
+    let carried = carried.map(|(k, body)| PathBody::carried(k, body.at(Pose::IDENTITY)));
+    let bodies =
+        carried.chain(obstacles.iter().map(|(body, pose)| PathBody::standing(body.at(*pose))));
+    let (own, all) = (links.len(), links.len() + obstacles.len());
+    let pairs = (0..own).flat_map(|a| (own..all).map(move |b| [a, b]));
+    // The wrist's links are made into each other.
+    let apart = [[0, 2], [0, 3], [0, 4], [0, 5], [1, 3], [1, 4], [1, 5], [2, 4], [2, 5]];
+    PathCast::new(arm, path, bodies.collect(), pairs.chain(apart).collect())
+}

@@ -1,7 +1,7 @@
 //! All directions along which parts of an assembly can leave the rest: cells, areas, work and time, and what ordinary
 //! casts say of as many directions, half of them in cells beside borders.
 //!
-//! `free SOURCE [--tolerance L] [--parts A,B] [--depth N] [--looks N] [--judge N] [--verify 1]`
+//! `free SOURCE [--tolerance L] [--parts A,B | --group PREFIX] [--depth N] [--looks N] [--judge N] [--verify 1]`
 
 use std::sync::atomic::AtomicBool;
 use std::time::Instant;
@@ -11,7 +11,7 @@ use colltrans::solid::{StartOverlap, Workspace};
 use colltrans_assembly::free::Removal;
 use colltrans_assembly::read::{ReadOptions, read};
 use colltrans_assembly::rooms::room_of;
-use colltrans_assembly::{Bodies, Fit};
+use colltrans_assembly::{Bodies, Fit, Part};
 use glam::DVec3;
 
 type Failure = Box<dyn std::error::Error>;
@@ -33,13 +33,20 @@ fn main() -> Result<(), Failure> {
         .with_cones(option("--cones").unwrap_or(FreeOptions::DEFAULT.cones));
     println!("tolerance {}", fit.tolerance());
     let mut all = 0.0;
-    for part in 0..bodies.len() {
-        let name = assembly.parts()[part].name();
-        if wanted.as_ref().is_some_and(|list| !list.split(',').any(|word| word == name)) {
-            continue;
+    let names: Vec<&str> = assembly.parts().iter().map(Part::name).collect();
+    let is_wanted = |part: &usize| {
+        wanted.as_ref().is_none_or(|list| list.split(',').any(|word| word == names[*part]))
+    };
+    let groups: Vec<Vec<usize>> = match option::<String>("--group") {
+        Some(prefix) => {
+            vec![(0..bodies.len()).filter(|&part| names[part].starts_with(&prefix)).collect()]
         }
+        None => (0..bodies.len()).filter(is_wanted).map(|part| vec![part]).collect(),
+    };
+    for group in groups {
+        let name = names[group[0]];
         let started = Instant::now();
-        match Removal::new(&bodies, &[part]) {
+        match Removal::new(&bodies, &group) {
             Err(error) => println!("{name}: {error}"),
             Ok(removal) => {
                 let joined = started.elapsed().as_secs_f64();
@@ -48,7 +55,7 @@ fn main() -> Result<(), Failure> {
                 all += seconds;
                 print!("{name}: {seconds:.4} s ({joined:.4} joining), ");
                 tell(&free);
-                judge(&bodies, part, &free, option("--judge").unwrap_or(0));
+                judge(&bodies, &group, &free, option("--judge").unwrap_or(0));
                 if option::<u8>("--verify").is_some() {
                     let started = Instant::now();
                     free.verify()?;
@@ -65,17 +72,18 @@ fn tell(free: &FreeDirections) {
     let count = |kind| free.cells().filter(|cell| cell.kind == kind).count();
     let kinds = [CellKind::Free, CellKind::Blocked, CellKind::Both, CellKind::Undecided].map(count);
     let sphere = 4.0 * std::f64::consts::PI;
+    let boxes = free.proof().boxes.map(|boxes| boxes.len());
     let [low, high] = free.free_area().map(|area| area / sphere);
     println!(
-        "free/blocked/both/undecided cells {kinds:?}, share free {low:.6e} (+{:.1e}), undecided {:.2e}, looks {}",
+        "free/blocked/both/undecided cells {kinds:?}, {boxes:?} boxes inside, share free {low:.6e} (+{:.1e}), undecided {:.2e}, looks {}",
         high - low,
         free.undecided_area() / sphere,
         free.work()[1]
     );
 }
 
-fn judge(bodies: &Bodies, part: usize, free: &FreeDirections, count: u64) {
-    let mut state = 7 + part as u64;
+fn judge(bodies: &Bodies, group: &[usize], free: &FreeDirections, count: u64) {
+    let mut state = 7 + group[0] as u64;
     let mut unit = || {
         state =
             state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -94,7 +102,7 @@ fn judge(bodies: &Bodies, part: usize, free: &FreeDirections, count: u64) {
             a + (c - a) * way
         };
         let d = d.normalize();
-        let room = room_of(bodies, &[part], &alive, d, StartOverlap::Refuse, &mut workspace);
+        let room = room_of(bodies, group, &alive, d, StartOverlap::Refuse, &mut workspace);
         match free.says(d) {
             Ok(Verdict::Free) => {
                 open += 1;

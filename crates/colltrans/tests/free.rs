@@ -3,13 +3,16 @@
 
 use std::f64::consts::{PI, TAU};
 
-use colltrans::free::{FreeDirections, FreeError, FreeOptions, Verdict};
+use colltrans::free::{
+    CellKind, CellProof, FreeDirections, FreeError, FreeOptions, FreeProof, InnerBox, Verdict,
+};
 use colltrans::glam::{DMat3, DQuat, DVec3};
 use colltrans::solid::StartOverlap;
 use colltrans::{Cast, ConvexPolyhedron, Pose, Solid};
 use colltrans_testkit::oracle::solids::free::{Judged, examine};
 use colltrans_testkit::oracle::solids::settings::FAMILIES;
 use colltrans_testkit::random::Random;
+use colltrans_testkit::solids::thread;
 
 const EXACT: FreeOptions = FreeOptions::DEFAULT.with_no_tolerance();
 
@@ -271,4 +274,49 @@ fn tetrahedra_in_any_place_say_what_casts_say() {
         }
     }
     assert!(judged[0] > 100 && judged[1] > 100, "{judged:?}");
+}
+
+#[test]
+fn boxes_inside_block_what_small_facets_block_together() {
+    // A ring with play around a rod, both of facets that are small against the play.
+    let [ring, rod] =
+        [([0.0, 1.0], 10, Some(3.0)), ([-1.0, 2.0], 30, None)].map(|(heights, rows, outer)| {
+            let radius = if outer.is_some() { 1.25 } else { 1.0 };
+            let mesh = thread([radius, 0.0, 1.0], heights, [48, rows], outer);
+            Solid::from_mesh(&mesh.vertices, &mesh.faces).unwrap()
+        });
+    let all = free(&ring, &rod, EXACT.with_depth(3));
+    assert!(all.undecided_area() < 0.05 * 2.0 * TAU && all.work()[1] < 1_500_000);
+    let proof = all.proof();
+    let inner = proof.cells.iter().filter(|cell| matches!(cell, CellProof::Inner(_))).count();
+    assert!(inner > 0, "{:?}", all.work());
+    for cell in all.cells().filter(|cell| cell.kind == CellKind::Blocked) {
+        let middle = cell.corners[0] + (cell.corners[2] - cell.corners[0]) * 0.5;
+        let Ok(Verdict::Blocked(pair)) = all.says(middle) else { panic!("{middle}") };
+        assert!(cell.blocked_by.is_some() && pair[0] < ring.triangles().len() as u32);
+        let cast = Cast::<Solid>::new(ring.at(Pose::IDENTITY), rod.at(Pose::IDENTITY), middle);
+        assert!(!cast.unwrap().with_tolerance(0.0).unwrap().clearance().unwrap().is_free());
+    }
+    let refused = |proof: &FreeProof| {
+        FreeDirections::from_proof(&ring.at(Pose::IDENTITY), &rod.at(Pose::IDENTITY), proof)
+            .is_err()
+    };
+    assert!(!refused(&proof));
+    for side in 0..2 {
+        for at in 0..proof.boxes[side].len() {
+            for k in 0..3 {
+                // Larger, so that it leaves the body; outside; and inside out.
+                let mut other = proof.clone();
+                other.boxes[side][at].high[k] += 8.0;
+                assert!(refused(&other));
+                other.boxes[side][at].low[k] += 8.0;
+                assert!(refused(&other));
+                let InnerBox { low, high } = &mut other.boxes[side][at];
+                std::mem::swap(low, high);
+                assert!(refused(&other));
+            }
+        }
+    }
+    let ignored = FreeProof { start_overlap: StartOverlap::Ignore, ..proof };
+    assert!(refused(&ignored), "an overlap that is ignored does not block by what is inside");
 }

@@ -1019,6 +1019,8 @@ class Sphere:
 
     bodies: tuple[list[tuple[Whole, Whole, Whole]], list[tuple[Whole, Whole, Whole]]]
     trees: tuple[Box, Box]
+    #: Boxes inside the moving and inside the fixed body, by their least and greatest coordinates.
+    inner: tuple[list[tuple[Whole, Whole]], list[tuple[Whole, Whole]]] = ([], [])
     cones: dict[tuple[int, int], list[Whole]] = field(default_factory=dict)
     looks: int = 0
 
@@ -1113,7 +1115,13 @@ def free_directions(moving: Body, fixed: Body, claim: Any, report: Report) -> No
     """Which directions are free: cell by cell, in whole numbers."""
     sphere = whole_bodies(moving, fixed, claim, report)
     stack = [Cell(side, 0, (0, 0)) for side in range(5, -1, -1)]
-    count = {"blocked": 0, "open": 0, "undecided": 0}
+    count = {"blocked": 0, "inner": 0, "open": 0, "undecided": 0}
+    if any(sphere.inner) and claim["start_overlap"] != "refuse":
+        raise RefusedError("boxes inside say nothing where an overlap is ignored")
+    for k in range(2):
+        for at, box_ in enumerate(sphere.inner[k]):
+            if not is_inside(sphere, k, box_):
+                raise RefusedError(f"box {at} is not inside the {('moving', 'fixed')[k]} body")
     free, undecided, skipped = 0.0, 0.0, 0
     for said in claim["cells"]:
         if not stack:
@@ -1128,6 +1136,13 @@ def free_directions(moving: Body, fixed: Body, claim: Any, report: Report) -> No
         if kind not in count:
             raise NoProofError(f"a cell is not {kind!r}")
         count[kind] += 1
+        if kind == "inner":
+            a, b = content
+            near = sphere.inner[0][whole(a, len(sphere.inner[0]))]
+            far = sphere.inner[1][whole(b, len(sphere.inner[1]))]
+            if not all(is_between(near, far, c) for c in cell.polygon().corners):
+                raise RefusedError(f"boxes {content} do not block all of a cell")
+            continue
         pairs = [pair_of(p, sphere) for p in ([content] if kind == "blocked" else content)]
         if kind == "blocked":
             corners = cell.polygon().corners
@@ -1160,6 +1175,8 @@ def summary(report: Report, count: dict[str, int], areas: list[float], skipped: 
     free, undecided = (f"{100 * area / (4 * math.pi):.6g} %" for area in areas)
     told = f"{sum(count.values())} cells are the sphere"
     told += f", {count['blocked']} are blocked by two facets each"
+    if count["inner"]:
+        told += f", {count['inner']} by two boxes inside the bodies each"
     if count["open"]:
         told += f", {count['open'] - skipped} are told exactly"
     report.holds.append(f"{told}: about {free} of all directions are free")
@@ -1195,12 +1212,107 @@ def whole_bodies(moving: Body, fixed: Body, claim: Any, report: Report) -> Spher
             f"by up to {farthest:.3e}"
         )
     placed = [[body.at(k) for k in range(len(body.points))] for body in bodies]
-    unit_of = math.lcm(*(x.denominator for points in placed for v in points for x in v))
+    origin, inner = moving.offset, []
+    for said in claim.get("boxes", [[], []]):
+        ends = [(vector(one["low"]), vector(one["high"])) for one in said]
+        inner.append([(plus(low, origin), plus(high, origin)) for low, high in ends])
+    if len(inner) != 2:
+        raise NoProofError("there are boxes of two bodies, or of none")
+    told = [v for boxes_ in inner for ends in boxes_ for v in ends]
+    unit_of = math.lcm(*(x.denominator for points in (*placed, told) for v in points for x in v))
+
+    def units(v: Vector) -> Whole:
+        return int(v[0] * unit_of), int(v[1] * unit_of), int(v[2] * unit_of)
+
     sides = []
     for body, points in zip(bodies, placed, strict=True):
-        at = [(int(x * unit_of), int(y * unit_of), int(z * unit_of)) for x, y, z in points]
+        at = [units(v) for v in points]
         sides.append([(at[a], at[b], at[c]) for a, b, c in body.facets])
-    return Sphere((sides[0], sides[1]), (boxes(sides[0]), boxes(sides[1])))
+    within = [[(units(low), units(high)) for low, high in ends] for ends in inner]
+    return Sphere(
+        (sides[0], sides[1]), (boxes(sides[0]), boxes(sides[1])), (within[0], within[1])
+    )
+
+
+def is_between(near: tuple[Whole, Whole], far: tuple[Whole, Whole], d: Whole) -> bool:
+    """Whether a positive multiple of ``d`` is inside the box of differences of two boxes."""
+    low, high = _minus(far[0], near[1]), _minus(far[1], near[0])
+    after, before = Fraction(0), None
+    for k in range(3):
+        if d[k] == 0:
+            if not low[k] < 0 < high[k]:
+                return False
+            continue
+        ends = sorted((Fraction(low[k], d[k]), Fraction(high[k], d[k])))
+        after = max(after, ends[0])
+        before = ends[1] if before is None else min(before, ends[1])
+    return before is None or after < before
+
+
+def is_inside(sphere: Sphere, side: int, box_: tuple[Whole, Whole]) -> bool:
+    """Whether a box is inside a body: no facet meets its inside, and a ray leaves the body."""
+    low, high = box_
+    if any(a >= b for a, b in zip(low, high, strict=True)):
+        return False
+    stack = [sphere.trees[side]]
+    while stack:
+        node = stack.pop()
+        if any(node.low[k] >= high[k] or node.high[k] <= low[k] for k in range(3)):
+            continue
+        if node.facet is None:
+            stack += node.parts
+        elif not is_parted(sphere.bodies[side][node.facet], low, high):
+            return False
+    # A place of it, in parts of the whole.
+    for shares in ((8, 8, 8), (7, 9, 6), (5, 10, 11)):
+        at = [low[k] * (16 - shares[k]) + high[k] * shares[k] for k in range(3)]
+        turns = winding(sphere, side, (at[0], at[1], at[2]))
+        if turns is not None:
+            return turns > 0
+    return False
+
+
+def is_parted(facet: tuple[Whole, Whole, Whole], low: Whole, high: Whole) -> bool:
+    """Whether a plane parts a facet from the inside of a box."""
+    a, b, c = facet
+    edges = _minus(b, a), _minus(c, b), _minus(a, c)
+    across = [_cross(edges[0], edges[1])]
+    for x, y, z in edges:
+        across += [(0, -z, y), (z, 0, -x), (-y, x, 0)]
+    for n in across:
+        least = sum(n[k] * (low[k] if n[k] > 0 else high[k]) for k in range(3))
+        most = sum(n[k] * (high[k] if n[k] > 0 else low[k]) for k in range(3))
+        heights = [_dot(n, p) for p in facet]
+        if least < most and (max(heights) <= least or min(heights) >= most):
+            return True
+    return False
+
+
+def winding(sphere: Sphere, side: int, at: Whole) -> int | None:
+    """How much more often a ray along ``x`` leaves a body than it enters it; ``at`` is in
+    sixteenths. Nothing if it meets an edge."""
+    stack, count = [sphere.trees[side]], 0
+    while stack:
+        node = stack.pop()
+        beside = any(16 * node.low[k] > at[k] or 16 * node.high[k] < at[k] for k in (1, 2))
+        if beside or 16 * node.high[0] < at[0]:
+            continue
+        if node.facet is None:
+            stack += node.parts
+            continue
+        facet = sphere.bodies[side][node.facet]
+        a, b, c = (_minus((16 * p[0], 16 * p[1], 16 * p[2]), at) for p in facet)
+        turns = [p[1] * q[2] - p[2] * q[1] for p, q in ((a, b), (b, c), (c, a))]
+        if min(turns) < 0 < max(turns):
+            continue
+        if 0 in turns:
+            return None
+        ahead = _dot(_cross(_minus(b, a), _minus(c, a)), a)
+        if ahead == 0:
+            return None
+        if (ahead > 0) == (turns[0] > 0):
+            count += 1 if turns[0] > 0 else -1
+    return count
 
 
 def is_met(cone: list[Whole], polygon: Polygon, cell: Cell) -> bool:

@@ -9,8 +9,9 @@ use super::bodies::Bodies;
 use super::cell::Cell;
 use super::cone::Cone;
 use super::error::FreeError;
+use super::inner::InnerBox;
 use super::options::FreeOptions;
-use super::proof::{Fate, FreeProof, cells, fates, holds, name_facets, rest_of};
+use super::proof::{Fate, FreeProof, blocking_pair, cells, fates, holds, names_exist, rest_of};
 use super::region::{FreeRegion, regions};
 use super::rest::{Piece, Rest};
 use super::search::{Found, Search};
@@ -73,7 +74,8 @@ pub struct FreeCell {
     pub corners: [DVec3; 4],
     /// What is known of it.
     pub kind: CellKind,
-    /// If one pair of facets blocks all of it: these, positions in [`Solid::triangles`] of the moving and of the fixed
+    /// If one pair of facets blocks all of it, these, and if boxes inside the bodies do, a pair that blocks its
+    /// middle: positions in [`Solid::triangles`] of the moving and of the fixed
     /// body.
     pub blocked_by: Option<[u32; 2]>,
     /// Its solid angle.
@@ -90,7 +92,7 @@ pub struct FreeCell {
 pub enum CellKind {
     /// All of it is free.
     Free,
-    /// One pair of facets blocks all of it.
+    /// One pair of facets, or of boxes inside the bodies, blocks all of it.
     Blocked,
     /// Some pairs block all that is not free, which may be nothing.
     Both,
@@ -117,6 +119,8 @@ pub struct FreeDirections<'a> {
     cast: Cast<'a, Solid>,
     bodies: Bodies<'a>,
     options: FreeOptions,
+    /// Boxes inside either body.
+    boxes: [Vec<InnerBox>; 2],
     fates: Vec<Fate>,
     looks: u64,
     areas: Areas,
@@ -180,9 +184,9 @@ impl<'a> FreeDirections<'a> {
     ) -> Result<Self, FreeError> {
         let (cast, bodies) = setting(moving, fixed, &options)?;
         let found = Search::new(&bodies, options, cancel).run();
-        let Found { fates, looks } = found.ok_or(FreeError::Cancelled)?;
+        let Found { fates, boxes, looks } = found.ok_or(FreeError::Cancelled)?;
         let areas = Areas::default();
-        let mut all = Self { cast, bodies, options, fates, looks, areas };
+        let mut all = Self { cast, bodies, options, boxes, fates, looks, areas };
         all.areas = all.measure();
         Ok(all)
     }
@@ -207,6 +211,8 @@ impl<'a> FreeDirections<'a> {
         };
         Ok(match &self.fates[at] {
             Fate::Blocked(pair) => Verdict::Blocked(*pair),
+            Fate::Inner(_) => blocking_pair(&self.bodies, &cell, direction)
+                .map_or(Verdict::Undecided, Verdict::Blocked),
             Fate::Open(pairs) => blocking(pairs).unwrap_or(Verdict::Free),
             Fate::Undecided(pairs) => blocking(pairs).unwrap_or(Verdict::Undecided),
             Fate::Cut(_) => Verdict::Undecided,
@@ -227,7 +233,7 @@ impl<'a> FreeDirections<'a> {
     /// Whether no direction is free, for certain.
     pub fn is_blocked(&self) -> bool {
         self.leaves().all(|(cell, fate)| match fate {
-            Fate::Cut(_) | Fate::Blocked(_) => true,
+            Fate::Cut(_) | Fate::Blocked(_) | Fate::Inner(_) => true,
             Fate::Undecided(_) => false,
             Fate::Open(pairs) => {
                 rest_of(&self.bodies, cell, pairs).is_ok_and(|rest| rest.pieces.is_empty())
@@ -323,8 +329,16 @@ impl<'a> FreeDirections<'a> {
     /// # Errors
     /// What is not proven.
     pub fn verify(&self) -> Result<(), FreeError> {
+        for (moving, boxes) in [(true, &self.boxes[0]), (false, &self.boxes[1])] {
+            // Bodies that overlap now, which is ignored, do not block by what is inside.
+            let counts = self.options.start_overlap == StartOverlap::Refuse;
+            let inside = |one: &InnerBox| counts && one.is_inside(&self.bodies, moving);
+            if !boxes.iter().all(inside) {
+                return Err(CertificateError::Start.into());
+            }
+        }
         for (number, (cell, fate)) in self.leaves().enumerate() {
-            if !holds(&self.bodies, &cell, fate) {
+            if !holds(&self.bodies, &self.boxes, &cell, fate) {
                 return Err(CertificateError::Cover { entry: number }.into());
             }
         }
@@ -336,12 +350,19 @@ impl<'a> FreeDirections<'a> {
         self.leaves().map(|(cell, fate)| FreeCell {
             corners: cell.corners(),
             kind: match fate {
-                Fate::Blocked(_) => CellKind::Blocked,
+                Fate::Blocked(_) | Fate::Inner(_) => CellKind::Blocked,
                 Fate::Open(pairs) if pairs.is_empty() => CellKind::Free,
                 Fate::Open(_) => CellKind::Both,
                 Fate::Cut(_) | Fate::Undecided(_) => CellKind::Undecided,
             },
-            blocked_by: if let Fate::Blocked(pair) = fate { Some(*pair) } else { None },
+            blocked_by: match fate {
+                Fate::Blocked(pair) => Some(*pair),
+                Fate::Inner(_) => {
+                    let middle = cell.side.direction(cell.center());
+                    blocking_pair(&self.bodies, &cell, middle)
+                }
+                _ => None,
+            },
             area: cell.area(),
         })
     }
@@ -370,6 +391,7 @@ impl<'a> FreeDirections<'a> {
         FreeProof {
             tolerance: self.cast.tolerance(),
             start_overlap: self.options.start_overlap,
+            boxes: self.boxes.clone(),
             cells: cells(&self.fates),
         }
     }
@@ -416,8 +438,11 @@ impl<'a> FreeDirections<'a> {
         let (cast, bodies) = setting(moving, fixed, &options)?;
         let misfit = CertificateError::Cover { entry: proof.cells.len() };
         let fates = fates(&proof.cells).ok_or(misfit)?;
-        let all = Self { cast, bodies, options, fates, looks: 0, areas: Areas::default() };
-        let strange = all.leaves().position(|(_, fate)| !name_facets(&all.bodies, fate));
+        let boxes = proof.boxes.clone();
+        let areas = Areas::default();
+        let all = Self { cast, bodies, options, boxes, fates, looks: 0, areas };
+        let exist = |fate: &Fate| names_exist(&all.bodies, &all.boxes, fate);
+        let strange = all.leaves().position(|(_, fate)| !exist(fate));
         match strange {
             Some(entry) => Err(CertificateError::Cover { entry }.into()),
             None => Ok(all),

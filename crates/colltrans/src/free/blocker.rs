@@ -7,7 +7,7 @@ use super::bodies::Bodies;
 use super::cell::Cell;
 use super::error::FreeError;
 use super::options::FreeOptions;
-use super::proof::{Fate, holds, name_facets};
+use super::proof::{Fate, holds, names_exist};
 use super::search::Search;
 use crate::body::Placed;
 use crate::body::solid::AsSolid;
@@ -62,7 +62,8 @@ impl<'a> CellBlocker<'a> {
     /// Whether a pair of facets blocks all directions of a cell, exactly; not if there are no such facets.
     pub fn blocks(&self, cell: &DirectionCell, pair: [u32; 2]) -> bool {
         let fate = Fate::Blocked(pair);
-        name_facets(&self.bodies, &fate) && holds(&self.bodies, &cell.0, &fate)
+        let none = [const { Vec::new() }; 2];
+        names_exist(&self.bodies, &none, &fate) && holds(&self.bodies, &none, &cell.0, &fate)
     }
 
     /// A pair of facets that blocks all directions of a cell, exactly, if one is found soon: positions in

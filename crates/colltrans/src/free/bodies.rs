@@ -5,8 +5,9 @@ use glam::DVec3;
 
 use super::line::Spot;
 use crate::body::solid::tree::{self, ANY, Node};
+use crate::number::integer::{Integer, difference};
 use crate::solve::solid::projected::Projected;
-use crate::solve::solid::scene::{Corner, Scene, Side};
+use crate::solve::solid::scene::{Corner, ExactPoint, Scene, Side};
 
 /// What bounds some facets of one body, in the setting frame.
 #[derive(Debug, Clone, Copy)]
@@ -63,6 +64,27 @@ impl<'a> Bodies<'a> {
 
     pub(crate) fn corner(&self, spot: Spot) -> &Corner {
         &self.corners[usize::from(!spot.moving)][spot.vertex as usize]
+    }
+
+    /// Where a vertex is, in whole numbers.
+    pub(super) fn wide<const N: usize>(&self, spot: Spot) -> [Integer<N>; 3] {
+        let corner = self.corner(spot);
+        let world = corner.world(&self.scene);
+        world.map_or_else(|| corner.wide(&self.scene), |at| at.to_array().map(Integer::number))
+    }
+
+    /// From one vertex to another, and by how much a component may be off.
+    pub(super) fn way(&self, ends: [Spot; 2]) -> (DVec3, f64) {
+        let [a, b] = ends.map(|spot| self.corner(spot));
+        let noise = (f64::from(!a.exact) + f64::from(!b.exact)) * self.scene.noise;
+        let way = b.at - a.at;
+        (way, noise + f64::EPSILON * way.abs().max_element())
+    }
+
+    /// The same in whole numbers.
+    pub(super) fn wide_way<const N: usize>(&self, ends: [Spot; 2]) -> [Integer<N>; 3] {
+        let [a, b] = ends.map(|spot| self.wide::<N>(spot));
+        difference(&b, &a)
     }
 
     /// The corners of a triangle.

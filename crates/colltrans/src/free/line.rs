@@ -4,6 +4,9 @@
 //! `a` and `b` along `d` that of `c` lies. Forms are kept rounded with a bound of their error; signs are exact, from
 //! the rounded form where its error allows and from whole numbers otherwise. Of forms that rounding has taken nothing
 //! from these are numbers of one limb or two.
+//!
+//! Lines that share two vertices cross along the difference of these: what is asked of such a crossing is a form of
+//! one difference, not of vector products, and a third line through both vertices has it on itself.
 
 use std::cmp::Ordering;
 
@@ -13,7 +16,6 @@ use super::bodies::Bodies;
 use crate::number::error_free::{difference_error, product_error};
 use crate::number::integer::{Integer, LARGE, SMALL, determinant, difference};
 use crate::number::predicates::sign;
-use crate::solve::solid::scene::ExactPoint;
 
 const U: f64 = f64::EPSILON / 2.0;
 
@@ -24,22 +26,15 @@ pub(crate) struct Spot {
     pub(super) vertex: u32,
 }
 
-/// What a form is, exactly.
-#[derive(Debug, Clone, Copy)]
-enum Source {
-    Spots([Spot; 3]),
-    /// The components themselves.
-    Itself,
-}
-
 /// A linear form on directions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Line {
     /// Scaled by a power of two to components of at most 2.
     pub(super) form: DVec3,
-    /// A bound of the error of each component.
+    /// A bound of the error of each component; the form is exact if it is 0.
     pub(super) error: f64,
-    source: Source,
+    /// The vertices that it is of.
+    spots: Option<[Spot; 3]>,
 }
 
 /// The vector product of differences, and whether it is exact.
@@ -73,22 +68,22 @@ impl Line {
         let lost = |p: DVec3, q: DVec3| (0..3).any(|k| difference_error(p[k], q[k]) != 0.0);
         let rounded = !(a.exact && b.exact && c.exact) || lost(b.at, a.at) || lost(c.at, a.at);
         let (form, exact) = cross(x, y);
-        let source = Source::Spots(spots);
+        let spots = Some(spots);
         if !rounded && exact {
             let factor = scale(form.abs().max_element());
-            return Self { form: form * factor, error: 0.0, source: Source::Itself };
+            return Self { form: form * factor, error: 0.0, spots };
         }
         let (m, n) = (x.abs().max_element(), y.abs().max_element());
         let noise = |p: bool, q: bool| (f64::from(!p) + f64::from(!q)) * bodies.scene.noise;
         let (e, f) = (noise(a.exact, b.exact) + 2.0 * U * m, noise(a.exact, c.exact) + 2.0 * U * n);
         let error = 2.02 * (e * n + f * m + e * f) + 8.0 * U * m * n + f64::MIN_POSITIVE;
         let factor = scale(form.abs().max_element().max(error));
-        Self { form: form * factor, error: error * factor, source }
+        Self { form: form * factor, error: error * factor, spots }
     }
 
     /// With components that are exact.
     pub(super) fn exactly(form: DVec3) -> Self {
-        Self { form, error: 0.0, source: Source::Itself }
+        Self { form, error: 0.0, spots: None }
     }
 
     /// On which side a direction is, exactly.
@@ -111,12 +106,44 @@ impl Line {
 
     /// The form in whole numbers, up to a positive factor.
     pub(super) fn wide<const N: usize>(&self, bodies: &Bodies) -> [Integer<N>; 3] {
-        let Source::Spots(spots) = self.source else {
+        let Some(spots) = self.spots.filter(|_| self.error > 0.0) else {
             return self.form.to_array().map(Integer::number);
         };
-        let [a, b, c] = spots.map(|spot| bodies.corner(spot).wide::<N>(&bodies.scene));
+        let [a, b, c] = spots.map(|spot| bodies.wide::<N>(spot));
         let (x, y) = (difference(&b, &a), difference(&c, &a));
         wide_cross(&x, &y)
+    }
+
+    /// Two vertices that two lines share: they cross along the difference of these.
+    pub(super) fn shared(&self, other: &Self) -> Option<[Spot; 2]> {
+        let (own, others) = (self.spots?, other.spots?);
+        let mut both = own.into_iter().filter(|spot| others.contains(spot));
+        let found = [both.next()?, both.next()?];
+        both.next().is_none().then_some(found)
+    }
+
+    /// On which side the direction from one vertex to another is, exactly.
+    pub(super) fn side_of(&self, bodies: &Bodies, [from, to]: [Spot; 2]) -> Ordering {
+        if self.spots.is_some_and(|own| own.contains(&from) && own.contains(&to)) {
+            return Ordering::Equal;
+        }
+        let (way, doubt) = bodies.way([from, to]);
+        let value = self.form.dot(way);
+        let (size, terms) = (way.abs().element_sum(), (self.form * way).abs().element_sum());
+        let form = self.form.abs().element_sum();
+        let error = self.error * (size + 3.0 * doubt) + form * doubt;
+        if value.abs() > 1.01 * error + 4.0 * U * terms + f64::MIN_POSITIVE {
+            return sign(value);
+        }
+        self.wide_side_of::<SMALL>(bodies, [from, to])
+            .or_else(|| self.wide_side_of::<LARGE>(bodies, [from, to]))
+            .unwrap_or(Ordering::Equal)
+    }
+
+    fn wide_side_of<const N: usize>(&self, bodies: &Bodies, ends: [Spot; 2]) -> Option<Ordering> {
+        let (form, way) = (self.wide::<N>(bodies), bodies.wide_way::<N>(ends));
+        let term = |k: usize| form[k].multiply(&way[k]);
+        term(0).add(&term(1)).add(&term(2)).sign()
     }
 }
 

@@ -3,10 +3,11 @@
 //! `A` moves, `B` is fixed. What [`Cast::clearance`](crate::Cast::clearance) calls blocked is a union of open convex
 //! cones, one for each pair of facets (`cone`). So four directions that one pair blocks block all between them, and
 //! six pairs may prove that no direction is free. The sphere is cut into `cell`s until each is blocked, free, or cut
-//! by few cones into exact convex pieces (`rest`).
+//! by few cones into exact convex pieces (`rest`). Where facets are too small for that, two boxes inside the bodies may
+//! block a cell (`inner`).
 //!
 //! Data flow: `bodies` (vertices, and trees down to single facets) -> `line` (great circles and exact signs) ->
-//! `cone`, `window` (which pairs of nodes miss a rectangle of directions), `rest` -> `proof` (what is said of a
+//! `cone`, `window` (which pairs of nodes miss a rectangle of directions), `rest`, `inner` -> `proof` (what is said of a
 //! cell, and its check) -> `search` -> [`FreeDirections`]; `region` joins what is free in
 //! pieces; `blocker` tells of single cells.
 
@@ -16,6 +17,7 @@ mod bodies;
 mod cell;
 mod cone;
 mod error;
+mod inner;
 mod line;
 mod options;
 mod proof;
@@ -29,6 +31,7 @@ pub(crate) use bodies::{Bodies, View};
 pub use answer::{CellKind, FreeArc, FreeCell, FreeDirections, FreePiece, FreePoint, Verdict};
 pub use blocker::{CellBlocker, DirectionCell};
 pub use error::FreeError;
+pub use inner::InnerBox;
 pub use options::FreeOptions;
 pub use proof::{CellProof, FreeProof};
 pub use region::FreeRegion;

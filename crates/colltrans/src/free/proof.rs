@@ -3,11 +3,15 @@
 //! *Blocked*: the cone of one pair of facets holds the four corners of the cell. *Open*: it is blocked where the cones
 //! of some pairs are, and no other pair meets what they leave. The cones are taken from the cell again, and both trees are gone down
 //! for each piece that is left: a pair of nodes ends there, or its parts are looked at, down to single facets.
-//! *Undecided*: it is blocked where the cones are, and nothing is said of the rest.
+//! *Inner*: a box inside the moving and one inside the fixed body block all of it; that they are inside is checked
+//! once for each box. *Undecided*: it is blocked where the cones are, and nothing is said of the rest.
 
-use super::bodies::Bodies;
+use glam::DVec3;
+
+use super::bodies::{Bodies, View};
 use super::cell::{Cell, DEEPEST};
 use super::cone::Cone;
+use super::inner::{InnerBox, cover};
 use super::rest::{Piece, Rest, TooMuch};
 use super::search::PIECES;
 use super::window::Window;
@@ -21,6 +25,8 @@ pub(super) enum Fate {
     Cut(u32),
     /// Blocked by one pair.
     Blocked([u32; 2]),
+    /// Blocked by a pair of boxes inside, by their numbers.
+    Inner([u32; 2]),
     /// Blocked by these pairs where they block, and free elsewhere.
     Open(Vec<[u32; 2]>),
     /// Blocked by these pairs where they block, and not known elsewhere.
@@ -44,6 +50,9 @@ pub struct FreeProof {
     pub tolerance: f64,
     /// Whether facets that cross now count.
     pub start_overlap: StartOverlap,
+    /// Boxes inside the moving and inside the fixed body, which cells name.
+    #[cfg_attr(feature = "serde", serde(default))]
+    pub boxes: [Vec<InnerBox>; 2],
     /// What is said of each cell.
     pub cells: Vec<CellProof>,
 }
@@ -61,6 +70,8 @@ pub enum CellProof {
     Cut,
     /// This pair blocks all of it.
     Blocked([u32; 2]),
+    /// This pair of [`FreeProof::boxes`] blocks all of it.
+    Inner([u32; 2]),
     /// These pairs block some of it; all that they leave is free.
     Open(Vec<[u32; 2]>),
     /// These pairs block some of it; nothing is said of the rest.
@@ -75,6 +86,7 @@ pub(super) fn fates(cells: &[CellProof]) -> Option<Vec<Fate>> {
         let (at, depth) = stack.pop()?;
         fates[at] = match cell {
             CellProof::Blocked(pair) => Fate::Blocked(*pair),
+            CellProof::Inner(pair) => Fate::Inner(*pair),
             CellProof::Open(pairs) => Fate::Open(pairs.clone()),
             CellProof::Undecided(pairs) => Fate::Undecided(pairs.clone()),
             CellProof::Cut if depth >= DEEPEST => return None,
@@ -98,6 +110,7 @@ pub(super) fn cells(fates: &[Fate]) -> Vec<CellProof> {
     while let Some(at) = stack.pop() {
         cells.push(match &fates[at] {
             Fate::Blocked(pair) => CellProof::Blocked(*pair),
+            Fate::Inner(pair) => CellProof::Inner(*pair),
             Fate::Open(pairs) => CellProof::Open(pairs.clone()),
             Fate::Undecided(pairs) => CellProof::Undecided(pairs.clone()),
             Fate::Cut(first) => {
@@ -118,20 +131,24 @@ pub(super) fn rest_of(bodies: &Bodies, cell: Cell, pairs: &[[u32; 2]]) -> Result
     Ok(rest)
 }
 
-/// Whether what is said of a cell holds; its facets [exist](name_facets).
-pub(super) fn holds(bodies: &Bodies, cell: &Cell, fate: &Fate) -> bool {
+/// Whether what is said of a cell holds; its facets and boxes [exist](names_exist), and the boxes are inside.
+pub(super) fn holds(bodies: &Bodies, boxes: &[Vec<InnerBox>; 2], cell: &Cell, fate: &Fate) -> bool {
     match fate {
         Fate::Cut(_) | Fate::Undecided(_) => true,
         Fate::Blocked(pair) => Cone::new(bodies, *pair).covers(bodies, &cell.corners()),
+        Fate::Inner([a, b]) => {
+            cover([&boxes[0][*a as usize], &boxes[1][*b as usize]], &cell.corners())
+        }
         Fate::Open(pairs) => rest_of(bodies, *cell, pairs)
             .is_ok_and(|rest| rest.pieces.iter().all(|piece| is_free(bodies, &rest, piece))),
     }
 }
 
-/// Whether all facets that are named exist.
-pub(super) fn name_facets(bodies: &Bodies, fate: &Fate) -> bool {
+/// Whether all facets and boxes that are named exist.
+pub(super) fn names_exist(bodies: &Bodies, boxes: &[Vec<InnerBox>; 2], fate: &Fate) -> bool {
     match fate {
         Fate::Cut(_) => true,
+        Fate::Inner(pair) => (0..2).all(|k| (pair[k] as usize) < boxes[k].len()),
         Fate::Blocked(pair) => exists(bodies, *pair),
         Fate::Undecided(pairs) | Fate::Open(pairs) => {
             pairs.iter().all(|pair| exists(bodies, *pair))
@@ -144,25 +161,63 @@ fn exists(bodies: &Bodies, pair: [u32; 2]) -> bool {
     pair[0] < count(true) && pair[1] < count(false)
 }
 
+/// A pair of facets that blocks a direction of a cell, exactly, if there is one: over all pairs of nodes.
+pub(super) fn blocking_pair(bodies: &Bodies, cell: &Cell, d: DVec3) -> Option<[u32; 2]> {
+    let [k, i, j] = cell.side.axes();
+    let around = |axis: usize| {
+        let at = d[axis] / d[k].abs();
+        [at.next_down(), at.next_up()]
+    };
+    let window = Window::new(cell.side, around(i), around(j));
+    let mut stack = vec![[0, 0]];
+    while let Some(pair) = stack.pop() {
+        let [p, q] = views(bodies, pair);
+        if window.is_missed(bodies, p, q) {
+            continue;
+        }
+        if let Some(parts) = parts(bodies, pair) {
+            stack.extend(parts);
+            continue;
+        }
+        let facets = [bodies.triangle(true, pair[0]), bodies.triangle(false, pair[1])];
+        if Cone::new(bodies, facets).holds(bodies, d) {
+            return Some(facets);
+        }
+    }
+    None
+}
+
+/// The two views of a pair.
+fn views<'b>(bodies: &'b Bodies, [a, b]: [u32; 2]) -> [&'b View; 2] {
+    [&bodies.views[0][a as usize], &bodies.views[1][b as usize]]
+}
+
+/// The pairs that a pair is made of, by the parts of the larger view that has some; none of two facets.
+fn parts(bodies: &Bodies, pair: [u32; 2]) -> Option<Vec<[u32; 2]>> {
+    let [p, q] = views(bodies, pair);
+    if !p.is_facet() && (q.is_facet() || p.size() >= q.size()) {
+        return Some(p.parts().map(|part| [part, pair[1]]).collect());
+    }
+    (!q.is_facet()).then(|| q.parts().map(|part| [pair[0], part]).collect())
+}
+
 /// Whether no pair of facets blocks any direction of a piece.
 fn is_free(bodies: &Bodies, rest: &Rest, piece: &Piece) -> bool {
     let window = rest.window(piece);
     let mut alone = rest.only(piece);
     let mut stack = vec![[0, 0]];
-    while let Some([a, b]) = stack.pop() {
-        let [p, q] = [&bodies.views[0][a as usize], &bodies.views[1][b as usize]];
-        if Window::is_missed(&window, bodies, p, q) {
+    while let Some(pair) = stack.pop() {
+        let [p, q] = views(bodies, pair);
+        if window.is_missed(bodies, p, q) {
             continue;
         }
-        if !p.is_facet() && (q.is_facet() || p.size() >= q.size()) {
-            stack.extend(p.parts().map(|part| [part, b]));
-        } else if !q.is_facet() {
-            stack.extend(q.parts().map(|part| [a, part]));
-        } else {
-            let pair = [bodies.triangle(true, a), bodies.triangle(false, b)];
-            if !matches!(alone.cut(bodies, &Cone::new(bodies, pair), PIECES), Ok(false)) {
-                return false;
-            }
+        if let Some(parts) = parts(bodies, pair) {
+            stack.extend(parts);
+            continue;
+        }
+        let facets = [bodies.triangle(true, pair[0]), bodies.triangle(false, pair[1])];
+        if !matches!(alone.cut(bodies, &Cone::new(bodies, facets), PIECES), Ok(false)) {
+            return false;
         }
     }
     true

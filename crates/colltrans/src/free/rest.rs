@@ -12,9 +12,9 @@ use glam::DVec3;
 use super::bodies::Bodies;
 use super::cell::{Cell, Side, solid_angle};
 use super::cone::Cone;
-use super::line::{Line, orientation, wide_cross};
+use super::line::{Line, Spot, orientation, wide_cross};
 use super::window::Window;
-use crate::number::integer::{Integer, LARGE};
+use crate::number::integer::{Integer, LARGE, SMALL};
 
 /// Places known less well are computed in whole numbers.
 const ROUGH: f64 = 1e-14;
@@ -37,6 +37,8 @@ enum At {
     OfCell(DVec3),
     /// Where two lines cross: along the vector product of their forms, or against it.
     Crossing([u32; 2], bool),
+    /// Where lines cross that share two vertices: from the first to the second.
+    Toward([Spot; 2]),
 }
 
 /// A convex part of a cell.
@@ -238,6 +240,7 @@ impl Rest {
         let form = |k: u32| &self.lines[k as usize];
         match corner.at {
             At::OfCell(d) => Ok(form(line).side(bodies, d)),
+            At::Toward(ends) => Ok(form(line).side_of(bodies, ends)),
             At::Crossing(own, _) if own.contains(&line) => Ok(Equal),
             At::Crossing([a, b], against) => {
                 let side = orientation(bodies, [form(a), form(b), form(line)]).ok_or(TooMuch)?;
@@ -279,6 +282,9 @@ impl Rest {
     /// Where two lines cross within the cell.
     fn crossing(&self, bodies: &Bodies, a: u32, b: u32) -> Result<Corner, TooMuch> {
         let (p, q) = (&self.lines[a as usize], &self.lines[b as usize]);
+        if let Some(ends) = p.shared(q) {
+            return self.toward(bodies, ends);
+        }
         let way = p.form.cross(q.form);
         let (m, n) = (p.form.abs().max_element(), q.form.abs().max_element());
         let error =
@@ -292,27 +298,53 @@ impl Rest {
             let at = At::Crossing([a, b], main < 0.0);
             return Ok(Corner { at, place: [way[i] / main, way[j] / main], error: off });
         }
-        self.crossing_exactly(bodies, [a, b], side)
+        let small = self.crossing_exactly::<SMALL>(bodies, [a, b], side);
+        small.or_else(|| self.crossing_exactly::<LARGE>(bodies, [a, b], side)).ok_or(TooMuch)
     }
 
-    fn crossing_exactly(
+    /// Along the difference of two vertices, one way or the other, within the cell.
+    fn toward(&self, bodies: &Bodies, [a, b]: [Spot; 2]) -> Result<Corner, TooMuch> {
+        let side = self.cell.side;
+        let [k, i, j] = side.axes();
+        let (way, doubt) = bodies.way([a, b]);
+        let main = way[k] * side.sign();
+        let off = 2.02 * doubt / (main.abs() - doubt) + 4.0 * f64::EPSILON;
+        if main.abs() > doubt && off <= ROUGH {
+            let ends = if main > 0.0 { [a, b] } else { [b, a] };
+            return Ok(Corner {
+                at: At::Toward(ends),
+                place: [way[i] / main, way[j] / main],
+                error: off,
+            });
+        }
+        let small = || placed(&bodies.wide_way::<SMALL>([a, b]), side);
+        let large = || placed(&bodies.wide_way::<LARGE>([a, b]), side);
+        let (ends, place) = small().or_else(large).ok_or(TooMuch)?;
+        let ends = if ends { [b, a] } else { [a, b] };
+        Ok(Corner { at: At::Toward(ends), place, error: 8.0 * f64::EPSILON })
+    }
+
+    fn crossing_exactly<const N: usize>(
         &self,
         bodies: &Bodies,
         lines: [u32; 2],
         side: Side,
-    ) -> Result<Corner, TooMuch> {
-        let [p, q] = lines.map(|k| self.lines[k as usize].wide::<LARGE>(bodies));
-        let way = wide_cross(&p, &q);
-        let [k, i, j] = side.axes();
-        let main: Integer<LARGE> =
-            if side.sign() > 0.0 { way[k] } else { Integer::ZERO.subtract(&way[k]) };
-        let against = match main.sign() {
-            Some(Less) => true,
-            Some(Greater) => false,
-            _ => return Err(TooMuch),
-        };
-        let ratio = |axis: usize| way[axis].ratio(&main).ok_or(TooMuch);
-        let place = [ratio(i)?, ratio(j)?];
-        Ok(Corner { at: At::Crossing(lines, against), place, error: 8.0 * f64::EPSILON })
+    ) -> Option<Corner> {
+        let [p, q] = lines.map(|k| self.lines[k as usize].wide::<N>(bodies));
+        let (against, place) = placed(&wide_cross(&p, &q), side)?;
+        Some(Corner { at: At::Crossing(lines, against), place, error: 8.0 * f64::EPSILON })
     }
+}
+
+/// Whether a direction goes away from a side, and its place there or that of its opposite; `None` if numbers are too
+/// large, or the direction is along the side.
+fn placed<const N: usize>(way: &[Integer<N>; 3], side: Side) -> Option<(bool, [f64; 2])> {
+    let [k, i, j] = side.axes();
+    let main: Integer<N> = if side.sign() > 0.0 { way[k] } else { Integer::ZERO.subtract(&way[k]) };
+    let against = match main.sign()? {
+        Less => true,
+        Greater => false,
+        Equal => return None,
+    };
+    Some((against, [way[i].ratio(&main)?, way[j].ratio(&main)?]))
 }

@@ -6,10 +6,13 @@
 //!    search finds that drops all pairs which miss a corner;
 //! 2. *open*, as nothing is left of its pairs of nodes; or, cut by the cones that are found at the middle of what is
 //!    left of it, as no other pair meets the rest. If there is no rest, several pairs block it together;
-//! 3. cut in four, or *undecided* at the greatest depth, or when as many pairs have been looked at as were allowed:
+//! 3. *inner*, as a box inside the moving and one inside the fixed body block it, grown behind the places where facets
+//!    meet along its middle;
+//! 4. cut in four, or *undecided* at the greatest depth, or when as many pairs have been looked at as were allowed:
 //!    then it is blocked where the cones are that have been found.
 
 use std::collections::{BinaryHeap, HashMap, VecDeque};
+use std::ops::Range;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use glam::DVec3;
@@ -18,9 +21,11 @@ use super::FreeOptions;
 use super::bodies::{Bodies, View};
 use super::cell::Cell;
 use super::cone::Cone;
+use super::inner::{InnerBox, cover};
 use super::proof::Fate;
 use super::rest::{Rest, TooMuch};
 use super::window::Window;
+use crate::cast::solid::StartOverlap;
 use crate::solve::solid::search::Entry;
 
 /// Pairs of nodes that a cell hands on, at most.
@@ -35,6 +40,12 @@ const WITNESSES: usize = 12;
 /// where its middle is free.
 const REST_LOOKS: usize = 2_000;
 const FREE_FACTOR: usize = 10;
+/// Pairs of nodes that are looked at for the facets that meet along the middle of a cell, at most; pairs of facets
+/// behind which boxes are grown; what that counts for; and pairs of boxes that are tried again.
+const HIT_LOOKS: usize = 10 * LOOKS;
+const GROWN: usize = 400;
+const GROWTH: u64 = 4_000;
+const SEEN: usize = 24;
 /// Pieces that a cell may be cut into.
 pub(super) const PIECES: usize = 64;
 
@@ -44,6 +55,7 @@ type Pair = [u32; 2];
 /// The cells of the sphere, by their numbers: first the six sides of the cube.
 pub(super) struct Found {
     pub(super) fates: Vec<Fate>,
+    pub(super) boxes: [Vec<InnerBox>; 2],
     pub(super) looks: u64,
 }
 
@@ -69,7 +81,18 @@ pub(super) struct Search<'s, 'a> {
     cancel: Option<&'s AtomicBool>,
     cones: Vec<Cone>,
     known: HashMap<Pair, u32>,
+    inner: Inner,
     looks: u64,
+}
+
+/// Boxes inside either body.
+#[derive(Default)]
+struct Inner {
+    boxes: [Vec<InnerBox>; 2],
+    /// Those behind the places where two facets meet.
+    behind: HashMap<Pair, [Range<u32>; 2]>,
+    /// Pairs that have blocked a cell, the last ones first.
+    seen: VecDeque<Pair>,
 }
 
 impl<'s, 'a> Search<'s, 'a> {
@@ -78,7 +101,15 @@ impl<'s, 'a> Search<'s, 'a> {
         options: FreeOptions,
         cancel: Option<&'s AtomicBool>,
     ) -> Self {
-        Self { bodies, options, cancel, cones: Vec::new(), known: HashMap::new(), looks: 0 }
+        Self {
+            bodies,
+            options,
+            cancel,
+            cones: Vec::new(),
+            known: HashMap::new(),
+            inner: Inner::default(),
+            looks: 0,
+        }
     }
 
     /// Decides all cells; `None` if it was cancelled.
@@ -102,7 +133,8 @@ impl<'s, 'a> Search<'s, 'a> {
                 Decided::Open(witnesses) => self.cut(&task, &witnesses, &mut fates, &mut tasks),
             }
         }
-        Some(Found { fates, looks: self.looks })
+        let boxes = named(&mut fates, &self.inner.boxes);
+        Some(Found { fates, boxes, looks: self.looks })
     }
 
     /// Cuts a cell in four.
@@ -146,12 +178,75 @@ impl<'s, 'a> Search<'s, 'a> {
         if task.pairs.is_empty() {
             return Decided::Fate(Fate::Open(Vec::new()));
         }
+        if let Some(pair) = self.seen_boxes(&corners) {
+            return Decided::Fate(Fate::Inner(pair));
+        }
         for aside in [false, true] {
             if let Some(k) = self.covering(&task.pairs, &cell, aside) {
                 return Decided::Fate(Fate::Blocked(self.cones[k as usize].pair));
             }
         }
-        self.resolve(task)
+        let decided = self.resolve(task);
+        match decided {
+            Decided::Open(cones) => {
+                let found = self.boxes(task, &cones);
+                found.map_or(Decided::Open(cones), |pair| Decided::Fate(Fate::Inner(pair)))
+            }
+            Decided::Fate(_) => decided,
+        }
+    }
+
+    /// A pair of boxes that has blocked a cell before and blocks this one.
+    fn seen_boxes(&mut self, corners: &[DVec3; 4]) -> Option<Pair> {
+        let Inner { boxes, seen, .. } = &mut self.inner;
+        let found = seen
+            .iter()
+            .position(|&[a, b]| cover([&boxes[0][a as usize], &boxes[1][b as usize]], corners))?;
+        seen.swap(0, found);
+        seen.front().copied()
+    }
+
+    /// A pair of boxes that blocks a cell, behind the places where two facets meet along its middle: facets of one of
+    /// these cones, or of one that is looked for.
+    fn boxes(&mut self, task: &Task, cones: &[u32]) -> Option<Pair> {
+        if self.options.start_overlap == StartOverlap::Ignore {
+            return None;
+        }
+        let (cell, d) = (task.cell, task.cell.side.direction(task.cell.center()));
+        let known = cones.iter().find(|k| self.cones[**k as usize].holds(self.bodies, d));
+        let hit = match known {
+            Some(k) => Some(*k),
+            None => self.blocking(&task.pairs, &cell, cell.center(), HIT_LOOKS).flatten(),
+        };
+        let pair = self.cones[hit? as usize].pair;
+        let [moving, fixed] = self.behind(pair, d);
+        let corners = cell.corners();
+        let found = moving.flat_map(|a| fixed.clone().map(move |b| [a, b])).find(|&[a, b]| {
+            let [p, q] = &self.inner.boxes;
+            cover([&p[a as usize], &q[b as usize]], &corners)
+        })?;
+        self.inner.seen.push_front(found);
+        self.inner.seen.truncate(SEEN);
+        Some(found)
+    }
+
+    /// The boxes behind the places where two facets meet, grown when first asked for.
+    fn behind(&mut self, pair: Pair, d: DVec3) -> [Range<u32>; 2] {
+        let Inner { boxes, behind, .. } = &mut self.inner;
+        if let Some(found) = behind.get(&pair) {
+            return found.clone();
+        }
+        let first = boxes.each_ref().map(Vec::len);
+        if behind.len() < GROWN {
+            let grown = InnerBox::behind(self.bodies, pair, d);
+            for (boxes, grown) in boxes.iter_mut().zip(grown) {
+                boxes.extend(grown);
+            }
+            self.looks += GROWTH;
+        }
+        let found = [0, 1].map(|k| first[k] as u32..boxes[k].len() as u32);
+        behind.insert(pair, found.clone());
+        found
     }
 
     /// Whether a pair of views blocks none of the directions.
@@ -245,17 +340,24 @@ impl<'s, 'a> Search<'s, 'a> {
         let judge = |search: &Self, k: u32| {
             search.cones[k as usize].covers(search.bodies, &corners).then_some(k)
         };
-        self.best_first(pairs, |search, pair| search.key(pair, d, aside), hits, judge)?
+        let key = |search: &Self, pair| search.key(pair, d, aside);
+        self.best_first(pairs, LOOKS, key, hits, judge)?
     }
 
     /// A pair that blocks a direction, if there is one; nothing if that is not known soon.
     #[expect(clippy::option_option, reason = "none at all, or none so far")]
-    fn blocking(&mut self, pairs: &[Pair], cell: &Cell, place: [f64; 2]) -> Option<Option<u32>> {
+    fn blocking(
+        &mut self,
+        pairs: &[Pair],
+        cell: &Cell,
+        place: [f64; 2],
+        looks: usize,
+    ) -> Option<Option<u32>> {
         let (window, d) = (Window::at(cell.side, place), cell.side.direction(place));
         let hits = |search: &mut Self, pair| !search.misses(pair, &window);
         let judge =
             |search: &Self, k: u32| search.cones[k as usize].holds(search.bodies, d).then_some(k);
-        self.best_first(pairs, |search, pair| search.key(pair, d, false), hits, judge)
+        self.best_first(pairs, looks, |search, pair| search.key(pair, d, false), hits, judge)
     }
 
     /// The first pair of facets that is judged to be one, going down from pairs of nodes, the least key first.
@@ -264,6 +366,7 @@ impl<'s, 'a> Search<'s, 'a> {
     fn best_first(
         &mut self,
         pairs: &[Pair],
+        looks: usize,
         key: impl Fn(&Self, Pair) -> f64,
         hits: impl Fn(&mut Self, Pair) -> bool,
         judge: impl Fn(&Self, u32) -> Option<u32>,
@@ -275,7 +378,7 @@ impl<'s, 'a> Search<'s, 'a> {
             views,
         };
         let mut queue: BinaryHeap<Entry> = pairs.iter().map(|&pair| entry(self, pair)).collect();
-        for _ in 0..LOOKS {
+        for _ in 0..looks {
             let Some(Entry { views: pair, .. }) = queue.pop() else { return Some(None) };
             if !hits(self, pair) {
                 continue;
@@ -309,7 +412,7 @@ impl<'s, 'a> Search<'s, 'a> {
         for _ in 0..TARGETS {
             let widest = rest.pieces.iter().max_by(|a, b| a.area().total_cmp(&b.area()));
             let Some(place) = widest.map(super::rest::Piece::center) else { return Ok(true) };
-            match self.blocking(&task.pairs, &task.cell, place) {
+            match self.blocking(&task.pairs, &task.cell, place, LOOKS) {
                 Some(Some(k)) => {
                     let cone = &self.cones[k as usize];
                     if rest.cut(self.bodies, cone, PIECES)? {
@@ -365,6 +468,22 @@ impl<'s, 'a> Search<'s, 'a> {
         }
         Ok(true)
     }
+}
+
+/// The boxes that cells name, which get their numbers.
+fn named(fates: &mut [Fate], boxes: &[Vec<InnerBox>; 2]) -> [Vec<InnerBox>; 2] {
+    let mut numbers = [HashMap::new(), HashMap::new()];
+    let mut used = [Vec::new(), Vec::new()];
+    for fate in fates {
+        let Fate::Inner(pair) = fate else { continue };
+        for k in 0..2 {
+            pair[k] = *numbers[k].entry(pair[k]).or_insert_with(|| {
+                used[k].push(boxes[k][pair[k] as usize]);
+                used[k].len() as u32 - 1
+            });
+        }
+    }
+    used
 }
 
 /// The rectangles around what is left.

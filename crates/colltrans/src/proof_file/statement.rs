@@ -13,7 +13,7 @@ use crate::body::{InputFacet, Placed};
 use crate::cast::Cast;
 use crate::cast::sideways::{proven_overlap, verified_overlap};
 use crate::cast::solid::{SolidCertificate, SolidOptions, StartOverlap, StartProof};
-use crate::free::{CellProof, FreeDirections, FreeError, FreeProof};
+use crate::free::{CellProof, FreeDirections, FreeError, FreeProof, InnerBox};
 use crate::pair::Pair;
 use crate::pair::solid::DistanceCertificate;
 use crate::setting::error::QueryError;
@@ -49,6 +49,9 @@ pub struct FreeStatement {
     /// With a tolerance: the vertices of the shrunk bodies, in the order of the file, pieces run through.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shrunk: Option<[Vec<DVec3>; 2]>,
+    /// Boxes inside the moving and inside the fixed body, where cells name some.
+    #[serde(default, skip_serializing_if = "are_none")]
+    pub boxes: [Vec<InnerBox>; 2],
     /// What is said of each cell of the sphere, as in [`FreeProof`]; pairs are facets by their numbers in the file,
     /// of the moving and of the fixed body, those of pieces run through.
     pub cells: Vec<CellProof>,
@@ -242,11 +245,12 @@ impl FreeStatement {
         free: &FreeDirections<'_>,
         made: &[Solid; 2],
     ) -> Result<Self, CertificateError> {
-        let FreeProof { tolerance, start_overlap, cells } = free.proof();
+        let FreeProof { tolerance, start_overlap, boxes, cells } = free.proof();
         let number = |k: usize, triangle: u32| made[k].facet_indices()[triangle as usize].0;
         let in_file = |pair: [u32; 2]| Some([number(0, pair[0]), number(1, pair[1])]);
         let cells = renamed(&cells, in_file).ok_or(CertificateError::Start)?;
-        Ok(Self { tolerance, start_overlap, shrunk: shrunk(made.each_ref(), tolerance)?, cells })
+        let shrunk = shrunk(made.each_ref(), tolerance)?;
+        Ok(Self { tolerance, start_overlap, shrunk, boxes, cells })
     }
 
     /// What it says of two bodies, if it holds.
@@ -269,13 +273,18 @@ impl FreeStatement {
         let to_place = |pair: [u32; 2]| Some([place(0, pair[0])?, place(1, pair[1])?]);
         let cells = renamed(&self.cells, to_place).ok_or(CertificateError::Start)?;
         let Self { tolerance, start_overlap, .. } = *self;
-        let proof = FreeProof { tolerance, start_overlap, cells };
+        let proof = FreeProof { tolerance, start_overlap, boxes: self.boxes.clone(), cells };
         FreeDirections::from_proof(&moving, &fixed, &proof).map_err(|error| match error {
             FreeError::Query(error) => error.into(),
             FreeError::NotProven(error) => error,
             _ => CertificateError::Start,
         })
     }
+}
+
+/// Whether there are no boxes.
+fn are_none(boxes: &[Vec<InnerBox>; 2]) -> bool {
+    boxes.iter().all(Vec::is_empty)
 }
 
 /// Cells with other names of facets; `None` if one has none.
@@ -290,6 +299,7 @@ fn renamed(
         Some(match cell {
             CellProof::Cut => CellProof::Cut,
             CellProof::Blocked(pair) => CellProof::Blocked(name(*pair)?),
+            CellProof::Inner(pair) => CellProof::Inner(*pair),
             CellProof::Open(pairs) => CellProof::Open(all(pairs)?),
             CellProof::Undecided(pairs) => CellProof::Undecided(all(pairs)?),
         })

@@ -75,12 +75,18 @@ impl fmt::Display for FreeStatement {
         let count = |of: fn(&CellProof) -> bool| self.cells.iter().filter(|cell| of(cell)).count();
         let cells = count(|cell| !matches!(cell, CellProof::Cut));
         let blocked = count(|cell| matches!(cell, CellProof::Blocked(_)));
+        let inner = count(|cell| matches!(cell, CellProof::Inner(_)));
         let undecided = count(|cell| matches!(cell, CellProof::Undecided(_)));
-        let exactly = cells - blocked - undecided;
+        let exactly = cells - blocked - inner - undecided;
+        let inside = if inner > 0 {
+            format!("{inner} by a pair of boxes inside the bodies each, ")
+        } else {
+            String::new()
+        };
         write!(
             f,
             "of {cells} cells of the sphere of directions {blocked} are blocked by a pair of facets each, \
-             {exactly} are told exactly, {undecided} are undecided"
+             {inside}{exactly} are told exactly, {undecided} are undecided"
         )
     }
 }

@@ -147,7 +147,7 @@ fn changed(
         let facet = rng.int(0, counts[side]) as u32;
         let pairs: &mut [[u32; 2]] = match &mut other.cells[at] {
             CellProof::Cut => continue,
-            CellProof::Blocked(pair) => std::slice::from_mut(pair),
+            CellProof::Blocked(pair) | CellProof::Inner(pair) => std::slice::from_mut(pair),
             CellProof::Open(pairs) | CellProof::Undecided(pairs) => pairs,
         };
         let Some(pair) = pairs.first_mut() else { continue };

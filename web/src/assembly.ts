@@ -527,11 +527,14 @@ function blockers(along: PageAlong, part: number, name: string): string {
   return `In its way: ${each}. With all that has to come along: ${along.closures[part]!.length} parts, in full in the view.`;
 }
 
-function freedom({ free_share, isolated: { length: single } }: RemovalMap): string {
-  const share = free_share > 0 && `is free in ${short(100 * free_share, 3)} % of all directions (green)`;
+function freedom({ free_share, exactly, isolated: { length: single } }: RemovalMap): string {
+  const unknown = exactly?.undecided_share ?? 0;
+  const proven = exactly ? (unknown > 0 ? `, which is proven but for ${short(100 * unknown, 2)} %` : ", which is proven") : ", as sampled";
+  const share = free_share > 0 && `is free in ${short(100 * free_share, 3)} % of all directions (green)${proven}`;
   const alone = single > 0 && `in ${single} single direction${single > 1 ? "s" : ""} (dots), a tight fit`;
   if (share) return alone ? `${share}, and ${alone}` : share;
-  return alone ? `is free only ${alone}` : "is free in no direction that was looked at";
+  if (alone) return `is free only ${alone}${proven}`;
+  return exactly ? `is free in no direction${proven}` : "is free in no direction that was looked at";
 }
 
 /** A direction for people: an axis by name. */

@@ -26,13 +26,22 @@ impl Removal {
     /// A group of none or of all; parts that are to be kept apart; parts that are ignored, or that overlap where they are.
     pub fn new(bodies: &Bodies, group: &[usize]) -> Result<Self, AssemblyError> {
         let others: Vec<usize> = (0..bodies.len()).filter(|k| !group.contains(k)).collect();
+        Self::among(bodies, group, &others)
+    }
+
+    /// A group against others.
+    pub(crate) fn among(
+        bodies: &Bodies,
+        group: &[usize],
+        others: &[usize],
+    ) -> Result<Self, AssemblyError> {
         for &a in group {
-            for &b in &others {
+            for &b in others {
                 bodies.check_plain([a, b])?;
             }
         }
         let of = |parts: &[usize]| bodies.joined(parts);
-        let ((moving, own), (fixed, rest)) = (of(group)?, of(&others)?);
+        let ((moving, own), (fixed, rest)) = (of(group)?, of(others)?);
         Ok(Self { solids: [moving, fixed], parts: [own, rest] })
     }
 

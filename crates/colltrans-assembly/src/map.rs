@@ -1,14 +1,19 @@
 //! The removal map of a part or group: its free travel (*room*) over the whole sphere of directions.
 //!
-//! Samples on an icosahedron, then three refinements: triangles between a free corner and one that is
+//! What is free is the proven [`Cover`], with exact borders, where parts are closed and meet by rule; how far the
+//! group goes elsewhere is sampled on an icosahedron. Without a cover free directions are sampled too, and the map
+//! says so. Then samples are refined: triangles between a free corner and one that is
 //! not, until the border is known to the angle asked for; the surroundings of directions that go
 //! farthest, where a thin free region may hide; and the surroundings of candidate directions that are
 //! free. A candidate that is free though none of the samples around it is, is *isolated*: a tight
-//! fit.
+//! fit. With a cover only the second is done.
 
+mod cover;
 #[cfg(feature = "report")]
 mod draw;
 mod regions;
+#[cfg(feature = "report")]
+mod trace;
 mod way;
 
 use std::collections::BTreeSet;
@@ -24,6 +29,7 @@ use crate::rooms::{PartRoom, room_of};
 use crate::sphere::{Sphere, angle};
 use crate::watch::{Stage, Watch};
 
+pub use cover::Cover;
 #[cfg(feature = "report")]
 pub use draw::{png, svg};
 pub use regions::Region;
@@ -77,16 +83,20 @@ pub struct RemovalMap {
     pub sphere: Sphere,
     /// The room in each direction of the sphere.
     pub rooms: Vec<PartRoom>,
-    /// Connected sets of free directions, largest first.
+    /// What is free, exactly; or why there are samples alone.
+    pub cover: Result<Cover, String>,
+    /// Connected sets of free directions, largest first: of the cover, if there is one, or sampled.
     pub regions: Vec<Region>,
-    /// Free directions that lie in no region: all around them is blocked, as far as was looked.
+    /// Free directions that lie in no region that can be seen: all around them is blocked but for less than a disc of
+    /// [`MapOptions::border`], or as far as was looked.
     pub isolated: Vec<DVec3>,
     /// The size of the assembly, for a scale.
     pub size: f64,
 }
 
 impl RemovalMap {
-    /// Maps the room of a group against all parts that are not in it.
+    /// Maps the room of a group against all parts that are not in it. The cover is of all closed parts that meet by
+    /// rule: of parts that are open, ignored, to be kept apart or overlap where they are there is none.
     ///
     /// # Errors
     /// Cancelled.
@@ -97,16 +107,25 @@ impl RemovalMap {
         options: MapOptions,
         watch: Watch,
     ) -> Result<Self, AssemblyError> {
+        let cover = Cover::new(bodies, group, options.start, watch)?;
         let mut mapper = Mapper::new(bodies, group, vec![true; bodies.len()], options, watch);
         mapper.ask()?;
-        let free = mapper.free_candidates(candidates)?;
         mapper.refine_farthest()?;
+        let Aabb { low, high } = bodies.assembly().bounds();
+        let size = (high - low).length();
+        // Smaller than the border is known: single directions.
+        let smallest = std::f64::consts::PI * options.border * options.border;
+        let group = group.to_vec();
+        if let Ok(exact) = &cover {
+            let (regions, isolated) = exact.told(smallest);
+            let Mapper { sphere, rooms, .. } = mapper;
+            return Ok(Self { group, sphere, rooms, cover, regions, isolated, size });
+        }
+        let free = mapper.free_candidates(candidates)?;
         mapper.refine_around(&free)?;
         mapper.refine_border()?;
         let Mapper { sphere, rooms, .. } = mapper;
         let mut regions = regions::regions(&sphere, &rooms);
-        // Smaller than the border is known: single directions.
-        let smallest = std::f64::consts::PI * options.border * options.border;
         let single: Vec<DVec3> =
             regions.iter().filter(|r| r.solid_angle < smallest).map(|r| r.center).collect();
         regions.retain(|r| r.solid_angle >= smallest);
@@ -120,13 +139,14 @@ impl RemovalMap {
                 isolated.push(d);
             }
         }
-        let Aabb { low, high } = bodies.assembly().bounds();
-        let size = (high - low).length();
-        Ok(Self { group: group.to_vec(), sphere, rooms, regions, isolated, size })
+        Ok(Self { group, sphere, rooms, cover, regions, isolated, size })
     }
 
-    /// The share of the sphere that is free.
+    /// The share of the sphere that is free: at least, of a cover, or as sampled.
     pub fn free_share(&self) -> f64 {
+        if let Ok(cover) = &self.cover {
+            return cover.free_share();
+        }
         let area: f64 = self.regions.iter().map(|r| r.solid_angle).sum();
         (area / (4.0 * std::f64::consts::PI)).max(0.0)
     }

@@ -194,18 +194,24 @@ pub fn free(bodies: &Bodies, removal: &Removal, free: &FreeDirections) -> FreeRe
     record
 }
 
-/// A removal map without its samples: free regions with points of their borders, isolated directions.
+/// A removal map without its samples: free regions with points of their borders, isolated directions, and all that is
+/// free, exactly; or why it is sampled.
 pub fn regions(assembly: &Assembly, map: &RemovalMap) -> Value {
     let region = |r: &Region| {
         let border: Vec<[f64; 3]> = r.border.iter().map(DVec3::to_array).collect();
         json!({ "solid_angle": r.solid_angle, "center": r.center.to_array(), "border": border })
     };
-    json!({
+    let mut told = json!({
         "parts": assembly.names(&map.group),
         "free_share": map.free_share(),
         "regions": map.regions.iter().map(region).collect::<Vec<_>>(),
         "isolated": map.isolated.iter().map(DVec3::to_array).collect::<Vec<_>>(),
-    })
+    });
+    match &map.cover {
+        Ok(cover) => told["exactly"] = json!(cover.record),
+        Err(why) => told["sampled"] = json!(why),
+    }
+    told
 }
 
 /// A removal map with all its samples.

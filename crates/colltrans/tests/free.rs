@@ -9,7 +9,7 @@ use colltrans::free::{
 use colltrans::glam::{DMat3, DQuat, DVec3};
 use colltrans::solid::StartOverlap;
 use colltrans::{Cast, ConvexPolyhedron, Pose, Solid};
-use colltrans_testkit::oracle::solids::free::{Judged, examine};
+use colltrans_testkit::oracle::solids::free::{Judged, examine, is_free_of_all};
 use colltrans_testkit::oracle::solids::settings::FAMILIES;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::solids::thread;
@@ -162,7 +162,7 @@ fn casts_and_fractions_agree_and_changed_proofs_are_refused() {
                 examine(family, seed, 40).unwrap_or_else(|e| panic!("{family}:{seed}: {e}"));
             all += judged.unwrap_or_default();
         }
-        assert!(all.directions > 100 && all.refused > 0, "{family}: {all:?}");
+        assert!(all.directions > 100 && all.refused > 0 && all.cells > 100, "{family}: {all:?}");
     }
 }
 
@@ -319,4 +319,60 @@ fn boxes_inside_block_what_small_facets_block_together() {
     }
     let ignored = FreeProof { start_overlap: StartOverlap::Ignore, ..proof };
     assert!(refused(&ignored), "an overlap that is ignored does not block by what is inside");
+}
+
+#[test]
+fn convex_bodies_are_free_where_no_pair_of_facets_blocks() {
+    let mut rng = Random::new(2903);
+    let mut judged = [0_u32; 2];
+    for count in [4, 8, 20, 40] {
+        let mut hull = |by: f64| {
+            let corners: Vec<DVec3> = (0..count)
+                .map(|_| DVec3::from([0; 3].map(|_| rng.range(-1.0, 1.0))) * by)
+                .collect();
+            Solid::from_convex(&ConvexPolyhedron::from_points(&corners).unwrap()).unwrap()
+        };
+        let (a, b) = (hull(1.0), hull(2.0));
+        let place = Pose::from_translation(DVec3::new(2.5, 1.5, 0.75)).unwrap();
+        let (a, b) = (a.at(place), b.at(Pose::IDENTITY));
+        let Ok(all) = FreeDirections::of(&a, &b, EXACT) else { continue };
+        all.verify().unwrap();
+        assert!(all.is_complete());
+        let corners: Vec<DVec3> = all.cells().flat_map(|cell| cell.corners).collect();
+        for k in 0..24 {
+            let any = DVec3::from([0; 3].map(|_| rng.range(-1.0, 1.0)));
+            let d = if k % 2 == 0 {
+                any
+            } else {
+                corners[rng.int(0, corners.len() as i64 - 1) as usize]
+            };
+            let free = is_free_of_all([a, b], d);
+            assert_eq!(all.says(d).unwrap() == Verdict::Free, free, "{count}: {d}");
+            judged[usize::from(free)] += 1;
+        }
+    }
+    assert!(judged[0] > 10 && judged[1] > 10, "{judged:?}");
+}
+
+#[test]
+fn the_largest_margin_is_in_the_middle() {
+    let (lid, table) =
+        (cuboid([-1.0, -1.0, 0.0], [1.0, 1.0, 1.0]), cuboid([-3.0, -2.0, -1.0], [2.0, 5.0, 0.0]));
+    let half = &free(&lid, &table, EXACT).regions()[0];
+    assert!(half.center.z > 0.999 && (half.margin - PI / 2.0).abs() < 0.05, "{half:?}");
+    let border: f64 = half.border.iter().map(|[a, b]| a.angle_between(*b)).sum();
+    assert!((border - TAU).abs() < 1e-9, "{border}");
+    let [bar, tube] = bar_in_tube();
+    let all = free(&bar, &tube, EXACT.with_tolerance(0.1));
+    for region in all.regions() {
+        // A square of directions: the margin is half its side.
+        assert!(region.center.x.abs() > 0.999_99, "{}", region.center);
+        let nearest = region.corners.iter().map(|c| c.normalize().distance(region.center));
+        let nearest = nearest.fold(f64::INFINITY, f64::min);
+        assert!(region.margin < nearest && region.margin > 0.69 * nearest, "{region:?}");
+    }
+    // All is free but what is beneath, seen as a square: the border is far on the other side.
+    let (high, small) = (cuboid([0.0, 0.0, 9.0], [1.0, 1.0, 10.0]), cuboid([0.0; 3], [1.0; 3]));
+    let most = &free(&high, &small, EXACT).regions()[0];
+    assert!(most.margin > 2.5 && most.center.z > 0.9, "{} {}", most.margin, most.center);
 }

@@ -1,5 +1,5 @@
 // The removal map of some parts: how far they can go in every direction, on a sphere that turns with
-// the view and is clicked into.
+// the view and is clicked into. What is free is drawn with its exact borders, if these are told.
 
 import { type Camera, Vector3 } from "three";
 import type { PageMap } from "../answers";
@@ -18,6 +18,10 @@ export interface RemovalMap extends Omit<PageMap, "directions" | "triangles"> {
 
 const SIZE = 300;
 const RADIUS = SIZE / 2 - 8;
+/** Sides are drawn in so many steps. */
+const SIDE = 6;
+
+const green = (dark: boolean) => (dark ? "#35d6a6" : "#12a37c");
 
 export class Sphere {
   readonly canvas = h("canvas", {
@@ -93,7 +97,7 @@ export class Sphere {
     for (let t = 0; t < triangles.length; t += 3) {
       const [a, b, c] = [triangles[t]!, triangles[t + 1]!, triangles[t + 2]!];
       if (flat[3 * a + 2]! + flat[3 * b + 2]! + flat[3 * c + 2]! < -0.1) continue;
-      context.fillStyle = context.strokeStyle = this.tint([a, b, c].map((k) => distances[k]!), colours.dark);
+      context.fillStyle = context.strokeStyle = this.tint([a, b, c].map((k) => distances[k]!), colours.dark, !!map.exactly);
       context.lineWidth = 0.6;
       context.beginPath();
       context.moveTo(flat[3 * a]!, flat[3 * a + 1]!);
@@ -103,6 +107,8 @@ export class Sphere {
       context.fill();
       context.stroke();
     }
+    context.fillStyle = context.strokeStyle = green(colours.dark);
+    for (const { pieces } of map.exactly?.regions ?? []) for (const corners of pieces) this.fill(context, corners);
     context.strokeStyle = colours.text;
     context.lineWidth = 1;
     context.beginPath();
@@ -116,6 +122,24 @@ export class Sphere {
       const at = this.place(d);
       if (at[2] > 0.05) context.fillText(name, at[0] + 3, at[1] - 3);
     }
+  }
+
+  /** A convex piece, as far as it is in front; its sides are parts of great circles. */
+  private fill(context: CanvasRenderingContext2D, corners: Vec[]) {
+    const outline = corners.flatMap((a, k) => {
+      const b = corners[(k + 1) % corners.length]!;
+      return Array.from({ length: SIDE }, (_, j) => this.place(unit(a.map((x, i) => x + ((b[i]! - x) * j) / SIDE) as Vec)));
+    });
+    if (outline.every(([, , z]) => z < 0)) return;
+    context.beginPath();
+    for (const [x, y, z] of outline) {
+      // What lies behind is on the rim.
+      const s = z < 0 ? RADIUS / (Math.hypot(x - SIZE / 2, y - SIZE / 2) || 1) : 1;
+      context.lineTo(SIZE / 2 + s * (x - SIZE / 2), SIZE / 2 + s * (y - SIZE / 2));
+    }
+    context.closePath();
+    context.fill();
+    context.stroke();
   }
 
   private place(d: Vec): Vec {
@@ -134,12 +158,12 @@ export class Sphere {
     context.globalAlpha = 1;
   }
 
-  /** Green where all corners are free; else the lighter, the farther, by lightness alone. */
-  private tint(far: number[], dark: boolean): string {
+  /** Green where all corners are free, if nothing better is known; else the lighter, the farther, by lightness alone. */
+  private tint(far: number[], dark: boolean, exact: boolean): string {
     const free = far.filter((x) => x === Infinity).length;
-    if (free === far.length) return dark ? "#35d6a6" : "#12a37c";
+    if (free === far.length && !exact) return green(dark);
     const blocked = far.filter(Number.isFinite);
-    const mean = blocked.reduce((sum, x) => sum + x, 0) / blocked.length;
+    const mean = blocked.length ? blocked.reduce((sum, x) => sum + x, 0) / blocked.length : this.farthest;
     const s = Math.sqrt(Math.min(1, mean / this.farthest));
     return `hsl(28 ${dark ? 30 : 45}% ${dark ? 18 + 40 * s : 34 + 48 * s}%)`;
   }

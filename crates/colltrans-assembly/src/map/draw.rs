@@ -1,5 +1,5 @@
 //! Removal maps as pictures, in Mollweide's projection: equal areas, the poles `+z` and `-z` at top and
-//! bottom, `+x` in the middle.
+//! bottom, `+x` in the middle. What is free is drawn from the cover, with its borders, if there is one.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt::Write;
@@ -7,7 +7,8 @@ use std::fmt::Write;
 use colltrans_picture::escaped;
 use glam::{DVec2, DVec3};
 
-use super::RemovalMap;
+use super::trace::{arcs, is_inside, outlines};
+use super::{Cover, RemovalMap};
 use crate::rooms::PartRoom;
 
 /// Colours of blocked directions, from stopped at once to stopped far away.
@@ -22,6 +23,8 @@ const BLOCKED: [[u8; 3]; 8] = [
     [211, 228, 243],
 ];
 const FREE: [u8; 3] = [246, 150, 40];
+const RIM: [u8; 3] = [140, 70, 0];
+const UNKNOWN: [u8; 3] = [120, 120, 120];
 const OVERLAP: [u8; 3] = [150, 60, 60];
 
 /// The direction at a place of the map, whose half-axes are 2 and 1; `None` outside.
@@ -37,7 +40,7 @@ fn direction(at: DVec2) -> Option<DVec3> {
 }
 
 /// Where a direction is on the map.
-fn place(d: DVec3) -> DVec2 {
+pub(super) fn place(d: DVec3) -> DVec2 {
     let latitude = d.z.clamp(-1.0, 1.0).asin();
     let longitude = d.y.atan2(d.x);
     let mut theta = latitude;
@@ -60,6 +63,8 @@ impl RemovalMap {
         let corners = self.sphere.triangles[t].corners;
         let nearest = weights.max_position();
         match self.rooms[corners[nearest] as usize] {
+            // What is free is drawn over it: here it goes as far as anything.
+            PartRoom::Free if self.cover.is_ok() => BLOCKED.len() - 1,
             PartRoom::Free => 8,
             PartRoom::Overlapping { .. } => 9,
             PartRoom::Blocked { stop, .. } => step(stop.distance() / self.size),
@@ -90,6 +95,8 @@ pub fn png(map: &RemovalMap, width: u32) -> Vec<u8> {
     let (width, height) = (width.max(16), width.max(16) / 2);
     let mut pixels = vec![0_u8; (width * height * 4) as usize];
     let marks: Vec<DVec2> = map.isolated.iter().map(|d| place(*d)).collect();
+    let over =
+        map.cover.as_ref().map_or_else(|_| Vec::new(), |cover| raster(cover, [width, height]));
     for row in 0..height {
         for column in 0..width {
             let at = DVec2::new(
@@ -101,7 +108,10 @@ pub fn png(map: &RemovalMap, width: u32) -> Vec<u8> {
             let rgb = match near {
                 r if r < 0.02 => [255, 255, 255],
                 r if r < 0.03 => [20, 20, 20],
-                _ => color(map.class(d)),
+                _ => {
+                    let known = over.get((row * width + column) as usize).copied().flatten();
+                    known.unwrap_or_else(|| color(map.class(d)))
+                }
             };
             let first = ((row * width + column) * 4) as usize;
             pixels[first..first + 3].copy_from_slice(&rgb);
@@ -117,6 +127,37 @@ pub fn png(map: &RemovalMap, width: u32) -> Vec<u8> {
         let _ = writer.write_image_data(&pixels);
     }
     bytes
+}
+
+/// What a cover has at each pixel: free, or not known, which is striped.
+fn raster(cover: &Cover, [width, height]: [u32; 2]) -> Vec<Option<[u8; 3]>> {
+    let mut pixels = vec![None; (width * height) as usize];
+    let scale = f64::from(width) / 4.0;
+    let mut fill = |corners: &[DVec3], paint: &dyn Fn(u32) -> Option<[u8; 3]>| {
+        for outline in outlines(corners) {
+            let start = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+            let around = |(low, high): (DVec2, DVec2), p: &DVec2| (low.min(*p), high.max(*p));
+            let (low, high) = outline.iter().fold(start, around);
+            let [first, last] = [(low.x + 2.0) * scale, (high.x + 2.0) * scale];
+            let [top, bottom] = [(1.0 - high.y) * scale, (1.0 - low.y) * scale];
+            for row in top.max(0.0) as u32..(bottom.ceil() as u32).min(height) {
+                for column in first.max(0.0) as u32..(last.ceil() as u32).min(width) {
+                    let at = DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5) / scale;
+                    if is_inside(&outline, DVec2::new(at.x - 2.0, 1.0 - at.y)) {
+                        let pixel = &mut pixels[(row * width + column) as usize];
+                        *pixel = paint(row + column).or(*pixel);
+                    }
+                }
+            }
+        }
+    };
+    for region in &cover.regions {
+        region.pieces.iter().for_each(|piece| fill(&piece.corners, &|_| Some(FREE)));
+    }
+    for cell in &cover.undecided {
+        fill(cell, &|at| (at % 8 < 4).then_some(UNKNOWN));
+    }
+    pixels
 }
 
 /// Cells of the map, from left to right.
@@ -135,6 +176,9 @@ pub fn svg(map: &RemovalMap, title: &str) -> String {
     );
     for (class, path) in runs(map).into_iter().enumerate().filter(|(_, path)| !path.is_empty()) {
         let _ = writeln!(text, "<path fill=\"{}\" d=\"{path}\"/>", hex(color(class)));
+    }
+    if let Ok(cover) = &map.cover {
+        exactly(&mut text, cover);
     }
     let _ = writeln!(
         text,
@@ -162,6 +206,60 @@ pub fn svg(map: &RemovalMap, title: &str) -> String {
     );
     text
 }
+
+/// Closed or open lines in the picture.
+fn lines(parts: &[Vec<DVec2>], close: bool) -> String {
+    let mut path = String::new();
+    for part in parts {
+        for (k, at) in part.iter().map(|at| in_picture(*at)).enumerate() {
+            let _ = write!(path, "{}{:.2} {:.2}", if k == 0 { "M" } else { "L" }, at.x, at.y);
+        }
+        path += if close { "z" } else { "" };
+    }
+    path
+}
+
+/// What a cover has: regions with their borders and centres, arcs, and what is not known, hatched.
+fn exactly(text: &mut String, cover: &Cover) {
+    let rgb = hex(FREE);
+    for region in &cover.regions {
+        let pieces: String =
+            region.pieces.iter().map(|piece| lines(&outlines(&piece.corners), true)).collect();
+        let border: String =
+            region.border.iter().map(|[a, b]| lines(&arcs(*a, *b), false)).collect();
+        let _ = writeln!(
+            text,
+            "<path fill=\"{rgb}\" stroke=\"{rgb}\" stroke-width=\"0.4\" d=\"{pieces}\"/>\n\
+             <path fill=\"none\" stroke=\"{}\" d=\"{border}\"/>",
+            hex(RIM)
+        );
+    }
+    let alone: String = cover.arcs.iter().map(|[a, b]| lines(&arcs(*a, *b), false)).collect();
+    if !alone.is_empty() {
+        let _ = writeln!(
+            text,
+            "<path fill=\"none\" stroke=\"{rgb}\" stroke-width=\"3\" d=\"{alone}\"/>"
+        );
+    }
+    let unknown: String = cover.undecided.iter().map(|cell| lines(&outlines(cell), true)).collect();
+    if !unknown.is_empty() {
+        text.push_str(HATCH);
+        let _ = writeln!(text, "<path fill=\"url(#unknown)\" d=\"{unknown}\"/>");
+    }
+    let cross = |at: DVec2| {
+        let (x, y) = (at.x, at.y);
+        format!("M{:.1} {y:.1}h8M{x:.1} {:.1}v8", x - 4.0, y - 4.0)
+    };
+    let centers: String =
+        cover.regions.iter().map(|region| cross(in_picture(place(region.center)))).collect();
+    if !centers.is_empty() {
+        let _ = writeln!(text, "<path fill=\"none\" stroke=\"#111\" d=\"{centers}\"/>");
+    }
+}
+
+const HATCH: &str = "<defs><pattern id=\"unknown\" width=\"5\" height=\"5\" \
+     patternUnits=\"userSpaceOnUse\" patternTransform=\"rotate(45)\">\
+     <rect width=\"2.5\" height=\"5\" fill=\"#787878\"/></pattern></defs>\n";
 
 fn in_picture(at: DVec2) -> DVec2 {
     MIDDLE + DVec2::new(at.x, -at.y) * SCALE
@@ -267,9 +365,29 @@ fn legend(text: &mut String, map: &RemovalMap) {
         entry(k as usize, &name, 58.0);
     }
     entry(9, "overlapping", 60.0);
-    text.push_str(
-        "<text x=\"40\" y=\"434\" font-size=\"11\" fill=\"#555\">blocked after, from</text>\n",
+    let told = match &map.cover {
+        Ok(cover) => format!(
+            "free: {} % of all directions, exactly; a cross is the direction farthest from the border. \
+             {}",
+            percent(cover.free_share()),
+            match cover.undecided_share() {
+                0.0 => "Nothing is undecided".to_owned(),
+                share => format!("Undecided, hatched: {} %", percent(share)),
+            }
+        ),
+        Err(_) => "free: as sampled, without a proof".to_owned(),
+    };
+    let _ = writeln!(
+        text,
+        "<text x=\"40\" y=\"434\" font-size=\"11\" fill=\"#555\">blocked after, from</text>\n\
+         <text x=\"680\" y=\"434\" font-size=\"11\" fill=\"#555\" text-anchor=\"end\">{told}</text>"
     );
+}
+
+/// A share as a percentage, small ones by their exponent.
+fn percent(share: f64) -> String {
+    let x = 100.0 * share;
+    if x == 0.0 || x >= 1e-3 { rounded(x) } else { format!("{x:.2e}") }
 }
 
 /// Three digits.

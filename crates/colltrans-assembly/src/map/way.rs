@@ -1,5 +1,8 @@
 //! A way out for what is loose, where no sample of the sphere is one.
 //!
+//! Of closed parts that meet by rule all directions are known: the way out is the direction of the free regions that is
+//! farthest from a border. Of others, and where not all is decided, samples are refined.
+//!
 //! The triangles of the sphere are cut where outcomes change: where other parts are in the way at
 //! their corners, or at other distances. First those that are wide and reach far: a gap that leads out
 //! is a place between two obstacles, and what goes there goes far before it is stopped.
@@ -7,6 +10,9 @@
 //! What is held closely is found to be so without its rooms: along each sample one contact that is
 //! near enough will do, and mostly it is of facets that met before ([`Witnesses`]).
 
+use std::sync::atomic::AtomicBool;
+
+use colltrans::free::FreeOptions;
 use colltrans::solid::Workspace;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -14,6 +20,7 @@ use rayon::prelude::*;
 use super::{MapOptions, Mapper};
 use crate::bodies::{Bodies, Room};
 use crate::error::AssemblyError;
+use crate::free::Removal;
 use crate::rooms::PartRoom;
 use crate::watch::Watch;
 use crate::witness::Witnesses;
@@ -31,8 +38,12 @@ const ROUNDS: usize = 8;
 /// Triangles are cut down to this width, in radians.
 const NARROWEST: f64 = 0.01;
 
-/// A direction in which a group is free of `others`; `None` if there is none among those looked at,
-/// some 2,000 at most, or if the group is held too closely for a look, or for one more.
+/// Pairs of boxes that are looked at for all directions, at most.
+const LOOKS: u64 = 2_000_000;
+
+/// A direction in which a group is free of `others`. `None` if there is none that can be seen; of what is not decided
+/// exactly, if there is none among those looked at, some 2,000 at most, or if the group is held too closely for a
+/// look, or for one more.
 pub(crate) fn way_out(
     bodies: &Bodies,
     group: &[usize],
@@ -40,6 +51,9 @@ pub(crate) fn way_out(
     options: MapOptions,
     watch: Watch,
 ) -> Result<Option<DVec3>, AssemblyError> {
+    if let Some(exact) = exactly(bodies, group, others, options, watch)? {
+        return Ok(exact);
+    }
     let mut mapper = Mapper::new(bodies, group, others.to_vec(), options, watch);
     let bounds = group.iter().map(|&k| bodies.bounds(k)).reduce(|a, b| a.join(&b));
     let size = bounds.map_or(0.0, |b| (b.high - b.low).max_element());
@@ -63,6 +77,32 @@ pub(crate) fn way_out(
     }
     let free = mapper.rooms.iter().position(PartRoom::is_free);
     Ok(free.map(|k| mapper.sphere.directions[k]))
+}
+
+/// The direction farthest from the borders of what is free, or that none is; nothing of what is not decided.
+#[expect(clippy::option_option, reason = "none at all, or not known")]
+fn exactly(
+    bodies: &Bodies,
+    group: &[usize],
+    others: &[bool],
+    options: MapOptions,
+    watch: Watch,
+) -> Result<Option<Option<DVec3>>, AssemblyError> {
+    let others: Vec<usize> =
+        (0..bodies.len()).filter(|k| others[*k] && !group.contains(k)).collect();
+    let Ok(removal) = Removal::among(bodies, group, &others) else { return Ok(None) };
+    let never = AtomicBool::new(false);
+    let asked = FreeOptions::DEFAULT.with_looks(LOOKS).with_start_overlap(options.start);
+    let free = match removal.directions(asked, watch.flag().unwrap_or(&never)) {
+        Err(AssemblyError::Cancelled) => return Err(AssemblyError::Cancelled),
+        Err(_) => return Ok(None),
+        Ok(free) => free,
+    };
+    let widest = free.regions().into_iter().max_by(|a, b| a.margin.total_cmp(&b.margin));
+    match widest {
+        Some(region) => Ok(Some(Some(region.center))),
+        None => Ok(free.is_complete().then_some(None)),
+    }
 }
 
 impl Mapper<'_> {

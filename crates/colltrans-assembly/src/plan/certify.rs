@@ -1,12 +1,12 @@
 //! That nothing comes apart along *any* direction: a proof over the whole sphere.
 //!
-//! The sphere is cut into cells. In a cell, one part blocks another all over it if one pair of their facets blocks the
-//! whole cell, which is decided exactly. If such arcs make one component, no group leaves along any direction of the
-//! cell; with parts that are fixed, if every component that no arc leaves has one of them. Arcs of a cell hold in its
-//! quarters. As in [`loose`](super::loose) arcs are asked as needed: out of components that none leaves, towards
+//! The sphere is cut into cells. In a cell, one part blocks another all over it if one pair of their facets, or of boxes
+//! inside them, blocks the whole cell, which is decided exactly. If such arcs make one component, no group leaves along
+//! any direction of the cell; with parts that are fixed, if every component that no arc leaves has one of them. Arcs of
+//! a cell hold in its quarters. As in [`loose`](super::loose) arcs are asked as needed: out of components that none leaves, towards
 //! parts that are ahead of the middle of the cell.
 
-use std::collections::{HashMap, VecDeque};
+use std::collections::HashMap;
 
 use colltrans::free::{CellBlocker, DirectionCell};
 use colltrans::solid::StartOverlap;
@@ -25,9 +25,6 @@ const MOST_CELLS: usize = 20_000;
 const MOST_PARTS: usize = 40;
 /// Of cells that are not proven, so many middles are handed back.
 const MOST_OPEN: usize = 48;
-
-/// Pairs of facets that are tried first for two parts, at most.
-const MOST_SEEN: usize = 8;
 
 /// What came of a proof.
 pub(super) enum Proof {
@@ -51,26 +48,7 @@ struct Certifier<'a> {
     parts: &'a [usize],
     among: Vec<bool>,
     /// `None` of parts that cannot be asked.
-    blockers: HashMap<[usize; 2], Option<Blocker<'a>>>,
-}
-
-/// What one part blocks of another, and the facets that blocked cells before, the last ones first.
-struct Blocker<'a> {
-    of: CellBlocker<'a>,
-    seen: VecDeque<[u32; 2]>,
-}
-
-impl Blocker<'_> {
-    fn covers(&mut self, cell: &DirectionCell) -> bool {
-        if let Some(k) = self.seen.iter().position(|&pair| self.of.blocks(cell, pair)) {
-            self.seen.swap(0, k);
-            return true;
-        }
-        let Some(pair) = self.of.covering(cell) else { return false };
-        self.seen.push_front(pair);
-        self.seen.truncate(MOST_SEEN);
-        true
-    }
+    blockers: HashMap<[usize; 2], Option<CellBlocker<'a>>>,
 }
 
 /// Tries to prove that no group of these parts leaves the others along any direction.
@@ -167,10 +145,9 @@ impl<'a> Certifier<'a> {
         None
     }
 
-    fn blocker(&mut self, pair: [usize; 2]) -> Option<&mut Blocker<'a>> {
+    fn blocker(&mut self, pair: [usize; 2]) -> Option<&mut CellBlocker<'a>> {
         let bodies = self.bodies;
-        let blocker = || Some(Blocker { of: bodies.cell_blocker(pair)?, seen: VecDeque::new() });
-        self.blockers.entry(pair).or_insert_with(blocker).as_mut()
+        self.blockers.entry(pair).or_insert_with(|| bodies.cell_blocker(pair)).as_mut()
     }
 
     fn is_any_fixed(&self, parts: &[usize]) -> bool {

@@ -275,7 +275,17 @@ fn map_section(map: &map::RemovalMap, name: &str) -> Markup {
     html! {
         h2 { (title) }
         figure style="max-width:52em" { (picture(map::svg(map, &title))) }
-        p { (format!("{:.2}", 100.0 * map.free_share())) " % of all directions are free." }
+        @match &map.cover {
+            Ok(cover) => {
+                p {
+                    (share(cover.free_share())) " of all directions are free, which is proven; of "
+                    (share(cover.undecided_share())) " nothing is known."
+                }
+            }
+            Err(why) => {
+                p { (share(map.free_share())) " of the directions sampled are free: " (why) "." }
+            }
+        }
         @for region in map.regions.iter().take(8) {
             p {
                 "A free region of " (short(region.solid_angle)) " steradians around "
@@ -284,6 +294,11 @@ fn map_section(map: &map::RemovalMap, name: &str) -> Markup {
         }
         @for d in &map.isolated { p { "An isolated free direction: " (arrow(*d)) "." } }
     }
+}
+
+/// A share as a percentage.
+fn share(share: f64) -> String {
+    format!("{} %", short(100.0 * share))
 }
 
 /// Zero instead of what rounding has left of it.

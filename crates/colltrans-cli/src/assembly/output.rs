@@ -164,14 +164,22 @@ fn summary(f: &Findings) -> String {
     }
     for (name, map) in f.maps {
         let share = 100.0 * map.free_share();
-        let _ = writeln!(
-            text,
-            "map of {}\n  {share:.3} % of all directions are free, in {} regions; {} isolated \
-             free directions",
-            shown(name),
-            map.regions.len(),
-            map.isolated.len()
-        );
+        let (regions, isolated) = (map.regions.len(), map.isolated.len());
+        let _ = writeln!(text, "map of {}", shown(name));
+        let _ = match &map.cover {
+            Ok(cover) => writeln!(
+                text,
+                "  {share:.6} % of all directions are free, proven, in {regions} regions; {isolated} \
+                 isolated free directions; undecided {:.2e} %",
+                100.0 * cover.undecided_share()
+            ),
+            Err(why) => writeln!(
+                text,
+                "  {share:.3} % of all directions are free as sampled, in {regions} regions; \
+                 {isolated} isolated free directions\n  sampled, as {}",
+                shown(why)
+            ),
+        };
     }
     text
 }

@@ -1,4 +1,4 @@
-//! Whole cells of directions that one pair of facets blocks: for proofs about many bodies at once.
+//! Whole cells of directions that one pair of facets, or of boxes inside, blocks: for proofs about many bodies at once.
 
 use glam::DVec3;
 
@@ -8,7 +8,7 @@ use super::cell::Cell;
 use super::error::FreeError;
 use super::options::FreeOptions;
 use super::proof::{Fate, holds, names_exist};
-use super::search::Search;
+use super::search::{Memory, Search};
 use crate::body::Placed;
 use crate::body::solid::AsSolid;
 
@@ -43,6 +43,7 @@ impl DirectionCell {
 pub struct CellBlocker<'a> {
     bodies: Bodies<'a>,
     options: FreeOptions,
+    memory: Memory,
 }
 
 impl<'a> CellBlocker<'a> {
@@ -56,7 +57,13 @@ impl<'a> CellBlocker<'a> {
         options: FreeOptions,
     ) -> Result<Self, FreeError> {
         let (_, bodies) = setting(moving, fixed, &options)?;
-        Ok(Self { bodies, options })
+        Ok(Self { bodies, options, memory: Memory::default() })
+    }
+
+    /// Whether all directions of a cell are blocked, exactly, by a pair of facets or of boxes inside the bodies that is
+    /// found soon: by those of cells asked about before, first.
+    pub fn covers(&mut self, cell: &DirectionCell) -> bool {
+        Search::covers(&self.bodies, self.options, &cell.0, &mut self.memory)
     }
 
     /// Whether a pair of facets blocks all directions of a cell, exactly; not if there are no such facets.

@@ -13,16 +13,27 @@ use super::answer::FreePiece;
 const BESIDE: f64 = 1e-12;
 /// Borders that turn by less, in radians, have no corner.
 const TURN: f64 = 1e-6;
+/// Parts of a side that are shorter than this share of it are nothing.
+const PART: f64 = 1e-9;
+/// Pieces whose middles are tried for the direction farthest from a border; steps from there, and how short these get
+/// against the angle to the border.
+const MIDDLES: usize = 32;
+const STEPS: usize = 60;
+const FINEST: f64 = 1e-3;
 
 /// A connected region of free directions, borders included.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FreeRegion {
-    /// A free direction of it, of length 1, away from its borders where it is convex.
+    /// A free direction of it, of length 1, nearly the farthest from its border.
     pub center: DVec3,
+    /// The angle between that and the border, in radians; `PI` if there is none.
+    pub margin: f64,
     /// Where its border turns, by more than a millionth of a right angle: directions with a largest component of 1 (or
     /// -1), exact but for their last roundings, in no order.
     pub corners: Vec<DVec3>,
+    /// Arcs that together are its border, by their ends, in no order.
+    pub border: Vec<[DVec3; 2]>,
     /// Its solid angle.
     pub area: f64,
     /// Convex pieces that together are it.
@@ -78,9 +89,98 @@ fn region(
     }
     let area = own.iter().map(|piece| piece.area).sum();
     let mean: DVec3 = own.iter().map(|piece| center(piece) * piece.area).sum();
-    let largest = own.iter().max_by(|a, b| a.area.total_cmp(&b.area)).map_or(DVec3::Z, center);
+    let border: Vec<[DVec3; 2]> =
+        members.iter().flat_map(|&at| outer_sides(pieces, at, &touching[at])).collect();
     let inside = mean.try_normalize().filter(|d| is_free(*d));
-    FreeRegion { center: inside.unwrap_or(largest), corners, area, pieces: own }
+    let (center, margin) = farthest(&border, inside.into_iter().chain(middles(&own)));
+    FreeRegion { center, margin, corners, border, area, pieces: own }
+}
+
+/// The middles of the largest pieces.
+fn middles(pieces: &[FreePiece]) -> impl Iterator<Item = DVec3> {
+    let mut order: Vec<&FreePiece> = pieces.iter().collect();
+    order.sort_by(|a, b| b.area.total_cmp(&a.area));
+    order.into_iter().take(MIDDLES).map(center)
+}
+
+/// What other pieces leave of the sides of one.
+fn outer_sides(pieces: &[FreePiece], at: usize, touching: &[usize]) -> Vec<[DVec3; 2]> {
+    let piece = &pieces[at];
+    let mut found = Vec::new();
+    for k in 0..piece.corners.len() {
+        let (a, b) = (piece.corners[k], piece.corners[(k + 1) % piece.corners.len()]);
+        let (form, way) = (side(piece, k), b - a);
+        let along = |c: DVec3| (c - a).dot(way) / way.length_squared();
+        let mut shared: Vec<[f64; 2]> = Vec::new();
+        for other in touching.iter().map(|&other| &pieces[other]) {
+            for (j, &c) in other.corners.iter().enumerate() {
+                let d = other.corners[(j + 1) % other.corners.len()];
+                if form.dot(c).abs() < BESIDE && form.dot(d).abs() < BESIDE {
+                    let (s, t) = (along(c), along(d));
+                    shared.push([s.min(t), s.max(t)]);
+                }
+            }
+        }
+        shared.sort_by(|x, y| x[0].total_cmp(&y[0]));
+        let mut from = 0.0_f64;
+        for [low, high] in shared.into_iter().chain([[1.0, 1.0]]) {
+            if low.min(1.0) - from > PART {
+                found.push([a + way * from, a + way * low.min(1.0)]);
+            }
+            from = from.max(high);
+        }
+    }
+    found
+}
+
+/// A direction inside a border, nearly the farthest from it, from some to begin with, and how far it is.
+fn farthest(border: &[[DVec3; 2]], inside: impl Iterator<Item = DVec3>) -> (DVec3, f64) {
+    let sides: Vec<Side> = border.iter().map(Side::new).collect();
+    let margin = |d: DVec3| sides.iter().map(|side| side.angle(d)).fold(PI, f64::min);
+    let starts = inside.map(|d| (d, margin(d)));
+    let Some(mut best) = starts.max_by(|a, b| a.1.total_cmp(&b.1)) else { return (DVec3::Z, 0.0) };
+    // Whatever is nearer than the border is inside.
+    let mut step = best.1 / 2.0;
+    for _ in 0..STEPS {
+        let (u, v) = best.0.any_orthonormal_pair();
+        let around = [u, u + v, v, v - u, -u, -u - v, -v, u - v];
+        let moved = around.map(|way| (best.0 + way.normalize() * step).normalize());
+        let next = moved.map(|d| (d, margin(d))).into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
+        match next {
+            Some(next) if next.1 > best.1 => best = next,
+            _ => step /= 2.0,
+        }
+        if step < FINEST * best.1 {
+            break;
+        }
+    }
+    best
+}
+
+/// A side of a border, to be measured from.
+struct Side {
+    ends: [DVec3; 2],
+    /// Across it, and from each end along it.
+    across: DVec3,
+    along: [DVec3; 2],
+}
+
+impl Side {
+    fn new([a, b]: &[DVec3; 2]) -> Self {
+        let across = a.cross(b - a).normalize_or_zero();
+        let ends = [a.normalize(), b.normalize()];
+        Self { ends, across, along: [across.cross(ends[0]), ends[1].cross(across)] }
+    }
+
+    /// The angle between it and a direction of length 1.
+    fn angle(&self, d: DVec3) -> f64 {
+        if self.along.iter().all(|along| along.dot(d) >= 0.0) {
+            let sine = self.across.dot(d - self.ends[0]).abs();
+            return sine.atan2((1.0 - sine * sine).max(0.0).sqrt());
+        }
+        let chord = self.ends.map(|end| end.distance(d)).into_iter().fold(2.0, f64::min) / 2.0;
+        2.0 * chord.atan2((1.0 - chord * chord).max(0.0).sqrt())
+    }
 }
 
 /// The middle of a piece, of length 1.

@@ -46,6 +46,8 @@ const HIT_LOOKS: usize = 10 * LOOKS;
 const GROWN: usize = 400;
 const GROWTH: u64 = 4_000;
 const SEEN: usize = 24;
+/// Cones that are tried again of cells that are asked about alone.
+const KNOWN: usize = 8;
 /// Pieces that a cell may be cut into.
 pub(super) const PIECES: usize = 64;
 
@@ -75,13 +77,14 @@ enum Decided {
     Open(Vec<u32>),
 }
 
-pub(super) struct Search<'s, 'a> {
-    bodies: &'s Bodies<'a>,
-    options: FreeOptions,
-    cancel: Option<&'s AtomicBool>,
+/// What is found on the way.
+#[derive(Default)]
+pub(super) struct Memory {
     cones: Vec<Cone>,
     known: HashMap<Pair, u32>,
     inner: Inner,
+    /// Cones that have covered a cell that was asked about alone, the last ones first.
+    covering: VecDeque<u32>,
     looks: u64,
 }
 
@@ -95,21 +98,20 @@ struct Inner {
     seen: VecDeque<Pair>,
 }
 
+pub(super) struct Search<'s, 'a> {
+    bodies: &'s Bodies<'a>,
+    options: FreeOptions,
+    cancel: Option<&'s AtomicBool>,
+    memory: Memory,
+}
+
 impl<'s, 'a> Search<'s, 'a> {
     pub(super) fn new(
         bodies: &'s Bodies<'a>,
         options: FreeOptions,
         cancel: Option<&'s AtomicBool>,
     ) -> Self {
-        Self {
-            bodies,
-            options,
-            cancel,
-            cones: Vec::new(),
-            known: HashMap::new(),
-            inner: Inner::default(),
-            looks: 0,
-        }
+        Self { bodies, options, cancel, memory: Memory::default() }
     }
 
     /// Decides all cells; `None` if it was cancelled.
@@ -121,7 +123,7 @@ impl<'s, 'a> Search<'s, 'a> {
             if self.cancel.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
                 return None;
             }
-            if self.looks >= self.options.looks {
+            if self.memory.looks >= self.options.looks {
                 fates[task.at] = Fate::Undecided(self.pairs(&task.witnesses));
                 continue;
             }
@@ -133,8 +135,8 @@ impl<'s, 'a> Search<'s, 'a> {
                 Decided::Open(witnesses) => self.cut(&task, &witnesses, &mut fates, &mut tasks),
             }
         }
-        let boxes = named(&mut fates, &self.inner.boxes);
-        Some(Found { fates, boxes, looks: self.looks })
+        let boxes = named(&mut fates, &self.memory.inner.boxes);
+        Some(Found { fates, boxes, looks: self.memory.looks })
     }
 
     /// Cuts a cell in four.
@@ -144,7 +146,8 @@ impl<'s, 'a> Search<'s, 'a> {
         let corners = task.cell.corners();
         let mut witnesses = cones.to_vec();
         let old = task.witnesses.iter().filter(|w| !cones.contains(w));
-        witnesses.extend(old.filter(|w| !self.cones[**w as usize].misses(self.bodies, &corners)));
+        witnesses
+            .extend(old.filter(|w| !self.memory.cones[**w as usize].misses(self.bodies, &corners)));
         witnesses.truncate(WITNESSES.max(cones.len()));
         for k in 0..4 {
             fates.push(Fate::UNKNOWN);
@@ -154,25 +157,64 @@ impl<'s, 'a> Search<'s, 'a> {
     }
 
     fn pairs(&self, cones: &[u32]) -> Vec<Pair> {
-        cones.iter().map(|k| self.cones[*k as usize].pair).collect()
+        cones.iter().map(|k| self.memory.cones[*k as usize].pair).collect()
     }
 
     /// A pair of facets that blocks all of a cell, if one is found soon.
     pub(super) fn covering_pair(mut self, cell: &Cell) -> Option<Pair> {
         let mut pairs = vec![[0, 0]];
         self.refine(&mut pairs, cell);
-        if pairs.is_empty() {
-            return None;
+        self.covering_one(&pairs, cell).map(|k| self.memory.cones[k as usize].pair)
+    }
+
+    fn covering_one(&mut self, pairs: &[Pair], cell: &Cell) -> Option<u32> {
+        [false, true].into_iter().find_map(|aside| self.covering(pairs, cell, aside))
+    }
+
+    /// Whether a pair of facets, or of boxes inside, blocks all of a cell, if one is found soon; with what is known
+    /// from cells before, and what is known after.
+    pub(super) fn covers(
+        bodies: &Bodies,
+        options: FreeOptions,
+        cell: &Cell,
+        memory: &mut Memory,
+    ) -> bool {
+        let mut search = Search { bodies, options, cancel: None, memory: std::mem::take(memory) };
+        let found = search.is_covered(cell);
+        *memory = search.memory;
+        found
+    }
+
+    fn is_covered(&mut self, cell: &Cell) -> bool {
+        let corners = cell.corners();
+        let Memory { cones, covering, .. } = &mut self.memory;
+        let covers = |k: &u32| cones[*k as usize].covers(self.bodies, &corners);
+        if let Some(known) = covering.iter().position(covers) {
+            covering.swap(0, known);
+            return true;
         }
-        let found = [false, true].into_iter().find_map(|aside| self.covering(&pairs, cell, aside));
-        found.map(|k| self.cones[k as usize].pair)
+        if self.seen_boxes(&corners).is_some() {
+            return true;
+        }
+        let mut pairs = vec![[0, 0]];
+        self.refine(&mut pairs, cell);
+        if pairs.is_empty() {
+            return false;
+        }
+        if let Some(k) = self.covering_one(&pairs, cell) {
+            self.memory.covering.push_front(k);
+            self.memory.covering.truncate(KNOWN);
+            return true;
+        }
+        let task = Task { at: 0, cell: *cell, pairs, witnesses: Vec::new() };
+        self.boxes(&task, &[]).is_some()
     }
 
     fn decide(&mut self, task: &mut Task) -> Decided {
         let (cell, corners) = (task.cell, task.cell.corners());
-        let covers = |k: &&u32| self.cones[**k as usize].covers(self.bodies, &corners);
+        let covers = |k: &&u32| self.memory.cones[**k as usize].covers(self.bodies, &corners);
         if let Some(&k) = task.witnesses.iter().find(covers) {
-            return Decided::Fate(Fate::Blocked(self.cones[k as usize].pair));
+            return Decided::Fate(Fate::Blocked(self.memory.cones[k as usize].pair));
         }
         self.refine(&mut task.pairs, &cell);
         if task.pairs.is_empty() {
@@ -181,10 +223,8 @@ impl<'s, 'a> Search<'s, 'a> {
         if let Some(pair) = self.seen_boxes(&corners) {
             return Decided::Fate(Fate::Inner(pair));
         }
-        for aside in [false, true] {
-            if let Some(k) = self.covering(&task.pairs, &cell, aside) {
-                return Decided::Fate(Fate::Blocked(self.cones[k as usize].pair));
-            }
+        if let Some(k) = self.covering_one(&task.pairs, &cell) {
+            return Decided::Fate(Fate::Blocked(self.memory.cones[k as usize].pair));
         }
         let decided = self.resolve(task);
         match decided {
@@ -198,7 +238,7 @@ impl<'s, 'a> Search<'s, 'a> {
 
     /// A pair of boxes that has blocked a cell before and blocks this one.
     fn seen_boxes(&mut self, corners: &[DVec3; 4]) -> Option<Pair> {
-        let Inner { boxes, seen, .. } = &mut self.inner;
+        let Inner { boxes, seen, .. } = &mut self.memory.inner;
         let found = seen
             .iter()
             .position(|&[a, b]| cover([&boxes[0][a as usize], &boxes[1][b as usize]], corners))?;
@@ -213,26 +253,26 @@ impl<'s, 'a> Search<'s, 'a> {
             return None;
         }
         let (cell, d) = (task.cell, task.cell.side.direction(task.cell.center()));
-        let known = cones.iter().find(|k| self.cones[**k as usize].holds(self.bodies, d));
+        let known = cones.iter().find(|k| self.memory.cones[**k as usize].holds(self.bodies, d));
         let hit = match known {
             Some(k) => Some(*k),
             None => self.blocking(&task.pairs, &cell, cell.center(), HIT_LOOKS).flatten(),
         };
-        let pair = self.cones[hit? as usize].pair;
+        let pair = self.memory.cones[hit? as usize].pair;
         let [moving, fixed] = self.behind(pair, d);
         let corners = cell.corners();
         let found = moving.flat_map(|a| fixed.clone().map(move |b| [a, b])).find(|&[a, b]| {
-            let [p, q] = &self.inner.boxes;
+            let [p, q] = &self.memory.inner.boxes;
             cover([&p[a as usize], &q[b as usize]], &corners)
         })?;
-        self.inner.seen.push_front(found);
-        self.inner.seen.truncate(SEEN);
+        self.memory.inner.seen.push_front(found);
+        self.memory.inner.seen.truncate(SEEN);
         Some(found)
     }
 
     /// The boxes behind the places where two facets meet, grown when first asked for.
     fn behind(&mut self, pair: Pair, d: DVec3) -> [Range<u32>; 2] {
-        let Inner { boxes, behind, .. } = &mut self.inner;
+        let Inner { boxes, behind, .. } = &mut self.memory.inner;
         if let Some(found) = behind.get(&pair) {
             return found.clone();
         }
@@ -242,7 +282,7 @@ impl<'s, 'a> Search<'s, 'a> {
             for (boxes, grown) in boxes.iter_mut().zip(grown) {
                 boxes.extend(grown);
             }
-            self.looks += GROWTH;
+            self.memory.looks += GROWTH;
         }
         let found = [0, 1].map(|k| first[k] as u32..boxes[k].len() as u32);
         behind.insert(pair, found.clone());
@@ -251,7 +291,7 @@ impl<'s, 'a> Search<'s, 'a> {
 
     /// Whether a pair of views blocks none of the directions.
     fn misses(&mut self, [a, b]: Pair, window: &Window) -> bool {
-        self.looks += 1;
+        self.memory.looks += 1;
         let [p, q] = &self.bodies.views;
         window.is_missed(self.bodies, &p[a as usize], &q[b as usize])
     }
@@ -275,11 +315,11 @@ impl<'s, 'a> Search<'s, 'a> {
     /// The number of the cone of two facets.
     fn cone(&mut self, [a, b]: Pair) -> u32 {
         let pair = [self.bodies.triangle(true, a), self.bodies.triangle(false, b)];
-        let next = self.cones.len() as u32;
-        let number = *self.known.entry(pair).or_insert(next);
+        let next = self.memory.cones.len() as u32;
+        let number = *self.memory.known.entry(pair).or_insert(next);
         if number == next {
-            self.looks += 16;
-            self.cones.push(Cone::new(self.bodies, pair));
+            self.memory.looks += 16;
+            self.memory.cones.push(Cone::new(self.bodies, pair));
         }
         number
     }
@@ -294,7 +334,7 @@ impl<'s, 'a> Search<'s, 'a> {
             }
             if self.is_leaf(pair) {
                 let k = self.cone(pair);
-                if !self.cones[k as usize].misses(self.bodies, &corners) {
+                if !self.memory.cones[k as usize].misses(self.bodies, &corners) {
                     pairs.push(pair);
                 }
                 continue;
@@ -338,7 +378,7 @@ impl<'s, 'a> Search<'s, 'a> {
         let d = cell.side.direction(cell.center());
         let hits = |search: &mut Self, pair| !windows.iter().any(|w| search.misses(pair, w));
         let judge = |search: &Self, k: u32| {
-            search.cones[k as usize].covers(search.bodies, &corners).then_some(k)
+            search.memory.cones[k as usize].covers(search.bodies, &corners).then_some(k)
         };
         let key = |search: &Self, pair| search.key(pair, d, aside);
         self.best_first(pairs, LOOKS, key, hits, judge)?
@@ -355,8 +395,9 @@ impl<'s, 'a> Search<'s, 'a> {
     ) -> Option<Option<u32>> {
         let (window, d) = (Window::at(cell.side, place), cell.side.direction(place));
         let hits = |search: &mut Self, pair| !search.misses(pair, &window);
-        let judge =
-            |search: &Self, k: u32| search.cones[k as usize].holds(search.bodies, d).then_some(k);
+        let judge = |search: &Self, k: u32| {
+            search.memory.cones[k as usize].holds(search.bodies, d).then_some(k)
+        };
         self.best_first(pairs, looks, |search, pair| search.key(pair, d, false), hits, judge)
     }
 
@@ -414,7 +455,7 @@ impl<'s, 'a> Search<'s, 'a> {
             let Some(place) = widest.map(super::rest::Piece::center) else { return Ok(true) };
             match self.blocking(&task.pairs, &task.cell, place, LOOKS) {
                 Some(Some(k)) => {
-                    let cone = &self.cones[k as usize];
+                    let cone = &self.memory.cones[k as usize];
                     if rest.cut(self.bodies, cone, PIECES)? {
                         used.push(k);
                     }
@@ -458,7 +499,7 @@ impl<'s, 'a> Search<'s, 'a> {
                 continue;
             }
             let k = self.cone(pair);
-            if rest.cut(self.bodies, &self.cones[k as usize], PIECES)? {
+            if rest.cut(self.bodies, &self.memory.cones[k as usize], PIECES)? {
                 used.push(k);
                 if used.len() > self.options.cones {
                     return Err(TooMuch);

@@ -60,8 +60,10 @@ pub struct FreeRecord {
 pub struct FreeRegionRecord {
     /// Its share of the sphere.
     pub share: f64,
-    /// A free direction of it, of length 1, away from its borders where it is convex.
+    /// A free direction of it, of length 1, nearly the farthest from its border.
     pub center: [f64; 3],
+    /// The angle between that and the border, in radians.
+    pub margin: f64,
     /// Where its border turns, in no order.
     pub corners: Vec<[f64; 3]>,
     /// Convex pieces that together are it, each by its corners in order.
@@ -127,6 +129,7 @@ impl FreeRegionRecord {
         Self {
             share: share(region.area),
             center: coordinates(region.center),
+            margin: region.margin,
             corners: all(&region.corners),
             pieces: region.pieces.iter().map(|piece| all(&piece.corners)).collect(),
         }

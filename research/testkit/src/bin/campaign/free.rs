@@ -20,15 +20,15 @@ impl crate::Tally for Tally {
 
     fn header() -> String {
         format!(
-            "{:>8} {:>12} {:>10} {:>10} {:>10} {:>10} {:>6}",
-            "settings", "overlapping", "judged", "free", "undecided", "refused", "wrong"
+            "{:>8} {:>12} {:>10} {:>10} {:>10} {:>10} {:>10} {:>6}",
+            "settings", "overlapping", "judged", "free", "undecided", "refused", "cells", "wrong"
         )
     }
 
     fn line(&self) -> String {
-        let free::Judged { directions, free, undecided, refused } = self.judged;
+        let free::Judged { directions, free, undecided, refused, cells } = self.judged;
         format!(
-            "{:>8} {:>12} {directions:>10} {free:>10} {undecided:>10} {refused:>10} {:>6}",
+            "{:>8} {:>12} {directions:>10} {free:>10} {undecided:>10} {refused:>10} {cells:>10} {:>6}",
             self.settings,
             self.overlapping,
             self.disagreements.len()

@@ -1,8 +1,10 @@
 //! Free directions of bodies of cubes, most of them tied, held against ordinary casts along directions of the axes,
 //! near them, in cells beside borders, and anywhere; against the union of the cones of all pairs of facets, in
-//! fractions; and proofs that were changed.
+//! fractions; and proofs that were changed, as wholes and cell by cell.
 
-use colltrans::free::{CellProof, FreeDirections, FreeError, FreeOptions, Verdict};
+use colltrans::free::{
+    CellBlocker, CellProof, DirectionCell, FreeDirections, FreeError, FreeOptions, Verdict,
+};
 use colltrans::solid::StartOverlap;
 use colltrans::{Cast, Placed, Pose, Solid};
 use glam::DVec3;
@@ -13,6 +15,10 @@ use crate::random::Random;
 
 /// Pairs of nodes that are looked at for one setting.
 const LOOKS: u64 = 300_000;
+
+/// Cells whose facets are changed, and how often each.
+const CELLS: usize = 6;
+const CHANGES: usize = 20;
 
 /// What came out of one setting.
 #[derive(Debug, Clone, Copy, Default)]
@@ -25,6 +31,8 @@ pub struct Judged {
     pub undecided: u64,
     /// Changed proofs that were refused, as they should be.
     pub refused: u64,
+    /// Cells of which another facet is said to block them and does not, which was refused.
+    pub cells: u64,
 }
 
 impl std::ops::AddAssign for Judged {
@@ -33,6 +41,7 @@ impl std::ops::AddAssign for Judged {
         self.free += other.free;
         self.undecided += other.undecided;
         self.refused += other.refused;
+        self.cells += other.cells;
     }
 }
 
@@ -58,8 +67,11 @@ pub fn examine(family: &str, seed: u64, count: u64) -> Result<Option<Judged>, St
             triangles(solid.vertices(), solid.triangles(), (pose.matrix(), pose.translation()))
         })
     });
-    let mut judged =
-        Judged { refused: changed(&all, [a.at(p), b.at(q)], &mut rng)?, ..Judged::default() };
+    let mut judged = Judged {
+        refused: changed(&all, [a.at(p), b.at(q)], &mut rng)?,
+        cells: changed_cells([&a, &b], [p, q], options, &mut rng)?,
+        ..Judged::default()
+    };
     for k in 0..count {
         let d = direction(&all, &mut rng);
         let says = all.says(d).map_err(|e| e.to_string())?;
@@ -82,6 +94,43 @@ pub fn examine(family: &str, seed: u64, count: u64) -> Result<Option<Judged>, St
         judged.directions += 1;
     }
     Ok(Some(judged))
+}
+
+/// Another facet in the place of one that blocks a cell is refused, or the middle of the cell is blocked all the same.
+fn changed_cells(
+    bodies: [&Solid; 2],
+    [p, q]: [Pose; 2],
+    options: FreeOptions,
+    rng: &mut Random,
+) -> Result<u64, String> {
+    let blocker = CellBlocker::new(&bodies[0].at(p), &bodies[1].at(q), options);
+    let blocker = blocker.map_err(|e| e.to_string())?;
+    let mut refused = 0;
+    for _ in 0..CELLS {
+        let mut cell = DirectionCell::sphere()[rng.int(0, 5) as usize];
+        for _ in 0..rng.int(0, 6) {
+            cell = cell.quarters()[rng.int(0, 3) as usize];
+        }
+        let Some(pair) = blocker.covering(&cell) else { continue };
+        for k in 0..CHANGES {
+            let (side, mut other) = (k % 2, pair);
+            other[side] = rng.int(0, bodies[side].triangles().len() as i64) as u32;
+            if !blocker.blocks(&cell, other) {
+                refused += 1;
+            } else if by_cast(bodies, [p, q], options.start_overlap, cell.center())? {
+                return Err(format!("{other:?} are said to block {cell:?}, but a cast is free"));
+            }
+        }
+    }
+    Ok(refused)
+}
+
+/// Whether no pair of facets of two solids blocks a direction, in fractions, over all of them: brute force.
+pub fn is_free_of_all(bodies: [Placed<'_, Solid>; 2], d: DVec3) -> bool {
+    let facets = bodies.map(|Placed { body, pose }| {
+        triangles(body.vertices(), body.triangles(), (pose.matrix(), pose.translation()))
+    });
+    is_free(&facets, d)
 }
 
 fn solid(setting: &Setting, k: usize) -> Result<Solid, String> {

@@ -1,0 +1,98 @@
+//! What is free of a map, exactly: the proven cover of the sphere, where bodies are closed and meet by rule.
+
+use std::sync::atomic::AtomicBool;
+
+use colltrans::free::{CellKind, FreeOptions, FreeRegion};
+use colltrans::record::FreeRecord;
+use colltrans::solid::StartOverlap;
+use glam::DVec3;
+
+use super::Region;
+use crate::bodies::Bodies;
+use crate::error::AssemblyError;
+use crate::free::Removal;
+use crate::record;
+use crate::watch::Watch;
+
+/// Pairs of boxes that are looked at for a map, at most.
+const LOOKS: u64 = 5_000_000;
+
+/// The directions that are free, exactly, and what is not known.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct Cover {
+    /// As `--free` tells it: shares, regions with their corners and margins, what blocks.
+    pub record: FreeRecord,
+    /// Connected regions, the largest first.
+    pub regions: Vec<FreeRegion>,
+    /// Arcs with no region beside them, by their ends.
+    pub arcs: Vec<[DVec3; 2]>,
+    /// Free directions with no other beside them, and those that casts found where all is not known.
+    pub points: Vec<DVec3>,
+    /// Cells of which not all is known, by their corners.
+    pub undecided: Vec<[DVec3; 4]>,
+}
+
+impl Cover {
+    /// Of a group against the parts that are not in it; or why there is none.
+    pub(super) fn new(
+        bodies: &Bodies,
+        group: &[usize],
+        start: StartOverlap,
+        watch: Watch,
+    ) -> Result<Result<Self, String>, AssemblyError> {
+        watch.check()?;
+        if group.len() == bodies.len() {
+            return Ok(Err("there is no other part".to_owned()));
+        }
+        let removal = match Removal::new(bodies, group) {
+            Ok(removal) => removal,
+            Err(error) => return Ok(Err(error.to_string())),
+        };
+        let never = AtomicBool::new(false);
+        let options = FreeOptions::DEFAULT.with_looks(LOOKS).with_start_overlap(start);
+        let free = match removal.directions(options, watch.flag().unwrap_or(&never)) {
+            Err(AssemblyError::Cancelled) => return Err(AssemblyError::Cancelled),
+            Err(error) => return Ok(Err(error.to_string())),
+            Ok(free) => free,
+        };
+        let record = record::free(bodies, &removal, &free);
+        let also = record.also_free.iter().copied().map(DVec3::from);
+        let undecided = free.cells().filter(|cell| cell.kind == CellKind::Undecided);
+        Ok(Ok(Self {
+            regions: free.regions(),
+            arcs: free.arcs().into_iter().map(|arc| arc.ends).collect(),
+            points: free.points().into_iter().map(|point| point.direction).chain(also).collect(),
+            undecided: undecided.map(|cell| cell.corners).collect(),
+            record,
+        }))
+    }
+
+    /// The share that is free, without what is not known.
+    pub fn free_share(&self) -> f64 {
+        self.record.free_share.map_or(0.0, |share| share[0])
+    }
+
+    /// The share of which nothing is known, at most.
+    pub fn undecided_share(&self) -> f64 {
+        self.record.undecided_share.unwrap_or(1.0)
+    }
+
+    /// Its regions and its single directions, of length 1; what is smaller than a solid angle is a single direction.
+    pub(super) fn told(&self, smallest: f64) -> (Vec<Region>, Vec<DVec3>) {
+        let (large, small): (Vec<_>, Vec<_>) =
+            self.regions.iter().partition(|region| region.area >= smallest);
+        let points = self.points.iter().map(|d| d.normalize());
+        let single = small.into_iter().map(|region| region.center).chain(points);
+        (large.into_iter().map(of_free).collect(), single.collect())
+    }
+}
+
+fn of_free(region: &FreeRegion) -> Region {
+    let center = region.center;
+    let (u, v) = center.any_orthonormal_pair();
+    let around = |d: &DVec3| d.dot(v).atan2(d.dot(u));
+    let mut border: Vec<DVec3> = region.corners.iter().map(|d| d.normalize()).collect();
+    border.sort_by(|x, y| around(x).total_cmp(&around(y)));
+    Region { solid_angle: region.area, center, border }
+}

@@ -1,0 +1,114 @@
+//! Convex polygons, arcs and cells of directions on the plane of a map.
+//!
+//! Sides are parts of great circles, drawn in short steps. Polygons are cut along the meridian where the map ends, so
+//! each half is on one side of it.
+
+use glam::{DVec2, DVec3};
+
+use super::draw::place;
+
+/// Sides are drawn in steps of at most this angle, in radians.
+const STEP: f64 = 0.03;
+
+/// The outlines of a convex polygon on the map, by its corners in order.
+pub(super) fn outlines(corners: &[DVec3]) -> Vec<Vec<DVec2>> {
+    [1.0, -1.0].into_iter().filter_map(|sign| half(corners, sign)).collect()
+}
+
+/// The part of a polygon where `y` has a sign.
+fn half(corners: &[DVec3], sign: f64) -> Option<Vec<DVec2>> {
+    let mut kept: Vec<DVec3> = Vec::new();
+    for (k, &a) in corners.iter().enumerate() {
+        let b = corners[(k + 1) % corners.len()];
+        if a.y * sign >= 0.0 {
+            kept.push(a);
+        }
+        if (a.y > 0.0 && b.y < 0.0) || (a.y < 0.0 && b.y > 0.0) {
+            kept.push(a + (b - a) * (a.y / (a.y - b.y)));
+        }
+    }
+    if kept.len() < 3 || kept.iter().all(|d| d.y == 0.0) {
+        return None;
+    }
+    let sides = (0..kept.len()).flat_map(|k| steps(kept[k], kept[(k + 1) % kept.len()]));
+    Some(sides.map(|d| place(on_side(d, sign))).collect())
+}
+
+/// With a `y` of a sign, zero included.
+fn on_side(d: DVec3, sign: f64) -> DVec3 {
+    DVec3::new(d.x, (d.y * sign).max(0.0) * sign, d.z)
+}
+
+/// Directions of length 1 along an arc, without its end.
+fn steps(a: DVec3, b: DVec3) -> Vec<DVec3> {
+    let count = (a.angle_between(b) / STEP).ceil().max(1.0) as usize;
+    (0..count).map(|k| (a + (b - a) * (k as f64 / count as f64)).normalize()).collect()
+}
+
+/// An arc on the map, in parts that do not cross the meridian where it ends.
+pub(super) fn arcs(a: DVec3, b: DVec3) -> Vec<Vec<DVec2>> {
+    let mut parts = vec![Vec::new()];
+    let mut last: Option<DVec2> = None;
+    for at in steps(a, b).into_iter().chain([b.normalize()]).map(place) {
+        if last.is_some_and(|last| last.distance(at) > 1.0) {
+            parts.push(Vec::new());
+        }
+        if let Some(part) = parts.last_mut() {
+            part.push(at);
+        }
+        last = Some(at);
+    }
+    parts
+}
+
+/// Whether a place is inside an outline.
+pub(super) fn is_inside(outline: &[DVec2], at: DVec2) -> bool {
+    let mut inside = false;
+    for (k, p) in outline.iter().enumerate() {
+        let q = outline[(k + 1) % outline.len()];
+        if (p.y > at.y) != (q.y > at.y) && at.x < p.x + (q.x - p.x) * (at.y - p.y) / (q.y - p.y) {
+            inside = !inside;
+        }
+    }
+    inside
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The area of an outline.
+    fn area(outline: &[DVec2]) -> f64 {
+        let turn = |k: usize| outline[k].perp_dot(outline[(k + 1) % outline.len()]);
+        ((0..outline.len()).map(turn).sum::<f64>() / 2.0).abs()
+    }
+
+    #[test]
+    fn the_six_sides_of_a_cube_are_the_map() {
+        // An ellipse of half-axes 2 and 1; the map keeps areas.
+        let mut whole = 0.0;
+        for axis in 0..3 {
+            for sign in [-1.0, 1.0] {
+                let corners = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]].map(|[u, v]| {
+                    let mut d = DVec3::ZERO;
+                    (d[axis], d[(axis + 1) % 3], d[(axis + 2) % 3]) = (sign, u, v);
+                    d
+                });
+                let side: f64 = outlines(&corners).iter().map(|outline| area(outline)).sum();
+                assert!((side - std::f64::consts::PI / 3.0).abs() < 0.01, "{axis} {sign}: {side}");
+                whole += side;
+                let middle = place(corners[0].midpoint(corners[2]).normalize());
+                let holds = |outline: &Vec<DVec2>| is_inside(outline, middle - DVec2::splat(1e-3));
+                assert!(axis != 0 || sign < 0.0 || outlines(&corners).iter().any(holds));
+            }
+        }
+        assert!((whole - 2.0 * std::f64::consts::PI).abs() < 0.02, "{whole}");
+    }
+
+    #[test]
+    fn an_arc_over_the_end_of_the_map_is_in_two_parts() {
+        let (a, b) = (DVec3::new(-1.0, 0.5, 0.3), DVec3::new(-1.0, -0.5, 0.3));
+        assert_eq!(arcs(a, b).len(), 2);
+        assert_eq!(arcs(DVec3::X, DVec3::Y).len(), 1);
+    }
+}

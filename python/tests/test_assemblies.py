@@ -55,8 +55,8 @@ def test_a_removal_map(gearbox: Assembly) -> None:
     rooms = gearbox.removal_map("bolt_0", samples=162, border=0.2)
     assert len(rooms.directions) == len(rooms.distance) == len(rooms.by) >= 162
     assert np.allclose(np.linalg.norm(rooms.directions, axis=1), 1)
-    free = rooms.directions[np.isinf(rooms.distance)]
-    assert [0, 0, 1] in free.tolist() or rooms.isolated.tolist() == [[0, 0, 1]]
+    # Of a cone that is too narrow to be seen, the middle.
+    assert rooms.regions == [] and np.allclose(rooms.isolated, [[0, 0, 1]], atol=1e-6)
     assert 0 <= rooms.free_share < 0.5
 
 

@@ -527,10 +527,11 @@ function blockers(along: PageAlong, part: number, name: string): string {
   return `In its way: ${each}. With all that has to come along: ${along.closures[part]!.length} parts, in full in the view.`;
 }
 
-function freedom({ free_share, exactly, isolated: { length: single } }: RemovalMap): string {
+function freedom({ free_share, exactly, regions, isolated: { length: single } }: RemovalMap): string {
   const unknown = exactly?.undecided_share ?? 0;
   const proven = exactly ? (unknown > 0 ? `, which is proven but for ${short(100 * unknown, 2)} %` : ", which is proven") : ", as sampled";
-  const share = free_share > 0 && `is free in ${short(100 * free_share, 3)} % of all directions (green)${proven}`;
+  // Regions that are too small to be seen are dots.
+  const share = regions.length > 0 && `is free in ${short(100 * free_share, 3)} % of all directions (green)${proven}`;
   const alone = single > 0 && `in ${single} single direction${single > 1 ? "s" : ""} (dots), a tight fit`;
   if (share) return alone ? `${share}, and ${alone}` : share;
   if (alone) return `is free only ${alone}${proven}`;

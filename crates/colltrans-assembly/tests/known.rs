@@ -490,8 +490,20 @@ fn maps_find_half_spheres_and_isolated_directions() {
     let peg = turned("peg", &[cuboid([-1.0, -1.0, 0.0], [1.0, 1.0, 6.0])], turn);
     let block = turned("block", &well([-1.0, -1.0, 0.0], [1.0, 1.0, 5.0], 2.0), turn);
     let tight = map(vec![peg, block], &[axis, DVec3::X]);
-    assert_eq!(tight.isolated, [axis]);
+    assert!(tight.isolated.len() == 1 && angle(tight.isolated[0], axis) < 1e-6);
     assert!(tight.free_share() < 1e-3);
+    for exact in [&resting, &tight] {
+        let cover = exact.cover.as_ref().unwrap();
+        assert!(cover.undecided.is_empty() && cover.undecided_share() == 0.0);
+        assert_eq!((cover.regions.len(), cover.arcs.len(), cover.points.len()), (1, 0, 0));
+    }
+    let half = resting.cover.as_ref().unwrap();
+    assert!((half.free_share() - 0.5).abs() < 1e-9, "{}", half.free_share());
+    // What overlaps where it is has no cover; samples are told, and why.
+    let lower = part("lower", &[cuboid([-0.5, -0.5, -0.5], [0.5, 0.5, 0.5])]);
+    let floor = part("floor", &[cuboid([-9.0, -9.0, -1.0], [9.0, 9.0, 0.0])]);
+    let sunk = map(vec![lower, floor], &[]);
+    assert!(sunk.cover.is_err_and(|why| why.contains("overlap")));
 }
 
 #[test]

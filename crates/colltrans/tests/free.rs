@@ -162,7 +162,7 @@ fn casts_and_fractions_agree_and_changed_proofs_are_refused() {
                 examine(family, seed, 40).unwrap_or_else(|e| panic!("{family}:{seed}: {e}"));
             all += judged.unwrap_or_default();
         }
-        assert!(all.directions > 100 && all.refused > 0 && all.cells > 100, "{family}: {all:?}");
+        assert!(all.directions > 100 && all.refused > 0 && all.cells > 20, "{family}: {all:?}");
     }
 }
 

@@ -172,9 +172,10 @@ class RemovalMap:
     by : ndarray of int, shape (N,)
         The position of the part that is in the way, -1 for none.
     regions : list of tuple of (float, tuple of float)
-        Connected sets of free directions, largest first: solid angle in steradians, mean direction.
+        Connected sets of free directions, largest first: solid angle in steradians, and the direction
+        that is farthest from the border; exact where parts are closed and meet by rule, else sampled.
     isolated : ndarray of shape (K, 3)
-        Free directions that lie in no region.
+        Free directions that lie in no region, or in one that is smaller than a disc of ``border``.
     """
 
     parts: list[str]

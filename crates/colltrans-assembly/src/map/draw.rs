@@ -61,9 +61,11 @@ impl RemovalMap {
     fn class(&self, d: DVec3) -> usize {
         let (t, weights) = self.sphere.locate(d);
         let corners = self.sphere.triangles[t].corners;
-        let nearest = weights.max_position();
+        // What is free is drawn over it, from a cover: else it is what the nearest corner is.
+        let hidden = |k: &usize| self.cover.is_ok() && self.rooms[corners[*k] as usize].is_free();
+        let weight = |k: usize| if hidden(&k) { -1.0 } else { weights[k] };
+        let nearest = (1..3).fold(0, |best, k| if weight(k) > weight(best) { k } else { best });
         match self.rooms[corners[nearest] as usize] {
-            // What is free is drawn over it: here it goes as far as anything.
             PartRoom::Free if self.cover.is_ok() => BLOCKED.len() - 1,
             PartRoom::Free => 8,
             PartRoom::Overlapping { .. } => 9,

@@ -10,6 +10,7 @@ use colltrans_assembly::{map, record};
 
 use super::free::Leaving;
 use crate::args::AssemblyArguments;
+use crate::directions;
 use crate::failure::{Failure, note, print, print_json};
 use crate::inputs::refuse_overwriting;
 use crate::numbers::counted;
@@ -163,23 +164,24 @@ fn summary(f: &Findings) -> String {
         let _ = writeln!(text, "{head}\n  {}: {because}", names(&stuck.parts));
     }
     for (name, map) in f.maps {
-        let share = 100.0 * map.free_share();
-        let (regions, isolated) = (map.regions.len(), map.isolated.len());
-        let _ = writeln!(text, "map of {}", shown(name));
-        let _ = match &map.cover {
-            Ok(cover) => writeln!(
-                text,
-                "  {share:.6} % of all directions are free, proven, in {regions} regions; {isolated} \
-                 isolated free directions; undecided {:.2e} %",
-                100.0 * cover.undecided_share()
-            ),
-            Err(why) => writeln!(
-                text,
-                "  {share:.3} % of all directions are free as sampled, in {regions} regions; \
-                 {isolated} isolated free directions\n  sampled, as {}",
-                shown(why)
-            ),
-        };
+        match &map.cover {
+            Ok(cover) => {
+                let _ = writeln!(text, "map of {}: {}", shown(name), cover.record.outcome);
+                directions::told(&mut text, &cover.record);
+            }
+            Err(why) => {
+                let _ = writeln!(
+                    text,
+                    "map of {}, sampled, as {}\n  {:.3} % of all directions are free, in {} regions; \
+                     {} isolated free directions",
+                    shown(name),
+                    shown(why),
+                    100.0 * map.free_share(),
+                    map.regions.len(),
+                    map.isolated.len()
+                );
+            }
+        }
     }
     text
 }

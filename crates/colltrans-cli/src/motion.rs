@@ -70,7 +70,8 @@ fn convex(
         proof::save_text(path, &MotionProofFile::of(&cast, &outcome).to_json())?;
     }
     let surface = |k: usize, pose: &Pose, origin| surface_of(&parts[k][pair[k]].body, pose, origin);
-    draw(arguments, &told.record, motions, &surface)
+    let (record, motions) = (&told.record, motions.each_ref());
+    draw(arguments, Moved { record, motions, surface: &surface })
 }
 
 /// Asked of parts that need not be convex.
@@ -90,20 +91,13 @@ fn parts(
     let told = Line::from(asked.ask()?);
     print(&if arguments.json { told.json() } else { words(&told, motions.each_ref()) })?;
     let surface = |k: usize, pose: &Pose, origin| bodies[k].surface(pose, origin);
-    draw(arguments, &told.record, motions, &surface)
+    let (record, motions) = (&told.record, motions.each_ref());
+    draw(arguments, Moved { record, motions, surface: &surface })
 }
 
-fn draw(
-    arguments: &MotionArguments,
-    record: &Record,
-    motions: &[Motion; 2],
-    surface: &dyn Fn(usize, &Pose, DVec3) -> (Vec<DVec3>, Vec<[u32; 3]>),
-) -> Result<(), Failure> {
+fn draw(arguments: &MotionArguments, moved: Moved<'_>) -> Result<(), Failure> {
     match &arguments.picture {
-        Some(path) => {
-            let moved = Moved { record, motions: motions.each_ref(), surface };
-            outputs::write(path, draw_motion(moved).as_bytes())
-        }
+        Some(path) => outputs::write(path, draw_motion(moved).as_bytes()),
         None => Ok(()),
     }
 }

@@ -174,8 +174,9 @@ fn whole_turns_more_bring_nothing_earlier() {
                     assert!(whole * found.lower <= first.upper + off, "{first:?} {found:?}");
                     assert!(first.lower <= whole * found.upper + off, "{first:?} {found:?}");
                 }
-                (MotionOutcome::Overlapping(_), MotionOutcome::Overlapping(_)) => {}
-                (MotionOutcome::Grazing(_), _) | (_, MotionOutcome::Grazing(_)) => {}
+                (MotionOutcome::Overlapping(_), MotionOutcome::Overlapping(_))
+                | (MotionOutcome::Grazing(_), _)
+                | (_, MotionOutcome::Grazing(_)) => {}
                 (one, other) => panic!("{one:?}, but {other:?}"),
             }
         }

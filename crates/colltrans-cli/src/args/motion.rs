@@ -8,7 +8,7 @@ use colltrans::glam::DVec3;
 use colltrans::motion::{Motion, MotionError};
 use colltrans_mesh::body::BodyOptions;
 
-use super::values::{Place, place, vector};
+use super::values::{Place, picture, place, vector};
 use super::{
     BodyArguments, HullArguments, PlaceArguments, Sides, Taken, UNCLEAN, direction, length, proof,
 };

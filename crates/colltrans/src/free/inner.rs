@@ -81,9 +81,9 @@ impl InnerBox {
                 for (side, open) in open.iter_mut().enumerate().filter(|(_, open)| **open) {
                     let mut larger = grown;
                     if side < 3 {
-                        larger.low[side] -= step
+                        larger.low[side] -= step;
                     } else {
-                        larger.high[side - 3] += step
+                        larger.high[side - 3] += step;
                     }
                     *open = larger.is_clear(bodies, moving);
                     if *open {

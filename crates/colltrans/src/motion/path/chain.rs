@@ -324,7 +324,7 @@ mod tests {
         let corners = [DVec3::new(0.5, 0.0, 0.0)];
         let chain = Chain::new(&mechanism, &[0, 1], &path, Pose::IDENTITY, &corners);
         let way = chain.way(&path, 0);
-        assert!(way >= 1.5 && way < 1.5 + 1e-6, "{way}");
+        assert!((1.5..1.5 + 1e-6).contains(&way), "{way}");
         assert!(chain.error > 0.0 && chain.error < 1e-12, "{}", chain.error);
     }
 }

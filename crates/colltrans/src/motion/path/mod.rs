@@ -45,7 +45,7 @@
 //! # Method
 //!
 //! Planes between the bodies, as of other motions, and two ways to prove the time between two of them: from row to
-//! row by how far supporting planes may bend, which a [chain](chain) of joints bounds; over many rows by how far the
+//! row by how far supporting planes may bend, which a chain of joints bounds; over many rows by how far the
 //! bodies move. Bodies that are not convex are taken apart into boxes and facets, where they come near. That closed
 //! bodies do not begin one inside the other is decided exactly; later their surfaces would have met.
 //!

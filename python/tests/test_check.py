@@ -81,12 +81,13 @@ def believed(file: Any, under: tuple[Any, ...], by: Callable[[Any], Any]) -> lis
         ("solids", "first meet at"),
         ("beside", "the bodies never meet: a gap of"),
         ("directions", "about 1.15048e-05 % of all directions are free"),
+        ("inner", "4 by two boxes inside the bodies each"),
     ],
 )
 def test_a_proof_holds(name: str, holds: str) -> None:
     report = check.check((PROOFS / f"{name}.json").read_text())
     assert any(holds in line for line in report.holds)
-    solid = name in {"solids", "beside", "directions"}
+    solid = name in {"solids", "beside", "directions", "inner"}
     assert any("overlap where they are" in line for line in report.unchecked) == solid
 
 
@@ -190,6 +191,30 @@ def test_cells_are_the_sphere_and_nothing_free_is_blocked() -> None:
     assert any("cells are undecided" in line for line in nothing.unchecked)
     assert refused(changed(file, (*way, "tolerance"), lambda _: 0.0))
     assert refused(changed(file, (*way, "shrunk", 0, 0, 2), lambda z: z - 5.0))
+
+
+def test_boxes_inside_are_inside_and_block_their_cells() -> None:
+    """A ring around a rod, both of facets that are small against the play."""
+    file = proof("inner")
+    way = ("statement", "free_directions")
+    statement = file["statement"]["free_directions"]
+    outside = {"low": [50.0, 0.0, 0.0], "high": [51.0, 1.0, 1.0]}
+    for side in range(2):
+        for at, one in enumerate(statement["boxes"][side]):
+            box = (*way, "boxes", side, at)
+            assert refused(changed(file, box, lambda _: outside))
+            turned = {"low": one["high"], "high": one["low"]}
+            assert refused(changed(file, box, lambda _, turned=turned: turned))
+            for k in range(3):
+                assert refused(changed(file, (*box, "high", k), lambda x: x + 4.0))
+                assert refused(changed(file, (*box, "low", k), lambda x: x - 4.0))
+    cells = statement["cells"]
+    inner = next(k for k, cell in enumerate(cells) if "inner" in cell)
+    assert refused(changed(file, (*way, "cells", inner), lambda _: {"inner": [99, 0]}))
+    others = [k for k, cell in enumerate(cells) if "blocked" in cell]
+    moved = [changed(file, (*way, "cells", k), lambda _: cells[inner]) for k in others]
+    assert sum(refused(one) for one in moved) > len(others) // 2
+    assert refused(changed(file, (*way, "start_overlap"), lambda _: "ignore"))
 
 
 def test_what_is_missing_claims_nothing() -> None:

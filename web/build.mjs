@@ -33,6 +33,7 @@ const MODULES = {
   "colltrans-wasm": "page",
   "colltrans-wasm-assembly": "page_assembly",
   "colltrans-wasm-distance": "page_distance",
+  "colltrans-wasm-found": "page_found",
   "colltrans-wasm-picture": "page_picture",
 };
 
@@ -58,6 +59,10 @@ for (const example of Object.values(MODULES)) {
 }
 copyFileSync(join(here, "src/index.html"), join(out, "index.html"));
 cpSync(data, join(out, "data"), { recursive: true, filter: (from) => !/queries\.jsonl$/.test(from) });
+// What the page links to.
+copyFileSync(join(root, "docs/paper.md"), join(out, "paper.md"));
+mkdirSync(join(out, "source"));
+for (const file of ["minimise.rs", "cell.rs", "region.rs"]) copyFileSync(join(root, "crates/colltrans/src/solve/cta", file), join(out, "source", file));
 await build({
   entryPoints: ["main.ts", "worker.ts", "style.css"].map((file) => join(here, "src", file)),
   bundle: true,

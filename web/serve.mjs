@@ -6,6 +6,7 @@ import { extname, join, normalize } from "node:path";
 
 const types = {
   ".html": "text/html", ".css": "text/css", ".js": "text/javascript", ".wasm": "application/wasm", ".svg": "image/svg+xml",
+  ".md": "text/plain; charset=utf-8", ".rs": "text/plain; charset=utf-8",
 };
 
 /** Serves a folder under a path; port 0 takes any. */

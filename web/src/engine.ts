@@ -59,6 +59,9 @@ export function touch(answer: PageCast | undefined): Touch | undefined {
 export const plane = (answer: PageCast | undefined): Separation | undefined =>
   answer?.proof && "separation" in answer.proof ? answer.proof.separation : undefined;
 
+/** Where the paper's algorithm starts. */
+export type Start = "center" | "ellipsoids";
+
 /** Two placed bodies and a direction. */
 export interface Pair {
   moving_pose: Pose;
@@ -66,8 +69,8 @@ export interface Pair {
   direction: Vec;
   graze?: number;
   solver?: "auto" | "cta" | "portal";
-  /** Of `cta`: where the minimisation starts and ends. */
-  start?: "center" | "ellipsoids";
+  /** Of `cta`: where the minimisation starts, and at which gap it ends. */
+  start?: Start;
   until?: "exit" | number;
   tolerance?: number | null;
   ignore_overlaps?: boolean;
@@ -118,7 +121,7 @@ export class Engine {
   private next = 1;
 
   /** The worker starts at once: the library is read while the page is still being made. */
-  constructor(private readonly library: "colltrans" | "colltrans_assembly" | "colltrans_distance" | "colltrans_picture" = "colltrans") {
+  constructor(private readonly library: "colltrans" | "colltrans_assembly" | "colltrans_distance" | "colltrans_found" | "colltrans_picture" = "colltrans") {
     this.running();
   }
 

@@ -1,79 +1,111 @@
-// How the answer was found: the paper's figures, from the library's recording of a search.
+// How the answer was found: the paper's figures, alive, from the library's recording of a search.
 //
-// Left of it, in the view, the bodies are translucent and show the two sections of the step that is
-// looked at, the moving one's where it starts and where it touches the other.
+// Data flow: the question, in a library of its own -> `found/recording` (steps, portals, moments) -> `found/player`
+// (which moment) -> `found/graph`, `found/bounds`, `found/planar`, `found/refinement` beside the view, and in it
+// `found/parts`. `found/examples` says what there is to look at, `found/motion` plays the incremental case.
 
-import { BufferGeometry, DoubleSide, Line, LineBasicMaterial, LineLoop, Mesh, MeshBasicMaterial, Vector3 } from "three";
 import type { PageSearch } from "./answers";
-import { palette } from "./colours";
-import { h, refill, svg } from "./dom";
-import type { Engine, Pair } from "./engine";
-import { Graph, type Grid } from "./found/graph";
-import { type Minimisation, below, minimisation, portals } from "./found/recording";
-import { type Vec, add, cross, dot, hull, length, placed, short, sub, times, unit } from "./math";
+import { h, refill } from "./dom";
+import { Engine, type Pair, type Slot } from "./engine";
+import { Bounds } from "./found/bounds";
+import { LOOKS, type Look } from "./found/examples";
+import { Graph, type Grid, type Window } from "./found/graph";
+import { Motion } from "./found/motion";
+import { drawPortal, drawSections } from "./found/parts";
+import { Planar, section } from "./found/planar";
+import { Player } from "./found/player";
+import { type Minimisation, type Moment, type Step, type Two, between, least, minimisation, mix, moments, portals } from "./found/recording";
+import { Refinement } from "./found/refinement";
+import { type Pose, length, short } from "./math";
+import { Placing, type Source } from "./placing";
 import type { State } from "./state";
 import type { View } from "./view";
 import type { Drawn } from "./view/body";
 
-type Two = [number, number];
 const GRID = 44;
-const SIZE = 340;
 
-/** The two sections of a step, in the world, at the start. */
-interface Sections {
-  moving: Vec[];
-  fixed: Vec[];
-  /** In multiples of the direction. */
-  phi: number;
+/** What the page does for this part of it. */
+export interface Around {
+  view: View;
+  pair(): Pair;
+  /** The question before. */
+  before(): Pair | undefined;
+  sources(): Partial<Record<Slot, Source>>;
+  /** Another example is asked about; comes back when it is answered. */
+  example(name: string): Promise<void>;
+  move(pose: Pose): void;
+  /** Of the answer. */
+  translation(): number | undefined;
+  /** The pairs of vertices that its proof is made of. */
+  proven(): Two[];
 }
 
 export class Found {
   readonly element = h("div", { class: "found" });
+  private readonly engine = new Engine("colltrans_found");
+  private readonly placing = new Placing(this.engine);
   private readonly head = h("section", { class: "said" });
+  private readonly looks = h("select", { "aria-label": "What to look at" });
+  private readonly caption = h("p", { class: "proof caption" });
+  private readonly player = new Player();
   private readonly graph = new Graph();
+  private readonly bounds = new Bounds();
+  private readonly planar = new Planar();
+  private readonly refinement = new Refinement();
+  private readonly motion = new Motion();
   private readonly steps = h("div", { class: "row steps", role: "group", "aria-label": "Steps" });
-  private readonly told = h("p", { class: "proof" });
-  private readonly planar = svg("svg", { class: "figure", viewBox: `0 0 ${SIZE} 230`, role: "img", "aria-label": "Both sections in the shadow plane" });
+  private readonly told = h("p", { class: "proof told" });
   private readonly portalSteps = h("div", { class: "row steps", role: "group", "aria-label": "Portals" });
-  private readonly portalPicture = svg("svg", { class: "figure", viewBox: `0 0 ${SIZE} ${SIZE}`, role: "img", "aria-label": "M seen along d" });
   private readonly portalTold = h("p", { class: "proof" });
   private readonly tracker = h("p", { class: "proof" });
   private readonly near = h("p", { class: "proof" });
-  private readonly from = h("select", { "aria-label": "Where the minimisation starts" });
+  private readonly from = h("select", { "aria-label": "Where the search starts" });
   private readonly body: HTMLElement;
+  private readonly levelsCard: HTMLElement;
   private visible = false;
   private stale = true;
   private asked = 0;
+  private search: PageSearch | undefined;
   private found: Minimisation | undefined;
   private refined: ReturnType<typeof portals>;
-  private grid: Grid | undefined;
-  private step = 0;
-  private portal = 0;
-  private sections: Sections | undefined;
+  private moments: Moment[] = [];
+  private look: Look | undefined;
+  private readonly grids = new Map<string, Grid | "asked">();
+  /** Those who wait for a search to be shown. */
+  private waiting: (() => void)[] = [];
 
-  constructor(
-    private readonly engine: Engine,
-    private readonly view: View,
-    private readonly pair: () => Pair,
-    /** The question before. */
-    private readonly before: () => Pair | undefined,
-  ) {
-    this.from.append(h("option", { value: "center" }, "from the centre, as in the paper"), h("option", { value: "guess" }, "from where ellipsoids would meet"), h("option", { value: "region" }, "in N(p), around the last solution"));
+  constructor(private readonly around: Around) {
+    for (const [value, text] of [["center", "The paper’s algorithm, from the centre to the end"], ["ellipsoids", "The same, from where ellipsoids would meet"], ["region", "The same, in N(p), around the last solution"], ["portal", "Portal refinement alone, as auto does"]] as const) this.from.append(h("option", { value }, text));
     this.from.addEventListener("change", () => this.refresh());
+    this.looks.append(h("option", { value: "" }, "The question as it is asked"), ...LOOKS.map(({ name }, k) => h("option", { value: k }, name)));
+    this.looks.addEventListener("change", () => void this.choose(LOOKS[Number(this.looks.value)]));
+    this.player.onChange = () => this.draw();
     this.graph.onStep = (step) => this.pick(step);
+    this.bounds.onStep = (step) => this.pick(step);
+    this.graph.onFollow = () => this.draw();
+    this.motion.begin = () => this.beginMotion();
+    this.motion.move = async (pose) => {
+      const shown = new Promise<void>((resolve) => this.waiting.push(resolve));
+      this.around.move(pose);
+      await shown;
+    };
+    this.levelsCard = h("section", { class: "card" },
+      h("h3", {}, "Minimisation over pairs of sections"),
+      h("p", { class: "proof" }, "Cut both bodies by a plane each: their sections, at the levels x and y. How far along d the one can move until it meets the other is φ(x, y), a translation t in multiples of d. φ is convex, and its least value is the answer; in each cell of its mark the same features touch."),
+      this.graph.element, this.steps, this.told,
+      h("h3", {}, "What is proven, step by step"), this.bounds.element);
     this.body = h("div", { style: "display: contents" },
-      h("section", { class: "card" },
-        h("h3", {}, "Minimisation over pairs of sections"),
-        h("p", { class: "proof" }, "Cut both bodies by a plane each, at the levels x and y. How far the one section can move until it meets the other is φ(x, y): a convex function, and its least value is the answer."),
-        this.from, this.graph.element, this.steps, this.told),
+      h("section", { class: "card" }, h("label", {}, "Look at ", this.looks), this.caption, this.from),
+      this.player.element, this.levelsCard,
       h("section", { class: "card" },
         h("h3", {}, "The planar problem of this step"),
         h("p", { class: "proof" }, "Both sections, seen along d. The lowest point that their shadows have in common is where they touch."),
-        this.planar),
+        this.planar.element),
       h("section", { class: "card" },
         h("h3", {}, "Portal refinement"),
-        h("p", { class: "proof" }, "All differences of points of the two bodies, seen along d. The line of the motion is the cross; a portal is a triangle around it, and each step exchanges a corner for a deeper one."),
-        this.portalPicture, this.portalSteps, this.portalTold),
+        h("p", { class: "proof" }, "All differences of points of the two bodies, M, seen along d. The line of the motion is the cross; a portal is a triangle around it, and each step exchanges a corner for a deeper one. It begins with the face of M that the minimisation has found, and makes the proof."),
+        this.refinement.element, this.portalSteps, this.portalTold),
+      this.motion.element, words(),
       h("section", { class: "card" }, h("h3", {}, "From the last answer"), this.tracker, this.near));
     this.element.append(this.head, this.body);
   }
@@ -81,306 +113,310 @@ export class Found {
   /** There is another answer. */
   changed() {
     this.stale = true;
-    if (this.visible) this.refresh();
+    if (this.visible) void this.refresh();
   }
 
   show(_state: State, visible: boolean) {
     const opened = visible && !this.visible;
     this.visible = visible;
     this.element.hidden = !visible;
-    if (opened && this.stale) this.refresh();
+    if (opened && this.stale) void this.refresh();
     if (visible) this.draw();
-    else this.view.clearExtra();
+    else {
+      this.player.stop();
+      this.around.view.clearExtra();
+    }
   }
 
   private bodies(): [Drawn, Drawn] | undefined {
-    const [moving, fixed] = [this.view.bodyOf("moving"), this.view.bodyOf("fixed")];
+    const { view } = this.around;
+    const [moving, fixed] = [view.bodyOf("moving"), view.bodyOf("fixed")];
     const convex = moving?.body.facts.kind === "convex" && fixed?.body.facts.kind === "convex";
     return convex ? [moving!, fixed!] : undefined;
+  }
+
+  /** One of the things to look at. */
+  private async choose(look: Look | undefined) {
+    this.look = look;
+    this.caption.textContent = look ? `${look.figure ? `The paper, ${look.figure}. ` : ""}${look.text}` : "";
+    if (!look) return;
+    this.from.value = look.start === "region" ? "region" : "center";
+    this.graph.choose(!!look.surface);
+    this.graph.follows = !look.whole;
+    this.stale = true;
+    this.element.setAttribute("aria-busy", "true");
+    const shown = new Promise<void>((resolve) => this.waiting.push(resolve));
+    await this.around.example(look.example);
+    if (this.stale) await this.refresh();
+    await shown;
+    if (look.start === "region") this.motion.element.querySelector("button")!.click();
   }
 
   private async refresh() {
     const turn = ++this.asked;
     this.stale = false;
+    this.element.setAttribute("aria-busy", "true");
     const bodies = this.bodies();
     this.body.hidden = !bodies;
-    if (!bodies) {
-      if (!this.view.bodyOf("moving") || !this.view.bodyOf("fixed")) this.say("No search", "A body is missing: give it in the first tab.");
+    const { moving, fixed } = this.around.sources();
+    if (!bodies || !moving || !fixed) {
+      if (!this.around.view.bodyOf("moving") || !this.around.view.bodyOf("fixed")) this.say("No search", "A body is missing: give it in the first tab.");
       else this.say("Only between convex bodies", "Searches between parts that are not convex go through trees of boxes; there is no picture of it here yet.");
-      return;
+      return this.shown();
     }
     try {
-      const pair = this.pair();
-      const from: Partial<Pair> = this.from.value === "guess" ? { start: "ellipsoids", until: 0.2 } : {};
-      const sections = await this.engine.ask({ do: "search", ...pair, solver: "cta", ...from, after: this.before() });
-      const refined = await this.engine.ask({ do: "search", ...pair, solver: "portal", after: this.before() });
+      const pair = structuredClone(this.around.pair());
+      const start = this.from.value;
+      const after = this.around.before();
+      await this.placing.place({ moving, fixed });
+      const by = start === "portal" ? { solver: "portal" } : { solver: "cta", start: start === "ellipsoids" ? start : "center", until: "exit" };
+      const { facts } = await this.engine.ask({ do: "search", ...pair, ...by, after });
+      // Another one is on its way.
       if (turn !== this.asked) return;
-      const [first, second] = [sections.facts, refined.facts];
-      this.found = this.from.value === "region" ? within(first) : minimisation(first.events);
-      this.refined = portals(second.events);
-      this.grid = undefined;
-      this.step = Math.min(this.step, Math.max(0, (this.found?.steps.length ?? 1) - 1));
-      this.portal = Math.max(0, (this.refined?.steps.length ?? 1) - 1);
-      this.tellWork(first, second);
-      this.tellTracker(second);
-      this.tellNear(first);
-      await this.sectionsOf();
+      const events = start === "region" ? facts.region?.events : facts.events;
+      this.search = facts;
+      this.found = events && minimisation(events);
+      if (this.found && start === "region" && facts.region) this.found.square = { center: facts.region.center as Two, half: facts.region.half };
+      this.refined = events && portals(events);
+      this.moments = moments(this.found, this.refined);
+      this.grids.clear();
+      this.player.reset(this.moments.length, this.begins());
+      this.tellWork(facts);
+      this.tellTracker(facts);
+      if (facts.region) this.motion.count(facts.region.steps.planar_problems, facts.steps.planar_problems);
       this.draw();
-      if (this.found) await this.gridOf(turn, this.found);
     } catch (error) {
+      if (turn !== this.asked) return;
       this.say("No search", error instanceof Error ? error.message : String(error));
     }
+    this.shown();
+  }
+
+  private shown() {
+    this.element.removeAttribute("aria-busy");
+    for (const resolve of this.waiting.splice(0)) resolve();
+  }
+
+  /** The time at which one begins to look. */
+  private begins(): number {
+    const after = (is: (moment: Moment) => boolean) => this.moments.findIndex(is) + 1;
+    const steps = this.found?.steps ?? [];
+    // All of the minimisation.
+    if (this.motion.isPlaying) return this.moments.filter((one) => one.kind !== "portal").length;
+    const { at = "first shift", touch } = this.look ?? {};
+    const step = touch ? Math.max(0, steps.findIndex((one) => one.touch === touch)) : 0;
+    const of = (k: number, ...kinds: Moment["kind"][]) => kinds.map((kind) => after((one) => one.kind === kind && "step" in one && one.step === k)).find((found) => found > 0);
+    switch (at) {
+      case "start": return Math.min(1, this.moments.length);
+      case "first touch": return of(step, "touch") ?? 0;
+      case "second step": return of(1, "shift", "touch") ?? of(0, "touch") ?? 0;
+      case "end": return of(steps.length - 1, "solved", "cut", "touch") ?? this.moments.length;
+      default: return of(0, "cut", "solved", "shift", "touch") ?? this.moments.length;
+    }
+  }
+
+  /** For tests. */
+  probe() {
+    const { engine, found, refined, moments, player, graph } = this;
+    return { engine, found, refined, moments, at: player.at, follows: graph.follows };
   }
 
   private say(headline: string, sentence: string) {
     this.head.replaceChildren(h("h2", {}, headline), h("p", {}, sentence));
   }
 
-  private tellWork(cta: PageSearch, portal: PageSearch) {
-    const bodies = this.bodies()!;
-    const [p, q] = bodies.map((body) => body.body.facts.vertices) as Two;
+  private tellWork({ steps }: PageSearch) {
+    const [p, q] = this.bodies()!.map((body) => body.body.facts.vertices) as Two;
+    const size = `The bodies have ${p.toLocaleString("en")} and ${q.toLocaleString("en")} vertices, their difference up to ${(p * q).toLocaleString("en")}, and it is never built.`;
+    const portalsOnly = this.from.value === "portal" || !steps.planar_problems;
     this.say(
-      "Two ways to one proof",
-      `The bodies have ${p} and ${q} vertices, their difference up to ${(p * q).toLocaleString("en")}, and it is never built. ` +
-        `The collision translation algorithm solved ${count(cta.steps.planar_problems, "planar problem")}, portal refinement computed ${count(portal.steps.supports, "supporting plane")}.`,
+      portalsOnly ? "By portals" : `${count(steps.planar_problems, "planar problem")}, ${count(steps.pivots, "portal")}`,
+      portalsOnly ? `${size} Portal refinement computed ${count(steps.supports, "supporting plane")} and went through ${count(steps.pivots, "portal")}.`
+        : `${size} The collision translation algorithm solved ${count(steps.planar_problems, "planar problem")}; then ${count(steps.pivots, "portal")} and ${count(steps.supports, "supporting plane")} made the proof.`,
     );
   }
 
-  private tellTracker({ steps, tracked }: PageSearch) {
-    if (!tracked) {
-      this.tracker.textContent = "Change the question a little (drag the arrow, or move a body): a tracker then starts from the answer before.";
-      return;
-    }
-    const from = { features: "the features that touched then", region: "the region around the last solution", scratch: "nothing: too much has changed" }[tracked.steps.started_from ?? "scratch"];
-    this.tracker.textContent =
-      `Asked after the question before this one, a tracker starts from ${from}: ${count(tracked.steps.supports, "supporting plane")} and ` +
-      `${count(tracked.steps.pivots, "portal")}, instead of ${steps.supports} and ${steps.pivots}. The proof is made anew, so it is as tight as any.`;
-  }
-
-  /** What the neighbourhood of the last solution saves. */
-  private tellNear({ steps, region }: PageSearch) {
-    const l = length(this.pair().direction);
+  private tellTracker({ steps, tracked, region }: PageSearch) {
+    this.tracker.textContent = tracked
+      ? `Asked after the question before this one, a tracker starts from ${{ features: "the features that touched then", region: "the region around the last solution", scratch: "nothing: too much has changed" }[tracked.started_from ?? "scratch"]}: ` +
+        `${count(tracked.supports, "supporting plane")} and ${count(tracked.pivots, "portal")}, instead of ${steps.supports} and ${steps.pivots}. The proof is made anew, so it is as tight as any.`
+      : "Change the question a little (drag the arrow, or move a body): a tracker then starts from the answer before.";
     if (!region) {
-      this.near.textContent = region === null ? "The question before had no contact: there is no p, and no neighbourhood N(p)." : "";
+      this.near.textContent = tracked && this.from.value !== "portal" ? "The question before had no contact: there is no p, and no neighbourhood N(p)." : "";
       return;
     }
     const [all, near] = [steps.planar_problems, region.steps.planar_problems];
     const saved = all > near ? `${all - near} of ${all} are saved` : "nothing is saved";
     this.near.textContent =
       `The algorithm itself can look first where the last solution p was: in the square N(p) around its pair of levels, whose half-side δ = ${short(region.delta, 3)} ` +
-      `is how far the contact points have moved apart across d${l === 1 ? "" : " (a length)"}. There it solved ${count(near, "planar problem")}, from scratch ${all}: ${saved}.`;
+      `is how far the contact points have moved apart across d${length(this.around.pair().direction) === 1 ? "" : " (a length)"}. There it solved ${count(near, "planar problem")}, from scratch ${all}: ${saved}.`;
   }
 
-  // --- the minimisation
-
-  private async gridOf(turn: number, found: Minimisation) {
-    const levels = ([low, high]: Two) => Array.from({ length: GRID }, (_, k) => low + ((k + 0.5) / GRID) * (high - low));
-    const { numbers } = await this.engine.ask({
-      do: "levels", ...this.pair(), moving_axis: found.axes[0], fixed_axis: found.axes[1],
-      moving_levels: levels(found.ranges[0]), fixed_levels: levels(found.ranges[1]),
-    });
-    if (turn !== this.asked) return;
-    this.grid = { count: GRID, values: new Float64Array(numbers, 0, GRID * GRID) };
-    this.draw();
+  private beginMotion() {
+    const bodies = this.bodies();
+    if (!bodies) return undefined;
+    this.from.value = "region";
+    const { moving_pose: pose, direction } = this.around.pair();
+    return { pose: [...pose] as Pose, direction, radius: bodies[0].radius };
   }
 
-  /** The two sections of the step. */
-  private async sectionsOf() {
-    this.sections = undefined;
-    const { found } = this;
-    const step = found?.steps[this.step];
-    if (!found || !step) return;
-    const { facts, numbers } = await this.engine.ask({
-      do: "levels", ...this.pair(), moving_axis: found.axes[0], fixed_axis: found.axes[1],
-      moving_levels: [step.levels[0]], fixed_levels: [step.levels[1]],
-    });
-    const all = new Float64Array(numbers);
-    const corners = (from: number, count: number): Vec[] =>
-      Array.from({ length: count }, (_, k) => [all[from + 3 * k]!, all[from + 3 * k + 1]!, all[from + 3 * k + 2]!]);
-    const count = facts.moving[0] ?? 0;
-    this.sections = { phi: all[0]!, moving: corners(1, count), fixed: corners(1 + 3 * count, facts.fixed[0] ?? 0) };
-  }
+  // --- what is seen
 
+  /** To where the step's planar problem is solved, and what follows has happened. */
   private pick(step: number) {
-    if (step === this.step) return;
-    this.step = step;
-    void this.sectionsOf().then(() => this.draw());
+    const of = (kind: Moment["kind"]) => this.moments.findIndex((one) => one.kind === kind && "step" in one && one.step === step) + 1;
+    const at = of("cut") || of("solved") || of("shift") || of("touch");
+    if (at && this.step !== step) this.player.go(at);
+  }
+
+  /** The step that is looked at. */
+  private get step(): number {
+    const moment = this.moments[this.player.now[0]];
+    return moment && "step" in moment ? moment.step : Math.max(0, (this.found?.steps.length ?? 1) - 1);
   }
 
   private draw() {
-    if (!this.visible || !this.bodies()) return;
-    const { found } = this;
+    const bodies = this.bodies();
+    if (!this.visible || !bodies) return;
+    const { found, refined, moments, player } = this;
+    const [at, over] = player.now;
+    const moment = moments[at];
+    const pair = this.around.pair();
+    const unit = length(pair.direction);
+    const { step } = this;
+    for (const part of [this.levelsCard, this.planar.element.parentElement!]) part.hidden = !found;
+    this.around.view.clearExtra();
+    if (found && moment) this.drawStep(found, found.steps[step], moment, ease(over), bodies, pair);
     const buttons = (count: number, now: number, pick: (k: number) => void) =>
-      Array.from({ length: count }, (_, k) =>
-        h("button", { class: "small", "aria-pressed": String(k === now), onclick: () => pick(k) }, String(k + 1)));
+      Array.from({ length: count }, (_, k) => h("button", { class: "small", "aria-pressed": String(k === now), onclick: () => pick(k) }, String(k + 1)));
     if (found) {
-      this.graph.show(found, this.grid, this.step);
-      refill(this.steps, ...buttons(found.steps.length, this.step, (k) => this.pick(k)));
-      this.tellStep(found);
-    } else {
-      this.told.textContent = this.from.value === "guess"
-        ? "Portal refinement began where the ellipsoids would meet, and no planar problem was needed."
-        : this.from.value === "region"
-          ? "There is no solution before this one: change the question a little (drag the arrow, or move a body), and look again."
-          : "Bodies without a volume have no sections to speak of.";
+      refill(this.steps, ...buttons(found.steps.length, step, (k) => this.pick(k)));
+      this.told.textContent = this.tellStep(found.steps[step], unit);
+      this.bounds.show(found, step, this.around.translation(), unit);
     }
-    for (const part of [this.graph.element, this.steps, this.planar.parentElement!]) part.hidden = !found;
-    this.drawPlanar();
-    this.drawPortals();
-    refill(this.portalSteps, ...buttons(this.refined?.steps.length ?? 0, this.portal, (k) => {
-      this.portal = k;
-      this.draw();
-    }));
-    this.drawInView();
+    const portal = moment?.kind === "portal" ? moment.portal : -1;
+    this.refinement.element.parentElement!.hidden = !refined;
+    if (refined) {
+      this.portalTold.textContent = this.refinement.show(refined, portal, bodies, pair);
+      const first = moments.findIndex((one) => one.kind === "portal");
+      refill(this.portalSteps, ...buttons(refined.steps.length, portal, (k) => player.go(first + k + 1)));
+      const t = this.around.translation();
+      const proven = portal === refined.steps.length - 1 ? this.around.proven() : [];
+      if (portal >= 0 && t !== undefined) drawPortal(this.around.view, refined.steps[portal]!, proven, bodies, pair, t);
+    }
+    player.say(this.tellMoment(moment));
+    this.around.view.render();
   }
 
-  private tellStep(found: Minimisation) {
-    const step = found.steps[this.step];
-    if (!step) return;
-    const l = length(this.pair().direction);
+  private drawStep(found: Minimisation, one: Step | undefined, moment: Moment, over: number, bodies: [Drawn, Drawn], pair: Pair) {
+    if (!one) return;
+    const unit = length(pair.direction);
+    const k = found.steps.indexOf(one);
+    const before = found.steps[k - 1];
+    const { kind } = moment;
+    const come = kind === "sections" ? over : 1;
+    const shift = kind === "sections" || kind === "touch" ? 0 : kind === "shift" ? over : 1;
+    const cut = kind === "cut" ? over : kind === "solved" ? 0 : kind === "portal" ? 1 : 0;
+    // The sections go from where the last step ended.
+    const levels = between(between(before?.best ?? one.levels, one.levels, come), one.meets ? one.best : one.levels, shift);
+    const touches = kind === "touch" ? over : kind === "sections" ? 0 : 1;
+    const t = one.meets ? (touches * mix(one.value, one.shifted, shift)) / unit : 0;
+    const [a, b] = found.axes;
+    const [moving, fixed] = [section(bodies[0].body, pair.moving_pose, a, levels[0]), section(bodies[1].body, pair.fixed_pose, b, levels[1])];
+    if (kind !== "portal") drawSections(this.around.view, { moving, fixed, t }, pair.direction);
+    this.planar.show([moving, fixed], found.axes, pair.direction, one.meets && touches === 1);
+    const [old, now] = [this.window(found, k - 1), this.window(found, k)];
+    const window: Window = come < 1 ? [between(old[0], now[0], come), between(old[1], now[1], come)] : now;
+    const grids = [this.grid(found, old, pair), this.grid(found, now, pair)].filter((grid) => grid !== undefined);
+    this.graph.show({ found, step: k, shift, cut, window, grids });
+  }
+
+  /** What of the levels is shown at a step. */
+  private window({ steps, ranges: [[a, b], [c, d]] }: Minimisation, step: number): Window {
+    const all: Window = [[a, c], [b, d]];
+    const region = steps[Math.max(step, 0)]?.region;
+    if (!this.graph.follows || !region?.length) return all;
+    const side = (k: 0 | 1): Two => {
+      const [low, high] = [Math.min(...region.map((p) => p[k])), Math.max(...region.map((p) => p[k]))];
+      const room = Math.max(0.08 * (high - low), 1e-7 * (all[1][k] - all[0][k]));
+      return [Math.max(low - room, all[0][k]), Math.min(high + room, all[1][k])];
+    };
+    const [x, y] = [side(0), side(1)];
+    return [[x[0], y[0]], [x[1], y[1]]];
+  }
+
+  /** The values over a window, once they are there. */
+  private grid(found: Minimisation, window: Window, pair: Pair): Grid | undefined {
+    const key = window.join();
+    const known = this.grids.get(key);
+    if (known) return known === "asked" ? undefined : known;
+    this.grids.set(key, "asked");
+    const levels = (k: 0 | 1) => Array.from({ length: GRID }, (_, i) => mix(window[0][k], window[1][k], (i + 0.5) / GRID));
+    const question = { do: "levels" as const, ...structuredClone(pair), moving_axis: found.axes[0], fixed_axis: found.axes[1], moving_levels: levels(0), fixed_levels: levels(1) };
+    this.engine.ask(question).then(({ numbers }) => {
+      if (found !== this.found) return;
+      this.grids.set(key, { window, count: GRID, values: new Float64Array(numbers, 0, GRID * GRID) });
+      this.draw();
+    }, () => undefined);
+    return undefined;
+  }
+
+  // --- what is said
+
+  private tellStep(step: Step | undefined, unit: number): string {
+    if (!step) return "";
     const where = `At x = ${short(step.levels[0], 4)}, y = ${short(step.levels[1], 4)}`;
     const cut = step.cut
-      ? ` Proven by now: ${Number.isFinite(step.cut.upper) && step.cut.upper !== null ? `between ${short(step.cut.lower / l, 7)} and ${short(step.cut.upper / l, 7)}` : `at least ${short(step.cut.lower / l, 7)}`}; what lies behind the cut, pale, is left out.`
-      : "";
-    this.told.textContent = step.meets
-      ? `${where} the sections meet at t = ${short(step.value / l, 7)}. Within the cell where the same features touch, φ is linear and goes down to ${short(step.shifted / l, 7)} (the cell shift).${cut}`
+      ? ` Proven by now: ${Number.isFinite(step.cut.upper) ? `between ${short(step.cut.lower / unit, 7)} and ${short(step.cut.upper / unit, 7)}` : `at least ${short(step.cut.lower / unit, 7)}`}; what lies behind the cut is left out.`
+      : step.solved ? " The features that touch at q solve the problem: the search ends." : "";
+    return step.meets
+      ? `${where} the sections meet at t = ${short(step.value / unit, 7)}, by ${step.touch === "edges" ? "two edges" : "a corner inside the other section"}. Within the cell where the same features touch, φ is linear and goes down to ${short(step.shifted / unit, 7)} (the cell shift, from c to q).${cut}`
       : `${where} the sections miss each other by ${short(step.value, 4)}; the cut keeps the side where they come closer.${cut}`;
   }
 
-  /** Both sections in the shadow plane: `h` up, `g` to the right. */
-  private drawPlanar() {
-    const { planar, sections, found } = this;
-    const colours = palette();
-    planar.replaceChildren();
-    if (!sections || !found || sections.moving.length < 2 || sections.fixed.length < 2) return;
-    const d = unit(this.pair().direction);
-    const [a, b] = found.axes;
-    const c = sub(times(a, 1 / dot(a, d)), times(b, 1 / dot(b, d)));
-    const [up, right] = [unit(c), unit(cross(d, c))];
-    const flat = (v: Vec): Two => [dot(v, right), dot(v, up)];
-    const [p, q] = [hull(sections.moving.map(flat)), hull(sections.fixed.map(flat))];
-    const all = [...p, ...q];
-    const [lowX, highX] = [Math.min(...all.map(([x]) => x)), Math.max(...all.map(([x]) => x))];
-    const [lowY, highY] = [Math.min(...all.map(([, y]) => y)), Math.max(...all.map(([, y]) => y))];
-    const scale = Math.min((SIZE - 40) / (highX - lowX || 1), 190 / (highY - lowY || 1));
-    const place = ([x, y]: Two): Two => [SIZE / 2 + (x - (lowX + highX) / 2) * scale, 115 - (y - (lowY + highY) / 2) * scale];
-    const points = (polygon: Two[]) => polygon.map((v) => place(v).map((x) => x.toFixed(1)).join(",")).join(" ");
-    planar.append(
-      svg("polygon", { points: points(q), fill: colours.fixed, "fill-opacity": 0.65, stroke: colours.text, "stroke-width": 1.2 }),
-      svg("polygon", { points: points(p), fill: colours.moving, "fill-opacity": 0.55, stroke: colours.text, "stroke-width": 1.2 }));
-    const common = intersection(p, q);
-    const lowest = common.reduce<Two | undefined>((best, v) => (!best || v[1] < best[1] ? v : best), undefined);
-    if (lowest) {
-      const [x, y] = place(lowest);
-      planar.append(
-        svg("polygon", { points: points(common), fill: colours.plane, "fill-opacity": 0.35, stroke: "none" }),
-        svg("line", { x1: 6, x2: SIZE - 6, y1: y, y2: y, stroke: colours.normal, "stroke-width": 1.2, "stroke-dasharray": "5 4" }),
-        svg("circle", { cx: x, cy: y, r: 5, fill: colours.normal, stroke: "#fff", "stroke-width": 1.5 }));
+  private tellMoment(moment: Moment | undefined): string {
+    if (!moment) {
+      return this.from.value === "region" ? "There is no solution before this one: change the question a little (drag the arrow, or move a body), and look again."
+        : this.search?.events.length ? "No planar problem was needed, and no portal was reached." : "Bodies without a volume have no sections.";
     }
-    planar.append(
-      svg("text", { x: 6, y: 14, "font-size": 12, fill: colours.text }, "↑ h"),
-      svg("text", { x: SIZE - 6, y: 224, "font-size": 12, fill: colours.text, "text-anchor": "end" }, lowest ? "ψ: the least h in common" : "nothing in common: the sections never meet"));
-  }
-
-  // --- portal refinement
-
-  private drawPortals() {
-    const { portalPicture: picture, refined } = this;
-    const colours = palette();
-    picture.replaceChildren();
-    const bodies = this.bodies();
-    if (!refined || !bodies) return;
-    const { frame, steps, loose } = refined;
-    const pair = this.pair();
-    const shadow = (body: Drawn, pose: Pair["moving_pose"]) => {
-      const { vertices } = body.body;
-      const flat: Two[] = [];
-      for (let k = 0; k < vertices.length; k += 3) {
-        const v = placed(pose, [vertices[k]!, vertices[k + 1]!, vertices[k + 2]!]);
-        flat.push([dot(v, frame[0]), dot(v, frame[1])]);
-      }
-      return hull(flat);
-    };
-    const [p, q] = [shadow(bodies[0], pair.moving_pose), shadow(bodies[1], pair.fixed_pose)];
-    const thin = (all: Two[]) => all.filter((_, k) => k % Math.ceil(all.length / 120) === 0);
-    const rim = hull(thin(q).flatMap(([x, y]) => thin(p).map(([u, v]): Two => [x - u, y - v])));
-    const all: Two[] = [...rim, [0, 0]];
-    const [lowX, highX] = [Math.min(...all.map(([x]) => x)), Math.max(...all.map(([x]) => x))];
-    const [lowY, highY] = [Math.min(...all.map(([, y]) => y)), Math.max(...all.map(([, y]) => y))];
-    const scale = (SIZE - 30) / Math.max(highX - lowX, highY - lowY, 1e-300);
-    const place = ([x, y]: Two | Vec): Two => [SIZE / 2 + (x - (lowX + highX) / 2) * scale, SIZE / 2 - (y - (lowY + highY) / 2) * scale];
-    const points = (polygon: (Two | Vec)[]) => polygon.map((v) => place([v[0], v[1]]).map((x) => x.toFixed(1)).join(",")).join(" ");
-    picture.append(svg("polygon", { points: points(rim), fill: colours.grid, "fill-opacity": 0.5, stroke: colours.text, "stroke-width": 1.2 }));
-    steps.slice(0, this.portal + 1).forEach(({ portal }, k) => {
-      const now = k === this.portal;
-      picture.append(svg("polygon", {
-        points: points(portal), fill: colours.moving, "fill-opacity": now ? 0.45 : 0.08,
-        stroke: now ? colours.movingMark : colours.moving, "stroke-width": now ? 2.2 : 1, "stroke-dasharray": now ? "none" : "4 3",
-      }));
-    });
-    for (const v of [...loose, ...(steps[this.portal]?.supports ?? [])]) {
-      const [x, y] = place(v);
-      picture.append(svg("circle", { cx: x, cy: y, r: 4, fill: colours.fixedMark, stroke: "#fff", "stroke-width": 1 }));
+    if (moment.kind === "portal") {
+      const { found } = this;
+      if (moment.portal || !found) return `Portal ${moment.portal + 1}: three points of M around the line of the motion.`;
+      return found.steps.at(-1)?.solved ? "Hand-over: the features found name a face of M. One portal checks with exact signs that the line passes it; its plane and points are the proof."
+        : "Hand-over: the minimisation has ended, and portal refinement goes on from the normal of its lower bound, with exact signs.";
     }
-    const [x, y] = place([0, 0]);
-    picture.append(
-      svg("path", { d: `M${x - 9} ${y}H${x + 9}M${x} ${y - 9}V${y + 9}`, stroke: colours.normal, "stroke-width": 2.5 }),
-      svg("text", { x: 8, y: 16, "font-size": 12, fill: colours.text }, "M along d"));
-    const heights = steps[this.portal]?.portal.map((v) => short(v[2], 4));
-    this.portalTold.textContent = heights
-      ? `Portal ${this.portal + 1} of ${steps.length}: its corners are at heights ${heights.join(", ")} along d; the orange points are the supports computed for it.`
-      : "No portal: the line misses the difference, and a direction was found that separates.";
-  }
-
-  // --- in the view
-
-  private drawInView() {
-    const { view, sections } = this;
-    view.clearExtra();
-    if (!sections) {
-      view.render();
-      return;
+    const step = this.found!.steps[moment.step]!;
+    const name = `Step ${moment.step + 1} of ${this.found!.steps.length}`;
+    const best = least(this.found!);
+    switch (moment.kind) {
+      case "sections": return `${name}: both bodies are cut at c${moment.step ? ", the centroid of the region that is left" : this.found!.square ? " = p, the last solution" : ", the centre of all levels"}.`;
+      case "touch": return step.meets ? `${name}: the moving section goes along d until it touches the other one.` : `${name}: the sections never meet; a line lies between their shadows.`;
+      case "shift": return `${name}: within its cell the contact slides down to q${best && step.best[0] === best.at[0] && step.best[1] === best.at[1] ? ", the least value of all" : ""}.`;
+      case "cut": return `${name}: what lies behind the cut line cannot be better, and is cut off.`;
+      default: return `${name}: q solves the problem, because the features that touch there have a common normal that supports both bodies.`;
     }
-    const colours = palette();
-    const d = this.pair().direction;
-    const show = (corners: Vec[], colour: string, opacity: number) => {
-      if (corners.length < 2) return;
-      const at = corners.map((v) => view.toScene(v));
-      const triangles: Vector3[] = [];
-      for (let k = 1; k + 1 < at.length; k++) triangles.push(at[0]!, at[k]!, at[k + 1]!);
-      const sheet = new MeshBasicMaterial({ color: colour, transparent: true, opacity, side: DoubleSide, depthWrite: false });
-      const line = new LineLoop(new BufferGeometry().setFromPoints(at), new LineBasicMaterial({ color: colour }));
-      view.extra.add(new Mesh(new BufferGeometry().setFromPoints(triangles), sheet), line);
-    };
-    show(sections.fixed, colours.fixedMark, 0.6);
-    show(sections.moving, colours.movingMark, 0.6);
-    if (Number.isFinite(sections.phi)) {
-      const moved = sections.moving.map((v) => add(v, times(d, sections.phi)));
-      show(moved, colours.movingMark, 0.35);
-      for (const k of [0, Math.floor(sections.moving.length / 2)]) {
-        const ends = [sections.moving[k]!, moved[k]!].map((v) => view.toScene(v));
-        view.extra.add(new Line(new BufferGeometry().setFromPoints(ends), new LineBasicMaterial({ color: colours.movingMark, transparent: true, opacity: 0.5 })));
-      }
-    }
-    view.render();
   }
 }
+
+/** Slow at both ends. */
+const ease = (s: number) => s * s * (3 - 2 * s);
 
 const count = (n: number, what: string) => `${n} ${what}${n === 1 ? "" : "s"}`;
 
-/** The minimisation in the neighbourhood of the last solution. */
-function within({ region }: PageSearch): Minimisation | undefined {
-  const found = region ? minimisation(region.events) : undefined;
-  if (found && region) found.square = { center: region.center, half: region.half };
-  return found;
-}
-
-/** The common part of two convex polygons, both counter-clockwise. */
-function intersection(p: Two[], q: Two[]): Two[] {
-  let left = p;
-  q.forEach((a, k) => {
-    const b = q[(k + 1) % q.length]!;
-    left = below(left, [b[1] - a[1], a[0] - b[0]], a, 0);
-  });
-  return left;
+/** What the letters stand for, and where to read on. */
+function words(): HTMLElement {
+  const rows: [string, string][] = [
+    ["d, t", "the direction of the motion; how far the moving body has gone, in multiples of d"],
+    ["section", "what a plane across an axis cuts out of a body; its level, x or y, says where the plane is"],
+    ["φ(x, y)", "the t at which the sections at the levels x and y touch: a convex function, whose least value is the answer"],
+    ["drum", "the part of a body between the levels of neighbouring vertices, where its section keeps its shape"],
+    ["mark", "the map of all cells: in each the same features touch, and φ is linear"],
+    ["M", "in the plane of levels the region that is left; below, the difference of both bodies"],
+  ];
+  const link = (href: string, text: string) => h("a", { href, target: "_blank", rel: "noopener" }, text);
+  return h("details", { class: "card words" }, h("summary", {}, "Words, the paper, the source"),
+    h("div", {}, h("dl", {}, ...rows.flatMap(([name, what]) => [h("dt", {}, name), h("dd", {}, what)])),
+      h("p", { class: "proof" }, "The paper: C. Mirolo, S. Carpin, E. Pagello, “Incremental Convex Minimization for Computing Collision Translations of Convex Polyhedra”, IEEE Transactions on Robotics 23(3), 2007 (",
+        link("https://search.crossref.org/?q=Incremental+Convex+Minimization+for+Computing+Collision+Translations+of+Convex+Polyhedra", "its entry, with the DOI"), "). ",
+        link("paper.md", "The paper line by line, and this library"), "; the source: ", link("source/minimise.rs", "the minimisation"), ", ", link("source/cell.rs", "cells"), ", ", link("source/region.rs", "the region"), ".")));
 }

@@ -13,8 +13,9 @@ import { ACCEPTED } from "./formats";
 import { dot, length, placed, sub } from "./math";
 import type { AssemblyTab } from "./assembly";
 import type { Found } from "./found";
-import type { Near, Nearness, Source } from "./near";
+import type { Near, Nearness } from "./near";
 import { AnswerPanel, type Picture, type Refusal, type Shown } from "./panel";
+import type { Source } from "./placing";
 import { Shadow } from "./shadow";
 import { type State, type Tab, fromExample, fromHash, toHash } from "./state";
 import { Timeline } from "./time";
@@ -117,7 +118,11 @@ class Page {
     try {
       if (tab === "found") {
         const { Found } = await import("./found");
-        this.found = new Found(this.engine, view!, () => this.pair(), () => this.before);
+        this.found = new Found({
+          view: view!, pair: () => this.pair(), before: () => this.before, sources: () => this.sources, example: (name) => this.begin(name),
+          move: (pose) => this.change((state) => (state.poses.moving = pose)), translation: () => this.answer?.record.translation,
+          proven: () => (this.answer?.proof && "contact" in this.answer.proof ? this.answer.proof.contact.pairs.map(({ moving, fixed }) => [moving, fixed]) : []),
+        });
         named("panel").append(this.found.element);
         this.found.changed();
       } else if (tab === "assembly") {
@@ -155,8 +160,9 @@ class Page {
   // --- what is asked
 
   private pair(): Pair {
-    const { poses, direction, graze, solver, tolerance, ignore } = this.state;
-    return { moving_pose: poses.moving, fixed_pose: poses.fixed, direction, graze, solver, tolerance, ignore_overlaps: ignore };
+    const { poses, direction, graze, solver, start, until, tolerance, ignore } = this.state;
+    const narrowing = solver === "cta" ? { start, until: until ?? ("exit" as const) } : {};
+    return { moving_pose: poses.moving, fixed_pose: poses.fixed, direction, graze, solver, ...narrowing, tolerance, ignore_overlaps: ignore };
   }
 
   private change(change: (state: State) => void, asks = true) {
@@ -458,11 +464,7 @@ class Page {
         void this.assembly?.start();
         return;
       }
-      const tab = this.state.tab === "assembly" ? "answer" : this.state.tab;
-      this.state = { ...fromExample(select.value), tab, near: this.state.near, assembly: this.state.assembly };
-      await this.loadBoth();
-      this.fit();
-      this.remember();
+      await this.begin(select.value);
     });
     this.tabs();
     named("theme").addEventListener("click", () => {
@@ -479,6 +481,15 @@ class Page {
       void this.loadBoth().then(() => this.fit());
       this.assembly?.stateChanged();
     });
+  }
+
+  /** An example is asked about, from its beginning. */
+  private async begin(example: string) {
+    const tab = this.state.tab === "assembly" ? "answer" : this.state.tab;
+    this.state = { ...fromExample(example), tab, near: this.state.near, assembly: this.state.assembly };
+    await this.loadBoth();
+    this.fit();
+    this.remember();
   }
 
   /** The example that is asked about, if it is one as it began: else it can be chosen again. */
@@ -612,7 +623,7 @@ class Page {
 
   /** For tests. */
   probe() {
-    return { assembly: this.assembly?.probe(), engine: this.engine, view: this.view, state: this.state, answer: this.answer, near: this.near?.told, firstAnswer: this.firstAnswer };
+    return { assembly: this.assembly?.probe(), found: this.found?.probe(), engine: this.engine, view: this.view, state: this.state, answer: this.answer, near: this.near?.told, firstAnswer: this.firstAnswer };
   }
 }
 

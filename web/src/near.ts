@@ -2,18 +2,11 @@
 
 import { MeshBasicMaterial, type Object3D } from "three";
 import type { Answer, PageDistance } from "./answers";
-import { Engine, type Pair, type Slot, type Take } from "./engine";
-import { SLOTS } from "./examples";
+import { Engine, type Pair, type Slot } from "./engine";
 import { type Vec, add, short, shown, times } from "./math";
+import { Placing, type Source } from "./placing";
 import { type Frame, type Label, above, ball, inPicture, line, rod } from "./view/shapes";
 import { feature } from "./words";
-
-/** What a body was made of. */
-export interface Source {
-  name: string;
-  take: Take;
-  bytes(): Promise<ArrayBuffer>;
-}
 
 /** What is said and drawn beside the answer. */
 export interface Nearness {
@@ -25,17 +18,10 @@ export interface Nearness {
 
 export class Near {
   private readonly engine = new Engine("colltrans_distance");
-  private readonly placed: Partial<Record<Slot, Source>> = {};
+  private readonly placing = new Placing(this.engine);
 
   async ask(sources: Record<Slot, Source>, { moving_pose, fixed_pose }: Pair): Promise<Nearness> {
-    for (const slot of SLOTS) {
-      const source = sources[slot];
-      if (this.placed[slot] === source) continue;
-      delete this.placed[slot];
-      const { name, take } = source;
-      await this.engine.ask({ do: "place", slot, name, take }, await source.bytes());
-      this.placed[slot] = source;
-    }
+    await this.placing.place(sources);
     const { facts } = await this.engine.ask({ do: "distance", moving_pose, fixed_pose });
     return { told: facts, ...say(facts), draw: (frame) => draw(frame, facts) };
   }

@@ -2,7 +2,7 @@
 
 import { h, refill, svg } from "./dom";
 import type { Certificate, PageCast, PageCertify, PageClaims, PageConvex, PageSolid } from "./answers";
-import { MOST_MIB, type Slot, type Take, plane } from "./engine";
+import { MOST_MIB, type Slot, type Start, type Take, plane } from "./engine";
 import { names } from "./formats";
 import { type Vec, length, short } from "./math";
 import type { Nearness } from "./near";
@@ -66,6 +66,9 @@ export class AnswerPanel {
   private readonly parts = h("div");
   private readonly fields: { input: HTMLInputElement; read: (state: State) => number | null }[] = [];
   private readonly solver = h("select", { "aria-label": "Solver" });
+  /** Of the paper's algorithm: where it starts and ends. */
+  private readonly start = h("select", { "aria-label": "Where the algorithm starts" });
+  private readonly narrowing: HTMLElement;
   private readonly graze: HTMLElement;
   private readonly solid: HTMLElement;
   private readonly ignore = h("input", { type: "checkbox" });
@@ -80,6 +83,14 @@ export class AnswerPanel {
       this.solver.append(h("option", { value: value! }, text!));
     }
     this.solver.addEventListener("change", () => act.change((s) => (s.solver = this.solver.value as Solver)));
+    this.start.append(h("option", { value: "center" }, "the centre of all levels"), h("option", { value: "ellipsoids" }, "where ellipsoids would meet"));
+    this.start.addEventListener("change", () => act.change((s) => (s.start = this.start.value as Start)));
+    this.narrowing = h(
+      "div", { class: "fields", style: "grid-template-columns: 1fr 1fr; align-items: end" },
+      h("label", {}, "It starts at", this.start),
+      h("label", { title: "A share of both bodies' extent along d: where its bounds are no farther apart it ends, and portals go on" },
+        "It ends at a gap (empty: at its own end)", this.number("Gap at which the algorithm ends", (s) => s.until, (s, x) => (s.until = Math.max(0, x)), (s) => (s.until = null))),
+    );
     this.ignore.addEventListener("change", () => act.change((s) => (s.ignore = this.ignore.checked)));
     this.graze = h(
       "div", { class: "fields", style: "grid-template-columns: 1fr 1fr 1fr; align-items: end" },
@@ -162,7 +173,7 @@ export class AnswerPanel {
           const l = length(s.direction);
           if (l > 0) s.direction = s.direction.map((x) => x / l) as Vec;
         }) }, "length 1")),
-      ...pose("moving"), ...pose("fixed"), this.graze, this.solid,
+      ...pose("moving"), ...pose("fixed"), this.graze, this.narrowing, this.solid,
       h("small", { style: "color: var(--soft)" }, "Lengths are in the unit of the files; t counts in multiples of d. In a field the keys ↑ and ↓ change the number, with Shift by ten times as much."),
     );
   }
@@ -198,6 +209,8 @@ export class AnswerPanel {
     this.ignore.checked = state.ignore;
     const solids = Object.values(shown.bodies).some((body) => body?.body.facts.kind === "solid");
     this.graze.hidden = solids;
+    this.start.value = state.start;
+    this.narrowing.hidden = solids || state.solver !== "cta";
     this.solid.hidden = !solids;
     this.command.disabled = asCommand(state) === undefined;
     this.command.title = this.command.disabled ? "The command takes no hull of a part beside one that is not convex" : "";

@@ -35,10 +35,15 @@ export function asRust(state: State): string {
   const takes = [state.parts.moving.take, state.parts.fixed.take];
   const solids = takes.some(isSolid);
   const turned = (["moving", "fixed"] as const).some((slot) => state.poses[slot].slice(3).join() !== "0,0,0,1");
-  const solver = { auto: "", cta: ".with_solver(Solver::Cta)", portal: ".with_solver(Solver::Portal)" }[state.solver];
+  const narrowed = state.solver === "cta" && (state.start !== "center" || state.until !== null);
+  const from = { center: "NarrowFrom::Center", ellipsoids: "NarrowFrom::Ellipsoids" }[state.start];
+  const until = state.until === null ? "Until::Exit" : `Until::Gap(${float(state.until)})`;
+  const solver = narrowed
+    ? `.with_options(Options::default().with_solver(Solver::Cta).with_narrowing(Narrowing::new(${from}, ${until})))?`
+    : { auto: "", cta: ".with_solver(Solver::Cta)", portal: ".with_solver(Solver::Portal)" }[state.solver];
   const names = solids
     ? ["Pose", !takes.every(isSolid) && "Solid", "StartOverlap"]
-    : ["Cast", "Pose", solver && "Solver"];
+    : ["Cast", ...(narrowed ? ["NarrowFrom", "Narrowing", "Options"] : []), "Pose", solver && "Solver", narrowed && "Until"];
   const loads = ["BodyOptions", solids && "between", !takes.every(isSolid) && "load_convex", solids && "load_solid"];
   const body = (slot: Slot) => (solids && !isSolid(state.parts[slot].take) ? `${slot}_body` : `${slot}.body`);
   const precision = (slot: Slot) => (isSolid(state.parts[slot].take) ? `${slot}.precision` : "0.0");
@@ -88,7 +93,10 @@ export function asPython(state: State): string {
     if (state.ignore) named.push("ignore_start_overlaps=True");
   } else {
     if (state.graze) named.push(`graze_tolerance=${float(state.graze)}`);
-    if (state.solver !== "auto") named.push(`solver="${state.solver}"`);
+    const until = state.until === null ? [] : [`until=${float(state.until)}`];
+    const cta = [...(state.start === "center" ? [] : [`start="${state.start}"`]), ...until].join(", ");
+    if (state.solver === "cta" && cta) named.push(`solver=colltrans.Cta(${cta})`);
+    else if (state.solver !== "auto") named.push(`solver="${state.solver}"`);
   }
   const choices = named.map((one) => `    ${one},\n`).join("");
   const asked = solids ? "colltrans.SolidCast" : "colltrans.clearance";

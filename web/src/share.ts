@@ -32,6 +32,8 @@ export function asCommand(state: State): string | undefined {
   } else {
     if (state.graze) words.push(`--graze-tolerance=${state.graze}`);
     if (state.solver !== "auto") words.push(`--solver=${state.solver}`);
+    if (state.solver === "cta" && state.start !== "center") words.push(`--start=${state.start}`);
+    if (state.solver === "cta" && state.until !== null) words.push(`--until=${state.until}`);
   }
   return words.join(" ");
 }

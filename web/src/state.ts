@@ -1,6 +1,6 @@
 // What is asked, as a value; and as the part of an address after `#`.
 
-import type { Slot, Take } from "./engine";
+import type { Slot, Start, Take } from "./engine";
 import { EXAMPLES, FIRST, type Part } from "./examples";
 import type { Pose, Vec } from "./math";
 
@@ -17,6 +17,9 @@ export interface State {
   tolerance: number | null;
   ignore: boolean;
   solver: Solver;
+  /** Of the paper's algorithm: where it starts, and the gap at which it ends; `null`: at its own end. */
+  start: Start;
+  until: number | null;
   /** Whether it is shown how far the bodies are apart where they are. */
   near: boolean;
   /** Where the moving body is shown, in multiples of the direction; `null`: at its start. */
@@ -42,6 +45,8 @@ export function fromExample(name: string): State {
     tolerance: null,
     ignore: false,
     solver: example.solver ?? "auto",
+    start: "center",
+    until: null,
     near: false,
     t: null,
     tab: "answer",
@@ -65,6 +70,8 @@ export function toHash(state: State): string {
     ["tol", state.tolerance === null ? undefined : String(state.tolerance)],
     ["ignore", state.ignore ? "1" : undefined],
     ["solver", state.solver === "auto" ? undefined : state.solver],
+    ["start", state.solver !== "cta" || state.start === "center" ? undefined : state.start],
+    ["until", state.solver !== "cta" || state.until === null ? undefined : String(state.until)],
     ["near", state.near ? "1" : undefined],
     ["t", state.t === null ? undefined : String(state.t)],
     ["tab", state.tab === "answer" ? undefined : state.tab],
@@ -104,7 +111,10 @@ export function fromHash(hash: string): State {
   state.graze = numbers("graze", 1)?.[0] ?? 0;
   state.tolerance = numbers("tol", 1)?.[0] ?? null;
   state.ignore = fields.get("ignore") === "1";
-  state.solver = SOLVERS.find((s) => s === fields.get("solver")) ?? "auto";
+  state.solver = SOLVERS.find((s) => s === fields.get("solver")) ?? state.solver;
+  state.start = fields.get("start") === "ellipsoids" ? "ellipsoids" : "center";
+  const until = numbers("until", 1)?.[0] ?? null;
+  state.until = until !== null && until >= 0 ? until : null;
   state.near = fields.get("near") === "1";
   state.t = numbers("t", 1)?.[0] ?? null;
   state.tab = TABS.find((tab) => tab === fields.get("tab")) ?? "answer";

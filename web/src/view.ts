@@ -204,6 +204,11 @@ export class View {
     clear(this.extra, this.kept());
   }
 
+  /** Half the extent of what is shown. */
+  get size(): number {
+    return this.frame.size;
+  }
+
   toScene(v: Vec): Vector3 {
     return inPicture(this.frame, v);
   }

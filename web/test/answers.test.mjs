@@ -32,8 +32,8 @@ test("it opens solved, without a complaint, and is small", async () => {
   const loaded = code.filter((file) => read.has(file)).map((file) => [file, size(file)]);
   const total = loaded.reduce((sum, [, n]) => sum + n, 0);
   console.log(`${loaded.map(([file, n]) => `${file} ${n}`).join(", ")}: ${total} bytes with brotli`);
-  // 393,965 when this was written; other compilers make a little more of it.
-  assert.ok(total < 409_000, `${total} bytes`);
+  // 398,681 when this was written; other compilers make a little more of it.
+  assert.ok(total < 400_000, `${total} bytes`);
   assert.ok(!read.has("colltrans_assembly.wasm"));
 });
 
@@ -93,45 +93,6 @@ test("1,000 answers are the native ones, bit for bit", async () => {
   for (const name of ["convex contact", "convex grazing", "convex separated", "solid blocked", "solid free"]) {
     assert.ok(outcomes.get(name) > 0, `no answer was ${name}`);
   }
-});
-
-test("how it was found: planar problems, portals, and what a tracker saves", async () => {
-  await asked();
-  await page.click("#tab-found");
-  await page.waitForSelector(".stack .pick");
-  const steps = await page.locator(".found .steps").first().locator("button").count();
-  assert.ok(steps > 1, `${steps} planar problems`);
-  await page.locator(".found .steps").first().locator("button").nth(1).click();
-  await page.waitForFunction(() => /^At x = /.test(document.querySelectorAll(".found .card .proof")[1].textContent));
-  // The least value of the graph that is drawn is near the answer, and none is below it.
-  const { least, t } = await page.evaluate(async () => {
-    const { engine, answer, state } = window.colltrans.probe();
-    const pair = { moving_pose: state.poses.moving, fixed_pose: state.poses.fixed, direction: state.direction };
-    const { events } = (await engine.ask({ do: "search", ...pair, solver: "cta" })).facts;
-    const { sections, ranges } = events.find((event) => event.sections);
-    const levels = ([low, high]) => Array.from({ length: 60 }, (_, k) => low + ((k + 0.5) / 60) * (high - low));
-    const { numbers } = await engine.ask({
-      do: "levels", ...pair, moving_axis: sections[0], fixed_axis: sections[1],
-      moving_levels: levels(ranges[0]), fixed_levels: levels(ranges[1]),
-    });
-    const values = [...new Float64Array(numbers, 0, 3600)].filter((x) => !Number.isNaN(x));
-    return { least: Math.min(...values), t: answer.record.translation };
-  });
-  assert.ok(least >= t - 1e-9 && least < t + 0.5, `${least} ${t}`);
-  await page.click("#tab-answer");
-  await page.fill('[aria-label="Direction y"]', "0.105");
-  await page.waitForFunction((t) => window.colltrans.probe().answer?.record.translation !== t, t);
-  await page.click("#tab-found");
-  await page.waitForSelector("text=a tracker starts from the features");
-  // In the neighbourhood of the last solution fewer planar problems are solved.
-  const scratch = await page.locator(".found .steps").first().locator("button").count();
-  await page.selectOption('[aria-label="Where the minimisation starts"]', "region");
-  await page.waitForSelector(".stack .neighbourhood", { state: "attached" });
-  const near = await page.locator(".found .steps").first().locator("button").count();
-  assert.ok(near >= 1 && near < scratch, `${near} of ${scratch}`);
-  const said = await page.locator(".found .proof").last().textContent();
-  assert.match(said, new RegExp(`solved ${near} planar problems?, from scratch ${scratch}: ${scratch - near} of ${scratch} are saved`));
-  assert.deepEqual(page.complaints, []);
 });
 
 test("dragging the arrow's tip changes the answer", async () => {

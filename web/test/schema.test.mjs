@@ -1,4 +1,5 @@
-// What the page is answered is what docs/answers.schema.json says. Needs the examples `native` and `native_assembly`.
+// What the page is answered is what docs/answers.schema.json says. Needs the examples `native`,
+// `native_found` and `native_assembly`.
 
 import assert from "node:assert/strict";
 import { join } from "node:path";
@@ -18,7 +19,7 @@ function told(program, questions) {
 const load = (slot, name, take) => ({ do: "load", slot, name, take, file: name });
 const pair = (at, direction, more = {}) => ({ moving_pose: [...at, 0, 0, 0, 1], fixed_pose: [0, 0, 0, 0, 0, 0, 1], direction, ...more });
 
-test("convex bodies: contact, grazing, separated; proofs; how it was found", () => {
+test("convex bodies: contact, grazing, separated; proofs", () => {
   const bodies = [load("moving", "dodecahedron.off", "convex"), load("fixed", "bracket.obj", "hull")];
   const asked = [
     pair([6, 1, 9], [-0.3, 0.1, -1]), pair([6, 1, 9], [1, 0, 0]), pair([0, 0, 0], [0, 0, 1]), pair([0, 0, -20], [0, 0, -1]),
@@ -33,12 +34,18 @@ test("convex bodies: contact, grazing, separated; proofs; how it was found", () 
   const { contact } = casts[0].proof;
   const lie = { contact: { ...contact, lower: contact.lower + 1 } };
   assert.equal(told("native", [...bodies, { do: "verify", ...asked[0], proof: lie }])[2].holds, false);
-  const search = { do: "search", ...asked[0], solver: "cta", after: pair([6, 1, 9], [-0.3, 0.101, -1]) };
-  const found = told("native", [...bodies, search, { ...search, solver: "portal" }, { ...search, solver: "portal", after: undefined }]).slice(2);
-  assert.ok(found[0].region && found[1].tracked && !found[2].tracked);
+});
+
+test("how it was found", () => {
+  const bodies = ["dodecahedron.off", "bracket.obj"].map((name, k) => ({ do: "place", slot: ["moving", "fixed"][k], name, take: "convex", file: name }));
+  const asked = pair([6, 1, 9], [-0.3, 0.1, -1]);
+  const search = { do: "search", ...asked, solver: "cta", start: "center", until: "exit", after: pair([6, 1, 9], [-0.3, 0.101, -1]) };
+  const miss = { ...search, ...pair([6, 1, 9], [1, 0, 0]), after: undefined };
+  const found = told("native_found", [...bodies, search, { ...search, solver: "portal" }, { ...search, solver: "portal", after: undefined }, { ...search, start: "ellipsoids", until: 0.2 }, miss]).slice(2);
+  assert.ok(found[0].region && found[1].tracked && !found[2].tracked && found[4].events.some(({ touch }) => touch === "separated"));
   const { sections: [moving, fixed], ranges } = found[0].events.find((event) => event.sections);
-  const grid = { do: "levels", ...asked[0], moving_axis: moving, fixed_axis: fixed, moving_levels: ranges[0], fixed_levels: ranges[1] };
-  assert.equal(told("native", [...bodies, grid])[2].moving.length, 2);
+  const grid = { do: "levels", ...asked, moving_axis: moving, fixed_axis: fixed, moving_levels: ranges[0], fixed_levels: ranges[1] };
+  assert.equal(told("native_found", [...bodies, grid])[2].values, 4);
 });
 
 test("solids and open surfaces: free, blocked, overlapping; proofs", () => {

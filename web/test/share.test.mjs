@@ -27,11 +27,17 @@ test("the same question as a command line, or none where none asks the same", ()
     "colltrans clearance bolt.stl --from plate.off --direction=0,0,-1 --moving-pose=0,0,7,0,0,0,1 --tolerance=0.01 --ignore-start-overlaps");
   assert.match(asCommand(fromHash("#m=it's mine.off:hull&graze=0.1&solver=cta")), /^colltrans cast 'it'\\''s mine\.off' bracket\.obj .* --hull-moving --graze-tolerance=0\.1 --solver=cta$/);
   assert.match(asCommand(fromHash("#f=plate.off:open")), / --open$/);
+  assert.match(asCommand(fromHash("#solver=cta&start=ellipsoids&until=0.2")), / --solver=cta --start=ellipsoids --until=0\.2$/);
+  assert.match(asCommand(fromHash("#solver=cta&start=center&until=-1")), / --solver=cta$/);
   assert.equal(asCommand(fromHash("#m=bolt.stl:hull&f=plate.off:solid")), undefined);
 });
 
 test("and as programs", () => {
   const state = fromHash('#m=a"b.stl:hull&f=plate.off:open&d=0,0,-1&tol=1&mp=0,0,7,0,0,0,1');
   assert.match(asRust(state), /load_convex\("a\\"b\.stl", &BodyOptions \{ hull: true, [^]*Solid::from_convex\(&moving\.body\)\?[^]*load_solid\("plate\.off", &BodyOptions \{ open: true, [^]*DVec3::new\(0\.0, 0\.0, -1\.0\),\n *\[0\.0, fixed\.precision\],\n *Some\(1\.0\)/);
+  const narrowed = fromHash("#solver=cta&until=0.1");
+  assert.match(asRust(narrowed), /use colltrans::\{Cast, NarrowFrom, Narrowing, Options, Pose, Solver, Until\};[^]*with_narrowing\(Narrowing::new\(NarrowFrom::Center, Until::Gap\(0\.1\)\)\)\)\?;/);
+  assert.match(asPython(narrowed), /solver=colltrans\.Cta\(until=0\.1\)/);
+  assert.match(asPython(fromHash("#solver=cta")), /solver="cta"/);
   assert.match(asPython(state), /read\("a\\"b\.stl", hull=True\)[^]*Solid\.read\("plate\.off", open=True\)[^]*tolerance=1\.0/);
 });

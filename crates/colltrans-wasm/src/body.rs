@@ -15,8 +15,11 @@ use serde_json::json;
 
 use crate::answer::{Answer, Refusal};
 
-/// Edges of a solid whose faces make a smaller angle are not drawn: its cosine, that of drawings.
+/// Edges of a solid, or of a dense body, whose faces make a smaller angle are not drawn: its cosine, that of drawings.
 const SMOOTH: f64 = 0.906;
+
+/// A convex body with more edges is dense: all of them would cover it.
+const DENSE: usize = 10_000;
 
 /// A body in use.
 #[derive(Debug)]
@@ -160,7 +163,7 @@ fn solid_facts(body: &Solid, notes: &[Note]) -> Facts {
     }
 }
 
-/// Faces as fans; every edge once.
+/// Faces as fans; every edge once, of a dense body those between faces that make an angle.
 fn of_hull(body: &ConvexPolyhedron) -> Drawn {
     let mut drawn = Drawn::default();
     for face in 0..body.face_count() as u32 {
@@ -170,9 +173,15 @@ fn of_hull(body: &ConvexPolyhedron) -> Drawn {
             drawn.faces.push(face);
         }
     }
-    for v in 0..body.vertices().len() as u32 {
-        let later = body.neighbours(v).iter().filter(|w| **w > v);
-        drawn.edges.extend(later.map(|w| [v, *w]));
+    let all = body.half_edges();
+    let is_sharp =
+        |face: u32, other: u32| body.face_normal(face).dot(body.face_normal(other)) <= SMOOTH;
+    for half in all {
+        let twin = &all[half.twin as usize];
+        let is_drawn = body.edge_count() <= DENSE || is_sharp(half.face, twin.face);
+        if half.origin < twin.origin && is_drawn {
+            drawn.edges.push([half.origin, twin.origin]);
+        }
     }
     drawn
 }

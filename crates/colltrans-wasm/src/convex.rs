@@ -1,6 +1,5 @@
 //! Casts between convex bodies, and the check of their proofs.
 
-use colltrans::observe::Recording;
 use colltrans::record::Record;
 use colltrans::{Cast, CertificateError, ContactRange, Features, Options};
 use glam::DVec3;
@@ -26,11 +25,8 @@ pub(crate) fn query<'a>([moving, fixed]: [&'a Hull; 2], pair: &Pair) -> Result<C
 
 pub(crate) fn cast(bodies: [&Hull; 2], pair: &Pair) -> Result<Answer, Refusal> {
     let cast = query(bodies, pair)?;
-    // Everything here is asked with a recording, so that each solver is in the page once.
-    let seen = &mut Recording::default();
-    let range = cast.contact_range_observed(seen).map_err(|error| error.to_string())?;
-    seen.clear();
-    let clearance = cast.clearance_observed(seen).map_err(|error| error.to_string())?;
+    let range = cast.contact_range().map_err(|error| error.to_string())?;
+    let clearance = cast.clearance().map_err(|error| error.to_string())?;
     let first = match &range {
         ContactRange::Contact { first, .. } => Ok(first),
         ContactRange::Grazing { first, .. } => Ok(&first.contact),

@@ -19,11 +19,6 @@ impl<'a> Fields<'a> {
         self.get(key).ok_or_else(|| format!("{key} is missing"))
     }
 
-    pub(crate) fn object(&self, key: &str) -> Result<Self, String> {
-        let map = self.need(key)?.as_object().ok_or_else(|| format!("{key} is not an object"))?;
-        Ok(Self(map))
-    }
-
     pub(crate) fn text(&self, key: &str) -> Result<&'a str, String> {
         self.need(key)?.as_str().ok_or_else(|| format!("{key} is not text"))
     }

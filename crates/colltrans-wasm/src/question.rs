@@ -22,10 +22,6 @@ pub(crate) enum Question {
     Certify(Pair),
     /// Is this proof, as an answer had it, one?
     Verify(Pair, Proof),
-    /// What does a search do?
-    Search(Search),
-    /// The collision translation of pairs of sections.
-    Levels(Levels),
 }
 
 /// Which of the two bodies.
@@ -61,24 +57,6 @@ pub(crate) struct Pair {
     pub(crate) ignore_overlaps: bool,
 }
 
-/// A search to look at.
-#[derive(Debug)]
-pub(crate) struct Search {
-    pub(crate) pair: Pair,
-    /// A query asked before, whose answer a tracker starts from.
-    pub(crate) after: Option<Pair>,
-}
-
-/// A grid of pairs of levels.
-#[derive(Debug)]
-pub(crate) struct Levels {
-    pub(crate) pair: Pair,
-    /// Section axes in the world.
-    pub(crate) axes: [[f64; 3]; 2],
-    /// Levels of the moving and of the fixed body's sections, each in its own frame.
-    pub(crate) at: [Vec<f64>; 2],
-}
-
 impl Question {
     /// From JSON.
     pub(crate) fn read(text: &[u8]) -> Result<Self, String> {
@@ -92,8 +70,6 @@ impl Question {
                 let proof = Proof::deserialize(fields.need("proof")?);
                 Ok(Self::Verify(fields.pair()?, proof.map_err(|error| error.to_string())?))
             }
-            "search" => fields.search().map(Self::Search),
-            "levels" => fields.levels().map(Self::Levels),
             other => Err(format!("nothing is known to do for {other}")),
         }
     }
@@ -104,8 +80,6 @@ trait Read {
     fn load(&self) -> Result<Load, String>;
     fn pair(&self) -> Result<Pair, String>;
     fn narrowing(&self) -> Result<Narrowing, String>;
-    fn search(&self) -> Result<Search, String>;
-    fn levels(&self) -> Result<Levels, String>;
 }
 
 impl Read for Fields<'_> {
@@ -151,19 +125,5 @@ impl Read for Fields<'_> {
             Err(error) => return Err(error),
         };
         Ok(Narrowing::new(start, until))
-    }
-
-    fn search(&self) -> Result<Search, String> {
-        let after =
-            self.get("after").is_some().then(|| self.object("after")?.pair()).transpose()?;
-        Ok(Search { pair: self.pair()?, after })
-    }
-
-    fn levels(&self) -> Result<Levels, String> {
-        Ok(Levels {
-            pair: self.pair()?,
-            axes: [self.array("moving_axis")?, self.array("fixed_axis")?],
-            at: [self.list("moving_levels")?, self.list("fixed_levels")?],
-        })
     }
 }

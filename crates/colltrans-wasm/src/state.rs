@@ -6,7 +6,7 @@ use colltrans_mesh::body::Take;
 use crate::answer::{Answer, Refusal};
 use crate::body::{self, Part};
 use crate::question::{Load, Question, Slot};
-use crate::{certify, convex, levels, search, solid};
+use crate::{certify, convex, solid};
 
 /// A body made of a file with more bytes goes before the next file is read: both may not fit.
 const LARGE: usize = 64 << 20;
@@ -102,8 +102,6 @@ impl State {
                 }
                 bodies => certify::verify(bodies, &pair, &proof),
             },
-            Question::Search(asked) => search::search(self.convex()?, &asked),
-            Question::Levels(asked) => levels::levels(self.convex()?, &asked),
         }
     }
 
@@ -123,12 +121,5 @@ impl State {
             return Err("two bodies are needed".to_owned().into());
         };
         Ok([moving, fixed])
-    }
-
-    fn convex(&self) -> Result<[&body::Hull; 2], Refusal> {
-        match self.bodies()? {
-            [Part::Convex(moving), Part::Convex(fixed)] => Ok([moving, fixed]),
-            _ => Err("only casts between convex bodies have this".to_owned().into()),
-        }
     }
 }

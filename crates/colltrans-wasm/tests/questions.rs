@@ -1,4 +1,6 @@
-//! Answers to the page's questions against the library itself, and the grid of `phi` against the minimisation.
+//! Answers to the page's questions against the library itself.
+
+use std::fmt::Write as _;
 
 use colltrans_mesh::Format;
 use colltrans_wasm::{Answer, State};
@@ -54,39 +56,6 @@ fn a_cast_is_the_library_s() {
     assert_eq!(answer["proof"]["contact"]["lower"], json!(contact.certificate.lower));
     assert_eq!(record["normal"], json!(contact.normal.to_array()));
     assert_eq!(answer["clearance"]["outcome"], "blocked");
-}
-
-/// The minimisation's value at a pair of levels is the collision translation of the two sections,
-/// cut out and cast as bodies of their own.
-#[test]
-fn phi_is_what_the_minimisation_says() {
-    let settings = [
-        ("dodecahedron.off", "bracket.obj", [-0.3, 0.1, -1.0]),
-        ("ellipsoid_a.obj", "ellipsoid_b.off", [-0.6, -0.1, -0.9]),
-    ];
-    for (moving, fixed, direction) in settings {
-        let mut state = loaded(moving, fixed, "convex");
-        let length = direction.iter().map(|x: &f64| x * x).sum::<f64>().sqrt();
-        let mut question = pair("search", direction);
-        question["solver"] = json!("cta");
-        let (answer, _) = ask(&mut state, &question, Vec::new());
-        let events = answer["events"].as_array().unwrap();
-        let sections = events.iter().find(|e| e.get("sections").is_some()).unwrap();
-        let mut problems = 0;
-        for problem in events.iter().filter(|e| e["meets"] == true) {
-            let mut grid = pair("levels", direction);
-            grid["moving_axis"] = sections["sections"][0].clone();
-            grid["fixed_axis"] = sections["sections"][1].clone();
-            grid["moving_levels"] = json!([problem["planar"][0]]);
-            grid["fixed_levels"] = json!([problem["planar"][1]]);
-            let (_, numbers) = ask(&mut state, &grid, Vec::new());
-            let value = problem["value"].as_f64().unwrap();
-            let phi = numbers[0] * length;
-            assert!((phi - value).abs() < 1e-12 * (1.0 + value.abs()), "{phi} {value}");
-            problems += 1;
-        }
-        assert!(problems > 1, "{problems}");
-    }
 }
 
 /// Numbers of the file are told, and what is lit lies where they say, with a vertex that nothing uses;
@@ -177,15 +146,6 @@ fn a_lie_is_no_proof() {
     assert_eq!(checked["holds"], false, "{checked}");
 }
 
-#[test]
-fn a_tracker_starts_from_the_last_answer() {
-    let mut state = loaded("dodecahedron.off", "bracket.obj", "convex");
-    let mut question = pair("search", [-0.3, 0.1, -1.0]);
-    question["after"] = pair("cast", [-0.3, 0.101, -1.0]);
-    let (answer, _) = ask(&mut state, &question, Vec::new());
-    assert_eq!(answer["tracked"]["steps"]["started_from"], "features");
-}
-
 /// Read as a page hands it back; changed in any of its parts it holds no more.
 #[test]
 fn proofs_between_solids_are_checked_as_they_were_told() {
@@ -230,29 +190,34 @@ fn proofs_between_solids_are_checked_as_they_were_told() {
     }
 }
 
-/// The square lies around the last solution, and fewer planar problems are solved in it.
+/// Of a dense body the edges between faces that make an angle are drawn, of another one all.
 #[test]
-fn the_neighbourhood_of_the_last_solution_saves_planar_problems() {
-    let mut state = loaded("ellipsoid_a.obj", "ellipsoid_b.off", "convex");
-    let direction = [-0.6, -0.1, -0.9];
-    let mut question = pair("search", direction);
-    question["solver"] = json!("cta");
-    question["after"] = pair("cast", [-0.6, -0.101, -0.9]);
-    let (answer, _) = ask(&mut state, &question, Vec::new());
-    let region = &answer["region"];
-    let problems = |steps: &Value| steps["planar_problems"].as_u64().unwrap();
-    let (scratch, near) = (problems(&answer["steps"]), problems(&region["steps"]));
-    assert!(near >= 1 && near < scratch, "{near} {scratch}");
-    let first = region["events"].as_array().unwrap().iter().find(|e| e.get("planar").is_some());
-    let first = &first.unwrap()["planar"];
-    for k in 0..2 {
-        let apart = first[k].as_f64().unwrap() - region["center"][k].as_f64().unwrap();
-        assert!(apart.abs() < 1e-9, "{region}");
+fn dense_bodies_have_sharp_edges_alone() {
+    for (sides, drawn) in [(100, 300), (4000, 8000)] {
+        let mut file = format!("OFF\n{} {} 0\n", 2 * sides, sides + 2);
+        for z in [-1.0, 1.0] {
+            for k in 0..sides {
+                let (sin, cos) =
+                    (std::f64::consts::TAU * f64::from(k) / f64::from(sides)).sin_cos();
+                writeln!(file, "{cos} {sin} {z}").unwrap();
+            }
+        }
+        for k in 0..sides {
+            let next = (k + 1) % sides;
+            writeln!(file, "4 {k} {next} {} {}", sides + next, sides + k).unwrap();
+        }
+        let list = |corners: Vec<i32>| {
+            corners.iter().map(ToString::to_string).collect::<Vec<_>>().join(" ")
+        };
+        writeln!(file, "{sides} {}", list((0..sides).rev().collect())).unwrap();
+        writeln!(file, "{sides} {}", list((sides..2 * sides).collect())).unwrap();
+        let load = json!({ "do": "load", "slot": "moving", "name": "drum.off", "take": "convex" });
+        let (answer, _) = ask(&mut State::default(), &load, file.into());
+        assert_eq!(
+            (&answer["body"]["edges"], &answer["edges"]),
+            (&json!(3 * sides), &json!(drawn))
+        );
     }
-    let delta = region["delta"].as_f64().unwrap();
-    assert!(delta > 0.0 && delta < 0.05, "{delta}");
-    let times = region["half"].as_f64().unwrap() / delta;
-    assert!((times - 3.0_f64.sqrt()).abs() < 1e-9, "{times}");
 }
 
 /// The page offers files of all formats that are read, and of no other.

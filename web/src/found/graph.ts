@@ -1,44 +1,68 @@
-// The graph of `phi` over pairs of levels: contours, or a surface to turn; with the steps upon it.
+// The graph of `phi` over pairs of levels: contours of the part that is left, or a surface to turn; with the steps
+// upon it.
 
 import { palette } from "../colours";
 import { h, refill, svg } from "../dom";
 import { short } from "../math";
-import type { Minimisation } from "./recording";
+import { type Minimisation, type Two, below, least } from "./recording";
 
 const SIZE = 340;
-const EDGE = 34;
+const EDGE = 42;
 const INNER = SIZE - EDGE - 10;
 
+/** A part of the levels. */
+export type Window = [Two, Two];
+
 export interface Grid {
-  /** How many levels of either body. */
+  /** Where it is, and how many levels of either body. */
+  window: Window;
   count: number;
   /** By moving level, then fixed level; not a number where sections miss each other. */
   values: Float64Array;
 }
 
-type Two = [number, number];
+/** What is seen of a search. */
+export interface Scene {
+  found: Minimisation;
+  step: number;
+  /** How much has happened in the step: what is drawn of the shift, and of the cut. */
+  shift: number;
+  cut: number;
+  window: Window;
+  /** Those behind come first. */
+  grids: Grid[];
+}
+
+/** A word beside a point, which is left out where it would cover another. */
+interface Word {
+  at: Two;
+  text: string;
+  bold?: boolean;
+  italic?: boolean;
+}
 
 export class Graph {
   readonly element: HTMLElement;
   private readonly canvas = h("canvas", { width: 2 * SIZE, height: 2 * SIZE, "aria-label": "The graph of phi" });
   private readonly marks = svg("svg", { viewBox: `0 0 ${SIZE} ${SIZE}` });
+  private readonly legend = h("p", { class: "legend" });
+  private readonly contours = h("button", { class: "small", "aria-pressed": "true" }, "Contours");
+  private readonly solid = h("button", { class: "small", "aria-pressed": "false" }, "Surface");
+  private readonly zoom = h("input", { type: "checkbox", checked: true });
   private surface = false;
   private turn = -0.7;
   private tilt = 0.55;
   private last: (() => void) | undefined;
   onStep: (step: number) => void = () => {};
+  onFollow: (follow: boolean) => void = () => {};
 
   constructor() {
-    const choose = (surface: boolean) => () => {
-      this.surface = surface;
-      contours.setAttribute("aria-pressed", String(!surface));
-      solid.setAttribute("aria-pressed", String(surface));
-      this.last?.();
-    };
-    const contours = h("button", { class: "small", "aria-pressed": "true", onclick: choose(false) }, "Contours");
-    const solid = h("button", { class: "small", "aria-pressed": "false", onclick: choose(true) }, "Surface");
+    this.contours.addEventListener("click", () => this.choose(false));
+    this.solid.addEventListener("click", () => this.choose(true));
+    this.zoom.addEventListener("change", () => this.onFollow(this.zoom.checked));
     const stack = h("div", { class: "stack" }, this.canvas, this.marks);
-    this.element = h("div", {}, h("div", { class: "row" }, contours, solid), stack);
+    this.element = h("div", {},
+      h("div", { class: "row" }, this.contours, this.solid, h("label", { class: "zoom" }, this.zoom, "follow what is left")), stack, this.legend);
     stack.addEventListener("pointerdown", (event) => {
       if (!this.surface) return;
       stack.setPointerCapture(event.pointerId);
@@ -56,69 +80,145 @@ export class Graph {
     });
   }
 
-  show(found: Minimisation, grid: Grid | undefined, step: number) {
-    this.last = () => (this.surface ? this.drawSurface(found, grid, step) : this.drawContours(found, grid, step));
+  /** Contours, or the surface. */
+  choose(surface: boolean) {
+    this.surface = surface;
+    this.contours.setAttribute("aria-pressed", String(!surface));
+    this.solid.setAttribute("aria-pressed", String(surface));
+    this.last?.();
+  }
+
+  set follows(follow: boolean) {
+    this.zoom.checked = follow;
+  }
+
+  get follows(): boolean {
+    return this.zoom.checked;
+  }
+
+  show(scene: Scene) {
+    this.last = () => (this.surface ? this.drawSurface(scene) : this.drawContours(scene));
     this.last();
+    const colours = palette();
+    const sign = (colour: string, text: string, round = false) =>
+      h("span", {}, h("i", { style: `background: ${colour}; border-radius: ${round ? 50 : 2}%` }), text);
+    refill(this.legend, sign(colours.text, "c, where it is cut", true), sign(colours.normal, "q, where the shift goes", true), sign(colours.movingMark, "the least value", true),
+      ...(this.surface ? [] : [sign("#e0a526", "cell: the same features touch"), sign(colours.plane, "M, the region that is left"), sign(colours.grid, "cut off"),
+        ...(scene.found.square ? [sign(colours.fixedMark, "N(p)")] : [])]));
   }
 
   /** From a level of either body to the picture. */
-  private place(found: Minimisation): (p: Two) => Two {
-    const [[a, b], [c, d]] = found.ranges;
+  private place([[a, c], [b, d]]: Window): (p: Two) => Two {
     return ([x, y]) => [EDGE + ((x - a) / (b - a)) * INNER, 10 + INNER - ((y - c) / (d - c)) * INNER];
   }
 
-  private drawContours(found: Minimisation, grid: Grid | undefined, step: number) {
+  private drawContours({ found, step, shift, cut, window, grids }: Scene) {
     const colours = palette();
     const context = this.canvas.getContext("2d")!;
     context.setTransform(2, 0, 0, 2, 0, 0);
     context.clearRect(0, 0, SIZE, SIZE);
-    const place = this.place(found);
-    if (grid) this.fillGrid(context, grid, colours.dark);
+    const place = this.place(window);
+    context.save();
+    context.beginPath();
+    context.rect(EDGE, 10, INNER, INNER);
+    context.clip();
+    for (const grid of grids) this.fillGrid(context, grid, place, colours.dark);
+    context.restore();
+    const inner: SVGElement[] = [];
     const marks: SVGElement[] = [];
-    const add = (element: SVGElement) => marks.push(element);
-    add(svg("rect", { x: EDGE, y: 10, width: INNER, height: INNER, fill: "none", stroke: colours.text, "stroke-opacity": 0.5 }));
+    const [low, high] = window;
+    const isSeen = ([x, y]: Two) => x >= low[0] && x <= high[0] && y >= low[1] && y <= high[1];
+    const polygon = (points: Two[], look: Record<string, string | number>) => {
+      if (points.length > 2) inner.push(svg("polygon", { points: points.map((p) => place(p).map((x) => Math.min(Math.max(x, -1e4), 1e4).toFixed(1)).join(",")).join(" "), ...look }));
+    };
+    const words: Word[] = [];
+    const lost = colours.dark ? "#0b0e13" : "#8a919b";
     const now = found.steps[step];
+    if (now) {
+      const next = found.steps[step + 1]?.region ?? (now.cut ? found.region : now.region);
+      // All around what is left has been cut off.
+      const ring = [...now.region].reverse().map((p) => place(p).map((x) => x.toFixed(1)).join(" ")).join("L");
+      if (ring) inner.push(svg("path", { d: `M0 0H${SIZE}V${SIZE}H0ZM${ring}Z`, "fill-rule": "evenodd", fill: lost, "fill-opacity": 0.5 }));
+      if (now.cut && cut > 0) {
+        const { gradient, origin, limit } = now.cut;
+        polygon(below(now.region, [-gradient[0], -gradient[1]], origin, -limit), { fill: lost, "fill-opacity": 0.5 * cut, stroke: "none" });
+      }
+      polygon(now.cell, { fill: "#f2b632", "fill-opacity": 0.42, stroke: "#b07d0a", "stroke-width": 1, class: "cell" });
+      polygon(cut > 0.5 ? next : now.region, { fill: "none", stroke: colours.plane, "stroke-width": 2.2, class: "region" });
+      const line = (at: Two, dashed: boolean) => {
+        const [a, b] = this.chord(now.gradient, at, window);
+        if (a && b) inner.push(svg("line", { x1: a[0], y1: a[1], x2: b[0], y2: b[1], stroke: colours.normal, "stroke-width": 1.5, "stroke-dasharray": dashed ? "5 4" : "none" }));
+      };
+      line(now.levels, true);
+      if (now.meets && shift > 0) line([now.levels[0] + shift * (now.best[0] - now.levels[0]), now.levels[1] + shift * (now.best[1] - now.levels[1])], false);
+    }
     if (found.square) {
       const { center: [x, y], half } = found.square;
       const [[u, v], [s, t]] = [place([x - half, y + half]), place([x + half, y - half])];
       // Often smaller than a dot.
-      const [wide, high] = [Math.max(s - u, 3), Math.max(t - v, 3)];
-      add(svg("rect", { x: (u + s - wide) / 2, y: (v + t - high) / 2, width: wide, height: high, fill: colours.way, "fill-opacity": 0.12, stroke: colours.way, "stroke-width": 1.6, "stroke-dasharray": "4 3", class: "neighbourhood" }));
-      const [p, q] = place([x, y]);
-      add(svg("text", { x: p + 12, y: q + 16, fill: colours.text, "font-size": 12, "font-style": "italic" }, "N(p)"));
+      const [wide, tall] = [Math.max(s - u, 3), Math.max(t - v, 3)];
+      inner.push(svg("rect", { x: (u + s - wide) / 2, y: (v + t - tall) / 2, width: wide, height: tall, fill: colours.fixedMark, "fill-opacity": 0.1, stroke: colours.fixedMark, "stroke-width": 1.6, "stroke-dasharray": "4 3", class: "neighbourhood" }));
+      words.push({ at: [Math.min(Math.max((u + s) / 2, EDGE + 20), SIZE - 34), Math.max(v, 26)], text: "N(p)", italic: true });
     }
-    const polygon = (points: Two[]) => points.map((p) => place(p).map((x) => x.toFixed(1)).join(",")).join(" ");
-    if (now) {
-      add(svg("polygon", { points: polygon(now.region), fill: colours.plane, "fill-opacity": 0.13, stroke: colours.plane, "stroke-width": 2 }));
-      const next = found.steps[step + 1]?.region ?? found.region;
-      if (next.length > 2) add(svg("polygon", { points: polygon(next), fill: colours.plane, "fill-opacity": 0.3, stroke: "none" }));
-    }
+    const dot = (at: Two, colour: string, r: number, more: Record<string, unknown> = {}) => svg("circle", { cx: place(at)[0], cy: place(at)[1], r, fill: colour, stroke: colours.dark ? "#0b0e13" : "#fff", "stroke-width": 1.5, ...(more as Record<string, string>) });
     found.steps.forEach((one, k) => {
-      const [x, y] = place(one.levels);
-      const dot = svg("circle", {
-        cx: x, cy: y, r: k === step ? 7 : 4.5, fill: one.meets ? colours.normal : colours.fixedMark, stroke: "#fff", "stroke-width": 1.5,
+      if (!isSeen(one.levels)) return;
+      marks.push(dot(one.levels, k === step ? colours.text : colours.grid, k === step ? 6 : 4, {
         class: "pick", tabindex: 0, role: "button", "aria-label": `step ${k + 1}`,
-        onpointerenter: () => this.onStep(k), onclick: () => this.onStep(k), onfocus: () => this.onStep(k),
-      });
-      add(dot);
-      add(svg("text", { x: x + 8, y: y - 6, fill: colours.text, "font-size": 12, "font-weight": k === step ? 700 : 400 }, String(k + 1)));
+        onclick: () => this.onStep(k), onfocus: () => this.onStep(k), "stroke": k === step ? "#fff" : colours.text,
+      }));
+      words.push({ at: place(one.levels), text: String(k + 1), bold: k === step });
     });
-    if (now) marks.push(...this.arrow(place, now.levels, now.gradient, found, colours.text));
+    const end = least(found);
+    if (end && isSeen(end.at)) marks.push(dot(end.at, colours.movingMark, 4.5, { class: "least" }));
+    if (now?.meets && shift > 0) {
+      const at: Two = [now.levels[0] + shift * (now.best[0] - now.levels[0]), now.levels[1] + shift * (now.best[1] - now.levels[1])];
+      marks.push(dot(at, colours.normal, 5));
+      if (shift >= 1) words.push({ at: place(at), text: "q", italic: true, bold: true });
+    }
+    if (now) marks.push(...this.arrow(place, now.levels, now.gradient, window, colours.text));
+    words.sort((a, b) => Number(b.bold ?? 0) - Number(a.bold ?? 0));
     const text = (x: number, y: number, what: string, more: Record<string, string> = {}) =>
-      add(svg("text", { x, y, fill: colours.text, "font-size": 12, ...more }, what));
+      marks.push(svg("text", { x, y, fill: colours.text, "font-size": 12, ...more }, what));
+    this.lay(words, [...found.steps.map((one) => one.levels), ...(end ? [end.at] : [])].filter(isSeen).map(place), text);
     text(EDGE + INNER / 2, SIZE - 4, "level x of the moving body", { "text-anchor": "middle" });
     text(0, 0, "level y of the fixed body", { "text-anchor": "middle", transform: `translate(10 ${10 + INNER / 2}) rotate(-90)` });
-    const [[a, b], [c, d]] = found.ranges;
-    text(EDGE, SIZE - 18 + 14, short(a, 3));
-    text(EDGE + INNER, SIZE - 4, short(b, 3), { "text-anchor": "end" });
-    text(EDGE - 4, 10 + INNER, short(c, 3), { "text-anchor": "end" });
-    text(EDGE - 4, 20, short(d, 3), { "text-anchor": "end" });
-    refill(this.marks, ...marks);
+    text(EDGE, SIZE - 4, short(low[0], 3));
+    text(EDGE + INNER, SIZE - 4, short(high[0], 3), { "text-anchor": "end" });
+    text(EDGE - 4, 10 + INNER, short(low[1], 3), { "text-anchor": "end", "font-size": "10.5" });
+    text(EDGE - 4, 20, short(high[1], 3), { "text-anchor": "end", "font-size": "10.5" });
+    const clip = svg("clipPath", { id: "levels" }, svg("rect", { x: EDGE, y: 10, width: INNER, height: INNER }));
+    refill(this.marks, clip, svg("g", { "clip-path": "url(#levels)" }, ...inner), svg("rect", { x: EDGE, y: 10, width: INNER, height: INNER, fill: "none", stroke: colours.text, "stroke-opacity": 0.5, "pointer-events": "none" }), ...marks);
+  }
+
+  /** Words beside their points, on the first of four sides that is free; none where none is. */
+  private lay(words: Word[], dots: Two[], text: (x: number, y: number, what: string, more: Record<string, string>) => void) {
+    const taken = dots.map(([x, y]): [number, number, number, number] => [x - 4, y - 4, x + 4, y + 4]);
+    for (const { at: [x, y], text: what, bold, italic } of words) {
+      const wide = 7.5 * what.length;
+      const places: Two[] = [[x + 7, y - 5], [x - 7 - wide, y - 5], [x + 7, y + 15], [x - 7 - wide, y + 15]];
+      const free = places.find(([u, v]) =>
+        u >= EDGE && u + wide <= SIZE - 4 && v >= 20 && v <= 10 + INNER - 2 &&
+        taken.every(([a, b, c, d]) => u > c || u + wide < a || v - 11 > d || v < b));
+      if (!free) continue;
+      taken.push([free[0], free[1] - 11, free[0] + wide, free[1]]);
+      text(free[0], free[1], what, { "font-weight": bold ? "700" : "400", ...(italic ? { "font-style": "italic" } : {}) });
+    }
+  }
+
+  /** Where the line across a gradient through a point leaves the picture. */
+  private chord(gradient: Two, at: Two, window: Window): Two[] {
+    const place = this.place(window);
+    const [x, y] = place(at);
+    const [[a, c], [b, d]] = window;
+    // The line runs across the gradient; the picture stretches both axes by themselves.
+    const way: Two = [-gradient[1] / (b - a), -gradient[0] / (d - c)];
+    const l = Math.hypot(...way);
+    return l > 0 ? [[x - (way[0] / l) * 500, y - (way[1] / l) * 500], [x + (way[0] / l) * 500, y + (way[1] / l) * 500]] : [];
   }
 
   /** Down the gradient. */
-  private arrow(place: (p: Two) => Two, at: Two, gradient: Two, found: Minimisation, colour: string): SVGElement[] {
-    const [[a, b], [c, d]] = found.ranges;
+  private arrow(place: (p: Two) => Two, at: Two, gradient: Two, [[a, c], [b, d]]: Window, colour: string): SVGElement[] {
     const [u, v] = [gradient[0] / (d - c), gradient[1] / (b - a)];
     const l = Math.hypot(u, v);
     if (!l) return [];
@@ -137,17 +237,19 @@ export class Graph {
     return [low, high];
   }
 
-  private fillGrid(context: CanvasRenderingContext2D, grid: Grid, dark: boolean) {
-    const { count, values } = grid;
+  private fillGrid(context: CanvasRenderingContext2D, grid: Grid, place: (p: Two) => Two, dark: boolean) {
+    const { count, values, window: [from, to] } = grid;
     const [low, high] = this.bounds(grid);
-    const cell = INNER / count;
+    const [left, top] = place([from[0], to[1]]);
+    const [right, foot] = place([to[0], from[1]]);
+    const [wide, tall] = [(right - left) / count, (foot - top) / count];
     const at = (i: number, j: number) => values[i * count + j]!;
     for (let i = 0; i < count; i++) {
       for (let j = 0; j < count; j++) {
         const v = at(i, j);
         if (Number.isNaN(v)) continue;
         context.fillStyle = tint((v - low) / (high - low || 1), dark);
-        context.fillRect(EDGE + i * cell, 10 + INNER - (j + 1) * cell, cell + 0.5, cell + 0.5);
+        context.fillRect(left + i * wide, foot - (j + 1) * tall, wide + 0.5, tall + 0.5);
       }
     }
     context.strokeStyle = dark ? "rgba(255,255,255,0.45)" : "rgba(20,40,70,0.45)";
@@ -157,13 +259,13 @@ export class Graph {
     for (let k = 1; k < lines; k++) {
       // Closer to each other near the least value.
       const value = low + (high - low) * (k / lines) ** 1.6;
-      for (let i = 0; i + 1 < count; i++) for (let j = 0; j + 1 < count; j++) this.crossings(context, at, i, j, value, cell);
+      for (let i = 0; i + 1 < count; i++) for (let j = 0; j + 1 < count; j++) this.crossings(context, at, [i, j], value, (u, v) => [left + u * wide, foot - v * tall]);
     }
     context.stroke();
   }
 
   /** A contour through the square between four middles of cells. */
-  private crossings(context: CanvasRenderingContext2D, at: (i: number, j: number) => number, i: number, j: number, value: number, cell: number) {
+  private crossings(context: CanvasRenderingContext2D, at: (i: number, j: number) => number, [i, j]: Two, value: number, place: (u: number, v: number) => Two) {
     const corners: [number, number][] = [[i, j], [i + 1, j], [i + 1, j + 1], [i, j + 1]];
     const heights = corners.map(([a, b]) => at(a, b));
     if (heights.some(Number.isNaN)) return;
@@ -173,7 +275,7 @@ export class Graph {
       const [u, v] = [heights[k]! - value, heights[(k + 1) % 4]! - value];
       if (u < 0 === v < 0) return;
       const s = u / (u - v);
-      points.push([EDGE + (a + 0.5 + s * (c - a)) * cell, 10 + INNER - (b + 0.5 + s * (d - b)) * cell]);
+      points.push(place(a + 0.5 + s * (c - a), b + 0.5 + s * (d - b)));
     });
     for (let k = 0; k + 1 < points.length; k += 2) {
       context.moveTo(...points[k]!);
@@ -182,7 +284,8 @@ export class Graph {
   }
 
   /** The convex function itself: what the minimisation goes down. */
-  private drawSurface(found: Minimisation, grid: Grid | undefined, step: number) {
+  private drawSurface({ found, step, grids }: Scene) {
+    const grid = grids.at(-1);
     const colours = palette();
     const context = this.canvas.getContext("2d")!;
     context.setTransform(2, 0, 0, 2, 0, 0);
@@ -219,17 +322,26 @@ export class Graph {
       context.fill();
       context.stroke();
     }
-    const [[a, b], [c, d]] = found.ranges;
-    found.steps.forEach((one, k) => {
-      if (!one.meets) return;
-      const [x, y] = [(one.levels[0] - a) / (b - a), (one.levels[1] - c) / (d - c)];
+    const [[a, c], [b, d]] = grid.window;
+    const upon = (p: Two): Two | undefined => {
+      const [x, y] = [(p[0] - a) / (b - a), (p[1] - c) / (d - c)];
+      if (x < 0 || x > 1 || y < 0 || y > 1) return undefined;
       const near = values[Math.min(count - 1, Math.floor(x * count)) * count + Math.min(count - 1, Math.floor(y * count))]!;
       const [u, v] = project(x, y, height(Number.isNaN(near) ? low : near));
-      this.marks.append(
-        svg("circle", { cx: u, cy: v, r: k === step ? 7 : 4.5, fill: colours.normal, stroke: "#fff", "stroke-width": 1.5, onclick: () => this.onStep(k) }),
-        svg("text", { x: u + 8, y: v - 6, fill: colours.text, "font-size": 12 }, String(k + 1)),
-      );
+      return [u, v];
+    };
+    const words: Word[] = [];
+    found.steps.forEach((one, k) => {
+      const at = one.meets ? upon(one.levels) : undefined;
+      if (!at) return;
+      words.push({ at, text: String(k + 1), bold: k === step });
+      this.marks.append(svg("circle", { cx: at[0], cy: at[1], r: k === step ? 7 : 4.5, fill: k === step ? colours.text : colours.grid, stroke: k === step ? "#fff" : colours.text, "stroke-width": 1.5, class: "pick", tabindex: 0, role: "button", "aria-label": `step ${k + 1}`, onclick: () => this.onStep(k), onfocus: () => this.onStep(k) }));
     });
+    const end = least(found);
+    const at = end && upon(end.at);
+    if (at) this.marks.append(svg("circle", { cx: at[0], cy: at[1], r: 5, fill: colours.movingMark, stroke: colours.dark ? "#0b0e13" : "#fff", "stroke-width": 1.5 }));
+    words.sort((a, b) => Number(b.bold) - Number(a.bold));
+    this.lay(words, words.map((word) => word.at), (x, y, what, more) => this.marks.append(svg("text", { x, y, "font-size": 12, fill: colours.text, ...more }, what)));
     this.marks.append(svg("text", { x: SIZE / 2, y: SIZE - 4, "text-anchor": "middle", "font-size": 12, fill: colours.text }, "drag to turn"));
   }
 }

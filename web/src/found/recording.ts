@@ -1,17 +1,25 @@
-// A recording of a search, in steps.
+// A recording of a search, in steps, and these in moments that can be played.
 
 import type { PageEvent } from "../answers";
 import { type Vec, add, times } from "../math";
 
-type Two = [number, number];
+export type Two = [number, number];
+export type Touch = "edges" | "vertex" | "separated" | "hidden";
 
 /** One planar problem, the cut that followed, and what was left of the levels before it. */
 export interface Step {
   levels: Two;
   value: number;
+  touch: Touch;
   meets: boolean;
   gradient: Two;
+  /** Where the cell shift goes, and the value there. */
+  best: Two;
   shifted: number;
+  /** Where the same features touch: levels; empty if the sections miss each other. */
+  cell: Two[];
+  /** Whether the best point was seen to solve the problem. */
+  solved: boolean;
   /** Of the levels, before the cut. */
   region: Two[];
   cut?: { gradient: Two; origin: Two; limit: number; lower: number; upper: number };
@@ -35,17 +43,20 @@ export function minimisation(events: PageEvent[]): Minimisation | undefined {
   let region: Two[] = [[a, c], [b, c], [b, d], [a, d]];
   const steps: Step[] = [];
   for (const event of events) {
+    const last = steps.at(-1);
     if ("planar" in event) {
-      const { planar: levels, value, meets, gradient, shifted } = event;
-      steps.push({ levels, value, meets, gradient, shifted, region });
-    } else if ("cut" in event) {
+      const { planar: levels, value, touch, gradient, best, shifted } = event;
+      const meets = touch === "edges" || touch === "vertex";
+      steps.push({ levels, value: value ?? NaN, touch, meets, gradient, best, shifted: shifted ?? NaN, cell: [], solved: false, region });
+    } else if ("cell" in event && last) last.cell = event.cell;
+    else if ("solved" in event && last) last.solved ||= event.solved;
+    else if ("cut" in event) {
       const { cut: gradient, origin, limit, lower, upper } = event;
-      const last = steps.at(-1);
-      if (last) last.cut = { gradient, origin, limit, lower, upper };
+      if (last) last.cut = { gradient, origin, limit, lower: lower ?? -Infinity, upper: upper ?? Infinity };
       region = below(region, gradient, origin, limit);
     }
   }
-  return { axes: begun.sections, ranges: begun.ranges, steps, region };
+  return { axes: begun.sections as [Vec, Vec], ranges: begun.ranges as [Two, Two], steps, region };
 }
 
 /** The part of a convex polygon where `gradient . (p - origin) <= limit`. */
@@ -64,19 +75,44 @@ export function below(polygon: Two[], gradient: Two, origin: Two, limit: number)
   return left;
 }
 
-/** The portals in their order, each with the support points computed for it. */
-export function portals(events: PageEvent[]): { frame: [Vec, Vec, Vec]; steps: { portal: [Vec, Vec, Vec]; supports: Vec[] }[]; loose: Vec[] } | undefined {
+/** The levels of the least value that was found. */
+export function least({ steps }: Minimisation): { at: Two; value: number } | undefined {
+  const met = steps.filter((step) => step.meets && Number.isFinite(step.shifted));
+  const best = met.reduce<Step | undefined>((a, b) => (!a || b.shifted < a.shifted ? b : a), undefined);
+  return best && { at: best.best, value: best.shifted };
+}
+
+/** A portal with the support points computed for it, and of its corners the vertices of both bodies. */
+export interface Portal {
+  corners: [Vec, Vec, Vec];
+  pairs: (Two | undefined)[];
+  supports: Vec[];
+}
+
+export interface Portals {
+  frame: [Vec, Vec, Vec];
+  steps: Portal[];
+  loose: Vec[];
+}
+
+/** The portals in their order. */
+export function portals(events: PageEvent[]): Portals | undefined {
   let frame: [Vec, Vec, Vec] | undefined;
-  let steps: { portal: [Vec, Vec, Vec]; supports: Vec[] }[] = [];
+  let steps: Portal[] = [];
   let loose: Vec[] = [];
+  const pairs = new Map<string, Two>();
   for (const event of events) {
     if ("begun" in event) {
       // Begun again in a turned frame: what was before is of no use for the picture.
-      [frame, steps, loose] = [event.begun, [], []];
+      [frame, steps, loose] = [event.begun as [Vec, Vec, Vec], [], []];
     } else if ("support" in event) {
+      pairs.set(event.support.join(), event.pair as Two);
       const last = steps.at(-1);
-      (last ? last.supports : loose).push(event.support);
-    } else if ("portal" in event) steps.push({ portal: event.portal, supports: [] });
+      (last ? last.supports : loose).push(event.support as Vec);
+    } else if ("portal" in event) {
+      const corners = event.portal as [Vec, Vec, Vec];
+      steps.push({ corners, pairs: corners.map((v) => pairs.get(v.join())), supports: [] });
+    }
   }
   return frame && { frame, steps, loose };
 }
@@ -84,3 +120,24 @@ export function portals(events: PageEvent[]): { frame: [Vec, Vec, Vec]; steps: {
 /** A point of the shadow frame, in the world. */
 export const inWorld = (frame: [Vec, Vec, Vec], v: Vec): Vec =>
   add(add(times(frame[0], v[0]), times(frame[1], v[1])), times(frame[2], v[2]));
+
+/** What is shown at a time: one thing happens in each. */
+export type Moment =
+  | { kind: "sections" | "touch" | "shift" | "cut" | "solved"; step: number }
+  | { kind: "portal"; portal: number };
+
+/** All of a search in its order. */
+export function moments(found: Minimisation | undefined, refined: Portals | undefined): Moment[] {
+  const all: Moment[] = [];
+  found?.steps.forEach((one, step) => {
+    all.push({ kind: "sections", step }, { kind: "touch", step });
+    if (one.meets && (one.best[0] !== one.levels[0] || one.best[1] !== one.levels[1])) all.push({ kind: "shift", step });
+    if (one.cut) all.push({ kind: "cut", step });
+    else if (one.solved) all.push({ kind: "solved", step });
+  });
+  refined?.steps.forEach((_, portal) => all.push({ kind: "portal", portal }));
+  return all;
+}
+
+export const mix = (a: number, b: number, s: number) => a + s * (b - a);
+export const between = (a: Two, b: Two, s: number): Two => [mix(a[0], b[0], s), mix(a[1], b[1], s)];

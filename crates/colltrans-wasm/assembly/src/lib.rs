@@ -10,7 +10,6 @@ mod answer;
 #[path = "../../src/exports.rs"]
 mod exports;
 #[path = "../../src/fields.rs"]
-#[expect(dead_code, reason = "shared: not all of it is read here")]
 mod fields;
 mod state;
 mod tell;

@@ -43,7 +43,7 @@ pub(super) struct Cell {
 }
 
 /// The best point of a cell.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Best {
     /// Where it is.
     pub(super) at: DVec2,
@@ -63,6 +63,10 @@ impl Cell {
         self.sides[self.count] = Affine { value: value.max(0.0), gradient };
         self.ends[self.count] = end;
         self.count += 1;
+    }
+
+    pub(super) fn half_planes(&self) -> &[Affine] {
+        &self.sides[..self.count]
     }
 
     /// The best point for a gradient: the simplex method in the plane, from the inside.

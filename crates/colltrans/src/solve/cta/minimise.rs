@@ -9,6 +9,7 @@ use glam::{DVec2, DVec3};
 
 use super::MAX_STEPS;
 use super::bound::{LowerBound, Progress};
+use super::cell::{Best, Cell};
 use super::crossing::Crossing;
 use super::exit::{Beyond, Corners, Exit, ExitTest, SAME_HEIGHT, Solved};
 use super::pair::SectionPair;
@@ -17,7 +18,7 @@ use super::planar::{self, Planar};
 use super::region::{Region, Square};
 use super::start::Origin;
 use crate::setting::Setting;
-use crate::solve::observe::{Cut, Observer, Phase, PlanarProblem, Watch};
+use crate::solve::observe::{Cut, Observer, Phase, PlanarProblem, Touch, Watch};
 
 /// Levels to search that are together at most so many times as wide as near ones are apart are
 /// crossed from cell to cell: at most so many cells before the next planar problem (both measured).
@@ -156,6 +157,19 @@ struct Minimisation<'q, 'a, 'o, O> {
     steps: u32,
 }
 
+impl SectionPair<'_> {
+    /// The corners of a cell around these levels, for those who look on.
+    fn corners(&self, cell: &Cell, levels: [f64; 2]) -> Vec<DVec2> {
+        let at = DVec2::from_array(levels);
+        let low = self.origin - self.half - at;
+        let mut shape = Region::rectangle(low, low + 2.0 * self.half);
+        for side in cell.half_planes() {
+            shape.cut(-side.gradient, side.value);
+        }
+        shape.corners().iter().map(|&corner| at + corner).collect()
+    }
+}
+
 impl<O: Observer> Minimisation<'_, '_, '_, O> {
     /// One planar problem after the other, at the centroid of what is left or on the way there.
     fn run(&mut self, gap: f64) {
@@ -198,9 +212,8 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
     /// Cuts the region and raises the bound; `false` if there is nothing more to learn.
     fn learn(&mut self, at: DVec2, levels: [f64; 2], answer: &Planar) -> bool {
         let local = answer.piece(&self.sections.frame, levels);
-        let shifted = self.shift(levels, answer, &local);
+        self.shift(levels, answer, &local);
         self.watch.ended(Phase::Cell);
-        self.report(levels, answer, &local, shifted);
         if self.solved.is_some() {
             return false;
         }
@@ -230,22 +243,24 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
         true
     }
 
-    /// Goes to the best point of the cell, and looks whether it solves the problem; the value there, or
-    /// that of a separation. Where little is left to search, it goes on from cell to cell while the
-    /// exit test tells where `phi` falls.
-    fn shift(&mut self, levels: [f64; 2], answer: &Planar, local: &Piece) -> f64 {
-        if matches!(answer, Planar::Separated { .. }) {
+    /// Goes to the best point of the cell, and looks whether it solves the problem. Where little is left
+    /// to search, it goes on from cell to cell while the exit test tells where `phi` falls.
+    fn shift(&mut self, levels: [f64; 2], answer: &Planar, local: &Piece) {
+        let sides = &self.sections.sides;
+        let Some(cell) = answer.cell(sides, levels) else {
             self.last_separation = Some((answer.features(), local.normal));
-            return local.bound.value;
-        }
-        let (least, mut exit) = self.improve(levels, answer, local);
+            return self.report(levels, answer, local, &Best::default());
+        };
+        let best = cell.best(local.bound.gradient);
+        self.report(levels, answer, local, &best);
+        self.watch.cell(|| self.sections.corners(&cell, levels));
+        let mut exit = self.improve((levels, answer), local, (&cell, &best));
         let most = if !self.keeps_to_cell && self.is_narrow() { MOST_CELLS } else { 0 };
         for _ in 0..most {
             let Exit::Falls(beyond) = exit else { break };
             let Some(next) = self.cross(&beyond) else { break };
             exit = next;
         }
-        least
     }
 
     /// Whether the levels to search are a few edges wide.
@@ -265,39 +280,52 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
         let answer = planar::on_faces(sides, beyond.levels, beyond.faces)?;
         let local = answer.piece(frame, beyond.levels);
         let is_there = (local.bound.value - self.upper).abs() <= SAME_HEIGHT * extent;
-        is_there.then(|| self.improve(beyond.levels, &answer, &local).1)
+        if !is_there {
+            return None;
+        }
+        let cell = answer.cell(sides, beyond.levels)?;
+        let best = cell.best(local.bound.gradient);
+        Some(self.improve((beyond.levels, &answer), &local, (&cell, &best)))
     }
 
-    /// The value at the best point of the cell of a contact, and what the exit test says there if it
-    /// is the least so far.
-    fn improve(&mut self, levels: [f64; 2], answer: &Planar, local: &Piece) -> (f64, Exit) {
+    /// What the exit test says at the best point of the cell of a contact, if it is the least so far.
+    fn improve(
+        &mut self,
+        (levels, answer): ([f64; 2], &Planar),
+        local: &Piece,
+        (cell, best): (&Cell, &Best),
+    ) -> Exit {
         let SectionPair { sides, setting, extent, constant, .. } = self.sections;
-        let Some(cell) = answer.cell(sides, levels) else { return (f64::INFINITY, Exit::Missed) };
-        let best = cell.best(local.bound.gradient);
         let least = local.bound.value + best.change;
         if least.is_nan() || least >= self.upper {
-            return (least, Exit::Missed);
+            return Exit::Missed;
         }
         self.upper = least;
         self.best = Some(answer.features());
         let test = ExitTest { sides, setting, extent: *extent };
         let at = (DVec2::from_array(levels) + best.at).to_array();
-        let exit = test.solves(answer, (at, &cell.ends_at(&best)), least + constant);
+        let exit = test.solves(answer, (at, &cell.ends_at(best)), least + constant);
         if let Exit::Solved(solved) = exit {
             self.solved = Some(solved);
         }
         let hit = self.solved.is_some();
         self.watch.exit_test(|| hit);
-        (least, exit)
+        exit
     }
 
-    fn report(&mut self, levels: [f64; 2], answer: &Planar, local: &Piece, shifted: f64) {
+    fn report(&mut self, levels: [f64; 2], answer: &Planar, local: &Piece, best: &Best) {
         let constant = self.sections.constant;
         self.watch.planar_problem(|| {
-            let meets = !matches!(answer, Planar::Separated { .. });
-            let base = if meets { constant } else { 0.0 };
-            let [value, shifted] = [local.bound.value, shifted].map(|v| v + base);
-            PlanarProblem { levels, value, meets, gradient: local.bound.gradient, shifted }
+            let touch = answer.touch();
+            let value = local.bound.value + if touch.meets() { constant } else { 0.0 };
+            PlanarProblem {
+                levels,
+                value,
+                touch,
+                gradient: local.bound.gradient,
+                best: (DVec2::from_array(levels) + best.at).to_array(),
+                shifted: value + best.change,
+            }
         });
     }
 
@@ -322,6 +350,14 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
 }
 
 impl Planar {
+    fn touch(&self) -> Touch {
+        match self {
+            Self::Edges { .. } => Touch::Edges,
+            Self::Vertex { .. } => Touch::Vertex,
+            Self::Separated { .. } => Touch::Separated,
+        }
+    }
+
     /// The two mesh edges of each body that the answer rests on.
     fn features(&self) -> Features {
         let pair = |p: &Crossing, q: &Crossing| {

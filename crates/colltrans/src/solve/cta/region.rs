@@ -48,6 +48,10 @@ impl Region {
         self.count -= old;
     }
 
+    pub(super) fn corners(&self) -> &[DVec2] {
+        &self.corners[..self.count]
+    }
+
     /// How many sides there are.
     pub(super) fn sides(&self) -> u32 {
         self.count as u32

@@ -78,19 +78,48 @@ pub struct PlanarProblem {
     /// The value there: `phi`, or how far the sections are apart if they never meet; not a number if
     /// rounding hides a section.
     pub value: f64,
-    /// Whether the sections meet.
-    pub meets: bool,
+    /// How the sections meet.
+    pub touch: Touch,
     /// The change of the value with the two levels.
     pub gradient: DVec2,
-    /// The least value in the cell where the same features stay in contact, to which the cell shift
-    /// goes; the value itself if the sections miss each other.
+    /// The levels in the cell where the same features stay in contact to which the cell shift goes; those
+    /// of the problem if the sections miss each other.
+    pub best: [f64; 2],
+    /// The value there, the least of the cell.
     pub shifted: f64,
+}
+
+/// How two sections meet: what the same features decide in each cell of the mark (the paper, II-B).
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Touch {
+    /// An edge of one section touches an edge of the other: two faces.
+    Edges,
+    /// A corner of one section touches the inside of the other: an edge of a body against a section.
+    Vertex,
+    /// They never meet: a line along the direction's shadow lies between them.
+    Separated,
+    /// Rounding hides a section.
+    Hidden,
+}
+
+impl Touch {
+    /// Whether they meet at all.
+    pub fn meets(self) -> bool {
+        matches!(self, Self::Edges | Self::Vertex)
+    }
 }
 
 impl PlanarProblem {
     /// Rounding errors of the mesh hide a section: nothing was learnt.
     pub(crate) fn hidden(levels: [f64; 2]) -> Self {
-        Self { levels, value: f64::NAN, meets: false, gradient: DVec2::ZERO, shifted: f64::NAN }
+        Self {
+            levels,
+            value: f64::NAN,
+            touch: Touch::Hidden,
+            gradient: DVec2::ZERO,
+            best: levels,
+            shifted: f64::NAN,
+        }
     }
 }
 
@@ -140,6 +169,12 @@ pub trait Observer {
     /// A planar problem was solved.
     fn planar_problem(&mut self, problem: impl FnOnce() -> PlanarProblem) {
         let _ = problem;
+    }
+
+    /// The cell of the planar problem before, where the same features stay in contact: its corners, pairs
+    /// of levels, counter-clockwise and within the levels of the bodies.
+    fn cell(&mut self, corners: impl FnOnce() -> Vec<DVec2>) {
+        let _ = corners;
     }
 
     /// The best point of a cell was the best so far: whether the features that touch there were
@@ -213,6 +248,12 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
         self.1.planar_problem(|| problem);
     }
 
+    fn cell(&mut self, corners: impl FnOnce() -> Vec<DVec2>) {
+        let corners = corners();
+        self.0.cell(|| corners.clone());
+        self.1.cell(|| corners);
+    }
+
     fn exit_test(&mut self, solved: impl FnOnce() -> bool) {
         let solved = solved();
         self.0.exit_test(|| solved);
@@ -273,6 +314,11 @@ impl<O: Observer> Observer for Watch<'_, O> {
     fn planar_problem(&mut self, problem: impl FnOnce() -> PlanarProblem) {
         self.steps.planar_problems += 1;
         self.observer.planar_problem(problem);
+    }
+
+    #[inline]
+    fn cell(&mut self, corners: impl FnOnce() -> Vec<DVec2>) {
+        self.observer.cell(corners);
     }
 
     #[inline]

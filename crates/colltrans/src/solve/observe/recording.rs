@@ -1,11 +1,11 @@
 //! Everything that a query did, kept for a picture or a replay.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::{Cut, Observer, Phase, PlanarProblem, Sections, ShadowFrame, Support};
 
 /// One thing that happened.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Event {
     /// A search began.
@@ -18,6 +18,10 @@ pub enum Event {
     Sections(Sections),
     /// A planar problem was solved.
     PlanarProblem(PlanarProblem),
+    /// Its cell: the corners, pairs of levels.
+    Cell(Vec<DVec2>),
+    /// Whether the best point of the cell was seen to solve the problem.
+    ExitTest(bool),
     /// The region of levels was cut.
     Cut(Cut),
     /// A part of the work ended.
@@ -75,6 +79,14 @@ impl Observer for Recording {
 
     fn planar_problem(&mut self, problem: impl FnOnce() -> PlanarProblem) {
         self.events.push(Event::PlanarProblem(problem()));
+    }
+
+    fn cell(&mut self, corners: impl FnOnce() -> Vec<DVec2>) {
+        self.events.push(Event::Cell(corners()));
+    }
+
+    fn exit_test(&mut self, solved: impl FnOnce() -> bool) {
+        self.events.push(Event::ExitTest(solved()));
     }
 
     fn cut(&mut self, cut: impl FnOnce() -> Cut) {

@@ -1,14 +1,14 @@
 //! What a search did: the library's recording, as a page reads it.
 
-use colltrans::observe::{Event, Recording};
-use colltrans::{Cast, Focus, Outcome, Pose, Region, Solver, Steps, Tracker};
+use colltrans::observe::{Event, Recording, Touch};
+use colltrans::{
+    Cast, ConvexPolyhedron, Focus, Outcome, Pose, QueryError, Region, Solver, Steps, Tracker,
+};
 use glam::DVec3;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use crate::answer::{Answer, Refusal};
-use crate::body::Hull;
-use crate::convex::query;
+use crate::answer::Answer;
 use crate::question::Search;
 
 /// An answer to `search`.
@@ -19,9 +19,9 @@ struct Found {
     /// In the neighbourhood of the solution of the query before.
     #[serde(skip_serializing_if = "Option::is_none")]
     region: Option<Around>,
-    /// After the query before.
+    /// Of a tracker, after the query before.
     #[serde(skip_serializing_if = "Option::is_none")]
-    tracked: Option<Tracked>,
+    tracked: Option<Steps>,
 }
 
 #[derive(Serialize)]
@@ -36,43 +36,32 @@ struct Around {
     events: Vec<Value>,
 }
 
-#[derive(Serialize)]
-struct Tracked {
-    steps: Steps,
-    events: Vec<Value>,
+pub(crate) fn search(bodies: [&ConvexPolyhedron; 2], asked: &Search) -> Result<Answer, String> {
+    let cast = asked.pair.query(bodies)?;
+    let before = asked.after.as_ref().map(|before| before.query(bodies)).transpose()?;
+    found(&cast, before.as_ref()).map(|found| Answer::of(&found)).map_err(|error| error.to_string())
 }
 
-pub(crate) fn search(bodies: [&Hull; 2], asked: &Search) -> Result<Answer, Refusal> {
-    let cast = query(bodies, &asked.pair)?;
+fn found(cast: &Cast, before: Option<&Cast>) -> Result<Found, QueryError> {
     let mut recording = Recording::default();
-    let outcome = cast.first_contact_observed(&mut recording).map_err(|error| error.to_string())?;
-    let events = told_of(&recording);
-    let solver = if cast.options().solver == Solver::Cta { Solver::Cta } else { Solver::Portal };
-    let mut found = Found { events, steps: outcome.steps(), region: None, tracked: None };
-    if let Some(before) = &asked.after {
-        let first = query(bodies, before)?;
-        if solver == Solver::Cta {
-            found.region = region(&first, &cast)?;
-        }
-        let (mut tracker, mut seen) = (Tracker::new(), Recording::default());
-        let mut outcome = None;
-        for asked in [&first, &cast] {
-            seen.clear();
-            let answered = tracker.first_contact_observed(asked, &mut seen);
-            outcome = Some(answered.map_err(|error| error.to_string())?);
-        }
-        let steps = outcome.map(|outcome| outcome.steps()).unwrap_or_default();
-        found.tracked = Some(Tracked { steps, events: told_of(&seen) });
+    let steps = cast.first_contact_observed(&mut recording)?.steps();
+    let mut found = Found { events: told_of(&recording), steps, region: None, tracked: None };
+    let Some(before) = before else { return Ok(found) };
+    if cast.options().solver == Solver::Cta {
+        found.region = region(before, cast)?;
     }
-    Ok(Answer::of(&found))
+    let mut tracker = Tracker::new();
+    tracker.first_contact_observed(before, &mut Recording::default())?;
+    let outcome = tracker.first_contact_observed(cast, &mut Recording::default())?;
+    found.tracked = Some(outcome.steps());
+    Ok(found)
 }
 
 /// The minimisation again, in the neighbourhood `N(p)` of the solution `p` of the query before: a
 /// square of pairs of levels around those of its contact points, whose half-side is how far those
 /// have moved apart sideways (the paper, section III-D).
-fn region(before: &Cast, cast: &Cast) -> Result<Option<Around>, Refusal> {
-    let said = |error: colltrans::QueryError| error.to_string();
-    let outcome = before.first_contact_observed(&mut Recording::default()).map_err(said)?;
+fn region(before: &Cast, cast: &Cast) -> Result<Option<Around>, QueryError> {
+    let outcome = before.first_contact_observed(&mut Recording::default())?;
     let Outcome::Contact(contact) = outcome else { return Ok(None) };
     let points = contact.points(before);
     let back = |pose: Pose, v: DVec3| pose.matrix().transpose() * (v - pose.translation());
@@ -81,11 +70,10 @@ fn region(before: &Cast, cast: &Cast) -> Result<Option<Around>, Refusal> {
     let apart = cast.fixed_pose().transform_point(q) - cast.moving_pose().transform_point(p);
     let half_side = apart.reject_from(cast.direction()).length();
     let focus = Focus::NONE.with_region(Region::Fixed(half_side));
-    let (mut seen, mut tracker) =
-        (Recording::default(), Tracker::new().with_focus(focus).map_err(said)?);
-    tracker.first_contact_observed(before, &mut seen).map_err(said)?;
+    let (mut seen, mut tracker) = (Recording::default(), Tracker::new().with_focus(focus)?);
+    tracker.first_contact_observed(before, &mut seen)?;
     seen.clear();
-    let outcome = tracker.first_contact_observed(cast, &mut seen).map_err(said)?;
+    let outcome = tracker.first_contact_observed(cast, &mut seen)?;
     let level = |axis: DVec3, pose: Pose, v: DVec3| axis.dot(pose.matrix() * v);
     let axes = seen.events().iter().find_map(|event| match event {
         Event::Sections(sections) => Some(sections.axes),
@@ -105,8 +93,13 @@ fn told_of(seen: &Recording) -> Vec<Value> {
     seen.events().iter().filter_map(event).collect()
 }
 
-fn array(v: DVec3) -> [f64; 3] {
-    v.to_array()
+fn touch(touch: Touch) -> &'static str {
+    match touch {
+        Touch::Edges => "edges",
+        Touch::Vertex => "vertex",
+        Touch::Separated => "separated",
+        Touch::Hidden => "hidden",
+    }
 }
 
 fn event(event: &Event) -> Option<Value> {
@@ -115,22 +108,27 @@ fn event(event: &Event) -> Option<Value> {
             json!({ "begun": frame.world_from_shadow.to_cols_array_2d() })
         }
         Event::Support(support) => json!({
-            "support": array(support.at),
-            "normal": array(support.normal),
+            "support": support.at.to_array(),
+            "normal": support.normal.to_array(),
             "pair": [support.pair.moving, support.pair.fixed],
         }),
-        Event::Portal(corners) => json!({ "portal": corners.map(array) }),
+        Event::Portal(corners) => json!({ "portal": corners.map(|v| v.to_array()) }),
         Event::Sections(sections) => json!({
-            "sections": sections.axes.map(array),
+            "sections": sections.axes.map(|v| v.to_array()),
             "ranges": sections.ranges,
         }),
         Event::PlanarProblem(problem) => json!({
             "planar": problem.levels,
             "value": problem.value,
-            "meets": problem.meets,
+            "touch": touch(problem.touch),
             "gradient": problem.gradient.to_array(),
+            "best": problem.best,
             "shifted": problem.shifted,
         }),
+        Event::Cell(corners) => {
+            json!({ "cell": corners.iter().map(|v| v.to_array()).collect::<Vec<_>>() })
+        }
+        Event::ExitTest(solved) => json!({ "solved": solved }),
         Event::Cut(cut) => json!({
             "cut": cut.gradient.to_array(),
             "origin": cut.origin.to_array(),

@@ -1,0 +1,83 @@
+//! The questions, as the page writes them.
+
+use colltrans::{Cast, ConvexPolyhedron, NarrowFrom, Narrowing, Options, Solver, Until};
+use glam::DVec3;
+use serde::Deserialize;
+
+use crate::pose::pose;
+
+/// One question.
+#[derive(Deserialize)]
+#[serde(tag = "do", rename_all = "snake_case")]
+pub(crate) enum Question {
+    /// The file that comes with it becomes a body.
+    Place { slot: Slot, name: String, take: String },
+    /// What does a search do?
+    Search(Search),
+    /// The collision translation of pairs of sections.
+    Levels(Levels),
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Slot {
+    Moving,
+    Fixed,
+}
+
+/// Two placed bodies and a direction, as a cast of the page has them. Poses are `x,y,z,qx,qy,qz,qw`.
+#[derive(Deserialize)]
+pub(crate) struct Pair {
+    moving_pose: [f64; 7],
+    fixed_pose: [f64; 7],
+    direction: [f64; 3],
+    #[serde(default)]
+    graze: f64,
+    #[serde(default)]
+    solver: Solver,
+    /// Of `cta`: from `start`, `center` or `ellipsoids`, `until` it ends, `exit` or a gap.
+    #[serde(default)]
+    start: NarrowFrom,
+    #[serde(default)]
+    until: Until,
+}
+
+/// A search to look at.
+#[derive(Deserialize)]
+pub(crate) struct Search {
+    #[serde(flatten)]
+    pub(crate) pair: Pair,
+    /// A query asked before, whose answer a tracker starts from.
+    #[serde(default)]
+    pub(crate) after: Option<Pair>,
+}
+
+/// A grid of pairs of levels.
+#[derive(Deserialize)]
+pub(crate) struct Levels {
+    #[serde(flatten)]
+    pub(crate) pair: Pair,
+    /// Section axes in the world.
+    pub(crate) moving_axis: [f64; 3],
+    pub(crate) fixed_axis: [f64; 3],
+    /// Of the sections, each in its body's own frame.
+    pub(crate) moving_levels: Vec<f64>,
+    pub(crate) fixed_levels: Vec<f64>,
+}
+
+impl Pair {
+    /// The query that it asks.
+    pub(crate) fn query<'a>(
+        &self,
+        [moving, fixed]: [&'a ConvexPolyhedron; 2],
+    ) -> Result<Cast<'a>, String> {
+        let moving = moving.at(pose(self.moving_pose, "moving")?);
+        let fixed = fixed.at(pose(self.fixed_pose, "fixed")?);
+        let options = Options::default()
+            .with_solver(self.solver)
+            .with_narrowing(Narrowing::new(self.start, self.until))
+            .with_graze_tolerance(self.graze);
+        let cast = Cast::new(moving, fixed, DVec3::from_array(self.direction));
+        cast.and_then(|cast| cast.with_options(options)).map_err(|error| error.to_string())
+    }
+}

@@ -61,6 +61,7 @@ copyFileSync(join(here, "src/index.html"), join(out, "index.html"));
 cpSync(data, join(out, "data"), { recursive: true, filter: (from) => !/queries\.jsonl$/.test(from) });
 // What the page links to.
 copyFileSync(join(root, "docs/paper.md"), join(out, "paper.md"));
+cpSync(join(root, "docs/figures"), join(out, "figures"), { recursive: true });
 mkdirSync(join(out, "source"));
 for (const file of ["minimise.rs", "cell.rs", "region.rs"]) copyFileSync(join(root, "crates/colltrans/src/solve/cta", file), join(out, "source", file));
 await build({

@@ -140,7 +140,7 @@ test("from one solution to the next: N(p), and a motion that ends where it began
   await page.fill('[aria-label="Direction y"]', "0.105");
   await page.waitForFunction((t) => window.colltrans.probe().answer?.record.translation !== t, t);
   await page.click("#tab-found");
-  await page.waitForSelector("text=a tracker starts from the features");
+  await page.waitForSelector("text=a tracker starts from the region");
   const scratch = await steps(page);
   await page.selectOption('[aria-label="Where the search starts"]', "region");
   await page.waitForSelector(".stack .neighbourhood", { state: "attached" });

@@ -66,6 +66,14 @@ pub(crate) enum Command {
         #[command(flatten)]
         options: Options,
     },
+    /// The paper's figures 1 to 10 drawn anew: two cubes, and what the algorithm does with them
+    ///
+    /// Nothing is measured: the same pictures on every machine. They are those of docs/paper.md.
+    Pictures {
+        /// The folder of the pictures, made if it does not exist
+        #[arg(short, long, value_name = "DIR", default_value = "docs/figures")]
+        output: PathBuf,
+    },
 }
 
 #[derive(Debug, Args)]

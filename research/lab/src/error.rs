@@ -31,4 +31,7 @@ pub enum LabError {
         /// What the encoder says.
         reason: String,
     },
+    /// A figure of the paper cannot be drawn anew.
+    #[error("the paper's figures: {0}")]
+    Figures(#[from] crate::figures::Error),
 }

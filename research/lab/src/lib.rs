@@ -16,6 +16,7 @@ pub mod csv;
 pub mod draw;
 mod error;
 mod experiments;
+pub mod figures;
 pub mod finding;
 pub mod plan;
 pub mod report;

@@ -1,0 +1,111 @@
+//! Figures 1 to 6 and 8 to 10 of the paper, drawn anew: two cubes, and what the algorithm does with them as
+//! it tells an observer (figure 7 is the pseudocode, [line by line](../../../docs/paper.md)).
+//!
+//! Data flow: `setting` (two cubes, a run of the algorithm) -> `planar` (two sections and where they touch,
+//! the slow and obvious way) -> `mark` (all cells) -> `levels`, `instances` (pictures) on a `sheet`.
+
+mod instances;
+mod levels;
+mod mark;
+mod planar;
+mod setting;
+mod sheet;
+#[cfg(test)]
+mod tests;
+
+use std::path::Path;
+
+use colltrans::observe::Touch;
+use glam::DVec2;
+
+use crate::LabError;
+use mark::Mark;
+use planar::{Instance, View};
+pub use setting::Error;
+use setting::{Run, Setting, middle};
+
+/// Where the moving cube is, how it is turned, and the direction; the fixed one is at home.
+const AT: [f64; 3] = [-1.1, 1.0, 5.0];
+const TURN: [f64; 4] = [-0.7, -0.3, 0.2, 0.7];
+const TOWARDS: [f64; 3] = [0.42, -0.3, -1.0];
+/// For figure 10 another pair, whose search leaves the neighbourhood of the last solution: where the moving
+/// cube is, where it was before, how it is turned, the direction, and the half side of `N(p)`, a length.
+const AFTER: [f64; 3] = [-1.4, 1.6, 5.0];
+const BEFORE: [f64; 3] = [-1.6, 2.2, 5.0];
+const TURN_AFTER: [f64; 4] = [-0.8, -0.2, -0.4, 0.5];
+const TOWARDS_AFTER: [f64; 3] = [0.38, -0.12, -1.0];
+const HALF: f64 = 0.9;
+
+/// A setting, what the algorithm did, and all cells.
+struct Scene {
+    run: Run,
+    view: View,
+    mark: Mark,
+}
+
+impl Scene {
+    fn new(setting: &Setting) -> Result<Self, Error> {
+        let run = setting.run()?;
+        let view = View::new(setting, &run.sections);
+        let mark = Mark::new(&view, run.rectangle());
+        Ok(Self { run, view, mark })
+    }
+
+    /// The planar problem in the largest cell where sections meet so.
+    fn sample(&self, touch: Touch) -> Option<Instance> {
+        let met = self.mark.cells.iter().filter(|cell| cell.touch == touch);
+        let size = |corners: &[DVec2]| {
+            let pairs = corners.iter().zip(corners.iter().cycle().skip(1));
+            pairs.map(|(a, b)| a.perp_dot(*b)).sum::<f64>()
+        };
+        let largest = met.max_by(|a, b| size(&a.corners).total_cmp(&size(&b.corners)));
+        let inside = largest.map(|cell| middle(&cell.corners));
+        self.view.instance(inside.or_else(|| self.mark.outside.first().copied())?)
+    }
+}
+
+/// Draws all of them into a folder, which is made if it does not exist; what was written.
+///
+/// # Errors
+///
+/// A file that cannot be written, or cubes that do not show what they should.
+pub fn write(folder: &Path) -> Result<String, LabError> {
+    let at_folder = |source| LabError::Folder { path: folder.into(), source };
+    std::fs::create_dir_all(folder).map_err(at_folder)?;
+    let drawn = figures()?;
+    for (number, svg) in &drawn {
+        let path = folder.join(format!("figure-{number:02}.svg"));
+        std::fs::write(&path, svg).map_err(|source| LabError::Write { path, source })?;
+    }
+    Ok(format!("{} pictures are in {}\n", drawn.len(), folder.display()))
+}
+
+/// The figures by their numbers, as SVG documents. The same on every machine.
+///
+/// # Errors
+///
+/// None unless the library has changed what it does with the cubes.
+pub fn figures() -> Result<Vec<(u32, String)>, Error> {
+    let setting = Setting::new(AT, TURN, TOWARDS)?;
+    let scene = Scene::new(&setting)?;
+    let at = |levels: [f64; 2]| scene.view.instance(DVec2::from_array(levels));
+    let first = scene.run.steps.first().and_then(|step| at(step.problem.levels));
+    let first = first.ok_or(Error::Missing("first step"))?;
+    let edges = scene.sample(Touch::Edges).ok_or(Error::Missing("edge contact"))?;
+    let vertex = scene.sample(Touch::Vertex).ok_or(Error::Missing("vertex contact"))?;
+    let apart = scene.sample(Touch::Separated).ok_or(Error::Missing("separation"))?;
+    let moved = Setting::new(AFTER, TURN_AFTER, TOWARDS_AFTER)?;
+    let focused = moved.run_after(&Setting::new(BEFORE, TURN_AFTER, TOWARDS_AFTER)?, HALF)?;
+    let seen = |found: &Instance, title| instances::instance(&scene.view, found, title);
+    Ok(vec![
+        (1, instances::function(&scene, &first)),
+        (2, levels::orientations(&scene)),
+        (3, seen(&edges, "Edge contact of two sections, seen along d")),
+        (4, seen(&vertex, "Vertex contact of two sections, seen along d")),
+        (5, seen(&apart, "Two sections that pass each other, seen along d")),
+        (6, levels::qualities(&scene)),
+        (8, instances::reduction(&scene, &first)),
+        (9, levels::two_steps(&scene)),
+        (10, levels::focused(&Scene::new(&moved)?, &focused, HALF)),
+    ])
+}

@@ -124,12 +124,19 @@ fn threads() {
         let turn = Motion::screw(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, TAU, 0.5 * factor);
         let (turn, rest) = (turn.expect("a motion"), still());
         let cast = MotionCast::new(bolt.along(&turn), nut.along(&rest)).expect("a cast");
-        judged(&cast, [&turn, &rest])
+        let steps = cast.first_contact().expect("an answer").steps();
+        (judged(&cast, [&turn, &rest]), steps)
     };
-    assert!(matches!(turned(1.0), MotionOutcome::Free(_)));
-    let pitch = contact(turned(0.95));
+    let (outcome, steps) = turned(1.0);
+    assert!(matches!(outcome, MotionOutcome::Free(_)));
+    assert!(steps.nodes < 450_000 && steps.leaves < 100, "{steps:?}");
+    let (outcome, steps) = turned(0.95);
+    assert!(steps.nodes < 450_000 && steps.leaves < 5_000, "{steps:?}");
+    let pitch = contact(outcome);
     assert!(pitch.lower > 0.9 && pitch.upper - pitch.lower < 1e-11, "{pitch:?}");
-    let level = contact(turned(0.0));
+    let (outcome, steps) = turned(0.0);
+    assert!(steps.nodes < 25_000 && steps.leaves < 300, "{steps:?}");
+    let level = contact(outcome);
     assert!(level.lower > 0.05 && level.upper - level.lower < 1e-11, "{level:?}");
 }
 

@@ -67,6 +67,8 @@ pub use self::answer::{
 pub use self::file::{MotionCase, MotionProofFile};
 use self::look::ConvexLooker;
 use self::search::{Advanced, End, advance};
+#[cfg(feature = "json")]
+pub use self::solid::SolidMotionProofFile;
 pub use self::solid::{FacetsMeeting, FacetsMet, MotionCover, SolidMotionProof, SpanProof};
 use self::span::{Span, spans};
 pub use self::verify::MotionProofError;

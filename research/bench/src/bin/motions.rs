@@ -7,16 +7,19 @@
 //! answer is *missed* where a contact is proven and it has none, *late* if it is more than a millionth after
 //! the proven bounds, *false* where none is possible or it is earlier.
 
+use std::f64::consts::TAU;
 use std::process::ExitCode;
 
 use clap::Parser;
 use colltrans::motion::{Motion, MotionCast, MotionOutcome};
-use colltrans::{ConvexPolyhedron, Pose};
+use colltrans::{ConvexPolyhedron, Pose, Solid};
 use colltrans_bench::arguments::Arguments;
 use colltrans_bench::parry::{self, ParryPolyhedron, Spin};
 use colltrans_bench::report::{self, Times};
 use colltrans_bench::shapes::Shape;
 use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::Mesh;
+use colltrans_testkit::solids::thread;
 use colltrans_testkit::timing::Stopwatch;
 use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
@@ -26,6 +29,9 @@ use serde_json::{Value, json};
 struct Command {
     #[command(flatten)]
     arguments: Arguments,
+    /// A bolt of 1,200 triangles in a nut of 576 instead
+    #[arg(long)]
+    threads: bool,
 }
 
 /// By how much of the motion parry may be off.
@@ -42,7 +48,10 @@ struct Turning {
 }
 
 fn main() -> ExitCode {
-    let Command { arguments } = Command::parse();
+    let Command { arguments, threads } = Command::parse();
+    if threads {
+        return report::write("threads", &arguments, &bolts(arguments.quick));
+    }
     let count = if arguments.quick { 60 } else { 400 };
     let mut rows = Vec::new();
     println!(
@@ -78,6 +87,60 @@ fn main() -> ExitCode {
         rows.push(row(&format!("pin beside a wall {gap:e}"), count, arguments.seed, draw));
     }
     report::write("motions", &arguments, &rows)
+}
+
+/// A bolt in a nut; parry is not asked in a quick run.
+fn bolts(quick: bool) -> Vec<Value> {
+    let solid = |mesh: &Mesh| Solid::from_mesh(&mesh.vertices, &mesh.faces).expect("a solid");
+    let bolt = solid(&thread([1.0, 0.1, 0.5], [0.0, 2.0], [24, 24], None));
+    let nut = solid(&thread([1.04, 0.1, 0.5], [0.6, 1.4], [24, 9], Some(1.5)));
+    let [a, b] = [&bolt, &nut].map(|s| parry::triangle_mesh(s.vertices(), s.triangles()));
+    let stopwatch = Stopwatch::new();
+    println!(
+        "{:<20} {:>9} {:>9} {:>7} {:>8} {:>7} {:>20} {:>9} {:>20}",
+        "bolt and nut",
+        "ours ms",
+        "parry ms",
+        "ratio",
+        "nodes",
+        "leaves",
+        "lower",
+        "width",
+        "parry"
+    );
+    let pitches = [("its pitch", 1.0), ("5 % wrong", 0.95), ("no rise", 0.0)];
+    pitches
+        .into_iter()
+        .map(|(name, factor)| {
+            let (here, rise) = (Pose::IDENTITY, 0.5 * factor);
+            let turn = Motion::screw(here, DVec3::ZERO, DVec3::Z, TAU, rise).expect("a motion");
+            let cast = MotionCast::new(bolt.along(&turn), nut.at(here)).expect("a cast");
+            let asked = (0..5).map(|_| stopwatch.time(|| cast.first_contact()));
+            let (found, ours) = asked.min_by(|a, b| a.1.total_cmp(&b.1)).expect("five answers");
+            let found = found.expect("an answer");
+            let spin = Spin::new(&here, DVec3::ZERO, DVec3::Z * rise, DVec3::Z * TAU, &here);
+            let theirs = (!quick).then(|| stopwatch.time(|| spin.cast(&a, &b)));
+            let [lower, upper] = match &found {
+                MotionOutcome::Contact(of) => [of.lower, of.upper],
+                _ => [1.0, f64::INFINITY],
+            };
+            let steps = found.steps();
+            let (hit, parry) = theirs.unwrap_or((None, f64::NAN));
+            let (ratio, width) = (parry / ours, upper - lower);
+            println!(
+                "{name:<20} {:>9.0} {:>9.0} {ratio:>7.0} {:>8} {:>7} {lower:>20.15} {width:>9.1e} {:>20}",
+                ours * 1e-6,
+                parry * 1e-6,
+                steps.nodes,
+                steps.leaves,
+                hit.map_or("none".into(), |t| t.to_string()),
+            );
+            json!({
+                "name": name, "ours_ns": ours, "parry_ns": parry, "ratio": ratio, "nodes": steps.nodes,
+                "leaves": steps.leaves, "lower": lower, "width": width, "parry": hit,
+            })
+        })
+        .collect()
 }
 
 fn row(

@@ -5,9 +5,12 @@
 //! insides do. Which facets meet first is asked of both trees of boxes and of time.
 //!
 //! The modules, each using only those before it: `tree` (a shrunk solid), `window` (two parts in an interval, and
-//! one plane), `facets` (two facets, as convex bodies), `search`, `meeting` (some that meet), `proof` (the search written down), `verify`.
+//! one plane), `facets` (two facets, as convex bodies), `proof` (entries of a cover), `search`, `meeting` (facets that
+//! meet), `verify`, `file`.
 
 mod facets;
+#[cfg(feature = "json")]
+mod file;
 mod meeting;
 mod proof;
 mod search;
@@ -21,9 +24,12 @@ use glam::DVec3;
 
 use self::facets::FacetLooker;
 pub use self::facets::FacetsMet;
+#[cfg(feature = "json")]
+pub use self::file::SolidMotionProofFile;
 use self::meeting::{Seen, seen};
+use self::proof::Written;
 pub use self::proof::{FacetsMeeting, MotionCover, SolidMotionProof, SpanProof};
-use self::search::{Found, Search, Written};
+use self::search::{Found, Search};
 use self::tree::Tree;
 use self::window::Frame;
 use super::answer::{MotionContact, MotionFree, MotionOutcome, MotionSteps};

@@ -1,4 +1,4 @@
-//! What a proof about solids that turn is: the search, written down.
+//! What a proof about solids that turn is, and its entries, as a search writes them down.
 //!
 //! A [`MotionCover`] lists in preorder what became of each pair of parts in its interval, from both bodies in the
 //! whole span on: split, in time or one of the parts, or parted throughout, by a plane that has a name or by a
@@ -6,7 +6,6 @@
 
 use super::super::answer::PlaneAt;
 use super::facets::FacetsMet;
-use super::search::{Entry, Written};
 use super::window::Plane;
 use crate::cast::solid::StartProof;
 
@@ -72,6 +71,26 @@ impl MotionCover {
     }
 }
 
+/// What became of a pair of parts in an interval.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Entry {
+    /// Its time is halved.
+    Halved,
+    /// The moving (0) or the fixed (1) part is split in two.
+    Split(u8),
+    /// A plane parts them throughout.
+    Parted(Plane),
+    /// Two facets, parted by a list of planes.
+    Listed,
+}
+
+/// A proof, as it is written down: entries in preorder, and the lists of planes that they speak of.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Written {
+    pub(super) entries: Vec<Entry>,
+    pub(super) lists: Vec<Vec<PlaneAt>>,
+}
+
 impl SpanProof {
     pub(super) fn new(until: f64, Written { entries, lists }: Written) -> Self {
         Self { until, cover: MotionCover(entries), lists }
@@ -127,4 +146,9 @@ impl TryFrom<String> for MotionCover {
         };
         text.chars().map(entry).collect::<Result<_, _>>().map(Self)
     }
+}
+
+/// The time at which an interval is halved.
+pub(super) fn middle(from: f64, to: f64) -> f64 {
+    from + 0.5 * (to - from)
 }

@@ -7,9 +7,10 @@
 //! Invariant. Every pair of facets is parted up to the end of the span, or up to the earliest contact found so far,
 //! but for what is open. What lies later than that is not looked at.
 
-use super::super::answer::{MotionSteps, PlaneAt};
+use super::super::answer::MotionSteps;
 use super::super::search::{Advanced, End, advance};
 use super::facets::{FacetLooker, FacetsMet};
+use super::proof::{Entry, Written, middle};
 use super::tree::{Below, Node, Tree};
 use super::window::{Frame, Part, Plane, Snap, Window};
 
@@ -43,26 +44,6 @@ const EDGES: [Plane; 9] = {
         Edges(2, 2),
     ]
 };
-
-/// What became of a pair of parts in an interval.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Entry {
-    /// Its time is halved.
-    Halved,
-    /// The moving (0) or the fixed (1) part is split in two.
-    Split(u8),
-    /// A plane parts them throughout.
-    Parted(Plane),
-    /// Two facets, parted by a list of planes.
-    Listed,
-}
-
-/// A proof, as it is written down: entries in preorder, and the lists of planes that they speak of.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Written {
-    pub(super) entries: Vec<Entry>,
-    pub(super) lists: Vec<Vec<PlaneAt>>,
-}
 
 /// The earliest contact found.
 #[derive(Debug, Clone, Copy)]
@@ -249,9 +230,4 @@ pub(super) fn parted(window: &Window, facets: [bool; 2], last: Plane) -> Option<
     };
     let rest = if both { &EDGES[..] } else { &AXES[..] };
     first.iter().chain(rest).copied().find(holds)
-}
-
-/// The time at which an interval is halved.
-pub(super) fn middle(from: f64, to: f64) -> f64 {
-    from + 0.5 * (to - from)
 }

@@ -6,8 +6,7 @@
 use super::super::span::{Span, spans};
 use super::super::verify::{MotionProofError, chain};
 use super::facets;
-use super::proof::{FacetsMeeting, SolidMotionProof, SpanProof};
-use super::search::{Entry, middle};
+use super::proof::{Entry, FacetsMeeting, SolidMotionProof, SpanProof, middle};
 use super::tree::{Below, Tree};
 use super::window::{Frame, Part, Snap};
 use crate::body::solid::Solid;

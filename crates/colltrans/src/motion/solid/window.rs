@@ -7,6 +7,9 @@
 //! A *plane* is named, not given: each of a few directions that both parts have at hand, turned from the moving
 //! to the fixed one. So a proof holds a letter where a plane parts them, and a check asks that one alone.
 //!
+//! Normals are as they come, of any length: gaps and `C` grow with it, and so does what they are lowered by, with the
+//! sum of the normal's components, which is no less than its length.
+//!
 //! Rounding. A height along a unit normal is off by less than a noise of the span's size, as any support is; that
 //! of a box by one more, for its middle and extents; what computed places are off comes to it.
 
@@ -47,7 +50,7 @@ struct Place {
 #[derive(Debug, Clone)]
 pub(super) struct Frame<'s, 'a> {
     pub(super) span: &'s Span<'a, Tree<'a>>,
-    /// What heights are lowered by, and the gap to be kept.
+    /// What heights along a unit normal are lowered by.
     lowered: f64,
 }
 
@@ -144,6 +147,8 @@ pub(super) struct Window<'w, 's, 'a> {
     ends: [&'w Snap; 2],
     /// Of the moving and of the fixed part, at both ends.
     seen: [[Seen; 2]; 2],
+    /// From middle to middle, at both ends together.
+    apart: DVec3,
 }
 
 impl<'s, 'a> Frame<'s, 'a> {
@@ -156,8 +161,7 @@ impl<'s, 'a> Frame<'s, 'a> {
             span.body(which).reach() + swung + piece.velocity.length() * h
         };
         let noise = Noise::of(start.offset.length() + far(0) + far(1));
-        let kept = span.keep * (1.0 + 1e-12);
-        Self { span, lowered: LOWERED * noise.point() + span.error + kept }
+        Self { span, lowered: LOWERED * noise.point() + span.error }
     }
 
     pub(super) fn snap(&self, time: f64) -> Snap {
@@ -175,7 +179,8 @@ impl<'s, 'a> Frame<'s, 'a> {
     }
 
     /// Two parts between two times.
-    #[inline]
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
     pub(super) fn window<'w>(
         &'w self,
         ends: [&'w Snap; 2],
@@ -187,7 +192,10 @@ impl<'s, 'a> Frame<'s, 'a> {
             let first = at(ends[0]);
             [first, if piece.rate == 0.0 { first } else { at(ends[1]) }]
         };
-        Window { frame: self, ends, seen: [seen(0), seen(1)] }
+        let seen = [seen(0), seen(1)];
+        let middles = seen.each_ref().map(|[a, b]| a.middle() + b.middle());
+        let apart = (ends[0].offset + ends[1].offset) + (middles[1] - middles[0]);
+        Window { frame: self, ends, seen, apart }
     }
 }
 
@@ -214,9 +222,14 @@ impl Window<'_, '_, '_> {
         of(0) + of(1) + drift
     }
 
-    /// Whether a plane parts both throughout; it does not tell where one turns by more than [`ARC`].
+    /// Whether a plane parts both throughout; it does not tell where one turns by more than [`ARC`]. The normal may be
+    /// of any length: gaps and `C` grow with it.
     #[inline]
-    pub(super) fn is_parted(&self, normal: DVec3) -> bool {
+    fn is_parted(&self, normal: DVec3) -> bool {
+        let (frame, length) = (self.frame, normal.abs().element_sum());
+        let keep = frame.span.keep;
+        let kept = if keep > 0.0 { keep * normal.length() * (1.0 + 1e-12) } else { 0.0 };
+        let lowered = frame.lowered * length + kept;
         let shares = [0, 1].map(|k| normal.dot(self.frame.piece(k).axis));
         let mut gaps = [0.0; 2];
         // How far the parts reach along what supporting planes bend by.
@@ -225,7 +238,7 @@ impl Window<'_, '_, '_> {
             let [moving, fixed] = &end.places;
             let [high, side] = self.seen[0][k].reach(normal, shares[0]);
             let [low, back] = self.seen[1][k].reach(-normal, -shares[1]);
-            gaps[k] = normal.dot(end.offset) - low - high - self.frame.lowered;
+            gaps[k] = normal.dot(end.offset) - low - high - lowered;
             if gaps[k] <= 0.0 {
                 return false;
             }
@@ -235,13 +248,13 @@ impl Window<'_, '_, '_> {
             ];
             most = [most[0].max(side + arms[0]), most[1].max(back + arms[1])];
         }
-        let c = self.bend(0, most[0]) + self.bend(1, most[1]);
+        let c = self.bend(0, most[0], length) + self.bend(1, most[1], length);
         c <= most_bend(gaps, SPARE)
     }
 
-    /// `C` of a body that reaches so far at the ends, at most.
+    /// `C` of a body that reaches so far at the ends along a normal of at most this length, at most.
     #[inline]
-    fn bend(&self, which: usize, most: f64) -> f64 {
+    fn bend(&self, which: usize, most: f64, length: f64) -> f64 {
         let angle = self.angle(which);
         if angle == 0.0 {
             return 0.0;
@@ -251,18 +264,15 @@ impl Window<'_, '_, '_> {
         }
         // What is computed is off by less than the last term.
         let size = self.frame.span.body(which).reach() + self.frame.piece(which).arm.length();
-        let most = most + 1e-13 * size;
+        let most = most + 1e-13 * size * length;
         // cos(x) >= 1 - x^2 / 2.
         let most = if most > 0.0 { most / (1.0 - 0.125 * angle * angle) } else { most };
         angle * angle * most
     }
 
-    /// The normal of a plane, from the moving to the fixed part; none if they have none of its kind.
+    /// The normal of a plane, of any length, from the moving to the fixed part; none if they have none of its kind.
     #[inline]
-    pub(super) fn normal(&self, plane: Plane) -> Option<DVec3> {
-        let place =
-            |k: usize| self.seen[1][k].middle() + self.ends[k].offset - self.seen[0][k].middle();
-        let apart = place(0) + place(1);
+    fn normal(&self, plane: Plane) -> Option<DVec3> {
         // A direction of a body, halfway, twice.
         let axis = |which: usize, k: usize| {
             let [a, b] = self.ends.map(|end| end.places[which].rotation.col(k));
@@ -275,17 +285,14 @@ impl Window<'_, '_, '_> {
             a.is_facet.then_some(along)
         };
         let along = match plane {
-            Plane::Middles => apart,
+            Plane::Middles => self.apart,
             Plane::Axis(which, k) => axis(which as usize, k as usize),
             Plane::Across(which) => edge(which as usize, 0)?.cross(edge(which as usize, 1)?),
             Plane::Edges(i, j) => edge(0, i as usize)?.cross(edge(1, j as usize)?),
         };
-        let square = along.length_squared();
-        if !(square > 1e-280 && square < 1e280) {
-            return None;
-        }
-        let normal = along / square.sqrt();
-        Some(if normal.dot(apart) < 0.0 { -normal } else { normal })
+        // Products of shorter or longer ones would leave the range.
+        let is_fit = (1e-100..1e100).contains(&along.abs().max_element());
+        is_fit.then_some(if along.dot(self.apart) < 0.0 { -along } else { along })
     }
 
     /// Whether a plane of this name parts both throughout.

@@ -135,21 +135,30 @@ impl Turning {
         if matches!(outcome, MotionOutcome::Overlapping(_)) {
             return Ok(());
         }
-        let overlaps = |time: f64| -> Result<bool, String> {
+        // Poses are asked in the world here, where far away places are rounded.
+        let far = self.motions.iter().map(|motion| {
+            let ends =
+                [0.0, lower].map(|t| motion.at(t).map_or(0.0, |at| at.translation().length()));
+            ends[0].max(ends[1])
+        });
+        let rounded = 32.0 * f64::EPSILON * far.fold(0.0, f64::max);
+        let tolerance = outcome.proof().tolerance;
+        let overlaps = |time: f64, tolerance: f64| -> Result<bool, String> {
             let [a, b] = [0, 1].map(|k| self.motions[k].at(time).map_err(|e| e.to_string()));
             let cast = Cast::new(self.solids[0].at(a?), self.solids[1].at(b?), DVec3::Z);
-            let tolerance = outcome.proof().tolerance;
             let cast = cast.and_then(|cast| cast.with_tolerance(tolerance)?.keeping(self.keep));
             Ok(cast.map_err(|e| e.to_string())?.overlaps())
         };
+        let is_near = rounded < 0.01 * tolerance;
+        let more = if is_near { tolerance } else { tolerance + rounded };
         for k in 0..=TIMES {
             let time = lower * f64::from(k) / f64::from(TIMES);
-            if overlaps(time)? {
+            if overlaps(time, more)? {
                 return Err(format!("free up to {lower}, but an overlap at {time}"));
             }
         }
         // As near as a gap to be kept is not nearer, where rounding decides.
-        if upper <= 1.0 && self.keep == 0.0 && !overlaps(upper)? {
+        if upper <= 1.0 && self.keep == 0.0 && is_near && !overlaps(upper, tolerance)? {
             return Err(format!("met at {upper}, but no overlap"));
         }
         Ok(())

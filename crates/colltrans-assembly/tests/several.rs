@@ -175,50 +175,6 @@ fn a_lid_makes_room_and_goes_back() {
     assert!(because.contains("up to 2 moves one after another"), "{because}");
 }
 
-/// A block with a tunnel that a random walk has cut, and one or two bars of one or two cubes in it.
-fn random_puzzle(random: &mut Random) -> Cubes {
-    let size = [5, 5, 4];
-    let step = |cell: [i32; 3], random: &mut Random| {
-        let mut to = cell;
-        to[random.index(3)] += if random.unit() < 0.5 { 1 } else { -1 };
-        to
-    };
-    let mut walk: Vec<[i32; 3]> = vec![[2, 2, 1 + random.index(2) as i32]];
-    let length = 4 + random.index(14);
-    while walk.len() < length {
-        let to = step(*walk.last().unwrap(), random);
-        if (0..3).any(|k| to[k] < 0 || to[k] >= size[k]) {
-            break;
-        }
-        walk.push(to);
-    }
-    let mut free: Vec<[i32; 3]> = walk.clone();
-    free.sort_unstable();
-    free.dedup();
-    let mut pieces = Vec::new();
-    for _ in 0..=random.index(2) {
-        if free.is_empty() {
-            break;
-        }
-        let first = free.swap_remove(random.index(free.len()));
-        let mut bar = vec![first];
-        let beside = step(first, random);
-        if let Some(k) = free.iter().position(|cell| *cell == beside) {
-            bar.push(free.swap_remove(k));
-        }
-        pieces.push(bar);
-    }
-    let mut block = Vec::new();
-    for x in 0..size[0] {
-        for y in 0..size[1] {
-            block.extend((0..size[2]).map(|z| [x, y, z]));
-        }
-    }
-    block.retain(|cell| !walk.contains(cell));
-    pieces.push(block);
-    Cubes { pieces }
-}
-
 fn of_cubes(cubes: &Cubes) -> Assembly {
     let cube = |c: &[i32; 3]| cuboid(c.map(f64::from), c.map(|x| f64::from(x + 1)));
     let part = |(k, cells): (usize, &Vec<[i32; 3]>)| {
@@ -233,7 +189,7 @@ fn random_puzzles_come_apart_as_all_moves_of_cubes_say() {
     // Stuck, taken apart, and with more than one, two and three moves.
     let mut counts = [0; 5];
     for case in 0..150 {
-        let cubes = random_puzzle(&mut random);
+        let cubes = Cubes::random(&mut random);
         let assembly = of_cubes(&cubes);
         let plan = planned(&assembly, PlanOptions::default().with_legs(12).with_samples(0));
         let (expected, level) = (cubes.comes_apart(), cubes.level());

@@ -12,8 +12,8 @@ pub struct PlanOptions {
     pub samples: usize,
     /// How many moves, one after another, may take out what no single one does; 1 for none.
     pub legs: usize,
-    /// Work for those of what is stuck together, each time: pairs of nodes looked at, as of
-    /// [`WayOptions`](colltrans::ways::WayOptions).
+    /// Work for those of what is stuck together, each time: a fortieth of so many pairs of nodes, as of
+    /// [`WayOptions`](colltrans::ways::WayOptions), and 500 casts, for each of `legs`.
     pub looks: u64,
 }
 

@@ -20,7 +20,10 @@ use crate::watch::Watch;
 /// Axes that are tried, at most.
 const MOST_AXES: usize = 13;
 /// Parts, at most.
-const MOST_PARTS: usize = 63;
+const MOST_PARTS: usize = 24;
+/// Casts for each move that is asked for, and the share of the work that goes to it.
+const CASTS: usize = 500;
+const SHARE: u64 = 40;
 /// Axes whose cross product is shorter are one.
 const ALIKE: f64 = 1e-6;
 
@@ -69,17 +72,24 @@ pub(super) fn search(
     if let Some(why) = not_asked(bodies, left, options) {
         return Ok(Err(Moves::NotAsked(why)));
     }
+    let legs = options.legs;
+    if !anything_moves(bodies, left, matrix) {
+        let mut searched = Searched::default();
+        (searched.directions, searched.places) = (matrix.directions().len(), 1);
+        searched.complete = true;
+        return Ok(Err(Moves::NotFound { legs, searched }));
+    }
     let parts = bodies.assembly().parts();
     let placed: Vec<_> = left.iter().map(|&k| parts[k].solid().at(Pose::IDENTITY)).collect();
     let fixed: Vec<usize> = (0..left.len()).filter(|&k| parts[left[k]].fixed()).collect();
-    let legs = options.legs;
     let cells = if proving { WayOptions::default().cells } else { 0 };
     let options = WayOptions::default()
         .with_cells(cells)
         .with_tolerance(bodies.fit().tolerance())
         .with_legs(legs)
-        .with_looks(options.looks)
-        .with_directions(directions(bodies, left, &placed, matrix));
+        .with_casts(CASTS * legs)
+        .with_looks(options.looks / SHARE * legs as u64)
+        .with_directions(directions(&placed, matrix));
     let found = WaysOut::among(&placed, &fixed, &options, watch.flag());
     let way = match found {
         Ok(WaysOut::Found(way)) => way,
@@ -117,7 +127,7 @@ fn not_asked(bodies: &Bodies, left: &[usize], options: PlanOptions) -> Option<&'
     } else if bodies.fit().tolerance() < 0.0 {
         Some("the parts are to be kept apart")
     } else if left.len() > MOST_PARTS {
-        Some("there are more than 63 parts")
+        Some("there are more than 24 parts")
     } else if left.iter().any(|&k| assembly.parts()[k].is_surface()) {
         Some("there are open surfaces among them")
     } else if pairs().any(|p| ignored(p) || lets_pass && bodies.overlaps(p[0], p[1])) {
@@ -127,25 +137,18 @@ fn not_asked(bodies: &Bodies, left: &[usize], options: PlanOptions) -> Option<&'
     }
 }
 
-/// Axes of large facets, and those of the matrix if anything can move by a step along one of them.
-fn directions(
-    bodies: &Bodies,
-    left: &[usize],
-    placed: &[Placed<'_, Solid>],
-    matrix: &Matrix,
-) -> Vec<DVec3> {
+/// Axes of large facets, and those of the matrix.
+fn directions(placed: &[Placed<'_, Solid>], matrix: &Matrix) -> Vec<DVec3> {
     let mut axes = of_large_facets(placed);
-    if anything_moves(bodies, left, matrix) {
-        for &d in matrix.directions() {
-            if axes.len() < MOST_AXES && !axes.iter().any(|a| a.cross(d).length() < ALIKE) {
-                axes.push(d);
-            }
+    for &d in matrix.directions() {
+        if axes.len() < MOST_AXES && !axes.iter().any(|a| a.cross(d).length() < ALIKE) {
+            axes.push(d);
         }
     }
     axes
 }
 
-/// Whether a group can go by a step along a direction of the matrix.
+/// Whether a group can go by a step along a direction of the matrix: if none can, no cast is asked for.
 fn anything_moves(bodies: &Bodies, left: &[usize], matrix: &Matrix) -> bool {
     let mut among = vec![false; bodies.len()];
     for &k in left {

@@ -7,6 +7,11 @@
 
 use std::collections::{HashSet, VecDeque};
 
+use colltrans::{ConvexPolyhedron, Solid};
+use glam::DVec3;
+
+use crate::random::Random;
+
 type Cell = [i32; 3];
 
 /// Pieces of unit cubes, by their lowest corners.
@@ -26,6 +31,77 @@ pub struct Leaves {
 }
 
 impl Cubes {
+    /// A block with a tunnel that a random walk has cut, and one or two bars of one or two cubes in it; the block comes
+    /// last.
+    pub fn random(random: &mut Random) -> Self {
+        let size = [5, 5, 4];
+        let step = |cell: Cell, random: &mut Random| {
+            let mut to = cell;
+            to[random.index(3)] += if random.unit() < 0.5 { 1 } else { -1 };
+            to
+        };
+        let mut walk: Vec<Cell> = vec![[2, 2, 1 + random.index(2) as i32]];
+        let length = 4 + random.index(14);
+        while walk.len() < length {
+            let to = step(*walk.last().unwrap_or(&[2; 3]), random);
+            if (0..3).any(|k| to[k] < 0 || to[k] >= size[k]) {
+                break;
+            }
+            walk.push(to);
+        }
+        let mut free: Vec<Cell> = walk.clone();
+        free.sort_unstable();
+        free.dedup();
+        let mut pieces = Vec::new();
+        for _ in 0..=random.index(2) {
+            if free.is_empty() {
+                break;
+            }
+            let first = free.swap_remove(random.index(free.len()));
+            let mut bar = vec![first];
+            let beside = step(first, random);
+            if let Some(k) = free.iter().position(|cell| *cell == beside) {
+                bar.push(free.swap_remove(k));
+            }
+            pieces.push(bar);
+        }
+        let mut block = Vec::new();
+        for x in 0..size[0] {
+            for y in 0..size[1] {
+                block.extend((0..size[2]).map(|z| [x, y, z]));
+            }
+        }
+        block.retain(|cell| !walk.contains(cell));
+        pieces.push(block);
+        Self { pieces }
+    }
+
+    /// Each piece as a solid.
+    ///
+    /// # Panics
+    /// Never: pieces of cubes are solids.
+    pub fn solids(&self) -> Vec<Solid> {
+        let cube = |cell: &Cell| {
+            let low = DVec3::from(cell.map(f64::from));
+            ConvexPolyhedron::cuboid(low, low + 1.0).expect("a cube")
+        };
+        let piece = |cells: &Vec<Cell>| {
+            let cubes: Vec<ConvexPolyhedron> = cells.iter().map(cube).collect();
+            Solid::from_pieces(&cubes).expect("closed pieces")
+        };
+        self.pieces.iter().map(piece).collect()
+    }
+
+    /// Whether two pieces, the first displaced, enter each other by more than a length.
+    pub fn enter(&self, [a, b]: [usize; 2], by: DVec3, depth: f64) -> bool {
+        self.pieces[a].iter().any(|p| {
+            let p = DVec3::from(p.map(f64::from)) + by;
+            let enters =
+                |q: &Cell| (DVec3::from(q.map(f64::from)) - p).abs().max_element() < 1.0 - depth;
+            self.pieces[b].iter().any(enters)
+        })
+    }
+
     /// The fewest moves after which some pieces have left the others; `None` if no moves do that.
     pub fn level(&self) -> Option<Leaves> {
         let all: Vec<usize> = (0..self.pieces.len()).collect();

@@ -109,6 +109,27 @@ mod tests {
         }
     }
 
+    /// Four rings, two and two close together: where the sagitta of a patch is about the chamfer, one ring of
+    /// a pair is finished before the other, and each point of that sees a fan over the patch.
+    #[test]
+    fn hulls_of_rims_with_chamfers() {
+        for chamfer in [1e-2, 1e-3, 1e-4] {
+            for (how, turn) in [("upright", DQuat::IDENTITY), ("turned", rotation())] {
+                let points = |count: usize| -> Vec<DVec3> {
+                    let rings = [(1.0 - chamfer, 0.0), (1.0, chamfer)];
+                    let both = rings.into_iter().chain(rings.map(|(r, z)| (r, 1.0 - z)));
+                    both.flat_map(|(r, z)| ring(count / 4, r, z)).map(|p| turn * p).collect()
+                };
+                let most = 400 * 20_000;
+                let count = looks(|| assert_eq!(hull(&points(20_000)).vertices().len(), 20_000));
+                assert!(count < most, "chamfer {chamfer}, {how}: {count} looks");
+                assert_growth(&format!("chamfer {chamfer}, {how}"), 8_000, |count| {
+                    hull(&points(count));
+                });
+            }
+        }
+    }
+
     /// An answer and its proof are of one search, where the file's bodies have the same trees.
     #[cfg(feature = "json")]
     #[test]

@@ -51,6 +51,28 @@ fn check(body: &ConvexPolyhedron, points: &[DVec3]) {
     }
 }
 
+/// Rims with chamfers, with points inside and points on the rim's chords: what a fan of many triangles sees.
+#[test]
+fn rims_with_chamfers_keep_their_corners() {
+    let mut random = Random::new(21);
+    for round in 0..24 {
+        let (chamfer, rotation) = ([1e-1, 1e-2, 1e-4][round % 3], random.rotation());
+        let rings =
+            [(1.0 - chamfer, 0.0), (1.0, chamfer), (1.0, 1.0 - chamfer), (1.0 - chamfer, 1.0)];
+        let mut points: Vec<DVec3> =
+            rings.into_iter().flat_map(|(r, z)| ring(60, r, z)).map(|p| rotation * p).collect();
+        let corners = points.len();
+        for _ in 0..100 {
+            let [a, b] = [0, 1].map(|_| points[random.range(0.0, corners as f64) as usize]);
+            points.push(a.lerp(b, [0.5, 0.25][round % 2]));
+            points.push(rotation * (DVec3::Z * 0.5 + random.direction() * 0.4));
+        }
+        let body = ConvexPolyhedron::from_points(&points).expect("a body");
+        assert_eq!(body.vertices().len(), corners, "{round}");
+        check(&body, &points);
+    }
+}
+
 #[test]
 fn rotated_grids_are_boxes() {
     let mut random = Random::new(1);

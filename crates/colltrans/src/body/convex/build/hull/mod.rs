@@ -15,6 +15,7 @@
 //! does not help, all corners are, and nothing is merged ([`exact_hull`]).
 
 mod convex_mesh;
+mod fan;
 mod merge;
 mod planar;
 mod quickhull;

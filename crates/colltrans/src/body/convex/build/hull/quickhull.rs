@@ -15,6 +15,7 @@ use std::collections::VecDeque;
 
 use glam::DVec3;
 
+use super::fan::Fan;
 use crate::body::Aabb;
 use crate::number::plane::triangle_normal;
 use crate::work;
@@ -84,6 +85,11 @@ pub(super) enum Flat {
 /// a fan over half the ring, and each of its orphans is held against the new fan, which is quadratic.
 /// In breadth both rings grow together. Patches of a bounded number of points cannot do much harm.
 const POINTS_A_PATCH: u32 = 128;
+
+/// Of a new cone with more triangles the one that an orphan sees is found by its [`Fan`]: of two rings close
+/// together, as along a chamfer, a patch of one is still finished before the other's. Of smaller cones all are
+/// looked at, and an orphan goes where it is farthest outside.
+const LARGE_CONE: usize = 16;
 
 /// The hull of the points in `kept`, or what dimension they have instead. Points within the tolerance
 /// of a triangle and outside none by more are left out, unless they are in `forced` (ascending).
@@ -297,7 +303,11 @@ impl<'a> Builder<'a> {
     /// In exact arithmetic one of the new triangles sees it if any triangle does. But it may be
     /// within the tolerance of that one and far outside an older one (a corner of a box in the
     /// planes of its faces): then the triangles that see it are searched from the rim on.
-    fn reassign(&mut self, i: u32, cone: &[u32]) {
+    fn reassign(&mut self, i: u32, cone: &[u32], fan: Option<&Fan>) {
+        let guess = fan.map(|fan| fan.near(self.at(i)));
+        if guess.is_some_and(|near| matches!(self.assign(i, near.into_iter()), Assigned::To(_))) {
+            return;
+        }
         if !matches!(self.assign(i, cone.iter().copied()), Assigned::Near) {
             return;
         }
@@ -353,9 +363,10 @@ impl<'a> Builder<'a> {
             }
         }
         let cone = self.build_cone(apex);
+        let fan = (orphans != NONE && cone.len() > LARGE_CONE).then(|| self.fan(p, &cone));
         while orphans != NONE {
             let next = self.next[orphans as usize];
-            self.reassign(orphans, &cone);
+            self.reassign(orphans, &cone, fan.as_ref());
             orphans = next;
         }
         self.pending.extend(&cone);
@@ -415,6 +426,13 @@ impl<'a> Builder<'a> {
         }
         self.rim = rim;
         cone
+    }
+
+    /// The triangles of a cone by their sectors.
+    fn fan(&self, apex: DVec3, cone: &[u32]) -> Fan {
+        work::count(cone.len());
+        let start = |&face: &u32| (self.at(self.triangles[face as usize].corners[0]), face);
+        Fan::new(apex, cone.iter().map(start))
     }
 
     /// Drops the dead triangles and renumbers the rest.

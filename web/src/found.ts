@@ -238,7 +238,7 @@ export class Found {
 
   private tellTracker({ steps, tracked, region }: PageSearch) {
     this.tracker.textContent = tracked
-      ? `Asked after the question before this one, a tracker starts from ${{ features: "the features that touched then", region: "the region around the last solution", scratch: "nothing: too much has changed" }[tracked.started_from ?? "scratch"]}: ` +
+      ? `Asked after the question before this one, a tracker starts from ${{ difference: "the faces of the bodies' difference", features: "the features that touched then", region: "the region around the last solution", scratch: "nothing: too much has changed" }[tracked.started_from ?? "scratch"]}: ` +
         `${count(tracked.supports, "supporting plane")} and ${count(tracked.pivots, "portal")}, instead of ${steps.supports} and ${steps.pivots}. The proof is made anew, so it is as tight as any.`
       : "Change the question a little (drag the arrow, or move a body): a tracker then starts from the answer before.";
     if (!region) {

@@ -9,8 +9,8 @@
 //!    direction;
 //! 4. answers: `certificate`, `features`, `answer` (what all have in common), `outcome`, `clearance`,
 //!    `solid_answer`, `distance`, `directions`, `ways`, `motion` (queries and answers about bodies that turn);
-//! 5. those who ask: `questions` (functions, and methods of queries), `tracker` (in sequence), `many` (in
-//!    bulk), `obstacles` (one body among many) with its `scene` and `scene_answers`,
+//! 5. those who ask: `questions` (functions, and methods of queries), `tracker` (in sequence), `rows`, `repeats` and
+//!    `many` (in bulk), `obstacles` (one body among many) with its `scene` and `scene_answers`,
 //!    `assembly` (many parts).
 //!
 //! The package itself is in `python/`; its stub `_colltrans.pyi` has the types.
@@ -35,6 +35,8 @@ mod pair;
 mod pose;
 mod query;
 mod questions;
+mod repeats;
+mod rows;
 mod scene;
 mod scene_answers;
 mod solid;

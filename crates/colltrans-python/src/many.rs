@@ -2,8 +2,9 @@
 //!
 //! The rows are cut into chunks, each with its own part of every column; threads take chunks until
 //! none is left. Threads live for one call: a pool that is kept would be lost in a forked process,
-//! and starting a thread costs as much as some ten casts. Every row is answered by itself, so the
-//! bits do not depend on the threads, and a row without an answer is one of outcome *error*, with a
+//! and starting a thread costs as much as some ten casts. Every row is answered by itself, or, where many
+//! ask about the same bodies turned in the same way ([`repeats`](crate::repeats)), by what these share, so the
+//! bits do not depend on the threads; and a row without an answer is one of outcome *error*, with a
 //! message, even if it is a bug that ends it.
 //!
 //! The calling thread looks for signals ten times a second, so that Ctrl-C ends the call.
@@ -13,13 +14,12 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-use colltrans::glam::{DMat3, DQuat, DVec3};
+use colltrans::glam::DVec3;
 use colltrans::motion::Motion;
 use colltrans::record::{PairQuestion, Record};
-use colltrans::solid::AsSolid;
 use colltrans::{
-    Cast, Clearance, Contact, ContactRange, ConvexPolyhedron, Options, Outcome, OverlapAhead, Pair,
-    Placed, Pose, WhyFree,
+    Cast, Clearance, Contact, ContactRange, Options, Outcome, OverlapAhead, Pair, Placed, Pose,
+    Solver, WhyFree,
 };
 use numpy::{
     IntoPyArray, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
@@ -31,6 +31,8 @@ use pyo3::types::PyDict;
 use crate::arrays::coordinates;
 use crate::body;
 use crate::motion::{EITHER, convex_cast, solid_cast};
+use crate::repeats::{Answerers, By, Repeats};
+use crate::rows::{AnyBody, Bodies, Table};
 use crate::solid::Solid;
 use crate::solver::options_of;
 
@@ -175,16 +177,16 @@ impl Question {
         }
     }
 
-    fn ask(self, cast: &Cast<'_>) -> Result<Row, colltrans::QueryError> {
+    fn ask<'a>(self, cast: &Cast<'a>, by: &By<'_, '_, 'a>) -> Result<Row, colltrans::QueryError> {
         Ok(match self {
-            Self::Contact => match cast.first_contact()? {
+            Self::Contact => match by.first_contact(cast)? {
                 Outcome::Contact(contact) => Row::of(0, &contact, cast),
                 Outcome::Grazing(grazing) => {
                     Row::of(1, &grazing.contact, cast).with(OVERLAP, grazing.overlap)
                 }
                 Outcome::Separated(separated) => Row::separated(2, &separated),
             },
-            Self::Range => match cast.contact_range()? {
+            Self::Range => match by.contact_range(cast)? {
                 ContactRange::Contact { first, last } => Row::of(0, &first, cast).with_exit(&last),
                 ContactRange::Grazing { first, last } => Row::of(1, &first.contact, cast)
                     .with_exit(&last.contact)
@@ -192,7 +194,7 @@ impl Question {
                 ContactRange::Separated(separated) => Row::separated(2, &separated),
             },
             // The others have no direction.
-            _ => Row::clearance(&cast.clearance()?, cast),
+            _ => Row::clearance(&by.clearance(cast)?, cast),
         })
     }
 }
@@ -284,96 +286,6 @@ impl Row {
     }
 }
 
-/// A body of any kind.
-#[derive(Clone, Copy)]
-enum AnyBody<'a> {
-    Convex(&'a ConvexPolyhedron),
-    Solid(&'a colltrans::Solid, f64),
-}
-
-impl<'a> AnyBody<'a> {
-    fn convex(self) -> Result<&'a ConvexPolyhedron, String> {
-        match self {
-            Self::Convex(body) => Ok(body),
-            Self::Solid(..) => Err("a solid is asked for its clearance or distance".into()),
-        }
-    }
-
-    fn solid(self) -> Result<&'a colltrans::Solid, String> {
-        match self {
-            Self::Convex(body) => body.as_solid().map_err(|what| what.to_string()),
-            Self::Solid(solid, _) => Ok(solid),
-        }
-    }
-
-    /// How far its file rounds coordinates.
-    fn precision(self) -> f64 {
-        match self {
-            Self::Convex(_) => 0.0,
-            Self::Solid(_, precision) => precision,
-        }
-    }
-}
-
-/// A body of every row, or why there is none.
-struct Bodies<'a> {
-    name: &'static str,
-    all: &'a [Result<AnyBody<'a>, String>],
-    /// Which one for each row; the only one without.
-    index: Option<&'a [i64]>,
-}
-
-impl<'a> Bodies<'a> {
-    fn get(&self, row: usize) -> Result<AnyBody<'a>, String> {
-        let index = self.index.map_or(0, |index| index[row]);
-        let found = usize::try_from(index).ok().and_then(|index| self.all.get(index));
-        match found {
-            Some(Ok(body)) => Ok(*body),
-            Some(Err(why)) => Err(format!("{}: {why}", self.name)),
-            None => Err(format!("{}: no body {index} among {}", self.name, self.all.len())),
-        }
-    }
-}
-
-/// A table with a row for each query, or one for all.
-struct Table<'a> {
-    name: &'static str,
-    numbers: &'a [f64],
-    width: usize,
-}
-
-impl<'a> Table<'a> {
-    fn row(&self, row: usize) -> &'a [f64] {
-        let row = if self.numbers.len() == self.width { 0 } else { row };
-        &self.numbers[row * self.width..(row + 1) * self.width]
-    }
-
-    /// Three numbers.
-    fn vector(&self, row: usize) -> DVec3 {
-        DVec3::from_slice(self.row(row))
-    }
-
-    /// A translation, with a quaternion, or a matrix of three or four rows.
-    fn pose(&self, row: usize) -> Result<Pose, String> {
-        let of_matrix = |r: &[f64]| {
-            let column = |j: usize| DVec3::new(r[j], r[4 + j], r[8 + j]);
-            Pose::from_matrix(DMat3::from_cols(column(0), column(1), column(2)), column(3))
-        };
-        let pose = match self.row(row) {
-            r @ [_, _, _] => Pose::from_translation(DVec3::from_slice(r)),
-            r @ [_, _, _, x, y, z, w] => {
-                Pose::new(DQuat::from_xyzw(*x, *y, *z, *w), DVec3::from_slice(r))
-            }
-            r if r.len() == 16 && r[12..] != [0.0, 0.0, 0.0, 1.0] => {
-                let name = self.name;
-                return Err(format!("{name}: the last row is {:?}, not 0, 0, 0, 1", &r[12..]));
-            }
-            r => of_matrix(r),
-        };
-        pose.map_err(|what| format!("{}: {what}", self.name))
-    }
-}
-
 /// What is asked.
 struct Work<'a> {
     question: Question,
@@ -427,8 +339,19 @@ impl Motions<'_> {
     }
 }
 
-impl Work<'_> {
-    fn answer(&self, row: usize) -> Result<Row, String> {
+impl<'a> Work<'a> {
+    /// The rows of which many have the same bodies and rotations, if that can be of use.
+    fn repeats(&self, n: usize) -> Option<Repeats<'a>> {
+        match &self.with {
+            With::Direction { directions, keeps, options, .. } if options.solver != Solver::Cta => {
+                let touches = |row: usize| keeps.row(row)[0] == 0.0;
+                Some(Repeats::find(n, &self.bodies, &self.poses, directions, touches))
+            }
+            _ => None,
+        }
+    }
+
+    fn answer(&self, row: usize, by: &By<'_, '_, 'a>) -> Result<Row, String> {
         let (moving, fixed) = (self.bodies[0].get(row)?, self.bodies[1].get(row)?);
         if let With::Motion { motions, keeps, tolerances } = &self.with {
             let of = |k: usize| motions[k].get(row, &self.poses[k]);
@@ -445,7 +368,7 @@ impl Work<'_> {
             options.with_graze_tolerance(graze_tolerances.row(row)[0]).with_keep(keeps.row(row)[0]);
         Cast::new(moving.at(at), fixed.at(to), directions.vector(row))
             .and_then(|cast| cast.with_options(options))
-            .and_then(|cast| self.question.ask(&cast))
+            .and_then(|cast| self.question.ask(&cast, by))
             .map_err(|what| what.to_string())
     }
 
@@ -476,8 +399,9 @@ impl Work<'_> {
     }
 
     /// The answer, or what went wrong, whatever it was.
-    fn answer_or_error(&self, row: usize) -> Result<Row, String> {
-        catch_unwind(AssertUnwindSafe(|| self.answer(row)))
+    fn answer_or_error(&self, row: usize, by: Option<&Answerers<'_, 'a>>) -> Result<Row, String> {
+        let answer = || self.answer(row, &by.map_or(By::Cast, |by| by.of_row(row)));
+        catch_unwind(AssertUnwindSafe(answer))
             .unwrap_or_else(|_| Err("internal error; please report it".into()))
     }
 }
@@ -543,14 +467,20 @@ impl Columns {
 type Failures = Mutex<Vec<(usize, String)>>;
 
 /// Fills a chunk, unless `stop` says not to.
-fn fill(work: &Work<'_>, part: Part<'_>, failures: &Failures, mut stop: impl FnMut() -> bool) {
+fn fill<'a>(
+    work: &Work<'a>,
+    by: Option<&Answerers<'_, 'a>>,
+    part: Part<'_>,
+    failures: &Failures,
+    mut stop: impl FnMut() -> bool,
+) {
     let Part { first, outcome, mut numbers, mut vectors } = part;
     let error = work.question.outcomes().len() as u8 - 1;
     for i in 0..outcome.len() {
         if i % LOOK == 0 && stop() {
             return;
         }
-        let row = work.answer_or_error(first + i).unwrap_or_else(|message| {
+        let row = work.answer_or_error(first + i, by).unwrap_or_else(|message| {
             let mut failures = failures.lock().unwrap_or_else(PoisonError::into_inner);
             failures.push((first + i, message));
             Row { outcome: error, ..Row::NONE }
@@ -566,8 +496,9 @@ fn fill(work: &Work<'_>, part: Part<'_>, failures: &Failures, mut stop: impl FnM
 }
 
 /// Fills all chunks on some threads; what a signal raised is returned.
-fn fill_all(
-    work: &Work<'_>,
+fn fill_all<'a>(
+    work: &Work<'a>,
+    by: Option<&Answerers<'_, 'a>>,
     parts: Vec<Part<'_>>,
     threads: usize,
     failures: &Failures,
@@ -590,12 +521,12 @@ fn fill_all(
         for _ in 1..threads {
             scope.spawn(|| {
                 while let Some(part) = next() {
-                    fill(work, part, failures, || stopped.load(Ordering::Relaxed));
+                    fill(work, by, part, failures, || stopped.load(Ordering::Relaxed));
                 }
             });
         }
         while let Some(part) = next() {
-            fill(work, part, failures, &mut look);
+            fill(work, by, part, failures, &mut look);
         }
     });
     raised
@@ -741,7 +672,11 @@ fn answered<'py>(
     };
     let mut columns = Columns::new(n, question);
     let failures = Failures::default();
-    py.detach(|| fill_all(&work, columns.parts(), threads, &failures))?;
+    py.detach(|| {
+        let repeats = work.repeats(n);
+        let by = repeats.as_ref().map(Answerers::of);
+        fill_all(&work, by.as_ref(), columns.parts(), threads, &failures)
+    })?;
     let found = PyDict::new(py);
     found.set_item("outcome", columns.outcome.into_pyarray(py))?;
     for (which, column) in question.numbers().iter().zip(columns.numbers) {

@@ -145,12 +145,13 @@
 //! polyhedra and their indices), `setting` (two placed bodies, a direction, and `M`), `answer`
 //! (outcomes and certificates), `solve` (the two solvers, nearest points, and [`observe`]), `cast` and
 //! `pair` (the queries), `among` (many fixed bodies), [`free`] (all directions), [`ways`] (several moves),
-//! `proof_file`, [`motion`] (bodies that turn) and `tracker`. `written` and `record` say how
+//! `proof_file`, [`motion`] (bodies that turn), `tracker` and `bulk` (rotations that stay). `written` and `record` say how
 //! all of them are written. [`solid`] holds what is of solids alone.
 
 mod among;
 mod answer;
 mod body;
+mod bulk;
 mod cast;
 pub mod free;
 pub mod motion;
@@ -185,6 +186,7 @@ pub use body::{
     Aabb, Body, ConvexPolyhedron, ConvexityDefect, FaceId, Feature, Features, HalfEdge, InputFacet,
     InputVertex, ObstacleId, OffsetReport, Placed, Pose, VertexId, convexity_defect,
 };
+pub use bulk::{Approach, FixedRotations};
 #[cfg(feature = "json")]
 pub use cast::{Case, CaseError};
 pub use cast::{Cast, WitnessPoints, cast};

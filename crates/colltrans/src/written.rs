@@ -53,7 +53,15 @@ macro_rules! named {
 pub(crate) use named;
 
 named!("solver", Solver { Auto: "auto", Cta: "cta", Portal: "portal" });
-named!("start", StartedFrom { Features: "features", Region: "region", Scratch: "scratch" });
+named!(
+    "start",
+    StartedFrom {
+        Difference: "difference",
+        Features: "features",
+        Region: "region",
+        Scratch: "scratch"
+    }
+);
 named!("start", NarrowFrom { Center: "center", Ellipsoids: "ellipsoids" });
 named!("meaning of an overlap", StartOverlap { Refuse: "refuse", Ignore: "ignore" });
 

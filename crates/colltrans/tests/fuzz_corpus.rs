@@ -28,6 +28,11 @@ fn track_corpus() {
 }
 
 #[test]
+fn bulk_corpus() {
+    fuzz::corpus("bulk", 24).for_each(|bytes| fuzz::bulk(&bytes));
+}
+
+#[test]
 fn distance_corpus() {
     fuzz::corpus("distance", 24).for_each(|bytes| fuzz::distance(&bytes));
 }

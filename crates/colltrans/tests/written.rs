@@ -107,7 +107,12 @@ fn names_are_those_that_serde_writes() {
         }
     }
     named(&[Solver::Auto, Solver::Cta, Solver::Portal]);
-    named(&[StartedFrom::Features, StartedFrom::Region, StartedFrom::Scratch]);
+    named(&[
+        StartedFrom::Difference,
+        StartedFrom::Features,
+        StartedFrom::Region,
+        StartedFrom::Scratch,
+    ]);
     named(&[NarrowFrom::Ellipsoids, NarrowFrom::Center]);
     for (until, text) in [(Until::Exit, "exit"), (Until::Gap(0.25), "0.25")] {
         assert_eq!((until.to_string().as_str(), text.parse()), (text, Ok(until)));

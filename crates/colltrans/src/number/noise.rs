@@ -33,6 +33,17 @@
 //!   the mean without rounding misses that one, and has to find the bound three noises above it. Of
 //!   a narrower triangle the plane is that of its rounded corners: the exact ones, which enclose the
 //!   line, are within one noise of it, and the mean, on it, is less than one off the line sideways.
+//! - *Polygon.* A point of `M` as the rounded difference of rotated vertices (`3 u sqrt(3)` each, `u` for the
+//!   difference), seen along an axis (`3 u`, the axis `2 u`) and moved by the offset along it (`5 u`, `u` for the sum)
+//!   is off by less than `18 u S` as well. If the line is seen to pass inside all sides of a face, the face's
+//!   corners span a point on it; along the face's normal that is at most as much above the mean of three of them as all
+//!   corners are above the plane (half a noise is admitted, and their rounding less than another half), and the mean
+//!   is off the line by a noise sideways, in height by one: together less than the four noises of any upper bound. So
+//!   the triangle need not be the one that the line pierces in exact numbers.
+//! - *Rim.* `n.m >= a` and `k.m >= b` for two unit normals prove `(s n + t k).m >= s a + t b` for `s, t >= 0` of sum
+//!   1. Of length `|s n + t k| >= 1/2` the computed unit normal is off that by `8 u`, `8 u S` along it; the quotient of
+//!   the bounds by `8 u S`, the offset along the normal by `4 u S`, the sum by `2 u S`: less than one noise. With
+//!   shares that make it orthogonal to `d`, which are off by `4 u`, it is so to `23 u`, less than a unit vector may be off.
 //! - *Residual.* The witness points of a certificate are the same weighted mean, so they miss each
 //!   other by at most two noises sideways, and one that the weights' sum may be off; of bodies that
 //!   were widened by the corner of the widest rectangle, and by one noise for each body.

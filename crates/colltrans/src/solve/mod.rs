@@ -423,7 +423,7 @@ impl<O: Observer> Run<'_, '_, '_, O> {
     fn refine(&mut self, portal: &mut Portal) -> Option<Refined> {
         let most = match self.context.watch.steps.started_from {
             StartedFrom::Features => MOST_AFTER_FOLLOWING,
-            StartedFrom::Region | StartedFrom::Scratch => portal::MAX_PORTALS,
+            _ => portal::MAX_PORTALS,
         };
         portal::refine(&mut self.context, portal, most)
     }

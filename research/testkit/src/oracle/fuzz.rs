@@ -12,7 +12,9 @@ use std::fs;
 use std::path::Path;
 
 use colltrans::solid::{SolidFree, SolidOptions, StartProof};
-use colltrans::{Cast, Clearance, ConvexPolyhedron, Pose, PoseError, Solid, Solver};
+use colltrans::{
+    Cast, Clearance, ConvexPolyhedron, FixedRotations, Pose, PoseError, Solid, Solver,
+};
 use glam::{DQuat, DVec3};
 
 use crate::oracle::input;
@@ -20,6 +22,7 @@ use crate::oracle::settings::{Bodies, Setting};
 use crate::oracle::solids::encloses;
 use crate::oracle::solids::facets::{rule, triangles};
 use crate::oracle::solids::proof::{MOST_PAIRS, approve};
+use crate::oracle::still;
 use crate::oracle::tracked::{Finding, Lanes};
 pub use motions::motion;
 pub use pairs::{among, depth, distance, keep, within};
@@ -169,6 +172,33 @@ pub fn track(bytes: &[u8]) {
         for finding in lanes.ask(&setting, true) {
             let Finding { lane, solver, verdict, .. } = finding;
             verdict.unwrap_or_else(|e| panic!("{lane} ({solver:?}): {e}\n{}", setting.dump()));
+        }
+        if reader.is_empty() {
+            break;
+        }
+        change(&mut setting, &mut reader);
+    }
+}
+
+/// The faces of the difference give the answers of ordinary casts along a sequence of changes of places, direction
+/// and graze tolerance, and where a body has been turned, for which they are not.
+///
+/// # Panics
+/// If an answer is wrong, or one way of asking is refused and the other is not.
+pub fn bulk(bytes: &[u8]) {
+    let mut reader = Reader::new(bytes);
+    let Some((mut setting, bodies)) = read_setting(&mut reader) else { return };
+    let [moving, fixed] =
+        [bodies.moving.at(setting.moving_pose), bodies.fixed.at(setting.fixed_pose)];
+    let rotations = FixedRotations::new(moving, fixed);
+    let Ok(approach) = rotations.along(setting.direction) else { return };
+    for _ in 0..MOST_STEPS {
+        if let Ok(cast) = setting.query(&bodies) {
+            let findings = still::ask(&rotations, &approach, &cast, &setting, true)
+                .unwrap_or_else(|e| panic!("{e}\n{}", setting.dump()));
+            for (who, _, verdict) in findings {
+                verdict.unwrap_or_else(|e| panic!("{who}: {e}\n{}", setting.dump()));
+            }
         }
         if reader.is_empty() {
             break;

@@ -7,7 +7,8 @@
 //! ([`simplex`]) and the exact sideways overlap ([`shadow`]). Algorithms that compute distances are
 //! judged by [`distance`], answers of the library about distance and depth by [`nearest`], about one
 //! body among many by [`among`], casts that keep a gap by [`keep`], bodies that
-//! turn by [`motion`], bodies that joints carry by [`path`], burrs by [`cubes`].
+//! turn by [`motion`], such that do not, asked in bulk, by [`still`], bodies that joints carry by [`path`], burrs by
+//! [`cubes`].
 
 pub mod among;
 pub mod check;
@@ -26,4 +27,5 @@ pub mod settings;
 pub mod shadow;
 pub mod simplex;
 pub mod solids;
+pub mod still;
 pub mod tracked;

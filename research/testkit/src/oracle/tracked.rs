@@ -151,7 +151,8 @@ fn judge_alone(judge: &Judge, answer: &Outcome, with_oracle: bool) -> Result<Pro
     Ok(proof)
 }
 
-fn judge_answer(
+/// An answer that was not found by the ordinary way, beside one that was.
+pub(crate) fn judge_answer(
     judge: &Judge,
     answer: &Outcome,
     one_off: &Outcome,

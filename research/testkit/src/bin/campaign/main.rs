@@ -3,14 +3,15 @@
 //! many sequences of settings, each asked of trackers, whose answers are judged in the same way and
 //! compared with those of one-off queries. Or bodies alone, nearly flat ones, each with a cast onto it.
 //! Or distances of settings as they are, near contact and overlapping. Or scenes, one body among many. Or casts
-//! that keep a gap. Or motions that turn, of convex bodies or of solids. Or arms on paths. Or all free directions of
-//! solids, each held against casts along some of them.
+//! that keep a gap. Or casts of bodies that do not turn, in bulk. Or motions that turn, of convex bodies or of solids.
+//! Or arms on paths. Or all free directions of solids, each held against casts along some of them.
 //! In all of them bodies are held against the points that they were made of, in exact arithmetic, so
 //! that answers are judged for the input.
 //!
 //! `--help` lists its options. Exit code 1 if anything disagrees.
 
 mod bodies;
+mod bulk;
 mod casts;
 mod distances;
 mod free;
@@ -27,6 +28,7 @@ use std::time::Instant;
 
 use colltrans_testkit::oracle::among;
 use colltrans_testkit::oracle::settings::{FAMILIES, NEARLY_FLAT};
+use colltrans_testkit::oracle::still::CASTS;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
@@ -47,6 +49,7 @@ campaign --solid-keeping N [--seed S] [--only FAMILY]
 campaign --motions N [--seed S] [--only FAMILY]
 campaign --solid-motions N [--seed S] [--only FAMILY]
 campaign --paths N [--seed S] [--only FAMILY]
+campaign --bulk CASTS [--seed S] [--only FAMILY]
 campaign --case FAMILY:SEED | FAMILY:SEED:STEP
 ";
 
@@ -60,6 +63,7 @@ struct Arguments {
     free: Option<u64>,
     motions: Option<u64>,
     paths: Option<u64>,
+    bulk: Option<u64>,
     bodies: Option<u64>,
     distances: Option<u64>,
     scenes: Option<u64>,
@@ -112,6 +116,8 @@ fn main() -> ExitCode {
         run(&arguments, &families, count, motions::examine)
     } else if let Some(count) = arguments.paths {
         run(&arguments, &paths::FAMILIES, count, paths::examine)
+    } else if let Some(count) = arguments.bulk {
+        run(&arguments, &families, count.div_ceil(CASTS as u64), bulk::examine)
     } else if let Some(count) = arguments.scenes {
         run(&arguments, &among::FAMILIES, count, scenes::examine)
     } else if let Some(count) = arguments.keeping {
@@ -142,6 +148,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
         free: None,
         motions: None,
         paths: None,
+        bulk: None,
         bodies: None,
         distances: None,
         scenes: None,
@@ -163,6 +170,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
             "--solid-motions" => arguments.solid_motions = Some(number(&value)?),
             "--motions" => arguments.motions = Some(number(&value)?),
             "--paths" => arguments.paths = Some(number(&value)?),
+            "--bulk" => arguments.bulk = Some(number(&value)?),
             "--free" => arguments.free = Some(number(&value)?),
             "--solid-distances" => arguments.solid_distances = Some(number(&value)?),
             "--scenes" => arguments.scenes = Some(number(&value)?),

@@ -104,7 +104,7 @@ impl Tally {
         match &finding.verdict {
             Ok(agreement) => {
                 self.paths[match agreement.path {
-                    StartedFrom::Features => 0,
+                    StartedFrom::Difference | StartedFrom::Features => 0,
                     StartedFrom::Region => 1,
                     StartedFrom::Scratch => 2,
                 }] += 1;

@@ -1,0 +1,105 @@
+//! The rows of a call: the bodies, poses and numbers of each.
+
+use colltrans::glam::{DMat3, DQuat, DVec3};
+use colltrans::solid::AsSolid;
+use colltrans::{ConvexPolyhedron, Pose};
+
+/// A body of any kind.
+#[derive(Clone, Copy)]
+pub(crate) enum AnyBody<'a> {
+    Convex(&'a ConvexPolyhedron),
+    /// And how far its file rounds coordinates.
+    Solid(&'a colltrans::Solid, f64),
+}
+
+impl<'a> AnyBody<'a> {
+    pub(crate) fn convex(self) -> Result<&'a ConvexPolyhedron, String> {
+        match self {
+            Self::Convex(body) => Ok(body),
+            Self::Solid(..) => Err("a solid is asked for its clearance or distance".into()),
+        }
+    }
+
+    pub(crate) fn solid(self) -> Result<&'a colltrans::Solid, String> {
+        match self {
+            Self::Convex(body) => body.as_solid().map_err(|what| what.to_string()),
+            Self::Solid(solid, _) => Ok(solid),
+        }
+    }
+
+    /// How far its file rounds coordinates.
+    pub(crate) fn precision(self) -> f64 {
+        match self {
+            Self::Convex(_) => 0.0,
+            Self::Solid(_, precision) => precision,
+        }
+    }
+}
+
+/// A body of every row, or why there is none.
+pub(crate) struct Bodies<'a> {
+    pub(crate) name: &'static str,
+    pub(crate) all: &'a [Result<AnyBody<'a>, String>],
+    /// Which one for each row; the only one without.
+    pub(crate) index: Option<&'a [i64]>,
+}
+
+impl<'a> Bodies<'a> {
+    pub(crate) fn get(&self, row: usize) -> Result<AnyBody<'a>, String> {
+        let index = self.index.map_or(0, |index| index[row]);
+        let found = usize::try_from(index).ok().and_then(|index| self.all.get(index));
+        match found {
+            Some(Ok(body)) => Ok(*body),
+            Some(Err(why)) => Err(format!("{}: {why}", self.name)),
+            None => Err(format!("{}: no body {index} among {}", self.name, self.all.len())),
+        }
+    }
+}
+
+/// A table with a row for each query, or one for all.
+pub(crate) struct Table<'a> {
+    pub(crate) name: &'static str,
+    pub(crate) numbers: &'a [f64],
+    pub(crate) width: usize,
+}
+
+impl<'a> Table<'a> {
+    pub(crate) fn row(&self, row: usize) -> &'a [f64] {
+        let row = if self.numbers.len() == self.width { 0 } else { row };
+        &self.numbers[row * self.width..(row + 1) * self.width]
+    }
+
+    /// Three numbers.
+    pub(crate) fn vector(&self, row: usize) -> DVec3 {
+        DVec3::from_slice(self.row(row))
+    }
+
+    /// Of a pose what says how it is turned.
+    pub(crate) fn rotation(&self, row: usize) -> impl Iterator<Item = f64> + use<'a> {
+        let row = self.row(row);
+        // Of a matrix its first three columns.
+        let of_matrix = row.len() > 7;
+        let kept = move |k: &usize| if of_matrix { k % 4 < 3 && *k < 12 } else { *k >= 3 };
+        (0..row.len()).filter(kept).map(|k| row[k])
+    }
+
+    /// A translation, with a quaternion, or a matrix of three or four rows.
+    pub(crate) fn pose(&self, row: usize) -> Result<Pose, String> {
+        let of_matrix = |r: &[f64]| {
+            let column = |j: usize| DVec3::new(r[j], r[4 + j], r[8 + j]);
+            Pose::from_matrix(DMat3::from_cols(column(0), column(1), column(2)), column(3))
+        };
+        let pose = match self.row(row) {
+            r @ [_, _, _] => Pose::from_translation(DVec3::from_slice(r)),
+            r @ [_, _, _, x, y, z, w] => {
+                Pose::new(DQuat::from_xyzw(*x, *y, *z, *w), DVec3::from_slice(r))
+            }
+            r if r.len() == 16 && r[12..] != [0.0, 0.0, 0.0, 1.0] => {
+                let name = self.name;
+                return Err(format!("{name}: the last row is {:?}, not 0, 0, 0, 1", &r[12..]));
+            }
+            r => of_matrix(r),
+        };
+        pose.map_err(|what| format!("{}: {what}", self.name))
+    }
+}

@@ -1,0 +1,248 @@
+//! `bulk`: one pair of bodies asked many times with one rotation of each, by the faces of their difference, beside
+//! the ordinary cast and the tracker, which ask the same in the same run.
+//!
+//! Whoever is compared answers all casts of a set before the next takes its turn, again and again; the least time of
+//! a set counts, a cast's share of it. Making the casts is in all of them.
+
+use std::hint::black_box;
+use std::process::ExitCode;
+use std::time::Instant;
+
+use clap::Parser;
+use colltrans::{
+    BuildError, Cast, ConvexPolyhedron, FixedRotations, Outcome, Pose, QueryError, StartedFrom,
+    Tracker,
+};
+use colltrans_bench::arguments::Arguments;
+use colltrans_bench::report;
+use colltrans_bench::shapes::Shape;
+use colltrans_testkit::random::Random;
+use glam::DVec3;
+use serde_json::{Value, json};
+
+/// Measures casts of bodies that do not turn beside ordinary ones and a tracker; prints a table
+#[derive(Debug, Parser)]
+struct Command {
+    #[command(flatten)]
+    arguments: Arguments,
+}
+
+const SIZES: [usize; 5] = [8, 16, 32, 64, 128];
+
+/// Casts of a set.
+const CASTS: usize = 4096;
+
+/// What places and directions are drawn of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Set {
+    /// Along one direction from many places, about every second a hit.
+    Places,
+    /// From one place along many directions, about every second a hit.
+    Rays,
+    /// Boxes that are not turned, along an axis, from places nowhere in particular.
+    Upright,
+    /// The same from places on a grid of quarters: mostly ties.
+    Tied,
+}
+
+impl Set {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Places => "places",
+            Self::Rays => "rays",
+            Self::Upright => "upright",
+            Self::Tied => "tied",
+        }
+    }
+
+    /// Poses of the moving body, the fixed one's, and directions.
+    fn draw(self, random: &mut Random) -> (Vec<(Pose, DVec3)>, Pose) {
+        let pose = |rotation, at| Pose::new(rotation, at).expect("a rotation");
+        let (p, q) = (random.rotation(), random.rotation());
+        let (far, along) = (random.direction() * 3.5, random.direction());
+        let (side, other) =
+            (along.any_orthonormal_vector(), along.cross(along.any_orthonormal_vector()));
+        let any = |random: &mut Random| {
+            DVec3::from_array([0; 3].map(|_| random.range(-2.4, 2.4))) - DVec3::X * 8.0
+        };
+        let one = |random: &mut Random| match self {
+            Self::Places => {
+                let [x, y] = [0; 2].map(|_| random.range(-2.2, 2.2));
+                (pose(p, side * x + other * y - along * random.range(2.0, 6.0)), along)
+            }
+            Self::Rays => {
+                let aim = random.direction() * (2.6 * random.unit().cbrt());
+                (pose(p, far), aim - far)
+            }
+            Self::Upright => (Pose::from_translation(any(random)).expect("a place"), DVec3::X),
+            Self::Tied => {
+                let place = (any(random) * 4.0).round() * 0.25;
+                (Pose::from_translation(place).expect("a place"), DVec3::X)
+            }
+        };
+        let casts = (0..CASTS).map(|_| one(random)).collect();
+        let still = matches!(self, Self::Upright | Self::Tied);
+        (casts, if still { Pose::IDENTITY } else { pose(q, DVec3::ZERO) })
+    }
+}
+
+/// Who is compared.
+const WHO: [&str; 4] = ["cast", "tracker", "any direction", "one direction"];
+
+fn main() -> ExitCode {
+    let Command { arguments } = Command::parse();
+    println!(
+        "ns a cast, the least of all turns; times as fast as the ordinary cast; us to make the faces and the map; \
+         casts after which they have paid (any direction, one direction); % not answered by the faces"
+    );
+    println!(
+        "{:<8} {:<12} {:>4} {:>4} | {:>6} {:>7} {:>6} {:>6} | {:>5} {:>5} | {:>6} {:>5} | {:>6} {:>6} | {:>5} {:>5} {:>5}",
+        "set",
+        "body",
+        "n",
+        "hit%",
+        "cast",
+        "tracker",
+        "any",
+        "one",
+        "any",
+        "one",
+        "faces",
+        "map",
+        "any",
+        "one",
+        "any",
+        "one",
+        "looks"
+    );
+    let mut rows = Vec::new();
+    let sizes = arguments.sizes.as_deref().unwrap_or(&SIZES);
+    let mut sets: Vec<_> = Vec::new();
+    for set in [Set::Places, Set::Rays] {
+        sets.push((set, Shape::Box, 8));
+        for shape in [Shape::RandomHull, Shape::Ellipsoid] {
+            sets.extend(sizes.iter().map(|&n| (set, shape, n)));
+        }
+    }
+    sets.extend([Set::Upright, Set::Tied].map(|set| (set, Shape::Box, 8)));
+    for (set, shape, n) in sets {
+        match measure(set, shape, n, &arguments) {
+            Ok(row) => rows.push(row),
+            Err(error) => {
+                eprintln!("error: {} of {n} vertices: {error}", shape.name());
+                return ExitCode::FAILURE;
+            }
+        }
+    }
+    report::write("bulk", &arguments, &rows)
+}
+
+fn bodies(
+    set: Set,
+    shape: Shape,
+    n: usize,
+    random: &mut Random,
+) -> Result<[ConvexPolyhedron; 2], BuildError> {
+    if set == Set::Tied {
+        let cube = ConvexPolyhedron::cuboid(-DVec3::ONE, DVec3::ONE)?;
+        return Ok([cube.clone(), cube]);
+    }
+    Ok([shape.draw(n, random)?, shape.draw(n, random)?])
+}
+
+fn measure(set: Set, shape: Shape, n: usize, arguments: &Arguments) -> Result<Value, BuildError> {
+    let mut random = Random::stream(arguments.seed, &[n as u64, set as u64]);
+    let [p, q] = bodies(set, shape, n, &mut random)?;
+    let (casts, world) = set.draw(&mut random);
+    let cast = |(pose, along): &(Pose, DVec3)| Cast::new(p.at(*pose), q.at(world), *along);
+    let turns = if arguments.quick { 5 } else { 25 };
+    let (mut make, mut map) = (f64::INFINITY, f64::INFINITY);
+    let made = || FixedRotations::new(p.at(casts[0].0), q.at(world));
+    let rotations = made();
+    let along = || rotations.along(casts[0].1).expect("a direction");
+    let approach = along();
+    let mut least = [f64::INFINITY; WHO.len()];
+    let mut answers: [Vec<Result<Outcome, QueryError>>; WHO.len()] = Default::default();
+    for _ in 0..turns {
+        make = make.min(seconds(|| drop(black_box(made()))));
+        map = map.min(seconds(|| drop(black_box(along()))));
+        for (who, answers) in answers.iter_mut().enumerate() {
+            answers.clear();
+            let mut tracker = Tracker::new();
+            let spent = seconds(|| {
+                for of in &casts {
+                    // Matched in place: casts and outcomes are large, and moving them costs as much as an answer.
+                    answers.push(match cast(black_box(of)) {
+                        Err(error) => Err(error),
+                        Ok(cast) => match who {
+                            0 => cast.first_contact(),
+                            1 => tracker.first_contact(&cast),
+                            2 => rotations.first_contact(&cast),
+                            _ => approach.first_contact(&cast),
+                        },
+                    });
+                }
+            });
+            least[who] = least[who].min(spent * 1e9 / CASTS as f64);
+        }
+    }
+    if set == Set::Rays {
+        least[3] = f64::NAN;
+    }
+    Ok(row(set, shape, n, least, [make, map].map(|s| s * 1e9), &answers))
+}
+
+fn seconds(run: impl FnOnce()) -> f64 {
+    let started = Instant::now();
+    run();
+    started.elapsed().as_secs_f64()
+}
+
+/// Prints a row, and keeps it.
+fn row(
+    set: Set,
+    shape: Shape,
+    n: usize,
+    ns: [f64; 4],
+    [make, map]: [f64; 2],
+    answers: &[Vec<Result<Outcome, QueryError>>; 4],
+) -> Value {
+    let share = |who: usize, of: &dyn Fn(&Outcome) -> bool| {
+        let count = answers[who].iter().flatten().filter(|outcome| of(outcome)).count();
+        100.0 * count as f64 / CASTS as f64
+    };
+    let hits = share(0, &|outcome| matches!(outcome, Outcome::Contact(_)));
+    let left = [2, 3].map(|who| share(who, &|o| o.steps().started_from != StartedFrom::Difference));
+    let looks: u32 = answers[2].iter().flatten().map(|outcome| outcome.steps().pivots).sum();
+    let looks = f64::from(looks) / CASTS as f64;
+    let gain = [2, 3].map(|who| ns[0] / ns[who]);
+    let pays = [make / (ns[0] - ns[2]), (make + map) / (ns[0] - ns[3])];
+    println!(
+        "{:<8} {:<12} {n:>4} {hits:>4.0} | {:>6.0} {:>7.0} {:>6.0} {:>6.0} | {:>5.2} {:>5.2} | {:>6.0} {:>5.0} | {:>6.0} {:>6.0} | {:>5.1} {:>5.1} {looks:>5.2}",
+        set.name(),
+        shape.name(),
+        ns[0],
+        ns[1],
+        ns[2],
+        ns[3],
+        gain[0],
+        gain[1],
+        make / 1e3,
+        map / 1e3,
+        pays[0],
+        pays[1],
+        left[0],
+        left[1],
+    );
+    json!({
+        "set": set.name(),
+        "shape": shape.name(),
+        "vertices": n,
+        "hits": hits / 100.0,
+        "ns": WHO.iter().zip(ns).map(|(who, ns)| ((*who).into(), json!(ns))).collect::<serde_json::Map<_, _>>(),
+        "make_ns": make,
+        "map_ns": map,
+        "left": left.map(|left| left / 100.0),
+        "looks": looks,
+    })
+}

@@ -93,8 +93,9 @@ pub(super) fn contact<S: Seen>(
     let distance = least + normal.dot(setting.offset);
     let per = 1.0 / steepness;
     let gap = noise.gap(0.0, 0.0) * per;
-    // Not a number is no contact.
-    if !(estimate - distance / steepness <= gap) {
+    // Not of what is not a number.
+    let is_tight = estimate - distance / steepness <= gap;
+    if !is_tight {
         return None;
     }
     let lower = ((distance - noise.lowered()) / steepness).next_down();

@@ -40,8 +40,8 @@
 //!   corners are above the plane (half a noise is admitted, and their rounding less than another half), and the mean
 //!   is off the line by a noise sideways, in height by one: together less than the four noises of any upper bound. So
 //!   the triangle need not be the one that the line pierces in exact numbers.
-//! - *Rim.* `n.m >= a` and `k.m >= b` for two unit normals prove `(s n + t k).m >= s a + t b` for `s, t >= 0` of sum
-//!   1. Of length `|s n + t k| >= 1/2` the computed unit normal is off that by `8 u`, `8 u S` along it; the quotient of
+//! - *Rim.* `n.m >= a` and `k.m >= b` for two unit normals prove `(s n + t k).m >= s a + t b` for `s, t >= 0`, say
+//!   of sum 1. Of length `|s n + t k| >= 1/2` the computed unit normal is off that by `8 u`, `8 u S` along it; the quotient of
 //!   the bounds by `8 u S`, the offset along the normal by `4 u S`, the sum by `2 u S`: less than one noise. With
 //!   shares that make it orthogonal to `d`, which are off by `4 u`, it is so to `23 u`, less than a unit vector may be off.
 //! - *Residual.* The witness points of a certificate are the same weighted mean, so they miss each

@@ -1,12 +1,13 @@
 //! `record`: from the dated runs in `docs/measurements/` to what people read.
 //!
-//! The runs are the JSON files that `table`, `paper`, `coherence` and `solids` write, and the text that
+//! The runs are the JSON files that `table`, `paper`, `coherence`, `bulk` and `solids` write, and the text that
 //! `campaign` prints, named `YYYY-MM-DD-WHAT.json` or `.txt`. Of each kind the newest one goes into
 //! `docs/measurements.md`, the picture `docs/speed.svg` and the table of the README, so that no
 //! number there is typed by hand. The claims of the laboratory (`claims.json` of two runs with
 //! different seeds, `laboratory` and `laboratory-again`) go into `docs/laboratory.md`.
 
 mod algorithm;
+mod bulk;
 mod laboratory;
 
 use std::collections::BTreeMap;
@@ -99,6 +100,9 @@ fn run(command: &Command) -> Result<Vec<String>, Failure> {
     }
     if let Some(run) = parsed("coherence")? {
         coherence(&mut page, &run)?;
+    }
+    if let Some(run) = parsed("bulk")? {
+        bulk::write(&mut page, &run)?;
     }
     if let Some(run) = parsed("solids")? {
         solids(&mut page, &run)?;

@@ -29,7 +29,8 @@ impl crate::Tally for Tally {
 
     fn header() -> String {
         let heads = ["casts", "contact", "grazing", "separated", "answers", "by faces", "rounding"];
-        heads.iter().chain(&["wrong"]).map(|head| format!("{head:>9} ")).collect()
+        let heads = heads.iter().chain(&["wrong"]).map(|head| format!("{head:>9} "));
+        heads.collect::<Vec<_>>().concat()
     }
 
     fn line(&self) -> String {

@@ -22,17 +22,17 @@ fn main() -> ExitCode {
         Command::Table { numbers, options } => (choose("table-", &numbers), options),
         Command::Beyond { options } => (choose("", &["beyond".into()]), options),
         Command::All { options } => (experiments().to_vec(), options),
-        Command::Pictures { output } => return said(colltrans_lab::figures::write(&output)),
+        Command::Pictures { output } => return said(&colltrans_lab::figures::write(&output)),
     };
     let mut bar = Bar::new();
     let result = colltrans_lab::run(&chosen, &options.plan(), &mut bar, &options.output);
     bar.0.finish_and_clear();
-    said(result)
+    said(&result)
 }
 
 /// Says what was written, or why it could not be.
-fn said(result: Result<impl Display, LabError>) -> ExitCode {
-    let said = match &result {
+fn said(result: &Result<impl Display, LabError>) -> ExitCode {
+    let said = match result {
         Ok(summary) => io::stdout().write_all(summary.to_string().as_bytes()),
         // Not `eprintln!`, which panics when standard error is closed.
         Err(error) => io::stderr().write_all(format!("error: {error}\n").as_bytes()),

@@ -18,7 +18,7 @@ use crate::question::Levels;
 const MOST_PAIRS: usize = 1 << 14;
 
 pub(crate) fn levels(bodies: [&ConvexPolyhedron; 2], asked: &Levels) -> Result<Answer, String> {
-    if asked.moving_levels.len().saturating_mul(asked.fixed_levels.len()) > MOST_PAIRS {
+    if asked.moving.len().saturating_mul(asked.fixed.len()) > MOST_PAIRS {
         return Err(format!("more than {MOST_PAIRS} pairs of levels"));
     }
     let whole = asked.pair.query(bodies)?;
@@ -27,8 +27,8 @@ pub(crate) fn levels(bodies: [&ConvexPolyhedron; 2], asked: &Levels) -> Result<A
         let axis = pose.matrix().transpose() * DVec3::from_array(axis);
         levels.iter().map(|&level| section(body, axis, level)).collect::<Vec<_>>()
     };
-    let moving = cut(bodies[0], whole.moving_pose(), asked.moving_axis, &asked.moving_levels);
-    let fixed = cut(bodies[1], whole.fixed_pose(), asked.fixed_axis, &asked.fixed_levels);
+    let moving = cut(bodies[0], whole.moving_pose(), asked.moving_axis, &asked.moving);
+    let fixed = cut(bodies[1], whole.fixed_pose(), asked.fixed_axis, &asked.fixed);
     let mut answer = Answer::of(&json!({ "values": moving.len() * fixed.len() }));
     for p in &moving {
         for q in &fixed {

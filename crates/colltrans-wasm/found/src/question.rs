@@ -61,8 +61,10 @@ pub(crate) struct Levels {
     pub(crate) moving_axis: [f64; 3],
     pub(crate) fixed_axis: [f64; 3],
     /// Of the sections, each in its body's own frame.
-    pub(crate) moving_levels: Vec<f64>,
-    pub(crate) fixed_levels: Vec<f64>,
+    #[serde(rename = "moving_levels")]
+    pub(crate) moving: Vec<f64>,
+    #[serde(rename = "fixed_levels")]
+    pub(crate) fixed: Vec<f64>,
 }
 
 impl Pair {

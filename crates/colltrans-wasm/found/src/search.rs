@@ -4,7 +4,7 @@ use colltrans::observe::{Event, Recording, Touch};
 use colltrans::{
     Cast, ConvexPolyhedron, Focus, Outcome, Pose, QueryError, Region, Solver, Steps, Tracker,
 };
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -126,7 +126,7 @@ fn event(event: &Event) -> Option<Value> {
             "shifted": problem.shifted,
         }),
         Event::Cell(corners) => {
-            json!({ "cell": corners.iter().map(|v| v.to_array()).collect::<Vec<_>>() })
+            json!({ "cell": corners.iter().map(DVec2::to_array).collect::<Vec<_>>() })
         }
         Event::ExitTest(solved) => json!({ "solved": solved }),
         Event::Cut(cut) => json!({

@@ -133,7 +133,8 @@ test("from one solution to the next: N(p), and a motion that ends where it began
   assert.match(await pose(), /^-1\.1,1,5,/);
   assert.ok(start.length);
   // What it saves is said of the bracket too, where a direction is changed a little.
-  await at.ask(page, "#example=bracket&tab=found", [".stack .pick"]);
+  // Where nothing was asked before there is no p, and no graph.
+  await at.ask(page, "#example=bracket&tab=found", ['[aria-label="Where the search starts"]']);
   await page.selectOption('[aria-label="Where the search starts"]', "center");
   await page.click("#tab-answer");
   const t = await page.evaluate(() => window.colltrans.probe().answer.record.translation);

@@ -295,8 +295,9 @@ Examples:
 
 pub(super) const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON object:
   {"id": any, "moving": BODY, "fixed": BODY, "moving_pose": POSE, "fixed_pose": POSE,
-   "direction": [x,y,z], "query": "contact"|"clearance"|"distance"|"depth"|"within"|"motion",
-   "length": L (of "within"), "moving_motion": MOTION, "fixed_motion": MOTION (of "motion"),
+   "direction": [x,y,z], "query": "contact"|"clearance"|"distance"|"depth"|
+   "within"|"motion", "length": L (of "within"),
+   "moving_motion": MOTION, "fixed_motion": MOTION (of "motion"),
    "graze_tolerance": L, "solver": "auto"|"cta"|"portal" (of convex bodies),
    "start": "center"|"ellipsoids", "until": "exit"|SHARE (of "cta"),
    "tolerance": L (of solids and motions), "ignore_start_overlaps": true|false (of solids),

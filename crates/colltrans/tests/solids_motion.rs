@@ -383,3 +383,27 @@ fn all_families_turn() {
         }
     }
 }
+
+/// The normal is that of the shrunk bodies, which are apart where those as they are already overlap.
+#[test]
+fn normals_lead_from_the_moving_to_the_fixed_body() {
+    let plate = solid(&block(DVec3::new(-3.0, -2.0, -1.0), DVec3::new(3.0, 2.0, 0.0)));
+    let peg = solid(&block(DVec3::new(-0.4, -0.3, 0.0), DVec3::new(0.5, 0.6, 2.0)));
+    for (tolerance, keep) in [(None, 0.0), (Some(0.02), 0.0), (None, 0.1)] {
+        for (from, way) in [(9.0, -20.0), (-8.0, 15.0)] {
+            let start = Pose::from_translation(DVec3::Z * from).expect("a pose");
+            let falls = Motion::slide(start, DVec3::Z * way).expect("a motion");
+            let stays = still();
+            let cast = MotionCast::new(peg.along(&falls), plate.along(&stays)).expect("a cast");
+            let cast =
+                tolerance.map_or_else(|| cast.clone(), |l| cast.clone().tolerating(l).unwrap());
+            let cast = cast.keeping(keep).expect("a cast");
+            let MotionOutcome::Contact(contact) = cast.first_contact().expect("an answer") else {
+                panic!("no contact")
+            };
+            let normal = contact.normal.expect("a normal");
+            assert!(normal.distance(DVec3::Z * way.signum()) < 1e-9, "{tolerance:?} {normal}");
+            assert!(contact.features.is_some());
+        }
+    }
+}

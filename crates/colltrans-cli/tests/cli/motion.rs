@@ -131,7 +131,11 @@ fn a_picture_has_the_start_the_contact_and_the_end() {
     };
     let met =
         draw(&["--moving-pose=2,0,0", "--fixed-pose=-2,0.1,0", "--turn", "0,0,0", "z", "180"]);
-    assert!(met.contains("Contact at 0.7") && met.contains("at the start and the end"), "{met}");
+    // The corner (2, 1), at an angle of atan 1/2, comes down on the top at a height of 1.1.
+    assert!(
+        met.contains("Contact at 0.688706") && met.contains("at the start and the end"),
+        "{met}"
+    );
     // A ghost is a group of its own: two of them, one where it starts in contact.
     let ghosts = |svg: &str| svg.matches(r#"<g opacity="0.75">"#).count();
     assert_eq!(ghosts(&met), 2);

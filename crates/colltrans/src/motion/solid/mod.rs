@@ -44,7 +44,7 @@ use crate::cast::solid::{SolidOptions, StartProof};
 use crate::number::noise::Noise;
 use crate::setting::error::QueryError;
 use crate::setting::{Setting, check_keep};
-use crate::solve::solid::nearest::{Spot, points_of};
+use crate::solve::solid::nearest::{Spot, points_of, triangle};
 use crate::solve::solid::overlap;
 use crate::solve::solid::scene::Scene;
 
@@ -238,11 +238,11 @@ impl<'a> MotionCast<'a, Solid> {
         Found { met, ..found }
     }
 
-    /// The bodies at a time, shrunk.
-    fn scene(&self, span: &Span<Tree>, time: f64, tolerance: f64) -> Option<Scene<'a>> {
+    /// The bodies at a time, as they are.
+    fn scene(&self, span: &Span<Tree>, time: f64) -> Option<Scene<'a>> {
         let bodies = span.instant(time).bodies.holding(self.bodies());
         let setting = Setting::of(bodies, DVec3::Z).ok()?;
-        Some(Scene::new(&setting, [0.5 * tolerance; 2], self.keep))
+        Some(Scene::new(&setting, [0.0; 2], self.keep))
     }
 
     /// What is to be said where the bodies meet, or may.
@@ -260,16 +260,19 @@ impl<'a> MotionCast<'a, Solid> {
         let bodies = span.instant(lower).bodies;
         let [p, q] = [bodies.moving_matrix, bodies.fixed_matrix];
         let poses = [0, 1].map(|k| crate::Pose::checked([p, q][k], bodies.translations[k]));
-        // What is proven does not hang on it.
-        let scene = self.scene(span, lower, tolerance);
-        let spot = scene.as_ref().map(|scene| Spot::of(scene, found.triangles));
-        let points = spot.zip(self.scene(span, lower, 0.0)).map(|(spot, scene)| {
-            points_of(&scene, spot.triangles, spot.nearest.weights)
+        // What is proven does not hang on it. The facets are those of the shrunk bodies, and so is the normal.
+        let [f, g] = [0, 1].map(|k| span.body(k).facet(found.triangles[k]));
+        let at = span.part([&f, &g], [span.from, span.to]).instant(lower);
+        let [f, g] = facets::corners(&at);
+        let nearest = triangle::nearest(&f, &g, at.bodies.noise().point());
+        let (spot, scene) = (Spot { triangles: found.triangles, nearest }, self.scene(span, lower));
+        let points = scene.as_ref().map(|scene| {
+            points_of(scene, spot.triangles, nearest.weights)
                 .map(|point| point + bodies.translations[0])
         });
-        let seen = spot.zip(scene).filter(|(spot, _)| spot.nearest.gap > 0.0);
-        let normal = seen.as_ref().map(|(spot, _)| spot.nearest.normal);
-        let features = seen.map(|(spot, scene)| {
+        let is_apart = nearest.gap > 0.0;
+        let normal = is_apart.then_some(nearest.normal);
+        let features = scene.filter(|_| is_apart).map(|scene| {
             let [moving, fixed] = spot.features(&scene);
             Features { moving, fixed }
         });

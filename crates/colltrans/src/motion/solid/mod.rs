@@ -141,7 +141,7 @@ impl<'a> MotionCast<'a, Solid> {
             let (found, _) = searched(&span, false, &mut steps);
             if let Some(found) = found {
                 let found = Self::confirmed(&span, found, &mut steps);
-                return Ok(self.contact(&span, &found, tolerance, steps, |_| ()));
+                return Ok(self.contact(&span, &found, steps, |_| ()));
             }
         }
         Ok(MotionOutcome::Free(MotionFree { proof: (), steps }))
@@ -172,10 +172,9 @@ impl<'a> MotionCast<'a, Solid> {
             let (lower, written) = up_to(&span, found.lower, &mut steps);
             found.lower = lower;
             proof.spans.push(SpanProof::new(lower, written));
-            return Ok(self.contact(&span, &found, tolerance, steps, |meeting| SolidMotionProof {
-                meeting,
-                ..proof
-            }));
+            return Ok(
+                self.contact(&span, &found, steps, |meeting| SolidMotionProof { meeting, ..proof })
+            );
         }
         Ok(MotionOutcome::Free(MotionFree { proof, steps }))
     }
@@ -250,7 +249,6 @@ impl<'a> MotionCast<'a, Solid> {
         &self,
         span: &Span<Tree>,
         found: &Found,
-        tolerance: f64,
         steps: MotionSteps,
         proof: impl FnOnce(Option<FacetsMeeting>) -> P,
     ) -> MotionOutcome<P> {

@@ -303,8 +303,9 @@ mod tests {
                 let said = [rates.v + rates.w.cross(p), rates.a + rates.matrix * p];
                 assert!(first.distance(said[0]) < 1e-6, "{first} {}", said[0]);
                 assert!(second.distance(said[1]) < 1e-6, "{second} {}", said[1]);
+                // Bounds are of all places of the joints, which the third derivative is far from here.
                 for (found, most) in [first, second, third].iter().zip(most.derivatives) {
-                    assert!(found.length() <= most && most < 20.0, "{} {most}", found.length());
+                    assert!(found.length() <= most && most < 30.0, "{} {most}", found.length());
                 }
             }
         }

@@ -9,7 +9,6 @@ pub(crate) mod edges;
 mod error;
 pub(crate) mod exact;
 mod faces;
-mod kept;
 mod openness;
 mod polygon;
 mod report;
@@ -29,7 +28,6 @@ use crate::body::placed::sealed;
 use crate::body::{Aabb, InputFacet, InputVertex};
 pub use error::SolidError;
 use faces::Faces;
-pub(crate) use kept::{Keepable, Kept};
 pub use report::{Shell, ShellKind, SolidReport};
 pub use shrink::ShrinkReport;
 pub(crate) use shrink::{Shrinking, displace};
@@ -87,7 +85,6 @@ pub struct Solid {
     shrinking: OnceLock<Shrinking>,
     /// Made when a feature is first named.
     faces: OnceLock<Faces>,
-    kept: Kept,
 }
 
 impl sealed::Sealed for Solid {
@@ -248,7 +245,6 @@ impl Solid {
             report,
             shrinking: OnceLock::new(),
             faces,
-            kept: Kept::default(),
         };
         solid.spans = solid.find_spans();
         solid
@@ -402,12 +398,6 @@ impl Solid {
             + self.report.shells.capacity() * size_of::<Shell>()
             + self.shrinking.get().map_or(0, Shrinking::heap_bytes)
             + self.faces.get().map_or(0, Faces::heap_bytes)
-            + self.kept.heap_bytes()
-    }
-
-    /// What a query keeps with the body.
-    pub(crate) fn kept(&self) -> &Kept {
-        &self.kept
     }
 
     /// The largest distance of a vertex from the origin of the body frame.

@@ -6,7 +6,6 @@
 //! that the bodies are asked; if they overlap in another place, that one is next. Where the tolerance is not small,
 //! facets may come to overlap again: there the bodies are asked each time, unless the last place tells.
 
-mod hulls;
 mod proof;
 #[cfg(feature = "serde")]
 mod saved;
@@ -28,7 +27,6 @@ use crate::solve::solid::overlap::{self, Overlap};
 use crate::solve::solid::scene::Scene;
 use crate::solve::solid::search::{Aim, Found, Search, Workspace};
 use crate::solve::solid::separate::separation;
-use hulls::Told;
 pub use proof::{Claim, Cover, SolidCertificate, StartProof, StopProof};
 pub use verify::SolidProof;
 
@@ -338,18 +336,6 @@ impl<'a> Cast<'a, Solid> {
     pub fn clearance_in(&self, workspace: &mut Workspace) -> Result<Clearance<Solid>, QueryError> {
         let scene = self.asked_of_something()?;
         let mut steps = SolidSteps::default();
-        let limit = self.limit(&scene);
-        if self.options.overlapping != Some(true) {
-            match hulls::told(self, &scene, limit, &mut steps.leaves) {
-                Some(Told::Stop(found)) => return Ok(self.answer(&scene, Some(&found), steps)),
-                Some(Told::Apart(plane)) => {
-                    let separation = self.options.before.is_none().then_some(plane);
-                    return Ok(Clearance::Free(SolidFree { separation, steps }));
-                }
-                Some(Told::Free) => return Ok(self.answer(&scene, None, steps)),
-                None => {}
-            }
-        }
         let ignored = self.options.start_overlap == StartOverlap::Ignore;
         let aim = match self.options.overlapping {
             Some(false) => Aim::Stop,
@@ -360,7 +346,7 @@ impl<'a> Cast<'a, Solid> {
                 None => Aim::Stop,
             },
         };
-        let found = first(&scene, aim, limit, workspace, &mut steps);
+        let found = first(&scene, aim, self.limit(&scene), workspace, &mut steps);
         Ok(self.answer(&scene, found.as_ref(), steps))
     }
 

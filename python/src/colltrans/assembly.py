@@ -94,8 +94,8 @@ class Step:
     travel_bounds : tuple of float
         At least and at most the travel, proven.
     path : list of Move
-        The moves, in order, of the parts or of others that make room: with the last one the parts leave,
-        along `direction` for `travel`. Mostly there is no other.
+        The moves, in order, of the parts or of others that make room: with the last one the parts
+        leave, along `direction` for `travel`. Mostly there is no other.
     back : list of Move
         How what made room goes back to its place once they have left.
     within : int or None
@@ -120,7 +120,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Stuck:
-    """Parts that no single straight motion along the directions asked takes apart, nor several moves that were found.
+    """Parts that no straight motion along the directions asked takes apart, nor several moves found.
 
     Along other directions, or in more moves, they may come apart.
 
@@ -172,8 +172,9 @@ class RemovalMap:
     by : ndarray of int, shape (N,)
         The position of the part that is in the way, -1 for none.
     regions : list of tuple of (float, tuple of float)
-        Connected sets of free directions, largest first: solid angle in steradians, and the direction
-        that is farthest from the border; exact where parts are closed and meet by rule, else sampled.
+        Connected sets of free directions, largest first: solid angle in steradians, and the
+        direction that is farthest from the border; exact where parts are closed and meet by rule,
+        else sampled.
     isolated : ndarray of shape (K, 3)
         Free directions that lie in no region, or in one that is smaller than a disc of ``border``.
     """
@@ -371,8 +372,8 @@ class Assembly:
         samples : int
             How many directions to sample for what no other moves; 0 for none.
         legs : int
-            How many moves, one after another, may take out what no single one does; parts may make room
-            and go back. 1 for none.
+            How many moves, one after another, may take out what no single one does; parts may make
+            room and go back. 1 for none.
         tolerance, ignore_overlaps
             As for :meth:`rooms`.
 
@@ -400,7 +401,10 @@ class Assembly:
                     [(names[a], names[b]) for a, b in ignored],
                     self._names(surfaces),
                 )
-                for parts, d, travel, travel_bounds, (path, back), within, ignored, surfaces in steps
+                for parts, d, travel, travel_bounds, (
+                    path,
+                    back,
+                ), within, ignored, surfaces in steps
             ],
             self._names(left),
             [

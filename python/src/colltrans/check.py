@@ -1229,9 +1229,7 @@ def whole_bodies(moving: Body, fixed: Body, claim: Any, report: Report) -> Spher
         at = [units(v) for v in points]
         sides.append([(at[a], at[b], at[c]) for a, b, c in body.facets])
     within = [[(units(low), units(high)) for low, high in ends] for ends in inner]
-    return Sphere(
-        (sides[0], sides[1]), (boxes(sides[0]), boxes(sides[1])), (within[0], within[1])
-    )
+    return Sphere((sides[0], sides[1]), (boxes(sides[0]), boxes(sides[1])), (within[0], within[1]))
 
 
 def is_between(near: tuple[Whole, Whole], far: tuple[Whole, Whole], d: Whole) -> bool:

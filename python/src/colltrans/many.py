@@ -1,14 +1,14 @@
 """Queries in bulk: arrays in, columns out.
 
 Arguments have one row for all queries or one for each; bodies are one for all, or a list with an
-index for each. Rows are answered on all cores, without the interpreter's lock. A row without an answer
-has the outcome ``"error"`` and a message.
+index for each. Rows are answered on all cores, without the interpreter's lock. A row without an
+answer has the outcome ``"error"`` and a message.
 
-Each row has the bits of the query asked alone, but for one case: where 564 rows or more (of boxes; more of larger
-bodies) ask about the same two convex bodies, turned in the same way, the faces of their Minkowski difference are made
-once and answer these rows. Outcomes and their proofs are as good; the last digits may differ, and between separated
-bodies the normal, and the margin along it, is another of many. Which rows these are depends on neither their order nor
-the threads.
+Each row has the bits of the query asked alone, but for one case: where 564 rows or more (of boxes;
+more of larger bodies) ask about the same two convex bodies, turned in the same way, the faces of
+their Minkowski difference are made once and answer these rows. Outcomes and their proofs are as
+good; the last digits may differ, and between separated bodies the normal, and the margin along it,
+is another of many. Which rows these are depends on neither their order nor the threads.
 """
 
 from typing import overload

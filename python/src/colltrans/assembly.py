@@ -120,7 +120,7 @@ class Step:
 
 @dataclass(frozen=True)
 class Stuck:
-    """Parts that no straight motion along the directions asked takes apart, nor several moves found.
+    """Parts that no straight motion along the directions asked takes apart, nor several moves.
 
     Along other directions, or in more moves, they may come apart.
 

@@ -26,7 +26,7 @@ const FORMAT: &str = "colltrans motion of solids proof 1";
 ///
 /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
 /// let motion = Motion::slide(Pose::IDENTITY, DVec3::X * 4.0)?;
-/// let there = Motion::still(Pose::from_translation(DVec3::new(3.0, 0.25, 0.25))?);
+/// let there = Motion::still(Pose::from_translation(DVec3::new(3.0, 0.25, 0.375))?);
 /// let cast = MotionCast::between(cube.along(&motion), cube.along(&there))?;
 /// let (_, saved) = SolidMotionProofFile::answer(&cast)?;
 /// let [lower, upper] = SolidMotionProofFile::from_json(&saved.to_json())?.check()?;

@@ -601,3 +601,24 @@ fn a_pose_that_stretches_presses_blocks_into_each_other() {
         }
     }
 }
+
+#[test]
+fn a_shell_inside_that_touches_from_within_is_told_with_any_tolerance() {
+    // A roof stands on its ridge in a larger one, on that one's floor.
+    let roof = |half: [f64; 2], top: f64, floor: f64| {
+        let [x, y] = half;
+        let ridge = [-x, x].map(|x| DVec3::new(x, 0.0, top));
+        let eaves = [-x, x].map(|x| [-y, y].map(|y| DVec3::new(x, y, floor)));
+        let points: Vec<DVec3> = ridge.into_iter().chain(eaves.into_iter().flatten()).collect();
+        ConvexPolyhedron::from_points(&points).expect("a roof")
+    };
+    let (outer, inner) = (roof([3.0, 3.0], 2.0, 0.0), roof([1.0, 1.0], 0.0, 1.0));
+    for tolerance in [0.0, 1e-15, 2.2e-12, 1e-9, 1e-6, 0.1] {
+        for swapped in [false, true] {
+            let (a, b) = if swapped { (&inner, &outer) } else { (&outer, &inner) };
+            let cast = Cast::between(a.at(Pose::IDENTITY), b.at(Pose::IDENTITY), DVec3::Z);
+            let cast = cast.and_then(|cast| cast.with_tolerance(tolerance)).expect("a cast");
+            assert!(cast.overlaps(), "{tolerance} {swapped}");
+        }
+    }
+}

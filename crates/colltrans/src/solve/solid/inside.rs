@@ -37,12 +37,16 @@ pub(crate) fn shell_inside(scene: &Scene, moving: bool) -> Option<u32> {
         let (middle, half) = (span.bounds.center(), span.bounds.size() * 0.5);
         let at = own.view * middle + own.view_offset;
         let rows = own.view.transpose();
-        let swell = own.shrinking.map_or(0.0, |s| s.farthest * own.amount);
+        let swell = own.moved();
         let extent = [rows.x_axis, rows.y_axis, rows.z_axis].map(|r| r.abs().dot(half));
-        let extent = DVec3::from_array(extent) + DVec3::splat(swell + 4.0 * scene.noise);
-        // A shell that reaches out of the other's box is not inside it.
-        let around = Aabb { low: at - extent, high: at + extent };
-        let within = room.bounds.grown(16.0 * scene.noise).holds(&around);
+        let extent = DVec3::from_array(extent) + DVec3::splat(4.0 * scene.noise);
+        let grown = |by: f64| {
+            let extent = (extent + by).max(DVec3::ZERO);
+            Aabb { low: at - extent, high: at + extent }
+        };
+        // A shell that reaches out of the other's box is not inside it; shrunk, it reaches less far by as much.
+        let around = grown(swell);
+        let within = room.bounds.grown(16.0 * scene.noise).holds(&grown(-swell));
         // The other's box is loose where it is not aligned; then all that overlap are asked.
         let meets = room.bounds.meets(&around);
         let aligned = own.aligned == [true; 3] && other.aligned == [true; 3];

@@ -2,7 +2,7 @@
 //! the convex search where both are convex, and by themselves with the bodies swapped.
 
 use colltrans::motion::{Motion, MotionCast, MotionOutcome, SolidMotionProof};
-use colltrans::{Cast, ConvexPolyhedron, Pose, Solid};
+use colltrans::{Cast, ConvexPolyhedron, Pose, QueryError, Solid};
 use glam::DVec3;
 
 use super::nearest;
@@ -15,6 +15,9 @@ pub const FAMILIES: [&str; 3] = ["hulls", "pins", "threads"];
 
 /// Times before a contact at which solids are asked.
 const TIMES: u32 = 100;
+
+/// Bodies that are so many times their size from the origin are far.
+const FAR: f64 = 16.0;
 
 /// More pairs of facets than this are not asked.
 const MOST_PAIRS: usize = 400_000;
@@ -135,22 +138,26 @@ impl Turning {
         if matches!(outcome, MotionOutcome::Overlapping(_)) {
             return Ok(());
         }
-        // Poses are asked in the world here, where far away places are rounded.
+        // Poses are asked in the world here, where far away places are rounded: then bodies are asked as if they were
+        // a little smaller, and not whether they meet.
         let far = self.motions.iter().map(|motion| {
             let ends =
                 [0.0, lower].map(|t| motion.at(t).map_or(0.0, |at| at.translation().length()));
             ends[0].max(ends[1])
         });
-        let rounded = 32.0 * f64::EPSILON * far.fold(0.0, f64::max);
-        let tolerance = outcome.proof().tolerance;
+        let size = self.solids.iter().map(|s| s.bounds().size().length()).fold(0.0, f64::max);
+        let (far, tolerance) = (far.fold(0.0, f64::max), outcome.proof().tolerance);
+        let is_near = far <= FAR * size;
+        let more = if is_near { tolerance } else { tolerance + 32.0 * f64::EPSILON * far };
         let overlaps = |time: f64, tolerance: f64| -> Result<bool, String> {
             let [a, b] = [0, 1].map(|k| self.motions[k].at(time).map_err(|e| e.to_string()));
             let cast = Cast::new(self.solids[0].at(a?), self.solids[1].at(b?), DVec3::Z);
             let cast = cast.and_then(|cast| cast.with_tolerance(tolerance)?.keeping(self.keep));
-            Ok(cast.map_err(|e| e.to_string())?.overlaps())
+            match cast {
+                Err(QueryError::NothingLeft { .. }) => Ok(false),
+                cast => Ok(cast.map_err(|e| e.to_string())?.overlaps()),
+            }
         };
-        let is_near = rounded < 0.01 * tolerance;
-        let more = if is_near { tolerance } else { tolerance + rounded };
         for k in 0..=TIMES {
             let time = lower * f64::from(k) / f64::from(TIMES);
             if overlaps(time, more)? {

@@ -376,3 +376,37 @@ fn the_largest_margin_is_in_the_middle() {
     let most = &free(&high, &small, EXACT).regions()[0];
     assert!(most.margin > 2.5 && most.center.z > 0.9, "{} {}", most.margin, most.center);
 }
+
+#[test]
+fn a_window_is_measured_alike_however_it_is_turned() {
+    // A cube in a room with a window: one convex region, cut by sides of cells in every rotation elsewhere.
+    let cube = cuboid([-0.2; 3], [0.2; 3]);
+    let room = joined(&[
+        cuboid([-2.2, -2.2, -2.2], [2.2, 2.2, -2.0]),
+        cuboid([-2.2, -2.2, 2.0], [2.2, 2.2, 2.2]),
+        cuboid([-2.2, -2.2, -2.2], [-2.0, 2.2, 2.2]),
+        cuboid([-2.2, -2.2, -2.2], [2.2, -2.0, 2.2]),
+        cuboid([-2.2, 2.0, -2.2], [2.2, 2.2, 2.2]),
+        cuboid([2.0, -2.2, -2.2], [2.2, 2.2, 0.5]),
+        cuboid([2.0, -2.2, 1.3], [2.2, 2.2, 2.2]),
+        cuboid([2.0, -2.2, -2.2], [2.2, -0.8, 2.2]),
+        cuboid([2.0, 0.8, -2.2], [2.2, 2.2, 2.2]),
+    ]);
+    // The cube's upper edge passes the window's in front, its lower edge behind: z / x lies between
+    // 0.7 / 1.8 and 1.1 / 2.4, y / x between -0.6 / 2.4 and 0.6 / 2.4.
+    let (low, high) = ((0.7_f64 / 1.8).atan(), (1.1_f64 / 2.4).atan());
+    let mut random = Random::new(5);
+    for round in 0..60 {
+        let turn = if round == 0 { DQuat::IDENTITY } else { random.rotation() };
+        let pose = Pose::new(turn, DVec3::ZERO).unwrap();
+        let all = FreeDirections::of(&cube.at(pose), &room.at(pose), FreeOptions::DEFAULT).unwrap();
+        let regions = all.regions();
+        assert_eq!(regions.len(), 1, "{round}");
+        let region = &regions[0];
+        assert_eq!(all.says(region.center), Ok(Verdict::Free), "{round}");
+        // Between two planes that are turned against each other about y, nowhere farther than half.
+        let half = (high - low) / 2.0;
+        assert!((0.99 * half..1.001 * half).contains(&region.margin), "{round} {}", region.margin);
+        assert_eq!(region.corners.len(), 4, "{round} {:?}", region.corners);
+    }
+}

@@ -1,7 +1,9 @@
 //! Connected regions of convex pieces, for people: where they are, how large, and their corners.
 //!
 //! Pieces of neighbouring cells share a part of a border, which is a side of a cell: their forms are exact there, from
-//! differences of corners. Nothing here decides what is free.
+//! differences of corners. Pieces narrower than roundings, which cuts leave along a border, are passed over where they
+//! lie beside another: of each two of their sides it could not be told which one is outside. Nothing here decides what
+//! is free.
 
 use std::f64::consts::PI;
 
@@ -36,12 +38,13 @@ pub struct FreeRegion {
     pub border: Vec<[DVec3; 2]>,
     /// Its solid angle.
     pub area: f64,
-    /// Convex pieces that together are it.
+    /// Convex pieces that together are it, but for some that are narrower than `1e-12` and lie beside another.
     pub pieces: Vec<FreePiece>,
 }
 
 /// Pieces joined where they touch, the largest region first; `is_free` tells of a direction.
 pub(super) fn regions(pieces: &[FreePiece], is_free: impl Fn(DVec3) -> bool) -> Vec<FreeRegion> {
+    let pieces = &without_slivers(pieces)[..];
     let touching = touching(pieces);
     let mut group = vec![usize::MAX; pieces.len()];
     let mut regions: Vec<FreeRegion> = Vec::new();
@@ -65,6 +68,24 @@ pub(super) fn regions(pieces: &[FreePiece], is_free: impl Fn(DVec3) -> bool) -> 
     }
     regions.sort_by(|a, b| b.area.total_cmp(&a.area));
     regions
+}
+
+/// All pieces but slivers that touch a piece that is none.
+fn without_slivers(pieces: &[FreePiece]) -> Vec<FreePiece> {
+    let slivers: Vec<bool> = pieces.iter().map(is_sliver).collect();
+    if !slivers.contains(&true) {
+        return pieces.to_vec();
+    }
+    let touching = touching(pieces);
+    let beside = |k: usize| slivers[k] && touching[k].iter().any(|&other| !slivers[other]);
+    (0..pieces.len()).filter(|&k| !beside(k)).map(|k| pieces[k].clone()).collect()
+}
+
+/// Whether all corners lie on one line, but for roundings.
+fn is_sliver(piece: &FreePiece) -> bool {
+    let length = |k: usize| piece.corners[k].distance(piece.corners[(k + 1) % piece.corners.len()]);
+    let longest = (0..piece.corners.len()).max_by(|&a, &b| length(a).total_cmp(&length(b)));
+    longest.is_none_or(|k| piece.corners.iter().all(|c| side(piece, k).dot(*c).abs() < BESIDE))
 }
 
 fn region(
@@ -93,6 +114,9 @@ fn region(
         members.iter().flat_map(|&at| outer_sides(pieces, at, &touching[at])).collect();
     let inside = mean.try_normalize().filter(|d| is_free(*d));
     let (center, margin) = farthest(&border, inside.into_iter().chain(middles(&own)));
+    // The middle of a piece is free whatever the border is.
+    let middle = || middles(&own).next().unwrap_or(DVec3::Z);
+    let (center, margin) = if is_free(center) { (center, margin) } else { (middle(), 0.0) };
     FreeRegion { center, margin, corners, border, area, pieces: own }
 }
 

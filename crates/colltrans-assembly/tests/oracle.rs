@@ -52,15 +52,22 @@ fn walk(bodies: &Bodies, plan: &Plan) {
                 all.filter(|p| !apart.contains(p)).collect()
             }
         };
-        let others = || group.iter().filter(|p| !step.parts.contains(p));
         assert!(step.parts.iter().all(|p| group.contains(p)));
-        for share in 1..=100 {
-            let by = step.direction * (step.travel.value * f64::from(share) / 100.0);
-            for &a in &step.parts {
-                for &b in others() {
+        let mut at = vec![DVec3::ZERO; bodies.len()];
+        // Each leg, and those that go back to where they were once the parts are gone.
+        for (n, leg) in step.path.iter().chain(&step.back).enumerate() {
+            let out = n >= step.path.len();
+            let others = group.iter().filter(|p| !leg.parts.contains(p));
+            let others: Vec<usize> =
+                others.copied().filter(|p| !out || !step.parts.contains(p)).collect();
+            for share in 1..=100 {
+                let by = leg.direction * (leg.travel * f64::from(share) / 100.0);
+                for (&a, &b) in leg.parts.iter().flat_map(|a| others.iter().map(move |b| (a, b))) {
+                    let by = at[a] + by - at[b];
                     assert!(!bodies.overlaps_displaced(a, by, b), "step {k}, {a} meets {b}");
                 }
             }
+            leg.parts.iter().for_each(|&p| at[p] += leg.direction * leg.travel);
         }
         if step.within.is_none() {
             step.parts.iter().for_each(|&p| gone[p] = true);
@@ -307,9 +314,12 @@ fn a_way_between_the_samples_is_found_for_what_is_loose() {
             continue;
         }
         missed += 1;
-        // Without samples nothing is found.
+        // Without the cover it is not found in one move, but in two: to the window, and out.
         let options = PlanOptions::default().with_samples(0);
-        assert!(planned(&bodies, options).steps.is_empty());
+        assert!(planned(&bodies, options.with_legs(1)).steps.is_empty());
+        let plan = planned(&bodies, options);
+        walk(&bodies, &plan);
+        assert_eq!(plan.steps[0].path.len(), 2, "{:?}", plan.steps[0].path);
     }
     assert!(missed > 2, "the samples miss it in {missed} of 8 positions");
 }

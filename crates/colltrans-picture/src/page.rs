@@ -156,6 +156,23 @@ impl Page {
         self.path(&format!(r#"fill="none" {look}"#), &data);
     }
 
+    /// A line through points, in one: dashes go on where it bends.
+    pub fn polyline(&mut self, stroke: Stroke, points: &[DVec2]) {
+        let mut pieces: Vec<Vec<DVec2>> = Vec::new();
+        for ends in points.windows(2) {
+            let Some([from, to]) = self.frame.clip_segment([ends[0], ends[1]]) else { continue };
+            match pieces.last_mut() {
+                Some(piece) if piece.last() == Some(&from) => piece.push(to),
+                _ => pieces.push(vec![from, to]),
+            }
+        }
+        let mut data = String::new();
+        for piece in &pieces {
+            push_path(&mut data, piece, false);
+        }
+        self.path(&format!(r#"fill="none" {}"#, stroke.attributes()), &data);
+    }
+
     fn path(&mut self, look: &str, data: &str) {
         if !data.is_empty() {
             let _ = writeln!(self.body, r#"<path {look} d="{data}"/>"#);
@@ -329,5 +346,23 @@ mod tests {
         for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
             assert_eq!(frame.clip_segment([DVec2::new(bad, 0.5), DVec2::new(0.5, 0.5)]), None);
         }
+    }
+
+    #[test]
+    fn a_polyline_is_one_line_where_it_is_not_cut() {
+        let frame = Frame { low: DVec2::ZERO, high: DVec2::splat(100.0) };
+        let drawn = |points: &[DVec2]| {
+            let mut page = Page::new(frame);
+            page.polyline(Stroke::dashed("red", 1.0, "5 4"), points);
+            page.body
+        };
+        // Out and in again at the right, 20 beyond the frame.
+        let bend = [10.0, 90.0, 150.0, 95.0].map(|x| DVec2::new(x, 20.0 + x / 10.0));
+        let inside = drawn(&bend[..2]);
+        assert!(inside.contains(r#"stroke-dasharray="5 4""#) && inside.matches('M').count() == 1);
+        let cut = drawn(&bend);
+        assert_eq!((cut.matches('M').count(), cut.matches("<path").count()), (2, 1), "{cut}");
+        assert_eq!(drawn(&[DVec2::splat(300.0), DVec2::splat(400.0)]), "");
+        assert_eq!(drawn(&bend[..1]), "");
     }
 }

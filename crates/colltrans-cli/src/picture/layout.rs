@@ -43,7 +43,7 @@ impl Layout {
         if let Some(start) = &cast.start {
             frame = union(frame, part_near(start, -view.project(cast.way), reach, view));
         }
-        for ghost in &cast.ghosts {
+        for (_, ghost) in &cast.ghosts {
             frame = union(frame, part_near(ghost, DVec2::ZERO, reach, view));
         }
         for corner in subject.corners(cast).into_iter().map(|p| view.project(p)) {

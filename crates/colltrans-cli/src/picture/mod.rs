@@ -55,7 +55,7 @@ struct Cast {
     /// Q.
     fixed: Solid,
     /// P at other times, of a motion.
-    ghosts: Vec<Solid>,
+    ghosts: Vec<(&'static str, Solid)>,
     /// From `start` to `stop`, as drawn.
     way: DVec3,
     /// The way is drawn shorter than it is.

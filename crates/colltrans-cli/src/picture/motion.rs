@@ -15,8 +15,8 @@ use super::solid::Solid;
 use super::subject::{Subject, components, short};
 use super::viewpoint;
 
-/// Pieces of the way that is drawn.
-const WAY: u32 = 96;
+/// Pieces of the way that is drawn: one turn of them is round, and so are twenty.
+const WAY: u32 = 480;
 
 /// Vertices of a body at a pose, relative to a point, and triangles.
 type Surface = (Vec<DVec3>, Vec<[u32; 3]>);
@@ -46,7 +46,8 @@ pub(crate) fn draw_motion(moved: Moved<'_>) -> String {
         Solid::of_triangles(vertices, &triangles)
     };
     let [(_, moving), (fixed, fixed_triangles)] = [body(0, stop), body(1, stop)];
-    let ghosts = [0.0, 1.0].into_iter().filter(|time| *time != stop).map(solid).collect();
+    let ends = [("the start", 0.0), ("the end", 1.0)].into_iter().filter(|(_, time)| *time != stop);
+    let ghosts = ends.map(|(name, time)| (name, solid(time))).collect();
     let cast = Cast {
         start: None,
         stop: solid(stop),
@@ -56,7 +57,7 @@ pub(crate) fn draw_motion(moved: Moved<'_>) -> String {
         is_broken: false,
     };
     let way = way(&cast, |time| place(0, time), stop, subject.origin);
-    let along = way.first().zip(way.last()).map_or(DVec3::X, |([a, _], [_, b])| *b - *a);
+    let along = way.first().zip(way.last()).map_or(DVec3::X, |(a, b)| *b - *a);
     let along = along.try_normalize().unwrap_or(DVec3::X);
     let view = viewpoint::choose([&cast.stop, &cast.fixed], along, subject.normal);
     let layout = Layout::of(&cast, &subject, &view);
@@ -64,15 +65,15 @@ pub(crate) fn draw_motion(moved: Moved<'_>) -> String {
     let mut page = Page::new(layout.window);
     page.open_group(r#"clip-path="url(#window)""#);
     eye.draw(&mut page, &cast, [&edges(&moving), &edges(&fixed_triangles)]);
-    let seen = way.iter().map(|ends| ends.map(|p| layout.on_page(view.project(p))));
-    page.segments(Stroke::dashed(MOVING.line, 1.1, "5 4"), seen);
+    let seen: Vec<_> = way.iter().map(|p| layout.on_page(view.project(*p))).collect();
+    page.polyline(Stroke::dashed(MOVING.line, 1.1, "5 4"), &seen);
     page.close_group();
     Notes { cast: &cast, subject: &subject, layout: &layout, view: &view }.draw(&mut page, along);
     page.finish(layout.size, layout.window, &subject.headline)
 }
 
-/// The way of the moving body's middle, in pieces.
-fn way(cast: &Cast, place: impl Fn(f64) -> Pose, stop: f64, origin: DVec3) -> Vec<[DVec3; 2]> {
+/// Points on the way of the moving body's middle.
+fn way(cast: &Cast, place: impl Fn(f64) -> Pose, stop: f64, origin: DVec3) -> Vec<DVec3> {
     let middle = cast.stop.ball().0;
     let at_stop = place(stop);
     let own = at_stop.matrix().transpose() * (middle + origin - at_stop.translation());
@@ -80,7 +81,7 @@ fn way(cast: &Cast, place: impl Fn(f64) -> Pose, stop: f64, origin: DVec3) -> Ve
         let pose = place(f64::from(k) / f64::from(WAY));
         pose.matrix() * own + pose.translation() - origin
     };
-    (0..WAY).map(|k| [at(k), at(k + 1)]).collect()
+    (0..=WAY).map(at).collect()
 }
 
 /// What the picture has to tell.

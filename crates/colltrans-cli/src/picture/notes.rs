@@ -197,8 +197,10 @@ impl Notes<'_> {
         if self.cast.start.is_some() {
             entries.push(("#dce7f5", MOVING.fine, "moving, at the start"));
         }
-        if !self.cast.ghosts.is_empty() {
-            entries.push(("#dce7f5", MOVING.fine, "moving, at the start and the end"));
+        let names: Vec<&str> = self.cast.ghosts.iter().map(|(name, _)| *name).collect();
+        let ghosts = format!("moving, at {}", names.join(" and "));
+        if !names.is_empty() {
+            entries.push(("#dce7f5", MOVING.fine, ghosts.as_str()));
         }
         entries.push(("#9db8de", MOVING.line, stop));
         entries.push(("#d9cfbe", FIXED.line, "fixed"));

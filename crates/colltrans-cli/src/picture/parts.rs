@@ -139,7 +139,7 @@ impl Eye<'_> {
         let slack = SLACK * size;
         self.lines(page, &raster, (&cast.fixed, fixed), &FIXED, slack);
         self.lines(page, &raster, (&cast.stop, moving), &MOVING, slack);
-        for start in cast.start.iter().chain(&cast.ghosts) {
+        for start in cast.start.iter().chain(cast.ghosts.iter().map(|(_, ghost)| ghost)) {
             self.ghost(page, &raster, (start, moving), slack);
         }
     }

@@ -139,10 +139,15 @@ fn a_picture_has_the_start_the_contact_and_the_end() {
     // A ghost is a group of its own: two of them, one where it starts in contact.
     let ghosts = |svg: &str| svg.matches(r#"<g opacity="0.75">"#).count();
     assert_eq!(ghosts(&met), 2);
+    // The way is one line, of as many dashes as are seen.
+    let way = met.lines().find(|line| line.contains(r#"stroke-dasharray="5 4""#)).unwrap();
+    assert!(way.matches('M').count() == 1 && way.matches('L').count() > 100, "{way}");
     let free = draw(&["--moving-pose=2,0,0", "--turn", "5,0,0", "z", "90"]);
     assert!(free.contains("Free: the bodies never meet") && ghosts(&free) == 1);
+    assert!(free.contains("moving, at the start<"), "{free}");
     let over = draw(&["--slide", "3,0,0"]);
     assert!(over.contains("Overlapping") && ghosts(&over) == 1);
+    assert!(over.contains("moving, at the end<"), "{over}");
     let words = ["motion", "cube.off", "cube.off", "--slide", "1,0,0", "--picture", "cube.off"];
     refused(folder.path(), &words, 2, &["pictures are written as SVG"]);
 }

@@ -87,7 +87,9 @@ fn frames_stand_where_the_assembly_reader_has_the_links() {
             let at = place.transform_point3(*v);
             let off = |w: &DVec3| w.distance(at);
             let least = part.solid().vertices().iter().map(off).fold(f64::INFINITY, f64::min);
-            assert!(least < 1e-12, "{least:e} of {}", part.name());
+            // What is round is around the true shape here, and inside it there: 64 sides, a radius of 0.002.
+            let bound = if part.name() == "tool" { 0.002 * 1.21e-3 } else { 0.0 };
+            assert!(least < bound + 1e-12, "{least:e} of {}", part.name());
         }
     }
 }

@@ -5,12 +5,11 @@ use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
 use colltrans::motion::path::{
-    PathBody, PathCast, PathFileError, PathOutcome, PathProofFile, Place,
+    JointPath, PathError, PathFileError, PathOutcome, PathProofFile, Place,
 };
 use colltrans::record::{Ending, PathRecord, TimeRecord};
-use colltrans::{AnyBody, Pose};
 use colltrans_assembly::read::{self, ReadOptions};
-use colltrans_assembly::robot::{Robot, RobotError, Table, body_of};
+use colltrans_assembly::robot::{Cell, Table, body_of};
 use colltrans_mesh::body::BodyOptions;
 
 use crate::args::PathArguments;
@@ -25,23 +24,22 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<(), Failure> {
     let inputs: Vec<&Path> =
         [robot, rows].into_iter().chain(scene).chain(srdf).map(PathBuf::as_path).collect();
     refuse_proof(arguments.save_proof.as_deref(), None, &inputs)?;
-    let asked = Asked::read(arguments)?;
-    let cast =
-        PathCast::new(asked.robot.mechanism(), &asked.path, asked.bodies(), asked.pairs.clone());
-    let cast = cast.and_then(|cast| cast.keeping(arguments.keep)).map_err(|e| asked.query(&e))?;
+    let Asked { cell, path } = Asked::read(arguments)?;
+    let query = |e: PathError| Failure::new(Code::Query, cell.words(&e));
+    let cast = cell.along(&path, arguments.keep).map_err(query)?;
     let outcome = match &arguments.save_proof {
-        None => cast.first_contact().map_err(|e| asked.query(&e))?,
+        None => cast.first_contact().map_err(query)?,
         Some(file) => {
-            let answered = PathProofFile::answer(&cast, &asked.names);
+            let answered = PathProofFile::answer(&cast, cell.names());
             let (outcome, saved) = answered.map_err(|e| match e {
-                PathFileError::Path(e) => asked.query(&e),
+                PathFileError::Path(e) => query(e),
                 other => Failure::new(Code::Query, other.to_string()),
             })?;
             proof::save_text(file, &saved.to_json())?;
             outcome
         }
     };
-    let record = PathRecord::of(&outcome, &cast, &asked.names);
+    let record = PathRecord::of(&outcome, &cast, cell.names());
     if arguments.json {
         let written = serde_json::to_string(&record);
         let written = written.map_err(|e| Failure::output("standard output", &e.into()))?;
@@ -50,20 +48,17 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<(), Failure> {
     print(&words(&record, &outcome))
 }
 
-/// A robot, its path, and what is held against what.
+/// A robot among its scene, and its path.
 struct Asked {
-    robot: Robot,
-    path: colltrans::motion::path::JointPath,
-    scene: Vec<AnyBody>,
-    /// For each body its name: of its link, or of a mesh of the scene.
-    names: Vec<String>,
-    pairs: Vec<[usize; 2]>,
+    cell: Cell,
+    path: JointPath,
 }
 
 impl Asked {
     fn read(arguments: &PathArguments) -> Result<Self, Failure> {
         let input = |e: &dyn std::fmt::Display| Failure::new(Code::Input, e.to_string());
         let rest = resting(&arguments.joint)?;
+        let ignored = ignored(&arguments.ignore)?;
         let options = ReadOptions::default()
             .with_packages(arguments.package.clone())
             .with_skip_missing(arguments.skip_missing)
@@ -87,119 +82,26 @@ impl Asked {
             for text in &notes {
                 note(&format!("{}: {text}", file.display()));
             }
-            scene.push(body);
+            let name = file.file_stem().unwrap_or(file.as_os_str()).to_string_lossy();
+            scene.push((name.into_owned(), body));
         }
-        let things = Things::of(&robot, &arguments.scene);
-        let pairs = things.pairs(&robot, arguments)?;
-        let names = things.bodies.iter().map(|(thing, _)| things.names[*thing].clone()).collect();
-        Ok(Self { robot, path, scene, names, pairs })
-    }
-
-    /// All bodies: those of the links, and the scene.
-    fn bodies(&self) -> Vec<PathBody<'_>> {
-        let links = self.robot.links().iter();
-        let carried = links.flat_map(|link| link.bodies.iter().map(|body| (link.frame, body)));
-        let carried =
-            carried.map(|(frame, body)| PathBody { frame, placed: body.at(Pose::IDENTITY) });
-        let scene = self.scene.iter().map(|body| PathBody::standing(body.at(Pose::IDENTITY)));
-        carried.chain(scene).collect()
-    }
-
-    fn query(&self, error: &colltrans::motion::path::PathError) -> Failure {
-        use colltrans::motion::path::PathError;
-        let text = match error {
-            PathError::Query { pair, reason } => {
-                let [a, b] = pair.map(|k| self.names[k].as_str());
-                format!("{a} and {b}: {reason}")
-            }
-            other => other.to_string(),
-        };
-        Failure::new(Code::Query, text)
+        let listed = arguments.srdf.as_deref().map(read::disabled).transpose();
+        let listed = listed.map_err(|e| input(&e))?;
+        let cell = Cell::new(robot, scene, listed.as_deref()).map_err(|e| input(&e))?;
+        let cell = cell.ignoring(&ignored);
+        let cell = cell.map_err(|e| Failure::new(Code::Usage, format!("--ignore: {e}")))?;
+        cell.notes().iter().for_each(|text| note(text));
+        Ok(Self { cell, path })
     }
 }
 
-/// Links and meshes by their names, and the bodies of each.
-struct Things {
-    names: Vec<String>,
-    links: usize,
-    /// For each body whose it is, and its number there.
-    bodies: Vec<(usize, usize)>,
-}
-
-impl Things {
-    fn of(robot: &Robot, scene: &[PathBuf]) -> Self {
-        let stem = |file: &PathBuf| {
-            file.file_stem().unwrap_or(file.as_os_str()).to_string_lossy().into_owned()
-        };
-        let links = robot.links();
-        let names = links.iter().map(|link| link.name.clone()).chain(scene.iter().map(stem));
-        let counts = links.iter().map(|link| link.bodies.len()).chain(scene.iter().map(|_| 1));
-        let bodies = counts.enumerate().flat_map(|(k, count)| (0..count).map(move |n| (k, n)));
-        Self { names: names.collect(), links: links.len(), bodies: bodies.collect() }
-    }
-
-    /// The pairs of bodies that are held against each other; what is not, is said.
-    fn pairs(&self, robot: &Robot, arguments: &PathArguments) -> Result<Vec<[usize; 2]>, Failure> {
-        let input = |e: RobotError| Failure::new(Code::Input, e.to_string());
-        let listed = match &arguments.srdf {
-            Some(file) => {
-                let listed =
-                    read::disabled(file).map_err(|e| Failure::new(Code::Input, e.to_string()))?;
-                Some(listed)
-            }
-            None => None,
-        };
-        let mut things = robot.pairs(listed.as_deref()).map_err(input)?;
-        if listed.is_none() {
-            let all = robot.pairs(Some(&[])).map_err(input)?.len();
-            let skipped = counted(all - things.len(), "pair of links", "pairs of links");
-            note(&format!(
-                "{skipped} with one joint between them are not held against each other; --srdf says which \
-                 are not"
-            ));
-        }
-        let mut rest = 0;
-        for link in 0..self.links {
-            let moves = robot.moving_between(link, None) > 0;
-            for mesh in self.links..self.names.len() {
-                if moves {
-                    things.push([link, mesh]);
-                } else {
-                    rest += usize::from(!robot.links()[link].bodies.is_empty());
-                }
-            }
-        }
-        if rest > 0 {
-            note("links that no joint moves are not held against the scene");
-        }
-        for pair in &arguments.ignore {
-            let [a, b] = self.named(pair)?;
-            let before = things.len();
-            things.retain(|[x, y]| !(x == &a && y == &b || x == &b && y == &a));
-            if things.len() == before {
-                note(&format!("--ignore {pair}: these are not held against each other anyway"));
-            }
-        }
-        let own = |thing: usize| {
-            self.bodies.iter().enumerate().filter(move |(_, of)| of.0 == thing).map(|(k, _)| k)
-        };
-        let of_bodies = things
-            .iter()
-            .flat_map(|[a, b]| own(*a).flat_map(move |x| own(*b).map(move |y| [x, y])));
-        Ok(of_bodies.collect())
-    }
-
-    fn named(&self, pair: &str) -> Result<[usize; 2], Failure> {
-        let usage = |what: String| Failure::new(Code::Usage, format!("--ignore {pair}: {what}"));
-        let Some((a, b)) = pair.split_once(',') else { return Err(usage("not A,B".into())) };
-        let find = |name: &str| {
-            let found = self.names.iter().position(|known| known == name.trim());
-            found.ok_or_else(|| {
-                usage(format!("there is no {}; there are {}", name.trim(), self.names.join(", ")))
-            })
-        };
-        Ok([find(a)?, find(b)?])
-    }
+/// The pairs of --ignore.
+fn ignored(given: &[String]) -> Result<Vec<[String; 2]>, Failure> {
+    let one = |text: &String| {
+        let pair = text.split_once(',').map(|(a, b)| [a, b].map(|name| name.trim().to_owned()));
+        pair.ok_or_else(|| Failure::new(Code::Usage, format!("--ignore {text}: not A,B")))
+    };
+    given.iter().map(one).collect()
 }
 
 /// The joints that rest.

@@ -1,7 +1,8 @@
 //! Robots that move: links with their bodies, each in its own frame, and the joints between them.
 //!
 //! A link stands in the frame of the joint that leads to it, or in the world. Rotations are made of the angles that
-//! the file gives, once: their nine entries define where a joint is from then on.
+//! the file gives, once: their nine entries define where a joint is from then on. Round shapes are polyhedra around
+//! them: what is proven free is so of the true shapes.
 
 use std::collections::HashMap;
 
@@ -11,15 +12,13 @@ use colltrans_mesh::body::{self, BodyOptions};
 use glam::{DAffine3, DVec3};
 
 use super::files::Source;
+use super::shapes::{Round, SIDES};
 use super::urdf::{self, Gathered};
 use super::xml::Element;
 use super::{contents, in_file};
 use crate::error::{AssemblyError, ReadError};
 use crate::part::Piece;
 use crate::robot::{Kind, Link, Mimic, Robot, RobotJoint};
-
-/// Sides of what is round.
-const SIDES: f64 = 64.0;
 
 pub(super) fn read(source: Source) -> Result<Robot, ReadError> {
     let (element, bytes) = urdf::robot(&source)?;
@@ -47,7 +46,7 @@ pub(super) fn read(source: Source) -> Result<Robot, ReadError> {
     let mechanism =
         Mechanism::new(made.frames).map_err(|e| contents(source.path, "joints", e.to_string()))?;
     let joints = mimics(&source, made.joints, &joints)?;
-    let mut gathered = Gathered::new(&source, bytes);
+    let mut gathered = Gathered::new(&source, bytes, Round::Around);
     let mut links = Vec::new();
     let mut notes = Vec::new();
     for link in element.all("link") {
@@ -201,20 +200,19 @@ fn any_body(piece: &Piece) -> Result<(AnyBody, Vec<String>), body::Refused> {
 
 /// What is said of shapes that are round.
 fn round(link: &Element) -> impl Iterator<Item = String> + '_ {
-    let half = std::f64::consts::PI / SIDES;
     let shapes = link.all("collision").filter_map(|of| of.first("geometry")?.children.first());
     shapes.filter_map(move |shape| {
-        let share = match shape.name.as_str() {
-            "cylinder" => 1.0 - half.cos(),
-            "sphere" => 1.0 - half.cos() * half.cos(),
+        let larger = match shape.name.as_str() {
+            "cylinder" => Round::Around.cylinder(),
+            "sphere" => Round::Around.sphere(),
             _ => return None,
         };
         let radius = shape.numbers::<1>("radius").ok()??[0];
         Some(format!(
-            "a {} of radius {radius} is taken as a polyhedron of {SIDES} sides inside it, up to {:.1e} \
-             smaller",
+            "a {} of radius {radius} is taken as a polyhedron of {SIDES} sides around it, up to {:.1e} \
+             larger",
             shape.name,
-            share * radius
+            (larger - 1.0) * radius
         ))
     })
 }

@@ -1,4 +1,11 @@
-//! The shapes of URDF that are no meshes. Round ones are polyhedra with 64 sides, inscribed.
+//! The shapes of URDF that are no meshes. Round ones are polyhedra with 64 sides: inside the true shape, touching it at
+//! their vertices, or around it.
+//!
+//! Around it. A regular polygon of `n` sides that is `1 / c` times as large as the inscribed one, `c = cos(pi / n)`,
+//! encloses the circle. Of a sphere all faces lie between two circles of latitude and two meridians: in a meridian
+//! plane the inscribed polyhedron's profile is a polygon of `n` sides, at least `c` from the middle, and halfway between
+//! meridians it is that, made narrower by `c`; so its faces are at least `c^2` from the middle, and `1 / c^2` times as
+//! large it encloses the sphere. A little more than that is taken, for what rounding does to the vertices.
 
 use std::f64::consts::TAU;
 
@@ -7,7 +14,37 @@ use glam::{DAffine3, DVec3};
 
 use crate::part::Piece;
 
-const SIDES: usize = 64;
+pub(super) const SIDES: usize = 64;
+
+/// More than rounding and a hull's own error take off a vertex, relative to the radius.
+const MORE: f64 = 1.0 + 1e-12;
+
+/// Where the polyhedron of a round shape is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Round {
+    /// It touches the true shape at its vertices: what fits stays so.
+    Inside,
+    /// It encloses the true shape: what it does not meet, that does not.
+    Around,
+}
+
+impl Round {
+    /// How much larger than the inscribed polyhedron, of a cylinder.
+    pub(super) fn cylinder(self) -> f64 {
+        match self {
+            Self::Inside => 1.0,
+            Self::Around => MORE / (TAU / 2.0 / SIDES as f64).cos(),
+        }
+    }
+
+    /// The same of a sphere.
+    pub(super) fn sphere(self) -> f64 {
+        match self {
+            Self::Inside => 1.0,
+            Self::Around => MORE / (TAU / 2.0 / SIDES as f64).cos().powi(2),
+        }
+    }
+}
 
 pub(super) fn cuboid(size: DVec3, world_from_piece: DAffine3) -> Piece {
     let half = size * 0.5;
@@ -21,11 +58,18 @@ pub(super) fn cuboid(size: DVec3, world_from_piece: DAffine3) -> Piece {
     Piece { mesh: Mesh::new((0..8).map(corner).collect(), faces), world_from_piece }
 }
 
-pub(super) fn cylinder(radius: f64, length: f64, world_from_piece: DAffine3) -> Piece {
+pub(super) fn cylinder(
+    radius: f64,
+    length: f64,
+    round: Round,
+    world_from_piece: DAffine3,
+) -> Piece {
+    let radius = radius * round.cylinder();
     turned(&[(radius, -length / 2.0), (radius, length / 2.0)], None, world_from_piece)
 }
 
-pub(super) fn sphere(radius: f64, world_from_piece: DAffine3) -> Piece {
+pub(super) fn sphere(radius: f64, round: Round, world_from_piece: DAffine3) -> Piece {
+    let radius = radius * round.sphere();
     let rings = SIDES / 2;
     let at = |k: usize| (k as f64 / rings as f64 * TAU / 2.0).sin_cos();
     let profile: Vec<(f64, f64)> =
@@ -75,13 +119,48 @@ mod tests {
         let round = 0.5 * SIDES as f64 * (TAU / SIDES as f64).sin();
         let cases = [
             (cuboid(DVec3::new(1.0, 2.0, 3.0), at), 6.0, 1e-12),
-            (cylinder(2.0, 3.0, at), round * 12.0, 1e-9),
-            (sphere(1.0, at), 4.0 / 3.0 * TAU / 2.0, 0.02),
+            (cylinder(2.0, 3.0, Round::Inside, at), round * 12.0, 1e-9),
+            (sphere(1.0, Round::Inside, at), 4.0 / 3.0 * TAU / 2.0, 0.02),
         ];
         for (piece, volume, error) in cases {
             let part = Part::new("shape", &[piece]).unwrap();
             assert!(part.defects().is_empty());
             assert!((part.solid().volume() - volume).abs() < error * volume);
+        }
+    }
+
+    /// The least and the largest distance of a face's plane, and of a vertex, from the middle.
+    fn reach(piece: &Piece, flat: bool) -> [f64; 2] {
+        let Mesh { vertices, faces, .. } = &piece.mesh;
+        let from_axis = |v: DVec3| if flat { v.truncate().length() } else { v.length() };
+        let plane = |face: &Vec<u32>| {
+            let [a, b, c] = [0, 1, 2].map(|k| vertices[face[k] as usize]);
+            let normal = (b - a).cross(c - a).normalize();
+            // Flat ends of a cylinder are at its length.
+            if flat && normal.z.abs() > 0.5 { f64::INFINITY } else { normal.dot(a) }
+        };
+        let least = faces.iter().map(plane).fold(f64::INFINITY, f64::min);
+        [least, vertices.iter().copied().map(from_axis).fold(0.0, f64::max)]
+    }
+
+    #[test]
+    fn round_shapes_are_enclosed_or_enclose() {
+        let at = DAffine3::IDENTITY;
+        for radius in [1e-3, 0.7, 40.0] {
+            for (round, is_around) in [(Round::Inside, false), (Round::Around, true)] {
+                for (piece, flat) in
+                    [(cylinder(radius, 3.0, round, at), true), (sphere(radius, round, at), false)]
+                {
+                    let [least, most] = reach(&piece, flat).map(|x| x / radius);
+                    if is_around {
+                        // The bound that is said is the factor of the vertices.
+                        assert!(least >= 1.0 + 1e-13, "{least}");
+                        assert!(most <= 1.0025, "{most}");
+                    } else {
+                        assert!(most <= 1.0 + 1e-15 && least >= 0.997, "{least} {most}");
+                    }
+                }
+            }
         }
     }
 }

@@ -8,6 +8,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 use super::files::Source;
 use super::manifest::rpy_matrix;
+use super::shapes::Round;
 use super::xml::Element;
 use super::{Budget, Geometry, assembled, contents, in_file, piece, shapes};
 use crate::error::ReadError;
@@ -17,7 +18,7 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     let (robot, bytes) = robot(&source)?;
     let joints = joints(&source, &robot)?;
     let places = places(&source, &robot, &joints)?;
-    let mut gathered = Gathered::new(&source, bytes);
+    let mut gathered = Gathered::new(&source, bytes, Round::Inside);
     for link in robot.all("link") {
         let name = named(&source, link)?;
         gathered.link(link, name, places[name])?;
@@ -64,12 +65,13 @@ pub(super) struct Gathered<'a> {
     parts: Vec<Part>,
     pub(super) missing: Vec<String>,
     pub(super) notes: Vec<String>,
+    round: Round,
 }
 
 impl<'a> Gathered<'a> {
-    pub(super) fn new(source: &'a Source<'a>, bytes: usize) -> Self {
+    pub(super) fn new(source: &'a Source<'a>, bytes: usize, round: Round) -> Self {
         let (parts, missing, notes) = (Vec::new(), Vec::new(), Vec::new());
-        Self { source, budget: Budget::of(bytes), parts, missing, notes }
+        Self { source, budget: Budget::of(bytes), parts, missing, notes, round }
     }
 
     fn link(&mut self, link: &Element, name: &str, world: DAffine3) -> Result<(), ReadError> {
@@ -106,7 +108,7 @@ impl<'a> Gathered<'a> {
                 "mesh" => pieces.extend(self.mesh(shape, name, at)?),
                 "capsule" => self.notes.push(format!("link {name}: a capsule is left out")),
                 _ => {
-                    let piece = solid(shape, at).map_err(refused)?;
+                    let piece = solid(shape, self.round, at).map_err(refused)?;
                     self.budget.place().map_err(refused)?;
                     self.budget.facets(piece.mesh.faces.len()).map_err(refused)?;
                     pieces.push(piece);
@@ -139,7 +141,7 @@ impl<'a> Gathered<'a> {
 }
 
 /// A shape that is no mesh.
-fn solid(shape: &Element, at: DAffine3) -> Result<Piece, String> {
+fn solid(shape: &Element, round: Round, at: DAffine3) -> Result<Piece, String> {
     let number = |name: &str| -> Result<f64, String> {
         shape.need(name)?;
         Ok(shape.numbers::<1>(name)?.map_or(0.0, |[x]| x))
@@ -159,11 +161,11 @@ fn solid(shape: &Element, at: DAffine3) -> Result<Piece, String> {
         }
         "cylinder" => {
             let (radius, length) = (number("radius")?, number("length")?);
-            sound(&[radius, length]).map(|()| shapes::cylinder(radius, length, at))
+            sound(&[radius, length]).map(|()| shapes::cylinder(radius, length, round, at))
         }
         "sphere" => {
             let radius = number("radius")?;
-            sound(&[radius]).map(|()| shapes::sphere(radius, at))
+            sound(&[radius]).map(|()| shapes::sphere(radius, round, at))
         }
         other => Err(format!("the geometry {other} is not known")),
     }

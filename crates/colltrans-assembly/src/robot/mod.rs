@@ -4,6 +4,7 @@
 //! no joint moves are never asked about; nor are those with one joint between them, unless somebody says which pairs
 //! are not (an SRDF file): neighbours touch, and are made to.
 
+mod cell;
 mod path;
 mod table;
 
@@ -15,6 +16,7 @@ use colltrans_mesh::Mesh;
 use colltrans_mesh::body::{self, BodyOptions, Refused};
 use thiserror::Error;
 
+pub use cell::Cell;
 pub use table::{Table, TableError};
 
 /// A robot.

@@ -1,0 +1,168 @@
+//! A robot and what stands around it: all bodies by name, and which pairs of them are held against each other.
+
+use colltrans::motion::path::{JointPath, PathBody, PathCast, PathError};
+use colltrans::{AnyBody, Pose};
+
+use super::{Robot, RobotError};
+
+/// A robot among bodies that stand in the world.
+#[derive(Debug, Clone)]
+pub struct Cell {
+    robot: Robot,
+    scene: Vec<AnyBody>,
+    /// For each body its name: of its link, or of what stands there.
+    names: Vec<String>,
+    pairs: Vec<[usize; 2]>,
+    notes: Vec<String>,
+}
+
+/// Links and what stands around, and the bodies of each.
+struct Things {
+    names: Vec<String>,
+    links: usize,
+    /// For each body whose it is.
+    bodies: Vec<usize>,
+}
+
+impl Cell {
+    /// All links are held against the scene, but those that no joint moves, and against each other as
+    /// [`Robot::pairs`] says.
+    ///
+    /// # Errors
+    /// A listed name that no link has.
+    pub fn new(
+        robot: Robot,
+        scene: Vec<(String, AnyBody)>,
+        listed: Option<&[[String; 2]]>,
+    ) -> Result<Self, RobotError> {
+        let (scene_names, scene): (Vec<String>, Vec<AnyBody>) = scene.into_iter().unzip();
+        let things = Things::of(&robot, scene_names);
+        let mut notes = Vec::new();
+        let pairs = things.pairs(&robot, listed, &mut notes)?;
+        let names = things.bodies.iter().map(|thing| things.names[*thing].clone()).collect();
+        Ok(Self { robot, scene, names, pairs, notes })
+    }
+
+    /// The same without pairs of names.
+    ///
+    /// # Errors
+    /// A name that nothing has.
+    pub fn ignoring(mut self, pairs: &[[String; 2]]) -> Result<Self, RobotError> {
+        for [a, b] in pairs {
+            for name in [a, b] {
+                if !self.names.contains(name) && self.robot.link(name).is_err() {
+                    let known = self.known().join(", ");
+                    return Err(RobotError::Unknown { name: name.clone(), known });
+                }
+            }
+            let before = self.pairs.len();
+            let names = &self.names;
+            let is_named = |x: usize, y: usize| names[x] == *a && names[y] == *b;
+            self.pairs.retain(|[x, y]| !is_named(*x, *y) && !is_named(*y, *x));
+            if self.pairs.len() == before {
+                self.notes.push(format!("{a} and {b} are not held against each other anyway"));
+            }
+        }
+        Ok(self)
+    }
+
+    /// The names of all links and of what stands around.
+    fn known(&self) -> Vec<&str> {
+        let links = self.robot.links().iter().map(|link| link.name.as_str());
+        let around = &self.names[self.names.len() - self.scene.len()..];
+        links.chain(around.iter().map(String::as_str)).collect()
+    }
+
+    /// The robot.
+    pub const fn robot(&self) -> &Robot {
+        &self.robot
+    }
+
+    /// The names of all bodies: of their links, then of the scene.
+    pub fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    /// The pairs of bodies that are held against each other.
+    pub fn pairs(&self) -> &[[usize; 2]] {
+        &self.pairs
+    }
+
+    /// What is not held against each other, as far as nobody asked for it.
+    pub fn notes(&self) -> &[String] {
+        &self.notes
+    }
+
+    /// The question about a path.
+    ///
+    /// # Errors
+    /// As of [`PathCast::new`] and of the gap.
+    pub fn along<'a>(&'a self, path: &'a JointPath, keep: f64) -> Result<PathCast<'a>, PathError> {
+        let links = self.robot.links().iter();
+        let carried = links.flat_map(|link| link.bodies.iter().map(|body| (link.frame, body)));
+        let carried =
+            carried.map(|(frame, body)| PathBody { frame, placed: body.at(Pose::IDENTITY) });
+        let scene = self.scene.iter().map(|body| PathBody::standing(body.at(Pose::IDENTITY)));
+        let bodies = carried.chain(scene).collect();
+        PathCast::new(self.robot.mechanism(), path, bodies, self.pairs.clone())?.keeping(keep)
+    }
+
+    /// What is wrong, with the names of bodies.
+    pub fn words(&self, error: &PathError) -> String {
+        match error {
+            PathError::Query { pair, reason } => {
+                let [a, b] = pair.map(|k| self.names[k].as_str());
+                format!("{a} and {b}: {reason}")
+            }
+            other => other.to_string(),
+        }
+    }
+}
+
+impl Things {
+    fn of(robot: &Robot, scene: Vec<String>) -> Self {
+        let links = robot.links();
+        let counts = links.iter().map(|link| link.bodies.len()).chain(scene.iter().map(|_| 1));
+        let bodies = counts.enumerate().flat_map(|(k, count)| std::iter::repeat_n(k, count));
+        let bodies = bodies.collect();
+        let names = links.iter().map(|link| link.name.clone()).chain(scene).collect();
+        Self { names, links: links.len(), bodies }
+    }
+
+    fn pairs(
+        &self,
+        robot: &Robot,
+        listed: Option<&[[String; 2]]>,
+        notes: &mut Vec<String>,
+    ) -> Result<Vec<[usize; 2]>, RobotError> {
+        let mut things = robot.pairs(listed)?;
+        if listed.is_none() {
+            let skipped = robot.pairs(Some(&[]))?.len() - things.len();
+            let pairs = if skipped == 1 { "pair of links" } else { "pairs of links" };
+            notes.push(format!(
+                "{skipped} {pairs} with one joint between them are not held against each other; an SRDF \
+                 file says which are not"
+            ));
+        }
+        let mut rests = false;
+        for link in 0..self.links {
+            let moves = robot.moving_between(link, None) > 0;
+            for mesh in self.links..self.names.len() {
+                if moves {
+                    things.push([link, mesh]);
+                }
+                rests |= !moves && !robot.links()[link].bodies.is_empty();
+            }
+        }
+        if rests {
+            notes.push("links that no joint moves are not held against the scene".into());
+        }
+        let own = |thing: usize| {
+            self.bodies.iter().enumerate().filter(move |(_, of)| **of == thing).map(|(k, _)| k)
+        };
+        Ok(things
+            .iter()
+            .flat_map(|[a, b]| own(*a).flat_map(move |x| own(*b).map(move |y| [x, y])))
+            .collect())
+    }
+}

@@ -34,14 +34,15 @@ const MODULES = {
   "colltrans-wasm-assembly": "page_assembly",
   "colltrans-wasm-distance": "page_distance",
   "colltrans-wasm-found": "page_found",
+  "colltrans-wasm-motion": "page_motion",
   "colltrans-wasm-picture": "page_picture",
 };
 
 if (!process.argv.includes("--no-wasm")) {
   const env = { ...process.env, ...found() };
-  // What is built at once has all features that one of them asks for: assemblies keep gaps, the page does not.
-  const assembly = "colltrans-wasm-assembly";
-  for (const names of [Object.keys(MODULES).filter((name) => name !== assembly), [assembly]]) {
+  // What is built at once has all features that one of them asks for: these keep gaps, the page's first one does not.
+  const keeping = ["colltrans-wasm-assembly", "colltrans-wasm-motion"];
+  for (const names of [Object.keys(MODULES).filter((name) => !keeping.includes(name)), keeping]) {
     const packages = names.flatMap((name) => ["-p", name, "--example", MODULES[name]]);
     execFileSync("cargo", ["build", "--profile", "page", ...packages, "--target", "wasm32-unknown-unknown"], {
       cwd: join(root, "crates/colltrans-wasm"),
@@ -65,7 +66,7 @@ cpSync(join(root, "docs/figures"), join(out, "figures"), { recursive: true });
 mkdirSync(join(out, "source"));
 for (const file of ["minimise.rs", "cell.rs", "region.rs"]) copyFileSync(join(root, "crates/colltrans/src/solve/cta", file), join(out, "source", file));
 await build({
-  entryPoints: ["main.ts", "worker.ts", "style.css"].map((file) => join(here, "src", file)),
+  entryPoints: ["main.ts", "worker.ts", "style.css", "tabs.css"].map((file) => join(here, "src", file)),
   bundle: true,
   minify: true,
   format: "esm",

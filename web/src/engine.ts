@@ -2,7 +2,7 @@
 
 import type {
   PageAdd, PageAlong, PageBody, PageCast, PageCertify, PageDistance, PageDraw, PageError, PageFit, PageLevels, PageLit, PageLoad,
-  PageMap, PageParts, PagePlace, PagePlan, PageSearch, PageVerify, Separation,
+  PageMap, PageMotion, PageParts, PagePlace, PagePlan, PageProve, PageSearch, PageVerify, Separation,
 } from "./answers";
 import type { Pose, Vec } from "./math";
 
@@ -26,6 +26,8 @@ interface Answers {
   draw: PageDraw;
   place: PagePlace;
   distance: PageDistance;
+  motion: PageMotion;
+  prove: PageProve;
 }
 
 /** A body as it is drawn, in its own frame. */
@@ -121,7 +123,7 @@ export class Engine {
   private next = 1;
 
   /** The worker starts at once: the library is read while the page is still being made. */
-  constructor(private readonly library: "colltrans" | "colltrans_assembly" | "colltrans_distance" | "colltrans_found" | "colltrans_picture" = "colltrans") {
+  constructor(private readonly library: "colltrans" | "colltrans_assembly" | "colltrans_distance" | "colltrans_found" | "colltrans_motion" | "colltrans_picture" = "colltrans") {
     this.running();
   }
 

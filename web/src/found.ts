@@ -122,10 +122,7 @@ export class Found {
     this.element.hidden = !visible;
     if (opened && this.stale) void this.refresh();
     if (visible) this.draw();
-    else {
-      this.player.stop();
-      this.around.view.clearExtra();
-    }
+    else this.player.stop();
   }
 
   private bodies(): [Drawn, Drawn] | undefined {

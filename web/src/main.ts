@@ -17,14 +17,14 @@ import type { Near, Nearness } from "./near";
 import { AnswerPanel, type Picture, type Refusal, type Shown } from "./panel";
 import type { Source } from "./placing";
 import { Shadow } from "./shadow";
-import { type State, type Tab, fromExample, fromHash, toHash } from "./state";
-import { Timeline } from "./time";
+import { type State, TABS, type Tab, fromExample, fromHash, toHash } from "./state";
+import { Timeline, times } from "./time";
+import type { Turning } from "./turning";
 import { View } from "./view";
 import { type Bodies, drawn, forget } from "./view/body";
 import { drawable } from "./view/framing";
 import type { Tool } from "./view/handles";
 
-const TABS: Tab[] = ["answer", "found", "assembly"];
 /** Up to so many triangles of both bodies together. */
 const PROVED_SOON = 20_000;
 /** The example that is an assembly. */
@@ -53,8 +53,11 @@ class Page {
   private readonly panel: AnswerPanel;
   /** Read when their tabs are opened. */
   private found: Found | undefined;
+  private turning: Turning | undefined;
   private assembly: AssemblyTab | undefined;
   private readonly opening = new Set<Tab>();
+  /** What the view shows more belongs to a tab. */
+  private extras: Tab = "answer";
   private readonly time: Timeline;
   /** The question that was answered last, and the one before, about the same bodies. */
   private last: Pair | undefined;
@@ -65,6 +68,7 @@ class Page {
   private nearness: Near | undefined;
   private near: Nearness | undefined;
   private nearButton: HTMLElement | undefined;
+  private along: HTMLElement | undefined;
   private nearing = false;
   private nearAgain = false;
   private readonly sources: Partial<Record<Slot, Source>> = {};
@@ -91,7 +95,7 @@ class Page {
       save: (how) => void this.save(how),
     });
     named("panel").append(this.panel.element);
-    this.time = new Timeline(named("time"), (t) => this.change((state) => (state.t = t), false));
+    this.time = new Timeline(named("time"), (t) => this.change((state) => (state.tab === "motion" ? (state.motion.time = t) : (state.t = t)), false));
     this.controls();
     this.drops();
   }
@@ -113,10 +117,18 @@ class Page {
   /** Reads what a tab needs. */
   private async openTab(tab: Tab) {
     const { view } = this;
-    if (this.opening.has(tab) || (tab === "found" && !view)) return;
+    if (this.opening.has(tab) || (tab !== "assembly" && !view)) return;
     this.opening.add(tab);
     try {
-      if (tab === "found") {
+      await tabStyles();
+      if (tab === "motion") {
+        const { Turning } = await import("./turning");
+        this.turning = new Turning({
+          view: view!, sources: () => this.sources, change: (change) => this.change(change, false), shown: () => this.show(),
+          begin: (name, change) => this.begin(name, change), copy: (text, what) => void this.copy(text, what),
+        });
+        named("panel").prepend(this.turning.element);
+      } else if (tab === "found") {
         const { Found } = await import("./found");
         this.found = new Found({
           view: view!, pair: () => this.pair(), before: () => this.before, sources: () => this.sources, example: (name) => this.begin(name),
@@ -154,7 +166,8 @@ class Page {
   }
 
   private fit(along = false) {
-    this.view?.fit(this.state, this.answer, along);
+    if (this.state.tab === "motion" && this.turning) this.turning.fit(along);
+    else this.view?.fit(this.state, this.answer, along);
   }
 
   // --- what is asked
@@ -428,12 +441,17 @@ class Page {
     const shown: Shown = { state, answer, error: this.error, took: this.took, bodies: this.bodies, refusals: this.refusals, solidProof: this.solidProof, near: this.near, verdict: this.verdict };
     this.panel.show(shown);
     if (state.tab !== "answer") void this.openTab(state.tab);
+    if (this.extras !== state.tab) view?.clearExtra();
+    this.extras = state.tab;
     this.found?.show(state, state.tab === "found");
-    this.time.show(state, answer, this.pass());
-    view?.setPlain(state.tab === "found");
+    if (state.tab !== "motion") this.time.show(times(state, answer, this.pass()));
+    view?.setLook(state.tab === "found" ? "ghosts" : state.tab === "motion" ? "fixed" : "answer");
     view?.setNear(this.near);
     this.nearButton?.setAttribute("aria-pressed", String(state.near));
+    if (this.along) this.along.textContent = state.tab === "motion" ? "Along axis" : "Along d";
     view?.show(state, answer);
+    const turned = this.turning?.show(state, state.tab === "motion");
+    if (turned) this.time.show(turned);
     const seen = moving && fixed && drawable(state, answer, moving, fixed);
     named("inset").hidden = !seen || state.tab !== "answer";
     if (seen) this.shadow.show(state, { moving, fixed }, answer);
@@ -484,9 +502,10 @@ class Page {
   }
 
   /** An example is asked about, from its beginning. */
-  private async begin(example: string) {
+  private async begin(example: string, change: (state: State) => void = () => {}) {
     const tab = this.state.tab === "assembly" ? "answer" : this.state.tab;
     this.state = { ...fromExample(example), tab, near: this.state.near, assembly: this.state.assembly };
+    change(this.state);
     await this.loadBoth();
     this.fit();
     this.remember();
@@ -543,14 +562,14 @@ class Page {
       tools.forEach(([, , element], other) => element.setAttribute("aria-pressed", String(other === k)));
       who.textContent = this.held;
       who.hidden = this.tool === "look";
-      view.setTool(this.tool, this.held);
+      void view.setTool(this.tool, this.held);
     };
     named("tools").append(
       h("div", { class: "group" }, ...tools.map(([, , element]) => element), who),
       h("div", { class: "group" },
         button("Fit", "Everything into the picture", () => this.fit()),
-        button("Along d", "Look along the direction", () => this.fit(true))),
-      h("div", { class: "group" }, this.nearButton),
+        (this.along = button("Along d", "Look along the direction, or the axis", () => this.fit(true)))),
+      h("div", { class: "group near" }, this.nearButton),
     );
     pick(0);
     addEventListener("keydown", (event) => {
@@ -623,9 +642,20 @@ class Page {
 
   /** For tests. */
   probe() {
-    return { assembly: this.assembly?.probe(), found: this.found?.probe(), engine: this.engine, view: this.view, state: this.state, answer: this.answer, near: this.near?.told, firstAnswer: this.firstAnswer };
+    return { assembly: this.assembly?.probe(), turning: this.turning?.probe(), found: this.found?.probe(), engine: this.engine, view: this.view, state: this.state, answer: this.answer, near: this.near?.told, firstAnswer: this.firstAnswer };
   }
 }
+
+let styled: Promise<void> | undefined;
+
+/** What other tabs look like: read with the first of them. */
+const tabStyles = () => (styled ??= new Promise((resolve, reject) => {
+  const link = h("link", { rel: "stylesheet", href: "tabs.css", onload: () => resolve(), onerror: () => {
+    styled = undefined;
+    reject(new Error("tabs.css"));
+  } });
+  document.head.append(link);
+}));
 
 function toast(text: string) {
   const shown = h("div", { class: "toast", role: "status" }, text);

@@ -1,8 +1,9 @@
 // What is said and what can be set, beside the view.
 
 import { h, refill, svg } from "./dom";
-import type { Certificate, PageCast, PageCertify, PageClaims, PageConvex, PageSolid } from "./answers";
-import { MOST_MIB, type Slot, type Start, type Take, plane } from "./engine";
+import type { Certificate, PageCast, PageCertify, PageConvex } from "./answers";
+import { MOST_MIB, type Slot, type Start, type Take } from "./engine";
+import { numberField } from "./field";
 import { names } from "./formats";
 import { type Vec, length, short } from "./math";
 import type { Nearness } from "./near";
@@ -104,11 +105,13 @@ export class AnswerPanel {
       h("label", { style: "display: flex; gap: 8px; align-items: center; margin-top: 8px" }, this.ignore, "What overlaps at the start does not block"),
     );
     this.proofCard = this.card("Proof", true, this.proof, h("div", { class: "row" }, this.check, this.verdict));
+    const bodies = this.card("Bodies", true, this.parts);
+    bodies.classList.add("bodies");
     this.element.append(
       this.said,
       h("section", { class: "card" }, this.facts),
       this.proofCard,
-      this.card("Bodies", true, this.parts),
+      bodies,
       this.card("Question", true, this.question()),
       this.card("Share", false, this.share()),
     );
@@ -122,26 +125,11 @@ export class AnswerPanel {
     name: string, read: (state: State) => number | null,
     write: (state: State, x: number) => void, empty?: (state: State) => void,
   ): HTMLInputElement {
-    const input = h("input", { type: "number", step: "any", "aria-label": name, inputmode: "decimal" });
-    input.addEventListener("input", () => {
-      if (input.value === "") {
-        if (empty) this.act.change(empty);
-        return;
-      }
-      const x = input.valueAsNumber;
-      if (Number.isFinite(x)) this.act.change((state) => write(state, x));
+    const input = numberField(name, (x) => {
+      if (x !== undefined) this.act.change((state) => write(state, x));
+      else if (empty) this.act.change(empty);
     });
     input.addEventListener("blur", () => this.now && this.show(this.now));
-    // Arrow keys move by a step that fits the number.
-    input.addEventListener("keydown", (event) => {
-      if (event.key !== "ArrowUp" && event.key !== "ArrowDown") return;
-      event.preventDefault();
-      const x = input.valueAsNumber || 0;
-      const step = 10 ** Math.max(-3, Math.floor(Math.log10(Math.abs(x) || 1)) - 1) * (event.shiftKey ? 10 : 1);
-      const next = Number((x + (event.key === "ArrowUp" ? step : -step)).toPrecision(12));
-      input.value = String(next);
-      this.act.change((state) => write(state, next));
-    });
     this.fields.push({ input, read });
     return input;
   }
@@ -288,7 +276,10 @@ export class AnswerPanel {
     if (!this.fresh("proof", [answer, verdict, shown.solidProof?.claims])) return;
     this.verdict.className = verdict ? `verdict ${verdict.holds ? "yes" : "no"}` : "";
     this.verdict.textContent = verdict?.text ?? "";
-    refill(this.proof, ...(answer.kind === "solid" ? solidProof(answer, shown) : convexProof(answer.proof)));
+    if (answer.kind === "convex") return refill(this.proof, ...convexProof(answer.proof));
+    void import("./proofs").then(({ solidProof }) => {
+      if (this.now?.answer === answer) refill(this.proof, ...solidProof(answer, this.now, bounds));
+    });
   }
 }
 
@@ -305,35 +296,6 @@ function convexProof(of: PageConvex["proof"]): Element[] {
       upper ? h("b", {}, upper) : null,
       upper ? `. The gap of ${short(proof.upper! - proof.lower, 2)} is rounding.` : ""),
   ];
-}
-
-/** The proof between solids: what stops the body, and why none of all pairs of facets does before. */
-function solidProof(answer: PageSolid, { solidProof: proof, bodies }: Shown): Element[] {
-  const text = (...children: (string | HTMLElement)[]) => h("p", { class: "proof" }, ...children);
-  const shorter = plane(answer)?.margin ? [text("A plane along d lies between the bodies: a shorter proof, which is checked too.")] : [];
-  if (!proof) return [text("A list of claims that covers all pairs of facets; it is made when it is asked for."), ...shorter];
-  const pairs = (bodies.moving?.body.facts.triangles ?? 0) * (bodies.fixed?.body.facts.triangles ?? 0);
-  const all = `all ${pairs.toLocaleString("en")} pairs of triangles`;
-  const { stop, start, lower, tolerance } = proof.proof.clearance;
-  if (start !== "assumed" && !("apart" in start)) {
-    const how = "facets" in start ? `around triangles ${start.facets.join(" and ")}`
-      : `a shell of the ${"moving_inside" in start ? "moving" : "fixed"} body lies inside the other`;
-    return [text(`They overlap where they are: ${how}.`), ...(proof.claims.length ? [text(`Claims about ${all}:`), table(proof.claims, pairs)] : [])];
-  }
-  return [
-    ...(stop ? [bounds({ lower: lower ?? 0, upper: stop.distance, rounding: Math.abs(stop.distance - (lower ?? 0)) })] : []),
-    text(`Of ${all} none stops the moving body ${lower === null ? "ever" : "before "}`, ...(lower === null ? [] : [h("b", {}, String(lower))]),
-      ...(stop ? [`; triangles ${stop.triangles.join(" and ")} do at `, h("b", {}, String(stop.distance))] : []), tolerance ? `, both bodies being shrunk by half of ${short(tolerance, 3)}.` : "."),
-    table(proof.claims, pairs),
-    ...(proof.start_claims ? [text("That they do not overlap where they are:"), table(proof.start_claims, pairs)] : []),
-    ...shorter,
-  ];
-}
-
-function table(claims: PageClaims[], pairs: number): HTMLElement {
-  return h("dl", { class: "claims" }, ...claims.flatMap(({ because, given, pairs: of }) => [
-    h("dt", {}, because), h("dd", {}, `${given.toLocaleString("en")} claim${given === 1 ? "" : "s"}, ${short((100 * of) / (pairs || 1), 3)} %`),
-  ]));
 }
 
 /** Both bounds on a line that shows nothing but the gap, and what rounding alone can make of it. */

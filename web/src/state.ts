@@ -5,7 +5,16 @@ import { EXAMPLES, FIRST, type Part } from "./examples";
 import type { Pose, Vec } from "./math";
 
 export type Solver = "auto" | "cta" | "portal";
-export type Tab = "answer" | "found" | "assembly";
+export type Tab = "answer" | "motion" | "found" | "assembly";
+
+/** A turn about an axis through a point, and a way along it meanwhile: a hinge where there is none. */
+export interface Screw {
+  point: Vec;
+  axis: Vec;
+  /** Degrees. */
+  angle: number;
+  rise: number;
+}
 
 export interface State {
   /** Files of `data/`, or names of files that somebody dropped. */
@@ -25,6 +34,14 @@ export interface State {
   /** Where the moving body is shown, in multiples of the direction; `null`: at its start. */
   t: number | null;
   tab: Tab;
+  motion: {
+    /** `null`: one that the page thinks of. */
+    screw: Screw | null;
+    /** A gap to be kept. */
+    keep: number;
+    /** From 0 to 1, where the moving body is shown. */
+    time: number;
+  };
   assembly: {
     direction: Vec;
     /** `null`: from the size of the parts. */
@@ -50,13 +67,14 @@ export function fromExample(name: string): State {
     near: false,
     t: null,
     tab: "answer",
+    motion: { screw: null, keep: 0, time: 0 },
     assembly: { direction: [0, 0, 1], tolerance: null, ignore: false, part: null },
   };
 }
 
 const TAKES: Take[] = ["convex", "hull", "solid", "open"];
 const SOLVERS: Solver[] = ["auto", "cta", "portal"];
-const TABS: Tab[] = ["answer", "found", "assembly"];
+export const TABS: Tab[] = ["answer", "motion", "found", "assembly"];
 
 /** The state as text for an address. Numbers are written so that the same bits are read. */
 export function toHash(state: State): string {
@@ -75,10 +93,19 @@ export function toHash(state: State): string {
     ["near", state.near ? "1" : undefined],
     ["t", state.t === null ? undefined : String(state.t)],
     ["tab", state.tab === "answer" ? undefined : state.tab],
+    ...(state.tab === "motion" ? motionFields(state) : []),
     ...(state.tab === "assembly" ? assemblyFields(state) : []),
   ];
   const given = fields.filter((field): field is [string, string] => field[1] !== undefined);
   return `#${given.map(([key, value]) => `${key}=${encodeURIComponent(value).replace(/%(2C|3A|2F)/g, decodeURIComponent)}`).join("&")}`;
+}
+
+function motionFields({ motion: { screw, keep, time } }: State): [string, string | undefined][] {
+  return [
+    ["screw", screw ? [screw.point, screw.axis, screw.angle, screw.rise].join() : undefined],
+    ["keep", keep ? String(keep) : undefined],
+    ["time", time ? String(time) : undefined],
+  ];
 }
 
 function assemblyFields({ assembly: { direction, tolerance, ignore, part } }: State): [string, string | undefined][] {
@@ -118,7 +145,11 @@ export function fromHash(hash: string): State {
   state.near = fields.get("near") === "1";
   state.t = numbers("t", 1)?.[0] ?? null;
   state.tab = TABS.find((tab) => tab === fields.get("tab")) ?? "answer";
-  const { assembly } = state;
+  const { assembly, motion } = state;
+  const [x, y, z, a, b, c, angle, rise] = numbers("screw", 8) ?? [];
+  if (rise !== undefined) motion.screw = { point: [x!, y!, z!], axis: [a!, b!, c!], angle: angle!, rise };
+  motion.keep = Math.max(0, numbers("keep", 1)?.[0] ?? 0);
+  motion.time = Math.min(1, Math.max(0, numbers("time", 1)?.[0] ?? 0));
   assembly.direction = (numbers("ad", 3) as Vec) ?? assembly.direction;
   assembly.tolerance = numbers("atol", 1)?.[0] ?? null;
   assembly.ignore = fields.get("aignore") === "1";

@@ -1,9 +1,33 @@
-// The slider along `t`: from the start over the first contact to the last.
+// The slider along a way: from the start over the first contact to the last, or to the end of a motion.
 
 import { h, refill } from "./dom";
 import type { PageCast } from "./answers";
 import { short } from "./math";
 import type { State } from "./state";
+
+/** What is shown of a way. */
+export interface Times {
+  range: [number, number];
+  at: number;
+  text: string;
+  marks: { t: number; text: string; kind: "low" | "stop" }[];
+  /** While they overlap. */
+  span?: [number, number] | undefined;
+}
+
+/** Of a translation; `pass` is where the bodies have passed each other. */
+export function times(state: State, answer: PageCast | undefined, pass: number): Times {
+  const { translation: first, exit, outcome } = answer?.record ?? {};
+  const ends = [0, first ?? pass, exit ?? first ?? pass];
+  const [low, high] = [Math.min(...ends), Math.max(...ends)];
+  const more = (high - low || 1) * 0.06;
+  const at = state.t ?? 0;
+  const marks: Times["marks"] = [{ t: 0, text: "start", kind: "low" }];
+  if (first !== undefined) marks.push({ t: first, text: outcome === "grazing" ? "touches" : "first contact", kind: "stop" });
+  const span: Times["span"] = first !== undefined && exit !== undefined && exit > first ? [first, exit] : undefined;
+  if (span) marks.push({ t: span[1], text: answer?.kind === "solid" ? "out" : "last contact", kind: "low" });
+  return { range: [low < 0 ? low - more : low, high + more], at, text: `t = ${short(at, 5)}`, marks, span };
+}
 
 export class Timeline {
   private readonly slider = h("input", { type: "range", step: "any", "aria-label": "Where the moving body is shown, along t" });
@@ -13,7 +37,7 @@ export class Timeline {
   private range: [number, number] = [0, 1];
   private running = 0;
 
-  constructor(host: HTMLElement, private readonly move: (t: number | null) => void) {
+  constructor(host: HTMLElement, private readonly move: (t: number) => void) {
     host.append(this.play, h("div", { class: "track" }, this.marks, this.slider), this.value);
     this.slider.addEventListener("input", () => {
       this.stop();
@@ -22,33 +46,20 @@ export class Timeline {
     this.play.addEventListener("click", () => (this.running ? this.stop() : this.start()));
   }
 
-  show(state: State, answer: PageCast | undefined, pass: number) {
-    const { translation: first, exit, outcome } = answer?.record ?? {};
-    const ends = [0, first ?? pass, exit ?? first ?? pass];
-    const [low, high] = [Math.min(...ends), Math.max(...ends)];
-    const more = (high - low || 1) * 0.06;
-    this.range = [low < 0 ? low - more : low, high + more];
-    this.slider.min = String(this.range[0]);
-    this.slider.max = String(this.range[1]);
-    const t = state.t ?? 0;
-    this.slider.value = String(t);
-    this.value.textContent = `t = ${short(t, 5)}`;
+  show({ range, at, text, marks, span }: Times) {
+    const [low, high] = (this.range = range);
+    this.slider.min = String(low);
+    this.slider.max = String(high);
+    this.slider.value = String(at);
+    this.value.textContent = text;
     // A thumb's width lies outside of the way of its middle.
-    const place = (t: number) => {
-      const share = (t - this.range[0]) / (this.range[1] - this.range[0]);
-      return `calc(8px + (100% - 16px) * ${share.toFixed(5)})`;
-    };
-    const mark = (t: number, text: string, kind = "") => [
-      h("button", { class: kind, style: `left: ${place(t)}`, onclick: () => this.jump(t) }, text),
-      h("i", { class: kind, style: `left: ${place(t)}` }),
-    ];
-    const parts = [...mark(0, "start", "low")];
-    if (first !== undefined) parts.push(...mark(first, outcome === "grazing" ? "touches" : "first contact", "stop"));
-    if (first !== undefined && exit !== undefined && exit > first) {
-      parts.push(...mark(exit, answer?.kind === "solid" ? "out" : "last contact", "low"));
-      parts.push(h("b", { style: `left: ${place(first)}; right: calc(100% - ${place(exit)})` }));
-    }
-    refill(this.marks, ...parts);
+    const place = (t: number) => `calc(8px + (100% - 16px) * ${((t - low) / (high - low)).toFixed(5)})`;
+    refill(this.marks,
+      ...marks.flatMap(({ t, text, kind }) => [
+        h("button", { class: kind, style: `left: ${place(t)}`, onclick: () => this.jump(t) }, text),
+        h("i", { class: kind, style: `left: ${place(t)}` }),
+      ]),
+      span && h("b", { style: `left: ${place(span[0])}; right: calc(100% - ${place(span[1])})` }));
   }
 
   private jump(t: number) {

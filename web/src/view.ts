@@ -18,34 +18,43 @@ import type { State } from "./state";
 import { type Arrow, arrow } from "./view/arrow";
 import { type Bodies, type Drawn, matrixOf, placedBody } from "./view/body";
 import { contact, gap } from "./view/contact";
-import { bestSide, distance, drawable, extent } from "./view/framing";
+import { type Ball, bestSide, distance, drawable, extent, seen } from "./view/framing";
 import { Ground } from "./view/ground";
-import { Handles, type Tool } from "./view/handles";
+import type { Handles, Tool } from "./view/handles";
 import { Overlay } from "./view/overlay";
 import { type Frame, type Label, clear, inPicture } from "./view/shapes";
+
+/** All of an answer; bodies to look through, and what others add; the fixed body, and what others add. */
+export type Look = "answer" | "ghosts" | "fixed";
 
 export class View {
   readonly scene = new Scene();
   readonly camera = new PerspectiveCamera(32, 1, 0.01, 1e4);
   readonly renderer: WebGLRenderer;
   private readonly orbit: OrbitControls;
-  private readonly handles: Handles;
+  /** Read when a tool is first taken. */
+  private handles: Handles | undefined;
+  private reading: Promise<void> | undefined;
+  private tool: [Tool, Slot] = ["look", "moving"];
   private readonly overlay: Overlay;
   private readonly ground = new Ground();
   /** Made anew with every answer. */
   private readonly shown = new Group();
   /** What another part of the page adds. */
   readonly extra = new Group();
-  private readonly frame: Frame = { origin: [0, 0, 0], size: 1, colours: palette() };
+  readonly frame: Frame = { origin: [0, 0, 0], size: 1, colours: palette() };
   private state: State | undefined;
   private answer: PageCast | undefined;
   private arrow: Arrow | undefined;
   private labels: Label[] = [];
-  private plain = false;
+  private look: Look = "answer";
+  /** Words that another part of the page adds. */
+  extraLabels: Label[] = [];
   private near: Nearness | undefined;
   private fitted = false;
 
   onDirection: (direction: Vec, done: boolean) => void = () => {};
+  onPose: (slot: Slot, pose: Pose, done: boolean) => void = () => {};
 
   constructor(
     private readonly host: HTMLElement,
@@ -68,30 +77,34 @@ export class View {
     this.camera.add(sun, sun.target);
     sun.target.position.set(0, 0, -1);
     this.scene.add(this.camera, new AmbientLight(0xffffff, 1.25), this.shown, this.extra);
-    const { scene, camera, orbit, render } = this;
-    this.handles = new Handles({ scene, camera, canvas, orbit, render }, bodies, this.frame);
     this.arrowDrag(canvas);
     new ResizeObserver(() => this.resize()).observe(host);
     this.resize();
   }
 
   readonly render = soon(() => {
-    this.handles.beforeRender();
+    this.handles?.beforeRender();
     this.renderer.render(this.scene, this.camera);
-    this.overlay.place(this.camera, this.labels, this.plain ? "" : `grid ${Number(this.ground.step.toPrecision(3))}`);
+    this.overlay.place(this.camera, [...this.labels, ...this.extraLabels], this.look === "ghosts" ? "" : `grid ${Number(this.ground.step.toPrecision(3))}`);
   });
 
   bodyOf(slot: Slot): Drawn | undefined {
     return this.bodies[slot];
   }
 
-  set onPose(f: (slot: Slot, pose: Pose, done: boolean) => void) {
-    this.handles.onPose = f;
+  async setTool(tool: Tool, slot: Slot) {
+    this.tool = [tool, slot];
+    if (!this.handles && tool === "look") return;
+    await (this.reading ??= this.makeHandles());
+    // Another one may have been taken meanwhile.
+    this.handles?.set(...this.tool, this.state);
+    this.render();
   }
 
-  setTool(tool: Tool, slot: Slot) {
-    this.handles.set(tool, slot);
-    this.render();
+  private async makeHandles() {
+    const { Handles } = await import("./view/handles");
+    const { scene, camera, orbit, render, bodies, frame } = this;
+    this.handles = new Handles({ scene, camera, canvas: this.renderer.domElement, orbit, render }, bodies, frame, (...moved) => this.onPose(...moved));
   }
 
   /** How far the bodies are apart, as it is to be drawn. */
@@ -99,9 +112,13 @@ export class View {
     this.near = near;
   }
 
-  /** Only bodies and what others add; for the views of searches. */
-  setPlain(plain: boolean) {
-    this.plain = plain;
+  setLook(look: Look) {
+    this.look = look;
+  }
+
+  /** Whether dragging turns the view. */
+  set turns(on: boolean) {
+    this.orbit.enabled = on;
   }
 
   themeChanged() {
@@ -114,17 +131,22 @@ export class View {
     [this.state, this.answer] = [state, answer];
     const { moving, fixed } = this.bodies;
     if (!moving || !fixed || !drawable(state, answer, moving, fixed)) return;
-    this.fitted = true;
-    Object.assign(this.frame, extent(state, answer, moving, fixed));
-    const far = distance(this.frame.size, this.camera.fov, this.camera.aspect);
     const from: Vec = along ? times(unit(state.direction), -1) : bestSide(state.direction, answer);
+    this.aimAt(seen(state, answer, moving, fixed), from);
+    this.show(state, answer);
+  }
+
+  /** Balls into the picture, seen from a side. */
+  aimAt(balls: Ball[], from: Vec) {
+    this.fitted = true;
+    Object.assign(this.frame, extent(balls));
+    const far = distance(this.frame.size, this.camera.fov, this.camera.aspect);
     this.orbit.target.set(0, 0, 0);
     this.camera.position.set(...times(from, far));
     this.camera.near = far / 1e3;
     this.camera.far = far * 1e3;
     this.camera.updateProjectionMatrix();
     this.orbit.update();
-    this.show(state, answer);
   }
 
   show(state: State, answer: PageCast | undefined) {
@@ -137,11 +159,11 @@ export class View {
       // An address may have begun with what cannot be drawn.
       if (!this.fitted) return this.fit(state, answer);
     }
-    if (fixed) shown.add(placedBody(fixed, matrixOf(state.poses.fixed, fixed.middle, frame.origin), frame.colours.fixed, this.plain ? "ghost" : "solid", frame.colours));
-    if (moving) this.addMoving(moving, state, answer);
+    if (fixed) shown.add(placedBody(fixed, matrixOf(state.poses.fixed, fixed.middle, frame.origin), frame.colours.fixed, this.look === "ghosts" ? "ghost" : "solid", frame.colours));
+    if (moving && this.look !== "fixed") this.addMoving(moving, state, answer);
     shown.add(this.ground.grid(frame, this.bodies, state));
-    if (!this.plain && moving && fixed) this.addNotes(state, answer, moving, fixed);
-    this.handles.place(state);
+    if (this.look === "answer" && moving && fixed) this.addNotes(state, answer, moving, fixed);
+    this.handles?.place(state);
     this.render();
   }
 
@@ -152,7 +174,7 @@ export class View {
       const at = matrixOf(state.poses.moving, moving.middle, origin, times(state.direction, t));
       this.shown.add(placedBody(moving, at, colours.moving, how, colours));
     };
-    if (this.plain) return add(0, "ghost");
+    if (this.look === "ghosts") return add(0, "ghost");
     const t = state.t ?? 0;
     add(t, "solid");
     if (t !== 0) add(0, "outline");
@@ -202,6 +224,7 @@ export class View {
 
   clearExtra() {
     clear(this.extra, this.kept());
+    this.extraLabels = [];
   }
 
   /** Half the extent of what is shown. */

@@ -7,9 +7,9 @@ import { test } from "node:test";
 import { build } from "esbuild";
 
 const resolveDir = join(dirname(fileURLToPath(import.meta.url)), "../src");
-const contents = ["share", "programs", "state", "examples"].map((name) => `export * from "./${name}";`).join("");
+const contents = ["share", "programs", "state", "examples"].map((name) => `export * from "./${name}";`).join("") + `export { asCommand as turningCommand } from "./turning/share";`;
 const { outputFiles } = await build({ stdin: { contents, resolveDir, loader: "ts" }, bundle: true, format: "esm", write: false });
-const { EXAMPLES, asCommand, asPython, asRust, fromExample, fromHash, toHash } = await import(`data:text/javascript,${encodeURIComponent(outputFiles[0].text)}`);
+const { EXAMPLES, asCommand, asPython, asRust, fromExample, fromHash, toHash, turningCommand } = await import(`data:text/javascript,${encodeURIComponent(outputFiles[0].text)}`);
 
 test("an address leads back to the same bits", () => {
   for (const name of Object.keys(EXAMPLES)) assert.deepEqual(fromHash(toHash(fromExample(name))), fromExample(name));
@@ -30,6 +30,16 @@ test("the same question as a command line, or none where none asks the same", ()
   assert.match(asCommand(fromHash("#solver=cta&start=ellipsoids&until=0.2")), / --solver=cta --start=ellipsoids --until=0\.2$/);
   assert.match(asCommand(fromHash("#solver=cta&start=center&until=-1")), / --solver=cta$/);
   assert.equal(asCommand(fromHash("#m=bolt.stl:hull&f=plate.off:solid")), undefined);
+});
+
+test("a motion as an address and as a command line", () => {
+  const state = fromHash("#example=bracket&tab=motion&screw=1,2e-7,-3,0,-1,0.1,-120.5,4&keep=0.25&time=0.5&fp=0,0,1,0,0,0,1&tol=1e-3");
+  assert.deepEqual(state.motion, { screw: { point: [1, 2e-7, -3], axis: [0, -1, 0.1], angle: -120.5, rise: 4 }, keep: 0.25, time: 0.5 });
+  assert.deepEqual(fromHash(toHash(state)), state);
+  const asked = "colltrans motion dodecahedron.off bracket.obj --screw 1,2e-7,-3 0,-1,0.1 -120.5 4 --moving-pose=6,1,9,0.2,0.3,0.1,0.9273618495495703 --fixed-pose=0,0,1,0,0,0,1 --keep=0.25 --tolerance=0.001";
+  assert.equal(turningCommand(state, state.motion.screw), asked);
+  assert.match(turningCommand(fromHash("#m=x.off:hull&f=y.stl:open"), { point: [0, 0, 0], axis: [0, 0, 1], angle: 9, rise: 0 }), / --turn 0,0,0 0,0,1 9 .*--hull-moving .*--open$/);
+  for (const wrong of ["#screw=1,2,3", "#screw=1,2,3,4,5,6,7,x", "#keep=-1&time=-3"]) assert.deepEqual(fromHash(wrong), fromExample("bracket"));
 });
 
 test("and as programs", () => {

@@ -7,9 +7,10 @@ use serde_json::json;
 
 use crate::answer::{Answer, Refusal};
 use crate::body::Hull;
+use crate::lit::{Lit, Touching};
 use crate::pose::pose;
 use crate::question::Pair;
-use crate::record::{CastAnswer, Lit, Proof, Touching};
+use crate::record::{CastAnswer, Proof};
 
 /// The query that a question asks.
 pub(crate) fn query<'a>([moving, fixed]: [&'a Hull; 2], pair: &Pair) -> Result<Cast<'a>, Refusal> {

@@ -2,8 +2,10 @@
 
 use colltrans::record::Record;
 use colltrans::solid::SolidCertificate;
-use colltrans::{Certificate, FaceId, Feature, Separation, VertexId};
+use colltrans::{Certificate, Separation};
 use serde::{Deserialize, Serialize};
+
+use crate::lit::Touching;
 
 /// An answer to `cast`; fields that do not apply are left out.
 #[derive(Serialize)]
@@ -34,25 +36,4 @@ pub(crate) enum Proof {
     Separation(Separation),
     /// Between solids.
     Clearance(SolidCertificate),
-}
-
-#[derive(Serialize)]
-pub(crate) struct Touching {
-    pub(crate) moving: Lit,
-    pub(crate) fixed: Lit,
-}
-
-/// A feature by the numbers of the body as it is drawn.
-#[derive(Serialize)]
-pub(crate) struct Lit {
-    vertices: Vec<VertexId>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    face: Option<FaceId>,
-}
-
-impl Lit {
-    pub(crate) fn of<B: colltrans::Body>(feature: Feature, body: &B) -> Self {
-        let face = if let Feature::Face(face) = feature { Some(face) } else { None };
-        Self { vertices: feature.own_vertices(body), face }
-    }
 }

@@ -8,9 +8,10 @@ use glam::DVec3;
 
 use crate::answer::{Answer, Refusal};
 use crate::body::{Facets, Part};
+use crate::lit::{Lit, Touching};
 use crate::pose::pose;
 use crate::question::Pair;
-use crate::record::{CastAnswer, Lit, Proof, Touching};
+use crate::record::{CastAnswer, Proof};
 
 pub(crate) fn cast([moving, fixed]: [&Part; 2], pair: &Pair) -> Result<Answer, Refusal> {
     let (moving, fixed) = (moving.facets()?, fixed.facets()?);

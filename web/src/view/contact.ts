@@ -38,7 +38,7 @@ export function contact(frame: Frame, first: Touch, proof: PageCast["proof"], st
 }
 
 /** The supporting plane that proves the lower bound. */
-function disc(at: Vector3, normal: Vec, radius: number, colour: string): Object3D[] {
+export function disc(at: Vector3, normal: Vec, radius: number, colour: string): Object3D[] {
   const disc = new Mesh(new CircleGeometry(radius, 72), sheet(colour, 0.2));
   disc.position.copy(at);
   disc.quaternion.setFromUnitVectors(new Vector3(0, 0, 1), new Vector3(...normal));
@@ -63,7 +63,7 @@ function witness(frame: Frame, pairs: Certificate["pairs"], along: Vec, poses: P
 }
 
 /** The vertex, edge or face that touches. */
-function feature(kind: Feature["kind"], of: PageFeature, body: Drawn, matrix: Matrix4, colour: string, size: number): Group {
+export function feature(kind: Feature["kind"], of: PageFeature, body: Drawn, matrix: Matrix4, colour: string, size: number): Group {
   const group = new Group();
   group.matrixAutoUpdate = false;
   group.matrix.copy(matrix);

@@ -9,6 +9,9 @@ import type { Drawn } from "./body";
 /** Single precision, in which pictures are computed, holds no more. */
 const FAR = 1e30;
 
+/** A middle and a radius. */
+export type Ball = [Vec, number];
+
 /** Whether a picture can be made: numbers may be larger than it holds, until the library has refused them and
  * even where it answers. */
 export function drawable({ poses, direction }: State, answer: PageCast | undefined, moving: Drawn, fixed: Drawn): boolean {
@@ -16,15 +19,20 @@ export function drawable({ poses, direction }: State, answer: PageCast | undefin
   return [...poses.moving, ...poses.fixed, ...way, moving.radius, ...moving.middle, fixed.radius, ...fixed.middle].every((x) => Math.abs(x) < FAR);
 }
 
-/** The middle of the bodies, the moving one where it starts and where it stops, and half of their extent. */
-export function extent(state: State, answer: PageCast | undefined, moving: Drawn, fixed: Drawn): { origin: Vec; size: number } {
+/** Balls around what is seen: the bodies, the moving one where it starts and where it stops, the arrow. */
+export function seen(state: State, answer: PageCast | undefined, moving: Drawn, fixed: Drawn): Ball[] {
   const start = placed(state.poses.moving, moving.middle);
-  const balls: [Vec, number][] = [[start, moving.radius], [placed(state.poses.fixed, fixed.middle), fixed.radius]];
+  const balls: Ball[] = [[start, moving.radius], [placed(state.poses.fixed, fixed.middle), fixed.radius]];
   const t = answer?.record.translation;
   if (t !== undefined && t > 0) balls.push([add(start, times(state.direction, t)), moving.radius]);
   // The arrow's tip, which is a little farther out when all of it is in the picture.
   const reach = 1.1 * moving.radius + 0.2 * (moving.radius + fixed.radius);
   balls.push([add(start, times(unit(state.direction), reach)), 0]);
+  return balls;
+}
+
+/** The middle of balls, and half of their extent. */
+export function extent(balls: Ball[]): { origin: Vec; size: number } {
   let [low, high]: [Vec, Vec] = [[Infinity, Infinity, Infinity], [-Infinity, -Infinity, -Infinity]];
   for (const [at, r] of balls) {
     low = low.map((x, k) => Math.min(x, at[k]! - r)) as Vec;

@@ -2,7 +2,7 @@
 
 import { Object3D, type PerspectiveCamera, type Scene } from "three";
 import type { OrbitControls } from "three/addons/controls/OrbitControls.js";
-import type { TransformControls } from "three/addons/controls/TransformControls.js";
+import { TransformControls } from "three/addons/controls/TransformControls.js";
 import type { Slot } from "../engine";
 import { type Pose, type Vec, add, sub, turned } from "../math";
 import type { State } from "../state";
@@ -20,51 +20,17 @@ interface Stage {
 }
 
 export class Handles {
-  onPose: (slot: Slot, pose: Pose, done: boolean) => void = () => {};
-  private gizmo: Promise<TransformControls> | undefined;
-  private controls: TransformControls | undefined;
+  private readonly gizmo: TransformControls;
   /** Stands for the middle of the body. */
   private readonly handle = new Object3D();
   private tool: Tool = "look";
   private held: Slot = "moving";
   private state: State | undefined;
 
-  constructor(private readonly stage: Stage, private readonly bodies: Bodies, private readonly frame: Frame) {
-    stage.scene.add(this.handle);
-  }
-
-  set(tool: Tool, slot: Slot) {
-    [this.tool, this.held] = [tool, slot];
-    this.controls?.detach();
-    if (tool !== "look") void this.attach();
-    this.place(this.state);
-  }
-
-  /** Puts them to where the body is. */
-  place(state: State | undefined) {
-    this.state = state;
-    const body = this.bodies[this.held];
-    if (!state || !body || this.controls?.dragging) return;
-    const matrix = matrixOf(state.poses[this.held], body.middle, this.frame.origin);
-    matrix.decompose(this.handle.position, this.handle.quaternion, this.handle.scale);
-  }
-
-  beforeRender() {
-    this.controls?.getHelper().updateMatrixWorld();
-  }
-
-  private async attach() {
-    this.gizmo ??= this.make();
-    const gizmo = await this.gizmo;
-    if (this.tool === "look" || !this.bodies[this.held]) return;
-    gizmo.setMode(this.tool === "move" ? "translate" : "rotate");
-    gizmo.attach(this.handle);
-    this.stage.render();
-  }
-
-  private async make(): Promise<TransformControls> {
-    const { scene, camera, canvas, orbit, render } = this.stage;
-    const { TransformControls } = await import("three/addons/controls/TransformControls.js");
+  constructor(
+    { scene, camera, canvas, orbit, render }: Stage, private readonly bodies: Bodies, private readonly frame: Frame,
+    private readonly onPose: (slot: Slot, pose: Pose, done: boolean) => void,
+  ) {
     const gizmo = new TransformControls(camera, canvas);
     gizmo.size = 0.8;
     gizmo.addEventListener("change", render);
@@ -73,9 +39,31 @@ export class Handles {
       if (!event.value) this.moved(true);
     });
     gizmo.addEventListener("objectChange", () => this.moved(false));
-    scene.add(gizmo.getHelper());
-    this.controls = gizmo;
-    return gizmo;
+    scene.add(this.handle, gizmo.getHelper());
+    this.gizmo = gizmo;
+  }
+
+  set(tool: Tool, slot: Slot, state: State | undefined) {
+    [this.tool, this.held] = [tool, slot];
+    this.gizmo.detach();
+    if (tool !== "look" && this.bodies[slot]) {
+      this.gizmo.setMode(tool === "move" ? "translate" : "rotate");
+      this.gizmo.attach(this.handle);
+    }
+    this.place(state);
+  }
+
+  /** Puts them to where the body is. */
+  place(state: State | undefined) {
+    this.state = state;
+    const body = this.bodies[this.held];
+    if (!state || !body || this.gizmo.dragging) return;
+    const matrix = matrixOf(state.poses[this.held], body.middle, this.frame.origin);
+    matrix.decompose(this.handle.position, this.handle.quaternion, this.handle.scale);
+  }
+
+  beforeRender() {
+    this.gizmo.getHelper().updateMatrixWorld();
   }
 
   private moved(done: boolean) {

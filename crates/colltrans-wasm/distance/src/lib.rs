@@ -8,6 +8,7 @@
 mod answer;
 #[path = "../../src/exports.rs"]
 mod exports;
+mod placing;
 #[path = "../../src/pose.rs"]
 mod pose;
 mod state;

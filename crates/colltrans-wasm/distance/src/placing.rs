@@ -1,0 +1,77 @@
+//! Two bodies of files, made as [`colltrans_mesh::body`] makes them for the page's library; motions have the
+//! same.
+
+use std::path::Path;
+
+use colltrans::solid::AsSolid;
+use colltrans::{ConvexPolyhedron, QueryError, Solid};
+use colltrans_mesh::body::{self, BodyOptions, Loaded, Refused};
+use colltrans_mesh::{Format, Mesh};
+use serde::Deserialize;
+use serde_json::json;
+
+use crate::answer::Answer;
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Slot {
+    Moving,
+    Fixed,
+}
+
+/// Two bodies, as files made them.
+#[derive(Debug, Default)]
+pub(crate) struct Places([Option<Part>; 2]);
+
+#[derive(Debug)]
+pub(crate) enum Part {
+    Convex(Loaded<ConvexPolyhedron>),
+    Solid(Loaded<Solid>),
+}
+
+impl Part {
+    fn of(mesh: &Mesh, take: &str) -> Result<Self, String> {
+        let options = BodyOptions::default().with_hull(take == "hull").with_open(take == "open");
+        let words = |error: Refused| error.to_string();
+        match take {
+            "convex" | "hull" => body::convex(mesh, &options).map(Self::Convex).map_err(words),
+            "solid" | "open" => body::solid(mesh, &options).map(Self::Solid).map_err(words),
+            other => Err(format!("a mesh cannot be taken as {other}")),
+        }
+    }
+
+    /// As a solid, whatever it was taken as.
+    pub(crate) fn solid(&self) -> Result<&Solid, QueryError> {
+        Ok(match self {
+            Self::Convex(of) => of.body.as_solid()?,
+            Self::Solid(of) => &of.body,
+        })
+    }
+}
+
+impl Places {
+    /// A file becomes a body, in the place of the one that was there.
+    pub(crate) fn place(
+        &mut self,
+        slot: Slot,
+        name: &str,
+        take: &str,
+        file: Vec<u8>,
+    ) -> Result<Answer, String> {
+        let body = &mut self.0[slot as usize];
+        *body = None;
+        let path = Path::new(name);
+        let format = Format::of_path(path).map_err(|error| error.to_string())?;
+        let mesh = colltrans_mesh::parse(format, file, path).map_err(|error| error.to_string())?;
+        *body = Some(Part::of(&mesh, take)?);
+        Ok(Answer::of(&json!({ "placed": true })))
+    }
+
+    /// Both of them.
+    pub(crate) fn both(&self) -> Result<[&Part; 2], String> {
+        match &self.0 {
+            [Some(moving), Some(fixed)] => Ok([moving, fixed]),
+            _ => Err("two bodies are needed".into()),
+        }
+    }
+}

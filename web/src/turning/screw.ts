@@ -1,0 +1,50 @@
+// A screw as a function of time, as pictures need it, and one to begin with. Answers are the library's.
+
+import { type Pose, type Vec, add, cross, length, placed, sub, times, turned, unit } from "../math";
+import type { Screw } from "../state";
+import type { Drawn } from "../view/body";
+
+export const RADIANS = Math.PI / 180;
+
+/** A point, carried by a screw to a time; an axis without a direction moves nothing. */
+export function carried({ point, axis, angle, rise }: Screw, v: Vec, time: number): Vec {
+  if (!length(axis)) return v;
+  const turn = rotation(axis, angle * time);
+  return add(add(point, turned(turn, sub(v, point))), times(unit(axis), rise * time));
+}
+
+/** The pose of a body that begins with one. */
+export function poseAt(screw: Screw, start: Pose, time: number): Pose {
+  const at = carried(screw, [start[0], start[1], start[2]], time);
+  if (!length(screw.axis)) return start;
+  const [, , , ax, ay, az, aw] = rotation(screw.axis, screw.angle * time);
+  const [, , , bx, by, bz, bw] = start;
+  return [
+    ...at,
+    aw * bx + ax * bw + ay * bz - az * by,
+    aw * by - ax * bz + ay * bw + az * bx,
+    aw * bz + ax * by - ay * bx + az * bw,
+    aw * bw - ax * bx - ay * by - az * bz,
+  ];
+}
+
+function rotation(axis: Vec, degrees: number): Pose {
+  const half = (degrees * RADIANS) / 2;
+  return [0, 0, 0, ...times(unit(axis), Math.sin(half)), Math.cos(half)];
+}
+
+/** A hinge about which the moving body swings to where the fixed one is, and on. */
+export function hinge(poses: { moving: Pose; fixed: Pose }, moving: Drawn, fixed: Drawn): Screw {
+  const [from, to] = [placed(poses.moving, moving.middle), placed(poses.fixed, fixed.middle)];
+  const way = sub(to, from);
+  const size = moving.radius + fixed.radius;
+  const fine = 10 ** Math.ceil(1.5 - Math.log10(size));
+  const round = (v: Vec) => v.map((x) => Math.round(x * fine) / fine || 0) as Vec;
+  if (length(way) < 1e-3 * size) return { point: round(from), axis: [0, 0, 1], angle: 90, rise: 0 };
+  // Level, across the way; a quarter of a turn brings the middles together.
+  const d = unit(way);
+  const axis: Vec = Math.hypot(d[0], d[1]) > 0.1 ? unit(cross(d, [0, 0, 1])) : [0, 1, 0];
+  const level = axis.map((x) => Math.round(x * 1e4) / 1e4 || 0) as Vec;
+  const point = add(add(from, times(way, 0.5)), times(cross(unit(level), way), 0.5));
+  return { point: round(point), axis: level, angle: 120, rise: 0 };
+}

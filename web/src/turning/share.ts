@@ -1,0 +1,18 @@
+// The question about a motion as a command.
+
+import { files, isHome, quoted } from "../share";
+import type { Screw, State } from "../state";
+
+export function asCommand(state: State, { point, axis, angle, rise }: Screw): string {
+  const { moving, fixed } = files(state);
+  const words = ["colltrans", "motion", quoted(moving), quoted(fixed)];
+  words.push(rise ? "--screw" : "--turn", point.join(","), axis.join(","), String(angle), ...(rise ? [String(rise)] : []));
+  for (const slot of ["moving", "fixed"] as const) {
+    if (!isHome(state.poses[slot])) words.push(`--${slot}-pose=${state.poses[slot].join(",")}`);
+    if (state.parts[slot].take === "hull") words.push(`--hull-${slot}`);
+  }
+  if (Object.values(state.parts).some(({ take }) => take === "open")) words.push("--open");
+  if (state.motion.keep) words.push(`--keep=${state.motion.keep}`);
+  if (state.tolerance !== null) words.push(`--tolerance=${state.tolerance}`);
+  return words.join(" ");
+}

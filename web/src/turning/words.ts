@@ -1,0 +1,57 @@
+// An answer about a motion in words.
+
+import type { PageMotion, PageProve } from "../answers";
+import { type Vec, short, shown } from "../math";
+import type { Screw, State } from "../state";
+import { isSolid } from "../share";
+import { type Said, feature } from "../words";
+
+const kind = (of: { kind: string }) => (of.kind === "edge" ? "an edge" : `a ${of.kind}`);
+
+/** How far a screw has gone at a time. */
+export function gone({ angle, rise }: Screw, time: number): string {
+  return `${short(angle * time)}°${rise ? `, ${short(rise * time)} along the axis` : ""}`;
+}
+
+export function say({ record }: PageMotion, screw: Screw, keep: number): Said {
+  const { outcome, time, features, normal, point, looks = 0, planes, tolerance } = record;
+  const rows: [string, string][] = [];
+  const near = keep ? `come as near as ${short(keep)}` : "meet";
+  if (time) {
+    const { lower, upper } = time;
+    rows.push(["time", `${short(lower, 12)} of the motion`], ["proven", upper === undefined ? `not before ${short(lower, 15)}` : `${short(lower, 15)} to ${short(upper, 15)}`]);
+    rows.push(["angle", `${short(screw.angle * lower, 12)}°`]);
+    if (screw.rise) rows.push(["along the axis", short(screw.rise * lower, 12)]);
+  }
+  if (normal) rows.push(["normal n", shown(normal as Vec)]);
+  if (point) rows.push(["point", point.map((x) => short(Math.abs(x) < 1e-12 ? 0 : x, 7)).join(", ")]);
+  if (features) rows.push(["moving", feature(features.moving)], ["fixed", feature(features.fixed)]);
+  if (tolerance) rows.push(["tolerance", short(tolerance, 3)]);
+  rows.push(["looked at", `${looks} times${planes === undefined ? "" : `, ${planes} planes in the proof`}`]);
+  switch (outcome) {
+    case "contact": {
+      const what = features && !keep ? `then ${kind(features.moving)} of the moving body meets ${kind(features.fixed)} of the fixed one` : `then they ${near}`;
+      return { kind: "stop", headline: `Contact at ${gone(screw, time!.lower)}`, sentence: `Free for ${short(100 * time!.lower)} % of the motion; ${what}.`, rows };
+    }
+    case "grazing":
+      return {
+        kind: "care", headline: `They graze at ${gone(screw, time!.lower)}`,
+        sentence: `They come nearer than rounding can tell. They do not ${near} before; whether they do then, and what comes later, is not said. A tolerance lets them go on.`, rows,
+      };
+    case "overlapping":
+      return { kind: "care", headline: "They overlap where they begin", sentence: keep ? "Or they are nearer than the gap to be kept." : "Nothing is said of later times.", rows };
+    default:
+      return { kind: "free", headline: "It goes all the way", sentence: `Proven: at no time of the motion do they ${near}.`, rows };
+  }
+}
+
+export function judged(told: PageProve, planes: boolean): { holds: boolean; text: string } {
+  if (!told.holds) return { holds: false, text: `✗ ${told.because}` };
+  const [lower, upper] = told.proven;
+  const what = `${told.entries.toLocaleString("en")} ${planes ? "planes" : "entries"} checked`;
+  const free = lower === 1 ? "nothing on the whole way" : `nothing before ${lower}`;
+  return { holds: true, text: `✓ it holds: ${what}; ${free}${typeof upper === "number" ? `, contact by ${upper}` : ""}` };
+}
+
+/** Whether a body is asked as one that is not convex. */
+export const solids = (state: State) => Object.values(state.parts).some(({ take }) => isSolid(take));

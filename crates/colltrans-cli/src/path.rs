@@ -108,9 +108,10 @@ fn ignored(given: &[String]) -> Result<Vec<[String; 2]>, Failure> {
 fn resting(given: &[String]) -> Result<BTreeMap<String, f64>, Failure> {
     let one = |text: &String| {
         let parts = text.split_once('=').and_then(|(n, v)| Some((n, v.trim().parse().ok()?)));
-        parts
-            .map(|(name, value): (&str, f64)| (name.trim().to_owned(), value))
-            .ok_or_else(|| Failure::new(Code::Usage, format!("--joint {text}: not NAME=VALUE")))
+        parts.map(|(name, value): (&str, f64)| (name.trim().to_owned(), value)).ok_or_else(|| {
+            let why = format!("--joint {text}: not NAME=VALUE, in radians or metres");
+            Failure::new(Code::Usage, why)
+        })
     };
     given.iter().map(one).collect()
 }

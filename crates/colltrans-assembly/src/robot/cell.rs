@@ -144,6 +144,12 @@ impl Things {
                  file says which are not"
             ));
         }
+        if listed.is_some_and(<[_]>::is_empty) {
+            notes.push(
+                "the SRDF file has no disable_collisions: all links are held against each other"
+                    .into(),
+            );
+        }
         let mut rests = false;
         for link in 0..self.links {
             let moves = robot.moving_between(link, None) > 0;

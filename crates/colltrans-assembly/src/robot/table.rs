@@ -92,9 +92,12 @@ impl Table {
     }
 
     fn json(text: &str) -> Result<Self, TableError> {
-        let at = |e: &serde_json::Error| {
-            wrong(format!("line {} column {}", e.line(), e.column()), crate::read::plain(e))
+        // What it is as a whole has no line.
+        let place = |e: &serde_json::Error| match e.line() {
+            0 => "JSON".into(),
+            line => format!("line {line} column {}", e.column()),
         };
+        let at = |e: &serde_json::Error| wrong(place(e), crate::read::plain(e));
         let read: Json = serde_json::from_str(text).map_err(|e| at(&e))?;
         let (names, points) = match read {
             Json::Rows(rows) => return Self { rows, ..Self::default() }.even(),

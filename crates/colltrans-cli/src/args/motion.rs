@@ -22,10 +22,6 @@ pub(crate) struct MotionArguments {
     /// The meshes that it may meet: the answer is of the first one met
     #[arg(long, num_args = 1.., value_name = "FIXED")]
     from: Vec<PathBuf>,
-    #[command(flatten)]
-    motion: KindArguments,
-    #[command(flatten)]
-    fixed_motion: FixedArguments,
     /// A gap to be kept: ask when the meshes are first as near as that, not when they touch
     #[arg(long, value_name = "GAP", allow_hyphen_values = true, value_parser = length, default_value = "0")]
     pub(crate) keep: f64,
@@ -47,6 +43,10 @@ pub(crate) struct MotionArguments {
     /// that `colltrans verify` checks
     #[arg(long, value_name = "OUT.json", value_parser = proof)]
     pub(crate) save_proof: Option<PathBuf>,
+    #[command(flatten)]
+    motion: KindArguments,
+    #[command(flatten)]
+    fixed_motion: FixedArguments,
     #[command(flatten)]
     pub(crate) places: PlaceArguments,
     /// Take surfaces that are not closed, as sheets and scans are: without an inside
@@ -228,7 +228,8 @@ fn number(text: &str) -> Result<f64, String> {
 
 /// Of degrees.
 fn radians(option: &str, text: &str) -> Result<f64, Failure> {
-    Ok(at(option, number(text))?.to_radians())
+    let degrees = number(text).map_err(|what| format!("{what} of degrees"));
+    Ok(at(option, degrees)?.to_radians())
 }
 
 /// The poses of a file.

@@ -237,10 +237,18 @@ fn what_is_wrong_is_said() {
     };
     assert!(ask(&[]).contains("--turn"));
     assert!(ask(&["--turn", "0,0", "z", "3"]).contains("--turn: 2 numbers, not 3 (x,y,z)"));
-    assert!(ask(&["--turn", "0,0,0", "z", "x"]).contains("--turn: `x` is not a number"));
+    assert!(ask(&["--turn", "0,0,0", "z", "x"]).contains("--turn: `x` is not a number of degrees"));
     assert!(ask(&["--turn", "0,0,0", "z", "1e9"]).contains("is not a number from -1e5 to 1e5"));
     assert!(ask(&["--slide", "1,0,0", "--turn", "0,0,0", "z", "1"]).contains("cannot be used"));
     let keeps = ["--slide", "1,0,0", "--keep", "1", "--tolerance", "1"];
     assert!(ask(&keeps).contains("either --keep or --tolerance"));
     assert!(ask(&["--slide", "1,0,0", "--open", "--hull"]).contains("--open is for parts"));
+}
+
+#[test]
+fn help_has_what_is_asked_before_what_moves() {
+    let help = answered(folder().path(), &["motion", "--help"]);
+    let at = |words: &str| help.find(words).unwrap_or_else(|| panic!("no {words} in {help}"));
+    assert!(at("--keep") < at("What the moving mesh does (angles in degrees)"));
+    assert!(at("--fixed-turn") < at("Where the meshes are"));
 }

@@ -43,6 +43,8 @@ fn what_is_not_asked_is_said() {
     fs::write(&srdf, format!("<robot>{}</robot>", pairs.concat())).unwrap();
     let with = ["path", &arm, &rows, "--srdf", "arm.srdf", "--json"];
     assert_eq!(read(&answered(folder.path(), &with))["pairs"], 3);
+    let said = stderr(&run(folder.path(), &["path", &arm, &rows, "--srdf", &arm]));
+    assert!(said.contains("the SRDF file has no disable_collisions"), "{said}");
     fs::write(folder.path().join("far.csv"), "shoulder,elbow,reach\n0,0,0\n3.5,0,0\n").unwrap();
     let said = stderr(&run(folder.path(), &["path", &arm, "far.csv"]));
     assert!(
@@ -56,6 +58,7 @@ fn what_is_wrong_is_told() {
     let (folder, [arm, rows, wire]) = (folder(), files());
     fs::write(folder.path().join("short.csv"), "0,0\n").unwrap();
     fs::write(folder.path().join("text.csv"), "0,0,x\n").unwrap();
+    fs::write(folder.path().join("foo.json"), "{\"foo\": 1}").unwrap();
     for (arguments, code, why) in [
         (
             vec!["path", &arm, "short.csv"],
@@ -65,7 +68,9 @@ fn what_is_wrong_is_told() {
         (vec!["path", &arm, "text.csv"], 3, "text.csv: line 1: `0,0,x` are not numbers"),
         (vec!["path", &arm, "none.csv"], 3, "none.csv: cannot be read"),
         (vec!["path", &wire, &rows], 3, "URDF"),
+        (vec!["path", &arm, "foo.json"], 3, "foo.json: JSON: it is neither a list of rows nor"),
         (vec!["path", &arm, &rows, "--ignore", "tool"], 2, "--ignore tool: not A,B"),
+        (vec!["path", &arm, &rows, "--joint", "reach=1mm"], 2, "NAME=VALUE, in radians or metres"),
         (
             vec!["path", &arm, &rows, "--ignore", "tool,hand"],
             2,

@@ -11,7 +11,7 @@
 //!    `solid_answer`, `distance`, `directions`, `ways`, `motion` (queries and answers about bodies that turn);
 //! 5. those who ask: `questions` (functions, and methods of queries), `tracker` (in sequence), `rows`, `repeats` and
 //!    `many` (in bulk), `obstacles` (one body among many) with its `scene` and `scene_answers`,
-//!    `assembly` (many parts).
+//!    `assembly` (many parts), `robot` (links on paths of joints).
 //!
 //! The package itself is in `python/`; its stub `_colltrans.pyi` has the types.
 
@@ -36,6 +36,7 @@ mod pose;
 mod query;
 mod questions;
 mod repeats;
+mod robot;
 mod rows;
 mod scene;
 mod scene_answers;
@@ -83,6 +84,8 @@ mod _colltrans {
     use crate::questions::{
         cast, clearance, contact_range, depth, directional_depth, distance, intersects, within,
     };
+    #[pymodule_export]
+    use crate::robot::{PathAnswer, Robot, ask_paths};
     #[pymodule_export]
     use crate::scene_answers::{NearbyObstacles, NearestObstacle, ObstacleClearance};
     #[pymodule_export]

@@ -160,7 +160,7 @@ fn rows<T: Send>(
 }
 
 /// Until all have ended, or a signal raises something.
-fn wait(workers: &[ScopedJoinHandle<'_, ()>]) -> PyResult<()> {
+pub(crate) fn wait(workers: &[ScopedJoinHandle<'_, ()>]) -> PyResult<()> {
     let mut nap = Duration::from_micros(20);
     while !workers.iter().all(|worker| worker.is_finished()) {
         std::thread::sleep(nap);

@@ -3,7 +3,7 @@
 A body is a :class:`ConvexPolyhedron`; a question is a function (:func:`cast`, :func:`clearance`,
 :func:`distance`, ...), one about many rows ends in ``_many``; an answer is a frozen object with its
 proof. Parts that are not convex are :class:`Solid`, asked by a :class:`SolidCast`; many parts are
-an :class:`Assembly`.
+an :class:`Assembly`; links that joints move are a :class:`Robot`.
 
 Vertices are in the body frame; poses place bodies in the world. Directions, normals and points are
 in the world. Translations count in multiples of the direction, so they are lengths if it has length
@@ -38,7 +38,9 @@ from colltrans._colltrans import (
     OverlapDepth,
     Overlapping,
     Pair,
+    PathContact,
     Pose,
+    Robot,
     Separated,
     Separation,
     ShrinkReport,
@@ -93,6 +95,7 @@ from colltrans.pairs import (
     within_many,
 )
 from colltrans.pictures import picture, show
+from colltrans.robots import PathColumns, path_many
 from colltrans.solids import SolidColumns
 
 __all__ = [
@@ -142,12 +145,15 @@ __all__ = [
     "Overlapping",
     "Pair",
     "PairColumns",
+    "PathColumns",
+    "PathContact",
     "Plan",
     "Pose",
     "PoseError",
     "QueryError",
     "RangeColumns",
     "RemovalMap",
+    "Robot",
     "Rooms",
     "Separated",
     "Separation",
@@ -183,6 +189,7 @@ __all__ = [
     "free_directions",
     "intersects",
     "motion_many",
+    "path_many",
     "picture",
     "read",
     "show",

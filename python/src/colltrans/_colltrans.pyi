@@ -1,6 +1,6 @@
 """The types of the extension."""
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from os import PathLike
 from typing import Any, Final, Literal, Protocol, TypeAlias, final, overload, type_check_only
 
@@ -44,7 +44,9 @@ __all__ = [
     "OverlapDepth",
     "Overlapping",
     "Pair",
+    "PathContact",
     "Pose",
+    "Robot",
     "Separated",
     "Separation",
     "ShrinkReport",
@@ -63,6 +65,7 @@ __all__ = [
     "ask_many",
     "ask_motions",
     "ask_pairs",
+    "ask_paths",
     "cast",
     "clearance",
     "contact_range",
@@ -742,6 +745,69 @@ def first_contact(
     tolerance: float | None = None,
 ) -> FirstContact: ...
 
+@final
+class Robot:
+    @staticmethod
+    def read(
+        path: str | PathLike[str],
+        *,
+        srdf: str | PathLike[str] | None = None,
+        packages: Sequence[str | PathLike[str]] = ...,
+        skip_missing: bool = False,
+        allow_outside: bool = False,
+    ) -> Robot: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def links(self) -> list[str]: ...
+    @property
+    def joints(self) -> list[str]: ...
+    @property
+    def limits(self) -> dict[str, tuple[float, float]]: ...
+    @property
+    def notes(self) -> list[str]: ...
+    def first_contact(
+        self,
+        path: ArrayLike | str | PathLike[str],
+        scene: Mapping[str, ConvexPolyhedron | Solid] | None = None,
+        *,
+        ignore: Sequence[tuple[str, str]] = ...,
+        keep: float = 0.0,
+        joints: dict[str, float] = ...,
+        columns: Sequence[str] | None = None,
+        times: ArrayLike | None = None,
+    ) -> PathContact: ...
+
+@final
+class PathContact:
+    __match_args__: Final = ("outcome", "lower", "upper")
+    @property
+    def outcome(self) -> Literal["contact", "grazing", "free", "overlapping"]: ...
+    @property
+    def lower(self) -> float: ...
+    @property
+    def upper(self) -> float | None: ...
+    @property
+    def pair(self) -> tuple[str, str] | None: ...
+    @property
+    def place(self) -> tuple[int, float] | None: ...
+    @property
+    def point(self) -> _Floats | None: ...
+    @property
+    def normal(self) -> _Floats | None: ...
+    @property
+    def pairs(self) -> int: ...
+    @property
+    def looks(self) -> int: ...
+    @property
+    def planes(self) -> int: ...
+    @property
+    def notes(self) -> list[str]: ...
+    def verify(self) -> None: ...
+    def proof_json(self) -> str: ...
+    def save_proof(self, path: str | PathLike[str]) -> None: ...
+    def to_dict(self) -> dict[str, Any]: ...
+
 @type_check_only
 class _PairAnswer(_Answer):
     @property
@@ -1263,6 +1329,17 @@ def ask_motions(
     tolerance: _Floats,
     threads: int | None,
 ) -> tuple[dict[str, NDArray[Any]], list[str], dict[int, str]]: ...
+def ask_paths(
+    robot: Robot,
+    paths: list[Any],
+    scene: Mapping[str, ConvexPolyhedron | Solid] | None,
+    ignore: Sequence[tuple[str, str]],
+    keep: float,
+    joints: dict[str, float],
+    columns: Sequence[str] | None,
+    times: list[Any] | None,
+    threads: int | None,
+) -> tuple[dict[str, NDArray[Any]], list[str], list[str], dict[int, str]]: ...
 def ask_pairs(
     n: int,
     question: Literal["distance", "depth", "within"],

@@ -1,0 +1,589 @@
+//! Robots on paths of joint values: which two links first meet, each other or what stands around.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use colltrans::AnyBody;
+use colltrans::motion::path::{JointPath, PathCast, PathContact, PathOutcome, PathProofFile};
+use colltrans::record::PathRecord;
+use colltrans_assembly::read::{self, ReadOptions};
+use colltrans_assembly::robot::{Cell, Robot as Arm, RobotJoint, Table};
+use numpy::{IntoPyArray, PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyString};
+
+use crate::answer::save;
+use crate::arrays::{coordinates, row};
+use crate::errors::{OrRaise, error, input};
+use crate::frozen::{match_args, plain};
+use crate::obstacles::wait;
+use crate::solid::Piece;
+
+const OUTCOMES: [&str; 5] = ["contact", "grazing", "free", "overlapping", "error"];
+
+/// A robot of URDF: links with what they collide with, and the joints between them.
+///
+/// Made by :meth:`read`.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct Robot {
+    arm: Arm,
+    /// Which links are not held against each other, of an SRDF file.
+    listed: Option<Vec<[String; 2]>>,
+}
+
+/// What is asked about one path, or many: the robot among what stands around, and the gap to be kept.
+struct Asked {
+    cell: Cell,
+    keep: f64,
+}
+
+/// A path, as somebody gives it.
+struct Rows {
+    table: Table,
+    rest: BTreeMap<String, f64>,
+}
+
+fn any_body(thing: &Bound<'_, PyAny>, name: &str) -> PyResult<AnyBody> {
+    Ok(match Piece::of(thing, name)? {
+        Piece::Convex(body) => AnyBody::from(body.get().0.clone()),
+        Piece::Solid(solid) => AnyBody::from(solid.get().solid.clone()),
+    })
+}
+
+impl Robot {
+    fn asked(
+        &self,
+        scene: Option<&Bound<'_, PyAny>>,
+        ignore: &[[String; 2]],
+        keep: f64,
+    ) -> PyResult<Asked> {
+        let mut bodies = Vec::new();
+        if let Some(scene) = scene {
+            let named = PyDict::new(scene.py());
+            named.update(scene.cast()?)?;
+            for (name, body) in named {
+                let name: String = name.extract()?;
+                let body = any_body(&body, &format!("scene[{name:?}]"))?;
+                bodies.push((name, body));
+            }
+        }
+        let cell = Cell::new(self.arm.clone(), bodies, self.listed.as_deref());
+        let cell = cell.map_err(|what| input("srdf", what))?;
+        let cell = cell.ignoring(ignore).map_err(|what| input("ignore", what))?;
+        Ok(Asked { cell, keep })
+    }
+}
+
+impl Asked {
+    fn path(&self, rows: &Rows) -> Result<(JointPath, Vec<String>), String> {
+        self.cell.robot().path(&rows.table, &rows.rest).map_err(|what| what.to_string())
+    }
+
+    fn cast<'a>(&'a self, path: &'a JointPath) -> Result<PathCast<'a>, String> {
+        self.cell.along(path, self.keep).map_err(|what| self.cell.words(&what))
+    }
+
+    fn first_contact(&self, path: &JointPath) -> Result<(PathOutcome, PathRecord), String> {
+        let cast = self.cast(path)?;
+        let found = cast.first_contact().map_err(|what| self.cell.words(&what))?;
+        let record = PathRecord::of(&found, &cast, self.cell.names());
+        Ok((found, record))
+    }
+}
+
+impl Rows {
+    /// Of a file, or of an array.
+    fn of(
+        path: &Bound<'_, PyAny>,
+        columns: Option<Vec<String>>,
+        times: Option<&Bound<'_, PyAny>>,
+        rest: BTreeMap<String, f64>,
+    ) -> PyResult<Self> {
+        let is_file = path.is_instance_of::<PyString>() || path.hasattr("__fspath__")?;
+        if !is_file {
+            return Ok(Self { table: table(path, columns, times)?, rest });
+        }
+        if columns.is_some() || times.is_some() {
+            return Err(input("path", "a file has its own columns and times"));
+        }
+        let file: PathBuf = path.extract()?;
+        let place = file.display().to_string();
+        let text = colltrans_mesh::file::text(&file)
+            .map_err(|what| input("path", format_args!("{place}: cannot be read: {what}")))?;
+        let table =
+            Table::parse(&text).map_err(|what| input("path", format_args!("{place}: {what}")))?;
+        Ok(Self { table, rest })
+    }
+}
+
+/// An array of rows.
+fn table(
+    rows: &Bound<'_, PyAny>,
+    names: Option<Vec<String>>,
+    times: Option<&Bound<'_, PyAny>>,
+) -> PyResult<Table> {
+    let floats = rows.py().import("colltrans._arrays")?.getattr("floats")?;
+    let array = floats.call1((rows, "path"))?;
+    let shape = array.getattr("shape")?;
+    let array: PyReadonlyArray2<'_, f64> = array
+        .extract()
+        .map_err(|_| input("path", format_args!("an array of shape {shape}, not (N, joints)")))?;
+    let rows: Vec<Vec<f64>> = array.as_array().outer_iter().map(|row| row.to_vec()).collect();
+    if let Some(names) = &names
+        && let Some(row) = rows.first().filter(|row| row.len() != names.len())
+    {
+        let what = format!("{} names for rows of {} values", names.len(), row.len());
+        return Err(input("columns", what));
+    }
+    let times = times
+        .map(|times| {
+            let array = floats.call1((times, "times"))?;
+            let array: PyReadonlyArray1<'_, f64> =
+                array.extract().map_err(|_| input("times", "not an array of shape (N,)"))?;
+            Ok::<_, PyErr>(array.as_array().to_vec())
+        })
+        .transpose()?;
+    Ok(Table { names, times, rows })
+}
+
+#[pymethods]
+impl Robot {
+    /// A robot of a URDF file, in metres and radians.
+    ///
+    /// Joints may be revolute, continuous, prismatic or fixed, and may follow others (``mimic``). Cylinders
+    /// and spheres are taken as polyhedra around them.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : str or os.PathLike
+    /// srdf : str or os.PathLike, optional
+    ///     A file whose ``disable_collisions`` says which links are not held against each other. Without
+    ///     it these are links with one moving joint between them.
+    /// packages : list of str or os.PathLike
+    ///     Where ``package://`` is looked for.
+    /// skip_missing : bool
+    ///     Leave out meshes that cannot be found, with a note.
+    /// allow_outside : bool
+    ///     Read files that the robot's file names and that lie outside of its folder and all packages.
+    ///
+    /// Returns
+    /// -------
+    /// Robot
+    ///
+    /// Raises
+    /// ------
+    /// AssemblyError
+    ///     What is wrong with a file, and where.
+    #[staticmethod]
+    #[pyo3(signature = (path, *, srdf=None, packages=Vec::new(), skip_missing=false,
+        allow_outside=false))]
+    fn read(
+        py: Python<'_>,
+        path: PathBuf,
+        srdf: Option<PathBuf>,
+        packages: Vec<PathBuf>,
+        skip_missing: bool,
+        allow_outside: bool,
+    ) -> PyResult<Self> {
+        let options = ReadOptions::default()
+            .with_packages(packages)
+            .with_skip_missing(skip_missing)
+            .with_allow_outside(allow_outside);
+        py.detach(|| {
+            let arm = read::robot(&path, &options).or_raise()?;
+            let listed = srdf.map(|file| read::disabled(&file)).transpose().or_raise()?;
+            // What it names are links of this robot.
+            arm.pairs(listed.as_deref()).map_err(|what| input("srdf", what))?;
+            Ok(Self { arm, listed })
+        })
+    }
+
+    /// str: Its name.
+    #[getter]
+    fn name(&self) -> &str {
+        self.arm.name()
+    }
+
+    /// list of str: The names of its links.
+    #[getter]
+    fn links(&self) -> Vec<&str> {
+        self.arm.links().iter().map(|link| link.name.as_str()).collect()
+    }
+
+    /// list of str: The joints that move by themselves, in the order of the values of a row.
+    #[getter]
+    fn joints(&self) -> Vec<&str> {
+        let own = self.arm.joints().iter().filter(|joint| joint.mimic.is_none());
+        own.map(|joint| joint.name.as_str()).collect()
+    }
+
+    /// dict of str to tuple of (float, float): The limits of joints that have some, in radians or metres.
+    #[getter]
+    fn limits(&self) -> BTreeMap<&str, (f64, f64)> {
+        let of = |joint: &'_ RobotJoint| -> Option<(f64, f64)> { joint.limits.map(Into::into) };
+        let joints = self.arm.joints().iter();
+        joints.filter_map(|joint| Some((joint.name.as_str(), of(joint)?))).collect()
+    }
+
+    /// list of str: What was noted when it was read.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.arm.notes().to_vec()
+    }
+
+    /// Which two bodies first meet on a path, and when?
+    ///
+    /// All links are held against the scene, and against each other but for neighbours, or for what the
+    /// SRDF file names. From row to row each joint goes evenly.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : array_like of shape (N, J), or str or os.PathLike
+    ///     Rows of joint values, radians or metres, in the order of :attr:`joints`; or a CSV or JSON file
+    ///     of them.
+    /// scene : dict of str to ConvexPolyhedron or Solid, optional
+    ///     What stands in the world, in metres, by name.
+    /// ignore : list of tuple of (str, str)
+    ///     Pairs of links, or of a link and what stands there, that are not held against each other.
+    /// keep : float
+    ///     A gap to be kept: asked is when two are first as near as that.
+    /// joints : dict of str to float, optional
+    ///     Joints that rest, and their values; they have no column.
+    /// columns : list of str, optional
+    ///     The joints of the columns, where they are in another order.
+    /// times : array_like of shape (N,), optional
+    ///     When the rows are reached; without them rows are counted from 0.
+    ///
+    /// Returns
+    /// -------
+    /// PathContact
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     Rows that do not fit the joints, names that nothing has.
+    /// QueryError
+    ///     What the library refuses.
+    #[pyo3(signature = (path, scene=None, *, ignore=Vec::new(), keep=0.0, joints=BTreeMap::new(),
+        columns=None, times=None))]
+    #[expect(clippy::too_many_arguments, reason = "they are keywords")]
+    fn first_contact(
+        &self,
+        py: Python<'_>,
+        path: &Bound<'_, PyAny>,
+        scene: Option<&Bound<'_, PyAny>>,
+        ignore: Vec<[String; 2]>,
+        keep: f64,
+        joints: BTreeMap<String, f64>,
+        columns: Option<Vec<String>>,
+        times: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<PathAnswer> {
+        let asked = Arc::new(self.asked(scene, &ignore, keep)?);
+        let rows = Rows::of(path, columns, times, joints)?;
+        let (path, said) = asked.path(&rows).map_err(|what| input("path", what))?;
+        let notes = [asked.cell.notes(), &said].concat();
+        let found = answered(py, || asked.first_contact(&path))?;
+        let (found, record) = found.map_err(|what| error("QueryError", what))?;
+        Ok(PathAnswer { asked, path, found, record, notes })
+    }
+
+    fn __repr__(&self) -> String {
+        let (links, joints) = (self.arm.links().len(), self.joints().len());
+        format!("Robot({:?}, {links} links, {joints} joints)", self.arm.name())
+    }
+}
+
+/// Work on a thread of its own, which signals end by ending the waiting.
+fn answered<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    let done = Mutex::new(None);
+    py.detach(|| {
+        std::thread::scope(|scope| {
+            let worker = scope.spawn(|| {
+                let found = work();
+                *done.lock().unwrap_or_else(PoisonError::into_inner) = Some(found);
+            });
+            wait(&[worker])
+        })
+    })?;
+    let found = done.into_inner().unwrap_or_else(PoisonError::into_inner);
+    found.ok_or_else(|| error("QueryError", "internal error; please report it"))
+}
+
+/// Which two bodies first meet on a path of joint values, and when.
+///
+/// ``outcome`` is ``"contact"``: no two meet before ``lower``, and at ``upper`` these two do;
+/// ``"grazing"``: they come nearer than rounding can tell, not before ``lower``, and nothing is said
+/// after it; ``"free"``: no two meet on the whole path; ``"overlapping"``: two overlap where it begins.
+#[pyclass(frozen, module = "colltrans", name = "PathContact")]
+pub(crate) struct PathAnswer {
+    asked: Arc<Asked>,
+    path: JointPath,
+    found: PathOutcome,
+    record: PathRecord,
+    notes: Vec<String>,
+}
+
+match_args!(PathAnswer("outcome", "lower", "upper"));
+
+impl PathAnswer {
+    fn contact(&self) -> Option<&PathContact> {
+        match &self.found {
+            PathOutcome::Contact(of) | PathOutcome::Grazing(of) | PathOutcome::Overlapping(of) => {
+                Some(of)
+            }
+            _ => None,
+        }
+    }
+}
+
+#[pymethods]
+impl PathAnswer {
+    /// str: ``"contact"``, ``"grazing"``, ``"free"`` or ``"overlapping"``.
+    #[getter]
+    fn outcome(&self) -> &'static str {
+        self.record.outcome.name()
+    }
+
+    /// float: No two meet before: the end of the path if none do, its beginning if two overlap there.
+    #[getter]
+    fn lower(&self) -> f64 {
+        self.contact().map_or(self.path.ends()[1], |contact| contact.lower)
+    }
+
+    /// float or None: At this time two do meet; None where that is not proven, or none do.
+    #[getter]
+    fn upper(&self) -> Option<f64> {
+        self.contact().map(|contact| contact.upper).filter(|upper| upper.is_finite())
+    }
+
+    /// tuple of (str, str) or None: The two, links or what stands around.
+    #[getter]
+    fn pair(&self) -> Option<(&str, &str)> {
+        self.record.pair.as_ref().map(|[a, b]| (a.as_str(), b.as_str()))
+    }
+
+    /// tuple of (int, float) or None: Where ``lower`` is: the row before, and which part of the way to the
+    /// next one.
+    #[getter]
+    fn place(&self) -> Option<(usize, f64)> {
+        self.record.place.map(|place| (place.row, place.share))
+    }
+
+    /// ndarray of shape (3,) or None: Where the first one is nearest to the second then, in the world.
+    #[getter]
+    fn point<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        self.contact()?.points.map(|points| row(py, points[0]))
+    }
+
+    /// ndarray of shape (3,) or None: Unit normal in the world, from the first to the second.
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
+        self.contact()?.normal.map(|normal| row(py, normal))
+    }
+
+    /// int: How many pairs of bodies were asked about.
+    #[getter]
+    fn pairs(&self) -> usize {
+        self.record.pairs
+    }
+
+    /// int: How often two bodies were looked at.
+    #[getter]
+    fn looks(&self) -> u32 {
+        self.record.looks
+    }
+
+    /// int: Planes in the proof.
+    #[getter]
+    fn planes(&self) -> usize {
+        self.record.planes
+    }
+
+    /// list of str: What was not asked though nobody said so, and values beyond a joint's limits.
+    #[getter]
+    fn notes(&self) -> Vec<String> {
+        self.notes.clone()
+    }
+
+    /// Checks the proof against the robot, its path and the scene alone, without a search.
+    ///
+    /// Raises
+    /// ------
+    /// CertificateError
+    ///     What is not proven.
+    fn verify(&self, py: Python<'_>) -> PyResult<()> {
+        let checked = answered(py, || {
+            let cast = self.asked.cast(&self.path)?;
+            cast.verify(self.found.proof()).map_err(|what| what.to_string())
+        })?;
+        checked.map(|_| ()).map_err(|what| error("CertificateError", what))
+    }
+
+    /// The proof, with all that it is about, as text: the file of ``--save-proof`` of ``colltrans path``,
+    /// which ``colltrans verify`` checks. The question is asked once more for it.
+    ///
+    /// Returns
+    /// -------
+    /// str
+    fn proof_json(&self, py: Python<'_>) -> PyResult<String> {
+        let told = answered(py, || {
+            let cast = self.asked.cast(&self.path)?;
+            let answer = PathProofFile::answer(&cast, self.asked.cell.names());
+            answer.map(|(_, file)| file.to_json()).map_err(|what| what.to_string())
+        })?;
+        told.map_err(|what| error("CaseError", what))
+    }
+
+    /// Writes :meth:`proof_json` as a file.
+    ///
+    /// Parameters
+    /// ----------
+    /// path : str or os.PathLike
+    fn save_proof(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
+        save(&path, self.proof_json(py)?)
+    }
+
+    /// What it says, as plain Python: the fields of ``--json`` of ``colltrans path``, with the same bits.
+    ///
+    /// Returns
+    /// -------
+    /// dict
+    fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        plain(py, &self.record)
+    }
+
+    fn __repr__(&self) -> String {
+        let upper = self.upper().map_or_else(|| "None".into(), |upper| format!("{upper:?}"));
+        let pair = self.pair().map(|(a, b)| format!(", {a:?} and {b:?}")).unwrap_or_default();
+        format!("PathContact({:?}, lower={:?}, upper={upper}{pair})", self.outcome(), self.lower())
+    }
+}
+
+/// Columns, names of outcomes, names of bodies, messages.
+type Answered<'py> = (Bound<'py, PyDict>, [&'static str; 5], Vec<String>, BTreeMap<usize, String>);
+
+/// One row of an answer.
+struct Told {
+    outcome: u8,
+    times: [f64; 2],
+    place: (i64, f64),
+    pair: [i64; 2],
+    vectors: [[f64; 3]; 2],
+}
+
+impl Told {
+    fn nothing(outcome: u8) -> Self {
+        let none = [f64::NAN; 3];
+        Self {
+            outcome,
+            times: [f64::NAN; 2],
+            place: (-1, f64::NAN),
+            pair: [-1; 2],
+            vectors: [none; 2],
+        }
+    }
+
+    fn of(outcome: &PathOutcome) -> Self {
+        let (code, of) = match outcome {
+            PathOutcome::Contact(of) => (0, of),
+            PathOutcome::Grazing(of) => (1, of),
+            PathOutcome::Overlapping(of) => (3, of),
+            _ => return Self::nothing(2),
+        };
+        let upper = if of.upper.is_finite() { of.upper } else { f64::NAN };
+        let point = of.points.map(|points| points[0]);
+        let vectors = [of.normal, point].map(|vector| vector.map_or([f64::NAN; 3], coordinates));
+        Self {
+            outcome: code,
+            times: [of.lower, upper],
+            place: (of.place.row as i64, of.place.share),
+            pair: of.pair.map(|body| body as i64),
+            vectors,
+        }
+    }
+}
+
+/// The extension's half of ``colltrans.path_many``.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "they are those of path_many")]
+pub(crate) fn ask_paths<'py>(
+    py: Python<'py>,
+    robot: &Bound<'py, Robot>,
+    paths: Vec<Bound<'py, PyAny>>,
+    scene: Option<&Bound<'py, PyAny>>,
+    ignore: Vec<[String; 2]>,
+    keep: f64,
+    joints: BTreeMap<String, f64>,
+    columns: Option<Vec<String>>,
+    times: Option<Vec<Bound<'py, PyAny>>>,
+    threads: Option<usize>,
+) -> PyResult<Answered<'py>> {
+    let asked = robot.get().asked(scene, &ignore, keep)?;
+    let rows = paths.iter().enumerate().map(|(k, path)| {
+        let times = times.as_ref().map(|all| &all[k]);
+        Rows::of(path, columns.clone(), times, joints.clone())
+    });
+    let rows: Vec<Rows> = rows.collect::<PyResult<_>>()?;
+    let n = rows.len();
+    let all = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = threads.unwrap_or(all).clamp(1, n.max(1));
+    let (next, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
+    let told: Mutex<Vec<(usize, Result<Told, String>)>> = Mutex::default();
+    let work = || {
+        while !stopped.load(Ordering::Relaxed) {
+            let k = next.fetch_add(1, Ordering::Relaxed);
+            let Some(rows) = rows.get(k) else { return };
+            let found = asked.path(rows).and_then(|(path, _)| {
+                asked.first_contact(&path).map(|(found, _)| Told::of(&found))
+            });
+            told.lock().unwrap_or_else(PoisonError::into_inner).push((k, found));
+        }
+    };
+    py.detach(|| {
+        std::thread::scope(|scope| {
+            let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+            wait(&workers).inspect_err(|_| stopped.store(true, Ordering::Relaxed))
+        })
+    })?;
+    let mut told = told.into_inner().unwrap_or_else(PoisonError::into_inner);
+    told.sort_unstable_by_key(|(k, _)| *k);
+    if told.len() != n {
+        return Err(error("QueryError", "internal error; please report it"));
+    }
+    let mut messages = BTreeMap::new();
+    let told: Vec<Told> = told
+        .into_iter()
+        .map(|(k, found)| {
+            found.unwrap_or_else(|message| {
+                messages.insert(k, message);
+                Told::nothing(4)
+            })
+        })
+        .collect();
+    let names = asked.cell.names().to_vec();
+    Ok((columns_of(py, &told)?, OUTCOMES, names, messages))
+}
+
+fn columns_of<'py>(py: Python<'py>, told: &[Told]) -> PyResult<Bound<'py, PyDict>> {
+    let n = told.len();
+    let columns = PyDict::new(py);
+    let numbers = |of: fn(&Told) -> f64| told.iter().map(of).collect::<Vec<f64>>().into_pyarray(py);
+    let codes: Vec<u8> = told.iter().map(|row| row.outcome).collect();
+    columns.set_item("outcome", codes.into_pyarray(py))?;
+    columns.set_item("lower", numbers(|row| row.times[0]))?;
+    columns.set_item("upper", numbers(|row| row.times[1]))?;
+    let rows: Vec<i64> = told.iter().map(|row| row.place.0).collect();
+    columns.set_item("row", rows.into_pyarray(py))?;
+    columns.set_item("share", numbers(|row| row.place.1))?;
+    for (k, name) in ["first", "second"].into_iter().enumerate() {
+        let bodies: Vec<i64> = told.iter().map(|row| row.pair[k]).collect();
+        columns.set_item(name, bodies.into_pyarray(py))?;
+    }
+    for (k, name) in ["normal", "point"].into_iter().enumerate() {
+        let flat: Vec<f64> = told.iter().flat_map(|row| row.vectors[k]).collect();
+        columns.set_item(name, flat.into_pyarray(py).reshape([n, 3])?)?;
+    }
+    Ok(columns)
+}

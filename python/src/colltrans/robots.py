@@ -1,0 +1,167 @@
+"""Paths of robots in bulk: which two links of each first meet; columns out."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from os import PathLike
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from colltrans import _colltrans
+from colltrans._colltrans import ConvexPolyhedron, PathContact, Robot, Solid
+from colltrans.columns import Table
+from colltrans.errors import InputError
+from colltrans.queries import Floats, checked_threads
+
+#: Rows of joint values, or a file of them.
+Path: TypeAlias = ArrayLike | str | PathLike[str]
+
+
+@dataclass(frozen=True)
+class PathQueries:
+    """What was asked."""
+
+    robot: Robot
+    paths: list[Any]
+    scene: Mapping[str, ConvexPolyhedron | Solid] | None
+    ignore: list[tuple[str, str]]
+    keep: float
+    joints: dict[str, float]
+    columns: list[str] | None
+    times: list[Any] | None
+
+    def ask_all(self, threads: int | None) -> dict[str, Any]:
+        columns, outcomes, bodies, errors = _colltrans.ask_paths(
+            self.robot,
+            self.paths,
+            self.scene,
+            self.ignore,
+            self.keep,
+            self.joints,
+            self.columns,
+            self.times,
+            threads,
+        )
+        names = {"outcomes": tuple(outcomes), "bodies": tuple(bodies)}
+        return {**columns, **names, "errors": errors, "_queries": self}
+
+    def ask(self, question: Any, i: int) -> Any:
+        """One of them, alone."""
+        return question(
+            self.robot,
+            self.paths[i],
+            self.scene,
+            ignore=self.ignore,
+            keep=self.keep,
+            joints=self.joints,
+            columns=self.columns,
+            times=None if self.times is None else self.times[i],
+        )
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class PathColumns(Table[PathContact]):
+    """The answers of :func:`path_many`; see :class:`Table`.
+
+    Attributes
+    ----------
+    lower, upper : ndarray of shape (N,)
+        Proven bounds of the times of first contacts: no two bodies meet before the first, and two
+        do at the second.
+    row : ndarray of int64, shape (N,)
+        The row before the contact, -1 where there is none.
+    share : ndarray of shape (N,)
+        Which part of the way to the next row is gone then.
+    first, second : ndarray of int64, shape (N,)
+        The two that meet: positions in ``bodies``, -1 where none do.
+    normal : ndarray of shape (N, 3)
+        Unit normals, in the world, from the first to the second.
+    point : ndarray of shape (N, 3)
+        Where the first is nearest to the second, in the world.
+    bodies : tuple of str
+        The names of all bodies: of their links, then of what stands around.
+    """
+
+    lower: Floats
+    upper: Floats
+    row: NDArray[np.int64]
+    share: Floats
+    first: NDArray[np.int64]
+    second: NDArray[np.int64]
+    normal: Floats
+    point: Floats
+    bodies: tuple[str, ...]
+
+    _question = staticmethod(Robot.first_contact)
+
+    def _is_row(self, answer: Any, i: int) -> bool:
+        if answer is None:
+            return False
+        told = answer.to_dict()
+        found = [told.get("time", {}).get(name, np.nan) for name in ("lower", "upper")]
+        same = np.array_equal([self.lower[i], self.upper[i]], found, equal_nan=True)
+        return same and self.outcomes[self.outcome[i]] == told["outcome"]
+
+
+def path_many(
+    robot: Robot,
+    paths: Sequence[Path] | NDArray[Any],
+    scene: Mapping[str, ConvexPolyhedron | Solid] | None = None,
+    *,
+    ignore: Sequence[tuple[str, str]] = (),
+    keep: float = 0.0,
+    joints: Mapping[str, float] | None = None,
+    columns: Sequence[str] | None = None,
+    times: Sequence[ArrayLike] | None = None,
+    threads: int | None = None,
+) -> PathColumns:
+    """:meth:`Robot.first_contact` for many paths of one robot.
+
+    Parameters
+    ----------
+    robot : Robot
+    paths : array_like of shape (N, K, J), or sequence of paths
+        Each as for :meth:`Robot.first_contact`; they may have different numbers of rows.
+    scene, ignore, keep, joints, columns
+        As there, the same for all paths.
+    times : sequence of array_like, optional
+        The times of the rows of each path.
+    threads : int, optional
+        By default as many as there are processors.
+
+    Returns
+    -------
+    PathColumns
+
+    Raises
+    ------
+    InputError
+        Arrays that are none, names that nothing has. A path that does not fit the robot is an
+        error of its row.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from colltrans import Robot, path_many, read
+    >>> arm, wire = Robot.read("data/arm.urdf"), read("data/wire.obj")
+    >>> turns = np.linspace(-0.4, 1.2, 9)
+    >>> paths = [[[-0.6, 0.0, 0.1], [angle, 0.5, 0.1]] for angle in turns]
+    >>> found = path_many(arm, paths, {"wire": wire})
+    >>> found
+    PathColumns(9 rows: 6 contact, 3 free)
+    """
+    paths = list(paths)
+    if times is not None and len(times) != len(paths):
+        raise InputError(f"times: {len(times)} of them for {len(paths)} paths")
+    queries = PathQueries(
+        robot=robot,
+        paths=paths,
+        scene=scene,
+        ignore=[(a, b) for a, b in ignore],
+        keep=float(keep),
+        joints=dict(joints or {}),
+        columns=None if columns is None else list(columns),
+        times=None if times is None else list(times),
+    )
+    return PathColumns(**queries.ask_all(checked_threads(threads)))

@@ -1,0 +1,179 @@
+"""Robots on paths: of arrays and files, the same bits as the command line's, proofs, bulk."""
+
+import json
+import subprocess
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from test_schema import conform
+
+from colltrans import (
+    AssemblyError,
+    ColltransError,
+    ConvexPolyhedron,
+    Failed,
+    InputError,
+    PathContact,
+    QueryError,
+    Robot,
+    Solid,
+    path_many,
+    read,
+)
+
+DATA = ROOT / "data"
+ARM = Robot.read(DATA / "arm.urdf")
+WIRE = read(DATA / "wire.obj")
+ROWS = np.array([[-1.2, 0.6, 0], [0.9, 0.3, 0.05], [1.2, 0.6, 0]])
+
+
+def cli_path(cli: Path, *words: str) -> Any:
+    told = subprocess.run([cli, "path", *words, "--json"], capture_output=True, text=True, cwd=DATA)
+    assert told.returncode == 0, told.stderr
+    return json.loads(told.stdout)
+
+
+def test_a_robot_tells_what_it_is() -> None:
+    assert ARM.name == "arm"
+    assert ARM.links == ["base", "upper", "fore", "tool"]
+    assert ARM.joints == ["shoulder", "elbow", "reach"]
+    assert ARM.limits == {"shoulder": (-3, 3), "reach": (0, 0.1)}
+    assert "around it" in ARM.notes[0]
+    assert repr(ARM) == 'Robot("arm", 4 links, 3 joints)'
+
+
+def test_a_wire_in_the_way_is_met_as_on_the_command_line(cli: Path, tmp_path: Path) -> None:
+    found = ARM.first_contact(ROWS, {"wire": WIRE})
+    assert (found.outcome, found.pair) == ("contact", ("tool", "wire"))
+    told = found.to_dict()
+    assert told == cli_path(cli, "arm.urdf", "arm.csv", "wire.obj")
+    conform("path", told)
+    assert found.upper is not None and found.lower < found.upper < found.lower + 1e-11
+    assert found.place is not None and found.point is not None and found.normal is not None
+    assert found.place[0] == 0 and abs(np.linalg.norm(found.normal) - 1) < 1e-12
+    assert found.point.tolist() == told["point"]
+    assert len(found.notes) == 2 and found.pairs == 6
+    found.verify()
+    found.save_proof(tmp_path / "proof.json")
+    verified = subprocess.run(
+        [cli, "verify", tmp_path / "proof.json"], capture_output=True, text=True, check=True
+    )
+    assert "tool and wire are the first to meet" in verified.stdout
+    match found:
+        case PathContact("contact", lower):
+            assert lower == found.lower
+
+
+def test_paths_are_files_or_arrays_with_names_and_times() -> None:
+    by_file = ARM.first_contact(DATA / "arm.csv", {"wire": WIRE})
+    by_name = ARM.first_contact(
+        ROWS[:, [2, 0, 1]],
+        {"wire": WIRE},
+        columns=["reach", "shoulder", "elbow"],
+        times=[0, 1, 2],
+    )
+    assert by_file.to_dict() == by_name.to_dict()
+    later = ARM.first_contact(ROWS, {"wire": WIRE}, times=[10, 30, 31])
+    assert abs(later.lower - (10 + 20 * by_file.lower)) < 1e-9
+    resting = ARM.first_contact(ROWS[:, :2], {"wire": WIRE}, joints={"reach": 0.02})
+    assert resting.outcome == "contact" and resting.to_dict() != by_file.to_dict()
+
+
+def test_gaps_are_kept_and_pairs_ignored() -> None:
+    scene: dict[str, ConvexPolyhedron | Solid] = {"wire": WIRE}
+    free = ARM.first_contact(ROWS, scene, ignore=[("wire", "tool")])
+    assert (free.outcome, free.upper, free.lower, free.pair) == ("free", None, 2, None)
+    free.verify()
+    assert ARM.first_contact(ROWS).outcome != "contact"
+    near = ARM.first_contact(ROWS, scene, keep=0.02)
+    assert near.lower < ARM.first_contact(ROWS, scene).lower
+    near.verify()
+    # A frame around the wire's place, not convex.
+    ring = Solid.from_pieces(
+        [ConvexPolyhedron.cuboid([1.18, 0.38, z], [1.2, 0.42, z + 0.02]) for z in (0.1, 0.29, 0.5)]
+    )
+    met = ARM.first_contact(ROWS, {"ring": ring})
+    assert (met.outcome, met.pair) == ("contact", ("tool", "ring"))
+    met.verify()
+
+
+def test_srdf_says_which_links_are_not_held_against_each_other(tmp_path: Path) -> None:
+    names = [("base", "upper"), ("upper", "fore"), ("fore", "tool")]
+    pairs = [f'<disable_collisions link1="{a}" link2="{b}"/>' for a, b in names]
+    (tmp_path / "arm.srdf").write_text(f"<robot>{''.join(pairs)}</robot>")
+    arm = Robot.read(DATA / "arm.urdf", srdf=tmp_path / "arm.srdf")
+    found = arm.first_contact(ROWS)
+    assert found.pairs == 3 and not any("SRDF" in note for note in found.notes)
+    (tmp_path / "other.srdf").write_text('<robot><disable_collisions link1="a" link2="b"/></robot>')
+    with pytest.raises(InputError, match="srdf: there is no a among the links base"):
+        Robot.read(DATA / "arm.urdf", srdf=tmp_path / "other.srdf")
+
+
+def test_what_is_wrong_is_said(tmp_path: Path) -> None:
+    def refused(error: type[ColltransError], words: str, *given: Any, **more: Any) -> None:
+        with pytest.raises(error, match=words):
+            ARM.first_contact(*given, **more)
+
+    refused(InputError, "path: rows have 2 values, and 3 joints have one each", ROWS[:, :2])
+    refused(InputError, r"path: an array of shape \(3,\), not \(N, joints\)", [0, 0, 0])
+    refused(InputError, "path: no array of numbers", [["a", "b", "c"]])
+    refused(InputError, "path: .*none.csv: cannot be read", tmp_path / "none.csv")
+    refused(InputError, "columns: 2 names for rows of 3 values", ROWS, columns=["a", "b"])
+    refused(InputError, "path: column a is of no joint", ROWS, columns=["a", "elbow", "reach"])
+    refused(
+        InputError, "path: the time 1 of row 2 is not finite, or not after", ROWS, times=[0, 2, 1]
+    )
+    refused(InputError, "path: a path needs a row, and a time for each", ROWS, times=[0, 1])
+    refused(InputError, "path: joint hand is none that moves", ROWS, joints={"hand": 1.0})
+    refused(InputError, "ignore: there is no hand among base", ROWS, ignore=[("tool", "hand")])
+    refused(QueryError, "gap", ROWS, keep=-1.0)
+    refused(
+        QueryError, "the value NaN of frame 0 in row 0 is not finite", [[np.nan, 0, 0], [0, 0, 0]]
+    )
+    with pytest.raises(TypeError, match="neither a ConvexPolyhedron nor a Solid"):
+        ARM.first_contact(ROWS, {"wire": "wire.obj"})  # type: ignore[dict-item]
+    with pytest.raises(AssemblyError, match="arm.csv"):
+        Robot.read(DATA / "arm.csv")
+    found = ARM.first_contact(np.array([[0, 0, 0.5], [0.1, 0, 0]]))
+    assert any("reach is beyond its limits" in note for note in found.notes)
+
+
+def test_many_paths_are_one_by_one_with_the_same_bits() -> None:
+    random = np.random.default_rng(5)
+    paths = [
+        np.cumsum(random.normal(size=(random.integers(1, 6), 3)) * [0.8, 0.8, 0.05], axis=0)
+        for _ in range(60)
+    ]
+    paths[7] = np.zeros((2, 2))
+    scene = {"wire": WIRE, "post": ConvexPolyhedron.cuboid([0.6, 0.3, 0], [0.7, 0.4, 1])}
+    columns = path_many(ARM, paths, scene, threads=3)
+    assert columns.counts() == path_many(ARM, paths, scene, threads=1).counts()
+    assert columns.bodies == ("base", "upper", "fore", "tool", "wire", "post")
+    assert columns.errors[7].startswith("rows have 2 values") and isinstance(columns[7], Failed)
+    assert {"contact", "free", "error"} <= set(columns.counts())
+    for k in np.flatnonzero(columns.outcome < 4):
+        alone = columns[int(k)]
+        assert isinstance(alone, PathContact)
+        assert alone.outcome == columns.outcomes[columns.outcome[k]]
+        if alone.pair is None:
+            assert columns.first[k] == -1 and columns.row[k] == -1
+            continue
+        assert alone.pair == (columns.bodies[columns.first[k]], columns.bodies[columns.second[k]])
+        assert alone.place == (columns.row[k], columns.share[k])
+        assert alone.point is None or np.array_equal(alone.point, columns.point[k])
+        alone.verify()
+    block = path_many(ARM, np.stack([ROWS, ROWS]), scene, times=[[0, 1, 2], [0, 2, 4]])
+    assert block.lower[1] == pytest.approx(2 * block.lower[0])
+    assert len(path_many(ARM, [])) == 0
+    with pytest.raises(InputError, match="times: 1 of them for 2 paths"):
+        path_many(ARM, [ROWS, ROWS], times=[[0, 1, 2]])
+
+
+def test_the_proof_is_a_file_as_the_schema_says() -> None:
+    for path, scene in ((ROWS, {"wire": WIRE}), (ROWS, {}), (ROWS[:1], {"wire": WIRE})):
+        saved = json.loads(ARM.first_contact(path, scene, keep=0.001).proof_json())
+        assert saved["format"] == "colltrans path proof 1"
+        conform("path_proof", saved)

@@ -115,8 +115,8 @@ def test_what_an_answer_says() -> None:
         "overlapping",
         "grazing",
         "free",
-        # Face to face while it turns: solids do not tell a touch from an overlap there.
-        "grazing",
+        # Face to face while it turns: facets that cross soon after prove it.
+        "contact",
         "free",
     ]
     match contact:
@@ -318,8 +318,8 @@ def test_shards_ask_motions(batch: Batch, tmp_path: Path) -> None:
             assert outcome == "error" and "turn" in table["message"][i].as_py()
         elif i > 2:
             assert outcome == told[i]["outcome"]
-            lower = table["lower"][i].as_py()
-            assert told[i].get("time", {}).get("lower", lower) == lower
+            lower = told[i].get("time", {}).get("lower", math.nan)
+            assert np.array_equal(table["lower"][i].as_py(), lower, equal_nan=True)
     screw = np.column_stack([numbers["point"], numbers["axis"], numbers["angle"], numbers["rise"]])
     flat = pa.FixedSizeListArray.from_arrays(pa.array(screw.ravel()), 8)
     place = pa.FixedSizeListArray.from_arrays(pa.array(places.ravel()), 3)
@@ -327,7 +327,7 @@ def test_shards_ask_motions(batch: Batch, tmp_path: Path) -> None:
     pq.write_table(pa.table({**columns, "moving_screw": flat}), tmp_path / "queries.parquet")
     assert main([str(tmp_path / "queries.parquet"), *words[1:]]) == 0
     again = pq.read_table(out)
-    assert again["lower"].slice(3).equals(table["lower"].slice(3))
+    assert np.array_equal(again["lower"][3:], table["lower"][3:], equal_nan=True)
     assert again["outcome"].to_pylist()[3:] == table["outcome"].to_pylist()[3:]
 
 

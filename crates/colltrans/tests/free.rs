@@ -9,8 +9,7 @@ use colltrans::free::{
 use colltrans::glam::{DMat3, DQuat, DVec3};
 use colltrans::solid::StartOverlap;
 use colltrans::{Cast, ConvexPolyhedron, Pose, Solid};
-use colltrans_testkit::oracle::solids::free::{Judged, examine, is_free_of_all};
-use colltrans_testkit::oracle::solids::settings::FAMILIES;
+use colltrans_testkit::oracle::solids::free::{FAMILIES, Judged, examine, is_free_of_all};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::solids::thread;
 

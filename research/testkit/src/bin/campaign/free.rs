@@ -1,7 +1,8 @@
-//! Free directions of bodies of cubes, each held against ordinary casts, the union of all cones in fractions, and
-//! proofs that were changed.
+//! Free directions of bodies of cubes and of convex ones, each held against ordinary casts, the union of all cones in
+//! fractions, themselves turned and with a larger tolerance, and proofs that were changed.
 
 use colltrans_testkit::oracle::solids::free;
+pub(crate) use colltrans_testkit::oracle::solids::free::FAMILIES;
 
 /// Directions judged of each setting.
 pub(crate) const DIRECTIONS: u64 = 100;
@@ -19,20 +20,18 @@ impl crate::Tally for Tally {
     const CHUNK: u64 = 4;
 
     fn header() -> String {
-        format!(
-            "{:>8} {:>12} {:>10} {:>10} {:>10} {:>10} {:>10} {:>6}",
-            "settings", "overlapping", "judged", "free", "undecided", "refused", "cells", "wrong"
-        )
+        let counts = ["judged", "free", "undecided", "fractions", "compared", "refused", "cells"];
+        let counts = counts.map(|head| format!("{head:>10}")).join(" ");
+        format!("{:>8} {:>12} {counts} {:>6}", "settings", "overlapping", "wrong")
     }
 
     fn line(&self) -> String {
-        let free::Judged { directions, free, undecided, refused, cells } = self.judged;
-        format!(
-            "{:>8} {:>12} {directions:>10} {free:>10} {undecided:>10} {refused:>10} {cells:>10} {:>6}",
-            self.settings,
-            self.overlapping,
-            self.disagreements.len()
-        )
+        let free::Judged { directions, free, undecided, fractions, compared, refused, cells } =
+            self.judged;
+        let counts = [directions, free, undecided, fractions, compared, refused, cells];
+        let counts = counts.map(|count| format!("{count:>10}")).join(" ");
+        let wrong = self.disagreements.len();
+        format!("{:>8} {:>12} {counts} {wrong:>6}", self.settings, self.overlapping)
     }
 
     fn merge(mut self, other: Self) -> Self {

@@ -4,7 +4,8 @@
 //! compared with those of one-off queries. Or bodies alone, nearly flat ones, each with a cast onto it.
 //! Or distances of settings as they are, near contact and overlapping. Or scenes, one body among many. Or casts
 //! that keep a gap. Or casts of bodies that do not turn, in bulk. Or motions that turn, of convex bodies or of solids.
-//! Or arms on paths. Or all free directions of solids, each held against casts along some of them.
+//! Or arms on paths. Or ways out in several moves. Or all free directions of solids, each held against casts along
+//! some of them.
 //! In all of them bodies are held against the points that they were made of, in exact arithmetic, so
 //! that answers are judged for the input.
 //!
@@ -21,6 +22,7 @@ mod paths;
 mod scenes;
 mod sequences;
 mod solids;
+mod ways;
 
 use std::process::ExitCode;
 use std::str::FromStr;
@@ -49,6 +51,7 @@ campaign --solid-keeping N [--seed S] [--only FAMILY]
 campaign --motions N [--seed S] [--only FAMILY]
 campaign --solid-motions N [--seed S] [--only FAMILY]
 campaign --paths N [--seed S] [--only FAMILY]
+campaign --ways N [--seed S] [--only FAMILY]
 campaign --bulk CASTS [--seed S] [--only FAMILY]
 campaign --case FAMILY:SEED | FAMILY:SEED:STEP
 ";
@@ -63,6 +66,7 @@ struct Arguments {
     free: Option<u64>,
     motions: Option<u64>,
     paths: Option<u64>,
+    ways: Option<u64>,
     bulk: Option<u64>,
     bodies: Option<u64>,
     distances: Option<u64>,
@@ -107,7 +111,7 @@ fn main() -> ExitCode {
     }
     let families: Vec<&str> = FAMILIES.iter().map(|f| f.0).collect();
     exit_code(if let Some(directions) = arguments.free {
-        run(&arguments, &solids::FAMILIES, directions.div_ceil(free::DIRECTIONS), free::examine)
+        run(&arguments, &free::FAMILIES, directions.div_ceil(free::DIRECTIONS), free::examine)
     } else if let Some(count) = arguments.bodies {
         run(&arguments, NEARLY_FLAT, count, bodies::examine)
     } else if let Some(count) = arguments.distances {
@@ -116,6 +120,8 @@ fn main() -> ExitCode {
         run(&arguments, &families, count, motions::examine)
     } else if let Some(count) = arguments.paths {
         run(&arguments, &paths::FAMILIES, count, paths::examine)
+    } else if let Some(count) = arguments.ways {
+        run(&arguments, &ways::FAMILIES, count, ways::examine)
     } else if let Some(count) = arguments.bulk {
         run(&arguments, &families, count.div_ceil(CASTS as u64), bulk::examine)
     } else if let Some(count) = arguments.scenes {
@@ -148,6 +154,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
         free: None,
         motions: None,
         paths: None,
+        ways: None,
         bulk: None,
         bodies: None,
         distances: None,
@@ -170,6 +177,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
             "--solid-motions" => arguments.solid_motions = Some(number(&value)?),
             "--motions" => arguments.motions = Some(number(&value)?),
             "--paths" => arguments.paths = Some(number(&value)?),
+            "--ways" => arguments.ways = Some(number(&value)?),
             "--bulk" => arguments.bulk = Some(number(&value)?),
             "--free" => arguments.free = Some(number(&value)?),
             "--solid-distances" => arguments.solid_distances = Some(number(&value)?),

@@ -1,6 +1,10 @@
-//! Free directions of bodies of cubes, most of them tied, held against ordinary casts along directions of the axes,
-//! near them, in cells beside borders, and anywhere; against the union of the cones of all pairs of facets, in
-//! fractions; and proofs that were changed, as wholes and cell by cell.
+//! Free directions of bodies of cubes and of convex bodies, most of them tied, held against ordinary casts along
+//! directions of the axes, near them, in cells beside borders, and anywhere; against the union of the cones of all
+//! pairs of facets, in fractions; the same of bodies that are turned together, no less with a larger tolerance; and
+//! proofs that were changed, as wholes and cell by cell.
+
+mod alike;
+mod bodies;
 
 use colltrans::free::{
     CellBlocker, CellProof, DirectionCell, FreeDirections, FreeError, FreeOptions, Verdict,
@@ -10,15 +14,19 @@ use colltrans::{Cast, Placed, Pose, Solid};
 use glam::DVec3;
 
 use super::facets::{Judge, Triangle, triangles};
-use super::settings::Setting;
 use crate::random::Random;
+pub use bodies::FAMILIES;
+use bodies::{Bodies, draw};
 
 /// Pairs of nodes that are looked at for one setting.
 const LOOKS: u64 = 300_000;
 
+/// Pairs of facets that are looked at in fractions for one setting, all directions together; one at least is judged.
+const PAIRS: usize = 3_000;
+
 /// Cells whose facets are changed, and how often each.
 const CELLS: usize = 6;
-const CHANGES: usize = 20;
+const CHANGES: usize = 80;
 
 /// What came out of one setting.
 #[derive(Debug, Clone, Copy, Default)]
@@ -29,6 +37,10 @@ pub struct Judged {
     pub free: u64,
     /// Undecided ones.
     pub undecided: u64,
+    /// Those of them that were judged in fractions too, over all pairs of facets.
+    pub fractions: u64,
+    /// Compared with bodies that are turned together, or with a larger tolerance.
+    pub compared: u64,
     /// Changed proofs that were refused, as they should be.
     pub refused: u64,
     /// Cells of which another facet is said to block them and does not, which was refused.
@@ -40,6 +52,8 @@ impl std::ops::AddAssign for Judged {
         self.directions += other.directions;
         self.free += other.free;
         self.undecided += other.undecided;
+        self.fractions += other.fractions;
+        self.compared += other.compared;
         self.refused += other.refused;
         self.cells += other.cells;
     }
@@ -50,37 +64,60 @@ impl std::ops::AddAssign for Judged {
 /// # Errors
 /// What disagrees.
 pub fn examine(family: &str, seed: u64, count: u64) -> Result<Option<Judged>, String> {
-    let setting = Setting::draw(family, seed).ok_or("no such family")?;
-    let [a, b] = [solid(&setting, 0)?, solid(&setting, 1)?];
+    let bodies = draw(family, seed)?.ok_or("no such family")?;
+    let Bodies { solids: [a, b], poses: [p, q] } = &bodies;
+    let (p, q) = (*p, *q);
     let start = if seed.is_multiple_of(2) { StartOverlap::Refuse } else { StartOverlap::Ignore };
+    // With a tolerance, fractions would not know the bodies that are made smaller.
+    let tolerance = if seed % 8 < 6 { 0.0 } else { 0.03125 };
     let options =
-        FreeOptions::DEFAULT.with_no_tolerance().with_start_overlap(start).with_looks(LOOKS);
-    let [p, q] = setting.poses;
+        FreeOptions::DEFAULT.with_tolerance(tolerance).with_start_overlap(start).with_looks(LOOKS);
     let all = match FreeDirections::of(&a.at(p), &b.at(q), options) {
         Err(FreeError::Overlapping { .. }) => return Ok(None),
         all => all.map_err(|e| e.to_string())?,
     };
     all.verify().map_err(|e| e.to_string())?;
     let mut rng = Random::new(seed ^ 0xf4ee);
-    let facets = (start == StartOverlap::Refuse).then(|| {
-        [(&a, p), (&b, q)].map(|(solid, pose)| {
-            triangles(solid.vertices(), solid.triangles(), (pose.matrix(), pose.translation()))
-        })
-    });
     let mut judged = Judged {
         refused: changed(&all, [a.at(p), b.at(q)], &mut rng)?,
-        cells: changed_cells([&a, &b], [p, q], options, &mut rng)?,
+        cells: changed_cells([a, b], [p, q], options, &mut rng)?,
         ..Judged::default()
     };
+    judged += along(&all, [a.at(p), b.at(q)], count, &mut rng)?;
+    if seed % 4 == 2 {
+        judged += alike::turned(&all, &bodies, &mut rng)?;
+    }
+    // What overlaps and is ignored does so less with a larger tolerance, and then blocks.
+    if seed.is_multiple_of(4) && start == StartOverlap::Refuse {
+        judged += alike::larger(&all, &bodies, tolerance + 0.015_625, &mut rng)?;
+    }
+    Ok(Some(judged))
+}
+
+/// What is said along so many directions is what casts say, and fractions.
+fn along(
+    all: &FreeDirections,
+    bodies: [Placed<'_, Solid>; 2],
+    count: u64,
+    rng: &mut Random,
+) -> Result<Judged, String> {
+    let options = all.options();
+    let exactly = options.start_overlap == StartOverlap::Refuse && all.tolerance() == 0.0;
+    let facets = exactly.then(|| facets(bodies));
+    let pairs = bodies.map(|placed| placed.body.triangles().len());
+    let in_fractions = (PAIRS / (pairs[0] * pairs[1])).max(1) as u64;
+    let mut judged = Judged::default();
     for k in 0..count {
-        let d = direction(&all, &mut rng);
+        let d = direction(all, rng);
         let says = all.says(d).map_err(|e| e.to_string())?;
-        let free = by_cast([&a, &b], [p, q], start, d)?;
-        let in_fractions = facets.as_ref().filter(|_| k == 0);
-        if in_fractions.is_some_and(|facets| is_free(facets, d) != free) {
-            return Err(format!(
-                "along {d:?} the cast says free: {free}, the union of all cones not"
-            ));
+        let free = by_cast(bodies, options, d)?;
+        if let Some(facets) = facets.as_ref().filter(|_| k < in_fractions) {
+            judged.fractions += 1;
+            if is_free(facets, d) != free {
+                return Err(format!(
+                    "along {d:?} the cast says free: {free}, the union of all cones not"
+                ));
+            }
         }
         match says {
             Verdict::Free if !free => return Err(format!("free along {d:?}, but a cast is not")),
@@ -93,7 +130,7 @@ pub fn examine(family: &str, seed: u64, count: u64) -> Result<Option<Judged>, St
         }
         judged.directions += 1;
     }
-    Ok(Some(judged))
+    Ok(judged)
 }
 
 /// Another facet in the place of one that blocks a cell is refused, or the middle of the cell is blocked all the same.
@@ -117,7 +154,7 @@ fn changed_cells(
             other[side] = rng.int(0, bodies[side].triangles().len() as i64) as u32;
             if !blocker.blocks(&cell, other) {
                 refused += 1;
-            } else if by_cast(bodies, [p, q], options.start_overlap, cell.center())? {
+            } else if by_cast([bodies[0].at(p), bodies[1].at(q)], options, cell.center())? {
                 return Err(format!("{other:?} are said to block {cell:?}, but a cast is free"));
             }
         }
@@ -127,28 +164,21 @@ fn changed_cells(
 
 /// Whether no pair of facets of two solids blocks a direction, in fractions, over all of them: brute force.
 pub fn is_free_of_all(bodies: [Placed<'_, Solid>; 2], d: DVec3) -> bool {
-    let facets = bodies.map(|Placed { body, pose }| {
+    is_free(&facets(bodies), d)
+}
+
+fn facets(bodies: [Placed<'_, Solid>; 2]) -> [Vec<Triangle>; 2] {
+    bodies.map(|Placed { body, pose }| {
         triangles(body.vertices(), body.triangles(), (pose.matrix(), pose.translation()))
-    });
-    is_free(&facets, d)
+    })
 }
 
-fn solid(setting: &Setting, k: usize) -> Result<Solid, String> {
-    let (vertices, facets) = &setting.surfaces[k];
-    Solid::from_mesh(vertices, facets).map_err(|e| format!("body {k}: {e}"))
-}
-
-fn by_cast(
-    bodies: [&Solid; 2],
-    [p, q]: [Pose; 2],
-    start: StartOverlap,
-    d: DVec3,
-) -> Result<bool, String> {
-    let cast = Cast::new(bodies[0].at(p), bodies[1].at(q), d)
-        .and_then(|cast| cast.with_tolerance(0.0))
+fn by_cast([a, b]: [Placed<'_, Solid>; 2], options: FreeOptions, d: DVec3) -> Result<bool, String> {
+    let cast = Cast::new(a, b, d)
+        .and_then(|cast| cast.with_tolerance(options.tolerance.unwrap_or(0.0)))
         .map_err(|e| e.to_string())?;
-    let answer = cast.with_start_overlap(start).clearance().map_err(|e| e.to_string())?;
-    Ok(answer.is_free())
+    let cast = cast.with_start_overlap(options.start_overlap);
+    Ok(cast.clearance().map_err(|e| e.to_string())?.is_free())
 }
 
 /// Whether no pair of facets blocks, in fractions, over all of them.

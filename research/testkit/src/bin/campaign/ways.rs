@@ -1,0 +1,220 @@
+//! Ways out in several moves: puzzles of cubes, as they are and turned, against all moves of cubes, and boxes with holes
+//! that are large enough, or not. Every leg is looked at in 201 places.
+
+use colltrans::ways::{WayOptions, WayOut, WaysOut};
+use colltrans::{Cast, ConvexPolyhedron, Placed, Pose, Solid};
+use colltrans_testkit::oracle::cubes::Cubes;
+use colltrans_testkit::random::Random;
+use glam::DVec3;
+
+/// The kinds of settings.
+pub(crate) const FAMILIES: [&str; 3] = ["tunnels", "turned tunnels", "boxes with holes"];
+
+/// Moves, at most.
+const LEGS: usize = 12;
+/// Places of each leg, without its start.
+const PLACES: u32 = 200;
+
+/// What became of the settings of one family.
+#[derive(Debug, Default, Clone)]
+pub(crate) struct Tally {
+    settings: u64,
+    found: u64,
+    proven: u64,
+    open: u64,
+    legs: u64,
+    most: u64,
+    judged: u64,
+    refused: u64,
+    disagreements: Vec<String>,
+}
+
+impl crate::Tally for Tally {
+    const CHUNK: u64 = 4;
+
+    fn header() -> String {
+        let heads =
+            ["settings", "found", "proven", "open", "legs", "most", "places", "refused", "wrong"];
+        heads.map(|head| format!("{head:>9} ")).concat()
+    }
+
+    fn line(&self) -> String {
+        let Self { settings, found, proven, open, legs, most, judged, refused, .. } = self;
+        let wrong = self.disagreements.len() as u64;
+        let counts = [settings, found, proven, open, legs, most, judged, refused, &wrong];
+        counts.map(|count| format!("{count:>9} ")).concat()
+    }
+
+    fn merge(mut self, other: Self) -> Self {
+        self.settings += other.settings;
+        self.found += other.found;
+        self.proven += other.proven;
+        self.open += other.open;
+        self.legs += other.legs;
+        self.most = self.most.max(other.most);
+        self.judged += other.judged;
+        self.refused += other.refused;
+        self.disagreements.extend(other.disagreements);
+        self
+    }
+
+    fn disagreements(&self) -> &[String] {
+        &self.disagreements
+    }
+}
+
+/// Examines a setting.
+pub(crate) fn examine(family: &str, seed: u64, tally: &mut Tally) {
+    let mut random = Random::new(seed);
+    tally.settings += 1;
+    let said = match family {
+        "boxes with holes" => holes(&mut random, tally),
+        "tunnels" => tunnels(&mut random, Pose::IDENTITY, tally),
+        _ => {
+            let pose = Pose::new(random.rotation(), DVec3::ZERO);
+            pose.map_err(|e| e.to_string()).and_then(|pose| tunnels(&mut random, pose, tally))
+        }
+    };
+    if let Err(objection) = said {
+        tally.disagreements.push(format!("{family}:{seed}: {objection}"));
+    }
+}
+
+fn tunnels(random: &mut Random, pose: Pose, tally: &mut Tally) -> Result<(), String> {
+    let cubes = Cubes::random(random);
+    let solids = cubes.solids();
+    let placed: Vec<Placed<'_, Solid>> = solids.iter().map(|solid| solid.at(pose)).collect();
+    let options = WayOptions::default().with_tolerance(1e-5).with_legs(LEGS).with_cells(2_000);
+    let answer = WaysOut::among(&placed, &[], &options, None).map_err(|e| e.to_string())?;
+    let level = cubes.level().filter(|level| level.moves <= LEGS);
+    match (&answer, level) {
+        (WaysOut::Found(way), Some(level)) if way.legs.len() == level.moves => (),
+        (WaysOut::Found(way), _) => {
+            return Err(format!("{} legs, {level:?} of cubes", way.legs.len()));
+        }
+        (_, Some(level)) => return Err(format!("no way, {level:?} of cubes")),
+        _ => (),
+    }
+    // Of cubes the judge knows by itself who enters whom.
+    let inverse = pose.matrix().transpose();
+    let enters = |pair, by: DVec3| cubes.enter(pair, inverse * by, 1.1e-5);
+    judged(&placed, &answer, tally, enters)
+}
+
+/// A cube in a box whose roof has a square hole.
+fn holes(random: &mut Random, tally: &mut Tally) -> Result<(), String> {
+    let block = |low: [f64; 3], high: [f64; 3]| {
+        ConvexPolyhedron::cuboid(DVec3::from(low), DVec3::from(high)).map_err(|e| e.to_string())
+    };
+    let [a, b, c] = [0, 1, 2].map(|_| 1.5 + 3.0 * random.unit());
+    let hole = 0.7 + 0.6 * random.unit();
+    let [x, y] = [a, b].map(|wide| 0.1 + (wide - hole - 0.2) * random.unit());
+    let walls = [
+        block([-1.0, -1.0, -1.0], [a + 1.0, b + 1.0, 0.0])?,
+        block([-1.0, -1.0, 0.0], [0.0, b + 1.0, c])?,
+        block([a, -1.0, 0.0], [a + 1.0, b + 1.0, c])?,
+        block([0.0, -1.0, 0.0], [a, 0.0, c])?,
+        block([0.0, b, 0.0], [a, b + 1.0, c])?,
+        block([-1.0, -1.0, c], [x, b + 1.0, c + 1.0])?,
+        block([x + hole, -1.0, c], [a + 1.0, b + 1.0, c + 1.0])?,
+        block([x, -1.0, c], [x + hole, y, c + 1.0])?,
+        block([x, y + hole, c], [x + hole, b + 1.0, c + 1.0])?,
+    ];
+    let walls = Solid::from_pieces(&walls).map_err(|e| e.to_string())?;
+    let at = DVec3::new(a - 1.0, b - 1.0, c - 1.0) * DVec3::splat(random.unit());
+    let cube = block(at.to_array(), (at + 1.0).to_array())?;
+    let cube = Solid::from_pieces([&cube]).map_err(|e| e.to_string())?;
+    let placed = [cube.at(Pose::IDENTITY), walls.at(Pose::IDENTITY)];
+    let options = WayOptions::default().with_tolerance(1e-5).with_places(200);
+    let answer = WaysOut::among(&placed, &[1], &options, None).map_err(|e| e.to_string())?;
+    match &answer {
+        WaysOut::Found(_) if hole < 1.0 - 1e-5 => return Err(format!("through {hole}")),
+        WaysOut::Proven(_) if hole > 1.0 => return Err(format!("none through {hole}")),
+        _ => (),
+    }
+    let overlap = |[i, j]: [usize; 2], by: DVec3| {
+        let pose = Pose::from_translation(by).expect("a place");
+        let bodies = [&cube, &walls].map(|solid| solid.at(Pose::IDENTITY));
+        let cast = Cast::new(bodies[i].body.at(pose), bodies[j], DVec3::Z);
+        cast.and_then(|cast| cast.with_tolerance(1e-5)).is_ok_and(|cast| cast.overlaps())
+    };
+    judged(&placed, &answer, tally, overlap)
+}
+
+/// Checks proofs, and looks at 201 places of each leg.
+fn judged(
+    placed: &[Placed<'_, Solid>],
+    answer: &WaysOut,
+    tally: &mut Tally,
+    enters: impl Fn([usize; 2], DVec3) -> bool,
+) -> Result<(), String> {
+    let way = match answer {
+        WaysOut::Found(way) => way,
+        WaysOut::Proven(proof) => {
+            tally.proven += 1;
+            return proof.verify(&placed[0], &placed[1]).map_err(|e| e.to_string());
+        }
+        WaysOut::NotFound { .. } => {
+            tally.open += 1;
+            return Ok(());
+        }
+    };
+    way.verify(placed).map_err(|e| e.to_string())?;
+    tally.found += 1;
+    tally.legs += way.legs.len() as u64;
+    tally.most = tally.most.max(way.legs.len() as u64);
+    if let Some(entered) = entered(way, placed.len(), &enters, &mut tally.judged) {
+        return Err(entered);
+    }
+    changed(placed, way, &enters, tally)
+}
+
+/// Who enters whom, and where, if anybody does.
+fn entered(
+    way: &WayOut,
+    bodies: usize,
+    enters: &impl Fn([usize; 2], DVec3) -> bool,
+    judged: &mut u64,
+) -> Option<String> {
+    let mut at = vec![DVec3::ZERO; bodies];
+    for (k, leg) in way.legs.iter().enumerate() {
+        // Of the last one as far as everything is long.
+        let motion = if k + 1 == way.legs.len() { leg.direction * 20.0 } else { leg.motion };
+        for proof in &leg.proofs {
+            let [i, j] = proof.bodies;
+            for place in 0..=PLACES {
+                let by = at[i] - at[j] + motion * (f64::from(place) / f64::from(PLACES));
+                *judged += 1;
+                if enters([i, j], by) {
+                    return Some(format!("leg {k}: {i} enters {j} at place {place}"));
+                }
+            }
+        }
+        for &body in &leg.bodies {
+            at[body] += leg.motion;
+        }
+    }
+    None
+}
+
+/// A leg that is longer than was proven is refused, or the same proofs are good for it and nobody enters anybody.
+fn changed(
+    placed: &[Placed<'_, Solid>],
+    way: &WayOut,
+    enters: &impl Fn([usize; 2], DVec3) -> bool,
+    tally: &mut Tally,
+) -> Result<(), String> {
+    for k in 0..way.legs.len() - 1 {
+        let mut longer = way.clone();
+        let leg = &mut longer.legs[k];
+        leg.motion *= 1.5;
+        leg.travel = leg.motion.length();
+        leg.direction = leg.motion.normalize();
+        if longer.verify(placed).is_err() {
+            tally.refused += 1;
+        } else if let Some(entered) = entered(&longer, placed.len(), enters, &mut tally.judged) {
+            return Err(format!("leg {k}, made longer, is accepted, but {entered}"));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,98 @@
+//! What has to be the same, or more: bodies that are turned together, and a larger tolerance.
+
+use colltrans::free::{FreeDirections, FreeOptions, Verdict};
+use colltrans::{Pose, Solid};
+use glam::{DMat3, DVec3};
+
+use super::{Judged, bodies::Bodies, direction};
+use crate::random::Random;
+
+/// Directions of each.
+const DIRECTIONS: u64 = 20;
+/// How far areas of bodies that are turned, and so rounded, may be off.
+const ROUNDED: f64 = 1e-6;
+
+/// A larger tolerance frees what is free, and maybe more.
+pub(super) fn larger(
+    all: &FreeDirections,
+    bodies: &Bodies,
+    tolerance: f64,
+    rng: &mut Random,
+) -> Result<Judged, String> {
+    let options = all.options().with_tolerance(tolerance);
+    let loose = asked(&bodies.solids, bodies.poses, options)?;
+    if loose.free_area()[1] + loose.undecided_area() < all.free_area()[0] {
+        return Err(format!("less is free with the tolerance {tolerance}"));
+    }
+    compare(DIRECTIONS, rng, all, &loose, |d| d, |tight, loose| !tight || loose)
+}
+
+/// The same of bodies that are turned by quarter turns, exactly, and in any way, nearly.
+pub(super) fn turned(
+    all: &FreeDirections,
+    bodies: &Bodies,
+    rng: &mut Random,
+) -> Result<Judged, String> {
+    // An even permutation of the axes, two of them reversed.
+    let mut quarter = [DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X), DMat3::IDENTITY]
+        [usize::from(rng.one_in(3))];
+    let kept = rng.int(0, 2) as usize;
+    let signs = DVec3::from([0, 1, 2].map(|axis| if axis == kept { 1.0 } else { -1.0 }));
+    quarter = DMat3::from_diagonal(signs) * quarter;
+    let same = asked(&bodies.solids, by(quarter, bodies.poses)?, all.options())?;
+    let judged = compare(DIRECTIONS, rng, all, &same, |d| quarter * d, |one, other| one == other)?;
+    if all.tolerance() > 0.0 {
+        let turn = Pose::new(rng.rotation(), DVec3::ZERO).map_err(|e| e.to_string())?;
+        let same = asked(&bodies.solids, by(turn.matrix(), bodies.poses)?, all.options())?;
+        let open = all.undecided_area() + same.undecided_area() + ROUNDED;
+        let [here, there] = [all, &same].map(FreeDirections::free_area);
+        if here[0] > there[1] + open || there[0] > here[1] + open {
+            return Err(format!("{here:?} is free, and turned {there:?}"));
+        }
+    }
+    Ok(judged)
+}
+
+fn by(turn: DMat3, poses: [Pose; 2]) -> Result<[Pose; 2], String> {
+    let turned = |p: Pose| Pose::from_matrix(turn * p.matrix(), turn * p.translation());
+    match poses.map(turned) {
+        [Ok(p), Ok(q)] => Ok([p, q]),
+        _ => Err("a rotation is none".to_owned()),
+    }
+}
+
+fn asked(
+    [a, b]: &[Solid; 2],
+    [p, q]: [Pose; 2],
+    options: FreeOptions,
+) -> Result<FreeDirections<'_>, String> {
+    let all = FreeDirections::of(&a.at(p), &b.at(q), options).map_err(|e| e.to_string())?;
+    all.verify().map_err(|e| e.to_string())?;
+    Ok(all)
+}
+
+/// Whether what is said of directions here and there goes together.
+fn compare(
+    count: u64,
+    rng: &mut Random,
+    here: &FreeDirections,
+    there: &FreeDirections,
+    map: impl Fn(DVec3) -> DVec3,
+    fits: impl Fn(bool, bool) -> bool,
+) -> Result<Judged, String> {
+    let mut judged = Judged::default();
+    for _ in 0..count {
+        let d = direction(here, rng);
+        let says = [here.says(d), there.says(map(d))].map(|says| says.map_err(|e| e.to_string()));
+        let [one, other] = says;
+        let (one, other) = (one?, other?);
+        if one == Verdict::Undecided || other == Verdict::Undecided {
+            continue;
+        }
+        if !fits(one == Verdict::Free, other == Verdict::Free) {
+            return Err(format!("{one:?} along {d:?}, but {other:?} along {:?}", map(d)));
+        }
+        judged.compared += 1;
+    }
+    Ok(judged)
+}

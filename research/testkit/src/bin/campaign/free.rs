@@ -5,7 +5,7 @@ use colltrans_testkit::oracle::solids::free;
 pub(crate) use colltrans_testkit::oracle::solids::free::FAMILIES;
 
 /// Directions judged of each setting.
-pub(crate) const DIRECTIONS: u64 = 100;
+pub(crate) const DIRECTIONS: u64 = 500;
 
 /// What became of the settings of one family.
 #[derive(Debug, Default, Clone)]

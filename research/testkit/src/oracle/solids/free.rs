@@ -24,9 +24,8 @@ const LOOKS: u64 = 300_000;
 /// Pairs of facets that are looked at in fractions for one setting, all directions together; one at least is judged.
 const PAIRS: usize = 3_000;
 
-/// Cells whose facets are changed, and how often each.
+/// Cells whose facets are changed, each as often as directions are asked.
 const CELLS: usize = 6;
-const CHANGES: usize = 80;
 
 /// What came out of one setting.
 #[derive(Debug, Clone, Copy, Default)]
@@ -80,7 +79,7 @@ pub fn examine(family: &str, seed: u64, count: u64) -> Result<Option<Judged>, St
     let mut rng = Random::new(seed ^ 0xf4ee);
     let mut judged = Judged {
         refused: changed(&all, [a.at(p), b.at(q)], &mut rng)?,
-        cells: changed_cells([a, b], [p, q], options, &mut rng)?,
+        cells: changed_cells([a, b], [p, q], (options, count), &mut rng)?,
         ..Judged::default()
     };
     judged += along(&all, [a.at(p), b.at(q)], count, &mut rng)?;
@@ -137,7 +136,7 @@ fn along(
 fn changed_cells(
     bodies: [&Solid; 2],
     [p, q]: [Pose; 2],
-    options: FreeOptions,
+    (options, count): (FreeOptions, u64),
     rng: &mut Random,
 ) -> Result<u64, String> {
     let blocker = CellBlocker::new(&bodies[0].at(p), &bodies[1].at(q), options);
@@ -149,7 +148,7 @@ fn changed_cells(
             cell = cell.quarters()[rng.int(0, 3) as usize];
         }
         let Some(pair) = blocker.covering(&cell) else { continue };
-        for k in 0..CHANGES {
+        for k in 0..count as usize {
             let (side, mut other) = (k % 2, pair);
             other[side] = rng.int(0, bodies[side].triangles().len() as i64) as u32;
             if !blocker.blocks(&cell, other) {

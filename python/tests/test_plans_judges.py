@@ -1,0 +1,166 @@
+"""Every move of every plan beside Manifold, where it is installed: nobody is where others are.
+
+Parts are moved as they are, and planned as they are shrunk by half the tolerance each. So what two
+have in common is at most a layer as thick as the tolerance on the surface of the smaller.
+"""
+
+import json
+import subprocess
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import ROOT
+
+from colltrans import Solid
+
+#: Places of each move that are looked at, and what Manifold may round off, of the volume.
+PLACES = 40
+ROUNDING = 1e-9
+#: What is not part of this repository is looked at where it is.
+COLLECTION = ROOT.parent / "shared" / "data" / "assemblies"
+NAMES = ["burr_p3_19", "key", "key_tight_turned", "keyhole_L", "maze_2", "maze_8"]
+NAMES += ["two_step_pocket", "captive_bar", "dovetail", "pillow_block"]
+
+
+def write(path: Path, body: Any) -> None:
+    mesh = body.to_mesh64()
+    vertices, triangles = np.asarray(mesh.vert_properties)[:, :3], np.asarray(mesh.tri_verts)
+    lines = ["OFF", f"{len(vertices)} {len(triangles)} 0"]
+    lines += [" ".join(repr(float(x)) for x in v) for v in vertices]
+    lines += ["3 " + " ".join(str(int(k)) for k in t) for t in triangles]
+    path.write_text("\n".join(lines) + "\n")
+
+
+def moves(step: dict[str, Any]) -> Iterator[tuple[dict[str, Any], bool]]:
+    """The moves of a step, and whether what leaves has left."""
+    yield from ((leg, False) for leg in step["path"])
+    yield from ((leg, True) for leg in step.get("back", []))
+
+
+class Judge:
+    """The parts of an assembly, where they are."""
+
+    def __init__(self, manifold3d: Any, told: dict[str, Any], parts: dict[str, Solid]) -> None:
+        def body(part: Solid) -> Any:
+            triangles = np.asarray(part.triangles, np.uint64)
+            made = manifold3d.Manifold(manifold3d.Mesh64(part.vertices, triangles))
+            assert made.status() == manifold3d.Error.NoError
+            return made
+
+        self.tolerance = told["tolerance"]
+        self.bodies = {name: body(part) for name, part in parts.items()}
+        self.at = {name: np.zeros(3) for name in parts}
+        self.looks = 0
+
+    def layer(self, a: str, b: str) -> float:
+        area = min(self.bodies[name].surface_area() for name in (a, b))
+        volume = min(self.bodies[name].volume() for name in (a, b))
+        return float(self.tolerance * area + ROUNDING * volume)
+
+    def common(self, a: str, b: str, by: Any) -> float:
+        """The volume that two parts have in common, the first displaced."""
+        p, q = self.bodies[a], self.bodies[b]
+        low, high = np.array(p.bounding_box()).reshape(2, 3) + by
+        least, most = np.array(q.bounding_box()).reshape(2, 3)
+        if (high <= least).any() or (most <= low).any():
+            return 0.0
+        self.looks += 1
+        return float((p.translate(tuple(by)) ^ q).volume())
+
+    def move(self, leg: dict[str, Any], others: list[str]) -> None:
+        motion = np.array(leg["direction"]) * leg["travel"]
+        for a in leg["parts"]:
+            for b in others:
+                for share in np.linspace(0, 1, PLACES + 1):
+                    by = self.at[a] - self.at[b] + motion * share
+                    common = self.common(a, b, by)
+                    assert common <= self.layer(a, b), (a, b, share, leg)
+        for part in leg["parts"]:
+            self.at[part] = self.at[part] + motion
+
+    def plan(self, told: dict[str, Any]) -> None:
+        there, inside = set(self.at), dict[int, set[str]]()
+        for number, step in enumerate(told["plan"]):
+            gone = set(step["parts"])
+            within = step.get("within")
+            around = there if within is None else inside[within]
+            for part in around:
+                self.at[part] = np.zeros(3)
+            for leg, has_left in moves(step):
+                # What has left is far away, and goes on by itself.
+                sides = [around - gone, gone] if has_left else [around]
+                for side in sides:
+                    own = [part for part in leg["parts"] if part in side]
+                    self.move({**leg, "parts": own}, sorted(side - set(own)))
+            inside[number] = set(gone)
+            around -= gone
+        assert there == set(told["left"])
+
+
+def judged(cli: Path, folder: Path, *words: str) -> tuple[dict[str, Any], Judge]:
+    manifold3d = pytest.importorskip("manifold3d")
+    command: list[str | Path] = [cli, "assembly", folder, "--json", *words]
+    ran = subprocess.run(command, capture_output=True, text=True, check=True)
+    told = json.loads(ran.stdout)
+    files = [file for kind in ("off", "stl") for file in folder.glob(f"*.{kind}")]
+    judge = Judge(manifold3d, told, {file.stem: Solid.read(file) for file in files})
+    judge.plan(told)
+    return told, judge
+
+
+def blocks(manifold3d: Any, *all_of: tuple[list[float], list[float]]) -> Any:
+    def block(low: list[float], high: list[float]) -> Any:
+        size = [float(b - a) for a, b in zip(low, high, strict=True)]
+        return manifold3d.Manifold.cube(size).translate([float(x) for x in low])
+
+    made = block(*all_of[0])
+    for one in all_of[1:]:
+        made += block(*one)
+    return made
+
+
+def test_a_gearbox(cli: Path) -> None:
+    told, judge = judged(cli, ROOT / "data" / "gearbox_small")
+    assert len(told["plan"]) == 11 and judge.looks > 500
+
+
+def test_a_key_in_a_slot(cli: Path, tmp_path: Path) -> None:
+    manifold3d = pytest.importorskip("manifold3d")
+    slot = blocks(manifold3d, ([-1, -3, -1], [21, 3, 2]))
+    slot -= blocks(manifold3d, ([0, -2, 0], [20, 2, 1]), ([0, -1, 0.5], [20, 1, 3]))
+    slot -= blocks(manifold3d, ([14, -2, 0.5], [17, 2, 3]))
+    key = ([0.5, -1.5, 0.2], [2.5, 1.5, 0.8]), ([0.5, -0.5, 0.5], [2.5, 0.5, 3])
+    write(tmp_path / "slot.off", slot)
+    write(tmp_path / "key.off", blocks(manifold3d, *key))
+    told, judge = judged(cli, tmp_path)
+    assert len(told["plan"][0]["path"]) == 2 and judge.looks > 20
+    # The judge sees what goes too far.
+    told["plan"][0]["path"][0]["travel"] += 4
+    judge.at = dict.fromkeys(judge.at, np.zeros(3))
+    with pytest.raises(AssertionError):
+        judge.plan(told)
+
+
+def test_a_lid_that_makes_room_and_goes_back(cli: Path, tmp_path: Path) -> None:
+    manifold3d = pytest.importorskip("manifold3d")
+    tray = blocks(manifold3d, ([-1, -1, -1], [9, 4, 4]))
+    tray -= blocks(manifold3d, ([0, 0, 0], [4, 3, 5]), ([0, -0.5, 2], [8.5, 3.5, 3]))
+    tray -= blocks(manifold3d, ([0, 0, 2], [8.5, 3, 5]))
+    write(tmp_path / "tray.off", tray)
+    write(tmp_path / "cube.off", blocks(manifold3d, ([1, 1, 0.5], [2, 2, 1.5])))
+    write(tmp_path / "lid.off", blocks(manifold3d, ([0.1, -0.4, 2.2], [3.9, 3.4, 2.8])))
+    told, judge = judged(cli, tmp_path)
+    assert told["plan"][0]["parts"] == ["cube"] and told["plan"][0]["back"][0]["parts"] == ["lid"]
+    assert judge.looks > 20
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_collection(cli: Path, name: str) -> None:
+    folder = COLLECTION / name
+    if not folder.is_dir():
+        pytest.skip("it is not there")
+    told, judge = judged(cli, folder, "--legs", "12")
+    assert told["plan"] and judge.looks > 0

@@ -37,6 +37,10 @@ def test_the_plan_is_the_command_lines(cli: Path, gearbox: Assembly) -> None:
         assert list(step.travel_bounds) == its["travel_bounds"]
         assert its["travel_bounds"][0] <= step.travel <= its["travel_bounds"][1]
     assert plan.left == known["left"]
+    (stuck,), (its,) = plan.stuck, known["stuck"]
+    assert stuck.proven == its["proof"]["proven"] and "proven" in stuck.because
+    (asked,) = gearbox.plan(proofs=False).stuck
+    assert asked.proven is None and f"{asked.directions} directions asked" in asked.because
 
 
 def test_rooms_and_blocking(gearbox: Assembly) -> None:

@@ -5,7 +5,8 @@
 //! left. A step takes the smallest removable group over all directions; of equal ones the *base* (the
 //! largest part if none is fixed) comes last. Each group is then taken apart by itself. Where no direction of the
 //! matrix helps, finer candidates of what is left are asked, then a sphere of samples, and then, for
-//! what is loose, that sphere refined where outcomes change.
+//! what is loose, that sphere refined where outcomes change. Then it is proven that no direction helps, or directions
+//! are asked of which that is not proven; and at last several moves are looked for.
 //!
 //! Every step is replayed before it is reported: asked again, pair by pair, against what is left, and
 //! looked at in a few places on its way for overlaps.
@@ -34,7 +35,7 @@ use crate::matrix::{Matrix, bits};
 use crate::sphere::Sphere;
 use crate::watch::{Stage, Tally, Watch};
 
-use certify::{Proof, Prover};
+use certify::{Proof, certify};
 pub use hold::Hold;
 pub use options::PlanOptions;
 use several::Aside;
@@ -42,8 +43,8 @@ pub use several::Moves;
 use single::Single;
 pub use step::{Leg, Step};
 
-/// Parts of which no group leaves along any of the directions asked, or along any at all where that is
-/// [proven](Self::proven); of several moves none were found, or looked for.
+/// Parts of which no group leaves along any direction at all, where that is [proven](Self::proven), or else along any
+/// of those asked; of several moves none were found, or looked for.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Stuck {
@@ -72,12 +73,13 @@ pub struct Plan {
     pub steps: Vec<Step>,
     /// Parts that stay: fixed, or not moved by any direction asked.
     pub left: Vec<usize>,
-    /// What none of the directions asked takes apart.
+    /// What does not come apart, and why.
     pub stuck: Vec<Stuck>,
 }
 
 /// Takes everything apart along the directions of a matrix of all parts, and, for what those do not
-/// move, finer ones.
+/// move, finer ones. Of what is stuck it is proven, if there is a proof ([`Stuck::proven`]), that no direction takes it
+/// apart; parts that are open, ignored or kept apart, or very many, are not proven to be stuck.
 ///
 /// # Errors
 /// Cancelled; or a step does not pass its own check.
@@ -88,36 +90,10 @@ pub fn disassemble(
     options: PlanOptions,
     watch: Watch,
 ) -> Result<Plan, AssemblyError> {
-    planned(bodies, matrix, finer, options, None, watch)
-}
-
-/// The same, with a proof for what is stuck, if there is one ([`Stuck::proven`]); where there is none, directions
-/// without a proof are asked too. Parts that are open, ignored or kept apart are not proven to be stuck.
-///
-/// # Errors
-/// As [`disassemble`].
-pub fn disassemble_proving(
-    bodies: &Bodies,
-    matrix: &Matrix,
-    finer: &[Finer],
-    options: PlanOptions,
-    watch: Watch,
-) -> Result<Plan, AssemblyError> {
-    planned(bodies, matrix, finer, options, Some(certify::certify), watch)
-}
-
-fn planned(
-    bodies: &Bodies,
-    matrix: &Matrix,
-    finer: &[Finer],
-    options: PlanOptions,
-    prover: Option<Prover>,
-    watch: Watch,
-) -> Result<Plan, AssemblyError> {
     let tally = watch.stage(Stage::Plan, bodies.len());
     let (plan, base) = (Plan::default(), base(bodies));
     let known = loose::Known::default();
-    let mut planner = Planner { bodies, finer, options, prover, watch, tally, plan, base, known };
+    let mut planner = Planner { bodies, finer, options, watch, tally, plan, base, known };
     let all: Vec<usize> = (0..bodies.len()).collect();
     planner.plan.left = planner.take_apart(&all, matrix, None)?;
     Ok(planner.plan)
@@ -151,7 +127,6 @@ struct Planner<'a> {
     bodies: &'a Bodies<'a>,
     finer: &'a [Finer],
     options: PlanOptions,
-    prover: Option<Prover>,
     watch: Watch<'a>,
     tally: Tally<'a>,
     plan: Plan,
@@ -434,9 +409,11 @@ impl Planner<'_> {
         alive: &[bool],
         asked: &mut HashSet<[u64; 3]>,
     ) -> Result<(Option<Way>, Option<usize>), AssemblyError> {
-        let Some(prover) = self.prover else { return Ok((None, None)) };
+        if !self.options.prove {
+            return Ok((None, None));
+        }
         let start = self.options.start;
-        let directions = match prover(self.bodies, left, start, self.watch)? {
+        let directions = match certify(self.bodies, left, start, self.watch)? {
             Proof::Proven(cells) => return Ok((None, Some(cells))),
             Proof::Open(directions) => directions,
         };
@@ -460,8 +437,7 @@ impl Planner<'_> {
         if left.iter().all(|&k| self.fixed(k)) {
             return Ok((None, None));
         }
-        let options = (self.options, self.prover.is_some());
-        Ok(match several::search(self.bodies, left, matrix, options, self.watch)? {
+        Ok(match several::search(self.bodies, left, matrix, self.options, self.watch)? {
             Ok(aside) => {
                 let (parts, direction) = (aside.parts.clone(), aside.direction);
                 (Some(Way { parts, direction, aside: Some(aside) }), None)

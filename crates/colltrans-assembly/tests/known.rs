@@ -15,7 +15,7 @@ use colltrans_assembly::candidates::{Choice, Finer, Origin, candidates};
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{Plan, PlanOptions, disassemble, disassemble_proving};
+use colltrans_assembly::plan::{Plan, PlanOptions, disassemble};
 use colltrans_assembly::read::{ReadOptions, read};
 use colltrans_assembly::rooms::{PartRoom, room_of, rooms};
 use colltrans_assembly::sphere::angle;
@@ -26,25 +26,17 @@ use common::*;
 use glam::{DAffine3, DVec3};
 
 fn planned(assembly: &Assembly) -> Plan {
-    plan_by(assembly, disassemble)
+    planned_with(assembly, PlanOptions::default())
 }
 
-/// With proofs of what is stuck.
-fn proven(assembly: &Assembly) -> Plan {
-    plan_by(assembly, disassemble_proving)
-}
-
-fn plan_by(
-    assembly: &Assembly,
-    plan: impl Fn(&Bodies, &Matrix, &[Finer], PlanOptions, Watch) -> Result<Plan, AssemblyError>,
-) -> Plan {
+fn planned_with(assembly: &Assembly, options: PlanOptions) -> Plan {
     let bodies = Bodies::new(assembly, Fit::default_for(assembly)).unwrap();
     let touching = liaisons(&bodies, Watch::default()).unwrap();
     let found = candidates(&bodies, &touching, &Choice::default()).unwrap();
     let all = vec![true; bodies.len()];
     let start = StartOverlap::Refuse;
     let matrix = Matrix::new(&bodies, &found.directions(), &all, start, Watch::default()).unwrap();
-    plan(&bodies, &matrix, &found.finer, Default::default(), Watch::default()).unwrap()
+    disassemble(&bodies, &matrix, &found.finer, options, Watch::default()).unwrap()
 }
 
 fn steps<'a>(assembly: &'a Assembly, plan: &Plan) -> Vec<Vec<&'a str>> {
@@ -72,14 +64,14 @@ fn linked_rings_do_not_come_apart() {
 #[test]
 fn that_linked_rings_are_stuck_is_proven_in_few_cells() {
     let assembly = Assembly::new(links().to_vec()).unwrap();
-    let plan = proven(&assembly);
+    let plan = planned(&assembly);
     let [stuck] = &plan.stuck[..] else { panic!("one group: {:?}", plan.stuck) };
     let cells = stuck.proven.expect("a proof");
     assert!((3..1_000).contains(&cells), "{cells}");
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
     assert!(stuck.because(&bodies).contains(&format!("proven in {cells} cells")));
     // The plan is the same but for the proof.
-    let asked = planned(&assembly);
+    let asked = planned_with(&assembly, PlanOptions::default().with_proofs(false));
     assert_eq!((asked.stuck[0].proven, &asked.left), (None, &plan.left));
     assert!(asked.stuck[0].because(&bodies).contains("directions asked"));
 }
@@ -91,7 +83,7 @@ fn what_is_ignored_is_not_proven_to_be_stuck() {
     let pair = [[names[0].as_str(), names[1].as_str()]];
     let assembly = Assembly::new(links().to_vec()).unwrap();
     let assembly = assembly.with_ignored(&pair, Ignored::Overlap).unwrap();
-    let plan = proven(&assembly);
+    let plan = planned(&assembly);
     assert_eq!(plan.stuck.iter().map(|stuck| stuck.proven).collect::<Vec<_>>(), [None]);
 }
 
@@ -459,7 +451,7 @@ fn what_is_stuck_is_said_of_the_directions_asked() {
     let finer: Vec<Finer> = [DVec3::X, DVec3::NEG_X, DVec3::NEG_X]
         .map(|direction| Finer { direction, origin: Origin::Given, part: None })
         .to_vec();
-    let options = PlanOptions::default().with_samples(0);
+    let options = PlanOptions::default().with_samples(0).with_proofs(false);
     let plan = disassemble(&bodies, &matrix, &finer, options, Watch::default()).unwrap();
     assert_eq!(plan.stuck[0].directions, 4);
     let because = plan.stuck[0].because(&bodies);

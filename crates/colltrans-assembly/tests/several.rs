@@ -167,12 +167,16 @@ fn a_lid_makes_room_and_goes_back() {
     assert_eq!(step.back[0].parts, step.path[0].parts);
     assert_eq!(step.back[0].direction, -step.path[0].direction);
     assert_eq!(step.back[0].travel, step.path[0].travel);
-    // The lid is kept by its stop: that is told with what was searched.
-    let stuck = &plan.stuck[0];
-    assert_eq!(assembly.names(&stuck.parts), ["lid", "tray"]);
+    // The lid is kept by its stop: that is proven, or told with what was searched.
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
-    let because = stuck.because(&bodies);
-    assert!(because.contains("up to 2 moves one after another"), "{because}");
+    for (proofs, words) in [(true, "nor do several moves"), (false, "up to 2 moves one after")] {
+        let plan = planned(&assembly, PlanOptions::default().with_proofs(proofs));
+        let stuck = &plan.stuck[0];
+        assert_eq!(assembly.names(&stuck.parts), ["lid", "tray"]);
+        assert_eq!(stuck.proven.is_some(), proofs);
+        let because = stuck.because(&bodies);
+        assert!(because.contains(words), "{because}");
+    }
 }
 
 fn of_cubes(cubes: &Cubes) -> Assembly {

@@ -14,7 +14,7 @@ use colltrans_assembly::candidates::{Candidates, Choice, Finer, Origin, candidat
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{PlanOptions, disassemble, disassemble_proving};
+use colltrans_assembly::plan::{PlanOptions, disassemble};
 use colltrans_assembly::read::{self, Geometry, ReadOptions};
 use colltrans_assembly::report::Findings;
 use colltrans_assembly::rooms::{PartRoom, rooms};
@@ -73,9 +73,9 @@ fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
         .with_start(overlap)
         .with_samples(samples)
         .with_legs(arguments.legs)
+        .with_proofs(!arguments.no_proofs && !arguments.only)
         .with_looks(arguments.work.looks());
-    let plan = if arguments.prove { disassemble_proving } else { disassemble };
-    let plan = plan(&bodies, &matrix, &found.finer, options, watch)?;
+    let plan = disassemble(&bodies, &matrix, &found.finer, options, watch)?;
     let maps = maps(&bodies, &groups, &found, overlap, watch)?;
     let with_proofs = arguments.output.is_some();
     let free = free::all(&bodies, leaving, arguments.work.options(), with_proofs)?;

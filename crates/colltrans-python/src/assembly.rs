@@ -47,8 +47,9 @@ type StepRow = (
     Vec<[usize; 2]>,
     Vec<usize>,
 );
-/// Parts, how many directions were asked, why they are stuck, and for each of some parts the sets that hold it.
-type StuckRow = (Vec<usize>, usize, String, Vec<(usize, Vec<Vec<usize>>)>);
+/// Parts, how many directions were asked, in how many cells it is proven that none helps, why they are stuck, and for
+/// each of some parts the sets that hold it.
+type StuckRow = (Vec<usize>, usize, Option<usize>, String, Vec<(usize, Vec<Vec<usize>>)>);
 
 /// How tight the parts are, and what overlaps mean.
 #[derive(Clone, Copy)]
@@ -233,12 +234,14 @@ impl Assembly {
         })
     }
 
+    #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn plan(
         &self,
         py: Python<'_>,
         directions: &Bound<'_, PyAny>,
         samples: usize,
         legs: usize,
+        proofs: bool,
         tolerance: Option<f64>,
         ignore_overlaps: bool,
     ) -> PyResult<(Vec<StepRow>, Vec<usize>, Vec<StuckRow>)> {
@@ -251,7 +254,8 @@ impl Assembly {
             let options = PlanOptions::default()
                 .with_start(choices.start)
                 .with_samples(samples)
-                .with_legs(legs);
+                .with_legs(legs)
+                .with_proofs(proofs);
             let plan = disassemble(bodies, &matrix, &found.finer, options, watch)?;
             let because = plan.stuck.iter().map(|stuck| stuck.because(bodies));
             let because: Vec<String> = because.collect();
@@ -271,6 +275,7 @@ impl Assembly {
             (
                 stuck.parts,
                 stuck.directions,
+                stuck.proven,
                 because,
                 stuck.holds.into_iter().map(|h| (h.part, sets(h.by))).collect(),
             )

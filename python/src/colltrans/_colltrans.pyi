@@ -196,6 +196,7 @@ class Assembly:
         directions: ArrayLike,
         samples: int,
         legs: int,
+        proofs: bool,
         tolerance: float | None,
         ignore_overlaps: bool,
     ) -> tuple[
@@ -212,7 +213,7 @@ class Assembly:
             ]
         ],
         list[int],
-        list[tuple[list[int], int, str, list[tuple[int, list[list[int]]]]]],
+        list[tuple[list[int], int, int | None, str, list[tuple[int, list[list[int]]]]]],
     ]: ...
     def removal_map(
         self,

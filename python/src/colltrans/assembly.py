@@ -120,15 +120,20 @@ class Step:
 
 @dataclass(frozen=True)
 class Stuck:
-    """Parts that no straight motion along the directions asked takes apart, nor several moves.
+    """Parts that no straight motion takes apart, nor several moves that were found.
 
-    Along other directions, or in more moves, they may come apart.
+    No motion along any direction, if that is ``proven``; else none along the directions asked, and
+    along others they may come apart. In more moves they may in both cases, unless ``because`` says
+    that there are none.
 
     Attributes
     ----------
     parts : list of str
     directions : int
         How many different directions were asked.
+    proven : int or None
+        The cells of the sphere of directions in which it is proven that no direction takes any of
+        them from the others; ``None`` where that is not proven.
     because : str
         Why, in words: also what was searched for several moves.
     holds : dict of str to list of list of str
@@ -137,6 +142,7 @@ class Stuck:
 
     parts: list[str]
     directions: int
+    proven: int | None
     because: str
     holds: dict[str, list[list[str]]]
 
@@ -212,8 +218,8 @@ class Assembly:
     >>> len(gearbox.parts)
     16
     >>> plan = gearbox.plan()
-    >>> plan.steps[0].parts, len(plan.stuck[0].parts)
-    (['bolt_0'], 6)
+    >>> plan.steps[0].parts, len(plan.stuck[0].parts), plan.stuck[0].proven is not None
+    (['bolt_0'], 6, True)
     """
 
     def __init__(self, parts: Mapping[str, tuple[ArrayLike, Any]]) -> None:
@@ -358,6 +364,7 @@ class Assembly:
         *,
         samples: int = 162,
         legs: int = 2,
+        proofs: bool = True,
         tolerance: float | None = None,
         ignore_overlaps: bool = False,
     ) -> Plan:
@@ -374,6 +381,8 @@ class Assembly:
         legs : int
             How many moves, one after another, may take out what no single one does; parts may make
             room and go back. 1 for none.
+        proofs : bool
+            Whether to prove of what is stuck that no direction takes it apart.
         tolerance, ignore_overlaps
             As for :meth:`rooms`.
 
@@ -381,7 +390,7 @@ class Assembly:
         -------
         Plan
         """
-        plan = self._assembly.plan(directions, samples, legs, tolerance, ignore_overlaps)
+        plan = self._assembly.plan(directions, samples, legs, proofs, tolerance, ignore_overlaps)
         steps, left, stuck = plan
         names = self.parts
 
@@ -411,10 +420,11 @@ class Assembly:
                 Stuck(
                     self._names(parts),
                     directions,
+                    proven,
                     because,
                     {names[part]: [self._names(group) for group in sets] for part, sets in holds},
                 )
-                for parts, directions, because, holds in stuck
+                for parts, directions, proven, because, holds in stuck
             ],
         )
 

@@ -34,9 +34,6 @@ pub(super) enum Proof {
     Open(Vec<DVec3>),
 }
 
-/// Makes such a proof of parts.
-pub(super) type Prover = fn(&Bodies, &[usize], StartOverlap, Watch) -> Result<Proof, AssemblyError>;
-
 /// A cell, and the arcs that hold all over it.
 struct Task {
     cell: DirectionCell,

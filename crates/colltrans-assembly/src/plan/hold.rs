@@ -1,4 +1,4 @@
-//! What holds parts that none of the directions asked takes apart.
+//! What holds parts that do not come apart, and how that is said.
 
 use std::fmt::Write;
 

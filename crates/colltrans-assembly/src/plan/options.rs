@@ -12,6 +12,8 @@ pub struct PlanOptions {
     pub samples: usize,
     /// How many moves, one after another, may take out what no single one does; 1 for none.
     pub legs: usize,
+    /// Whether to prove of what is stuck that nothing takes it apart.
+    pub prove: bool,
     /// Work for those of what is stuck together, each time: a fortieth of so many pairs of nodes, as of
     /// [`WayOptions`](colltrans::ways::WayOptions), and 500 casts, for each of `legs`.
     pub looks: u64,
@@ -19,7 +21,7 @@ pub struct PlanOptions {
 
 impl Default for PlanOptions {
     fn default() -> Self {
-        Self { start: StartOverlap::Refuse, samples: 162, legs: 2, looks: 20_000_000 }
+        Self { start: StartOverlap::Refuse, samples: 162, legs: 2, prove: true, looks: 20_000_000 }
     }
 }
 
@@ -40,6 +42,12 @@ impl PlanOptions {
     #[must_use]
     pub fn with_legs(self, legs: usize) -> Self {
         Self { legs, ..self }
+    }
+
+    /// The same with [proofs](Self::prove) or without.
+    #[must_use]
+    pub fn with_proofs(self, prove: bool) -> Self {
+        Self { prove, ..self }
     }
 
     /// The same with another amount of [work](Self::looks).

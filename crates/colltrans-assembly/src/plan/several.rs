@@ -60,13 +60,13 @@ pub(super) struct Aside {
     pub(super) direction: DVec3,
 }
 
-/// Moves that take some of the parts that are left out, or what is known of them; of two parts, if asked for, a proof
+/// Moves that take some of the parts that are left out, or what is known of them; of two parts, unless not wanted, a proof
 /// that there are none.
 pub(super) fn search(
     bodies: &Bodies,
     left: &[usize],
     matrix: &Matrix,
-    (options, proving): (PlanOptions, bool),
+    options: PlanOptions,
     watch: Watch,
 ) -> Result<Result<Aside, Moves>, AssemblyError> {
     if let Some(why) = not_asked(bodies, left, options) {
@@ -82,7 +82,7 @@ pub(super) fn search(
     let parts = bodies.assembly().parts();
     let placed: Vec<_> = left.iter().map(|&k| parts[k].solid().at(Pose::IDENTITY)).collect();
     let fixed: Vec<usize> = (0..left.len()).filter(|&k| parts[left[k]].fixed()).collect();
-    let cells = if proving { WayOptions::default().cells } else { 0 };
+    let cells = if options.prove { WayOptions::default().cells } else { 0 };
     let options = WayOptions::default()
         .with_cells(cells)
         .with_tolerance(bodies.fit().tolerance())

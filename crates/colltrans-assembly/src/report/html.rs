@@ -69,7 +69,7 @@ fn overview(f: &Findings) -> Markup {
     };
     let summary = format!(
         "{} parts, {} × {} × {}{unit}; {word} {}{unit}; {} directions asked of all parts. Plan: {} \
-         steps, {} parts left, {} groups that none of the directions asked takes apart.",
+         steps, {} parts left, {} that do not come apart.",
         assembly.parts().len(),
         short(size.x),
         short(size.y),
@@ -78,7 +78,10 @@ fn overview(f: &Findings) -> Markup {
         f.matrix.directions().len(),
         f.plan.steps.len(),
         f.plan.left.len(),
-        f.plan.stuck.len()
+        match f.plan.stuck.len() {
+            1 => "1 group".to_owned(),
+            count => format!("{count} groups"),
+        }
     );
     html! {
         p { (summary) }
@@ -257,7 +260,7 @@ fn arrows(f: &Findings, step: &Step, out: DVec3) -> Vec<Arrow> {
 fn stuck(f: &Findings) -> Markup {
     html! {
         @if !f.plan.stuck.is_empty() {
-            h2 { "What none of the directions asked takes apart" }
+            h2 { "What does not come apart" }
             ul {
                 @for s in &f.plan.stuck {
                     li {

@@ -44,10 +44,9 @@ pub(crate) struct AssemblyArguments {
     pub(crate) free: Vec<String>,
     #[command(flatten)]
     pub(crate) work: WorkArguments,
-    /// Prove of what is stuck that no single motion takes it apart, whatever the direction, where there is a
-    /// proof; where there is none, ask more directions
-    #[arg(long, conflicts_with = "only")]
-    pub(crate) prove: bool,
+    /// Do not try to prove of what is stuck that no motion takes it apart, whatever the direction; nor with --only
+    #[arg(long)]
+    pub(crate) no_proofs: bool,
     /// How many moves, one after another, may take out what no single one does; parts may make room and go back
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = legs)]
     pub(crate) legs: usize,

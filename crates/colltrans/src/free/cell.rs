@@ -85,6 +85,15 @@ impl Cell {
         Self { side: self.side, low, size: half, depth: self.depth + 1 }
     }
 
+    /// Whether another cell is this one or within it.
+    pub(super) fn contains(&self, other: &Self) -> bool {
+        let within = |axis: usize| {
+            let ([low, high], [least, most]) = (self.range(axis), other.range(axis));
+            low <= least && most <= high
+        };
+        self.side == other.side && within(0) && within(1)
+    }
+
     /// The number of the root that holds a direction.
     pub(super) fn root_of(d: DVec3) -> usize {
         usize::from(Side::of(d).0)

@@ -139,8 +139,7 @@ pub(super) fn holds(bodies: &Bodies, boxes: &[Vec<InnerBox>; 2], cell: &Cell, fa
         Fate::Inner([a, b]) => {
             cover([&boxes[0][*a as usize], &boxes[1][*b as usize]], &cell.corners())
         }
-        Fate::Open(pairs) => rest_of(bodies, *cell, pairs)
-            .is_ok_and(|rest| rest.pieces.iter().all(|piece| is_free(bodies, &rest, piece))),
+        Fate::Open(pairs) => rest_of(bodies, *cell, pairs).is_ok_and(|rest| is_free(bodies, &rest)),
     }
 }
 
@@ -201,22 +200,24 @@ fn parts(bodies: &Bodies, pair: [u32; 2]) -> Option<Vec<[u32; 2]>> {
     (!q.is_facet()).then(|| q.parts().map(|part| [pair[0], part]).collect())
 }
 
-/// Whether no pair of facets blocks any direction of a piece.
-fn is_free(bodies: &Bodies, rest: &Rest, piece: &Piece) -> bool {
-    let window = rest.window(piece);
-    let mut alone = rest.only(piece);
+/// Whether no pair of facets meets any piece of what is left of a cell: each pair is looked at once, for all of them.
+fn is_free(bodies: &Bodies, rest: &Rest) -> bool {
+    let alone = |piece: &Piece| (rest.window(piece), rest.only(piece));
+    let mut pieces: Vec<(Window, Rest)> = rest.pieces.iter().map(alone).collect();
     let mut stack = vec![[0, 0]];
     while let Some(pair) = stack.pop() {
         let [p, q] = views(bodies, pair);
-        if window.is_missed(bodies, p, q) {
-            continue;
-        }
+        let mut met = pieces.iter_mut().filter(|(window, _)| !window.is_missed(bodies, p, q));
+        let Some((_, first)) = met.next() else { continue };
         if let Some(parts) = parts(bodies, pair) {
             stack.extend(parts);
             continue;
         }
         let facets = [bodies.triangle(true, pair[0]), bodies.triangle(false, pair[1])];
-        if !matches!(alone.cut(bodies, &Cone::new(bodies, facets), PIECES), Ok(false)) {
+        let cone = Cone::new(bodies, facets);
+        let mut others = met.map(|(_, alone)| alone);
+        let cuts = |alone: &mut Rest| !matches!(alone.cut(bodies, &cone, PIECES), Ok(false));
+        if cuts(first) || others.any(cuts) {
             return false;
         }
     }

@@ -85,6 +85,9 @@ pub(super) struct Memory {
     inner: Inner,
     /// Cones that have covered a cell that was asked about alone, the last ones first.
     covering: VecDeque<u32>,
+    /// What may block some of cells that were asked about alone and are not known to be blocked, each within the one
+    /// before it.
+    around: Vec<(Cell, Vec<Pair>)>,
     looks: u64,
 }
 
@@ -196,18 +199,23 @@ impl<'s, 'a> Search<'s, 'a> {
         if self.seen_boxes(&corners).is_some() {
             return true;
         }
-        let mut pairs = vec![[0, 0]];
-        self.refine(&mut pairs, cell);
-        if pairs.is_empty() {
-            return false;
+        let around = &mut self.memory.around;
+        while around.last().is_some_and(|(other, _)| !other.contains(cell)) {
+            around.pop();
         }
+        let mut pairs = around.last().map_or_else(|| vec![[0, 0]], |(_, pairs)| pairs.clone());
+        self.refine(&mut pairs, cell);
         if let Some(k) = self.covering_one(&pairs, cell) {
             self.memory.covering.push_front(k);
             self.memory.covering.truncate(KNOWN);
             return true;
         }
         let task = Task { at: 0, cell: *cell, pairs, witnesses: Vec::new() };
-        self.boxes(&task, &[]).is_some()
+        let found = !task.pairs.is_empty() && self.boxes(&task, &[]).is_some();
+        if !found {
+            self.memory.around.push((*cell, task.pairs));
+        }
+        found
     }
 
     fn decide(&mut self, task: &mut Task) -> Decided {

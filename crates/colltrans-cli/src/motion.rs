@@ -5,13 +5,15 @@ use std::path::PathBuf;
 
 use colltrans::Pose;
 use colltrans::glam::DVec3;
-use colltrans::motion::{Motion, MotionCast, MotionOutcome, MotionProofFile};
+use colltrans::motion::{
+    Motion, MotionCast, MotionProofFile, MotionProofFiles, SolidMotionProofFile,
+};
 use colltrans::record::{Ending, FeaturesRecord, Record, TimeRecord};
 use colltrans_mesh::body::LoadError;
 
 use crate::args::{MotionArguments, Sides, Taken};
 use crate::body::{self, Part, is_part};
-use crate::clearance;
+use crate::clearance::{self, overlaps};
 use crate::failure::{Code, Failure, note, print};
 use crate::inputs::refuse_picture;
 use crate::numbers::{counted, known, known_vector, number, unit_vector};
@@ -51,23 +53,23 @@ fn convex(
     parts: &[Vec<Part>; 2],
     motions: &[Motion; 2],
 ) -> Result<(), Failure> {
-    if arguments.save_proof.is_some() && files.iter().any(|side| side.len() > 1) {
-        let why = "--save-proof is of two meshes; ask about the one that touches alone";
-        return Err(Failure::new(Code::Usage, why));
-    }
     if arguments.tolerance.is_some() && arguments.keep > 0.0 {
         let why = "convex meshes have either --keep or --tolerance";
         return Err(Failure::new(Code::Usage, why));
     }
     tell(arguments, parts.iter().flatten().flat_map(|part| &part.notes));
-    let found = first_of_all(arguments, [&parts[0], &parts[1]], motions)?;
-    let Found { mut told, pair, cast, outcome } = found;
+    let (found, proofs) = first_of_all(arguments, [&parts[0], &parts[1]], motions)?;
+    let Found { mut told, pair } = found;
     let name =
         |k: usize| Some(files[k][pair[k]].display().to_string()).filter(|_| files[k].len() > 1);
     (told.record.moving, told.record.fixed) = (name(0), name(1));
-    print(&if arguments.json { told.json() } else { words(&told, cast.motions()) })?;
+    print(&if arguments.json { told.json() } else { words(&told, motions.each_ref()) })?;
     if let Some(path) = &arguments.save_proof {
-        proof::save_text(path, &MotionProofFile::of(&cast, &outcome).to_json())?;
+        let text = match &proofs[..] {
+            [proof] => proof.to_json(),
+            _ => MotionProofFiles::of(proofs).to_json(),
+        };
+        proof::save_text(path, &text)?;
     }
     let surface = |k: usize, pose: &Pose, origin| surface_of(&parts[k][pair[k]].body, pose, origin);
     let (record, motions) = (&told.record, motions.each_ref());
@@ -80,16 +82,23 @@ fn parts(
     files: [&[PathBuf]; 2],
     motions: &[Motion; 2],
 ) -> Result<(), Failure> {
-    if arguments.save_proof.is_some() {
-        let why = "--save-proof is of convex meshes; --hull takes their hulls";
+    if arguments.save_proof.is_some() && arguments.ignore_start_overlaps {
+        let why = "--save-proof has no proof of what --ignore-start-overlaps leaves out";
         return Err(Failure::new(Code::Usage, why));
     }
     let bodies = clearance::load(files, &arguments.part_options())?;
     tell(arguments, bodies.iter().flat_map(|body| &body.notes));
-    let MotionArguments { tolerance, keep, .. } = *arguments;
-    let asked = PartsMotion { bodies: [&bodies[0], &bodies[1]], motions, tolerance, keep };
+    let MotionArguments { tolerance, keep, ignore_start_overlaps, .. } = *arguments;
+    let bodies_asked = [&bodies[0], &bodies[1]];
+    let asked =
+        PartsMotion { bodies: bodies_asked, motions, tolerance, ignore_start_overlaps, keep };
     let told = Line::from(asked.ask()?);
     print(&if arguments.json { told.json() } else { words(&told, motions.each_ref()) })?;
+    if let Some(path) = &arguments.save_proof {
+        let proof = SolidMotionProofFile::answer(&asked.cast()?);
+        let (_, proof) = proof.map_err(|error| Failure::new(Code::Query, error.to_string()))?;
+        proof::save_text(path, &proof.to_json())?;
+    }
     let surface = |k: usize, pose: &Pose, origin| bodies[k].surface(pose, origin);
     let (record, motions) = (&told.record, motions.each_ref());
     draw(arguments, Moved { record, motions, surface: &surface })
@@ -109,21 +118,20 @@ fn tell<'a>(arguments: &MotionArguments, mended: impl Iterator<Item = &'a String
 }
 
 /// The answer of two of the meshes.
-struct Found<'a> {
+struct Found {
     told: Line,
     /// Which ones.
     pair: [usize; 2],
-    cast: MotionCast<'a>,
-    outcome: MotionOutcome,
 }
 
-/// What comes first of all pairs: an overlap when the motion begins, else the least time, else nothing.
-fn first_of_all<'a>(
+/// What comes first of all pairs: an overlap when the motion begins, else the least time, else nothing; and the proofs of
+/// all, where they are to be kept.
+fn first_of_all(
     arguments: &MotionArguments,
-    parts: [&'a [Part]; 2],
-    motions: &'a [Motion; 2],
-) -> Result<Found<'a>, Failure> {
-    let mut first: Option<Found<'a>> = None;
+    parts: [&[Part]; 2],
+    motions: &[Motion; 2],
+) -> Result<(Found, Vec<MotionProofFile>), Failure> {
+    let (mut first, mut proofs): (Option<Found>, _) = (None, Vec::new());
     for (i, moving) in parts[0].iter().enumerate() {
         for (j, fixed) in parts[1].iter().enumerate() {
             let cast =
@@ -136,17 +144,21 @@ fn first_of_all<'a>(
             let outcome = outcome.map_err(|error| replay::motion_failure(error, &cast))?;
             let hull = Hulls::of([moving, fixed]);
             let told = Line { hull, ..Record::of_motion(&outcome, &cast).into() };
-            let found = Found { told, pair: [i, j], cast, outcome };
+            if arguments.save_proof.is_some() {
+                proofs.push(MotionProofFile::of(&cast, &outcome));
+            }
+            let found = Found { told, pair: [i, j] };
             if first.as_ref().is_none_or(|first| found.begins() < first.begins()) {
                 first = Some(found);
             }
         }
     }
     // The command line has asked for at least one on each side.
-    first.ok_or_else(|| Failure::new(Code::Usage, "no meshes"))
+    let first = first.ok_or_else(|| Failure::new(Code::Usage, "no meshes"))?;
+    Ok((first, proofs))
 }
 
-impl Found<'_> {
+impl Found {
     /// From when on the bodies may meet.
     fn begins(&self) -> f64 {
         match (self.told.record.outcome, self.told.record.time) {
@@ -172,6 +184,14 @@ pub(crate) fn words(told: &Line, motions: [&Motion; 2]) -> String {
     }
     if let Some(time) = record.time {
         times(&mut text, time);
+        if let Some(TimeRecord { lower, upper }) = record.shrunk_time {
+            let upper = upper.map_or("not proven".into(), number);
+            line(
+                &mut text,
+                "shrunk",
+                &format!("{} to {upper}, for the shrunk bodies", number(lower)),
+            );
+        }
         pose(&mut text, "pose", motions[0], time.lower);
         if *motions[1] != Motion::still(motions[1].start()) {
             pose(&mut text, "fixed pose", motions[1], time.lower);
@@ -195,6 +215,7 @@ pub(crate) fn words(told: &Line, motions: [&Motion; 2]) -> String {
     if let Some(tolerance) = record.tolerance {
         line(&mut text, "tolerance", &number(tolerance));
     }
+    overlaps(&mut text, record, "ignored");
     kept(&mut text, record);
     hulls(&mut text, told);
     text

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use colltrans::free::FreeDirections;
-use colltrans::motion::MotionProofFile;
 use colltrans::motion::path::{PathFileError, PathProofFile};
+use colltrans::motion::{MotionProofFile, MotionProofFiles, SolidMotionProofFile};
 use colltrans::record::FreeRecord;
 use colltrans::{
     CaseError, CertificateError, DistanceStatement, ProofFile, SceneProof, SceneStatement,
@@ -67,6 +67,8 @@ enum Saved {
     Two(Box<ProofFile>),
     Many(Box<SceneProof>),
     Motion(Box<MotionProofFile>),
+    Motions(Box<MotionProofFiles>),
+    SolidMotion(Box<SolidMotionProofFile>),
     Path(Box<PathProofFile>),
 }
 
@@ -86,6 +88,14 @@ impl Saved {
             Err(error) if other(&error) => {}
             proof => return Ok(Self::Motion(Box::new(proof?))),
         }
+        match MotionProofFiles::from_json(text) {
+            Err(error) if other(&error) => {}
+            proof => return Ok(Self::Motions(Box::new(proof?))),
+        }
+        match SolidMotionProofFile::from_json(text) {
+            Err(error) if other(&error) => {}
+            proof => return Ok(Self::SolidMotion(Box::new(proof?))),
+        }
         match PathProofFile::from_json(text) {
             Err(PathFileError::Case(error)) if other(&error) => Err(first.into()),
             proof => Ok(Self::Path(Box::new(proof?))),
@@ -98,6 +108,10 @@ impl Saved {
             Self::Two(proof) => checked(proof).map_err(|error| error.to_string()),
             Self::Many(proof) => proof.check().map(|()| None).map_err(|error| error.to_string()),
             Self::Motion(proof) => proof.check().map(|_| None).map_err(|error| error.to_string()),
+            Self::Motions(proof) => proof.check().map(|_| None).map_err(|error| error.to_string()),
+            Self::SolidMotion(proof) => {
+                proof.check().map(|_| None).map_err(|error| error.to_string())
+            }
             Self::Path(proof) => proof.check().map(|_| None).map_err(|error| error.to_string()),
         }
     }
@@ -107,6 +121,8 @@ impl Saved {
             Self::Two(proof) => proof.to_string(),
             Self::Many(proof) => proof.to_string(),
             Self::Motion(proof) => proof.to_string(),
+            Self::Motions(proof) => proof.to_string(),
+            Self::SolidMotion(proof) => proof.to_string(),
             Self::Path(proof) => proof.to_string(),
         }
     }
@@ -116,6 +132,12 @@ impl Saved {
             Self::Two(proof) => told(proof, free),
             Self::Many(proof) => told_of_many(proof),
             Self::Motion(proof) => {
+                told_of_time(&proof.to_string(), proof.check().unwrap_or_default())
+            }
+            Self::Motions(proof) => {
+                told_of_time(&proof.to_string(), proof.check().unwrap_or_default())
+            }
+            Self::SolidMotion(proof) => {
                 told_of_time(&proof.to_string(), proof.check().unwrap_or_default())
             }
             Self::Path(proof) => {

@@ -75,6 +75,9 @@ pub struct Record {
     /// Of a motion: when they first meet, in parts of it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time: Option<TimeRecord>,
+    /// Of the clearance of a motion: when they do as the tolerance leaves them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub shrunk_time: Option<TimeRecord>,
     /// Of bodies where they are: a length that their distance, or depth, is not below. Proven.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lower: Option<f64>,

@@ -131,6 +131,57 @@ fn a_motion_in_pieces_is_the_motion() {
     }
 }
 
+/// One plane, carried along, however narrow the gap.
+#[test]
+fn carried_by_one_motion_cubes_stay_apart() {
+    let cube = cuboid([0.5; 3]);
+    for gap in [1e-3, 1e-6, 1e-8, 1e-10, 1e-12] {
+        for turn in [0.0, 0.3] {
+            let poses = [DVec3::ZERO, DVec3::X * (1.0 + gap)].map(|place| {
+                let by = DQuat::from_rotation_y(turn);
+                Pose::new(by, DVec3::new(2.0, 1.0, 0.0) + by * place).expect("a pose")
+            });
+            let screw = |pose: Pose| {
+                let (point, axis) = (DVec3::new(0.5, 0.25, 0.0), DVec3::new(1.0, 2.0, 3.0));
+                Motion::screw(pose, point, axis, 3.0, 2.0).expect("a motion")
+            };
+            let outcome = answered([&cube, &cube], [&screw(poses[0]), &screw(poses[1])]);
+            let MotionOutcome::Free(free) = outcome else { panic!("{gap:e}: {outcome:?}") };
+            assert!(free.steps.looks <= 4, "{} looks at {gap:e}", free.steps.looks);
+            // The same by way of poses, each of which is met to rounding.
+            let through = |pose: Pose| {
+                let poses = [0.0, 0.5, 1.0].map(|time| screw(pose).at(time).expect("a pose"));
+                Motion::through(&poses).expect("a motion")
+            };
+            if gap >= 1e-10 {
+                let [a, b] = poses.map(through);
+                let outcome = answered([&cube, &cube], [&a, &b]);
+                let MotionOutcome::Free(free) = outcome else { panic!("{gap:e}: {outcome:?}") };
+                assert!(free.steps.looks <= 8, "{} looks at {gap:e}", free.steps.looks);
+            }
+        }
+    }
+}
+
+/// The face of a slanting cube that comes to an edge of another one, which is a little aside.
+#[test]
+fn a_slanting_cube_is_met_to_rounding() {
+    let cube = cuboid([0.5; 3]);
+    for slant in [0.0, 0.3, 0.7, std::f64::consts::FRAC_PI_4] {
+        for aside in [0.0, 0.05, 0.1, 0.3] {
+            for axis in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE] {
+                let by = DQuat::from_axis_angle(axis.normalize(), slant);
+                let pose = Pose::new(by, DVec3::new(-3.0, aside, 0.0)).expect("a pose");
+                let slide = Motion::slide(pose, DVec3::X * 4.0).expect("a motion");
+                let there = Motion::still(Pose::IDENTITY);
+                let found = contact(answered([&cube, &cube], [&slide, &there]));
+                let width = found.upper - found.lower;
+                assert!(width < 1e-12, "{slant} {aside} {axis}: {} {width:e}", found.lower);
+            }
+        }
+    }
+}
+
 #[test]
 fn carried_by_a_pose_it_is_the_same() {
     let mut random = Random::new(77);

@@ -291,19 +291,23 @@ fn a_slide_is_the_linear_cast() {
 
 #[test]
 fn both_carried_by_one_motion_stay_as_they_are() {
-    // A hook around a bar, 1e-3 apart, far from the axis.
+    // A hook around a bar, a little apart, far from the axis: planes that are carried along need no halving.
     let hook = solid(
         &block([0.0; 3], [3.0, 1.0, 1.0])
             .joined(&block([0.0, 1.0, 0.0], [1.0, 3.0, 1.0]))
             .joined(&block([0.0, 3.0, 0.0], [3.0, 4.0, 1.0])),
     );
-    let bar = solid(&block([1.001, 1.001, -4.0], [2.0, 2.999, 4.0]));
+    let bars =
+        [1e-3, 1e-8].map(|gap| solid(&block([1.0 + gap, 1.0 + gap, -4.0], [2.0, 3.0 - gap, 4.0])));
     let pose = Pose::new(DQuat::from_rotation_x(0.4), DVec3::new(9.0, 1.0, 2.0)).expect("a pose");
     let (point, axis) = (DVec3::new(-1.0, 2.0, 0.5), DVec3::new(1.0, 2.0, 3.0));
     let both = [0, 1].map(|_| Motion::screw(pose, point, axis, 5.0, 1.0).expect("a motion"));
-    let cast = MotionCast::new(hook.along(&both[0]), bar.along(&both[1])).expect("a cast");
-    let outcome = judged(&cast, [&both[0], &both[1]]);
-    assert!(matches!(outcome, MotionOutcome::Free(_)), "{outcome:?}");
+    for bar in &bars {
+        let cast = MotionCast::new(hook.along(&both[0]), bar.along(&both[1])).expect("a cast");
+        let outcome = judged(&cast, [&both[0], &both[1]]);
+        assert!(matches!(outcome, MotionOutcome::Free(_)), "{outcome:?}");
+        assert!(outcome.steps().nodes < 2_000, "{:?}", outcome.steps());
+    }
 }
 
 #[test]
@@ -404,6 +408,26 @@ fn normals_lead_from_the_moving_to_the_fixed_body() {
             let normal = contact.normal.expect("a normal");
             assert!(normal.distance(DVec3::Z * way.signum()) < 1e-9, "{tolerance:?} {normal}");
             assert!(contact.features.is_some());
+        }
+    }
+}
+
+/// The face of a slanting cube that comes to an edge of another one, which is a little aside.
+#[test]
+fn a_slanting_cube_is_met_to_rounding() {
+    let cube = solid(&block([-0.5; 3], [0.5; 3]));
+    for slant in [0.3, 0.7, FRAC_PI_2 / 2.0] {
+        for aside in [0.05, 0.1, 0.3] {
+            for axis in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::ONE] {
+                let by = DQuat::from_axis_angle(axis.normalize(), slant);
+                let pose = Pose::new(by, DVec3::new(-3.0, aside, 0.0)).expect("a pose");
+                let (slide, rest) = (Motion::slide(pose, DVec3::X * 4.0), still());
+                let slide = slide.expect("a motion");
+                let cast = MotionCast::new(cube.along(&slide), cube.along(&rest)).expect("a cast");
+                let found = contact(judged(&cast, [&slide, &rest]));
+                let width = found.upper - found.lower;
+                assert!(width < 1e-11, "{slant} {aside} {axis}: {} {width:e}", found.lower);
+            }
         }
     }
 }

@@ -36,6 +36,14 @@ With the moving body ``P``, the fixed one ``Q``, the direction ``d``, all points
   with sine and cosine to 36 digits; between two planes how far the heights of vertices bend from
   their chords, or how far each rises on its arc; at the time of contact, a surface around the
   origin as for a depth.
+- *Motions of solids.* Their facets, moved inwards as the file has them, in the parts that it names:
+  every entry of the cover, by a normal of its own that parts two boxes or facets at both ends of
+  its time and, bent as above, in between; lists of planes; that no shell lies inside the other
+  solid when the motion begins, along a ray; the edge that passes through a facet. Not checked is
+  how the tolerance moves facets: how far they were moved is said.
+- *Paths of joints.* Of convex bodies, at each plane's place, the gap that it leaves over all
+  vertices, the joints one after the other; between two of a row how far heights bend; over rows how
+  far points can move. Of solids nothing.
 - *All directions.* Two facets ``f`` and ``g`` block an open cone: ``n_f.d > 0``, ``n_g.d < 0``, and
   ``d`` inside the cone of the nine differences ``g - f``. A cell that they block has its four
   corners in it. What cones leave of any other cell is convex pieces, whose corners are vector
@@ -51,8 +59,8 @@ from __future__ import annotations
 import json
 import math
 import sys
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache
 from itertools import combinations, pairwise, product
@@ -216,6 +224,11 @@ class Body:
     def facet(self, k: int) -> Triangle:
         a, b, c = self.facets[k]
         return self.at(a), self.at(b), self.at(c)
+
+    def turn(self, v: Vector) -> Vector:
+        """A direction of the frame in the world."""
+        x, y, z = (dot(row, v) for row in self.rows)
+        return x, y, z
 
     def heights(self, normal: Vector) -> Iterator[Fraction]:
         """Of all points along a normal of the world."""
@@ -1501,20 +1514,23 @@ class Spin:
         if abs(rate) > _MOST_TURN:
             raise NoProofError(f"a turn by {float(rate)!r}")
         square = dot(axis, axis)
-        ways = [plus(arm, minus(body.at(k), body.offset)) for k in range(len(points))]
-        beside = [cross(axis, y) for y in ways]
-        return cls(
-            body,
-            number(piece["since"]),
-            arm,
-            axis,
-            rate,
-            way,
-            square,
-            1 / root_above(square),
-            root_above(max(dot(y, y) for y in beside) / square),
-            root_above(max(dot(y, y) for y in ways)),
+        since, inverse, zero = number(piece["since"]), 1 / root_above(square), Fraction()
+        spin = cls(body, since, arm, axis, rate, way, square, inverse, zero, zero)
+        return spin.of(points)
+
+    def of(self, points: list[Vector]) -> Spin:
+        """The same spin of other points."""
+        body = replace(self.body, points=points)
+        ways = [plus(self.arm, minus(body.at(k), body.offset)) for k in range(len(points))]
+        beside = [cross(self.axis, y) for y in ways]
+        radius = root_above(max(dot(y, y) for y in beside) / self.square)
+        return replace(
+            self, body=body, radius=radius, reach=root_above(max(dot(y, y) for y in ways))
         )
+
+    def turned(self, v: Vector, time: Fraction) -> Vector:
+        """A direction of the body, when the spin began, in the world: ``E v``."""
+        return replace(self, rate=-self.rate).back(v, time)
 
     def back(self, n: Vector, time: Fraction) -> Vector:
         """A direction of the world in the body's, when the spin began: ``E' n``."""
@@ -1671,6 +1687,8 @@ class Span:
             return True
         if a.alone:
             return a.normal == b.normal and a.gap > self.lost(a, b)
+        if a.gap > self.carried(a, b.time):
+            return True
         dn = minus(b.normal, a.normal)
         drift = minus(self.fixed.way, self.moving.way)
         c = 2 * dot(dn, drift) * (b.time - a.time)
@@ -1691,6 +1709,27 @@ class Span:
         risen = self.moving.rise(a.normal, a.time, b.time)
         sunk = self.fixed.rise(scaled(a.normal, Fraction(-1)), a.time, b.time)
         return risen + sunk - min(drift, Fraction())
+
+    def carried(self, a: Plane, until: Fraction) -> Fraction:
+        """The same of a plane that the moving body carries along: little, where both spin as one.
+
+        Its normal is ``E n`` then. The way between points of both axes, of which only what is
+        across the axis is seen differently, turns by no more than the angle; the axes drift;
+        and with another angular velocity the fixed body's points are elsewhere by the difference
+        times their distance from the point of the axis.
+        """
+        p, q = self.moving, self.fixed
+        h = until - a.time
+        feet = [plus(minus(s.body.offset, s.arm), scaled(s.way, a.time - s.since)) for s in (p, q)]
+        beside = p.across(minus(feet[1], feet[0]))
+        swung = root_above(dot(beside, beside)) * min(abs(p.rate) * h, Fraction(2))
+        drift = minus(q.way, p.way)
+        lost = swung + root_above(dot(drift, drift)) * h
+        if (p.axis, p.rate) != (q.axis, q.rate):
+            spins = minus(scaled(q.axis, q.rate * q.inverse), scaled(p.axis, p.rate * p.inverse))
+            room = 8 * _TINY * (abs(p.rate) + abs(q.rate))
+            lost += (root_above(dot(spins, spins)) + room) * h * q.reach
+        return lost * root_above(dot(a.normal, a.normal)) + 8 * p.off(a.normal)
 
     def ends(self, pairs: Any, time: Fraction) -> list[tuple[Vector, Vector]]:
         """The points that pairs of vertices name, at a time."""
@@ -1734,12 +1773,13 @@ def stays(a: Fraction, b: Fraction, c: Fraction) -> bool:
     return min(a, b) > 0 and (over < 0 or over * over < 4 * a * b)
 
 
-def spans(file: Any) -> list[Span]:
+def spans(file: Any, described_bodies: bool = True) -> list[Span]:
     """The times in which both bodies spin evenly, one after the other."""
     sides = []
     for side in ("moving", "fixed"):
         points = [vector(v) for v in file[side]["vertices"]]
-        described(points, file[side])
+        if described_bodies:
+            described(points, file[side])
         spins = [Spin.read(points, piece) for piece in file[f"{side}_motion"]]
         times = [spin.since for spin in spins]
         if not times or times[0] != 0 or times[-1] > 1 or sorted(set(times)) != times:
@@ -1801,6 +1841,745 @@ def chain(span: Span, planes: list[Plane]) -> Fraction:
     return span.begin if before is None else before.time
 
 
+#: What points of facets may be off in the world, for a sign that is certain, in parts of the size.
+_SURE = Fraction(1, 2**96)
+_UNITS: tuple[Vector, Vector, Vector] = (
+    (Fraction(1), Fraction(), Fraction()),
+    (Fraction(), Fraction(1), Fraction()),
+    (Fraction(), Fraction(), Fraction(1)),
+)
+
+
+def _box(points: Sequence[Vector]) -> tuple[Vector, Vector]:
+    xs, ys, zs = ([p[k] for p in points] for k in range(3))
+    return (min(xs), min(ys), min(zs)), (max(xs), max(ys), max(zs))
+
+
+@dataclass
+class Parts:
+    """The facets of a solid, moved inwards as the file says, and how a proof splits them.
+
+    Nodes are numbered in preorder: the first part of one that is split is the next.
+    """
+
+    corners: list[Triangle]
+    #: The facet that a node is, or -1.
+    facet: list[int]
+    #: Where the second part of a node that is split stands.
+    second: list[int]
+    bounds: list[tuple[Vector, Vector]]
+    #: How far a corner was moved, at most.
+    moved: Fraction
+    known: dict[tuple[int, Fraction], Spin] = field(default_factory=dict)
+
+    @classmethod
+    def read(cls, points: list[Vector], facets: list[tuple[int, int, int]], of: Any) -> Parts:
+        corners: list[Triangle] = []
+        square = Fraction()
+        numbers = [whole(k, len(facets)) for k in of["numbers"]]
+        if sorted(numbers) != list(range(len(facets))):
+            raise RefusedError("the facets are not those of the body, each once")
+        for at, triangle in zip(numbers, of["corners"], strict=True):
+            a, b, c = (vector(v) for v in triangle)
+            corners.append((a, b, c))
+            x, y, z = (points[k] for k in facets[at])
+            # In their order, from whichever it begins.
+            square = max(
+                square,
+                min(
+                    max(
+                        dot(minus(u, v), minus(u, v))
+                        for u, v in zip((a, b, c), turned, strict=True)
+                    )
+                    for turned in ((x, y, z), (y, z, x), (z, x, y))
+                ),
+            )
+        facet = [k if k == -1 else whole(k, len(corners)) for k in of["tree"]]
+        if sorted(k for k in facet if k >= 0) != list(range(len(corners))):
+            raise RefusedError("the parts of the body are not its facets, each once")
+        second = [0] * len(facet)
+        open_: list[int] = []
+        boxes: dict[int, tuple[Vector, Vector]] = {}
+        for at in reversed(range(len(facet))):
+            if facet[at] >= 0:
+                low, high = _box(corners[facet[at]])
+            else:
+                if len(open_) < 2:
+                    raise RefusedError("the parts of the body are no tree")
+                (a, b), second[at] = boxes[open_.pop()], open_[-1]
+                c, d = boxes[open_.pop()]
+                low, high = _box((a, b, c, d))
+            boxes[at] = (low, high)
+            open_.append(at)
+        if open_ != [0]:
+            raise RefusedError("the parts of the body are no tree")
+        bounds = [boxes[k] for k in range(len(facet))]
+        return cls(corners, facet, second, bounds, root_above(square))
+
+    def points(self, node: int) -> list[Vector]:
+        """The corners of a facet, or of the box around several."""
+        if self.facet[node] >= 0:
+            return list(self.corners[self.facet[node]])
+        return [(x[0], y[1], z[2]) for x, y, z in product(self.bounds[node], repeat=3)]
+
+    def middle(self, node: int) -> Vector:
+        points = self.points(node)
+        total = _ZERO
+        for v in points:
+            total = plus(total, v)
+        return scaled(total, Fraction(1, len(points)))
+
+    def spin(self, node: int, spin: Spin) -> Spin:
+        key = (node, spin.since)
+        if key not in self.known:
+            self.known[key] = spin.of(self.points(node))
+        return self.known[key]
+
+
+@dataclass
+class Cover:
+    """All pairs of facets of two solids during a span, pair by pair as the letters say."""
+
+    span: Span
+    parts: tuple[Parts, Parts]
+
+    def at(self, nodes: tuple[int, int]) -> Span:
+        p, q = self.parts
+        moving, fixed = p.spin(nodes[0], self.span.moving), q.spin(nodes[1], self.span.fixed)
+        return replace(self.span, moving=moving, fixed=fixed)
+
+    def check(self, letters: str, lists: list[Any], until: Fraction) -> None:
+        """Every entry, and that they are all of them."""
+        stack = [((0, 0), self.span.begin, until)]
+        rest = iter(lists)
+        for number_, letter in enumerate(letters):
+            if not stack:
+                raise RefusedError("the cover has more entries than there are pairs")
+            nodes, a, b = stack.pop()
+            if letter == "T":
+                half = Fraction(float(a) + 0.5 * (float(b) - float(a)))
+                if not a <= half <= b:
+                    raise RefusedError(f"entry {number_} halves no time")
+                stack += [(nodes, half, b), (nodes, a, half)]
+            elif letter in "PQ":
+                which = "PQ".index(letter)
+                parts, at = self.parts[which], nodes[which]
+                if parts.facet[at] >= 0:
+                    raise RefusedError(f"entry {number_} splits a facet")
+                both = (at + 1, parts.second[at])
+                pairs = [(k, nodes[1]) if which == 0 else (nodes[0], k) for k in both]
+                stack += [(pairs[1], a, b), (pairs[0], a, b)]
+            elif letter == "L":
+                planes = [Plane.read(plane) for plane in next(rest, [])]
+                facets = all(self.parts[k].facet[nodes[k]] >= 0 for k in (0, 1))
+                ends = (planes[0].time, planes[-1].time) if planes else None
+                if not facets or ends != (a, b):
+                    raise RefusedError(f"entry {number_} has no planes for its time")
+                chain(replace(self.at(nodes), begin=a, end=b), planes)
+            elif not self.parted(letter, nodes, a, b):
+                raise RefusedError(f"entry {number_}: no plane {letter!r} parts them throughout")
+        if stack or next(rest, None) is not None:
+            raise RefusedError("the cover does not end with all pairs")
+
+    def parted(self, letter: str, nodes: tuple[int, int], a: Fraction, b: Fraction) -> bool:
+        """Whether one normal of any length parts two parts from one time to another."""
+        span = self.at(nodes)
+        n = self.normal(letter, nodes, span, (a, b))
+        if not any(n):
+            return False
+        kept = span.keep * root_above(dot(n, n))
+        ends = [Plane(time, n, span.gap(n, time) - kept, False) for time in (a, b)]
+        if min(end.gap for end in ends) > 0 and span.joins(ends[0], ends[1]):
+            return True
+        # One that both carry along.
+        n = self.normal(letter, nodes, span, (a, a))
+        gap = span.gap(n, a) - span.keep * root_above(dot(n, n))
+        return gap > span.carried(Plane(a, n, gap, False), b)
+
+    def normal(
+        self, letter: str, nodes: tuple[int, int], span: Span, times: tuple[Fraction, Fraction]
+    ) -> Vector:
+        """What a letter stands for, nearly: any other direction would do as well."""
+        spins = (span.moving, span.fixed)
+
+        def both(of: Callable[[Fraction], Vector]) -> Vector:
+            return plus(of(times[0]), of(times[1]))
+
+        def way(k: int, v: Vector) -> Vector:
+            return both(lambda time: spins[k].turned(spins[k].body.turn(v), time))
+
+        def edge(k: int, j: int) -> Vector:
+            facet = self.parts[k].facet[nodes[k]]
+            if facet < 0:
+                raise RefusedError("a box has no edges of its own")
+            corners = self.parts[k].corners[facet]
+            return way(k, minus(corners[(j + 1) % 3], corners[j]))
+
+        middles = [spins[k].of([self.parts[k].middle(nodes[k])]) for k in (0, 1)]
+        apart = both(lambda time: minus(middles[1].at(0, time), middles[0].at(0, time)))
+        if letter == "m":
+            n = apart
+        elif letter in "abcxyz":
+            at = "abcxyz".index(letter)
+            n = way(at // 3, _UNITS[at % 3])
+        elif letter in "pq":
+            k = "pq".index(letter)
+            n = cross(edge(k, 0), edge(k, 1))
+        elif letter in "123456789":
+            i, j = divmod("123456789".index(letter), 3)
+            n = cross(edge(0, i), edge(1, j))
+        else:
+            raise NoProofError(f"no entry is written {letter!r}")
+        x, y, z = (Fraction(float(v)) for v in n)
+        return (-x, -y, -z) if dot((x, y, z), apart) < 0 else (x, y, z)
+
+
+def certain(x: Vector, y: Vector, z: Vector, off: Fraction) -> int:
+    """The sign of a volume of vectors whose parts are off by less; 0 if it is not certain."""
+    value = dot(cross(x, y), z)
+    k, m, n = (max(abs(part) for part in v) + off for v in (x, y, z))
+    error = 6 * off * (k * m + m * n + n * k)
+    return 0 if abs(value) <= error else 1 if value > 0 else -1
+
+
+def pierces(p: Vector, q: Vector, triangle: Triangle, off: Fraction) -> bool:
+    """Whether a segment passes through a triangle, wherever their points are to within so much."""
+    a, b, c = triangle
+    below, above_ = (certain(minus(b, a), minus(c, a), minus(end, a), 2 * off) for end in (p, q))
+    around = {
+        certain(minus(q, p), minus(u, p), minus(v, p), 2 * off) for u, v in ((a, b), (b, c), (c, a))
+    }
+    return below * above_ < 0 and len(around) == 1 and 0 not in around
+
+
+def solids_meet(span: Span, parts: tuple[Parts, Parts], meeting: Any) -> None:
+    """That two facets do at a time."""
+    time = number(meeting["time"])
+    numbers = [
+        whole(k, len(side.corners)) for k, side in zip(meeting["triangles"], parts, strict=True)
+    ]
+    spins = [
+        spin.of(list(side.corners[k]))
+        for spin, side, k in zip((span.moving, span.fixed), parts, numbers, strict=True)
+    ]
+    f, g = (tuple(spin.at(k, time) for k in range(3)) for spin in spins)
+    size = max(abs(x) for v in (*f, *g) for x in v) + spins[0].reach + spins[1].reach
+    off = size * _SURE
+    ((kind, claim),) = meeting["met"].items()
+    if kind == "crossing" and span.keep == 0:
+        own, other = (f, g) if claim["moving"] is True else (g, f)
+        k = whole(claim["edge"], 3)
+        if not pierces(own[k], own[(k + 1) % 3], (other[0], other[1], other[2]), off):
+            raise RefusedError("the edge does not pass through the facet")
+    elif kind == "near" and span.keep > 0:
+        p, q = (mean(side, weights) for side, weights in zip((f, g), claim["weights"], strict=True))
+        between = minus(q, p)
+        if not above(span.keep - 4 * off, dot(between, between)):
+            raise RefusedError(f"the points are not as near as {float(span.keep)!r}")
+    else:
+        raise RefusedError(f"{kind!r} does not say that the solids meet")
+
+
+def winds(at: Vector, facets: list[Triangle]) -> int:
+    """How often a surface goes round a point that is not on it."""
+    for k in range(1, 60):
+        way = (Fraction(1), Fraction(k, 61), Fraction(k * k, 3721))
+        count, sure = 0, True
+        for triangle in facets:
+            a, b, c = (minus(v, at) for v in triangle)
+            sides = [dot(cross(u, v), way) for u, v in ((a, b), (b, c), (c, a))]
+            if 0 in sides:
+                sure = False
+                break
+            if min(sides) < 0 < max(sides):
+                continue
+            volume = dot(cross(a, b), c)
+            if (volume > 0) == (sides[0] > 0):
+                count += 1 if sides[0] > 0 else -1
+        if sure:
+            return count
+    raise RefusedError("whether a point is inside is not told by any ray")
+
+
+def start(span: Span, parts: tuple[Parts, Parts]) -> None:
+    """That no shell is inside the other solid when the motion begins; surfaces do not meet then."""
+    spins = (span.moving, span.fixed)
+    placed = []
+    for spin, side in zip(spins, parts, strict=True):
+        points = spin.of([v for triangle in side.corners for v in triangle])
+        world = [points.body.at(k) for k in range(len(points.body.points))]
+        placed.append([(world[k], world[k + 1], world[k + 2]) for k in range(0, len(world), 3)])
+    for own, other in ((0, 1), (1, 0)):
+        shells: dict[Vector, Vector] = {}
+
+        def root(v: Vector, shells: dict[Vector, Vector] = shells) -> Vector:
+            while shells.setdefault(v, v) != v:
+                v = shells[v]
+            return v
+
+        for a, b, c in placed[own]:
+            shells[root(b)] = root(a)
+            shells[root(c)] = root(a)
+        for v in [v for v in shells if root(v) == v]:
+            if winds(v, placed[other]) > 0:
+                raise RefusedError("a shell lies inside the other solid when the motion begins")
+
+
+def solid_motion(file: Any) -> Report:
+    """When two solids that move first meet, as they are moved inwards in the file."""
+    proof, report = file["proof"], Report()
+    if "parts" not in file:
+        raise NoProofError("the file does not say how the solids are split")
+    shapes = [Body.shape(file[side]) for side in ("moving", "fixed")]
+    if any(not facets for _, facets in shapes):
+        raise NoProofError("the bodies are not made of facets")
+    p, q = (
+        Parts.read(points, facets, of)
+        for (points, facets), of in zip(shapes, file["parts"], strict=True)
+    )
+    parts = (p, q)
+    plain = {
+        **{side: {"vertices": [[0.0, 0.0, 0.0]]} for side in ("moving", "fixed")},
+        **{name: file[name] for name in ("moving_motion", "fixed_motion")},
+        "keep": file.get("keep", 0.0),
+    }
+    all_spans = spans(plain, described_bodies=False)
+    keep = all_spans[0].keep
+    if keep < 0:
+        raise NoProofError("the gap to be kept is negative")
+    meet = "meet" if keep == 0 else f"are as near as {float(keep)!r}"
+    moved = float(max(side.moved for side in parts))
+    of = f"the facets, moved by at most {moved:.3g}," if moved else "the facets"
+    claimed = proof["spans"]
+    if "overlapping" in proof["start"]:
+        report.unchecked.append("that they overlap when the motion begins")
+        report.partly = True
+        return report
+    if len(claimed) > len(all_spans):
+        raise RefusedError("there are more spans than the motions have")
+    reached = Fraction()
+    for span, claim in zip(all_spans, claimed, strict=False):
+        until = number(claim["until"])
+        if reached != span.begin or not span.begin <= until <= span.end:
+            raise RefusedError("a span does not begin where the one before it ended")
+        if until > span.begin:
+            Cover(span, parts).check(claim["cover"], claim["lists"], until)
+        elif claim["cover"] or claim["lists"]:
+            raise RefusedError("a span without a time has entries")
+        reached = until
+    if reached > 0:
+        told = "throughout the motion" if reached == 1 else f"up to the time {float(reached)!r}"
+        report.holds.append(f"{of} never {meet} {told}")
+        open_ = any(
+            piece.get("open", False) for k in ("moving", "fixed") for piece in file[k]["pieces"]
+        )
+        if open_:
+            report.unchecked.append("what open surfaces are inside of when the motion begins")
+            report.partly = True
+        else:
+            start(all_spans[0], parts)
+            report.holds.append("none of them lies inside the other when the motion begins")
+    meeting = proof["meeting"]
+    if meeting is not None:
+        time = number(meeting["time"])
+        if not claimed or not reached <= time <= all_spans[len(claimed) - 1].end:
+            raise RefusedError(f"that they {meet} is said of another time")
+        solids_meet(all_spans[len(claimed) - 1], parts, meeting)
+        report.holds.append(f"{of} {meet} at the time {float(time)!r}")
+    if moved:
+        report.unchecked.append("whether facets were moved inwards as the tolerance says")
+    return report
+
+
+def motions(file: Any) -> Report:
+    """Which two of several pairs of convex bodies first meet."""
+    report = Report()
+    for number_, proof in enumerate(file["proofs"]):
+        if proof["format"] != MOTION_FORMAT:
+            raise NoProofError(f"the format of a proof is {proof['format']!r}")
+        found = motion(proof)
+        report.holds += [f"pair {number_}: {line}" for line in found.holds]
+        report.unchecked += [f"pair {number_}: {line}" for line in found.unchecked]
+    return report
+
+
+#: Binary digits that rotations are kept with; what that leaves out is nothing beside `_SURE`.
+_KEPT = 256
+
+
+def kept(v: Vector) -> Vector:
+    x, y, z = (Fraction(math.floor(c * (1 << _KEPT)), 1 << _KEPT) for c in v)
+    return x, y, z
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A frame in the one before it, and what its joint does, by the values of a column."""
+
+    origin: Body
+    kind: str
+    axis: Vector
+    column: int
+
+
+@dataclass
+class Field:
+    """Where a body is, and how its points move: ``p' = v + w x p`` and ``p'' = a + A p``."""
+
+    #: The axes of the body, and its origin.
+    columns: tuple[Vector, Vector, Vector]
+    origin: Vector
+    v: Vector
+    w: Vector
+    a: Vector
+    #: The columns of ``A``.
+    matrix: tuple[Vector, Vector, Vector]
+
+    def place(self, p: Vector) -> Vector:
+        x, y, z = self.columns
+        return plus(self.origin, plus(scaled(x, p[0]), plus(scaled(y, p[1]), scaled(z, p[2]))))
+
+    def bends(self, p: Vector, n: Vector, dn: Vector) -> Fraction:
+        """``n . p'' + 2 dn . p'`` of a point where it is."""
+        x, y, z = self.matrix
+        second = plus(self.a, plus(scaled(x, p[0]), plus(scaled(y, p[1]), scaled(z, p[2]))))
+        return dot(n, second) + 2 * dot(dn, plus(self.v, cross(self.w, p)))
+
+
+@dataclass
+class Carried:
+    """A convex body at the end of joints, seen from the frame that it shares with another one."""
+
+    stages: list[Stage]
+    body: Body
+    rows: list[list[Fraction]]
+    #: Of each turning joint, at least how far a point of the body can be from its axis.
+    levers: list[Fraction] = field(default_factory=list)
+    #: At least how far anything is from where the joints begin.
+    size: Fraction = Fraction(1)
+    known: dict[tuple[int, Fraction], Field] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        points = [self.body.at(k) for k in range(len(self.body.points))]
+        whole_ = root_above(max(dot(p, p) for p in points))
+        beyond: tuple[Vector, Fraction] | None = None
+        for stage in reversed(self.stages):
+            lever = Fraction()
+            if stage.kind == "turning":
+                beside = [cross(stage.axis, p) for p in points]
+                if beyond is not None:
+                    beside = [cross(stage.axis, beyond[0])]
+                lever = root_above(max(dot(v, v) for v in beside) / dot(stage.axis, stage.axis))
+                lever += beyond[1] if beyond is not None else 0
+            self.levers.append(lever)
+            slides = Fraction()
+            if stage.kind == "sliding":
+                slides = max(abs(row[stage.column]) for row in self.rows)
+            beyond = (stage.origin.offset, slides + whole_)
+            whole_ += slides + root_above(dot(stage.origin.offset, stage.origin.offset))
+        self.levers.reverse()
+        self.size = whole_ + 1
+
+    def rate(self, row: int, stage: Stage) -> Fraction:
+        """How much a joint's value grows from a row to the next one."""
+        if row + 1 >= len(self.rows):
+            return Fraction()
+        return self.rows[row + 1][stage.column] - self.rows[row][stage.column]
+
+    def at(self, row: int, share: Fraction) -> Field:
+        """At a share of the way from a row to the next one."""
+        if (row, share) in self.known:
+            return self.known[row, share]
+        axes, origin = _UNITS, _ZERO
+        v = w = a = _ZERO
+        matrix = (_ZERO, _ZERO, _ZERO)
+
+        def turned(u: Vector, axes: tuple[Vector, Vector, Vector]) -> Vector:
+            x, y, z = axes
+            return plus(scaled(x, u[0]), plus(scaled(y, u[1]), scaled(z, u[2])))
+
+        for stage in self.stages:
+            origin = plus(origin, turned(stage.origin.offset, axes))
+            x, y, z = (kept(turned(stage.origin.turn(e), axes)) for e in _UNITS)
+            axes = (x, y, z)
+            if stage.kind == "fixed":
+                continue
+            rate = self.rate(row, stage)
+            value = self.rows[row][stage.column] + share * rate
+            unit_ = scaled(stage.axis, 1 / root_above(dot(stage.axis, stage.axis)))
+            along = turned(unit_, axes)
+            spin = scaled(along, rate)
+            if stage.kind == "sliding":
+                v = plus(v, spin)
+                a = plus(a, scaled(cross(w, spin), Fraction(2)))
+                origin = kept(plus(origin, scaled(along, value)))
+                continue
+            # The joint moves p by spin x (p - origin), which what comes before it turns: B x that.
+            before = plus(scaled(w, Fraction(2)), spin)
+            v = minus(v, cross(spin, origin))
+            a = minus(a, cross(before, cross(spin, origin)))
+            x, y, z = (
+                plus(column, cross(before, cross(spin, e)))
+                for column, e in zip(matrix, _UNITS, strict=True)
+            )
+            matrix = (x, y, z)
+            w = plus(w, spin)
+            sin, cos = sine_cosine(value)
+            x, y, z = (
+                plus(
+                    plus(e, scaled(cross(unit_, e), sin)),
+                    scaled(cross(unit_, cross(unit_, e)), 1 - cos),
+                )
+                for e in _UNITS
+            )
+            x, y, z = (kept(turned(e, axes)) for e in (x, y, z))
+            axes = (x, y, z)
+        origin = plus(origin, turned(self.body.offset, axes))
+        x, y, z = (turned(self.body.turn(e), axes) for e in _UNITS)
+        found = Field((x, y, z), origin, v, w, a, matrix)
+        self.known[row, share] = found
+        return found
+
+    def most(self, row: int) -> tuple[Fraction, Fraction, Fraction]:
+        """At least the lengths of the first three derivatives of all points, within a row."""
+        before, most = Fraction(), [Fraction()] * 3
+        for stage, lever in zip(self.stages, self.levers, strict=True):
+            if stage.kind == "fixed":
+                continue
+            rate = abs(self.rate(row, stage))
+            after = before + rate
+            for k in range(3):
+                if stage.kind == "turning":
+                    most[k] += (after ** (k + 1) - before ** (k + 1)) * lever
+                else:
+                    most[k] += (k + 1) * before**k * rate
+            before = after if stage.kind == "turning" else before
+        # Rotations are that to rounding: poses are checked to be off by less.
+        first, second, third = (x * (1 + 4 * len(self.stages) * _TURN) for x in most)
+        return first, second, third
+
+
+@dataclass
+class Couple:
+    """Two convex bodies that joints carry, from row to row."""
+
+    moving: Carried
+    fixed: Carried
+    keep: Fraction
+
+    def off(self) -> Fraction:
+        """How far heights may be off for what sines, roots and rotations leave out."""
+        return (self.moving.size + self.fixed.size) * 64 * _SURE
+
+    def gap(self, n: Vector, row: int, share: Fraction) -> Fraction:
+        p, q = (of.at(row, share) for of in (self.moving, self.fixed))
+        high = max(dot(n, p.place(v)) for v in self.moving.body.points)
+        low = min(dot(n, q.place(v)) for v in self.fixed.body.points)
+        return low - high - self.off()
+
+    def has(self, plane: Plane, row: int) -> bool:
+        unit(plane.normal)
+        spare = self.gap(plane.normal, row, plane.time) - plane.gap
+        square = dot(plane.normal, plane.normal)
+        return plane.gap > 0 and (
+            above(spare, self.keep * self.keep * square) if self.keep > 0 else spare >= 0
+        )
+
+    def joins(self, row: int, a: Plane, b: Plane) -> bool:
+        """Whether two planes of a row prove all between them.
+
+        Along ``n(x)`` a point's height has the second derivative ``h^2 n . p'' + 2 h dn . p'``.
+        Its own one is at most ``h^3`` times the third one of ``p``, and ``3 h^2 |dn| |p''|``.
+        So it is nowhere more than the mean of what it is at both ends and half of that.
+        """
+        h = b.time - a.time
+        if h == 0:
+            return True
+        dn = minus(b.normal, a.normal)
+        beside = root_above(dot(dn, dn))
+        longest = root_above(max(dot(a.normal, a.normal), dot(b.normal, b.normal)))
+        c = Fraction()
+        for of, sign in ((self.moving, -1), (self.fixed, 1)):
+            first, second, third = of.most(row)
+            loose = h * h * longest * second + 2 * h * beside * first
+            ends = []
+            for plane in (a, b):
+                found = of.at(row, plane.time)
+                n, along = scaled(plane.normal, sign * h * h), scaled(dn, sign * h)
+                ends.append(max(found.bends(found.place(v), n, along) for v in of.body.points))
+            changes = h * h * (h * longest * third + 3 * beside * second)
+            room = 64 * _SURE * of.size * (1 + sum(of.most(row)))
+            c += min(loose, (ends[0] + ends[1] + changes) / 2 + room)
+        return stays(a.gap, b.gap, c)
+
+    def way(self, row: int) -> Fraction:
+        return self.moving.most(row)[0] + self.fixed.most(row)[0]
+
+    def between(self, a: tuple[int, Fraction], b: tuple[int, Fraction]) -> Fraction:
+        """How far points of both move together from one place to another."""
+        if a[0] == b[0]:
+            return (b[1] - a[1]) * self.way(a[0])
+        rows = sum((self.way(row) for row in range(a[0] + 1, b[0])), Fraction())
+        return (1 - a[1]) * self.way(a[0]) + rows + b[1] * self.way(b[0])
+
+    def ends(self, pairs: Any, row: int, share: Fraction) -> list[tuple[Vector, Vector]]:
+        p, q = (of.at(row, share) for of in (self.moving, self.fixed))
+        own, other = self.moving.body.points, self.fixed.body.points
+        return [
+            (
+                p.place(own[whole(pair["moving"], len(own))]),
+                q.place(other[whole(pair["fixed"], len(other))]),
+            )
+            for pair in pairs
+        ]
+
+
+def settled(row: int, share: Fraction) -> tuple[int, Fraction]:
+    """A place, of which the end of a row is the next one."""
+    return (row + 1, Fraction()) if share == 1 else (row, share)
+
+
+def planes_of_path(couple: Couple, steps: Any, last: int) -> tuple[int, Fraction]:
+    """Up to where a cover of two convex bodies proves that they do not meet."""
+    here, before = (0, Fraction()), None
+    for step in steps:
+        ((kind, stretches),) = step.items()
+        if kind != "planes":
+            raise RefusedError("convex bodies are not taken apart")
+        before = None
+        for stretch in stretches:
+            row = whole(stretch["row"], last + 1)
+            planes = [Plane.read(plane) for plane in stretch["planes"]]
+            if not planes or any(plane.alone for plane in planes):
+                raise RefusedError(f"the planes of row {row} are not in order")
+            times = [plane.time for plane in planes]
+            if sorted(times) != times or times[0] < 0 or times[-1] > 1:
+                raise RefusedError(f"the planes of row {row} are not in order")
+            if settled(row, times[-1]) > (last, Fraction()):
+                raise RefusedError("a plane is beyond the end of the path")
+            if before is None:
+                if settled(row, times[0]) != here:
+                    raise RefusedError(f"the planes of row {row} do not begin where others end")
+            else:
+                (place, gap), next_ = before, (row, times[0])
+                far = place <= next_ and couple.between(place, next_) < gap + planes[0].gap
+                if settled(*place) != settled(*next_) and not far:
+                    raise RefusedError(f"what is before row {row} is not proven")
+            for k, plane in enumerate(planes):
+                if not couple.has(plane, row):
+                    gap_ = float(plane.gap)
+                    raise RefusedError(f"a plane of row {row} does not leave a gap of {gap_!r}")
+                if k and not couple.joins(row, planes[k - 1], plane):
+                    raise RefusedError(f"two planes of row {row} do not prove what is between them")
+            before = ((row, times[-1]), planes[-1].gap)
+        if before is not None:
+            here = settled(*before[0])
+    return here
+
+
+def path(file: Any) -> Report:
+    """Which two bodies that joints carry first meet."""
+    report, keep = Report(), gap_to_keep(file)
+    rows = [[number(x) for x in row] for row in file["path"]["rows"]]
+    times = [number(x) for x in file["path"]["times"]]
+    if not rows or len(times) != len(rows) or any(b <= a for a, b in pairwise(times)):
+        raise NoProofError("the times of the rows do not grow")
+    frames: list[Stage] = []
+    parents: list[int | None] = []
+    column = 0
+    for k, frame in enumerate(file["frames"]):
+        parent, joint = frame["parent"], frame["joint"]
+        parents.append(None if parent is None else whole(parent, k))
+        origin = Body.placed([_ZERO], [], frame["origin"])
+        if joint == "fixed":
+            frames.append(Stage(origin, "fixed", _UNITS[0], 0))
+            continue
+        ((kind, axis),) = joint.items()
+        if kind not in ("turning", "sliding"):
+            raise NoProofError(f"a joint is turning or sliding, not {kind!r}")
+        unit(vector(axis))
+        frames.append(Stage(origin, kind, vector(axis), column))
+        column += 1
+    if any(len(row) != column for row in rows):
+        raise NoProofError("a row does not have a value for each joint")
+
+    def above_of(frame: Any) -> list[int]:
+        found = [] if frame is None else [whole(frame, len(frames))]
+        while found and (parent := parents[found[-1]]) is not None:
+            found.append(parent)
+        return found[::-1]
+
+    bodies = [
+        (above_of(of["frame"]), Body.read(of["body"], of["pose"]), of["name"])
+        for of in file["bodies"]
+    ]
+    proof, last = file["proof"], len(rows) - 1
+    covers = proof["covers"]
+    if len(covers) != len(file["pairs"]):
+        raise RefusedError("there is not a cover for each pair")
+    couples: list[Couple | None] = []
+    reached, skipped = (last, Fraction()), 0
+    for (i, j), cover in zip(file["pairs"], covers, strict=True):
+        (way_p, p, _), (way_q, q, _) = (bodies[whole(k, len(bodies))] for k in (i, j))
+        if not (p.is_convex and q.is_convex):
+            couples.append(None)
+            skipped += 1
+            continue
+        while way_p and way_q and way_p[0] == way_q[0]:
+            way_p, way_q = way_p[1:], way_q[1:]
+        own, other = (
+            Carried([frames[k] for k in way], of, rows) for way, of in ((way_p, p), (way_q, q))
+        )
+        couple = Couple(own, other, keep)
+        couples.append(couple)
+        reached = min(reached, planes_of_path(couple, cover["steps"], last))
+
+    def time(row: int, share: Fraction) -> Fraction:
+        return times[row] + (share * (times[row + 1] - times[row]) if share else 0)
+
+    meet = "meet" if keep == 0 else f"are as near as {float(keep)!r}"
+    lower, meeting = number(file["said"]["lower"]), proof["meeting"]
+    if lower > time(*reached):
+        raise RefusedError(f"up to {float(lower)!r} it is not proven")
+    if skipped < len(couples):
+        of = "no two bodies" if not skipped else "no two convex bodies"
+        report.holds.append(f"{of} {meet} up to the time {float(lower)!r}")
+    if skipped:
+        report.unchecked.append(f"what solids do, in {skipped} of {len(couples)} pairs")
+        report.partly = True
+    if meeting is None:
+        if file["said"]["upper"] is not None:
+            raise RefusedError("that two bodies meet is said, and not proven")
+        return report
+    which, place = whole(meeting["pair"], len(couples)), meeting["place"]
+    row, share = whole(place["row"], last + 1), number(place["share"])
+    upper = number(file["said"]["upper"])
+    if not 0 <= share <= 1 or (row == last and share) or time(row, share) > upper:
+        raise RefusedError(f"that two bodies {meet} is said of another time")
+    found = couples[which]
+    names = " and ".join(repr(bodies[k][2]) for k in file["pairs"][which])
+    if found is None:
+        report.unchecked.append(f"that {names}, one of which is a solid, {meet} then")
+        return report
+    ((kind, claim),) = meeting["how"].items()
+    if kind != "pieces" or claim["pieces"] != [0, 0]:
+        raise RefusedError(f"{kind!r} does not say that convex bodies meet")
+    ((kind, met),) = claim["met"].items()
+    if kind == "deep" and keep == 0:
+        corners = [minus(q, p) for p, q in found.ends(met["enclosure"]["pairs"], row, share)]
+        enclosure(corners, met["enclosure"], found.off())
+    elif kind == "near" and keep > 0:
+        ends = found.ends(met["pairs"], row, share)
+        near, far = (mean([end[k] for end in ends], met["weights"]) for k in (0, 1))
+        way = minus(far, near)
+        if not above(keep - found.off(), dot(way, way)):
+            raise RefusedError(f"the points are not as near as {float(keep)!r}")
+    else:
+        raise RefusedError(f"{kind!r} does not say that the bodies meet")
+    report.holds.append(f"{names} {meet} at the time {float(upper)!r}")
+    return report
+
+
 def check(text: str) -> Report:
     """Checks a proof as it was written.
 
@@ -1815,8 +2594,8 @@ def check(text: str) -> Report:
         file = json.loads(text.removeprefix("\ufeff"), object_pairs_hook=_once)
         if file["format"] == SCENE_FORMAT:
             return Scene(file).check()
-        if file["format"] == MOTION_FORMAT:
-            return motion(file)
+        if file["format"] in MOTIONS:
+            return MOTIONS[file["format"]](file)
         if file["format"] != FORMAT:
             raise NoProofError(f"the format is {file['format']!r}, not {FORMAT!r}")
         keep = gap_to_keep(file)
@@ -1847,6 +2626,15 @@ def check(text: str) -> Report:
             raise
         raise NoProofError(f"{type(error).__name__}: {error}") from error
     return report
+
+
+#: What is claimed of motions, by its format.
+MOTIONS: dict[str, Callable[[Any], Report]] = {
+    MOTION_FORMAT: motion,
+    "colltrans motions proof 1": motions,
+    "colltrans motion of solids proof 1": solid_motion,
+    "colltrans path proof 1": path,
+}
 
 
 def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:

@@ -33,14 +33,20 @@ pub(crate) struct MotionArguments {
     /// half of it; a curved fit needs the chord errors of both together.
     #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length)]
     pub(crate) tolerance: Option<f64>,
+    /// Of parts: let what overlaps when the motion begins pass, and say what that is
+    ///
+    /// Faces that cross then do not count until they are apart; contacts that begin later do, of faces that look at
+    /// each other. Meshes that are convex are taken as parts.
+    #[arg(long)]
+    pub(crate) ignore_start_overlaps: bool,
     /// Print the answer as one JSON object
     #[arg(long)]
     pub(crate) json: bool,
     /// Draw the moving mesh at the start, where it touches and at the end as an SVG picture
     #[arg(long, value_name = "OUT.svg", value_parser = picture)]
     pub(crate) picture: Option<PathBuf>,
-    /// Of two convex meshes: write the proof of the answer, with the bodies and their motions, as one file
-    /// that `colltrans verify` checks
+    /// Write the proof of the answer, with the bodies and their motions, as one file that `colltrans verify`
+    /// checks; of several convex meshes one of each pair
     #[arg(long, value_name = "OUT.json", value_parser = proof)]
     pub(crate) save_proof: Option<PathBuf>,
     #[command(flatten)]
@@ -124,8 +130,9 @@ enum Kind<'a> {
 impl MotionArguments {
     /// Who moves, and whom it may meet.
     pub(crate) fn sides(&self) -> Result<Sides<'_>, Failure> {
-        let clash = "--convex-tolerance and --hull are for convex meshes, --open is for parts";
-        let taken = Taken::of([self.hulls.asks_convex(self.body), self.open], clash)?;
+        let clash = "--convex-tolerance and --hull are for convex meshes, --open and --ignore-start-overlaps for parts";
+        let asks_parts = self.open || self.ignore_start_overlaps;
+        let taken = Taken::of([self.hulls.asks_convex(self.body), asks_parts], clash)?;
         Sides::of(&self.meshes, &self.from, taken, false)
     }
 

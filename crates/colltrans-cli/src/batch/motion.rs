@@ -80,6 +80,9 @@ pub(super) fn first_contact<B>(
     [moving, fixed]: [&Part; 2],
     motions: &[Motion; 2],
 ) -> Result<Record, String> {
+    if query.ignore_start_overlaps.is_some() {
+        return Err("`ignore_start_overlaps` is for solids".into());
+    }
     let cast = MotionCast::new(moving.body.along(&motions[0]), fixed.body.along(&motions[1]));
     let cast = match (query.keep, query.tolerance) {
         (Some(_), Some(_)) => return Err("a motion has either `keep` or `tolerance`".into()),

@@ -214,8 +214,10 @@ fn solve<B>(query: &Query<'_, B>, [moving, fixed]: [Built; 2]) -> Result<AnswerL
         (Ask::Motion(motions), shapes) => {
             let [moving, fixed] = as_solids(shapes)?;
             let bodies = [moving.get(), fixed.get()];
-            let keep = query.keep.unwrap_or_default();
-            let asked = PartsMotion { bodies, motions: &motions, tolerance: query.tolerance, keep };
+            let (keep, motions) = (query.keep.unwrap_or_default(), &*motions);
+            let ignore_start_overlaps = query.ignore_start_overlaps.unwrap_or_default();
+            let tolerance = query.tolerance;
+            let asked = PartsMotion { bodies, motions, tolerance, ignore_start_overlaps, keep };
             Ok(of_bodies(asked.ask().map_err(|e| e.to_string())?, bodies))
         }
         (Ask::Cast(direction), [Shape::Convex(moving), Shape::Convex(fixed)]) => {
@@ -235,7 +237,7 @@ impl<B> Query<'_, B> {
                 return Ok(Ask::Cast(DVec3::from_array(direction)));
             }
             Some(Asked::Motion) => {
-                self.refuse(&[&OF_CASTS[..], &["length"]].concat())?;
+                self.refuse(&[&OF_CASTS[..5], &["length"]].concat())?;
                 return Ok(Ask::Motion(Box::new(motion::motions(self)?)));
             }
             Some(Asked::Distance) => PairQuestion::Distance,
@@ -356,7 +358,7 @@ enum Ask {
     Motion(Box<[Motion; 2]>),
 }
 
-/// Fields that only queries with a direction have.
+/// Fields that only queries with a direction have; the last one motions have too.
 const OF_CASTS: [&str; 6] =
     ["direction", "graze_tolerance", "solver", "start", "until", "ignore_start_overlaps"];
 

@@ -1,11 +1,13 @@
 //! The question between two bodies made of parts that turn.
 
-use colltrans::QueryError;
-use colltrans::motion::Motion;
+use colltrans::glam::DVec3;
+use colltrans::motion::{Motion, MotionCast};
 use colltrans::record::{FeaturesRecord, Record};
+use colltrans::solid::StartOverlap;
+use colltrans::{QueryError, Solid};
 use colltrans_mesh::body::between_motions;
 
-use super::Body;
+use super::{Body, PartsQuery};
 
 /// Two bodies and what they do.
 #[derive(Clone, Copy)]
@@ -14,22 +16,54 @@ pub(crate) struct PartsMotion<'a> {
     pub(crate) motions: &'a [Motion; 2],
     /// `None` for what the files' precision asks for.
     pub(crate) tolerance: Option<f64>,
+    pub(crate) ignore_start_overlaps: bool,
     /// The gap to be kept, or 0.
     pub(crate) keep: f64,
 }
 
 impl PartsMotion<'_> {
-    /// The answer, with the names of files.
+    /// The answer, with the names of files: the first contact, or where what overlaps when the motion begins is ignored
+    /// the clearance, and what that is.
     pub(crate) fn ask(&self) -> Result<Record, QueryError> {
-        let [moving, fixed] = [0, 1].map(|k| self.bodies[k].solid().along(&self.motions[k]));
-        let precisions = self.bodies.map(Body::precision);
-        let cast = between_motions(moving, fixed, precisions, self.tolerance)?;
-        let cast = cast.keeping(self.keep)?;
-        let mut record = Record::of_solid_motion(&cast.first_contact()?, &cast);
+        let cast = self.cast()?;
+        let mut record = if self.ignore_start_overlaps {
+            let cast = cast.clone().with_start_overlap(StartOverlap::Ignore);
+            Record::of_solid_motion_clearance(&cast.clearance()?, &cast)
+        } else {
+            Record::of_solid_motion(&cast.first_contact()?, &cast)
+        };
+        if self.ignore_start_overlaps {
+            record.start_overlaps = self.start().overlaps(cast.tolerance(), || ())?;
+        }
         if let Some(FeaturesRecord { moving, fixed }) = &mut record.features {
             record.moving = Some(self.bodies[0].renumber(moving));
             record.fixed = Some(self.bodies[1].renumber(fixed));
         }
         Ok(record)
+    }
+
+    /// The question as the library has it.
+    pub(crate) fn cast(&self) -> Result<MotionCast<'_, Solid>, QueryError> {
+        let [moving, fixed] = [0, 1].map(|k| self.bodies[k].solid().along(&self.motions[k]));
+        let precisions = self.bodies.map(Body::precision);
+        between_motions(moving, fixed, precisions, self.tolerance)?.keeping(self.keep)
+    }
+
+    /// The bodies where the motion begins; of no direction.
+    fn start(&self) -> PartsQuery<'_> {
+        let [moving, fixed] = self.bodies;
+        let [moving_pose, fixed_pose] = self.motions.each_ref().map(Motion::start);
+        let (tolerance, keep) = (self.tolerance, self.keep);
+        let (direction, ignore_start_overlaps) = (DVec3::Z, false);
+        PartsQuery {
+            moving,
+            moving_pose,
+            fixed,
+            fixed_pose,
+            direction,
+            tolerance,
+            ignore_start_overlaps,
+            keep,
+        }
     }
 }

@@ -57,6 +57,17 @@ pub(super) trait Course<'a> {
     /// How much of the gap that a plane leaves at the first of two times is lost until the second, at most.
     fn lost(&self, ends: [&Instant<'a, Self::Moved, Self::Body>; 2], normal: DVec3) -> f64;
 
+    /// The same, if the plane is carried along by the moving body: little, where both spin as one.
+    fn carried(
+        &self,
+        from: &Instant<'a, Self::Moved, Self::Body>,
+        until: f64,
+        normal: DVec3,
+    ) -> f64 {
+        let _ = (from, until, normal);
+        f64::INFINITY
+    }
+
     /// What a plane proves at a time of the gap beyond what is to be kept, over all corners.
     fn proven_gap(&self, at: &Instant<'a, Self::Moved, Self::Body>, normal: DVec3) -> f64 {
         at.bodies.proven_gap(normal) - self.keep() - self.error()
@@ -75,6 +86,9 @@ pub(super) trait Course<'a> {
         let [a, b] = planes;
         if a.alone {
             return a.normal == b.normal && a.gap > self.lost(ends, a.normal);
+        }
+        if a.gap > self.carried(ends[0], b.time, a.normal) {
+            return true;
         }
         let enough = most_bend([a.gap, b.gap], SPARE);
         self.bend(ends, [a.normal, b.normal], enough, supports) <= enough
@@ -128,5 +142,10 @@ impl<'a, B: Hull> Course<'a> for Span<'a, B> {
 
     fn lost(&self, ends: [&Instant<'a, [Moved; 2], B>; 2], normal: DVec3) -> f64 {
         arc::lost(self, ends, normal)
+    }
+
+    fn carried(&self, from: &Instant<'a, [Moved; 2], B>, until: f64, normal: DVec3) -> f64 {
+        let offset = from.bodies.offset - (from.moved[1].arm - from.moved[0].arm);
+        arc::carried(self, offset, until - from.time, normal)
     }
 }

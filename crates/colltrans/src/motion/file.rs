@@ -12,10 +12,12 @@ use crate::cast::CaseError;
 use crate::cast::replay::BodyRecord;
 use crate::proof_file::{convex_body, said};
 use crate::setting::error::QueryError;
+use crate::solid::StartOverlap;
 
 /// What files of this version call themselves.
 const PROOF: &str = "colltrans motion proof 1";
 const CASE: &str = "colltrans motion case 1";
+const PROOFS: &str = "colltrans motions proof 1";
 
 /// A question about a motion that owns its bodies, read from a file.
 ///
@@ -53,7 +55,14 @@ impl MotionCase {
     pub fn cast(&self) -> MotionCast<'_> {
         let side =
             |k: usize| Moving { body: &self.bodies[k], motion: Cow::Borrowed(&self.motions[k]) };
-        MotionCast { moving: side(0), fixed: side(1), keep: self.keep, tolerance: None }
+        let start_overlap = StartOverlap::Refuse;
+        MotionCast {
+            moving: side(0),
+            fixed: side(1),
+            keep: self.keep,
+            tolerance: None,
+            start_overlap,
+        }
     }
 
     /// From what [`MotionCast::to_json`] has written.
@@ -69,6 +78,15 @@ impl MotionCase {
         match asked.proof {
             None => Self::read(asked),
             Some(_) => Err(serde_json::Error::unknown_field("proof", &[]).into()),
+        }
+    }
+
+    /// What the bodies do, in words.
+    fn meet(&self) -> String {
+        match self.keep {
+            keep if keep > 0.0 => format!("come as near as {keep}"),
+            keep if keep < 0.0 => format!("overlap by more than {}", -keep),
+            _ => "meet".into(),
         }
     }
 
@@ -133,9 +151,11 @@ impl MotionProofFile {
     /// # Panics
     /// Never: all numbers can be written.
     pub fn to_json(&self) -> String {
-        let asked = Asked::of(&self.case.cast(), PROOF);
-        let file = Asked { proof: Some(self.proof.clone()), ..asked };
-        serde_json::to_string(&file).expect("numbers and names")
+        serde_json::to_string(&self.written()).expect("numbers and names")
+    }
+
+    fn written(&self) -> Asked {
+        Asked { proof: Some(self.proof.clone()), ..Asked::of(&self.case.cast(), PROOF) }
     }
 
     /// From what [`Self::to_json`] has written. It is read, not believed: see [`Self::check`].
@@ -144,7 +164,10 @@ impl MotionProofFile {
     /// What is wrong with it.
     pub fn from_json(text: &str) -> Result<Self, CaseError> {
         let text = said(text, PROOF)?;
-        let mut file: Asked = serde_json::from_str(text).map_err(CaseError::Proof)?;
+        Self::read(serde_json::from_str(text).map_err(CaseError::Proof)?)
+    }
+
+    fn read(mut file: Asked) -> Result<Self, CaseError> {
         let missing = || CaseError::Proof(serde_json::Error::missing_field("proof"));
         let proof = file.proof.take().ok_or_else(missing)?;
         Ok(Self { case: MotionCase::read(file)?, proof })
@@ -156,11 +179,7 @@ impl fmt::Display for MotionProofFile {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let meeting = self.proof.meeting.as_ref().map(|meeting| meeting.time);
         let reached = self.proof.spans.iter().flatten().last().map(|plane| plane.time);
-        let meet = match self.case.keep {
-            keep if keep > 0.0 => format!("come as near as {keep}"),
-            keep if keep < 0.0 => format!("overlap by more than {}", -keep),
-            _ => "meet".into(),
-        };
+        let meet = self.case.meet();
         match (reached, meeting) {
             (None, Some(_)) => write!(f, "the bodies {meet} when the motion begins"),
             (Some(lower), Some(upper)) => {
@@ -171,6 +190,108 @@ impl fmt::Display for MotionProofFile {
             (None, None) => write!(f, "nothing is said"),
         }
     }
+}
+
+/// Proofs of one question about several pairs of bodies: which two first meet.
+///
+/// ```
+/// use colltrans::glam::DVec3;
+/// use colltrans::motion::{Motion, MotionCast, MotionProofFile, MotionProofFiles};
+/// use colltrans::{ConvexPolyhedron, Pose};
+///
+/// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+/// let motion = Motion::slide(Pose::IDENTITY, DVec3::X * 4.0)?;
+/// let mut proofs = Vec::new();
+/// for x in [3.0, 2.0, 6.0] {
+///     let cast = MotionCast::new(cube.along(&motion), cube.at(Pose::from_translation(DVec3::X * x)?))?;
+///     proofs.push(MotionProofFile::of(&cast, &cast.first_contact()?));
+/// }
+/// let saved = MotionProofFiles::of(proofs).to_json();
+/// let [lower, upper] = MotionProofFiles::from_json(&saved)?.check()?;
+/// assert!(lower <= 0.25 && 0.25 <= upper && upper - lower < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct MotionProofFiles(Vec<MotionProofFile>);
+
+impl MotionProofFiles {
+    /// Of the proofs of all pairs.
+    pub fn of(proofs: Vec<MotionProofFile>) -> Self {
+        Self(proofs)
+    }
+
+    /// How many pairs there are.
+    pub fn pairs(&self) -> usize {
+        self.0.len()
+    }
+
+    /// Checks all of them. Returns up to which time no two bodies meet, and when some are proven to, infinity if that is
+    /// not claimed.
+    ///
+    /// # Errors
+    /// What is not proven of one of them.
+    pub fn check(&self) -> Result<[f64; 2], MotionProofError> {
+        self.0.iter().try_fold([1.0, f64::INFINITY], |[lower, upper], proof| {
+            let [l, u] = proof.check()?;
+            Ok([f64::min(lower, l), f64::min(upper, u)])
+        })
+    }
+
+    /// As a file: numbers that read back as the same bits.
+    ///
+    /// # Panics
+    /// Never: all numbers can be written.
+    pub fn to_json(&self) -> String {
+        let proofs = self.0.iter().map(MotionProofFile::written).collect();
+        let file = Several { format: PROOFS.into(), proofs };
+        serde_json::to_string(&file).expect("numbers and names")
+    }
+
+    /// From what [`Self::to_json`] has written. It is read, not believed: see [`Self::check`].
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn from_json(text: &str) -> Result<Self, CaseError> {
+        let text = said(text, PROOFS)?;
+        let file: Several = serde_json::from_str(text).map_err(CaseError::Proof)?;
+        if let Some(other) = file.proofs.iter().find(|proof| proof.format != PROOF) {
+            let what = format!("proofs of motions, not {:?}", other.format);
+            return Err(CaseError::Proof(serde_json::Error::custom(what)));
+        }
+        file.proofs.into_iter().map(MotionProofFile::read).collect::<Result<_, _>>().map(Self)
+    }
+}
+
+impl fmt::Display for MotionProofFiles {
+    /// What is said, in words.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let count = self.pairs();
+        let proofs = || self.0.iter().map(|proof| &proof.proof);
+        let meeting = proofs().filter_map(|proof| Some(proof.meeting.as_ref()?.time));
+        let upper = meeting.fold(f64::INFINITY, f64::min);
+        let reached =
+            |proof: &MotionProof| proof.spans.iter().flatten().last().map_or(0.0, |p| p.time);
+        let lower = proofs().map(reached).fold(1.0, f64::min);
+        let meet = self.0.first().map_or_else(|| "meet".into(), |proof| proof.case.meet());
+        if upper.is_finite() {
+            write!(
+                f,
+                "of {count} pairs of bodies the first {meet} at a time between {lower} and {upper}"
+            )
+        } else if lower == 1.0 {
+            write!(f, "of {count} pairs of bodies none {meet} throughout the motion")
+        } else {
+            write!(f, "of {count} pairs of bodies none {meet} up to the time {lower}")
+        }
+    }
+}
+
+/// What a file of several proofs holds.
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Several {
+    format: String,
+    proofs: Vec<Asked>,
 }
 
 /// What is asked, and of a proof what is claimed.

@@ -43,11 +43,12 @@
 //! order only, so that steps shrink with the square root of what is left, not with what is left.
 //!
 //! The modules, each using only those before it: `answer`, `span`, `bend` and `arc`, `course`,
-//! `look`, `search`, `verify`.
+//! `look`, `search`, `verify`, `clearance`.
 
 mod answer;
 mod arc;
 mod bend;
+mod clearance;
 mod course;
 #[cfg(feature = "json")]
 mod file;
@@ -63,8 +64,9 @@ use derive_where::derive_where;
 pub use self::answer::{
     Meeting, Met, MotionContact, MotionFree, MotionOutcome, MotionProof, MotionSteps, PlaneAt,
 };
+pub use self::clearance::{MotionClearance, MotionOverlap, MotionStop};
 #[cfg(feature = "json")]
-pub use self::file::{MotionCase, MotionProofFile};
+pub use self::file::{MotionCase, MotionProofFile, MotionProofFiles};
 use self::look::ConvexLooker;
 use self::search::{Advanced, End, advance};
 #[cfg(feature = "json")]
@@ -72,13 +74,18 @@ pub use self::solid::SolidMotionProofFile;
 pub use self::solid::{FacetsMeeting, FacetsMet, MotionCover, SolidMotionProof, SpanProof};
 use self::span::{Span, spans};
 pub use self::verify::MotionProofError;
-use crate::body::ConvexPolyhedron;
 pub use crate::body::error::MotionError;
 pub use crate::body::motion::{Motion, Moving};
+use crate::body::{ConvexPolyhedron, Hull};
+use crate::number::noise::Noise;
 use crate::number::range::MAX_MAGNITUDE;
 use crate::pair::Pair;
 use crate::setting::check_keep;
 use crate::setting::error::{QueryError, Stalled};
+use crate::solid::StartOverlap;
+
+/// The default tolerance, in multiples of what two points may be off each other: noise, and motion.
+const TOLERANCE: f64 = 32.0;
 
 impl ConvexPolyhedron {
     /// This body and a motion, for a [`MotionCast`].
@@ -97,6 +104,8 @@ pub struct MotionCast<'a, B = ConvexPolyhedron> {
     keep: f64,
     /// By half of which solids are shrunk; none stands for what rounding can do.
     tolerance: Option<f64>,
+    /// Of solids, what an overlap at time 0 means for their clearance.
+    start_overlap: StartOverlap,
 }
 
 impl<'a, B> MotionCast<'a, B> {
@@ -109,7 +118,8 @@ impl<'a, B> MotionCast<'a, B> {
         moving: impl Into<Moving<'a, B>>,
         fixed: impl Into<Moving<'a, B>>,
     ) -> Result<Self, QueryError> {
-        Ok(Self { moving: moving.into(), fixed: fixed.into(), keep: 0.0, tolerance: None })
+        let (moving, fixed) = (moving.into(), fixed.into());
+        Ok(Self { moving, fixed, keep: 0.0, tolerance: None, start_overlap: StartOverlap::Refuse })
     }
 
     /// The gap that is kept; 0 if there is none.
@@ -210,4 +220,13 @@ fn contact(span: &Span, proof: MotionProof, steps: MotionSteps) -> MotionOutcome
     } else {
         MotionOutcome::Grazing(contact)
     }
+}
+
+/// What rounding can do to a fit, of bodies as they are.
+fn usual_tolerance<B: Hull>(bodies: [&B; 2], motions: [&Motion; 2]) -> f64 {
+    let off = spans(bodies, motions, 0.0).into_iter().map(|span| {
+        let ends = [span.from, span.to].map(|time| span.instant(time).bodies.scale());
+        Noise::of(ends[0].max(ends[1])).point() + span.error
+    });
+    TOLERANCE * off.fold(0.0, f64::max)
 }

@@ -159,7 +159,13 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
         if h > 0.0 {
             self.curvature = (found.max(0.0) / h / h).max(1e-3 * self.course.usual());
         }
-        h == 0.0 || found <= enough
+        h == 0.0 || found <= enough || self.is_carried_to(next.time())
+    }
+
+    /// Whether the plane at left proves all up to a time, carried along.
+    fn is_carried_to(&self, time: f64) -> bool {
+        let Look { at, gap, normal, .. } = &self.left;
+        self.course.carried(at, time, *normal) < KEPT * gap
     }
 
     /// Looks in the middle before a time; `false` if there is none.
@@ -200,6 +206,9 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
     fn next_time(&self) -> f64 {
         let Look { gap, rate, floor, .. } = self.left;
         let (from, end) = (self.left.time(), self.end);
+        if self.ahead == Ahead::Nothing && self.is_carried_to(end) {
+            return end;
+        }
         let root = gap.sqrt();
         let c = STEP * (0.5 * self.curvature).sqrt();
         let step = if rate > c * root {

@@ -60,7 +60,12 @@ impl<'a, B: Hull> Span<'a, B> {
 
     /// The same bodies up to a time.
     pub(super) fn until(&self, to: f64) -> Self {
-        Self { to, ..self.clone() }
+        self.within([self.from, to])
+    }
+
+    /// The same bodies during a part of the time.
+    pub(super) fn within(&self, [from, to]: [f64; 2]) -> Self {
+        Self { from, to, ..self.clone() }
     }
 
     pub(super) fn instant(&self, time: f64) -> Instant<'a, [Moved; 2], B> {

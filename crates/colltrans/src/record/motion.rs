@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::{Ending, FeaturesRecord, Record, coordinates, open_ones};
 use crate::body::Body;
 use crate::body::solid::Solid;
-use crate::motion::{MotionCast, MotionContact, MotionOutcome};
+use crate::motion::{MotionCast, MotionClearance, MotionContact, MotionOutcome};
 
 /// Bounds of a time, from 0 at the start of a motion to 1 at its end.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -29,6 +29,31 @@ impl Record {
     pub fn of_solid_motion<P>(outcome: &MotionOutcome<P>, cast: &MotionCast<'_, Solid>) -> Self {
         let surfaces = open_ones(cast.bodies()[0], cast.bodies()[1]);
         Self { tolerance: Some(cast.tolerance()), surfaces, ..Self::of_motions(outcome, cast) }
+    }
+
+    /// Of [`MotionCast::clearance`] of solids; `cast` is the one that was asked. Where they are stopped, `time` is that
+    /// of their true place.
+    pub fn of_solid_motion_clearance(
+        clearance: &MotionClearance<()>,
+        cast: &MotionCast<'_, Solid>,
+    ) -> Self {
+        let told = |outcome: &MotionOutcome<()>| Self::of_solid_motion(outcome, cast);
+        match clearance {
+            MotionClearance::Blocked { time, contact } => {
+                let record = told(&MotionOutcome::Contact(contact.shrunk.clone()));
+                let upper = Some(contact.time.upper).filter(|upper| upper.is_finite());
+                let true_time = Some(TimeRecord { lower: *time, upper });
+                let outcome = if upper.is_some() { Ending::Contact } else { Ending::Grazing };
+                Self { outcome, time: true_time, shrunk_time: record.time, ..record }
+            }
+            MotionClearance::Free(free) => told(&MotionOutcome::Free(free.clone())),
+            MotionClearance::Overlapping(_) => {
+                let surfaces = open_ones(cast.bodies()[0], cast.bodies()[1]);
+                let (outcome, looks) = (Ending::Overlapping, Some(0));
+                let tolerance = Some(cast.tolerance());
+                Self { outcome, looks, tolerance, surfaces, ..Self::default() }.keeping(cast.keep())
+            }
+        }
     }
 
     fn of_motions<P, B: Body>(outcome: &MotionOutcome<P>, cast: &MotionCast<'_, B>) -> Self {

@@ -12,7 +12,8 @@ use super::super::answer::MotionSteps;
 use super::super::bend::Looking;
 use super::super::course::Course;
 use super::super::look::{Look, Looker, closing};
-use super::super::span::Instant;
+use super::super::search::{Advanced, End, advance};
+use super::super::span::{Instant, Span};
 use super::tree::Facet;
 use crate::answer::are_weights;
 use crate::solve::solid::nearest::triangle::{self, Corners, GAP, LENGTH};
@@ -137,4 +138,95 @@ fn sign([x, y, z]: [DVec3; 3], e: f64) -> i32 {
     let rounded = 24.0 * f64::EPSILON * l * m * n;
     let error = 8.0 * e * (pairs + e * (l + m + n + e)) + rounded;
     if value.abs() > error { value.signum() as i32 } else { 0 }
+}
+
+/// So many looks are taken at facets that cross, for a time at which they are apart, and that is halved so often.
+const LOOKS: i32 = 8;
+const HALVINGS: i32 = 40;
+
+/// After a contact that does not count they are looked at so much later, in parts of the span, each time twice as much.
+const SOON: f64 = 1e-9;
+const ROUNDS: i32 = 32;
+
+/// Facets that look along their way by no more than this share of it are on edge.
+const ON_EDGE: f64 = 1e-12;
+
+/// A contact that begins after two facets were apart.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Later {
+    /// They are apart before, back to then.
+    pub(super) lower: f64,
+    /// When they meet for certain, and why.
+    pub(super) met: Option<(f64, FacetsMet)>,
+}
+
+/// The first contact of two facets that begins within a span while they look at each other, of which it is told which
+/// have a side to look to. Facets that are not apart when the span begins are left out until they are, but for those
+/// that may only touch when the motion does.
+pub(super) fn later(
+    span: &Span<Facet>,
+    sided: [bool; 2],
+    looker: &mut FacetLooker,
+) -> Option<Later> {
+    let begins = span.from == 0.0 && !looker.look(span, 0.0).is_apart();
+    if begins && looker.met(span, 0.0).is_none() && look_at_each_other(span, 0.0, sided, looker) {
+        return Some(Later { lower: 0.0, met: None });
+    }
+    let mut from = apart_from(span, span.from, looker)?;
+    for k in 0..ROUNDS {
+        let part = span.within([from, span.to]);
+        let Advanced { planes, end } = advance(&part, looker);
+        let lower = planes.last().map_or(from, |plane| plane.time);
+        let met = match end {
+            End::Free => return None,
+            End::Met(time, met) => Some((time, met)),
+            End::Blurred | End::Stalled => None,
+        };
+        if look_at_each_other(span, lower, sided, looker) {
+            return Some(Later { lower, met });
+        }
+        let more = (span.to - span.from) * SOON * 2.0_f64.powi(k);
+        let after = met.map_or(lower, |(time, _)| time) + more;
+        from = apart_from(span, after, looker)?;
+    }
+    None
+}
+
+/// The first time seen, from one on, at which two facets are apart.
+fn apart_from(span: &Span<Facet>, from: f64, looker: &mut FacetLooker) -> Option<f64> {
+    if from > span.to {
+        return None;
+    }
+    let time = |k: i32| from + (span.to - from) * (f64::from(k) / f64::from(LOOKS));
+    let mut is_apart = |time: f64| looker.look(span, time).is_apart();
+    let first = (0..=LOOKS).find(|k| is_apart(time(*k)))?;
+    if first == 0 {
+        return Some(from);
+    }
+    let [mut low, mut high] = [time(first - 1), time(first).min(span.to)];
+    for _ in 0..HALVINGS {
+        let middle = low + 0.5 * (high - low);
+        *(if is_apart(middle) { &mut high } else { &mut low }) = middle;
+    }
+    Some(high)
+}
+
+/// Whether facets that meet do so from outside of both, as those of a cast; those without a side always do.
+fn look_at_each_other(
+    span: &Span<Facet>,
+    time: f64,
+    sided: [bool; 2],
+    looker: &mut FacetLooker,
+) -> bool {
+    let at = span.instant(time);
+    let [f, g] = corners(&at);
+    looker.steps.looks += 1;
+    let weights = triangle::nearest(&f, &g, at.bodies.noise().point()).weights;
+    let bodies = [at.bodies.moving.corners, at.bodies.fixed.corners];
+    let speed = |k: usize| span.velocity(&at, k, triangle::mean(&bodies[k], weights[k]));
+    // How the moving facet goes, seen from the fixed one.
+    let way = speed(0) - speed(1);
+    let normal = |[a, b, c]: Corners| (b - a).cross(c - a);
+    let looks = |n: DVec3, way: DVec3| n.dot(way) > ON_EDGE * n.length() * way.length();
+    (!sided[0] || looks(normal(f), way)) && (!sided[1] || looks(normal(g), -way))
 }

@@ -8,7 +8,9 @@ use serde::{Deserialize, Serialize};
 use super::super::verify::MotionProofError;
 use super::super::{Motion, MotionCast, MotionOutcome, Moving};
 use super::proof::{FacetsMeeting, SolidMotionProof};
+use super::tree::Tree;
 use crate::among::ByKind;
+use crate::body::InputFacet;
 use crate::body::solid::Solid;
 use crate::cast::CaseError;
 use crate::cast::solid::StartProof;
@@ -83,8 +85,19 @@ impl SolidMotionProofFile {
         let [moving_motion, fixed_motion] = self.motions.clone();
         let (format, keep, tolerance) = (FORMAT.into(), self.keep, self.tolerance);
         let proof = self.proof.clone();
-        let file =
-            File { format, moving, moving_motion, fixed, fixed_motion, keep, tolerance, proof };
+        let cast = asked(&self.bodies, &self.motions, keep, tolerance);
+        let parts = cast.ok().map(|cast| cast.trees(cast.tolerance()).map(|tree| Parts::of(&tree)));
+        let file = File {
+            format,
+            moving,
+            moving_motion,
+            fixed,
+            fixed_motion,
+            keep,
+            tolerance,
+            parts,
+            proof,
+        };
         serde_json::to_string(&file).expect("numbers and names")
     }
 
@@ -94,11 +107,24 @@ impl SolidMotionProofFile {
     /// What is wrong with it.
     pub fn from_json(text: &str) -> Result<Self, CaseError> {
         let text = said(text, FORMAT)?;
-        let File { moving, moving_motion, fixed, fixed_motion, keep, tolerance, proof, .. } =
-            serde_json::from_str(text).map_err(CaseError::Proof)?;
+        let file: File = serde_json::from_str(text).map_err(CaseError::Proof)?;
+        let File {
+            moving, moving_motion, fixed, fixed_motion, keep, tolerance, parts, proof, ..
+        } = file;
         let bodies = Box::new([Written::of(moving)?, Written::of(fixed)?]);
         let motions = [moving_motion, fixed_motion];
-        asked(&bodies, &motions, keep, tolerance)?;
+        let cast = asked(&bodies, &motions, keep, tolerance)?;
+        // They are there for whoever has no such trees; they have to be those of these bodies.
+        if let Some(parts) = parts {
+            let trees = cast.trees(cast.tolerance());
+            for (which, (tree, told)) in
+                ["moving", "fixed"].into_iter().zip(trees.iter().zip(parts))
+            {
+                if Parts::of(tree) != told {
+                    return Err(CaseError::Changed { which });
+                }
+            }
+        }
         Ok(Self { bodies, motions, keep, tolerance, proof })
     }
 }
@@ -154,5 +180,27 @@ struct File {
     keep: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     tolerance: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    parts: Option<[Parts; 2]>,
     proof: SolidMotionProof,
+}
+
+/// The facets of a solid as the tolerance leaves them, in the order in which a proof counts them, and how it splits them.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Parts {
+    /// The number of each in the file.
+    numbers: Vec<InputFacet>,
+    corners: Vec<[[f64; 3]; 3]>,
+    /// The nodes in preorder: the facet that one is, or -1 of one that has two parts.
+    tree: Vec<i64>,
+}
+
+impl Parts {
+    fn of(tree: &Tree) -> Self {
+        let numbers = tree.solid.facet_indices().to_vec();
+        let count = tree.solid.triangles().len() as u32;
+        let corners = (0..count).map(|at| tree.facet(at).corners.map(|v| v.to_array()));
+        Self { numbers, corners: corners.collect(), tree: tree.preorder() }
+    }
 }

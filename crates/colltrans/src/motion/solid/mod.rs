@@ -6,8 +6,9 @@
 //!
 //! The modules, each using only those before it: `tree` (a shrunk solid), `window` (two parts in an interval, and
 //! one plane), `facets` (two facets, as convex bodies), `proof` (entries of a cover), `search`, `meeting` (facets that
-//! meet), `verify`, `file`.
+//! meet), `verify`, `clearance`, `file`.
 
+mod clearance;
 mod facets;
 #[cfg(feature = "json")]
 mod file;
@@ -29,27 +30,23 @@ pub use self::file::SolidMotionProofFile;
 use self::meeting::{Seen, seen};
 use self::proof::Written;
 pub use self::proof::{FacetsMeeting, MotionCover, SolidMotionProof, SpanProof};
-use self::search::{Found, Search};
+use self::search::{Found, Mode, Search};
 use self::tree::Tree;
 use self::window::Frame;
 use super::answer::{MotionContact, MotionFree, MotionOutcome, MotionSteps};
 use super::span::{Span, spans};
 use super::verify::MotionProofError;
-use super::{Motion, MotionCast, Moving};
+use super::{Motion, MotionCast, Moving, usual_tolerance};
 use crate::answer::SolidSteps;
 use crate::body::Features;
 use crate::body::solid::{AsSolid, Solid};
 use crate::cast::Cast;
 use crate::cast::solid::{SolidOptions, StartProof};
-use crate::number::noise::Noise;
 use crate::setting::error::QueryError;
 use crate::setting::{Setting, check_keep};
 use crate::solve::solid::nearest::{Spot, points_of, triangle};
 use crate::solve::solid::overlap;
 use crate::solve::solid::scene::Scene;
-
-/// The default tolerance, in multiples of what two points may be off each other: noise, and motion.
-const TOLERANCE: f64 = 32.0;
 
 /// How often a time after a contact is doubled, from so many roundings on, to find facets that cross.
 const BEYOND: i32 = 48;
@@ -123,7 +120,7 @@ impl<'a> MotionCast<'a, Solid> {
 
     /// The tolerance that is used, as a length.
     pub fn tolerance(&self) -> f64 {
-        self.tolerance.unwrap_or_else(|| self.usual_tolerance())
+        self.tolerance.unwrap_or_else(|| usual_tolerance(self.bodies(), self.motions()))
     }
 
     /// When do the bodies first meet? No proof is made: see [`Self::certified_first_contact`].
@@ -138,7 +135,7 @@ impl<'a> MotionCast<'a, Solid> {
         }
         let trees = self.trees(tolerance);
         for span in spans(trees.each_ref(), self.motions(), self.keep) {
-            let (found, _) = searched(&span, false, &mut steps);
+            let (found, _) = searched(&span, Mode::Plain, &mut steps);
             if let Some(found) = found {
                 let found = Self::confirmed(&span, found, &mut steps);
                 return Ok(self.contact(&span, &found, steps, |_| ()));
@@ -163,7 +160,7 @@ impl<'a> MotionCast<'a, Solid> {
         }
         let trees = self.trees(tolerance);
         for span in spans(trees.each_ref(), self.motions(), self.keep) {
-            let (found, written) = searched(&span, true, &mut steps);
+            let (found, written) = searched(&span, Mode::Writing, &mut steps);
             let Some(found) = found else {
                 proof.spans.push(SpanProof::new(span.to, written));
                 continue;
@@ -194,16 +191,6 @@ impl<'a> MotionCast<'a, Solid> {
         let [p, q] = self.motions().map(|motion| motion.pieces()[0].start);
         let options = SolidOptions::default().with_tolerance(self.tolerance()).with_keep(self.keep);
         Cast::new(bodies[0].at(p), bodies[1].at(q), DVec3::Z)?.with_options(options)
-    }
-
-    /// What rounding can do to a fit, of bodies as they are.
-    fn usual_tolerance(&self) -> f64 {
-        let (bodies, motions) = (self.bodies(), self.motions());
-        let off = spans(bodies, motions, 0.0).into_iter().map(|span| {
-            let ends = [span.from, span.to].map(|time| span.instant(time).bodies.scale());
-            Noise::of(ends[0].max(ends[1])).point() + span.error
-        });
-        TOLERANCE * off.fold(0.0, f64::max)
     }
 
     fn trees(&self, tolerance: f64) -> [Tree<'a>; 2] {
@@ -292,8 +279,8 @@ impl<'a> MotionCast<'a, Solid> {
 }
 
 /// Searches a span.
-fn searched(span: &Span<Tree>, writes: bool, steps: &mut MotionSteps) -> (Option<Found>, Written) {
-    let mut search = Search::new(Frame::new(span), writes);
+fn searched(span: &Span<Tree>, mode: Mode, steps: &mut MotionSteps) -> (Option<Found>, Written) {
+    let mut search = Search::new(Frame::new(span), mode);
     search.run();
     *steps += search.steps;
     (search.found, search.written.unwrap_or_default())
@@ -305,7 +292,7 @@ fn up_to(span: &Span<Tree>, mut until: f64, steps: &mut MotionSteps) -> (f64, Wr
         if until <= span.from {
             break;
         }
-        let (found, written) = searched(&span.until(until), true, steps);
+        let (found, written) = searched(&span.until(until), Mode::Writing, steps);
         let Some(found) = found else { return (until, written) };
         let less = if found.lower < until { 0.0 } else { f64::EPSILON * 2.0_f64.powi(k) };
         until = (found.lower - less).max(span.from);

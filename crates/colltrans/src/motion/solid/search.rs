@@ -9,7 +9,7 @@
 
 use super::super::answer::MotionSteps;
 use super::super::search::{Advanced, End, advance};
-use super::facets::{FacetLooker, FacetsMet};
+use super::facets::{FacetLooker, FacetsMet, Later, later};
 use super::proof::{Entry, Written, middle};
 use super::tree::{Below, Node, Tree};
 use super::window::{Frame, Part, Plane, Snap, Window};
@@ -56,6 +56,17 @@ pub(super) struct Found {
     pub(super) met: Option<(f64, [u32; 2], FacetsMet)>,
 }
 
+/// What a search is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Mode {
+    /// The first contact.
+    Plain,
+    /// The same, and what is proven is written down.
+    Writing,
+    /// The first contact of facets that look at each other, without those that have crossed from the start on.
+    Ignoring,
+}
+
 /// A pair of parts in an interval, which nothing is known of yet.
 #[derive(Debug, Clone, Copy)]
 struct Open {
@@ -73,14 +84,14 @@ pub(super) struct Search<'s, 'a> {
     stack: Vec<Open>,
     /// What parted the last pair.
     last: Plane,
+    ignores: bool,
     pub(super) found: Option<Found>,
     pub(super) written: Option<Written>,
     pub(super) steps: MotionSteps,
 }
 
 impl<'s, 'a> Search<'s, 'a> {
-    /// Of a span; what is proven is written down if so said.
-    pub(super) fn new(frame: Frame<'s, 'a>, writes: bool) -> Self {
+    pub(super) fn new(frame: Frame<'s, 'a>, mode: Mode) -> Self {
         let trees = [frame.span.body(0), frame.span.body(1)];
         let snaps = vec![frame.snap(frame.span.from), frame.snap(frame.span.to)];
         Self {
@@ -90,7 +101,8 @@ impl<'s, 'a> Search<'s, 'a> {
             stack: Vec::new(),
             last: Plane::Middles,
             found: None,
-            written: writes.then(Written::default),
+            ignores: mode == Mode::Ignoring,
+            written: (mode == Mode::Writing).then(Written::default),
             steps: MotionSteps::default(),
         }
     }
@@ -170,8 +182,16 @@ impl<'s, 'a> Search<'s, 'a> {
         let times = ends.map(|k| self.time(k));
         let span = self.frame.span.part([f, g], times);
         let mut looker = FacetLooker::default();
-        let Advanced { planes, end } = advance(&span, &mut looker);
         self.steps.leaves += 1;
+        if self.ignores {
+            let sided = [0, 1].map(|k| !self.trees[k].solid.is_open(triangles[k] as usize));
+            if let Some(Later { lower, met }) = later(&span, sided, &mut looker) {
+                self.take(lower, triangles, met.map(|(time, met)| (time, triangles, met)));
+            }
+            self.steps += looker.steps;
+            return;
+        }
+        let Advanced { planes, end } = advance(&span, &mut looker);
         self.steps += looker.steps;
         let lower = planes.last().map_or(times[0], |plane| plane.time);
         match end {

@@ -47,6 +47,13 @@ pub(in crate::motion) struct Facet {
     reach: f64,
 }
 
+impl Facet {
+    pub(super) fn new(corners: [DVec3; 3]) -> Self {
+        let square = corners.iter().map(|v| v.length_squared()).fold(0.0, f64::max);
+        Self { corners, reach: square.sqrt().next_up() }
+    }
+}
+
 impl Hull for Facet {
     #[inline]
     fn corners(&self) -> &[DVec3] {
@@ -89,10 +96,25 @@ impl<'a> Tree<'a> {
         &self.nodes[at as usize]
     }
 
+    /// All nodes in preorder: the facet that one is, or -1 of one that has parts.
+    #[cfg(feature = "json")]
+    pub(super) fn preorder(&self) -> Vec<i64> {
+        let (mut all, mut open) = (Vec::with_capacity(self.nodes.len()), vec![0]);
+        while let Some(at) = open.pop() {
+            match self.node(at).below {
+                Below::Facet(triangle) => all.push(i64::from(triangle)),
+                Below::Nodes(first) => {
+                    all.push(-1);
+                    open.extend([first + 1, first]);
+                }
+            }
+        }
+        all
+    }
+
     pub(super) fn facet(&self, triangle: u32) -> Facet {
         let corners = self.solid.triangles()[triangle as usize].map(|v| self.vertices[v as usize]);
-        let square = corners.iter().map(|v| v.length_squared()).fold(0.0, f64::max);
-        Facet { corners, reach: square.sqrt().next_up() }
+        Facet::new(corners)
     }
 
     fn grown(&self) -> Vec<Node> {

@@ -15,6 +15,7 @@
 
 use glam::{DMat3, DVec3};
 
+use super::super::arc;
 use super::super::bend::{SPARE, across, most_bend};
 use super::super::span::Span;
 use super::tree::{Below, Facet, Node, Tree};
@@ -52,6 +53,8 @@ pub(super) struct Frame<'s, 'a> {
     pub(super) span: &'s Span<'a, Tree<'a>>,
     /// What heights along a unit normal are lowered by.
     lowered: f64,
+    /// Whether both bodies spin as one.
+    is_one: bool,
 }
 
 /// A direction that both parts have at hand.
@@ -161,7 +164,8 @@ impl<'s, 'a> Frame<'s, 'a> {
             span.body(which).reach() + swung + piece.velocity.length() * h
         };
         let noise = Noise::of(start.offset.length() + far(0) + far(1));
-        Self { span, lowered: LOWERED * noise.point() + span.error }
+        let (lowered, is_one) = (LOWERED * noise.point() + span.error, arc::is_one_spin(span));
+        Self { span, lowered, is_one }
     }
 
     pub(super) fn snap(&self, time: f64) -> Snap {
@@ -206,13 +210,19 @@ impl Window<'_, '_, '_> {
         (self.frame.piece(which).rate * (self.ends[1].time - self.ends[0].time)).abs()
     }
 
-    /// The larger of both angles.
+    /// The larger of both angles; none, if both bodies spin as one.
     pub(super) fn turn(&self) -> f64 {
+        if self.frame.is_one {
+            return 0.0;
+        }
         self.angle(0).max(self.angle(1))
     }
 
-    /// How far the middles of both parts move together, at most.
+    /// How far the middles of both parts move together, at most; nowhere, if both bodies spin as one.
     pub(super) fn way(&self) -> f64 {
+        if self.frame.is_one {
+            return 0.0;
+        }
         let of = |which: usize| {
             let (piece, place) = (self.frame.piece(which), &self.ends[0].places[which]);
             let from_axis = across(place.arm + self.seen[which][0].middle(), piece.axis);
@@ -298,6 +308,27 @@ impl Window<'_, '_, '_> {
     /// Whether a plane of this name parts both throughout.
     #[inline]
     pub(super) fn is_parted_by(&self, plane: Plane) -> bool {
-        self.normal(plane).is_some_and(|normal| self.is_parted(normal))
+        self.normal(plane).is_some_and(|normal| self.is_parted(normal)) || self.is_carried_by(plane)
+    }
+
+    /// Whether both bodies spin as one and this plane parts both when the interval begins, by more than is lost of it
+    /// while they carry it along.
+    fn is_carried_by(&self, plane: Plane) -> bool {
+        let Frame { span, lowered, is_one } = *self.frame;
+        if !is_one {
+            return false;
+        }
+        let start = self.ends[0];
+        let seen = self.seen.map(|[first, _]| [first; 2]);
+        let apart = (start.offset + (seen[1][0].middle() - seen[0][0].middle())) * 2.0;
+        let begin = Window { frame: self.frame, ends: [start; 2], seen, apart };
+        let Some(normal) = begin.normal(plane) else { return false };
+        let [high, _] = seen[0][0].reach(normal, 0.0);
+        let [low, _] = seen[1][0].reach(-normal, 0.0);
+        let kept = span.keep.max(0.0) * normal.length() * (1.0 + 1e-12);
+        let gap =
+            normal.dot(start.offset) - low - high - lowered * normal.abs().element_sum() - kept;
+        let offset = start.offset - (start.places[1].arm - start.places[0].arm);
+        gap > arc::carried(span, offset, self.ends[1].time - start.time, normal)
     }
 }

@@ -1,0 +1,103 @@
+"""The checker in fractions, on saved proofs of paths of joints: also forged ones."""
+
+import json
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from test_check import changed, check, proof, refused
+
+ALL = ["contact", "free", "kept"]
+
+
+@pytest.mark.parametrize(
+    ("name", "holds"),
+    [
+        (
+            "contact",
+            [
+                "no two bodies meet up to the time 0.60356132767",
+                "'tool' and 'wire' meet at the time",
+            ],
+        ),
+        ("free", ["no two bodies meet up to the time 2.0"]),
+        ("kept", ["no two bodies are as near as 0.01 up to", "are as near as 0.01 at the time"]),
+    ],
+)
+def test_a_proof_holds(name: str, holds: list[str]) -> None:
+    report = check.check(json.dumps(proof(f"path_{name}")))
+    assert len(report.holds) == len(holds) and not report.partly
+    assert all(words in line for words, line in zip(holds, report.holds, strict=True))
+
+
+def planes(file: Any) -> list[tuple[Any, ...]]:
+    """Where the planes are."""
+    return [
+        ("proof", "covers", c, "steps", s, "planes", t, "planes", k)
+        for c, cover in enumerate(file["proof"]["covers"])
+        for s, step in enumerate(cover["steps"])
+        for t, stretch in enumerate(step["planes"])
+        for k in range(len(stretch["planes"]))
+    ]
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_no_plane_may_say_more_than_it_leaves(name: str) -> None:
+    file = proof(f"path_{name}")
+    for way in planes(file)[::7]:
+        assert refused(changed(file, (*way, "gap"), lambda x: x + 1e-12))
+        assert refused(changed(file, (*way, "gap"), lambda x: -x))
+        assert refused(changed(file, (*way, "normal"), lambda n: [-x for x in n]))
+        assert refused(changed(file, (*way, "normal"), lambda n: [2 * x for x in n]))
+        assert refused(changed(file, (*way, "alone"), lambda alone: not alone))
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_planes_that_are_needed_may_not_be_dropped(name: str) -> None:
+    file = proof(f"path_{name}")
+    dropped = 0
+    for way in planes(file):
+        without = json.loads(json.dumps(file))
+        at = without
+        for key in way[:-1]:
+            at = at[key]
+        del at[way[-1]]
+        dropped += refused(without)
+    assert dropped > len(planes(file)) // 2
+    without = json.loads(json.dumps(file))
+    del without["proof"]["covers"][0]
+    assert refused(without)
+    without["pairs"] = without["pairs"][1:]
+    assert name != "free" or not refused(without)
+
+
+def test_the_time_of_contact_may_not_be_moved() -> None:
+    for name in ("contact", "kept"):
+        file = proof(f"path_{name}")
+        way: tuple[Any, ...] = ("proof", "meeting", "place", "share")
+        assert refused(changed(file, way, lambda t: 0.5 * t))
+        assert refused(changed(file, way, lambda t: 1.5))
+        assert refused(changed(file, ("said", "upper"), lambda t: t - 1e-9))
+        assert refused(changed(file, ("said", "lower"), lambda t: t + 1e-9))
+        assert refused(changed(file, ("proof", "meeting", "pair"), lambda k: k - 1))
+        assert refused(changed(file, ("proof", "meeting"), lambda of: None))
+
+
+@pytest.mark.parametrize(
+    ("part", "by"),
+    [
+        (("path", "rows", 0, 0), lambda x: x + 0.01),
+        (("path", "rows", 1, 1), lambda x: x - 0.01),
+        (("path", "times", 1), lambda x: -x),
+        (("frames", 0, "joint", "turning"), lambda axis: [-x for x in axis]),
+        (("frames", 1, "joint", "turning"), lambda axis: [2 * x for x in axis]),
+        (("frames", 1, "origin", "translation", 0), lambda x: x + 0.01),
+        (("frames", 1, "parent"), lambda k: 1),
+        (("bodies", -1, "pose", "translation", 0), lambda x: x + 0.01),
+        (("bodies", -1, "frame"), lambda k: 0),
+        (("keep",), lambda x: -1.0),
+    ],
+)
+def test_every_number_of_a_path_counts(part: tuple[Any, ...], by: Callable[[Any], Any]) -> None:
+    file = {"keep": 0.0, **proof("path_contact")}
+    assert refused(changed(file, part, by))

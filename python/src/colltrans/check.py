@@ -2151,7 +2151,7 @@ def solid_motion(file: Any) -> Report:
     moved = float(max(side.moved for side in parts))
     of = f"the facets, moved by at most {moved:.3g}," if moved else "the facets"
     claimed = proof["spans"]
-    if "overlapping" in proof["start"]:
+    if "apart" not in proof["start"]:
         report.unchecked.append("that they overlap when the motion begins")
         report.partly = True
         return report

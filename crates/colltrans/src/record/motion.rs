@@ -51,7 +51,7 @@ impl Record {
                 let surfaces = open_ones(cast.bodies()[0], cast.bodies()[1]);
                 let (outcome, looks) = (Ending::Overlapping, Some(0));
                 let tolerance = Some(cast.tolerance());
-                Self { outcome, looks, tolerance, surfaces, ..Self::default() }.keeping(cast.keep())
+                Self { outcome, tolerance, surfaces, looks, ..Self::default() }.keeping(cast.keep())
             }
         }
     }

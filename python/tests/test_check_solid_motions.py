@@ -1,0 +1,111 @@
+"""The checker in fractions, on saved proofs of solids that turn: also forged ones."""
+
+import json
+import random
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from test_check import changed, check, proof, refused
+
+ALL = ["contact", "free", "kept", "carried"]
+WAY = ("proof", "spans", 0, "cover")
+
+
+@pytest.mark.parametrize(
+    ("name", "holds"),
+    [
+        ("contact", ["never meet up to the time", "inside the other", "meet at the time"]),
+        ("free", ["never meet throughout the motion", "inside the other"]),
+        (
+            "kept",
+            ["never are as near as 0.25 up to", "inside the other", "are as near as 0.25 at"],
+        ),
+        ("carried", ["never meet throughout the motion", "inside the other"]),
+    ],
+)
+def test_a_proof_holds(name: str, holds: list[str]) -> None:
+    report = check.check(json.dumps(proof(f"solids_{name}")))
+    assert len(report.holds) == len(holds) and not report.partly
+    assert all(words in line for words, line in zip(holds, report.holds, strict=True))
+    assert report.unchecked == ["whether facets were moved inwards as the tolerance says"]
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_no_entry_of_a_cover_may_be_another(name: str) -> None:
+    file = proof(f"solids_{name}")
+    cover = file["proof"]["spans"][0]["cover"]
+    drawn = random.Random(3)
+    count = 0
+    for _ in range(12):
+        at = drawn.randrange(len(cover))
+        with_ = drawn.choice("TPQL")
+        for other in (cover[:at] + cover[at + 1 :], cover[:at] + with_ + cover[at + 1 :]):
+            if other != cover:
+                count += refused(changed(file, WAY, lambda _, to=other: to))
+    assert count > 12
+    # One that is in the slot of the other is parted from it by no plane as a whole.
+    for letter in "mabcxyz" if name in {"free", "carried"} else "":
+        whole = changed(file, WAY, lambda _, of=letter: of)
+        whole["proof"]["spans"][0]["lists"] = []
+        assert refused(whole)
+
+
+@pytest.mark.parametrize(
+    ("part", "by"),
+    [
+        (("moving_motion", 0, "rate"), lambda x: 1.5 * x + 0.1),
+        (("moving_motion", 0, "arm", 0), lambda x: x + 1.0),
+        (("moving_motion", 0, "start", "translation", 0), lambda x: x - 1.5),
+        (("proof", "spans", 0, "until"), lambda x: min(1.0, x + 1e-3)),
+        (("proof", "meeting", "time"), lambda x: 0.9 * x),
+        (("proof", "meeting", "triangles", 0), lambda k: k + 1),
+        (("proof", "meeting", "triangles", 0), lambda k: 1000),
+        (("proof", "meeting", "met", "crossing", "moving"), lambda of: not of),
+        (("parts", 0, "numbers", 0), lambda k: k + 1),
+        (("parts", 0, "tree", 0), lambda k: 0),
+        (("parts", 0, "tree"), lambda tree: tree[:-1]),
+        (("parts", 1, "corners"), lambda of: of[:-1]),
+        (("keep",), lambda x: 0.5),
+        (("keep",), lambda x: -0.5),
+    ],
+)
+def test_every_number_counts(part: tuple[Any, ...], by: Callable[[Any], Any]) -> None:
+    file = {"keep": 0.0, **proof("solids_contact")}
+    assert refused(changed(file, part, by))
+
+
+def test_how_far_facets_were_moved_is_said() -> None:
+    file = proof("solids_free")
+    moved = changed(file, ("parts", 0, "corners", 0, 0, 2), lambda x: x + 0.125)
+    assert any("moved by at most 0.125" in line for line in check.check(json.dumps(moved)).holds)
+
+
+def test_what_is_inside_is_refused() -> None:
+    file = proof("solids_free")
+    # The other solid, far larger and around the first one: no facets meet, all planes are gone.
+    inside = json.loads(json.dumps(file))
+    for piece in inside["fixed"]["pieces"]:
+        piece["vertices"] = [[100.0 * (x - 0.5) for x in v] for v in piece["vertices"]]
+    inside["parts"][1]["corners"] = [
+        [[100.0 * (x - 0.5) for x in v] for v in triangle]
+        for triangle in inside["parts"][1]["corners"]
+    ]
+    assert refused(inside)
+    with pytest.raises(check.RefusedError):
+        check.start(*placed(inside))
+    check.start(*placed(file))
+
+
+def placed(file: Any) -> tuple[Any, Any]:
+    """The first span of a file, and its parts."""
+    shapes = [check.Body.shape(file[side]) for side in ("moving", "fixed")]
+    parts = [
+        check.Parts.read(points, facets, of)
+        for (points, facets), of in zip(shapes, file["parts"], strict=True)
+    ]
+    plain = {
+        **{side: {"vertices": [[0.0, 0.0, 0.0]]} for side in ("moving", "fixed")},
+        **{name: file[name] for name in ("moving_motion", "fixed_motion")},
+    }
+    return check.spans(plain, described_bodies=False)[0], (parts[0], parts[1])

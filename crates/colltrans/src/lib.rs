@@ -201,7 +201,7 @@ pub use proof_file::{
 pub use setting::VertexPair;
 pub use setting::error::{QueryError, Stalled};
 pub use solve::observe;
-pub use solve::options::{Focus, NarrowFrom, Narrowing, Options, Region, Until};
+pub use solve::options::{Cuts, Focus, NarrowFrom, Narrowing, Options, Region, Until};
 pub use tracker::Tracker;
 pub use written::{NoUntil, UnknownName};
 

@@ -2,7 +2,7 @@
 #![cfg(feature = "json")]
 
 use colltrans::motion::{Motion, MotionCase, MotionCast, MotionProofFile};
-use colltrans::{Case, CaseError, Narrowing, Options, Solver};
+use colltrans::{Case, CaseError, Cuts, Narrowing, Options, Solver};
 use colltrans_testkit::oracle::settings::{FAMILIES, NEARLY_FLAT, setting};
 
 #[test]
@@ -48,7 +48,11 @@ fn choices_come_back() {
     let setting = setting("boxes", 3);
     let bodies = setting.bodies().expect("bodies");
     for keeps_to_cell in [false, true] {
-        let narrowing = Narrowing::default().with_keeps_to_cell(keeps_to_cell);
+        let cuts = if keeps_to_cell { Cuts::Shifted } else { Cuts::Centroid };
+        let narrowing = Narrowing::default()
+            .with_keeps_to_cell(keeps_to_cell)
+            .with_cuts(cuts)
+            .with_starts_cold(!keeps_to_cell);
         let options = Options::default().with_narrowing(narrowing);
         let cast = setting.query(&bodies).expect("a query").with_options(options).expect("valid");
         let case = Case::from_json(&cast.to_json()).expect("a case");

@@ -301,38 +301,39 @@ impl<O: Observer> Run<'_, '_, '_, O> {
 
     /// The first guess of the contact normal, or more than a guess.
     fn start(&mut self, region: Region, last: &WarmStart) -> Start {
-        let ellipsoids = FirstNormal::from_ellipsoids(&self.context.difference);
         if let Some(focus) = self.region(region, last) {
             self.context.watch.steps.started_from = StartedFrom::Region;
-            return self.narrow(&ellipsoids, Origin::Region(focus));
+            return self.narrow(Origin::Region(focus));
         }
         match self.narrowing.start {
-            NarrowFrom::Center => self.narrow(&ellipsoids, Origin::Center),
-            NarrowFrom::Ellipsoids => self.start_at_ellipsoids(&ellipsoids),
+            NarrowFrom::Center => self.narrow(Origin::Center),
+            NarrowFrom::Ellipsoids => self.start_at_ellipsoids(),
         }
     }
 
     /// Where the ellipsoids meet, their normal is the start of portal refinement: a planar problem
     /// costs more than it saves there (measured). Where they pass each other and the bodies are
     /// not seen to do so, it is solved.
-    fn start_at_ellipsoids(&mut self, ellipsoids: &FirstNormal) -> Start {
+    fn start_at_ellipsoids(&mut self) -> Start {
+        let ellipsoids = FirstNormal::from_ellipsoids(&self.context.difference);
         let normal = ellipsoids.normal;
         if normal.z > 0.0 {
-            return Start::Normal(*ellipsoids);
+            return Start::Normal(ellipsoids);
         }
         let support = self.context.difference.support(normal);
         self.context.watch.support(|| Support::of(normal, &support));
         if normal.dot(support.at) > 0.0 {
             return Start::Normal(FirstNormal::guided(normal, support.pair));
         }
-        self.narrow(ellipsoids, Origin::Center)
+        self.narrow(Origin::Center)
     }
 
     /// By the collision translation algorithm.
-    fn narrow(&mut self, ellipsoids: &FirstNormal, origin: Origin) -> Start {
+    fn narrow(&mut self, origin: Origin) -> Start {
         self.context.watch.ended(Phase::Setup);
-        let Narrowing { until, keeps_to_cell, .. } = self.narrowing;
-        let options = CtaOptions { start: origin, gap: until.gap(), keeps_to_cell };
+        let Narrowing { until, keeps_to_cell, cuts, starts_cold, .. } = self.narrowing;
+        let gap = until.gap();
+        let options = CtaOptions { start: origin, gap, keeps_to_cell, cuts, starts_cold };
         let narrowed =
             cta::minimise(self.context.difference.setting, &options, &mut self.context.watch);
         let corners = narrowed.corners.as_ref();
@@ -347,7 +348,7 @@ impl<O: Observer> Run<'_, '_, '_, O> {
             Guess::Separation { direction } => {
                 FirstNormal::guided(in_shadow(direction).with_z(0.0), near)
             }
-            Guess::Nothing => *ellipsoids,
+            Guess::Nothing => FirstNormal::from_ellipsoids(&self.context.difference),
         })
     }
 

@@ -107,6 +107,11 @@ pub struct Narrowing {
     /// paper's steps. If not, it goes on from cell to cell where little of the region is left: fewer
     /// planar problems and less time.
     pub keeps_to_cell: bool,
+    /// Where the region of levels is cut.
+    pub cuts: Cuts,
+    /// Whether each planar problem is searched from nothing, as the paper's are (its section V-F says what that
+    /// costs). If not, from the edges that the one before ended with, also that of the last query.
+    pub starts_cold: bool,
 }
 
 impl Narrowing {
@@ -114,17 +119,29 @@ impl Narrowing {
     /// does nearly all of the work; planar problems are solved only if the ellipsoids pass each other and the
     /// bodies may not.
     pub const ROUGH: Self =
-        Self { start: NarrowFrom::Ellipsoids, until: Until::Gap(0.2), keeps_to_cell: false };
+        Self::new(NarrowFrom::Ellipsoids, Until::Gap(0.2)).with_keeps_to_cell(false);
 
     /// From a start to an end, each shift within its cell.
     pub const fn new(start: NarrowFrom, until: Until) -> Self {
-        Self { start, until, keeps_to_cell: true }
+        Self { start, until, keeps_to_cell: true, cuts: Cuts::Shifted, starts_cold: false }
     }
 
     /// With cell shifts that end in their cells, or not.
     #[must_use]
     pub const fn with_keeps_to_cell(self, keeps_to_cell: bool) -> Self {
         Self { keeps_to_cell, ..self }
+    }
+
+    /// With cuts through other levels.
+    #[must_use]
+    pub const fn with_cuts(self, cuts: Cuts) -> Self {
+        Self { cuts, ..self }
+    }
+
+    /// With planar problems that are searched from nothing, or not.
+    #[must_use]
+    pub const fn with_starts_cold(self, starts_cold: bool) -> Self {
+        Self { starts_cold, ..self }
     }
 }
 
@@ -149,6 +166,30 @@ pub enum NarrowFrom {
     /// Where the bodies would meet if they were ellipsoids: portal refinement begins there, and
     /// planar problems are solved only if the ellipsoids pass each other and the bodies may not.
     Ellipsoids,
+}
+
+/// Where a minimisation cuts the region of levels.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case")
+)]
+pub enum Cuts {
+    /// Shifted to the best point of the cell in which the same features touch (the paper, line 5).
+    #[default]
+    Shifted,
+    /// Through the levels of the planar problem themselves, as the method before the paper's cuts, its reference
+    /// \[3\], which knows no cells. More steps, and only to compare with.
+    Centroid,
+}
+
+#[cfg(feature = "serde")]
+impl Cuts {
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde calls")]
+    fn is_shifted(&self) -> bool {
+        *self == Self::Shifted
+    }
 }
 
 /// Where a minimisation ends. As text `exit`, or a number.
@@ -255,6 +296,10 @@ pub(crate) struct OptionsRecord {
     until: Until,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     keeps_to_cell: bool,
+    #[serde(default, skip_serializing_if = "Cuts::is_shifted")]
+    cuts: Cuts,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    starts_cold: bool,
     #[serde(default, skip_serializing_if = "crate::written::is_zero")]
     keep: f64,
 }
@@ -262,8 +307,8 @@ pub(crate) struct OptionsRecord {
 #[cfg(feature = "serde")]
 impl From<Options> for OptionsRecord {
     fn from(Options { solver, graze_tolerance, narrowing, keep }: Options) -> Self {
-        let Narrowing { start, until, keeps_to_cell } = narrowing;
-        Self { solver, graze_tolerance, start, until, keeps_to_cell, keep }
+        let Narrowing { start, until, keeps_to_cell, cuts, starts_cold } = narrowing;
+        Self { solver, graze_tolerance, start, until, keeps_to_cell, cuts, starts_cold, keep }
     }
 }
 
@@ -272,8 +317,9 @@ impl TryFrom<OptionsRecord> for Options {
     type Error = QueryError;
 
     fn try_from(record: OptionsRecord) -> Result<Self, QueryError> {
-        let OptionsRecord { solver, graze_tolerance, start, until, keeps_to_cell, keep } = record;
-        let narrowing = Narrowing { start, until, keeps_to_cell };
+        let OptionsRecord { start, until, keeps_to_cell, cuts, starts_cold, .. } = record;
+        let narrowing = Narrowing { start, until, keeps_to_cell, cuts, starts_cold };
+        let OptionsRecord { solver, graze_tolerance, keep, .. } = record;
         let options = Self { solver, graze_tolerance, narrowing, keep };
         options.check()?;
         Ok(options)

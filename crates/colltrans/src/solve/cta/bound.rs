@@ -112,7 +112,7 @@ impl LowerBound {
             let violation = self.violation(piece);
             if violation > most && !self.basis.contains(&index) {
                 let size = piece.bound.value.abs()
-                    + piece.bound.gradient.length() * self.at.length()
+                    + piece.bound.gradient.abs().dot(self.at.abs())
                     + (piece.weight * self.t).abs();
                 if violation > noise::SECTION * size {
                     (worst, most) = (Some(index), violation);
@@ -128,11 +128,12 @@ impl LowerBound {
         let multipliers = self.inverse * DVec3::X;
         let entering_column = column(&self.pieces[entering]);
         let rates = self.inverse * entering_column;
-        let noise = noise::SECTION * entering_column.length();
+        // What the terms of a rate could have been rounded by.
+        let noise = |slot| noise::SECTION * self.inverse.row(slot).abs().dot(entering_column.abs());
         let mut leaving = None;
         let mut least = f64::INFINITY;
         for slot in 0..3 {
-            if rates[slot] > noise * self.inverse.row(slot).length() {
+            if rates[slot] > noise(slot) {
                 let ratio = multipliers[slot].max(0.0) / rates[slot];
                 if ratio < least {
                     (leaving, least) = (Some(slot), ratio);

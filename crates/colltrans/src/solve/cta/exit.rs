@@ -208,7 +208,8 @@ impl ExitTest<'_, '_> {
         if !(outward && normal.is_finite()) {
             return Common::Undecided;
         }
-        let noise = self.setting.noise().point() * normal.length();
+        // Of the normal's length at most its coordinates' sum: no square root (the paper, V-A).
+        let noise = self.setting.noise().point() * normal.abs().element_sum();
         let farthest = [0, 1].map(|body| {
             let outward = self.in_body(body, if body == 0 { normal } else { -normal });
             self.farthest(body, outward, features[body])

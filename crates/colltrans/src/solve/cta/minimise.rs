@@ -14,11 +14,12 @@ use super::crossing::Crossing;
 use super::exit::{Beyond, Corners, Exit, ExitTest, SAME_HEIGHT, Solved};
 use super::pair::SectionPair;
 use super::piece::{Affine, Piece};
-use super::planar::{self, Planar};
+use super::planar::{self, Hint, Planar};
 use super::region::{Region, Square};
 use super::start::Origin;
 use crate::setting::Setting;
 use crate::solve::observe::{Cut, Observer, Phase, PlanarProblem, Touch, Watch};
+use crate::solve::options::Cuts;
 
 /// Levels to search that are together at most so many times as wide as near ones are apart are
 /// crossed from cell to cell: at most so many cells before the next planar problem (both measured).
@@ -35,6 +36,10 @@ pub(crate) struct CtaOptions {
     pub(crate) gap: f64,
     /// The shift ends in its cell.
     pub(crate) keeps_to_cell: bool,
+    /// Where cuts go.
+    pub(crate) cuts: Cuts,
+    /// Planar problems begin with nothing.
+    pub(crate) starts_cold: bool,
 }
 
 /// Where the search was narrowed to.
@@ -93,7 +98,6 @@ pub(crate) fn minimise<O: Observer>(
     watch: &mut Watch<O>,
 ) -> Narrowed {
     let sections = SectionPair::new(setting);
-    watch.sections(|| sections.told());
     watch.ended(Phase::Setup);
     let narrowed = sections.minimise(options, watch);
     let inner = sections.sides.each_ref().map(|side| side.iterations.get());
@@ -104,8 +108,10 @@ pub(crate) fn minimise<O: Observer>(
 impl SectionPair<'_> {
     fn minimise<O: Observer>(&self, options: &CtaOptions, watch: &mut Watch<O>) -> Narrowed {
         let begin = self.begin(&options.start);
+        watch.sections(|| self.told(begin.square));
         let levels = begin.at.to_array();
-        let first = planar::solve(&self.sides, levels, &begin.hint);
+        let hint = if options.starts_cold { Hint::NONE } else { begin.hint };
+        let first = planar::solve(&self.sides, levels, &hint);
         watch.ended(Phase::Planar);
         let Some(first) = first else {
             watch.planar_problem(|| PlanarProblem::hidden(levels));
@@ -117,7 +123,10 @@ impl SectionPair<'_> {
             region: Region::rectangle(-self.half, self.half),
             square: begin.square,
             keeps_to_cell: options.keeps_to_cell,
-            bound: LowerBound::new([-self.half, self.half], begin.floor),
+            cuts: options.cuts,
+            starts_cold: options.starts_cold,
+            floor: begin.floor,
+            bound: None,
             upper: f64::INFINITY,
             best: None,
             solved: None,
@@ -141,8 +150,12 @@ struct Minimisation<'q, 'a, 'o, O> {
     /// The levels searched first, until cuts leave nothing of them on the way to the centroid.
     square: Option<Square>,
     keeps_to_cell: bool,
-    /// Over all levels.
-    bound: LowerBound,
+    cuts: Cuts,
+    starts_cold: bool,
+    /// Over all levels; nothing before the first cut: a query that ends in its first step does without.
+    bound: Option<LowerBound>,
+    /// What it begins with.
+    floor: Piece,
     upper: f64,
     /// Features of the best contact.
     best: Option<Features>,
@@ -173,16 +186,19 @@ impl SectionPair<'_> {
 impl<O: Observer> Minimisation<'_, '_, '_, O> {
     /// One planar problem after the other, at the centroid of what is left or on the way there.
     fn run(&mut self, gap: f64) {
-        while self.steps < MAX_STEPS && self.upper - self.bound.t > gap {
+        while self.steps < MAX_STEPS && self.upper - self.lower() > gap {
             let Some(at) = self.next() else { break };
             self.watch.ended(Phase::Region);
             let levels = (self.sections.origin + at).to_array();
-            let height = self.bound.below(at) - self.sections.frame.base(levels);
+            let below = self.bound.as_ref().map_or(f64::NEG_INFINITY, |bound| bound.below(at));
+            let height = below - self.sections.frame.base(levels);
             self.steps += 1;
             self.watch.ended(Phase::Bound);
             let sides = &self.sections.sides;
             let (at_last, last) = &self.last;
-            let answer = planar::solve(sides, levels, &last.hint(*at_last, levels, height));
+            let hint =
+                if self.starts_cold { Hint::NONE } else { last.hint(*at_last, levels, height) };
+            let answer = planar::solve(sides, levels, &hint);
             self.watch.ended(Phase::Planar);
             let Some(answer) = answer else {
                 self.watch.planar_problem(|| PlanarProblem::hidden(levels));
@@ -193,6 +209,16 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
                 break;
             }
         }
+    }
+
+    /// What all pieces prove.
+    fn lower(&self) -> f64 {
+        self.bound.as_ref().map_or(self.floor.bound.value, |bound| bound.t)
+    }
+
+    /// The normal that proves it.
+    fn normal(&self) -> DVec3 {
+        self.bound.as_ref().map_or(DVec3::ZERO, LowerBound::normal)
     }
 
     /// Where to cut next: at the centroid `c` if it is in the square; where the way to it leaves the
@@ -217,22 +243,29 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
         if self.solved.is_some() {
             return false;
         }
-        let limit = if local.weight > 0.0 { self.upper } else { 0.0 };
         let bound = Affine {
             value: local.bound.value - local.bound.gradient.dot(at),
             gradient: local.bound.gradient,
+        };
+        let limit = match self.cuts {
+            _ if local.weight == 0.0 => 0.0,
+            Cuts::Shifted => self.upper,
+            Cuts::Centroid => local.bound.value,
         };
         self.region.cut(bound.gradient, limit - bound.value);
         let sides = &mut self.watch.steps.region_sides;
         *sides = self.region.sides().max(*sides);
         self.watch.ended(Phase::Region);
-        let progress = self.bound.add(Piece { bound, ..local });
+        let half = self.sections.half;
+        let all = self.bound.get_or_insert_with(|| LowerBound::new([-half, half], self.floor));
+        let progress = all.add(Piece { bound, ..local });
+        let lower = all.t;
         let constant = self.sections.constant;
         self.watch.cut(|| Cut {
             origin: self.sections.origin,
             gradient: bound.gradient,
             limit: limit - bound.value,
-            lower: self.bound.t + constant,
+            lower: lower + constant,
             upper: self.upper + constant,
         });
         self.watch.ended(Phase::Bound);
@@ -317,12 +350,17 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
         let constant = self.sections.constant;
         self.watch.planar_problem(|| {
             let touch = answer.touch();
-            let value = local.bound.value + if touch.meets() { constant } else { 0.0 };
+            // Lines between sections are of any length: a distance needs its unit.
+            let (unit, constant) = match answer {
+                Planar::Separated { u, .. } => (1.0 / u.length(), 0.0),
+                _ => (1.0, constant),
+            };
+            let value = local.bound.value * unit + constant;
             PlanarProblem {
                 levels,
                 value,
                 touch,
-                gradient: local.bound.gradient,
+                gradient: local.bound.gradient * unit,
                 best: (DVec2::from_array(levels) + best.at).to_array(),
                 shifted: value + best.change,
             }
@@ -337,14 +375,14 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
             return Narrowed { guess, vertices, corners, upper, lower: upper };
         }
         let (guess, vertices) = match (self.best, self.last_separation) {
-            (Some(best), _) => (Guess::Contact { normal: self.bound.normal() }, best),
+            (Some(best), _) => (Guess::Contact { normal: self.normal() }, best),
             (None, Some((features, normal))) => {
                 let direction = self.contradiction.unwrap_or(normal);
                 (Guess::Separation { direction }, features)
             }
             (None, None) => (Guess::Nothing, Features::default()),
         };
-        let lower = self.bound.t + constant;
+        let lower = self.lower() + constant;
         Narrowed { guess, vertices, corners: None, upper, lower }
     }
 }

@@ -3,6 +3,7 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use super::piece::Frame;
+use super::region::Square;
 use super::side::Side;
 use crate::body::ConvexPolyhedron;
 use crate::body::convex::sections::AxisPair;
@@ -58,9 +59,10 @@ impl<'a> SectionPair<'a> {
     }
 
     /// For those who look on.
-    pub(super) fn told(&self) -> Sections {
+    pub(super) fn told(&self, square: Option<Square>) -> Sections {
         let frame = &self.frame;
         Sections {
+            neighbourhood: square.map(|Square { center, half }| (self.origin + center, half)),
             axes: [0, 1].map(|body| frame.axes[body] * frame.along[body]),
             ranges: [0, 1].map(|body| self.sides[body].range()),
         }

@@ -50,11 +50,10 @@ impl<'a> Side<'a> {
         shadow: [DVec3; 2],
         constant: DVec2,
     ) -> Self {
-        let range = sections.range[1] - sections.range[0];
         Self {
             vertices,
             topology,
-            near: NEAR * range / (vertices.len() as f64).sqrt(),
+            near: NEAR * sections.of_an_edge,
             sections,
             axis: sections.axis,
             shadow,
@@ -87,7 +86,8 @@ impl<'a> Side<'a> {
     /// No point of the body has a smaller `h`.
     pub(super) fn least_height(&self) -> f64 {
         let any = self.point(0).shadow.x;
-        any - self.shadow[0].length() * self.sections.diameter
+        // The covector's length is at most the sum of its coordinates.
+        any - self.shadow[0].abs().element_sum() * self.sections.diameter
     }
 
     pub(super) fn level(&self, vertex: u32) -> f64 {

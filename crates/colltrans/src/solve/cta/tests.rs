@@ -17,6 +17,7 @@ use crate::body::convex::tests::bodies::{Random, cone, cuboid, ellipsoid, prism,
 use crate::setting::Setting;
 use crate::setting::minkowski::MinkowskiDifference;
 use crate::solve::observe::{NoObserver, Observer, Watch};
+use crate::solve::options::Cuts;
 use crate::solve::portal;
 
 /// Exit tests, and how many of them ended a search.
@@ -111,7 +112,13 @@ fn brute_force(p: &Placed, q: &Placed, d: DVec3) -> Truth {
     Truth::Contact(bounds.fold(f64::NEG_INFINITY, f64::max))
 }
 
-const EXACT: CtaOptions = CtaOptions { start: Origin::Center, gap: 1e-10, keeps_to_cell: false };
+const EXACT: CtaOptions = CtaOptions {
+    start: Origin::Center,
+    gap: 1e-10,
+    keeps_to_cell: false,
+    cuts: Cuts::Shifted,
+    starts_cold: false,
+};
 
 /// Compares with brute force to `tolerance`; returns the result.
 fn check(
@@ -341,6 +348,68 @@ fn a_shift_that_keeps_to_its_cell_takes_more_planar_problems() {
         crossed += more.planar_problems;
     }
     assert!(kept * 4 > crossed * 5, "{kept} {crossed}");
+}
+
+/// Cuts that are not shifted and planar problems from nothing lead to the same place, with more work.
+#[test]
+fn other_cuts_and_cold_starts_end_in_the_same_place() {
+    let paper = CtaOptions { keeps_to_cell: true, ..EXACT };
+    let centroid = CtaOptions { cuts: Cuts::Centroid, ..paper };
+    let cold = CtaOptions { starts_cold: true, ..paper };
+    let mut random = Random(53);
+    let bodies = similar(500, false);
+    let mut work = [Steps::default(); 3];
+    for round in 0..200 {
+        let e = colliding(&mut random);
+        let [p, q] = &bodies;
+        let setting = Setting::new(p.at(e.poses[0]), q.at(e.poses[1]), e.d).unwrap();
+        let found = [&paper, &centroid, &cold].map(|o| minimised(&setting, o));
+        for (narrowed, _) in &found[1..] {
+            let [a, b] = [found[0].0.upper, narrowed.upper];
+            assert!(a == b || (a - b).abs() < 1e-8, "round {round}: {a} {b}");
+        }
+        work.iter_mut().zip(found).for_each(|(sum, (_, steps))| *sum += steps);
+    }
+    let [paper, centroid, cold] = work;
+    assert!(12 * centroid.planar_problems > 13 * paper.planar_problems, "{centroid:?} {paper:?}");
+    assert_eq!(cold.planar_problems, paper.planar_problems);
+    assert!(4 * cold.iterations > 5 * paper.iterations, "{cold:?} {paper:?}");
+}
+
+/// The steps of a minimisation take no square root (the paper, V-A), by this name or another, and neither does
+/// what prepares them.
+#[test]
+fn steps_take_no_square_roots() {
+    let sources = [
+        include_str!("bound.rs"),
+        include_str!("cell.rs"),
+        include_str!("crossing.rs"),
+        include_str!("exit.rs"),
+        include_str!("minimise.rs"),
+        include_str!("pair.rs"),
+        include_str!("piece.rs"),
+        include_str!("planar/mod.rs"),
+        include_str!("planar/sketch.rs"),
+        include_str!("planar/slide.rs"),
+        include_str!("region.rs"),
+        include_str!("section.rs"),
+        include_str!("side.rs"),
+        include_str!("start.rs"),
+        include_str!("../../body/convex/sections/chains.rs"),
+        include_str!("../../body/convex/sections/walk.rs"),
+    ];
+    for source in sources {
+        let code = source.split("#[cfg(test)]").next().unwrap();
+        for (k, line) in code.lines().enumerate() {
+            // What only an observer asks for.
+            if line.contains("(1.0 / u.length(), 0.0)") {
+                continue;
+            }
+            for root in ["sqrt", "normalize", ".length()", "length_recip", "distance("] {
+                assert!(!line.contains(root), "line {}: {line}", k + 1);
+            }
+        }
+    }
 }
 
 #[test]

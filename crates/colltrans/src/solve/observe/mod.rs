@@ -68,6 +68,9 @@ pub struct Sections {
     pub axes: [DVec3; 2],
     /// Lowest and highest level of either body.
     pub ranges: [[f64; 2]; 2],
+    /// The centre and the half-side of `N(p)`, the square of levels around the last solution `p`, if the search
+    /// starts there.
+    pub neighbourhood: Option<(DVec2, f64)>,
 }
 
 /// One planar problem: two sections at a pair of levels.

@@ -155,6 +155,8 @@ pub(crate) struct AxisSections {
     pub(crate) axis: DVec3,
     /// An upper bound of the body's diameter.
     pub(crate) diameter: f64,
+    /// The range over the square root of the number of vertices: about what an edge spans.
+    pub(crate) of_an_edge: f64,
     /// Scaled coordinates of the section plane: `position_i = plane_i . v - origin_i`.
     plane: [DVec3; 2],
     origin: [f64; 2],
@@ -184,6 +186,7 @@ impl AxisSections {
         let mut sections = Self {
             range,
             diameter: (range[1] - range[0]) / axis.length() + 2.0 * across,
+            of_an_edge: (range[1] - range[0]) / (vertices.len() as f64).sqrt(),
             axis,
             plane,
             origin,

@@ -242,7 +242,9 @@ impl<'a, 'b> Slide<'a, 'b> {
     pub(super) fn separated(&self, along: &Bracket, supports: [Crossing; 2]) -> Planar {
         // Points to the right, where g grows, and from body 0 to body 1.
         let sign = if self.right == 1 { 1.0 } else { -1.0 };
-        let u = sign * DVec2::new(-along.direction.y, along.direction.x).normalize();
+        // Nothing depends on its length, which is kept in range.
+        let across = DVec2::new(-along.direction.y, along.direction.x);
+        let u = across * (sign / across.abs().element_sum());
         Planar::Separated { u, supports }
     }
 }

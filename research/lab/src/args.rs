@@ -15,11 +15,12 @@ Results, in the folder given by --output (files of these names are replaced):
   report.html              every figure and table beside the claims it supports or refutes, and
                            where the numbers come from; one page that needs nothing else
   claims.json              every claim with its numbers, intervals and verdict, for programs
-  figure-NN....csv         the data: series,x,y,low,high,count
+  figure-NN....csv         the data: series,x,y,low,high,count (section-3... are those of section III)
   figure-NN....svg, .png   the figure
   table-N....csv           the table
 
-Times are of this machine: leave it alone while it measures.
+What is going on and how much is left stands on standard error. Times are of this machine: leave it alone while
+it measures.
 
 Exit codes:
   0  measured (claims may hold or not)
@@ -54,6 +55,15 @@ pub(crate) enum Command {
         #[command(flatten)]
         options: Options,
     },
+    /// Section III: what a step of the minimisation does
+    #[command(after_help = RESULTS)]
+    Section {
+        /// The section's number in the paper
+        #[arg(required = true, value_name = "NUMBER", value_parser = numbers_of("section-"))]
+        numbers: Vec<String>,
+        #[command(flatten)]
+        options: Options,
+    },
     /// Other shapes than the paper's, and real parts
     #[command(after_help = RESULTS)]
     Beyond {
@@ -78,10 +88,10 @@ pub(crate) enum Command {
 
 #[derive(Debug, Args)]
 pub(crate) struct Options {
-    /// All sizes, few queries: everything in under five minutes (the default)
+    /// All sizes, few queries: everything in under three minutes (the default)
     #[arg(long)]
     quick: bool,
-    /// All sizes, many queries: everything in under an hour
+    /// All sizes, eight pairs of bodies of each, many queries: everything in under half an hour
     #[arg(long, conflicts_with = "quick")]
     full: bool,
     /// Small bodies, for tests
@@ -92,6 +102,11 @@ pub(crate) struct Options {
     /// The same seed draws the same bodies, positions and directions. Times differ all the same.
     #[arg(long, value_name = "S", default_value_t = 2007)]
     seed: u64,
+    /// Pairs of bodies of each size, measured in passes one after the other: more make intervals narrower
+    ///
+    /// Quick runs take 4, and 2 from 20,000 vertices, full ones 8.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100))]
+    passes: Option<u32>,
     /// A folder with mesh files of real parts, to be measured beside other shapes (`beyond`)
     #[arg(long, value_name = "DIR", value_parser = folder)]
     parts: Option<PathBuf>,
@@ -107,7 +122,7 @@ impl Options {
             Self { tiny: true, .. } => Scale::Tiny,
             _ => Scale::Quick,
         };
-        Plan { scale, seed: self.seed, parts: self.parts.clone() }
+        Plan { scale, seed: self.seed, passes: self.passes, parts: self.parts.clone() }
     }
 }
 

@@ -25,6 +25,7 @@ fn claim(claim: &Claim) -> Value {
             "value": measured.value,
             "low": measured.low,
             "high": measured.high,
+            "judged": criterion.is_judged(),
         })
     });
     json!({
@@ -34,6 +35,7 @@ fn claim(claim: &Claim) -> Value {
         "place": claim.paper.place,
         "measured": measured.collect::<Vec<_>>(),
         "verdict": claim.verdict.to_string(),
-        "why": claim.why,
+        "reason": claim.why.as_ref().map(|why| why.reason.to_string()),
+        "why": claim.why.as_ref().map(|why| &why.text),
     })
 }

@@ -38,18 +38,29 @@ pub use run::{Summary, run};
 /// One figure or table of the paper.
 #[derive(Debug, Clone, Copy)]
 pub struct Experiment {
-    /// `"figure-11"` ... `"figure-19"`, `"table-1"`, `"beyond"`.
+    /// `"section-3"`, `"figure-11"` ... `"figure-19"`, `"table-1"`, `"beyond"`.
     pub id: &'static str,
     /// What it is about, in a few words.
     pub title: &'static str,
+    /// How long a quick and a full run take, in seconds on a machine of 2026, about: to say how much is left.
+    pub seconds: [f64; 2],
     /// Runs it.
     pub run: fn(&Plan, &mut dyn Progress) -> Finding,
 }
 
 impl Experiment {
+    /// How long it takes, in seconds, about.
+    pub fn expected(&self, plan: &Plan) -> f64 {
+        match plan.scale {
+            plan::Scale::Tiny => 1.0,
+            plan::Scale::Quick => self.seconds[0],
+            plan::Scale::Full => self.seconds[1],
+        }
+    }
+
     /// The id for people: `Figure 12`.
     pub fn name(&self) -> String {
         let name = self.id.replacen("figure-", "Figure ", 1).replacen("table-", "Table ", 1);
-        name.replacen("beyond", "Beyond the paper", 1)
+        name.replacen("section-3", "Section III", 1).replacen("beyond", "Beyond the paper", 1)
     }
 }

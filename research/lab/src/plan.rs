@@ -7,9 +7,9 @@ use std::path::PathBuf;
 pub enum Scale {
     /// Bodies of a few hundred vertices, a few queries: for tests, in seconds.
     Tiny,
-    /// All sizes, few queries: under five minutes on two cores for everything.
+    /// All sizes, few queries: under three minutes on two cores for everything.
     Quick,
-    /// All sizes, many queries: under an hour.
+    /// All sizes, eight pairs of bodies of each, many queries: under half an hour.
     Full,
 }
 
@@ -31,6 +31,8 @@ pub struct Plan {
     pub scale: Scale,
     /// Everything random is drawn from it; the same seed draws the same bodies and settings.
     pub seed: u64,
+    /// Passes over every experiment, each with another pair of bodies of each size, if not what the scale has.
+    pub passes: Option<u32>,
     /// A folder of mesh files, real parts to be measured as well.
     pub parts: Option<PathBuf>,
 }

@@ -5,7 +5,7 @@ use std::fmt::{self, Write};
 use std::time::Duration;
 
 use crate::Experiment;
-use crate::claims::{Claim, PaperClaim, Verdict};
+use crate::claims::{Claim, PaperClaim, READINGS, Verdict, Why};
 use crate::draw::Picture;
 use crate::finding::{Figure, Finding, Table};
 use crate::plan::Plan;
@@ -85,6 +85,9 @@ fn write_page(page: &mut String, report: &Report) -> fmt::Result {
     )?;
     write_state(page, report)?;
     write_overview(page, report.done)?;
+    if let Some(readings) = readings(report.done) {
+        writeln!(page, "<p>{}</p>", Escaped(&readings))?;
+    }
     write_reasons(page, report.done)?;
     write_facts(page, report)?;
     page.push_str("</header>\n<main>\n");
@@ -153,15 +156,37 @@ fn write_overview(page: &mut String, done: &[Done]) -> fmt::Result {
     Ok(())
 }
 
+/// Which reading of "thin" fits the paper's sentences: of each, the claims that hold with it. Nothing where none was
+/// judged.
+pub(crate) fn readings(done: &[Done]) -> Option<String> {
+    let claims = || done.iter().flat_map(|done| &done.finding.claims);
+    let each = READINGS.map(|(ending, name)| {
+        let of = || claims().filter(|claim| claim.paper.id.ends_with(ending));
+        let fails: Vec<_> = of()
+            .filter(|claim| !claim.verdict.is_kept())
+            .map(|claim| claim.paper.id.trim_end_matches(ending))
+            .collect();
+        let beside =
+            if fails.is_empty() { "all".into() } else { format!("not {}", fails.join(", ")) };
+        (
+            of().count(),
+            format!("{name}: {} of {} ({beside})", of().count() - fails.len(), of().count()),
+        )
+    });
+    let text = each.each_ref().map(|(_, text)| text.as_str()).join("; ");
+    (each[0].0 > 0)
+        .then(|| format!("Claims about thin faces that hold, by what \"thin\" is: {text}."))
+}
+
 /// The reasons for what does not hold or is undecided, by their first sentence.
 fn write_reasons(page: &mut String, done: &[Done]) -> fmt::Result {
     page.push_str("<ul class=\"reasons\">\n");
     for verdict in [Verdict::Fails, Verdict::Undecided] {
         for (id, claim) in claims_of(done, verdict) {
-            let why = claim.why.as_deref().unwrap_or("");
-            let end = why.find(". ").map_or(why.len(), |end| end + 1);
-            let (name, why) = (claim.paper.id, Escaped(&why[..end]));
-            writeln!(page, "<li><a href=\"#{id}\">{name}</a>: {why}</li>")?;
+            let Some(Why { reason, text }) = &claim.why else { continue };
+            let end = text.find(". ").map_or(text.len(), |end| end + 1);
+            let (name, why) = (claim.paper.id, Escaped(&text[..end]));
+            writeln!(page, "<li><a href=\"#{id}\">{name}</a>, {reason}: {why}</li>")?;
         }
     }
     page.push_str("</ul>\n");
@@ -247,8 +272,8 @@ fn write_claim(page: &mut String, claim: &Claim) -> fmt::Result {
     if !claim.details.is_empty() {
         writeln!(page, "<p>{}</p>", Escaped(&claim.details))?;
     }
-    if let Some(why) = &claim.why {
-        writeln!(page, "<p>Why: {}</p>", Escaped(why))?;
+    if let Some(Why { reason, text }) = &claim.why {
+        writeln!(page, "<p>Why ({reason}): {}</p>", Escaped(text))?;
     }
     page.push_str("</li>\n");
     Ok(())

@@ -34,7 +34,7 @@ pub struct Summary {
 /// Runs the experiments, one after the other, and writes what they find to `directory`, which is
 /// made if it does not exist. Files of the same names are replaced, others left alone.
 ///
-/// `progress` is told about the whole run, each experiment counting as 1.
+/// `progress` is told about the whole run, each experiment counting as the seconds that it is expected to take.
 ///
 /// # Errors
 ///
@@ -63,8 +63,9 @@ pub fn run(
         let began = Instant::now();
         let mut part = Part {
             name: experiment.name(),
-            before: done.len(),
-            all: experiments.len(),
+            before: experiments[..done.len()].iter().map(|e| e.expected(plan)).sum(),
+            own: experiment.expected(plan),
+            all: experiments.iter().map(|e| e.expected(plan)).sum(),
             whole: &mut *progress,
         };
         let finding = (experiment.run)(plan, &mut part);
@@ -101,8 +102,10 @@ fn write(path: &Path, bytes: &[u8]) -> Result<(), LabError> {
 /// The progress of one experiment as a part of the whole run.
 struct Part<'p> {
     name: String,
-    before: usize,
-    all: usize,
+    /// Expected seconds: of those before, of this one, and of all.
+    before: f64,
+    own: f64,
+    all: f64,
     whole: &'p mut dyn Progress,
 }
 
@@ -111,7 +114,7 @@ impl Progress for Part<'_> {
         let share = done / all;
         let share = if share.is_finite() { share.clamp(0.0, 1.0) } else { 0.0 };
         let doing = format!("{}, {doing}", self.name);
-        self.whole.at(self.before as f64 + share, self.all as f64, &doing);
+        self.whole.at(self.before + self.own * share, self.all, &doing);
     }
 }
 
@@ -126,6 +129,9 @@ impl fmt::Display for Summary {
                     writeln!(f, "  {:21}  {measured}: {}", "", criterion.what)?;
                 }
             }
+        }
+        if let Some(readings) = report::readings(&self.done) {
+            writeln!(f, "{readings}")?;
         }
         if !self.provenance.is_optimised {
             writeln!(f, "{}", report::UNOPTIMISED)?;

@@ -184,11 +184,11 @@ pub(crate) fn bodies(seed: u64, kind: Kind, n: usize, which: u64) -> Arc<Bodies>
     Arc::clone(built.entry((seed, kind, n, which)).or_insert_with(build))
 }
 
-/// Bodies beyond this size are built anew for each experiment: with trees and layers all those of a
+/// Bodies beyond this size are built anew for each experiment and pass: with trees and layers all those of a
 /// run would take several gigabytes.
-const MOST_KEPT: usize = 20_000;
+const MOST_KEPT: usize = 5_000;
 
-/// An experiment is over: its large bodies go.
+/// A pass of an experiment is over: its large bodies go.
 pub(crate) fn forget_large() {
     let mut built = BUILT.lock().unwrap_or_else(PoisonError::into_inner);
     built.retain(|(_, _, n, _), _| *n <= MOST_KEPT);

@@ -1,6 +1,10 @@
 //! The solvers compared: every algorithm behind one trait.
 
-use colltrans::{Focus, NarrowFrom, Narrowing, Options, Outcome, Region, Solver, Steps, Tracker};
+use colltrans::observe::Observer;
+use colltrans::{
+    Cuts, Focus, NarrowFrom, Narrowing, Options, Outcome, QueryError, Region, Solver, Steps,
+    Tracker,
+};
 use colltrans_baselines::egjk::{Egjk, SupportSearch};
 use colltrans_baselines::hwalk::HWalk;
 use colltrans_baselines::pqp::Pqp;
@@ -17,6 +21,8 @@ pub(crate) enum Who {
     /// The paper's incremental algorithm: from the region of the last solution, a fixed half-side
     /// being in diameters.
     CtaRegion(Region, Until),
+    /// The same to the end, each planar problem from nothing: what its section V-F says of the paper's.
+    CtaCold(Region),
     /// What `colltrans` does by default from scratch: portal refinement.
     Portal,
     /// What `colltrans` does by default from query to query: feature focus.
@@ -35,9 +41,10 @@ pub(crate) enum Who {
 /// How far the collision translation algorithm goes before portal refinement takes over.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Until {
-    /// Most of the way: down to [`PAPER_GAP`]. Portal refinement finds the last feature.
+    /// Most of the way: down to [`PAPER_GAP`]. Portal refinement finds the last feature. This *hybrid* is not
+    /// the paper's, and nothing is judged by it.
     Near,
-    /// All the way: to the exit test. Portal refinement has nothing left but to confirm.
+    /// All the way, as published: to the exit test. Portal refinement has nothing left but to confirm.
     End,
     /// All the way, and not as published: where little is left of the region, the shift goes on from
     /// cell to cell, which takes fewer planar problems.
@@ -56,9 +63,18 @@ impl Until {
             Self::End | Self::EndAcrossCells => colltrans::Until::Exit,
         };
         let keeps_to_cell = self != Self::EndAcrossCells;
-        let narrowing = Narrowing::new(NarrowFrom::Center, until).with_keeps_to_cell(keeps_to_cell);
-        Options::default().with_solver(Solver::Cta).with_narrowing(narrowing)
+        cta(Narrowing::new(NarrowFrom::Center, until).with_keeps_to_cell(keeps_to_cell))
     }
+}
+
+/// The paper's minimisation with these choices.
+fn cta(narrowing: Narrowing) -> Options {
+    Options::default().with_solver(Solver::Cta).with_narrowing(narrowing)
+}
+
+/// To the end with cuts through the centroid, which are not shifted.
+pub(crate) fn centroid_cuts() -> Options {
+    cta(Narrowing::default().with_cuts(Cuts::Centroid))
 }
 
 /// What a solver said.
@@ -99,14 +115,13 @@ impl Who {
     /// Its name in legends.
     pub(crate) fn name(self) -> String {
         match self {
-            Self::Cta(Until::Near) => "CTA".into(),
-            Self::Cta(Until::End) => "CTA to the end".into(),
-            Self::Cta(Until::EndAcrossCells) => "CTA to the end, across cells".into(),
-            Self::CtaRegion(_, Until::Near) => "CTA, region focus".into(),
-            Self::CtaRegion(_, Until::End) => "CTA to the end, region focus".into(),
-            Self::CtaRegion(_, Until::EndAcrossCells) => {
-                "CTA to the end, across cells, region focus".into()
-            }
+            Self::Cta(Until::Near) => "hybrid".into(),
+            Self::Cta(Until::End) => "CTA".into(),
+            Self::Cta(Until::EndAcrossCells) => "CTA across cells".into(),
+            Self::CtaRegion(_, Until::Near) => "hybrid, region focus".into(),
+            Self::CtaRegion(_, Until::End) => "CTA, region focus".into(),
+            Self::CtaRegion(_, Until::EndAcrossCells) => "CTA across cells, region focus".into(),
+            Self::CtaCold(_) => "CTA, region focus, planar problems cold".into(),
             Self::Portal => "portal refinement".into(),
             Self::Tracker => "feature focus".into(),
             Self::Egjk(SupportSearch::Climbing) => "EGJK, climbing".into(),
@@ -124,11 +139,11 @@ impl Who {
             Self::Cta(until) => Box::new(Scratch { bodies, options: until.options() }),
             Self::Portal => Box::new(Scratch { bodies, options: Options::default() }),
             Self::CtaRegion(region, until) => {
-                let region = match region {
-                    Region::Fixed(delta) => Region::Fixed(delta * bodies.diameter),
-                    region => region,
-                };
-                Box::new(Tracked::new(bodies, Focus::NONE.with_region(region), until.options()))
+                Box::new(Tracked::in_region(bodies, region, until.options()))
+            }
+            Self::CtaCold(region) => {
+                let cold = cta(Narrowing::default().with_starts_cold(true));
+                Box::new(Tracked::in_region(bodies, region, cold))
             }
             Self::Tracker => Box::new(Tracked::new(bodies, Focus::default(), Options::default())),
             Self::Egjk(search) => Box::new(Egjk::new(moving, fixed).with_support_search(search)),
@@ -162,13 +177,32 @@ impl Algorithm for Scratch<'_> {
 }
 
 /// Casts that start from the one before.
-struct Tracked<'a> {
+pub(crate) struct Tracked<'a> {
     bodies: &'a Bodies,
     tracker: Tracker<'a>,
     options: Options,
 }
 
 impl<'a> Tracked<'a> {
+    /// The paper's incremental algorithm; a fixed half-side of the region is in diameters.
+    pub(crate) fn in_region(bodies: &'a Bodies, region: Region, options: Options) -> Self {
+        let region = match region {
+            Region::Fixed(delta) => Region::Fixed(delta * bodies.diameter),
+            region => region,
+        };
+        Self::new(bodies, Focus::NONE.with_region(region), options)
+    }
+
+    /// A query, with somebody who looks on.
+    pub(crate) fn watched(
+        &mut self,
+        setting: &Setting,
+        observer: &mut impl Observer,
+    ) -> Result<Outcome, QueryError> {
+        let cast = setting.cast(self.bodies, &self.options)?;
+        self.tracker.first_contact_observed(&cast, observer)
+    }
+
     fn new(bodies: &'a Bodies, focus: Focus, options: Options) -> Self {
         let tracker = Tracker::new().with_focus(focus).expect("half-sides are positive");
         Self { bodies, tracker, options }

@@ -27,10 +27,10 @@ fn help_says_what_there_is() {
         assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
         stdout(&output)
     };
-    for word in ["figure", "table", "beyond", "all", "report.html", "Exit codes"] {
+    for word in ["section", "figure", "table", "beyond", "all", "report.html", "Exit codes"] {
         assert!(help(&["--help"]).contains(word), "{word}");
     }
-    for what in ["figure", "table", "beyond", "all"] {
+    for what in ["section", "figure", "table", "beyond", "all"] {
         let text = help(&[what, "--help"]);
         for word in ["--quick", "--full", "--seed", "--parts", "--output", "[default: lab-results]"]
         {
@@ -58,6 +58,8 @@ fn what_there_is_not() {
         &["all", "12"],
         &["all", "--quick", "--full"],
         &["all", "--seed", "-1"],
+        &["all", "--passes", "0"],
+        &["section", "5"],
         &["beyond", "--parts", "nowhere"],
     ] {
         let output = lab(folder.path()).args(arguments).output().unwrap();
@@ -72,12 +74,29 @@ fn what_there_is_not() {
     }
 }
 
+/// What it is going to do stands first on standard error, then how far it is; what it found on standard output.
+#[test]
+fn it_says_what_it_does() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["section", "3", "--tiny", "--passes", "2"];
+    let output = lab(folder.path()).args(arguments).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let said = stderr(&output);
+    let mut lines = said.lines();
+    let first = "Measuring Section III (tiny), which takes about 1.0 s. Results go to lab-results.";
+    assert_eq!(lines.next(), Some(first));
+    assert_eq!(lines.next(), Some("  0 %, Section III, 50 vertices"));
+    assert!(stdout(&output).starts_with("Section III: cuts"), "{}", stdout(&output));
+}
+
 #[test]
 fn folders_that_cannot_be_written_to() {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("file"), "").unwrap();
     let output = lab(folder.path()).args(["all", "--tiny", "-o", "file/results"]).output().unwrap();
     assert_eq!(output.status.code(), Some(5), "{}", stderr(&output));
-    assert!(stderr(&output).starts_with("error: file/results: the folder cannot be made: "));
+    let said = stderr(&output);
+    let last = said.lines().last().unwrap_or_default();
+    assert!(last.starts_with("error: file/results: the folder cannot be made: "), "{said}");
     assert_eq!(stdout(&output), "");
 }

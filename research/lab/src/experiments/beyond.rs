@@ -7,24 +7,22 @@ use std::sync::Arc;
 use colltrans::ConvexPolyhedron;
 
 use super::rivals::WHO;
-use super::{Coherence, Parts, Race, Results, against_size, axis, series, share, thousands, time};
+use super::{
+    Coherence, Gathered, Race, Results, against_size, axis, in_passes, series, thousands, time,
+};
 use crate::Experiment;
 use crate::finding::{Finding, Point, Table};
 use crate::plan::{Plan, Progress};
 use crate::settings::{Meeting, Setting};
 use crate::shapes::{Bodies, Kind};
-use crate::solvers::{Until, Who};
 use crate::statistics::{mean, short};
 use colltrans_testkit::timing::median;
 
 pub(super) const BEYOND: Experiment =
-    Experiment { id: "beyond", title: "other shapes than ellipsoids", run };
+    Experiment { id: "beyond", title: "other shapes than ellipsoids", seconds: [5.0, 20.0], run };
 
 const KINDS: [Kind; 5] =
     [Kind::Balanced, Kind::Superellipsoid, Kind::HalfEllipsoid, Kind::RandomHull, Kind::Prism];
-
-/// The one whose steps are counted to the end, after all of the figures 15 to 17.
-const TO_THE_END: usize = WHO.len();
 
 /// Bodies that pass at this least distance, in diameters.
 const NEAR: f64 = 0.005;
@@ -36,25 +34,46 @@ struct Measured {
     passing: Results,
 }
 
+impl Gathered for Measured {
+    fn gather(&mut self, more: Self) {
+        self.colliding.gather(more.colliding);
+        self.passing.gather(more.passing);
+    }
+}
+
+/// What is raced on: a kind at a size, or hulls of a part.
+struct Item {
+    name: String,
+    kind: Kind,
+    n: usize,
+    given: Option<Arc<Bodies>>,
+}
+
 fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
     let sizes =
         plan.by_scale(&[50, 200][..], &[200, 3_200, 12_800], &[200, 800, 3_200, 12_800, 51_200]);
     let (found, refused) = plan.parts.as_deref().map_or_else(Default::default, read_parts);
-    let all = KINDS.len() as f64 * super::shares(sizes) + found.len() as f64;
-    let mut progress = Parts::new(progress, all);
-    let mut rows: Vec<Vec<Measured>> = Vec::new();
-    for kind in KINDS {
-        let of_size = |&n: &usize| {
-            let name = format!("{}, {}", kind.name(), thousands(n as f64));
-            progress.begin(share(n), &name);
-            measure(plan, name, (kind, n), None)
-        };
-        rows.push(sizes.iter().map(of_size).collect());
-    }
+    let shape = |kind: Kind, n: usize| {
+        let name = format!("{}, {}", kind.name(), thousands(n as f64));
+        Item { name, kind, n, given: None }
+    };
+    let part = |(k, (name, bodies)): (usize, (String, Arc<Bodies>))| Item {
+        name,
+        kind: Kind::Balanced,
+        n: k,
+        given: Some(bodies),
+    };
+    let shapes = KINDS.into_iter().flat_map(|kind| sizes.iter().map(move |n| shape(kind, *n)));
+    let items: Vec<_> = shapes.chain(found.into_iter().enumerate().map(part)).collect();
+    let told = |item: &Item| (item.n, item.name.clone());
+    let mut measured =
+        in_passes(plan, progress, &items, told, |item, pass| measure(plan, item, pass));
+    let parts = measured.split_off(KINDS.len() * sizes.len());
+    let rows: Vec<_> = measured.chunks(sizes.len()).collect();
     let ratios = KINDS.iter().zip(&rows).flat_map(|(kind, of_kind)| {
         [1, 3].map(|who| {
             let point = |m: &Measured| {
-                Point::median(m.colliding.vertices, &m.colliding.ratios(who, 0).values())
+                Point::median(m.colliding.vertices(), &m.colliding.ratios(who, 0).values())
             };
             series(
                 format!("{}, {}", WHO[who].name(), kind.name()),
@@ -68,55 +87,40 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
         axis("time / time(CTA)", true),
         ratios.collect(),
     );
-    let shapes = table("beyond-shapes", "Other shapes", rows.iter().flatten());
-    let mut tables = vec![shapes];
+    let mut tables = vec![table("beyond-shapes", "Other shapes", measured.iter())];
     if plan.parts.is_some() {
-        let measured: Vec<_> = found
-            .into_iter()
-            .enumerate()
-            .map(|(k, (name, bodies))| {
-                progress.begin(1.0, &name);
-                measure(plan, name, (Kind::Balanced, k), Some(bodies))
-            })
-            .collect();
         let title = format!(
             "Hulls of real parts, each against itself ({refused} files hold no solid and are left out)"
         );
-        tables.push(table("beyond-parts", &title, measured.iter()));
+        tables.push(table("beyond-parts", &title, parts.iter()));
     }
     Finding { figures: vec![figure], tables, claims: Vec::new() }
 }
 
-fn measure(
-    plan: &Plan,
-    name: String,
-    (kind, n): (Kind, usize),
-    given: Option<Arc<Bodies>>,
-) -> Measured {
+fn measure(plan: &Plan, Item { name, kind, n, given }: &Item, pass: u32) -> Measured {
     // Folders of parts hold a hundred files, and nothing but medians is made of these queries.
-    let blocks = if given.is_some() { plan.by_scale(2, 3, 3) } else { plan.by_scale(2, 8, 12) };
-    let who: Vec<_> = WHO.into_iter().chain([Who::Cta(Until::End)]).collect();
+    let blocks = if given.is_some() { 1 } else { plan.by_scale(2, 2, 2) };
     let race = Race {
         plan,
         figure: 20,
-        kind,
-        n,
-        given,
-        who: &who,
+        kind: *kind,
+        n: *n,
+        given: given.clone(),
+        who: &WHO,
         coherence: Coherence::Scratch,
-        length: plan.by_scale(5, 30, 100),
+        length: plan.by_scale(5, 30, 30),
         blocks,
     };
-    let [colliding, passing] = race.run_in_turns(0, |variant, bodies, count, random| {
+    let [colliding, passing] = race.run_in_turns(pass, 0, |variant, bodies, count, random| {
         let meeting = [Meeting::Colliding, Meeting::Passing(NEAR)][variant];
         (0..count).map(|_| Setting::draw(bodies, meeting, random)).collect()
     });
-    Measured { name, colliding, passing }
+    Measured { name: name.clone(), colliding, passing }
 }
 
 fn table<'m>(id: &str, title: &str, rows: impl Iterator<Item = &'m Measured>) -> Table {
     let rivals = 1..WHO.len();
-    let mut columns = vec!["shape, vertices".to_owned(), "CTA".into(), "steps to the end".into()];
+    let mut columns = vec!["shape, vertices".to_owned(), "CTA".into(), "steps".into()];
     columns.push(format!("passing at {NEAR} D / colliding"));
     columns.extend(rivals.clone().map(|who| format!("{} / CTA", WHO[who].name())));
     columns.push("contradictions".into());
@@ -125,12 +129,12 @@ fn table<'m>(id: &str, title: &str, rows: impl Iterator<Item = &'m Measured>) ->
         let mut cells = vec![
             m.name.clone(),
             time(usual),
-            short(mean(&m.colliding.steps(TO_THE_END).values())),
+            short(mean(&m.colliding.steps(0).values())),
             short(median(&m.passing.times(0)) / usual),
         ];
         let ratio = |who: usize| short(median(&m.colliding.ratios(who, 0).values()));
         cells.extend(rivals.clone().map(ratio));
-        let wrong = |r: &Results| (0..=TO_THE_END).map(|who| r.contradictions(who)).sum::<usize>();
+        let wrong = |r: &Results| (0..WHO.len()).map(|who| r.contradictions(who)).sum::<usize>();
         cells.push((wrong(&m.colliding) + wrong(&m.passing)).to_string());
         cells
     };

@@ -1,153 +1,186 @@
 //! Figure 11: how steps and time grow with the size of the bodies, and what thin faces cost.
 
 use super::{
-    Coherence, Parts, Race, Results, against_size, axis, fitted, listed, medians, series, share,
-    shares, thousands, time,
+    Coherence, Gathered, Race, Results, against_size, axis, fitted, in_passes, listed, medians,
+    series, thousands, time,
 };
 use crate::Experiment;
-use crate::claims::{Claim, judged};
+use crate::claims::{Claim, READINGS, Reason, judged};
 use crate::finding::{Figure, Finding, Point, Series};
 use crate::plan::{Plan, Progress};
 use crate::settings::{Meeting, Setting};
 use crate::shapes::Kind;
 use crate::solvers::{PAPER_GAP, Until, Who};
-use crate::statistics::{Sample, estimate, mean};
+use crate::statistics::{Group, Sample, estimate, mean, short};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::timing::{Stopwatch, exponent, median};
 
-pub(super) const FIGURE_11: Experiment =
-    Experiment { id: "figure-11", title: "steps and time against the size of the bodies", run };
+pub(super) const FIGURE_11: Experiment = Experiment {
+    id: "figure-11",
+    title: "steps and time against the size of the bodies",
+    seconds: [22.0, 85.0],
+    run,
+};
 
 const WHO: [Who; 4] =
-    [Who::Cta(Until::Near), Who::Cta(Until::End), Who::Portal, Who::Cta(Until::EndAcrossCells)];
+    [Who::Cta(Until::End), Who::Cta(Until::Near), Who::Portal, Who::Cta(Until::EndAcrossCells)];
 const CTA: usize = 0;
-const TO_THE_END: usize = 1;
+const HYBRID: usize = 1;
 const PORTAL: usize = 2;
 const ACROSS_CELLS: usize = 3;
 
 /// What was measured at all sizes, for one kind of body.
-struct Grown {
-    races: Vec<Results>,
-    /// Times of CTA, in nanoseconds, when every query is asked twice and the second time counts:
-    /// what it needs of the bodies is in the processor's caches by then.
-    again: Vec<Point>,
+struct Grown(Vec<Measured>);
+
+/// What was measured on one kind of body at one size.
+struct Measured {
+    race: Results,
+    /// Times of CTA when every query is asked twice and the second time counts: what it needs of the bodies
+    /// is in the processor's caches by then.
+    again: Vec<(Group, f64)>,
 }
 
-fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
-    let mut parts = Parts::new(progress, 3.0 * shares(plan.sizes()));
-    let kinds = [Kind::Balanced, Kind::Thin, Kind::ThinMeridians];
-    let mut all = kinds.map(|_| Grown { races: Vec::new(), again: Vec::new() });
-    for &n in plan.sizes() {
-        for (kind, grown) in kinds.iter().zip(&mut all) {
-            grown.measure(plan, *kind, n, &mut parts);
-        }
+impl Gathered for Measured {
+    fn gather(&mut self, more: Self) {
+        self.race.gather(more.race);
+        self.again.extend(more.again);
     }
-    let [balanced, thin, meridians] = all;
+}
+
+const KINDS: [Kind; 3] = [Kind::Balanced, Kind::Thin, Kind::ThinMeridians];
+
+fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
+    let items: Vec<_> =
+        KINDS.into_iter().flat_map(|kind| plan.sizes().iter().map(move |n| (kind, *n))).collect();
+    let told = |&(kind, n): &(Kind, usize)| {
+        (n, format!("{} bodies, {} vertices", kind.name(), thousands(n as f64)))
+    };
+    let mut measured =
+        in_passes(plan, progress, &items, told, |&(kind, n), pass| measure(plan, kind, n, pass))
+            .into_iter();
+    let [balanced, stretch, meridians] =
+        KINDS.map(|_| Grown(measured.by_ref().take(plan.sizes().len()).collect()));
+    let thin = [&stretch, &meridians];
     let figures = vec![
-        steps_figure(&balanced, &thin),
-        time_figure(&balanced, &thin),
-        cost_figure(&balanced, [&thin, &meridians]),
+        steps_figure(&balanced, &stretch),
+        time_figure(&balanced, thin),
+        cost_figure(&balanced, thin),
     ];
-    let claims = vec![
-        steps_grow(&balanced),
-        few_steps(&balanced),
-        time_grows(&balanced),
-        thin_costs(&balanced, [&thin, &meridians]),
-    ];
+    let mut claims = vec![steps_grow(&balanced), few_steps(&balanced), time_grows(&balanced)];
+    claims.extend(
+        ["11-thin-stretch", "11-thin-meridians"]
+            .iter()
+            .zip(thin)
+            .map(|(id, thin)| thin_costs(id, &balanced, thin)),
+    );
     Finding { figures, tables: Vec::new(), claims }
 }
 
-impl Grown {
-    fn measure(&mut self, plan: &Plan, kind: Kind, n: usize, parts: &mut Parts) {
-        let doing = format!("{} bodies, {} vertices", kind.name(), thousands(n as f64));
-        parts.begin(share(n), &doing);
-        let race = Race {
-            plan,
-            figure: 11,
-            kind,
-            n,
-            given: None,
-            who: &WHO,
-            coherence: Coherence::Scratch,
-            length: plan.by_scale(5, 50, 100),
-            blocks: plan.by_scale(2, 24, 96),
-        };
-        self.races.push(race.run(0, |bodies, count, random| {
-            (0..count).map(|_| Setting::draw(bodies, Meeting::Colliding, random)).collect()
-        }));
-        self.again.push(ask_again(&race));
-    }
+fn measure(plan: &Plan, kind: Kind, n: usize, pass: u32) -> Measured {
+    let race = Race {
+        plan,
+        figure: 11,
+        kind,
+        n,
+        given: None,
+        who: &WHO,
+        coherence: Coherence::Scratch,
+        length: plan.by_scale(5, 50, 50),
+        blocks: plan.by_scale(2, 6, if n < 20_000 { 12 } else { 6 }),
+    };
+    let results = race.run(pass, 0, |bodies, count, random| {
+        (0..count).map(|_| Setting::draw(bodies, Meeting::Colliding, random)).collect()
+    });
+    Measured { race: results, again: ask_again(&race, pass) }
+}
 
+impl Grown {
     fn sizes(&self) -> Vec<f64> {
-        self.races.iter().map(|at| at.vertices).collect()
+        self.0.iter().map(|at| at.race.vertices()).collect()
     }
 
     fn steps(&self, who: usize) -> Vec<Sample> {
-        self.races.iter().map(|at| at.steps(who)).collect()
+        self.0.iter().map(|at| at.race.steps(who)).collect()
     }
 
     fn times(&self, who: usize) -> Vec<Sample> {
-        self.races.iter().map(|at| at.time_sample(who)).collect()
+        self.0.iter().map(|at| at.race.time_sample(who)).collect()
+    }
+
+    /// The times of queries that are asked at once again.
+    fn again(&self) -> Vec<Sample> {
+        self.0.iter().map(|at| Sample::of(at.again.iter().copied())).collect()
     }
 
     /// Mean steps with quartiles.
     fn step_points(&self, who: usize) -> Vec<Point> {
-        self.points(|at| Point::mean(at.vertices, &at.steps(who).values()))
+        self.points(&self.steps(who), Point::mean)
     }
 
     /// Median times with quartiles, in microseconds.
     fn time_points(&self, who: usize) -> Vec<Point> {
-        self.points(|at| {
-            let times: Vec<_> = at.times(who).iter().map(|t| t / 1e3).collect();
-            Point::median(at.vertices, &times)
+        self.in_microseconds(&self.times(who))
+    }
+
+    fn in_microseconds(&self, times: &[Sample]) -> Vec<Point> {
+        self.points(times, |x, values| {
+            Point::median(x, &values.iter().map(|t| t / 1e3).collect::<Vec<_>>())
         })
     }
 
-    fn points(&self, point: impl Fn(&Results) -> Point) -> Vec<Point> {
-        self.races.iter().map(point).collect()
+    fn points(&self, samples: &[Sample], point: impl Fn(f64, &[f64]) -> Point) -> Vec<Point> {
+        self.sizes()
+            .into_iter()
+            .zip(samples)
+            .map(|(n, sample)| point(n, &sample.values()))
+            .collect()
+    }
+
+    /// `k` in time ~ `(log n)^k`.
+    fn logarithms(&self) -> impl Fn(&[Vec<f64>]) -> f64 {
+        let logs: Vec<f64> = self.sizes().iter().map(|n| n.ln()).collect();
+        move |times| exponent(logs.iter().copied().zip(medians(times)))
     }
 }
 
-/// Asks every query of CTA twice and times the second.
-fn ask_again(race: &Race) -> Point {
-    let bodies = race.bodies(0);
-    let mut random =
-        Random::stream(race.plan.seed, &[race.figure, race.kind as u64, race.n as u64]);
+/// Asks queries of CTA twice and times the second.
+fn ask_again(race: &Race, pass: u32) -> Vec<(Group, f64)> {
+    let bodies = race.bodies(pass);
+    let labels = [race.figure, race.kind as u64, race.n as u64, u64::from(pass)];
+    let mut random = Random::stream(race.plan.seed, &labels);
     let mut cta = WHO[CTA].enter(&bodies);
     let stopwatch = Stopwatch::new();
-    let times: Vec<_> = (0..race.length * race.blocks / 4)
-        .map(|_| {
+    (0..(race.length * race.blocks / 4) as u32)
+        .map(|number| {
             let setting = Setting::draw(&bodies, Meeting::Colliding, &mut random);
             cta.ask(&setting);
-            stopwatch.time(|| cta.ask(&setting)).1 / 1e3
+            (Group { pass, number }, stopwatch.time(|| cta.ask(&setting)).1)
         })
-        .collect();
-    Point::median(bodies.vertices(), &times)
+        .collect()
 }
 
 fn steps_figure(balanced: &Grown, thin: &Grown) -> Figure {
-    let to_the_end = balanced.step_points(TO_THE_END);
+    let cta = balanced.step_points(CTA);
     let mut figure = against_size(
         "figure-11-steps",
         "Minimisation steps of a query, mean and quartiles",
         axis("steps", false),
         vec![
-            series("CTA to the end, balanced", to_the_end.clone()),
-            series("CTA to the end, thin", thin.step_points(TO_THE_END)),
-            series("CTA to the end across cells, balanced", balanced.step_points(ACROSS_CELLS)),
-            series("CTA to a gap of 1 %, balanced", balanced.step_points(CTA)),
-            series("CTA to a gap of 1 %, thin", thin.step_points(CTA)),
+            series("CTA, balanced", cta.clone()),
+            series("CTA, thin (stretch of 100)", thin.step_points(CTA)),
+            series("CTA across cells, balanced", balanced.step_points(ACROSS_CELLS)),
+            series("hybrid (to a gap of 1 %), balanced", balanced.step_points(HYBRID)),
             series("portals of portal refinement, balanced", balanced.step_points(PORTAL)),
         ],
     );
     figure.references = vec![
-        fitted("log n", &to_the_end, f64::ln),
+        fitted("log n", &cta, f64::ln),
         super::reference("the paper: fewer than 15", balanced.sizes().into_iter(), |_| 15.0),
     ];
     figure
 }
 
-fn time_figure(balanced: &Grown, thin: &Grown) -> Figure {
+fn time_figure(balanced: &Grown, thin: [&Grown; 2]) -> Figure {
     let cta = balanced.time_points(CTA);
     let mut figure = against_size(
         "figure-11-time",
@@ -155,12 +188,15 @@ fn time_figure(balanced: &Grown, thin: &Grown) -> Figure {
         axis("time (µs)", true),
         vec![
             series("CTA, balanced", cta.clone()),
-            series("CTA, thin", thin.time_points(CTA)),
-            series("CTA, balanced, the same query again", balanced.again.clone()),
-            series("CTA to the end, balanced", balanced.time_points(TO_THE_END)),
-            series("CTA to the end across cells, balanced", balanced.time_points(ACROSS_CELLS)),
+            series("CTA, thin (stretch of 100)", thin[0].time_points(CTA)),
+            series("CTA, thin (16 meridians)", thin[1].time_points(CTA)),
+            series(
+                "CTA, balanced, the same query again",
+                balanced.in_microseconds(&balanced.again()),
+            ),
+            series("hybrid (to a gap of 1 %), balanced", balanced.time_points(HYBRID)),
+            series("CTA across cells, balanced", balanced.time_points(ACROSS_CELLS)),
             series("portal refinement, balanced", balanced.time_points(PORTAL)),
-            series("portal refinement, thin", thin.time_points(PORTAL)),
         ],
     );
     figure.references =
@@ -170,19 +206,19 @@ fn time_figure(balanced: &Grown, thin: &Grown) -> Figure {
 
 /// Times on thin faces over the median time on balanced ones.
 fn cost(balanced: &Grown, thin: &Grown, who: usize) -> Vec<Point> {
-    let ratio = |(balanced, thin): (&Results, &Results)| {
-        let usual = median(&balanced.times(who));
-        let times: Vec<_> = thin.times(who).iter().map(|t| t / usual).collect();
-        Point::median(balanced.vertices, &times)
+    let ratio = |(balanced, thin): (&Measured, &Measured)| {
+        let usual = median(&balanced.race.times(who));
+        let times: Vec<_> = thin.race.times(who).iter().map(|t| t / usual).collect();
+        Point::median(balanced.race.vertices(), &times)
     };
-    balanced.races.iter().zip(&thin.races).map(ratio).collect()
+    balanced.0.iter().zip(&thin.0).map(ratio).collect()
 }
 
 fn cost_figure(balanced: &Grown, thin: [&Grown; 2]) -> Figure {
     let names = ["stretch of 100", "16 meridians"];
-    let lines = |who: usize| -> Vec<Series> {
-        let line = |(thin, name): (&&Grown, &str)| {
-            series(format!("{}, {name}", WHO[who].name()), cost(balanced, thin, who))
+    let lines = |who: usize, name: &str| -> Vec<Series> {
+        let line = |(thin, reading): (&&Grown, &str)| {
+            series(format!("{name}, {reading}"), cost(balanced, thin, who))
         };
         thin.iter().zip(names).map(line).collect()
     };
@@ -190,7 +226,7 @@ fn cost_figure(balanced: &Grown, thin: [&Grown; 2]) -> Figure {
         "figure-11-thin",
         "Time on thin and stretched faces over the median time on balanced ones, with quartiles",
         axis("time(thin) / time(balanced)", true),
-        [lines(CTA), lines(PORTAL)].concat(),
+        [lines(CTA, "CTA"), lines(HYBRID, "hybrid"), lines(PORTAL, "portal refinement")].concat(),
     );
     let limit =
         |name: &str, y: f64| super::reference(name, balanced.sizes().into_iter(), move |_| y);
@@ -201,98 +237,94 @@ fn cost_figure(balanced: &Grown, thin: [&Grown; 2]) -> Figure {
 fn steps_grow(balanced: &Grown) -> Claim {
     let sizes = balanced.sizes();
     let growth = sizes[sizes.len() - 1].ln() / sizes[0].ln();
-    let steps = balanced.steps(TO_THE_END);
     let rise = |s: &[Vec<f64>]| mean(&s[s.len() - 1]) / mean(&s[0]) / growth;
-    let measured = estimate(&steps, rise);
-    let points = balanced.step_points(TO_THE_END);
+    let measured = estimate(&balanced.steps(CTA), rise);
+    let points = balanced.step_points(CTA);
     let details = format!(
-        "Steps to the end on average: {}. To a gap of {PAPER_GAP}: {}.",
+        "Steps on average: {}. Of the hybrid: {}.",
         listed(&points, 1),
-        listed(&balanced.step_points(CTA), 1)
+        listed(&balanced.step_points(HYBRID), 1)
     );
     judged("11-steps", vec![measured], details, || {
         let k = exponent(points.iter().map(|p| (p.x, p.y)));
-        format!("Steps grow like n to the {k:.2} here.")
+        Reason::Implementation.because(format!("Steps grow like n to the {k:.2} here."))
     })
 }
 
 fn few_steps(balanced: &Grown) -> Claim {
-    let largest =
-        |who: usize| balanced.races.iter().rev().take(1).map(|at| at.steps(who)).collect();
-    let steps: Vec<Sample> = largest(TO_THE_END);
-    let last = &balanced.races[balanced.races.len() - 1];
+    let last = &balanced.0[balanced.0.len() - 1].race;
+    let steps = last.steps(CTA);
     let steps_of = |who: usize| mean(&last.steps(who).values());
-    let near = steps_of(CTA);
+    let near = steps_of(HYBRID);
     let at = |who: usize| time(median(&last.times(who)));
     let details = format!(
-        "As many faces as vertices. {near:.1} steps to a gap of {PAPER_GAP}, then portal refinement: {} \
-         in place of {}. Where the shift goes on across cells, which the paper's does not: {:.1} planar \
-         problems to the end, {:.0} iterations of all loops in place of {:.0}, and {}.",
+        "As many faces as vertices. The hybrid: {near:.1} steps to a gap of {PAPER_GAP}, then portal \
+         refinement: {} in place of {}. Where the shift goes on across cells, which the paper's does not: {:.1} \
+         planar problems, {:.0} iterations of all loops in place of {:.0}, and {}.",
+        at(HYBRID),
         at(CTA),
-        at(TO_THE_END),
         steps_of(ACROSS_CELLS),
         last.iterations(ACROSS_CELLS),
-        last.iterations(TO_THE_END),
+        last.iterations(CTA),
         at(ACROSS_CELLS)
     );
-    judged("11-few", vec![estimate(&steps, |s| mean(&s[0]))], details, || {
-        format!(
+    judged("11-few", vec![estimate(&[steps], |s| mean(&s[0]))], details, || {
+        Reason::Implementation.because(format!(
             "After {near:.1} planar problems the bounds are within {PAPER_GAP} of the bodies' extent \
              at any size; the others look for the last of many small features."
-        )
+        ))
     })
 }
 
 fn time_grows(balanced: &Grown) -> Claim {
-    let logs: Vec<f64> = balanced.sizes().iter().map(|n| n.ln()).collect();
-    let k = |times: &[Vec<f64>]| exponent(logs.iter().copied().zip(medians(times)));
-    let measured = estimate(&balanced.times(CTA), k);
-    let again = exponent(balanced.again.iter().map(|p| (p.x.ln(), p.y)));
+    let k = balanced.logarithms();
+    let [measured, hybrid, again] =
+        [balanced.times(CTA), balanced.times(HYBRID), balanced.again()].map(|s| estimate(&s, &k));
+    let iterations: Vec<f64> = balanced.0.iter().map(|at| at.race.iterations(CTA)).collect();
+    let counted = exponent(balanced.sizes().iter().map(|n| n.ln()).zip(iterations.iter().copied()));
     let details = format!(
-        "Median times in µs: {}. The same query asked again at once: {}, k = {again:.2}.",
+        "Median times in µs: {}. Of the hybrid k = {hybrid}. The same query asked again at once: {}, k = {again}. \
+         Iterations of all loops grow with k = {counted:.2}.",
         listed(&balanced.time_points(CTA), 1),
-        listed(&balanced.again, 1)
+        listed(&balanced.in_microseconds(&balanced.again()), 1)
     );
     judged("11-time", vec![measured], details, || {
-        if again < 2.5 {
-            "Asked again at once, with all that it needs in the processor's caches, a query keeps to \
-             log² n: it is memory that large bodies wait for."
-                .into()
-        } else {
-            "Memory does not explain it: the same query asked again at once grows faster, too."
-                .into()
-        }
+        let counts = format!(
+            "Iterations of all loops, from {:.0} to {:.0}, grow with k = {counted:.2}; the time of a query that \
+             is asked again at once, with all that it needs in the processor's caches, with k = {}.",
+            iterations[0],
+            iterations[iterations.len() - 1],
+            short(again.value)
+        );
+        let reason = if counted < 2.5 { Reason::Machine } else { Reason::Implementation };
+        reason.because(counts)
     })
 }
 
-fn thin_costs(balanced: &Grown, thin: [&Grown; 2]) -> Claim {
-    let increase = |thin: &Grown| {
-        let samples = [balanced.times(CTA), thin.times(CTA)].concat();
-        estimate(&samples, |s| {
-            let (usual, thin) = s.split_at(s.len() / 2);
-            let ratios: Vec<_> =
-                medians(thin).iter().zip(medians(usual)).map(|(t, u)| t / u).collect();
-            100.0 * (median(&ratios) - 1.0)
-        })
-    };
-    let [stretch, meridians] = thin.map(increase);
+fn thin_costs(id: &str, balanced: &Grown, thin: &Grown) -> Claim {
+    let samples = [balanced.times(CTA), thin.times(CTA)].concat();
+    let increase = estimate(&samples, |s| {
+        let (usual, thin) = s.split_at(s.len() / 2);
+        let ratios: Vec<_> = medians(thin).iter().zip(medians(usual)).map(|(t, u)| t / u).collect();
+        100.0 * (median(&ratios) - 1.0)
+    });
     let details = format!(
-        "Faces of a fixed stretch of 100; time(thin) over time(balanced): {}. With 16 meridians at any \
-         size, the other reading of \"thin\": {meridians} %, {}.",
-        listed(&cost(balanced, thin[0], CTA), 2),
-        listed(&cost(balanced, thin[1], CTA), 2)
+        "time(thin) over time(balanced): {}; of the hybrid {}.",
+        listed(&cost(balanced, thin, CTA), 2),
+        listed(&cost(balanced, thin, HYBRID), 2)
     );
-    judged("11-thin", vec![stretch], details, || {
+    judged(id, vec![increase], details, || {
         let middle_of = |grown: &Grown, number: fn(&Results) -> f64| {
-            median(&grown.races.iter().map(number).collect::<Vec<_>>())
+            median(&grown.0.iter().map(|at| number(&at.race)).collect::<Vec<_>>())
         };
-        let [usual, thin] = [balanced, thin[0]].map(|grown| {
+        let [usual, thin] = [balanced, thin].map(|grown| {
             let steps = middle_of(grown, |at| mean(&at.steps(CTA).values()));
             format!("{steps:.1} and {:.0}", middle_of(grown, |at| at.iterations(CTA)))
         });
-        format!(
-            "Steps and iterations of all loops, in the middle of all sizes: {usual} on balanced faces, \
-             {thin} on thin ones."
-        )
+        Reason::Sentence.because(format!(
+            "It does not say how thin. Steps and iterations of all loops, in the middle of all sizes: {usual} on \
+             balanced faces, {thin} on those of {}.",
+            READINGS.iter().find(|(ending, _)| id.ends_with(ending)).map_or("thin bodies", |r| r.1)
+        ))
     })
 }

@@ -2,12 +2,15 @@
 //!
 //! A *race*: on the same blocks of settings of the same bodies every solver takes its turn,
 //! block by block, the order rotating; each query is timed alone. Queries from scratch are each a
-//! group of their own for the intervals, those of a sequence are one group.
+//! group of their own for the intervals, those of a sequence are one group. An experiment goes over all its
+//! races once in every *pass*, each time with other bodies: what the machine did in a stretch of time
+//! is in one pass of all of them ([`crate::statistics`]).
 
 mod beyond;
 mod focus;
 mod growth;
 mod incremental;
+mod minimisation;
 mod profile;
 mod rivals;
 mod separation;
@@ -21,7 +24,7 @@ use crate::plan::{Plan, Progress, Scale};
 use crate::settings::Setting;
 use crate::shapes::{self, Bodies, Kind};
 use crate::solvers::{Algorithm, Answer, Who, Work};
-use crate::statistics::{Sample, mean};
+use crate::statistics::{Group, Sample, mean};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::timing::{Stopwatch, exponent, median};
 
@@ -30,7 +33,8 @@ pub fn experiments() -> &'static [Experiment] {
     &EXPERIMENTS
 }
 
-const EXPERIMENTS: [Experiment; 11] = [
+const EXPERIMENTS: [Experiment; 12] = [
+    minimisation::SECTION_3,
     growth::FIGURE_11,
     profile::TABLE_1,
     separation::FIGURE_12,
@@ -66,14 +70,60 @@ impl Plan {
         self.by_scale(200, n, n)
     }
 
-    /// Pairs of bodies of a kind with `n` vertices: fewer of those that take seconds to build.
-    fn pairs(&self, n: usize) -> u64 {
-        let [small, middle, large] = self.by_scale([1; 3], [6, 4, 2], [12, 6, 3]);
-        match n {
-            ..5_000 => small,
-            5_000..20_000 => middle,
-            _ => large,
+    /// Passes over bodies of `n` vertices, each with a pair of its own: fewer where these take seconds to make, but
+    /// in a full run, or as many as were asked for.
+    fn passes(&self, n: usize) -> u32 {
+        self.passes.unwrap_or(self.by_scale(1, if n < 20_000 { 4 } else { 2 }, 8))
+    }
+}
+
+/// Measures each of `items` once in every pass over its bodies; `told` says how many vertices these have and
+/// what is going on.
+fn in_passes<I, T: Gathered>(
+    plan: &Plan,
+    progress: &mut dyn Progress,
+    items: &[I],
+    told: impl Fn(&I) -> (usize, String),
+    measure: impl Fn(&I, u32) -> T,
+) -> Vec<T> {
+    let passes = |item: &I| plan.passes(told(item).0);
+    let all = items.iter().map(|item| f64::from(passes(item)) * share(told(item).0)).sum();
+    let mut done = 0.0;
+    let mut found: Vec<Option<T>> = items.iter().map(|_| None).collect();
+    for pass in 0..items.iter().map(passes).max().unwrap_or(0) {
+        for (item, found) in items.iter().zip(&mut found) {
+            if pass >= passes(item) {
+                continue;
+            }
+            let (n, doing) = told(item);
+            progress.at(done, all, &doing);
+            done += share(n);
+            let more = measure(item, pass);
+            match found {
+                Some(found) => found.gather(more),
+                None => *found = Some(more),
+            }
         }
+        shapes::forget_large();
+    }
+    found.into_iter().flatten().collect()
+}
+
+/// What a pass adds to those before.
+trait Gathered {
+    fn gather(&mut self, more: Self);
+}
+
+impl<T: Gathered, const N: usize> Gathered for [T; N] {
+    fn gather(&mut self, more: Self) {
+        self.iter_mut().zip(more).for_each(|(all, more)| all.gather(more));
+    }
+}
+
+impl<A: Gathered, B: Gathered> Gathered for (A, B) {
+    fn gather(&mut self, more: Self) {
+        self.0.gather(more.0);
+        self.1.gather(more.1);
     }
 }
 
@@ -92,7 +142,7 @@ struct Measured {
     nanoseconds: f64,
     work: Work,
     /// What belongs together when settings are drawn anew.
-    group: u32,
+    group: Group,
 }
 
 /// Who races on what.
@@ -109,29 +159,35 @@ struct Race<'a> {
     coherence: Coherence,
     /// Settings in a block.
     length: usize,
-    /// Blocks, shared out among the pairs of bodies.
+    /// Blocks in a pass.
     blocks: usize,
 }
 
 /// What a race brought: for each solver its queries, in the same order.
 struct Results {
-    /// Vertices of a body, on average.
-    vertices: f64,
+    /// Of all passes: vertices of a body and mean diameter of the bodies, on average.
+    bodies: Vec<[f64; 2]>,
     lanes: Vec<Vec<Measured>>,
-    /// Mean diameter of the bodies of each query's pair.
-    diameter: f64,
+}
+
+impl Gathered for Results {
+    fn gather(&mut self, more: Self) {
+        self.bodies.extend(more.bodies);
+        self.lanes.iter_mut().zip(more.lanes).for_each(|(lane, more)| lane.extend(more));
+    }
 }
 
 impl Race<'_> {
-    /// Runs it on blocks of settings that `draw` makes; `purpose` tells its random numbers from
+    /// One pass on blocks of settings that `draw` makes; `purpose` tells its random numbers from
     /// those of other races of the figure.
     fn run(
         &self,
+        pass: u32,
         purpose: u64,
         draw: impl Fn(&Bodies, usize, &mut Random) -> Vec<Setting>,
     ) -> Results {
-        let [results] =
-            self.run_in_turns(purpose, |_, bodies, count, random| draw(bodies, count, random));
+        let [results] = self
+            .run_in_turns(pass, purpose, |_, bodies, count, random| draw(bodies, count, random));
         results
     }
 
@@ -139,42 +195,34 @@ impl Race<'_> {
     /// turn, so that whatever disturbs the machine disturbs all alike.
     fn run_in_turns<const N: usize>(
         &self,
+        pass: u32,
         purpose: u64,
         draw: impl Fn(usize, &Bodies, usize, &mut Random) -> Vec<Setting>,
     ) -> [Results; N] {
-        let pairs = if self.given.is_some() { 1 } else { self.plan.pairs(self.n) };
+        let bodies = self.bodies(pass);
         let mut all = [(); N].map(|()| Results {
-            vertices: 0.0,
-            diameter: 0.0,
+            bodies: vec![[bodies.vertices(), bodies.diameter]],
             lanes: vec![Vec::new(); self.who.len()],
         });
-        for which in 0..pairs {
-            let bodies = self.bodies(which);
-            let labels = [self.figure, self.kind as u64, self.n as u64, which, purpose];
-            let mut random = Random::stream(self.plan.seed, &labels);
-            let mut field: Vec<_> = self.who.iter().map(|who| who.enter(&bodies)).collect();
-            for results in &mut all {
-                results.vertices += bodies.vertices() / pairs as f64;
-                results.diameter += bodies.diameter / pairs as f64;
-            }
-            let blocks = self.blocks.div_ceil(pairs as usize);
-            for turn in 0..blocks {
-                let first = (which as usize * blocks + turn) * self.length;
-                for (variant, results) in all.iter_mut().enumerate() {
-                    let block = draw(variant, &bodies, self.length, &mut random);
-                    for k in 0..field.len() {
-                        let who = (turn + k) % field.len();
-                        let lane = &mut results.lanes[who];
-                        self.follow(field[who].as_mut(), &block, first as u32, lane);
-                    }
+        let labels = [self.figure, self.kind as u64, self.n as u64, u64::from(pass), purpose];
+        let mut random = Random::stream(self.plan.seed, &labels);
+        let mut field: Vec<_> = self.who.iter().map(|who| who.enter(&bodies)).collect();
+        for turn in 0..self.blocks {
+            let first = Group { pass, number: (turn * self.length) as u32 };
+            for (variant, results) in all.iter_mut().enumerate() {
+                let block = draw(variant, &bodies, self.length, &mut random);
+                for k in 0..field.len() {
+                    let who = (turn + k) % field.len();
+                    let lane = &mut results.lanes[who];
+                    self.follow(field[who].as_mut(), &block, first, lane);
                 }
             }
         }
         all
     }
 
-    fn bodies(&self, which: u64) -> Arc<Bodies> {
-        let build = || shapes::bodies(self.plan.seed, self.kind, self.n, which);
+    fn bodies(&self, pass: u32) -> Arc<Bodies> {
+        let build = || shapes::bodies(self.plan.seed, self.kind, self.n, u64::from(pass));
         self.given.clone().unwrap_or_else(build)
     }
 
@@ -183,7 +231,7 @@ impl Race<'_> {
         &self,
         who: &mut dyn Algorithm,
         block: &[Setting],
-        first: u32,
+        first: Group,
         lane: &mut Vec<Measured>,
     ) {
         let stopwatch = Stopwatch::new();
@@ -199,7 +247,8 @@ impl Race<'_> {
             }
             let (work, nanoseconds) = stopwatch.time(|| who.ask(setting));
             if scratch || k > 0 {
-                let group = if scratch { first + k as u32 } else { first };
+                let number = if scratch { first.number + k as u32 } else { first.number };
+                let group = Group { number, ..first };
                 lane.push(Measured { nanoseconds, work, group });
             }
         }
@@ -207,6 +256,11 @@ impl Race<'_> {
 }
 
 impl Results {
+    /// Vertices of a body, on average.
+    fn vertices(&self) -> f64 {
+        mean(&self.bodies.iter().map(|[vertices, _]| *vertices).collect::<Vec<_>>())
+    }
+
     /// The times of a solver, in nanoseconds.
     fn times(&self, who: usize) -> Vec<f64> {
         self.lanes[who].iter().map(|m| m.nanoseconds).collect()
@@ -238,11 +292,12 @@ impl Results {
 
     /// How often a solver failed or contradicted the first who answered the same question.
     fn contradictions(&self, who: usize) -> usize {
+        let diameter = mean(&self.bodies.iter().map(|[_, diameter]| *diameter).collect::<Vec<_>>());
         let differs = |query: usize| {
             let answer = |lane: &Vec<Measured>| lane[query].work.answer;
             let own = answer(&self.lanes[who]);
             let mut others = self.lanes.iter().map(answer);
-            own == Answer::Failed || others.any(|other| own.contradicts(other, self.diameter))
+            own == Answer::Failed || others.any(|other| own.contradicts(other, diameter))
         };
         (0..self.lanes[who].len()).filter(|query| differs(*query)).count()
     }
@@ -263,34 +318,10 @@ impl Answer {
     }
 }
 
-/// Tells how far an experiment is, in shares of the time that its parts are expected to take.
-struct Parts<'p> {
-    progress: &'p mut dyn Progress,
-    done: f64,
-    all: f64,
-}
-
-impl<'p> Parts<'p> {
-    /// All parts take this long together.
-    fn new(progress: &'p mut dyn Progress, all: f64) -> Self {
-        Self { progress, done: 0.0, all }
-    }
-
-    /// A part begins that takes `share`.
-    fn begin(&mut self, share: f64, doing: &str) {
-        self.progress.at(self.done, self.all, doing);
-        self.done += share;
-    }
-}
-
 /// The time a race over bodies of `n` vertices is expected to take, beside others: queries, which
 /// grow slowly, and the making of bodies and settings, which grow with `n`.
 fn share(n: usize) -> f64 {
     1.0 + n as f64 / 20_000.0
-}
-
-fn shares(sizes: &[usize]) -> f64 {
-    sizes.iter().map(|n| share(*n)).sum()
 }
 
 fn axis(label: &str, log: bool) -> Axis {

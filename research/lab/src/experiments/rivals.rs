@@ -4,11 +4,11 @@
 use colltrans_baselines::egjk::SupportSearch;
 
 use super::{
-    Coherence, Parts, Race, Results, against_size, axis, exponent_of, listed, middle, reference,
-    series, share, shares, thousands, time,
+    Coherence, Race, Results, against_size, axis, exponent_of, in_passes, listed, middle,
+    reference, series, thousands, time,
 };
 use crate::Experiment;
-use crate::claims::{Claim, judged};
+use crate::claims::{Claim, Reason, Why, judged};
 use crate::finding::{Figure, Finding, Point, Table};
 use crate::plan::{Plan, Progress};
 use crate::settings::{Meeting, Setting};
@@ -17,23 +17,33 @@ use crate::solvers::{Until, Who};
 use crate::statistics::{Estimate, Sample, estimate, mean};
 use colltrans_testkit::timing::median;
 
-pub(super) const FIGURE_15: Experiment =
-    Experiment { id: "figure-15", title: "balanced faces, beside EGJK and PQP", run: balanced };
+pub(super) const FIGURE_15: Experiment = Experiment {
+    id: "figure-15",
+    title: "balanced faces, beside EGJK and PQP",
+    seconds: [20.0, 80.0],
+    run: balanced,
+};
 
-pub(super) const FIGURE_16: Experiment =
-    Experiment { id: "figure-16", title: "thin faces, beside EGJK and PQP", run: thin };
+pub(super) const FIGURE_16: Experiment = Experiment {
+    id: "figure-16",
+    title: "thin faces, beside EGJK and PQP",
+    seconds: [22.0, 90.0],
+    run: thin,
+};
 
 pub(super) const FIGURE_17: Experiment = Experiment {
     id: "figure-17",
     title: "thin faces, bodies that pass within 1 %, beside EGJK and PQP",
+    seconds: [35.0, 130.0],
     run: thin_and_near,
 };
 
-pub(super) const WHO: [Who; 6] = [
-    Who::Cta(Until::Near),
+pub(super) const WHO: [Who; 7] = [
+    Who::Cta(Until::End),
     Who::Egjk(SupportSearch::Climbing),
     Who::Egjk(SupportSearch::Linear),
     Who::Pqp,
+    Who::Cta(Until::Near),
     Who::Portal,
     Who::RayCast,
 ];
@@ -41,38 +51,49 @@ const CTA: usize = 0;
 const CLIMBING: usize = 1;
 const LINEAR: usize = 2;
 const PQP: usize = 3;
+const HYBRID: usize = 4;
 
 /// One race at every size.
 struct Field(Vec<Results>);
 
-impl Field {
-    fn race(plan: &Plan, figure: u64, kind: Kind, meeting: Meeting, parts: &mut Parts) -> Self {
-        let measure = |n: &usize| {
-            parts.begin(
-                share(*n),
-                &format!("{} bodies, {} vertices", kind.name(), thousands(*n as f64)),
-            );
-            let race = Race {
-                plan,
-                figure,
-                kind,
-                n: *n,
-                given: None,
-                who: &WHO,
-                coherence: Coherence::Scratch,
-                // Long blocks: an algorithm in use finds its bodies in the caches.
-                length: plan.by_scale(5, 50, 100),
-                blocks: plan.by_scale(2, if *n < 20_000 { 12 } else { 8 }, 48),
-            };
-            race.run(0, |bodies, count, random| {
-                (0..count).map(|_| Setting::draw(bodies, meeting, random)).collect()
-            })
+/// Races on two kinds of bodies at every size.
+fn race(
+    plan: &Plan,
+    progress: &mut dyn Progress,
+    figure: u64,
+    kinds: [Kind; 2],
+    meeting: Meeting,
+) -> [Field; 2] {
+    let items: Vec<_> =
+        kinds.into_iter().flat_map(|kind| plan.sizes().iter().map(move |n| (kind, *n))).collect();
+    let told = |&(kind, n): &(Kind, usize)| {
+        (n, format!("{} bodies, {} vertices", kind.name(), thousands(n as f64)))
+    };
+    let mut measured = in_passes(plan, progress, &items, told, |&(kind, n), pass| {
+        let is_large = n >= 20_000;
+        let race = Race {
+            plan,
+            figure,
+            kind,
+            n,
+            given: None,
+            who: &WHO,
+            coherence: Coherence::Scratch,
+            // Long blocks: an algorithm in use finds its bodies in the caches.
+            length: plan.by_scale(5, if is_large { 40 } else { 50 }, 50),
+            blocks: plan.by_scale(2, if is_large { 1 } else { 3 }, if is_large { 1 } else { 4 }),
         };
-        Self(plan.sizes().iter().map(measure).collect())
-    }
+        race.run(pass, 0, |bodies, count, random| {
+            (0..count).map(|_| Setting::draw(bodies, meeting, random)).collect()
+        })
+    })
+    .into_iter();
+    kinds.map(|_| Field(measured.by_ref().take(plan.sizes().len()).collect()))
+}
 
+impl Field {
     fn sizes(&self) -> Vec<f64> {
-        self.0.iter().map(|at| at.vertices).collect()
+        self.0.iter().map(Results::vertices).collect()
     }
 
     /// `time(who) / time(CTA)`, query by query.
@@ -83,20 +104,24 @@ impl Field {
     /// Its medians with quartiles.
     fn points(&self, who: usize) -> Vec<Point> {
         let ratios = self.ratios(who);
-        ratios.iter().zip(&self.0).map(|(s, at)| Point::median(at.vertices, &s.values())).collect()
+        ratios
+            .iter()
+            .zip(&self.0)
+            .map(|(s, at)| Point::median(at.vertices(), &s.values()))
+            .collect()
     }
 
     /// The median ratio at one size; the largest size there is if that is smaller.
     fn ratio_at(&self, who: usize, n: f64) -> Estimate {
         let last = self.0.len() - 1;
-        let k = self.0.iter().position(|at| at.vertices > 0.9 * n).unwrap_or(last);
+        let k = self.0.iter().position(|at| at.vertices() > 0.9 * n).unwrap_or(last);
         estimate(&[self.0[k].ratios(who, CTA)], |s| median(&s[0]))
     }
 
     /// The exponent of the median time as a power of the size, from a size on.
     fn exponent(&self, who: usize, from: f64) -> Estimate {
         let few = self.0.len().saturating_sub(2);
-        let first = self.0.iter().position(|at| at.vertices > 0.9 * from).unwrap_or(few).min(few);
+        let first = self.0.iter().position(|at| at.vertices() > 0.9 * from).unwrap_or(few).min(few);
         let sizes = self.sizes().split_off(first);
         let times: Vec<_> = self.0[first..].iter().map(|at| at.time_sample(who)).collect();
         estimate(&times, |s| exponent_of(&sizes, s))
@@ -115,7 +140,7 @@ impl Field {
 
     /// Median times, and how often an answer contradicted another.
     fn table(&self, id: &str, title: &str) -> Table {
-        let head = |at: &Results| format!("{} vertices", thousands(at.vertices));
+        let head = |at: &Results| format!("{} vertices", thousands(at.vertices()));
         let columns = std::iter::once("median time (answers that contradict another)".into())
             .chain(self.0.iter().map(head))
             .collect();
@@ -136,45 +161,68 @@ impl Field {
             let each =
                 |who: &usize| format!("{} {}", WHO[*who].name(), time(median(&at.times(*who))));
             let text: Vec<_> = who.iter().map(each).collect();
-            format!("at {} vertices {}", thousands(at.vertices), text.join(", "))
+            format!("at {} vertices {}", thousands(at.vertices()), text.join(", "))
         };
         ends.into_iter().flatten().map(at).collect::<Vec<_>>().join("; ")
     }
 
-    fn why_egjk(&self) -> String {
-        let ends = [self.0.first(), self.0.last()];
-        let [least, most] =
-            ends.map(|at| at.map_or(f64::NAN, |at| mean(&at.steps(CLIMBING).values())));
-        format!(
-            "Median times {}. EGJK's iterations grow only from {least:.1} to {most:.1}: what grows is \
-             the way to a support point, by climbing far less than by looking at all vertices.",
-            self.times(&[CTA, CLIMBING, LINEAR])
-        )
+    /// EGJK's own steps at the smallest and at the largest size.
+    fn steps_of(&self, who: usize) -> [f64; 2] {
+        [0, self.0.len() - 1].map(|at| mean(&self.0[at].steps(who).values()))
     }
 
-    fn why_pqp(&self) -> String {
-        let ends = [self.0.first(), self.0.last()];
-        let [least, most] = ends.map(|at| at.map_or(f64::NAN, |at| mean(&at.steps(PQP).values())));
-        format!(
-            "Median times {}. PQP tests {least:.0} and {most:.0} pairs of volumes on average.",
+    fn why_egjk(&self) -> Why {
+        let [least, most] = self.steps_of(CLIMBING);
+        let climbed = [0, self.0.len() - 1].map(|at| self.0[at].iterations(CLIMBING));
+        Reason::Machine.because(format!(
+            "What it says is of times on a machine of 2005, and holds against counts: EGJK's steps grow only from \
+             {least:.1} to {most:.1}, and with those of climbing from {:.0} to {:.0}, where a linear search looks at \
+             all vertices in each. Median times {}.",
+            climbed[0],
+            climbed[1],
+            self.times(&[CTA, CLIMBING, LINEAR])
+        ))
+    }
+
+    /// EGJK that climbs is faster than the paper's.
+    fn why_climbing(&self) -> Why {
+        let last = &self.0[self.0.len() - 1];
+        Reason::Sentence.because(format!(
+            "It is of EGJK that grows linearly (figure 15), and holds of that. Climbing it does not: at {} vertices it \
+             takes {:.0} steps with {:.0} vertices climbed over, CTA {:.1} planar problems with {:.0} iterations. Median \
+             times {}.",
+            thousands(last.vertices()),
+            mean(&last.steps(CLIMBING).values()),
+            last.iterations(CLIMBING) - mean(&last.steps(CLIMBING).values()),
+            mean(&last.steps(CTA).values()),
+            last.iterations(CTA),
+            self.times(&[CTA, CLIMBING, LINEAR])
+        ))
+    }
+
+    fn why_pqp(&self) -> Why {
+        let [least, most] = self.steps_of(PQP);
+        Reason::Sentence.because(format!(
+            "It does not say how thin, and faces of a fixed stretch do not get thinner as bodies grow: PQP tests \
+             {least:.0} and {most:.0} pairs of volumes on average, in the smallest and largest bodies. Median times {}.",
             self.times(&[CTA, PQP])
-        )
+        ))
     }
 
     fn all_ratios(&self) -> String {
         format!(
-            "Medians by size: EGJK climbing {}; EGJK with linear search {}; PQP {}.",
+            "Medians by size: EGJK climbing {}; EGJK with linear search {}; PQP {}; the hybrid {}.",
             listed(&self.points(CLIMBING), 2),
             listed(&self.points(LINEAR), 2),
-            listed(&self.points(PQP), 1)
+            listed(&self.points(PQP), 1),
+            listed(&self.points(HYBRID), 2)
         )
     }
 }
 
 fn balanced(plan: &Plan, progress: &mut dyn Progress) -> Finding {
-    let mut parts = Parts::new(progress, 2.0 * shares(plan.sizes()));
-    let field = Field::race(plan, 15, Kind::Balanced, Meeting::Colliding, &mut parts);
-    let triangles = Field::race(plan, 15, Kind::Triangles, Meeting::Colliding, &mut parts);
+    let kinds = [Kind::Balanced, Kind::Triangles];
+    let [field, triangles] = race(plan, progress, 15, kinds, Meeting::Colliding);
     let fifth = ("the paper, EGJK: from 1/5", 0.2);
     let band = [("the paper, PQP: 6.5", 6.5), ("the paper, PQP: 10", 10.0)];
     let five = ("the paper, PQP: 5.5", 5.5);
@@ -204,11 +252,12 @@ fn grow(field: &Field) -> Claim {
         field.exponent(CLIMBING, 3_200.0)
     );
     judged("15-growth", measured, details, || {
-        format!(
-            "Looks at all vertices take more than linear time here, perhaps because those of large \
-             bodies do not fit the processor's caches. {}",
-            field.why_egjk()
-        )
+        let [least, most] = field.steps_of(LINEAR);
+        Reason::Machine.because(format!(
+            "EGJK's steps grow from {least:.1} to {most:.1}, each a look at all vertices: what grows faster than \
+             linearly is the time of a look, of bodies that do not fit the processor's caches. Median times {}.",
+            field.times(&[CTA, LINEAR, PQP])
+        ))
     })
 }
 
@@ -225,75 +274,85 @@ fn fastest(ids: [&str; 2], field: &Field) -> [Claim; 2] {
     let at = |who: &[usize]| who.iter().map(|who| field.ratio_at(*who, 51_200.0)).collect();
     [
         judged(ids[0], at(&[LINEAR, PQP]), field.all_ratios(), || field.why_egjk()),
-        judged(ids[1], at(&[CLIMBING]), field.all_ratios(), || field.why_egjk()),
+        judged(ids[1], at(&[CLIMBING]), field.all_ratios(), || field.why_climbing()),
     ]
 }
 
 fn pqp(id: &str, field: &Field) -> Claim {
     let measured = estimate(&field.ratios(PQP), middle);
     let details = format!("Medians by size: {}.", listed(&field.points(PQP), 1));
-    judged(id, vec![measured], details, || field.why_pqp())
+    judged(id, vec![measured], details, || {
+        let [least, most] = field.steps_of(PQP);
+        Reason::Machine.because(format!(
+            "PQP tests {least:.0} and {most:.0} pairs of volumes in the smallest and largest bodies, as many as the \
+             original; what a test costs beside a planar problem is another thing today. Median times {}.",
+            field.times(&[CTA, PQP])
+        ))
+    })
 }
 
 fn thin(plan: &Plan, progress: &mut dyn Progress) -> Finding {
-    let mut parts = Parts::new(progress, 2.0 * shares(plan.sizes()));
-    let field = Field::race(plan, 16, Kind::Thin, Meeting::Colliding, &mut parts);
-    let meridians = Field::race(plan, 16, Kind::ThinMeridians, Meeting::Colliding, &mut parts);
+    let kinds = [Kind::Thin, Kind::ThinMeridians];
+    let fields = race(plan, progress, 16, kinds, Meeting::Colliding);
     let paper = [
         ("the paper, EGJK: from 1/5", 0.2),
         ("the paper, EGJK: to 14", 14.0),
         ("the paper, PQP: over 100", 100.0),
     ];
-    let beside = |text: String| {
-        format!(
-            "Faces of a fixed stretch of 100. {text} With 16 meridians at any size: {}",
-            meridians.all_ratios()
-        )
-    };
-    let egjk = vec![
+    let [stretch, meridians] = &fields;
+    let ids = [
+        ["16-egjk-stretch", "16-pqp-stretch", "16-pqp-growth-stretch"],
+        ["16-egjk-meridians", "16-pqp-meridians", "16-pqp-growth-meridians"],
+    ];
+    Finding {
+        figures: vec![
+            stretch.figure("figure-16", "Thin trapezoids, a stretch of 100", &paper),
+            meridians.figure("figure-16-meridians", "Thin trapezoids, 16 meridians", &paper),
+        ],
+        tables: vec![
+            stretch.table("figure-16-times", "Thin trapezoids, a stretch of 100, collisions"),
+            meridians
+                .table("figure-16-times-meridians", "Thin trapezoids, 16 meridians, collisions"),
+        ],
+        claims: ids.iter().zip(&fields).flat_map(|(ids, field)| beside_thin(*ids, field)).collect(),
+    }
+}
+
+/// The claims of figure 16, with one reading of "thin".
+fn beside_thin([egjk, pqp, growth]: [&str; 3], field: &Field) -> [Claim; 3] {
+    let ratios = vec![
         field.ratio_at(LINEAR, 0.0),
         field.ratio_at(LINEAR, 200_000.0),
         field.ratio_at(CLIMBING, 200_000.0),
     ];
-    let most = |field: &Field| {
-        estimate(&field.ratios(PQP), |s| super::medians(s).into_iter().fold(0.0, f64::max))
-    };
-    let growth = [&field, &meridians].map(|field| field.exponent(PQP, 3_200.0));
-    let claims = vec![
-        judged("16-egjk", egjk, beside(field.all_ratios()), || field.why_egjk()),
-        judged(
-            "16-pqp",
-            vec![most(&field)],
-            format!("With 16 meridians at any size: {}.", most(&meridians)),
-            || field.why_pqp(),
-        ),
-        judged(
-            "16-pqp-growth",
-            vec![growth[0]],
-            format!("With 16 meridians at any size: {}. Above 0.9 is taken as linear.", growth[1]),
-            || field.why_pqp(),
-        ),
-    ];
-    Finding {
-        figures: vec![
-            field.figure("figure-16", "Thin trapezoids, a stretch of 100", &paper),
-            meridians.figure("figure-16-meridians", "Thin trapezoids, 16 meridians", &paper),
-        ],
-        tables: vec![
-            field.table("figure-16-times", "Thin trapezoids, a stretch of 100, collisions"),
-            meridians
-                .table("figure-16-times-meridians", "Thin trapezoids, 16 meridians, collisions"),
-        ],
-        claims,
-    }
+    let most = estimate(&field.ratios(PQP), |s| super::medians(s).into_iter().fold(0.0, f64::max));
+    let exponent = field.exponent(PQP, 3_200.0);
+    let details = "Above 0.9 is taken as linear.";
+    [
+        judged(egjk, ratios, field.all_ratios(), || field.why_egjk()),
+        judged(pqp, vec![most], field.all_ratios(), || field.why_pqp()),
+        judged(growth, vec![exponent], details.into(), || field.why_pqp()),
+    ]
 }
 
 fn thin_and_near(plan: &Plan, progress: &mut dyn Progress) -> Finding {
-    let mut parts = Parts::new(progress, shares(plan.sizes()));
-    let field = Field::race(plan, 17, Kind::Thin, Meeting::PassingWithin(0.01), &mut parts);
+    let kinds = [Kind::Thin, Kind::ThinMeridians];
+    let [stretch, meridians] = race(plan, progress, 17, kinds, Meeting::PassingWithin(0.01));
+    let mut claims = Vec::new();
+    claims.extend(fastest(["17-fastest-stretch", "17-fastest-stretch-climbing"], &stretch));
+    claims.extend(fastest(["17-fastest-meridians", "17-fastest-meridians-climbing"], &meridians));
+    let figure = |id: &str, title: &str, field: &Field| field.figure(id, title, &[]);
+    let title = |reading: &str| format!("Thin trapezoids, {reading}, passing within 1 %");
+    let titles = ["a stretch of 100", "16 meridians"].map(title);
     Finding {
-        figures: vec![field.figure("figure-17", "Thin trapezoids, passing within 1 %", &[])],
-        tables: vec![field.table("figure-17-times", "Thin trapezoids, passing within 1 %")],
-        claims: fastest(["17-fastest", "17-fastest-climbing"], &field).into(),
+        figures: vec![
+            figure("figure-17", &titles[0], &stretch),
+            figure("figure-17-meridians", &titles[1], &meridians),
+        ],
+        tables: vec![
+            stretch.table("figure-17-times", &titles[0]),
+            meridians.table("figure-17-times-meridians", &titles[1]),
+        ],
+        claims,
     }
 }

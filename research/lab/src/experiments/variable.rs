@@ -3,13 +3,14 @@
 //! Notation. *High* coherence is up to half a degree a step, *low* coherence more than 30 degrees. An
 //! algorithm's *parameter* runs from strong to weak initialisation: the half-side `delta` of CTA's
 //! square, from a thousandth of a diameter to all levels; the layer `l` of H-Walk's hierarchy where
-//! features are picked, from the finest to the coarsest. Costs are iterations of all loops.
+//! features are picked, from the finest to the coarsest. Costs are iterations of all loops. CTA is judged with
+//! planar problems that begin *cold*, from nothing, as the paper's did (V-F); *warm* ones are a curve beside.
 
 use colltrans::Region;
 
-use super::{Coherence, Parts, Race, Results, axis, means, series, share, shares, thousands, time};
+use super::{Coherence, Race, Results, axis, in_passes, means, series, thousands, time};
 use crate::Experiment;
-use crate::claims::{Claim, judged};
+use crate::claims::{Claim, Reason, Why, judged};
 use crate::finding::{Figure, Finding, Point, Table};
 use crate::plan::{Plan, Progress};
 use crate::settings::Setting;
@@ -21,6 +22,7 @@ use colltrans_testkit::timing::{mean_and_deviation, median};
 pub(super) const FIGURE_19: Experiment = Experiment {
     id: "figure-19",
     title: "variable coherence and wrong parameters, beside H-Walk",
+    seconds: [6.0, 20.0],
     run,
 };
 
@@ -39,14 +41,24 @@ const LAYERS: [f64; 6] = [0.0, 0.2, 0.4, 0.6, 0.8, 1.0];
 
 const PARAMETERS: usize = HALF_SIDES.len();
 
+/// What is swept, in the order of lanes: name, file, and what the parameter is.
+const SWEPT: [(&str, &str, &str); 3] = [
+    ("CTA", "cta", "half-side"),
+    ("CTA with warm planar problems", "cta-warm", "half-side"),
+    ("H-Walk", "hwalk", "layer"),
+];
+const CTA: usize = 0;
+const WARM: usize = 1;
+const WALK: usize = 2;
+
 /// One algorithm with each of its parameters at each coherence.
 struct Sweep<'r> {
     results: &'r [Results],
-    /// Its first lane.
-    first: usize,
+    /// Of [`SWEPT`].
+    which: usize,
 }
 
-/// Both at one size.
+/// All at one size.
 struct Sweeps {
     n: f64,
     /// By coherence.
@@ -54,69 +66,73 @@ struct Sweeps {
 }
 
 fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
-    let sizes = plan.by_scale([50, 200], [800, 3_200], [800, 3_200]);
-    let mut parts = Parts::new(progress, ALPHAS_DEG.len() as f64 * shares(&sizes));
-    let sweeps = sizes.map(|n| sweep(plan, n, &mut parts));
-    let figures = sweeps.iter().flat_map(|s| [s.figure("CTA"), s.figure("H-Walk")]).collect();
-    let claims = vec![
-        affects(&sweeps),
-        strong(&sweeps),
-        worsens("19-worsening-800", &sweeps[0]),
-        worsens("19-worsening-3200", &sweeps[1]),
-        disperses("19-dispersion-high", &sweeps, HIGH),
-        disperses("19-dispersion-low", &sweeps, LOW),
-    ];
+    let sizes: [usize; 2] = plan.by_scale([50, 200], [800, 3_200], [800, 3_200]);
+    let items: Vec<_> =
+        sizes.into_iter().flat_map(|n| ALPHAS_DEG.map(|alpha| (n, alpha))).collect();
+    let told = |&(n, alpha): &(usize, f64)| {
+        (n, format!("{} vertices, {alpha} degrees", thousands(n as f64)))
+    };
+    let mut measured =
+        in_passes(plan, progress, &items, told, |&(n, alpha), pass| orbits(plan, n, alpha, pass))
+            .into_iter();
+    let sweeps = sizes.map(|n| Sweeps {
+        n: n as f64,
+        results: measured.by_ref().take(ALPHAS_DEG.len()).collect(),
+    });
+    let figures =
+        sweeps.iter().flat_map(|s| [CTA, WARM, WALK].map(|which| s.figure(which))).collect();
+    let mut claims = vec![affects(&sweeps), strong(&sweeps)];
+    claims.extend(worsens(["19-worsening-800", "19-worsening-800-walk"], &sweeps[0]));
+    claims.extend(worsens(["19-worsening-3200", "19-worsening-3200-walk"], &sweeps[1]));
+    claims.extend(disperses(["19-dispersion-high", "19-dispersion-high-walk"], &sweeps, HIGH));
+    claims.extend(disperses(["19-dispersion-low", "19-dispersion-low-walk"], &sweeps, LOW));
     Finding { figures, tables: sweeps.iter().map(Sweeps::table).collect(), claims }
 }
 
-fn sweep(plan: &Plan, n: usize, parts: &mut Parts) -> Sweeps {
-    let mut who: Vec<_> = HALF_SIDES.map(|h| Who::CtaRegion(Region::Fixed(h), Until::End)).to_vec();
+fn orbits(plan: &Plan, n: usize, alpha: f64, pass: u32) -> Results {
+    let region = |half: f64| Region::Fixed(half);
+    let mut who: Vec<_> = HALF_SIDES.map(|h| Who::CtaCold(region(h))).to_vec();
+    who.extend(HALF_SIDES.map(|h| Who::CtaRegion(region(h), Until::End)));
     who.extend(LAYERS.map(Who::HWalk));
-    let race = |alpha: &f64| {
-        parts.begin(share(n), &format!("{} vertices, {alpha} degrees", thousands(n as f64)));
-        let race = Race {
-            plan,
-            figure: 19,
-            kind: Kind::Spheres,
-            n,
-            given: None,
-            who: &who,
-            coherence: Coherence::Blocks,
-            length: 1 + plan.by_scale(10, 50, 100),
-            blocks: plan.by_scale(3, 24, 120),
-        };
-        race.run((alpha * 1e3) as u64, |bodies, count, random| {
-            Setting::orbit(bodies, *alpha, count, random)
-        })
+    let race = Race {
+        plan,
+        figure: 19,
+        kind: Kind::Spheres,
+        n,
+        given: None,
+        who: &who,
+        coherence: Coherence::Blocks,
+        length: 1 + plan.by_scale(10, 50, 50),
+        blocks: plan.by_scale(3, 5, 8),
     };
-    Sweeps { n: n as f64, results: ALPHAS_DEG.iter().map(race).collect() }
+    race.run(pass, (alpha * 1e3) as u64, |bodies, count, random| {
+        Setting::orbit(bodies, alpha, count, random)
+    })
 }
 
 impl Sweeps {
-    fn both(&self) -> [Sweep<'_>; 2] {
-        [0, PARAMETERS].map(|first| Sweep { results: &self.results, first })
+    fn sweep(&self, which: usize) -> Sweep<'_> {
+        Sweep { results: &self.results, which }
     }
 
-    fn figure(&self, name: &str) -> Figure {
-        let [cta, walk] = self.both();
-        let is_cta = name == "CTA";
-        let sweep = if is_cta { cta } else { walk };
+    fn figure(&self, which: usize) -> Figure {
+        let sweep = self.sweep(which);
+        let (name, file, _) = SWEPT[which];
         let line = |parameter: usize| {
             let points = ALPHAS_DEG
                 .iter()
                 .enumerate()
                 .map(|(k, alpha)| Point::mean(*alpha, &sweep.costs(k, parameter).values()))
                 .collect();
-            let what = if is_cta {
-                format!("half-side {} D", HALF_SIDES[parameter])
+            let what = if which == WALK {
+                format!("layer at {:.0} % of all", 100.0 * LAYERS[parameter])
             } else {
-                let share = 100.0 * LAYERS[parameter];
-                format!("layer at {share:.0} % of all")
+                format!("half-side {} D", HALF_SIDES[parameter])
             };
             series(what, points)
         };
         Figure {
-            id: format!("figure-19-{}-{}", name.to_lowercase().replace('-', ""), self.n),
+            id: format!("figure-19-{file}-{}", self.n),
             title: format!(
                 "{name}, {} vertices: iterations by coherence and parameter, mean and quartiles",
                 thousands(self.n)
@@ -130,11 +146,12 @@ impl Sweeps {
 
     fn table(&self) -> Table {
         let mut rows = Vec::new();
-        for (name, sweep) in ["CTA, half-side", "H-Walk, layer"].iter().zip(self.both()) {
+        for (which, (name, _, what)) in SWEPT.iter().enumerate() {
             for k in 0..PARAMETERS {
-                let parameter = if sweep.first == 0 { HALF_SIDES[k] } else { LAYERS[k] };
-                let cell = |alpha: usize| time(median(&self.results[alpha].times(sweep.first + k)));
-                let head = format!("{name} {parameter}");
+                let parameter = if which == WALK { LAYERS[k] } else { HALF_SIDES[k] };
+                let lane = PARAMETERS * which + k;
+                let cell = |alpha: usize| time(median(&self.results[alpha].times(lane)));
+                let head = format!("{name}, {what} {parameter}");
                 rows.push(std::iter::once(head).chain((0..ALPHAS_DEG.len()).map(cell)).collect());
             }
         }
@@ -151,7 +168,8 @@ impl Sweeps {
 
 impl Sweep<'_> {
     fn costs(&self, alpha: usize, parameter: usize) -> Sample {
-        self.results[alpha].sample(self.first + parameter, |m| f64::from(m.work.iterations))
+        let lane = PARAMETERS * self.which + parameter;
+        self.results[alpha].sample(lane, |m| f64::from(m.work.iterations))
     }
 
     /// The costs in a range of coherence, parameter by parameter at each.
@@ -181,30 +199,49 @@ fn dispersion(samples: &[Vec<f64>]) -> f64 {
     mean(&each.collect::<Vec<_>>())
 }
 
-/// A statistic of CTA and of H-Walk, and the first over the second.
-fn of_both(
+/// A statistic of what is swept, and that of CTA over that of H-Walk.
+struct Statistic {
+    each: [Estimate; SWEPT.len()],
+    ratio: Estimate,
+}
+
+fn of_all(
     sweeps: &Sweeps,
     alphas: std::ops::Range<usize>,
     statistic: fn(&[Vec<f64>]) -> f64,
-) -> [Estimate; 3] {
-    let [cta, walk] = sweeps.both().map(|sweep| sweep.all(alphas.clone()));
-    let ratio = estimate(&[cta.clone(), walk.clone()].concat(), |s| {
+) -> Statistic {
+    let samples = [CTA, WARM, WALK].map(|which| sweeps.sweep(which).all(alphas.clone()));
+    let both = [samples[CTA].clone(), samples[WALK].clone()].concat();
+    let ratio = estimate(&both, |s| {
         let (cta, walk) = s.split_at(s.len() / 2);
         statistic(cta) / statistic(walk)
     });
-    [estimate(&cta, statistic), ratio, estimate(&walk, statistic)]
+    Statistic { each: samples.each_ref().map(|s| estimate(s, statistic)), ratio }
+}
+
+/// Mean iterations with the best parameter at coherences, for people.
+fn counts(sweeps: &Sweeps, which: usize, alphas: std::ops::Range<usize>) -> String {
+    let sweep = sweeps.sweep(which);
+    let best = |alpha: usize| {
+        let each = (0..PARAMETERS).map(|p| mean_and_deviation(&sweep.costs(alpha, p).values()));
+        let [mean, deviation] = each.min_by(|a, b| a[0].total_cmp(&b[0])).expect("parameters");
+        format!("{mean:.1} ± {deviation:.1} at {}°", ALPHAS_DEG[alpha])
+    };
+    format!("{} {}", SWEPT[which].0, alphas.map(best).collect::<Vec<_>>().join(", "))
 }
 
 fn affects(sweeps: &[Sweeps; 2]) -> Claim {
-    let [[cta, _, walk], [other_cta, _, other_walk]] =
-        sweeps.each_ref().map(|s| of_both(s, HIGH, worst_over_best));
+    let [at, other] = sweeps.each_ref().map(|s| of_all(s, HIGH, worst_over_best));
     let details = format!(
-        "At {} vertices; at {}: {other_cta} % and {other_walk} %.",
+        "At {} vertices; warm {} %. At {}: {} % and {} %.",
         thousands(sweeps[0].n),
-        thousands(sweeps[1].n)
+        at.each[WARM],
+        thousands(sweeps[1].n),
+        other.each[CTA],
+        other.each[WALK]
     );
-    judged("19-affects", vec![cta, walk], details, || {
-        "The parameter changes the count by less than a fifth.".into()
+    judged("19-affects", vec![at.each[CTA], at.each[WALK]], details, || {
+        Reason::Implementation.because("The parameter changes the count by less than a fifth.")
     })
 }
 
@@ -215,44 +252,80 @@ fn strongest_over_weakest(samples: &[Vec<f64>]) -> f64 {
 }
 
 fn strong(sweeps: &[Sweeps; 2]) -> Claim {
-    let [[cta, _, walk], [other_cta, _, other_walk]] =
-        sweeps.each_ref().map(|s| of_both(s, LOW, strongest_over_weakest));
+    let [at, other] = sweeps.each_ref().map(|s| of_all(s, LOW, strongest_over_weakest));
     let details = format!(
-        "At {} vertices; at {}: {other_cta} and {other_walk}. 0.9 or more is taken as no significant \
-         improvement.",
+        "At {} vertices; warm {}. At {}: {} and {}. 0.9 or more is taken as no significant improvement.",
         thousands(sweeps[0].n),
-        thousands(sweeps[1].n)
-    );
-    judged("19-strong", vec![cta, walk], details, || {
-        "Strong initialisation helps even here.".into()
-    })
-}
-
-fn worsens(id: &str, sweeps: &Sweeps) -> Claim {
-    let measured = of_both(sweeps, LOW, worst_over_best);
-    let details = "On average over all coherences of more than 30 degrees; worst parameter over the \
-                   best at each.";
-    let why = format!(
-        "Here the parameter costs CTA {} % and H-Walk {} %.",
-        short(measured[0].value),
-        short(measured[2].value)
-    );
-    judged(id, measured.into(), details.into(), || why)
-}
-
-fn disperses(id: &str, sweeps: &[Sweeps; 2], alphas: std::ops::Range<usize>) -> Claim {
-    let [measured, other] = sweeps.each_ref().map(|s| of_both(s, alphas.clone(), dispersion));
-    let details = format!(
-        "Iterations, with the best parameter at each coherence, at {} vertices; at {}: CTA {} %, \
-         H-Walk {} %.",
-        thousands(sweeps[0].n),
+        at.each[WARM],
         thousands(sweeps[1].n),
-        other[0],
-        other[2]
+        other.each[CTA],
+        other.each[WALK]
     );
-    judged(id, measured.into(), details, || {
-        "The counts are of other implementations than the paper's: of the same loops, but not of the \
-         same searches in them."
-            .into()
+    judged("19-strong", vec![at.each[CTA], at.each[WALK]], details, || {
+        Reason::Implementation.because("Strong initialisation helps even here.")
     })
+}
+
+/// CTA's half of the sentence, and H-Walk's.
+fn worsens(ids: [&str; 2], sweeps: &Sweeps) -> [Claim; 2] {
+    let Statistic { each, ratio } = of_all(sweeps, LOW, worst_over_best);
+    let details = format!(
+        "On average over all coherences of more than 30 degrees; worst parameter over the best at each. With warm \
+         planar problems {} %.",
+        each[WARM]
+    );
+    let why = |which: usize, reason: Reason| {
+        reason.because(format!("With the best parameter: {}.", counts(sweeps, which, LOW)))
+    };
+    [
+        judged(ids[0], vec![each[CTA], ratio], details.clone(), || {
+            why(CTA, Reason::Implementation)
+        }),
+        judged(ids[1], vec![each[WALK]], details, || why(WALK, Reason::Rival)),
+    ]
+}
+
+/// CTA's half of the sentence, and H-Walk's.
+fn disperses(ids: [&str; 2], sweeps: &[Sweeps; 2], alphas: std::ops::Range<usize>) -> [Claim; 2] {
+    let [at, other] = sweeps.each_ref().map(|s| of_all(s, alphas.clone(), dispersion));
+    let details = format!(
+        "Iterations, with the best parameter at each coherence, at {} vertices; with warm planar problems {} %. At \
+         {}: CTA {} %, H-Walk {} %.",
+        thousands(sweeps[0].n),
+        at.each[WARM],
+        thousands(sweeps[1].n),
+        other.each[CTA],
+        other.each[WALK]
+    );
+    let why = |which: usize, reason: Reason| -> Why {
+        let counts = counts(&sweeps[0], which, alphas.clone());
+        let [of_means, poisson] = of_sequences(&sweeps[0], which, alphas.clone());
+        reason.because(format!(
+            "Mean and deviation of iterations: {counts}. As many independent steps would disperse by {} %; means over a \
+             sequence disperse by {} %. The paper does not say of what its deviations are.",
+            short(poisson),
+            short(of_means)
+        ))
+    };
+    [
+        judged(ids[0], vec![at.each[CTA], at.ratio], details.clone(), || {
+            why(CTA, Reason::Implementation)
+        }),
+        judged(ids[1], vec![at.each[WALK]], details, || why(WALK, Reason::Sentence)),
+    ]
+}
+
+/// Per cent by which the means over sequences disperse with the best parameter, and by which counts of as many
+/// independent steps would: one over the root of their number. On average over the coherences.
+fn of_sequences(sweeps: &Sweeps, which: usize, alphas: std::ops::Range<usize>) -> [f64; 2] {
+    let sweep = sweeps.sweep(which);
+    let at = |alpha: usize| {
+        let costs = (0..PARAMETERS).map(|p| sweep.costs(alpha, p));
+        let best = costs.min_by(|a, b| mean(&a.values()).total_cmp(&mean(&b.values())));
+        let best = best.expect("parameters");
+        let [all, deviation] = mean_and_deviation(&best.group_means());
+        [100.0 * deviation / all, 100.0 / all.sqrt()]
+    };
+    let each: Vec<_> = alphas.map(at).collect();
+    [0, 1].map(|k| mean(&each.iter().map(|pair| pair[k]).collect::<Vec<_>>()))
 }

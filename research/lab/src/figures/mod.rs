@@ -22,6 +22,7 @@ use crate::LabError;
 use mark::Mark;
 use planar::{Instance, View};
 pub use setting::Error;
+pub(crate) use setting::below;
 use setting::{Run, Setting, middle};
 
 /// Where the moving cube is, how it is turned, and the direction; the fixed one is at home.

@@ -124,7 +124,7 @@ impl Run {
 }
 
 /// The part of a convex polygon where `gradient . p <= limit`.
-pub(super) fn below(polygon: &[DVec2], gradient: DVec2, limit: f64) -> Vec<DVec2> {
+pub(crate) fn below(polygon: &[DVec2], gradient: DVec2, limit: f64) -> Vec<DVec2> {
     let mut kept = Vec::new();
     for (k, &from) in polygon.iter().enumerate() {
         let to = polygon[(k + 1) % polygon.len()];

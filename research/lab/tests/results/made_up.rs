@@ -1,7 +1,7 @@
 //! Findings that nobody found.
 
 use colltrans_lab::Experiment;
-use colltrans_lab::claims::{Better, Claim, Criterion, PaperClaim};
+use colltrans_lab::claims::{Better, Claim, Criterion, PaperClaim, Reason, Why};
 use colltrans_lab::finding::{Axis, Figure, Finding, Point, Series, Table};
 use colltrans_lab::plan::{Plan, Progress};
 use colltrans_lab::statistics::Estimate;
@@ -54,7 +54,8 @@ pub(crate) fn finding(id: &str) -> Finding {
     let claim = |paper: &'static PaperClaim, [value, low, high]: [f64; 3], why: Option<&str>| {
         let measured = vec![Estimate { value, low, high }];
         let (verdict, details) = (paper.judge(&measured), "More <about> it.".into());
-        Claim { paper, measured, details, verdict, why: why.map(Into::into) }
+        let why = why.map(|text| Why { reason: Reason::Machine, text: text.into() });
+        Claim { paper, measured, details, verdict, why }
     };
     let cells = |cells: [&str; 3]| cells.map(String::from).to_vec();
     Finding {
@@ -85,11 +86,13 @@ pub(crate) fn experiments() -> [Experiment; 2] {
         Experiment {
             id: "figure-12",
             title: "time against <size>",
+            seconds: [1.0; 2],
             run: |_: &Plan, progress| measure("figure-12", progress),
         },
         Experiment {
             id: "table-1",
             title: "bodies",
+            seconds: [1.0; 2],
             run: |plan: &Plan, progress| {
                 let mut finding = measure("table-1", progress);
                 finding.figures.clear();

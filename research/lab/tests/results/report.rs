@@ -22,7 +22,7 @@ fn page(done: &[Done], all: usize, is_optimised: bool) -> String {
         command: "colltrans-lab all -o 'a & b'".into(),
         is_optimised,
     };
-    let plan = Plan { scale: Scale::Full, seed: 42, parts: None };
+    let plan = Plan { scale: Scale::Full, seed: 42, passes: None, parts: None };
     let wall = Duration::from_secs(200);
     html(&Report { provenance: &provenance, plan: &plan, done, all, wall })
 }
@@ -54,9 +54,9 @@ fn it_says_everything() {
         "The paper: &lt;log n&gt; (V-A, figure 12).",
         "Measured: <strong>0.12 (0.10 to 0.14)</strong>: exponent; holds from 0.00 to 0.20.",
         "More &lt;about&gt; it.",
-        "Why: caches hold &lt;64 vertices. Nothing else.",
-        "12-faster</a>: caches hold &lt;64 vertices.</li>",
-        "12-faster</a>: too few queries</li>",
+        "Why (today's machine): caches hold &lt;64 vertices. Nothing else.",
+        "12-faster</a>, today's machine: caches hold &lt;64 vertices.</li>",
+        "12-faster</a>, today's machine: too few queries</li>",
         "<span class=\"verdict\">holds</span>",
         "<span class=\"verdict\">does not hold</span>",
         "<span class=\"verdict\">undecided</span>",

@@ -8,7 +8,7 @@ use colltrans_lab::{LabError, Summary, run};
 
 use crate::made_up::experiments;
 
-const PLAN: Plan = Plan { scale: Scale::Tiny, seed: 31, parts: None };
+const PLAN: Plan = Plan { scale: Scale::Tiny, seed: 31, passes: None, parts: None };
 
 #[derive(Default)]
 struct Heard(Vec<(f64, f64, String)>);
@@ -58,7 +58,8 @@ fn the_folder_holds_everything() {
     let expected = serde_json::json!({
         "id": "12-faster", "statement": "It is faster than the others.", "paper": "half",
         "place": "V-A, figure 12", "verdict": "does not hold", "why": faster["why"],
-        "measured": [{ "what": "ratio", "value": 2.0, "low": 1.5, "high": 2.5 }],
+        "reason": "today's machine",
+        "measured": [{ "what": "ratio", "value": 2.0, "low": 1.5, "high": 2.5, "judged": true }],
     });
     assert_eq!(*faster, expected);
     assert!(faster["why"].is_string(), "{faster}");

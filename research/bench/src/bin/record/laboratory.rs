@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use colltrans_lab::claims::Verdict;
+use colltrans_lab::claims::{READINGS, Verdict};
 use colltrans_lab::statistics::Estimate;
 use serde_json::Value;
 
@@ -30,15 +30,55 @@ pub(super) fn claims(run: &Value, again: &Value, all: usize) -> Result<String, F
             verdict(claim, again),
         )?;
     }
+    readings(&mut page, run)?;
     page.push_str(
-        "\nWhy, where a claim does not hold or is undecided, as far as the data tell:\n\n",
+        "\nWhy, where a claim does not hold or is undecided, as far as the data tell: what the reason lies in, and the \
+         counts that show it.\n\n",
     );
     for claim in list(run) {
         if let Some(why) = claim["why"].as_str() {
-            writeln!(page, "- `{}`: {why}", text(claim, "id"))?;
+            writeln!(page, "- `{}`, {}: {why}", text(claim, "id"), text(claim, "reason"))?;
         }
     }
     Ok(page)
+}
+
+/// The claims about thin faces, with what both readings of "thin" make of them.
+fn readings(page: &mut String, run: &Value) -> Result<(), Failure> {
+    let [(first, _), (second, _)] = READINGS;
+    let of = |id: &str| list(run).iter().find(|claim| text(claim, "id") == id);
+    let pairs: Vec<_> = list(run)
+        .iter()
+        .filter_map(|claim| {
+            let name = text(claim, "id").strip_suffix(first)?;
+            Some((name, [claim, of(&format!("{name}{second}"))?]))
+        })
+        .collect();
+    if pairs.is_empty() {
+        return Ok(());
+    }
+    let [one, other] = READINGS.map(|(_, name)| name);
+    write!(
+        page,
+        "\nThe paper says \"very thin and stretched out\", not how thin. Its sentences, with both readings:\n\n\
+         | sentence | {one} | {other} |\n|---|---|---|\n"
+    )?;
+    for (name, claims) in &pairs {
+        let [a, b] = claims.map(|claim| {
+            let first = claim["measured"].as_array().and_then(|all| all.first());
+            format!("{}, {}", first.map_or(String::new(), estimate), text(claim, "verdict"))
+        });
+        writeln!(page, "| `{name}` | {a} | {b} |")?;
+    }
+    let kept = |which: usize| {
+        let holds = [Verdict::Holds, Verdict::Better].map(|verdict| verdict.to_string());
+        let is_kept =
+            |claims: &[&Value; 2]| holds.contains(&text(claims[which], "verdict").to_owned());
+        pairs.iter().filter(|(_, claims)| is_kept(claims)).count()
+    };
+    let all = pairs.len();
+    writeln!(page, "\nWith {one} {} of these {all} hold, with {other} {}.", kept(0), kept(1))?;
+    Ok(())
 }
 
 fn list(run: &Value) -> &[Value] {
@@ -67,7 +107,8 @@ fn origin(page: &mut String, run: &Value, again: &Value, all: usize) -> Result<(
     writeln!(
         page,
         "From a {} run with seed {} ({}) on {} cores of an {}, {}. Of {} claims: {}. A \
-         {} run with seed {} gives the same verdict on {}; where it differs, its own is beside it.",
+         {} run with seed {} gives the same verdict on {}; where it differs, its own is beside it. The intervals of \
+         both runs overlap in all numbers of {} claims.",
         text(run, "scale"),
         run["seed"],
         text(run, "date"),
@@ -79,16 +120,33 @@ fn origin(page: &mut String, run: &Value, again: &Value, all: usize) -> Result<(
         text(again, "scale"),
         again["seed"],
         list(run).iter().filter(is_same).count(),
+        list(run).iter().filter(|claim| overlap(claim, again)).count(),
     )?;
     Ok(())
 }
 
+/// Whether the intervals of a claim's numbers overlap with those of the other run.
+fn overlap(claim: &Value, again: &Value) -> bool {
+    let same = list(again).iter().find(|other| text(other, "id") == text(claim, "id"));
+    let Some(same) = same else { return false };
+    numbers(claim).iter().zip(numbers(same)).all(|(one, other)| {
+        let [[a, b], [c, d]] = [one, other].map(|e| ["low", "high"].map(|key| number(e, &[key])));
+        a <= d && c <= b
+    })
+}
+
+fn numbers(claim: &Value) -> &[Value] {
+    claim["measured"].as_array().map_or(&[], Vec::as_slice)
+}
+
+fn estimate(one: &Value) -> String {
+    let [value, low, high] = ["value", "low", "high"].map(|key| number(one, &[key]));
+    Estimate { value, low, high }.to_string()
+}
+
 fn measured(claim: &Value) -> String {
-    let numbers = claim["measured"].as_array().map_or(&[][..], Vec::as_slice).iter().map(|one| {
-        let [value, low, high] = ["value", "low", "high"].map(|key| number(one, &[key]));
-        format!("{} {}", Estimate { value, low, high }, text(one, "what"))
-    });
-    numbers.collect::<Vec<_>>().join("; ")
+    let each = numbers(claim).iter().map(|one| format!("{} {}", estimate(one), text(one, "what")));
+    each.collect::<Vec<_>>().join("; ")
 }
 
 fn verdict(claim: &Value, again: &Value) -> String {
@@ -109,6 +167,7 @@ mod tests {
             json!({
                 "id": verdict.len().to_string(), "statement": "It is fast.", "paper": "1/5",
                 "place": "V", "verdict": verdict, "why": (verdict != "holds").then_some("It is not."),
+                "reason": (verdict != "holds").then_some("today's machine"),
                 "measured": [{ "what": "ratio", "value": 12.34, "low": 0.5, "high": 345.6 }],
             })
         });
@@ -126,11 +185,25 @@ mod tests {
         let row = "| It is fast. (`5`) | 1/5; V | 12.3 (0.50 to 346) ratio | holds |\n";
         assert!(page.contains(row), "{page}");
         assert!(page.contains("same verdict on 1;") && page.contains("1 undecided"), "{page}");
-        assert!(page.ends_with("\n- `9`: It is not.\n"), "{page}");
+        assert!(page.contains("overlap in all numbers of 1 claims"), "{page}");
+        assert!(page.ends_with("\n- `9`, today's machine: It is not.\n"), "{page}");
         let mut other = run(["holds", "undecided"]);
         other["claims"][1]["verdict"] = "does not hold".into();
         let page = claims(&run(["holds", "undecided"]), &other, 2).unwrap();
         assert!(page.contains("| undecided (again: does not hold) |"), "{page}");
+    }
+
+    #[test]
+    fn both_readings_of_thin_stand_side_by_side() {
+        let mut run = run(["holds", "undecided"]);
+        for (claim, id) in
+            run["claims"].as_array_mut().unwrap().iter_mut().zip(["7-x-stretch", "7-x-meridians"])
+        {
+            claim["id"] = id.into();
+        }
+        let page = claims(&run, &run, 2).unwrap();
+        let row = "| `7-x` | 12.3 (0.50 to 346), holds | 12.3 (0.50 to 346), undecided |\n";
+        assert!(page.contains(row) && page.contains("stretch of 100 1 of these 1 hold"), "{page}");
     }
 
     #[test]

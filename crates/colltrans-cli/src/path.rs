@@ -106,14 +106,18 @@ fn ignored(given: &[String]) -> Result<Vec<[String; 2]>, Failure> {
 
 /// The joints that rest.
 fn resting(given: &[String]) -> Result<BTreeMap<String, f64>, Failure> {
-    let one = |text: &String| {
+    let mut joints = BTreeMap::new();
+    for text in given {
+        let wrong = |why: &str| Failure::new(Code::Usage, format!("--joint {text}: {why}"));
         let parts = text.split_once('=').and_then(|(n, v)| Some((n, v.trim().parse().ok()?)));
-        parts.map(|(name, value): (&str, f64)| (name.trim().to_owned(), value)).ok_or_else(|| {
-            let why = format!("--joint {text}: not NAME=VALUE, in radians or metres");
-            Failure::new(Code::Usage, why)
-        })
-    };
-    given.iter().map(one).collect()
+        let Some((name, value)) = parts.filter(|(_, value): &(&str, f64)| value.is_finite()) else {
+            return Err(wrong("not NAME=VALUE, in radians or metres"));
+        };
+        if joints.insert(name.trim().to_owned(), value).is_some() {
+            return Err(wrong("this joint is there twice"));
+        }
+    }
+    Ok(joints)
 }
 
 fn text(file: &Path) -> Result<String, Failure> {

@@ -374,3 +374,28 @@ fn what_is_wrong_is_told() {
     assert!(matches!(asked(row.clone(), 0, [1, 1]), Err(PathError::Pair { .. })));
     assert_eq!(asked(row, 0, [0, 1]), Ok(()));
 }
+
+#[test]
+fn a_cube_that_comes_down_flush_on_a_step_is_a_contact() {
+    let lift = Frame {
+        parent: None,
+        origin: at(1.0, 5.0, 0.0),
+        joint: Joint::Sliding(DVec3::new(0.0, -1.0, 0.0)),
+    };
+    let mechanism = Mechanism::new(vec![lift]).expect("a lift");
+    let path = JointPath::evenly(vec![vec![0.0], vec![8.0]]).expect("a path");
+    let pieces = [cuboid([0.0; 3], [3.0, 1.0, 1.0]), cuboid([0.0, 1.0, 0.0], [1.0, 3.0, 1.0])];
+    let step = Solid::from_pieces(&pieces.map(|piece| Solid::from_convex(&piece).unwrap()));
+    let (step, cube) = (step.unwrap(), cuboid([-0.5; 3], [0.5; 3]));
+    // Down past the upright part, beside it, with sides in one plane, and onto each part.
+    for (x, meets) in [(0.5, 0.1875), (0.0, 0.1875), (1.5, 0.4375), (2.0, 0.4375), (2.25, 0.4375)] {
+        let bodies = vec![
+            PathBody { frame: Some(0), placed: cube.at(at(x - 1.0, 0.0, 0.5)).into() },
+            PathBody { frame: None, placed: step.at(Pose::IDENTITY).into() },
+        ];
+        let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
+        let found = contact(cast.first_contact().expect("an answer"));
+        assert_eq!(cast.verify(&found.proof), Ok([found.lower, found.upper]));
+        assert!((found.upper - meets).abs() < 1e-9, "{x}: {} {}", found.lower, found.upper);
+    }
+}

@@ -431,3 +431,42 @@ fn a_slanting_cube_is_met_to_rounding() {
         }
     }
 }
+
+#[test]
+fn what_meets_flush_has_close_bounds() {
+    // A cube comes down on a step, its faces in the planes of the step's: facets first lie in one plane, and cross
+    // soon after.
+    let block = |low: [f64; 3], high: [f64; 3]| {
+        let [x, y, z] = [0, 1, 2].map(|k| [low[k], high[k]]);
+        let corners = [0, 1, 2, 3, 4, 5, 6, 7usize];
+        let points = corners.map(|k| DVec3::new(x[k & 1], y[k >> 1 & 1], z[k >> 2]));
+        ConvexPolyhedron::from_points(&points).expect("a block")
+    };
+    let pieces = [block([0.0; 3], [3.0, 1.0, 1.0]), block([0.0, 1.0, 0.0], [1.0, 3.0, 1.0])];
+    let step = Solid::from_pieces(&pieces.map(|piece| Solid::from_convex(&piece).unwrap()));
+    let (step, cube) = (step.unwrap(), Solid::from_convex(&block([0.0; 3], [1.0; 3])).unwrap());
+    let (mut blocked, mut free) = (0, 0);
+    for k in 0..72_i32 {
+        let half = |n: i32| 0.5 * f64::from(n);
+        let from = DVec3::new(half(k % 9) - 1.5, 5.0, half(k / 9) - 1.5);
+        let start = Pose::from_translation(from).unwrap();
+        let down = Motion::slide(start, DVec3::new(0.0, -8.0, 0.0)).unwrap();
+        let cast = MotionCast::new(cube.along(&down), step.at(Pose::IDENTITY)).unwrap();
+        let linear = Cast::new(cube.at(start), step.at(Pose::IDENTITY), DVec3::NEG_Y).unwrap();
+        match (judged(&cast, [&down, &still()]), linear.clearance().unwrap().distance()) {
+            (MotionOutcome::Contact(found), Some(distance)) if distance.is_finite() => {
+                blocked += 1;
+                let width = found.upper - found.lower;
+                assert!(width < 4e-12, "{from} {width:e}");
+                assert!((8.0 * found.upper - distance).abs() < 1e-10, "{from}: {distance}");
+            }
+            (MotionOutcome::Free(_), None | Some(f64::INFINITY)) => free += 1,
+            // All sides of the cube lie in those of the upright part: no facet ever crosses another one.
+            (MotionOutcome::Grazing(found), Some(distance)) if from.x == 0.0 && from.z == 0.0 => {
+                assert!((8.0 * found.lower - distance).abs() < 1e-10, "{from}: {distance}");
+            }
+            (found, linear) => panic!("{from}: {found:?}, along a line {linear:?}"),
+        }
+    }
+    assert!(blocked > 10 && free > 20, "{blocked} {free}");
+}

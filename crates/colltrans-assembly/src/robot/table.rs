@@ -32,6 +32,11 @@ fn wrong(place: impl Into<String>, reason: impl Into<String>) -> TableError {
     TableError { place: place.into(), reason: reason.into() }
 }
 
+/// A name that stands there twice.
+fn twice(names: &[String]) -> Option<&String> {
+    (1..names.len()).find(|&k| names[..k].contains(&names[k])).map(|k| &names[k])
+}
+
 /// Names of a column of times.
 const TIMES: [&str; 3] = ["time", "t", "time_from_start"];
 
@@ -48,6 +53,9 @@ impl Table {
         };
         if table.rows.is_empty() {
             return Err(wrong("end of file", "there are no rows"));
+        }
+        if let Some(name) = table.names.as_deref().and_then(twice) {
+            return Err(wrong("names of columns", format!("`{name}` is there twice")));
         }
         Ok(table)
     }

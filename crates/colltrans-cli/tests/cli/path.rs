@@ -120,3 +120,16 @@ fn a_proof_is_checked_elsewhere() {
         "{text}"
     );
 }
+
+#[test]
+fn what_is_given_twice_is_refused() {
+    let (folder, [arm, rows, _]) = (folder(), files());
+    fs::write(folder.path().join("twice.csv"), "shoulder,elbow,elbow\n0,0,0\n").unwrap();
+    let said = stderr(&run(folder.path(), &["path", &arm, "twice.csv"]));
+    assert!(said.contains("twice.csv: names of columns: `elbow` is there twice"), "{said}");
+    let joints = ["path", &arm, &rows, "--joint", "reach=0.1", "--joint", "reach=0.2"];
+    let said = stderr(&run(folder.path(), &joints));
+    assert!(said.contains("--joint reach=0.2: this joint is there twice"), "{said}");
+    let said = stderr(&run(folder.path(), &["path", &arm, &rows, "--joint", "reach=nan"]));
+    assert!(said.contains("--joint reach=nan: not NAME=VALUE"), "{said}");
+}

@@ -151,6 +151,9 @@ impl Motion {
         }
         check("angular velocity", angular_velocity)?;
         check("center", center)?;
+        if flushed(angular_velocity) == DVec3::ZERO {
+            return Err(MotionError::Number { what: "angular velocity", vector: angular_velocity });
+        }
         let (axis, rate) = (unit(angular_velocity)?, angular_velocity.length());
         let arm = pose.translation() - center;
         Self::of(Piece { arm, axis, rate, velocity, ..Piece::resting(pose) })
@@ -309,7 +312,7 @@ fn arc_tangent(sine: f64, cosine: f64) -> f64 {
 
 fn unit(axis: DVec3) -> Result<DVec3, MotionError> {
     check("axis", axis)?;
-    if axis == DVec3::ZERO {
+    if flushed(axis) == DVec3::ZERO {
         return Err(MotionError::Number { what: "axis", vector: axis });
     }
     Ok(axis / axis.length())
@@ -403,6 +406,15 @@ impl TryFrom<Vec<PieceRecord>> for Motion {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn axes_too_short_to_have_a_direction_are_refused() {
+        let short = DVec3::new(0.0, 1e-170, 0.0);
+        assert!(Motion::turn(Pose::IDENTITY, DVec3::ZERO, short, 1.0).is_err());
+        assert!(Motion::thrown(Pose::IDENTITY, DVec3::ZERO, DVec3::X, short).is_err());
+        let long = DVec3::new(0.0, 1e-60, 0.0);
+        assert!(Motion::turn(Pose::IDENTITY, DVec3::ZERO, long, 1.0).is_ok());
+    }
 
     #[test]
     fn screws_between_poses_end_there() {

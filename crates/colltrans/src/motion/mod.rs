@@ -56,6 +56,7 @@ mod look;
 pub mod path;
 mod search;
 mod solid;
+mod soon;
 mod span;
 mod verify;
 

@@ -11,6 +11,7 @@ use super::super::answer::{Met, PlaneAt};
 use super::super::bend::Climbing;
 use super::super::course::Course;
 use super::super::look::ConvexLooker;
+use super::super::soon::{Seen, soon};
 use super::answer::{Cover, Step};
 use super::couple::Couple;
 use super::follow::{Fate, Pieces, Way};
@@ -21,6 +22,9 @@ use crate::body::ConvexPolyhedron;
 /// Steps of boxes are not smaller than such a share of their size.
 const SMALL: f64 = 0.25;
 
+/// Pairs of pieces that are looked at in one place, at most.
+const MOST_SEEN: usize = 1 << 14;
+
 /// What ends the search.
 #[derive(Debug)]
 pub(super) enum Stop {
@@ -30,6 +34,17 @@ pub(super) enum Stop {
     Blurred,
     /// Too many steps.
     Stalled,
+}
+
+impl Stop {
+    /// What is known where this is found at a place after what was found before, farther on: bodies that may meet
+    /// here do so no later than where others are proven to.
+    pub(super) fn after(self, before: Option<Self>) -> Self {
+        match (self, before) {
+            (Self::Blurred, Some(met @ Self::Met(..))) => met,
+            (stop, _) => stop,
+        }
+    }
 }
 
 /// A search between two bodies.
@@ -46,6 +61,54 @@ pub(super) struct Search<'p> {
 impl<'p> Search<'p> {
     pub(super) fn new(couple: &'p Couple<'p>, shapes: [&'p Shape<'p>; 2], until: Place) -> Self {
         Self { couple, shapes, looker: ConvexLooker::default(), stop: None, reached: until }
+    }
+
+    /// The first stop, by two pieces that are proven to meet soon after it where there are some.
+    pub(super) fn confirmed(mut self) -> Option<(Place, Stop)> {
+        let (until, stop) = self.stop.take()?;
+        let Place { row, share } = self.reached.settled();
+        let before = match &stop {
+            Stop::Stalled => return Some((until, stop)),
+            Stop::Met(place, ..) if place.row == row => place.share,
+            _ => 1.0,
+        };
+        if row >= self.couple.path.last() {
+            return Some((until, stop));
+        }
+        let found = soon(share, before, |share| self.seen(Place { row, share }));
+        Some(found.map_or((until, stop), |(share, (pieces, met))| {
+            let place = Place { row, share };
+            (place, Stop::Met(place, pieces, met))
+        }))
+    }
+
+    /// What the bodies are at one place.
+    fn seen(&mut self, place: Place) -> Seen<([usize; 2], Met)> {
+        let (mut stack, mut count, mut seen) = (vec![[0, 0]], 0, Seen::Apart);
+        while let Some(numbers) = stack.pop() {
+            count += 1;
+            if count > MOST_SEEN {
+                return Seen::Open;
+            }
+            self.looker.forget();
+            let pieces = self.pieces(numbers);
+            if pieces.plane(&mut self.looker, place).is_some() {
+                continue;
+            }
+            let Some(which) = which_to_part(self.shapes, numbers) else {
+                if let Some(met) = pieces.met(&mut self.looker, place) {
+                    return Seen::Met((numbers, met));
+                }
+                seen = Seen::Open;
+                continue;
+            };
+            stack.extend(self.shapes[which].parts(numbers[which]).into_iter().map(|part| {
+                let mut below = numbers;
+                below[which] = part;
+                below
+            }));
+        }
+        seen
     }
 
     /// From a place to another one, or to the first stop.
@@ -76,8 +139,10 @@ impl<'p> Search<'p> {
             Fate::Blurred => Some((reached, Stop::Blurred)),
             Fate::Stalled => Some((reached, Stop::Stalled)),
         };
-        if stop.is_some() {
-            (self.stop, self.reached) = (stop, self.reached.min_of(reached));
+        if let Some(stop) = stop {
+            let before = self.stop.take().map(|before| before.1);
+            self.stop = Some((stop.0, stop.1.after(before)));
+            self.reached = self.reached.min_of(reached);
         }
         Cover { steps: vec![Step::Planes(way.stretches)] }
     }

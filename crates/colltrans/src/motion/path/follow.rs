@@ -74,6 +74,12 @@ impl Pieces<'_> {
         look.is_apart().then_some(PlaneAt { time, normal, gap, alone: false })
     }
 
+    /// What proves that they meet at a place.
+    pub(super) fn met(&self, looker: &mut ConvexLooker, place: Place) -> Option<Met> {
+        let course = self.couple.course(self.pieces, place.row, [place.share; 2]);
+        looker.met(&course, place.share)
+    }
+
     /// From a place with a plane to one as far as gaps alone prove, if that is not before `least`: the plane there.
     pub(super) fn leap(
         &self,

@@ -196,16 +196,27 @@ impl<'a> PathCast<'a> {
             }
             let mut search = Search::new(&couple, self.shapes_of(k), until);
             proof.covers.push(search.cover([0, 0], Place::START, until));
-            steps.looks += search.looker.steps.looks;
-            steps.supports += search.looker.steps.supports;
-            match search.stop {
+            if search.stop.is_some() {
+                reached = reached.min_of(search.reached);
+            }
+            let looks = search.looker.steps;
+            let found = search.confirmed();
+            steps.looks += looks.looks;
+            steps.supports += looks.supports;
+            match found {
                 None => {}
                 Some((_, Stop::Stalled)) => {
                     return Err(query(QueryError::NotConverged { reason: Stalled::Motion }));
                 }
                 Some((place, stop)) => {
-                    (until, reached) = (place, reached.min_of(search.reached));
-                    stopped = Some((k, stop));
+                    until = place;
+                    stopped = Some(match stopped {
+                        Some((met, before)) => match stop {
+                            Stop::Blurred if matches!(before, Stop::Met(..)) => (met, before),
+                            stop => (k, stop),
+                        },
+                        None => (k, stop),
+                    });
                 }
             }
         }

@@ -4,24 +4,18 @@
 //! that tell.
 
 use super::super::look::Looker;
+use super::super::soon::Seen;
 use super::facets::{FacetLooker, FacetsMet};
 use super::search::{parted, split};
 use super::tree::Below;
 use super::window::{Frame, Part, Plane};
 
-/// What all facets do at a time.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Seen {
-    /// These two meet for certain.
-    Met([u32; 2], FacetsMet),
-    /// Some are not told apart.
-    Open,
-    /// All are apart.
-    Apart,
-}
-
 /// Looks through both trees.
-pub(super) fn seen(frame: &Frame, time: f64, looker: &mut FacetLooker) -> Seen {
+pub(super) fn seen(
+    frame: &Frame,
+    time: f64,
+    looker: &mut FacetLooker,
+) -> Seen<([u32; 2], FacetsMet)> {
     let trees = [frame.span.body(0), frame.span.body(1)];
     let snap = frame.snap(time);
     let mut all = Seen::Apart;
@@ -39,7 +33,7 @@ pub(super) fn seen(frame: &Frame, time: f64, looker: &mut FacetLooker) -> Seen {
         {
             let span = frame.span.part([f, g], [frame.span.from, frame.span.to]);
             if let Some(met) = looker.met(&span, time) {
-                return Seen::Met([s, t], met);
+                return Seen::Met(([s, t], met));
             }
             if !looker.look(&span, time).is_apart() {
                 all = Seen::Open;

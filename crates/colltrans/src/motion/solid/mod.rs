@@ -27,13 +27,14 @@ use self::facets::FacetLooker;
 pub use self::facets::FacetsMet;
 #[cfg(feature = "json")]
 pub use self::file::SolidMotionProofFile;
-use self::meeting::{Seen, seen};
+use self::meeting::seen;
 use self::proof::Written;
 pub use self::proof::{FacetsMeeting, MotionCover, SolidMotionProof, SpanProof};
 use self::search::{Found, Mode, Search};
 use self::tree::Tree;
 use self::window::Frame;
 use super::answer::{MotionContact, MotionFree, MotionOutcome, MotionSteps};
+use super::soon::soon;
 use super::span::{Span, spans};
 use super::verify::MotionProofError;
 use super::{Motion, MotionCast, Moving, usual_tolerance};
@@ -47,13 +48,6 @@ use crate::setting::{Setting, check_keep};
 use crate::solve::solid::nearest::{Spot, points_of, triangle};
 use crate::solve::solid::overlap;
 use crate::solve::solid::scene::Scene;
-
-/// How often a time after a contact is doubled, from so many roundings on, to find facets that cross.
-const BEYOND: i32 = 48;
-const FIRST: f64 = 4.0 * f64::EPSILON;
-
-/// How long after a contact facets that are apart are looked at further.
-const SOON: f64 = 1e-6;
 
 /// How often a proof up to a contact is tried, each time a little shorter.
 const MOST_CUTS: i32 = 40;
@@ -197,31 +191,16 @@ impl<'a> MotionCast<'a, Solid> {
         self.bodies().map(|solid| Tree::new(solid, 0.5 * tolerance))
     }
 
-    /// The same with two facets that meet for certain, if there are some soon after.
-    fn confirmed(span: &Span<Tree>, found: Found, steps: &mut MotionSteps) -> Found {
-        if found.met.is_some() {
-            return found;
-        }
+    /// The same with two facets that meet for certain, if there are some earlier than those found.
+    fn confirmed(span: &Span<Tree>, mut found: Found, steps: &mut MotionSteps) -> Found {
+        let before = found.met.map_or(span.to.next_up(), |(time, ..)| time);
         let (frame, mut looker) = (Frame::new(span), FacetLooker::default());
-        let (mut met, mut was_open) = (None, false);
-        for k in -1..BEYOND {
-            let more = if k < 0 { 0.0 } else { FIRST * 2.0_f64.powi(k) };
-            let time = found.lower + more;
-            if time > span.to {
-                break;
-            }
-            match seen(&frame, time, &mut looker) {
-                Seen::Met(pair, how) => {
-                    met = Some((time, pair, how));
-                    break;
-                }
-                Seen::Open => was_open = true,
-                Seen::Apart if was_open || more > SOON => break,
-                Seen::Apart => {}
-            }
+        let earlier = soon(found.lower, before, |time| seen(&frame, time, &mut looker));
+        if let Some((time, (pair, how))) = earlier {
+            found.met = Some((time, pair, how));
         }
         *steps += looker.steps;
-        Found { met, ..found }
+        found
     }
 
     /// The bodies at a time, as they are.

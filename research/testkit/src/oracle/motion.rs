@@ -5,8 +5,8 @@
 //! library is used but answers and vertices.
 //!
 //! - *Planes.* Each has the gap that is claimed of it, at its time.
-//! - *In between.* At times between two of them the plane between both, `(1 - x) n_a + x n_b`, or the one
-//!   that is to prove it alone, parts the bodies.
+//! - *In between.* At times between two of them the plane between both, `(1 - x) n_a + x n_b`, the first one as
+//!   the moving body carries it along, or the one that is to prove it alone, parts the bodies.
 //! - *Meeting.* All triangles of the surface that proves a depth have the origin below them, where the real
 //!   motion has the bodies: as they surround it where they were computed, they do on the way from there.
 
@@ -170,18 +170,23 @@ pub struct Spin {
     pub way: DVec3,
 }
 
-/// The vertices of a body where the real motion has them.
-fn placed(body: &ConvexPolyhedron, spin: &Spin, time: f64) -> Vec<Vector> {
-    let t = Fixed::new(time);
+/// How a body turns a vector in a span of time.
+fn turned_by(spin: &Spin, span: &Fixed) -> impl Fn(&Vector) -> Vector {
     let axis = vector(spin.axis);
     let length = dot(&axis, &axis).sqrt();
     let axis = axis.map(|x| x.over(&length));
-    let [sin, cos] = sin_cos(&(&Fixed::new(spin.angle) * &t));
-    let turned = |z: &Vector| {
+    let [sin, cos] = sin_cos(&(&Fixed::new(spin.angle) * span));
+    move |z| {
         let side = cross(&axis, z);
         let along = times(&axis, &(&dot(&axis, z) * &(Fixed::whole(1) - cos.clone())));
         plus(&plus(&times(z, &cos), &times(&side, &sin)), &along)
-    };
+    }
+}
+
+/// The vertices of a body where the real motion has them.
+fn placed(body: &ConvexPolyhedron, spin: &Spin, time: f64) -> Vec<Vector> {
+    let t = Fixed::new(time);
+    let turned = turned_by(spin, &t);
     let arm = vector(spin.arm);
     let base = minus(&plus(&vector(spin.start.translation()), &times(&vector(spin.way), &t)), &arm);
     let columns = [0, 1, 2].map(|k| vector(spin.start.matrix().col(k)));
@@ -267,8 +272,15 @@ impl Judge<'_> {
                 .over(&(Fixed::new(b.time) - Fixed::new(a.time)));
             let [n, m] = [a, b].map(|plane| vector(plane.normal));
             let mixed = plus(&n, &times(&minus(&m, &n), &x));
-            let normal = if a.alone { &n } else { &mixed };
-            if !self.parts(&self.places(time), normal, 0.0) {
+            let places = self.places(time);
+            let carried =
+                || turned_by(&self.spins[0], &(Fixed::new(time) - Fixed::new(a.time)))(&n);
+            let parts = if a.alone {
+                self.parts(&places, &n, 0.0)
+            } else {
+                self.parts(&places, &mixed, 0.0) || self.parts(&places, &carried(), 0.0)
+            };
+            if !parts {
                 return Err(Objection(format!("no plane parts the bodies at {time}")));
             }
         }

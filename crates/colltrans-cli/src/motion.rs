@@ -58,7 +58,7 @@ fn convex(
         return Err(Failure::new(Code::Usage, why));
     }
     tell(arguments, parts.iter().flatten().flat_map(|part| &part.notes));
-    let (found, proofs) = first_of_all(arguments, [&parts[0], &parts[1]], motions)?;
+    let (found, proofs) = first_of_all(arguments, files, [&parts[0], &parts[1]], motions)?;
     let Found { mut told, pair } = found;
     let name =
         |k: usize| Some(files[k][pair[k]].display().to_string()).filter(|_| files[k].len() > 1);
@@ -128,10 +128,13 @@ struct Found {
 /// all, where they are to be kept.
 fn first_of_all(
     arguments: &MotionArguments,
+    files: [&[PathBuf]; 2],
     parts: [&[Part]; 2],
     motions: &[Motion; 2],
 ) -> Result<(Found, Vec<MotionProofFile>), Failure> {
     let (mut first, mut proofs): (Option<Found>, _) = (None, Vec::new());
+    // When two are first proven to meet.
+    let mut meets: Option<(f64, [usize; 2])> = None;
     for (i, moving) in parts[0].iter().enumerate() {
         for (j, fixed) in parts[1].iter().enumerate() {
             let cast =
@@ -148,13 +151,25 @@ fn first_of_all(
                 proofs.push(MotionProofFile::of(&cast, &outcome));
             }
             let found = Found { told, pair: [i, j] };
+            let upper = found.told.record.time.and_then(|time| time.upper);
+            if let Some(upper) = upper.filter(|upper| meets.is_none_or(|least| *upper < least.0)) {
+                meets = Some((upper, [i, j]));
+            }
             if first.as_ref().is_none_or(|first| found.begins() < first.begins()) {
                 first = Some(found);
             }
         }
     }
     // The command line has asked for at least one on each side.
-    let first = first.ok_or_else(|| Failure::new(Code::Usage, "no meshes"))?;
+    let mut first = first.ok_or_else(|| Failure::new(Code::Usage, "no meshes"))?;
+    if let (Ending::Grazing, Some((upper, [i, j]))) = (first.told.record.outcome, meets) {
+        // Two that come near each other hide none that meet later.
+        let [moving, fixed] = [&files[0][i], &files[1][j]].map(|file| file.display());
+        note(&format!("{moving} and {fixed} are proven to meet by {}", number(upper)));
+        if let Some(time) = &mut first.told.record.time {
+            time.upper = Some(upper);
+        }
+    }
     Ok((first, proofs))
 }
 
@@ -183,7 +198,13 @@ pub(crate) fn words(told: &Line, motions: [&Motion; 2]) -> String {
         }
     }
     if let Some(time) = record.time {
-        times(&mut text, time);
+        match time {
+            TimeRecord { lower, upper: Some(upper) } if record.outcome == Ending::Grazing => {
+                line(&mut text, "no earlier", &number(lower));
+                line(&mut text, "no later", &format!("{}, when others meet", number(upper)));
+            }
+            _ => times(&mut text, time),
+        }
         if let Some(TimeRecord { lower, upper }) = record.shrunk_time {
             let upper = upper.map_or("not proven".into(), number);
             line(

@@ -82,8 +82,15 @@ impl Asked {
             for text in &notes {
                 note(&format!("{}: {text}", file.display()));
             }
-            let name = file.file_stem().unwrap_or(file.as_os_str()).to_string_lossy();
-            scene.push((name.into_owned(), body));
+            let stem =
+                |file: &Path| file.file_stem().map(|stem| stem.to_string_lossy().into_owned());
+            let name = stem(file).filter(|name| {
+                let alike =
+                    arguments.scene.iter().filter(|other| stem(other).as_ref() == Some(name));
+                alike.count() == 1 && robot.link(name).is_err()
+            });
+            // Where that names something else, too, a body is called as it was given.
+            scene.push((name.unwrap_or_else(|| file.display().to_string()), body));
         }
         let listed = arguments.srdf.as_deref().map(read::disabled).transpose();
         let listed = listed.map_err(|e| input(&e))?;

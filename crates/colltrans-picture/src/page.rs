@@ -357,7 +357,7 @@ mod tests {
             page.body
         };
         // Out and in again at the right, 20 beyond the frame.
-        let bend = [10.0, 90.0, 150.0, 95.0].map(|x| DVec2::new(x, 20.0 + x / 10.0));
+        let bend = [[10.0, 21.0], [90.0, 29.0], [150.0, 35.0], [95.0, 60.0]].map(DVec2::from_array);
         let inside = drawn(&bend[..2]);
         assert!(inside.contains(r#"stroke-dasharray="5 4""#) && inside.matches('M').count() == 1);
         let cut = drawn(&bend);

@@ -91,7 +91,11 @@ impl Stuck {
                 } else {
                     format!(", and {} more pairs", rest.len())
                 };
-                format!("{} and {} overlap with this tolerance{more}", name(*a), name(*b))
+                format!(
+                    "{} and {} overlap with this tolerance{more}, and parts that overlap move as one",
+                    name(*a),
+                    name(*b)
+                )
             }
         };
         text.push_str(&self.moves.words());

@@ -74,10 +74,8 @@ pub(super) fn search(
     }
     let legs = options.legs;
     if !anything_moves(bodies, left, matrix) {
-        let mut searched = Searched::default();
-        (searched.directions, searched.places) = (matrix.directions().len(), 1);
-        searched.complete = true;
-        return Ok(Err(Moves::NotFound { legs, searched }));
+        let why = "nothing can go by 2 % of the largest part along the directions asked";
+        return Ok(Err(Moves::NotAsked(why)));
     }
     let parts = bodies.assembly().parts();
     let placed: Vec<_> = left.iter().map(|&k| parts[k].solid().at(Pose::IDENTITY)).collect();

@@ -29,13 +29,19 @@ impl Cell {
     /// [`Robot::pairs`] says.
     ///
     /// # Errors
-    /// A listed name that no link has.
+    /// A listed name that no link has; two things of one name.
     pub fn new(
         robot: Robot,
         scene: Vec<(String, AnyBody)>,
         listed: Option<&[[String; 2]]>,
     ) -> Result<Self, RobotError> {
         let (scene_names, scene): (Vec<String>, Vec<AnyBody>) = scene.into_iter().unzip();
+        let links = robot.links().iter().map(|link| &link.name);
+        let around: Vec<&String> = links.chain(&scene_names).collect();
+        let is_twice = |k: &usize| around[..*k].contains(&around[*k]);
+        if let Some(k) = (0..around.len()).find(is_twice) {
+            return Err(RobotError::Twice { name: around[k].clone() });
+        }
         let things = Things::of(&robot, scene_names);
         let mut notes = Vec::new();
         let pairs = things.pairs(&robot, listed, &mut notes)?;

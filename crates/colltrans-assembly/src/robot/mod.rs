@@ -120,6 +120,12 @@ pub enum RobotError {
         /// All that there are.
         joints: String,
     },
+    /// Two things have one name.
+    #[error("two links or bodies around are called {name}")]
+    Twice {
+        /// Which.
+        name: String,
+    },
     /// Nothing has a name.
     #[error("there is no {name} among {known}")]
     Unknown {

@@ -179,7 +179,8 @@ With --json one object:
   free_share       [at least, at most]: the share of all directions that is free, from 0 to 1
   undecided_share  at most that share is not known
   regions          [{\"share\", \"center\": [x,y,z], \"corners\": [[x,y,z],...], \"pieces\"}]: connected
-                   regions, the largest first; pieces are convex polygons that together are it
+                   regions, the largest first; pieces are convex polygons that together are it; as
+                   arcs and points, absent where there are none
   arcs points      directions with no region beside them: [[from, to],...], [[x,y,z],...]
   also_free        free directions among what is undecided, found by casts: [[x,y,z],...]
   blocked_by       [{\"moving\", \"fixed\", \"share\"}] of several files: what was found to block, at least

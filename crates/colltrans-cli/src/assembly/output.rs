@@ -156,10 +156,10 @@ fn summary(f: &Findings) -> String {
     }
     for stuck in &f.plan.stuck {
         let because = shown(stuck.because(f.bodies));
-        let head = if stuck.proven.is_some() {
-            "stuck along all directions, proven"
-        } else {
-            "stuck along the directions asked"
+        let head = match (stuck.proven, &stuck.overlapping[..]) {
+            (Some(_), []) => "stuck along all directions, proven",
+            (Some(_), _) => "stuck along all directions, proven of what overlaps as one",
+            (None, _) => "stuck along the directions asked",
         };
         let _ = writeln!(text, "{head}\n  {}: {because}", names(&stuck.parts));
     }

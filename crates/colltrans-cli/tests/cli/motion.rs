@@ -290,3 +290,34 @@ fn help_has_what_is_asked_before_what_moves() {
     assert!(at("--keep") < at("What the moving mesh does (angles in degrees)"));
     assert!(at("--fixed-turn") < at("Where the meshes are"));
 }
+
+#[test]
+fn what_grazes_hides_nothing_that_is_met_later() {
+    let folder = folder();
+    let cuboid = |name: &str, low: [f64; 3], high: [f64; 3]| {
+        let corner = |k: usize, j: usize| if k >> j & 1 == 0 { low[j] } else { high[j] };
+        let lines =
+            (0..8).map(|k| format!("v {} {} {}\n", corner(k, 0), corner(k, 1), corner(k, 2)));
+        let faces = "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+        fs::write(folder.path().join(name), lines.collect::<String>() + faces).unwrap();
+    };
+    cuboid("cube.obj", [-1.0, -1.0, 0.0], [1.0, 1.0, 2.0]);
+    cuboid("floor.obj", [-9.0, -9.0, -1.0], [9.0, 9.0, 0.0]);
+    cuboid("wall.obj", [1.25, -9.0, 0.5], [2.0, 9.0, 3.0]);
+    let ask = |more: &[&'static str]| {
+        let turn = ["motion", "cube.obj", "--turn", "0,0,0", "z", "90", "--from"];
+        run(folder.path(), &[&turn[..], more].concat())
+    };
+    let told = |more: &[&'static str]| -> Value {
+        serde_json::from_slice(&ask(more).stdout).expect("an answer")
+    };
+    let wall = told(&["wall.obj", "--json"]);
+    let both = told(&["floor.obj", "wall.obj", "--json"]);
+    assert_eq!((&wall["outcome"], &both["outcome"]), (&json!("contact"), &json!("grazing")));
+    assert_eq!((&both["fixed"], &both["time"]["lower"]), (&json!("floor.obj"), &json!(0.0)));
+    assert_eq!(both["time"]["upper"], wall["time"]["upper"]);
+    let output = ask(&["floor.obj", "wall.obj"]);
+    assert!(stderr(&output).contains("cube.obj and wall.obj are proven to meet by"));
+    let told = String::from_utf8(output.stdout).unwrap();
+    assert!(told.contains("\n  no earlier   0\n  no later     "), "{told}");
+}

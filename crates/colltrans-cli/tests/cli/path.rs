@@ -133,3 +133,21 @@ fn what_is_given_twice_is_refused() {
     let said = stderr(&run(folder.path(), &["path", &arm, &rows, "--joint", "reach=nan"]));
     assert!(said.contains("--joint reach=nan: not NAME=VALUE"), "{said}");
 }
+
+#[test]
+fn bodies_of_one_name_are_told_apart() {
+    let (folder, [arm, rows, wire]) = (folder(), files());
+    fs::create_dir(folder.path().join("far")).unwrap();
+    let far = fs::read_to_string(&wire).unwrap().replace("v ", "v 9");
+    fs::write(folder.path().join("far/wire.obj"), far).unwrap();
+    fs::copy(&wire, folder.path().join("tool.obj")).unwrap();
+    let two = ["path", &arm, &rows, "far/wire.obj", &wire, "--json"];
+    let told = read(&answered(folder.path(), &two));
+    assert_eq!(told["pair"], json!(["tool", wire]));
+    let link = read(&answered(folder.path(), &["path", &arm, &rows, "tool.obj", "--json"]));
+    assert_eq!(link["pair"], json!(["tool", "tool.obj"]));
+    let ignored = ["path", &arm, &rows, "tool.obj", "--ignore", "tool,tool.obj", "--json"];
+    assert_eq!(read(&answered(folder.path(), &ignored))["outcome"], "free");
+    let same = stderr(&run(folder.path(), &["path", &arm, &rows, "tool.obj", "tool.obj"]));
+    assert!(same.contains("two links or bodies around are called tool.obj"), "{same}");
+}

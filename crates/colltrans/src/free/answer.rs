@@ -54,7 +54,7 @@ pub struct FreePiece {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FreeArc {
-    /// Its ends.
+    /// Its ends, exact but for their last roundings: as they are they may lie just beside it, and be blocked.
     pub ends: [DVec3; 2],
 }
 
@@ -62,7 +62,7 @@ pub struct FreeArc {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FreePoint {
-    /// The direction, exact but for its last roundings.
+    /// The direction, exact but for its last roundings: as it is it may lie just beside the free one, and be blocked.
     pub direction: DVec3,
 }
 

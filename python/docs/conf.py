@@ -33,6 +33,7 @@ def copy_pages() -> None:
     target = HERE / "pages"
     shutil.rmtree(target, ignore_errors=True)
     target.mkdir()
+    shutil.copytree(ROOT / "docs" / "figures", target / "figures")
     for file in (ROOT / "docs").iterdir():
         if file.suffix == ".svg":
             shutil.copy(file, target)

@@ -33,6 +33,8 @@ const engine = new Engine();
 
 class Page {
   private state: State = fromHash(location.hash);
+  /** The address that the state is of. */
+  private address = location.hash;
   private answer: PageCast | undefined;
   private error: string | undefined;
   private took = 0;
@@ -188,12 +190,19 @@ class Page {
     this.remember();
   }
 
+  private write() {
+    history.replaceState(null, "", toHash(this.state));
+    this.address = location.hash;
+  }
+
   private readonly remember = (() => {
     let timer = 0;
     return () => {
       clearTimeout(timer);
       timer = window.setTimeout(() => {
-        history.replaceState(null, "", toHash(this.state));
+        // Another address than ours: somebody has followed a link, of which the event is to come.
+        if (location.hash !== this.address) return;
+        this.write();
         this.showExample();
       }, 250);
     };
@@ -493,6 +502,7 @@ class Page {
     });
     onChange(() => this.themed());
     addEventListener("hashchange", () => {
+      this.address = location.hash;
       if (location.hash === toHash(this.state)) return;
       this.state = fromHash(location.hash);
       this.showExample();
@@ -615,7 +625,7 @@ class Page {
 
   private async copy(asked: string | undefined, what: string) {
     // The address follows the question a little later.
-    history.replaceState(null, "", toHash(this.state));
+    this.write();
     const text = asked ?? location.href;
     try {
       await navigator.clipboard.writeText(text);

@@ -22,6 +22,23 @@ export function answers(name, questions) {
   return execFileSync(program(name), { input: questions.join("\n"), encoding: "utf8", maxBuffer: 1 << 28 }).trim().split("\n");
 }
 
+/** The same questions, some with a file of data/, to a page's engine and to a program; as they agree to the bit, their answers. */
+export async function agreed(page, engine, name, questions) {
+  const native = answers(name, questions.map(({ file, question }) =>
+    (file ? `${join(data, file)}\t` : "") + JSON.stringify(question)));
+  const seen = await page.evaluate(async ([engine, questions]) => {
+    const asked = new (window.colltrans.probe().engine.constructor)(engine);
+    const texts = [];
+    for (const { file, question } of questions) {
+      const bytes = file ? await (await fetch(`data/${file}`)).arrayBuffer() : undefined;
+      texts.push((await asked.ask(question, bytes)).text);
+    }
+    return texts;
+  }, [engine, questions]);
+  assert.deepEqual(seen, native);
+  return seen;
+}
+
 const schema = new Ajv2020({ strict: false, allErrors: true });
 schema.addSchema(JSON.parse(readFileSync(join(root, "docs/answers.schema.json"), "utf8")), "answers");
 

@@ -2,9 +2,8 @@
 // build` before, and the example `native_distance`.
 
 import assert from "node:assert/strict";
-import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { answers as nativeAnswers, conform, data, draws, site } from "../browser.mjs";
+import { agreed, conform, draws, site } from "../browser.mjs";
 
 let at, page;
 before(async () => {
@@ -63,18 +62,7 @@ test("its answers are the native ones, bit for bit, and as the schema says", asy
       questions.push({ question: { do: "distance", moving_pose: place(), fixed_pose: [0, 0, 0, ...turn()] } });
     }
   }
-  const native = nativeAnswers("native_distance", questions.map(({ file, question }) =>
-    (file ? `${join(data, file)}\t` : "") + JSON.stringify(question)));
-  const seen = await page.evaluate(async (questions) => {
-    const engine = new (window.colltrans.probe().engine.constructor)("colltrans_distance");
-    const texts = [];
-    for (const { file, question } of questions) {
-      const bytes = file ? await (await fetch(`data/${file}`)).arrayBuffer() : undefined;
-      texts.push((await engine.ask(question, bytes)).text);
-    }
-    return texts;
-  }, questions);
-  assert.deepEqual(seen, native);
+  const seen = await agreed(page, "colltrans_distance", "native_distance", questions);
   const outcomes = new Set();
   seen.forEach((text, k) => {
     const told = JSON.parse(text);

@@ -4,7 +4,7 @@
 import assert from "node:assert/strict";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { answers as nativeAnswers, conform, data, draws, site } from "../browser.mjs";
+import { agreed, conform, draws, site } from "../browser.mjs";
 
 let at, page;
 before(async () => {
@@ -202,18 +202,7 @@ test("its answers are the native ones, bit for bit, and as the schema says", asy
       if (k % 3 === 0) questions.push({ question: { do: "prove", ...asked } });
     }
   }
-  const native = nativeAnswers("native_motion", questions.map(({ file, question }) =>
-    (file ? `${join(data, file)}\t` : "") + JSON.stringify(question)));
-  const seen = await page.evaluate(async (questions) => {
-    const engine = new (window.colltrans.probe().engine.constructor)("colltrans_motion");
-    const texts = [];
-    for (const { file, question } of questions) {
-      const bytes = file ? await (await fetch(`data/${file}`)).arrayBuffer() : undefined;
-      texts.push((await engine.ask(question, bytes)).text);
-    }
-    return texts;
-  }, questions);
-  assert.deepEqual(seen, native);
+  const seen = await agreed(page, "colltrans_motion", "native_motion", questions);
   const outcomes = new Set();
   seen.forEach((text, k) => {
     const told = JSON.parse(text);

@@ -181,6 +181,29 @@ class Table(Generic[Answer_co]):
 
 
 @dataclass(frozen=True, eq=False, repr=False)
+class TimeColumns(Table[Answer_co]):
+    """Answers about times as columns; see :class:`Table`.
+
+    Attributes
+    ----------
+    lower, upper : ndarray of shape (N,)
+        Of contacts, proven bounds of their times: nothing meets before the first, and what stops
+        the motion does at the second.
+    """
+
+    lower: Floats
+    upper: Floats
+
+    def _is_row(self, answer: Any, i: int) -> bool:
+        if answer is None:
+            return False
+        told = answer.to_dict()
+        found = [told.get("time", {}).get(name, np.nan) for name in ("lower", "upper")]
+        same = np.array_equal([self.lower[i], self.upper[i]], found, equal_nan=True)
+        return same and self.outcomes[self.outcome[i]] == told["outcome"]
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Columns(Table[Answer_co]):
     """Answers about convex bodies as columns; see :class:`Table`.
 

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from colltrans import _arrays, _colltrans
 from colltrans._colltrans import FirstContact, Motion
-from colltrans.columns import Table
+from colltrans.columns import TimeColumns
 from colltrans.errors import InputError
 from colltrans.queries import (
     AnyBodies,
@@ -91,7 +91,7 @@ def one_of(motions: list[Motion] | Floats, poses: Floats, i: int) -> Motion:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MotionColumns(Table[FirstContact]):
+class MotionColumns(TimeColumns[FirstContact]):
     """The answers of :func:`motion_many`; see :class:`Table`.
 
     Attributes
@@ -105,20 +105,10 @@ class MotionColumns(Table[FirstContact]):
         Contact points on the fixed body, in the world.
     """
 
-    lower: Floats
-    upper: Floats
     normal: Floats
     point: Floats
 
     _question = staticmethod(_colltrans.first_contact)
-
-    def _is_row(self, answer: Any, i: int) -> bool:
-        if answer is None:
-            return False
-        told = answer.to_dict()
-        found = [told.get("time", {}).get(name, np.nan) for name in ("lower", "upper")]
-        same = np.array_equal([self.lower[i], self.upper[i]], found, equal_nan=True)
-        return same and self.outcomes[self.outcome[i]] == told["outcome"]
 
 
 def motion_many(

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from colltrans import _colltrans
 from colltrans._colltrans import ConvexPolyhedron, PathContact, Robot, Solid
-from colltrans.columns import Table
+from colltrans.columns import TimeColumns
 from colltrans.errors import InputError
 from colltrans.queries import Floats, checked_threads
 
@@ -61,7 +61,7 @@ class PathQueries:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PathColumns(Table[PathContact]):
+class PathColumns(TimeColumns[PathContact]):
     """The answers of :func:`path_many`; see :class:`Table`.
 
     Attributes
@@ -83,8 +83,6 @@ class PathColumns(Table[PathContact]):
         The names of all bodies: of their links, then of what stands around.
     """
 
-    lower: Floats
-    upper: Floats
     row: NDArray[np.int64]
     share: Floats
     first: NDArray[np.int64]
@@ -94,14 +92,6 @@ class PathColumns(Table[PathContact]):
     bodies: tuple[str, ...]
 
     _question = staticmethod(Robot.first_contact)
-
-    def _is_row(self, answer: Any, i: int) -> bool:
-        if answer is None:
-            return False
-        told = answer.to_dict()
-        found = [told.get("time", {}).get(name, np.nan) for name in ("lower", "upper")]
-        same = np.array_equal([self.lower[i], self.upper[i]], found, equal_nan=True)
-        return same and self.outcomes[self.outcome[i]] == told["outcome"]
 
 
 def path_many(

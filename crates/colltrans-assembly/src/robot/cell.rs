@@ -3,6 +3,7 @@
 use colltrans::motion::path::{JointPath, PathBody, PathCast, PathError};
 use colltrans::{AnyBody, Pose};
 
+use super::table::twice;
 use super::{Robot, RobotError};
 
 /// A robot among bodies that stand in the world.
@@ -38,9 +39,8 @@ impl Cell {
         let (scene_names, scene): (Vec<String>, Vec<AnyBody>) = scene.into_iter().unzip();
         let links = robot.links().iter().map(|link| &link.name);
         let around: Vec<&String> = links.chain(&scene_names).collect();
-        let is_twice = |k: &usize| around[..*k].contains(&around[*k]);
-        if let Some(k) = (0..around.len()).find(is_twice) {
-            return Err(RobotError::Twice { name: around[k].clone() });
+        if let Some(name) = twice(&around) {
+            return Err(RobotError::Twice { name: (*name).clone() });
         }
         let things = Things::of(&robot, scene_names);
         let mut notes = Vec::new();

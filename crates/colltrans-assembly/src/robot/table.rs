@@ -33,7 +33,7 @@ fn wrong(place: impl Into<String>, reason: impl Into<String>) -> TableError {
 }
 
 /// A name that stands there twice.
-fn twice(names: &[String]) -> Option<&String> {
+pub(super) fn twice<T: PartialEq>(names: &[T]) -> Option<&T> {
     (1..names.len()).find(|&k| names[..k].contains(&names[k])).map(|k| &names[k])
 }
 

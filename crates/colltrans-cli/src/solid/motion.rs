@@ -27,14 +27,13 @@ impl PartsMotion<'_> {
     pub(crate) fn ask(&self) -> Result<Record, QueryError> {
         let cast = self.cast()?;
         let mut record = if self.ignore_start_overlaps {
-            let cast = cast.clone().with_start_overlap(StartOverlap::Ignore);
-            Record::of_solid_motion_clearance(&cast.clearance()?, &cast)
+            let cast = cast.with_start_overlap(StartOverlap::Ignore);
+            let mut record = Record::of_solid_motion_clearance(&cast.clearance()?, &cast);
+            record.start_overlaps = self.start().overlaps(cast.tolerance(), || ())?;
+            record
         } else {
             Record::of_solid_motion(&cast.first_contact()?, &cast)
         };
-        if self.ignore_start_overlaps {
-            record.start_overlaps = self.start().overlaps(cast.tolerance(), || ())?;
-        }
         if let Some(FeaturesRecord { moving, fixed }) = &mut record.features {
             record.moving = Some(self.bodies[0].renumber(moving));
             record.fixed = Some(self.bodies[1].renumber(fixed));

@@ -104,7 +104,7 @@ impl Motion {
         way: DVec3,
     ) -> Result<Self, MotionError> {
         let is_unit = (axis.length() - 1.0).abs() <= noise::UNIT_VECTOR;
-        let axis = if is_unit { axis } else { unit(axis)? };
+        let axis = if is_unit { axis } else { unit("axis", axis)? };
         Self::of(Piece { arm, axis, rate: angle, velocity: way, ..Piece::resting(pose) })
     }
 
@@ -128,7 +128,7 @@ impl Motion {
         angle: f64,
         rise: f64,
     ) -> Result<Self, MotionError> {
-        let axis = unit(axis)?;
+        let axis = unit("axis", axis)?;
         check("point", point)?;
         let arm = pose.translation() - point;
         Self::of(Piece { arm, axis, rate: angle, velocity: axis * rise, ..Piece::resting(pose) })
@@ -149,12 +149,9 @@ impl Motion {
         if angular_velocity == DVec3::ZERO {
             return Self::slide(pose, velocity);
         }
-        check("angular velocity", angular_velocity)?;
         check("center", center)?;
-        if flushed(angular_velocity) == DVec3::ZERO {
-            return Err(MotionError::Number { what: "angular velocity", vector: angular_velocity });
-        }
-        let (axis, rate) = (unit(angular_velocity)?, angular_velocity.length());
+        let axis = unit("angular velocity", angular_velocity)?;
+        let rate = angular_velocity.length();
         let arm = pose.translation() - center;
         Self::of(Piece { arm, axis, rate, velocity, ..Piece::resting(pose) })
     }
@@ -310,12 +307,13 @@ fn arc_tangent(sine: f64, cosine: f64) -> f64 {
     angle
 }
 
-fn unit(axis: DVec3) -> Result<DVec3, MotionError> {
-    check("axis", axis)?;
-    if flushed(axis) == DVec3::ZERO {
-        return Err(MotionError::Number { what: "axis", vector: axis });
+/// The direction of a vector.
+fn unit(what: &'static str, vector: DVec3) -> Result<DVec3, MotionError> {
+    check(what, vector)?;
+    if flushed(vector) == DVec3::ZERO {
+        return Err(MotionError::Number { what, vector });
     }
-    Ok(axis / axis.length())
+    Ok(vector / vector.length())
 }
 
 fn check(what: &'static str, vector: DVec3) -> Result<(), MotionError> {

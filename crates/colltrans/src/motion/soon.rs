@@ -11,7 +11,7 @@ const FIRST: f64 = 4.0 * f64::EPSILON;
 /// How long after a stop bodies that are apart are looked at further.
 const SOON: f64 = 1e-6;
 
-/// Bounds on when they meet that are closer than this are not halved.
+/// Bounds on when they meet that are closer than this are close enough.
 const CLOSE: f64 = 1e-12;
 
 /// What bodies are at a time.
@@ -23,12 +23,17 @@ pub(super) enum Seen<M> {
     Met(M),
 }
 
-/// The first time found, from one on and before another one, at which they meet.
+/// The first time found, from one on, at which they meet: before that at which they are known to, or else before the end.
 pub(super) fn soon<M>(
     from: f64,
-    before: f64,
+    known: Option<f64>,
+    end: f64,
     mut seen: impl FnMut(f64) -> Seen<M>,
 ) -> Option<(f64, M)> {
+    if known.is_some_and(|met| met - from <= CLOSE) {
+        return None;
+    }
+    let before = known.unwrap_or(end);
     let (mut last, mut was_open) = (from, false);
     let mut found = None;
     for k in -1..BEYOND {

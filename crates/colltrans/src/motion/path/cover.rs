@@ -37,13 +37,10 @@ pub(super) enum Stop {
 }
 
 impl Stop {
-    /// What is known where this is found at a place after what was found before, farther on: bodies that may meet
-    /// here do so no later than where others are proven to.
-    pub(super) fn after(self, before: Option<Self>) -> Self {
-        match (self, before) {
-            (Self::Blurred, Some(met @ Self::Met(..))) => met,
-            (stop, _) => stop,
-        }
+    /// Whether this, found at a place before that of another stop, takes its place: but bodies that may meet here do so no
+    /// later than where others are proven to.
+    pub(super) fn tells_more(&self, before: &Self) -> bool {
+        !matches!((self, before), (Self::Blurred, Self::Met(..)))
     }
 }
 
@@ -64,18 +61,18 @@ impl<'p> Search<'p> {
     }
 
     /// The first stop, by two pieces that are proven to meet soon after it where there are some.
-    pub(super) fn confirmed(mut self) -> Option<(Place, Stop)> {
+    pub(super) fn confirmed(&mut self) -> Option<(Place, Stop)> {
         let (until, stop) = self.stop.take()?;
         let Place { row, share } = self.reached.settled();
-        let before = match &stop {
+        let known = match &stop {
             Stop::Stalled => return Some((until, stop)),
-            Stop::Met(place, ..) if place.row == row => place.share,
-            _ => 1.0,
+            Stop::Met(place, ..) if place.row == row => Some(place.share),
+            _ => None,
         };
         if row >= self.couple.path.last() {
             return Some((until, stop));
         }
-        let found = soon(share, before, |share| self.seen(Place { row, share }));
+        let found = soon(share, known, 1.0, |share| self.seen(Place { row, share }));
         Some(found.map_or((until, stop), |(share, (pieces, met))| {
             let place = Place { row, share };
             (place, Stop::Met(place, pieces, met))
@@ -139,9 +136,10 @@ impl<'p> Search<'p> {
             Fate::Blurred => Some((reached, Stop::Blurred)),
             Fate::Stalled => Some((reached, Stop::Stalled)),
         };
-        if let Some(stop) = stop {
-            let before = self.stop.take().map(|before| before.1);
-            self.stop = Some((stop.0, stop.1.after(before)));
+        if let Some((place, stop)) = stop {
+            let before = self.stop.take().map(|(_, before)| before);
+            let stop = before.filter(|before| !stop.tells_more(before)).unwrap_or(stop);
+            self.stop = Some((place, stop));
             self.reached = self.reached.min_of(reached);
         }
         Cover { steps: vec![Step::Planes(way.stretches)] }

@@ -199,10 +199,8 @@ impl<'a> PathCast<'a> {
             if search.stop.is_some() {
                 reached = reached.min_of(search.reached);
             }
-            let looks = search.looker.steps;
             let found = search.confirmed();
-            steps.looks += looks.looks;
-            steps.supports += looks.supports;
+            steps += search.looker.steps;
             match found {
                 None => {}
                 Some((_, Stop::Stalled)) => {
@@ -210,13 +208,9 @@ impl<'a> PathCast<'a> {
                 }
                 Some((place, stop)) => {
                     until = place;
-                    stopped = Some(match stopped {
-                        Some((met, before)) => match stop {
-                            Stop::Blurred if matches!(before, Stop::Met(..)) => (met, before),
-                            stop => (k, stop),
-                        },
-                        None => (k, stop),
-                    });
+                    if stopped.as_ref().is_none_or(|(_, before)| stop.tells_more(before)) {
+                        stopped = Some((k, stop));
+                    }
                 }
             }
         }

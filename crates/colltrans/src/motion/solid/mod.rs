@@ -193,9 +193,10 @@ impl<'a> MotionCast<'a, Solid> {
 
     /// The same with two facets that meet for certain, if there are some earlier than those found.
     fn confirmed(span: &Span<Tree>, mut found: Found, steps: &mut MotionSteps) -> Found {
-        let before = found.met.map_or(span.to.next_up(), |(time, ..)| time);
+        let known = found.met.map(|(time, ..)| time);
         let (frame, mut looker) = (Frame::new(span), FacetLooker::default());
-        let earlier = soon(found.lower, before, |time| seen(&frame, time, &mut looker));
+        let seen = |time| seen(&frame, time, &mut looker);
+        let earlier = soon(found.lower, known, span.to.next_up(), seen);
         if let Some((time, (pair, how))) = earlier {
             found.met = Some((time, pair, how));
         }

@@ -264,6 +264,100 @@ fn what_rests_may_turn_leave_and_not_sink() {
     }
 }
 
+/// By the least of all ways out: along normals of faces and across pairs of edges. Negative where bodies are apart.
+fn depth_by_all_axes(bodies: [(&ConvexPolyhedron, Pose); 2]) -> f64 {
+    let placed = bodies.map(|(body, pose)| {
+        let vertices: Vec<DVec3> =
+            body.vertices().iter().map(|v| pose.transform_point(*v)).collect();
+        let faces: Vec<Vec<DVec3>> = (0..body.face_count() as u32)
+            .map(|f| body.face_vertices(f).map(|v| vertices[v as usize]).collect())
+            .collect();
+        let normal = |f: &Vec<DVec3>| (f[1] - f[0]).cross(f[2] - f[0]).normalize();
+        let normals: Vec<DVec3> = faces.iter().map(normal).collect();
+        let edges = faces.iter().flat_map(|f| (0..f.len()).map(|k| f[(k + 1) % f.len()] - f[k]));
+        (vertices, normals, edges.collect::<Vec<_>>())
+    });
+    let [(p, own, along), (q, other, across)] = &placed;
+    let crossed = along.iter().flat_map(|e| across.iter().map(|f| e.cross(*f).normalize_or_zero()));
+    let axes = own.iter().copied().chain(other.iter().copied()).chain(crossed);
+    let out = |n: DVec3| {
+        let high = p.iter().map(|v| n.dot(*v)).fold(f64::NEG_INFINITY, f64::max);
+        high - q.iter().map(|v| n.dot(*v)).fold(f64::INFINITY, f64::min)
+    };
+    let ways = axes.filter(|n| n.length_squared() > 0.5).flat_map(|n| [out(n), out(-n)]);
+    ways.fold(f64::INFINITY, f64::min)
+}
+
+#[test]
+fn the_shallowest_way_out_may_change() {
+    // A block stands 1/10 deep in a table, 9/10 of it above it; it is drawn off and sinks meanwhile.
+    let (block, table) = (cuboid([0.5; 3]), cuboid([5.0, 5.0, 1.0]));
+    let still = Motion::still(at(-4.6, 0.0, -1.4));
+    for (by, free) in [([0.85, 0.0, -0.1], true), ([0.8, 0.0, -0.3], false)] {
+        let by = DVec3::from_array(by);
+        let motions = [
+            Motion::slide(Pose::IDENTITY, by),
+            Motion::screw(Pose::IDENTITY, DVec3::ZERO, by, 1e-3, by.length()),
+        ];
+        for motion in motions.map(|motion| motion.expect("a motion")) {
+            let cast = MotionCast::new(block.along(&motion), table.along(&still)).expect("a cast");
+            let cast = cast.tolerating(0.2).expect("a depth");
+            let outcome = cast.first_contact().expect("an answer");
+            cast.verify(outcome.proof()).unwrap_or_else(|error| panic!("{error}: {outcome:?}"));
+            let is_free = matches!(outcome, MotionOutcome::Free(_));
+            assert!(is_free == free && outcome.steps().looks < 40, "{outcome:?}");
+            if !free {
+                let found = contact(outcome);
+                assert!((found.lower - 1.0 / 3.0).abs() < 1e-3 && found.upper - found.lower < 1e-11);
+            }
+        }
+    }
+}
+
+#[test]
+fn depths_that_are_tolerated_are_reached_when_it_is_said() {
+    let (mut counts, mut looks) = ([0; 4], Vec::new());
+    for seed in 0..if cfg!(debug_assertions) { 60 } else { 400 } {
+        let mut random = Random::new(seed);
+        let body = |random: &mut Random| match random.index(3) {
+            0 => cuboid([random.range(0.2, 2.0), random.range(0.2, 2.0), random.range(0.2, 2.0)]),
+            _ => hull(random.pick(&[4, 6, 8]), random),
+        };
+        let [p, q] = [body(&mut random), body(&mut random)];
+        let most = random.pick(&[0.5, 3.0]);
+        let along = any_motion(&mut random, most);
+        let still = Motion::still(Pose::new(random.rotation(), DVec3::ZERO).expect("a pose"));
+        let depth = 10.0_f64.powf(random.range(-4.0, 0.0));
+        let cast = MotionCast::new(p.along(&along), q.along(&still)).expect("a cast");
+        let cast = cast.tolerating(depth).expect("a depth");
+        let outcome = cast.first_contact().expect("an answer");
+        cast.verify(outcome.proof()).unwrap_or_else(|error| panic!("{seed} {error}: {outcome:?}"));
+        looks.push(outcome.steps().looks);
+        let deep = |time: f64| {
+            let place = |motion: &Motion| motion.at(time).expect("a pose");
+            depth_by_all_axes([(&p, place(&along)), (&q, place(&still))])
+        };
+        let (kind, [lower, upper]) = match &outcome {
+            MotionOutcome::Contact(found) => (0, [found.lower, found.upper]),
+            MotionOutcome::Free(_) => (1, [1.0, f64::INFINITY]),
+            MotionOutcome::Overlapping(_) => (2, [0.0; 2]),
+            MotionOutcome::Grazing(found) => {
+                // It is one: they come as deep as that, to rounding.
+                assert!((deep(found.lower) - depth).abs() < 1e-9, "{seed}: {outcome:?}");
+                (3, [found.lower, f64::INFINITY])
+            }
+            _ => unreachable!("all outcomes"),
+        };
+        counts[kind] += 1;
+        let before = (0..=80).map(|k| deep(lower * f64::from(k) / 80.0)).fold(0.0, f64::max);
+        assert!(upper == 0.0 || before < depth + 1e-12, "{seed}: {before} {depth} {outcome:?}");
+        assert!(upper > 1.0 || deep(upper) > depth - 1e-12, "{seed}: {outcome:?}");
+    }
+    looks.sort_unstable();
+    println!("{counts:?}, looks {} and {}", looks[looks.len() / 2], looks[looks.len() - 1]);
+    assert!(counts[0] > 20 && counts[1] > 20 && counts[3] == 0, "{counts:?}");
+}
+
 #[test]
 fn both_carried_by_one_motion_stay_as_they_are() {
     let mut random = Random::new(17);

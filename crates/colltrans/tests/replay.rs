@@ -131,6 +131,8 @@ fn what_is_no_motion_is_refused() {
         (proof.replace("motion proof 1", "motion case 1"), "unknown field `proof`"),
         (good.replace("\"since\":0.0", "\"since\":0.5"), "time"),
         (good.replace("\"rate\":0.0", "\"rate\":1e9"), "angle"),
+        (good.replace("\"format\"", "\"keep\":1e70,\"format\""), "gap"),
+        (good.replace("\"format\"", "\"keep\":-1e70,\"format\""), "tolerance"),
         (good.replace("\"format\"", "\"keep\":1e999,\"format\""), "larger than any double"),
         (good.replace("\"moving_motion\"", "\"motion\""), "unknown field `motion`"),
     ] {

@@ -1,23 +1,29 @@
 //! What a body does, as a line of a batch says it, and when two such bodies first meet.
 
+use std::fmt;
+
 use colltrans::glam::DVec3;
 use colltrans::motion::{Motion, MotionCast};
 use colltrans::record::Record;
-use serde::Deserialize;
+use serde::de::value::MapAccessDeserializer;
+use serde::de::{Deserialize, Deserializer, IgnoredAny, MapAccess, Visitor};
 
 use super::source::{PoseSource, Query};
 use crate::body::Part;
 use crate::replay;
 
+/// A motion, as it is written.
+#[derive(Debug)]
+pub(super) struct MotionSource {
+    kind: Kind,
+    /// What else stands there, where one kind should.
+    other: Option<String>,
+}
+
 /// One kind of motion; angles are in radians.
-#[derive(Debug, Deserialize)]
-#[serde(
-    rename_all = "snake_case",
-    rename_all_fields = "snake_case",
-    deny_unknown_fields,
-    expecting = "an object that holds a motion"
-)]
-pub(super) enum MotionSource {
+#[derive(Debug, serde::Deserialize)]
+#[serde(rename_all = "snake_case", rename_all_fields = "snake_case", deny_unknown_fields)]
+enum Kind {
     Still {},
     Slide { by: [f64; 3] },
     Turn { point: [f64; 3], axis: [f64; 3], angle: f64 },
@@ -27,8 +33,41 @@ pub(super) enum MotionSource {
     Through { poses: Vec<PoseSource> },
 }
 
+impl<'de> Deserialize<'de> for MotionSource {
+    fn deserialize<D: Deserializer<'de>>(source: D) -> Result<Self, D::Error> {
+        source.deserialize_map(Kinds)
+    }
+}
+
+/// Reads an object to its end.
+struct Kinds;
+
+impl<'de> Visitor<'de> for Kinds {
+    type Value = MotionSource;
+
+    fn expecting(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str("an object that holds a motion")
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<MotionSource, A::Error> {
+        let kind = Kind::deserialize(MapAccessDeserializer::new(&mut map))?;
+        let other = map.next_entry::<String, IgnoredAny>()?.map(|(name, _)| name);
+        while map.next_entry::<IgnoredAny, IgnoredAny>()?.is_some() {}
+        Ok(MotionSource { kind, other })
+    }
+}
+
 impl MotionSource {
-    /// From a pose on, unless it has its own.
+    /// The motion, from a pose on unless it has its own.
+    fn motion(&self, pose: Option<&PoseSource>) -> Result<Motion, String> {
+        match &self.other {
+            Some(name) => Err(format!("a motion is of one kind; there is `{name}` besides")),
+            None => self.kind.motion(pose),
+        }
+    }
+}
+
+impl Kind {
     fn motion(&self, pose: Option<&PoseSource>) -> Result<Motion, String> {
         let v = DVec3::from_array;
         let has_own = matches!(self, Self::Between { .. } | Self::Through { .. });
@@ -65,8 +104,8 @@ pub(super) fn motions<B>(query: &Query<'_, B>) -> Result<[Motion; 2], String> {
         return Err(r#""motion" needs a `moving_motion` or a `fixed_motion`"#.into());
     }
     let of = |motion: Option<&MotionSource>, pose, name: &str| {
-        let motion = motion.unwrap_or(&MotionSource::Still {});
-        motion.motion(pose).map_err(|what| format!("{name}: {what}"))
+        let motion = motion.map_or_else(|| Kind::Still {}.motion(pose), |m| m.motion(pose));
+        motion.map_err(|what| format!("{name}: {what}"))
     };
     Ok([
         of(query.moving_motion.as_ref(), query.moving_pose.as_ref(), "moving_motion")?,

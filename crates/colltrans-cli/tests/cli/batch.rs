@@ -408,6 +408,11 @@ fn motions_are_asked_in_lines() {
         (asked(&format!(r#"{moved},"keep":-1"#)), "-1"),
         (asked(&moved.replace("axis\":[0,0,1]", "axis\":[0,0,0]")), "moving_motion: the axis"),
         (asked(&moved.replace('6', "1e9")), "moving_motion: the angle"),
+        (
+            asked(r#""moving_motion":{"slide":{"by":[1,0,0]},"still":{},"spin":7}"#),
+            "moving_motion: a motion is of one kind; there is `still` besides",
+        ),
+        (asked(r#""moving_motion":{}"#), "expected a kind of motion"),
         (asked(&moved.replace("\"axis\":[0,0,1],", "")), "missing field `axis`"),
         (asked(&moved.replace("turn", "twist")), "unknown word `twist`"),
         (asked(r#""moving_motion":{"through":{"poses":[]}}"#), "at least one pose"),

@@ -6,12 +6,14 @@ use std::fmt;
 use serde::de::Error as _;
 use serde::{Deserialize, Serialize};
 
-use super::{Motion, MotionCast, MotionOutcome, MotionProof, MotionProofError, Moving};
+use super::{
+    Motion, MotionCast, MotionOutcome, MotionProof, MotionProofError, Moving, check_tolerated,
+};
 use crate::body::ConvexPolyhedron;
 use crate::cast::CaseError;
 use crate::cast::replay::BodyRecord;
 use crate::proof_file::{convex_body, said};
-use crate::setting::error::QueryError;
+use crate::setting::check_keep;
 use crate::solid::StartOverlap;
 
 /// What files of this version call themselves.
@@ -92,9 +94,7 @@ impl MotionCase {
 
     fn read(asked: Asked) -> Result<Self, CaseError> {
         let Asked { moving, moving_motion, fixed, fixed_motion, keep, .. } = asked;
-        if !keep.is_finite() {
-            return Err(QueryError::Keep { gap: keep }.into());
-        }
+        if keep < 0.0 { check_tolerated(-keep)? } else { check_keep(keep)? }
         let bodies = [convex_body(&moving, "moving")?, convex_body(&fixed, "fixed")?];
         Ok(Self { bodies: Box::new(bodies), motions: [moving_motion, fixed_motion], keep })
     }

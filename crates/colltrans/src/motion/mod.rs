@@ -162,9 +162,7 @@ impl MotionCast<'_> {
     /// # Errors
     /// A depth that is negative, not finite or out of range.
     pub fn tolerating(self, depth: f64) -> Result<Self, QueryError> {
-        if !(0.0..=MAX_MAGNITUDE).contains(&depth) {
-            return Err(QueryError::Tolerance { tolerance: depth });
-        }
+        check_tolerated(depth)?;
         Ok(Self { keep: -depth, ..self })
     }
 
@@ -200,6 +198,12 @@ impl MotionCast<'_> {
     pub fn verify(&self, proof: &MotionProof) -> Result<[f64; 2], MotionProofError> {
         verify::verify(self, proof)
     }
+}
+
+/// Whether a depth may be tolerated.
+fn check_tolerated(depth: f64) -> Result<(), QueryError> {
+    let is_one = (0.0..=MAX_MAGNITUDE).contains(&depth);
+    if is_one { Ok(()) } else { Err(QueryError::Tolerance { tolerance: depth }) }
 }
 
 /// What is to be said where the bodies meet, or may.

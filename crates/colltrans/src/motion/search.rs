@@ -13,6 +13,8 @@
 //! is quadratically nearer; when left is as near as rounding tells a little beyond, where the bodies meet.
 //! What is not joined waits, and time is halved. A search never ends because an estimate is small.
 
+use glam::DVec3;
+
 use super::answer::PlaneAt;
 use super::bend::{SPARE, most_bend};
 use super::course::Course;
@@ -113,9 +115,11 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
     fn run(&mut self) -> End<L::Met> {
         for _ in 0..MOST {
             if let Some(next) = self.stack.last().copied() {
-                if self.joins(&next) {
+                if self.joins(&{ self.left }, &next) {
                     self.stack.pop();
                     self.go_on(&next);
+                } else if self.changes_to(&next) {
+                    self.stack.pop();
                 } else if !self.halve(next.time()) {
                     return self.met_from(self.left.time());
                 }
@@ -149,22 +153,50 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
         self.left = *look;
     }
 
-    /// Whether all between left and a later plane is proven.
-    fn joins(&mut self, next: &Look<'a, C::Moved, C::Body>) -> bool {
-        let enough = most_bend([self.left.gap, next.gap], 2.0 * SPARE);
-        let normals = [self.left.normal, next.normal];
-        let ends = [&self.left.at, &next.at];
-        let found = self.course.bend(ends, normals, enough, &L::SUPPORTS);
-        let h = next.time() - self.left.time();
+    /// Whether all between a plane at left and a later one is proven.
+    fn joins(
+        &mut self,
+        left: &Look<'a, C::Moved, C::Body>,
+        next: &Look<'a, C::Moved, C::Body>,
+    ) -> bool {
+        let enough = most_bend([left.gap, next.gap], 2.0 * SPARE);
+        let normals = [left.normal, next.normal];
+        let found = self.course.bend([&left.at, &next.at], normals, enough, &L::SUPPORTS);
+        let h = next.time() - left.time();
         if h > 0.0 {
             self.curvature = (found.max(0.0) / h / h).max(1e-3 * self.course.usual());
         }
-        h == 0.0 || found <= enough || self.is_carried_to(next.time())
+        h == 0.0 || found <= enough || self.is_carried(left, next.time())
     }
 
-    /// Whether the plane at left proves all up to a time, carried along.
-    fn is_carried_to(&self, time: f64) -> bool {
-        let Look { at, gap, normal, .. } = &self.left;
+    /// Goes on to a later plane where a depth is tolerated, by either normal for all of the time in between: the shallowest
+    /// way out may change from one time to the next, while both are shallow enough for a while.
+    fn changes_to(&mut self, next: &Look<'a, C::Moved, C::Body>) -> bool {
+        if self.course.keep() >= 0.0 {
+            return false;
+        }
+        let left = self.left;
+        let turned = |look: &Look<'a, C::Moved, C::Body>, normal: DVec3| Look {
+            normal,
+            gap: self.course.proven_gap(&look.at, normal),
+            ..*look
+        };
+        let (last, first) = (turned(next, left.normal), turned(&left, next.normal));
+        let between = if last.is_apart() && self.joins(&left, &last) {
+            last
+        } else if first.is_apart() && self.joins(&first, next) {
+            first
+        } else {
+            return false;
+        };
+        self.note(&between, false);
+        self.go_on(next);
+        true
+    }
+
+    /// Whether a plane proves all up to a time, carried along.
+    fn is_carried(&self, look: &Look<'a, C::Moved, C::Body>, time: f64) -> bool {
+        let Look { at, gap, normal, .. } = look;
         self.course.carried(at, time, *normal) < KEPT * gap
     }
 
@@ -206,7 +238,7 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
     fn next_time(&self) -> f64 {
         let Look { gap, rate, floor, .. } = self.left;
         let (from, end) = (self.left.time(), self.end);
-        if self.ahead == Ahead::Nothing && self.is_carried_to(end) {
+        if self.ahead == Ahead::Nothing && self.is_carried(&self.left, end) {
             return end;
         }
         let root = gap.sqrt();

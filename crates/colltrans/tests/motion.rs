@@ -308,7 +308,9 @@ fn the_shallowest_way_out_may_change() {
             assert!(is_free == free && outcome.steps().looks < 40, "{outcome:?}");
             if !free {
                 let found = contact(outcome);
-                assert!((found.lower - 1.0 / 3.0).abs() < 1e-3 && found.upper - found.lower < 1e-11);
+                assert!(
+                    (found.lower - 1.0 / 3.0).abs() < 1e-3 && found.upper - found.lower < 1e-11
+                );
             }
         }
     }

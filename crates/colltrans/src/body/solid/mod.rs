@@ -29,6 +29,7 @@ use crate::body::{Aabb, InputFacet, InputVertex};
 pub use error::SolidError;
 use faces::Faces;
 pub use report::{Shell, ShellKind, SolidReport};
+pub(crate) use shells::crossing;
 pub use shrink::ShrinkReport;
 pub(crate) use shrink::{Shrinking, displace};
 use tree::Node;

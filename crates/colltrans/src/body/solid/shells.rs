@@ -186,7 +186,7 @@ impl<'a> Nesting<'a> {
 }
 
 /// How the triangle is crossed by the ray from `p` along `z`: 1 outwards, -1 inwards, 0 not at all.
-pub(super) fn crossing(p: DVec3, [a, b, c]: [DVec3; 3]) -> i32 {
+pub(crate) fn crossing(p: DVec3, [a, b, c]: [DVec3; 3]) -> i32 {
     let facing = exact::turn(a, b, c, 2);
     if facing == Ordering::Equal {
         return 0;

@@ -18,7 +18,7 @@ use super::tree::Facet;
 use crate::answer::are_weights;
 use crate::solve::solid::nearest::triangle::{self, Corners, GAP, LENGTH};
 
-/// What proves that two facets meet.
+/// What proves that two facets meet, or the solids that they are of.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -37,6 +37,11 @@ pub enum FacetsMet {
     Near {
         /// The weights of the corners of either facet.
         weights: [[f64; 3]; 2],
+    },
+    /// A point is inside both solids.
+    Inside {
+        /// Where, in the frame of the fixed body.
+        point: [f64; 3],
     },
 }
 
@@ -116,6 +121,8 @@ pub(super) fn holds<'a, C: Course<'a, Body = Facet>>(
             weights.iter().all(|weights| are_weights(&weights[..]))
                 && length + LENGTH * noise + course.error() <= course.keep()
         }
+        // It is more than two facets that tell.
+        FacetsMet::Inside { .. } => false,
     }
 }
 

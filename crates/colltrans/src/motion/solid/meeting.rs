@@ -1,11 +1,12 @@
-//! Two facets that meet at one time, for certain: of all that no plane parts then.
+//! That two solids meet at one time, for certain: two facets do, of all that no plane parts then, or a point is inside both.
 //!
 //! Facets that have passed each other are apart again, as those of a face that has sunk into another: it is all pairs
 //! that tell.
 
 use super::super::look::Looker;
 use super::super::soon::Seen;
-use super::facets::{FacetLooker, FacetsMet};
+use super::facets::{FacetLooker, FacetsMet, corners};
+use super::inside::{Guesses, off};
 use super::search::{parted, split};
 use super::tree::Below;
 use super::window::{Frame, Part, Plane};
@@ -19,28 +20,39 @@ pub(super) fn seen(
     let trees = [frame.span.body(0), frame.span.body(1)];
     let snap = frame.snap(time);
     let mut all = Seen::Apart;
-    let mut stack = vec![[0, 0]];
+    let (mut stack, mut guesses) = (vec![[0, 0]], Guesses::default());
+    let may_be = off(frame.span, &frame.span.instant(time).bodies);
     while let Some(at) = stack.pop() {
         let parts = [0, 1].map(|k| Part::of(trees[k], at[k]));
         let window = frame.window([&snap, &snap], parts.each_ref());
         let facets = parts.each_ref().map(Part::facet);
-        if parted(&window, facets.map(|facet| facet.is_some()), Plane::Middles).is_some() {
-            continue;
-        }
+        let is_parted =
+            parted(&window, facets.map(|facet| facet.is_some()), Plane::Middles).is_some();
         let nodes = [0, 1].map(|k| trees[k].node(at[k]));
         if let ([Some(f), Some(g)], [Below::Facet(s), Below::Facet(t)]) =
             (facets, nodes.map(|node| node.below))
         {
             let span = frame.span.part([f, g], [frame.span.from, frame.span.to]);
+            let [own, other] = corners(&span.instant(time));
+            guesses.take([s, t], [&own, &other], may_be);
+            if is_parted {
+                continue;
+            }
             if let Some(met) = looker.met(&span, time) {
                 return Seen::Met(([s, t], met));
             }
             if !looker.look(&span, time).is_apart() {
                 all = Seen::Open;
             }
-        } else if let Some((_, pairs)) = split(at, nodes) {
+        } else if let Some((_, pairs)) = split(at, nodes).filter(|_| !is_parted) {
             stack.extend(pairs);
         }
+    }
+    if let Seen::Open = all
+        && frame.span.keep == 0.0
+        && let Some((pair, point)) = guesses.holding(frame.span, time)
+    {
+        return Seen::Met((pair, FacetsMet::Inside { point: point.to_array() }));
     }
     all
 }

@@ -5,13 +5,14 @@
 //! insides do. Which facets meet first is asked of both trees of boxes and of time.
 //!
 //! The modules, each using only those before it: `tree` (a shrunk solid), `window` (two parts in an interval, and
-//! one plane), `facets` (two facets, as convex bodies), `proof` (entries of a cover), `search`, `meeting` (facets that
-//! meet), `verify`, `clearance`, `file`.
+//! one plane), `facets` (two facets, as convex bodies), `inside` (a point inside both), `proof` (entries of a cover),
+//! `search`, `meeting` (what meets at a time), `verify`, `clearance`, `file`.
 
 mod clearance;
 mod facets;
 #[cfg(feature = "json")]
 mod file;
+mod inside;
 mod meeting;
 mod proof;
 mod search;

@@ -3,9 +3,12 @@
 //! Each entry of a cover is taken by itself: the plane that it names, or its list, which is checked as one of convex
 //! bodies is. Whether the bodies overlap at the start is checked as for a cast, that they meet where they are then.
 
+use glam::DVec3;
+
 use super::super::span::{Span, spans};
 use super::super::verify::{MotionProofError, chain};
-use super::facets;
+use super::facets::{self, FacetsMet};
+use super::inside;
 use super::proof::{Entry, FacetsMeeting, SolidMotionProof, SpanProof, middle};
 use super::tree::{Below, Tree};
 use super::window::{Frame, Part, Snap};
@@ -115,11 +118,14 @@ fn is_listed(
     reaches && chain(&span.part([f, g], [from, to]), planes).is_ok()
 }
 
-/// Whether two facets meet when it is said.
+/// Whether two facets, or the solids, meet when it is said.
 fn meets(span: &Span<Tree>, FacetsMeeting { time, triangles, met }: &FacetsMeeting) -> bool {
     let known = |k: usize| (triangles[k] as usize) < span.body(k).solid.triangles().len();
     if !(known(0) && known(1) && (span.from..=span.to).contains(time)) {
         return false;
+    }
+    if let FacetsMet::Inside { point } = *met {
+        return span.keep == 0.0 && inside::holds(span, *time, DVec3::from_array(point));
     }
     let [f, g] = [0, 1].map(|k| span.body(k).facet(triangles[k]));
     let part = span.part([&f, &g], [span.from, span.to]);

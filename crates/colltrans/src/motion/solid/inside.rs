@@ -1,0 +1,129 @@
+//! A point inside both of two solids: that they overlap where no edge passes through a facet, as of a block that has
+//! come down on a column of its own outline.
+//!
+//! It is guessed by two facets: halfway between those that have passed each other, or a little beneath both where they lie
+//! in one plane and look the same way. It is given in the frame of the fixed body, and counts if no facet of either body
+//! is nearer to it than places may be off: then the surface of each goes round it as often as the real one does.
+
+use glam::DVec3;
+
+use super::super::span::Span;
+use super::tree::Tree;
+use crate::body::solid::crossing;
+use crate::number::range::{in_exact_range, without_traces};
+use crate::setting::TwoBodies;
+use crate::solve::solid::nearest::triangle::Corners;
+
+/// How far facets are from it at least, in what places may be off: twice for what is off, twice for what is rounded here.
+const OFF: f64 = 4.0;
+
+/// How far beneath two facets in one plane a point is guessed, in what is asked for.
+const BENEATH: f64 = 2.0;
+
+/// Points that may be inside both, by two facets each: of such as face each other, and such as look the same way.
+#[derive(Debug, Clone, Copy, Default)]
+pub(super) struct Guesses([Option<Guess>; 2]);
+
+/// Where two facets lie above each other.
+#[derive(Debug, Clone, Copy)]
+struct Guess {
+    area: f64,
+    point: DVec3,
+    triangles: [u32; 2],
+}
+
+impl Guesses {
+    /// Takes two facets in the setting frame into account: what has the largest area in common is kept.
+    pub(super) fn take(&mut self, triangles: [u32; 2], [f, g]: [&Corners; 2], off: f64) {
+        let [own, other] = [normal(f), normal(g)];
+        let size = other.length();
+        let common = clipped(f, g, other);
+        let [first, .., last] = &common[..] else { return };
+        let across = |pair: &[DVec3]| (pair[0] - *first).cross(pair[1] - *first);
+        let area = common.windows(2).map(across).sum::<DVec3>().length() / size;
+        let middle = common.iter().sum::<DVec3>() / common.len() as f64;
+        let (up, faces) = (other / size, own.dot(other) < 0.0);
+        // How far it is above the fixed facet.
+        let height = up.dot(middle - g[0]);
+        let down = if faces { 0.5 * height } else { BENEATH * OFF * off };
+        let fits = if faces { height < 0.0 } else { height.abs() < off };
+        let kept = &mut self.0[usize::from(faces)];
+        if fits && first != last && kept.is_none_or(|kept| area > kept.area) {
+            *kept = Some(Guess { area, point: middle - up * down, triangles });
+        }
+    }
+
+    /// One that is inside both, in the frame of the fixed body, and its facets.
+    pub(super) fn holding(&self, span: &Span<Tree>, time: f64) -> Option<([u32; 2], DVec3)> {
+        let bodies = span.instant(time).bodies;
+        self.0.into_iter().flatten().find_map(|Guess { point, triangles, .. }| {
+            let point = bodies.fixed_matrix.transpose() * (point - bodies.offset);
+            holds(span, time, point).then_some((triangles, point))
+        })
+    }
+}
+
+fn normal([a, b, c]: &Corners) -> DVec3 {
+    (*b - *a).cross(*c - *a)
+}
+
+/// The part of a facet that lies above or below another one, along that one's normal.
+fn clipped(f: &Corners, g: &Corners, normal: DVec3) -> Vec<DVec3> {
+    (0..3).fold(f.to_vec(), |part, k| {
+        let (from, side) = (g[k], normal.cross(g[(k + 1) % 3] - g[k]));
+        let height = |p: DVec3| side.dot(p - from);
+        let mut kept = Vec::with_capacity(part.len() + 1);
+        for (i, &p) in part.iter().enumerate() {
+            let q = part[(i + 1) % part.len()];
+            let [a, b] = [height(p), height(q)];
+            if a >= 0.0 {
+                kept.push(p);
+            }
+            if (a > 0.0 && b < 0.0) || (a < 0.0 && b > 0.0) {
+                kept.push(p + (q - p) * (a / (a - b)));
+            }
+        }
+        kept
+    })
+}
+
+/// How far computed places of both bodies may be off each other.
+pub(super) fn off(span: &Span<Tree>, bodies: &TwoBodies<Tree>) -> f64 {
+    bodies.noise().point() + span.error
+}
+
+/// Whether a point that is fixed to the fixed body is inside both at a time, for certain.
+pub(super) fn holds(span: &Span<Tree>, time: f64, point: DVec3) -> bool {
+    let bodies = span.instant(time).bodies;
+    let off = OFF * off(span, &bodies);
+    let there = bodies.fixed_matrix * point + bodies.offset;
+    in_exact_range(without_traces(point))
+        && in_exact_range(without_traces(there))
+        && is_inside(span.body(0), there, off, |v| bodies.moving_matrix * v)
+        && is_inside(span.body(1), point, off, |v| v)
+}
+
+/// Whether a closed surface goes round a point, and all of it is farther away.
+fn is_inside(tree: &Tree, point: DVec3, off: f64, place: impl Fn(DVec3) -> DVec3) -> bool {
+    let (point, mut winding) = (without_traces(point), 0);
+    for triangle in (0..tree.solid.triangles().len()).filter(|t| !tree.solid.is_open(*t)) {
+        let corners = tree.facet(triangle as u32).corners.map(|v| without_traces(place(v)));
+        if !is_away(corners.map(|v| v - point), off) {
+            return false;
+        }
+        winding += crossing(point, corners);
+    }
+    winding > 0
+}
+
+/// Whether a plane shows that a facet is farther from the origin: across the way to its nearest point.
+fn is_away(corners: Corners, off: f64) -> bool {
+    let [a, b, c] = corners;
+    let edge = |u: DVec3, v: DVec3| u - (v - u) * (u.dot(v - u) / (v - u).length_squared());
+    let across = normal(&corners);
+    let ways = [across, -across, a, b, c, edge(a, b), edge(b, c), edge(c, a)];
+    ways.into_iter().any(|way| {
+        let n = way.normalize_or_zero();
+        corners.iter().all(|v| n.dot(*v) > off)
+    })
+}

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from test_check import always, changed, check, proof, refused
 
-ALL = ["contact", "free", "kept", "carried"]
+ALL = ["contact", "free", "kept", "carried", "inside"]
 WAY = ("proof", "spans", 0, "cover")
 
 
@@ -22,6 +22,7 @@ WAY = ("proof", "spans", 0, "cover")
             ["never are as near as 0.25 up to", "inside the other", "are as near as 0.25 at"],
         ),
         ("carried", ["never meet throughout the motion", "inside the other"]),
+        ("inside", ["never meet up to the time", "inside the other", "meet at the time"]),
     ],
 )
 def test_a_proof_holds(name: str, holds: list[str]) -> None:
@@ -109,3 +110,15 @@ def placed(file: Any) -> tuple[Any, Any]:
         **{name: file[name] for name in ("moving_motion", "fixed_motion")},
     }
     return check.spans(plain, described_bodies=False)[0], (parts[0], parts[1])
+
+
+def test_a_point_that_is_inside_both_has_to_be() -> None:
+    file = proof("solids_inside")
+    way: tuple[Any, ...] = ("proof", "meeting", "met", "inside", "point")
+    at = proof("solids_inside")["proof"]["meeting"]["met"]["inside"]["point"]
+    for k in range(3):
+        for off in (2.5, -2.5, 1e-12 if k == 2 else 5.0):
+            assert refused(changed(file, (*way, k), always(at[k] + off)))
+    assert refused(changed(file, ("proof", "meeting", "time"), lambda t: t - 1e-12))
+    open_ = changed(file, ("fixed", "pieces", 0), lambda piece: {**piece, "open": True})
+    assert refused(open_)

@@ -22,10 +22,14 @@ from colltrans import (
     InputError,
     Motion,
     MotionCast,
+    MotionClearance,
     QueryError,
     Solid,
     check,
+    clearance,
     first_contact,
+    motion_clearance,
+    motion_clearance_many,
     motion_many,
 )
 
@@ -339,3 +343,80 @@ def test_pictures_have_ghosts_on_the_way() -> None:
     assert names[2].startswith("contact at 0.")
     names = [trace.name for trace in colltrans.picture(free.query).data if trace.name]
     assert names == ["moving", "fixed", "end"]
+
+
+TABLE = ConvexPolyhedron.cuboid([-4, -4, -1], [4, 4, 0])
+
+
+def cleared() -> list[MotionClearance]:
+    out = Motion.turn([-1, 0, 0], [0, -1, 0], 1, pose=[0, 0, -0.125])
+    solid = Solid.from_pieces([TABLE])
+    return [
+        motion_clearance(CUBE, TABLE, Motion.turn([0.5, 0.5, 0], [0, 0, 1], 2)),
+        motion_clearance(CUBE, TABLE, Motion.slide([0, 0, -2])),
+        motion_clearance(CUBE, TABLE, Motion.slide([0, 0, -2], pose=[0, 0, 1]), tolerance=0.01),
+        motion_clearance(CUBE, TABLE, Motion.slide([0, 0, -2], pose=[0, 0, 1]), keep=0.25),
+        motion_clearance(CUBE, TABLE, out),
+        motion_clearance(CUBE, solid, Motion.slide([0, 0, -2], pose=[0, 0, 1])),
+        motion_clearance(CUBE, solid, out),
+        motion_clearance(CUBE, solid, out, ignore_start_overlaps=True),
+    ]
+
+
+def test_how_far_a_body_can_go() -> None:
+    turned, pushed, dropped, kept, pressed, solid, stuck, leaving = cleared()
+    assert (turned.outcome, turned.time, turned.bounds) == ("free", 1.0, None)
+    assert (pushed.outcome, pushed.time) == ("blocked", 0.0)
+    assert pushed.tolerance is not None and pushed.tolerance < 1e-10
+    for found, at, shrunk in [(dropped, 0.5, 0.505), (kept, 0.375, 0.375), (solid, 0.5, 0.5)]:
+        assert found.time is not None and abs(found.time - at) < 1e-9
+        for bounds, expected in [(found.bounds, at), (found.shrunk, shrunk)]:
+            assert bounds is not None and bounds[1] is not None
+            assert bounds[0] <= expected + 1e-9 and expected - 1e-9 <= bounds[1] < expected + 1e-9
+    for found in (pressed, stuck):
+        assert (found.outcome, found.time) == ("overlapping", None)
+        assert found.least_tolerance is not None and abs(found.least_tolerance - 0.125) < 1e-9
+        with pytest.raises(colltrans.CertificateError):
+            found.verify()
+    assert leaving.outcome == "free"
+    for found in (turned, pushed, dropped, kept, solid):
+        found.verify()
+        report = check.check(found.proof_json())
+        assert report.holds
+    with pytest.raises(QueryError, match="ignore_start_overlaps is for solids"):
+        motion_clearance(CUBE, TABLE, Motion.slide([1, 0, 0]), ignore_start_overlaps=True)
+
+
+@pytest.mark.parametrize("answer", cleared())
+def test_clearances_come_back_with_their_bits(answer: MotionClearance) -> None:
+    for again in (copy.copy(answer), copy.deepcopy(answer), pickle.loads(pickle.dumps(answer))):
+        assert again.to_dict() == answer.to_dict()
+        assert (again.time, again.bounds, again.shrunk) == (
+            answer.time,
+            answer.bounds,
+            answer.shrunk,
+        )
+        again_, query = again.query, answer.query
+        assert again_.ignore_start_overlaps == query.ignore_start_overlaps
+    conform("motion", answer.to_dict())
+
+
+def test_a_slide_goes_as_far_as_a_cast() -> None:
+    random = np.random.default_rng(9)
+    n = 200
+    ways, places = random.normal(size=(n, 3)) * 5, random.normal(size=(n, 3)) * 3
+    columns = motion_clearance_many(CUBE, CLOUD, {"slide": {"by": ways}}, moving_pose=places)
+    counts = columns.counts()
+    assert set(counts) == {"blocked", "free", "overlapping"} and sum(counts.values()) == n
+    for i, (way, place) in enumerate(zip(ways, places, strict=True)):
+        straight = clearance(CUBE, CLOUD, way, moving_pose=place).distance
+        found = columns[i]
+        assert isinstance(found, MotionClearance)
+        expected = None if straight is None else min(straight, 1.0)
+        if expected is None or found.time is None:
+            assert expected == found.time
+        else:
+            assert abs(found.time - expected) < 1e-9, i
+        lower = found.time if found.outcome == "blocked" and found.time is not None else np.nan
+        assert np.array_equal([columns.lower[i]], [lower], equal_nan=True)
+        assert np.isnan(columns.least_tolerance[i]) == (found.outcome != "overlapping")

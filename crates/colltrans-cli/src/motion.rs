@@ -90,8 +90,14 @@ fn parts(
     tell(arguments, bodies.iter().flat_map(|body| &body.notes));
     let MotionArguments { tolerance, keep, ignore_start_overlaps, .. } = *arguments;
     let bodies_asked = [&bodies[0], &bodies[1]];
-    let asked =
-        PartsMotion { bodies: bodies_asked, motions, tolerance, ignore_start_overlaps, keep };
+    let asked = PartsMotion {
+        bodies: bodies_asked,
+        motions,
+        tolerance,
+        clears: false,
+        ignore_start_overlaps,
+        keep,
+    };
     let told = Line::from(asked.ask()?);
     print(&if arguments.json { told.json() } else { words(&told, motions.each_ref()) })?;
     if let Some(path) = &arguments.save_proof {

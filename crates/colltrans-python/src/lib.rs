@@ -67,7 +67,9 @@ mod _colltrans {
     #[pymodule_export]
     use crate::many::{ask_many, ask_motions, ask_pairs};
     #[pymodule_export]
-    use crate::motion::{FirstContact, Motion, MotionCast, first_contact};
+    use crate::motion::{
+        FirstContact, Motion, MotionCast, MotionClearance, first_contact, motion_clearance,
+    };
     #[pymodule_export]
     use crate::obstacles::Obstacles;
     #[pymodule_export]

@@ -104,6 +104,7 @@ enum Question {
     Depth,
     Within,
     Motion,
+    MotionClearance,
 }
 
 impl Question {
@@ -116,6 +117,7 @@ impl Question {
             "depth" => Ok(Self::Depth),
             "within" => Ok(Self::Within),
             "motion" => Ok(Self::Motion),
+            "motion_clearance" => Ok(Self::MotionClearance),
             _ => Err(PyValueError::new_err(format!("no question {name:?}"))),
         }
     }
@@ -149,7 +151,7 @@ impl Question {
                 EXIT_UPPER,
                 OVERLAP,
             ],
-            Self::Depth => &[AT_LEAST, AT_MOST, LEAST_TOLERANCE],
+            Self::Depth | Self::MotionClearance => &[AT_LEAST, AT_MOST, LEAST_TOLERANCE],
             Self::Distance | Self::Within | Self::Motion => &[AT_LEAST, AT_MOST],
         }
     }
@@ -157,7 +159,11 @@ impl Question {
     /// The columns of vectors that they fill.
     const fn vectors(self) -> &'static [usize] {
         match self {
-            Self::Contact | Self::Range | Self::Clearance | Self::Motion => &[NORMAL, POINT],
+            Self::Contact
+            | Self::Range
+            | Self::Clearance
+            | Self::Motion
+            | Self::MotionClearance => &[NORMAL, POINT],
             Self::Distance | Self::Within => &[NORMAL, ON_MOVING, ON_FIXED],
             Self::Depth => &[DIRECTION],
         }
@@ -174,6 +180,7 @@ impl Question {
             Self::Depth => &["overlapping", "touching", "apart", "error"],
             Self::Within => &["closer", "farther", "undecided", "error"],
             Self::Motion => &["contact", "grazing", "free", "overlapping", "error"],
+            Self::MotionClearance => &["blocked", "free", "overlapping", "error"],
         }
     }
 
@@ -357,7 +364,8 @@ impl<'a> Work<'a> {
             let of = |k: usize| motions[k].get(row, &self.poses[k]);
             let (motions, tolerance) = ([of(0)?, of(1)?], tolerances.row(row)[0]);
             let tolerance = Some(tolerance).filter(|tolerance| !tolerance.is_nan());
-            return moved([moving, fixed], motions.each_ref(), keeps.row(row)[0], tolerance);
+            let motions = motions.each_ref();
+            return moved(self.question, [moving, fixed], motions, keeps.row(row)[0], tolerance);
         }
         let (at, to) = (self.poses[0].pose(row)?, self.poses[1].pose(row)?);
         let With::Direction { directions, graze_tolerances, keeps, options } = &self.with else {
@@ -406,26 +414,36 @@ impl<'a> Work<'a> {
     }
 }
 
-/// When bodies that move first meet.
+/// When bodies that move first meet, or how far they can go.
 fn moved(
+    question: Question,
     bodies: [AnyBody<'_>; 2],
     motions: [&Motion; 2],
     keep: f64,
     tolerance: Option<f64>,
 ) -> Result<Row, String> {
+    let clears = matches!(question, Question::MotionClearance);
     let record = if let [AnyBody::Convex(p), AnyBody::Convex(q)] = bodies {
         if tolerance.is_some() && keep != 0.0 {
             return Err(EITHER.into());
         }
-        convex_cast([p, q], motions, keep, tolerance)
-            .and_then(|cast| Ok(Record::of_motion(&cast.first_contact()?, &cast)))
+        convex_cast([p, q], motions, keep, tolerance).and_then(|cast| {
+            Ok(match clears {
+                true => Record::of_motion_clearance(&cast.clearance()?, &cast),
+                false => Record::of_motion(&cast.first_contact()?, &cast),
+            })
+        })
     } else {
         let solids = [bodies[0].solid()?, bodies[1].solid()?];
         let precisions = bodies.map(AnyBody::precision);
-        solid_cast(solids, motions, precisions, keep, tolerance)
-            .and_then(|cast| Ok(Record::of_solid_motion(&cast.first_contact()?, &cast)))
+        solid_cast(solids, motions, precisions, keep, tolerance).and_then(|cast| {
+            Ok(match clears {
+                true => Record::of_solid_motion_clearance(&cast.clearance()?, &cast),
+                false => Record::of_solid_motion(&cast.first_contact()?, &cast),
+            })
+        })
     };
-    record.map(|record| Row::of_record(Question::Motion, &record)).map_err(|what| what.to_string())
+    record.map(|record| Row::of_record(question, &record)).map_err(|what| what.to_string())
 }
 
 /// A chunk's part of every column.
@@ -613,6 +631,7 @@ pub(crate) enum MotionSide<'py> {
 pub(crate) fn ask_motions<'py>(
     py: Python<'py>,
     n: usize,
+    question: &str,
     moving: Side<'py>,
     fixed: Side<'py>,
     moving_motion: MotionSide<'py>,
@@ -632,7 +651,7 @@ pub(crate) fn ask_motions<'py>(
         tolerances: table("tolerance", &tolerance, n)?,
     };
     let (sides, poses) = ([&moving, &fixed], [&moving_pose, &fixed_pose]);
-    answered(py, n, Question::Motion, sides, poses, with, threads)
+    answered(py, n, Question::called(question)?, sides, poses, with, threads)
 }
 
 /// One motion for all rows, or one for each.

@@ -1,7 +1,8 @@
 //! What a body does, and when two such bodies first meet.
 
-use colltrans::motion::{self, MotionCase, MotionOutcome, MotionProofFile};
+use colltrans::motion::{self, MotionCase, MotionOutcome, MotionProofFile, SolidMotionProofFile};
 use colltrans::record::Record;
+use colltrans::solid::StartOverlap;
 use colltrans::{ConvexPolyhedron, QueryError, Solid};
 use colltrans_mesh::body::between_motions;
 use numpy::PyArray1;
@@ -185,6 +186,9 @@ fn motion_of(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<motion::Moti
 ///     Of convex bodies, a depth that is tolerated, in the place of ``keep``: asked is when they first
 ///     overlap by more. Solids are shrunk by half of it; by default by what the precision of their files,
 ///     and rounding, ask for.
+/// ignore_start_overlaps : bool
+///     For :meth:`clearance` of solids: whether facets that cross when the motion begins do not count until
+///     they are apart.
 ///
 /// Raises
 /// ------
@@ -208,6 +212,7 @@ pub(crate) struct MotionCast {
     motions: [motion::Motion; 2],
     keep: f64,
     tolerance: Option<f64>,
+    start_overlap: StartOverlap,
 }
 
 /// The library's cast.
@@ -222,7 +227,10 @@ impl MotionCast {
         motions: [Option<&Bound<'_, PyAny>>; 2],
         keep: f64,
         tolerance: Option<f64>,
+        ignore_start_overlaps: bool,
     ) -> PyResult<Self> {
+        let start_overlap =
+            if ignore_start_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse };
         Ok(Self {
             bodies: [Piece::of(bodies[0], "moving")?, Piece::of(bodies[1], "fixed")?],
             motions: [
@@ -231,6 +239,7 @@ impl MotionCast {
             ],
             keep,
             tolerance,
+            start_overlap,
         })
     }
 
@@ -245,7 +254,8 @@ impl MotionCast {
         }
         let [p, q] = [self.bodies[0].solid().or_raise()?, self.bodies[1].solid().or_raise()?];
         let precisions = [0, 1].map(|i| self.bodies[i].precision());
-        solid_cast([p, q], [a, b], precisions, self.keep, self.tolerance).or_raise().map(Of::Solids)
+        let cast = solid_cast([p, q], [a, b], precisions, self.keep, self.tolerance).or_raise()?;
+        Ok(Of::Solids(cast.with_start_overlap(self.start_overlap)))
     }
 
     /// Asks the library; without the interpreter's lock, as it may take long.
@@ -257,6 +267,20 @@ impl MotionCast {
                 found.map(Of::Convex).map_err(|what| query_error(&what, || cast.to_json()))
             }
             Of::Solids(cast) => cast.first_contact().or_raise().map(Of::Solids),
+        })
+    }
+}
+
+impl MotionCast {
+    /// How far, of the library; as [`Self::first`].
+    fn cleared(slf: &Bound<'_, Self>) -> PyResult<Cleared> {
+        let query = slf.clone().unbind();
+        patiently(slf.py(), &slf.get().bodies, move || match query.get().asked()? {
+            Of::Convex(cast) => {
+                let found = cast.clearance();
+                found.map(Of::Convex).map_err(|what| query_error(&what, || cast.to_json()))
+            }
+            Of::Solids(cast) => cast.clearance().or_raise().map(Of::Solids),
         })
     }
 }
@@ -293,7 +317,7 @@ pub(crate) fn solid_cast<'a>(
 impl MotionCast {
     #[new]
     #[pyo3(signature = (moving, fixed, *, moving_motion=None, fixed_motion=None, keep=0.0,
-        tolerance=None))]
+        tolerance=None, ignore_start_overlaps=false))]
     fn new(
         moving: &Bound<'_, PyAny>,
         fixed: &Bound<'_, PyAny>,
@@ -301,13 +325,17 @@ impl MotionCast {
         fixed_motion: Option<&Bound<'_, PyAny>>,
         keep: f64,
         tolerance: Option<f64>,
+        ignore_start_overlaps: bool,
     ) -> PyResult<Self> {
-        let query = Self::of([moving, fixed], [moving_motion, fixed_motion], keep, tolerance)?;
-        if let [Piece::Convex(_), Piece::Convex(_)] = query.bodies
-            && tolerance.is_some()
-            && keep != 0.0
-        {
-            return Err(error("QueryError", EITHER));
+        let motions = [moving_motion, fixed_motion];
+        let query = Self::of([moving, fixed], motions, keep, tolerance, ignore_start_overlaps)?;
+        if let [Piece::Convex(_), Piece::Convex(_)] = query.bodies {
+            if tolerance.is_some() && keep != 0.0 {
+                return Err(error("QueryError", EITHER));
+            }
+            if ignore_start_overlaps {
+                return Err(error("QueryError", "ignore_start_overlaps is for solids"));
+            }
         }
         query.asked()?;
         Ok(query)
@@ -316,6 +344,11 @@ impl MotionCast {
     /// When do the bodies first meet? See :func:`first_contact`.
     fn first_contact(slf: &Bound<'_, Self>) -> PyResult<FirstContact> {
         Ok(FirstContact { found: Self::first(slf)?, query: slf.clone().unbind() })
+    }
+
+    /// How far can the body go? See :func:`motion_clearance`.
+    fn clearance(slf: &Bound<'_, Self>) -> PyResult<MotionClearance> {
+        Ok(MotionClearance { found: Self::cleared(slf)?, query: slf.clone().unbind() })
     }
 
     /// The question as text, of convex bodies: bodies, motions and what is to be kept, exact in bits.
@@ -343,6 +376,7 @@ impl MotionCast {
             motions: [a.clone(), b.clone()],
             keep: cast.keep(),
             tolerance: Some(cast.tolerance()).filter(|depth| *depth > 0.0),
+            start_overlap: StartOverlap::Refuse,
         })
     }
 
@@ -385,6 +419,12 @@ impl MotionCast {
         })
     }
 
+    /// bool: Whether what overlaps when the motion begins is ignored.
+    #[getter]
+    fn ignore_start_overlaps(&self) -> bool {
+        self.start_overlap == StartOverlap::Ignore
+    }
+
     /// A picture of the bodies at the start, where they touch and at the end: see :func:`colltrans.show`.
     #[pyo3(signature = (**options))]
     fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
@@ -398,6 +438,7 @@ impl MotionCast {
         named.set_item("fixed_motion", self.fixed_motion())?;
         named.set_item("keep", self.keep)?;
         named.set_item("tolerance", self.tolerance)?;
+        named.set_item("ignore_start_overlaps", self.ignore_start_overlaps())?;
         Ok(((self.moving(py), self.fixed(py)), named))
     }
 
@@ -578,7 +619,202 @@ impl Answer for Found {
             (Self::Convex(found), Of::Convex(cast)) => {
                 Ok(MotionProofFile::of(&cast, found).to_json())
             }
-            _ => Err(error("CaseError", "the proof of a motion of solids has no file")),
+            (Self::Solids(_), Of::Solids(cast)) => solid_proof(&cast),
+            _ => Err(other_bodies()),
+        }
+    }
+}
+
+/// The proof of a first contact of solids, which are asked once more for it.
+fn solid_proof(cast: &motion::MotionCast<'_, Solid>) -> PyResult<String> {
+    SolidMotionProofFile::answer(cast).map(|(_, file)| file.to_json()).or_raise()
+}
+
+/// An answer about how far a body can go; those of solids are proven when that is asked for.
+type Cleared = Of<motion::MotionClearance, motion::MotionClearance<()>>;
+
+/// How far along its motion a body can go, from 0 at its start to 1 at its end.
+///
+/// ``outcome`` is ``"blocked"``: up to ``time`` for certain, 0 if it is pushed in at once; ``"free"``: to the
+/// end; ``"overlapping"``: the bodies overlap when the motion begins, by more than is tolerated.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct MotionClearance {
+    found: Cleared,
+    query: Py<MotionCast>,
+}
+
+answer!(MotionClearance("outcome", "time") of Cleared, MotionCast, |it| it.found.clone());
+
+/// What stops a body: the bounds of when that meets in its true place, the tolerance, and the bounds of when the bodies
+/// meet as it leaves them.
+struct Stop {
+    place: [f64; 2],
+    tolerance: f64,
+    shrunk: [f64; 2],
+}
+
+impl Stop {
+    fn of<P>(found: &motion::MotionClearance<P>) -> Option<Self> {
+        let motion::MotionClearance::Blocked { contact, .. } = found else { return None };
+        let (place, shrunk) = (contact.time, &contact.shrunk);
+        Some(Self {
+            place: [place.lower, place.upper],
+            tolerance: contact.tolerance,
+            shrunk: [shrunk.lower, shrunk.upper],
+        })
+    }
+}
+
+/// Bounds as Python has them: none where one is not proven.
+fn bounds([lower, upper]: [f64; 2]) -> (f64, Option<f64>) {
+    (lower, Some(upper).filter(|upper| upper.is_finite()))
+}
+
+impl MotionClearance {
+    fn stop(&self) -> Option<Stop> {
+        match &self.found {
+            Of::Convex(found) => Stop::of(found),
+            Of::Solids(found) => Stop::of(found),
+        }
+    }
+}
+
+#[pymethods]
+impl MotionClearance {
+    /// str: ``"blocked"``, ``"free"`` or ``"overlapping"``.
+    #[getter]
+    fn outcome(&self) -> &'static str {
+        match (self.time(), self.stop()) {
+            (_, Some(_)) => "blocked",
+            (Some(_), None) => "free",
+            (None, None) => "overlapping",
+        }
+    }
+
+    /// float or None: Up to then the body may go: 1 to the end; None if the bodies overlap when it begins.
+    #[getter]
+    fn time(&self) -> Option<f64> {
+        match &self.found {
+            Of::Convex(found) => found.time(),
+            Of::Solids(found) => found.time(),
+        }
+    }
+
+    /// tuple of (float, float or None) or None: When what stops it meets in its true place: not before the
+    /// first, for certain at the second, if there is one.
+    #[getter]
+    fn bounds(&self) -> Option<(f64, Option<f64>)> {
+        self.stop().map(|stop| bounds(stop.place))
+    }
+
+    /// tuple of (float, float or None) or None: When the bodies meet as the tolerance leaves them.
+    #[getter]
+    fn shrunk(&self) -> Option<(f64, Option<f64>)> {
+        self.stop().map(|stop| bounds(stop.shrunk))
+    }
+
+    /// float or None: The tolerance that was used, a length, where something stops it.
+    #[getter]
+    fn tolerance(&self) -> Option<f64> {
+        self.stop().map(|stop| stop.tolerance)
+    }
+
+    /// float or None: The least tolerance with which the bodies would not overlap when the motion begins.
+    #[getter]
+    fn least_tolerance(&self) -> Option<f64> {
+        match &self.found {
+            Of::Convex(motion::MotionClearance::Overlapping(found)) => found.least_tolerance,
+            Of::Solids(motion::MotionClearance::Overlapping(found)) => found.least_tolerance,
+            _ => None,
+        }
+    }
+
+    /// Checks the proof of the bounds ``shrunk`` against the bodies alone; between solids they are asked once
+    /// more for it.
+    ///
+    /// Raises
+    /// ------
+    /// CertificateError
+    ///     What is not proven; all, of bodies that overlap when the motion begins, or may.
+    fn verify(&self, py: Python<'_>) -> PyResult<()> {
+        let (query, found) = (self.query.clone_ref(py), self.found.clone());
+        let refused = |what: motion::MotionProofError| error("CertificateError", what);
+        patiently(py, &self.query.get().bodies, move || {
+            match (query.get().asked()?, &found) {
+                (Of::Convex(cast), Of::Convex(found)) => {
+                    let outcome = first_of(found).ok_or_else(unproven)?;
+                    cast.cleared().verify(outcome.proof())
+                }
+                (Of::Solids(cast), Of::Solids(found)) => {
+                    if first_of(found).is_none() || query.get().ignore_start_overlaps() {
+                        return Err(unproven());
+                    }
+                    cast.verify(cast.certified_first_contact().or_raise()?.proof())
+                }
+                _ => return Err(other_bodies()),
+            }
+            .map(|_| ())
+            .map_err(refused)
+        })
+    }
+
+    fn __repr__(&self) -> String {
+        let time = self.time().map_or_else(|| "None".into(), |time| format!("{time:?}"));
+        format!("MotionClearance({:?}, time={time})", self.outcome())
+    }
+}
+
+fn unproven() -> PyErr {
+    error("CertificateError", "of bodies that overlap when the motion begins nothing is proven")
+}
+
+/// The first contact of the bodies as the tolerance leaves them, of which a clearance is made.
+fn first_of<P: Clone>(found: &motion::MotionClearance<P>) -> Option<MotionOutcome<P>> {
+    match found {
+        motion::MotionClearance::Blocked { contact, .. } => {
+            let (shrunk, proven) = (contact.shrunk.clone(), contact.shrunk.upper.is_finite());
+            Some(match proven {
+                true => MotionOutcome::Contact(shrunk),
+                false => MotionOutcome::Grazing(shrunk),
+            })
+        }
+        motion::MotionClearance::Free(free) => Some(MotionOutcome::Free(free.clone())),
+        motion::MotionClearance::Overlapping(_) => None,
+    }
+}
+
+impl Answer for Cleared {
+    type Query = MotionCast;
+
+    fn object<'py>(self, query: &Bound<'py, MotionCast>) -> PyResult<Bound<'py, PyAny>> {
+        object(query.py(), MotionClearance { found: self, query: query.clone().unbind() })
+    }
+
+    fn record(&self, query: &Bound<'_, MotionCast>) -> PyResult<Record> {
+        match (self, query.get().asked()?) {
+            (Self::Convex(found), Of::Convex(cast)) => {
+                Ok(Record::of_motion_clearance(found, &cast))
+            }
+            (Self::Solids(found), Of::Solids(cast)) => {
+                Ok(Record::of_solid_motion_clearance(found, &cast))
+            }
+            _ => Err(other_bodies()),
+        }
+    }
+
+    fn proof(&self, query: &Bound<'_, MotionCast>) -> PyResult<String> {
+        match (self, query.get().asked()?) {
+            (Self::Convex(found), Of::Convex(cast)) => {
+                let outcome = first_of(found).ok_or_else(unproven)?;
+                Ok(MotionProofFile::of(&cast.cleared(), &outcome).to_json())
+            }
+            (Self::Solids(found), Of::Solids(cast)) => {
+                if first_of(found).is_none() || query.get().ignore_start_overlaps() {
+                    return Err(unproven());
+                }
+                solid_proof(&cast)
+            }
+            _ => Err(other_bodies()),
         }
     }
 }
@@ -613,6 +849,54 @@ pub(crate) fn first_contact(
     keep: f64,
     tolerance: Option<f64>,
 ) -> PyResult<FirstContact> {
-    let query = MotionCast::new(moving, fixed, Some(moving_motion), fixed_motion, keep, tolerance)?;
+    let motions = [Some(moving_motion), fixed_motion];
+    let query = MotionCast::new(moving, fixed, motions[0], motions[1], keep, tolerance, false)?;
     MotionCast::first_contact(&Bound::new(py, query)?)
+}
+
+/// How far along its motion can a body go? What touches may slide, turn and leave, and is stopped where it
+/// is pushed in: with the tolerance, or without one with what rounding can do to a fit.
+///
+/// Parameters
+/// ----------
+/// moving, fixed, moving_motion, fixed_motion, keep, tolerance, ignore_start_overlaps
+///     As for :class:`MotionCast`.
+///
+/// Returns
+/// -------
+/// MotionClearance
+///
+/// Examples
+/// --------
+/// >>> from colltrans import ConvexPolyhedron, Motion, motion_clearance
+/// >>> block = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+/// >>> table = ConvexPolyhedron.cuboid([-4, -4, -1], [4, 4, 0])
+/// >>> motion_clearance(block, table, Motion.turn([0.5, 0.5, 0], [0, 0, 1], 2))
+/// MotionClearance("free", time=1.0)
+/// >>> motion_clearance(block, table, Motion.turn([0.5, 0.5, 0], [1, 0, 0], 2))
+/// MotionClearance("blocked", time=0.0)
+#[pyfunction]
+#[pyo3(signature = (moving, fixed, moving_motion, fixed_motion=None, *, keep=0.0, tolerance=None,
+    ignore_start_overlaps=false))]
+#[expect(clippy::too_many_arguments, reason = "they are keywords")]
+pub(crate) fn motion_clearance(
+    py: Python<'_>,
+    moving: &Bound<'_, PyAny>,
+    fixed: &Bound<'_, PyAny>,
+    moving_motion: &Bound<'_, PyAny>,
+    fixed_motion: Option<&Bound<'_, PyAny>>,
+    keep: f64,
+    tolerance: Option<f64>,
+    ignore_start_overlaps: bool,
+) -> PyResult<MotionClearance> {
+    let query = MotionCast::new(
+        moving,
+        fixed,
+        Some(moving_motion),
+        fixed_motion,
+        keep,
+        tolerance,
+        ignore_start_overlaps,
+    )?;
+    MotionCast::clearance(&Bound::new(py, query)?)
 }

@@ -6,7 +6,7 @@ use colltrans::glam::{DQuat, DVec3};
 use colltrans::motion::{
     Meeting, Motion, MotionCast, MotionContact, MotionOutcome, MotionProof, MotionProofError,
 };
-use colltrans::{Cast, ConvexPolyhedron, Outcome, Pair, Pose};
+use colltrans::{Cast, ConvexPolyhedron, Outcome, Pair, Pose, QueryError, Solid};
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::random_hull;
@@ -358,6 +358,27 @@ fn depths_that_are_tolerated_are_reached_when_it_is_said() {
     looks.sort_unstable();
     println!("{counts:?}, looks {} and {}", looks[looks.len() / 2], looks[looks.len() - 1]);
     assert!(counts[0] > 20 && counts[1] > 20 && counts[3] == 0, "{counts:?}");
+}
+
+#[test]
+fn motions_that_are_too_long_are_told() {
+    let cube = cuboid([1.0; 3]);
+    let solid = Solid::from_convex(&cube).expect("a solid");
+    let there = Motion::still(at(3.0, 0.0, 0.0));
+    for far in [1e20, 1e50, 1e60] {
+        let slide = Motion::slide(Pose::IDENTITY, DVec3::X * far).expect("a motion");
+        let cast = MotionCast::new(cube.along(&slide), cube.along(&there)).expect("a cast");
+        let solids = MotionCast::new(solid.along(&slide), solid.along(&there)).expect("a cast");
+        for found in [cast.first_contact().map(|_| ()), solids.first_contact().map(|_| ())] {
+            assert!(matches!(found, Err(QueryError::Coarse { .. })), "{far:e}: {found:?}");
+        }
+        let found = cast.clearance().map(|_| ());
+        assert!(matches!(found, Err(QueryError::Coarse { .. })), "{far:e}: {found:?}");
+        // Away from each other they never meet, however far.
+        let away = Motion::slide(at(1e60, 0.0, 0.0), DVec3::X * 1e40).expect("a motion");
+        let cast = MotionCast::new(cube.along(&away), cube.along(&there)).expect("a cast");
+        assert!(matches!(cast.first_contact(), Ok(MotionOutcome::Free(_))));
+    }
 }
 
 #[test]

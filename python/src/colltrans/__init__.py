@@ -30,6 +30,7 @@ from colltrans._colltrans import (
     Intersection,
     Motion,
     MotionCast,
+    MotionClearance,
     NearbyObstacles,
     NearestObstacle,
     ObstacleClearance,
@@ -65,6 +66,7 @@ from colltrans._colltrans import (
     first_contact,
     free_directions,
     intersects,
+    motion_clearance,
     read,
     ways_out,
     within,
@@ -84,7 +86,12 @@ from colltrans.errors import (
     QueryError,
 )
 from colltrans.many import cast_many, clearance_many, contact_range_many
-from colltrans.motions import MotionColumns, motion_many
+from colltrans.motions import (
+    MotionClearanceColumns,
+    MotionColumns,
+    motion_clearance_many,
+    motion_many,
+)
 from colltrans.pairs import (
     DepthColumns,
     DistanceColumns,
@@ -133,6 +140,8 @@ __all__ = [
     "MeshError",
     "Motion",
     "MotionCast",
+    "MotionClearance",
+    "MotionClearanceColumns",
     "MotionColumns",
     "Move",
     "NearbyObstacles",
@@ -188,6 +197,8 @@ __all__ = [
     "first_contact",
     "free_directions",
     "intersects",
+    "motion_clearance",
+    "motion_clearance_many",
     "motion_many",
     "path_many",
     "picture",

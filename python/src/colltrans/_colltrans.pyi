@@ -36,6 +36,7 @@ __all__ = [
     "Intersection",
     "Motion",
     "MotionCast",
+    "MotionClearance",
     "NearbyObstacles",
     "NearestObstacle",
     "ObstacleClearance",
@@ -75,6 +76,7 @@ __all__ = [
     "first_contact",
     "free_directions",
     "intersects",
+    "motion_clearance",
     "read",
     "ways_out",
     "within",
@@ -693,8 +695,10 @@ class MotionCast:
         fixed_motion: _Motion = None,
         keep: float = 0.0,
         tolerance: float | None = None,
+        ignore_start_overlaps: bool = False,
     ) -> MotionCast: ...
     def first_contact(self) -> FirstContact: ...
+    def clearance(self) -> MotionClearance: ...
     def to_json(self) -> str: ...
     @staticmethod
     def from_json(text: str) -> MotionCast: ...
@@ -710,6 +714,8 @@ class MotionCast:
     def keep(self) -> float: ...
     @property
     def tolerance(self) -> float: ...
+    @property
+    def ignore_start_overlaps(self) -> bool: ...
     def show(self, **options: Any) -> Any: ...
     def __getnewargs_ex__(self) -> tuple[Any, dict[str, Any]]: ...
 
@@ -745,6 +751,36 @@ def first_contact(
     keep: float = 0.0,
     tolerance: float | None = None,
 ) -> FirstContact: ...
+
+@final
+class MotionClearance(_Answer):
+    __match_args__: Final = ("outcome", "time")
+    @property
+    def query(self) -> MotionCast: ...
+    @property
+    def outcome(self) -> Literal["blocked", "free", "overlapping"]: ...
+    @property
+    def time(self) -> float | None: ...
+    @property
+    def bounds(self) -> tuple[float, float | None] | None: ...
+    @property
+    def shrunk(self) -> tuple[float, float | None] | None: ...
+    @property
+    def tolerance(self) -> float | None: ...
+    @property
+    def least_tolerance(self) -> float | None: ...
+    def verify(self) -> None: ...
+
+def motion_clearance(
+    moving: ConvexPolyhedron | Solid,
+    fixed: ConvexPolyhedron | Solid,
+    moving_motion: _Motion,
+    fixed_motion: _Motion = None,
+    *,
+    keep: float = 0.0,
+    tolerance: float | None = None,
+    ignore_start_overlaps: bool = False,
+) -> MotionClearance: ...
 
 @final
 class Robot:
@@ -1320,6 +1356,7 @@ def ask_many(
 ) -> tuple[dict[str, NDArray[Any]], list[str], dict[int, str]]: ...
 def ask_motions(
     n: int,
+    question: Literal["motion", "motion_clearance"],
     moving: tuple[list[Any], NDArray[np.int64] | None],
     fixed: tuple[list[Any], NDArray[np.int64] | None],
     moving_motion: list[Motion] | _Floats,

@@ -2076,8 +2076,37 @@ def solids_meet(span: Span, parts: tuple[Parts, Parts], meeting: Any) -> None:
         between = minus(q, p)
         if not above(span.keep - 4 * off, dot(between, between)):
             raise RefusedError(f"the points are not as near as {float(span.keep)!r}")
+    elif kind == "inside" and span.keep == 0:
+        at = vector(claim["point"])
+        moving = span.moving.of([v for triangle in parts[0].corners for v in triangle])
+        there = span.fixed.of([at]).at(0, time)
+        corners = iter([moving.at(k, time) for k in range(3 * len(parts[0].corners))])
+        if not is_around(list(zip(corners, corners, corners, strict=True)), there, 4 * off):
+            raise RefusedError("the point is not inside the moving solid")
+        if not is_around(parts[1].corners, at, Fraction()):
+            raise RefusedError("the point is not inside the fixed solid")
     else:
         raise RefusedError(f"{kind!r} does not say that the solids meet")
+
+
+def is_around(facets: list[Triangle], at: Vector, off: Fraction) -> bool:
+    """Whether a closed surface goes round a point, and all of it is farther away."""
+
+    def edge(u: Vector, v: Vector) -> Vector:
+        way = minus(v, u)
+        return minus(u, scaled(way, dot(u, way) / dot(way, way)))
+
+    def is_away(triangle: Triangle) -> bool:
+        """By a plane across the way to the nearest point."""
+        a, b, c = corners = [minus(v, at) for v in triangle]
+        across_ = cross(minus(b, a), minus(c, a))
+        if not any(across_):
+            return False
+        ways = [across_, minus(_ZERO, across_), a, b, c, edge(a, b), edge(b, c), edge(c, a)]
+        heights = ((min(dot(n, v) for v in corners), dot(n, n)) for n in ways)
+        return any(low > 0 and low * low > off * off * square for low, square in heights)
+
+    return all(map(is_away, facets)) and winds(at, facets) > 0
 
 
 def winds(at: Vector, facets: list[Triangle]) -> int:
@@ -2087,13 +2116,20 @@ def winds(at: Vector, facets: list[Triangle]) -> int:
         count, sure = 0, True
         for triangle in facets:
             a, b, c = (minus(v, at) for v in triangle)
+            volume = dot(cross(a, b), c)
+            if volume == 0:
+                # A ray that leaves the plane at the point does not come back to it.
+                normal = cross(minus(b, a), minus(c, a))
+                if any(normal) and dot(normal, way) == 0:
+                    sure = False
+                    break
+                continue
             sides = [dot(cross(u, v), way) for u, v in ((a, b), (b, c), (c, a))]
             if 0 in sides:
                 sure = False
                 break
             if min(sides) < 0 < max(sides):
                 continue
-            volume = dot(cross(a, b), c)
             if (volume > 0) == (sides[0] > 0):
                 count += 1 if sides[0] > 0 else -1
         if sure:
@@ -2110,19 +2146,28 @@ def start(span: Span, parts: tuple[Parts, Parts]) -> None:
         world = [points.body.at(k) for k in range(len(points.body.points))]
         placed.append([(world[k], world[k + 1], world[k + 2]) for k in range(0, len(world), 3)])
     for own, other in ((0, 1), (1, 0)):
-        shells: dict[Vector, Vector] = {}
+        if any(winds(v, placed[other]) > 0 for v in shells(placed[own])):
+            raise RefusedError("a shell lies inside the other solid when the motion begins")
 
-        def root(v: Vector, shells: dict[Vector, Vector] = shells) -> Vector:
-            while shells.setdefault(v, v) != v:
-                v = shells[v]
-            return v
 
-        for a, b, c in placed[own]:
-            shells[root(b)] = root(a)
-            shells[root(c)] = root(a)
-        for v in [v for v in shells if root(v) == v]:
-            if winds(v, placed[other]) > 0:
-                raise RefusedError("a shell lies inside the other solid when the motion begins")
+def shells(facets: list[Triangle]) -> list[Vector]:
+    """A point of each part of a surface that hangs together."""
+    leads: dict[Vector, Vector] = {}
+
+    def root(v: Vector) -> Vector:
+        while leads.setdefault(v, v) != v:
+            v = leads[v]
+        return v
+
+    for a, b, c in facets:
+        leads[root(b)] = root(a)
+        leads[root(c)] = root(a)
+    return [v for v in leads if root(v) == v]
+
+
+def has_open(shape: Any) -> bool:
+    """Whether a body has a surface that is open."""
+    return any(piece.get("open", False) for piece in shape.get("pieces", []))
 
 
 def solid_motion(file: Any) -> Report:
@@ -2167,12 +2212,10 @@ def solid_motion(file: Any) -> Report:
         elif claim["cover"] or claim["lists"]:
             raise RefusedError("a span without a time has entries")
         reached = until
+    open_ = any(has_open(file[k]) for k in ("moving", "fixed"))
     if reached > 0:
         told = "throughout the motion" if reached == 1 else f"up to the time {float(reached)!r}"
         report.holds.append(f"{of} never {meet} {told}")
-        open_ = any(
-            piece.get("open", False) for k in ("moving", "fixed") for piece in file[k]["pieces"]
-        )
         if open_:
             report.unchecked.append("what open surfaces are inside of when the motion begins")
             report.partly = True
@@ -2184,6 +2227,8 @@ def solid_motion(file: Any) -> Report:
         time = number(meeting["time"])
         if not claimed or not reached <= time <= all_spans[len(claimed) - 1].end:
             raise RefusedError(f"that they {meet} is said of another time")
+        if open_ and "inside" in meeting["met"]:
+            raise RefusedError("nothing is inside of open surfaces")
         solids_meet(all_spans[len(claimed) - 1], parts, meeting)
         report.holds.append(f"{of} {meet} at the time {float(time)!r}")
     if moved:
@@ -2247,8 +2292,63 @@ class Field:
 
 
 @dataclass
+class Pieces:
+    """What a body is taken apart into: itself, boxes of its tree, and its facets.
+
+    A convex one is whole: it is its only piece.
+    """
+
+    #: Of each piece the points, or the corners of its box.
+    points: list[list[Vector]]
+    #: The pieces that one is made of.
+    below: list[list[int]]
+    #: Of a solid.
+    facets: list[Triangle] = field(default_factory=list)
+    is_open: bool = False
+
+    @classmethod
+    def read(cls, body: Body, of: Any, is_open: bool) -> Pieces:
+        if body.is_convex:
+            return cls([body.points], [[]])
+        numbers = [whole(k, len(body.facets)) for k in of["numbers"]]
+        if sorted(numbers) != list(range(len(body.facets))):
+            raise RefusedError("the facets are not those of the body, each once")
+        facets: list[Triangle] = []
+        for at in numbers:
+            a, b, c = (body.points[k] for k in body.facets[at])
+            facets.append((a, b, c))
+        tree = [k if k == -1 else whole(k, len(facets) + 1) for k in of["tree"]]
+        count = len(tree)
+        below: list[list[int]] = [[] for _ in tree]
+        bounds: list[tuple[Vector, Vector]] = [(_ZERO, _ZERO)] * count
+        rest, open_ = len(facets), list[int]()
+        for at in reversed(range(count)):
+            if tree[at] > 0:
+                rest -= tree[at]
+                if rest < 0:
+                    raise RefusedError("the parts of the body are not its facets, each once")
+                below[at] = [count + k for k in range(rest, rest + tree[at])]
+                bounds[at] = _box([v for k in range(rest, rest + tree[at]) for v in facets[k]])
+            else:
+                if tree[at] == 0 or len(open_) < 2:
+                    raise RefusedError("the parts of the body are no tree")
+                below[at] = [open_.pop(), open_.pop()]
+                bounds[at] = _box([v for k in below[at] for v in bounds[k]])
+            open_.append(at)
+        if open_ != [0] or rest:
+            raise RefusedError("the parts of the body are no tree")
+        boxes = [[(x[0], y[1], z[2]) for x, y, z in product(ends, repeat=3)] for ends in bounds]
+        return cls(
+            boxes + [list(corners) for corners in facets],
+            below + [[] for _ in facets],
+            facets,
+            is_open,
+        )
+
+
+@dataclass
 class Carried:
-    """A convex body at the end of joints, seen from the frame that it shares with another one."""
+    """A body at the end of joints, seen from the frame that it shares with another one."""
 
     stages: list[Stage]
     body: Body
@@ -2361,11 +2461,13 @@ class Carried:
 
 @dataclass
 class Couple:
-    """Two convex bodies that joints carry, from row to row."""
+    """Two convex pieces of bodies that joints carry, from row to row."""
 
     moving: Carried
     fixed: Carried
     keep: Fraction
+    own: Sequence[Vector]
+    other: Sequence[Vector]
 
     def off(self) -> Fraction:
         """How far heights may be off for what sines, roots and rotations leave out."""
@@ -2373,8 +2475,8 @@ class Couple:
 
     def gap(self, n: Vector, row: int, share: Fraction) -> Fraction:
         p, q = (of.at(row, share) for of in (self.moving, self.fixed))
-        high = max(dot(n, p.place(v)) for v in self.moving.body.points)
-        low = min(dot(n, q.place(v)) for v in self.fixed.body.points)
+        high = max(dot(n, p.place(v)) for v in self.own)
+        low = min(dot(n, q.place(v)) for v in self.other)
         return low - high - self.off()
 
     def has(self, plane: Plane, row: int) -> bool:
@@ -2399,14 +2501,14 @@ class Couple:
         beside = root_above(dot(dn, dn))
         longest = root_above(max(dot(a.normal, a.normal), dot(b.normal, b.normal)))
         c = Fraction()
-        for of, sign in ((self.moving, -1), (self.fixed, 1)):
+        for of, points, sign in ((self.moving, self.own, -1), (self.fixed, self.other, 1)):
             first, second, third = of.most(row)
             loose = h * h * longest * second + 2 * h * beside * first
             ends = []
             for plane in (a, b):
                 found = of.at(row, plane.time)
                 n, along = scaled(plane.normal, sign * h * h), scaled(dn, sign * h)
-                ends.append(max(found.bends(found.place(v), n, along) for v in of.body.points))
+                ends.append(max(found.bends(found.place(v), n, along) for v in points))
             changes = h * h * (h * longest * third + 3 * beside * second)
             room = 64 * _SURE * of.size * (1 + sum(of.most(row)))
             c += min(loose, (ends[0] + ends[1] + changes) / 2 + room)
@@ -2424,7 +2526,7 @@ class Couple:
 
     def ends(self, pairs: Any, row: int, share: Fraction) -> list[tuple[Vector, Vector]]:
         p, q = (of.at(row, share) for of in (self.moving, self.fixed))
-        own, other = self.moving.body.points, self.fixed.body.points
+        own, other = self.own, self.other
         return [
             (
                 p.place(own[whole(pair["moving"], len(own))]),
@@ -2439,42 +2541,146 @@ def settled(row: int, share: Fraction) -> tuple[int, Fraction]:
     return (row + 1, Fraction()) if share == 1 else (row, share)
 
 
-def planes_of_path(couple: Couple, steps: Any, last: int) -> tuple[int, Fraction]:
-    """Up to where a cover of two convex bodies proves that they do not meet."""
-    here, before = (0, Fraction()), None
-    for step in steps:
-        ((kind, stretches),) = step.items()
-        if kind != "planes":
-            raise RefusedError("convex bodies are not taken apart")
-        before = None
-        for stretch in stretches:
-            row = whole(stretch["row"], last + 1)
-            planes = [Plane.read(plane) for plane in stretch["planes"]]
-            if not planes or any(plane.alone for plane in planes):
-                raise RefusedError(f"the planes of row {row} are not in order")
-            times = [plane.time for plane in planes]
-            if sorted(times) != times or times[0] < 0 or times[-1] > 1:
-                raise RefusedError(f"the planes of row {row} are not in order")
-            if settled(row, times[-1]) > (last, Fraction()):
-                raise RefusedError("a plane is beyond the end of the path")
-            if before is None:
-                if settled(row, times[0]) != here:
-                    raise RefusedError(f"the planes of row {row} do not begin where others end")
-            else:
-                (place, gap), next_ = before, (row, times[0])
-                far = place <= next_ and couple.between(place, next_) < gap + planes[0].gap
-                if settled(*place) != settled(*next_) and not far:
-                    raise RefusedError(f"what is before row {row} is not proven")
-            for k, plane in enumerate(planes):
-                if not couple.has(plane, row):
-                    gap_ = float(plane.gap)
-                    raise RefusedError(f"a plane of row {row} does not leave a gap of {gap_!r}")
-                if k and not couple.joins(row, planes[k - 1], plane):
-                    raise RefusedError(f"two planes of row {row} do not prove what is between them")
-            before = ((row, times[-1]), planes[-1].gap)
-        if before is not None:
-            here = settled(*before[0])
+@dataclass
+class Walk:
+    """Two bodies along a path, taken apart as their cover says."""
+
+    moving: Carried
+    fixed: Carried
+    keep: Fraction
+    pieces: tuple[Pieces, Pieces]
+    #: The last row.
+    last: int
+
+    def of(self, numbers: tuple[int, int]) -> Couple:
+        own, other = (side.points[k] for side, k in zip(self.pieces, numbers, strict=True))
+        return Couple(self.moving, self.fixed, self.keep, own, other)
+
+    def cover(
+        self,
+        steps: Any,
+        numbers: tuple[int, int],
+        here: tuple[int, Fraction],
+        until: tuple[int, Fraction],
+    ) -> tuple[int, Fraction]:
+        """Up to where a cover proves that two pieces do not meet, and at most so far."""
+        couple = self.of(numbers)
+        for step in steps:
+            ((kind, claim),) = step.items()
+            if kind == "planes":
+                here = planes_of_path(couple, claim, here, self.last)
+                continue
+            if kind != "parts":
+                raise NoProofError(f"a step has planes or parts, not {kind!r}")
+            which, end = whole(claim["which"], 2), claim["until"]
+            place = settled(whole(end["row"], self.last + 1), number(end["share"]))
+            below, covers = self.pieces[which].below[numbers[which]], claim["covers"]
+            if not below or len(below) != len(covers) or place < here:
+                raise RefusedError("what is taken apart has not all its parts")
+            reached = place
+            for part, cover in zip(below, covers, strict=True):
+                pair = (part, numbers[1]) if which == 0 else (numbers[0], part)
+                reached = min(reached, self.cover(cover["steps"], pair, here, place))
+            if reached < place:
+                return reached
+            here = place
+        return min(here, until)
+
+    def is_nested(self) -> bool:
+        """Whether one is inside the other where the path begins, where no surfaces meet."""
+        placed = []
+        for of, side in zip((self.moving, self.fixed), self.pieces, strict=True):
+            at = of.at(0, Fraction())
+            placed.append(
+                [(at.place(a), at.place(b), at.place(c)) for a, b, c in side.facets]
+                or at.place(side.points[0][0])
+            )
+        for own, other in (placed, placed[::-1]):
+            points = shells(own) if isinstance(own, list) else [own]
+            # Planes are beside a convex one with all that it holds.
+            if isinstance(other, list) and any(winds(v, other) > 0 for v in points):
+                return True
+        return False
+
+
+def planes_of_path(
+    couple: Couple, stretches: Any, here: tuple[int, Fraction], last: int
+) -> tuple[int, Fraction]:
+    """Up to where planes between two pieces prove that they do not meet, from some place on."""
+    before = None
+    for stretch in stretches:
+        row = whole(stretch["row"], last + 1)
+        planes = [Plane.read(plane) for plane in stretch["planes"]]
+        if not planes or any(plane.alone for plane in planes):
+            raise RefusedError(f"the planes of row {row} are not in order")
+        times = [plane.time for plane in planes]
+        if sorted(times) != times or times[0] < 0 or times[-1] > 1:
+            raise RefusedError(f"the planes of row {row} are not in order")
+        if settled(row, times[-1]) > (last, Fraction()):
+            raise RefusedError("a plane is beyond the end of the path")
+        if before is None:
+            if settled(row, times[0]) != here:
+                raise RefusedError(f"the planes of row {row} do not begin where others end")
+        else:
+            (place, gap), next_ = before, (row, times[0])
+            far = place <= next_ and couple.between(place, next_) < gap + planes[0].gap
+            if settled(*place) != settled(*next_) and not far:
+                raise RefusedError(f"what is before row {row} is not proven")
+        for k, plane in enumerate(planes):
+            if not couple.has(plane, row):
+                gap_ = float(plane.gap)
+                raise RefusedError(f"a plane of row {row} does not leave a gap of {gap_!r}")
+            if k and not couple.joins(row, planes[k - 1], plane):
+                raise RefusedError(f"two planes of row {row} do not prove what is between them")
+        before = ((row, times[-1]), planes[-1].gap)
+    if before is not None:
+        here = settled(*before[0])
     return here
+
+
+def pieces_meet(walk: Walk, how: Any, row: int, share: Fraction) -> None:
+    """That two pieces of bodies do at a place: whole bodies, or facets."""
+    ((kind, claim),) = how.items()
+    if kind != "pieces":
+        raise RefusedError(f"{kind!r} does not say that bodies meet")
+    i, j = (
+        whole(k, len(side.points)) for k, side in zip(claim["pieces"], walk.pieces, strict=True)
+    )
+    if walk.pieces[0].below[i] or walk.pieces[1].below[j]:
+        raise RefusedError("what holds other pieces is none of a body's own")
+    couple, refused = walk.of((i, j)), RefusedError("the pieces have no points")
+    # Which corner of a facet is the first one is not told.
+    own = begun(couple.own, walk.pieces[0])
+    for first, second in product(own, begun(couple.other, walk.pieces[1])):
+        try:
+            do_meet(replace(couple, own=first, other=second), claim["met"], row, share)
+        except RefusedError as error:
+            refused = error
+        else:
+            return
+    raise refused
+
+
+def do_meet(couple: Couple, met: Any, row: int, share: Fraction) -> None:
+    """That two convex pieces overlap at a place, or are as near as the gap to be kept."""
+    ((kind, claim),) = met.items()
+    keep = couple.keep
+    if kind == "deep" and keep == 0:
+        corners = [minus(q, p) for p, q in couple.ends(claim["enclosure"]["pairs"], row, share)]
+        enclosure(corners, claim["enclosure"], couple.off())
+    elif kind == "near" and keep > 0:
+        ends = couple.ends(claim["pairs"], row, share)
+        near, far = (mean([end[k] for end in ends], claim["weights"]) for k in (0, 1))
+        way = minus(far, near)
+        if not above(keep - couple.off(), dot(way, way)):
+            raise RefusedError(f"the points are not as near as {float(keep)!r}")
+    else:
+        raise RefusedError(f"{kind!r} does not say that the bodies meet")
+
+
+def begun(points: Sequence[Vector], side: Pieces) -> list[Sequence[Vector]]:
+    """The corners of a facet from each of them on; those of a convex body as they are."""
+    return [[*points[k:], *points[:k]] for k in range(3)] if side.facets else [points]
 
 
 def path(file: Any) -> Report:
@@ -2510,19 +2716,25 @@ def path(file: Any) -> Report:
         return found[::-1]
 
     bodies = [
-        (above_of(of["frame"]), Body.read(of["body"], of["pose"]), of["name"])
-        for of in file["bodies"]
+        (above_of(of["frame"]), Body.read(of["body"], of["pose"]), of) for of in file["bodies"]
+    ]
+    split = [
+        Pieces.read(body, of.get("parts"), has_open(of["body"]))
+        if body.is_convex or "parts" in of
+        else None
+        for _, body, of in bodies
     ]
     proof, last = file["proof"], len(rows) - 1
     covers = proof["covers"]
     if len(covers) != len(file["pairs"]):
         raise RefusedError("there is not a cover for each pair")
-    couples: list[Couple | None] = []
-    reached, skipped = (last, Fraction()), 0
+    walks: list[Walk | None] = []
+    begin, reached, skipped, open_ = (0, Fraction()), (last, Fraction()), 0, 0
     for (i, j), cover in zip(file["pairs"], covers, strict=True):
         (way_p, p, _), (way_q, q, _) = (bodies[whole(k, len(bodies))] for k in (i, j))
-        if not (p.is_convex and q.is_convex):
-            couples.append(None)
+        pieces_p, pieces_q = split[i], split[j]
+        if pieces_p is None or pieces_q is None:
+            walks.append(None)
             skipped += 1
             continue
         while way_p and way_q and way_p[0] == way_q[0]:
@@ -2530,9 +2742,15 @@ def path(file: Any) -> Report:
         own, other = (
             Carried([frames[k] for k in way], of, rows) for way, of in ((way_p, p), (way_q, q))
         )
-        couple = Couple(own, other, keep)
-        couples.append(couple)
-        reached = min(reached, planes_of_path(couple, cover["steps"], last))
+        walk = Walk(own, other, keep, (pieces_p, pieces_q), last)
+        walks.append(walk)
+        up_to = walk.cover(cover["steps"], (0, 0), begin, reached)
+        if up_to > begin:
+            if pieces_p.is_open or pieces_q.is_open:
+                open_ += 1
+            elif walk.is_nested():
+                raise RefusedError("one of two bodies is inside the other where the path begins")
+        reached = min(reached, up_to)
 
     def time(row: int, share: Fraction) -> Fraction:
         return times[row] + (share * (times[row + 1] - times[row]) if share else 0)
@@ -2541,41 +2759,35 @@ def path(file: Any) -> Report:
     lower, meeting = number(file["said"]["lower"]), proof["meeting"]
     if lower > time(*reached):
         raise RefusedError(f"up to {float(lower)!r} it is not proven")
-    if skipped < len(couples):
+    if skipped < len(walks) and lower > times[0]:
         of = "no two bodies" if not skipped else "no two convex bodies"
         report.holds.append(f"{of} {meet} up to the time {float(lower)!r}")
     if skipped:
-        report.unchecked.append(f"what solids do, in {skipped} of {len(couples)} pairs")
+        report.unchecked.append(f"what solids do, in {skipped} of {len(walks)} pairs")
+        report.partly = True
+    if open_:
+        report.unchecked.append(f"what open surfaces are inside of at first, in {open_} pairs")
         report.partly = True
     if meeting is None:
         if file["said"]["upper"] is not None:
             raise RefusedError("that two bodies meet is said, and not proven")
         return report
-    which, place = whole(meeting["pair"], len(couples)), meeting["place"]
+    which, place = whole(meeting["pair"], len(walks)), meeting["place"]
     row, share = whole(place["row"], last + 1), number(place["share"])
     upper = number(file["said"]["upper"])
     if not 0 <= share <= 1 or (row == last and share) or time(row, share) > upper:
         raise RefusedError(f"that two bodies {meet} is said of another time")
-    found = couples[which]
-    names = " and ".join(repr(bodies[k][2]) for k in file["pairs"][which])
+    found = walks[which]
+    names = " and ".join(repr(bodies[k][2]["name"]) for k in file["pairs"][which])
     if found is None:
         report.unchecked.append(f"that {names}, one of which is a solid, {meet} then")
         return report
-    ((kind, claim),) = meeting["how"].items()
-    if kind != "pieces" or claim["pieces"] != [0, 0]:
-        raise RefusedError(f"{kind!r} does not say that convex bodies meet")
-    ((kind, met),) = claim["met"].items()
-    if kind == "deep" and keep == 0:
-        corners = [minus(q, p) for p, q in found.ends(met["enclosure"]["pairs"], row, share)]
-        enclosure(corners, met["enclosure"], found.off())
-    elif kind == "near" and keep > 0:
-        ends = found.ends(met["pairs"], row, share)
-        near, far = (mean([end[k] for end in ends], met["weights"]) for k in (0, 1))
-        way = minus(far, near)
-        if not above(keep - found.off(), dot(way, way)):
-            raise RefusedError(f"the points are not as near as {float(keep)!r}")
+    how = meeting["how"]
+    if how == "inside":
+        if (row, share) != begin or not found.is_nested():
+            raise RefusedError("neither body is inside the other where the path begins")
     else:
-        raise RefusedError(f"{kind!r} does not say that the bodies meet")
+        pieces_meet(found, how, row, share)
     report.holds.append(f"{names} {meet} at the time {float(upper)!r}")
     return report
 

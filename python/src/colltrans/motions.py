@@ -2,13 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypeAlias
+from typing import Any, Literal, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from colltrans import _arrays, _colltrans
-from colltrans._colltrans import FirstContact, Motion
+from colltrans._colltrans import FirstContact, Motion, MotionClearance
 from colltrans.columns import TimeColumns
 from colltrans.errors import InputError
 from colltrans.queries import (
@@ -39,6 +39,7 @@ KINDS: dict[str, dict[str, int]] = {
 class MotionQueries:
     """What was asked: tables with one row or as many as there are queries."""
 
+    question: Literal["motion", "motion_clearance"]
     bodies: tuple[list[Any], list[Any]]
     indices: tuple[NDArray[np.int64] | None, NDArray[np.int64] | None]
     #: Lists of motions, or tables of 3 (slides), 8 (screws) or 9 numbers (what is thrown).
@@ -53,6 +54,7 @@ class MotionQueries:
         (moving, fixed), (moving_index, fixed_index) = self.bodies, self.indices
         columns, outcomes, errors = _colltrans.ask_motions(
             self.count,
+            self.question,
             (moving, moving_index),
             (fixed, fixed_index),
             *self.motions,
@@ -111,6 +113,30 @@ class MotionColumns(TimeColumns[FirstContact]):
     _question = staticmethod(_colltrans.first_contact)
 
 
+@dataclass(frozen=True, eq=False, repr=False)
+class MotionClearanceColumns(TimeColumns[MotionClearance]):
+    """The answers of :func:`motion_clearance_many`; see :class:`Table`.
+
+    Attributes
+    ----------
+    lower, upper : ndarray of shape (N,)
+        Up to the first the body may go for certain; at the second what stops it meets, in its true
+        place.
+    least_tolerance : ndarray of shape (N,)
+        Of bodies that overlap when the motion begins: with which they would not.
+    normal : ndarray of shape (N, 3)
+        Unit normals, in the world, from the moving body to the fixed one.
+    point : ndarray of shape (N, 3)
+        Contact points on the fixed body, in the world.
+    """
+
+    least_tolerance: Floats
+    normal: Floats
+    point: Floats
+
+    _question = staticmethod(_colltrans.motion_clearance)
+
+
 def motion_many(
     moving: AnyBodies,
     fixed: AnyBodies,
@@ -165,18 +191,81 @@ def motion_many(
     >>> columns.lower.round(6)
     array([     nan, 0.553574, 0.36905 ,      nan])
     """
-    bodies = [
-        body_list(side, index, name)
-        for side, index, name in (
-            (moving, moving_index, "moving"),
-            (fixed, fixed_index, "fixed"),
-        )
-    ]
-    poses = (pose_table(moving_pose, "moving_pose"), pose_table(fixed_pose, "fixed_pose"))
-    motions = (
-        motion_table(moving_motion, moving_pose, "moving_motion"),
-        motion_table(fixed_motion, fixed_pose, "fixed_motion"),
+    queries = queries_of(
+        "motion",
+        (moving, moving_index, moving_motion, moving_pose),
+        (fixed, fixed_index, fixed_motion, fixed_pose),
+        keep,
+        tolerance,
     )
+    return MotionColumns(**queries.ask_all(checked_threads(threads)))
+
+
+def motion_clearance_many(
+    moving: AnyBodies,
+    fixed: AnyBodies,
+    moving_motion: Motions,
+    fixed_motion: Motions = None,
+    *,
+    moving_pose: Poses = None,
+    fixed_pose: Poses = None,
+    moving_index: ArrayLike | None = None,
+    fixed_index: ArrayLike | None = None,
+    keep: ArrayLike = 0.0,
+    tolerance: ArrayLike | None = None,
+    threads: int | None = None,
+) -> MotionClearanceColumns:
+    """:func:`motion_clearance` for every row.
+
+    Parameters
+    ----------
+    moving, fixed, moving_motion, fixed_motion, moving_pose, fixed_pose
+        As for :func:`motion_many`; so are all others.
+
+    Returns
+    -------
+    MotionClearanceColumns
+
+    Raises
+    ------
+    InputError
+        Arrays whose shapes do not go together. Wrong numbers in a row are errors of that row.
+
+    Examples
+    --------
+    >>> from colltrans import ConvexPolyhedron, motion_clearance_many
+    >>> block = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+    >>> table = ConvexPolyhedron.cuboid([-4, -4, -1], [4, 4, 0])
+    >>> ways = {"slide": {"by": [[1, 0, 0], [0, 0, 2], [0, 0, -1]]}}
+    >>> motion_clearance_many(block, table, ways)
+    MotionClearanceColumns(3 rows: 1 blocked, 2 free)
+    """
+    queries = queries_of(
+        "motion_clearance",
+        (moving, moving_index, moving_motion, moving_pose),
+        (fixed, fixed_index, fixed_motion, fixed_pose),
+        keep,
+        tolerance,
+    )
+    return MotionClearanceColumns(**queries.ask_all(checked_threads(threads)))
+
+
+#: The bodies of a side, their numbers for each row, what they do and where.
+Side: TypeAlias = tuple[AnyBodies, ArrayLike | None, Motions, Poses]
+
+
+def queries_of(
+    question: Literal["motion", "motion_clearance"],
+    moving: Side,
+    fixed: Side,
+    keep: ArrayLike,
+    tolerance: ArrayLike | None,
+) -> MotionQueries:
+    """What is asked, checked."""
+    named = (("moving", moving), ("fixed", fixed))
+    bodies = [body_list(side[0], side[1], name) for name, side in named]
+    poses = [pose_table(side[3], f"{name}_pose") for name, side in named]
+    motions = [motion_table(side[2], side[3], f"{name}_motion") for name, side in named]
     none = np.full((1, 1), np.nan)
     tables: dict[str, Any] = {
         "moving_motion": motions[0],
@@ -187,16 +276,16 @@ def motion_many(
         "tolerance": none if tolerance is None else column(tolerance, "tolerance"),
     }
     indices = (bodies[0][1], bodies[1][1])
-    queries = MotionQueries(
+    return MotionQueries(
+        question=question,
         bodies=(bodies[0][0], bodies[1][0]),
         indices=indices,
-        motions=motions,
-        poses=poses,
+        motions=(motions[0], motions[1]),
+        poses=(poses[0], poses[1]),
         keep=tables["keep"],
         tolerance=tables["tolerance"],
         count=count_of(tables, indices),
     )
-    return MotionColumns(**queries.ask_all(checked_threads(threads)))
 
 
 def motion_table(motions: Motions, pose: Poses, name: str) -> list[Motion] | Floats:

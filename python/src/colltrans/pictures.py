@@ -26,6 +26,7 @@ from colltrans._colltrans import (
     Grazing,
     Intersection,
     MotionCast,
+    MotionClearance,
     OverlapDepth,
     Overlapping,
     Pair,
@@ -105,6 +106,8 @@ def picture(answer: Any) -> Any:
         answer = answer.distance()
     elif isinstance(answer, MotionCast):
         answer = answer.first_contact()
+    elif isinstance(answer, MotionClearance):
+        answer = _cleared(answer).first_contact()
     figure = go.Figure()
     moved = isinstance(answer, FirstContact)
     figure.add_traces(list(_moved(go, answer) if moved else _asked(go, answer)))
@@ -131,6 +134,20 @@ def _asked(go: Any, answer: Any) -> Iterator[Any]:
             yield _line(go, *mark.ends, {"color": TOUCH, "width": 6}, mark.name)
         else:
             yield from _drawn(go, mark, moving, size)
+
+
+def _cleared(answer: MotionClearance) -> MotionCast:
+    """The question whose first contact it is, with the tolerance that was used."""
+    query = answer.query
+    if query.keep > 0 or answer.tolerance is None:
+        return query
+    return MotionCast(
+        query.moving,
+        query.fixed,
+        moving_motion=query.moving_motion,
+        fixed_motion=query.fixed_motion,
+        tolerance=answer.tolerance,
+    )
 
 
 def _moved(go: Any, answer: FirstContact) -> Iterator[Any]:

@@ -206,7 +206,7 @@ pub fn plain(error: &serde_json::Error) -> String {
 
 /// A parser's message in words of the file, not of the parser.
 fn plain_words(message: &str) -> String {
-    const WORDS: [(&str, &str); 19] = [
+    const WORDS: [(&str, &str); 20] = [
         ("expected ident", "it is not JSON"),
         ("expected value", "it is not JSON"),
         ("floating point", "number"),
@@ -215,6 +215,7 @@ fn plain_words(message: &str) -> String {
         ("invalid length ", "found a list of "),
         ("expected f64", "expected a number"),
         ("expected f32", "expected a number"),
+        ("found map, expected enum", "there is no field that says of which kind it is"),
         ("expected usize", "expected a whole number"),
         ("expected u32", "expected a whole number"),
         ("expected a sequence", "expected a list"),

@@ -113,11 +113,12 @@ pub(super) fn motions<B>(query: &Query<'_, B>) -> Result<[Motion; 2], String> {
     ])
 }
 
-/// When convex bodies first meet.
-pub(super) fn first_contact<B>(
+/// When convex bodies first meet, or how far they can go.
+pub(super) fn of_convex<B>(
     query: &Query<'_, B>,
     [moving, fixed]: [&Part; 2],
     motions: &[Motion; 2],
+    clears: bool,
 ) -> Result<Record, String> {
     if query.ignore_start_overlaps.is_some() {
         return Err("`ignore_start_overlaps` is for solids".into());
@@ -129,7 +130,10 @@ pub(super) fn first_contact<B>(
         (keep, None) => cast.and_then(|cast| cast.keeping(keep.unwrap_or_default())),
     };
     let cast = cast.map_err(|error| error.to_string())?;
-    let found = cast.first_contact();
-    let found = found.map_err(|error| replay::motion_failure(error, &cast).into_message())?;
-    Ok(Record::of_motion(&found, &cast))
+    let failed = |error| replay::motion_failure(error, &cast).into_message();
+    Ok(if clears {
+        Record::of_motion_clearance(&cast.clearance().map_err(failed)?, &cast)
+    } else {
+        Record::of_motion(&cast.first_contact().map_err(failed)?, &cast)
+    })
 }

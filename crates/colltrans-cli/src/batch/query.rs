@@ -207,17 +207,18 @@ fn solve<B>(query: &Query<'_, B>, [moving, fixed]: [Built; 2]) -> Result<AnswerL
     let shapes = [&*moving, &*fixed];
     match (query.asked()?, shapes) {
         (Ask::Pair(question), shapes) => of_pair(question, shapes, poses),
-        (Ask::Motion(motions), [Shape::Convex(moving), Shape::Convex(fixed)]) => {
+        (Ask::Motion(motions, clears), [Shape::Convex(moving), Shape::Convex(fixed)]) => {
             let parts = [moving, fixed];
-            Ok(of_parts(motion::first_contact(query, parts, &motions)?, parts))
+            Ok(of_parts(motion::of_convex(query, parts, &motions, clears)?, parts))
         }
-        (Ask::Motion(motions), shapes) => {
+        (Ask::Motion(motions, clears), shapes) => {
             let [moving, fixed] = as_solids(shapes)?;
             let bodies = [moving.get(), fixed.get()];
             let (keep, motions) = (query.keep.unwrap_or_default(), &*motions);
             let ignore_start_overlaps = query.ignore_start_overlaps.unwrap_or_default();
             let tolerance = query.tolerance;
-            let asked = PartsMotion { bodies, motions, tolerance, ignore_start_overlaps, keep };
+            let asked =
+                PartsMotion { bodies, motions, tolerance, clears, ignore_start_overlaps, keep };
             Ok(of_bodies(asked.ask().map_err(|e| e.to_string())?, bodies))
         }
         (Ask::Cast(direction), [Shape::Convex(moving), Shape::Convex(fixed)]) => {
@@ -236,9 +237,10 @@ impl<B> Query<'_, B> {
                 let direction = self.direction.ok_or("missing field `direction`")?;
                 return Ok(Ask::Cast(DVec3::from_array(direction)));
             }
-            Some(Asked::Motion) => {
+            Some(asked @ (Asked::Motion | Asked::MotionClearance)) => {
                 self.refuse(&[&OF_CASTS[..5], &["length"]].concat())?;
-                return Ok(Ask::Motion(Box::new(motion::motions(self)?)));
+                let clears = asked == Asked::MotionClearance;
+                return Ok(Ask::Motion(Box::new(motion::motions(self)?), clears));
             }
             Some(Asked::Distance) => PairQuestion::Distance,
             Some(Asked::Depth) => PairQuestion::Depth,
@@ -355,7 +357,8 @@ impl<B> Query<'_, B> {
 enum Ask {
     Pair(PairQuestion),
     Cast(DVec3),
-    Motion(Box<[Motion; 2]>),
+    /// When they first meet, or how far they can go.
+    Motion(Box<[Motion; 2]>, bool),
 }
 
 /// Fields that only queries with a direction have; the last one motions have too.

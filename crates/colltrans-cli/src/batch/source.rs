@@ -21,7 +21,7 @@ pub(super) struct Query<'a, Body> {
     pub(super) direction: Option<[f64; 3]>,
     #[serde(rename = "query")]
     pub(super) question: Option<Asked>,
-    /// Of [`Asked::Motion`].
+    /// Of [`Asked::Motion`] and [`Asked::MotionClearance`].
     pub(super) moving_motion: Option<MotionSource>,
     pub(super) fixed_motion: Option<MotionSource>,
     /// Of [`Asked::Within`].
@@ -46,6 +46,7 @@ pub(super) enum Asked {
     Depth,
     Within,
     Motion,
+    MotionClearance,
 }
 
 #[derive(Debug, Deserialize)]

@@ -2,7 +2,7 @@
 
 use colltrans::glam::DVec3;
 use colltrans::motion::{Motion, MotionCast};
-use colltrans::record::{FeaturesRecord, Record};
+use colltrans::record::{Ending, FeaturesRecord, Record};
 use colltrans::solid::StartOverlap;
 use colltrans::{QueryError, Solid};
 use colltrans_mesh::body::between_motions;
@@ -16,27 +16,41 @@ pub(crate) struct PartsMotion<'a> {
     pub(crate) motions: &'a [Motion; 2],
     /// `None` for what the files' precision asks for.
     pub(crate) tolerance: Option<f64>,
+    /// Whether it is asked how far they can go.
+    pub(crate) clears: bool,
     pub(crate) ignore_start_overlaps: bool,
     /// The gap to be kept, or 0.
     pub(crate) keep: f64,
 }
 
 impl PartsMotion<'_> {
-    /// The answer, with the names of files: the first contact, or where what overlaps when the motion begins is ignored
-    /// the clearance, and what that is.
+    /// The answer, with the names of files: the first contact, or how far they can go; that too where what overlaps when
+    /// the motion begins is ignored, and what that is.
     pub(crate) fn ask(&self) -> Result<Record, QueryError> {
         let cast = self.cast()?;
-        let mut record = if self.ignore_start_overlaps {
-            let cast = cast.with_start_overlap(StartOverlap::Ignore);
-            let mut record = Record::of_solid_motion_clearance(&cast.clearance()?, &cast);
-            record.start_overlaps = self.start().overlaps(cast.tolerance(), || ())?;
-            record
+        let mut record = if self.clears || self.ignore_start_overlaps {
+            self.clearance(cast)?
         } else {
             Record::of_solid_motion(&cast.first_contact()?, &cast)
         };
         if let Some(FeaturesRecord { moving, fixed }) = &mut record.features {
             record.moving = Some(self.bodies[0].renumber(moving));
             record.fixed = Some(self.bodies[1].renumber(fixed));
+        }
+        Ok(record)
+    }
+
+    fn clearance(&self, cast: MotionCast<'_, Solid>) -> Result<Record, QueryError> {
+        let ignores = self.ignore_start_overlaps;
+        let start = if ignores { StartOverlap::Ignore } else { StartOverlap::Refuse };
+        let cast = cast.with_start_overlap(start);
+        let mut record = Record::of_solid_motion_clearance(&cast.clearance()?, &cast);
+        if record.outcome == Ending::Blocked && !self.clears {
+            let is_proven = record.time.is_some_and(|time| time.upper.is_some());
+            record.outcome = if is_proven { Ending::Contact } else { Ending::Grazing };
+        }
+        if ignores || record.outcome == Ending::Overlapping {
+            record.start_overlaps = self.start().overlaps(cast.tolerance(), || ())?;
         }
         Ok(record)
     }

@@ -354,6 +354,36 @@ fn a_batch_that_is_killed_leaves_no_results() {
     }
 }
 
+/// What touches may leave, and is stopped where it is pushed in.
+#[test]
+fn clearances_of_motions_are_asked_in_lines() {
+    let line = |body: &str, more: &str| {
+        format!(r#"{{"moving":{body},"fixed":{BOX},"query":"motion_clearance",{more}}}"#)
+    };
+    let touching =
+        r#""moving_motion":{"slide":{"by":[-4,0,0]}},"fixed_pose":{"translation":[1,0,0]}"#;
+    let pushed = touching.replace("-4", "4");
+    let solid = r#"{"solid":"cube.off"}"#;
+    let lines = [
+        line(
+            BOX,
+            r#""moving_motion":{"slide":{"by":[4,0,0]}},"fixed_pose":{"translation":[3,0.1,0.1]}"#,
+        ),
+        line(BOX, touching),
+        line(BOX, &pushed),
+        line(solid, touching),
+        line(solid, &pushed),
+        line(solid, r#""moving_motion":{"slide":{"by":[4,0,0]}}"#),
+    ];
+    let (_, results) = run(&lines.join("\n"), &[]);
+    let outcomes: Vec<&str> = results.iter().map(|r| r["outcome"].as_str().unwrap()).collect();
+    assert_eq!(outcomes, ["blocked", "free", "blocked", "free", "blocked", "overlapping"]);
+    assert!((results[0]["time"]["lower"].as_f64().unwrap() - 0.5).abs() < 1e-9, "{}", results[0]);
+    assert!(results[0]["shrunk_time"]["upper"].is_number(), "{}", results[0]);
+    assert_eq!(results[2]["time"]["lower"], 0.0);
+    assert!(results[5]["start_overlaps"][0].is_object(), "{}", results[5]);
+}
+
 #[test]
 fn motions_are_asked_in_lines() {
     let line = |body: &str, more: &str| {
@@ -412,7 +442,7 @@ fn motions_are_asked_in_lines() {
             asked(r#""moving_motion":{"slide":{"by":[1,0,0]},"still":{},"spin":7}"#),
             "moving_motion: a motion is of one kind; there is `still` besides",
         ),
-        (asked(r#""moving_motion":{}"#), "expected a kind of motion"),
+        (asked(r#""moving_motion":{}"#), "no field that says of which kind it is"),
         (asked(&moved.replace("\"axis\":[0,0,1],", "")), "missing field `axis`"),
         (asked(&moved.replace("turn", "twist")), "unknown word `twist`"),
         (asked(r#""moving_motion":{"through":{"poses":[]}}"#), "at least one pose"),

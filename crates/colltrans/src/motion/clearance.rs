@@ -96,7 +96,7 @@ impl MotionCast<'_> {
     /// rounding can do to a fit: so what touches may slide, turn and leave, and is stopped where it is pushed in.
     /// A gap that is [kept](Self::keeping) may be less by as much.
     ///
-    /// The proof in the answer is one of this question with [`MotionStop::tolerance`] in its place. What an overlap
+    /// The proof in the answer is one of the [cleared](Self::cleared) question. What an overlap
     /// when the motion begins may mean else is asked of [solids](MotionCast::between).
     ///
     /// # Errors
@@ -122,9 +122,8 @@ impl MotionCast<'_> {
     /// ```
     pub fn clearance(&self) -> Result<MotionClearance, QueryError> {
         let (bodies, motions) = (self.bodies(), self.motions());
-        let given = self.tolerance() > 0.0;
-        let tolerance = if given { self.tolerance() } else { usual_tolerance(bodies, motions) };
-        let cleared = Self { keep: self.keep() - tolerance, ..self.clone() };
+        let tolerance = self.tolerance_or_usual();
+        let cleared = self.cleared();
         let shrunk = match cleared.first_contact()? {
             MotionOutcome::Free(free) => return Ok(MotionClearance::Free(free)),
             MotionOutcome::Overlapping(_) => {
@@ -139,6 +138,17 @@ impl MotionCast<'_> {
         let rate = at(&closing, shrunk.lower, &mut looker).map_or(0.0, |look| look.rate);
         let time = true_time(&bare, &mut looker, [tolerance, rate], bounds);
         Ok(MotionClearance::blocked(time, tolerance, shrunk))
+    }
+
+    /// The same question with the tolerance of its [clearance](Self::clearance), whose proof is one of this.
+    #[must_use]
+    pub fn cleared(&self) -> Self {
+        Self { keep: self.keep() - self.tolerance_or_usual(), ..self.clone() }
+    }
+
+    fn tolerance_or_usual(&self) -> f64 {
+        let given = self.tolerance();
+        if given > 0.0 { given } else { usual_tolerance(self.bodies(), self.motions()) }
     }
 
     /// By how much the bodies overlap, or are nearer than the gap to be kept, when the motion begins.

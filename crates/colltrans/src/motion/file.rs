@@ -95,9 +95,9 @@ impl MotionCase {
     fn read(asked: Asked) -> Result<Self, CaseError> {
         let Asked { moving, moving_motion, fixed, fixed_motion, keep, .. } = asked;
         if keep < 0.0 {
-            check_tolerated(-keep)?
+            check_tolerated(-keep)?;
         } else {
-            check_keep(keep)?
+            check_keep(keep)?;
         }
         let bodies = [convex_body(&moving, "moving")?, convex_body(&fixed, "fixed")?];
         Ok(Self { bodies: Box::new(bodies), motions: [moving_motion, fixed_motion], keep })

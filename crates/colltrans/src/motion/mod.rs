@@ -169,7 +169,8 @@ impl MotionCast<'_> {
     /// When do the bodies first meet?
     ///
     /// # Errors
-    /// A search that does not end: seen of bodies that are nearly straight lines, two in a million settings.
+    /// A search that does not end: seen of bodies that are nearly straight lines, two in a million settings. Where the bodies
+    /// may meet in a motion whose places are off by more than they are large.
     pub fn first_contact(&self) -> Result<MotionOutcome, QueryError> {
         let (mut proof, mut steps) = (MotionProof::default(), MotionSteps::default());
         for span in spans(self.bodies(), self.motions(), self.keep) {
@@ -183,7 +184,10 @@ impl MotionCast<'_> {
                     proof.meeting = Some(Meeting { time, met });
                     return Ok(contact(&span, proof, steps));
                 }
-                End::Blurred => return Ok(contact(&span, proof, steps)),
+                End::Blurred => {
+                    check_fine(self.bodies(), span.error)?;
+                    return Ok(contact(&span, proof, steps));
+                }
                 End::Stalled => return Err(QueryError::NotConverged { reason: Stalled::Motion }),
             }
         }
@@ -204,6 +208,12 @@ impl MotionCast<'_> {
 fn check_tolerated(depth: f64) -> Result<(), QueryError> {
     let is_one = (0.0..=MAX_MAGNITUDE).contains(&depth);
     if is_one { Ok(()) } else { Err(QueryError::Tolerance { tolerance: depth }) }
+}
+
+/// Whether places that may be off by so much say anything of bodies.
+fn check_fine<B: Hull>(bodies: [&B; 2], off: f64) -> Result<(), QueryError> {
+    let size = bodies[0].reach() + bodies[1].reach();
+    if off > size { Err(QueryError::Coarse { off, size }) } else { Ok(()) }
 }
 
 /// What is to be said where the bodies meet, or may.

@@ -2,10 +2,10 @@
 
 use serde::Serialize;
 
-use super::{Ending, FeaturesRecord, Record, coordinates, open_ones};
+use super::{Ending, FeaturesRecord, Record, StartOverlapRecord, coordinates, open_ones};
 use crate::body::Body;
 use crate::body::solid::Solid;
-use crate::motion::{MotionCast, MotionClearance, MotionContact, MotionOutcome};
+use crate::motion::{MotionCast, MotionClearance, MotionContact, MotionOutcome, MotionOverlap};
 
 /// Bounds of a time, from 0 at the start of a motion to 1 at its end.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -31,27 +31,41 @@ impl Record {
         Self { tolerance: Some(cast.tolerance()), surfaces, ..Self::of_motions(outcome, cast) }
     }
 
-    /// Of [`MotionCast::clearance`] of solids; `cast` is the one that was asked. Where they are stopped, `time` is that
-    /// of their true place.
+    /// Of [`MotionCast::clearance`] of convex bodies; `cast` is the one that was asked. Where they are stopped, `time` is
+    /// that of their true place.
+    pub fn of_motion_clearance(clearance: &MotionClearance, cast: &MotionCast<'_>) -> Self {
+        let record = Self::cleared(clearance, |outcome| Self::of_motion(outcome, cast));
+        record.keeping(cast.keep())
+    }
+
+    /// The same of solids.
     pub fn of_solid_motion_clearance(
         clearance: &MotionClearance<()>,
         cast: &MotionCast<'_, Solid>,
     ) -> Self {
-        let told = |outcome: &MotionOutcome<()>| Self::of_solid_motion(outcome, cast);
+        let record = Self::cleared(clearance, |outcome| Self::of_solid_motion(outcome, cast));
+        let surfaces = open_ones(cast.bodies()[0], cast.bodies()[1]);
+        Self { tolerance: Some(cast.tolerance()), surfaces, ..record.keeping(cast.keep()) }
+    }
+
+    fn cleared<P: Clone>(
+        clearance: &MotionClearance<P>,
+        told: impl Fn(&MotionOutcome<P>) -> Self,
+    ) -> Self {
         match clearance {
             MotionClearance::Blocked { time, contact } => {
                 let record = told(&MotionOutcome::Contact(contact.shrunk.clone()));
                 let upper = Some(contact.time.upper).filter(|upper| upper.is_finite());
                 let true_time = Some(TimeRecord { lower: *time, upper });
-                let outcome = if upper.is_some() { Ending::Contact } else { Ending::Grazing };
-                Self { outcome, time: true_time, shrunk_time: record.time, ..record }
+                let (outcome, tolerance) = (Ending::Blocked, Some(contact.tolerance));
+                Self { outcome, tolerance, time: true_time, shrunk_time: record.time, ..record }
             }
             MotionClearance::Free(free) => told(&MotionOutcome::Free(free.clone())),
-            MotionClearance::Overlapping(_) => {
-                let surfaces = open_ones(cast.bodies()[0], cast.bodies()[1]);
+            MotionClearance::Overlapping(MotionOverlap { least_tolerance, .. }) => {
+                let least_tolerance = *least_tolerance;
+                let overlap = StartOverlapRecord { least_tolerance, ..Default::default() };
                 let (outcome, looks) = (Ending::Overlapping, Some(0));
-                let tolerance = Some(cast.tolerance());
-                Self { outcome, tolerance, surfaces, looks, ..Self::default() }.keeping(cast.keep())
+                Self { outcome, looks, start_overlaps: vec![overlap], ..Self::default() }
             }
         }
     }

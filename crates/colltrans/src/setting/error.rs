@@ -86,6 +86,18 @@ pub enum QueryError {
         /// What went wrong.
         reason: Stalled,
     },
+    /// A motion goes so far that what computed places may be off is more than the bodies are large, so that nothing can be
+    /// said of when they meet.
+    #[error(
+        "the motion goes so far, or so far away, that its places may be off by {off:e}, more than the bodies are \
+         large, {size:e}"
+    )]
+    Coarse {
+        /// By how much, at most.
+        off: f64,
+        /// How far both reach from their origins, together.
+        size: f64,
+    },
     /// One of many obstacles has no answer.
     #[error("obstacle {obstacle}: {reason}")]
     Obstacle {

@@ -9,7 +9,8 @@ use super::{
     Frame, JointPath, Mechanism, PathBody, PathCast, PathError, PathOutcome, PathProof,
     PathProofError,
 };
-use crate::body::Pose;
+use crate::among::{AnyBody, ByKind};
+use crate::body::{InputFacet, Pose};
 use crate::cast::CaseError;
 use crate::proof_file::{BodyFile, Written, kept, said};
 
@@ -142,6 +143,7 @@ impl PathProofFile {
             name: of.name.clone(),
             frame: of.frame,
             pose: of.pose,
+            parts: Parts::of(&of.written.body),
             body: of.written.file(),
         };
         let file = File {
@@ -166,6 +168,10 @@ impl PathProofFile {
         let file: File = serde_json::from_str(text).map_err(CaseError::Proof)?;
         let body = |of: BodyRecord| {
             let written = Written::of(of.body)?;
+            // They are there for whoever has no such trees; they have to be those of these bodies.
+            if of.parts.is_some() && of.parts != Parts::of(&written.body) {
+                return Err(CaseError::Changed { which: "one" });
+            }
             Ok(Carried { name: of.name, frame: of.frame, pose: of.pose, written })
         };
         Ok(Self {
@@ -253,5 +259,34 @@ struct BodyRecord {
     name: String,
     frame: Option<usize>,
     pose: Pose,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    parts: Option<Parts>,
     body: BodyFile,
+}
+
+/// How a solid is taken apart: its facets by their numbers in the file, in the order in which a proof counts them, and the
+/// nodes of its tree in preorder, -1 for one that has two parts, else how many of the next facets it holds.
+#[derive(Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Parts {
+    numbers: Vec<InputFacet>,
+    tree: Vec<i64>,
+}
+
+impl Parts {
+    fn of(body: &AnyBody) -> Option<Self> {
+        let ByKind::Solid(solid) = body else { return None };
+        let nodes = solid.nodes();
+        let (mut tree, mut open) = (Vec::with_capacity(nodes.len()), vec![0]);
+        while let Some(at) = open.pop() {
+            if nodes[at].is_leaf() {
+                tree.push(nodes[at].facets().len() as i64);
+            } else {
+                let first = at + nodes[at].skip as usize;
+                tree.push(-1);
+                open.extend([first + 1, first]);
+            }
+        }
+        Some(Self { numbers: solid.facet_indices().to_vec(), tree })
+    }
 }

@@ -38,7 +38,7 @@ use super::answer::{MotionContact, MotionFree, MotionOutcome, MotionSteps};
 use super::soon::soon;
 use super::span::{Span, spans};
 use super::verify::MotionProofError;
-use super::{Motion, MotionCast, Moving, usual_tolerance};
+use super::{Motion, MotionCast, Moving, check_fine, usual_tolerance};
 use crate::answer::SolidSteps;
 use crate::body::Features;
 use crate::body::solid::{AsSolid, Solid};
@@ -183,6 +183,9 @@ impl<'a> MotionCast<'a, Solid> {
     /// The bodies where they start; of no direction.
     fn start(&self) -> Result<Cast<'a, Solid>, QueryError> {
         let bodies = self.bodies();
+        if self.tolerance.is_none() {
+            check_fine(bodies, self.tolerance())?;
+        }
         let [p, q] = self.motions().map(|motion| motion.pieces()[0].start);
         let options = SolidOptions::default().with_tolerance(self.tolerance()).with_keep(self.keep);
         Cast::new(bodies[0].at(p), bodies[1].at(q), DVec3::Z)?.with_options(options)

@@ -1,5 +1,6 @@
 """Robots on paths: of arrays and files, the same bits as the command line's, proofs, bulk."""
 
+import copy
 import json
 import subprocess
 from pathlib import Path
@@ -62,6 +63,7 @@ def test_a_wire_in_the_way_is_met_as_on_the_command_line(cli: Path, tmp_path: Pa
         [cli, "verify", tmp_path / "proof.json"], capture_output=True, text=True, check=True
     )
     assert "tool and wire are the first to meet" in verified.stdout
+    assert copy.copy(found) is found and copy.deepcopy(found) is found
     match found:
         case PathContact("contact", lower):
             assert lower == found.lower

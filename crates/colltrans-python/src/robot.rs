@@ -454,6 +454,14 @@ impl PathAnswer {
         plain(py, &self.record)
     }
 
+    fn __copy__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __deepcopy__(slf: Py<Self>, _memo: &Bound<'_, PyAny>) -> Py<Self> {
+        slf
+    }
+
     fn __repr__(&self) -> String {
         let upper = self.upper().map_or_else(|| "None".into(), |upper| format!("{upper:?}"));
         let pair = self.pair().map(|(a, b)| format!(", {a:?} and {b:?}")).unwrap_or_default();

@@ -8,7 +8,7 @@ use super::answer::{MotionContact, MotionFree, MotionOutcome, MotionProof};
 use super::look::{ConvexLooker, Look, Looker};
 use super::search::{Advanced, End, advance};
 use super::span::{Span, spans};
-use super::{MotionCast, usual_tolerance};
+use super::{MotionCast, check_fine, usual_tolerance};
 use crate::answer::Bounded;
 use crate::body::Hull;
 use crate::pair::Pair;
@@ -123,6 +123,9 @@ impl MotionCast<'_> {
     pub fn clearance(&self) -> Result<MotionClearance, QueryError> {
         let (bodies, motions) = (self.bodies(), self.motions());
         let tolerance = self.tolerance_or_usual();
+        if self.tolerance() == 0.0 {
+            check_fine(bodies, tolerance)?;
+        }
         let cleared = self.cleared();
         let shrunk = match cleared.first_contact()? {
             MotionOutcome::Free(free) => return Ok(MotionClearance::Free(free)),

@@ -70,3 +70,26 @@ def test_bodies_that_overlap_are_refused() -> None:
     assert through.outcome in {"free", "blocked"}
     little = free_directions(CUBE, CUBE, moving_pose=[0, 0, 1], looks=0)
     assert little.undecided_share > 0.99 and little.says([[0, 0, 1]]) == ["undecided"]
+
+
+def test_arcs_and_points_are_exact() -> None:
+    cuboid = ConvexPolyhedron.cuboid
+    lower, upper = cuboid([-5, -5, -1], [5, 5, 0]), cuboid([-5, -5, 1], [5, 5, 2])
+    side = cuboid([-2, -5, 0], [0, 5, 1])
+    circle = free_directions(CUBE, Solid.from_pieces([lower, upper]))
+    (arc,) = circle.arcs
+    assert "ends" not in arc and arc["along"][0] == arc["along"][-1] and circle.points == []
+    assert circle.is_on(0, np.array([[3, 7, 0], [3, 7, 1e-50]])) == [True, False]
+    (arc,) = free_directions(CUBE, Solid.from_pieces([lower, upper, side])).arcs
+    assert len(arc["ends"]) == 2
+    for end in arc["ends"]:
+        normals = [plane["normal"] for plane in end["planes"]]
+        assert np.allclose(np.cross(*normals), end["direction"])
+        assert all(len(plane["of"]["vertices"]) == 3 for plane in end["planes"])
+    walls = [cuboid([-5, 1, 0], [5, 2, 1]), cuboid([-5, -1, 0], [5, 0, 1])]
+    bar = free_directions(CUBE, Solid.from_pieces([lower, upper, *walls]))
+    assert sorted(point["direction"] for point in bar.points) == [[-1, 0, 0], [1, 0, 0]]
+    assert sum(bar.is_at(k, [[2, 0, 0]])[0] for k in range(2)) == 1
+    assert bar.is_at(0, [[1, 1e-50, 0]]) == [False]
+    with pytest.raises(IndexError, match="no point 2"):
+        bar.is_at(2, [[1, 0, 0]])

@@ -6,8 +6,9 @@ use colltrans::free::{FreeError, FreeOptions, FreeProof, Verdict};
 use colltrans::glam::DVec3;
 use colltrans::record::FreeRecord;
 use colltrans::solid::StartOverlap;
-use colltrans::{Placed, ProofFile};
+use colltrans::{Placed, ProofFile, QueryError};
 use colltrans_mesh::body::between;
+use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 
 use crate::answer::save;
@@ -46,6 +47,21 @@ fn raised(what: FreeError) -> PyErr {
     match what {
         FreeError::NotProven(what) => error("CertificateError", what),
         what => error("QueryError", what),
+    }
+}
+
+impl FreeDirections {
+    /// Asks the library's own answer about each of some directions.
+    fn each<T>(
+        &self,
+        directions: &Bound<'_, PyAny>,
+        ask: impl Fn(&colltrans::free::FreeDirections<'_>, DVec3) -> Result<T, QueryError>,
+    ) -> PyResult<Vec<T>> {
+        let directions = points(directions, "directions")?;
+        let [moving, fixed] = placed(&self.bodies, &self.poses)?;
+        let free = colltrans::free::FreeDirections::believing(&moving, &fixed, &self.proof);
+        let free = free.map_err(raised)?;
+        directions.into_iter().map(|d| ask(&free, d).or_raise()).collect()
     }
 }
 
@@ -108,13 +124,17 @@ impl FreeDirections {
         plain(py, &self.record.regions)
     }
 
-    /// list: Arcs of free directions beside which there is no region, by their ends.
+    /// list of dict: Arcs of free directions beside which there is no region, exactly: each goes
+    /// counterclockwise around the ``normal`` of its ``plane``, from the first of its ``ends`` (points; none
+    /// of a whole circle) to the second, through the directions ``along``.
     #[getter]
     fn arcs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         plain(py, &self.record.arcs)
     }
 
-    /// list: Free directions with no other beside them.
+    /// list of dict: Free directions with no other beside them: the ``direction``, rounded, and two
+    /// ``planes``, each with its ``normal`` and what it is ``of``: two ``triangles``, and three ``vertices``
+    /// that span it. The direction is exactly along the vector product of the normals.
     #[getter]
     fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         plain(py, &self.record.points)
@@ -147,6 +167,44 @@ impl FreeDirections {
             };
             directions.into_iter().map(word).collect()
         })
+    }
+
+    /// Whether directions are that of a point, exactly.
+    ///
+    /// Parameters
+    /// ----------
+    /// number : int
+    ///     Which of :attr:`points`.
+    /// directions : array_like of shape (N, 3)
+    ///     Of any length.
+    ///
+    /// Returns
+    /// -------
+    /// list of bool
+    fn is_at(&self, number: usize, directions: &Bound<'_, PyAny>) -> PyResult<Vec<bool>> {
+        let Some(point) = self.record.points.get(number) else {
+            return Err(PyIndexError::new_err(format!("there is no point {number}")));
+        };
+        self.each(directions, |free, d| free.is_at(point, d))
+    }
+
+    /// Whether directions are on an arc or at one of its ends, exactly.
+    ///
+    /// Parameters
+    /// ----------
+    /// number : int
+    ///     Which of :attr:`arcs`.
+    /// directions : array_like of shape (N, 3)
+    ///     Of any length.
+    ///
+    /// Returns
+    /// -------
+    /// list of bool
+    fn is_on(&self, number: usize, directions: &Bound<'_, PyAny>) -> PyResult<Vec<bool>> {
+        let Some(arc) = self.record.arcs.get(number) else {
+            return Err(PyIndexError::new_err(format!("there is no arc {number}")));
+        };
+        self.each(directions, |free, d| free.is_on(arc, d))
     }
 
     /// Checks what is said of every cell of the sphere, without a search.

@@ -9,7 +9,9 @@ use colltrans::free::{
 use colltrans::glam::{DMat3, DQuat, DVec3};
 use colltrans::solid::StartOverlap;
 use colltrans::{Cast, ConvexPolyhedron, Pose, Solid};
-use colltrans_testkit::oracle::solids::free::{FAMILIES, Judged, examine, is_free_of_all};
+use colltrans_testkit::oracle::solids::free::{
+    FAMILIES, Judged, examine, is_free_of_all, thin::judge,
+};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::solids::thread;
 
@@ -28,6 +30,12 @@ fn free<'a>(a: &'a Solid, b: &'a Solid, options: FreeOptions) -> FreeDirections<
     let all = FreeDirections::of(&a.at(Pose::IDENTITY), &b.at(Pose::IDENTITY), options).unwrap();
     all.verify().unwrap();
     all
+}
+
+/// How long arcs are together.
+fn length(free: &FreeDirections) -> f64 {
+    let turns = free.arcs().iter().flat_map(|arc| arc.along.windows(2));
+    turns.map(|ends| ends[0].angle_between(ends[1])).sum()
 }
 
 fn assert_area(free: &FreeDirections, expected: f64) {
@@ -76,7 +84,11 @@ fn a_rail_has_two_directions() {
     let points = all.points();
     assert_eq!(points.len(), 2, "{points:?}");
     for d in [DVec3::X, DVec3::NEG_X] {
-        assert!(points.iter().any(|p| p.direction == d));
+        let own: Vec<_> = points.iter().filter(|p| all.is_at(p, d * 3.0).unwrap()).collect();
+        assert!(own.len() == 1 && own[0].direction == d, "{own:?}");
+        for beside in [DVec3::Y, DVec3::Z].map(|by| d + by * 1e-50) {
+            assert!(!all.is_at(own[0], beside).unwrap());
+        }
         assert_eq!(all.says(d), Ok(Verdict::Free));
     }
 }
@@ -91,8 +103,15 @@ fn a_plate_between_two_others_has_a_circle() {
     let all = free(&plate, &stack, EXACT);
     assert_area(&all, 0.0);
     assert!(all.points().is_empty());
-    let length: f64 = all.arcs().iter().map(|arc| arc.ends[0].angle_between(arc.ends[1])).sum();
-    assert!((length - TAU).abs() < 1e-12, "{length}");
+    let arcs = all.arcs();
+    assert!(arcs.len() == 1 && arcs[0].ends.is_none(), "{arcs:?}");
+    assert_eq!(arcs[0].along.first(), arcs[0].along.last());
+    assert!((length(&all) - TAU).abs() < 1e-12, "{}", length(&all));
+    for (d, expected) in
+        [([3.0, 7.0, 0.0], true), ([-0.1, 0.3, 0.0], true), ([1.0, 1.0, 1e-50], false)]
+    {
+        assert_eq!(all.is_on(&arcs[0], d.into()), Ok(expected));
+    }
 }
 
 #[test]
@@ -114,12 +133,25 @@ fn a_bar_in_a_vee_has_half_a_sector() {
     ]);
     let all = free(&bar, &groove, EXACT);
     assert_area(&all, 0.0);
-    let length: f64 = all.arcs().iter().map(|arc| arc.ends[0].angle_between(arc.ends[1])).sum();
-    assert!((length - PI / 2.0).abs() < 1e-12, "{length}");
+    assert!((length(&all) - PI / 2.0).abs() < 1e-12, "{}", length(&all));
     assert!(all.points().is_empty());
+    let [arc] = all.arcs() else { panic!("{:?}", all.arcs()) };
+    for (d, expected) in [
+        (DVec3::X, true),
+        (DVec3::Y, true),
+        (DVec3::new(5.0, 7.0, 0.0), true),
+        (DVec3::new(5.0, -1e-50, 0.0), false),
+        (DVec3::new(5.0, 7.0, 1e-50), false),
+        (DVec3::new(-5.0, -7.0, 0.0), false),
+    ] {
+        assert_eq!(all.is_on(arc, d), Ok(expected), "{d}");
+        assert_eq!(all.says(d).unwrap() == Verdict::Free, expected, "{d}");
+    }
     let turned = FreeDirections::of(&bar.at(pose), &groove.at(pose), EXACT).unwrap();
     turned.verify().unwrap();
-    assert!(turned.undecided_area() < 1e-9);
+    assert_area(&turned, 0.0);
+    assert!(turned.arcs().len() == 1 && turned.points().is_empty(), "{:?}", turned.arcs());
+    assert!((length(&turned) - PI / 2.0).abs() < 1e-12, "{}", length(&turned));
 }
 
 #[test]
@@ -407,5 +439,41 @@ fn a_window_is_measured_alike_however_it_is_turned() {
         let half = (high - low) / 2.0;
         assert!((0.99 * half..1.001 * half).contains(&region.margin), "{round} {}", region.margin);
         assert_eq!(region.corners.len(), 4, "{round} {:?}", region.corners);
+    }
+}
+
+#[test]
+fn what_is_free_without_an_area_is_the_same_in_every_rotation() {
+    let [bar, tube] = bar_in_tube();
+    let plate = cuboid([0.0; 3], [1.0; 3]);
+    let slabs = [([-5.0, -5.0, -1.0], [5.0, 5.0, 0.0]), ([-5.0, -5.0, 1.0], [5.0, 5.0, 2.0])];
+    // A stop on one side takes half of the circle, and one with a gap beside it less.
+    let stop = ([-2.0, -5.0, 0.0], [0.0, 5.0, 1.0]);
+    let far = ([-2.0, -2.0, 0.0], [-1.0, 3.0, 1.0]);
+    let stack = |more: &[_]| {
+        let all: Vec<Solid> =
+            slabs.iter().chain(more).map(|(low, high)| cuboid(*low, *high)).collect();
+        joined(&all)
+    };
+    let cases = [
+        (&bar, tube, 2, 0.0, 0),
+        (&plate, stack(&[]), 0, TAU, 1),
+        (&plate, stack(&[stop]), 0, PI, 1),
+        // Seen from the plate it is 1 away and reaches by 3 to either side.
+        (&plate, stack(&[far]), 0, TAU - 2.0 * (3.0_f64).atan(), 1),
+    ];
+    let mut random = Random::new(71);
+    for round in 0..6 {
+        let turn = if round == 0 { DQuat::IDENTITY } else { random.rotation() };
+        let pose = Pose::new(turn, DVec3::new(0.5, -3.0, 2.0)).unwrap();
+        for (moving, fixed, points, long, arcs) in &cases {
+            let (a, b) = (moving.at(pose), fixed.at(pose));
+            let all = FreeDirections::of(&a, &b, EXACT).unwrap();
+            all.verify().unwrap();
+            assert_area(&all, 0.0);
+            assert_eq!((all.points().len(), all.arcs().len()), (*points, *arcs), "{round}");
+            assert!((length(&all) - long).abs() < 1e-9, "{round}: {} {long}", length(&all));
+            judge(&all, [a, b]).unwrap_or_else(|e| panic!("{round}: {e}"));
+        }
     }
 }

@@ -25,7 +25,7 @@ pub struct Cover {
     pub record: FreeRecord,
     /// Connected regions, the largest first.
     pub regions: Vec<FreeRegion>,
-    /// Arcs with no region beside them, by their ends.
+    /// Arcs with no region beside them, in stretches of less than half a turn, by their ends.
     pub arcs: Vec<[DVec3; 2]>,
     /// Free directions with no other beside them, and those that casts found where all is not known.
     pub points: Vec<DVec3>,
@@ -61,8 +61,13 @@ impl Cover {
         let undecided = free.cells().filter(|cell| cell.kind == CellKind::Undecided);
         Ok(Ok(Self {
             regions: free.regions(),
-            arcs: free.arcs().into_iter().map(|arc| arc.ends).collect(),
-            points: free.points().into_iter().map(|point| point.direction).chain(also).collect(),
+            arcs: free
+                .arcs()
+                .iter()
+                .flat_map(|arc| arc.along.windows(2))
+                .map(|ends| [ends[0], ends[1]])
+                .collect(),
+            points: free.points().iter().map(|point| point.direction).chain(also).collect(),
             undecided: undecided.map(|cell| cell.corners).collect(),
             record,
         }))

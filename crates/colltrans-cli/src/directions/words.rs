@@ -2,6 +2,7 @@
 
 use std::fmt::Write as _;
 
+use colltrans::free::FreeArc;
 use colltrans::glam::DVec3;
 use colltrans::record::{BlockedByRecord, Ending, FreeRecord, FreeRegionRecord, Record};
 
@@ -60,13 +61,13 @@ pub(crate) fn told(text: &mut String, record: &FreeRecord) {
         say("region", self::region(region));
     }
     let direction = |d: [f64; 3]| unit_vector(DVec3::from(d).normalize());
-    for [from, to] in record.arcs.iter().take(MOST).copied() {
-        let degrees = DVec3::from(from).angle_between(to.into()).to_degrees();
-        let ends = [from, to].map(direction);
-        say("arc", format!("from {} to {}, {} degrees", ends[0], ends[1], six_digits(degrees)));
+    for arc in record.arcs.iter().take(MOST) {
+        say("arc", self::arc(arc));
     }
-    for point in record.points.iter().take(MOST).copied() {
-        say("point", format!("{}, alone", direction(point)));
+    for point in record.points.iter().take(MOST) {
+        let [a, b] = point.planes.map(|plane| unit_vector(plane.normal.normalize()));
+        let d = unit_vector(point.direction.normalize());
+        say("point", format!("{d}, alone; exactly across {a} and {b}"));
     }
     for also in record.also_free.iter().take(MOST).copied() {
         say("also free", format!("{}, among what is undecided", direction(also)));
@@ -105,6 +106,15 @@ pub(crate) fn verified(record: &FreeRecord) -> String {
         let _ = write!(text, "; undecided are {}", at_most(undecided));
     }
     text
+}
+
+fn arc(arc: &FreeArc) -> String {
+    let turns = arc.along.windows(2).map(|ends| ends[0].angle_between(ends[1]));
+    let degrees = six_digits(turns.sum::<f64>().to_degrees());
+    let across = unit_vector(arc.plane.normal.normalize());
+    let Some(ends) = arc.ends else { return format!("all across {across}, {degrees} degrees") };
+    let [from, to] = ends.map(|end| unit_vector(end.direction.normalize()));
+    format!("from {from} to {to}, {degrees} degrees across {across}")
 }
 
 fn region(region: &FreeRegionRecord) -> String {

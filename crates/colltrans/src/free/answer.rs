@@ -1,9 +1,10 @@
 //! The answer: what is said of a direction, regions, and areas.
 
 use std::f64::consts::PI;
+use std::sync::OnceLock;
 use std::sync::atomic::AtomicBool;
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
 use super::bodies::Bodies;
 use super::cell::Cell;
@@ -15,6 +16,7 @@ use super::proof::{Fate, FreeProof, blocking_pair, cells, fates, holds, names_ex
 use super::region::{FreeRegion, regions};
 use super::rest::{Piece, Rest};
 use super::search::{Found, Search};
+use super::thin::{FreeArc, FreePoint, Thin, thin};
 use crate::answer::{CertificateError, SolidSteps};
 use crate::body::Placed;
 use crate::body::solid::{AsSolid, Solid};
@@ -48,22 +50,6 @@ pub struct FreePiece {
     pub corners: Vec<DVec3>,
     /// Its solid angle.
     pub area: f64,
-}
-
-/// An arc of free directions with no region around it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct FreeArc {
-    /// Its ends, exact but for their last roundings: as they are they may lie just beside it, and be blocked.
-    pub ends: [DVec3; 2],
-}
-
-/// A free direction with no other around it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-pub struct FreePoint {
-    /// The direction, exact but for its last roundings: as it is it may lie just beside the free one, and be blocked.
-    pub direction: DVec3,
 }
 
 /// A cell of the sphere.
@@ -100,9 +86,6 @@ pub enum CellKind {
     Undecided,
 }
 
-/// Directions on a side of the cube that differ by less are taken for one where arcs and points are listed.
-const BESIDE: f64 = 1e-12;
-
 /// Directions in undecided cells that are asked one by one, at most.
 const MOST_ASKED: usize = 64;
 
@@ -124,6 +107,8 @@ pub struct FreeDirections<'a> {
     fates: Vec<Fate>,
     looks: u64,
     areas: Areas,
+    /// What is free without an area, when first asked for.
+    thin: OnceLock<Thin>,
 }
 
 impl<'a> FreeDirections<'a> {
@@ -185,8 +170,8 @@ impl<'a> FreeDirections<'a> {
         let (cast, bodies) = setting(moving, fixed, &options)?;
         let found = Search::new(&bodies, options, cancel).run();
         let Found { fates, boxes, looks } = found.ok_or(FreeError::Cancelled)?;
-        let areas = Areas::default();
-        let mut all = Self { cast, bodies, options, boxes, fates, looks, areas };
+        let (areas, thin) = (Areas::default(), OnceLock::new());
+        let mut all = Self { cast, bodies, options, boxes, fates, looks, areas, thin };
         all.areas = all.measure();
         Ok(all)
     }
@@ -261,15 +246,61 @@ impl<'a> FreeDirections<'a> {
         regions(&self.pieces(), |d| matches!(self.says(d), Ok(Verdict::Free)))
     }
 
-    /// Arcs of free directions beside which there is no region, by cells.
-    pub fn arcs(&self) -> Vec<FreeArc> {
-        let alone = self.alone(2);
-        alone.into_iter().map(|ends| FreeArc { ends: [ends[0], ends[1]] }).collect()
+    /// Arcs of free directions beside which there is no region.
+    pub fn arcs(&self) -> &[FreeArc] {
+        &self.thin().arcs
     }
 
     /// Free directions with no other beside them.
-    pub fn points(&self) -> Vec<FreePoint> {
-        self.alone(1).into_iter().map(|ends| FreePoint { direction: ends[0] }).collect()
+    pub fn points(&self) -> &[FreePoint] {
+        &self.thin().points
+    }
+
+    /// Whether a direction, of any length, is that of a point, exactly; not if there are no such planes.
+    ///
+    /// # Errors
+    /// A direction that is zero, not finite or out of range.
+    ///
+    /// ```
+    /// use colltrans::free::{FreeDirections, FreeOptions};
+    /// use colltrans::glam::DVec3;
+    /// use colltrans::{ConvexPolyhedron, Pose, Solid};
+    ///
+    /// // A bar between two blocks that are open at the top and at its ends, and a lid.
+    /// let cuboid = |low: [f64; 3], high: [f64; 3]| {
+    ///     Solid::from_convex(&ConvexPolyhedron::cuboid(low.into(), high.into())?)
+    /// };
+    /// let walls = Solid::from_pieces(&[
+    ///     cuboid([-1.0, -1.0, 0.0], [4.0, 0.0, 1.0])?,
+    ///     cuboid([-1.0, 1.0, 0.0], [4.0, 2.0, 1.0])?,
+    ///     cuboid([-1.0, -1.0, -1.0], [4.0, 2.0, 0.0])?,
+    ///     cuboid([-1.0, -1.0, 1.0], [4.0, 2.0, 2.0])?,
+    /// ])?;
+    /// let (bar, here) = (cuboid([0.0, 0.0, 0.0], [3.0, 1.0, 1.0])?, Pose::IDENTITY);
+    /// let options = FreeOptions::default().with_no_tolerance();
+    /// let free = FreeDirections::of(&bar.at(here), &walls.at(here), options)?;
+    /// let points = free.points();
+    /// assert_eq!(points.len(), 2);
+    /// assert!(points.iter().any(|point| free.is_at(point, DVec3::X) == Ok(true)));
+    /// assert!(points.iter().all(|point| free.is_at(point, DVec3::new(1.0, 1e-50, 0.0)) == Ok(false)));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn is_at(&self, point: &FreePoint, direction: DVec3) -> Result<bool, QueryError> {
+        check_direction(direction)?;
+        Ok(point.is(&self.bodies, direction))
+    }
+
+    /// Whether a direction, of any length, is on an arc or at one of its ends, exactly; not if there are no such planes.
+    ///
+    /// # Errors
+    /// A direction that is zero, not finite or out of range.
+    pub fn is_on(&self, arc: &FreeArc, direction: DVec3) -> Result<bool, QueryError> {
+        check_direction(direction)?;
+        Ok(arc.has(&self.bodies, direction))
+    }
+
+    fn thin(&self) -> &Thin {
+        self.thin.get_or_init(|| thin(&self.bodies, self.leaves()))
     }
 
     /// The bodies, with a direction that plays no part.
@@ -278,7 +309,7 @@ impl<'a> FreeDirections<'a> {
         &self.cast
     }
 
-    /// Free directions in cells that are undecided: corners and middles of these, each asked by an ordinary cast, some
+    /// Free directions in cells that are undecided: arcs and points on their borders, their corners and middles, each asked by an ordinary cast, some
     /// of them if there are many.
     pub fn free_among_undecided(&self) -> Vec<DVec3> {
         let undecided = |(cell, fate): (Cell, &Fate)| match fate {
@@ -289,7 +320,8 @@ impl<'a> FreeDirections<'a> {
             _ => None,
         };
         let mut asked: Vec<DVec3> = Vec::new();
-        for d in self.leaves().filter_map(undecided).flatten() {
+        let corners = self.leaves().filter_map(undecided).flatten();
+        for d in self.thin().unclear.iter().copied().chain(corners) {
             // Of two sides of the cube the same direction.
             if !asked.contains(&d) {
                 asked.push(d);
@@ -367,25 +399,6 @@ impl<'a> FreeDirections<'a> {
         })
     }
 
-    /// Pieces of so many corners that are not part of larger ones, by their corners.
-    fn alone(&self, count: usize) -> Vec<Vec<DVec3>> {
-        let all: Vec<(Cell, Piece)> = self.parts().collect();
-        let mut found: Vec<&(Cell, Piece)> = Vec::new();
-        for one in all.iter().filter(|(_, piece)| piece.len() == count) {
-            let middle = one.0.side.direction(one.1.center());
-            let near = |(cell, piece): &(Cell, Piece)| is_beside(cell, piece, middle);
-            let within = |other: &&(Cell, Piece)| other.1.len() > count && near(other);
-            if all.iter().find(within).is_none() && !found.iter().any(|other| near(other)) {
-                // The wider one of two that share a border.
-                found.retain(|(cell, piece)| {
-                    !is_beside(&one.0, &one.1, cell.side.direction(piece.center()))
-                });
-                found.push(one);
-            }
-        }
-        found.into_iter().map(|(cell, piece)| directions(cell, piece)).collect()
-    }
-
     /// All that is said, with its proof.
     pub fn proof(&self) -> FreeProof {
         FreeProof {
@@ -439,8 +452,8 @@ impl<'a> FreeDirections<'a> {
         let misfit = CertificateError::Cover { entry: proof.cells.len() };
         let fates = fates(&proof.cells).ok_or(misfit)?;
         let boxes = proof.boxes.clone();
-        let areas = Areas::default();
-        let all = Self { cast, bodies, options, boxes, fates, looks: 0, areas };
+        let (areas, thin) = (Areas::default(), OnceLock::new());
+        let all = Self { cast, bodies, options, boxes, fates, looks: 0, areas, thin };
         let exist = |fate: &Fate| names_exist(&all.bodies, &all.boxes, fate);
         let strange = all.leaves().position(|(_, fate)| !exist(fate));
         match strange {
@@ -507,28 +520,6 @@ impl<'a> FreeDirections<'a> {
         error += 64.0 * f64::EPSILON * free;
         Areas { free: [(free - error).max(0.0), (free + error).min(4.0 * PI)], undecided }
     }
-}
-
-/// Whether a direction is in a piece, or nearly so.
-fn is_beside(cell: &Cell, piece: &Piece, d: DVec3) -> bool {
-    let [k, i, j] = cell.side.axes();
-    let main = d[k] * cell.side.sign();
-    if main <= 0.0 {
-        return false;
-    }
-    let at = DVec2::new(d[i], d[j]) / main;
-    let corners: Vec<DVec2> = piece.places().into_iter().map(DVec2::from).collect();
-    let [first, .., last] = corners[..] else { return corners[0].distance(at) < BESIDE };
-    if piece.len() == 2 {
-        let way = last - first;
-        let along = ((at - first).dot(way) / way.length_squared()).clamp(0.0, 1.0);
-        return (first + way * along).distance(at) < BESIDE;
-    }
-    let inner = (corners[1] - first).perp_dot(corners[2] - first).signum();
-    (0..corners.len()).all(|k| {
-        let (from, to) = (corners[k], corners[(k + 1) % corners.len()]);
-        inner * (to - from).perp_dot(at - from) >= -BESIDE * (to - from).length()
-    })
 }
 
 /// Directions of the corners of a piece.

@@ -3,7 +3,7 @@
 
 use glam::DVec3;
 
-use super::line::Spot;
+use super::line::PlaneVertex;
 use crate::body::solid::tree::{self, ANY, Node};
 use crate::number::integer::{Integer, difference};
 use crate::solve::solid::projected::Projected;
@@ -62,19 +62,24 @@ impl<'a> Bodies<'a> {
         Self { scene, corners, views, permutes }
     }
 
-    pub(crate) fn corner(&self, spot: Spot) -> &Corner {
+    pub(crate) fn corner(&self, spot: PlaneVertex) -> &Corner {
         &self.corners[usize::from(!spot.moving)][spot.vertex as usize]
     }
 
+    /// Whether there is such a vertex.
+    pub(super) fn has(&self, spot: PlaneVertex) -> bool {
+        (spot.vertex as usize) < self.corners[usize::from(!spot.moving)].len()
+    }
+
     /// Where a vertex is, in whole numbers.
-    pub(super) fn wide<const N: usize>(&self, spot: Spot) -> [Integer<N>; 3] {
+    pub(super) fn wide<const N: usize>(&self, spot: PlaneVertex) -> [Integer<N>; 3] {
         let corner = self.corner(spot);
         let world = corner.world(&self.scene);
         world.map_or_else(|| corner.wide(&self.scene), |at| at.to_array().map(Integer::number))
     }
 
     /// From one vertex to another, and by how much a component may be off.
-    pub(super) fn way(&self, ends: [Spot; 2]) -> (DVec3, f64) {
+    pub(super) fn way(&self, ends: [PlaneVertex; 2]) -> (DVec3, f64) {
         let [a, b] = ends.map(|spot| self.corner(spot));
         let noise = (f64::from(!a.exact) + f64::from(!b.exact)) * self.scene.noise;
         let way = b.at - a.at;
@@ -82,15 +87,15 @@ impl<'a> Bodies<'a> {
     }
 
     /// The same in whole numbers.
-    pub(super) fn wide_way<const N: usize>(&self, ends: [Spot; 2]) -> [Integer<N>; 3] {
+    pub(super) fn wide_way<const N: usize>(&self, ends: [PlaneVertex; 2]) -> [Integer<N>; 3] {
         let [a, b] = ends.map(|spot| self.wide::<N>(spot));
         difference(&b, &a)
     }
 
     /// The corners of a triangle.
-    pub(crate) fn spots(&self, moving: bool, triangle: u32) -> [Spot; 3] {
+    pub(crate) fn spots(&self, moving: bool, triangle: u32) -> [PlaneVertex; 3] {
         let solid = self.scene.side(moving).solid;
-        solid.triangles()[triangle as usize].map(|vertex| Spot { moving, vertex })
+        solid.triangles()[triangle as usize].map(|vertex| PlaneVertex { moving, vertex })
     }
 
     /// How many triangles a body has.

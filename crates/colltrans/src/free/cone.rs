@@ -16,7 +16,7 @@ use std::cmp::Ordering::{Equal, Greater, Less};
 use glam::DVec3;
 
 use super::bodies::Bodies;
-use super::line::{Line, Spot};
+use super::line::{Line, PlaneVertex};
 use crate::solve::solid::scene::Corner;
 
 /// What a pair of facets blocks: directions on the positive side of all lines. Of none, nothing.
@@ -70,7 +70,7 @@ impl Cone {
 }
 
 /// Through a vertex of one body and an edge of the other.
-fn line(bodies: &Bodies, corner: Spot, [a, b]: [Spot; 2], turned: bool) -> Line {
+fn line(bodies: &Bodies, corner: PlaneVertex, [a, b]: [PlaneVertex; 2], turned: bool) -> Line {
     Line::of(bodies, if turned { [corner, b, a] } else { [corner, a, b] })
 }
 
@@ -84,7 +84,7 @@ struct Signs {
 }
 
 impl Signs {
-    fn new(bodies: &Bodies, f: &[Spot; 3], g: &[Spot; 3]) -> Self {
+    fn new(bodies: &Bodies, f: &[PlaneVertex; 3], g: &[PlaneVertex; 3]) -> Self {
         let (p, q) = (f.map(|s| bodies.corner(s)), g.map(|s| bodies.corner(s)));
         let outside =
             |a: &Corner, b: &Corner, c: &Corner, e: &Corner| bodies.scene.outside(a, b, c, e);
@@ -127,7 +127,7 @@ fn supports(one: Ordering, others: [Ordering; 2]) -> Option<bool> {
 }
 
 /// Whether two triangles of one plane look at each other, and their interiors overlap.
-fn push_in_one_plane(bodies: &Bodies, f: [Spot; 3], g: [Spot; 3]) -> bool {
+fn push_in_one_plane(bodies: &Bodies, f: [PlaneVertex; 3], g: [PlaneVertex; 3]) -> bool {
     let scene = &bodies.scene;
     let (p, q) = (f.map(|s| bodies.corner(s)), g.map(|s| bodies.corner(s)));
     let facing = |axis: usize| scene.turn_about(axis, p[0], p[1], p[2]);

@@ -19,11 +19,24 @@ use crate::number::predicates::sign;
 
 const U: f64 = f64::EPSILON / 2.0;
 
-/// A vertex of one of the bodies.
+/// A vertex of one of two bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) struct Spot {
-    pub(super) moving: bool,
-    pub(super) vertex: u32,
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct PlaneVertex {
+    /// Whether it is the moving body's.
+    pub moving: bool,
+    /// Its position in [`Solid::vertices`](crate::Solid::vertices).
+    pub vertex: u32,
+}
+
+/// A direction that is known exactly.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Ray {
+    Exactly(DVec3),
+    /// From one vertex to another.
+    Toward([PlaneVertex; 2]),
+    /// Along the vector product of two forms.
+    Crossing([Line; 2]),
 }
 
 /// A linear form on directions.
@@ -34,7 +47,7 @@ pub(super) struct Line {
     /// A bound of the error of each component; the form is exact if it is 0.
     pub(super) error: f64,
     /// The vertices that it is of.
-    spots: Option<[Spot; 3]>,
+    spots: Option<[PlaneVertex; 3]>,
 }
 
 /// The vector product of differences, and whether it is exact.
@@ -62,7 +75,7 @@ fn scale(x: f64) -> f64 {
 
 impl Line {
     /// Of three vertices.
-    pub(super) fn of(bodies: &Bodies, spots: [Spot; 3]) -> Self {
+    pub(super) fn of(bodies: &Bodies, spots: [PlaneVertex; 3]) -> Self {
         let [a, b, c] = spots.map(|spot| bodies.corner(spot));
         let (x, y) = (b.at - a.at, c.at - a.at);
         let lost = |p: DVec3, q: DVec3| (0..3).any(|k| difference_error(p[k], q[k]) != 0.0);
@@ -114,8 +127,46 @@ impl Line {
         wide_cross(&x, &y)
     }
 
+    /// The vertices that it is of, if it is of some.
+    pub(super) fn vertices(&self) -> Option<[PlaneVertex; 3]> {
+        self.spots
+    }
+
+    /// With its positive side where the negative one was.
+    pub(super) fn reversed(&self) -> Self {
+        let spots = self.spots.map(|[a, b, c]| [a, c, b]);
+        Self { form: -self.form, error: self.error, spots }
+    }
+
+    /// On which side a direction is, exactly; if numbers are too large for that, as if it were on the line.
+    pub(super) fn side_of_ray(&self, bodies: &Bodies, ray: &Ray) -> Ordering {
+        match ray {
+            Ray::Exactly(d) => self.side(bodies, *d),
+            Ray::Toward(ends) => self.side_of(bodies, *ends),
+            Ray::Crossing([a, b]) => orientation(bodies, [a, b, self]).unwrap_or(Ordering::Equal),
+        }
+    }
+
+    /// Whether it is the same great circle as another, either way round, exactly.
+    pub(super) fn is_along(&self, bodies: &Bodies, other: &Self) -> bool {
+        let way = self.form.cross(other.form).abs().max_element();
+        // Components are at most 2.
+        if way > 4.04 * (self.error + other.error + self.error * other.error) + 32.0 * U {
+            return false;
+        }
+        self.is_along_exactly::<SMALL>(bodies, other)
+            .or_else(|| self.is_along_exactly::<LARGE>(bodies, other))
+            .unwrap_or(true)
+    }
+
+    fn is_along_exactly<const N: usize>(&self, bodies: &Bodies, other: &Self) -> Option<bool> {
+        let way = wide_cross(&self.wide::<N>(bodies), &other.wide::<N>(bodies));
+        let signs = way.map(|component| component.sign());
+        signs.iter().all(Option::is_some).then(|| signs == [Some(Ordering::Equal); 3])
+    }
+
     /// Two vertices that two lines share: they cross along the difference of these.
-    pub(super) fn shared(&self, other: &Self) -> Option<[Spot; 2]> {
+    pub(super) fn shared(&self, other: &Self) -> Option<[PlaneVertex; 2]> {
         let (own, others) = (self.spots?, other.spots?);
         let mut both = own.into_iter().filter(|spot| others.contains(spot));
         let found = [both.next()?, both.next()?];
@@ -123,7 +174,7 @@ impl Line {
     }
 
     /// On which side the direction from one vertex to another is, exactly.
-    pub(super) fn side_of(&self, bodies: &Bodies, [from, to]: [Spot; 2]) -> Ordering {
+    pub(super) fn side_of(&self, bodies: &Bodies, [from, to]: [PlaneVertex; 2]) -> Ordering {
         if self.spots.is_some_and(|own| own.contains(&from) && own.contains(&to)) {
             return Ordering::Equal;
         }
@@ -140,7 +191,11 @@ impl Line {
             .unwrap_or(Ordering::Equal)
     }
 
-    fn wide_side_of<const N: usize>(&self, bodies: &Bodies, ends: [Spot; 2]) -> Option<Ordering> {
+    fn wide_side_of<const N: usize>(
+        &self,
+        bodies: &Bodies,
+        ends: [PlaneVertex; 2],
+    ) -> Option<Ordering> {
         let (form, way) = (self.wide::<N>(bodies), bodies.wide_way::<N>(ends));
         let term = |k: usize| form[k].multiply(&way[k]);
         term(0).add(&term(1)).add(&term(2)).sign()

@@ -9,7 +9,7 @@
 //! Data flow: `bodies` (vertices, and trees down to single facets) -> `line` (great circles and exact signs) ->
 //! `cone`, `window` (which pairs of nodes miss a rectangle of directions), `rest`, `inner` -> `proof` (what is said of a
 //! cell, and its check) -> `search` -> [`FreeDirections`]; `region` joins what is free in
-//! pieces; `blocker` tells of single cells.
+//! pieces, `thin` what is so without an area; `blocker` tells of single cells.
 
 mod answer;
 mod blocker;
@@ -24,14 +24,17 @@ mod proof;
 mod region;
 mod rest;
 mod search;
+mod thin;
 mod window;
 
 pub(crate) use bodies::{Bodies, View};
 
-pub use answer::{CellKind, FreeArc, FreeCell, FreeDirections, FreePiece, FreePoint, Verdict};
+pub use answer::{CellKind, FreeCell, FreeDirections, FreePiece, Verdict};
 pub use blocker::{CellBlocker, DirectionCell};
 pub use error::FreeError;
 pub use inner::InnerBox;
+pub use line::PlaneVertex;
 pub use options::FreeOptions;
 pub use proof::{CellProof, FreeProof};
 pub use region::FreeRegion;
+pub use thin::{FreeArc, FreePlane, FreePoint, PlaneFacets};

@@ -12,7 +12,7 @@ use glam::DVec3;
 use super::bodies::Bodies;
 use super::cell::{Cell, Side, solid_angle};
 use super::cone::Cone;
-use super::line::{Line, Spot, orientation, wide_cross};
+use super::line::{Line, PlaneVertex, Ray, orientation, wide_cross};
 use super::window::Window;
 use crate::number::integer::{Integer, LARGE, SMALL};
 
@@ -26,6 +26,8 @@ pub(super) struct TooMuch;
 #[derive(Debug, Clone, Copy)]
 struct Corner {
     at: At,
+    /// Two lines that cross there.
+    lines: [u32; 2],
     place: [f64; 2],
     /// Each of the two is off by at most this.
     error: f64,
@@ -35,10 +37,12 @@ struct Corner {
 #[derive(Debug, Clone, Copy)]
 enum At {
     OfCell(DVec3),
-    /// Where two lines cross: along the vector product of their forms, or against it.
-    Crossing([u32; 2], bool),
+    /// Along the vector product of the forms of its lines, or against it.
+    Crossing {
+        against: bool,
+    },
     /// Where lines cross that share two vertices: from the first to the second.
-    Toward([Spot; 2]),
+    Toward([PlaneVertex; 2]),
 }
 
 /// A convex part of a cell.
@@ -54,12 +58,7 @@ impl Piece {
         self.corners.iter().map(|corner| corner.place).collect()
     }
 
-    /// How many corners it has: of a region three or more, of an arc two.
-    pub(super) fn len(&self) -> usize {
-        self.corners.len()
-    }
-
-    /// Whether it has an area.
+    /// Whether it has an area: of an arc there are two corners, of a point one.
     pub(super) fn is_region(&self) -> bool {
         self.corners.len() >= 3
     }
@@ -89,6 +88,23 @@ impl Piece {
     }
 }
 
+/// A piece with what it takes to ask about it exactly.
+pub(super) struct Outline {
+    pub(super) corners: Vec<Turn>,
+    /// The lines from each corner to the next; of an arc the same one twice.
+    pub(super) edges: Vec<Line>,
+}
+
+/// A corner of an outline.
+#[derive(Clone, Copy)]
+pub(super) struct Turn {
+    pub(super) ray: Ray,
+    /// Two lines that cross there.
+    pub(super) lines: [Line; 2],
+    /// Rounded, with a largest component of 1 (or -1).
+    pub(super) direction: DVec3,
+}
+
 /// A cell without some cones.
 #[derive(Debug)]
 pub(super) struct Rest {
@@ -107,9 +123,14 @@ impl Rest {
         let bounds = [(j, v[0]), (i, u[1]), (j, v[1]), (i, u[0])];
         let lines =
             bounds.map(|(axis, at)| Line::exactly(DVec3::AXES[axis] - across * at)).to_vec();
-        let corner =
-            |place| Corner { at: At::OfCell(cell.side.direction(place)), place, error: 0.0 };
-        let corners = cell.places().map(corner).to_vec();
+        let places = cell.places();
+        let corner = |k: usize| Corner {
+            at: At::OfCell(cell.side.direction(places[k])),
+            lines: [(k as u32 + 3) % 4, k as u32],
+            place: places[k],
+            error: 0.0,
+        };
+        let corners = [0, 1, 2, 3].map(corner).to_vec();
         Self { cell, lines, pieces: vec![Piece { corners, edges: vec![0, 1, 2, 3] }] }
     }
 
@@ -129,6 +150,27 @@ impl Rest {
             [low.max(least), high.min(most)]
         };
         Window::new(self.cell.side, around(0), around(1))
+    }
+
+    /// A piece by itself.
+    pub(super) fn outline(&self, piece: &Piece) -> Outline {
+        let form = |k: u32| self.lines[k as usize];
+        let turn = |corner: &Corner| Turn {
+            ray: match corner.at {
+                At::OfCell(d) => Ray::Exactly(d),
+                At::Toward(ends) => Ray::Toward(ends),
+                At::Crossing { against } => {
+                    let [a, b] = corner.lines.map(form);
+                    Ray::Crossing(if against { [b, a] } else { [a, b] })
+                }
+            },
+            lines: corner.lines.map(form),
+            direction: self.cell.side.direction(corner.place) + 0.0,
+        };
+        Outline {
+            corners: piece.corners.iter().map(turn).collect(),
+            edges: piece.edges.iter().map(|&k| form(k)).collect(),
+        }
     }
 
     /// Takes a cone away; whether there was something to take.
@@ -241,8 +283,9 @@ impl Rest {
         match corner.at {
             At::OfCell(d) => Ok(form(line).side(bodies, d)),
             At::Toward(ends) => Ok(form(line).side_of(bodies, ends)),
-            At::Crossing(own, _) if own.contains(&line) => Ok(Equal),
-            At::Crossing([a, b], against) => {
+            At::Crossing { .. } if corner.lines.contains(&line) => Ok(Equal),
+            At::Crossing { against } => {
+                let [a, b] = corner.lines;
                 let side = orientation(bodies, [form(a), form(b), form(line)]).ok_or(TooMuch)?;
                 Ok(if against { side.reverse() } else { side })
             }
@@ -283,7 +326,7 @@ impl Rest {
     fn crossing(&self, bodies: &Bodies, a: u32, b: u32) -> Result<Corner, TooMuch> {
         let (p, q) = (&self.lines[a as usize], &self.lines[b as usize]);
         if let Some(ends) = p.shared(q) {
-            return self.toward(bodies, ends);
+            return self.toward(bodies, [a, b], ends);
         }
         let way = p.form.cross(q.form);
         let (m, n) = (p.form.abs().max_element(), q.form.abs().max_element());
@@ -295,15 +338,21 @@ impl Rest {
         // A place is at most 1 from the middle of the side.
         let off = 2.02 * error / (main.abs() - error) + 4.0 * f64::EPSILON;
         if main.abs() > error && off <= ROUGH {
-            let at = At::Crossing([a, b], main < 0.0);
-            return Ok(Corner { at, place: [way[i] / main, way[j] / main], error: off });
+            let (at, place) =
+                (At::Crossing { against: main < 0.0 }, [way[i] / main, way[j] / main]);
+            return Ok(Corner { at, lines: [a, b], place, error: off });
         }
         let small = self.crossing_exactly::<SMALL>(bodies, [a, b], side);
         small.or_else(|| self.crossing_exactly::<LARGE>(bodies, [a, b], side)).ok_or(TooMuch)
     }
 
     /// Along the difference of two vertices, one way or the other, within the cell.
-    fn toward(&self, bodies: &Bodies, [a, b]: [Spot; 2]) -> Result<Corner, TooMuch> {
+    fn toward(
+        &self,
+        bodies: &Bodies,
+        lines: [u32; 2],
+        [a, b]: [PlaneVertex; 2],
+    ) -> Result<Corner, TooMuch> {
         let side = self.cell.side;
         let [k, i, j] = side.axes();
         let (way, doubt) = bodies.way([a, b]);
@@ -313,6 +362,7 @@ impl Rest {
             let ends = if main > 0.0 { [a, b] } else { [b, a] };
             return Ok(Corner {
                 at: At::Toward(ends),
+                lines,
                 place: [way[i] / main, way[j] / main],
                 error: off,
             });
@@ -321,7 +371,7 @@ impl Rest {
         let large = || placed(&bodies.wide_way::<LARGE>([a, b]), side);
         let (ends, place) = small().or_else(large).ok_or(TooMuch)?;
         let ends = if ends { [b, a] } else { [a, b] };
-        Ok(Corner { at: At::Toward(ends), place, error: 8.0 * f64::EPSILON })
+        Ok(Corner { at: At::Toward(ends), lines, place, error: 8.0 * f64::EPSILON })
     }
 
     fn crossing_exactly<const N: usize>(
@@ -332,7 +382,8 @@ impl Rest {
     ) -> Option<Corner> {
         let [p, q] = lines.map(|k| self.lines[k as usize].wide::<N>(bodies));
         let (against, place) = placed(&wide_cross(&p, &q), side)?;
-        Some(Corner { at: At::Crossing(lines, against), place, error: 8.0 * f64::EPSILON })
+        let at = At::Crossing { against };
+        Some(Corner { at, lines, place, error: 8.0 * f64::EPSILON })
     }
 }
 

@@ -464,9 +464,12 @@ impl<'s, 'a> Search<'s, 'a> {
             match self.blocking(&task.pairs, &task.cell, place, LOOKS) {
                 Some(Some(k)) => {
                     let cone = &self.memory.cones[k as usize];
-                    if rest.cut(self.bodies, cone, PIECES)? {
-                        used.push(k);
+                    if !rest.cut(self.bodies, cone, PIECES)? {
+                        // The middle of an arc, or a point, is beside it by roundings.
+                        found_free = true;
+                        break;
                     }
+                    used.push(k);
                 }
                 Some(None) => {
                     found_free = true;

@@ -7,7 +7,7 @@ use glam::DVec3;
 use serde::Serialize;
 
 use super::{Ending, StartOverlapRecord, coordinates};
-use crate::free::{CellKind, FreeDirections, FreeRegion};
+use crate::free::{CellKind, FreeArc, FreeDirections, FreePoint, FreeRegion};
 
 /// All directions along which a body leaves another one; directions as fractions of the sphere are *shares*, from 0
 /// to 1. Fields that do not apply are left out.
@@ -26,12 +26,12 @@ pub struct FreeRecord {
     /// Connected regions of free directions, the largest first.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub regions: Vec<FreeRegionRecord>,
-    /// Arcs of free directions beside which there is no region, by their ends.
+    /// Arcs of free directions beside which there is no region.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub arcs: Vec<[[f64; 3]; 2]>,
+    pub arcs: Vec<FreeArc>,
     /// Free directions with no other beside them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub points: Vec<[f64; 3]>,
+    pub points: Vec<FreePoint>,
     /// Free directions in cells that are undecided, found by ordinary casts: there may be more around them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub also_free: Vec<[f64; 3]>,
@@ -87,15 +87,14 @@ pub struct BlockedByRecord {
 impl FreeRecord {
     /// Of an answer; `names` are those of the parts of the moving and of the fixed body that two triangles belong to.
     pub fn of(free: &FreeDirections<'_>, names: impl Fn([u32; 2]) -> [Option<String>; 2]) -> Self {
-        let [arcs, points] = [free.arcs().len(), free.points().len()];
         let regions = free.regions();
         let undecided = free.cells().filter(|cell| cell.kind == CellKind::Undecided).count();
         let also_free = free.free_among_undecided();
-        let some = !regions.is_empty() || !also_free.is_empty() || arcs + points > 0;
-        let outcome = match (some, undecided) {
-            (true, _) => Ending::Free,
-            (false, 0) => Ending::Blocked,
-            (false, _) => Ending::Undecided,
+        let thin = free.arcs().len() + free.points().len() + also_free.len();
+        let outcome = match undecided {
+            _ if !regions.is_empty() || thin > 0 => Ending::Free,
+            0 => Ending::Blocked,
+            _ => Ending::Undecided,
         };
         let [low, high] = free.free_area();
         // Both are rounded outwards.
@@ -105,8 +104,8 @@ impl FreeRecord {
             free_share: Some([free_share[0], free_share[1].min(1.0)]),
             undecided_share: Some(share(free.undecided_area()).min(1.0)),
             regions: regions.iter().map(FreeRegionRecord::of).collect(),
-            arcs: free.arcs().iter().map(|arc| arc.ends.map(coordinates)).collect(),
-            points: free.points().iter().map(|point| coordinates(point.direction)).collect(),
+            arcs: free.arcs().to_vec(),
+            points: free.points().to_vec(),
             also_free: also_free.into_iter().map(coordinates).collect(),
             blocked_by: blocked_by(free, names),
             tolerance: Some(free.tolerance()),

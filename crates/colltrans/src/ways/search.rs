@@ -488,11 +488,11 @@ impl<'s, 'a> Search<'s, 'a> {
     }
 }
 
-/// Some free directions: the middles of all regions, then points, ends of arcs, and what is free though undecided.
+/// Some free directions: the middles of all regions, then points, some of arcs, and what is free though undecided.
 fn some_of(free: &FreeDirections<'_>) -> Vec<DVec3> {
     let mut some: Vec<DVec3> = free.regions().iter().map(|region| region.center).collect();
     some.extend(free.points().iter().map(|point| point.direction));
-    some.extend(free.arcs().iter().flat_map(|arc| arc.ends));
+    some.extend(free.arcs().iter().flat_map(|arc| arc.along.clone()));
     some.extend(free.free_among_undecided());
     some.into_iter().map(DVec3::normalize).collect()
 }

@@ -20,15 +20,16 @@ impl crate::Tally for Tally {
     const CHUNK: u64 = 4;
 
     fn header() -> String {
-        let counts = ["judged", "free", "undecided", "fractions", "compared", "refused", "cells"];
+        let counts =
+            ["judged", "free", "undecided", "fractions", "thin", "compared", "refused", "cells"];
         let counts = counts.map(|head| format!("{head:>10}")).join(" ");
         format!("{:>8} {:>12} {counts} {:>6}", "settings", "overlapping", "wrong")
     }
 
     fn line(&self) -> String {
-        let free::Judged { directions, free, undecided, fractions, compared, refused, cells } =
+        let free::Judged { directions, free, undecided, fractions, thin, compared, refused, cells } =
             self.judged;
-        let counts = [directions, free, undecided, fractions, compared, refused, cells];
+        let counts = [directions, free, undecided, fractions, thin, compared, refused, cells];
         let counts = counts.map(|count| format!("{count:>10}")).join(" ");
         let wrong = self.disagreements.len();
         format!("{:>8} {:>12} {counts} {wrong:>6}", self.settings, self.overlapping)

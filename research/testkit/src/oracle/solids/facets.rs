@@ -92,7 +92,11 @@ impl Gaps {
 impl Judge {
     /// For a direction.
     pub fn new(direction: DVec3) -> Self {
-        let direction = Vector::new(direction);
+        Self::along(Vector::new(direction))
+    }
+
+    /// For a direction that is no `f64`.
+    pub fn along(direction: Vector) -> Self {
         Self { plane: Plane::new(&direction), direction }
     }
 

@@ -5,6 +5,7 @@
 
 mod alike;
 mod bodies;
+pub mod thin;
 
 use colltrans::free::{
     CellBlocker, CellProof, DirectionCell, FreeDirections, FreeError, FreeOptions, Verdict,
@@ -24,6 +25,9 @@ const LOOKS: u64 = 300_000;
 /// Pairs of facets that are looked at in fractions for one setting, all directions together; one at least is judged.
 const PAIRS: usize = 3_000;
 
+/// Arcs and points are judged of bodies with so many pairs of facets, at most.
+const THIN: usize = 4_000;
+
 /// Cells whose facets are changed, each as often as directions are asked.
 const CELLS: usize = 6;
 
@@ -38,6 +42,8 @@ pub struct Judged {
     pub undecided: u64,
     /// Those of them that were judged in fractions too, over all pairs of facets.
     pub fractions: u64,
+    /// Arcs and points judged in fractions.
+    pub thin: u64,
     /// Compared with bodies that are turned together, or with a larger tolerance.
     pub compared: u64,
     /// Changed proofs that were refused, as they should be.
@@ -52,6 +58,7 @@ impl std::ops::AddAssign for Judged {
         self.free += other.free;
         self.undecided += other.undecided;
         self.fractions += other.fractions;
+        self.thin += other.thin;
         self.compared += other.compared;
         self.refused += other.refused;
         self.cells += other.cells;
@@ -82,6 +89,10 @@ pub fn examine(family: &str, seed: u64, count: u64) -> Result<Option<Judged>, St
         cells: changed_cells([a, b], [p, q], (options, count), &mut rng)?,
         ..Judged::default()
     };
+    let pairs = a.triangles().len() * b.triangles().len();
+    if start == StartOverlap::Refuse && tolerance == 0.0 && pairs <= THIN {
+        judged.thin += thin::judge(&all, [a.at(p), b.at(q)])?;
+    }
     judged += along(&all, [a.at(p), b.at(q)], count, &mut rng)?;
     if seed % 4 == 2 {
         judged += alike::turned(&all, &bodies, &mut rng)?;
@@ -181,8 +192,11 @@ fn by_cast([a, b]: [Placed<'_, Solid>; 2], options: FreeOptions, d: DVec3) -> Re
 }
 
 /// Whether no pair of facets blocks, in fractions, over all of them.
-fn is_free([moving, fixed]: &[Vec<Triangle>; 2], d: DVec3) -> bool {
-    let judge = Judge::new(d);
+fn is_free(facets: &[Vec<Triangle>; 2], d: DVec3) -> bool {
+    is_free_along(facets, &Judge::new(d))
+}
+
+fn is_free_along([moving, fixed]: &[Vec<Triangle>; 2], judge: &Judge) -> bool {
     let blocks = |f: &Triangle| fixed.iter().any(|g| judge.gaps(f, g).contribution().is_some());
     !moving.iter().any(blocks)
 }

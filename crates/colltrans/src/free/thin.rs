@@ -1,0 +1,435 @@
+//! Arcs and single directions that are free with no region beside them, exactly.
+//!
+//! What cones leave of cells has pieces of two corners, and of one. On the great circle of each arc the ends of all
+//! arcs, and of what regions have of it, are put in order; between two neighbours all is alike. So arcs that cells have
+//! cut are one again, and end where they do. A direction is alone if no other piece has it. What is not known counts as
+//! a region: nothing is said of what is beside it.
+//!
+//! On a circle with the form `n` an end is `n x m`, `m` the form of a line across. Then `det[n, e, f]`, which tells
+//! whether `f` comes within half a turn after `e`, is `-|n|^2 m.f`: the side of one line.
+//!
+//! Lines are named by a pair of facets whose cone has the direction on its border, and by the vertices that span them.
+
+use std::cmp::Ordering;
+use std::cmp::Ordering::{Equal, Greater, Less};
+
+use glam::DVec3;
+
+use super::bodies::Bodies;
+use super::cell::Cell;
+use super::cone::Cone;
+use super::line::{Line, PlaneVertex, Ray, orientation};
+use super::proof::{Fate, rest_of};
+use super::rest::{Outline, Turn};
+
+/// By how much boxes of directions are made larger, as corners are rounded.
+const SLACK: f64 = 1e-9;
+
+/// Pairs of pieces that are held against each other, at most; nothing is said of more.
+const MOST: usize = 20_000_000;
+
+/// A plane of directions, that where the directions end which a pair of facets blocks.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FreePlane {
+    /// Across it. Of facets it is rounded, of length 1; else exact.
+    pub normal: DVec3,
+    /// What makes it; nothing if it is where a cell begins that is undecided.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub of: Option<PlaneFacets>,
+}
+
+/// What makes a plane of directions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct PlaneFacets {
+    /// Positions in [`Solid::triangles`](crate::Solid::triangles) of the moving and of the fixed body.
+    pub triangles: [u32; 2],
+    /// Vertices `a, b, c` of these, where they are, made smaller by the tolerance: `(b - a) x (c - a)` is exactly along
+    /// the normal.
+    pub vertices: [PlaneVertex; 3],
+}
+
+/// A free direction with no other around it, or an end of an arc of them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FreePoint {
+    /// The direction, with a largest component of 1 (or -1), exact but for its last roundings: as it is it may lie just
+    /// beside the free one, and be blocked.
+    pub direction: DVec3,
+    /// It is, exactly, along the vector product of the normals of these.
+    pub planes: [FreePlane; 2],
+}
+
+/// An arc of free directions with no region beside it.
+#[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+pub struct FreeArc {
+    /// It goes counterclockwise around the normal of this plane.
+    pub plane: FreePlane,
+    /// Where it begins and ends, each of this plane and another one; nothing of a whole circle.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub ends: Option<[FreePoint; 2]>,
+    /// Directions of it in order, from end to end, each less than half a turn after the one before it; rounded as those
+    /// of points are. Of a circle the first one is the last one, too.
+    pub along: Vec<DVec3>,
+}
+
+/// All that is free without an area.
+#[derive(Debug, Default)]
+pub(super) struct Thin {
+    pub(super) arcs: Vec<FreeArc>,
+    pub(super) points: Vec<FreePoint>,
+    /// Corners of arcs and points of which it is not known whether there is more beside them.
+    pub(super) unclear: Vec<DVec3>,
+}
+
+/// A part of the sphere that cones leave of a cell.
+struct Part {
+    corners: Vec<Turn>,
+    /// Lines, and on which side of each it is: all of these say what it is.
+    sides: Vec<(Line, Ordering)>,
+    /// The line from each corner to the next.
+    edges: Vec<Line>,
+    /// Around its corners.
+    around: [DVec3; 2],
+    known: bool,
+}
+
+impl Part {
+    fn new(bodies: &Bodies, outline: Outline, known: bool) -> Self {
+        let Outline { corners, edges } = outline;
+        let side_of = |line: &Line| {
+            let sides = corners.iter().map(|corner| line.side_of_ray(bodies, &corner.ray));
+            sides.into_iter().find(|side| *side != Equal).unwrap_or(Equal)
+        };
+        let lines = match corners.len() {
+            1 => corners[0].lines.to_vec(),
+            2 => {
+                let own = |corner: &Turn| corner.lines.into_iter();
+                let across = corners.iter().flat_map(own).filter(|line| side_of(line) != Equal);
+                across.chain([edges[0]]).collect()
+            }
+            _ => edges.clone(),
+        };
+        let sides = lines.into_iter().map(|line| (line, side_of(&line))).collect();
+        let around = around(corners.iter().map(|corner| corner.direction));
+        Self { corners, sides, edges, around, known }
+    }
+
+    fn is_point(&self) -> bool {
+        self.known && self.corners.len() == 1
+    }
+
+    fn is_arc(&self) -> bool {
+        self.known && self.corners.len() == 2
+    }
+
+    fn holds(&self, bodies: &Bodies, at: &Turn) -> bool {
+        let within = |(line, side): &(Line, Ordering)| {
+            let found = line.side_of_ray(bodies, &at.ray);
+            found == Equal || found == *side
+        };
+        is_around(&self.around, at.direction) && self.sides.iter().all(within)
+    }
+}
+
+/// A box around directions on the cube, a little larger.
+fn around(directions: impl Iterator<Item = DVec3>) -> [DVec3; 2] {
+    let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    let [low, high] = directions.fold(none, |[low, high], d| [low.min(d), high.max(d)]);
+    [low - SLACK, high + SLACK]
+}
+
+fn is_around([low, high]: &[DVec3; 2], d: DVec3) -> bool {
+    low.cmple(d).all() && high.cmpge(d).all()
+}
+
+/// A direction on a circle: along the vector product of its form and that of a line across.
+#[derive(Clone, Copy)]
+struct Mark {
+    at: Turn,
+    across: Line,
+}
+
+/// A cell that is not blocked, and pairs that block some of it.
+struct Around<'f> {
+    bounds: [DVec3; 2],
+    pairs: &'f [[u32; 2]],
+}
+
+struct Thinning<'s, 'a> {
+    bodies: &'s Bodies<'a>,
+    cells: Vec<Around<'s>>,
+    parts: Vec<Part>,
+}
+
+/// Arcs and points of what is said of all cells.
+pub(super) fn thin<'s>(
+    bodies: &'s Bodies<'_>,
+    leaves: impl Iterator<Item = (Cell, &'s Fate)>,
+) -> Thin {
+    let (mut cells, mut rests) = (Vec::new(), Vec::new());
+    for (cell, fate) in leaves {
+        let (Fate::Open(pairs) | Fate::Undecided(pairs)) = fate else { continue };
+        let Ok(rest) = rest_of(bodies, cell, pairs) else { continue };
+        cells.push(Around { bounds: around(cell.corners().into_iter()), pairs });
+        rests.push((rest, matches!(fate, Fate::Open(_))));
+    }
+    if rests
+        .iter()
+        .all(|(rest, known)| !known || rest.pieces.iter().all(super::rest::Piece::is_region))
+    {
+        return Thin::default();
+    }
+    let of_rest = |(rest, known): &(super::rest::Rest, bool)| -> Vec<Part> {
+        rest.pieces.iter().map(|piece| Part::new(bodies, rest.outline(piece), *known)).collect()
+    };
+    let parts = rests.iter().flat_map(of_rest).collect();
+    let thinning = Thinning { bodies, cells, parts };
+    let mut thin = Thin::default();
+    let some = thinning.parts.iter().filter(|part| part.is_point() || part.is_arc());
+    if some.clone().count() * thinning.parts.len() > MOST {
+        thin.unclear.extend(some.map(|part| part.corners[0].direction));
+        return thin;
+    }
+    thinning.arcs(&mut thin);
+    thinning.points(&mut thin);
+    thin
+}
+
+impl Thinning<'_, '_> {
+    fn points(&self, thin: &mut Thin) {
+        let mut seen: Vec<&Part> = Vec::new();
+        for part in self.parts.iter().filter(|part| part.is_point()) {
+            let at = &part.corners[0];
+            if seen.iter().any(|other| other.holds(self.bodies, at)) {
+                continue;
+            }
+            seen.push(part);
+            let mut others = self.parts.iter().filter(|other| !other.is_point());
+            match others.find(|other| other.holds(self.bodies, at)) {
+                None => thin.points.extend(self.point(at)),
+                Some(other) if !other.known => thin.unclear.push(at.direction),
+                Some(_) => (),
+            }
+        }
+    }
+
+    /// A direction that is alone: of two planes through it.
+    fn point(&self, at: &Turn) -> Option<FreePoint> {
+        let mut planes = self.lines_through(at).into_iter();
+        let (first, triangles) = planes.next()?;
+        let (second, others) = planes.find(|(line, _)| !line.is_along(self.bodies, &first))?;
+        let second = turned(self.bodies, &first, &second, at)?;
+        Some(FreePoint {
+            direction: at.direction,
+            planes: [FreePlane::of(&first, triangles), FreePlane::of(&second, others)],
+        })
+    }
+
+    /// Lines through a direction of cones of cells that have it, with their pairs; those of cones with the direction on
+    /// their border first.
+    fn lines_through(&self, at: &Turn) -> Vec<(Line, [u32; 2])> {
+        let (mut touching, mut others) = (Vec::new(), Vec::new());
+        let cells = self.cells.iter().filter(|cell| is_around(&cell.bounds, at.direction));
+        for pair in cells.flat_map(|cell| cell.pairs) {
+            let cone = Cone::new(self.bodies, *pair);
+            let sides = cone.lines.iter().map(|line| line.side_of_ray(self.bodies, &at.ray));
+            let sides: Vec<Ordering> = sides.collect();
+            let found = if sides.contains(&Less) { &mut others } else { &mut touching };
+            let through = cone.lines.iter().zip(&sides).filter(|(_, side)| **side == Equal);
+            found.extend(through.map(|(line, _)| (*line, *pair)));
+        }
+        touching.extend(others);
+        touching
+    }
+
+    fn arcs(&self, thin: &mut Thin) {
+        let mut todo: Vec<&Part> = self.parts.iter().filter(|part| part.is_arc()).collect();
+        while let Some(first) = todo.first() {
+            let circle = first.edges[0];
+            let (own, others): (Vec<_>, Vec<_>) =
+                todo.iter().partition(|part| self.are_on(&circle, &part.corners));
+            // The first one is on its own circle; whatever roundings say, one less is left.
+            todo = if own.is_empty() { todo[1..].to_vec() } else { others };
+            self.arcs_of(&circle, &own, thin);
+        }
+    }
+
+    fn are_on(&self, circle: &Line, corners: &[Turn]) -> bool {
+        corners.iter().all(|corner| circle.side_of_ray(self.bodies, &corner.ray) == Equal)
+    }
+
+    /// The arcs of one circle, of some parts.
+    fn arcs_of(&self, circle: &Line, own: &[&Part], thin: &mut Thin) {
+        let span = |a: &Turn, b: &Turn| {
+            let [a, b] = [self.mark(circle, a)?, self.mark(circle, b)?];
+            Some(if self.after(&a, &b) == Less { [b, a] } else { [a, b] })
+        };
+        let arcs: Vec<[Mark; 2]> =
+            own.iter().filter_map(|part| span(&part.corners[0], &part.corners[1])).collect();
+        let mut taken: Vec<([Mark; 2], bool)> = Vec::new();
+        for part in self.parts.iter().filter(|part| !part.is_arc() && !part.is_point()) {
+            let corners = &part.corners;
+            for (k, a) in corners.iter().enumerate() {
+                let b = &corners[(k + 1) % corners.len()];
+                let near = |at: &Turn| {
+                    own.iter().any(|arc| {
+                        overlap(&arc.around, &around([at.direction, b.direction].into_iter()))
+                    })
+                };
+                if corners.len() > 1 && near(a) && self.are_on(circle, &[*a, *b]) {
+                    taken.extend(span(a, b).map(|span| (span, part.known)));
+                }
+            }
+        }
+        let marks = self.in_order(
+            arcs.iter().chain(taken.iter().map(|(span, _)| span)).flatten().copied().collect(),
+        );
+        let number = |mark: &Mark| marks.iter().position(|other| self.is_same(mark, other));
+        let count = marks.len();
+        let between = |[from, to]: &[Mark; 2]| -> Vec<usize> {
+            let (Some(from), Some(to)) = (number(from), number(to)) else { return Vec::new() };
+            (0..(to + count - from) % count).map(|k| (from + k) % count).collect()
+        };
+        let mut alone = vec![false; count];
+        for k in arcs.iter().flat_map(between) {
+            alone[k] = true;
+        }
+        for (span, known) in &taken {
+            for k in between(span) {
+                if alone[k] && !known {
+                    thin.unclear.push(marks[k].at.direction);
+                }
+                alone[k] = false;
+            }
+        }
+        let starts: Vec<usize> =
+            (0..count).filter(|&k| alone[k] && !alone[(k + count - 1) % count]).collect();
+        if starts.is_empty() && alone.contains(&true) {
+            thin.arcs.extend(self.arc(circle, &marks, 0, count));
+        }
+        for start in starts {
+            let length = (0..count).take_while(|k| alone[(start + k) % count]).count();
+            thin.arcs.extend(self.arc(circle, &marks, start, length));
+        }
+    }
+
+    /// So many stretches between marks from one on.
+    fn arc(&self, circle: &Line, marks: &[Mark], start: usize, length: usize) -> Option<FreeArc> {
+        let mark = |k: usize| &marks[(start + k) % marks.len()];
+        let own = self.lines_through(&mark(0).at);
+        let (line, triangles) =
+            own.into_iter().find(|(line, _)| line.is_along(self.bodies, circle))?;
+        let line = if line.form.dot(circle.form) < 0.0 { line.reversed() } else { line };
+        let plane = FreePlane::of(&line, triangles);
+        let end = |mark: &Mark| FreePoint {
+            direction: mark.at.direction,
+            planes: [plane, self.across(circle, mark)],
+        };
+        let ends = (length < marks.len()).then(|| [end(mark(0)), end(mark(length))]);
+        Some(FreeArc { plane, ends, along: (0..=length).map(|k| mark(k).at.direction).collect() })
+    }
+
+    /// The plane across a circle at an end.
+    fn across(&self, circle: &Line, mark: &Mark) -> FreePlane {
+        let lines = self.lines_through(&mark.at).into_iter();
+        let mut others = lines.filter(|(line, _)| !line.is_along(self.bodies, circle));
+        let found = others.find_map(|(line, triangles)| {
+            Some(FreePlane::of(&turned(self.bodies, circle, &line, &mark.at)?, triangles))
+        });
+        found.unwrap_or(FreePlane { normal: mark.across.form + 0.0, of: None })
+    }
+
+    fn mark(&self, circle: &Line, at: &Turn) -> Option<Mark> {
+        let across = at.lines.iter().find(|line| !line.is_along(self.bodies, circle))?;
+        Some(Mark { at: *at, across: turned(self.bodies, circle, across, at)? })
+    }
+
+    /// Whether a mark comes within half a turn after another, or before it.
+    fn after(&self, a: &Mark, b: &Mark) -> Ordering {
+        a.across.side_of_ray(self.bodies, &b.at.ray).reverse()
+    }
+
+    fn is_same(&self, a: &Mark, b: &Mark) -> bool {
+        self.after(a, b) == Equal && a.at.direction.dot(b.at.direction) > 0.0
+    }
+
+    /// Marks around a circle from the first one on, each once.
+    fn in_order(&self, mut marks: Vec<Mark>) -> Vec<Mark> {
+        let Some(&first) = marks.first() else { return marks };
+        let is_late = |mark: &Mark| match self.after(&first, mark) {
+            Greater => false,
+            Less => true,
+            Equal => !self.is_same(&first, mark),
+        };
+        marks.sort_by(|a, b| is_late(a).cmp(&is_late(b)).then_with(|| self.after(a, b).reverse()));
+        marks.dedup_by(|a, b| self.is_same(a, b));
+        marks
+    }
+}
+
+fn overlap([a, b]: &[DVec3; 2], [c, d]: &[DVec3; 2]) -> bool {
+    a.cmple(*d).all() && c.cmple(*b).all()
+}
+
+/// A line, or the same one reversed, so that the vector product of a circle's form and its own is along a direction
+/// and not against it.
+fn turned(bodies: &Bodies, circle: &Line, across: &Line, at: &Turn) -> Option<Line> {
+    let main = at.direction.abs().max_position();
+    let axis = Line::exactly(DVec3::AXES[main] * at.direction[main].signum());
+    match orientation(bodies, [circle, across, &axis])? {
+        Greater => Some(*across),
+        Less => Some(across.reversed()),
+        Equal => None,
+    }
+}
+
+impl FreePlane {
+    fn of(line: &Line, triangles: [u32; 2]) -> Self {
+        match line.vertices() {
+            Some(vertices) => Self {
+                normal: line.form.normalize() + 0.0,
+                of: Some(PlaneFacets { triangles, vertices }),
+            },
+            None => Self { normal: line.form + 0.0, of: None },
+        }
+    }
+
+    /// Of vertices that exist.
+    fn line(&self, bodies: &Bodies) -> Option<Line> {
+        let Some(PlaneFacets { vertices, .. }) = self.of else {
+            return Some(Line::exactly(self.normal)).filter(|_| self.normal.is_finite());
+        };
+        let exists = |spot: &PlaneVertex| bodies.has(*spot);
+        vertices.iter().all(exists).then(|| Line::of(bodies, vertices))
+    }
+}
+
+impl FreePoint {
+    /// Whether a direction is this one, exactly.
+    pub(super) fn is(&self, bodies: &Bodies, d: DVec3) -> bool {
+        let on = |plane: &FreePlane| {
+            plane.line(bodies).is_some_and(|line| line.side(bodies, d) == Equal)
+        };
+        self.direction.dot(d) > 0.0 && self.planes.iter().all(on)
+    }
+}
+
+impl FreeArc {
+    /// Whether it has a direction, exactly.
+    pub(super) fn has(&self, bodies: &Bodies, d: DVec3) -> bool {
+        let Some(circle) = self.plane.line(bodies) else { return false };
+        if circle.side(bodies, d) != Equal {
+            return false;
+        }
+        let Some(ends) = &self.ends else { return true };
+        let [Some(from), Some(to)] = ends.map(|end| end.planes[1].line(bodies)) else {
+            return false;
+        };
+        let (behind, before) = (from.side(bodies, d) != Greater, to.side(bodies, d) != Less);
+        let is_long = from.side_of_ray(bodies, &Ray::Crossing([circle, to])) == Greater;
+        if is_long { behind || before } else { behind && before }
+    }
+}

@@ -266,10 +266,8 @@ impl<'a> FreeDirections<'a> {
     /// use colltrans::glam::DVec3;
     /// use colltrans::{ConvexPolyhedron, Pose, Solid};
     ///
-    /// // A bar between two blocks that are open at the top and at its ends, and a lid.
-    /// let cuboid = |low: [f64; 3], high: [f64; 3]| {
-    ///     Solid::from_convex(&ConvexPolyhedron::cuboid(low.into(), high.into())?)
-    /// };
+    /// // A bar in a tube that is open at its ends.
+    /// let cuboid = |low: [f64; 3], high: [f64; 3]| ConvexPolyhedron::cuboid(low.into(), high.into());
     /// let walls = Solid::from_pieces(&[
     ///     cuboid([-1.0, -1.0, 0.0], [4.0, 0.0, 1.0])?,
     ///     cuboid([-1.0, 1.0, 0.0], [4.0, 2.0, 1.0])?,

@@ -161,6 +161,39 @@ fn a_cube_in_a_box_leaves_through_holes_that_are_large_enough_and_else_it_is_pro
 }
 
 #[test]
+fn bodies_that_are_turned_are_proven_to_stay_as_well() {
+    let cube = solid(&[[[-0.5; 3], [0.5; 3]]]);
+    let mut random = Random::new(11);
+    for (two, holes) in [(false, [0.0; 3]), (false, [0.9, 0.0, 0.0]), (true, [0.0, 1.1, 0.0])] {
+        let walls = chambers(two, holes);
+        for round in 0..4 {
+            // Turned together by a quarter about the middle of the first room, and the cube alone by a little.
+            let quarter = DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X);
+            let little = DMat3::from_axis_angle(random.direction(), 0.1);
+            let room = if round % 2 == 0 { quarter } else { DMat3::IDENTITY };
+            let turns = [if round % 2 == 0 { quarter } else { little }, room];
+            let middle = room * DVec3::splat(2.0);
+            let [p, q] = [(turns[0], middle), (turns[1], DVec3::ZERO)]
+                .map(|(turn, by)| Pose::from_matrix(turn, by).unwrap());
+            let proof = no_way(&cube.at(p), &walls.at(q));
+            assert!(proof.cells() < 20_000, "{holes:?} {round}: {}", proof.cells());
+            for &(cell, _) in &proof.walls {
+                let [low, high] = proof.room.corners(cell);
+                let share = DVec3::new(random.unit(), random.unit(), random.unit());
+                let by = middle + low + share * (high - low);
+                let moved = cube.at(Pose::from_matrix(turns[0], by).unwrap());
+                let cast = Cast::new(moved, walls.at(q), DVec3::Z).unwrap();
+                assert!(cast.with_tolerance(proof.tolerance).unwrap().overlaps(), "{cell:?} {by}");
+            }
+            // Of a body that stands elsewhere it is no proof.
+            let other = Pose::from_matrix(turns[0], middle + room * DVec3::X * 1.25).unwrap();
+            let elsewhere = proof.verify(&cube.at(other), &walls.at(q));
+            assert!(matches!(elsewhere, Err(FreeError::NotProven(_))), "{holes:?} {round}");
+        }
+    }
+}
+
+#[test]
 fn proofs_of_no_way_that_were_changed_are_refused() {
     let cube = solid(&[[[0.5, 0.75, 0.5], [1.5, 1.75, 1.5]]]);
     let (walls, at) = (chambers(false, [0.9, 0.0, 0.0]), Pose::IDENTITY);

@@ -64,7 +64,9 @@ pub(crate) fn arrow(d: glam::DVec3) -> String {
             return format!("−{name}");
         }
     }
-    format!("({:.3}, {:.3}, {:.3})", d.x, d.y, d.z)
+    // No zero is negative.
+    let [x, y, z] = d.to_array().map(|c| if c.abs() < 0.000_5 { 0.0 } else { c });
+    format!("({x:.3}, {y:.3}, {z:.3})")
 }
 
 /// A colour for each part, spread by the golden angle.

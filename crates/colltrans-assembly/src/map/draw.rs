@@ -172,8 +172,8 @@ const MIDDLE: DVec2 = DVec2::new(360.0, 190.0);
 /// The map as an SVG picture with axes, marks and a legend.
 pub fn svg(map: &RemovalMap, title: &str) -> String {
     let mut text = String::from(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 720 440\" \
-         font-family=\"sans-serif\" font-size=\"13\">\n<rect width=\"720\" height=\"440\" \
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 -14 720 454\" \
+         font-family=\"sans-serif\" font-size=\"13\">\n<rect y=\"-14\" width=\"720\" height=\"454\" \
          fill=\"#fff\"/>\n",
     );
     for (class, path) in runs(map).into_iter().enumerate().filter(|(_, path)| !path.is_empty()) {
@@ -203,7 +203,7 @@ pub fn svg(map: &RemovalMap, title: &str) -> String {
     legend(&mut text, map);
     let _ = writeln!(
         text,
-        "<text x=\"360\" y=\"16\" text-anchor=\"middle\" font-weight=\"bold\">{}</text>\n</svg>",
+        "<text x=\"360\" y=\"4\" text-anchor=\"middle\" font-weight=\"bold\">{}</text>\n</svg>",
         escaped(title)
     );
     text

@@ -1,7 +1,7 @@
 //! What has to be the same, or more: bodies that are turned together, and a larger tolerance.
 
-use colltrans::free::{FreeDirections, FreeOptions, Verdict};
-use colltrans::{Pose, Solid};
+use colltrans::free::{FreeDirections, FreeError, FreeOptions, Verdict};
+use colltrans::{Pose, QueryError, Solid};
 use glam::{DMat3, DVec3};
 
 use super::{Judged, bodies::Bodies, direction};
@@ -20,6 +20,13 @@ pub(super) fn larger(
     rng: &mut Random,
 ) -> Result<Judged, String> {
     let options = all.options().with_tolerance(tolerance);
+    let [a, b] = [0, 1].map(|k| bodies.solids[k].at(bodies.poses[k]));
+    // Bodies that are thinner than that cannot be asked about.
+    if let Err(FreeError::Query(QueryError::NothingLeft { .. })) =
+        FreeDirections::of(&a, &b, options)
+    {
+        return Ok(Judged::default());
+    }
     let loose = asked(&bodies.solids, bodies.poses, options)?;
     if loose.free_area()[1] + loose.undecided_area() < all.free_area()[0] {
         return Err(format!("less is free with the tolerance {tolerance}"));

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from conftest import ROOT
 
-from colltrans import Assembly, AssemblyError, InputError
+from colltrans import Assembly, AssemblyError, InputError, Stage
 
 GEARBOX = ROOT / "data" / "gearbox_small"
 BOX = [[0, 4, 6, 2], [1, 3, 7, 5], [0, 1, 5, 4], [2, 6, 7, 3], [0, 2, 3, 1], [4, 5, 7, 6]]
@@ -36,7 +36,14 @@ def test_the_plan_is_the_command_lines(cli: Path, gearbox: Assembly) -> None:
         assert step.travel == its["travel"]
         assert list(step.travel_bounds) == its["travel_bounds"]
         assert its["travel_bounds"][0] <= step.travel <= its["travel_bounds"][1]
-    assert plan.left == known["left"]
+        assert step.after == its["after"]
+    assert (plan.last, plan.left) == (known["last"], known["left"])
+    for stage, its in zip(plan.stages, known["stages"], strict=True):
+        first, last = its["steps"]
+        assert stage == Stage(its["takes"], range(first, last + 1), its["travel"])
+    assert plan.stages[0].takes == "4 x bolt" and plan.steps[4].after == [0, 1, 2, 3]
+    # The other way up it is the other way round, but for what leaves upwards alone.
+    assert gearbox.plan(gravity=[0, 0, 1]).last == plan.last
     (stuck,), (its,) = plan.stuck, known["stuck"]
     assert stuck.proven == its["proof"]["proven"] and "proven" in stuck.because
     (asked,) = gearbox.plan(proofs=False).stuck

@@ -97,7 +97,7 @@ class Judge:
                     self.move({**leg, "parts": own}, sorted(side - set(own)))
             inside[number] = set(gone)
             around -= gone
-        assert there == set(told["left"])
+        assert there == {*told["left"], *told["last"]}
 
 
 def judged(cli: Path, folder: Path, *words: str) -> tuple[dict[str, Any], Judge]:
@@ -124,7 +124,7 @@ def blocks(manifold3d: Any, *all_of: tuple[list[float], list[float]]) -> Any:
 
 def test_a_gearbox(cli: Path) -> None:
     told, judge = judged(cli, ROOT / "data" / "gearbox_small")
-    assert len(told["plan"]) == 11 and judge.looks > 500
+    assert len(told["plan"]) == 10 and judge.looks > 500
 
 
 def test_a_key_in_a_slot(cli: Path, tmp_path: Path) -> None:

@@ -301,11 +301,10 @@ export class AssemblyTab {
       if (turn !== this.turn || !this.facts) return;
       const plan = (this.plan = facts);
       const { size, unit: of } = this.facts;
-      const last = plan.plan.length - 1;
       const places = new Map(this.facts.parts.map(({ name }, k) => [name, k]));
-      this.moves = plan.plan.map(({ path, back = [], travel }, k) => [...path, ...back].map((leg, l) => {
-        // With the last move of its path a step leaves; the last part stays, for there is nothing to take it out of.
-        const leaves = l === path.length - 1 && !(k === last && travel === 0);
+      this.moves = plan.plan.map(({ path, back = [] }) => [...path, ...back].map((leg, l) => {
+        // With the last move of its path a step leaves.
+        const leaves = l === path.length - 1;
         return { parts: leg.parts.map((name) => places.get(name)!), way: times(leg.direction, leg.travel + (leaves ? 0.35 * size : 0)) };
       }));
       this.player.show(
@@ -485,12 +484,15 @@ export class AssemblyTab {
       refill(this.planCard, h("div", { class: "row" }, h("button", { class: "small main", disabled: !!this.busy || !this.fit, onclick: () => void this.askPlan() }, "Plan the disassembly")));
       return;
     }
-    const rows = plan.plan.map(({ parts, path, direction, travel, within, surfaces }, k) =>
-      h("li", {}, h("button", { class: "link", onclick: () => this.player.go(k + 1) },
-        `${within === undefined ? "" : `of step ${within + 1}: `}${parts.join(", ")} ${travel ? `${severally(path)}along ${arrow(direction)}` : "stays"}`),
-        ...(surfaces ? [h("small", {}, ` rests on an open surface: ${surfaces.join(", ")}`)] : [])));
+    const rows = plan.stages.map(({ takes, steps: [first, last] }) => {
+      const { path, direction, within, surfaces } = plan.plan[first]!;
+      return h("li", { value: first + 1 }, h("button", { class: "link", onclick: () => this.player.go(last + 1) },
+        `${within === undefined ? "" : `of step ${within + 1}: `}${takes} ${severally(path)}along ${arrow(direction)}`),
+        ...(surfaces ? [h("small", {}, ` rests on an open surface: ${surfaces.join(", ")}`)] : []));
+    });
+    const remains = plan.last.length ? [h("p", { class: "proof" }, `What remains: ${plan.last.join(", ")}.`)] : [];
     const stuck = plan.stuck.map(({ parts, because }) => h("p", { class: "proof" }, `${parts.join(", ")}: ${because}.`));
-    refill(this.planCard, h("p", { class: "proof" }, `${plan.directions} directions were asked for all parts; each step was checked again, pair by pair.`), h("ol", {}, ...rows), ...stuck);
+    refill(this.planCard, h("p", { class: "proof" }, `${plan.directions} directions were asked for all parts; each step was checked again, pair by pair.`), h("ol", {}, ...rows), ...remains, ...stuck);
   }
 
   /** The tip of the arrow. */

@@ -117,6 +117,11 @@ impl Matrix {
         &self.directions
     }
 
+    /// The position of a direction, if it was asked.
+    pub fn position(&self, direction: DVec3) -> Option<usize> {
+        self.directions.iter().position(|d| bits(*d) == bits(direction))
+    }
+
     /// All meetings along a direction, sorted by moving and fixed part.
     pub fn meetings(&self, direction: usize) -> &[Meeting] {
         &self.meetings[direction]

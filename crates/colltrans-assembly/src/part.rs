@@ -130,6 +130,7 @@ pub struct Assembly {
     parts: Vec<Part>,
     ignored: BTreeMap<[usize; 2], Ignored>,
     unit: Option<String>,
+    up: Option<DVec3>,
     notes: Vec<String>,
     files: Vec<PathBuf>,
 }
@@ -188,6 +189,12 @@ impl Assembly {
         Self { unit: Some(unit.into()), ..self }
     }
 
+    /// The same, with what is upwards in its frame, if the format says it.
+    #[must_use]
+    pub fn with_up(self, up: DVec3) -> Self {
+        Self { up: Some(up), ..self }
+    }
+
     /// The same, with something that the reader has to say.
     #[must_use]
     pub fn with_note(mut self, note: impl Into<String>) -> Self {
@@ -209,6 +216,11 @@ impl Assembly {
     /// The unit of lengths, if the file says it.
     pub fn unit(&self) -> Option<&str> {
         self.unit.as_deref()
+    }
+
+    /// What is upwards: y of glTF, else z.
+    pub fn up(&self) -> DVec3 {
+        self.up.unwrap_or(DVec3::Z)
     }
 
     /// What the reader noted: meshes skipped, for instance.

@@ -2,9 +2,9 @@
 //!
 //! All parts stand where they were, so what a part meets along a direction does not depend on what
 //! was taken out before: one matrix answers for every state, as the subgraph of the parts that are
-//! left. A step takes the smallest removable group over all directions; of equal ones the *base* (the
-//! largest part if none is fixed) comes last. Each group is then taken apart by itself. Where no direction of the
-//! matrix helps, finer candidates of what is left are asked, then a sphere of samples, and then, for
+//! left. A step takes one of the smallest removable groups over all directions, in a natural [`order`], away from the
+//! *base* (what is fixed, or the largest part), which never moves: where a group with the base in it can leave, the others
+//! leave the other way. Each group is then taken apart by itself. Where no direction of the matrix helps, finer candidates of what is left are asked, then a sphere of samples, and then, for
 //! what is loose, that sphere refined where outcomes change. Then it is proven that no direction helps, or directions
 //! are asked of which that is not proven; and at last several moves are looked for.
 //!
@@ -15,21 +15,27 @@ mod certify;
 mod hold;
 mod loose;
 mod options;
+mod order;
 mod replay;
 mod several;
 mod single;
+mod stage;
 mod step;
 
 use std::collections::{BTreeMap, HashSet};
+use std::sync::atomic::AtomicBool;
 
-use colltrans::Bounded;
+use colltrans::free::FreeOptions;
+use colltrans::solid::Workspace;
 use glam::DVec3;
 use petgraph::unionfind::UnionFind;
 
 use crate::blocking::Blocking;
-use crate::bodies::Bodies;
-use crate::candidates::Finer;
+use crate::bodies::{Bodies, Room};
+use crate::candidates::{Finer, unit};
 use crate::error::AssemblyError;
+use crate::free::Removal;
+use crate::likes::likes;
 use crate::map::{MapOptions, way_out};
 use crate::matrix::{Matrix, bits};
 use crate::sphere::Sphere;
@@ -38,6 +44,7 @@ use crate::watch::{Stage, Tally, Watch};
 use certify::{Proof, certify};
 pub use hold::Hold;
 pub use options::PlanOptions;
+use order::{Choice, Order};
 use several::Aside;
 pub use several::Moves;
 use single::Single;
@@ -71,10 +78,15 @@ pub struct Stuck {
 pub struct Plan {
     /// What to do, in order; steps that take a group apart follow the one that took it out.
     pub steps: Vec<Step>,
+    /// What all else was taken away from and stays where it is: the base, or parts that stay together; nothing if parts
+    /// are left.
+    pub last: Vec<usize>,
     /// Parts that stay: fixed, or not moved by any direction asked.
     pub left: Vec<usize>,
     /// What does not come apart, and why.
     pub stuck: Vec<Stuck>,
+    /// For each part the first one that is [like](crate::likes::likes) it.
+    pub likes: Vec<usize>,
 }
 
 /// Takes everything apart along the directions of a matrix of all parts, and, for what those do not
@@ -82,7 +94,7 @@ pub struct Plan {
 /// apart; parts that are open, ignored or kept apart, or very many, are not proven to be stuck.
 ///
 /// # Errors
-/// Cancelled; or a step does not pass its own check.
+/// Cancelled; a direction upwards that is none; or a step does not pass its own check.
 pub fn disassemble(
     bodies: &Bodies,
     matrix: &Matrix,
@@ -91,29 +103,15 @@ pub fn disassemble(
     watch: Watch,
 ) -> Result<Plan, AssemblyError> {
     let tally = watch.stage(Stage::Plan, bodies.len());
-    let (plan, base) = (Plan::default(), base(bodies));
-    let known = loose::Known::default();
-    let mut planner = Planner { bodies, finer, options, watch, tally, plan, base, known };
+    let likes = likes(bodies.assembly());
+    let up = unit(options.up.unwrap_or(bodies.assembly().up()))?;
+    let (plan, known) = (Plan::default(), loose::Known::default());
+    let mut planner =
+        Planner { bodies, finer, options, up, likes: &likes, watch, tally, plan, known };
     let all: Vec<usize> = (0..bodies.len()).collect();
-    planner.plan.left = planner.take_apart(&all, matrix, None)?;
-    Ok(planner.plan)
-}
-
-/// The parts that come last: those that are fixed, or the one with the largest box.
-fn base(bodies: &Bodies) -> Vec<bool> {
-    let parts = bodies.assembly().parts();
-    let mut base: Vec<bool> = parts.iter().map(crate::part::Part::fixed).collect();
-    if !base.contains(&true) {
-        let volume = |k: &usize| {
-            let b = bodies.bounds(*k);
-            (b.high - b.low).element_product()
-        };
-        let largest = (0..parts.len()).rev().max_by(|a, b| volume(a).total_cmp(&volume(b)));
-        if let Some(largest) = largest {
-            base[largest] = true;
-        }
-    }
-    base
+    let left = planner.take_apart(&all, matrix, None)?;
+    let plan = planner.plan;
+    Ok(Plan { left, likes, ..plan })
 }
 
 /// Of the finer directions of what is stuck, at most so many are asked.
@@ -127,12 +125,16 @@ struct Planner<'a> {
     bodies: &'a Bodies<'a>,
     finer: &'a [Finer],
     options: PlanOptions,
+    up: DVec3,
+    likes: &'a [usize],
     watch: Watch<'a>,
     tally: Tally<'a>,
     plan: Plan,
-    base: Vec<bool>,
     known: loose::Known,
 }
+
+/// Work for the free directions of a group of which one was found, in pairs of boxes.
+const MIDDLE_LOOKS: u64 = 1_000_000;
 
 /// A group that can be taken out, and the direction.
 struct Way {
@@ -146,6 +148,34 @@ impl Way {
     fn straight(parts: Vec<usize>, direction: DVec3) -> Self {
         Self { parts, direction, aside: None }
     }
+}
+
+impl From<Choice> for Way {
+    fn from(Choice { parts, direction }: Choice) -> Self {
+        Self::straight(parts, direction)
+    }
+}
+
+/// The best of the smallest groups that can be taken out.
+fn smallest(order: &mut Order, matrix: &Matrix, left: &[usize]) -> Option<Choice> {
+    #[cfg(test)]
+    GRAPHS.with(|graphs| graphs.set(graphs.get() + matrix.directions().len()));
+    let mut groups: BTreeMap<Vec<usize>, Vec<usize>> = BTreeMap::new();
+    for (k, &direction) in matrix.directions().iter().enumerate() {
+        for group in Blocking::new(matrix, k, order.there()).removable() {
+            let Some(parts) = order.moving(&group, left).filter(|p| p.len() < left.len()) else {
+                continue;
+            };
+            let along = if parts == group { k } else { order.position(DVec3::ZERO - direction) };
+            let ways = groups.entry(parts).or_default();
+            if !ways.contains(&along) {
+                ways.push(along);
+            }
+        }
+    }
+    let least = groups.keys().map(Vec::len).min()?;
+    groups.retain(|parts, _| parts.len() == least);
+    order.best(groups)
 }
 
 #[cfg(test)]
@@ -162,27 +192,29 @@ impl Planner<'_> {
         matrix: &Matrix,
         within: Option<usize>,
     ) -> Result<Vec<usize>, AssemblyError> {
-        let mut alive = self.mask(group);
+        let alive = self.mask(group);
         let mut left = group.to_vec();
-        let movable = |k: usize| !self.fixed(k) && !self.base[k];
-        let mut single = Single::new(matrix, &alive, movable);
+        let mut order = Order::new(self.bodies, matrix, self.likes, &alive, self.up);
+        let mut single = Single::new(matrix, &alive, |k| !order.is_base(k));
         while !left.is_empty() {
             self.watch.check()?;
             if left.len() == 1 && !self.fixed(left[0]) {
-                self.finish(&left, matrix, within);
+                self.finish(left, within);
                 return Ok(Vec::new());
             }
             let mut asked: HashSet<[u64; 3]> =
                 matrix.directions().iter().copied().map(bits).collect();
-            let alone =
-                single.first().map(|(k, part)| Way::straight(vec![part], matrix.directions()[k]));
-            let mut way = alone.or_else(|| self.smallest(matrix, &alive, left.len()));
+            let choice = order.alone(&single).or_else(|| smallest(&mut order, matrix, &left));
+            let mut way = choice.map(Way::from);
             if way.is_none() {
-                way = self.search_finer(&left, &alive, matrix, &mut asked)?;
+                let found = self.search_finer(&order, &left, matrix, &mut asked)?;
+                way = found.map(|way| self.best_way(&mut order, &left, way)).transpose()?;
             }
             let mut proven = None;
             if way.is_none() {
-                (way, proven) = self.prove(&left, &alive, &mut asked)?;
+                let found;
+                (found, proven) = self.prove(&order, &left, &mut asked)?;
+                way = found.map(|way| self.best_way(&mut order, &left, way)).transpose()?;
             }
             let mut moves = None;
             if way.is_none() {
@@ -193,16 +225,16 @@ impl Planner<'_> {
                 let alone = within.is_none() && !self.plan.steps.is_empty();
                 if alone && !left.iter().any(|&k| self.fixed(k)) {
                     // All others are gone: what is left comes out, as one.
-                    self.finish(&left, matrix, within);
+                    self.finish(left, within);
                     return Ok(Vec::new());
                 }
                 return Ok(left);
             };
             left.retain(|k| !way.parts.contains(k));
             for &part in &way.parts {
-                alive[part] = false;
                 single.remove(part);
             }
+            order.remove(&way.parts, way.direction);
             self.take_out(way, &left, matrix, within)?;
         }
         Ok(left)
@@ -223,6 +255,7 @@ impl Planner<'_> {
         let pairs = parts.iter().flat_map(|&a| left.iter().map(move |&b| [a, b]));
         let ignored = pairs.filter(|&[a, b]| self.bodies.lets_pass(a, b, start)).collect();
         let surfaces = self.surfaces(&parts, left, direction);
+        let after = self.after(&parts, direction, aside.is_some(), matrix, within);
         let (mut path, back) =
             aside.map_or_else(Default::default, |aside| (aside.legs, aside.back));
         path.push(Leg { parts: parts.clone(), direction, travel: travel.value });
@@ -233,6 +266,7 @@ impl Planner<'_> {
             path,
             back,
             within,
+            after,
             ignored,
             surfaces,
         });
@@ -246,24 +280,52 @@ impl Planner<'_> {
         Ok(())
     }
 
-    /// The last part or group: nothing else is there. Of a group that was taken apart the last part
-    /// needs no step.
-    fn finish(&mut self, left: &[usize], matrix: &Matrix, within: Option<usize>) {
+    /// The last part or group, from which all else was taken away. Of a group that was taken apart it goes without
+    /// saying.
+    fn finish(&mut self, left: Vec<usize>, within: Option<usize>) {
         if within.is_none() {
-            let direction = matrix.directions().first().copied().unwrap_or(DVec3::Z);
-            let travel = Bounded { value: 0.0, lower: 0.0, upper: 0.0 };
-            let leg = Leg { parts: left.to_vec(), direction, travel: 0.0 };
-            self.plan.steps.push(Step {
-                parts: left.to_vec(),
-                direction,
-                travel,
-                path: vec![leg],
-                back: Vec::new(),
-                within,
-                ignored: Vec::new(),
-                surfaces: Vec::new(),
-            });
+            self.plan.last = left;
         }
+    }
+
+    /// The steps that took away what a group meets along its way, and the one that took the group out which it is of.
+    fn after(
+        &self,
+        group: &[usize],
+        direction: DVec3,
+        several: bool,
+        matrix: &Matrix,
+        within: Option<usize>,
+    ) -> Vec<usize> {
+        let before = self.plan.steps.iter().enumerate().filter(|(_, step)| step.within == within);
+        let mut gone = BTreeMap::new();
+        for (k, step) in before {
+            gone.extend(step.parts.iter().map(|&part| (part, k)));
+        }
+        let mut after: Vec<usize> = within.into_iter().collect();
+        if several {
+            after.extend(gone.values());
+        } else if let Some(k) = matrix.position(direction) {
+            let met = group.iter().flat_map(|&part| matrix.of_part(k, part));
+            after.extend(met.filter_map(|m| gone.get(&m.fixed)));
+        } else {
+            let (mut workspace, start) = (Workspace::default(), self.options.start);
+            for &part in group {
+                for (_, other) in self.bodies.ahead(part, direction) {
+                    let Some(&step) = gone.get(&other).filter(|k| !after.contains(k)) else {
+                        continue;
+                    };
+                    let pair = [part, other];
+                    if self.bodies.room(pair, direction, None, start, &mut workspace) != Room::Free
+                    {
+                        after.push(step);
+                    }
+                }
+            }
+        }
+        after.sort_unstable();
+        after.dedup();
+        after
     }
 
     /// The surfaces of a group, and of what is left where the boxes of the group pass.
@@ -278,39 +340,16 @@ impl Planner<'_> {
         found
     }
 
-    /// The smallest group that can be taken out, the of equal ones not the base; then that of the
-    /// first direction and the first part.
-    fn smallest(&self, matrix: &Matrix, alive: &[bool], count: usize) -> Option<Way> {
-        #[cfg(test)]
-        GRAPHS.with(|graphs| graphs.set(graphs.get() + matrix.directions().len()));
-        let mut best: Option<((usize, bool, usize), Way)> = None;
-        for (k, &direction) in matrix.directions().iter().enumerate() {
-            for parts in Blocking::new(matrix, k, alive).removable() {
-                if parts.len() == count || parts.iter().any(|&p| self.fixed(p)) {
-                    continue;
-                }
-                let based = parts.iter().any(|&p| self.base[p]);
-                let key = (parts.len(), based, k);
-                if best.as_ref().is_none_or(|b| key < b.0) {
-                    best = Some((key, Way::straight(parts, direction)));
-                }
-            }
-            if best.as_ref().is_some_and(|b| b.0.0 == 1 && !b.0.1) {
-                break;
-            }
-        }
-        best.map(|b| b.1)
-    }
-
     /// A way along directions that the matrix does not have: of contacts of these parts, then of the
     /// sphere. Adds them to those asked.
     fn search_finer(
         &mut self,
+        order: &Order,
         left: &[usize],
-        alive: &[bool],
         matrix: &Matrix,
         asked: &mut HashSet<[u64; 3]>,
     ) -> Result<Option<Way>, AssemblyError> {
+        let alive = order.there();
         if left.iter().filter(|&&k| !self.fixed(k)).count() == 0 {
             return Ok(None);
         }
@@ -323,12 +362,7 @@ impl Planner<'_> {
             0 => Vec::new(),
             count => Sphere::with_directions(count).directions,
         };
-        let parts = self.bodies.assembly().parts();
-        let base = &self.base;
-        let allowed = |group: &[usize]| {
-            let movable = !group.iter().any(|&k| parts[k].fixed());
-            movable.then(|| group.iter().any(|&k| base[k]))
-        };
+        let allowed = |group: &[usize]| order.moving(group, left).map(|parts| parts.len());
         for directions in [own, sphere] {
             asked.extend(directions.iter().copied().map(bits));
             let (start, known) = (self.options.start, &mut self.known);
@@ -345,26 +379,27 @@ impl Planner<'_> {
                 return Ok(way);
             }
         }
-        self.search_refined(left, alive, matrix)
+        self.search_refined(order, left, matrix)
     }
 
     /// A way for something loose, on a sphere that is refined where outcomes change: for single
     /// parts and for those that overlap, and so move as one.
     fn search_refined(
         &self,
+        order: &Order,
         left: &[usize],
-        alive: &[bool],
         matrix: &Matrix,
     ) -> Result<Option<Way>, AssemblyError> {
+        let alive = order.there();
         let PlanOptions { start, samples, .. } = self.options;
         if samples == 0 {
             return Ok(None);
         }
-        let based = |g: &[usize]| g.iter().any(|&k| self.base[k]);
+        let moving = |group: &[usize]| order.moving(group, left).map(|parts| parts.len());
         let mut groups = self.rigid(left);
-        groups.retain(|g| g.len() < left.len() && !g.iter().any(|&k| self.fixed(k)));
+        groups.retain(|g| g.len() < left.len() && moving(g).is_some());
         groups.retain(|g| self.is_loose(g, alive, matrix));
-        groups.sort_by_key(|g| (based(g), g.len(), g[0]));
+        groups.sort_by_key(|g| (moving(g), g[0]));
         groups.truncate(MOST_LOOSE);
         let options = MapOptions { samples, start, ..MapOptions::default() };
         for parts in groups {
@@ -405,8 +440,8 @@ impl Planner<'_> {
     /// A way along a direction that a proof leaves open, or the cells of a proof that there is none.
     fn prove(
         &mut self,
+        order: &Order,
         left: &[usize],
-        alive: &[bool],
         asked: &mut HashSet<[u64; 3]>,
     ) -> Result<(Option<Way>, Option<usize>), AssemblyError> {
         if !self.options.prove {
@@ -418,14 +453,55 @@ impl Planner<'_> {
             Proof::Open(directions) => directions,
         };
         asked.extend(directions.iter().copied().map(bits));
-        let (bodies, base) = (self.bodies, &self.base);
-        let allowed = |group: &[usize]| {
-            let movable = !group.iter().any(|&k| bodies.assembly().parts()[k].fixed());
-            movable.then(|| group.iter().any(|&k| base[k]))
-        };
+        let (bodies, alive) = (self.bodies, order.there());
+        let allowed = |group: &[usize]| order.moving(group, left).map(|parts| parts.len());
         let known = &mut self.known;
         let way = loose::smallest(bodies, &directions, alive, start, allowed, known, self.watch)?;
         Ok((way, None))
+    }
+
+    /// The best of the ways that are known of a group once one was found: that one, the opposite, and the middle of all
+    /// directions around it that are free, which is proven. If the base is in the group, the others leave the other way.
+    fn best_way(&self, order: &mut Order, left: &[usize], way: Way) -> Result<Way, AssemblyError> {
+        let Some(parts) = order.moving(&way.parts, left) else { return Ok(way) };
+        let found = if parts == way.parts { way.direction } else { DVec3::ZERO - way.direction };
+        let others: Vec<usize> = left.iter().copied().filter(|k| !parts.contains(k)).collect();
+        let mut directions = vec![found, DVec3::ZERO - found];
+        directions.extend(self.middle(&parts, &others, found)?);
+        directions.retain(|&d| self.is_free(&parts, &others, d));
+        let ways = directions.into_iter().map(|d| order.position(d)).collect();
+        Ok(order.best([(parts, ways)]).map_or(way, Way::from))
+    }
+
+    /// The middle of the free region that a direction lies in, where there is a proof of it.
+    fn middle(
+        &self,
+        parts: &[usize],
+        others: &[usize],
+        direction: DVec3,
+    ) -> Result<Option<DVec3>, AssemblyError> {
+        // What cannot be proven is asked as it was found.
+        let Ok(removal) = Removal::among(self.bodies, parts, others) else { return Ok(None) };
+        let options = FreeOptions::DEFAULT.with_looks(MIDDLE_LOOKS);
+        let never = AtomicBool::new(false);
+        let free = match removal.directions(options, self.watch.flag().unwrap_or(&never)) {
+            Ok(free) => free,
+            Err(AssemblyError::Cancelled) => return Err(AssemblyError::Cancelled),
+            Err(_) => return Ok(None),
+        };
+        let near = |d: &DVec3| d.dot(direction);
+        let around = free.regions().into_iter().map(|region| region.center);
+        Ok(around.max_by(|a, b| near(a).total_cmp(&near(b))))
+    }
+
+    fn is_free(&self, parts: &[usize], others: &[usize], d: DVec3) -> bool {
+        let (mut workspace, start) = (Workspace::default(), self.options.start);
+        let mut ahead =
+            parts.iter().flat_map(|&a| self.bodies.ahead(a, d).into_iter().map(move |x| [a, x.1]));
+        ahead.all(|pair| {
+            !others.contains(&pair[1])
+                || self.bodies.room(pair, d, None, start, &mut workspace) == Room::Free
+        })
     }
 
     /// A way in several moves, or what is known of them.
@@ -502,7 +578,8 @@ mod tests {
         let matrix = Matrix::new(&bodies, &[DVec3::X, DVec3::NEG_X], &all, start, watch).unwrap();
         GRAPHS.with(|graphs| graphs.set(0));
         let plan = disassemble(&bodies, &matrix, &[], PlanOptions::default(), watch).unwrap();
-        assert_eq!(plan.steps.len(), 40);
+        assert_eq!(plan.steps.len(), 39);
+        assert_eq!(plan.last.len(), 1);
         assert!(plan.steps.iter().all(|step| step.parts.len() == 1));
         assert_eq!(GRAPHS.with(std::cell::Cell::get), 0, "of 40 steps along 2 directions");
     }

@@ -106,11 +106,25 @@ pub fn meetings(assembly: &Assembly, matrix: &Matrix, direction: usize) -> Value
     matrix.meetings(direction).iter().map(told).collect()
 }
 
-/// The fields of a plan: `plan` (its steps), `left`, `stuck`.
+/// The fields of a plan: `plan` (its steps), `stages` (those that are told as one, by the first and last one), `last`,
+/// `left`, `stuck`.
 pub fn plan(bodies: &Bodies, plan: &Plan) -> Value {
     let steps: Vec<Value> = plan.steps.iter().map(|s| step(bodies.assembly(), s)).collect();
     let stuck: Vec<Value> = plan.stuck.iter().map(|s| self::stuck(bodies, s)).collect();
-    json!({ "plan": steps, "left": bodies.assembly().names(&plan.left), "stuck": stuck })
+    let names = |parts: &[usize]| json!(bodies.assembly().names(parts));
+    let stages = plan.stages().into_iter().map(|stage| {
+        let takes = plan.takes(bodies.assembly(), &stage);
+        let (first, last) = (stage.start, stage.end - 1);
+        json!({ "takes": takes, "steps": [first, last], "travel": plan.travel(&stage) })
+    });
+    let stages: Vec<Value> = stages.collect();
+    json!({
+        "plan": steps,
+        "stages": stages,
+        "last": names(&plan.last),
+        "left": names(&plan.left),
+        "stuck": stuck,
+    })
 }
 
 fn step(assembly: &Assembly, step: &Step) -> Value {
@@ -128,6 +142,7 @@ fn step(assembly: &Assembly, step: &Step) -> Value {
         let pairs: Vec<_> = step.ignored.iter().map(|pair| assembly.names(pair)).collect();
         told["ignored"] = json!(pairs);
     }
+    told["after"] = json!(step.after);
     if let Some(within) = step.within {
         told["within"] = json!(within);
     }

@@ -33,8 +33,11 @@ fn taken_apart(parts: Vec<colltrans_assembly::Part>, tolerance: f64) -> (Assembl
     (assembly.clone(), plan)
 }
 
+/// What leaves, in order, and what all of it leaves.
 fn names<'a>(assembly: &'a Assembly, plan: &Plan) -> Vec<Vec<&'a str>> {
-    plan.steps.iter().map(|s| assembly.names(&s.parts)).collect()
+    let last = Some(&plan.last).filter(|parts| !parts.is_empty());
+    let steps = plan.steps.iter().map(|s| &s.parts).chain(last);
+    steps.map(|parts| assembly.names(parts)).collect()
 }
 
 /// Walks every step in small moves, and looks whether anything overlaps that did not before; at the
@@ -74,7 +77,7 @@ fn walk(bodies: &Bodies, plan: &Plan) {
         }
     }
     let left: Vec<usize> = (0..bodies.len()).filter(|&p| !gone[p]).collect();
-    assert_eq!(left, plan.left);
+    assert_eq!(left, [&plan.left[..], &plan.last].concat());
 }
 
 /// How far an open box can go before it meets another: `None` if never, negative if they overlap now.

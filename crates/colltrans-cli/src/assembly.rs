@@ -59,8 +59,12 @@ fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
     let bodies = Bodies::new(&assembly, fit)?;
     let start = Start::new(&bodies, watch)?;
     let touching = liaisons(&bodies, watch)?;
-    let choice =
-        Choice::default().with_given(arguments.direction.clone()).with_search(!arguments.only);
+    let mut asked = arguments.direction.clone();
+    if !arguments.only {
+        // Who rests on whom is asked along it.
+        asked.extend(arguments.gravity.iter().flat_map(|&gravity| [gravity, -gravity]));
+    }
+    let choice = Choice::default().with_given(asked).with_search(!arguments.only);
     let mut found = candidates(&bodies, &touching, &choice)?;
     let finer = |&direction: &DVec3| Finer { direction, origin: Origin::Given, part: None };
     found.finer.splice(0..0, given.iter().map(finer));
@@ -75,6 +79,10 @@ fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
         .with_legs(arguments.legs)
         .with_proofs(!arguments.no_proofs && !arguments.only)
         .with_looks(arguments.work.looks());
+    let options = match arguments.gravity {
+        Some(gravity) => options.with_up(-gravity),
+        None => options,
+    };
     let plan = disassemble(&bodies, &matrix, &found.finer, options, watch)?;
     let maps = maps(&bodies, &groups, &found, overlap, watch)?;
     let with_proofs = arguments.output.is_some();

@@ -5,6 +5,7 @@
 //! cancels it where one raises.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -44,9 +45,14 @@ type StepRow = (
     [f64; 2],
     [Vec<LegRow>; 2],
     Option<usize>,
+    Vec<usize>,
     Vec<[usize; 2]>,
     Vec<usize>,
 );
+/// What is taken away, from and to which step, and how far.
+type StageRow = (String, [usize; 2], f64);
+/// Steps, stages, what is last, what is left, what is stuck.
+type PlanRows = (Vec<StepRow>, Vec<StageRow>, Vec<usize>, Vec<usize>, Vec<StuckRow>);
 /// Parts, how many directions were asked, in how many cells it is proven that none helps, why they are stuck, and for
 /// each of some parts the sets that hold it.
 type StuckRow = (Vec<usize>, usize, Option<usize>, String, Vec<(usize, Vec<Vec<usize>>)>);
@@ -125,10 +131,16 @@ fn units(directions: &[DVec3]) -> Result<Vec<DVec3>, AssemblyError> {
 fn found(
     bodies: &Bodies<'_>,
     given: &[DVec3],
+    gravity: Option<DVec3>,
     watch: Watch<'_>,
 ) -> Result<Candidates, AssemblyError> {
     let search = given.is_empty();
-    let choice = Choice::default().with_given(units(given)?).with_search(search);
+    let mut asked = units(given)?;
+    if search {
+        // Who rests on whom is asked along it.
+        asked.extend(units(&Vec::from_iter(gravity))?.into_iter().flat_map(|g| [g, -g]));
+    }
+    let choice = Choice::default().with_given(asked).with_search(search);
     candidates(bodies, &liaisons(bodies, watch)?, &choice)
 }
 
@@ -244,11 +256,13 @@ impl Assembly {
         proofs: bool,
         tolerance: Option<f64>,
         ignore_overlaps: bool,
-    ) -> PyResult<(Vec<StepRow>, Vec<usize>, Vec<StuckRow>)> {
+        gravity: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<PlanRows> {
         let given = points(directions, "directions")?;
+        let gravity = gravity.map(|g| crate::arrays::vector(g, "gravity")).transpose()?;
         let choices = Choices::new(tolerance, ignore_overlaps);
-        let (plan, because) = self.ask(py, choices, |bodies, watch| {
-            let found = found(bodies, &given, watch)?;
+        let (plan, because, stages) = self.ask(py, choices, |bodies, watch| {
+            let found = found(bodies, &given, gravity, watch)?;
             let all = vec![true; bodies.len()];
             let matrix = Matrix::new(bodies, &found.directions(), &all, choices.start, watch)?;
             let options = PlanOptions::default()
@@ -256,10 +270,16 @@ impl Assembly {
                 .with_samples(samples)
                 .with_legs(legs)
                 .with_proofs(proofs);
+            let options = gravity.map_or(options, |gravity| options.with_up(-gravity));
             let plan = disassemble(bodies, &matrix, &found.finer, options, watch)?;
             let because = plan.stuck.iter().map(|stuck| stuck.because(bodies));
             let because: Vec<String> = because.collect();
-            Ok((plan, because))
+            let stage = |stage: Range<usize>| {
+                let takes = plan.takes(bodies.assembly(), &stage);
+                (takes, [stage.start, stage.end], plan.travel(&stage))
+            };
+            let stages: Vec<StageRow> = plan.stages().into_iter().map(stage).collect();
+            Ok((plan, because, stages))
         })?;
         let steps = plan.steps.into_iter();
         let row = |s: Step| {
@@ -267,7 +287,7 @@ impl Assembly {
             let leg = |leg: Leg| (leg.parts, leg.direction.to_array(), leg.travel);
             let legs = [s.path, s.back].map(|all| all.into_iter().map(leg).collect());
             let (travel, bounds) = (travel.value, travel.bounds());
-            (s.parts, direction, travel, bounds, legs, s.within, s.ignored, s.surfaces)
+            (s.parts, direction, travel, bounds, legs, s.within, s.after, s.ignored, s.surfaces)
         };
         let steps = steps.map(row).collect();
         let stuck = plan.stuck.into_iter().zip(because).map(|(stuck, because)| {
@@ -280,7 +300,7 @@ impl Assembly {
                 stuck.holds.into_iter().map(|h| (h.part, sets(h.by))).collect(),
             )
         });
-        Ok((steps, plan.left, stuck.collect()))
+        Ok((steps, stages, plan.last, plan.left, stuck.collect()))
     }
 
     #[expect(clippy::type_complexity, reason = "a map has four parts")]
@@ -295,7 +315,7 @@ impl Assembly {
     ) -> PyResult<(Vec<[f64; 3]>, RoomRow, Vec<(f64, [f64; 3])>, Vec<[f64; 3]>)> {
         let choices = Choices::new(tolerance, ignore_overlaps);
         let map = self.ask(py, choices, |bodies, watch| {
-            let directions = found(bodies, &[], watch)?.directions();
+            let directions = found(bodies, &[], None, watch)?.directions();
             let options = MapOptions::default()
                 .with_samples(samples)
                 .with_border(border)

@@ -71,7 +71,7 @@ from colltrans._colltrans import (
     ways_out,
     within,
 )
-from colltrans.assembly import Assembly, Blocking, Move, Plan, RemovalMap, Rooms, Step, Stuck
+from colltrans.assembly import Assembly, Blocking, Move, Plan, RemovalMap, Rooms, Stage, Step, Stuck
 from colltrans.columns import ClearanceColumns, Columns, ContactColumns, Failed, RangeColumns
 from colltrans.errors import (
     AssemblyError,
@@ -176,6 +176,7 @@ __all__ = [
     "SolidContact",
     "SolidFree",
     "SolidOverlapping",
+    "Stage",
     "Step",
     "Steps",
     "Stuck",

@@ -201,6 +201,7 @@ class Assembly:
         proofs: bool,
         tolerance: float | None,
         ignore_overlaps: bool,
+        gravity: ArrayLike | None,
     ) -> tuple[
         list[
             tuple[
@@ -210,10 +211,13 @@ class Assembly:
                 list[float],
                 list[list[tuple[list[int], list[float], float]]],
                 int | None,
+                list[int],
                 list[list[int]],
                 list[int],
             ]
         ],
+        list[tuple[str, list[int], float]],
+        list[int],
         list[int],
         list[tuple[list[int], int, int | None, str, list[tuple[int, list[list[int]]]]]],
     ]: ...

@@ -100,6 +100,9 @@ class Step:
         How what made room goes back to its place once they have left.
     within : int or None
         For a step that takes a group apart, the position of the step that took the group out.
+    after : list of int
+        The positions of the steps before it without which it would not go; all others may as well
+        come later. Of several moves all before it.
     ignored : list of tuple of (str, str)
         What the step does not speak of: the first part moves, the second stays, and their overlap
         at the start, or all that they do, is ignored on request.
@@ -114,6 +117,7 @@ class Step:
     path: list[Move]
     back: list[Move]
     within: int | None
+    after: list[int]
     ignored: list[tuple[str, str]]
     surfaces: list[str]
 
@@ -148,6 +152,25 @@ class Stuck:
 
 
 @dataclass(frozen=True)
+class Stage:
+    """Steps that are one for whoever does them: parts of one shape that leave along one direction.
+
+    Attributes
+    ----------
+    takes : str
+        What is taken away: ``"8 x bolt"``.
+    steps : range
+        Positions of the steps; none of them waits for another one.
+    travel : float
+        How far they go, at most.
+    """
+
+    takes: str
+    steps: range
+    travel: float
+
+
+@dataclass(frozen=True)
 class Plan:
     """How an assembly comes apart.
 
@@ -155,12 +178,18 @@ class Plan:
     ----------
     steps : list of Step
         In order.
+    stages : list of Stage
+        The same, in runs that are one for whoever does them.
+    last : list of str
+        What all else was taken away from and stays where it is; nothing if parts are left.
     left : list of str
         Parts that stay: fixed, or not moved by any direction asked.
     stuck : list of Stuck
     """
 
     steps: list[Step]
+    stages: list[Stage]
+    last: list[str]
     left: list[str]
     stuck: list[Stuck]
 
@@ -367,10 +396,12 @@ class Assembly:
         proofs: bool = True,
         tolerance: float | None = None,
         ignore_overlaps: bool = False,
+        gravity: ArrayLike | None = None,
     ) -> Plan:
         """Takes apart what straight moves take apart.
 
-        The smallest groups come first.
+        The smallest groups come first, in a natural order: what carries nothing, by the shortest way,
+        parts of one shape one after another, rather up, and away from the largest part.
 
         Parameters
         ----------
@@ -385,13 +416,17 @@ class Assembly:
             Whether to prove of what is stuck that no direction takes it apart.
         tolerance, ignore_overlaps
             As for :meth:`rooms`.
+        gravity : array_like of shape (3,), optional
+            Its direction; ``-y`` of glTF, else ``-z``.
 
         Returns
         -------
         Plan
         """
-        plan = self._assembly.plan(directions, samples, legs, proofs, tolerance, ignore_overlaps)
-        steps, left, stuck = plan
+        plan = self._assembly.plan(
+            directions, samples, legs, proofs, tolerance, ignore_overlaps, gravity
+        )
+        steps, stages, last, left, stuck = plan
         names = self.parts
 
         def moves(all_of: list[tuple[list[int], list[float], float]]) -> list[Move]:
@@ -407,14 +442,17 @@ class Assembly:
                     moves(path),
                     moves(back),
                     within,
+                    after,
                     [(names[a], names[b]) for a, b in ignored],
                     self._names(surfaces),
                 )
                 for parts, d, travel, travel_bounds, (
                     path,
                     back,
-                ), within, ignored, surfaces in steps
+                ), within, after, ignored, surfaces in steps
             ],
+            [Stage(takes, range(*of), travel) for takes, of, travel in stages],
+            self._names(last),
             self._names(left),
             [
                 Stuck(

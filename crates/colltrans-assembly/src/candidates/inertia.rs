@@ -19,6 +19,13 @@ pub fn axes(solid: &Solid) -> Vec<DVec3> {
     (0..3).filter(|&i| largest > 0.0 && well(i)).map(|i| vectors.col(i).normalize()).collect()
 }
 
+/// The principal second moments of the volume about its centre, in increasing order.
+pub fn moments(solid: &Solid) -> DVec3 {
+    let mut values = eigen(second_moments(solid)).0.to_array();
+    values.sort_by(f64::total_cmp);
+    DVec3::from_array(values)
+}
+
 fn second_moments(solid: &Solid) -> DMat3 {
     let Aabb { low, high } = solid.bounds();
     let origin = (low + high) * 0.5;

@@ -42,8 +42,8 @@ impl Known {
     }
 }
 
-/// The smallest group that can be taken out along one of the directions; of equal ones not the base,
-/// then that of the first direction.
+/// The group of the fewest parts that can be taken out along one of the directions, and of equal ones that of the first
+/// direction; `allowed` says how many parts move for it, if it may go at all.
 ///
 /// Along `-d` all arcs are turned round, so what is one component along `d` is one along `-d`, and
 /// need not be asked.
@@ -52,7 +52,7 @@ pub(super) fn smallest(
     directions: &[DVec3],
     alive: &[bool],
     start: StartOverlap,
-    allowed: impl Fn(&[usize]) -> Option<bool> + Sync,
+    allowed: impl Fn(&[usize]) -> Option<usize> + Sync,
     known: &mut Known,
     watch: Watch,
 ) -> Result<Option<Way>, AssemblyError> {
@@ -73,8 +73,8 @@ pub(super) fn smallest(
                 Search::OneComponent => break,
                 Search::NoneAllowed => (),
                 Search::Found(group) => {
-                    let base = allowed(&group).unwrap_or(true);
-                    found.push(((group.len(), base, k), group));
+                    let moving = allowed(&group).unwrap_or(usize::MAX);
+                    found.push(((moving, k), group));
                 }
             }
         }
@@ -86,11 +86,11 @@ pub(super) fn smallest(
         known.put_back(*d, answers);
     }
     let best = found?.into_iter().flatten().min_by_key(|x| x.0);
-    Ok(best.map(|((_, _, k), parts)| Way::straight(parts, directions[k])))
+    Ok(best.map(|((_, k), parts)| Way::straight(parts, directions[k])))
 }
 
-/// A group with its size, whether the base is in it, and the position of its direction.
-type Ranked = ((usize, bool, usize), Vec<usize>);
+/// A group with how many parts move for it, and the position of its direction.
+type Ranked = ((usize, usize), Vec<usize>);
 
 /// What a thread keeps from one direction to the next.
 #[derive(Default)]

@@ -1,6 +1,7 @@
 //! Choices.
 
 use colltrans::solid::StartOverlap;
+use glam::DVec3;
 
 /// Choices for a plan.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -17,11 +18,20 @@ pub struct PlanOptions {
     /// Work for those of what is stuck together, each time: a fortieth of so many pairs of nodes, as of
     /// [`WayOptions`](colltrans::ways::WayOptions), and 500 casts, for each of `legs`.
     pub looks: u64,
+    /// Against gravity, of any length but zero; `None` for that of the [assembly](crate::Assembly::up).
+    pub up: Option<DVec3>,
 }
 
 impl Default for PlanOptions {
     fn default() -> Self {
-        Self { start: StartOverlap::Refuse, samples: 162, legs: 2, prove: true, looks: 20_000_000 }
+        Self {
+            start: StartOverlap::Refuse,
+            samples: 162,
+            legs: 2,
+            prove: true,
+            looks: 20_000_000,
+            up: None,
+        }
     }
 }
 
@@ -54,5 +64,11 @@ impl PlanOptions {
     #[must_use]
     pub fn with_looks(self, looks: u64) -> Self {
         Self { looks, ..self }
+    }
+
+    /// The same with another [`up`](Self::up).
+    #[must_use]
+    pub fn with_up(self, up: DVec3) -> Self {
+        Self { up: Some(up), ..self }
     }
 }

@@ -39,9 +39,9 @@ impl Single {
         Self { met, met_by, free, wanted }
     }
 
-    /// The first direction along which a part is free, and the first such part.
-    pub(super) fn first(&self) -> Option<(usize, usize)> {
-        self.free.first().copied()
+    /// Directions and the parts that are free along them.
+    pub(super) fn all(&self) -> impl Iterator<Item = (usize, usize)> {
+        self.free.iter().copied()
     }
 
     /// A part is there no longer.

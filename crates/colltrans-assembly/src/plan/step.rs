@@ -38,6 +38,9 @@ pub struct Step {
     pub back: Vec<Leg>,
     /// For a step that takes a group apart: the step that took the group out.
     pub within: Option<usize>,
+    /// The steps before it without which it would not go, in increasing order: that took away what it meets on its way,
+    /// or the group that it takes apart. Of several moves all before it. All others may as well come later.
+    pub after: Vec<usize>,
     /// What the step does not speak of: of each pair the first part moves and the second stays, and
     /// their overlap at the start, or all that they do, is ignored on request.
     pub ignored: Vec<[usize; 2]>,
@@ -56,11 +59,6 @@ impl Step {
             more => format!(" and {more} more pairs"),
         };
         (!named.is_empty()).then(|| format!("ignored: {}{more}", named.join(", ")))
-    }
-
-    /// Whether there is nothing that it leads away from: the last part of all, or the last parts as one.
-    pub fn is_last(&self) -> bool {
-        self.travel.value == 0.0 && self.within.is_none() && self.path.len() == 1
     }
 
     /// All moves, as a picture shows them: the group goes `beyond` its travel before anything goes back.

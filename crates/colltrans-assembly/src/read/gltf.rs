@@ -55,7 +55,7 @@ pub(super) fn read(source: Source, bytes: &[u8]) -> Result<Assembly, ReadError> 
         document.nodes.len(),
         document.meshes.len()
     );
-    let assembly = assembled(source, parts, &holds)?.with_unit("m");
+    let assembly = assembled(source, parts, &holds)?.with_unit("m").with_up(DVec3::Y);
     let shaped = document.meshes.iter().flat_map(|mesh| &mesh.primitives);
     let at_rest = shaped.filter(|shape| !shape.targets.is_empty()).count()
         + document.nodes.iter().filter(|node| node.skin.is_some()).count();

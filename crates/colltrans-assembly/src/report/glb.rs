@@ -83,10 +83,8 @@ fn channels(
         let mut time = 0.0;
         for (k, step) in plan.steps.iter().enumerate() {
             time += PAUSE;
-            // The last part stays where it is: there is nothing to take it out of.
-            let stays = k + 1 == plan.steps.len() && step.is_last();
             for (leg, motion) in step.shown(parked[k]) {
-                if leg.parts.contains(&part) && !stays {
+                if leg.parts.contains(&part) {
                     times.extend([time, time + STEP]);
                     places.push(at);
                     at += motion;

@@ -3,6 +3,8 @@
 //! Written with `maud`, which escapes every text that is put in. Let through as they are, and marked
 //! [`PreEscaped`], are only what this crate holds (style, script) or draws (pictures, see `markup`).
 
+use std::ops::Range;
+
 use colltrans::Aabb;
 use glam::DVec3;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
@@ -12,7 +14,7 @@ use super::{Findings, arrow, graph, short, viewer};
 use crate::blocking::Blocking;
 use crate::map;
 use crate::part::Part;
-use crate::plan::{Leg, Step};
+use crate::plan::{Leg, Plan, Step};
 use crate::rooms::PartRoom;
 
 const STYLE: &str = "body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:70em;\
@@ -138,11 +140,12 @@ fn overlaps(f: &Findings) -> Markup {
 
 fn steps(f: &Findings) -> Markup {
     let steps = &f.plan.steps;
+    let stages = f.plan.stages().len();
     let mut gone = vec![false; f.bodies.len()];
     let mut figures = Vec::new();
-    for (k, step) in steps.iter().enumerate().take(MOST_STEPS) {
-        figures.push(step_figure(f, k, &gone));
-        if step.within.is_none() {
+    for stage in f.plan.stages().into_iter().take(MOST_STEPS) {
+        figures.push(stage_figure(f, &stage, &gone));
+        for step in steps[stage].iter().filter(|step| step.within.is_none()) {
             step.parts.iter().for_each(|&p| gone[p] = true);
         }
     }
@@ -152,20 +155,25 @@ fn steps(f: &Findings) -> Markup {
             p { "Nothing can be taken out." }
         } @else {
             div.steps { @for figure in figures { (figure) } }
-            @if steps.len() > MOST_STEPS {
-                p { (steps.len() - MOST_STEPS) " more steps are in the JSON." }
+            @if stages > MOST_STEPS {
+                p { (stages - MOST_STEPS) " more are in the JSON." }
+            }
+            @if !f.plan.last.is_empty() {
+                p { "What remains: " (f.bodies.assembly().names(&f.plan.last).join(", ")) "." }
             }
         }
     }
 }
 
-fn step_figure(f: &Findings, k: usize, gone: &[bool]) -> Markup {
-    let step = &f.plan.steps[k];
+/// Steps that are told as one: the moves of the first one, and all of their parts.
+fn stage_figure(f: &Findings, stage: &Range<usize>, gone: &[bool]) -> Markup {
+    let step = &f.plan.steps[stage.start];
+    let travel = f.plan.travel(stage);
     html! {
         figure {
-            (picture(step_picture(f, k, gone)))
+            (picture(stage_picture(f, stage, gone)))
             figcaption {
-                b { (k + 1) "." } " " (f.bodies.assembly().names(&step.parts).join(", "))
+                b { (Plan::numbers(stage)) "." } " " (f.plan.takes(f.bodies.assembly(), stage))
                 @if let Some(w) = step.within { " (of the group of step " (w + 1) ")" }
                 ": "
                 @if step.path.len() > 1 {
@@ -176,7 +184,7 @@ fn step_figure(f: &Findings, k: usize, gone: &[bool]) -> Markup {
                     }
                 } @else {
                     (arrow(step.direction))
-                    @if step.travel.value > 0.0 { ", " (short(step.travel.value)) }
+                    @if travel > 0.0 { ", " (short(travel)) }
                 }
                 @if !step.surfaces.is_empty() {
                     "; rests on an open surface: "
@@ -198,20 +206,19 @@ fn leg_item(f: &Findings, leg: &Leg, before: &str) -> Markup {
 }
 
 /// What is left, pale, and what moves, on its way out; what made room where it is then.
-fn step_picture(f: &Findings, k: usize, gone: &[bool]) -> String {
-    let step = &f.plan.steps[k];
+fn stage_picture(f: &Findings, stage: &Range<usize>, gone: &[bool]) -> String {
+    let steps = &f.plan.steps[stage.clone()];
+    let step = &steps[0];
     let parts = f.bodies.assembly().parts();
     let Aabb { low, high } = f.bodies.assembly().bounds();
     let by = step.direction
-        * (step.travel.value * 0.5)
+        * (f.plan.travel(stage) * 0.5)
             .clamp(0.12 * (high - low).length(), 0.5 * (high - low).length());
-    let last = step.is_last() && k + 1 == f.plan.steps.len();
-    let by = if last { DVec3::ZERO } else { by };
     let group = step.within.map(|w| &f.plan.steps[w].parts);
     let there = |p: usize| match group {
         Some(group) => {
             group.contains(&p)
-                && !f.plan.steps[..k]
+                && !f.plan.steps[..stage.start]
                     .iter()
                     .any(|s| s.within == step.within && s.parts.contains(&p))
         }
@@ -220,13 +227,13 @@ fn step_picture(f: &Findings, k: usize, gone: &[bool]) -> String {
     let shown: Vec<Shown> = (0..parts.len())
         .filter(|&p| there(p))
         .map(|p| {
-            let moves = step.parts.contains(&p);
+            let moves = steps.iter().any(|step| step.parts.contains(&p));
             let by = aside(step, p) + if moves { by } else { DVec3::ZERO };
             Shown { part: &parts[p], color: p, by, pale: !moves }
         })
         .collect();
     let long = step.direction * 0.1 * (high - low).length();
-    let arrows = if last { Vec::new() } else { arrows(f, step, by + long) };
+    let arrows: Vec<Arrow> = steps.iter().flat_map(|step| arrows(f, step, by + long)).collect();
     scene::svg(&shown, &arrows)
 }
 

@@ -51,12 +51,9 @@ fn data(f: &Findings) -> Value {
     let (middle, size) = ((low + high) / 2.0, (high - low).length());
     let parts: Vec<Value> =
         assembly.parts().iter().enumerate().map(|(k, p)| part(p, tint(k), middle)).collect();
-    let count = f.plan.steps.len();
-    let steps = f.plan.steps.iter().enumerate().map(|(k, step)| {
-        // As in the animation: the last part stays, for there is nothing to take it out of.
-        let beyond = if k + 1 == count && step.is_last() { 0.0 } else { 0.35 * size };
+    let steps = f.plan.steps.iter().map(|step| {
         let legs = step
-            .shown(beyond)
+            .shown(0.35 * size)
             .map(|(leg, motion)| json!({ "parts": leg.parts, "way": motion.to_array() }));
         json!({
             "parts": step.parts,

@@ -59,6 +59,9 @@ pub(crate) struct AssemblyArguments {
     /// Two parts that never block each other, whatever they run through
     #[arg(long, value_name = "A,B")]
     pub(crate) ignore_always: Vec<String>,
+    /// The direction of gravity: parts are rather lifted, and not taken from under others [default: -y of glTF, else -z]
+    #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = direction)]
+    pub(crate) gravity: Option<DVec3>,
     /// A part that is never moved
     #[arg(long, value_name = "PART")]
     pub(crate) fixed: Vec<String>,

@@ -1,9 +1,11 @@
 //! Prints the result of `assembly`, and writes the files of `-o`.
 
 use std::fmt::Write as _;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use colltrans_assembly::plan::Leg;
+use colltrans::glam::DVec3;
+use colltrans_assembly::plan::Plan;
 use colltrans_assembly::report::{Findings, facts, glb, html};
 use colltrans_assembly::{Assembly, Fit};
 use colltrans_assembly::{map, record};
@@ -125,31 +127,11 @@ fn summary(f: &Findings) -> String {
     if !f.plan.steps.is_empty() {
         text.push_str("plan\n");
     }
-    for (k, step) in f.plan.steps.iter().enumerate() {
-        let within =
-            step.within.map_or(String::new(), |w| format!(", of the group of step {}", w + 1));
-        let way = |leg: &Leg| {
-            let [x, y, z] = leg.direction.to_array();
-            format!("{} along {x},{y},{z}", leg.travel)
-        };
-        let head = format!("  {}. {}{within}: ", k + 1, names(&step.parts));
-        if let [leg] = &step.path[..] {
-            let _ = writeln!(text, "{head}{}", way(leg));
-        } else {
-            let _ = writeln!(text, "{head}in {} moves", step.path.len());
-            for leg in &step.path {
-                let _ = writeln!(text, "     {}: {}", names(&leg.parts), way(leg));
-            }
-            for leg in &step.back {
-                let _ = writeln!(text, "     back {}: {}", names(&leg.parts), way(leg));
-            }
-        }
-        if let Some(ignored) = step.ignores(assembly) {
-            let _ = writeln!(text, "     {}", shown(ignored));
-        }
-        if !step.surfaces.is_empty() {
-            let _ = writeln!(text, "     rests on an open surface: {}", names(&step.surfaces));
-        }
+    for stage in f.plan.stages() {
+        tell(&mut text, f, &stage);
+    }
+    if !f.plan.last.is_empty() {
+        let _ = writeln!(text, "what remains\n  {}", names(&f.plan.last));
     }
     if !f.plan.left.is_empty() {
         let _ = writeln!(text, "left\n  {}", names(&f.plan.left));
@@ -184,6 +166,45 @@ fn summary(f: &Findings) -> String {
         }
     }
     text
+}
+
+/// Steps that are one for whoever does them.
+fn tell(text: &mut String, f: &Findings, stage: &Range<usize>) {
+    let assembly = f.bodies.assembly();
+    let names = |parts: &[usize]| shown(assembly.names(parts).join(", "));
+    let steps = &f.plan.steps[stage.clone()];
+    let step = &steps[0];
+    let within = step.within.map_or(String::new(), |w| format!(", of the group of step {}", w + 1));
+    let way = |travel: f64, d: DVec3| match travel {
+        0.0 => format!("away along {},{},{}", d.x, d.y, d.z),
+        _ => format!("{travel} along {},{},{}", d.x, d.y, d.z),
+    };
+    let (numbers, takes) = (Plan::numbers(stage), shown(f.plan.takes(assembly, stage)));
+    let head = format!("  {numbers}. {takes}{within}: ");
+    if let [_] = &step.path[..] {
+        let _ = writeln!(text, "{head}{}", way(f.plan.travel(stage), step.direction));
+    } else {
+        let _ = writeln!(text, "{head}in {} moves", step.path.len());
+        for (back, leg) in
+            step.path.iter().map(|l| ("", l)).chain(step.back.iter().map(|l| ("back ", l)))
+        {
+            let _ = writeln!(
+                text,
+                "     {back}{}: {}",
+                names(&leg.parts),
+                way(leg.travel, leg.direction)
+            );
+        }
+    }
+    for ignored in steps.iter().filter_map(|step| step.ignores(assembly)) {
+        let _ = writeln!(text, "     {}", shown(ignored));
+    }
+    let mut surfaces: Vec<usize> = steps.iter().flat_map(|s| s.surfaces.iter().copied()).collect();
+    surfaces.sort_unstable();
+    surfaces.dedup();
+    if !surfaces.is_empty() {
+        let _ = writeln!(text, "     rests on an open surface: {}", names(&surfaces));
+    }
 }
 
 fn overlaps(text: &mut String, f: &Findings) {

@@ -1,0 +1,123 @@
+//! Parts that are alike: one shape in several places, as screws and nuts are.
+//!
+//! Compared are numbers that do not depend on where a part stands: how many vertices and facets it has, its volume, its
+//! area, and its principal moments, each within what single precision may have rounded. So two parts that are mirror
+//! images of each other are alike. It decides how a plan is ordered and told, never what is free.
+
+use std::collections::HashMap;
+
+use colltrans::Solid;
+use glam::DVec3;
+
+use crate::candidates::inertia;
+use crate::part::Assembly;
+
+/// Numbers that differ by less than this share of the larger one are equal: some roundings of single precision, far from
+/// the origin.
+const EQUAL: f64 = 1e-4;
+
+/// For each part the first one, by position, that is like it; of a part that is like none before it itself.
+pub fn likes(assembly: &Assembly) -> Vec<usize> {
+    let shapes: Vec<Shape> = assembly.parts().iter().map(|p| Shape::of(p.solid())).collect();
+    let mut seen: HashMap<[usize; 2], Vec<usize>> = HashMap::new();
+    let first = |(k, shape): (usize, &Shape)| {
+        let known = seen.entry(shape.counts).or_default();
+        let like = known.iter().copied().find(|&other| shapes[other].is_like(shape));
+        like.unwrap_or_else(|| {
+            known.push(k);
+            k
+        })
+    };
+    shapes.iter().enumerate().map(first).collect()
+}
+
+/// What parts with these names are together: what their names begin with, without numbers; `None` if that is nothing.
+pub fn common_name(names: &[&str]) -> Option<String> {
+    let (first, rest) = names.split_first()?;
+    let shared = rest.iter().fold(first.len(), |length, name| {
+        let same = first.char_indices().zip(name.chars()).find(|((_, a), b)| a != b);
+        length.min(same.map_or(name.len(), |((at, _), _)| at))
+    });
+    let mut end = shared.min(first.len());
+    while !first.is_char_boundary(end) {
+        end -= 1;
+    }
+    let number = |c: char| c.is_ascii_digit() || " _-.:#".contains(c);
+    let name = first[..end].trim_end_matches(number);
+    (!name.is_empty()).then(|| name.to_owned())
+}
+
+/// What a part is compared by.
+struct Shape {
+    counts: [usize; 2],
+    volume: f64,
+    area: f64,
+    moments: DVec3,
+}
+
+impl Shape {
+    fn of(solid: &Solid) -> Self {
+        let corner = |v: u32| solid.vertices()[v as usize];
+        let area = |t: &[u32; 3]| {
+            let [a, b, c] = t.map(corner);
+            (b - a).cross(c - a).length() / 2.0
+        };
+        Self {
+            counts: [solid.vertices().len(), solid.triangles().len()],
+            volume: solid.volume(),
+            area: solid.triangles().iter().map(area).sum(),
+            moments: inertia::moments(solid),
+        }
+    }
+
+    fn is_like(&self, other: &Self) -> bool {
+        let equal = |a: f64, b: f64| (a - b).abs() <= EQUAL * a.abs().max(b.abs());
+        let largest = self.moments.abs().max_element();
+        let near = (self.moments - other.moments).abs().max_element() <= EQUAL * largest;
+        equal(self.volume, other.volume) && equal(self.area, other.area) && near
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use colltrans_mesh::Mesh;
+    use colltrans_testkit::random::Random;
+    use colltrans_testkit::shapes::{cuboid, prism};
+    use glam::DAffine3;
+
+    use super::*;
+    use crate::part::{Part, Piece};
+
+    #[test]
+    fn turned_and_moved_parts_are_alike_and_others_are_not() {
+        let mut random = Random::new(3);
+        let shapes = [
+            cuboid(DVec3::new(1.0, 2.0, 3.0)),
+            cuboid(DVec3::new(1.0, 2.0, 3.01)),
+            prism(12, 2.0),
+            prism(12, 0.5),
+        ];
+        let mut parts = Vec::new();
+        for k in 0..12 {
+            let at = DVec3::new(random.unit(), random.unit(), random.unit()) * 100.0;
+            let place = DAffine3::from_rotation_translation(random.rotation(), at);
+            let shape = &shapes[k % 4];
+            // As a file in single precision has them.
+            let corner = |v: &DVec3| place.transform_point3(*v).as_vec3().as_dvec3();
+            let mesh = Mesh::new(shape.vertices.iter().map(corner).collect(), shape.faces.clone());
+            let piece = Piece { mesh, world_from_piece: DAffine3::IDENTITY };
+            parts.push(Part::new(format!("part {k}"), &[piece]).unwrap());
+        }
+        let found = likes(&Assembly::new(parts).unwrap());
+        assert_eq!(found, (0..12).map(|k| k % 4).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn names_of_what_is_alike() {
+        assert_eq!(common_name(&["bolt_1", "bolt_12"]).as_deref(), Some("bolt"));
+        assert_eq!(common_name(&["M8 bolt", "M8 bolt_2"]).as_deref(), Some("M8 bolt"));
+        assert_eq!(common_name(&["müßig", "müde"]).as_deref(), Some("mü"));
+        assert_eq!(common_name(&["a", "b"]), None);
+        assert_eq!(common_name(&[]), None);
+    }
+}

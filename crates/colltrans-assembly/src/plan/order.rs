@@ -1,0 +1,328 @@
+//! A natural order: which of the groups that can leave goes next, and along which direction.
+//!
+//! What can leave stays able to leave, since nothing is put back: so any choice leads as far as any other, and what is
+//! chosen is a matter of work. A mechanic takes away what carries nothing, by the shortest way, does likes one after
+//! another, keeps the direction, and lifts rather than drops.
+//!
+//! Notation: `up` is against gravity. A part *rests on* those that it meets at once along `-up`; what rests on nothing
+//! that is left *falls*, unless it stands on the ground, as the lowest parts do, or is held: the *base* and parts that
+//! are fixed. The *travel* of a group along `d` is how far it goes until it is beyond all that is left and in the shadow
+//! of whose box it is ([`Bodies::past`]). Of a group's directions those count whose travel is at most [`LONGER`] times
+//! the least. Among all of these the one of least [cost](Order::cost) is taken, of equal ones that of the first part.
+//!
+//! Invariant: `props` counts of each part how many of those that are there it rests on; what is kept of a travel names
+//! the part that it ends behind, and is asked anew once that part has gone.
+
+use std::collections::BTreeMap;
+
+use colltrans::Aabb;
+use glam::DVec3;
+
+use super::single::Single;
+use crate::bodies::Bodies;
+use crate::liaisons::reach;
+use crate::matrix::{Matrix, bits};
+
+/// Ways that are up to so much longer than the shortest one are as good.
+const LONGER: f64 = 1.1;
+/// A part rests on what it meets within so many reaches of contacts: both are shrunk, and touch at a slant.
+const RESTS: f64 = 4.0;
+/// Directions with a larger product are one: 0.8 degrees.
+const SAME: f64 = 0.9999;
+
+/// What a step costs, beside its travel as a share of the assembly's size: each part that falls, ...
+const FALL: f64 = 2.0;
+/// ... each part of another shape than the one before: another tool, ...
+const OTHER_SHAPE: f64 = 0.8;
+/// ... and that while others of its shape cannot leave yet, so that there will be a third time, ...
+const NOT_ALL: f64 = 0.4;
+/// ... another direction than before, ...
+const TURN: f64 = 0.3;
+/// ... down, rather than up, ...
+const DOWN: f64 = 0.3;
+/// ... along no axis of the world, ...
+const OBLIQUE: f64 = 0.2;
+/// ... and a group of all, of a smaller one its share.
+const GROUP: f64 = 0.3;
+
+/// What was chosen: some parts, and a direction.
+pub(super) struct Choice {
+    pub(super) parts: Vec<usize>,
+    pub(super) direction: DVec3,
+}
+
+/// What decides about the order, among some of the parts.
+pub(super) struct Order<'a> {
+    bodies: &'a Bodies<'a>,
+    up: DVec3,
+    size: f64,
+    /// The first part of the same shape, by part.
+    likes: &'a [usize],
+    there: Vec<bool>,
+    /// By shape, that is its first part: how many of those that move are there.
+    counts: Vec<usize>,
+    base: Vec<bool>,
+    /// By part: what rests on it, of all parts.
+    carried: Vec<Vec<usize>>,
+    /// By part: on how many it rests; `None` if it does not fall whatever goes.
+    props: Vec<Option<usize>>,
+    /// By direction, those of the matrix first.
+    shadows: Vec<Shadow>,
+    last: Option<(DVec3, usize)>,
+}
+
+/// All parts as seen along a direction.
+struct Shadow {
+    direction: DVec3,
+    /// In a frame whose third axis is the direction.
+    boxes: Vec<Aabb>,
+    /// By part: its travel alone and the part that it ends behind, once asked.
+    travels: Vec<Option<(f64, Option<usize>)>>,
+}
+
+impl<'a> Order<'a> {
+    /// Of the parts of a group that are there.
+    pub(super) fn new(
+        bodies: &'a Bodies,
+        matrix: &Matrix,
+        likes: &'a [usize],
+        there: &[bool],
+        up: DVec3,
+    ) -> Self {
+        let base = base(bodies, there, up);
+        let shadows = matrix.directions().iter().map(|d| Shadow::new(bodies, *d)).collect();
+        let size = bodies.assembly().bounds().size().max_element().max(f64::MIN_POSITIVE);
+        let (carried, props) = supports(bodies, matrix, there, &base, up);
+        let there = there.to_vec();
+        let mut counts = vec![0; likes.len()];
+        for part in (0..likes.len()).filter(|&part| there[part]) {
+            counts[likes[part]] += usize::from(!base[part]);
+        }
+        Self { bodies, up, size, likes, there, counts, base, carried, props, shadows, last: None }
+    }
+
+    /// By part, whether it is still there.
+    pub(super) fn there(&self) -> &[bool] {
+        &self.there
+    }
+
+    /// What moves if a group goes one way, or the others the other way, increasing: what the base is not in; `None` if
+    /// it is in both.
+    pub(super) fn moving(&self, group: &[usize], left: &[usize]) -> Option<Vec<usize>> {
+        if !group.iter().any(|&k| self.base[k]) {
+            return Some(group.to_vec());
+        }
+        let others: Vec<usize> = left.iter().copied().filter(|k| !group.contains(k)).collect();
+        (!others.is_empty() && !others.iter().any(|&k| self.base[k])).then_some(others)
+    }
+
+    /// Whether a part stays where it is, for all others to be taken from it.
+    pub(super) fn is_base(&self, part: usize) -> bool {
+        self.base[part]
+    }
+
+    /// These parts have gone, along a direction.
+    pub(super) fn remove(&mut self, parts: &[usize], direction: DVec3) {
+        for &part in parts {
+            self.there[part] = false;
+            // Of several moves the base may leave, which is not counted.
+            let count = &mut self.counts[self.likes[part]];
+            *count = count.saturating_sub(1);
+            for &above in &self.carried[part] {
+                if let Some(count) = &mut self.props[above] {
+                    *count -= 1;
+                }
+            }
+        }
+        for shadow in &mut self.shadows {
+            for travel in &mut shadow.travels {
+                if travel.is_some_and(|(_, behind)| behind.is_some_and(|b| !self.there[b])) {
+                    *travel = None;
+                }
+            }
+        }
+        self.last = parts.first().map(|&part| (direction, self.likes[part]));
+    }
+
+    /// The best of the parts that can leave alone.
+    pub(super) fn alone(&mut self, single: &Single) -> Option<Choice> {
+        let mut ways: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (k, part) in single.all() {
+            ways.entry(part).or_default().push(k);
+        }
+        let groups = ways.into_iter().map(|(part, ways)| (vec![part], ways));
+        self.best(groups)
+    }
+
+    /// The best of some groups, each with positions of directions along which it can leave.
+    pub(super) fn best(
+        &mut self,
+        groups: impl IntoIterator<Item = (Vec<usize>, Vec<usize>)>,
+    ) -> Option<Choice> {
+        let groups: Vec<_> = groups.into_iter().collect();
+        let mut ready: BTreeMap<usize, usize> = BTreeMap::new();
+        for (parts, _) in &groups {
+            *ready.entry(self.likes[parts[0]]).or_default() += 1;
+        }
+        let mut best: Option<(f64, Vec<usize>, usize)> = None;
+        for (parts, ways) in groups {
+            let shape = self.likes[parts[0]];
+            let all = parts.len() == 1 && ready[&shape] >= self.counts[shape];
+            let travels: Vec<f64> = ways.iter().map(|&k| self.travel(&parts, k)).collect();
+            let least = travels.iter().copied().fold(f64::INFINITY, f64::min);
+            let falls = self.falls(&parts);
+            for (k, travel) in ways.into_iter().zip(travels) {
+                if travel > LONGER * least + self.bodies.noise() {
+                    continue;
+                }
+                let cost = self.cost(&parts, (falls, all), self.shadows[k].direction, travel);
+                // Noise of the sum is far below what any choice differs by.
+                if best.as_ref().is_none_or(|b| cost < b.0 - 1e-9) {
+                    best = Some((cost, parts.clone(), k));
+                }
+            }
+        }
+        best.map(|(_, parts, k)| Choice { parts, direction: self.shadows[k].direction })
+    }
+
+    /// The position of a direction, which need not be one of the matrix.
+    pub(super) fn position(&mut self, direction: DVec3) -> usize {
+        let known = self.shadows.iter().position(|s| bits(s.direction) == bits(direction));
+        known.unwrap_or_else(|| {
+            self.shadows.push(Shadow::new(self.bodies, direction));
+            self.shadows.len() - 1
+        })
+    }
+
+    /// What it takes to take a group away along `d`, whereupon parts fall; and whether all of its shape could leave.
+    fn cost(&self, parts: &[usize], (falls, all): (usize, bool), d: DVec3, travel: f64) -> f64 {
+        let when = |what: bool, cost: f64| if what { cost } else { 0.0 };
+        let (turn, other) = self.last.map_or((false, false), |(last, shape)| {
+            (last.dot(d) < SAME, self.likes[parts[0]] != shape)
+        });
+        FALL * falls as f64
+            + travel / self.size
+            + when(turn, TURN)
+            + when(other, OTHER_SHAPE)
+            + when(other && !all, NOT_ALL)
+            + when(d.abs().max_element() < SAME, OBLIQUE)
+            + DOWN * (1.0 - d.dot(self.up)) / 2.0
+            + GROUP * (parts.len() - 1) as f64 / self.there.len() as f64
+    }
+
+    /// How many parts of those that are left rest on nothing but these.
+    fn falls(&self, parts: &[usize]) -> usize {
+        if let &[part] = parts {
+            let last = |&&above: &&usize| self.there[above] && self.props[above] == Some(1);
+            return self.carried[part].iter().filter(last).count();
+        }
+        let mut taken: BTreeMap<usize, usize> = BTreeMap::new();
+        for &above in parts.iter().flat_map(|&part| &self.carried[part]) {
+            *taken.entry(above).or_default() += 1;
+        }
+        let falls = |&(&above, &count): &(&usize, &usize)| {
+            self.there[above] && !parts.contains(&above) && self.props[above] == Some(count)
+        };
+        taken.iter().filter(falls).count()
+    }
+
+    /// How far a group goes along a direction until it is beyond all that is left.
+    fn travel(&mut self, parts: &[usize], k: usize) -> f64 {
+        let Self { there, shadows, .. } = self;
+        let shadow = &mut shadows[k];
+        if let &[part] = parts {
+            return shadow.travels[part]
+                .get_or_insert_with(|| past(&shadow.boxes, part, &[], there))
+                .0;
+        }
+        let each = parts.iter().map(|&part| past(&shadow.boxes, part, parts, there).0);
+        each.fold(0.0, f64::max)
+    }
+}
+
+/// How far a part goes along the third axis until it is beyond all that are there, but for those of its group; and the
+/// part that it ends behind.
+fn past(boxes: &[Aabb], part: usize, group: &[usize], there: &[bool]) -> (f64, Option<usize>) {
+    let own = boxes[part];
+    let mut found = (0.0, None);
+    for (other, seen) in boxes.iter().enumerate() {
+        let way = seen.high.z - own.low.z;
+        if way <= found.0 || other == part || !there[other] || group.contains(&other) {
+            continue;
+        }
+        let beside = (0..2).any(|k| seen.low[k] > own.high[k] || own.low[k] > seen.high[k]);
+        if !beside {
+            found = (way, Some(other));
+        }
+    }
+    found
+}
+
+impl Shadow {
+    fn new(bodies: &Bodies, direction: DVec3) -> Self {
+        let (u, v) = direction.any_orthonormal_pair();
+        let seen = |p: &DVec3| DVec3::new(p.dot(u), p.dot(v), p.dot(direction));
+        let parts = bodies.assembly().parts();
+        let boxes = parts.iter().map(|p| Aabb::of_points(p.solid().vertices().iter().map(seen)));
+        Self { direction, boxes: boxes.collect(), travels: vec![None; parts.len()] }
+    }
+}
+
+/// The parts that stay: those that are fixed, or the largest one, by its box and then its volume, and of equal ones the
+/// lowest.
+fn base(bodies: &Bodies, there: &[bool], up: DVec3) -> Vec<bool> {
+    let parts = bodies.assembly().parts();
+    let mut base: Vec<bool> = parts.iter().zip(there).map(|(p, t)| *t && p.fixed()).collect();
+    if base.contains(&true) {
+        return base;
+    }
+    // Digits of single precision do not decide.
+    let digits = |x: f64| x as f32;
+    let key = |k: usize| {
+        let bounds = parts[k].solid().bounds();
+        let size = bounds.size();
+        // Boxes of flat sheets have no volume.
+        let area = size.x * size.y + size.y * size.z + size.z * size.x;
+        let height = bounds.center().dot(up);
+        [size.element_product(), area, parts[k].solid().volume(), -height].map(digits)
+    };
+    let all = (0..parts.len()).filter(|&k| there[k]);
+    let larger = |a: &usize, b: &usize| {
+        let by = key(*a).partial_cmp(&key(*b)).unwrap_or(std::cmp::Ordering::Equal);
+        by.then(b.cmp(a))
+    };
+    if let Some(largest) = all.max_by(larger) {
+        base[largest] = true;
+    }
+    base
+}
+
+/// By part, what rests on it, and on how many it rests.
+fn supports(
+    bodies: &Bodies,
+    matrix: &Matrix,
+    there: &[bool],
+    base: &[bool],
+    up: DVec3,
+) -> (Vec<Vec<usize>>, Vec<Option<usize>>) {
+    let count = bodies.len();
+    let near = RESTS * reach(bodies);
+    let lowest = |k: usize| {
+        let heights = bodies.assembly().parts()[k].solid().vertices().iter().map(|p| p.dot(up));
+        heights.fold(f64::INFINITY, f64::min)
+    };
+    let lows: Vec<f64> = (0..count).map(lowest).collect();
+    let ground = (0..count).filter(|&k| there[k]).map(|k| lows[k]).fold(f64::INFINITY, f64::min);
+    let held = |k: usize| !there[k] || base[k] || lows[k] <= ground + near;
+    let mut props: Vec<Option<usize>> = (0..count).map(|k| (!held(k)).then_some(0)).collect();
+    let mut carried = vec![Vec::new(); count];
+    let down = matrix.directions().iter().position(|d| d.dot(-up) >= SAME);
+    for met in down.map_or(&[][..], |k| matrix.meetings(k)) {
+        let rests = met.displaced_distance() <= near && there[met.fixed];
+        if let Some(props) = props[met.moving].as_mut().filter(|_| rests) {
+            *props += 1;
+            carried[met.fixed].push(met.moving);
+        }
+    }
+    (carried, props)
+}

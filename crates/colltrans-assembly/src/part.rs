@@ -36,6 +36,18 @@ impl Part {
     /// # Errors
     /// A surface that is not one of a solid; no pieces; a name without letters.
     pub fn new(name: impl Into<String>, pieces: &[Piece]) -> Result<Self, AssemblyError> {
+        Self::with_options(name, pieces, &BodyOptions::default())
+    }
+
+    /// The same with options, of which those of solids count; open shells are always allowed.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; a surface that has to be mended, if it is to be taken [as it is](BodyOptions::as_is).
+    pub fn with_options(
+        name: impl Into<String>,
+        pieces: &[Piece],
+        options: &BodyOptions,
+    ) -> Result<Self, AssemblyError> {
         let name = name.into();
         if name.trim().is_empty() {
             return Err(AssemblyError::NoName);
@@ -44,7 +56,7 @@ impl Part {
         let mut defects = Vec::new();
         let mut solids = Vec::with_capacity(pieces.len());
         for (k, piece) in pieces.iter().enumerate() {
-            let Loaded { body, notes, .. } = solid(piece).map_err(refused)?;
+            let Loaded { body, notes, .. } = solid(piece, options).map_err(refused)?;
             solids.push(body);
             let several = pieces.len() > 1;
             defects.extend(notes.iter().map(|note| {
@@ -102,7 +114,7 @@ impl Part {
 }
 
 /// A piece where it stands.
-fn solid(piece: &Piece) -> Result<Loaded<Solid>, Refused> {
+fn solid(piece: &Piece, options: &BodyOptions) -> Result<Loaded<Solid>, Refused> {
     let mut mesh = piece.mesh.clone();
     for vertex in &mut mesh.vertices {
         *vertex = piece.world_from_piece.transform_point3(*vertex);
@@ -110,7 +122,7 @@ fn solid(piece: &Piece) -> Result<Loaded<Solid>, Refused> {
     if piece.world_from_piece.matrix3.determinant() < 0.0 {
         mesh.faces.iter_mut().for_each(|face| face.reverse());
     }
-    body::solid(&mesh, &BodyOptions::default().with_open(true))
+    body::solid(&mesh, &options.with_open(true))
 }
 
 /// What of two parts is let pass.

@@ -21,6 +21,7 @@ use colltrans_assembly::rooms::{PartRoom, rooms};
 use colltrans_assembly::sphere::Sphere;
 use colltrans_assembly::start::Start;
 use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Ignored, ReadError, Stage, Watch};
+use colltrans_mesh::body::Refused;
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::args::{AssemblyArguments, direction};
@@ -111,6 +112,7 @@ fn assembly(arguments: &AssemblyArguments) -> Result<Assembly, Failure> {
     let mut options = ReadOptions::default()
         .with_packages(arguments.package.clone())
         .with_skip_missing(arguments.skip_missing)
+        .with_as_is(arguments.as_is)
         .with_allow_outside(arguments.allow_outside)
         .with_geometry(geometry);
     for joint in &arguments.joint {
@@ -148,6 +150,10 @@ fn advice(error: &ReadError) -> &'static str {
         ReadError::Missing { .. } => {
             " (--package DIR says where packages are, --skip-missing leaves out what is not there)"
         }
+        ReadError::Assembly {
+            source: AssemblyError::Part { source: Refused::Mended(_), .. },
+            ..
+        } => " (without --as-is it is mended)",
         _ => "",
     }
 }

@@ -37,7 +37,10 @@ fn read_files(source: Source, files: &[PathBuf], holds: &str) -> Result<Assembly
     for file in files {
         let bytes = source.at(file)?;
         let piece = piece(file, bytes, DAffine3::IDENTITY)?;
-        parts.push(Part::new(stem(file), &[piece]).map_err(in_file(file))?);
+        parts.push(
+            Part::with_options(stem(file), &[piece], &source.options.body())
+                .map_err(in_file(file))?,
+        );
     }
     assembled(source, parts, holds)
 }

@@ -10,6 +10,7 @@ use std::path::Path;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use colltrans_mesh::Mesh;
+use colltrans_mesh::body::BodyOptions;
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -45,7 +46,9 @@ pub(super) fn read(source: Source, bytes: &[u8]) -> Result<Assembly, ReadError> 
     let scene = document.scenes.get(document.scene.unwrap_or(0));
     let scene = scene.ok_or_else(|| contents(path, "scenes", "there is no scene"))?;
     let budget = Budget::of(size);
-    let mut reader = Reader { path, document: &document, buffers, budget, placed: Vec::new() };
+    let options = source.options.body();
+    let placed = Vec::new();
+    let mut reader = Reader { path, document: &document, buffers, budget, options, placed };
     for &node in &scene.nodes {
         reader.node(node, DAffine3::IDENTITY, 0)?;
     }
@@ -283,6 +286,7 @@ struct Reader<'a> {
     document: &'a Document,
     buffers: Vec<Vec<u8>>,
     budget: Budget,
+    options: BodyOptions,
     placed: Vec<Placed<'a>>,
 }
 
@@ -345,7 +349,9 @@ impl Reader<'_> {
             }
             let name = names.unique(&name.map_or(format!("node {node}"), str::to_owned));
             let piece = Piece { mesh: mesh.clone(), world_from_piece: world };
-            parts.push(Part::new(name, &[piece]).map_err(in_file(self.path))?);
+            parts.push(
+                Part::with_options(name, &[piece], &self.options).map_err(in_file(self.path))?,
+            );
         }
         Ok(parts)
     }

@@ -147,7 +147,8 @@ impl Gathered {
         }
         if self.missing.len() == missing {
             self.budget.place().map_err(refused)?;
-            let part = Part::new(name, &pieces).map_err(in_file(source.path))?;
+            let part = Part::with_options(name, &pieces, &source.options.body());
+            let part = part.map_err(in_file(source.path))?;
             self.parts.push(part.with_fixed(entry.fixed));
         }
         Ok(())

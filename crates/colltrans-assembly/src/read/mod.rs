@@ -26,6 +26,7 @@ mod xml;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
+use colltrans_mesh::body::BodyOptions;
 #[cfg(feature = "files")]
 use glam::DAffine3;
 
@@ -59,6 +60,8 @@ pub struct ReadOptions {
     pub geometry: Geometry,
     /// Positions of joints by name, in radians or metres; 0 for those not named.
     pub joints: BTreeMap<String, f64>,
+    /// Whether surfaces that have to be mended are refused.
+    pub as_is: bool,
     /// Whether a source may name files that lie neither in its own folder nor in one of `packages`,
     /// by absolute paths, `..` or links.
     pub allow_outside: bool,
@@ -87,6 +90,17 @@ impl ReadOptions {
     #[must_use]
     pub fn with_joints(self, joints: BTreeMap<String, f64>) -> Self {
         Self { joints, ..self }
+    }
+
+    /// The same with another [`as_is`](Self::as_is).
+    #[must_use]
+    pub fn with_as_is(self, as_is: bool) -> Self {
+        Self { as_is, ..self }
+    }
+
+    /// How bodies are made.
+    fn body(&self) -> BodyOptions {
+        BodyOptions::default().with_as_is(self.as_is)
     }
 
     /// The same with another [`allow_outside`](Self::allow_outside).

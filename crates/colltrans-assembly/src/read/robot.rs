@@ -54,7 +54,7 @@ pub(super) fn read(source: Source) -> Result<Robot, ReadError> {
         let pieces = gathered.pieces(link, name, DAffine3::IDENTITY)?;
         let mut bodies = Vec::new();
         for piece in &pieces {
-            let (body, said) = any_body(piece).map_err(|refused| {
+            let (body, said) = any_body(piece, &source.options.body()).map_err(|refused| {
                 in_file(source.path)(AssemblyError::Part { part: name.into(), source: refused })
             })?;
             notes.extend(said.into_iter().map(|said| format!("link {name}: {said}")));
@@ -187,7 +187,7 @@ fn mimics(
 }
 
 /// A piece as a body in the frame of its link: convex if it is, else a solid, and what is to be said of it.
-fn any_body(piece: &Piece) -> Result<(AnyBody, Vec<String>), body::Refused> {
+fn any_body(piece: &Piece, options: &BodyOptions) -> Result<(AnyBody, Vec<String>), body::Refused> {
     let mut mesh = piece.mesh.clone();
     for vertex in &mut mesh.vertices {
         *vertex = piece.world_from_piece.transform_point3(*vertex);
@@ -195,7 +195,7 @@ fn any_body(piece: &Piece) -> Result<(AnyBody, Vec<String>), body::Refused> {
     if piece.world_from_piece.matrix3.determinant() < 0.0 {
         mesh.faces.iter_mut().for_each(|face| face.reverse());
     }
-    crate::robot::body_of(&mesh, &BodyOptions::default())
+    crate::robot::body_of(&mesh, options)
 }
 
 /// What is said of shapes that are round.

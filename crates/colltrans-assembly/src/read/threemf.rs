@@ -76,9 +76,11 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
         models.collect(&root, item, DAffine3::IDENTITY, 0, &mut call).map_err(refused)?;
     }
     let (mut parts, mut names) = (Vec::with_capacity(placed.len()), Names::default());
+    let options = source.options.body();
     for (k, name, object, world_from_piece) in placed {
         let mesh = Mesh::new(object.vertices.clone(), object.faces.clone());
-        let part = Part::new(names.unique(&name), &[Piece { mesh, world_from_piece }]);
+        let part =
+            Part::with_options(names.unique(&name), &[Piece { mesh, world_from_piece }], &options);
         let place = format!("build item {}", k + 1);
         parts.push(part.map_err(|e| contents(source.path, place, e))?);
     }

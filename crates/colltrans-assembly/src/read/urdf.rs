@@ -80,7 +80,8 @@ impl<'a> Gathered<'a> {
             let refused =
                 |reason: String| contents(self.source.path, format!("link {name}"), reason);
             self.budget.place().map_err(refused)?;
-            let part = Part::new(name, &pieces).map_err(in_file(self.source.path))?;
+            let part = Part::with_options(name, &pieces, &self.source.options.body())
+                .map_err(in_file(self.source.path))?;
             self.parts.push(part);
         }
         Ok(())

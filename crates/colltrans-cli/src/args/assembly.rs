@@ -73,6 +73,10 @@ pub(crate) struct AssemblyArguments {
     /// By an absolute path, by `..`, or behind a link. Only for a source that you trust.
     #[arg(long)]
     pub(crate) allow_outside: bool,
+    /// Refuse parts whose surface has to be mended: facets that are doubled, hang on it or run against the
+    /// others, vertices that are not quite one
+    #[arg(long)]
+    pub(crate) as_is: bool,
     /// Leave out meshes that cannot be found, with a note
     #[arg(long)]
     pub(crate) skip_missing: bool,

@@ -6,8 +6,10 @@
 //! same for the same files.
 
 mod excess;
+mod heal;
 mod note;
 mod orient;
+mod sets;
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -19,7 +21,7 @@ use glam::DVec3;
 use thiserror::Error;
 
 pub use excess::Excess;
-pub use note::{Note, report_notes};
+pub use note::{Left, Note, report_notes};
 
 use crate::words::counted;
 use crate::{Error, Mesh, ReadOptions, read_with};
@@ -45,11 +47,20 @@ pub struct BodyOptions {
     pub hull: bool,
     /// Of a solid: shells may be open, and block from both sides then.
     pub open: bool,
+    /// Of a solid: a surface that has to be mended is refused.
+    pub as_is: bool,
 }
 
 impl Default for BodyOptions {
     fn default() -> Self {
-        Self { scale: 1.0, merge_tolerance: None, convex_tolerance: None, hull: false, open: false }
+        Self {
+            scale: 1.0,
+            merge_tolerance: None,
+            convex_tolerance: None,
+            hull: false,
+            open: false,
+            as_is: false,
+        }
     }
 }
 
@@ -82,6 +93,12 @@ impl BodyOptions {
     #[must_use]
     pub fn with_open(self, open: bool) -> Self {
         Self { open, ..self }
+    }
+
+    /// The same with another [`as_is`](Self::as_is).
+    #[must_use]
+    pub fn with_as_is(self, as_is: bool) -> Self {
+        Self { as_is, ..self }
     }
 
     /// How deep a face of this mesh may lie below the hull, in the file's unit.
@@ -132,6 +149,9 @@ pub enum Refused {
     /// It is no solid.
     #[error("{}", of_solid(.0))]
     Solid(#[from] SolidError),
+    /// It has to be mended, and is to be taken as it is; what would be done.
+    #[error("it would have to be mended, and is to be taken as it is: {}", listed(.0))]
+    Mended(Vec<Note>),
 }
 
 impl Refused {
@@ -146,11 +166,15 @@ impl Refused {
                 | BuildError::InsideOut { .. }
                 | BuildError::Topology(_),
             ) => &[Take::Solid, Take::Hull],
-            Self::Convex(_) => &[],
+            Self::Convex(_) | Self::Mended(_) => &[],
             Self::Solid(SolidError::Open { .. }) => &[Take::Open, Take::Hull],
             Self::Solid(_) => &[Take::Hull],
         }
     }
+}
+
+fn listed(notes: &[Note]) -> String {
+    notes.iter().map(Note::to_string).collect::<Vec<_>>().join("; ")
 }
 
 fn of_solid(error: &SolidError) -> String {
@@ -202,19 +226,18 @@ pub fn convex(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<ConvexPolyhed
     Ok(Loaded { body, precision, notes })
 }
 
-/// A solid of a mesh. Facets that are oriented against the others of their shell are turned.
+/// A solid of a mesh, mended where it is plain how (`docs/files.md`): what was done is in its notes.
 ///
 /// # Errors
-/// What is wrong with the surface, and where; that it is open, unless it may be.
+/// What is wrong with the surface, and where; that it is open, unless it may be; that it was mended, if it
+/// must not be.
 pub fn solid(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<Solid>, Refused> {
     let precision = mesh.precision * options.scale;
     let mut notes: Vec<Note> = Note::merged(mesh).into_iter().collect();
     let mut mesh = options.scaled(mesh);
     let mut built = Solid::from_mesh(&mesh.vertices, &mesh.faces);
-    if let Err(SolidError::Inconsistent { .. }) = built
-        && let Some(turned) = orient::consistent(mesh.to_mut())
-    {
-        notes.push(Note::FacesTurned(turned));
+    if let Err(SolidError::Inconsistent { .. } | SolidError::Open { .. }) = built {
+        notes.extend(heal::heal(mesh.to_mut()).notes());
         built = Solid::from_mesh(&mesh.vertices, &mesh.faces);
     }
     let mut first = None;
@@ -226,6 +249,10 @@ pub fn solid(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<Solid>, Refuse
     }
     let body = built?;
     notes.extend(report_notes(body.report(), first));
+    let mended = || notes.iter().filter(|note| note.is_mended());
+    if options.as_is && mended().next().is_some() {
+        return Err(Refused::Mended(mended().cloned().collect()));
+    }
     Ok(Loaded { body, precision, notes })
 }
 

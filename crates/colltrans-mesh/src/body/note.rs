@@ -15,6 +15,12 @@ use crate::{Merged, Mesh};
 pub enum Note {
     /// Vertices on open edges were merged.
     Merged(Merged),
+    /// Faces with the corners of another one were left out.
+    Doubles(Left),
+    /// Faces that hung on the surface by a few edges were left out.
+    Fins(Left),
+    /// Faces inside the surface were left out: walls between bodies, or the second of two ways to close it.
+    Walls(Left),
     /// So many faces ran against the others of their shell, and were turned.
     FacesTurned(usize),
     /// So many shells were inside out, and were turned.
@@ -38,7 +44,36 @@ pub enum Note {
     Exceeds(Excess),
 }
 
+/// Faces that were left out.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Left {
+    /// How many.
+    pub facets: usize,
+    /// Their area, in square units.
+    pub area: f64,
+}
+
+impl Left {
+    pub(super) fn count(&mut self, area: f64) {
+        self.facets += 1;
+        self.area += area;
+    }
+}
+
 impl Note {
+    /// Whether the surface is another one than that of the file: what was merged, left out or turned.
+    pub const fn is_mended(&self) -> bool {
+        matches!(
+            self,
+            Self::Merged(_)
+                | Self::Doubles(_)
+                | Self::Fins(_)
+                | Self::Walls(_)
+                | Self::FacesTurned(_)
+                | Self::ShellsTurned(_)
+        )
+    }
+
     /// What was merged when a mesh was read, if anything was.
     pub fn merged(mesh: &Mesh) -> Option<Self> {
         (mesh.merged.vertices > 0).then_some(Self::Merged(mesh.merged))
@@ -68,6 +103,9 @@ impl fmt::Display for Note {
             Self::Surface { open_edges, first, what } => {
                 return surface(f, *open_edges, *first, what);
             }
+            Self::Doubles(left) => return left.told(f, "with the corners of another one"),
+            Self::Fins(left) => return left.told(f, "that hung on the surface"),
+            Self::Walls(left) => return left.told(f, "inside the surface"),
             Self::FacesTurned(n) => {
                 (n, "face turned, against the others", "faces turned, against the others")
             }
@@ -85,6 +123,13 @@ impl fmt::Display for Note {
             ),
         };
         f.write_str(&counted(*count, one, many))
+    }
+}
+
+impl Left {
+    fn told(&self, f: &mut fmt::Formatter<'_>, which: &str) -> fmt::Result {
+        let faces = counted(self.facets, "face", "faces");
+        write!(f, "{faces} {which} left out (area {})", six_digits(self.area))
     }
 }
 

@@ -1,64 +1,94 @@
 //! Facets that are oriented against their neighbours, turned: some exporters leave single ones so.
 //!
 //! Facets that share an edge must run along it in opposite directions. From one facet of each
-//! connected part that is carried on to all; the smaller set is turned. Which side is outside is not
-//! decided here.
+//! connected part that is carried on to all, over edges of two facets; the smaller set is turned. Then parts are
+//! held against each other at crowded edges: where as many facets run one way as the other, they stay as they are;
+//! elsewhere inside and outside take turns around the edge, so each facet runs against the next one. Which
+//! side is outside is not decided here.
 
+use glam::DVec3;
+
+use super::heal::{Use, by_edge, is_flat, normal, uses};
+use super::sets::Sets;
 use crate::Mesh;
-use crate::merge::sides;
 
 /// Turns facets until neighbours agree; how many. `None` if they cannot, on a one-sided surface.
 pub(super) fn consistent(mesh: &mut Mesh) -> Option<usize> {
-    let neighbours = neighbours(mesh);
-    let faces = &mut mesh.faces;
-    let mut turned: Vec<Option<bool>> = vec![None; faces.len()];
-    let mut count = 0;
-    for first in 0..faces.len() {
-        if turned[first].is_some() {
-            continue;
-        }
-        turned[first] = Some(false);
-        let mut part = vec![first];
-        let mut next = 0;
-        while let Some(&face) = part.get(next) {
-            next += 1;
-            for &(other, agrees) in &neighbours[face] {
-                let wanted = turned[face] == Some(agrees);
-                match turned[other] {
-                    None => {
-                        turned[other] = Some(wanted);
-                        part.push(other);
-                    }
-                    Some(found) if found != wanted => return None,
-                    Some(_) => (),
-                }
-            }
-        }
-        let against = part.iter().filter(|&&f| turned[f] == Some(true)).count();
-        let most = against > part.len() / 2;
-        for &face in part.iter().filter(|&&f| turned[f] == Some(!most)) {
-            faces[face].reverse();
-            count += 1;
+    let (vertices, mut faces) = mesh.welded();
+    let counts: Vec<bool> = faces.iter().map(|face| !is_flat(face)).collect();
+    let before = uses(&faces, |k| counts[k]);
+    let mut sets = Sets::new(faces.len());
+    let mut turned = vec![false; faces.len()];
+    for edge in by_edge(&before) {
+        if let [a, b] = edge
+            && !sets.join(a.face, b.face, a.backward == b.backward)
+        {
+            return None;
         }
     }
-    Some(count)
+    turn_smaller(&mut sets, &mut faces, &mut turned);
+    // Within a part all agree now.
+    let after = uses(&faces, |k| counts[k]);
+    let crowded = || by_edge(&after).filter(|edge| edge.len() > 2);
+    let is_balanced =
+        |edge: &&[Use]| edge.iter().filter(|used| used.backward).count() * 2 == edge.len();
+    let mut sets = Sets::new(faces.len());
+    for edge in by_edge(&after).filter(|edge| edge.len() == 2).chain(crowded().filter(is_balanced))
+    {
+        for pair in edge.windows(2) {
+            sets.join(pair[0].face, pair[1].face, false);
+        }
+    }
+    for edge in crowded().filter(|edge| edge.len() % 2 == 0 && !is_balanced(edge)) {
+        let around = around(&vertices, &faces, edge);
+        for pair in around.windows(2) {
+            // What another edge has settled stays.
+            sets.join(pair[0].face, pair[1].face, pair[0].backward == pair[1].backward);
+        }
+    }
+    turn_smaller(&mut sets, &mut faces, &mut turned);
+    for (face, _) in mesh.faces.iter_mut().zip(&turned).filter(|(_, turned)| **turned) {
+        face.reverse();
+    }
+    Some(turned.iter().filter(|turned| **turned).count())
 }
 
-/// For each facet those with which it shares an edge that no third one has, and whether they agree.
-fn neighbours(mesh: &Mesh) -> Vec<Vec<(usize, bool)>> {
-    let (_, faces) = mesh.welded();
-    let corners = faces.iter().enumerate();
-    let owner: Vec<usize> = corners.flat_map(|(k, face)| face.iter().map(move |_| k)).collect();
-    let mut neighbours = vec![Vec::new(); faces.len()];
-    for shared in sides(&faces).chunk_by(|(a, _), (b, _)| a == b) {
-        if let [(_, x), (_, y)] = *shared {
-            let [f, g] = [x, y].map(|side| owner[(side >> 1) as usize]);
-            let agree = (x ^ y) & 1 == 1;
-            neighbours[f].push((g, agree));
-            neighbours[g].push((f, agree));
+/// Of each set those that are one way round, or the other, whichever are fewer; of as many those that are not as
+/// the first one.
+fn turn_smaller(sets: &mut Sets, faces: &mut [Vec<u32>], turned: &mut [bool]) {
+    let mut counts = vec![[0_usize; 2]; faces.len()];
+    for k in 0..faces.len() {
+        let (first, other) = sets.find(k);
+        counts[first][usize::from(other)] += 1;
+    }
+    for (k, face) in faces.iter_mut().enumerate() {
+        let (first, other) = sets.find(k);
+        let [same, against] = counts[first];
+        if other == (against <= same) {
+            face.reverse();
+            turned[k] = !turned[k];
         }
     }
-    neighbours
+}
+
+/// The facets at an edge in the order of their angles around it.
+fn around(vertices: &[DVec3], faces: &[Vec<u32>], edge: &[Use]) -> Vec<Use> {
+    let [low, high] = edge[0].ends().map(|v| vertices[v as usize]);
+    let axis = high - low;
+    // From the edge into the facet, whichever way that runs.
+    let inwards = |used: &Use| {
+        let into = normal(vertices, &faces[used.face]).cross(axis);
+        if used.backward { -into } else { into }
+    };
+    let x = inwards(&edge[0]).normalize_or_zero();
+    let y = axis.cross(x).normalize_or_zero();
+    let angle = |used: &Use| {
+        let into = inwards(used);
+        into.dot(y).atan2(into.dot(x))
+    };
+    let mut sorted = edge.to_vec();
+    sorted.sort_by(|a, b| angle(a).total_cmp(&angle(b)));
+    sorted
 }
 
 #[cfg(test)]
@@ -91,5 +121,27 @@ mod tests {
             (0..6).map(|k| DVec3::new(f64::from(k), f64::from(k * k), 1.0)).collect();
         let faces: Vec<Vec<u32>> = vec![vec![0, 1, 3, 2], vec![2, 3, 5, 4], vec![4, 5, 0, 1]];
         assert_eq!(consistent(&mut Mesh::new(band, faces)), None);
+    }
+
+    /// Four pyramids on one square: two bodies that touch all along its sides, one pyramid inside out.
+    #[test]
+    fn patches_that_share_an_edge_take_turns() {
+        let corners = [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y];
+        let apexes = [2.0, 1.0, -1.0, -2.0].map(|z| DVec3::Z * z);
+        let facet = |apex: u32, k: u32| {
+            let (a, b) = if apex.is_multiple_of(2) { (k, (k + 1) % 4) } else { ((k + 1) % 4, k) };
+            vec![a, b, 4 + apex]
+        };
+        let faces: Vec<Vec<u32>> = (0..16).map(|n| facet(n / 4, n % 4)).collect();
+        let clean = Mesh::new([corners, apexes].concat(), faces);
+        for apex in 0..4 {
+            let mut spoilt = clean.clone();
+            for face in &mut spoilt.faces[4 * apex..4 * apex + 4] {
+                face.reverse();
+            }
+            assert_eq!(consistent(&mut spoilt), Some(4));
+            assert_eq!(spoilt.faces, clean.faces);
+            assert!(colltrans::Solid::from_mesh(&spoilt.vertices, &spoilt.faces).is_ok());
+        }
     }
 }

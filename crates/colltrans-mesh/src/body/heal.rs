@@ -1,0 +1,454 @@
+//! Surfaces that enclose nothing as their file has them, mended where it is plain how.
+//!
+//! A *patch* is what hangs together over edges of two facets, a *piece* what hangs together over any
+//! edges; an edge is *free* with one facet and *crowded* with three or more. Steps, in this order:
+//!
+//! 1. of facets with the same corners one is kept;
+//! 2. *fins*, patches with a free edge that hang on a crowded one, are left out, and what hung on them;
+//! 3. *walls*, patches around which every edge has an odd number of facets, are left out: of those that
+//!    share an edge first what was two facets back to back (a wall between two bodies), then the smallest;
+//! 4. facets that are oriented against their neighbours are turned ([`super::orient`]).
+//!
+//! Invariant: a piece from which facets are left out has only edges of an even number of facets then, and what
+//! was left out is less than a hundredth of its area ([`MOST_LEFT_OUT`]). All other pieces stay as they are.
+
+use std::collections::{HashMap, HashSet};
+
+use glam::DVec3;
+
+use super::orient::consistent;
+use super::sets::Sets;
+use super::{Left, Note};
+use crate::Mesh;
+use crate::merge::sides;
+
+/// More of a piece than this share of its area is geometry, and stays.
+const MOST_LEFT_OUT: f64 = 0.01;
+/// Rounds in which fins, or walls, are looked for: what hangs on what hangs on something is rare.
+const MOST_ROUNDS: usize = 16;
+
+/// What was done to a surface.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub(super) struct Healed {
+    /// Facets with the corners of another one.
+    pub(super) doubles: Left,
+    /// Facets that hung on the surface.
+    pub(super) fins: Left,
+    /// Facets inside it.
+    pub(super) walls: Left,
+    /// Facets that ran against the others.
+    pub(super) turned: usize,
+}
+
+impl Healed {
+    /// What is to be said.
+    pub(super) fn notes(self) -> impl Iterator<Item = Note> {
+        let left = |left: Left, note: fn(Left) -> Note| (left.facets > 0).then(|| note(left));
+        let turned = (self.turned > 0).then_some(Note::FacesTurned(self.turned));
+        let all = [
+            left(self.doubles, Note::Doubles),
+            left(self.fins, Note::Fins),
+            left(self.walls, Note::Walls),
+            turned,
+        ];
+        all.into_iter().flatten()
+    }
+}
+
+/// Mends a surface. Where it has one side only, nothing is turned.
+pub(super) fn heal(mesh: &mut Mesh) -> Healed {
+    let mut healed = leave_out(mesh);
+    healed.turned = consistent(mesh).unwrap_or(0);
+    healed
+}
+
+/// Steps 1 to 3.
+fn leave_out(mesh: &mut Mesh) -> Healed {
+    let (vertices, faces) = mesh.welded();
+    let mut surface = Surface::new(&vertices, &faces);
+    let back_to_back = surface.leave_doubles();
+    surface.leave_fins();
+    surface.leave_walls(&back_to_back);
+    surface.take_back();
+    let mut healed = Healed::default();
+    for (&fate, &area) in surface.fates.iter().zip(&surface.areas) {
+        match fate {
+            Fate::Stays | Fate::Flat => {}
+            Fate::Double => healed.doubles.count(area),
+            Fate::Fin => healed.fins.count(area),
+            Fate::Wall => healed.walls.count(area),
+        }
+    }
+    let mut fates = surface.fates.into_iter();
+    mesh.faces.retain(|_| matches!(fates.next(), Some(Fate::Stays | Fate::Flat)));
+    healed
+}
+
+/// What becomes of a facet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Fate {
+    Stays,
+    /// It has fewer than three corners, and is nobody's neighbour.
+    Flat,
+    Double,
+    Fin,
+    Wall,
+}
+
+/// A facet at an edge.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Use {
+    edge: u64,
+    pub(super) face: usize,
+    /// From the edge's higher vertex to the lower one.
+    pub(super) backward: bool,
+}
+
+impl Use {
+    /// The ends of the edge, the lower vertex first.
+    pub(super) fn ends(&self) -> [u32; 2] {
+        [(self.edge >> 32) as u32, self.edge as u32]
+    }
+}
+
+/// The facets that count, by edges; each edge's are beside each other ([`by_edge`]).
+pub(super) fn uses(faces: &[Vec<u32>], counts: impl Fn(usize) -> bool) -> Vec<Use> {
+    let counted: Vec<usize> = (0..faces.len()).filter(|&k| counts(k)).collect();
+    let listed: Vec<&[u32]> = counted.iter().map(|&k| faces[k].as_slice()).collect();
+    let owner: Vec<usize> = counted.iter().flat_map(|&k| faces[k].iter().map(move |_| k)).collect();
+    let of = |(edge, side): (u64, u64)| Use {
+        edge,
+        face: owner[(side >> 1) as usize],
+        backward: side & 1 == 1,
+    };
+    sides(&listed).into_iter().map(of).collect()
+}
+
+/// The facets at each edge.
+pub(super) fn by_edge(uses: &[Use]) -> impl Iterator<Item = &[Use]> {
+    uses.chunk_by(|a, b| a.edge == b.edge)
+}
+
+/// Fewer than three different corners, so that no edge has a facet on either side.
+pub(super) fn is_flat(face: &[u32]) -> bool {
+    face.iter().all(|v| *v == face[0] || Some(v) == face.iter().find(|w| **w != face[0]))
+}
+
+/// A patch.
+#[derive(Debug, Clone, Default)]
+struct Patch {
+    facets: Vec<usize>,
+    area: f64,
+    has_free: bool,
+    /// Crowded edges around it, and whether all of them have an odd number of facets.
+    crowded: Vec<u64>,
+    is_odd: bool,
+}
+
+/// A surface some facets of which are left out.
+struct Surface<'a> {
+    faces: &'a [Vec<u32>],
+    areas: Vec<f64>,
+    fates: Vec<Fate>,
+    /// The piece of each facet, by one of its facets.
+    pieces: Vec<usize>,
+}
+
+impl<'a> Surface<'a> {
+    fn new(vertices: &[DVec3], faces: &'a [Vec<u32>]) -> Self {
+        let areas = faces.iter().map(|face| normal(vertices, face).length() / 2.0).collect();
+        let fate = |face: &Vec<u32>| if is_flat(face) { Fate::Flat } else { Fate::Stays };
+        let fates: Vec<Fate> = faces.iter().map(fate).collect();
+        let mut pieces = Sets::new(faces.len());
+        for edge in by_edge(&uses(faces, |k| fates[k] == Fate::Stays)) {
+            for pair in edge.windows(2) {
+                pieces.join(pair[0].face, pair[1].face, false);
+            }
+        }
+        let pieces = (0..faces.len()).map(|k| pieces.find(k).0).collect();
+        Self { faces, areas, fates, pieces }
+    }
+
+    fn uses(&self) -> Vec<Use> {
+        uses(self.faces, |k| self.fates[k] == Fate::Stays)
+    }
+
+    /// Step 1; of each facet whether as many ran one way as the other.
+    fn leave_doubles(&mut self) -> Vec<bool> {
+        let mut same: HashMap<Vec<u32>, (usize, i64)> = HashMap::with_capacity(self.faces.len());
+        let mut keeps = vec![None; self.faces.len()];
+        for (k, (face, fate)) in self.faces.iter().zip(&mut self.fates).enumerate() {
+            if *fate == Fate::Flat {
+                continue;
+            }
+            let (cycle, sign) = cycle(face);
+            let (first, sum) = same.entry(cycle).or_insert((k, 0));
+            if *first != k {
+                *fate = Fate::Double;
+            }
+            *sum += sign;
+            keeps[*first] = Some(*sum);
+        }
+        keeps.into_iter().map(|sum| sum == Some(0)).collect()
+    }
+
+    /// Step 2.
+    fn leave_fins(&mut self) {
+        for _ in 0..MOST_ROUNDS {
+            let patches = self.smaller_patches();
+            let mut fins =
+                patches.iter().filter(|p| p.has_free && !p.crowded.is_empty()).peekable();
+            if fins.peek().is_none() {
+                break;
+            }
+            for &facet in fins.flat_map(|fin| &fin.facets) {
+                self.fates[facet] = Fate::Fin;
+            }
+        }
+    }
+
+    /// Step 3.
+    fn leave_walls(&mut self, back_to_back: &[bool]) {
+        for _ in 0..MOST_ROUNDS {
+            let mut walls = self.smaller_patches();
+            walls.retain(|p| !p.has_free && !p.crowded.is_empty() && p.is_odd);
+            let is_between = |p: &Patch| p.facets.iter().all(|&k| back_to_back[k]);
+            walls.sort_by(|x, y| is_between(y).cmp(&is_between(x)).then(x.area.total_cmp(&y.area)));
+            if walls.is_empty() {
+                break;
+            }
+            let mut touched: HashSet<u64> = HashSet::new();
+            for wall in walls {
+                if wall.crowded.iter().any(|edge| touched.contains(edge)) {
+                    continue;
+                }
+                touched.extend(&wall.crowded);
+                for &facet in &wall.facets {
+                    self.fates[facet] = Fate::Wall;
+                }
+            }
+        }
+    }
+
+    /// All patches but the largest of each piece.
+    fn smaller_patches(&self) -> Vec<Patch> {
+        let uses = self.uses();
+        let mut sets = Sets::new(self.faces.len());
+        for edge in by_edge(&uses) {
+            if let [a, b] = edge {
+                sets.join(a.face, b.face, false);
+            }
+        }
+        let mut patches: HashMap<usize, Patch> = HashMap::new();
+        for k in (0..self.faces.len()).filter(|&k| self.fates[k] == Fate::Stays) {
+            let first = || Patch { is_odd: true, ..Patch::default() };
+            let patch = patches.entry(sets.find(k).0).or_insert_with(first);
+            patch.facets.push(k);
+            patch.area += self.areas[k];
+        }
+        for edge in by_edge(&uses).filter(|edge| edge.len() != 2) {
+            for used in edge {
+                let Some(patch) = patches.get_mut(&sets.find(used.face).0) else { continue };
+                if edge.len() == 1 {
+                    patch.has_free = true;
+                } else {
+                    patch.crowded.push(used.edge);
+                    patch.is_odd &= edge.len() % 2 == 1;
+                }
+            }
+        }
+        let mut patches: Vec<Patch> = patches.into_values().collect();
+        // Those with equal areas in the order of the file.
+        patches.sort_by(|x, y| y.area.total_cmp(&x.area).then(x.facets.cmp(&y.facets)));
+        let mut seen = HashSet::new();
+        patches.retain(|patch| !seen.insert(self.pieces[patch.facets[0]]));
+        patches
+    }
+
+    /// What the invariant asks: pieces that did not become whole, or lost too much, have all facets again.
+    fn take_back(&mut self) {
+        let mut left: HashMap<usize, [f64; 2]> = HashMap::new();
+        for (k, fate) in self.fates.iter().enumerate() {
+            let [all, out] = left.entry(self.pieces[k]).or_default();
+            match fate {
+                Fate::Flat | Fate::Double => {}
+                Fate::Stays => *all += self.areas[k],
+                Fate::Fin | Fate::Wall => {
+                    *all += self.areas[k];
+                    *out += self.areas[k];
+                }
+            }
+        }
+        left.retain(|_, [all, out]| *out > MOST_LEFT_OUT * *all);
+        for edge in by_edge(&self.uses()).filter(|edge| edge.len() % 2 == 1) {
+            left.insert(self.pieces[edge[0].face], [0.0; 2]);
+        }
+        for (fate, piece) in self.fates.iter_mut().zip(&self.pieces) {
+            if *fate != Fate::Flat && left.contains_key(piece) {
+                *fate = Fate::Stays;
+            }
+        }
+    }
+}
+
+/// Twice the area of a facet along its normal.
+pub(super) fn normal(vertices: &[DVec3], face: &[u32]) -> DVec3 {
+    let at = |v: u32| vertices[v as usize];
+    let [first, rest @ ..] = face else { return DVec3::ZERO };
+    rest.windows(2).map(|t| (at(t[0]) - at(*first)).cross(at(t[1]) - at(*first))).sum()
+}
+
+/// The corners of a facet in an order that is the same for its double, and 1 or -1 by the way it runs.
+fn cycle(face: &[u32]) -> (Vec<u32>, i64) {
+    let lowest = (0..face.len()).min_by_key(|&k| face[k]).unwrap_or(0);
+    let at = |k: usize| face[(lowest + k) % face.len()];
+    let (forward, n) = (at(1) <= at(face.len() - 1), face.len());
+    let corners = (0..n).map(|k| if forward { at(k) } else { at(n - k) }).collect();
+    (corners, if forward { 1 } else { -1 })
+}
+
+#[cfg(test)]
+mod tests {
+    use colltrans::Solid;
+    use colltrans_testkit::random::Random;
+    use colltrans_testkit::shapes::{self, block, prism, ring_sphere};
+
+    use super::*;
+
+    /// The facets as cycles, whatever their order and their first corners are.
+    fn told(mesh: &Mesh) -> Vec<(Vec<u32>, i64)> {
+        let mut all: Vec<_> = mesh.faces.iter().map(|face| cycle(face)).collect();
+        all.sort_unstable();
+        all
+    }
+
+    fn mesh(shape: shapes::Mesh) -> Mesh {
+        Mesh::new(shape.vertices, shape.faces)
+    }
+
+    /// Two spheres and a prism, apart, of triangles and of polygons.
+    fn clean(random: &mut Random) -> Mesh {
+        let all = ring_sphere(24, 11)
+            .joined(&ring_sphere(20, 12).translated(DVec3::X * 4.0))
+            .joined(&prism(30, 2.0).translated(DVec3::Y * 5.0));
+        mesh(if random.one_in(2) { all.triangulated() } else { all })
+    }
+
+    /// A strip of facets that hangs on an edge, up to so large.
+    fn add_fin(mesh: &mut Mesh, size: f64, random: &mut Random) {
+        let face = mesh.faces[random.index(mesh.faces.len())].clone();
+        let (mut a, mut b) = (face[0], face[1]);
+        if random.one_in(2) {
+            (a, b) = (b, a);
+        }
+        for _ in 0..=random.index(3) {
+            let top = mesh.vertices.len() as u32;
+            let middle = (mesh.vertices[a as usize] + mesh.vertices[b as usize]) / 2.0;
+            mesh.vertices.push(middle + size * random.direction());
+            mesh.faces.push(vec![a, b, top]);
+            if random.one_in(2) {
+                a = top;
+            } else {
+                b = top;
+            }
+        }
+    }
+
+    #[test]
+    fn what_was_added_goes_again() {
+        let mut random = Random::new(31);
+        for round in 0..300 {
+            let clean = clean(&mut random);
+            let mut spoilt = clean.clone();
+            let [fins, doubles, turned] = [4, 30, 40].map(|most| random.index(most));
+            for _ in 0..doubles {
+                let mut double = spoilt.faces[random.index(clean.faces.len())].clone();
+                double.rotate_left(random.index(3));
+                if random.one_in(2) {
+                    double.reverse();
+                }
+                spoilt.faces.push(double);
+            }
+            // Facets of the clean one are turned, so that the first of doubles may be a turned one.
+            for _ in 0..turned {
+                let facet = random.index(clean.faces.len());
+                spoilt.faces[facet].reverse();
+            }
+            let before = spoilt.faces.len();
+            for _ in 0..fins {
+                add_fin(&mut spoilt, 0.05, &mut random);
+            }
+            let of_fins = spoilt.faces.len() - before;
+            let healed = heal(&mut spoilt);
+            let case = format!("round {round}: {fins} fins, {doubles} doubles: {healed:?}");
+            assert_eq!(told(&spoilt), told(&clean), "{case}");
+            assert_eq!((healed.doubles.facets, healed.fins.facets), (doubles, of_fins), "{case}");
+            assert_eq!(healed.walls, Left::default(), "{case}");
+            assert!(Solid::from_mesh(&spoilt.vertices, &spoilt.faces).is_ok(), "{case}");
+        }
+    }
+
+    /// A square of a side that is also there cut along the other diagonal: two ways to close one hole.
+    #[test]
+    fn one_of_two_ways_to_close_a_hole_is_kept() {
+        let whole = mesh(prism(60, 0.05));
+        let side = |mesh: &Mesh| mesh.faces.iter().position(|face| face.len() == 4).unwrap();
+        let mut spoilt = whole.clone();
+        let square = spoilt.faces.swap_remove(side(&spoilt));
+        let [a, b, c, d] = [0, 1, 2, 3].map(|k| square[k]);
+        spoilt.faces.extend([vec![a, b, c], vec![a, c, d], vec![b, d, a], vec![b, c, d]]);
+        let healed = heal(&mut spoilt);
+        assert_eq!((healed.walls.facets, healed.fins.facets), (2, 0), "{healed:?}");
+        let solid = Solid::from_mesh(&spoilt.vertices, &spoilt.faces).unwrap();
+        assert!(solid.is_closed());
+        assert!((spoilt.signed_volume() - whole.signed_volume()).abs() < 1e-12);
+    }
+
+    /// The wall between two bodies, back to back, goes, and not the lid, which is smaller.
+    #[test]
+    fn a_wall_between_two_bodies_goes() {
+        let tall = block(DVec3::ZERO, DVec3::new(1.0, 1.0, 80.0));
+        let lid = block(DVec3::new(0.0, 0.0, 80.0), DVec3::new(1.0, 1.0, 80.01));
+        let mut both = mesh(tall.joined(&lid));
+        let (vertices, welded) = both.welded();
+        let is_wall = |face: &Vec<u32>| face.iter().all(|&v| vertices[v as usize].z == 80.0);
+        // A pyramid that points down: larger than the lid.
+        let apex = vertices.len() as u32;
+        let mut faces = Vec::new();
+        for face in welded {
+            if is_wall(&face) {
+                faces.extend((0..4).map(|k| vec![face[k], face[(k + 1) % 4], apex]));
+            } else {
+                faces.push(face);
+            }
+        }
+        both = Mesh::new([&vertices[..], &[DVec3::new(0.5, 0.5, 79.0)]].concat(), faces);
+        both.faces[0].reverse();
+        let healed = heal(&mut both);
+        assert_eq!((healed.doubles.facets, healed.walls.facets), (4, 4), "{healed:?}");
+        assert!(Solid::from_mesh(&both.vertices, &both.faces).unwrap().is_closed());
+        assert!((both.signed_volume() - 80.01).abs() < 1e-9);
+    }
+
+    /// What is large is geometry: a sail on a pole, a book of three pages, a box without a lid with a sheet in it.
+    #[test]
+    fn what_is_large_stays() {
+        let mut sail = mesh(prism(60, 1.0));
+        add_fin(&mut sail, 40.0, &mut Random::new(7));
+        let page = |k: u32| vec![0, 1, 2 + k];
+        let book = Mesh::new(
+            vec![DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_Y],
+            vec![page(0), page(1), page(2)],
+        );
+        let mut open = mesh(block(DVec3::ZERO, DVec3::ONE));
+        open.faces.pop();
+        let side = open.faces[0].clone();
+        open.vertices.push(DVec3::splat(0.5));
+        open.faces.push(vec![side[0], side[1], open.vertices.len() as u32 - 1]);
+        for mesh in [sail, book, open] {
+            let mut healed = mesh.clone();
+            let done = heal(&mut healed);
+            assert_eq!(healed.faces.len(), mesh.faces.len(), "{done:?}");
+        }
+    }
+}

@@ -428,18 +428,20 @@ fn moved(
             return Err(EITHER.into());
         }
         convex_cast([p, q], motions, keep, tolerance).and_then(|cast| {
-            Ok(match clears {
-                true => Record::of_motion_clearance(&cast.clearance()?, &cast),
-                false => Record::of_motion(&cast.first_contact()?, &cast),
+            Ok(if clears {
+                Record::of_motion_clearance(&cast.clearance()?, &cast)
+            } else {
+                Record::of_motion(&cast.first_contact()?, &cast)
             })
         })
     } else {
         let solids = [bodies[0].solid()?, bodies[1].solid()?];
         let precisions = bodies.map(AnyBody::precision);
         solid_cast(solids, motions, precisions, keep, tolerance).and_then(|cast| {
-            Ok(match clears {
-                true => Record::of_solid_motion_clearance(&cast.clearance()?, &cast),
-                false => Record::of_solid_motion(&cast.first_contact()?, &cast),
+            Ok(if clears {
+                Record::of_solid_motion_clearance(&cast.clearance()?, &cast)
+            } else {
+                Record::of_solid_motion(&cast.first_contact()?, &cast)
             })
         })
     };

@@ -723,8 +723,8 @@ impl MotionClearance {
     #[getter]
     fn least_tolerance(&self) -> Option<f64> {
         match &self.found {
-            Of::Convex(motion::MotionClearance::Overlapping(found)) => found.least_tolerance,
-            Of::Solids(motion::MotionClearance::Overlapping(found)) => found.least_tolerance,
+            Of::Convex(motion::MotionClearance::Overlapping(found))
+            | Of::Solids(motion::MotionClearance::Overlapping(found)) => found.least_tolerance,
             _ => None,
         }
     }
@@ -773,10 +773,8 @@ fn first_of<P: Clone>(found: &motion::MotionClearance<P>) -> Option<MotionOutcom
     match found {
         motion::MotionClearance::Blocked { contact, .. } => {
             let (shrunk, proven) = (contact.shrunk.clone(), contact.shrunk.upper.is_finite());
-            Some(match proven {
-                true => MotionOutcome::Contact(shrunk),
-                false => MotionOutcome::Grazing(shrunk),
-            })
+            let of = if proven { MotionOutcome::Contact } else { MotionOutcome::Grazing };
+            Some(of(shrunk))
         }
         motion::MotionClearance::Free(free) => Some(MotionOutcome::Free(free.clone())),
         motion::MotionClearance::Overlapping(_) => None,

@@ -9,7 +9,7 @@ use colltrans::motion::{
 use colltrans::{Cast, ConvexPolyhedron, Outcome, Pair, Pose, QueryError, Solid};
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::random::Random;
-use colltrans_testkit::shapes::random_hull;
+use colltrans_testkit::shapes::{random_hull, ring_sphere};
 
 fn cuboid(half: [f64; 3]) -> ConvexPolyhedron {
     let half = DVec3::from_array(half);
@@ -358,6 +358,32 @@ fn depths_that_are_tolerated_are_reached_when_it_is_said() {
     looks.sort_unstable();
     println!("{counts:?}, looks {} and {}", looks[looks.len() / 2], looks[looks.len() - 1]);
     assert!(counts[0] > 20 && counts[1] > 20 && counts[3] == 0, "{counts:?}");
+}
+
+/// Far from a contact bodies are looked at to a share of their distance.
+#[test]
+fn looks_are_few_and_cheap() {
+    let mesh = ring_sphere(60, 33);
+    let of = |axes: DVec3| {
+        let points: Vec<DVec3> = mesh.vertices.iter().map(|v| *v * axes).collect();
+        ConvexPolyhedron::from_points(&points).expect("a body")
+    };
+    let [p, q] = [of(DVec3::new(1.0, 0.7, 0.4)), of(DVec3::new(0.5, 1.0, 0.6))];
+    let (mut contacts, mut looks, mut supports) = (0, 0, 0);
+    for seed in 0..200 {
+        let mut random = Random::new(seed);
+        let along = any_motion(&mut random, 6.0);
+        let there = Pose::new(random.rotation(), DVec3::ZERO).expect("a pose");
+        let cast = MotionCast::new(p.along(&along), q.at(there)).expect("a cast");
+        let outcome = cast.first_contact().expect("an answer");
+        if let MotionOutcome::Contact(found) = &outcome {
+            contacts += 1;
+            (looks, supports) = (looks + found.steps.looks, supports + found.steps.supports);
+        }
+    }
+    let [looks, supports] = [looks, supports].map(|n| f64::from(n) / f64::from(contacts));
+    println!("{contacts} contacts: {looks} looks, {supports} support points");
+    assert!(contacts > 50 && looks < 12.0 && supports < 32.0, "{looks} looks, {supports}");
 }
 
 #[test]

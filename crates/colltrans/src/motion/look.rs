@@ -11,7 +11,12 @@ use crate::answer::PlaneGap;
 use crate::body::{ConvexPolyhedron, Hull};
 use crate::pair::Pair;
 use crate::setting::VertexPair;
-use crate::solve::nearest::{Difference, NearestPairs, nearest};
+use crate::solve::nearest::{Difference, NearestPairs, nearly};
+
+/// Bodies that are farther apart than such a share of their size are looked at to such a share of what is beyond it: how
+/// near they are counts where they may meet.
+const FAR: f64 = 1e-3;
+const ROUGHLY: f64 = 0.2;
 
 /// What is to be seen at a time.
 #[derive(Debug)]
@@ -76,7 +81,8 @@ impl Looker<ConvexPolyhedron> for ConvexLooker {
         let at = course.instant(time);
         let [keep, error] = [course.keep(), course.error()];
         let difference = Difference::new(&at.bodies);
-        let found = nearest(&difference, &self.pairs, None);
+        let beyond = keep.max(0.0) + FAR * difference.bodies.scale();
+        let found = nearly(&difference, &self.pairs, ROUGHLY, beyond);
         self.steps.looks += 1;
         self.steps.supports += found.supports;
         let pairs = found.pairs();

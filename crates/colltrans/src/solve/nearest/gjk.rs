@@ -20,12 +20,16 @@ pub(super) struct Goal {
     pub(super) gap: f64,
     /// As soon as the lower bound is more than the first, or the upper one less than the second.
     pub(super) than: Option<[f64; 2]>,
+    /// As soon as they differ by no more than such a share of what the lower one is beyond a length.
+    pub(super) share: Option<[f64; 2]>,
 }
 
 impl Goal {
     pub(super) fn is_reached(&self, found: &Found) -> bool {
         let decided = |[more, less]: [f64; 2]| found.lower > more || found.upper < less;
-        found.upper - found.lower.max(0.0) <= self.gap || self.than.is_some_and(decided)
+        let gap = found.upper - found.lower.max(0.0);
+        let is_nearly = |[share, beyond]: [f64; 2]| gap <= share * (found.lower - beyond);
+        gap <= self.gap || self.than.is_some_and(decided) || self.share.is_some_and(is_nearly)
     }
 }
 

@@ -282,15 +282,31 @@ pub(crate) fn nearest(difference: &Difference, start: &NearestPairs, than: Optio
     let noise = difference.noise.point();
     // What is proven is less than what is computed by this, mostly.
     let than = than.map(|than| [than + 3.0 * noise, than - 1.5 * noise]);
-    let goal = Goal { gap: noise, than };
+    reached(difference, start, &Goal { gap: noise, than, share: None })
+}
+
+/// The same to such a share of what bodies are farther apart than a length, if they are.
+#[inline]
+pub(crate) fn nearly(
+    difference: &Difference,
+    start: &NearestPairs,
+    share: f64,
+    beyond: f64,
+) -> Found {
+    let share = Some([share, beyond]);
+    reached(difference, start, &Goal { gap: difference.noise.point(), than: None, share })
+}
+
+#[inline]
+fn reached(difference: &Difference, start: &NearestPairs, goal: &Goal) -> Found {
     let mut found = Found { supports: u32::from(start.is_empty()), ..Found::nothing() };
     let simplex = begin(difference, start);
-    descend::<f64>(difference, simplex, &goal, &mut found);
+    descend::<f64>(difference, simplex, goal, &mut found);
     if !goal.is_reached(&found) {
         polish(difference, &mut found);
     }
     if !goal.is_reached(&found) {
-        descend_with_more_digits(difference, &goal, &mut found);
+        descend_with_more_digits(difference, goal, &mut found);
     }
     found.settle(difference);
     found

@@ -2,11 +2,12 @@
 //!
 //! All parts stand where they were, so what a part meets along a direction does not depend on what
 //! was taken out before: one matrix answers for every state, as the subgraph of the parts that are
-//! left. A step takes one of the smallest removable groups over all directions, in a natural [`order`], away from the
-//! *base* (what is fixed, or the largest part), which never moves: where a group with the base in it can leave, the others
-//! leave the other way. Each group is then taken apart by itself. Where no direction of the matrix helps, finer candidates of what is left are asked, then a sphere of samples, and then, for
-//! what is loose, that sphere refined where outcomes change. Then it is proven that no direction helps, or directions
-//! are asked of which that is not proven; and at last several moves are looked for.
+//! left. A step takes one of the smallest removable groups over all directions, in a natural order (module `order`),
+//! away from the *base* (what is fixed, or the largest part), which never moves: where a group with the base in it can
+//! leave, the others leave the other way. Each group is then taken apart by itself. Where no direction of the matrix
+//! helps, finer candidates of what is left are asked, then a sphere of samples, and then, for what is loose, that sphere
+//! refined where outcomes change. Then it is proven that no direction helps, or directions are asked of which that is
+//! not proven; and at last several moves are looked for.
 //!
 //! Every step is replayed before it is reported: asked again, pair by pair, against what is left, and
 //! looked at in a few places on its way for overlaps.

@@ -400,8 +400,8 @@ class Assembly:
     ) -> Plan:
         """Takes apart what straight moves take apart.
 
-        The smallest groups come first, in a natural order: what carries nothing, by the shortest way,
-        parts of one shape one after another, rather up, and away from the largest part.
+        The smallest groups come first, in a natural order: what carries nothing, by the shortest
+        way, parts of one shape one after another, rather up, and away from the largest part.
 
         Parameters
         ----------

@@ -54,6 +54,8 @@ fn the_gearbox_comes_apart() {
     for step in plan["plan"].as_array().unwrap().iter().filter(|s| s["within"].is_null()) {
         moved.extend(step["parts"].as_array().unwrap().iter().map(|p| p.as_str().unwrap()));
     }
+    // All but what remains.
+    moved.extend(plan["last"].as_array().unwrap().iter().map(|p| p.as_str().unwrap()));
     moved.sort_unstable();
     assert_eq!(moved, names, "{plan}");
     let (along, _) = ask(&mut state, &json!({ "do": "along", "direction": [0, 0, 2] }), Vec::new());

@@ -207,14 +207,12 @@ impl Planner<'_> {
                 matrix.directions().iter().copied().map(bits).collect();
             let choice = order.alone(&single).or_else(|| smallest(&mut order, matrix, &left));
             let mut way = choice.map(Way::from);
-            if way.is_none() {
-                let found = self.search_finer(&order, &left, matrix, &mut asked)?;
-                way = found.map(|way| self.best_way(&mut order, &left, way)).transpose()?;
-            }
             let mut proven = None;
             if way.is_none() {
-                let found;
-                (found, proven) = self.prove(&order, &left, &mut asked)?;
+                let mut found = self.search_finer(&order, &left, matrix, &mut asked)?;
+                if found.is_none() {
+                    (found, proven) = self.prove(&order, &left, &mut asked)?;
+                }
                 way = found.map(|way| self.best_way(&mut order, &left, way)).transpose()?;
             }
             let mut moves = None;
@@ -363,7 +361,7 @@ impl Planner<'_> {
             0 => Vec::new(),
             count => Sphere::with_directions(count).directions,
         };
-        let allowed = |group: &[usize]| order.moving(group, left).map(|parts| parts.len());
+        let allowed = |group: &[usize]| order.how_many(group, left);
         for directions in [own, sphere] {
             asked.extend(directions.iter().copied().map(bits));
             let (start, known) = (self.options.start, &mut self.known);
@@ -396,7 +394,7 @@ impl Planner<'_> {
         if samples == 0 {
             return Ok(None);
         }
-        let moving = |group: &[usize]| order.moving(group, left).map(|parts| parts.len());
+        let moving = |group: &[usize]| order.how_many(group, left);
         let mut groups = self.rigid(left);
         groups.retain(|g| g.len() < left.len() && moving(g).is_some());
         groups.retain(|g| self.is_loose(g, alive, matrix));
@@ -455,7 +453,7 @@ impl Planner<'_> {
         };
         asked.extend(directions.iter().copied().map(bits));
         let (bodies, alive) = (self.bodies, order.there());
-        let allowed = |group: &[usize]| order.moving(group, left).map(|parts| parts.len());
+        let allowed = |group: &[usize]| order.how_many(group, left);
         let known = &mut self.known;
         let way = loose::smallest(bodies, &directions, alive, start, allowed, known, self.watch)?;
         Ok((way, None))

@@ -116,6 +116,11 @@ impl<'a> Order<'a> {
         (!others.is_empty() && !others.iter().any(|&k| self.base[k])).then_some(others)
     }
 
+    /// How many parts move so, if any may.
+    pub(super) fn how_many(&self, group: &[usize], left: &[usize]) -> Option<usize> {
+        self.moving(group, left).map(|parts| parts.len())
+    }
+
     /// Whether a part stays where it is, for all others to be taken from it.
     pub(super) fn is_base(&self, part: usize) -> bool {
         self.base[part]

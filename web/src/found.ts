@@ -374,7 +374,8 @@ export class Found {
   private tellMoment(moment: Moment | undefined): string {
     if (!moment) {
       return this.from.value === "region" ? "There is no solution before this one: change the question a little (drag the arrow, or move a body), and look again."
-        : this.search?.events.length ? "No planar problem was needed, and no portal was reached." : "Bodies without a volume have no sections.";
+        : !this.search ? "The search goes on."
+          : this.search.events.length ? "No planar problem was needed, and no portal was reached." : "Bodies without a volume have no sections.";
     }
     if (moment.kind === "portal") {
       const { found } = this;

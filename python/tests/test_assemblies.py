@@ -99,3 +99,22 @@ def test_refusals(tmp_path: Path, gearbox: Assembly) -> None:
         gearbox.rooms([0, 0, 1])
     with pytest.raises(AssemblyError):
         gearbox.plan(tolerance=-1.0)
+
+
+def test_what_is_asked_of_a_plan() -> None:
+    gearbox = Assembly.read(GEARBOX).with_fixed("housing")
+    plan = gearbox.plan(remove="cover")
+    assert plan.wanted is not None and plan.wanted.least and plan.wanted.out
+    assert plan.wanted.others == [f"bolt_{k}" for k in range(4)]
+    assert plan.steps[-1].parts == ["cover"] and "gear" in plan.last
+    late = gearbox.with_before("cover", "bolt_0").plan()
+    assert [step.parts for step in late.steps[:1]] == [["bolt_1"]]
+    assert late.stuck and "order" in late.stuck[0].because
+    one = gearbox.with_subassembly("drive", "shaft", "gear").plan()
+    step = next(step for step in one.steps if "gear" in step.parts)
+    assert {"shaft", "gear"} <= set(step.parts)
+    held = gearbox.with_never("cover", along=(0, 0, 1), within=80).plan(remove=["cover"])
+    assert held.wanted is not None and not held.wanted.out
+    for first in ("cover", "nobody"):
+        with pytest.raises(AssemblyError):
+            gearbox.with_before("bolt_0", "cover").with_before(first, "bolt*")

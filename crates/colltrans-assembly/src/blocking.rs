@@ -27,6 +27,17 @@ impl Blocking {
         Self::from_arcs(arcs, among)
     }
 
+    /// The same with the arcs of an order.
+    pub(crate) fn with_order(
+        matrix: &Matrix,
+        direction: usize,
+        order: &[(usize, usize)],
+        among: &[bool],
+    ) -> Self {
+        let arcs = matrix.meetings(direction).iter().map(|m| (m.moving, m.fixed));
+        Self::from_arcs(arcs.chain(order.iter().copied()), among)
+    }
+
     /// The graph of these arcs, of the parts that are `true`.
     pub fn from_arcs(arcs: impl IntoIterator<Item = (usize, usize)>, among: &[bool]) -> Self {
         let mut graph = DiGraph::new();

@@ -331,6 +331,33 @@ impl<'a> Bodies<'a> {
         nearest.map_or(Room::Free, Room::Blocked)
     }
 
+    /// Pairs of a part of a group and one that is there, and not of the group, whose box it meets along a unit direction.
+    pub(crate) fn pairs_ahead(&self, group: &[usize], d: DVec3, there: &[bool]) -> Vec<[usize; 2]> {
+        let all = |&a: &usize| self.ahead(a, d).into_iter().map(move |(_, b)| [a, b]);
+        let wanted = |[_, b]: &[usize; 2]| there[*b] && !group.contains(b);
+        group.iter().flat_map(all).filter(wanted).collect()
+    }
+
+    /// Whether a part ever meets another one along a unit direction.
+    pub(crate) fn meets(
+        &self,
+        pair: [usize; 2],
+        d: DVec3,
+        start: StartOverlap,
+        workspace: &mut Workspace,
+    ) -> bool {
+        self.room(pair, d, None, start, workspace) != Room::Free
+    }
+
+    /// By part, whether it is one of these.
+    pub(crate) fn mask(&self, parts: &[usize]) -> Vec<bool> {
+        let mut mask = vec![false; self.len()];
+        for &part in parts {
+            mask[part] = true;
+        }
+        mask
+    }
+
     /// Some parts as one solid, shrunk, and where the facets of each begin among those of all.
     pub(crate) fn joined(
         &self,

@@ -118,6 +118,40 @@ pub enum AssemblyError {
         /// The most similar name that exists.
         near: Option<String>,
     },
+    /// Parts of which each would leave before itself.
+    #[error("nothing can leave before itself, and that is asked of {}", names.join(", "))]
+    Order {
+        /// Their names.
+        names: Vec<String>,
+    },
+    /// Two subassemblies share parts, and neither holds the other.
+    #[error("{} and {} share parts, and neither holds the other", names[0], names[1])]
+    Subassemblies {
+        /// What they are called, or their parts.
+        names: [String; 2],
+    },
+    /// Fewer parts than there have to be.
+    #[error("{what} takes more parts than {count}")]
+    TooFew {
+        /// What they were given for.
+        what: &'static str,
+        /// How many were given.
+        count: usize,
+    },
+    /// None or all of the parts are to be taken out.
+    #[error("{count} of {of} parts are to be taken out: some, but not all, can be")]
+    Removal {
+        /// How many were given.
+        count: usize,
+        /// Of how many.
+        of: usize,
+    },
+    /// An angle that is none.
+    #[error("an angle of {degrees} degrees: it must be at least 0 and less than 180")]
+    Angle {
+        /// As given.
+        degrees: f64,
+    },
     /// A length that is negative or not finite.
     #[error("{what} {value} is not a length: it must be finite and not negative")]
     Length {

@@ -4,7 +4,7 @@
 //! tight: shrunk by a tolerance, or to be kept a length apart) -> `bodies` (two parts and a direction: the
 //! only module that asks `colltrans`) -> [`start`] (overlaps now), [`liaisons`] (who touches whom) ->
 //! [`candidates`] (directions worth asking) -> [`matrix`] and [`rooms`] (who is stopped by whom) ->
-//! [`blocking`] (the graph), [`likes`] (parts of one shape) -> [`plan`] (steps, and what is stuck) ; [`map`] (one part, all
+//! [`blocking`] (the graph; with [`constraints`] its arcs), [`likes`] (parts of one shape) -> [`plan`] (steps, and what is stuck) ; [`map`] (one part, all
 //! directions) -> [`record`] (JSON) -> [`report`] (pictures, one HTML file, an animation).
 //!
 //! [`robot`] is of a robot that moves: what its links and joints are, as [`read`] makes it of URDF, and what of it is
@@ -30,6 +30,7 @@ mod work;
 
 pub mod blocking;
 pub mod candidates;
+pub mod constraints;
 pub mod free;
 pub mod liaisons;
 pub mod likes;

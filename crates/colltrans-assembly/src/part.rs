@@ -9,6 +9,7 @@ use colltrans_mesh::Mesh;
 use colltrans_mesh::body::{self, BodyOptions, Loaded, Refused};
 use glam::{DAffine3, DVec3};
 
+use crate::constraints::{Constraints, Unit};
 use crate::error::AssemblyError;
 
 /// A mesh and its place: a part has one or several, which may overlap each other.
@@ -141,6 +142,7 @@ pub enum Ignored {
 pub struct Assembly {
     parts: Vec<Part>,
     ignored: BTreeMap<[usize; 2], Ignored>,
+    constraints: Constraints,
     unit: Option<String>,
     up: Option<DVec3>,
     notes: Vec<String>,
@@ -191,6 +193,74 @@ impl Assembly {
         for name in names {
             let index = self.index(name.as_ref())?;
             self.parts[index].fixed = true;
+        }
+        Ok(self)
+    }
+
+    /// The same, where parts leave before others: none of the second ones leaves while one of the first ones stays. Names
+    /// are as of [`group`](Self::group).
+    ///
+    /// # Errors
+    /// A name that no part has; something would leave before itself.
+    pub fn with_before<S: AsRef<str>>(
+        mut self,
+        first: &[S],
+        second: &[S],
+    ) -> Result<Self, AssemblyError> {
+        let (first, second) = (self.group(first)?, self.group(second)?);
+        let name = |part: usize| self.parts[part].name();
+        self.constraints.add_before([&first, &second], name)?;
+        Ok(self)
+    }
+
+    /// The same, where parts stay together: they leave as one, and are not taken apart.
+    ///
+    /// # Errors
+    /// A name that no part has; fewer than two parts; something would leave before itself.
+    pub fn with_together<S: AsRef<str>>(self, names: &[S]) -> Result<Self, AssemblyError> {
+        self.with_unit_of(None, names, false)
+    }
+
+    /// The same with a subassembly: its parts leave as one, and are taken apart by themselves.
+    ///
+    /// # Errors
+    /// As [`Self::with_together`]; it shares parts with another one, and neither holds the other.
+    pub fn with_subassembly<S: AsRef<str>>(
+        self,
+        name: impl Into<String>,
+        parts: &[S],
+    ) -> Result<Self, AssemblyError> {
+        self.with_unit_of(Some(name.into()), parts, true)
+    }
+
+    fn with_unit_of<S: AsRef<str>>(
+        mut self,
+        name: Option<String>,
+        parts: &[S],
+        apart: bool,
+    ) -> Result<Self, AssemblyError> {
+        let parts = self.group(parts)?;
+        if parts.len() < 2 {
+            let what = if apart { "a subassembly" } else { "to stay together" };
+            return Err(AssemblyError::TooFew { what, count: parts.len() });
+        }
+        let named = |part: usize| self.parts[part].name();
+        self.constraints.add_unit(Unit { name, parts, apart }, named)?;
+        Ok(self)
+    }
+
+    /// The same, where parts never go along a direction, of any length, nor along others within an angle in degrees.
+    ///
+    /// # Errors
+    /// A name that no part has; a direction of no length; an angle that is not at least 0 and less than 180.
+    pub fn with_never<S: AsRef<str>>(
+        mut self,
+        names: &[S],
+        direction: DVec3,
+        within: f64,
+    ) -> Result<Self, AssemblyError> {
+        for part in self.group(names)? {
+            self.constraints.add_never(part, direction, within)?;
         }
         Ok(self)
     }
@@ -248,6 +318,36 @@ impl Assembly {
     /// What of two parts is let pass, if anything.
     pub fn ignored(&self, a: usize, b: usize) -> Option<Ignored> {
         self.ignored.get(&[a.min(b), a.max(b)]).copied()
+    }
+
+    /// What is asked of plans: an order, subassemblies, directions.
+    pub const fn constraints(&self) -> &Constraints {
+        &self.constraints
+    }
+
+    /// The parts with these names, in increasing order; `bolt*` are all whose names begin with `bolt`, if no part has just
+    /// that name.
+    ///
+    /// # Errors
+    /// A name that no part has.
+    pub fn group<S: AsRef<str>>(&self, names: &[S]) -> Result<Vec<usize>, AssemblyError> {
+        let mut group = Vec::new();
+        for name in names.iter().map(|name| name.as_ref().trim()) {
+            let like = match name.strip_suffix('*') {
+                Some(prefix) if self.parts.iter().all(|part| part.name != name) => {
+                    let parts = self.parts.iter().enumerate();
+                    parts.filter(|(_, p)| p.name.starts_with(prefix)).map(|(k, _)| k).collect()
+                }
+                _ => vec![self.index(name)?],
+            };
+            if like.is_empty() {
+                return Err(AssemblyError::UnknownPart { name: name.into(), near: None });
+            }
+            group.extend(like);
+        }
+        group.sort_unstable();
+        group.dedup();
+        Ok(group)
     }
 
     /// Position of the part with a name.

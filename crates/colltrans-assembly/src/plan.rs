@@ -14,6 +14,7 @@
 
 mod certify;
 mod hold;
+mod least;
 mod loose;
 mod options;
 mod order;
@@ -22,6 +23,7 @@ mod several;
 mod single;
 mod stage;
 mod step;
+mod wanted;
 
 use std::collections::{BTreeMap, HashSet};
 use std::sync::atomic::AtomicBool;
@@ -32,7 +34,7 @@ use glam::DVec3;
 use petgraph::unionfind::UnionFind;
 
 use crate::blocking::Blocking;
-use crate::bodies::{Bodies, Room};
+use crate::bodies::Bodies;
 use crate::candidates::{Finer, unit};
 use crate::error::AssemblyError;
 use crate::free::Removal;
@@ -50,6 +52,7 @@ use several::Aside;
 pub use several::Moves;
 use single::Single;
 pub use step::{Leg, Step};
+pub use wanted::{Wanted, remove};
 
 /// Parts of which no group leaves along any direction at all, where that is [proven](Self::proven), or else along any
 /// of those asked; of several moves none were found, or looked for.
@@ -71,6 +74,8 @@ pub struct Stuck {
     pub overlapping: Vec<[usize; 2]>,
     /// Whether parts that are fixed are among them.
     pub fixed: bool,
+    /// Whether an order, or where parts never go, is asked for of them: then all that is said is so with that.
+    pub constrained: bool,
 }
 
 /// How an assembly comes apart.
@@ -88,6 +93,8 @@ pub struct Plan {
     pub stuck: Vec<Stuck>,
     /// For each part the first one that is [like](crate::likes::likes) it.
     pub likes: Vec<usize>,
+    /// Of a plan for some parts, what else goes.
+    pub wanted: Option<Wanted>,
 }
 
 /// Takes everything apart along the directions of a matrix of all parts, and, for what those do not
@@ -103,16 +110,10 @@ pub fn disassemble(
     options: PlanOptions,
     watch: Watch,
 ) -> Result<Plan, AssemblyError> {
-    let tally = watch.stage(Stage::Plan, bodies.len());
     let likes = likes(bodies.assembly());
-    let up = unit(options.up.unwrap_or(bodies.assembly().up()))?;
-    let (plan, known) = (Plan::default(), loose::Known::default());
-    let mut planner =
-        Planner { bodies, finer, options, up, likes: &likes, watch, tally, plan, known };
-    let all: Vec<usize> = (0..bodies.len()).collect();
-    let left = planner.take_apart(&all, matrix, None)?;
-    let plan = planner.plan;
-    Ok(Plan { left, likes, ..plan })
+    let mut planner = Planner::new(bodies, finer, &likes, options, watch)?;
+    planner.whole(matrix)?;
+    Ok(Plan { likes: likes.clone(), ..planner.plan })
 }
 
 /// Of the finer directions of what is stuck, at most so many are asked.
@@ -132,6 +133,10 @@ struct Planner<'a> {
     tally: Tally<'a>,
     plan: Plan,
     known: loose::Known,
+    /// Parts that are to come out, and nothing else if it need not.
+    wanted: &'a [usize],
+    /// Which parts may move for that, if not all.
+    movable: Option<&'a [usize]>,
 }
 
 /// Work for the free directions of a group of which one was found, in pairs of boxes.
@@ -162,12 +167,12 @@ fn smallest(order: &mut Order, matrix: &Matrix, left: &[usize]) -> Option<Choice
     #[cfg(test)]
     GRAPHS.with(|graphs| graphs.set(graphs.get() + matrix.directions().len()));
     let mut groups: BTreeMap<Vec<usize>, Vec<usize>> = BTreeMap::new();
-    for (k, &direction) in matrix.directions().iter().enumerate() {
-        for group in Blocking::new(matrix, k, order.there()).removable() {
-            let Some(parts) = order.moving(&group, left).filter(|p| p.len() < left.len()) else {
-                continue;
-            };
-            let along = if parts == group { k } else { order.position(DVec3::ZERO - direction) };
+    let arcs = order.arcs();
+    for (k, &d) in matrix.directions().iter().enumerate() {
+        for group in Blocking::with_order(matrix, k, &arcs, order.there()).removable() {
+            let way = order.way(&group, left, d).filter(|way| way.parts.len() < left.len());
+            let Some(Choice { parts, direction }) = way else { continue };
+            let along = order.position(direction);
             let ways = groups.entry(parts).or_default();
             if !ways.contains(&along) {
                 ways.push(along);
@@ -185,7 +190,28 @@ thread_local! {
     static GRAPHS: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
 }
 
-impl Planner<'_> {
+impl<'a> Planner<'a> {
+    fn new(
+        bodies: &'a Bodies<'a>,
+        finer: &'a [Finer],
+        likes: &'a [usize],
+        options: PlanOptions,
+        watch: Watch<'a>,
+    ) -> Result<Self, AssemblyError> {
+        let tally = watch.stage(Stage::Plan, bodies.len());
+        let up = unit(options.up.unwrap_or(bodies.assembly().up()))?;
+        let (plan, known) = (Plan::default(), loose::Known::default());
+        let (wanted, movable) = (&[][..], None);
+        Ok(Self { bodies, finer, options, up, likes, watch, tally, plan, known, wanted, movable })
+    }
+
+    /// Takes all parts apart, or the wanted ones out.
+    fn whole(&mut self, matrix: &Matrix) -> Result<(), AssemblyError> {
+        let all: Vec<usize> = (0..self.bodies.len()).collect();
+        self.plan.left = self.take_apart(&all, matrix, None)?;
+        Ok(())
+    }
+
     /// Takes a group apart; what of it is left, nothing if it comes apart wholly.
     fn take_apart(
         &mut self,
@@ -193,15 +219,24 @@ impl Planner<'_> {
         matrix: &Matrix,
         within: Option<usize>,
     ) -> Result<Vec<usize>, AssemblyError> {
-        let alive = self.mask(group);
+        let alive = self.bodies.mask(group);
         let mut left = group.to_vec();
-        let mut order = Order::new(self.bodies, matrix, self.likes, &alive, self.up);
-        let mut single = Single::new(matrix, &alive, |k| !order.is_base(k));
+        let movable = self.movable.filter(|_| within.is_none());
+        let (bodies, likes, wanted) = (self.bodies, self.likes, self.wanted);
+        let mut order = Order::new(bodies, matrix, likes, &alive, self.up, movable, wanted);
+        let constraints = self.bodies.assembly().constraints();
+        let alone =
+            |order: &Order| Single::new(matrix, &order.arcs(), order.there(), |k| !order.stays(k));
+        let mut single = alone(&order);
         while !left.is_empty() {
             self.watch.check()?;
-            if left.len() == 1 && !self.fixed(left[0]) {
+            let one = left.len() == 1 || constraints.keeps_together(&left);
+            if self.is_out(&left, within) || one && !left.iter().any(|&k| self.fixed(k)) {
                 self.finish(left, within);
                 return Ok(Vec::new());
+            }
+            if one {
+                return Ok(left);
             }
             let mut asked: HashSet<[u64; 3]> =
                 matrix.directions().iter().copied().map(bits).collect();
@@ -223,17 +258,20 @@ impl Planner<'_> {
                 self.explain(&left, matrix, (asked.len(), proven, moves));
                 let alone = within.is_none() && !self.plan.steps.is_empty();
                 if alone && !left.iter().any(|&k| self.fixed(k)) {
-                    // All others are gone: what is left comes out, as one.
+                    // All others are gone: what is left remains, as one.
                     self.finish(left, within);
                     return Ok(Vec::new());
                 }
                 return Ok(left);
             };
+            let released = constraints.released(order.there());
             left.retain(|k| !way.parts.contains(k));
-            for &part in &way.parts {
-                single.remove(part);
-            }
             order.remove(&way.parts, way.direction);
+            if constraints.released(order.there()) > released {
+                single = alone(&order);
+            } else {
+                way.parts.iter().for_each(|&part| single.remove(part));
+            }
             self.take_out(way, &left, matrix, within)?;
         }
         Ok(left)
@@ -272,11 +310,19 @@ impl Planner<'_> {
         for _ in &parts {
             self.tally.step()?;
         }
-        if parts.len() > 1 {
+        let wanted = |part: &usize| self.wanted.contains(part);
+        let none = self.wanted.is_empty();
+        if parts.len() > 1 && (none || parts.iter().any(wanted) && !parts.iter().all(wanted)) {
             // What stays together is explained there.
             self.take_apart(&parts, matrix, Some(at))?;
         }
         Ok(())
+    }
+
+    /// Whether all that was wanted has left.
+    fn is_out(&self, left: &[usize], within: Option<usize>) -> bool {
+        let is_left = |part: &usize| left.contains(part);
+        within.is_none() && !self.wanted.is_empty() && !self.wanted.iter().any(is_left)
     }
 
     /// The last part or group, from which all else was taken away. Of a group that was taken apart it goes without
@@ -302,23 +348,23 @@ impl Planner<'_> {
             gone.extend(step.parts.iter().map(|&part| (part, k)));
         }
         let mut after: Vec<usize> = within.into_iter().collect();
+        let went = |part: usize| gone.get(&part).copied();
+        let constraints = self.bodies.assembly().constraints();
+        after.extend(gone.iter().filter(|x| constraints.waits(group, *x.0)).map(|x| *x.1));
         if several {
             after.extend(gone.values());
         } else if let Some(k) = matrix.position(direction) {
             let met = group.iter().flat_map(|&part| matrix.of_part(k, part));
-            after.extend(met.filter_map(|m| gone.get(&m.fixed)));
+            after.extend(met.filter_map(|m| went(m.fixed)));
         } else {
             let (mut workspace, start) = (Workspace::default(), self.options.start);
-            for &part in group {
-                for (_, other) in self.bodies.ahead(part, direction) {
-                    let Some(&step) = gone.get(&other).filter(|k| !after.contains(k)) else {
-                        continue;
-                    };
-                    let pair = [part, other];
-                    if self.bodies.room(pair, direction, None, start, &mut workspace) != Room::Free
-                    {
-                        after.push(step);
-                    }
+            let there: Vec<bool> = (0..self.bodies.len()).map(|k| gone.contains_key(&k)).collect();
+            for pair in self.bodies.pairs_ahead(group, direction, &there) {
+                let step = gone[&pair[1]];
+                if !after.contains(&step)
+                    && self.bodies.meets(pair, direction, start, &mut workspace)
+                {
+                    after.push(step);
                 }
             }
         }
@@ -361,7 +407,7 @@ impl Planner<'_> {
             0 => Vec::new(),
             count => Sphere::with_directions(count).directions,
         };
-        let allowed = |group: &[usize]| order.how_many(group, left);
+        let allowed = |group: &[usize], d| order.how_many(group, left, d);
         for directions in [own, sphere] {
             asked.extend(directions.iter().copied().map(bits));
             let (start, known) = (self.options.start, &mut self.known);
@@ -394,7 +440,7 @@ impl Planner<'_> {
         if samples == 0 {
             return Ok(None);
         }
-        let moving = |group: &[usize]| order.how_many(group, left);
+        let moving = |group: &[usize]| order.moving(group, left).map(|parts| parts.len());
         let mut groups = self.rigid(left);
         groups.retain(|g| g.len() < left.len() && moving(g).is_some());
         groups.retain(|g| self.is_loose(g, alive, matrix));
@@ -402,7 +448,8 @@ impl Planner<'_> {
         groups.truncate(MOST_LOOSE);
         let options = MapOptions { samples, start, ..MapOptions::default() };
         for parts in groups {
-            if let Some(direction) = way_out(self.bodies, &parts, alive, options, self.watch)? {
+            let found = way_out(self.bodies, &parts, alive, options, self.watch)?;
+            if let Some(direction) = found.filter(|&d| order.way(&parts, left, d).is_some()) {
                 return Ok(Some(Way::straight(parts, direction)));
             }
         }
@@ -420,7 +467,7 @@ impl Planner<'_> {
         })
     }
 
-    /// These parts, those that overlap in one group, unless overlaps are ignored.
+    /// These parts, those that overlap, unless overlaps are ignored, or are asked to leave as one in one group.
     fn rigid(&self, left: &[usize]) -> Vec<Vec<usize>> {
         let mut sets = UnionFind::new(self.bodies.len());
         for &[a, b] in self.bodies.overlapping() {
@@ -428,6 +475,9 @@ impl Planner<'_> {
             if rigid && left.contains(&a) && left.contains(&b) {
                 sets.union(a, b);
             }
+        }
+        for [a, b] in self.bodies.assembly().constraints().pairs(&self.bodies.mask(left)) {
+            sets.union(a, b);
         }
         let mut groups = BTreeMap::<usize, Vec<usize>>::new();
         for &k in left {
@@ -453,7 +503,7 @@ impl Planner<'_> {
         };
         asked.extend(directions.iter().copied().map(bits));
         let (bodies, alive) = (self.bodies, order.there());
-        let allowed = |group: &[usize]| order.how_many(group, left);
+        let allowed = |group: &[usize], d| order.how_many(group, left, d);
         let known = &mut self.known;
         let way = loose::smallest(bodies, &directions, alive, start, allowed, known, self.watch)?;
         Ok((way, None))
@@ -467,7 +517,8 @@ impl Planner<'_> {
         let others: Vec<usize> = left.iter().copied().filter(|k| !parts.contains(k)).collect();
         let mut directions = vec![found, DVec3::ZERO - found];
         directions.extend(self.middle(&parts, &others, found)?);
-        directions.retain(|&d| self.is_free(&parts, &others, d));
+        let constraints = self.bodies.assembly().constraints();
+        directions.retain(|&d| constraints.allows(&parts, d) && self.is_free(&parts, &others, d));
         let ways = directions.into_iter().map(|d| order.position(d)).collect();
         Ok(order.best([(parts, ways)]).map_or(way, Way::from))
     }
@@ -495,12 +546,8 @@ impl Planner<'_> {
 
     fn is_free(&self, parts: &[usize], others: &[usize], d: DVec3) -> bool {
         let (mut workspace, start) = (Workspace::default(), self.options.start);
-        let mut ahead =
-            parts.iter().flat_map(|&a| self.bodies.ahead(a, d).into_iter().map(move |x| [a, x.1]));
-        ahead.all(|pair| {
-            !others.contains(&pair[1])
-                || self.bodies.room(pair, d, None, start, &mut workspace) == Room::Free
-        })
+        let ahead = self.bodies.pairs_ahead(parts, d, &self.bodies.mask(others));
+        !ahead.into_iter().any(|pair| self.bodies.meets(pair, d, start, &mut workspace))
     }
 
     /// A way in several moves, or what is known of them.
@@ -539,14 +586,6 @@ impl Planner<'_> {
 
     fn fixed(&self, part: usize) -> bool {
         self.bodies.assembly().parts()[part].fixed()
-    }
-
-    fn mask(&self, parts: &[usize]) -> Vec<bool> {
-        let mut mask = vec![false; self.bodies.len()];
-        for &k in parts {
-            mask[k] = true;
-        }
-        mask
     }
 }
 

@@ -118,13 +118,22 @@ pub fn plan(bodies: &Bodies, plan: &Plan) -> Value {
         json!({ "takes": takes, "steps": [first, last], "travel": plan.travel(&stage) })
     });
     let stages: Vec<Value> = stages.collect();
-    json!({
+    let mut told = json!({
         "plan": steps,
         "stages": stages,
         "last": names(&plan.last),
         "left": names(&plan.left),
         "stuck": stuck,
-    })
+    });
+    if let Some(wanted) = &plan.wanted {
+        told["wanted"] = json!({
+            "parts": names(&wanted.parts),
+            "others": names(&wanted.others),
+            "least": wanted.least,
+            "out": wanted.out,
+        });
+    }
+    told
 }
 
 fn step(assembly: &Assembly, step: &Step) -> Value {
@@ -135,6 +144,9 @@ fn step(assembly: &Assembly, step: &Step) -> Value {
         "travel_bounds": step.travel.bounds(),
         "path": legs(assembly, &step.path),
     });
+    if let Some(name) = assembly.constraints().name(&step.parts) {
+        told["subassembly"] = json!(name);
+    }
     if !step.back.is_empty() {
         told["back"] = legs(assembly, &step.back);
     }
@@ -183,7 +195,7 @@ fn stuck(bodies: &Bodies, stuck: &Stuck) -> Value {
         let least: Vec<Value> = hold.by.iter().map(set).collect();
         json!({ "part": assembly.parts()[hold.part].name(), "least": least })
     });
-    json!({
+    let mut told = json!({
         "parts": assembly.names(&stuck.parts),
         "because": stuck.because(bodies),
         "directions": stuck.directions,
@@ -193,7 +205,11 @@ fn stuck(bodies: &Bodies, stuck: &Stuck) -> Value {
         },
         "moves": moves(&stuck.moves),
         "holds": holds.collect::<Vec<_>>(),
-    })
+    });
+    if stuck.constrained {
+        told["constrained"] = json!(true);
+    }
+    told
 }
 
 /// All directions along which a group can leave the others; of several parts on a side with their names.

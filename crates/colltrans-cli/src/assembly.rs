@@ -3,6 +3,7 @@
 //! Data flow: source -> parts -> overlaps, contacts, directions, matrix, plan, maps (all of them
 //! `colltrans_assembly`'s), all directions ([`free`]) -> text, JSON or files ([`output`]).
 
+mod asked;
 mod free;
 mod output;
 
@@ -14,7 +15,7 @@ use colltrans_assembly::candidates::{Candidates, Choice, Finer, Origin, candidat
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{PlanOptions, disassemble};
+use colltrans_assembly::plan::{PlanOptions, disassemble, remove};
 use colltrans_assembly::read::{self, Geometry, ReadOptions};
 use colltrans_assembly::report::Findings;
 use colltrans_assembly::rooms::{PartRoom, rooms};
@@ -39,6 +40,7 @@ fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
     let assembly = assembly(arguments)?;
     let groups = groups(&arguments.map, &assembly)?;
     let leaving = self::groups(&arguments.free, &assembly)?;
+    let wanted = assembly.group(&arguments.asked.remove)?;
     output::refuse_inputs(arguments, &assembly)?;
     let fit = match (arguments.tolerance, arguments.keep_apart) {
         (Some(tolerance), _) => Fit::Tolerance(tolerance),
@@ -60,12 +62,10 @@ fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
     let bodies = Bodies::new(&assembly, fit)?;
     let start = Start::new(&bodies, watch)?;
     let touching = liaisons(&bodies, watch)?;
-    let mut asked = arguments.direction.clone();
-    if !arguments.only {
-        // Who rests on whom is asked along it.
-        asked.extend(arguments.gravity.iter().flat_map(|&gravity| [gravity, -gravity]));
-    }
-    let choice = Choice::default().with_given(asked).with_search(!arguments.only);
+    let choice = Choice::default()
+        .with_given(arguments.direction.clone())
+        .with_gravity(arguments.gravity)
+        .with_search(!arguments.only);
     let mut found = candidates(&bodies, &touching, &choice)?;
     let finer = |&direction: &DVec3| Finer { direction, origin: Origin::Given, part: None };
     found.finer.splice(0..0, given.iter().map(finer));
@@ -84,7 +84,10 @@ fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
         Some(gravity) => options.with_up(-gravity),
         None => options,
     };
-    let plan = disassemble(&bodies, &matrix, &found.finer, options, watch)?;
+    let plan = match &wanted[..] {
+        [] => disassemble(&bodies, &matrix, &found.finer, options, watch)?,
+        parts => remove(&bodies, &matrix, &found.finer, parts, options, watch)?,
+    };
     let maps = maps(&bodies, &groups, &found, overlap, watch)?;
     let with_proofs = arguments.output.is_some();
     let free = free::all(&bodies, leaving, arguments.work.options(), with_proofs)?;
@@ -124,23 +127,11 @@ fn assembly(arguments: &AssemblyArguments) -> Result<Assembly, Failure> {
     }
     let assembly = read::read(&arguments.source, &options)
         .map_err(|e| Failure::new(Code::Input, format!("{e}{}", advice(&e))))?;
-    let ignore = pairs("--ignore", &arguments.ignore)?;
-    let always = pairs("--ignore-always", &arguments.ignore_always)?;
+    let ignore = asked::pairs("--ignore", &arguments.ignore)?;
+    let always = asked::pairs("--ignore-always", &arguments.ignore_always)?;
     let assembly = assembly.with_ignored(&ignore, Ignored::Overlap)?;
     let assembly = assembly.with_ignored(&always, Ignored::Always)?;
-    Ok(assembly.with_fixed(&arguments.fixed)?)
-}
-
-/// The names of parts that let each other pass.
-fn pairs<'a>(flag: &str, given: &'a [String]) -> Result<Vec<[&'a str; 2]>, Failure> {
-    let names = |pair: &'a String| {
-        let found = pair.split_once(',').map(|(a, b)| [a.trim(), b.trim()]);
-        found.ok_or_else(|| {
-            let text = format!("{flag} {pair}: not two names with a comma between");
-            Failure::new(Code::Usage, text)
-        })
-    };
-    given.iter().map(names).collect()
+    asked::constrained(assembly, &arguments.asked)
 }
 
 /// Which flag helps.
@@ -190,28 +181,11 @@ fn given_directions(arguments: &AssemblyArguments) -> Result<Vec<DVec3>, Failure
 
 /// The groups that are asked about, with their names.
 fn groups(asked: &[String], assembly: &Assembly) -> Result<Vec<(String, Vec<usize>)>, Failure> {
-    let mut groups = Vec::new();
-    for names in asked {
-        let mut group = Vec::new();
-        for name in names.split(',').map(str::trim) {
-            match name.strip_suffix('*') {
-                Some(prefix) if assembly.index(name).is_err() => {
-                    let parts = assembly.parts().iter().enumerate();
-                    let like = parts.filter(|(_, p)| p.name().starts_with(prefix)).map(|(k, _)| k);
-                    let before = group.len();
-                    group.extend(like);
-                    if group.len() == before {
-                        return Err(Failure::new(Code::Usage, format!("no part is named {name}")));
-                    }
-                }
-                _ => group.push(assembly.index(name)?),
-            }
-        }
-        group.sort_unstable();
-        group.dedup();
-        groups.push((names.clone(), group));
-    }
-    Ok(groups)
+    let group = |names: &String| {
+        let parts: Vec<&str> = names.split(',').collect();
+        Ok((names.clone(), assembly.group(&parts)?))
+    };
+    asked.iter().map(group).collect()
 }
 
 fn more_rooms(
@@ -255,7 +229,12 @@ impl From<AssemblyError> for Failure {
             AssemblyError::Length { .. }
             | AssemblyError::Direction { .. }
             | AssemblyError::UnknownPart { .. }
-            | AssemblyError::SamePart { .. } => Code::Usage,
+            | AssemblyError::SamePart { .. }
+            | AssemblyError::Order { .. }
+            | AssemblyError::Subassemblies { .. }
+            | AssemblyError::TooFew { .. }
+            | AssemblyError::Removal { .. }
+            | AssemblyError::Angle { .. } => Code::Usage,
             AssemblyError::Replay { .. } | AssemblyError::Cancelled => Code::Query,
             _ => Code::Input,
         };

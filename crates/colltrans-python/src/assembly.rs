@@ -19,7 +19,7 @@ use colltrans_assembly::candidates::{Candidates, Choice, candidates, unit};
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{Leg, PlanOptions, Step, disassemble};
+use colltrans_assembly::plan::{Leg, PlanOptions, Step, Wanted, disassemble, remove};
 use colltrans_assembly::read::{Geometry, ReadOptions};
 use colltrans_assembly::rooms::{PartRoom, rooms};
 use colltrans_assembly::{AssemblyError, Bodies, Fit, Ignored, Part, Piece, Watch};
@@ -51,8 +51,11 @@ type StepRow = (
 );
 /// What is taken away, from and to which step, and how far.
 type StageRow = (String, [usize; 2], f64);
-/// Steps, stages, what is last, what is left, what is stuck.
-type PlanRows = (Vec<StepRow>, Vec<StageRow>, Vec<usize>, Vec<usize>, Vec<StuckRow>);
+/// Steps, stages, what is last, what is left, what is stuck, and of a plan for some parts what goes.
+type PlanRows =
+    (Vec<StepRow>, Vec<StageRow>, Vec<usize>, Vec<usize>, Vec<StuckRow>, Option<WantedRow>);
+/// Parts that are to come out, what else goes, whether that is the least, and whether they come out.
+type WantedRow = (Vec<usize>, Vec<usize>, bool, bool);
 /// Parts, how many directions were asked, in how many cells it is proven that none helps, why they are stuck, and for
 /// each of some parts the sets that hold it.
 type StuckRow = (Vec<usize>, usize, Option<usize>, String, Vec<(usize, Vec<Vec<usize>>)>);
@@ -76,6 +79,17 @@ impl Choices {
 pub(crate) struct Assembly(Arc<colltrans_assembly::Assembly>);
 
 impl Assembly {
+    /// The same with something asked of it.
+    fn with(
+        &self,
+        change: impl FnOnce(
+            colltrans_assembly::Assembly,
+        ) -> Result<colltrans_assembly::Assembly, AssemblyError>,
+    ) -> PyResult<Self> {
+        let assembly = colltrans_assembly::Assembly::clone(&self.0);
+        Ok(Self(Arc::new(change(assembly).or_raise()?)))
+    }
+
     /// Work about the parts, as tight as asked for.
     fn ask<T: Send>(
         &self,
@@ -134,13 +148,10 @@ fn found(
     gravity: Option<DVec3>,
     watch: Watch<'_>,
 ) -> Result<Candidates, AssemblyError> {
-    let search = given.is_empty();
-    let mut asked = units(given)?;
-    if search {
-        // Who rests on whom is asked along it.
-        asked.extend(units(&Vec::from_iter(gravity))?.into_iter().flat_map(|g| [g, -g]));
-    }
-    let choice = Choice::default().with_given(asked).with_search(search);
+    let choice = Choice::default()
+        .with_given(units(given)?)
+        .with_gravity(gravity)
+        .with_search(given.is_empty());
     candidates(bodies, &liaisons(bodies, watch)?, &choice)
 }
 
@@ -184,14 +195,38 @@ impl Assembly {
     }
 
     fn with_fixed(&self, names: Vec<String>) -> PyResult<Self> {
-        let assembly = colltrans_assembly::Assembly::clone(&self.0);
-        Ok(Self(Arc::new(assembly.with_fixed(&names).or_raise()?)))
+        self.with(|assembly| assembly.with_fixed(&names))
     }
 
     fn with_ignored(&self, pairs: Vec<[String; 2]>, always: bool) -> PyResult<Self> {
-        let assembly = colltrans_assembly::Assembly::clone(&self.0);
         let ignored = if always { Ignored::Always } else { Ignored::Overlap };
-        Ok(Self(Arc::new(assembly.with_ignored(&pairs, ignored).or_raise()?)))
+        self.with(|assembly| assembly.with_ignored(&pairs, ignored))
+    }
+
+    fn with_before(&self, first: Vec<String>, second: Vec<String>) -> PyResult<Self> {
+        self.with(|assembly| assembly.with_before(&first, &second))
+    }
+
+    fn with_together(&self, names: Vec<String>) -> PyResult<Self> {
+        self.with(|assembly| assembly.with_together(&names))
+    }
+
+    fn with_subassembly(&self, name: &str, parts: Vec<String>) -> PyResult<Self> {
+        self.with(|assembly| assembly.with_subassembly(name, &parts))
+    }
+
+    fn with_never(
+        &self,
+        names: Vec<String>,
+        along: &Bound<'_, PyAny>,
+        within: f64,
+    ) -> PyResult<Self> {
+        let along = crate::arrays::vector(along, "along")?;
+        self.with(|assembly| assembly.with_never(&names, along, within))
+    }
+
+    fn group(&self, names: Vec<String>) -> PyResult<Vec<usize>> {
+        self.0.group(&names).or_raise()
     }
 
     #[getter]
@@ -257,6 +292,7 @@ impl Assembly {
         tolerance: Option<f64>,
         ignore_overlaps: bool,
         gravity: Option<&Bound<'_, PyAny>>,
+        wanted: Vec<usize>,
     ) -> PyResult<PlanRows> {
         let given = points(directions, "directions")?;
         let gravity = gravity.map(|g| crate::arrays::vector(g, "gravity")).transpose()?;
@@ -271,7 +307,10 @@ impl Assembly {
                 .with_legs(legs)
                 .with_proofs(proofs);
             let options = gravity.map_or(options, |gravity| options.with_up(-gravity));
-            let plan = disassemble(bodies, &matrix, &found.finer, options, watch)?;
+            let plan = match &wanted[..] {
+                [] => disassemble(bodies, &matrix, &found.finer, options, watch)?,
+                parts => remove(bodies, &matrix, &found.finer, parts, options, watch)?,
+            };
             let because = plan.stuck.iter().map(|stuck| stuck.because(bodies));
             let because: Vec<String> = because.collect();
             let stage = |stage: Range<usize>| {
@@ -300,7 +339,8 @@ impl Assembly {
                 stuck.holds.into_iter().map(|h| (h.part, sets(h.by))).collect(),
             )
         });
-        Ok((steps, stages, plan.last, plan.left, stuck.collect()))
+        let wanted = |Wanted { parts, others, least, out, .. }| (parts, others, least, out);
+        Ok((steps, stages, plan.last, plan.left, stuck.collect(), plan.wanted.map(wanted)))
     }
 
     #[expect(clippy::type_complexity, reason = "a map has four parts")]

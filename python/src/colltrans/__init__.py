@@ -71,7 +71,18 @@ from colltrans._colltrans import (
     ways_out,
     within,
 )
-from colltrans.assembly import Assembly, Blocking, Move, Plan, RemovalMap, Rooms, Stage, Step, Stuck
+from colltrans.assembly import (
+    Assembly,
+    Blocking,
+    Move,
+    Plan,
+    RemovalMap,
+    Rooms,
+    Stage,
+    Step,
+    Stuck,
+    Wanted,
+)
 from colltrans.columns import ClearanceColumns, Columns, ContactColumns, Failed, RangeColumns
 from colltrans.errors import (
     AssemblyError,
@@ -181,6 +192,7 @@ __all__ = [
     "Steps",
     "Stuck",
     "Tracker",
+    "Wanted",
     "WaysOut",
     "Within",
     "WithinColumns",

@@ -171,6 +171,28 @@ class Stage:
 
 
 @dataclass(frozen=True)
+class Wanted:
+    """What goes for some parts to come out.
+
+    Attributes
+    ----------
+    parts : list of str
+    others : list of str
+        What else is taken away.
+    least : bool
+        Whether it is certain that no fewer others are enough, in single moves along the directions
+        asked. Nothing is said of other directions.
+    out : bool
+        Whether the parts come out.
+    """
+
+    parts: list[str]
+    others: list[str]
+    least: bool
+    out: bool
+
+
+@dataclass(frozen=True)
 class Plan:
     """How an assembly comes apart.
 
@@ -185,6 +207,8 @@ class Plan:
     left : list of str
         Parts that stay: fixed, or not moved by any direction asked.
     stuck : list of Stuck
+    wanted : Wanted or None
+        Of a plan for some parts.
     """
 
     steps: list[Step]
@@ -192,6 +216,7 @@ class Plan:
     last: list[str]
     left: list[str]
     stuck: list[Stuck]
+    wanted: Wanted | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -225,6 +250,10 @@ class RemovalMap:
     def free_share(self) -> float:
         """The share of the sphere that is free."""
         return sum(angle for angle, _ in self.regions) / (4 * np.pi)
+
+
+def _list(names: str | Sequence[str]) -> list[str]:
+    return [names] if isinstance(names, str) else list(names)
 
 
 class Assembly:
@@ -325,6 +354,33 @@ class Assembly:
         """
         return self._of(self._assembly.with_ignored(list(pairs), always))
 
+    def with_before(self, first: str | Sequence[str], second: str | Sequence[str]) -> "Assembly":
+        """The same where none of the second parts leaves while one of the first stays.
+
+        Names may end with ``*``: all parts whose names begin so.
+        """
+        return self._of(self._assembly.with_before(_list(first), _list(second)))
+
+    def with_together(self, *names: str) -> "Assembly":
+        """The same where these parts leave as one, and are not taken apart."""
+        return self._of(self._assembly.with_together(list(names)))
+
+    def with_subassembly(self, name: str, *parts: str) -> "Assembly":
+        """The same where these parts leave as one, and are taken apart by themselves."""
+        return self._of(self._assembly.with_subassembly(name, list(parts)))
+
+    def with_never(self, *names: str, along: ArrayLike, within: float = 45.0) -> "Assembly":
+        """The same where these parts never go along a direction, nor within an angle of it.
+
+        Parameters
+        ----------
+        *names : str
+        along : array_like of shape (3,)
+        within : float
+            In degrees.
+        """
+        return self._of(self._assembly.with_never(list(names), along, within))
+
     def rooms(
         self,
         directions: ArrayLike,
@@ -397,6 +453,7 @@ class Assembly:
         tolerance: float | None = None,
         ignore_overlaps: bool = False,
         gravity: ArrayLike | None = None,
+        remove: str | Sequence[str] = (),
     ) -> Plan:
         """Takes apart what straight moves take apart.
 
@@ -418,15 +475,26 @@ class Assembly:
             As for :meth:`rooms`.
         gravity : array_like of shape (3,), optional
             Its direction; ``-y`` of glTF, else ``-z``.
+        remove : str or sequence of str, optional
+            Parts that are to come out, and only what has to go for that: the fewest others, if that
+            can be said. Names may end with ``*``.
 
         Returns
         -------
         Plan
+
+        Examples
+        --------
+        >>> from colltrans import Assembly
+        >>> gearbox = Assembly.read("data/gearbox_small").with_fixed("housing")
+        >>> gearbox.plan(remove="cover").wanted.others
+        ['bolt_0', 'bolt_1', 'bolt_2', 'bolt_3']
         """
+        wanted = self._assembly.group(_list(remove))
         plan = self._assembly.plan(
-            directions, samples, legs, proofs, tolerance, ignore_overlaps, gravity
+            directions, samples, legs, proofs, tolerance, ignore_overlaps, gravity, wanted
         )
-        steps, stages, last, left, stuck = plan
+        steps, stages, last, left, stuck, goes = plan
         names = self.parts
 
         def moves(all_of: list[tuple[list[int], list[float], float]]) -> list[Move]:
@@ -464,7 +532,11 @@ class Assembly:
                 )
                 for parts, directions, proven, because, holds in stuck
             ],
+            self._wanted(*goes) if goes is not None else None,
         )
+
+    def _wanted(self, parts: list[int], others: list[int], least: bool, out: bool) -> Wanted:
+        return Wanted(self._names(parts), self._names(others), least, out)
 
     def removal_map(
         self,

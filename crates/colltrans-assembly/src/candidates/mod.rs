@@ -68,6 +68,9 @@ pub struct Candidate {
 pub struct Choice {
     /// The caller's, of any length; they are kept whatever else there is.
     pub given: Vec<DVec3>,
+    /// Of any length; it and the opposite count as given, for who rests on whom is asked along it. Not if nothing is
+    /// looked for.
+    pub gravity: Option<DVec3>,
     /// Whether to look for more than those.
     pub search: bool,
     /// Two directions closer than this are one, in radians.
@@ -80,7 +83,7 @@ pub struct Choice {
 
 impl Default for Choice {
     fn default() -> Self {
-        Self { given: Vec::new(), search: true, apart: 0.005, main: 14, finer: 512 }
+        Self { given: Vec::new(), gravity: None, search: true, apart: 0.005, main: 14, finer: 512 }
     }
 }
 
@@ -89,6 +92,12 @@ impl Choice {
     #[must_use]
     pub fn with_given(self, given: Vec<DVec3>) -> Self {
         Self { given, ..self }
+    }
+
+    /// The same with another [`gravity`](Self::gravity).
+    #[must_use]
+    pub fn with_gravity(self, gravity: Option<DVec3>) -> Self {
+        Self { gravity, ..self }
     }
 
     /// The same with another [`search`](Self::search).
@@ -142,8 +151,10 @@ pub fn candidates(
     choice: &Choice,
 ) -> Result<Candidates, AssemblyError> {
     let mut main = Vec::new();
-    for given in &choice.given {
-        main.push(Candidate { direction: unit(*given)?, origin: Origin::Given });
+    let gravity = choice.gravity.filter(|_| choice.search);
+    let both = gravity.into_iter().flat_map(|gravity| [gravity, -gravity]);
+    for given in choice.given.iter().copied().chain(both) {
+        main.push(Candidate { direction: unit(given)?, origin: Origin::Given });
     }
     if !choice.search {
         return Ok(Candidates { main, finer: Vec::new() });

@@ -2,7 +2,8 @@
 //!
 //! The sphere is cut into cells. In a cell, one part blocks another all over it if one pair of their facets, or of boxes
 //! inside them, blocks the whole cell, which is decided exactly. If such arcs make one component, no group leaves along
-//! any direction of the cell; with parts that are fixed, if every component that no arc leaves has one of them. Arcs of
+//! any direction of the cell; with parts that are fixed, if every component that no arc leaves has one of them. An order
+//! that is asked for has arcs that hold everywhere. Arcs of
 //! a cell hold in its quarters. As in [`loose`](super::loose) arcs are asked as needed: out of components that none leaves, towards
 //! parts that are ahead of the middle of the cell.
 
@@ -58,15 +59,15 @@ pub(super) fn certify(
     if parts.len() > MOST_PARTS || !is_plain(bodies, parts, start) {
         return Ok(Proof::Open(Vec::new()));
     }
-    let mut among = vec![false; bodies.len()];
-    for &part in parts {
-        among[part] = true;
-    }
+    let among = bodies.mask(parts);
     let mut certifier = Certifier { bodies, parts, among, blockers: HashMap::new() };
-    // Along -d all arcs are turned round, which leaves one component one.
-    let sides = if certifier.is_any_fixed(parts) { 6 } else { 3 };
+    // Along -d all arcs are turned round, which leaves one component one; those of an order are not.
+    let constraints = bodies.assembly().constraints();
+    let all = certifier.is_any_fixed(parts) || constraints.is_ordered(&certifier.among);
+    let sides = if all { 6 } else { 3 };
     let overlapping = bodies.overlapping().iter().flat_map(|&[a, b]| [(a, b), (b, a)]);
-    let arcs: Vec<(usize, usize)> = overlapping.collect();
+    let order = constraints.arcs(&certifier.among);
+    let arcs: Vec<(usize, usize)> = overlapping.chain(order).collect();
     let all = DirectionCell::sphere().into_iter().enumerate();
     let wanted = all.filter(|(k, _)| sides == 6 || k % 2 == 0);
     let mut tasks: Vec<Task> = wanted.map(|(_, cell)| Task { cell, arcs: arcs.clone() }).collect();

@@ -30,19 +30,20 @@ pub(super) fn explain(
     fixed: bool,
     (directions, proven, moves): (usize, Option<usize>, Moves),
 ) -> Stuck {
-    let mut among = vec![false; bodies.len()];
-    for &k in left {
-        among[k] = true;
-    }
+    let among = bodies.mask(left);
     let mut holds: Vec<Hold> = Vec::new();
     for &part in left.iter().filter(|&&k| !bodies.assembly().parts()[k].fixed()) {
         holds.push(Hold { part, by: Vec::new() });
     }
     let mut overlapping = Vec::new();
+    let constraints = bodies.assembly().constraints();
+    let order = constraints.arcs(&among);
     for (k, &d) in matrix.directions().iter().enumerate() {
-        let graph = Blocking::new(matrix, k, &among);
+        let graph = Blocking::with_order(matrix, k, &order, &among);
         for hold in &mut holds {
-            keep_least(&mut hold.by, graph.blockers(hold.part), d);
+            if constraints.allows(&[hold.part], d) {
+                keep_least(&mut hold.by, graph.blockers(hold.part), d);
+            }
         }
         let met = matrix.meetings(k).iter().filter(|m| m.stop.is_none());
         overlapping.extend(
@@ -52,7 +53,17 @@ pub(super) fn explain(
     }
     overlapping.sort_unstable();
     overlapping.dedup();
-    Stuck { parts: left.to_vec(), directions, proven, moves, holds, overlapping, fixed }
+    let constrained = constraints.concern(left);
+    Stuck {
+        parts: left.to_vec(),
+        directions,
+        proven,
+        moves,
+        holds,
+        overlapping,
+        fixed,
+        constrained,
+    }
 }
 
 fn keep_least(sets: &mut Vec<(Vec<usize>, DVec3)>, set: Vec<usize>, d: DVec3) {
@@ -98,6 +109,9 @@ impl Stuck {
                 )
             }
         };
+        if self.constrained {
+            text.push_str("; what is asked of their order and directions counts");
+        }
         text.push_str(&self.moves.words());
         let easiest =
             self.holds.iter().filter(|h| !h.by.is_empty()).min_by_key(|h| h.by[0].0.len());

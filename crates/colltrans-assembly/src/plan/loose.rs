@@ -43,20 +43,22 @@ impl Known {
 }
 
 /// The group of the fewest parts that can be taken out along one of the directions, and of equal ones that of the first
-/// direction; `allowed` says how many parts move for it, if it may go at all.
+/// direction; `allowed` says how many parts move for it along a direction, if it may go at all.
 ///
 /// Along `-d` all arcs are turned round, so what is one component along `d` is one along `-d`, and
-/// need not be asked.
+/// need not be asked, unless an order has arcs of its own, which are not.
 pub(super) fn smallest(
     bodies: &Bodies,
     directions: &[DVec3],
     alive: &[bool],
     start: StartOverlap,
-    allowed: impl Fn(&[usize]) -> Option<usize> + Sync,
+    allowed: impl Fn(&[usize], DVec3) -> Option<usize> + Sync,
     known: &mut Known,
     watch: Watch,
 ) -> Result<Option<Way>, AssemblyError> {
     let answers: Vec<Mutex<Answers>> = directions.iter().map(|d| known.take(*d)).collect();
+    let constraints = bodies.assembly().constraints();
+    let (order, is_ordered) = (constraints.arcs(alive), constraints.is_ordered(alive));
     let opposite = |k: usize| directions.iter().position(|d| *d == -directions[k]);
     let look = |memory: &mut Memory, k: usize| {
         watch.check()?;
@@ -65,15 +67,16 @@ pub(super) fn smallest(
         }
         let mut found = Vec::new();
         for k in std::iter::once(k).chain(opposite(k)) {
-            let search = |g: &[usize]| allowed(g).is_some();
+            let d = directions[k];
+            let search = |g: &[usize]| allowed(g, d).is_some();
             // Each direction is looked at by one thread.
             let mut known = answers[k].lock().unwrap_or_else(PoisonError::into_inner);
-            let asked = Asked { bodies, d: directions[k], start, known: &mut known, memory };
-            match removable(asked, alive, search) {
-                Search::OneComponent => break,
-                Search::NoneAllowed => (),
+            let asked = Asked { bodies, d, start, known: &mut known, memory };
+            match removable(asked, &order, alive, search) {
+                Search::OneComponent if !is_ordered => break,
+                Search::OneComponent | Search::NoneAllowed => (),
                 Search::Found(group) => {
-                    let moving = allowed(&group).unwrap_or(usize::MAX);
+                    let moving = allowed(&group, d).unwrap_or(usize::MAX);
                     found.push(((moving, k), group));
                 }
             }
@@ -138,7 +141,12 @@ enum Search {
 }
 
 /// A group that can be taken out along a direction and is allowed to; the smallest that was come across.
-fn removable(mut asked: Asked, alive: &[bool], allowed: impl Fn(&[usize]) -> bool) -> Search {
+fn removable(
+    mut asked: Asked,
+    order: &[(usize, usize)],
+    alive: &[bool],
+    allowed: impl Fn(&[usize]) -> bool,
+) -> Search {
     let count = alive.iter().filter(|a| **a).count();
     let ahead = |part: usize| -> Vec<usize> {
         let all = asked.bodies.ahead(part, asked.d).into_iter().map(|x| x.1);
@@ -146,7 +154,7 @@ fn removable(mut asked: Asked, alive: &[bool], allowed: impl Fn(&[usize]) -> boo
     };
     let mut unasked: Vec<Vec<usize>> =
         (0..alive.len()).map(|k| if alive[k] { ahead(k) } else { Vec::new() }).collect();
-    let mut arcs: Vec<(usize, usize)> = Vec::new();
+    let mut arcs = order.to_vec();
     loop {
         let graph = Blocking::from_arcs(arcs.iter().copied(), alive);
         let mut groups = graph.removable();

@@ -20,6 +20,7 @@ use glam::DVec3;
 
 use super::single::Single;
 use crate::bodies::Bodies;
+use crate::constraints::Constraints;
 use crate::liaisons::reach;
 use crate::matrix::{Matrix, bits};
 
@@ -61,7 +62,8 @@ pub(super) struct Order<'a> {
     there: Vec<bool>,
     /// By shape, that is its first part: how many of those that move are there.
     counts: Vec<usize>,
-    base: Vec<bool>,
+    /// What does not move: the base, and what is not to be moved.
+    stays: Vec<bool>,
     /// By part: what rests on it, of all parts.
     carried: Vec<Vec<usize>>,
     /// By part: on how many it rests; `None` if it does not fall whatever goes.
@@ -81,24 +83,33 @@ struct Shadow {
 }
 
 impl<'a> Order<'a> {
-    /// Of the parts of a group that are there.
+    /// Of the parts of a group that are there; of these `movable` ones move, if not all but the base, which none of
+    /// the `wanted` ones is.
     pub(super) fn new(
         bodies: &'a Bodies,
         matrix: &Matrix,
         likes: &'a [usize],
         there: &[bool],
         up: DVec3,
+        movable: Option<&[usize]>,
+        wanted: &[usize],
     ) -> Self {
-        let base = base(bodies, there, up);
+        let moves = |part: usize| movable.unwrap_or(wanted).contains(&part);
+        let base = base(bodies, there, up, moves);
         let shadows = matrix.directions().iter().map(|d| Shadow::new(bodies, *d)).collect();
         let size = bodies.assembly().bounds().size().max_element().max(f64::MIN_POSITIVE);
         let (carried, props) = supports(bodies, matrix, there, &base, up);
         let there = there.to_vec();
+        let stays = if movable.is_some() {
+            (0..likes.len()).map(|part| there[part] && !moves(part)).collect()
+        } else {
+            base
+        };
         let mut counts = vec![0; likes.len()];
         for part in (0..likes.len()).filter(|&part| there[part]) {
-            counts[likes[part]] += usize::from(!base[part]);
+            counts[likes[part]] += usize::from(!stays[part]);
         }
-        Self { bodies, up, size, likes, there, counts, base, carried, props, shadows, last: None }
+        Self { bodies, up, size, likes, there, counts, stays, carried, props, shadows, last: None }
     }
 
     /// By part, whether it is still there.
@@ -106,24 +117,42 @@ impl<'a> Order<'a> {
         &self.there
     }
 
-    /// What moves if a group goes one way, or the others the other way, increasing: what the base is not in; `None` if
-    /// it is in both.
+    /// The arcs of the order that is asked for.
+    pub(super) fn arcs(&self) -> Vec<(usize, usize)> {
+        self.constraints().arcs(&self.there)
+    }
+
+    fn constraints(&self) -> &'a Constraints {
+        self.bodies.assembly().constraints()
+    }
+
+    /// What moves if a group goes one way, or the others the other way, increasing: what nothing that stays is in; `None`
+    /// if such is in both, or the order does not let it go.
     pub(super) fn moving(&self, group: &[usize], left: &[usize]) -> Option<Vec<usize>> {
-        if !group.iter().any(|&k| self.base[k]) {
-            return Some(group.to_vec());
+        let stays = |&part: &usize| self.stays[part];
+        let mut moving = group.to_vec();
+        if group.iter().any(stays) {
+            moving = left.iter().copied().filter(|k| !group.contains(k)).collect();
         }
-        let others: Vec<usize> = left.iter().copied().filter(|k| !group.contains(k)).collect();
-        (!others.is_empty() && !others.iter().any(|&k| self.base[k])).then_some(others)
+        let may = !moving.is_empty() && !moving.iter().any(stays);
+        (may && self.constraints().lets_go(&moving, &self.there)).then_some(moving)
+    }
+
+    /// What moves, and where to, if a group goes along `d`, or the others along `-d`; `None` if nothing may.
+    pub(super) fn way(&self, group: &[usize], left: &[usize], d: DVec3) -> Option<Choice> {
+        let parts = self.moving(group, left)?;
+        let direction = if parts == group { d } else { DVec3::ZERO - d };
+        self.constraints().allows(&parts, direction).then_some(Choice { parts, direction })
     }
 
     /// How many parts move so, if any may.
-    pub(super) fn how_many(&self, group: &[usize], left: &[usize]) -> Option<usize> {
-        self.moving(group, left).map(|parts| parts.len())
+    pub(super) fn how_many(&self, group: &[usize], left: &[usize], d: DVec3) -> Option<usize> {
+        self.way(group, left, d).map(|way| way.parts.len())
     }
 
-    /// Whether a part stays where it is, for all others to be taken from it.
-    pub(super) fn is_base(&self, part: usize) -> bool {
-        self.base[part]
+    /// Whether a part stays where it is, for others to be taken from it.
+    pub(super) fn stays(&self, part: usize) -> bool {
+        self.stays[part]
     }
 
     /// These parts have gone, along a direction.
@@ -153,7 +182,9 @@ impl<'a> Order<'a> {
     pub(super) fn alone(&mut self, single: &Single) -> Option<Choice> {
         let mut ways: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (k, part) in single.all() {
-            ways.entry(part).or_default().push(k);
+            if self.constraints().allows(&[part], self.shadows[k].direction) {
+                ways.entry(part).or_default().push(k);
+            }
         }
         let groups = ways.into_iter().map(|(part, ways)| (vec![part], ways));
         self.best(groups)
@@ -274,8 +305,8 @@ impl Shadow {
 }
 
 /// The parts that stay: those that are fixed, or the largest one, by its box and then its volume, and of equal ones the
-/// lowest.
-fn base(bodies: &Bodies, there: &[bool], up: DVec3) -> Vec<bool> {
+/// lowest; none that `moves`, nor, if there are others, any that has to leave before others.
+fn base(bodies: &Bodies, there: &[bool], up: DVec3, moves: impl Fn(usize) -> bool) -> Vec<bool> {
     let parts = bodies.assembly().parts();
     let mut base: Vec<bool> = parts.iter().zip(there).map(|(p, t)| *t && p.fixed()).collect();
     if base.contains(&true) {
@@ -291,7 +322,10 @@ fn base(bodies: &Bodies, there: &[bool], up: DVec3) -> Vec<bool> {
         let height = bounds.center().dot(up);
         [size.element_product(), area, parts[k].solid().volume(), -height].map(digits)
     };
-    let all = (0..parts.len()).filter(|&k| there[k]);
+    let first = |k: usize| bodies.assembly().constraints().is_first(k);
+    let all: Vec<usize> = (0..parts.len()).filter(|&k| there[k] && !moves(k)).collect();
+    let any = all.iter().all(|&k| first(k));
+    let all = all.into_iter().filter(|&k| any || !first(k));
     let larger = |a: &usize, b: &usize| {
         let by = key(*a).partial_cmp(&key(*b)).unwrap_or(std::cmp::Ordering::Equal);
         by.then(b.cmp(a))

@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::Way;
 use super::several::Aside;
-use crate::bodies::{Bodies, Room};
+use crate::bodies::Bodies;
 use crate::error::AssemblyError;
 
 /// Places on the way, as shares of the travel.
@@ -38,20 +38,10 @@ fn straight(
     let d = way.direction;
     let mut workspace = Workspace::default();
     let mut travel = NOTHING;
-    let mut there = vec![false; bodies.len()];
-    for &part in others {
-        there[part] = true;
-    }
-    let ahead: Vec<[usize; 2]> = way
-        .parts
-        .iter()
-        .flat_map(|&a| bodies.ahead(a, d).into_iter().map(move |(_, b)| [a, b]))
-        .filter(|[_, b]| there[*b])
-        .collect();
-    for &pair in &ahead {
-        if bodies.room(pair, d, None, start, &mut workspace) != Room::Free {
-            return Err(refused(bodies, pair, d, 0.0));
-        }
+    let ahead = bodies.pairs_ahead(&way.parts, d, &bodies.mask(others));
+    let mut all = ahead.iter();
+    if let Some(&pair) = all.find(|pair| bodies.meets(**pair, d, start, &mut workspace)) {
+        return Err(refused(bodies, pair, d, 0.0));
     }
     for &a in &way.parts {
         for &b in others {

@@ -124,6 +124,8 @@ fn not_asked(bodies: &Bodies, left: &[usize], options: PlanOptions) -> Option<&'
         Some("no more than one was asked for")
     } else if bodies.fit().tolerance() < 0.0 {
         Some("the parts are to be kept apart")
+    } else if assembly.constraints().concern(left) {
+        Some("an order, or where parts never go, is asked for")
     } else if left.len() > MOST_PARTS {
         Some("there are more than 24 parts")
     } else if left.iter().any(|&k| assembly.parts()[k].is_surface()) {
@@ -148,10 +150,7 @@ fn directions(placed: &[Placed<'_, Solid>], matrix: &Matrix) -> Vec<DVec3> {
 
 /// Whether a group can go by a step along a direction of the matrix: if none can, no cast is asked for.
 fn anything_moves(bodies: &Bodies, left: &[usize], matrix: &Matrix) -> bool {
-    let mut among = vec![false; bodies.len()];
-    for &k in left {
-        among[k] = true;
-    }
+    let among = bodies.mask(left);
     let size = |&k: &usize| bodies.bounds(k).size().max_element();
     let step = WayOptions::default().step * left.iter().map(size).fold(0.0, f64::max);
     let fixed = |k: &usize| bodies.assembly().parts()[*k].fixed();

@@ -19,16 +19,23 @@ pub(super) struct Single {
 }
 
 impl Single {
-    /// Of the parts that are `alive`; of those, `movable` ones are looked for.
-    pub(super) fn new(matrix: &Matrix, alive: &[bool], movable: impl Fn(usize) -> bool) -> Self {
+    /// Of the parts that are `alive`, with the arcs of an order; of those, `movable` ones are looked for.
+    pub(super) fn new(
+        matrix: &Matrix,
+        order: &[(usize, usize)],
+        alive: &[bool],
+        movable: impl Fn(usize) -> bool,
+    ) -> Self {
         let wanted: Vec<bool> = (0..alive.len()).map(|k| alive[k] && movable(k)).collect();
         let (mut met, mut met_by, mut free) = (Vec::new(), Vec::new(), BTreeSet::new());
         for k in 0..matrix.directions().len() {
             let mut counts = vec![0; alive.len()];
             let mut by = Vec::new();
-            for m in matrix.meetings(k).iter().filter(|m| alive[m.moving] && alive[m.fixed]) {
-                counts[m.moving] += 1;
-                by.push([m.fixed as u32, m.moving as u32]);
+            let arcs = matrix.meetings(k).iter().map(|m| (m.moving, m.fixed));
+            let arcs = arcs.chain(order.iter().copied());
+            for (moving, fixed) in arcs.filter(|(a, b)| alive[*a] && alive[*b]) {
+                counts[moving] += 1;
+                by.push([fixed as u32, moving as u32]);
             }
             by.sort_unstable();
             let alone = |part: &usize| wanted[*part] && counts[*part] == 0;

@@ -20,11 +20,14 @@ impl Plan {
         stages
     }
 
-    /// What a stage takes away: names of its parts, or of several that are alike how many, and what their names share.
+    /// What a stage takes away: names of its parts, after that of their subassembly, or of several that are alike how many, and what their names share.
     pub fn takes(&self, assembly: &Assembly, stage: &Range<usize>) -> String {
         let steps = &self.steps[stage.clone()];
         let all: Vec<usize> = steps.iter().flat_map(|step| step.parts.iter().copied()).collect();
         let names = assembly.names(&all);
+        if let (Some(name), [_]) = (assembly.constraints().name(&all), steps) {
+            return format!("{name} ({})", names.join(", "));
+        }
         match common_name(&names) {
             Some(name) if steps.len() > 1 => format!("{} x {name}", steps.len()),
             _ => names.join(", "),

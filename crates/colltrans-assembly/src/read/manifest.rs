@@ -1,4 +1,4 @@
-//! A manifest: which files, where, which of them stay, and pairs that let each other pass.
+//! A manifest: which files, where, which of them stay, pairs that let each other pass, and what is asked of plans.
 //!
 //! The same fields in TOML and JSON; `docs/assemblies.md` lists them.
 
@@ -9,7 +9,8 @@ use serde::Deserialize;
 
 use super::files::Source;
 use super::{Budget, assembled, contents, in_file, piece, plain, plain_words, stem};
-use crate::error::ReadError;
+use crate::constraints::WITHIN_DEGREES;
+use crate::error::{AssemblyError, ReadError};
 use crate::part::{Assembly, Ignored, Part};
 
 #[derive(Deserialize)]
@@ -22,6 +23,38 @@ struct Manifest {
     ignore: Vec<[String; 2]>,
     #[serde(default)]
     ignore_always: Vec<[String; 2]>,
+    #[serde(default)]
+    before: Vec<[String; 2]>,
+    #[serde(default)]
+    after: Vec<[String; 2]>,
+    #[serde(default)]
+    together: Vec<Vec<String>>,
+    #[serde(default, alias = "subassembly")]
+    subassemblies: Vec<Subassembly>,
+    #[serde(default)]
+    never: Vec<Kept>,
+}
+
+/// Parts that leave as one and are taken apart by themselves.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "an object that holds a subassembly")]
+struct Subassembly {
+    name: String,
+    parts: Vec<String>,
+}
+
+/// Where parts never go.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "an object that says where parts never go")]
+struct Kept {
+    parts: Vec<String>,
+    along: [f64; 3],
+    #[serde(default = "within_degrees")]
+    within_degrees: f64,
+}
+
+const fn within_degrees() -> f64 {
+    WITHIN_DEGREES
 }
 
 #[derive(Deserialize)]
@@ -106,10 +139,31 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     let (ignore, always) = (found(&manifest.ignore), found(&manifest.ignore_always));
     assembly = assembly.with_ignored(&ignore, Ignored::Overlap).map_err(in_file(path))?;
     assembly = assembly.with_ignored(&always, Ignored::Always).map_err(in_file(path))?;
+    assembly = manifest.constrained(assembly).map_err(in_file(path))?;
     for file in missing {
         assembly = assembly.with_note(format!("{file} cannot be found and is left out"));
     }
     Ok(if let Some(unit) = manifest.unit { assembly.with_unit(unit) } else { assembly })
+}
+
+impl Manifest {
+    /// The assembly with what is asked of its plans.
+    fn constrained(&self, mut assembly: Assembly) -> Result<Assembly, AssemblyError> {
+        let turned = self.after.iter().map(|[later, first]| [first, later]);
+        for [first, later] in self.before.iter().map(|[a, b]| [a, b]).chain(turned) {
+            assembly = assembly.with_before(&[first], &[later])?;
+        }
+        for parts in &self.together {
+            assembly = assembly.with_together(parts)?;
+        }
+        for Subassembly { name, parts } in &self.subassemblies {
+            assembly = assembly.with_subassembly(name, parts)?;
+        }
+        for Kept { parts, along, within_degrees } in &self.never {
+            assembly = assembly.with_never(parts, DVec3::from_array(*along), *within_degrees)?;
+        }
+        Ok(assembly)
+    }
 }
 
 /// Parts in the making.

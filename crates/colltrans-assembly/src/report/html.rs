@@ -158,6 +158,9 @@ fn steps(f: &Findings) -> Markup {
             @if stages > MOST_STEPS {
                 p { (stages - MOST_STEPS) " more are in the JSON." }
             }
+            @if let Some(wanted) = &f.plan.wanted {
+                p { "To take out " (wanted.words(f.bodies.assembly())) "." }
+            }
             @if !f.plan.last.is_empty() {
                 p { "What remains: " (f.bodies.assembly().names(&f.plan.last).join(", ")) "." }
             }

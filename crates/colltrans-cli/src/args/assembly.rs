@@ -62,9 +62,8 @@ pub(crate) struct AssemblyArguments {
     /// The direction of gravity: parts are rather lifted, and not taken from under others [default: -y of glTF, else -z]
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = direction)]
     pub(crate) gravity: Option<DVec3>,
-    /// A part that is never moved
-    #[arg(long, value_name = "PART")]
-    pub(crate) fixed: Vec<String>,
+    #[command(flatten)]
+    pub(crate) asked: ConstraintArguments,
     /// Where `package://` of a URDF file is looked for
     #[arg(long, value_name = "DIR")]
     pub(crate) package: Vec<PathBuf>,
@@ -95,4 +94,31 @@ pub(crate) struct AssemblyArguments {
     /// Number of threads [default: all cores]; the answer is the same
     #[arg(long, value_name = "N", value_parser = threads)]
     pub(crate) threads: Option<NonZeroUsize>,
+}
+
+/// What is asked of the plan.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "What is asked of the plan; PART* is all parts whose names begin so")]
+pub(crate) struct ConstraintArguments {
+    /// A part that is never moved
+    #[arg(long, value_name = "PART")]
+    pub(crate) fixed: Vec<String>,
+    /// Take out this part, or these, and only what has to go for that: the fewest others, if that can be said
+    #[arg(long, value_name = "PART,...", value_delimiter = ',')]
+    pub(crate) remove: Vec<String>,
+    /// B does not leave while A stays
+    #[arg(long, value_name = "A,B")]
+    pub(crate) before: Vec<String>,
+    /// A does not leave while B stays
+    #[arg(long, value_name = "A,B")]
+    pub(crate) after: Vec<String>,
+    /// Parts that leave as one and are not taken apart
+    #[arg(long, value_name = "A,B,...")]
+    pub(crate) together: Vec<String>,
+    /// Parts that leave as one and are taken apart by themselves
+    #[arg(long, value_name = "NAME=A,B,...")]
+    pub(crate) subassembly: Vec<String>,
+    /// A part never goes along a direction, nor within 45 degrees of it, or so many as are given
+    #[arg(long, value_name = "PART=X,Y,Z[@DEGREES]")]
+    pub(crate) never: Vec<String>,
 }

@@ -381,6 +381,11 @@ A manifest, in TOML (JSON has the same fields):
   unit = "mm"                                # said, never guessed; may be missing
   ignore = [["pin", "block"]]                # pairs whose overlap at the start lets them pass
   ignore_always = [["rubber", "lid"]]        # pairs that never block each other
+  before = [["pin", "lid"]]                  # the second does not leave while the first stays
+  after = [["block", "pin"]]                 # the other way round
+  together = [["rotor", "magnet_*"]]         # leave as one, and are not taken apart
+  subassembly = [{ name = "pump", parts = ["rotor", "magnet_*", "ring"] }]   # as one, then apart
+  never = [{ parts = ["tank"], along = [0, 0, -1], within_degrees = 45 }]
   [[part]]
   file = "pin.stl"                           # or several: ["a.stl", "b.stl"]
   name = "pin"                               # the file's name, if missing
@@ -396,7 +401,8 @@ With --json:
    "rooms": [{"part", "direction", "outcome", "distance", "by", "point", "normal",
      "translation", "translation_bounds", "shrunk_distance", "shrunk_distance_bounds" (or "kept_distance", "kept_distance_bounds")}],
    "plan": [{"parts": [...], "direction": [x, y, z], "travel", "travel_bounds",
-     "path": [{"parts", "direction", "travel"}], "back", "within", "ignored", "surfaces"}],
+     "path": [{"parts", "direction", "travel"}], "back", "within", "ignored", "surfaces",
+     "subassembly"}], "wanted" (of --remove): {"parts", "others", "least", "out"},
    "left": [...], "stuck": [{"parts": [...], "because", "directions", "proof": {"proven": cells} or
      {"asked": directions}, "moves": {"legs", "directions", "places", "complete"} or
      {"proven": cells} or {"not_asked": why}, "holds"}],

@@ -130,6 +130,9 @@ fn summary(f: &Findings) -> String {
     for stage in f.plan.stages() {
         tell(&mut text, f, &stage);
     }
+    if let Some(wanted) = &f.plan.wanted {
+        let _ = writeln!(text, "to take out\n  {}", shown(wanted.words(assembly)));
+    }
     if !f.plan.last.is_empty() {
         let _ = writeln!(text, "what remains\n  {}", names(&f.plan.last));
     }

@@ -496,3 +496,45 @@ fn a_full_disk_leaves_nothing_and_is_said() {
         |name: &std::fs::DirEntry| name.file_name().to_string_lossy().ends_with("partial");
     assert!(!std::fs::read_dir(place).unwrap().any(|entry| partial(&entry.unwrap())));
 }
+
+#[test]
+fn what_is_asked_of_a_plan_is_kept_to() {
+    let text = answered(&data(), &["gearbox_small", "--fixed", "housing", "--remove", "cover"]);
+    let words = "cover: 4 other parts go (bolt_0, bolt_1, bolt_2, bolt_3); no fewer are enough";
+    assert!(text.contains(words), "{text}");
+    let asked = ["gearbox_small", "--subassembly", "drive=gear,shaft", "--before", "bolt_3,bolt_0"];
+    let found = facts(&data(), &asked);
+    let steps = found["plan"].as_array().unwrap();
+    let drive = steps.iter().find(|step| step["subassembly"] == "drive").unwrap();
+    assert_eq!(names(&drive["parts"]), ["gear", "shaft"]);
+    let first = |part: &str| steps.iter().position(|s| names(&s["parts"]) == [part]).unwrap();
+    assert!(first("bolt_3") < first("bolt_0"));
+    let upright = ["gearbox_small", "--never", "bolt*=z@80", "--fixed", "housing"];
+    assert!(facts(&data(), &upright)["stuck"][0]["constrained"] == true);
+    let wrong: [(&[&str], &[&str]); 5] = [
+        (&["--before", "bolt_0,cover", "--after", "bolt_0,cover"], &["bolt_0, cover"]),
+        (&["--together", "cover"], &["takes more parts than 1"]),
+        (&["--never", "cover"], &["not PART=X,Y,Z"]),
+        (&["--never", "cover=z@200"], &["200 degrees"]),
+        (&["--remove", "*"], &["16 of 16 parts"]),
+    ];
+    for (words, said) in wrong {
+        let all = [&["gearbox_small"][..], words].concat();
+        refused(&data(), &all, 2, said);
+    }
+}
+
+#[test]
+fn a_manifest_asks_for_an_order() {
+    let folder = stacked();
+    let text = std::fs::read_to_string(folder.path().join("two.toml")).unwrap();
+    let ask = |more: &str| {
+        std::fs::write(folder.path().join("asked.toml"), format!("{more}\n{text}")).unwrap();
+        facts(folder.path(), &["asked.toml"])
+    };
+    assert_eq!(names(&ask("before = [['low', 'high']]")["plan"][0]["parts"]), ["low"]);
+    assert_eq!(names(&ask("after = [['low', 'high']]")["plan"][0]["parts"]), ["high"]);
+    assert!(ask("together = [['low', 'high']]")["plan"].as_array().unwrap().is_empty());
+    let kept = ask("never = [{ parts = ['h*'], along = [0, 0, 1] }]");
+    assert!(kept["plan"][0]["direction"][2].as_f64().unwrap() < 0.8);
+}

@@ -1,0 +1,320 @@
+//! What is asked of plans beside geometry: who leaves before whom, who leaves with whom, and who never goes where.
+//!
+//! An order is more arcs of the blocking graph, along every direction: `a` before `b` is an arc from `b` to `a`, as if `b`
+//! met it, and parts that leave as one are a ring of arcs. So all that holds of blocking graphs holds with an order, too:
+//! what can leave stays able to leave, and a greedy plan takes as much apart as any. A direction along which a part never
+//! goes is one along which no group with it leaves.
+//!
+//! Invariant: units that are never taken apart share no part; of two others that share one, one holds the other.
+
+use glam::DVec3;
+use petgraph::algo::tarjan_scc;
+use petgraph::graph::DiGraph;
+use petgraph::unionfind::UnionFind;
+
+use crate::candidates::unit;
+use crate::error::AssemblyError;
+
+/// Parts that leave as one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Unit {
+    /// What it is called.
+    pub name: Option<String>,
+    /// Positions of the parts, in increasing order.
+    pub parts: Vec<usize>,
+    /// Whether it is taken apart once nothing else is left: a subassembly is, what stays together is not.
+    pub apart: bool,
+}
+
+/// A part, and where it never goes.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Never {
+    /// Position of the part.
+    pub part: usize,
+    /// Of length 1.
+    pub direction: DVec3,
+    /// Nor along any direction within this angle, in degrees.
+    pub within: f64,
+}
+
+/// What is asked of plans.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Constraints {
+    before: Vec<[usize; 2]>,
+    units: Vec<Unit>,
+    never: Vec<Never>,
+}
+
+/// Where nothing else is said, parts that never go along a direction do not within so many degrees of it.
+pub const WITHIN_DEGREES: f64 = 45.0;
+
+/// Cosines are rounded: an angle of just the one given counts as within.
+const ROUNDED: f64 = 1e-12;
+
+impl Constraints {
+    /// Pairs of which the first leaves no later than the second: not while the second leaves and it stays.
+    pub fn before(&self) -> &[[usize; 2]] {
+        &self.before
+    }
+
+    /// Parts that leave as one.
+    pub fn units(&self) -> &[Unit] {
+        &self.units
+    }
+
+    /// Where parts never go.
+    pub fn never(&self) -> &[Never] {
+        &self.never
+    }
+
+    /// Adds that parts leave before others.
+    ///
+    /// # Errors
+    /// Then something would leave before itself; `name` says how a part is called.
+    pub(crate) fn add_before<'a>(
+        &mut self,
+        [first, second]: [&[usize]; 2],
+        name: impl Fn(usize) -> &'a str,
+    ) -> Result<(), AssemblyError> {
+        let pairs = first.iter().flat_map(|&a| second.iter().map(move |&b| [a, b]));
+        self.before.extend(pairs.filter(|[a, b]| a != b));
+        self.before.sort_unstable();
+        self.before.dedup();
+        self.check(name)
+    }
+
+    /// Adds parts that leave as one.
+    ///
+    /// # Errors
+    /// Subassemblies share parts, and neither holds the other; then something would leave before itself.
+    pub(crate) fn add_unit<'a>(
+        &mut self,
+        added: Unit,
+        name: impl Fn(usize) -> &'a str,
+    ) -> Result<(), AssemblyError> {
+        self.units.push(added);
+        // What stays together is one if it shares a part; and a subassembly that holds some of it holds all.
+        while let Some([a, b]) = self.overlapping(|a, b| !a.apart || !b.apart) {
+            let (from, to) = if self.units[b].apart { (a, b) } else { (b, a) };
+            let parts = self.units[from].parts.clone();
+            let both = &mut self.units[to];
+            both.parts.extend(parts);
+            both.parts.sort_unstable();
+            both.parts.dedup();
+            if !both.apart {
+                self.units.remove(from);
+            }
+        }
+        if let Some(pair) = self.overlapping(|_, _| true) {
+            let names = pair.map(|k| {
+                let unit = &self.units[k];
+                let parts = || unit.parts.iter().map(|&p| name(p)).collect::<Vec<_>>().join(", ");
+                unit.name.clone().unwrap_or_else(parts)
+            });
+            return Err(AssemblyError::Subassemblies { names });
+        }
+        self.check(name)
+    }
+
+    /// Two units that share parts, of which neither holds the other as a subassembly may.
+    fn overlapping(&self, wanted: impl Fn(&Unit, &Unit) -> bool) -> Option<[usize; 2]> {
+        let holds = |a: &Unit, b: &Unit| a.apart && b.parts.iter().all(|p| a.parts.contains(p));
+        let pairs = (0..self.units.len()).flat_map(|b| (0..b).map(move |a| [a, b]));
+        let clash = |pair: &[usize; 2]| {
+            let [a, b] = pair.map(|k| &self.units[k]);
+            let shared = a.parts.iter().any(|p| b.parts.contains(p));
+            shared && !holds(a, b) && !holds(b, a) && wanted(a, b)
+        };
+        pairs.into_iter().find(clash)
+    }
+
+    /// Adds a direction along which a part never goes, nor along others within an angle in degrees.
+    ///
+    /// # Errors
+    /// A direction of no length; an angle that is not between 0 and 180.
+    pub(crate) fn add_never(
+        &mut self,
+        part: usize,
+        direction: DVec3,
+        within: f64,
+    ) -> Result<(), AssemblyError> {
+        if !(0.0..180.0).contains(&within) {
+            return Err(AssemblyError::Angle { degrees: within });
+        }
+        self.never.push(Never { part, direction: unit(direction)?, within });
+        Ok(())
+    }
+
+    /// That nothing leaves before itself, parts that stay together being one.
+    fn check<'a>(&self, name: impl Fn(usize) -> &'a str) -> Result<(), AssemblyError> {
+        let count = self.before.iter().flatten().chain(self.units.iter().flat_map(|u| &u.parts));
+        let mut one = UnionFind::new(count.max().map_or(0, |most| most + 1));
+        for unit in self.units.iter().filter(|unit| !unit.apart) {
+            unit.parts.windows(2).for_each(|pair| {
+                one.union(pair[0], pair[1]);
+            });
+        }
+        let arcs = self.before.iter().map(|pair| pair.map(|part| one.find(part) as u32));
+        let graph = DiGraph::<(), ()>::from_edges(arcs.map(|[a, b]| (a, b)));
+        let round = tarjan_scc(&graph)
+            .into_iter()
+            .find(|all| all.len() > 1 || graph.contains_edge(all[0], all[0]));
+        let Some(round) = round else { return Ok(()) };
+        let among = |part: &usize| round.iter().any(|k| k.index() == one.find(*part));
+        let mut parts: Vec<usize> = self.before.iter().flatten().copied().filter(among).collect();
+        parts.sort_unstable();
+        parts.dedup();
+        let names = parts.into_iter().map(|part| name(part).to_owned()).collect();
+        Err(AssemblyError::Order { names })
+    }
+
+    /// Whether anything is asked of the order of these, or of their directions.
+    pub(crate) fn concern(&self, parts: &[usize]) -> bool {
+        let mut there = vec![false; parts.iter().max().map_or(0, |most| most + 1)];
+        for &part in parts {
+            there[part] = true;
+        }
+        let kept = self.never.iter().any(|never| is_there(&there, never.part));
+        kept || !self.arcs(&there).is_empty()
+    }
+
+    /// The arcs of the order among the parts that are there, along every direction.
+    pub(crate) fn arcs(&self, there: &[bool]) -> Vec<(usize, usize)> {
+        let ordered =
+            self.before.iter().filter(|pair| pair.iter().all(|&part| is_there(there, part)));
+        let mut arcs: Vec<(usize, usize)> = ordered.map(|&[a, b]| (b, a)).collect();
+        arcs.extend(self.pairs(there).into_iter().flat_map(|[a, b]| [(a, b), (b, a)]));
+        arcs
+    }
+
+    /// Pairs of parts that are there and leave as one: they join all that do.
+    pub(crate) fn pairs(&self, there: &[bool]) -> Vec<[usize; 2]> {
+        let mut pairs = Vec::new();
+        for unit in self.units.iter().filter(|unit| !unit.is_released(there)) {
+            let parts = unit.parts.iter().copied().filter(|&part| is_there(there, part));
+            let parts: Vec<usize> = parts.collect();
+            pairs.extend(parts.windows(2).map(|pair| [pair[0], pair[1]]));
+        }
+        pairs
+    }
+
+    /// How many units are to be taken apart now, as nothing else is there.
+    pub(crate) fn released(&self, there: &[bool]) -> usize {
+        self.units.iter().filter(|unit| unit.is_released(there)).count()
+    }
+
+    /// Whether a group had to wait until a part was gone: it comes before some of the group, or some of the group is of a
+    /// unit that is taken apart once all else is gone.
+    pub(crate) fn waits(&self, group: &[usize], part: usize) -> bool {
+        let later = |pair: &[usize; 2]| pair[0] == part && group.contains(&pair[1]);
+        let apart = |unit: &Unit| {
+            let some = group.iter().any(|k| unit.parts.contains(k));
+            some && !unit.parts.contains(&part) && unit.parts.iter().any(|k| !group.contains(k))
+        };
+        self.before.iter().any(later) || self.units.iter().any(apart)
+    }
+
+    /// Whether arcs run one way: then what holds along `d` does not hold along `-d` with all arcs turned round.
+    pub(crate) fn is_ordered(&self, there: &[bool]) -> bool {
+        self.before.iter().any(|pair| pair.iter().all(|&part| there[part]))
+    }
+
+    /// Whether the order lets these leave all others that are there.
+    pub(crate) fn lets_go(&self, group: &[usize], there: &[bool]) -> bool {
+        !self.arcs(there).iter().any(|(a, b)| group.contains(a) && !group.contains(b))
+    }
+
+    /// Whether none of these is kept from a direction.
+    pub(crate) fn allows(&self, group: &[usize], d: DVec3) -> bool {
+        let kept = |never: &&Never| {
+            group.contains(&never.part)
+                && never.direction.dot(d) >= never.within.to_radians().cos() - ROUNDED
+        };
+        !self.never.iter().any(|never| kept(&never))
+    }
+
+    /// Whether all of these stay together.
+    pub(crate) fn keeps_together(&self, parts: &[usize]) -> bool {
+        let mut units = self.units.iter().filter(|unit| !unit.apart);
+        units.any(|unit| parts.iter().all(|part| unit.parts.contains(part)))
+    }
+
+    /// Whether others have to leave after a part.
+    pub(crate) fn is_first(&self, part: usize) -> bool {
+        self.before.iter().any(|pair| pair[0] == part)
+    }
+
+    /// What a group is called, if it is just a subassembly.
+    pub fn name(&self, parts: &[usize]) -> Option<&str> {
+        let mut named = self.units.iter().filter(|unit| unit.parts == parts);
+        named.find_map(|unit| unit.name.as_deref())
+    }
+}
+
+impl Unit {
+    /// Whether it is to be taken apart now: nothing else is there.
+    pub(crate) fn is_released(&self, there: &[bool]) -> bool {
+        let all = there.iter().filter(|there| **there).count();
+        let own = self.parts.iter().filter(|&&part| is_there(there, part)).count();
+        self.apart && all == own
+    }
+}
+
+/// Masks of some parts may be shorter than all.
+fn is_there(there: &[bool], part: usize) -> bool {
+    there.get(part).copied().unwrap_or(false)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn unit_of(parts: &[usize], apart: bool) -> Unit {
+        Unit { name: None, parts: parts.to_vec(), apart }
+    }
+
+    #[test]
+    fn nothing_leaves_before_itself() {
+        let name = |k: usize| ["a", "b", "c", "d"][k];
+        let mut order = Constraints::default();
+        order.add_before([&[0], &[1, 2]], name).unwrap();
+        order.add_before([&[1], &[2]], name).unwrap();
+        let refused = order.clone().add_before([&[2], &[0]], name).unwrap_err();
+        assert!(matches!(refused, AssemblyError::Order { names } if names == ["a", "b", "c"]));
+        let refused = order.clone().add_unit(unit_of(&[0, 1], false), name).unwrap_err();
+        assert!(matches!(refused, AssemblyError::Order { .. }));
+        // A subassembly is taken apart later, in that order.
+        order.add_unit(unit_of(&[0, 1], true), name).unwrap();
+        assert!(order.add_never(3, DVec3::ZERO, 10.0).is_err());
+        assert!(order.add_never(3, DVec3::Z, 180.0).is_err());
+    }
+
+    #[test]
+    fn what_stays_together_grows_and_subassemblies_lie_in_each_other() {
+        let name = |k: usize| ["a", "b", "c", "d", "e"][k];
+        let mut order = Constraints::default();
+        order.add_unit(unit_of(&[0, 1], false), name).unwrap();
+        order.add_unit(unit_of(&[1, 2], false), name).unwrap();
+        assert_eq!(order.units(), [unit_of(&[0, 1, 2], false)]);
+        order.add_unit(unit_of(&[2, 3], true), name).unwrap();
+        assert_eq!(order.units()[1].parts, [0, 1, 2, 3]);
+        order.add_unit(unit_of(&[0, 1, 2, 3, 4], true), name).unwrap();
+        let refused = order.clone().add_unit(unit_of(&[3, 4], true), name).unwrap_err();
+        assert!(matches!(refused, AssemblyError::Subassemblies { .. }));
+        // Alone it is taken apart, but for what stays together.
+        let arcs = |there: [bool; 5]| order.arcs(&there).len();
+        assert_eq!(arcs([true; 5]), 4 + 6);
+        assert_eq!(arcs([true, true, true, true, false]), 4);
+        assert!(order.keeps_together(&[0, 2]) && !order.keeps_together(&[0, 3]));
+    }
+
+    #[test]
+    fn directions_within_an_angle_are_kept_from_a_part() {
+        let mut order = Constraints::default();
+        order.add_never(0, DVec3::new(0.0, 0.0, -2.0), 45.0).unwrap();
+        let within = DVec3::new(0.0, 1.0, -1.01).normalize();
+        let beside = DVec3::new(0.0, 1.0, -0.99).normalize();
+        assert!(!order.allows(&[0, 1], within) && order.allows(&[0], beside));
+        assert!(order.allows(&[1], within));
+    }
+}

@@ -1,0 +1,124 @@
+//! Some parts taken out, and no more than has to go for that.
+
+use std::collections::BTreeMap;
+
+use super::least::{Enough, enough};
+use super::{Plan, PlanOptions, Planner};
+use crate::bodies::Bodies;
+use crate::candidates::Finer;
+use crate::error::AssemblyError;
+use crate::likes::likes;
+use crate::matrix::Matrix;
+use crate::part::Assembly;
+use crate::watch::Watch;
+
+/// What goes for some parts to come out.
+#[derive(Debug, Clone, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct Wanted {
+    /// Positions of the parts, in increasing order.
+    pub parts: Vec<usize>,
+    /// What else is taken away, in increasing order.
+    pub others: Vec<usize>,
+    /// Whether it is certain that no fewer others are enough, in single moves along the directions of the matrix, whatever
+    /// groups go along whichever of them. Nothing is said of other directions.
+    pub least: bool,
+    /// Whether the parts come out.
+    pub out: bool,
+}
+
+/// Takes some parts out, with the fewest others along the directions of a matrix that are enough; if none are, with
+/// whatever a plan of all takes away before them and they need.
+///
+/// # Errors
+/// As [`disassemble`](super::disassemble); no parts, or all of them.
+pub fn remove(
+    bodies: &Bodies,
+    matrix: &Matrix,
+    finer: &[Finer],
+    parts: &[usize],
+    options: PlanOptions,
+    watch: Watch,
+) -> Result<Plan, AssemblyError> {
+    let mut parts = parts.to_vec();
+    parts.sort_unstable();
+    parts.dedup();
+    if parts.is_empty() || parts.len() >= bodies.len() {
+        return Err(AssemblyError::Removal { count: parts.len(), of: bodies.len() });
+    }
+    let likes = likes(bodies.assembly());
+    let mut planner = Planner::new(bodies, finer, &likes, options, watch)?;
+    planner.wanted = &parts;
+    let found = enough(bodies, matrix, &parts);
+    planner.movable = found.as_ref().map(|enough| &enough.parts[..]);
+    planner.whole(matrix)?;
+    let mut plan = planner.plan;
+    if found.is_none() {
+        plan.keep_needed(&parts, bodies.len());
+    }
+    let moved =
+        plan.steps.iter().filter(|step| step.within.is_none()).flat_map(|step| step.parts.clone());
+    let (gone, mut others): (Vec<usize>, Vec<usize>) = moved.partition(|part| parts.contains(part));
+    others.sort_unstable();
+    let least = found.is_some_and(|Enough { least, .. }| least);
+    let out = gone.len() == parts.len();
+    plan.wanted = Some(Wanted { parts, others, least, out });
+    Ok(Plan { likes: likes.clone(), ..plan })
+}
+
+impl Plan {
+    /// Leaves out the steps without which some parts come out as well, if they come out.
+    fn keep_needed(&mut self, wanted: &[usize], count: usize) {
+        let is_there = |part: &usize| self.left.contains(part) || self.last.contains(part);
+        if wanted.iter().any(is_there) {
+            return;
+        }
+        let takes = |step: &super::Step| step.parts.iter().any(|part| wanted.contains(part));
+        let mut needed: Vec<bool> = self.steps.iter().map(takes).collect();
+        for k in (0..self.steps.len()).rev().filter(|&k| needed[k]).collect::<Vec<_>>() {
+            self.need(k, &mut needed);
+        }
+        let mut at = BTreeMap::new();
+        let steps = std::mem::take(&mut self.steps).into_iter().enumerate();
+        for (k, mut step) in steps.filter(|(k, _)| needed[*k]) {
+            step.within = step.within.map(|k| at[&k]);
+            step.after = step.after.iter().map(|k| at[k]).collect();
+            at.insert(k, self.steps.len());
+            self.steps.push(step);
+        }
+        let main = self.steps.iter().filter(|step| step.within.is_none());
+        let gone: Vec<usize> = main.flat_map(|step| step.parts.iter().copied()).collect();
+        self.last = (0..count).filter(|part| !gone.contains(part)).collect();
+    }
+
+    /// Marks what a step comes after.
+    fn need(&self, step: usize, needed: &mut [bool]) {
+        for &k in &self.steps[step].after {
+            if !std::mem::replace(&mut needed[k], true) {
+                self.need(k, needed);
+            }
+        }
+    }
+}
+
+impl Wanted {
+    /// What goes, in words.
+    pub fn words(&self, assembly: &Assembly) -> String {
+        let names = |parts: &[usize]| assembly.names(parts).join(", ");
+        let wanted = names(&self.parts);
+        if !self.out {
+            return format!("{wanted}: no way out was found");
+        }
+        let others = match self.others.len() {
+            0 => return format!("{wanted}: nothing else has to go"),
+            1 => "1 other part goes".to_owned(),
+            count => format!("{count} other parts go"),
+        };
+        let least = if self.least {
+            "no fewer are enough, in single moves along the directions asked"
+        } else {
+            "whether fewer are enough is not known"
+        };
+        format!("{wanted}: {others} ({}); {least}", names(&self.others))
+    }
+}

@@ -75,7 +75,7 @@ export class Found {
   private waiting: (() => void)[] = [];
 
   constructor(private readonly around: Around) {
-    for (const [value, text] of [["center", "The paper’s algorithm, from the centre to the end"], ["ellipsoids", "The same, from where ellipsoids would meet"], ["region", "The same, in N(p), around the last solution"], ["portal", "Portal refinement alone, as auto does"]] as const) this.from.append(h("option", { value }, text));
+    for (const [value, text] of [["center", "The paper’s algorithm, from the centre"], ["ellipsoids", "The same, from where ellipsoids meet"], ["region", "The same, in N(p), around the last one"], ["portal", "Portal refinement alone, as auto does"]] as const) this.from.append(h("option", { value }, text));
     this.from.addEventListener("change", () => this.refresh());
     this.looks.append(h("option", { value: "" }, "The question as it is asked"), ...LOOKS.map(({ name }, k) => h("option", { value: k }, name)));
     this.looks.addEventListener("change", () => void this.choose(LOOKS[Number(this.looks.value)]));
@@ -91,7 +91,7 @@ export class Found {
     };
     this.levelsCard = h("section", { class: "card" },
       h("h3", {}, "Minimisation over pairs of sections"),
-      h("p", { class: "proof" }, "Cut both bodies by a plane each: their sections, at the levels x and y. How far along d the one can move until it meets the other is φ(x, y), a translation t in multiples of d. φ is convex, and its least value is the answer; in each cell of its mark the same features touch."),
+      h("p", { class: "proof" }, "Cut both bodies by a plane each: their sections, at the levels x and y. How far along d the one can move until it meets the other is φ(x, y), a translation t in multiples of d. φ is convex, and its least value is the answer; in each cell of its mark, the map below, the same features touch."),
       this.graph.element, this.steps, this.told,
       h("h3", {}, "What is proven, step by step"), this.bounds.element);
     this.body = h("div", { style: "display: contents" },
@@ -178,7 +178,7 @@ export class Found {
       this.moments = moments(this.found, this.refined);
       this.grids.clear();
       this.player.reset(this.moments.length, this.begins());
-      this.tellWork(facts);
+      this.tellWork((start === "region" && facts.region) || facts);
       this.tellTracker(facts);
       if (facts.region) this.motion.count(facts.region.steps.planar_problems, facts.steps.planar_problems);
       this.draw();
@@ -222,7 +222,7 @@ export class Found {
     this.head.replaceChildren(h("h2", {}, headline), h("p", {}, sentence));
   }
 
-  private tellWork({ steps }: PageSearch) {
+  private tellWork({ steps }: Pick<PageSearch, "steps">) {
     const [p, q] = this.bodies()!.map((body) => body.body.facts.vertices) as Two;
     const size = `The bodies have ${p.toLocaleString("en")} and ${q.toLocaleString("en")} vertices, their difference up to ${(p * q).toLocaleString("en")}, and it is never built.`;
     const portalsOnly = this.from.value === "portal" || !steps.planar_problems;
@@ -409,10 +409,11 @@ function words(): HTMLElement {
     ["φ(x, y)", "the t at which the sections at the levels x and y touch: a convex function, whose least value is the answer"],
     ["drum", "the part of a body between the levels of neighbouring vertices, where its section keeps its shape"],
     ["mark", "the map of all cells: in each the same features touch, and φ is linear"],
-    ["M", "in the plane of levels the region that is left; below, the difference of both bodies"],
+    ["M", "in the plane of levels, the region that is left"],
+    ["M = Q − P", "where portals are told, the difference of both bodies"],
   ];
   const link = (href: string, text: string) => h("a", { href, target: "_blank", rel: "noopener" }, text);
-  return h("details", { class: "card words" }, h("summary", {}, "Words, the paper, the source"),
+  return h("details", { class: "card words", open: true }, h("summary", {}, "Words, the paper, the source"),
     h("div", {}, h("dl", {}, ...rows.flatMap(([name, what]) => [h("dt", {}, name), h("dd", {}, what)])),
       h("p", { class: "proof" }, "The paper: C. Mirolo, S. Carpin, E. Pagello, “Incremental Convex Minimization for Computing Collision Translations of Convex Polyhedra”, IEEE Transactions on Robotics 23(3), 2007 (",
         link("https://search.crossref.org/?q=Incremental+Convex+Minimization+for+Computing+Collision+Translations+of+Convex+Polyhedra", "its entry, with the DOI"), "). ",

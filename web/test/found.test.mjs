@@ -123,14 +123,14 @@ test("each of the paper's figures has its example, its section and what it is ab
 
 test("from one solution to the next: N(p), and a motion that ends where it began", async () => {
   const pose = () => page.evaluate(() => window.colltrans.probe().state.poses.moving.join());
-  await look(page, 10, "cubes");
+  await look(page, 10, "thirteen");
   const start = await page.evaluate(() => window.colltrans.probe().state.poses.moving.join());
   await page.waitForSelector(".stack .neighbourhood", { state: "attached" });
   await page.waitForSelector("text=Play a motion");
   await page.waitForFunction(() => /^24 places: \d+ planar problems in N\(p\), \d+ from the centre/.test([...document.querySelectorAll(".found .proof")].map((p) => p.textContent).find((text) => /places:/.test(text)) ?? ""));
   const [, near, all] = /places: (\d+) planar problems in N\(p\), (\d+)/.exec(await page.textContent(".found"));
   assert.ok(Number(near) < Number(all), `${near} of ${all}`);
-  assert.match(await pose(), /^-1\.1,1,5,/);
+  assert.match(await pose(), /^3,1\.1,10,/);
   assert.ok(start.length);
   // What it saves is said of the bracket too, where a direction is changed a little.
   // Where nothing was asked before there is no p, and no graph.

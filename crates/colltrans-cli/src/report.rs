@@ -306,6 +306,8 @@ fn work(solver: Solver, steps: Steps) -> String {
     let Steps { planar_problems, supports, pivots, .. } = steps;
     let sections = match steps {
         Steps { planar_problems: 0, .. } => String::new(),
+        // The first one ended it: nothing was cut.
+        Steps { iterations, region_sides: 0, .. } => format!(" ({iterations} iterations)"),
         Steps { iterations, region_sides, .. } => {
             format!(" ({iterations} iterations; a region of at most {region_sides} sides)")
         }

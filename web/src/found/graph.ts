@@ -102,8 +102,8 @@ export class Graph {
     const colours = palette();
     const sign = (colour: string, text: string, round = false) =>
       h("span", {}, h("i", { style: `background: ${colour}; border-radius: ${round ? 50 : 2}%` }), text);
-    refill(this.legend, sign(colours.text, "c, where it is cut", true), sign(colours.normal, "q, where the shift goes", true), sign(colours.movingMark, "the least value", true),
-      ...(this.surface ? [] : [sign("#e0a526", "cell: the same features touch"), sign(colours.plane, "M, the region that is left"), sign(colours.grid, "cut off"),
+    refill(this.legend, sign(colours.text, "c, where it is cut", true), sign(colours.movingMark, "the least value", true),
+      ...(this.surface ? [] : [sign(colours.normal, "q, where the shift goes", true), sign(colours.normal, "cut line, dashed at c, at q"), sign("#e0a526", "cell: the same features touch"), sign(colours.plane, "M, the region that is left"), sign(colours.grid, "cut off"),
         ...(scene.found.square ? [sign(colours.fixedMark, "N(p)")] : [])]));
   }
 
@@ -152,14 +152,6 @@ export class Graph {
       line(now.levels, true);
       if (now.meets && shift > 0) line([now.levels[0] + shift * (now.best[0] - now.levels[0]), now.levels[1] + shift * (now.best[1] - now.levels[1])], false);
     }
-    if (found.square) {
-      const { center: [x, y], half } = found.square;
-      const [[u, v], [s, t]] = [place([x - half, y + half]), place([x + half, y - half])];
-      // Often smaller than a dot.
-      const [wide, tall] = [Math.max(s - u, 3), Math.max(t - v, 3)];
-      inner.push(svg("rect", { x: (u + s - wide) / 2, y: (v + t - tall) / 2, width: wide, height: tall, fill: colours.fixedMark, "fill-opacity": 0.1, stroke: colours.fixedMark, "stroke-width": 1.6, "stroke-dasharray": "4 3", class: "neighbourhood" }));
-      words.push({ at: [Math.min(Math.max((u + s) / 2, EDGE + 20), SIZE - 34), Math.max(v, 26)], text: "N(p)", italic: true });
-    }
     const dot = (at: Two, colour: string, r: number, more: Record<string, unknown> = {}) => svg("circle", { cx: place(at)[0], cy: place(at)[1], r, fill: colour, stroke: colours.dark ? "#0b0e13" : "#fff", "stroke-width": 1.5, ...(more as Record<string, string>) });
     found.steps.forEach((one, k) => {
       if (!isSeen(one.levels)) return;
@@ -175,6 +167,14 @@ export class Graph {
       const at: Two = [now.levels[0] + shift * (now.best[0] - now.levels[0]), now.levels[1] + shift * (now.best[1] - now.levels[1])];
       marks.push(dot(at, colours.normal, 5));
       if (shift >= 1) words.push({ at: place(at), text: "q", italic: true, bold: true });
+    }
+    if (found.square && isSeen(found.square.center)) {
+      const { center: [x, y], half } = found.square;
+      const [[u, v], [s, t]] = [place([x - half, y + half]), place([x + half, y - half])];
+      // Often smaller than a dot, which it stands around then.
+      const [wide, tall] = [Math.max(s - u, 16), Math.max(t - v, 16)];
+      marks.push(svg("rect", { x: (u + s - wide) / 2, y: (v + t - tall) / 2, width: wide, height: tall, fill: "none", stroke: colours.fixedMark, "stroke-width": 1.6, "stroke-dasharray": "4 3", "pointer-events": "none", class: "neighbourhood" }));
+      words.push({ at: [Math.min(Math.max((u + s) / 2, EDGE + 20), SIZE - 34), Math.max(v, 26)], text: "N(p)", italic: true });
     }
     if (now) marks.push(...this.arrow(place, now.levels, now.gradient, window, colours.text));
     words.sort((a, b) => Number(b.bold ?? 0) - Number(a.bold ?? 0));

@@ -6,7 +6,7 @@ import { type Pose, type Vec, add, lateral, times, unit } from "../math";
 
 /** Places on the way around. */
 const PLACES = 24;
-const [WIDE, HIGH] = [340, 110];
+const [WIDE, HIGH] = [340, 126];
 
 export class Motion {
   readonly element: HTMLElement;
@@ -66,14 +66,14 @@ export class Motion {
     const colours = palette();
     const most = Math.max(1, ...this.counts.map(({ near, all }) => Math.max(near, all)));
     const wide = (WIDE - 20) / PLACES;
-    const tall = (n: number) => (n / most) * (HIGH - 34);
+    const tall = (n: number) => (n / most) * (HIGH - 50);
     const bars = this.counts.flatMap(({ near, all }, k) =>
       ([[all, colours.grid, 0], [near, colours.fixedMark, wide * 0.42]] as const).map(([n, fill, aside]) =>
         svg("rect", { x: 10 + k * wide + aside, y: HIGH - 10 - tall(n), width: wide * 0.42, height: tall(n), fill })));
     refill(this.picture, ...bars,
-      svg("text", { x: 10, y: 14, "font-size": 12, fill: colours.text }, `planar problems at each place, at most ${most}:`),
-      svg("rect", { x: 224, y: 5, width: 9, height: 9, fill: colours.grid }), svg("text", { x: 237, y: 14, "font-size": 12, fill: colours.text }, "centre"),
-      svg("rect", { x: 281, y: 5, width: 9, height: 9, fill: colours.fixedMark }), svg("text", { x: 294, y: 14, "font-size": 12, fill: colours.text, "font-style": "italic" }, "N(p)"));
+      svg("text", { x: 10, y: 14, "font-size": 12, fill: colours.text }, `planar problems at each place, at most ${most}`),
+      svg("rect", { x: 10, y: 22, width: 9, height: 9, fill: colours.grid }), svg("text", { x: 23, y: 31, "font-size": 12, fill: colours.text }, "centre"),
+      svg("rect", { x: 80, y: 22, width: 9, height: 9, fill: colours.fixedMark }), svg("text", { x: 93, y: 31, "font-size": 12, fill: colours.text, "font-style": "italic" }, "N(p)"));
     const sum = (of: "near" | "all") => this.counts.reduce((total, one) => total + one[of], 0);
     this.said.textContent = `${this.counts.length} places: ${sum("near")} planar problems in N(p), ${sum("all")} from the centre.`;
   }

@@ -48,7 +48,7 @@ const CASTS: &[(&str, u64)] = &[
 /// Families of solids.
 const SOLIDS: &[(&str, u64)] = &[
     ("grid", 0x7f4d_12c6_7c07_0c04),
-    ("sheared", 0xaec4_5bdd_7f4e_0a6a),
+    ("sheared", 0xdd44_5186_578a_2dad),
     ("quarter", 0xe22c_07c1_5311_8aba),
     ("halves", 0x15a5_3ee3_0af8_4a79),
     ("mould", 0x82bc_b2a1_ee94_1a82),

@@ -1,7 +1,7 @@
 //! `solids`: meshes that are not convex, beside `parry3d-f64`'s cast of two triangle meshes.
 //!
-//! Three groups. *Pairs*: random rotations and directions, the moving mesh starting beside the fixed
-//! one. *Growth*: the same bumpy ball in more and more facets. *Flat*: two slabs, of few facets or many in one
+//! Four groups. *Pairs*: random rotations and directions, the moving mesh starting beside the fixed
+//! one. *Convex*: the same of convex bodies, beside the cast of convex polyhedra as well. *Growth*: the same bumpy ball in more and more facets. *Flat*: two slabs, of few facets or many in one
 //! plane, resting, sliding, parting, with a gap, and passing over each other. Of all each query is timed
 //! alone, both libraries on the same settings, fifty at a time in turns: a query of a library behind one of the other
 //! would find the caches full of the other's.
@@ -17,13 +17,13 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use colltrans::solid::Workspace;
-use colltrans::{Cast, Clearance, Pose, Solid};
+use colltrans::{Cast, Clearance, ConvexPolyhedron, Pose, Solid};
 use colltrans_bench::arguments::Arguments;
 use colltrans_bench::meshes::{MeshArguments, solid};
 use colltrans_bench::parry::{ParrySetting, triangle_mesh};
 use colltrans_bench::report::{self, Times};
 use colltrans_testkit::random::Random;
-use colltrans_testkit::shapes::Mesh;
+use colltrans_testkit::shapes::{Mesh, ring_sphere};
 use colltrans_testkit::solids::{bolt, bumpy_ball, perforated_plate, slab};
 use colltrans_testkit::timing::Stopwatch;
 use glam::{DQuat, DVec3};
@@ -61,6 +61,11 @@ fn main() -> ExitCode {
             rows.push(pair.measure(&command.arguments, start));
         }
     }
+    if command.meshes.wants("convex") {
+        for pair in convex_pairs() {
+            rows.extend(Start::ALL.map(|start| pair.measure(&command.arguments, start)));
+        }
+    }
     if command.meshes.wants("growth") {
         rows.extend(growth(&command.arguments));
     }
@@ -87,8 +92,25 @@ fn print(row: &Value) {
 
 /// Two meshes to measure with.
 struct Pair {
+    group: &'static str,
     name: String,
     bodies: [Mesh; 2],
+}
+
+/// Convex bodies.
+fn convex_pairs() -> Vec<Pair> {
+    let cube = || slab(DVec3::splat(-0.5), DVec3::splat(0.5), [1, 1, 1]);
+    let block = || slab(DVec3::new(-1.0, -0.4, -0.1), DVec3::new(1.0, 0.4, 0.1), [1, 1, 1]);
+    let bodies = [
+        ("cubes", [cube(), cube()]),
+        ("block x ball of 32", [block(), ring_sphere(6, 5)]),
+        ("balls of 500", [ring_sphere(25, 20), ring_sphere(25, 20)]),
+        ("balls of 8,000", [ring_sphere(100, 80), ring_sphere(100, 80)]),
+    ];
+    bodies
+        .into_iter()
+        .map(|(name, bodies)| Pair { group: "convex", name: name.into(), bodies })
+        .collect()
 }
 
 fn pairs(command: &Command) -> Vec<Pair> {
@@ -112,7 +134,7 @@ fn pairs(command: &Command) -> Vec<Pair> {
         ["../gearbox/front_outer.stl", "../gearbox/front_ball_0.stl"],
     ];
     let pairs = command.meshes.pairs(made, &files).into_iter();
-    pairs.map(|(name, bodies)| Pair { name, bodies }).collect()
+    pairs.map(|(name, bodies)| Pair { group: "pairs", name, bodies }).collect()
 }
 
 fn radius(mesh: &Mesh) -> f64 {
@@ -227,8 +249,11 @@ impl Pair {
             _ => format!("{}, {}", self.name, start.name()),
         };
         let placements = self.placements([&p, &q], start, count, arguments.seed);
-        let mut row = compare("pairs", &name, [&p, &q], &placements);
+        let mut row = compare(self.group, &name, [&p, &q], &placements);
         row["start"] = json!(start.name());
+        if self.group == "convex" {
+            as_convex(&mut row, [&p, &q], &placements);
+        }
         row
     }
 }
@@ -288,6 +313,34 @@ fn compare(group: &str, name: &str, [p, q]: [&Solid; 2], placements: &[Placement
     let row = Value::Object(row);
     print(&row);
     row
+}
+
+/// Times the same bodies as solids and as convex polyhedra, in turns, and adds that to a row.
+fn as_convex(row: &mut Value, [p, q]: [&Solid; 2], placements: &[Placement]) {
+    let hull = |body: &Solid| ConvexPolyhedron::from_points(body.vertices());
+    let (Ok(a), Ok(b)) = (hull(p), hull(q)) else { return };
+    let stopwatch = Stopwatch::new();
+    let (mut solids, mut polyhedra) = (Times::default(), Times::default());
+    let mut workspace = Workspace::default();
+    for block in placements.chunks(BLOCK) {
+        for Placement { poses: [s, t], direction } in block {
+            let Ok(cast) = Cast::new(p.at(*s), q.at(*t), *direction) else { continue };
+            solids.add(stopwatch.time(|| cast.clearance_in(&mut workspace)).1);
+        }
+        for Placement { poses: [s, t], direction } in block {
+            let Ok(cast) = Cast::new(a.at(*s), b.at(*t), *direction) else { continue };
+            polyhedra.add(stopwatch.time(|| cast.clearance()).1);
+        }
+    }
+    solids.sort();
+    polyhedra.sort();
+    row["convex_median_ns"] = json!(polyhedra.median());
+    row["times_convex"] = json!(solids.median() / polyhedra.median());
+    let [ours, theirs] = [&solids, &polyhedra].map(|times| times.median() / 1e3);
+    println!(
+        "    as solids {ours:.2} us, as convex polyhedra {theirs:.2} us: {:.1}",
+        ours / theirs
+    );
 }
 
 /// The same body in more and more facets.

@@ -200,7 +200,7 @@ impl ConvexPolyhedron {
 
     /// How far below a vertex its plateau is visited.
     #[inline]
-    fn plateau_depth(&self) -> f64 {
+    pub(crate) fn plateau_depth(&self) -> f64 {
         2.0 * noise::GAIN * self.inertia.reach + 4.0 * self.flatness
     }
 

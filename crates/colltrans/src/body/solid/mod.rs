@@ -9,6 +9,7 @@ pub(crate) mod edges;
 mod error;
 pub(crate) mod exact;
 mod faces;
+mod kept;
 mod openness;
 mod polygon;
 mod report;
@@ -28,6 +29,7 @@ use crate::body::placed::sealed;
 use crate::body::{Aabb, InputFacet, InputVertex};
 pub use error::SolidError;
 use faces::Faces;
+pub(crate) use kept::{Keepable, Kept};
 pub use report::{Shell, ShellKind, SolidReport};
 pub(crate) use shells::crossing;
 pub use shrink::ShrinkReport;
@@ -86,6 +88,7 @@ pub struct Solid {
     shrinking: OnceLock<Shrinking>,
     /// Made when a feature is first named.
     faces: OnceLock<Faces>,
+    kept: Kept,
 }
 
 impl sealed::Sealed for Solid {
@@ -246,6 +249,7 @@ impl Solid {
             report,
             shrinking: OnceLock::new(),
             faces,
+            kept: Kept::default(),
         };
         solid.spans = solid.find_spans();
         solid
@@ -399,6 +403,12 @@ impl Solid {
             + self.report.shells.capacity() * size_of::<Shell>()
             + self.shrinking.get().map_or(0, Shrinking::heap_bytes)
             + self.faces.get().map_or(0, Faces::heap_bytes)
+            + self.kept.heap_bytes()
+    }
+
+    /// What a query keeps with the body.
+    pub(crate) fn kept(&self) -> &Kept {
+        &self.kept
     }
 
     /// The largest distance of a vertex from the origin of the body frame.

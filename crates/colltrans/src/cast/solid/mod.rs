@@ -6,6 +6,7 @@
 //! that the bodies are asked; if they overlap in another place, that one is next. Where the tolerance is not small,
 //! facets may come to overlap again: there the bodies are asked each time, unless the last place tells.
 
+mod hulls;
 mod proof;
 #[cfg(feature = "serde")]
 mod saved;
@@ -27,6 +28,7 @@ use crate::solve::solid::overlap::{self, Overlap};
 use crate::solve::solid::scene::Scene;
 use crate::solve::solid::search::{Aim, Found, Search, Workspace};
 use crate::solve::solid::separate::separation;
+use hulls::Told;
 pub use proof::{Claim, Cover, SolidCertificate, StartProof, StopProof};
 pub use verify::SolidProof;
 
@@ -336,6 +338,9 @@ impl<'a> Cast<'a, Solid> {
     pub fn clearance_in(&self, workspace: &mut Workspace) -> Result<Clearance<Solid>, QueryError> {
         let scene = self.asked_of_something()?;
         let mut steps = SolidSteps::default();
+        if let Some((answer, _)) = self.told_by_hulls(&scene) {
+            return Ok(answer);
+        }
         let ignored = self.options.start_overlap == StartOverlap::Ignore;
         let aim = match self.options.overlapping {
             Some(false) => Aim::Stop,
@@ -449,6 +454,24 @@ impl<'a> Cast<'a, Solid> {
     /// Gaps from here on are of no interest, a length.
     pub(crate) fn limit(&self, scene: &Scene) -> f64 {
         self.options.before.map_or(f64::INFINITY, |t| t * scene.setting.length)
+    }
+
+    /// What the cast of the bodies' hulls tells of the clearance, with the facets that stop the moving body; the same
+    /// whether a proof is wanted or not.
+    fn told_by_hulls(&self, scene: &Scene) -> Option<(Clearance<Solid>, Option<Found>)> {
+        if self.options.overlapping == Some(true) {
+            return None;
+        }
+        let mut steps = SolidSteps::default();
+        let told = hulls::told(self, scene, self.limit(scene), &mut steps.leaves)?;
+        Some(match told {
+            Told::Stop(found) => (self.answer(scene, Some(&found), steps), Some(found)),
+            Told::Apart(plane) => {
+                let separation = self.options.before.is_none().then_some(plane);
+                (Clearance::Free(SolidFree { separation, steps }), None)
+            }
+            Told::Free => (self.answer(scene, None, steps), None),
+        })
     }
 
     /// What a search has found, as an answer.

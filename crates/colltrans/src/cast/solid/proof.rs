@@ -235,6 +235,9 @@ impl Cast<'_, Solid> {
         let end = search.limit;
         steps += search.steps;
         certificate.cover = Cover::new(bodies, &cuts);
+        let (answer, found) = self
+            .told_by_hulls(&scene)
+            .unwrap_or_else(|| (self.answer(&scene, found.as_ref(), steps), found));
         certificate.stop = found.map(|found| StopProof {
             shrunk_distance: found.gap / scene.setting.length,
             triangles: [found.moving, found.fixed],
@@ -245,7 +248,7 @@ impl Cast<'_, Solid> {
             certificate.lower = 0.0;
             certificate.cover = Cover(vec![Some(Reason::NotBefore)]);
         }
-        Ok((self.answer(&scene, found.as_ref(), steps), certificate))
+        Ok((answer, certificate))
     }
 
     pub(crate) fn prove_start(&self, scene: &Scene, steps: &mut SolidSteps) -> StartProof {

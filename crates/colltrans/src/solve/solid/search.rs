@@ -74,6 +74,11 @@ pub(crate) struct Found {
 }
 
 impl Found {
+    /// The same where no pair contributes less by more than a search may leave open.
+    pub(crate) fn among_all(self, scene: &Scene) -> Self {
+        Self { others: self.gap - SLACK * scene.noise - 1.0625 * node_rounding(scene), ..self }
+    }
+
     /// The same with the gap taken exactly, if it is not sharp.
     pub(crate) fn sharpened(self, scene: &Scene, aim: Aim) -> Self {
         if self.at == Meeting::Near || self.error <= leaf::FINE * scene.noise {

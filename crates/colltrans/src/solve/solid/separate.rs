@@ -24,6 +24,10 @@ const MOST_ROUNDS: usize = 32;
 /// Rounding of a gap, in multiples of the noise of coordinates: half of it for each of two points that
 /// are taken for the farthest, and what computing them takes.
 const ROUNDING: f64 = 4.0;
+/// Rounding of a gap between heights along any normal, likewise: with the bodies' reaches together `S`, the normal in a
+/// body's frame and its product with a vertex take `10 u S`, as much the bound of a box that is not looked into,
+/// what is taken for a tie `16 u S`, and the sums a few more; a noise is `32 u S`.
+pub(crate) const HEIGHTS: f64 = 1.5;
 /// The same of boxes, besides: their middles and extents are off by less than a noise of the query frame, and
 /// heights of vertices, by which the margin is checked, by less than another.
 const BOXES: f64 = 2.0;
@@ -110,6 +114,20 @@ pub(crate) fn verify(scene: &Scene, separation: &Separation) -> Result<f64, Cert
     } else {
         Err(CertificateError::Bound { proven, claimed })
     }
+}
+
+/// A plane between the bodies with a normal across the direction, if boxes do not tell one and that is one.
+pub(crate) fn plane_along(scene: &Scene, normal: DVec3) -> Option<Separation> {
+    let [p, q] = [&scene.moving, &scene.fixed].map(|side| Projected::new(scene, side, 0));
+    between_boxes(scene, &p, &q).or_else(|| {
+        let margin = margin_along(scene, normal, &facing_sides(scene, normal));
+        (margin > scene.keep).then_some(Separation { normal, margin })
+    })
+}
+
+/// No vertex of a body is farther along a normal of the world, from its frame's origin; rounded, see [`HEIGHTS`].
+pub(crate) fn farthest(side: &Side, normal: DVec3) -> f64 {
+    Farthest::new(side, normal).reach()
 }
 
 /// Points of `D`, the first so many.

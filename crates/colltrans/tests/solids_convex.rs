@@ -1,0 +1,154 @@
+//! Convex bodies asked as solids: told by their hulls, they are answered as by the search.
+//!
+//! The judge is the same body twice, as two shells in one place: it is no convex solid, so it is searched.
+
+use colltrans::glam::{DQuat, DVec3};
+use colltrans::solid::{SolidFree, SolidOptions, StartOverlap};
+use colltrans::{Bounded, Cast, Clearance, ConvexPolyhedron, Pose, Solid};
+use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::{Mesh, prism, ring_sphere};
+use colltrans_testkit::solids::slab;
+
+fn solid(mesh: &Mesh) -> Solid {
+    Solid::from_mesh(&mesh.vertices, &mesh.faces).expect("a closed mesh")
+}
+
+/// Cubes, plates, plates of many facets in a plane, prisms, balls of few and many facets.
+fn bodies(random: &mut Random) -> Vec<Solid> {
+    let (low, high) = (DVec3::new(-1.0, -0.75, -0.25), DVec3::new(1.0, 0.75, 0.25));
+    let meshes = [
+        slab(DVec3::splat(-0.5), DVec3::splat(0.5), [1, 1, 1]),
+        slab(low, high, [1, 1, 1]),
+        slab(low, high, [4, 3, 1]),
+        prism(9, 0.5),
+        ring_sphere(24, 15),
+    ];
+    let mut all: Vec<Solid> = meshes.iter().map(solid).collect();
+    for count in [12, 90] {
+        let points: Vec<DVec3> = (0..count).map(|_| random.direction()).collect();
+        let hull = ConvexPolyhedron::from_points(&points).expect("a hull");
+        all.push(Solid::from_convex(&hull).expect("a solid"));
+    }
+    all
+}
+
+/// The pairs of nodes that an answer took.
+fn nodes(clearance: &Clearance<Solid>) -> u32 {
+    match clearance {
+        Clearance::Free(free) => free.steps.nodes,
+        Clearance::Blocked { contact, .. } => contact.steps.nodes,
+        Clearance::Overlapping(overlap) => overlap.steps.nodes,
+    }
+}
+
+/// Two answers of bodies along a unit direction, shrunk by half of a tolerance.
+fn assert_same(
+    [hulls, search]: [&Clearance<Solid>; 2],
+    (direction, tolerance): (DVec3, f64),
+    what: &str,
+) {
+    match (hulls, search) {
+        (Clearance::Blocked { contact: a, .. }, Clearance::Blocked { contact: b, .. }) => {
+            let width = |x: Bounded| x.upper - x.lower;
+            let (x, y) = (a.shrunk_distance, b.shrunk_distance);
+            assert!((x.value - y.value).abs() < 1e-12, "{what}: {x:?}, but {y:?}");
+            assert!(x.lower <= y.upper && y.lower <= x.upper, "{what}: {x:?}, but {y:?}");
+            assert!(width(x) < 1e-10, "{what}: {x:?}");
+            // Of facets that stop the shrunk bodies at once each pair has a true place of its own.
+            let (x, y) = (a.translation, b.translation);
+            let most = 1e-12 + width(x) + width(y) + 4.0 * tolerance / a.normal.dot(direction);
+            assert!((x.value - y.value).abs() < most, "{what}: {x:?}, but {y:?}");
+        }
+        (Clearance::Free(a), Clearance::Free(b)) => {
+            assert_eq!(a.separation.is_some(), b.separation.is_some(), "{what}");
+        }
+        _ => panic!("{what}: {hulls:?}, but {search:?}"),
+    }
+}
+
+/// Beside, before and behind each other, near, touching and overlapping; turned and not; with all tolerances.
+#[test]
+fn convex_solids_are_answered_as_by_the_search() {
+    let mut random = Random::new(31);
+    let all = bodies(&mut random);
+    let twice: Vec<Solid> =
+        all.iter().map(|b| Solid::from_pieces([b, b]).expect("two pieces")).collect();
+    let (mut told, mut blocked, mut free) = (0, 0, 0);
+    let count = 3_000;
+    for round in 0..count {
+        let [i, j] = [0, 1].map(|_| random.range(0.0, all.len() as f64) as usize);
+        let turned = |random: &mut Random| match round % 3 {
+            0 => DQuat::IDENTITY,
+            _ => random.rotation(),
+        };
+        let rotations = [turned(&mut random), turned(&mut random)];
+        let direction =
+            if round % 6 == 0 { DVec3::AXES[round / 6 % 3] } else { random.direction() };
+        let aside = random.direction() * random.range(0.0, 4.0);
+        let mut from = aside - direction * random.range(-3.0, 5.0);
+        let poses = |from| {
+            [(rotations[0], from), (rotations[1], DVec3::ZERO)]
+                .map(|(q, at)| Pose::new(q, at).expect("a pose"))
+        };
+        // `None` of bodies that overlap: how deep takes long to tell.
+        let ask = |bodies: &[Solid], from, options| {
+            let [p, q] = poses(from);
+            let cast = Cast::new(bodies[i].at(p), bodies[j].at(q), direction).expect("a query");
+            let cast = cast.with_options(options).expect("choices");
+            if cast.overlaps() {
+                let ignoring = cast.with_start_overlap(StartOverlap::Ignore);
+                let answer = ignoring.clearance().expect("an answer");
+                assert!(nodes(&answer) > 0, "{answer:?} of bodies that overlap");
+                return None;
+            }
+            let answer = cast.clearance().expect("an answer");
+            if let Clearance::Free(SolidFree { separation: Some(plane), .. }) = &answer {
+                assert!(cast.verify(plane).expect("a plane between them") >= plane.margin);
+            }
+            Some(answer)
+        };
+        let tolerance = [None, Some(0.0), Some(1e-6), Some(0.02)][round / 3 % 4];
+        let mut options = SolidOptions::default().with_tolerance(tolerance);
+        // Some are put forward until they are near or touch, or a little farther.
+        let distance = ask(&twice, from, options)
+            .and_then(|answer| answer.distance())
+            .filter(|d| d.is_finite());
+        if let Some(distance) = distance.filter(|_| round % 2 == 1) {
+            from += direction * (distance - [0.05, 1e-6, 1e-12, 0.0, -1e-6][round % 5]);
+        }
+        if round % 7 == 0 {
+            options = options.with_before(distance.map(|d| d * random.range(0.5, 1.5)));
+        }
+        let (hulls, search) = (ask(&all, from, options), ask(&twice, from, options));
+        assert_eq!(hulls.is_none(), search.is_none(), "{round}: {i} and {j}, {options:?}");
+        let (Some(hulls), Some(search)) = (hulls, search) else { continue };
+        let along = (direction, tolerance.unwrap_or(0.0));
+        assert_same([&hulls, &search], along, &format!("{round}: {i} and {j}, {options:?}"));
+        told += usize::from(nodes(&hulls) == 0);
+        *(if search.is_free() { &mut free } else { &mut blocked }) += 1;
+    }
+    println!("{told} of {count} told by hulls; {blocked} blocked, {free} free");
+    assert!(blocked > count / 5 && free > count / 5 && blocked + free < count);
+    assert!(told > count / 3, "{told} of {count} are told by hulls");
+}
+
+/// A convex solid that is far enough from another one to be told from it needs no search, whatever it is made of.
+#[test]
+fn convex_solids_ahead_take_no_search() {
+    let mut random = Random::new(7);
+    let all = bodies(&mut random);
+    let (mut searched, mut blocked) = (0, 0);
+    for _ in 0..2_000 {
+        let [i, j] = [0, 1].map(|_| random.range(0.0, all.len() as f64) as usize);
+        let direction = random.direction();
+        let start = random.direction() * random.range(0.0, 0.5) - direction * 4.0;
+        let [p, q] =
+            [start, DVec3::ZERO].map(|at| Pose::new(random.rotation(), at).expect("a pose"));
+        let cast = Cast::new(all[i].at(p), all[j].at(q), direction).expect("a query");
+        let answer = cast.clearance().expect("an answer");
+        blocked += usize::from(!answer.is_free());
+        searched += usize::from(nodes(&answer) > 0);
+    }
+    println!("{searched} searched of {blocked} blocked");
+    assert!(blocked > 1_000 && searched < 40, "{searched} searched of {blocked} blocked");
+}

@@ -67,7 +67,7 @@ def test_clearances_have_distances() -> None:
             raise AssertionError(other)
     match toward([0, 0, 1], z=0.25):
         case Overlapping(first, last) as overlap:
-            assert (first.translation, last.translation) == (-1.25, -0.75)
+            assert (first.translation, last.translation) == (-1.25, 0.75)
             assert overlap.distance is None
         case other:
             raise AssertionError(other)
@@ -121,7 +121,7 @@ def test_every_answer_of_many_is_proven() -> None:
         )
         match query.contact_range():
             case ContactRange(first=first, last=last):
-                for end in (first, last):
+                for end in (first, last.turned):
                     contact = end.contact if isinstance(end, Grazing) else end
                     if np.isfinite(contact.certificate.upper):
                         assert contact.certificate.verify() <= contact.certificate.rounding
@@ -132,7 +132,7 @@ def test_every_answer_of_many_is_proven() -> None:
 def test_ranges_depths_and_intersections() -> None:
     found = contact_range(CUBE, CUBE, [0.5, 0, 0], moving_pose=[-3, 0.5, 0])
     assert isinstance(found, ContactRange) and found.interval == (4.0, 8.0)
-    assert found.last.query.direction.tolist() == [-0.5, 0, 0]
+    assert found.last.turned.query.direction.tolist() == [-0.5, 0, 0]
     depth = directional_depth(CUBE, CUBE, [1, 0, 0], moving_pose=[-0.75, 0, 0])
     assert abs(depth.depth - 0.25) < 1e-13 and isinstance(depth.clearance, Overlapping)
     assert intersects(CUBE, CUBE, [1, 0, 0], moving_pose=[0.5, 0, 0])

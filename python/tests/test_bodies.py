@@ -122,10 +122,12 @@ def test_files_are_read_as_the_command_line_reads_them(tmp_path: Path) -> None:
         colltrans.read(parts / "dodecahedron.off", scale=0)
 
 
-def test_arrays_of_a_body_are_copies() -> None:
+def test_a_body_is_not_changed_by_its_arrays() -> None:
     cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
-    cube.vertices[:] = 7
-    assert cube.vertices.max() == 1
+    with pytest.raises(ValueError, match="read-only"):
+        cube.vertices[:] = 7
+    cube.faces[0][:] = 7
+    assert cube.vertices.max() == 1 and cube.faces[0].max() < 8
     with pytest.raises(AttributeError):
         cube.volume = 3.0  # type: ignore[misc]
 

@@ -117,7 +117,7 @@ def test_rows_are_answered_as_alone_and_by_the_command_line(batch: Batch) -> Non
     spans = contact_range_many(*sides, **where, keep=np.full(len(settings), 0.125))
     for i, line in enumerate(told):
         answer: Any = columns[i]
-        assert columns.outcomes[columns.outcome[i]] == line["outcome"]
+        assert columns.outcome[i] == line["outcome"]
         if line["outcome"] == "blocked":
             assert columns.distance[i] == line["distance"]
             assert answer.to_dict()["translation_bounds"] == line["translation_bounds"]

@@ -123,8 +123,9 @@ def test_arrays_that_change_are_noticed() -> None:
         columns[1]
     with pytest.raises(IndexError):
         columns[2]
+    assert isinstance(columns[:1][0], Contact)
     with pytest.raises(TypeError, match="integer"):
-        columns[:1]  # type: ignore[index]
+        columns[1.0]  # type: ignore[call-overload]
     assert isinstance(columns[-2], Contact)
 
 

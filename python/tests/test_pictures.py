@@ -8,7 +8,7 @@ import pytest
 from conftest import ROOT
 
 import colltrans
-from colltrans import Cast, ConvexPolyhedron, Solid, SolidCast, picture
+from colltrans import Cast, ConvexPolyhedron, Pose, Solid, SolidCast, picture
 
 pytest.importorskip("plotly")
 
@@ -86,7 +86,7 @@ def test_show_hands_the_figure_to_plotly(monkeypatch: pytest.MonkeyPatch) -> Non
 
 
 def test_what_is_no_answer_is_refused() -> None:
-    with pytest.raises(TypeError, match="no answer and no query, but ConvexPolyhedron"):
-        picture(CUBE)
+    with pytest.raises(TypeError, match="no answer and no query, but Pose"):
+        picture(Pose())
     with pytest.raises(TypeError):
         Cast(CUBE, CUBE, [1, 0, 0]).show(colour="red")

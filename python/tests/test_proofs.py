@@ -83,7 +83,7 @@ def test_answers_and_parts_of_them(tmp_path: Path, verify: Verify) -> None:
             query = Cast(body, cube, [1, 0.125, 0], moving_pose=start)
             found += [query.first_contact(), query.contact_range(), query.clearance()]
             found += [query.directional_depth(), query.intersects()]
-    found += [part.last for part in found if isinstance(part, colltrans.ContactRange)]
+    found += [part.last.turned for part in found if isinstance(part, colltrans.ContactRange)]
     found += [part.contact for part in found if isinstance(part, colltrans.Behind)]
     for answer in found:
         answer.save_proof(tmp_path / "proof.json")

@@ -13,7 +13,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 /// An answer of the library's, of any of its types.
-pub(crate) trait Answer: Serialize + DeserializeOwned {
+pub(crate) trait Answer: Serialize + DeserializeOwned + Send {
     /// The class of what is asked.
     type Query: PyClass;
 
@@ -60,6 +60,10 @@ macro_rules! answer {
                 options: Option<$crate::frozen::Options<'_, 'py>>,
             ) -> $crate::frozen::Shown<'py> {
                 $crate::frozen::show(slf, options)
+            }
+
+            fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> $crate::frozen::Shown<'py> {
+                $crate::frozen::html(slf)
             }
 
             /// What it says, as plain Python: the fields of ``--json`` of the command line, with the same

@@ -6,8 +6,8 @@
 
 use colltrans::glam::DVec3;
 use numpy::{
-    Element, IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
-    PyUntypedArrayMethods,
+    Element, IntoPyArray, PyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1,
+    PyReadonlyArray2, PyUntypedArray, PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyFloat, PyInt, PyList, PyTuple};
@@ -94,6 +94,10 @@ fn of_items<'py>(n: usize, items: impl Iterator<Item = Bound<'py, PyAny>>) -> Op
 
 fn of_array(of: &Bound<'_, PyAny>) -> Option<Numbers> {
     let mut values = [0.0; 16];
+    // What is more than an array may hide some of its numbers, as masked arrays do.
+    if !of.get_type().is(of.py().get_type::<PyUntypedArray>()) {
+        return None;
+    }
     if let Ok(array) = of.cast::<PyArray1<f64>>() {
         let n = array.len();
         if n <= values.len() && is_aligned(array) {
@@ -120,7 +124,7 @@ fn of_array(of: &Bound<'_, PyAny>) -> Option<Numbers> {
     Some(Numbers { values, shape: Shape::Table(rows, columns) })
 }
 
-fn is_aligned<D: numpy::ndarray::Dimension>(array: &Bound<'_, numpy::PyArray<f64, D>>) -> bool {
+fn is_aligned<D: numpy::ndarray::Dimension>(array: &Bound<'_, PyArray<f64, D>>) -> bool {
     let size = size_of::<f64>() as isize;
     array.data().is_aligned() && array.strides().iter().all(|stride| stride % size == 0)
 }
@@ -157,6 +161,13 @@ fn helper<'py>(py: Python<'py>, name: &str) -> PyResult<Bound<'py, PyAny>> {
 fn wrong_shape(array: &Bound<'_, PyAny>, name: &str, wanted: &str) -> PyErr {
     let shape = array.getattr("shape").map_or_else(|_| "?".into(), |shape| shape.to_string());
     input(name, format_args!("an array of shape {shape}, not {wanted}"))
+}
+
+/// An array that says that writing to it would change nothing.
+pub(crate) fn read_only<'py, T: Element, D: numpy::ndarray::Dimension>(
+    array: Bound<'py, PyArray<T, D>>,
+) -> Bound<'py, PyArray<T, D>> {
+    (*array.readwrite().make_nonwriteable()).clone()
 }
 
 /// Numbers of vertices or facets for Python.

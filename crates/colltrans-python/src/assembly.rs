@@ -24,9 +24,10 @@ use colltrans_assembly::read::{Geometry, ReadOptions};
 use colltrans_assembly::rooms::{PartRoom, rooms};
 use colltrans_assembly::{AssemblyError, Bodies, Fit, Ignored, Part, Piece, Watch};
 use colltrans_mesh::Mesh;
+use numpy::PyArray2;
 use pyo3::prelude::*;
 
-use crate::arrays::{faces, points};
+use crate::arrays::{faces, points, table};
 use crate::errors::{OrRaise, error};
 
 /// Time between two looks for signals.
@@ -73,6 +74,9 @@ impl Choices {
         Self { tolerance, start }
     }
 }
+
+/// Vertices and triangles.
+type Surface<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>);
 
 /// The extension's half of ``colltrans.Assembly``.
 #[pyclass(frozen, module = "colltrans._colltrans")]
@@ -232,6 +236,16 @@ impl Assembly {
     #[getter]
     fn names(&self) -> Vec<String> {
         self.0.parts().iter().map(|part| part.name().to_owned()).collect()
+    }
+
+    /// The vertices and triangles of all parts, in the world.
+    fn meshes<'py>(&self, py: Python<'py>) -> PyResult<Vec<Surface<'py>>> {
+        let mesh = |part: &colltrans_assembly::Part| {
+            let solid = part.solid();
+            let vertices = table(py, solid.vertices().iter().map(DVec3::to_array))?;
+            Ok((vertices, table(py, solid.triangles().iter().copied())?))
+        };
+        self.0.parts().iter().map(mesh).collect()
     }
 
     #[getter]

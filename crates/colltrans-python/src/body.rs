@@ -8,8 +8,9 @@ use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 
-use crate::arrays::{self, faces, ids, points, row, table, vector};
+use crate::arrays::{self, faces, ids, points, read_only, row, table, vector};
 use crate::errors::{OrRaise, error};
+use crate::frozen::{Options, Shown, html, show};
 use crate::offset::OffsetReport;
 
 /// A convex polyhedron in its own frame: the convex hull of points.
@@ -46,6 +47,15 @@ impl From<colltrans::ConvexPolyhedron> for ConvexPolyhedron {
     fn from(body: colltrans::ConvexPolyhedron) -> Self {
         Self(body, Vec::new())
     }
+}
+
+/// From so many vertices of both bodies on, a question without a search through facets takes several
+/// microseconds: other threads of Python may run meanwhile, though giving the lock away and taking it
+/// back costs some hundred nanoseconds, and more where they want it.
+const LARGE: usize = 1_000;
+
+pub(crate) fn are_large(bodies: &[&ConvexPolyhedron; 2]) -> bool {
+    bodies.iter().map(|body| body.0.vertices().len()).sum::<usize>() >= LARGE
 }
 
 /// A body as JSON, and its notes.
@@ -163,7 +173,7 @@ impl ConvexPolyhedron {
     /// ndarray of shape (N, 3): The vertices, in the body frame.
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        table(py, self.0.vertices().iter().map(DVec3::to_array))
+        table(py, self.0.vertices().iter().map(DVec3::to_array)).map(read_only)
     }
 
     /// ndarray of shape (N,): For each vertex its index in the points or mesh it was made from.
@@ -324,6 +334,16 @@ impl ConvexPolyhedron {
     #[pyo3(name = "_read")]
     fn read_again(py: Python<'_>, text: &str, notes: Vec<String>) -> PyResult<Self> {
         Ok(Self(Self::from_json(py, text)?.0, notes))
+    }
+
+    /// A picture of it: see :func:`colltrans.show`.
+    #[pyo3(signature = (**options))]
+    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
+        show(slf, options)
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> Shown<'py> {
+        html(slf)
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {

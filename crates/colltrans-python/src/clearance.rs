@@ -2,13 +2,13 @@
 
 use colltrans::glam::DVec3;
 use colltrans::record::Record;
-use colltrans::{CentralCast, Clearance, OverlapAhead, ProofFile, WhyFree};
+use colltrans::{CentralCast, Clearance, Outcome, OverlapAhead, ProofFile, WhyFree};
 use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::answer::{Answer, answer, object};
 use crate::arrays::{coordinates, row};
-use crate::outcome::{Contact, Grazing, contact_text, grazing_text};
+use crate::outcome::{Contact, Grazing, LastContact, contact_text, grazing_text};
 use crate::query::Cast;
 
 /// The moving body can move until it touches.
@@ -121,10 +121,10 @@ impl Overlapping {
         Contact { contact: self.ends.first, query: self.query(py) }
     }
 
-    /// Contact: The last contact, ahead: the first one of the query turned round.
+    /// LastContact: The last contact, ahead.
     #[getter]
-    fn last(&self, py: Python<'_>) -> PyResult<Contact> {
-        last(py, self.ends.last, &self.query)
+    fn last(&self, py: Python<'_>) -> PyResult<LastContact> {
+        LastContact::of(py, Outcome::Contact(self.ends.last), &self.query)
     }
 
     fn __repr__(&self) -> String {

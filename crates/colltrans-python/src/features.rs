@@ -114,6 +114,14 @@ pub(crate) struct Features {
 
 match_args!(Features("moving", "fixed"));
 
+impl Features {
+    pub(crate) fn of(contact: &colltrans::Contact, cast: &colltrans::Cast<'_>) -> Self {
+        let colltrans::Features { moving, fixed } = contact.features(cast);
+        let moving = Feature::of(moving, cast.moving());
+        Self { moving, fixed: Feature::of(fixed, cast.fixed()) }
+    }
+}
+
 #[pymethods]
 impl Features {
     /// Feature: Of the moving body.

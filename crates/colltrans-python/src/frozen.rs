@@ -22,6 +22,11 @@ pub(crate) fn show<'py, T>(
     show.call((answer.as_any(),), options)
 }
 
+/// What a notebook shows of it.
+pub(crate) fn html<'py, T>(thing: &Bound<'py, T>) -> Shown<'py> {
+    thing.py().import("colltrans.light")?.getattr("html")?.call1((thing.as_any(),))
+}
+
 /// What `__reduce__` returns.
 pub(crate) type Reduced<'py, T> = (Bound<'py, PyAny>, T);
 

@@ -75,7 +75,7 @@ mod _colltrans {
     #[pymodule_export]
     use crate::offset::{OffsetReport, ShrinkReport};
     #[pymodule_export]
-    use crate::outcome::{Contact, ContactRange, Grazing, Separated};
+    use crate::outcome::{Contact, ContactRange, Grazing, LastContact, Separated};
     #[pymodule_export]
     use crate::pair::Pair;
     #[pymodule_export]

@@ -15,7 +15,7 @@ use crate::arrays::{row, vector};
 use crate::body;
 use crate::errors::{OrRaise, error, query_error};
 use crate::features::{Feature, Features};
-use crate::frozen::{Options, Shown, pickled, show};
+use crate::frozen::{Options, Shown, html, pickled, show};
 use crate::pair::Of;
 use crate::pose::{Pose, pose};
 use crate::solid::Piece;
@@ -429,6 +429,10 @@ impl MotionCast {
     #[pyo3(signature = (**options))]
     fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
         show(slf, options)
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> Shown<'py> {
+        html(slf)
     }
 
     /// The arguments that make it once more, for `pickle` and `copy`.

@@ -8,8 +8,9 @@ use pyo3::prelude::*;
 use crate::answer::{Answer, answer, object};
 use crate::arrays::{coordinates, row};
 use crate::certificate::{Certificate, Separation};
-use crate::errors::OrRaise;
-use crate::features::{Feature, Features, Steps};
+use crate::errors::{OrRaise, error};
+use crate::features::{Features, Steps};
+use crate::frozen::{Reduced, match_args, read, reduced, written};
 use crate::pose::Pose;
 use crate::query::Cast;
 
@@ -54,11 +55,7 @@ impl Contact {
     /// Features: The vertex, edge or face of each body in the contact plane.
     #[getter]
     fn features(&self) -> PyResult<Features> {
-        self.query.get().with(|cast| {
-            let colltrans::Features { moving, fixed } = self.contact.features(cast);
-            let moving = Feature::of(moving, cast.moving());
-            Features { moving, fixed: Feature::of(fixed, cast.fixed()) }
-        })
+        self.query.get().with(|cast| Features::of(&self.contact, cast))
     }
 
     /// Certificate: Both bounds with their proofs.
@@ -198,21 +195,6 @@ pub(crate) struct ContactRange {
 
 answer!(ContactRange("interval") of Range, Cast, |it| it.range);
 
-impl ContactRange {
-    /// The first contact, or the last one.
-    fn end<'py>(&self, py: Python<'py>, is_last: bool) -> PyResult<Bound<'py, PyAny>> {
-        let end = match self.range {
-            Range::Contact { first, last } => Outcome::Contact(if is_last { last } else { first }),
-            Range::Grazing { first, last } => Outcome::Grazing(if is_last { last } else { first }),
-            Range::Separated(separated) => Outcome::Separated(separated),
-        };
-        if is_last {
-            return end.object(&Bound::new(py, self.query.get().reversed(py))?);
-        }
-        end.object(self.query.bind(py))
-    }
-}
-
 #[pymethods]
 impl ContactRange {
     /// tuple of float: First and last translation, in multiples of the direction.
@@ -225,17 +207,119 @@ impl ContactRange {
     /// Contact or Grazing: The first contact along the direction.
     #[getter]
     fn first<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.end(py, false)
+        let first = match self.range {
+            Range::Contact { first, .. } => Outcome::Contact(first),
+            Range::Grazing { first, .. } => Outcome::Grazing(first),
+            Range::Separated(separated) => Outcome::Separated(separated),
+        };
+        first.object(self.query.bind(py))
     }
 
-    /// Contact or Grazing: The last contact: the first one of the query turned round.
+    /// LastContact: The last contact along the direction.
     #[getter]
-    fn last<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.end(py, true)
+    fn last(&self, py: Python<'_>) -> PyResult<LastContact> {
+        let last = match self.range {
+            Range::Contact { last, .. } => Outcome::Contact(last),
+            Range::Grazing { last, .. } => Outcome::Grazing(last),
+            Range::Separated(separated) => Outcome::Separated(separated),
+        };
+        LastContact::of(py, last, &self.query)
     }
 
     fn __repr__(&self) -> String {
         format!("ContactRange(interval={:?})", self.interval())
+    }
+}
+
+/// Where the bodies last meet along the direction: beyond it they are apart.
+///
+/// ``turned`` is the same as the first contact of the query turned round, which has the proof.
+#[pyclass(frozen, module = "colltrans")]
+pub(crate) struct LastContact {
+    /// Of the query turned round.
+    found: Outcome,
+    query: Py<Cast>,
+    turned: Py<Cast>,
+}
+
+match_args!(LastContact("translation", "normal", "point"));
+
+impl LastContact {
+    /// By what the query turned round has found.
+    pub(crate) fn of(py: Python<'_>, found: Outcome, query: &Py<Cast>) -> PyResult<Self> {
+        let turned = Py::new(py, query.get().reversed(py))?;
+        Ok(Self { found, query: query.clone_ref(py), turned })
+    }
+
+    fn contact(&self) -> PyResult<&colltrans::Contact> {
+        match &self.found {
+            Outcome::Contact(contact) => Ok(contact),
+            Outcome::Grazing(grazing) => Ok(&grazing.contact),
+            Outcome::Separated(_) => Err(error("CaseError", "separated bodies have no contact")),
+        }
+    }
+}
+
+#[pymethods]
+impl LastContact {
+    /// float: The translation, in multiples of the direction.
+    #[getter]
+    fn translation(&self) -> PyResult<f64> {
+        Ok(self.contact()?.exit().value + 0.0)
+    }
+
+    /// tuple of float: Proven bounds of the translation; beyond the second the bodies never meet.
+    #[getter]
+    fn bounds(&self) -> PyResult<(f64, f64)> {
+        let exit = self.contact()?.exit();
+        Ok((exit.lower + 0.0, exit.upper + 0.0))
+    }
+
+    /// ndarray of shape (3,): Unit contact normal in the world, from the moving body to the fixed one.
+    #[getter]
+    fn normal<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        Ok(row(py, self.contact()?.normal))
+    }
+
+    /// ndarray of shape (3,): The contact point, in the world.
+    #[getter]
+    fn point<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let contact = self.contact()?;
+        Ok(row(py, self.turned.get().with(|cast| contact.points(cast))?.on_fixed))
+    }
+
+    /// Features: The vertex, edge or face of each body in the contact plane.
+    #[getter]
+    fn features(&self) -> PyResult<Features> {
+        let contact = self.contact()?;
+        self.turned.get().with(|cast| Features::of(contact, cast))
+    }
+
+    /// Cast: The query.
+    #[getter]
+    fn query(&self, py: Python<'_>) -> Py<Cast> {
+        self.query.clone_ref(py)
+    }
+
+    /// Contact or Grazing: The same as the first contact of the query turned round, with its proof:
+    /// translations count the other way.
+    #[getter]
+    fn turned<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        self.found.object(self.turned.bind(py))
+    }
+
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py, (Py<Cast>, String)>> {
+        reduced::<Self, _>(py, (self.query(py), written(&self.found)?))
+    }
+
+    #[staticmethod]
+    fn _of(py: Python<'_>, query: Py<Cast>, text: &str) -> PyResult<Self> {
+        Self::of(py, read(text)?, &query)
+    }
+
+    fn __repr__(&self) -> PyResult<String> {
+        let (t, n) = (self.translation()?, coordinates(self.contact()?.normal));
+        Ok(format!("LastContact(translation={t:?}, normal={n:?})"))
     }
 }
 

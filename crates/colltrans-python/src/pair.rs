@@ -5,8 +5,9 @@ use colltrans::{ConvexPolyhedron, ProofFile, QueryError, Solid};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use crate::body::are_large;
 use crate::errors::{OrRaise, error};
-use crate::frozen::{Options, Shown, show};
+use crate::frozen::{Options, Shown, html, show};
 use crate::pose::{Pose, pose};
 use crate::solid::Piece;
 use crate::solid_cast::{patiently, placed_bodies};
@@ -87,7 +88,8 @@ impl Pair {
             question(&query.get().asked()?).map_err(failed)
         };
         match &slf.get().bodies {
-            [Piece::Convex(_), Piece::Convex(_)] => work(),
+            [Piece::Convex(p), Piece::Convex(q)] if !are_large(&[p.get(), q.get()]) => work(),
+            [Piece::Convex(_), Piece::Convex(_)] => slf.py().detach(work),
             bodies => patiently(slf.py(), bodies, work),
         }
     }
@@ -130,6 +132,10 @@ impl Pair {
     #[pyo3(signature = (**options))]
     fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
         show(slf, options)
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> Shown<'py> {
+        html(slf)
     }
 
     /// The arguments that make it once more, for `pickle` and `copy`.

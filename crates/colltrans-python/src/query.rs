@@ -10,9 +10,9 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::arrays::{row, vector};
-use crate::body::ConvexPolyhedron;
+use crate::body::{ConvexPolyhedron, are_large};
 use crate::errors::{OrRaise, error, query_error};
-use crate::frozen::{Options as Shows, Shown, show};
+use crate::frozen::{Options as Shows, Shown, html, show};
 use crate::pose::{Pose, pose};
 use crate::solver::options_of;
 
@@ -93,13 +93,19 @@ impl Cast {
             .with_options(self.options)
     }
 
-    /// An answer of the library's, or its exception.
+    /// An answer of the library's, or its exception; without the interpreter's lock where it takes long.
     #[inline]
-    pub(crate) fn ask<'a, T>(
+    pub(crate) fn ask<'a, T: Send>(
         &'a self,
-        question: impl FnOnce(&colltrans::Cast<'a>) -> Result<T, QueryError>,
+        py: Python<'_>,
+        question: impl FnOnce(&colltrans::Cast<'a>) -> Result<T, QueryError> + Send,
     ) -> PyResult<T> {
-        self.cast().and_then(|cast| question(&cast)).map_err(|what| self.error(&what))
+        let work = || self.cast().and_then(|cast| question(&cast));
+        let is_long = self.options.keep != 0.0
+            || self.options.solver == colltrans::Solver::Cta
+            || are_large(&[self.moving.get(), self.fixed.get()]);
+        let found = if is_long { py.detach(work) } else { work() };
+        found.map_err(|what| self.error(&what))
     }
 
     /// What is made of the library's cast without a search.
@@ -107,7 +113,7 @@ impl Cast {
         &'a self,
         make: impl FnOnce(&colltrans::Cast<'a>) -> T,
     ) -> PyResult<T> {
-        self.ask(|cast| Ok(make(cast)))
+        self.cast().map(|cast| make(&cast)).map_err(|what| self.error(&what))
     }
 
     pub(crate) fn error(&self, what: &QueryError) -> PyErr {
@@ -225,6 +231,10 @@ impl Cast {
     #[pyo3(signature = (**options))]
     fn show<'py>(slf: &Bound<'py, Self>, options: Option<Shows<'_, 'py>>) -> Shown<'py> {
         show(slf, options)
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> Shown<'py> {
+        html(slf)
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, (String,))> {

@@ -18,9 +18,9 @@ use crate::solver::options_of;
 /// The answer as Python has it.
 fn answered<'py, A: Answer<Query = Cast>>(
     query: &Bound<'py, Cast>,
-    question: impl FnOnce(&colltrans::Cast<'_>) -> Result<A, QueryError>,
+    question: impl FnOnce(&colltrans::Cast<'_>) -> Result<A, QueryError> + Send,
 ) -> PyResult<Bound<'py, PyAny>> {
-    query.get().ask(question)?.object(query)
+    query.get().ask(query.py(), question)?.object(query)
 }
 
 #[pymethods]

@@ -16,9 +16,10 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arrays::{self, faces, ids, points, table};
+use crate::arrays::{self, faces, ids, points, read_only, table};
 use crate::body::ConvexPolyhedron;
 use crate::errors::OrRaise;
+use crate::frozen::{Options, Shown, html, show};
 use crate::offset::ShrinkReport;
 
 /// What a solid was made of.
@@ -322,13 +323,13 @@ impl Solid {
     /// ndarray of shape (N, 3): The vertices in use, in the body frame.
     #[getter]
     fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        table(py, self.solid.vertices().iter().map(DVec3::to_array))
+        table(py, self.solid.vertices().iter().map(DVec3::to_array)).map(read_only)
     }
 
     /// ndarray of shape (M, 3): The triangles, as indices into ``vertices``.
     #[getter]
     fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        table(py, self.solid.triangles().iter().copied())
+        table(py, self.solid.triangles().iter().copied()).map(read_only)
     }
 
     /// ndarray of shape (N,): For each vertex its index in the input.
@@ -434,6 +435,16 @@ impl Solid {
     #[pyo3(name = "_moved")]
     fn moved_again(of: &Bound<'_, Self>, by: f64) -> PyResult<Self> {
         Ok(Self::moved(of, by.abs(), by.is_sign_positive())?.0)
+    }
+
+    /// A picture of it: see :func:`colltrans.show`.
+    #[pyo3(signature = (**options))]
+    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
+        show(slf, options)
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> Shown<'py> {
+        html(slf)
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {

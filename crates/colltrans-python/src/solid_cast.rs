@@ -15,7 +15,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::{coordinates, row, vector};
 use crate::errors::{OrRaise, error};
-use crate::frozen::{Options, Shown, show};
+use crate::frozen::{Options, Shown, html, show};
 use crate::pose::{Pose, pose};
 use crate::solid::Piece;
 
@@ -219,6 +219,10 @@ impl SolidCast {
     #[pyo3(signature = (**options))]
     fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
         show(slf, options)
+    }
+
+    fn _repr_html_<'py>(slf: &Bound<'py, Self>) -> Shown<'py> {
+        html(slf)
     }
 
     /// The arguments that make it once more, for `pickle` and `copy`.

@@ -139,6 +139,10 @@ macro_rules! questions {
                 Steps(self.steps)
             }
 
+            fn __repr__(&self) -> &'static str {
+                if self.tracked.is_some() { "Tracker(with an answer)" } else { "Tracker()" }
+            }
+
             $(
                 $(#[$doc])*
                 #[pyo3(signature = (moving, fixed, direction, *, moving_pose=None, fixed_pose=None,

@@ -10,6 +10,8 @@ in the world. Translations count in multiples of the direction, so they are leng
 1. The unit of length is the caller's.
 """
 
+from importlib.metadata import version as _version
+
 from colltrans._colltrans import (
     Behind,
     Blocked,
@@ -28,6 +30,7 @@ from colltrans._colltrans import (
     FreeDirections,
     Grazing,
     Intersection,
+    LastContact,
     Motion,
     MotionCast,
     MotionClearance,
@@ -83,7 +86,14 @@ from colltrans.assembly import (
     Stuck,
     Wanted,
 )
-from colltrans.columns import ClearanceColumns, Columns, ContactColumns, Failed, RangeColumns
+from colltrans.columns import (
+    ClearanceColumns,
+    Columns,
+    ContactColumns,
+    Failed,
+    RangeColumns,
+    concatenate,
+)
 from colltrans.errors import (
     AssemblyError,
     BuildError,
@@ -103,6 +113,7 @@ from colltrans.motions import (
     motion_clearance_many,
     motion_many,
 )
+from colltrans.outcomes import Outcomes
 from colltrans.pairs import (
     DepthColumns,
     DistanceColumns,
@@ -115,6 +126,8 @@ from colltrans.pairs import (
 from colltrans.pictures import picture, show
 from colltrans.robots import PathColumns, path_many
 from colltrans.solids import SolidColumns
+
+__version__ = _version("colltrans")
 
 __all__ = [
     "Assembly",
@@ -148,6 +161,7 @@ __all__ = [
     "Grazing",
     "InputError",
     "Intersection",
+    "LastContact",
     "MeshError",
     "Motion",
     "MotionCast",
@@ -161,6 +175,7 @@ __all__ = [
     "ObstacleClearance",
     "Obstacles",
     "OffsetReport",
+    "Outcomes",
     "OverlapDepth",
     "Overlapping",
     "Pair",
@@ -200,6 +215,7 @@ __all__ = [
     "cast_many",
     "clearance",
     "clearance_many",
+    "concatenate",
     "contact_range",
     "contact_range_many",
     "depth",

@@ -4,7 +4,7 @@ The extension reads tuples, lists and arrays that are already so by itself; the 
 """
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,10 +12,20 @@ from numpy.typing import NDArray
 from colltrans.errors import InputError
 
 
+class Runs(NamedTuple):
+    """Faces as they are handed on: all corners, where each face begins and the last one ends."""
+
+    corners: Any
+    ends: Any
+
+
 def floats(values: Any, name: str) -> NDArray[np.float64]:
-    """``values`` as an aligned array of doubles in C order, itself if it is one."""
+    """``values`` as an aligned array of doubles in C order, itself if it is one.
+
+    What a masked array masks is NaN, which every question refuses, in bulk row by row.
+    """
     try:
-        array = np.asarray(values)
+        array = np.asarray(_unmasked(values, float, np.nan))
     except Exception as error:
         raise InputError(f"{name}: no array of numbers: {error}") from None
     if array.dtype.kind not in "fiu":
@@ -24,9 +34,12 @@ def floats(values: Any, name: str) -> NDArray[np.float64]:
 
 
 def indices(values: Any, name: str) -> NDArray[np.uint32]:
-    """``values`` as an aligned array of 32-bit indices in C order, itself if it is one."""
+    """``values`` as an aligned array of 32-bit indices in C order, itself if it is one.
+
+    What a masked array masks is -1, which is refused.
+    """
     try:
-        array = np.asarray(values)
+        array = np.asarray(_unmasked(values, np.int64, -1))
     except Exception as error:
         raise InputError(f"{name}: no array of whole numbers: {error}") from None
     if array.size == 0:
@@ -38,12 +51,20 @@ def indices(values: Any, name: str) -> NDArray[np.uint32]:
     return np.require(array, np.uint32, ["C", "A"])
 
 
+def _unmasked(values: Any, kind: Any, instead: Any) -> Any:
+    if not isinstance(values, np.ma.MaskedArray) or not np.ma.is_masked(values):
+        return values
+    return np.ma.filled(values.astype(kind), instead)
+
+
 def _outside(array: NDArray[Any]) -> int:
     return int(array.min()) if array.min() < 0 else int(array.max())
 
 
 def faces(values: Any) -> tuple[NDArray[np.uint32], NDArray[np.uint32]]:
     """Polygons as one run of corners, and where each begins and the last one ends."""
+    if isinstance(values, Runs):
+        return indices(values.corners, "faces"), indices(values.ends, "faces")
     if isinstance(values, np.ndarray) and values.dtype != object:
         if values.ndim != 2:
             raise InputError(f"faces: an array of shape {values.shape}, not (M, k)")

@@ -4,7 +4,8 @@ Lengths are in the unit of the files. Directions are made of length 1, so distan
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from html import escape
 from os import PathLike
 from pathlib import Path
 from typing import Any
@@ -217,6 +218,45 @@ class Plan:
     left: list[str]
     stuck: list[Stuck]
     wanted: Wanted | None
+    _assembly: "Assembly | None" = field(default=None, repr=False, compare=False)
+
+    def displacements(self) -> dict[str, Floats]:
+        """By how much each part that moves is away from its place when all steps are done."""
+        found: dict[str, Floats] = {}
+        for step in self.steps:
+            for move in (*step.path, *step.back):
+                for part in move.parts:
+                    way = np.multiply(move.direction, move.travel)
+                    found[part] = found.get(part, np.zeros(3)) + way
+        return found
+
+    def show(self, **options: Any) -> None:
+        """A picture of all parts, taken out: see :func:`colltrans.show`.
+
+        Raises
+        ------
+        InputError
+            A plan that comes from a pickle: it has no bodies.
+        """
+        from colltrans.pictures import show
+
+        show(self, **options)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {**self.__dict__, "_assembly": None}
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f"<tr><th>{number}</th><td>{escape(stage.takes)}</td>"
+            f"<td>{', '.join(f'{c:.3g}' for c in self.steps[stage.steps[0]].direction)}</td>"
+            f"<td>{stage.travel:.6g}</td></tr>"
+            for number, stage in enumerate(self.stages, 1)
+        )
+        kept = {"last": self.last, "left": self.left}
+        kept |= {"stuck": [part for group in self.stuck for part in group.parts]}
+        rest = "; ".join(f"{of}: {escape(', '.join(names))}" for of, names in kept.items() if names)
+        head = "<tr><th></th><th>takes</th><th>direction</th><th>travel</th></tr>"
+        return f"<table>{head}{rows}</table><p>{rest}</p>"
 
 
 @dataclass(frozen=True, eq=False)
@@ -533,6 +573,7 @@ class Assembly:
                 for parts, directions, proven, because, holds in stuck
             ],
             self._wanted(*goes) if goes is not None else None,
+            self,
         )
 
     def _wanted(self, parts: list[int], others: list[int], least: bool, out: bool) -> Wanted:
@@ -580,6 +621,16 @@ class Assembly:
     def _names(self, positions: Sequence[int]) -> list[str]:
         names = self.parts
         return [names[k] for k in positions]
+
+    def meshes(self) -> dict[str, tuple[Floats, NDArray[np.uint32]]]:
+        """Vertices, in the world, and triangles of all parts by their names."""
+        return dict(zip(self.parts, self._assembly.meshes(), strict=True))
+
+    def show(self, **options: Any) -> None:
+        """A picture of all parts: see :func:`colltrans.show`."""
+        from colltrans.pictures import show
+
+        show(self, **options)
 
     def __repr__(self) -> str:
         return f"Assembly({len(self.parts)} parts)"

@@ -1,9 +1,9 @@
 """Answers in bulk: columns, and whole answers of single rows."""
 
 import operator
-from collections.abc import Iterator
-from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,11 +20,13 @@ from colltrans._colltrans import (
     Slides,
 )
 from colltrans.errors import ColltransError, InputError
+from colltrans.outcomes import Outcomes
 from colltrans.queries import Floats
 
 if TYPE_CHECKING:
     import pandas
     import pyarrow
+    import xarray
 
 Answer_co = TypeVar("Answer_co", covariant=True)
 
@@ -42,47 +44,88 @@ class Failed:
     message: str
 
 
+@dataclass(frozen=True)
+class _Taken:
+    """Some rows of what was asked."""
+
+    of: Any
+    rows: NDArray[np.intp]
+
+    def ask(self, question: Any, i: int) -> Any:
+        return self.of.ask(question, int(self.rows[i]))
+
+
+@dataclass(frozen=True)
+class _Joined:
+    """What was asked in several calls, one after the other."""
+
+    parts: tuple[Any, ...]
+    ends: NDArray[np.intp]
+
+    def ask(self, question: Any, i: int) -> Any:
+        part = int(np.searchsorted(self.ends, i, side="right"))
+        return self.parts[part].ask(question, i - (int(self.ends[part - 1]) if part else 0))
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class Table(Generic[Answer_co]):
     """Answers as columns, one row a query. Numbers that a row has not are NaN.
 
     ``len(columns)`` is the number of rows, ``columns[i]`` the whole answer of one of them, with its
-    features and its proof: it is asked again, from the arrays that were given.
+    features and its proof: it is asked again, from the arrays that were given. A slice, a mask or
+    an array of positions selects rows, as of an array; :func:`concatenate` joins them.
 
     Attributes
     ----------
-    outcome : ndarray of uint8, shape (N,)
-        An index into ``outcomes``.
-    outcomes : tuple of str
-        The names of the outcomes; the last one is ``"error"``.
+    outcome : Outcomes
+        What became of each row, by name: ``columns.outcome == "contact"`` is a mask.
     errors : dict of int to str
         The messages of the rows without an answer.
     """
 
-    outcome: NDArray[np.uint8]
+    outcome: Outcomes
     outcomes: tuple[str, ...]
     errors: dict[int, str]
     _queries: Any
 
     _question: ClassVar[Any]
 
+    def __post_init__(self) -> None:
+        if not isinstance(self.outcome, Outcomes):
+            object.__setattr__(self, "outcome", Outcomes(self.outcome, self.outcomes))
+
     def __len__(self) -> int:
         return len(self.outcome)
 
-    def __getitem__(self, i: int) -> "Answer_co | Failed":
+    @overload
+    def __getitem__(self, i: int) -> "Answer_co | Failed": ...
+    @overload
+    def __getitem__(self, i: slice | NDArray[Any] | Sequence[int] | Sequence[bool]) -> Self: ...
+    def __getitem__(self, i: Any) -> Any:
+        if isinstance(i, (slice, np.ndarray, Sequence)):
+            return self._take(np.arange(len(self))[i])
         i = range(len(self))[operator.index(i)]
         if i in self.errors:
             return Failed(self.errors[i])
         try:
-            answer: Answer_co = self._queries.ask(type(self)._question, i)
+            answer = self._queries.ask(type(self)._question, i)
         except ColltransError:
-            answer = None  # type: ignore[assignment]
+            answer = None
         if not self._is_row(answer, i):
             raise ColltransError(f"row {i}: the arrays that were given have changed since")
         return answer
 
     def __iter__(self) -> "Iterator[Answer_co | Failed]":
         return (self[i] for i in range(len(self)))
+
+    def _take(self, rows: NDArray[np.intp]) -> Self:
+        if rows.ndim != 1:
+            raise InputError(f"rows: an array of shape {rows.shape}, not (N,)")
+        found = (self.errors.get(int(row)) for row in rows) if self.errors else ()
+        changed: dict[str, Any] = {name: column[rows] for name, column in self._numbers()}
+        changed["outcome"] = self.outcome[rows]
+        changed["errors"] = {i: text for i, text in enumerate(found) if text is not None}
+        return replace(self, _queries=_Taken(self._queries, rows), **changed)
 
     def where(self, *outcomes: str) -> NDArray[np.bool_]:
         """Which rows have one of these outcomes, by name: a mask for the columns.
@@ -95,16 +138,14 @@ class Table(Generic[Answer_co]):
         >>> columns = cast_many(cube, cube, [1, 0, 0], moving_pose=[[-3, 0, 0], [-3, 9, 0]])
         >>> columns.where("separated")
         array([False,  True])
+        >>> columns[columns.where("contact", "grazing")]
+        ContactColumns(1 rows: 1 contact)
         """
-        for name in outcomes:
-            if name not in self.outcomes:
-                raise InputError(f"no outcome {name!r}: {', '.join(self.outcomes)}")
-        return np.isin(self.outcome, [self.outcomes.index(name) for name in outcomes])
+        return self.outcome.isin(outcomes)
 
     def counts(self) -> dict[str, int]:
         """How many rows have each outcome, without those that none has."""
-        counts = np.bincount(self.outcome, minlength=len(self.outcomes))
-        return {name: int(n) for name, n in zip(self.outcomes, counts, strict=True) if n}
+        return self.outcome.counts()
 
     def to_arrow(self) -> "pyarrow.Table":
         """A table of pyarrow; vectors are lists of fixed size, columns are not copied.
@@ -118,7 +159,7 @@ class Table(Generic[Answer_co]):
 
         columns: dict[str, Any] = {
             "outcome": pa.DictionaryArray.from_arrays(
-                pa.array(self.outcome.view(np.int8)), list(self.outcomes)
+                pa.array(self.outcome.codes.view(np.int8)), list(self.outcomes)
             )
         }
         for name, column in self._numbers():
@@ -130,6 +171,27 @@ class Table(Generic[Answer_co]):
         else:
             columns["message"] = pa.nulls(len(self), pa.string())
         return pa.table(columns)
+
+    def __arrow_c_stream__(self, requested_schema: object = None) -> object:
+        """The table of :meth:`to_arrow` for whoever reads Arrow: polars, DuckDB, pandas."""
+        return self.to_arrow().__arrow_c_stream__(requested_schema)
+
+    def to_xarray(self) -> "xarray.Dataset":
+        """A data set of xarray: each column by ``query``, vectors by ``axis`` too.
+
+        Raises
+        ------
+        ModuleNotFoundError
+            Without xarray, ``pip install colltrans[xarray]``.
+        """
+        import xarray as xr
+
+        columns: dict[str, Any] = {"outcome": ("query", np.asarray(self.outcome))}
+        for name, column in self._numbers():
+            columns[name] = (("query", "axis")[: column.ndim], column)
+        messages = np.array([self.errors.get(i, "") for i in range(len(self))], dtype=str)
+        columns["message"] = ("query", messages)
+        return xr.Dataset(columns, coords={"axis": list("xyz")})
 
     def to_pandas(self) -> "pandas.DataFrame":
         """A data frame of pandas; vectors are three columns each.
@@ -143,7 +205,7 @@ class Table(Generic[Answer_co]):
 
         columns: dict[str, Any] = {
             "outcome": pd.Categorical.from_codes(
-                self.outcome.astype(np.int8), categories=list(self.outcomes)
+                self.outcome.codes.astype(np.int8), categories=list(self.outcomes)
             )
         }
         for name, column in self._numbers():
@@ -157,7 +219,7 @@ class Table(Generic[Answer_co]):
     def _numbers(self) -> Iterator[tuple[str, Floats]]:
         for field in fields(self):
             column = getattr(self, field.name)
-            if isinstance(column, np.ndarray) and field.name != "outcome":
+            if isinstance(column, np.ndarray):
                 yield field.name, column
 
     def _is_row(self, answer: Any, i: int) -> bool:
@@ -170,7 +232,7 @@ class Table(Generic[Answer_co]):
 
     def _repr_html_(self) -> str:
         shown = min(len(self), 8)
-        columns = [("outcome", [self.outcomes[code] for code in self.outcome[:shown]])]
+        columns = [("outcome", self.outcome[:shown].tolist())]
         columns += [(name, column[:shown].tolist()) for name, column in self._numbers()]
         head = "".join(f"<th>{name}</th>" for name, _ in columns)
         lines = (
@@ -200,7 +262,7 @@ class TimeColumns(Table[Answer_co]):
         told = answer.to_dict()
         found = [told.get("time", {}).get(name, np.nan) for name in ("lower", "upper")]
         same = np.array_equal([self.lower[i], self.upper[i]], found, equal_nan=True)
-        return same and self.outcomes[self.outcome[i]] == told["outcome"]
+        return same and self.outcome[i] == told["outcome"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -252,7 +314,59 @@ class Columns(Table[Answer_co]):
             case (Contact() as contact) | ContactRange(first=Contact() as contact):
                 name, translation = "contact", contact.translation
         same = np.array_equal(self.translation[i], translation, equal_nan=True)
-        return same and self.outcomes[self.outcome[i]] == name
+        return same and self.outcome[i] == name
+
+
+Columns_ = TypeVar("Columns_", bound=Table[Any])
+
+
+def concatenate(columns: "Sequence[Columns_]") -> Columns_:
+    """Columns of one kind, one after the other.
+
+    Parameters
+    ----------
+    columns : sequence of columns
+        At least one, all of answers to the same question.
+
+    Returns
+    -------
+    Columns of the same class
+
+    Raises
+    ------
+    InputError
+        None at all, or answers to different questions.
+
+    Examples
+    --------
+    >>> from colltrans import ConvexPolyhedron, cast_many, concatenate
+    >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+    >>> one = cast_many(cube, cube, [1, 0, 0], moving_pose=[[-3, 0, 0], [-3, 9, 0]])
+    >>> other = cast_many(cube, cube, [0, 0, 1], moving_pose=[0, 0, -4])
+    >>> concatenate([one[:1], other]).translation
+    array([2., 3.])
+    """
+    if len({type(each) for each in columns}) != 1:
+        kinds = ", ".join(sorted({type(each).__name__ for each in columns})) or "nothing"
+        raise InputError(f"columns of one kind are joined, not {kinds}")
+    first, ends = columns[0], np.cumsum([len(each) for each in columns])
+    for name in ("outcomes", "bodies"):
+        if any(getattr(each, name, ()) != getattr(first, name, ()) for each in columns):
+            raise InputError(f"columns of the same {name} are joined")
+    begins = np.concatenate([[0], ends[:-1]])
+    shifted = (
+        {int(begin) + i: text for i, text in each.errors.items()}
+        for begin, each in zip(begins, columns, strict=True)
+    )
+    changed: dict[str, Any] = {
+        name: np.concatenate([getattr(each, name) for each in columns])
+        for name, _ in first._numbers()
+    }
+    codes = np.concatenate([each.outcome.codes for each in columns])
+    changed["outcome"] = Outcomes(codes, first.outcomes)
+    changed["errors"] = {i: text for errors in shifted for i, text in errors.items()}
+    queries = _Joined(tuple(each._queries for each in columns), ends)
+    return replace(first, _queries=queries, **changed)
 
 
 def _cell(value: Any) -> str:

@@ -78,7 +78,7 @@ class PairColumns(Table[Answer_co]):
         told = answer.to_dict()
         found = [told.get(name, np.nan) for name in ("lower", "upper")]
         same = np.array_equal([self.lower[i], self.upper[i]], found, equal_nan=True)
-        return same and self.outcomes[self.outcome[i]] == told["outcome"]
+        return same and self.outcome[i] == told["outcome"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -25,6 +25,7 @@ from colltrans._colltrans import (
     FirstContact,
     Grazing,
     Intersection,
+    LastContact,
     MotionCast,
     MotionClearance,
     OverlapDepth,
@@ -41,10 +42,12 @@ from colltrans._colltrans import (
     SolidOverlapping,
     Within,
 )
+from colltrans.assembly import Assembly, Plan
+from colltrans.errors import InputError
 
 Floats: TypeAlias = NDArray[np.float64]
-# Blue and sand, as in the drawings of the command line and in the page (`web/src/colours.ts`).
-MOVING, FIXED, TOUCH = "#6f97d6", "#d9cbb0", "#c0392b"
+# As in the page (`web/src/colours.ts`): blue and sand, and what touches in the colour of normals.
+MOVING, FIXED, TOUCH, EDGE = "#6f97d6", "#d9cbb0", "#b01657", "#1d2733"
 
 
 @dataclass(frozen=True)
@@ -67,14 +70,16 @@ class _Link:
 
 
 def picture(answer: Any) -> Any:
-    """An answer, or the query of one, as a figure of plotly.
+    """A body, an assembly, a plan, a query or an answer as a figure of plotly.
 
     Parameters
     ----------
-    answer : Contact, Blocked, SolidBlocked, Cast or any other answer or query
-        What it says of a contact is drawn: the moving body as it is and, as a ghost, where it
-        touches; the point, and the normal from the moving body to the fixed one. Of a distance the
-        nearest points, joined; of a depth, as a ghost, where the moving body has left.
+    answer : ConvexPolyhedron, Solid, Assembly, Plan, Cast or any other query, or an answer
+        A body and an assembly are drawn where they are; of a plan all that is taken out where its
+        moves bring it. What an answer says of a contact is drawn: the moving body as it is and, as
+        a ghost, where it touches; the point, and the normal from the moving body to the fixed one.
+        Of a distance the nearest points, joined; of a depth, as a ghost, where the moving body has
+        left.
 
     Returns
     -------
@@ -109,8 +114,7 @@ def picture(answer: Any) -> Any:
     elif isinstance(answer, MotionClearance):
         answer = _cleared(answer).first_contact()
     figure = go.Figure()
-    moved = isinstance(answer, FirstContact)
-    figure.add_traces(list(_moved(go, answer) if moved else _asked(go, answer)))
+    figure.add_traces(list(_traces(go, answer)))
     axes = {axis: {"showbackground": False} for axis in ("xaxis", "yaxis", "zaxis")}
     figure.update_layout(
         title=repr(answer),
@@ -121,11 +125,36 @@ def picture(answer: Any) -> Any:
     return figure
 
 
+def _traces(go: Any, thing: Any) -> Iterator[Any]:
+    match thing:
+        case FirstContact():
+            yield from _moved(go, thing)
+        case ConvexPolyhedron() | Solid():
+            yield from _body(go, placed(thing, Pose()), "body", MOVING, 1.0)
+        case Assembly():
+            yield from _parts(go, thing, {})
+        case Plan():
+            if thing._assembly is None:
+                raise InputError("a plan that comes from a pickle has no bodies")
+            yield from _parts(go, thing._assembly, thing.displacements())
+        case _:
+            yield from _asked(go, thing)
+
+
+def _parts(go: Any, assembly: Assembly, moved: dict[str, Floats]) -> Iterator[Any]:
+    """All parts, where they stand or by how much they were moved; what does not move is sand."""
+    for name, (vertices, triangles) in assembly.meshes().items():
+        way = moved.get(name, np.zeros(3))
+        colour = MOVING if not moved or name in moved else FIXED
+        shape = (vertices + way, triangles, _creases(vertices, triangles))
+        yield from _body(go, shape, name, colour, 1.0)
+
+
 def _asked(go: Any, answer: Any) -> Iterator[Any]:
     """Both bodies where they are, and what the answer says."""
-    query, marks = _said(answer)
-    moving = _placed(query.moving, query.moving_pose)
-    fixed = _placed(query.fixed, query.fixed_pose)
+    query, marks = said(answer)
+    moving = placed(query.moving, query.moving_pose)
+    fixed = placed(query.fixed, query.fixed_pose)
     yield from _body(go, moving, "moving", MOVING, 1.0)
     yield from _body(go, fixed, "fixed", FIXED, 1.0)
     size = float(np.ptp(np.vstack([moving[0], fixed[0]]), axis=0).max()) or 1.0
@@ -153,12 +182,12 @@ def _cleared(answer: MotionClearance) -> MotionCast:
 def _moved(go: Any, answer: FirstContact) -> Iterator[Any]:
     """The moving body at the start, where it touches, and at the end; the other one then."""
     query, at = answer.query, 1.0 if answer.poses is None else answer.lower
-    fixed = _placed(query.fixed, query.fixed_motion.at(at))
-    yield from _body(go, _placed(query.moving, query.moving_motion.start), "moving", MOVING, 1.0)
+    fixed = placed(query.fixed, query.fixed_motion.at(at))
+    yield from _body(go, placed(query.moving, query.moving_motion.start), "moving", MOVING, 1.0)
     yield from _body(go, fixed, "fixed", FIXED, 1.0)
     ghosts = {"end": 1.0} if answer.poses is None else {f"{answer.outcome} at {at:.6g}": at}
     for name, time in {**ghosts, "end": 1.0}.items():
-        yield from _body(go, _placed(query.moving, query.moving_motion.at(time)), name, MOVING, 0.3)
+        yield from _body(go, placed(query.moving, query.moving_motion.at(time)), name, MOVING, 0.3)
     if answer.point is not None:
         x, y, z = answer.point.reshape(3, 1)
         marker = {"color": TOUCH, "size": 6}
@@ -170,13 +199,13 @@ def _moved(go: Any, answer: FirstContact) -> Iterator[Any]:
 
 
 def show(answer: Any, *, file: str | PathLike[str] | None = None) -> None:
-    """Shows an answer as a picture: in the notebook, in a browser, or in a file.
+    """Shows a thing as a picture: in the notebook, in a browser, or in a file.
 
-    Every answer and query has it as a method, ``answer.show()``.
+    Each of them has it as a method, ``answer.show()``.
 
     Parameters
     ----------
-    answer : Contact, Blocked, SolidBlocked, Cast or any other answer or query
+    answer : ConvexPolyhedron, Solid, Assembly, Plan, Cast or any other query, or an answer
     file : str or os.PathLike, optional
         A page (HTML) that is written instead; it holds all that it needs.
 
@@ -202,7 +231,7 @@ def show(answer: Any, *, file: str | PathLike[str] | None = None) -> None:
         figure.write_html(file, include_plotlyjs=True)
 
 
-def _said(answer: Any) -> tuple[Cast | SolidCast | Pair, list[_Mark | _Link]]:
+def said(answer: Any) -> tuple[Cast | SolidCast | Pair, list[_Mark | _Link]]:
     """The query of an answer, and what is to be drawn of it."""
     match answer:
         case Distance():
@@ -225,9 +254,9 @@ def _said(answer: Any) -> tuple[Cast | SolidCast | Pair, list[_Mark | _Link]]:
             ends = [end.contact if isinstance(end, Grazing) else end for end in (first, last)]
             return ends[0].query, [_mark("first", ends[0]), _mark("last", ends[1])]
         case DirectionalDepth():
-            return _said(answer.clearance)
+            return said(answer.clearance)
         case Intersection():
-            return _said(answer.outcome)
+            return said(answer.outcome)
         case SolidBlocked(contact=contact):
             return contact.query, [_solid_mark(contact)]
         case SolidContact():
@@ -239,7 +268,7 @@ def _said(answer: Any) -> tuple[Cast | SolidCast | Pair, list[_Mark | _Link]]:
     raise TypeError(f"no answer and no query, but {type(answer).__name__}")
 
 
-def _mark(name: str, contact: Contact) -> _Mark:
+def _mark(name: str, contact: Contact | LastContact) -> _Mark:
     direction = contact.query.direction
     return _Mark(name, contact.translation, contact.point, contact.normal, direction)
 
@@ -252,7 +281,7 @@ def _solid_mark(contact: SolidContact) -> _Mark:
 Placed: TypeAlias = tuple[Floats, NDArray[np.uint32], NDArray[Any]]
 
 
-def _placed(body: Solid | ConvexPolyhedron, pose: Pose) -> Placed:
+def placed(body: Solid | ConvexPolyhedron, pose: Pose) -> Placed:
     """Vertices in the world, triangles, and the edges that are to be seen."""
     vertices = body.vertices @ pose.rotation.T + pose.translation
     if isinstance(body, Solid):
@@ -290,7 +319,7 @@ def _body(go: Any, placed: Placed, name: str, colour: str, opacity: float) -> It
     lines = np.full((len(edges), 3, 3), np.nan)
     lines[:, :2] = vertices[edges]
     x, y, z = lines.reshape(-1, 3).T
-    line = {"color": colour if opacity < 1 else "#222222", "width": 2}
+    line = {"color": colour if opacity < 1 else EDGE, "width": 2}
     yield go.Scatter3d(x=x, y=y, z=z, mode="lines", line=line, hoverinfo="skip", showlegend=False)
 
 

@@ -1,5 +1,6 @@
 """Arguments of queries in bulk, whatever was given: tables of one row, or of one for each query."""
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias
@@ -147,7 +148,9 @@ def body_list(
             raise TypeError(f"{name}: not a ConvexPolyhedron, but {type(body).__name__}")
     if index is None:
         return all_bodies, None if alone else np.arange(len(all_bodies))
-    found = np.asarray(index)
+    # A row that a masked array masks has no body.
+    masked = isinstance(index, np.ma.MaskedArray)
+    found = np.ma.filled(index, -1) if masked else np.asarray(index)
     if found.ndim != 1 or (found.size > 0 and found.dtype.kind not in "iu"):
         raise InputError(f"{name}_index: no row of whole numbers")
     if found.dtype == np.uint64 and found.size > 0 and found.max() > np.iinfo(np.int64).max:
@@ -190,6 +193,11 @@ def pose_table(values: Poses, name: str) -> Floats:
         f"{name}: an array of shape {shape}, not (3,), (7,), (3, 4) or (4, 4), "
         "nor a row of that for each query"
     )
+
+
+def cores() -> int:
+    """How many processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def checked_threads(threads: int | None) -> int | None:

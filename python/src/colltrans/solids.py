@@ -4,7 +4,6 @@ A row of solids takes so long that Python between two of them does not count. Th
 lock is free while a row is answered. Every row has its own place, so the threads need no other.
 """
 
-import os
 from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from typing import Any
@@ -14,7 +13,8 @@ import numpy as np
 from colltrans._colltrans import SolidBlocked, SolidCast, SolidFree, SolidOverlapping
 from colltrans.columns import Table
 from colltrans.errors import InputError
-from colltrans.queries import Floats, Queries, row_of
+from colltrans.outcomes import Outcomes
+from colltrans.queries import Floats, Queries, cores, row_of
 
 OUTCOMES = ("blocked", "free", "overlapping", "error")
 #: The columns of numbers, in the order of :func:`_values`.
@@ -37,14 +37,15 @@ class SolidQueries:
     """What was asked: the tables of all kinds of bodies, and the choices of solids."""
 
     queries: Queries
+    #: NaN stands for none.
     tolerance: Floats | None
     ignore_start_overlaps: bool
 
     def ask(self, question: Any, i: int) -> Any:
         """One of them, alone."""
-        none = self.tolerance is None
+        tolerance = np.nan if self.tolerance is None else float(row_of(self.tolerance, i)[0])
         choices = {
-            "tolerance": None if none else float(row_of(self.tolerance, i)[0]),  # type: ignore[arg-type]
+            "tolerance": None if np.isnan(tolerance) else tolerance,
             "ignore_start_overlaps": self.ignore_start_overlaps,
         }
         return question(self.queries.ask_with(SolidCast, i, **choices))
@@ -92,7 +93,7 @@ class SolidColumns(Table[SolidBlocked | SolidFree | SolidOverlapping]):
         if answer is None:
             return False
         code, distance, translation, *_ = _values(answer)
-        told = (self.outcome[i], self.distance[i], self.translation[i])
+        told = (self.outcome.codes[i], self.distance[i], self.translation[i])
         return np.array_equal(told, (code, distance, translation), equal_nan=True)
 
 
@@ -119,7 +120,7 @@ def ask_solids(
     """Answers all rows. Ctrl-C ends it: rows that are being answered go on in the background."""
     asked, n = SolidQueries(queries, tolerance, ignore_start_overlaps), queries.count
     columns = SolidColumns(
-        outcome=np.full(n, OUTCOMES.index("error"), np.uint8),
+        outcome=Outcomes(np.full(n, OUTCOMES.index("error"), np.uint8), OUTCOMES),
         outcomes=OUTCOMES,
         errors={},
         _queries=asked,
@@ -127,7 +128,7 @@ def ask_solids(
         **{name: np.full((n, 3), np.nan) for name in ("normal", "point")},
     )
     numbers = [getattr(columns, name) for name in _NUMBERS]
-    places: list[Any] = [columns.outcome, *numbers, columns.normal, columns.point]
+    places: list[Any] = [columns.outcome.codes, *numbers, columns.normal, columns.point]
     rows, failed, stopped = iter(range(n)), {}, False
 
     def work() -> None:
@@ -144,7 +145,7 @@ def ask_solids(
                 for place, value in zip(places, values, strict=True):
                     place[i] = value
 
-    count = max(1, min(threads or _cores(), n))
+    count = max(1, min(threads or cores(), n))
     pool = ThreadPoolExecutor(count)
     try:
         waiting = {pool.submit(work) for _ in range(count)}
@@ -155,10 +156,6 @@ def ask_solids(
         pool.shutdown(wait=False, cancel_futures=True)
     columns.errors.update(sorted(failed.items()))
     return columns
-
-
-def _cores() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _check_bodies(queries: Queries, i: int) -> None:

@@ -20,60 +20,24 @@ from colltrans import ConvexPolyhedron, clearance_many
 pa = pytest.importorskip("pyarrow")
 pq = pytest.importorskip("pyarrow.parquet")
 
+from shards import (  # noqa: E402
+    CORNERS,
+    KEYS,
+    all_ids,
+    ids,
+    queries,
+    shards,
+    write,
+    write_bodies,
+)
+
 from colltrans.bulk import Bodies, Job, Options, Report, answer_shard, engines  # noqa: E402
 from colltrans.bulk.__main__ import main  # noqa: E402
-
-KEYS = ["cube", "cloud", "broken"]
-CORNERS = np.stack(np.meshgrid([0.0, 1], [0.0, 1], [0.0, 1]), axis=-1).reshape(-1, 3)
 
 
 @pytest.fixture
 def bodies(tmp_path: Path) -> Path:
-    cloud = np.random.default_rng(1).normal(size=(60, 3))
-    vertices = [CORNERS.tolist(), cloud.tolist(), [[0.0, 0.0, float("nan")]]]
-    pq.write_table(pa.table({"key": KEYS, "vertices": vertices}), tmp_path / "bodies.parquet")
-    return tmp_path / "bodies.parquet"
-
-
-def queries(seed: int, n: int) -> dict[str, Any]:
-    random = np.random.default_rng(seed)
-    turns = random.normal(size=(n, 4))
-    turns /= np.linalg.norm(turns, axis=1, keepdims=True)
-    poses = np.hstack([random.normal(size=(n, 3)) + [0, 0, 6], turns])
-    return {
-        "id": [f"{seed}-{i}" for i in range(n)],
-        "moving": [KEYS[i % 2] for i in range(n)],
-        "fixed": ["cloud"] * n,
-        "moving_pose": poses,
-        "direction": random.normal(size=(n, 3)) * [0.1, 0.1, 1] - [0, 0, 1],
-    }
-
-
-def write(path: Path, columns: dict[str, Any]) -> None:
-    def arrow(column: Any) -> Any:
-        if isinstance(column, np.ndarray):
-            flat = pa.array(column.reshape(-1))
-            return pa.FixedSizeListArray.from_arrays(flat, column.shape[1])
-        return pa.array(column)
-
-    path.parent.mkdir(exist_ok=True)
-    pq.write_table(pa.table({name: arrow(column) for name, column in columns.items()}), path)
-
-
-def shards(folder: Path, count: int, rows: int) -> Path:
-    for k in range(count):
-        write(folder / f"shard-{k}.parquet", queries(k, rows))
-    return folder
-
-
-def ids(folder: Path) -> list[str]:
-    return sorted(
-        id for file in folder.glob("*.parquet") for id in pq.read_table(file)["id"].to_pylist()
-    )
-
-
-def all_ids(count: int, rows: int) -> list[str]:
-    return sorted(f"{k}-{i}" for k in range(count) for i in range(rows))
+    return write_bodies(tmp_path / "bodies.parquet")
 
 
 def test_a_folder_of_shards(tmp_path: Path, bodies: Path, capsys: Any) -> None:
@@ -93,7 +57,7 @@ def test_a_folder_of_shards(tmp_path: Path, bodies: Path, capsys: Any) -> None:
         moving_pose=columns["moving_pose"],
     )
     assert table["distance"].to_numpy().tobytes() == known.distance.tobytes()
-    assert table["outcome"].to_pylist() == [known.outcomes[code] for code in known.outcome]
+    assert table["outcome"].to_pylist() == known.outcome.tolist()
 
 
 def test_what_is_done_is_skipped_until_something_changes(
@@ -169,8 +133,10 @@ def test_lines_that_ask_something_else_are_refused_and_lose_nothing(tmp_path: Pa
         ({"moving": {"mesh": MESH, "hull": True}}, "moving: a body is a key, or an object with"),
         ({"fixed": {"points": [[0, 0, 0]]}}, "fixed: a body is a key, or an object with"),
         ({"fixed": None}, "fixed: a body is a key, or an object with"),
-        ({"query": "clearance"}, "the field 'query' is not for files in bulk"),
-        ({"solver": "cta"}, "the field 'solver' is not for files in bulk"),
+        ({"query": "clearance"}, "the question 'range' does not read 'query', and would be"),
+        ({"solver": "cta"}, "the question 'range' does not read 'solver', and would be"),
+        ({"length": 1}, "the question 'range' does not read 'length'; --keep length"),
+        ({"keeps": 1}, "the question 'range' does not read 'keeps' (is it 'keep'?); --keep keeps"),
         ({"moving_pose": {"matrix": np.eye(4).tolist()}}, "moving_pose: no list of numbers, and"),
         ({"moving_pose": {"translation": 5}}, "moving_pose.translation: no list of numbers"),
         ({"moving_pose": {"rotation": [0, 1]}}, "moving_pose: 3 and 2 numbers, not 3 and 4"),

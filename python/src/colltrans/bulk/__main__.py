@@ -1,74 +1,139 @@
 """``python -m colltrans.bulk QUERIES OUT``: files of queries to files of answers.
 
 Every file is a shard: its answers have its name, and stand there only when they are whole. A second
-run answers what is missing or has changed.
+run answers what is missing, has changed or is damaged.
 """
 
 import argparse
-import os
 import sys
 import threading
 import time
-from collections.abc import Sequence
-from pathlib import Path
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
+from pathlib import PurePath
 
 import pyarrow as pa
 import pyarrow.parquet as pq
 
-from colltrans.bulk import engines
+from colltrans.bulk import engines, files
 from colltrans.bulk.bodies import Bodies
-from colltrans.bulk.shard import QUESTIONS, Job, Options
+from colltrans.bulk.shard import Job, Report, check_shard
+from colltrans.bulk.table import QUESTIONS, Options
 from colltrans.errors import ColltransError, InputError
+from colltrans.queries import cores
 
 SUFFIXES = (".parquet", ".jsonl")
 
 
 def arguments(words: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser("python -m colltrans.bulk", description=__doc__)
-    parser.add_argument("queries", type=Path, help="a Parquet file, a file of JSON lines, a folder")
-    parser.add_argument("out", type=Path, help="a folder, or for one file a file *.parquet")
-    parser.add_argument("--bodies", type=Path, help="a Parquet table of key, vertices and faces")
-    parser.add_argument("--hull", action="store_true", help="take the convex hull of all meshes")
+    parser.add_argument("queries", help="a Parquet file, a file of JSON lines, a folder of them")
+    parser.add_argument("out", help="a folder, or for one file a file *.parquet")
+    parser.add_argument("--bodies", help="a Parquet table of key, vertices and faces")
+    kind = parser.add_mutually_exclusive_group()
+    kind.add_argument("--hull", action="store_true", help="take the convex hull of all meshes")
+    kind.add_argument("--solids", action="store_true", help="take all bodies as solids")
     parser.add_argument("--question", choices=QUESTIONS, default="range")
     parser.add_argument("--solver", choices=["auto", "cta", "portal"], default="auto")
+    parser.add_argument(
+        "--keep",
+        default="",
+        metavar="A,B",
+        help="columns of the queries that the answers have too; '*' for all",
+    )
+    parser.add_argument("--check", action="store_true", help="answer nothing: say what is whole")
     parser.add_argument("--engine", choices=["local", "ray"], default="local")
     parser.add_argument("--address", help="of a Ray cluster; one is started here without")
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
-    parser.add_argument("--threads", type=int, default=cores, help="all cores by default")
+    parser.add_argument(
+        "--rows-per-task",
+        type=int,
+        metavar="N",
+        help="make shards of row groups of Parquet files, of at least so many rows each",
+    )
+    parser.add_argument("--threads", type=int, default=cores(), help="all cores by default")
     return parser.parse_args(words)
 
 
 def jobs_of(asked: argparse.Namespace) -> list[Job]:
-    options = Options(asked.question, asked.solver)
-    queries, out = asked.queries, asked.out
-    if queries.is_dir():
-        files = sorted(p for p in queries.iterdir() if p.suffix in SUFFIXES and p.name[0] != ".")
-    elif queries.suffix in SUFFIXES and queries.exists():
-        files = [queries]
+    kept = tuple(name for name in asked.keep.split(",") if name)
+    options = Options(asked.question, asked.solver, keep_columns=kept)
+    options.reads(asked.solids)
+    pairs = shards_of(asked.queries, asked.out)
+    for file, target in pairs:
+        if target == file:
+            raise InputError(f"{target}: holds the queries; give the answers another place")
+    jobs = [Job(file, target, options) for file, target in pairs]
+    if asked.rows_per_task is None:
+        return jobs
+    return [part for job in jobs for part in parts_of(job, asked.rows_per_task)]
+
+
+def shards_of(queries: str, out: str) -> list[tuple[str, str]]:
+    """Files of queries, and where their answers go."""
+    queries, out = files.absolute(queries), files.absolute(out)
+    if files.is_folder(queries):
+        if PurePath(queries) in (PurePath(out), *PurePath(out).parents):
+            raise InputError(f"{out}: is in the folder of the queries, and would be read as some")
+        names = [name for name in files.names_in(queries) if name.endswith(SUFFIXES)]
+        if not names:
+            raise InputError(f"{queries}: holds no file *.parquet or *.jsonl")
+        sources = [files.join(queries, name) for name in names]
+    elif queries.endswith(SUFFIXES) and files.exists(queries):
+        sources, names = [queries], [PurePath(queries).name]
+        if out.endswith(".parquet"):
+            return [(queries, out)]
     else:
         raise InputError(f"{queries}: no folder, and no file *.parquet or *.jsonl")
-    if not files:
-        raise InputError(f"{queries}: holds no file *.parquet or *.jsonl")
-    names = [file.with_suffix(".parquet").name for file in files]
-    if len(set(names)) < len(names):
+    answers = [name.removesuffix(".jsonl").removesuffix(".parquet") + ".parquet" for name in names]
+    if len(set(answers)) < len(answers):
         raise InputError(f"{queries}: two files have one name but for their suffix")
-    alone = out.suffix == ".parquet" and not queries.is_dir()
-    targets = [out] if alone else [out / name for name in names]
-    for file, target in zip(files, targets, strict=True):
-        if target.exists() and target.samefile(file):
-            raise InputError(f"{target}: holds the queries; give the answers another place")
-    absolute = ((str(f.resolve()), str(t.resolve())) for f, t in zip(files, targets, strict=True))
-    return [Job(file, target, options) for file, target in absolute]
+    return list(zip(sources, (files.join(out, name) for name in answers), strict=True))
+
+
+def parts_of(job: Job, rows: int) -> Iterator[Job]:
+    """Runs of row groups of so many rows or more, each with a file of answers of its own."""
+    if rows < 1:
+        raise InputError("--rows-per-task: at least one")
+    begins, count, total = [0], 0, 0
+    if job.queries.endswith(".parquet"):
+        with files.local(job.queries) as file:
+            metadata = metadata_of(job.queries, file)
+            total = metadata.num_row_groups
+            for number in range(total):
+                count += metadata.row_group(number).num_rows
+                if count >= rows:
+                    begins.append(number + 1)
+                    count = 0
+    ends = sorted({*begins, total})
+    if len(ends) < 3:
+        yield job
+        return
+    stem = job.answers.removesuffix(".parquet")
+    for part, groups in enumerate(pairwise(ends)):
+        answers = f"{stem}-{part:05}-of-{len(ends) - 1:05}.parquet"
+        yield Job(job.queries, answers, job.options, groups)
+
+
+def metadata_of(name: str, file: object) -> pq.FileMetaData:
+    try:
+        return pq.read_metadata(file)
+    except pa.ArrowException as error:
+        raise ColltransError(f"{name}: {error}") from error
 
 
 def rows_of(job: Job) -> int:
-    if job.queries.endswith(".parquet"):
-        try:
-            return int(pq.read_metadata(job.queries).num_rows)
-        except pa.ArrowException as error:
-            raise ColltransError(f"{job.queries}: {error}") from error
-    with open(job.queries, "rb") as file:
-        return sum(1 for line in file if line.strip())
+    """How many rows a shard has; of one that cannot be read none, which its report tells."""
+    try:
+        if files.is_url(job.queries):
+            return 0  # It is not fetched for the sake of this.
+        if job.queries.endswith(".parquet"):
+            metadata = metadata_of(job.queries, job.queries)
+            groups = range(*(job.groups or (0, metadata.num_row_groups)))
+            return sum(metadata.row_group(number).num_rows for number in groups)
+        with open(job.queries, "rb") as file:
+            return sum(1 for line in file if line.strip())
+    except (ColltransError, OSError):
+        return 0
 
 
 class Progress:
@@ -87,15 +152,18 @@ class Progress:
                 return
             self.told = now
             rate = max(self.rows, 1) / (now - self.began)
-            left = (self.total - self.rows) / rate
-            text = f"{self.rows:,} of {self.total:,} rows, {rate:,.0f} a second, {left:,.0f} s left"
+            text = f"{self.rows:,} rows, {rate:,.0f} a second"
+            if self.total >= self.rows:
+                left = (self.total - self.rows) / rate
+                text += f", of {self.total:,}, {left:,.0f} s left"
             print(text, file=sys.stderr, flush=True)
 
 
 def main(words: Sequence[str] | None = None) -> int:
     """Answers all shards.
 
-    Returns 0 if every row has an answer, 5 if not, 2 for files that are none, 130 after Ctrl-C.
+    Returns 0 if every row has an answer, 5 if some have none, 2 if some shards could not be
+    answered (or, of ``--check``, are not whole) or nothing could be begun, 130 after Ctrl-C.
     """
     asked = arguments(words)
     try:
@@ -112,26 +180,48 @@ def run(asked: argparse.Namespace) -> int:
     jobs = jobs_of(asked)
     if asked.threads < 1:
         raise InputError("--threads: at least one")
-    folder = asked.queries if asked.queries.is_dir() else asked.queries.parent
-    table = str(asked.bodies.resolve()) if asked.bodies else None
-    bodies = Bodies(table, str(folder.resolve()), asked.hull)
+    queries = files.absolute(asked.queries)
+    folder = queries if files.is_folder(queries) else files.parent(queries)
+    table = files.absolute(asked.bodies) if asked.bodies else None
+    bodies = Bodies(table, folder, asked.hull, asked.solids)
     progress = Progress(sum(map(rows_of, jobs)))
-    rows = errors = skipped = 0
+    if asked.check:
+        return told(engines.local(jobs, bodies, asked.threads, progress, checked), jobs, progress)
+    bodies.read_table()
+    files.clean(job.answers for job in jobs)
     if asked.engine == "local":
-        reports = engines.local(jobs, bodies, asked.threads, progress)
-    else:
-        reports = engines.ray(jobs, bodies, asked.threads, asked.address)
+        return told(engines.local(jobs, bodies, asked.threads, progress), jobs, progress)
+    reports = engines.ray(jobs, bodies, asked.threads, asked.address)
+    return told(counted(reports, progress), jobs, progress)
+
+
+def checked(job: Job, bodies: Bodies, progress: Progress) -> Report:
+    report = check_shard(job, bodies)
+    progress(report.rows)
+    return report
+
+
+def counted(reports: Iterator[Report], progress: Progress) -> Iterator[Report]:
+    for report in reports:
+        progress(report.rows)
+        yield report
+
+
+def told(reports: Iterator[Report], jobs: list[Job], progress: Progress) -> int:
+    """Says what became of all shards; the exit code."""
+    rows = errors = skipped = failed = 0
     for report in reports:
         rows, errors = rows + report.rows, errors + report.errors
         skipped += report.skipped
-        if asked.engine == "ray":
-            progress(report.rows)
+        if report.failure is not None:
+            failed += 1
+            print(f"error: {report.failure}", file=sys.stderr, flush=True)
     spent = time.perf_counter() - progress.began
     print(
-        f"{rows:,} rows in {len(jobs)} shards ({skipped} were done before): "
-        f"{errors:,} errors, {spent:.1f} s"
+        f"{rows:,} rows in {len(jobs) - failed} shards ({skipped} were done before): "
+        f"{errors:,} errors, {spent:.1f} s" + (f"; {failed} shards FAILED" if failed else "")
     )
-    return 5 if errors else 0
+    return 2 if failed else 5 if errors else 0
 
 
 if __name__ == "__main__":

@@ -2,121 +2,212 @@
 
 import hashlib
 import threading
-from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
-from itertools import repeat
-from pathlib import Path
-from typing import Any
+from typing import Any, TypeAlias
 
-from colltrans import ConvexPolyhedron, read
+import numpy as np
+
+from colltrans import ConvexPolyhedron, Solid, read
+from colltrans._arrays import Runs
+from colltrans.bulk import files
 from colltrans.errors import ColltransError, InputError
+from colltrans.queries import cores
 
-Body = ConvexPolyhedron | ColltransError
+Body: TypeAlias = ConvexPolyhedron | Solid | ColltransError
+#: A row of a table: where it is, and its number there; None when its body is built.
+Row: TypeAlias = tuple[Any, int] | None
 
 
 @dataclass
 class Bodies:
-    """Bodies by their keys, each built once in a process.
+    """Bodies by their keys, each built once in a process, several at a time.
 
     Attributes
     ----------
     table : str or None
         A Parquet file with the columns ``key``, ``vertices`` (lists of three numbers each) and, if
         they are not hulls of points, ``faces`` (lists of vertex indices). Without it a key is the
-        path of a mesh file, relative to ``folder``.
+        path of a mesh file, relative to ``folder``. All may be URLs that fsspec knows.
     folder : str
     hull : bool
         Take the convex hull of all meshes.
+    solids : bool
+        Take all as solids, which need not be convex; each has faces then.
     """
 
     table: str | None = None
     folder: str = "."
     hull: bool = False
+    solids: bool = False
     _built: dict[str, Body] = field(default_factory=dict, repr=False)
     _digests: dict[str, str] = field(default_factory=dict, repr=False)
-    _rows: dict[str, tuple[Any, Any]] | None = field(default=None, repr=False)
+    _rows: dict[str, Row] | None = field(default=None, repr=False)
     _lock: threading.RLock = field(default_factory=threading.RLock, repr=False)
 
+    def __post_init__(self) -> None:
+        if self.hull and self.solids:
+            raise InputError("hull, solids: a body is taken as one of them")
+
     def __getstate__(self) -> dict[str, Any]:
-        kept = {k: v for k, v in self.__dict__.items() if k not in ("_lock", "_rows")}
+        kept = {k: v for k, v in self.__dict__.items() if k != "_lock"}
+        if self._rows is not None and any(self._rows.values()):
+            kept["_rows"] = None  # What is left of the table is read again.
         return {**kept, "_built": dict(self._built)}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state, _lock=threading.RLock(), _rows=None)
+        self.__dict__.update(state, _lock=threading.RLock())
 
     def get(self, keys: Iterable[Any]) -> list[Body]:
         """The bodies of these keys; for one that cannot be built the reason."""
+        keys = list(keys)
         with self._lock:
-            for key in keys:
-                if key not in self._built:
-                    self._built[key] = self._build(key, self._table())
+            missing = [key for key in dict.fromkeys(keys) if key not in self._built]
+            if missing:
+                rows = self.read_table()
+                # They are built without the interpreter's lock.
+                with ThreadPoolExecutor(min(len(missing), cores())) as pool:
+                    built = pool.map(lambda key: self._build(key, rows), missing)
+                    self._built.update(zip(missing, built, strict=True))
+                rows.update(dict.fromkeys(rows.keys() & missing))
             return [self._built[key] for key in keys]
+
+    def read_table(self) -> dict[str, Row]:
+        """The rows of the table, if there is one, by their keys.
+
+        Raises
+        ------
+        ColltransError
+            A table that is none.
+        """
+        with self._lock:
+            if self._rows is None:
+                self._rows = {} if self.table is None else rows_of(self.table)
+            return self._rows
 
     def build_table(self) -> None:
         """Builds all bodies of the table, if there is one; copies of these read it no more."""
         with self._lock:
-            self.get(self._table())
+            self.get(self.read_table())
             self.digest(())
-
-    def _table(self) -> dict[str, tuple[Any, Any]]:
-        if self._rows is None:
-            self._rows = {} if self.table is None else rows_of(self.table)
-        return self._rows
 
     def digest(self, keys: Iterable[Any]) -> str:
         """What the bodies of these keys are made of, as a hash."""
         with self._lock:
             if self.table is not None:
                 return self._digest(self.table)
-            each = (f"{key}:{self._digest(str(Path(self.folder, str(key))))}" for key in keys)
+            each = (f"{key}:{self._digest(files.join(self.folder, str(key)))}" for key in keys)
             return hashlib.sha256("\n".join(sorted(each)).encode()).hexdigest()
 
     def _digest(self, path: str) -> str:
         if path not in self._digests:
             try:
-                self._digests[path] = file_digest(path)
-            except (OSError, ValueError) as error:  # Or no path at all.
+                with files.local(path) as file:
+                    self._digests[path] = files.digest(file)
+            except (OSError, ValueError, InputError) as error:  # Or no path at all.
                 return f"unreadable: {error}"
         return self._digests[path]
 
-    def _build(self, key: Any, rows: dict[str, tuple[Any, Any]]) -> Body:
+    def _build(self, key: Any, rows: dict[str, Row]) -> Body:
         try:
             if not isinstance(key, str):
                 raise InputError("no key of a body")
-            if self.table is None:
-                return read(Path(self.folder, key), hull=self.hull)
-            if key not in rows:
-                raise InputError(f"{self.table} has no body {key!r}")
-            vertices, faces = rows[key]
-            if faces is None or self.hull:
-                return ConvexPolyhedron(vertices)
-            return ConvexPolyhedron.from_mesh(vertices, faces)
+            if self.table is not None:
+                return self._of_row(rows.get(key), key)
+            with files.local(files.join(self.folder, key)) as file:
+                return Solid.read(file) if self.solids else read(file, hull=self.hull)
         except ColltransError as error:
             return error
+        except OSError as error:
+            return InputError(f"{key}: {error}")
+
+    def _of_row(self, found: Row, key: str) -> Body:
+        if found is None:
+            raise InputError(f"{self.table} has no body {key!r}")
+        batch, row = found
+        vertices = _vertices(batch.column("vertices"), row)
+        faces = _faces(batch.column("faces"), row) if "faces" in batch.schema.names else None
+        if self.solids:
+            if faces is None:
+                raise InputError("a solid has faces")
+            return Solid(vertices, faces)
+        if faces is None or self.hull:
+            return ConvexPolyhedron(vertices)
+        return ConvexPolyhedron.from_mesh(vertices, faces)
 
 
-def rows_of(table: str) -> dict[str, tuple[Any, Any]]:
-    """Vertices and faces by their keys."""
+def rows_of(table: str) -> dict[str, Row]:
+    """Where the rows of a table are, by their keys."""
     import pyarrow as pa
-    import pyarrow.parquet as pq
 
+    found: dict[str, Row] = {}
     try:
-        columns = pq.read_table(table)
+        with files.local(table) as file:
+            for batch in _batches(file, table):
+                for row, key in enumerate(batch.column("key").to_pylist()):
+                    if key in found:
+                        raise InputError(f"{table} has the body {key!r} twice")
+                    found[key] = batch, row
     except pa.ArrowException as error:
         raise ColltransError(f"{table}: {error}") from error
-    for name in ("key", "vertices"):
-        if name not in columns.column_names:
-            raise InputError(f"{table} has no column {name!r}")
-    keys, vertices = (columns[name].to_pylist() for name in ("key", "vertices"))
-    if len(set(keys)) < len(keys):
-        twice = next(key for key, count in Counter(keys).items() if count > 1)
-        raise InputError(f"{table} has the body {twice!r} twice")
-    faces = columns["faces"].to_pylist() if "faces" in columns.column_names else repeat(None)
-    return dict(zip(keys, zip(vertices, faces, strict=False), strict=True))
+    return found
 
 
-def file_digest(path: str | Path) -> str:
-    """SHA-256 of a file."""
-    with Path(path).open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
+def _batches(file: Any, table: str) -> Iterator[Any]:
+    import pyarrow.parquet as pq
+
+    with pq.ParquetFile(file, page_checksum_verification=True) as parquet:
+        names = parquet.schema_arrow.names
+        for name in ("key", "vertices"):
+            if name not in names:
+                raise InputError(f"{table} has no column {name!r}")
+        yield from parquet.iter_batches(
+            columns=[name for name in ("key", "vertices", "faces") if name in names]
+        )
+
+
+def _lists(column: Any, row: int, name: str) -> Any:
+    """The lists in a row of lists of lists; None for a row without."""
+    import pyarrow as pa
+
+    if pa.types.is_null(column.type) or not column[row].is_valid:
+        return None
+    lists = column[row].values
+    if not any(
+        of(lists.type)
+        for of in (pa.types.is_list, pa.types.is_large_list, pa.types.is_fixed_size_list)
+    ):
+        raise InputError(f"{name}: no lists of numbers, but {lists.type}")
+    if lists.null_count:
+        raise InputError(f"{name}: number {_first(lists.is_null())} of them is null")
+    return lists
+
+
+def _first(mask: Any) -> int:
+    return int(np.argmax(np.asarray(mask)))
+
+
+def _runs(lists: Any) -> tuple[Any, Any]:
+    """All numbers of lists, and where each list begins and the last one ends."""
+    numbers = lists.flatten().to_numpy(zero_copy_only=False)
+    lengths = lists.value_lengths().to_numpy(zero_copy_only=False)
+    return numbers, np.concatenate([[0], np.cumsum(lengths)]).astype(np.int64)
+
+
+def _vertices(column: Any, row: int) -> Any:
+    """An array of shape (N, 3), a view where Arrow has the numbers one behind the other."""
+    lists = _lists(column, row, "points")
+    if lists is None:
+        raise InputError("points: none")
+    numbers, ends = _runs(lists)
+    if (others := np.diff(ends) != 3).any():
+        point = _first(others)
+        told = f"point {point} has {ends[point + 1] - ends[point]}, not 3"
+        raise InputError(f"points: no array of numbers: {told}")
+    return numbers.reshape(-1, 3)
+
+
+def _faces(column: Any, row: int) -> Any:
+    lists = _lists(column, row, "faces")
+    return None if lists is None else Runs(*_runs(lists))

@@ -1,4 +1,7 @@
-"""Which thread or process answers which shard."""
+"""Which thread or process answers which shard.
+
+A shard that cannot be read or written is a report with a failure, and the others go on.
+"""
 
 import threading
 from collections.abc import Callable, Iterator
@@ -15,11 +18,20 @@ Answer = Callable[..., Report]
 _CACHE: dict[str, Bodies] = {}
 
 
+def attempt(answer: Answer, job: Job, *rest: Any) -> Report:
+    """The report of a shard, whatever becomes of it."""
+    try:
+        return answer(job, *rest)
+    except ColltransError as error:
+        return Report(job, failure=str(error))
+
+
 def local(
     jobs: list[Job],
     bodies: Bodies,
     workers: int,
     progress: Callable[[int], None] = lambda rows: None,
+    answer: Answer = answer_shard,
 ) -> Iterator[Report]:
     """Shards on threads of this process, as they are done: the work is done without its lock.
 
@@ -36,11 +48,11 @@ def local(
     jobs = [replace(job, options=replace(job.options, threads=threads)) for job in jobs]
     with ThreadPoolExecutor(max(1, min(workers, len(jobs)))) as pool:
         try:
-            futures = [pool.submit(answer_shard, job, bodies, told) for job in jobs]
+            futures = [pool.submit(attempt, answer, job, bodies, told) for job in jobs]
             for future in as_completed(futures):
                 yield future.result()
         finally:
-            # Ctrl-C or a shard that cannot be read: the others end with the batch they are at.
+            # Ctrl-C: the others end with the batch they are at.
             stopped.set()
             pool.shutdown(wait=False, cancel_futures=True)
 
@@ -56,7 +68,7 @@ def ray(
 
     Files must be where every node finds them under the same name. The bodies of a table are built
     here, go once through the object store, and every worker keeps them; meshes are read by every
-    worker. A task whose worker dies is done again.
+    worker. A task whose worker dies is done again, up to five times.
     """
     import ray
 
@@ -68,16 +80,20 @@ def ray(
     store = ray.put(bodies)
 
     def answer_with(job: Job, boxed: list[Any]) -> Report:
-        return answer(job, _kept(boxed[0]))
+        return attempt(answer, job, _kept(boxed[0]))
 
     remote: Any = ray.remote(max_retries=5)
     task = remote(answer_with)
-    waiting = [
-        task.remote(replace(job, options=replace(job.options, threads=1)), [store]) for job in jobs
-    ]
+    asked = [replace(job, options=replace(job.options, threads=1)) for job in jobs]
+    waiting = {task.remote(job, [store]): job for job in asked}
     while waiting:
-        done, waiting = ray.wait(waiting)
-        yield from ray.get(done)
+        done, _ = ray.wait(list(waiting))
+        for future in done:
+            job = waiting.pop(future)
+            try:
+                yield ray.get(future)
+            except ray.exceptions.RayError as error:
+                yield Report(job, failure=f"{job.queries}: {error}")
 
 
 def _kept(reference: Any) -> Bodies:

@@ -1,0 +1,385 @@
+"""Files of queries: no column is passed over, no byte changes unseen, no shard is lost."""
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from conftest import ROOT, Batch
+
+from colltrans import InputError, Solid, clearance_many
+
+pa = pytest.importorskip("pyarrow")
+pq = pytest.importorskip("pyarrow.parquet")
+
+from shards import CORNERS, all_ids, ids, queries, shards, table_of, write, write_bodies  # noqa: E402
+
+from colltrans.bulk import Bodies, Options, answer_table, files  # noqa: E402
+from colltrans.bulk.__main__ import main  # noqa: E402
+
+
+@pytest.fixture
+def bodies(tmp_path: Path) -> Path:
+    return write_bodies(tmp_path / "bodies.parquet")
+
+
+def test_misspelt_columns_are_refused_by_name(tmp_path: Path, bodies: Path, capsys: Any) -> None:
+    columns = queries(1, 4)
+    columns["moving_psoe"] = columns.pop("moving_pose")
+    columns["weight"] = [1.0, 2.0, 3.0, 4.0]
+    file = write(tmp_path / "queries.parquet", columns)
+    words = [str(file), str(tmp_path / "out"), "--bodies", str(bodies)]
+    assert main(words) == 2
+    told = capsys.readouterr()
+    assert "does not read 'moving_psoe' (is it 'moving_pose'?), 'weight'" in told.err
+    assert "--keep moving_psoe,weight" in told.err and "1 shards FAILED" in told.out
+    assert main([*words, "--keep", "moving_psoe"]) == 2
+    assert "does not read 'weight'; --keep weight" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("name", ["scale", "solver", "tolerance", "hull"])
+def test_columns_that_would_change_the_answer_are_refused(bodies: Path, name: str) -> None:
+    table = table_of(queries(1, 2) | {name: [2.0, 3.0]})
+    for kept in ((), (name,), ("*",)):
+        with pytest.raises(InputError, match=f"'range' does not read '{name}', and would"):
+            answer_table(table, Bodies(str(bodies)), Options(keep_columns=kept))
+
+
+def test_columns_are_kept_as_they_are(tmp_path: Path, bodies: Path) -> None:
+    columns = queries(1, 3) | {"weight": [1, None, 3], "labels": [["a"], [], None]}
+    file = write(tmp_path / "queries.parquet", columns)
+    words = [str(file), str(tmp_path / "out"), "--bodies", str(bodies)]
+    assert main([*words, "--keep", "labels,moving,weight"]) == 0
+    (out,) = (tmp_path / "out").glob("*.parquet")
+    table, asked = pq.read_table(out), pq.read_table(file)
+    assert table.column_names[:5] == ["id", "labels", "moving", "weight", "outcome"]
+    assert main([*words, "--keep", "*"]) == 0
+    whole = pq.read_table(out)
+    assert whole.column_names[:7] == asked.column_names
+    for name in asked.column_names:
+        assert whole[name].to_pylist() == asked[name].to_pylist()
+    assert np.array_equal(whole["translation"], table["translation"], equal_nan=True)
+
+
+def test_what_cannot_be_kept_is_said(bodies: Path) -> None:
+    table, known = table_of(queries(1, 2) | {"normal": [1, 2]}), Bodies(str(bodies))
+    with pytest.raises(InputError, match="'normal' is not kept: the answers have one"):
+        answer_table(table, known, Options(keep_columns=("normal",)))
+    with pytest.raises(InputError, match="no column 'colour'"):
+        answer_table(table_of(queries(1, 2)), known, Options(keep_columns=("colour",)))
+
+
+def test_fields_of_lines_are_kept_as_json(tmp_path: Path, bodies: Path) -> None:
+    line = {"moving": "cube", "fixed": "cloud", "direction": [0, 0, -1], "moving_pose": [0, 0, 9]}
+    more: list[dict[str, Any]] = [{"tag": {"a": [1]}}, {}, {"tag": "x"}, {"scale": 2}]
+    lines = [json.dumps(line | {"id": k} | part) for k, part in enumerate(more)]
+    (tmp_path / "queries.jsonl").write_text("\n".join([*lines, "{"]) + "\n")
+    out = tmp_path / "answers.parquet"
+    words = [str(tmp_path / "queries.jsonl"), str(out), "--bodies", str(bodies)]
+    assert main([*words, "--keep", "tag"]) == 5
+    told = pq.read_table(out)
+    assert told["tag"].to_pylist() == ['{"a": [1]}', None, '"x"', None, None]
+    assert told["outcome"].to_pylist() == ["contact"] * 3 + ["error"] * 2
+    assert main([*words, "--keep", "*"]) == 5
+    assert pq.read_table(out)["line"].to_pylist() == [*lines, "{"]
+
+
+def test_a_bad_shard_is_named_and_the_others_finish(
+    tmp_path: Path, bodies: Path, capsys: Any
+) -> None:
+    asked = shards(tmp_path / "in", 4, 50)
+    (asked / "shard-1.parquet").write_bytes(b"PAR1 half a file")
+    write(asked / "shard-3.parquet", {"moving": ["cube"], "fixed": ["cloud"]})
+    words = [str(asked), str(tmp_path / "out"), "--bodies", str(bodies)]
+    assert main(words) == 2
+    told = capsys.readouterr()
+    assert "100 rows in 2 shards" in told.out and "2 shards FAILED" in told.out
+    assert f"error: {asked / 'shard-1.parquet'}: cannot be read: " in told.err
+    assert f"error: {asked / 'shard-3.parquet'}: the queries have no column 'direction'" in told.err
+    assert ids(tmp_path / "out") == sorted(f"{k}-{i}" for k in (0, 2) for i in range(50))
+
+
+def flip(path: Path, place: int) -> None:
+    held = bytearray(path.read_bytes())
+    held[place] ^= 0x10
+    path.write_bytes(held)
+
+
+def end_of_column(path: Path, number: int) -> int:
+    column = pq.read_metadata(path).row_group(0).column(number)
+    begin = column.dictionary_page_offset or column.data_page_offset
+    return int(begin + column.total_compressed_size - 5)
+
+
+def test_flipped_bytes_in_answers_are_found(tmp_path: Path, bodies: Path, capsys: Any) -> None:
+    asked, out = shards(tmp_path / "in", 3, 40), tmp_path / "out"
+    words = [str(asked), str(out), "--bodies", str(bodies)]
+    assert main([*words, "--check"]) == 2
+    assert f"{out / 'shard-0.parquet'} is not there" in capsys.readouterr().err
+    assert main(words) == 0 and main([*words, "--check"]) == 0
+    assert "120 rows in 3 shards (3 were done before)" in capsys.readouterr().out
+    answers = out / "shard-1.parquet"
+    written = answers.read_bytes()
+    n = len(written)
+    for place in [*range(12), *range(12, n, 301), *range(n - 300, n, 3)]:
+        flip(answers, place)
+        assert main([*words, "--check"]) == 2, place
+        told = capsys.readouterr().err
+        assert "shard-1.parquet" in told and "shard-0" not in told
+        answers.write_bytes(written)
+    for held in (written[:-1], written + b" ", written[:100], b""):
+        answers.write_bytes(held)
+        assert main([*words, "--check"]) == 2
+    assert main(words) == 0
+    assert "(2 were done before)" in capsys.readouterr().out
+    assert answers.read_bytes() == written
+
+
+def test_pages_of_answers_have_checksums(tmp_path: Path, bodies: Path) -> None:
+    file, out = write(tmp_path / "queries.parquet", queries(1, 500)), tmp_path / "out.parquet"
+    assert main([str(file), str(out), "--bodies", str(bodies), "--threads", "1"]) == 0
+    flip(out, end_of_column(out, 2))
+    with pytest.raises(OSError, match="CRC"):
+        pq.read_table(out, page_checksum_verification=True)
+
+
+def test_flipped_bytes_in_queries_are_found(tmp_path: Path, bodies: Path, capsys: Any) -> None:
+    asked = shards(tmp_path / "in", 2, 40)
+    file = write(asked / "shard-1.parquet", queries(1, 40), write_page_checksum=True)
+    words = [str(asked), str(tmp_path / "out"), "--bodies", str(bodies)]
+    assert main(words) == 0
+    flip(file, end_of_column(file, 3))
+    assert main([*words, "--check"]) == 2
+    assert "shard-1.parquet is of other queries" in capsys.readouterr().err
+    assert main(words) == 2
+    told = capsys.readouterr()
+    assert f"{file}: cannot be read: " in told.err and "CRC" in told.err
+    assert "1 shards FAILED" in told.out
+
+
+@pytest.mark.skipif(os.name == "nt", reason="files are limited another way")
+def test_a_disk_that_is_full_fails_a_shard_and_leaves_nothing_half(
+    tmp_path: Path, bodies: Path
+) -> None:
+    import resource
+
+    asked, out = shards(tmp_path / "in", 2, 50), tmp_path / "out"
+    write(asked / "large.parquet", queries(9, 20_000))
+
+    def limited() -> None:  # Writes beyond it fail, as on a disk that is full.
+        resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, 200_000))
+
+    run = [sys.executable, "-m", "colltrans.bulk", str(asked), str(out), "--bodies", str(bodies)]
+    told = subprocess.run(run, capture_output=True, text=True, preexec_fn=limited)
+    assert told.returncode == 2
+    assert f"{out / 'large.parquet'} cannot be written: " in told.stderr
+    assert "100 rows in 2 shards" in told.stdout and "1 shards FAILED" in told.stdout
+    assert sorted(file.name for file in out.iterdir()) == ["shard-0.parquet", "shard-1.parquet"]
+    assert subprocess.run(run).returncode == 0
+    assert len(ids(out)) == 20_100
+
+
+@pytest.mark.skipif(os.name == "nt", reason="processes are killed another way")
+def test_what_dead_runs_have_begun_is_removed_and_what_others_write_is_not(
+    tmp_path: Path, bodies: Path
+) -> None:
+    asked, out = shards(tmp_path / "in", 1, 500_000), tmp_path / "out"
+    run = [sys.executable, "-m", "colltrans.bulk", str(asked), str(out), "--bodies", str(bodies)]
+    with subprocess.Popen([*run, "--threads", "1"]) as process:
+        began = time.monotonic()
+        while not list(out.glob(".*.partial")) and time.monotonic() - began < 300:
+            time.sleep(0.01)
+        (partial,) = out.glob(".*.partial")
+        assert files.clean([str(out / "shard-0.parquet")]) == 0
+        os.kill(process.pid, signal.SIGKILL)
+        process.wait()
+    assert partial.exists()
+    shards(asked, 1, 50)
+    assert main([*run[3:]]) == 0
+    assert [file.name for file in out.iterdir()] == ["shard-0.parquet"]
+
+
+def test_folders_in_folders(tmp_path: Path, bodies: Path, capsys: Any) -> None:
+    asked, out = tmp_path / "in", tmp_path / "out"
+    write(asked / "a" / "one.parquet", queries(0, 5))
+    write(asked / "b" / "deep" / "one.parquet", queries(1, 5))
+    write(asked / ".hidden" / "one.parquet", queries(2, 5))
+    assert main([str(asked), str(out), "--bodies", str(bodies)]) == 0
+    assert (out / "a" / "one.parquet").exists() and (out / "b" / "deep" / "one.parquet").exists()
+    assert ids(out) == all_ids(2, 5)
+    assert main([str(asked), str(asked / "out"), "--bodies", str(bodies)]) == 2
+    assert "is in the folder of the queries" in capsys.readouterr().err
+
+
+def test_row_groups_are_tasks(tmp_path: Path, bodies: Path, capsys: Any) -> None:
+    asked = tmp_path / "in"
+    write(asked / "large.parquet", queries(0, 1000), row_group_size=100)
+    write(asked / "small.parquet", queries(1, 50))
+    words = [str(asked), str(tmp_path / "out"), "--bodies", str(bodies), "--rows-per-task", "250"]
+    assert main(words) == 0
+    names = sorted(file.name for file in (tmp_path / "out").iterdir())
+    assert names == [f"large-0000{k}-of-00004.parquet" for k in range(4)] + ["small.parquet"]
+    assert ids(tmp_path / "out") == sorted(all_ids(1, 1000) + [f"1-{i}" for i in range(50)])
+    sizes = [pq.read_metadata(tmp_path / "out" / name).num_rows for name in names]
+    assert sizes == [300, 300, 300, 100, 50]
+    columns = queries(0, 1000)
+    columns["moving_pose"][950, 2] += 1
+    write(asked / "large.parquet", columns, row_group_size=100)
+    capsys.readouterr()
+    assert main(words) == 0
+    assert "(4 were done before)" in capsys.readouterr().out
+
+
+def test_bodies_of_every_kind_of_list(tmp_path: Path) -> None:
+    faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
+    corners = [[x, y, z] for x in (0.0, 1) for y in (0.0, 1) for z in (0.0, 1)]
+    faces = [face[::-1] for face in faces]
+    numbers = pa.list_(pa.float64(), 3)
+    kinds = [
+        (pa.list_(pa.list_(pa.float64())), pa.list_(pa.list_(pa.int64()))),
+        (pa.list_(numbers), pa.list_(pa.list_(pa.uint32(), 4))),
+        (pa.large_list(pa.large_list(pa.float32())), pa.large_list(pa.list_(pa.int16()))),
+    ]
+    for of_points, of_faces in kinds:
+        table = pa.table(
+            {
+                "key": ["none", "mesh", "hull"],
+                "vertices": pa.array([None, corners, corners[:4]], of_points),
+                "faces": pa.array([faces, faces, None], of_faces),
+            }
+        )
+        pq.write_table(table, tmp_path / "bodies.parquet", row_group_size=2)
+        known = Bodies(str(tmp_path / "bodies.parquet"))
+        none, mesh, hull = known.get(["none", "mesh", "hull"])
+        assert str(none) == "points: none"
+        assert repr(mesh) == "ConvexPolyhedron(8 vertices, 12 edges, 6 faces)"
+        assert repr(hull).startswith("ConvexPolyhedron(4 vertices")
+
+
+@pytest.mark.parametrize(
+    ("vertices", "faces", "told"),
+    [
+        ([[0.0, 0.0], [1.0, 0.0, 0.0]], None, "points: no array of numbers: point 0 has 2, not 3"),
+        ([[0.0, 0.0, 0.0], None], None, "points: number 1 of them is null"),
+        ([[0.0, None, 0.0]], None, "point 0 is not finite"),
+        (CORNERS.tolist(), [[0, 1, 9]], "face 0"),
+        (CORNERS.tolist(), [[0, 1, -1]], "faces: the index -1 is negative"),
+        (CORNERS.tolist(), [[0, 1, None]], "faces: no array of whole numbers"),
+    ],
+)
+def test_bodies_that_are_none(tmp_path: Path, vertices: Any, faces: Any, told: str) -> None:
+    table = pa.table({"key": ["it"], "vertices": [vertices], "faces": [faces]})
+    pq.write_table(table, tmp_path / "bodies.parquet")
+    (body,) = Bodies(str(tmp_path / "bodies.parquet")).get(["it"])
+    assert isinstance(body, Exception) and told in str(body)
+
+
+def test_solids_in_bulk(tmp_path: Path, capsys: Any) -> None:
+    parts = [Solid.read(ROOT / "data" / name) for name in ("bolt.stl", "plate.off")]
+    # Without the precisions of the files, which tables do not have.
+    bolt, plate = (Solid(part.vertices, part.triangles) for part in parts)
+    table = {
+        "key": ["bolt", "plate", "bad"],
+        "vertices": [bolt.vertices.tolist(), plate.vertices.tolist(), [[0.0, 0.0, 0.0]]],
+        "faces": [bolt.triangles.tolist(), plate.triangles.tolist(), [[0, 0, 0]]],
+    }
+    known = tmp_path / "bodies.parquet"
+    pq.write_table(pa.table(table), known)
+    heights = np.array([[0.0, 0, 7], [0, 0, 9], [4, 0, 7]])
+    columns = {
+        "moving": ["bolt", "bolt", "bad"],
+        "fixed": ["plate"] * 3,
+        "direction": np.array([[0.0, 0, -1]] * 3),
+        "moving_pose": heights,
+        "tolerance": [None, 0.01, None],
+    }
+    file, out = write(tmp_path / "queries.parquet", columns), tmp_path / "out.parquet"
+    words = [str(file), str(out), "--bodies", str(known), "--solids"]
+    assert main([*words, "--question", "clearance"]) == 5
+    told = pq.read_table(out)
+    alone = clearance_many(bolt, plate, [0, 0, -1], moving_pose=heights[:2], tolerance=0.01)
+    plain = clearance_many(bolt, plate, [0, 0, -1], moving_pose=heights[:2])
+    assert told["distance"][0].as_py() == plain.distance[0]
+    assert told["distance"][1].as_py() == alone.distance[1]
+    assert told["outcome"].to_pylist() == ["blocked", "blocked", "error"]
+    assert {"shrunk_distance_lower", "translation_upper"} <= set(told.column_names)
+    assert main(words) == 2
+    assert "no question 'range' of solids" in capsys.readouterr().err
+
+
+@pytest.fixture
+def memory() -> Iterator[Any]:
+    fsspec = pytest.importorskip("fsspec")
+    system = fsspec.filesystem("memory")
+    yield system
+    system.store.clear()
+
+
+def test_urls_of_queries_bodies_and_answers(
+    tmp_path: Path, bodies: Path, memory: Any, capsys: Any
+) -> None:
+    asked = shards(tmp_path / "in", 3, 40)
+    for k in range(3):
+        memory.put_file(str(asked / f"shard-{k}.parquet"), f"/in/deep/shard-{k}.parquet")
+    memory.put_file(str(bodies), "/bodies.parquet")
+    words = ["memory://in", "memory://out", "--bodies", "memory://bodies.parquet"]
+    assert main(words) == 0 and main(words) == 0 and main([*words, "--check"]) == 0
+    assert capsys.readouterr().out.count("(3 were done before)") == 2
+    assert main([str(asked), str(tmp_path / "out"), "--bodies", str(bodies)]) == 0
+    for k in range(3):
+        here = (tmp_path / "out" / f"shard-{k}.parquet").read_bytes()
+        assert memory.cat_file(f"/out/deep/shard-{k}.parquet") == here
+    memory.pipe_file("/out/deep/shard-1.parquet", here[:-1])
+    assert main([*words, "--check"]) == 2
+    assert "memory://out/deep/shard-1.parquet is no whole file" in capsys.readouterr().err
+    for wrong in ("memory://none", "nothing://here"):
+        assert main([wrong, "memory://out"]) == 2
+        assert f"error: {wrong}: " in capsys.readouterr().err
+
+
+def test_meshes_at_urls(tmp_path: Path, memory: Any, batch: Batch) -> None:
+    memory.put_file(str(ROOT / "data" / "dodecahedron.off"), "/parts/one.off")
+    line = {"moving": "one.off", "fixed": "memory://parts/one.off", "direction": [0, 0, -1]}
+    lines = [line | {"moving_pose": [0, 0, 9]}, line | {"fixed": "two.off"}]
+    memory.pipe_file("/parts/queries.jsonl", "\n".join(map(json.dumps, lines)).encode())
+    assert main(["memory://parts/queries.jsonl", "memory://parts/out.parquet"]) == 5
+    with files.local("memory://parts/out.parquet") as file:
+        first, second = pq.read_table(file).to_pylist()
+    mesh = {"mesh": "data/dodecahedron.off"}
+    place = {"translation": [0, 0, 9]}
+    (known,) = batch([line | {"moving": mesh, "fixed": mesh, "moving_pose": place}])
+    assert first["translation"] == known["translation"]
+    assert "two.off" in second["message"]
+
+
+def test_an_s3_server(tmp_path: Path, bodies: Path, monkeypatch: Any) -> None:
+    pytest.importorskip("s3fs")
+    server = pytest.importorskip("moto.server").ThreadedMotoServer(port=0)
+    known = {"ACCESS_KEY_ID": "testing", "SECRET_ACCESS_KEY": "testing"}
+    for name, value in (known | {"DEFAULT_REGION": "us-east-1"}).items():
+        monkeypatch.setenv(f"AWS_{name}", value)
+    server.start()
+    try:
+        _, port = server.get_host_and_port()
+        monkeypatch.setenv("AWS_ENDPOINT_URL", f"http://127.0.0.1:{port}")
+        import s3fs
+
+        system = s3fs.S3FileSystem()
+        system.mkdir("bucket")
+        asked = shards(tmp_path / "in", 2, 40)
+        for k in range(2):
+            system.put_file(str(asked / f"shard-{k}.parquet"), f"bucket/in/shard-{k}.parquet")
+        system.put_file(str(bodies), "bucket/bodies.parquet")
+        words = ["s3://bucket/in", "s3://bucket/out", "--bodies", "s3://bucket/bodies.parquet"]
+        assert main(words) == 0 and main([*words, "--check"]) == 0
+        system.get("bucket/out/", str(tmp_path / "out"), recursive=True)
+        assert ids(tmp_path / "out") == all_ids(2, 40)
+    finally:
+        server.stop()

@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 from conftest import ROOT, Batch
 
-from colltrans import InputError, Solid, clearance_many
+from colltrans import InputError, Solid, clearance_many, motion_clearance_many
 
 pa = pytest.importorskip("pyarrow")
 pq = pytest.importorskip("pyarrow.parquet")
@@ -312,6 +312,28 @@ def test_solids_in_bulk(tmp_path: Path, capsys: Any) -> None:
     assert {"shrunk_distance_lower", "translation_upper"} <= set(told.column_names)
     assert main(words) == 2
     assert "no question 'range' of solids" in capsys.readouterr().err
+
+
+def test_how_far_along_motions(tmp_path: Path, bodies: Path) -> None:
+    screws = np.tile([0.0, 0, 0, 0, 0, 1, 1, 0], (4, 1)) * [
+        [1, 1, 1, 1, 1, 1, k, 1] for k in range(4)
+    ]
+    columns = {"moving": ["cube"] * 4, "fixed": ["cloud"] * 4, "moving_screw": screws}
+    columns |= {"moving_pose": np.tile([4.0, 0, 0], (4, 1)), "tolerance": [None, 0.1, None, 0.1]}
+    known = Bodies(str(bodies))
+    told = answer_table(table_of(columns), known, Options("motion_clearance"))
+    cube, cloud = known.get(["cube", "cloud"])
+    motions: dict[str, dict[str, Any]]
+    motions = {"screw": {"point": [0, 0, 0], "axis": [0, 0, 1], "angle": np.arange(4.0), "rise": 0}}
+    alone = motion_clearance_many(
+        cube,  # type: ignore[arg-type]
+        cloud,  # type: ignore[arg-type]
+        motions,
+        moving_pose=[4, 0, 0],
+        tolerance=[np.nan, 0.1, np.nan, 0.1],
+    )
+    assert told["outcome"].to_pylist() == alone.outcome.tolist()
+    assert np.array_equal(told["lower"], alone.lower, equal_nan=True)
 
 
 @pytest.fixture

@@ -13,6 +13,7 @@ LISTS = {
     **dict.fromkeys(POSES, (3, 7)),
     **dict.fromkeys(SCREWS, (8,)),
 }
+_OF_MOTIONS = (*POSES, *SCREWS, "keep", "tolerance")
 _OF_CASTS = ("direction", *POSES, "graze_tolerance", "keep")
 #: Beside the bodies and ``id``, what each question reads of convex bodies.
 OF_CONVEX: dict[str, tuple[str, ...]] = {
@@ -22,13 +23,12 @@ OF_CONVEX: dict[str, tuple[str, ...]] = {
     "distance": POSES,
     "depth": POSES,
     "within": (*POSES, "length"),
-    "motion": (*POSES, *SCREWS, "keep", "tolerance"),
+    "motion": _OF_MOTIONS,
+    "motion_clearance": _OF_MOTIONS,
 }
 #: The same of solids, which are not asked all of these.
-OF_SOLIDS = {
-    **{name: OF_CONVEX[name] for name in ("distance", "depth", "within", "motion")},
-    "clearance": ("direction", *POSES, "keep", "tolerance"),
-}
+OF_SOLIDS = {name: columns for name, columns in OF_CONVEX.items() if columns is not _OF_CASTS}
+OF_SOLIDS["clearance"] = ("direction", *POSES, "keep", "tolerance")
 #: What changes an answer where it is read (``colltrans batch`` does): never kept unread.
 MEANT = {
     "query",

@@ -13,7 +13,7 @@ from colltrans.bulk.reads import EVERYTHING, OF_CONVEX, OF_SOLIDS, SCREWS, SIDES
 from colltrans.columns import Table
 from colltrans.errors import InputError
 from colltrans.many import cast_many, clearance_many, contact_range_many
-from colltrans.motions import motion_many
+from colltrans.motions import motion_clearance_many, motion_many
 from colltrans.pairs import depth_many, distance_many, within_many
 from colltrans.queries import queries_of
 from colltrans.solids import ask_solids
@@ -26,9 +26,12 @@ QUESTIONS: dict[str, Any] = {
     "depth": depth_many,
     "within": within_many,
     "motion": motion_many,
+    "motion_clearance": motion_clearance_many,
 }
 #: Of bodies along a direction.
 CASTS = ("contact", "range", "clearance")
+#: Of bodies that turn.
+MOTIONS = ("motion", "motion_clearance")
 #: A screw that moves nothing: what a row without one does.
 REST = (0, 0, 0, 0, 0, 1, 0, 0)
 
@@ -48,9 +51,16 @@ class Options:
         Columns of the queries that the answers have too; ``"*"`` stands for all.
     """
 
-    question: Literal["contact", "range", "clearance", "distance", "depth", "within", "motion"] = (
-        "range"
-    )
+    question: Literal[
+        "contact",
+        "range",
+        "clearance",
+        "distance",
+        "depth",
+        "within",
+        "motion",
+        "motion_clearance",
+    ] = "range"
     solver: Literal["auto", "cta", "portal"] = "auto"
     threads: int | None = None
     keep_columns: tuple[str, ...] = ()
@@ -73,9 +83,9 @@ def answer_table(queries: Any, bodies: Bodies, options: Options = Options()) -> 
         Columns ``moving`` and ``fixed`` (keys of bodies), ``direction`` (3 numbers), and, if there
         are any, ``moving_pose``, ``fixed_pose`` (3 or 7 numbers), ``graze_tolerance``, ``keep`` and
         ``id``. A distance, a depth and *within* have no ``direction``, the last has ``length``. A
-        motion has ``moving_screw``, ``fixed_screw`` or both, 8 numbers each: a point and the axis,
-        the angle in radians and the rise; and ``keep`` or ``tolerance``, if there is one. A
-        clearance of solids has ``tolerance`` in the place of ``graze_tolerance``.
+        motion, or how far along one, has ``moving_screw``, ``fixed_screw`` or both, 8 numbers each:
+        a point and the axis, the angle in radians and the rise; and ``keep`` or ``tolerance``, if
+        there is one. A clearance of solids has ``tolerance`` in the place of ``graze_tolerance``.
     bodies : Bodies
     options : Options
 
@@ -121,7 +131,7 @@ def _answers(queries: Any, bodies: Bodies, options: Options) -> Table[Any]:
         arguments[f"{side}_index"] = index.astype(np.int64)
         if f"{side}_pose" in names:
             arguments[f"{side}_pose"] = _vectors(queries, f"{side}_pose", (7, 3))
-    if options.question == "motion":
+    if options.question in MOTIONS:
         arguments |= _motion(queries)
     elif options.question == "within":
         sides.append(_numbers_of(queries, "length", np.nan))

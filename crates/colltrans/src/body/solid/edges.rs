@@ -119,12 +119,13 @@ impl Fan {
         Self { p, q, apexes: edge.iter().map(apex).collect() }
     }
 
-    /// Of the backward facets the one that bounds the material of forward facet `f`.
+    /// Of the backward facets the one that bounds the material of forward facet `f`: one that lies on it, as where two
+    /// bodies touch face to face, is the farthest.
     fn nearest_clockwise(&self, f: usize, forward: usize) -> usize {
         let mut best = forward;
         for b in forward + 1..self.apexes.len() {
             let wedge = Wedge { start: Ray::to(best), end: Ray::to(f) };
-            if wedge.contains(Ray::to(b), self) {
+            if wedge.is_empty(self) || wedge.contains(Ray::to(b), self) {
                 best = b;
             }
         }

@@ -4,6 +4,7 @@
 //! there are, which are inside out) -> [`tree`] (what a search goes down). [`shrink`] is made when it
 //! is first asked for; [`self_intersection`] finds the walls that are too thin for it.
 
+mod bodies;
 pub(crate) mod cuts;
 pub(crate) mod edges;
 mod error;

@@ -44,7 +44,8 @@ impl Wedge {
             && (self.contains(other.start, axis) || other.contains(self.start, axis))
     }
 
-    fn is_empty(&self, axis: &impl Axis) -> bool {
+    /// Whether its facets fold onto each other.
+    pub(crate) fn is_empty(&self, axis: &impl Axis) -> bool {
         sector(self.start, self.end, axis) == 0
     }
 

@@ -1,0 +1,143 @@
+//! Which shells are one body: a shell, and the cavities in it.
+//!
+//! A cavity, a closed shell with a negative volume, belongs to the smallest closed shell of a positive one that contains
+//! it. Containment is decided as in [`shells`], exactly, down the tree of boxes: a vertex of the cavity, and the line
+//! through it along `z`.
+
+use std::collections::BTreeMap;
+
+use super::Solid;
+use super::shells::{self, crossing};
+
+impl Solid {
+    /// For each of [`Self::triangles`] the body that it is of: a closed shell with the cavities in it, or an open shell.
+    /// Bodies are numbered from 0, in the order of their first facets in the input.
+    ///
+    /// ```
+    /// use colltrans::Solid;
+    /// use colltrans::glam::DVec3;
+    ///
+    /// let corners = [DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    /// let vertices: Vec<DVec3> = corners.into_iter().chain(corners.map(|p| p + 5.0)).collect();
+    /// let facets: Vec<[u32; 3]> = [0, 4]
+    ///     .into_iter()
+    ///     .flat_map(|k| [[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]].map(|t| t.map(|v| v + k)))
+    ///     .collect();
+    /// let both = Solid::from_mesh(&vertices, &facets)?;
+    /// let mut bodies = both.bodies();
+    /// bodies.sort_unstable();
+    /// assert_eq!(bodies, [0, 0, 0, 0, 1, 1, 1, 1]);
+    /// # Ok::<(), colltrans::solid::SolidError>(())
+    /// ```
+    pub fn bodies(&self) -> Vec<u32> {
+        let shell_of = shells::components(&self.neighbours);
+        let corner = |v: u32| self.vertices[v as usize];
+        let volumes = shells::volumes(&shell_of, &self.triangles, corner);
+        let body_of = |shell: usize| {
+            let is_cavity = volumes[shell] < 0.0 && self.is_shell_closed(shell as u32);
+            if is_cavity { self.container(shell, &shell_of, &volumes) } else { shell }
+        };
+        let body_of: Vec<usize> = (0..volumes.len()).map(body_of).collect();
+        let mut first = vec![u32::MAX; volumes.len()];
+        for (&shell, facet) in shell_of.iter().zip(&self.facet_index) {
+            let first = &mut first[body_of[shell as usize]];
+            *first = facet.0.min(*first);
+        }
+        let mut bodies: Vec<usize> = (0..volumes.len()).filter(|&s| body_of[s] == s).collect();
+        bodies.sort_by_key(|&s| (first[s], s));
+        let mut number = vec![0; volumes.len()];
+        for (&body, k) in bodies.iter().zip(0..) {
+            number[body] = k;
+        }
+        shell_of.iter().map(|&shell| number[body_of[shell as usize]]).collect()
+    }
+
+    /// The smallest shell around a cavity; the cavity itself if there is none.
+    fn container(&self, cavity: usize, shell_of: &[u32], volumes: &[f64]) -> usize {
+        let corners = |t: usize| self.triangles[t].map(|v| self.vertices[v as usize]);
+        let [p, ..] = corners(self.spans[cavity].triangle as usize);
+        let mut windings: BTreeMap<usize, i32> = BTreeMap::new();
+        let mut open = vec![0];
+        while let Some(at) = open.pop() {
+            let node = &self.nodes[at];
+            let [low, high] = [node.bounds.low, node.bounds.high];
+            if p.z > high.z || !(low.x..=high.x).contains(&p.x) || !(low.y..=high.y).contains(&p.y)
+            {
+                continue;
+            }
+            if !node.is_leaf() {
+                open.extend([at + node.skip as usize, at + node.skip as usize + 1]);
+                continue;
+            }
+            for t in node.facets() {
+                *windings.entry(shell_of[t] as usize).or_default() += crossing(p, corners(t));
+            }
+        }
+        let around = windings.into_iter().filter(|&(shell, winding)| {
+            winding != 0 && volumes[shell] > 0.0 && self.is_shell_closed(shell as u32)
+        });
+        let smallest = around.min_by(|(a, _), (b, _)| volumes[*a].total_cmp(&volumes[*b]));
+        smallest.map_or(cavity, |(shell, _)| shell)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use colltrans_testkit::shapes::{Mesh, block};
+    use glam::DVec3;
+
+    use super::*;
+
+    fn cube(low: f64, high: f64) -> Mesh {
+        block(DVec3::splat(low), DVec3::splat(high))
+    }
+
+    /// The bodies of the facets, by their numbers in the input.
+    fn bodies(mesh: &Mesh) -> Vec<u32> {
+        let solid = Solid::from_open_mesh(&mesh.vertices, &mesh.faces).unwrap();
+        let mut of_facet = vec![u32::MAX; mesh.faces.len()];
+        for (body, facet) in solid.bodies().into_iter().zip(solid.facet_indices()) {
+            let known = &mut of_facet[facet.index()];
+            assert!(*known == u32::MAX || *known == body);
+            *known = body;
+        }
+        of_facet
+    }
+
+    /// So many facets of each.
+    fn runs(numbers: &[u32]) -> Vec<u32> {
+        numbers.iter().flat_map(|&n| [n; 6]).collect()
+    }
+
+    #[test]
+    fn cavities_belong_to_what_is_around_them() {
+        // A nut in a hollow ball in a hollow box, the file in an order of its own; beside them, inside out, another box.
+        let mesh = cube(2.0, 3.0)
+            .joined(&cube(0.5, 4.5).reversed())
+            .joined(&cube(1.0, 4.0))
+            .joined(&cube(1.5, 3.5).reversed())
+            .joined(&cube(0.0, 5.0));
+        // All of it inside out is the same.
+        assert_eq!(bodies(&mesh.clone().reversed()), runs(&[0, 1, 2, 2, 1]));
+        assert_eq!(bodies(&mesh.joined(&cube(6.0, 7.0).reversed())), runs(&[0, 1, 2, 2, 1, 3]));
+    }
+
+    #[test]
+    fn bodies_that_touch_are_two() {
+        let side = |at: f64| block(DVec3::new(at, 0.0, 0.0), DVec3::new(at + 1.0, 1.0, 1.0));
+        let face_to_face = side(0.0).joined(&side(1.0));
+        assert_eq!(bodies(&face_to_face), runs(&[0, 1]));
+        let edge = block(DVec3::new(1.0, 1.0, 0.0), DVec3::new(2.0, 2.0, 1.0));
+        assert_eq!(bodies(&side(0.0).joined(&edge)), runs(&[0, 1]));
+        // They overlap, or one lies in the other and is no cavity.
+        assert_eq!(bodies(&side(0.0).joined(&side(0.5))), runs(&[0, 1]));
+        assert_eq!(bodies(&cube(0.0, 3.0).joined(&cube(1.0, 2.0))), runs(&[0, 1]));
+    }
+
+    #[test]
+    fn open_shells_are_bodies_of_their_own() {
+        let mut mesh = cube(0.0, 3.0).joined(&cube(1.0, 2.0).reversed()).joined(&cube(5.0, 6.0));
+        mesh.faces.pop();
+        assert_eq!(bodies(&mesh), runs(&[0, 0, 1])[..17]);
+    }
+}

@@ -1,6 +1,7 @@
 //! Two parts and a direction: everything that is asked of `colltrans`.
 //!
-//! With a tolerance `L` every body is shrunk by `L / 2` (`solids.md`: tolerance belongs to the body),
+//! With a tolerance `L` every body is shrunk by `L / 2` (`solids.md`: tolerance belongs to the body), or each by its own
+//! chord error;
 //! to keep `M` apart bodies stay as they are, and every question is about where two of them are as near as that
 //! ([`Cast::keeping`]); boxes are those of the bodies with half of it around.
 
@@ -28,6 +29,14 @@ pub enum Fit {
     /// Both bodies of a pair are shrunk by half of this length: up to so much of an overlap, of
     /// rounding, chord errors or a press fit, does not block.
     Tolerance(f64),
+    /// Each body is shrunk by its own [chord error](Part::chord_error), and by half of the length `base`: the tolerance of
+    /// a pair is both chord errors together and `base`.
+    Chords {
+        /// For the last digits of coordinates.
+        base: f64,
+        /// The largest that a pair may have: twice the largest chord error, and `base`.
+        largest: f64,
+    },
     /// That far apart two bodies must stay, in all directions: what is nearer overlaps, and what comes
     /// as near is stopped. Pairs that touch on purpose have to be listed as ignored.
     Apart(f64),
@@ -37,24 +46,43 @@ pub enum Fit {
 const SINGLE_DIGITS: f64 = 1.0 / (1 << 21) as f64;
 
 impl Fit {
-    /// What is used where nobody says anything: `2^-21` of the assembly's size, four times the
-    /// rounding of a coordinate in single precision.
+    /// What is used where nobody says anything: the chord errors of the parts, where their source says them, and
+    /// `2^-21` of the assembly's size, four times the rounding of a coordinate in single precision.
     pub fn default_for(assembly: &Assembly) -> Self {
-        Self::Tolerance(assembly.size() * SINGLE_DIGITS)
+        let base = Self::digits(assembly);
+        let errors = assembly.parts().iter().filter_map(Part::chord_error);
+        match errors.reduce(f64::max) {
+            Some(largest) => Self::Chords { base, largest: 2.0 * largest + base },
+            None => Self::Tolerance(base),
+        }
+    }
+
+    /// What is for the last digits of coordinates.
+    pub(crate) fn digits(assembly: &Assembly) -> f64 {
+        assembly.size() * SINGLE_DIGITS
+    }
+
+    /// By how much a part is shrunk.
+    fn amount(self, part: &Part) -> f64 {
+        match self {
+            Self::Tolerance(length) => length / 2.0,
+            Self::Chords { base, .. } => part.chord_error().unwrap_or(0.0) + base / 2.0,
+            Self::Apart(_) => 0.0,
+        }
     }
 
     /// The length to be kept, or 0.
     const fn keep(self) -> f64 {
         match self {
-            Self::Tolerance(_) => 0.0,
+            Self::Tolerance(_) | Self::Chords { .. } => 0.0,
             Self::Apart(length) => length,
         }
     }
 
-    /// The tolerance; a length to keep is a negative one.
+    /// The tolerance, the largest of all pairs; a length to keep is a negative one.
     pub const fn tolerance(self) -> f64 {
         match self {
-            Self::Tolerance(length) => length,
+            Self::Tolerance(length) | Self::Chords { largest: length, .. } => length,
             Self::Apart(length) => -length,
         }
     }
@@ -130,7 +158,7 @@ impl<'a> Bodies<'a> {
     /// A tolerance, or length to keep, that is negative, not finite or too large for a part.
     pub fn new(assembly: &'a Assembly, fit: Fit) -> Result<Self, AssemblyError> {
         let (what, value) = match fit {
-            Fit::Tolerance(value) => ("tolerance", value),
+            Fit::Tolerance(value) | Fit::Chords { largest: value, .. } => ("tolerance", value),
             Fit::Apart(value) => ("length to keep", value),
         };
         if !(0.0..=MAX_MAGNITUDE).contains(&value) {
@@ -142,7 +170,9 @@ impl<'a> Bodies<'a> {
                 source: source.into(),
             };
             match fit {
-                Fit::Tolerance(length) => part.solid().shrunk(length / 2.0).map_err(refused),
+                Fit::Tolerance(_) | Fit::Chords { .. } => {
+                    part.solid().shrunk(fit.amount(part)).map_err(refused)
+                }
                 Fit::Apart(_) => Ok((part.solid().clone(), ShrinkReport::default())),
             }
         };
@@ -154,7 +184,7 @@ impl<'a> Bodies<'a> {
         let around = fit.keep() / 2.0;
         let boxes: Vec<Aabb> = solids.iter().map(|solid| solid.bounds().grown(around)).collect();
         let tree = BoxTree::new(boxes.iter().copied());
-        let noise = 4.0 * Fit::default_for(assembly).tolerance();
+        let noise = 4.0 * Fit::digits(assembly);
         let (overlapping, passing) = (Vec::new(), BTreeMap::new());
         let mut bodies = Self {
             assembly,
@@ -204,6 +234,12 @@ impl<'a> Bodies<'a> {
     /// How tight.
     pub const fn fit(&self) -> Fit {
         self.fit
+    }
+
+    /// The least tolerance that a pair of these parts has.
+    pub(crate) fn least_tolerance(&self, parts: &[usize]) -> f64 {
+        let amount = |&k: &usize| self.fit.amount(&self.assembly.parts()[k]);
+        2.0 * parts.iter().map(amount).reduce(f64::min).unwrap_or(0.0)
     }
 
     /// Number of parts.

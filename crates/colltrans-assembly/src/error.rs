@@ -28,6 +28,15 @@ pub enum ReadError {
         /// What was given.
         path: PathBuf,
     },
+    /// A STEP file, which has to be converted first.
+    #[error(
+        "{}: STEP files are converted to GLB first, which `colltrans assembly` and Python's `Assembly.read` do",
+        path.display()
+    )]
+    Step {
+        /// The file.
+        path: PathBuf,
+    },
     /// The contents are not what the format prescribes.
     #[error("{}: {place}: {reason}", path.display())]
     Contents {

@@ -70,8 +70,7 @@ impl Liaison {
 
 /// How far apart surfaces may be that touch: the tolerance, or the default one if that is larger.
 pub fn reach(bodies: &Bodies) -> f64 {
-    let least = crate::bodies::Fit::default_for(bodies.assembly()).tolerance();
-    bodies.fit().tolerance().max(least)
+    bodies.fit().tolerance().max(crate::Fit::digits(bodies.assembly()))
 }
 
 /// All pairs that touch, as the files have them.

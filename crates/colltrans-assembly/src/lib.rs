@@ -23,6 +23,8 @@ mod boxes;
 mod csv;
 mod error;
 mod part;
+#[cfg(any(feature = "files", feature = "report"))]
+mod units;
 mod watch;
 mod witness;
 #[cfg(all(test, feature = "files"))]

@@ -29,6 +29,7 @@ pub struct Part {
     facets: usize,
     fixed: bool,
     defects: Vec<String>,
+    chord_error: Option<f64>,
 }
 
 impl Part {
@@ -70,13 +71,19 @@ impl Part {
             [_] => solids.remove(0),
             _ => Solid::from_pieces(&solids).map_err(|e| refused(e.into()))?,
         };
-        Ok(Self { name, solid, facets, fixed: false, defects })
+        Ok(Self { name, solid, facets, fixed: false, defects, chord_error: None })
     }
 
     /// The same part, which is never moved if `fixed`.
     #[must_use]
     pub fn with_fixed(self, fixed: bool) -> Self {
         Self { fixed, ..self }
+    }
+
+    /// The same part, whose facets are at most so far from the surface that they stand for; `None` if nobody knows.
+    #[must_use]
+    pub fn with_chord_error(self, chord_error: Option<f64>) -> Self {
+        Self { chord_error, ..self }
     }
 
     /// Its name, unique in an assembly.
@@ -97,6 +104,11 @@ impl Part {
     /// Whether it is never moved.
     pub const fn fixed(&self) -> bool {
         self.fixed
+    }
+
+    /// How far its facets are from the surface that they stand for, at most, as its source says; `None` if nobody knows.
+    pub const fn chord_error(&self) -> Option<f64> {
+        self.chord_error
     }
 
     /// What was mended of its surface, or is wrong with it, in words.

@@ -31,6 +31,9 @@ pub fn part(part: &Part) -> Value {
         let count = |kind: ShellKind| (kind.name().to_owned(), part.solid().report().count(kind));
         told["shells"] = ShellKind::ALL.into_iter().map(count).collect();
     }
+    if let Some(error) = part.chord_error() {
+        told["chord_error"] = json!(error);
+    }
     if !part.defects().is_empty() {
         told["defects"] = json!(part.defects());
     }
@@ -68,7 +71,7 @@ pub fn room(bodies: &Bodies, part: usize, d: DVec3, room: &PartRoom) -> Value {
     told["part"] = json!(bodies.assembly().parts()[part].name());
     let PartRoom::Blocked { stop, .. } = room else { return told };
     let name = match bodies.fit() {
-        Fit::Tolerance(_) => {
+        Fit::Tolerance(_) | Fit::Chords { .. } => {
             told["translation"] = json!(stop.translation.value);
             told["translation_bounds"] = json!(stop.translation.bounds());
             "shrunk_distance"

@@ -6,6 +6,7 @@
 mod asked;
 mod free;
 mod output;
+mod step;
 
 use std::path::Path;
 
@@ -116,6 +117,7 @@ fn assembly(arguments: &AssemblyArguments) -> Result<Assembly, Failure> {
         .with_packages(arguments.package.clone())
         .with_skip_missing(arguments.skip_missing)
         .with_as_is(arguments.as_is)
+        .with_split(arguments.split)
         .with_allow_outside(arguments.allow_outside)
         .with_geometry(geometry);
     for joint in &arguments.joint {
@@ -125,8 +127,15 @@ fn assembly(arguments: &AssemblyArguments) -> Result<Assembly, Failure> {
             .ok_or_else(|| usage(format!("--joint {joint}: not NAME=VALUE")))?;
         options.joints.insert(name.trim().to_owned(), value);
     }
-    let assembly = read::read(&arguments.source, &options)
-        .map_err(|e| Failure::new(Code::Input, format!("{e}{}", advice(&e))))?;
+    let refused = |e: ReadError| Failure::new(Code::Input, format!("{e}{}", advice(&e)));
+    let source = &arguments.source;
+    let assembly = if step::is_step(source) {
+        let glb = step::converted(source, arguments.chord)?;
+        let read = read::glb_with(source, &glb, &options).map_err(refused)?;
+        read.with_files(vec![source.clone()])
+    } else {
+        read::read(source, &options).map_err(refused)?
+    };
     let ignore = asked::pairs("--ignore", &arguments.ignore)?;
     let always = asked::pairs("--ignore-always", &arguments.ignore_always)?;
     let assembly = assembly.with_ignored(&ignore, Ignored::Overlap)?;

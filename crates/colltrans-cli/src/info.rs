@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use colltrans::{BuildError, ConvexPolyhedron};
-use colltrans_mesh::body::{BodyOptions, Excess, Note};
+use colltrans_mesh::body::{self, BodyOptions, Excess, Note};
 use colltrans_mesh::{Mesh, ReadOptions};
 
 use crate::args::InfoArguments;
@@ -12,6 +12,9 @@ use crate::numbers::{about, counted, known, six_digits, vector};
 use crate::report::line;
 use crate::solid;
 use crate::terminal::shown;
+
+/// Names that are listed.
+const MOST_NAMED: usize = 8;
 
 pub(crate) fn run(arguments: &InfoArguments) -> Result<(), Failure> {
     let mut unreadable = Vec::new();
@@ -61,6 +64,9 @@ fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
     for (name, what) in solid::describe(mesh) {
         line(&mut text, name, &what);
     }
+    for (name, what) in parts(mesh) {
+        line(&mut text, name, &what);
+    }
     // Tolerance 0 makes the library say how deep the worst face lies, however little.
     match ConvexPolyhedron::from_mesh(&mesh.vertices, &mesh.faces, 0.0) {
         Ok(_) => line(&mut text, "convex", "yes, to rounding error"),
@@ -89,6 +95,22 @@ fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
         Err(error) => line(&mut text, "hull", &format!("none: {error}")),
     }
     text
+}
+
+/// The parts that `assembly` makes of it, if these are several.
+fn parts(mesh: &Mesh) -> Vec<(&'static str, String)> {
+    let mut lines = Vec::new();
+    let named: Vec<String> = mesh.named().into_iter().map(|(name, _)| name).collect();
+    if !named.is_empty() {
+        let more = if named.len() > MOST_NAMED { ", ..." } else { "" };
+        let first = named[..named.len().min(MOST_NAMED)].join(", ");
+        lines.push(("names", format!("{}: {}{more}", named.len(), shown(first))));
+    }
+    if let Ok(Some(apart)) = body::bodies(mesh, &BodyOptions::default()) {
+        let what = format!("{}, apart with `assembly --split bodies`", apart.meshes.len());
+        lines.push(("bodies", what));
+    }
+    lines
 }
 
 /// Vertices of a surface that no face uses, but for those that were merged with others.

@@ -15,7 +15,7 @@ pub enum Error {
     #[error(
         "{}: unknown mesh format; the extension must be one of {}",
         path.display(),
-        Format::ALL.map(Format::extension).join(", ")
+        Format::ALL.iter().map(|format| format.extension()).collect::<Vec<_>>().join(", ")
     )]
     UnknownFormat {
         /// The file.

@@ -1,6 +1,6 @@
-//! Mesh files in double precision: STL, OBJ, PLY and OFF, and the bodies made of them.
+//! Mesh files in double precision: STL, OBJ, PLY, OFF and COLLADA, and the bodies made of them.
 //!
-//! Data flow: a file's bytes -> one reader per format (`stl`, `obj`, `ply`, `off`) ->
+//! Data flow: a file's bytes -> one reader per format (`stl`, `obj`, `ply`, `off`, `dae`) ->
 //! [`Mesh`] -> twins along open edges merged (`merge`) -> a body of the library ([`body`]). A reader either
 //! returns every vertex and face of the file, in the file's order, or an [`Error`] that says what is wrong and where; it
 //! never allocates more than a small multiple of the file's size, whatever the file's header
@@ -11,6 +11,9 @@
 //! be NaN, a face may pass twice through a vertex, the surface may be open ([`Mesh::open_edges`]).
 
 pub mod body;
+#[cfg(feature = "dae")]
+mod dae;
+mod edges;
 mod error;
 pub mod file;
 mod merge;
@@ -19,11 +22,15 @@ mod obj;
 mod off;
 pub mod plain;
 mod ply;
+mod sets;
 mod sniff;
+mod split;
 mod stl;
 mod text;
 pub mod words;
 mod write;
+#[cfg(feature = "dae")]
+pub mod xml;
 
 use std::fmt;
 use std::path::Path;
@@ -32,9 +39,9 @@ use error::Fault;
 use merge::{Places, Precision};
 use sniff::{Content, sniff};
 
+pub use edges::sides;
 pub use error::{Error, Place};
-pub use merge::sides;
-pub use mesh::{Merged, Mesh};
+pub use mesh::{Groups, Merged, Mesh};
 pub use write::{to_obj, to_off, to_stl, write};
 
 /// A format of mesh files, told by the file's extension.
@@ -48,13 +55,23 @@ pub enum Format {
     Ply,
     /// Geomview's object file format: polygons, text.
     Off,
+    /// COLLADA: polygons in a tree of nodes, XML.
+    #[cfg(feature = "dae")]
+    Dae,
 }
 
 /// The one list of formats: what has to be said of another one is said here, and its reader named in
 /// [`parse_with`].
 impl Format {
     /// All of them, in the order in which texts name them.
-    pub const ALL: [Self; 4] = [Self::Stl, Self::Obj, Self::Ply, Self::Off];
+    pub const ALL: &[Self] = &[
+        Self::Stl,
+        Self::Obj,
+        Self::Ply,
+        Self::Off,
+        #[cfg(feature = "dae")]
+        Self::Dae,
+    ];
 
     /// The extension of its files, in lower case.
     pub const fn extension(self) -> &'static str {
@@ -63,6 +80,8 @@ impl Format {
             Self::Obj => "obj",
             Self::Ply => "ply",
             Self::Off => "off",
+            #[cfg(feature = "dae")]
+            Self::Dae => "dae",
         }
     }
 
@@ -73,12 +92,15 @@ impl Format {
             Self::Obj => "an OBJ file",
             Self::Ply => "a PLY file",
             Self::Off => "an OFF file",
+            #[cfg(feature = "dae")]
+            Self::Dae => "a COLLADA file",
         }
     }
 
-    /// The names of all formats: `STL, OBJ, PLY or OFF`, for the word `or`.
+    /// The names of all formats: `STL, OBJ, PLY, OFF or DAE`, for the word `or`.
     pub fn names(word: &str) -> String {
-        let [others @ .., last] = Self::ALL.map(|format| format.to_string());
+        let names: Vec<String> = Self::ALL.iter().map(Self::to_string).collect();
+        let (last, others) = names.split_last().map_or(("", &[][..]), |(last, all)| (last, all));
         format!("{} {word} {last}", others.join(", "))
     }
 
@@ -90,7 +112,8 @@ impl Format {
         let extension = path.extension().and_then(|e| e.to_str()).unwrap_or_default();
         let named = |format: &Self| extension.eq_ignore_ascii_case(format.extension());
         Self::ALL
-            .into_iter()
+            .iter()
+            .copied()
             .find(named)
             .ok_or_else(|| Error::UnknownFormat { path: path.to_owned() })
     }
@@ -198,6 +221,8 @@ pub fn parse_with(
         Format::Obj => obj::parse(&bytes).map(|mesh| (mesh, Precision::Double)),
         Format::Ply => ply::parse(&bytes),
         Format::Off => off::parse(&bytes).map(|mesh| (mesh, Precision::Double)),
+        #[cfg(feature = "dae")]
+        Format::Dae => dae::parse(&bytes).map(|mesh| (mesh, Precision::Double)),
     };
     let (mut mesh, precision) = parsed.map_err(|fault| fault.in_file(path))?;
     let places = if format == Format::Stl { Places::Closed } else { Places::Kept };

@@ -24,6 +24,7 @@ use std::collections::hash_map::Entry;
 
 use glam::DVec3;
 
+use crate::edges::sides;
 use crate::mesh::Mesh;
 
 /// The precision of the numbers in a file.
@@ -64,7 +65,7 @@ impl Mesh {
     #[must_use]
     pub fn weld(&self) -> Self {
         let (vertices, faces) = self.welded();
-        let mut mesh = Self { vertices, faces, precision: self.precision, merged: self.merged };
+        let mut mesh = Self { vertices, faces, groups: self.groups.clone(), ..*self };
         mesh.drop_flat_faces();
         mesh
     }
@@ -169,35 +170,27 @@ impl Mesh {
     /// were closed stay closed.
     pub(crate) fn drop_flat_faces(&mut self) {
         let before = self.faces.len();
+        let (mut number, mut dropped) = (0, Vec::new());
         self.faces.retain_mut(|face| {
             let kept = reduced(face);
             if kept.len() < face.len() {
                 *face = kept;
             }
+            if face.len() < 3 {
+                dropped.push(number);
+            }
+            number += 1;
             face.len() >= 3
         });
+        if !self.groups.of_face.is_empty() {
+            let (mut number, mut dropped) = (0, dropped.into_iter().peekable());
+            self.groups.of_face.retain(|_| {
+                number += 1;
+                dropped.next_if_eq(&(number - 1)).is_none()
+            });
+        }
         self.merged.dropped_faces += before - self.faces.len();
     }
-}
-
-/// The sides of all faces, those of one edge beside each other: the edge, its lower vertex above the
-/// higher one, and the corner at which the side begins, counted through all faces, times two, plus one
-/// where the side runs from the higher vertex to the lower.
-pub fn sides<F: AsRef<[u32]>>(faces: &[F]) -> Vec<(u64, u64)> {
-    let mut sides = Vec::with_capacity(faces.iter().map(|face| face.as_ref().len()).sum());
-    let mut corner = 0;
-    for face in faces.iter().map(AsRef::as_ref) {
-        for (&a, &b) in face.iter().zip(face.iter().cycle().skip(1)) {
-            let (low, high) = (a.min(b), a.max(b));
-            if a != b {
-                let edge = u64::from(low) << 32 | u64::from(high);
-                sides.push((edge, corner << 1 | u64::from(a > b)));
-            }
-            corner += 1;
-        }
-    }
-    sides.sort_unstable();
-    sides
 }
 
 /// Equal exactly for equal coordinates.

@@ -10,12 +10,42 @@ pub struct Mesh {
     pub vertices: Vec<DVec3>,
     /// The faces, each a cycle of indices into `vertices`.
     pub faces: Vec<Vec<u32>>,
+    /// What the file tells apart among the faces; empty where it tells nothing apart.
+    pub groups: Groups,
+    /// How many metres a unit of its lengths is, if the file says it.
+    pub unit: Option<f64>,
+    /// The axis that points upwards, if the file says it.
+    pub up: Option<DVec3>,
     /// What was merged when the file was read; nothing for a mesh that comes from elsewhere.
     pub merged: Merged,
     /// How far apart vertices of the file may be written that were meant to be one: what is merged by
     /// default ([`ReadOptions::merge_tolerance`](crate::ReadOptions::merge_tolerance)); 0 for a mesh that
     /// comes from elsewhere.
     pub precision: f64,
+}
+
+/// What a file tells apart: objects or groups of OBJ, solids of STL, nodes of DAE.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Groups {
+    /// Their names, as the file has them; several may have one name, and some none (an empty one).
+    pub names: Vec<String>,
+    /// For each face the group that it is in, an index into `names`.
+    pub of_face: Vec<u32>,
+}
+
+impl Groups {
+    /// A group for the faces up to the last of `total` that have none yet; nothing if there are none.
+    pub(crate) fn end(&mut self, name: &str, total: usize) {
+        if self.of_face.len() < total {
+            self.of_face.resize(total, self.names.len() as u32);
+            self.names.push(name.to_owned());
+        }
+    }
+
+    /// Nothing, unless there are several.
+    pub(crate) fn several(self) -> Self {
+        if self.names.len() > 1 { self } else { Self::default() }
+    }
 }
 
 /// What was merged when a file was read.

@@ -3,18 +3,19 @@
 //! `tobj` numbers the vertices of each group anew, in the order in which faces use them, and its
 //! errors name no line. Both are mended by what it is given to read ([`Lines`]): only positions
 //! and faces, no groups, and after each position a face of that one vertex, so that the
-//! order of first use is the order of the file.
+//! order of first use is the order of the file. Objects and groups are counted on the way.
 //!
 //! Keywords that say nothing about polygons are skipped. Those of curved surfaces are refused, and
 //! so are unknown ones: a vertex that is not recognised as one would change the answer.
 
+use std::collections::HashMap;
 use std::io::{self, BufRead, Read};
 
 use glam::DVec3;
 use tobj::{LoadError, LoadOptions};
 
 use crate::error::{Fault, Place};
-use crate::mesh::Mesh;
+use crate::mesh::{Groups, Mesh};
 use crate::text::{self, quoted, without_mark};
 
 pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
@@ -44,7 +45,41 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
             }
         }
     }
+    mesh.groups = lines.names.groups(mesh.faces.len());
     Ok(mesh)
+}
+
+/// The objects and the groups of a file: each name, and how many faces stood before it.
+#[derive(Default)]
+struct Named {
+    objects: Vec<(usize, String)>,
+    groups: Vec<(usize, String)>,
+}
+
+impl Named {
+    /// The objects, if there are several, or else the groups: those of one name are one.
+    fn groups(self, faces: usize) -> Groups {
+        let all = [self.objects, self.groups].map(|begun| {
+            let mut groups = Groups::default();
+            let mut known: HashMap<String, u32> = HashMap::new();
+            let mut name = String::new();
+            for (before, next) in begun.into_iter().chain([(faces, String::new())]) {
+                let before = before.min(faces);
+                match known.get(&name) {
+                    Some(&group) => groups.of_face.resize(before, group),
+                    None if groups.of_face.len() < before => {
+                        known.insert(name.clone(), groups.names.len() as u32);
+                        groups.end(&name, before);
+                    }
+                    None => {}
+                }
+                name = next;
+            }
+            groups.several()
+        });
+        let [objects, groups] = all;
+        if objects.names.is_empty() { groups } else { objects }
+    }
 }
 
 /// The position and face lines of an OBJ file, cleaned, one at a time.
@@ -58,17 +93,18 @@ struct Lines<'a> {
     original: String,
     /// A keyword that cannot be skipped; nothing is read after it.
     refused: Option<Fault>,
+    names: Named,
+    /// Faces that were passed on.
+    faces: usize,
 }
 
 /// Keywords without a meaning for the polygons of a mesh.
-const SKIPPED: [&str; 26] = [
+const SKIPPED: [&str; 24] = [
     "vt",
     "vn",
     "vp",
     "p",
     "l",
-    "o",
-    "g",
     "s",
     "mg",
     "mtllib",
@@ -102,6 +138,8 @@ impl<'a> Lines<'a> {
             read: 0,
             original: String::new(),
             refused: None,
+            names: Named::default(),
+            faces: 0,
         }
     }
 
@@ -115,6 +153,7 @@ impl<'a> Lines<'a> {
                 Some("v") => self.pass_position(&words.collect::<Vec<_>>()),
                 Some("f") => {
                     self.pending.push(b'f');
+                    self.faces += usize::from(words.clone().nth(1).is_some());
                     for corner in words {
                         // Texture and normal indices would only be checked and dropped.
                         let vertex = corner.split('/').next().unwrap_or_default();
@@ -124,6 +163,13 @@ impl<'a> Lines<'a> {
                     self.pending.push(b'\n');
                 }
                 None => continue,
+                Some(keyword @ ("o" | "g")) => {
+                    let name = line.trim_start()[1..].trim().to_owned();
+                    let names = &mut self.names;
+                    let list = if keyword == "o" { &mut names.objects } else { &mut names.groups };
+                    list.push((self.faces, name));
+                    continue;
+                }
                 Some(keyword) if SKIPPED.contains(&keyword) => continue,
                 Some(keyword) => {
                     let what = if CURVED.contains(&keyword) {

@@ -54,6 +54,9 @@ const SIGNATURES: [(&[u8], &str); 18] = [
 /// First words that only OBJ files begin with.
 const OBJ_WORDS: [&str; 11] = ["v", "vt", "vn", "vp", "f", "o", "g", "s", "mtllib", "usemtl", "mg"];
 
+/// So many bytes from the start are looked at, where that is not in the first ones.
+const LOOKED_AT: usize = 1 << 16;
+
 /// What the bytes are, where that is certain.
 pub(crate) fn sniff(bytes: &[u8]) -> Option<Content> {
     if stl::is_exactly_binary(bytes) {
@@ -63,6 +66,13 @@ pub(crate) fn sniff(bytes: &[u8]) -> Option<Content> {
     let is = |signature: &[u8]| {
         start.get(..signature.len()).is_some_and(|s| s.eq_ignore_ascii_case(signature))
     };
+    #[cfg(feature = "dae")]
+    if is(b"<?xml") || is(b"<COLLADA") {
+        let start = &start[..start.len().min(LOOKED_AT)];
+        if start.windows(8).any(|word| word == b"<COLLADA") {
+            return Some(Content::Mesh(Format::Dae));
+        }
+    }
     if let Some((_, name)) = SIGNATURES.iter().find(|(signature, _)| is(signature)) {
         return Some(Content::Other(name));
     }
@@ -89,7 +99,6 @@ fn is_off(word: &str) -> bool {
 
 /// The first line that is neither blank nor a comment, among the first ones.
 fn first_words(start: &[u8]) -> Option<String> {
-    const LOOKED_AT: usize = 1 << 16;
     let text = String::from_utf8_lossy(&start[..start.len().min(LOOKED_AT)]);
     let mut contents = lines(&text).map(|line| line.split('#').next().unwrap_or_default().trim());
     contents.find(|content| !content.is_empty()).map(str::to_owned)

@@ -149,6 +149,7 @@ fn parse_text(text: &str) -> Result<Mesh, Fault> {
     let mut mesh = Mesh::default();
     let mut inside = Inside::Nothing;
     let mut corners: Vec<DVec3> = Vec::new();
+    let mut name = String::new();
     for (number, line) in lines(text).enumerate() {
         let at = |what: String| Fault::new(Place::Line(number + 1), what);
         let mut words = line.split_whitespace();
@@ -171,6 +172,8 @@ fn parse_text(text: &str) -> Result<Mesh, Fault> {
                 return Err(at(format!("a loop of {} vertices; 3 are needed", corners.len())));
             }
             "endloop" => push_face(&mut mesh, &corners)?,
+            "solid" => name = line.trim_start()[keyword.len()..].trim().to_owned(),
+            "endsolid" => mesh.groups.end(&name, mesh.faces.len()),
             _ => {}
         }
         inside = next;
@@ -179,6 +182,7 @@ fn parse_text(text: &str) -> Result<Mesh, Fault> {
         let what = format!("the last {} is not ended; the file is cut short", inside.name());
         return Err(Fault::new(Place::End, what));
     }
+    mesh.groups = std::mem::take(&mut mesh.groups).several();
     Ok(mesh)
 }
 

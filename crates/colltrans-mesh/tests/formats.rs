@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use colltrans_mesh::{Error, Format, Mesh, Place, parse, to_obj, to_off, to_stl};
+use colltrans_mesh::{Error, Format, Groups, Mesh, Place, parse, to_obj, to_off, to_stl};
 use glam::DVec3;
 
 fn read(format: Format, text: impl AsRef<[u8]>) -> Result<Mesh, Error> {
@@ -298,10 +298,10 @@ fn ply_errors_say_where() {
 #[test]
 fn the_extension_tells_the_format() {
     assert_eq!(Format::of_path(Path::new("a.b/PART.Stl")).unwrap(), Format::Stl);
-    assert_eq!(Format::names("or"), "STL, OBJ, PLY or OFF");
+    assert_eq!(Format::names("or"), "STL, OBJ, PLY, OFF or DAE");
     for path in ["part.step", "part", "stl"] {
         let message = colltrans_mesh::read(path).unwrap_err().to_string();
-        assert!(message.contains(path) && message.contains("stl, obj, ply, off"), "{message}");
+        assert!(message.contains(path) && message.contains("stl, obj, ply, off, dae"), "{message}");
     }
     let message = colltrans_mesh::read("not/there.obj").unwrap_err().to_string();
     assert!(message.starts_with("not/there.obj: cannot be read"), "{message}");
@@ -330,6 +330,172 @@ fn mutilated_files_get_answers() {
                     assert!(mesh.faces.iter().flatten().all(|&v| (v as usize) < count));
                 }
             }
+        }
+    }
+}
+
+/// The names of the groups, each with the number of its faces.
+fn groups(mesh: &Mesh) -> Vec<(&str, usize)> {
+    let Groups { names, of_face } = &mesh.groups;
+    assert!(of_face.is_empty() || of_face.len() == mesh.faces.len());
+    let count = |k: usize| of_face.iter().filter(|&&g| g as usize == k).count();
+    names.iter().enumerate().map(|(k, name)| (name.as_str(), count(k))).collect()
+}
+
+#[test]
+fn objects_and_groups_of_obj_are_told() {
+    let vertices = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n";
+    let cases: [(&str, &[(&str, usize)]); 7] = [
+        ("f 1 2 3\nf 1 3 4\n", &[]),
+        ("o a b\nf 1 2 3\ng x\nf 1 3 4\no c\ng\nf 2 3 4\n", &[("a b", 2), ("c", 1)]),
+        // Groups where there is one object, and one that is gone on with.
+        ("o a\ng x\nf 1 2 3\ng y\nf 1 3 4\nf 1 2\nf 1\ng x\nf 2 3 4\n", &[("x", 2), ("y", 1)]),
+        // What has no faces, and what stands before the first name.
+        ("f 1 2 3\no none\no a\nf 1 3 4\no last\n", &[("", 1), ("a", 1)]),
+        ("o a\nf 1 2 3\no a\nf 1 3 4\n", &[]),
+        // A face without an area is dropped.
+        ("o a\nf 1 2 1\nf 1 2 3\no b\nf 2 2 3\nf 1 3 4\n", &[("a", 1), ("b", 1)]),
+        ("o a # not b\nf 1 2 3\no c\nf 1 3 \\\n4\n", &[("a", 1), ("c", 1)]),
+    ];
+    for (text, wanted) in cases {
+        let mesh = read(Format::Obj, format!("{vertices}{text}")).unwrap();
+        assert_eq!(groups(&mesh), wanted, "{text}");
+    }
+}
+
+#[test]
+fn solids_of_stl_are_told() {
+    let facet = "facet normal 0 0 0\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\nendfacet\n";
+    let text = format!(
+        "solid a 1\n{facet}endsolid a 1\nSOLID\n{facet}{facet}endsolid\nsolid x\nendsolid x\nsolid a 1\n{facet}endsolid\n"
+    );
+    let mesh = read(Format::Stl, text).unwrap();
+    assert_eq!(groups(&mesh), [("a 1", 1), ("", 2), ("a 1", 1)]);
+    let mesh = read(Format::Stl, format!("solid a\n{facet}endsolid a\n")).unwrap();
+    assert_eq!(groups(&mesh), []);
+}
+
+/// A COLLADA file of a square pyramid (five corners), shown by these nodes.
+fn dae(asset: &str, faces: &str, nodes: &str) -> String {
+    format!(
+        "<?xml version=\"1.0\"?>\n<COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\">\n\
+         <asset>{asset}</asset>\n<library_geometries><geometry id=\"g\"><mesh>\n\
+         <source id=\"p\"><float_array id=\"a\" count=\"15\">0 0 0 1 0 0 1 1 0 0 1 0\n.5 .5 1e0</float_array>\n\
+         <technique_common><accessor source=\"#a\" count=\"5\" stride=\"3\"><param name=\"X\"/><param name=\"Y\"/>\
+         <param name=\"Z\"/></accessor></technique_common></source>\n\
+         <vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices>\n{faces}\n</mesh></geometry></library_geometries>\n\
+         <library_nodes><node id=\"n\"><instance_geometry url=\"#g\"/></node></library_nodes>\n\
+         <library_visual_scenes><visual_scene id=\"s\">{nodes}</visual_scene></library_visual_scenes>\n\
+         <scene><instance_visual_scene url=\"#s\"/></scene>\n</COLLADA>\n"
+    )
+}
+
+const VERTEX: &str = "<input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/>";
+
+/// All five faces, in two ways, with an index for normals beside that of vertices.
+fn pyramid() -> String {
+    let normal = "<input semantic=\"NORMAL\" source=\"#p\" offset=\"1\"/>";
+    format!(
+        "<polylist count=\"2\">{VERTEX}{normal}<vcount>4 3</vcount><p>3 0 2 0 1 0 0 0 0 1 1 1 4 1</p></polylist>\
+         <triangles count=\"2\">{VERTEX}<p>1 2 4 2 3 4</p></triangles>\
+         <polygons count=\"1\">{VERTEX}<p>3 0 4</p></polygons><lines count=\"1\">{VERTEX}<p>0 1</p></lines>"
+    )
+}
+
+#[test]
+fn nodes_of_collada_are_placed_and_named() {
+    let nodes = "<node name=\"a\"><instance_geometry url=\"#g\"/></node>\
+        <node id=\"b\"><translate>0 0 5</translate><rotate>0 0 1 90</rotate><scale>2 2 2</scale>\
+        <node name=\"c\"><matrix>1 0 0 3 0 1 0 0 0 0 -1 0 0 0 0 1</matrix><instance_node url=\"#n\"/></node></node>";
+    let asset = "<unit name=\"centimeter\" meter=\"0.01\"/><up_axis>Z_UP</up_axis>";
+    let mesh = read(Format::Dae, dae(asset, &pyramid(), nodes)).unwrap();
+    assert_eq!(
+        mesh.faces[..5],
+        [vec![3, 2, 1, 0], vec![0, 1, 4], vec![1, 2, 4], vec![2, 3, 4], vec![3, 0, 4]]
+    );
+    assert_eq!((mesh.unit, mesh.up), (Some(0.01), Some(DVec3::Z)));
+    assert_eq!(groups(&mesh), [("a", 5), ("n", 5)]);
+    assert!(mesh.open_edges().is_empty());
+    // Mirrored, and turned back; twice as large.
+    assert!((mesh.signed_volume() - 3.0).abs() < 1e-12);
+    let [_, apex] = [4, 9].map(|k| mesh.vertices[k]);
+    // (.5 + 3, .5, -1), doubled, turned to (-1, 7), lifted by 5.
+    assert!((apex - DVec3::new(-1.0, 7.0, 3.0)).length() < 1e-12, "{apex}");
+    let bare =
+        read(Format::Dae, dae("", &pyramid(), "<node><instance_geometry url=\"#g\"/></node>"))
+            .unwrap();
+    assert_eq!((bare.unit, bare.up, groups(&bare)), (Some(1.0), Some(DVec3::Y), vec![]));
+}
+
+#[test]
+fn strips_and_fans_of_collada() {
+    let faces = format!(
+        "<trifans count=\"1\">{VERTEX}<p>4 0 1 2 3 0</p></trifans><tristrips count=\"1\">{VERTEX}<p>3 2 0 1</p></tristrips>"
+    );
+    let mesh =
+        read(Format::Dae, dae("", &faces, "<node><instance_geometry url=\"#g\"/></node>")).unwrap();
+    assert_eq!(mesh.faces.len(), 6);
+    assert!(mesh.open_edges().is_empty());
+    assert!((mesh.signed_volume() - 1.0 / 3.0).abs() < 1e-12);
+}
+
+#[test]
+fn faults_of_collada_name_their_line() {
+    let node = "<node><instance_geometry url=\"#g\"/></node>";
+    let list = |what: &str| dae("", what, node);
+    let triangles =
+        |p: &str| list(&format!("<triangles count=\"1\">{VERTEX}<p>{p}</p></triangles>"));
+    let ring = "<node id=\"r\"><instance_node url=\"#r\"/></node>";
+    let doubling: String = (0..20)
+        .map(|k| format!("<node id=\"d{k}\"><instance_node url=\"#d{0}\"/><instance_node url=\"#d{0}\"/></node>", k + 1))
+        .collect();
+    let cases = [
+        (triangles("0 1"), "2 corners do not make triangles"),
+        (triangles("0 1 5"), "names vertex 5 of 5"),
+        (triangles("0 1 x"), "`x` in <p>"),
+        (triangles("0 1 -2"), "`-2` in <p>"),
+        (triangles("0 1 2 2 3 0"), "1 faces are promised, and 2 are there"),
+        (list("<triangles count=\"0\"><p/></triangles>"), "no input VERTEX"),
+        (list(&format!("<polylist count=\"1\">{VERTEX}<p>0 1 2</p></polylist>")), "no vcount"),
+        (
+            list(&format!(
+                "<polylist count=\"1\">{VERTEX}<vcount>4</vcount><p>0 1 2</p></polylist>"
+            )),
+            "more corners",
+        ),
+        (list(&format!("<polygons count=\"1\">{VERTEX}<ph><p>0 1 2</p></ph></polygons>")), "holes"),
+        (list(&pyramid()).replace("count=\"5\"", "count=\"6\""), "lie beyond the 15 numbers"),
+        (
+            list(&pyramid()).replace("count=\"5\"", "count=\"99999999999999999999\""),
+            "no whole number",
+        ),
+        (list(&pyramid()).replace("url=\"#g\"", "url=\"#h\""), "there is no `#h`"),
+        (list(&pyramid()).replace("url=\"#g\"", "url=\"b.dae#g\""), "in another file"),
+        (dae("<unit meter=\"0\"/>", &pyramid(), node), "no length"),
+        (dae("<up_axis>W</up_axis>", &pyramid(), node), "`W` is no axis"),
+        (
+            dae("", &pyramid(), "<node><lookat>0 0 0 1 1 1 0 0 1</lookat></node>"),
+            "<lookat> is not read",
+        ),
+        (dae("", &pyramid(), "<node><scale>1 2</scale></node>"), "<scale> has 2 numbers, not 3"),
+        (dae("", &pyramid(), ring), "in a ring"),
+        (dae("", &pyramid(), &format!("{doubling}<node id=\"d20\"/>")), "too many"),
+        ("<?xml version=\"1.0\"?><COLLADA><a></b></COLLADA>".into(), ""),
+        ("<?xml version=\"1.0\"?><COLLADA>".into(), "not ended"),
+        ("<?xml version=\"1.0\"?><COLLADA/>".into(), "no scene"),
+    ];
+    for (text, wanted) in cases {
+        let error = read(Format::Dae, &text).unwrap_err();
+        assert!(matches!(error, Error::Syntax { .. }), "{error}");
+        assert!(error.to_string().contains(wanted), "{error}, not {wanted}");
+    }
+    let other = read(Format::Dae, "<?xml version=\"1.0\"?><robot/>").unwrap_err().to_string();
+    assert_eq!(other, "part: holds an XML file, not DAE as its name says");
+    // Every part of a file is an answer.
+    let whole = dae("<unit meter=\"1\"/>", &pyramid(), node);
+    for end in 0..whole.len() {
+        if let Ok(mesh) = read(Format::Dae, &whole[..end]) {
+            assert_eq!(mesh.faces.len(), 5, "{end}");
         }
     }
 }

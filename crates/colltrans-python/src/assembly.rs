@@ -20,7 +20,7 @@ use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
 use colltrans_assembly::plan::{Leg, PlanOptions, Step, Wanted, disassemble, remove};
-use colltrans_assembly::read::{Geometry, ReadOptions};
+use colltrans_assembly::read::{self, Geometry, ReadOptions};
 use colltrans_assembly::rooms::{PartRoom, rooms};
 use colltrans_assembly::{AssemblyError, Bodies, Fit, Ignored, Part, Piece, Watch};
 use colltrans_mesh::Mesh;
@@ -178,6 +178,7 @@ impl Assembly {
     }
 
     #[staticmethod]
+    #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn read(
         py: Python<'_>,
         path: PathBuf,
@@ -186,6 +187,9 @@ impl Assembly {
         visual: bool,
         joints: BTreeMap<String, f64>,
         allow_outside: bool,
+        as_is: bool,
+        split: &str,
+        glb: Option<Vec<u8>>,
     ) -> PyResult<Self> {
         let geometry = if visual { Geometry::Visual } else { Geometry::Collision };
         let options = ReadOptions::default()
@@ -193,8 +197,15 @@ impl Assembly {
             .with_skip_missing(skip_missing)
             .with_geometry(geometry)
             .with_joints(joints)
-            .with_allow_outside(allow_outside);
-        let assembly = py.detach(|| colltrans_assembly::read::read(&path, &options)).or_raise()?;
+            .with_allow_outside(allow_outside)
+            .with_as_is(as_is)
+            .with_split(split.parse().map_err(|e: String| error("AssemblyError", format!("split: {e}")))?);
+        // What a STEP file was converted to.
+        let read = || match &glb {
+            Some(bytes) => read::glb_with(&path, bytes, &options),
+            None => read::read(&path, &options),
+        };
+        let assembly = py.detach(read).or_raise()?;
         Ok(Self(Arc::new(assembly)))
     }
 
@@ -246,6 +257,11 @@ impl Assembly {
             Ok((vertices, table(py, solid.triangles().iter().copied())?))
         };
         self.0.parts().iter().map(mesh).collect()
+    }
+
+    #[getter]
+    fn chord_errors(&self) -> Vec<Option<f64>> {
+        self.0.parts().iter().map(Part::chord_error).collect()
     }
 
     #[getter]

@@ -360,7 +360,7 @@ impl ConvexPolyhedron {
     }
 }
 
-/// Reads a convex body from a mesh file: STL, OBJ, PLY or OFF.
+/// Reads a convex body from a mesh file: STL, OBJ, PLY, OFF or COLLADA.
 ///
 /// Parameters
 /// ----------

@@ -224,7 +224,7 @@ impl Solid {
         Self::new(py, &vertices, &faces, false)
     }
 
-    /// Reads a part from a mesh file: STL, OBJ, PLY or OFF.
+    /// Reads a part from a mesh file: STL, OBJ, PLY, OFF or COLLADA.
     ///
     /// Parameters
     /// ----------

@@ -224,7 +224,8 @@ fn dense_bodies_have_sharp_edges_alone() {
 #[test]
 fn the_page_lists_the_formats_of_the_library() {
     let list = format!("{}/../../web/src/formats.ts", env!("CARGO_MANIFEST_DIR"));
-    let expected = Format::ALL.map(|format| format!("{:?}", format.extension())).join(", ");
+    let expected = Format::ALL.iter().map(|format| format!("{:?}", format.extension()));
+    let expected = expected.collect::<Vec<_>>().join(", ");
     assert!(
         std::fs::read_to_string(list).unwrap().contains(&format!("EXTENSIONS = [{expected}];"))
     );

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from html import escape
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -339,8 +339,11 @@ class Assembly:
         visual: bool = False,
         joints: Mapping[str, float] | None = None,
         allow_outside: bool = False,
+        as_is: bool = False,
+        split: Literal["auto", "never", "names", "bodies"] = "auto",
+        chord: float = 0.05,
     ) -> "Assembly":
-        """Reads a folder of meshes, a manifest, URDF, glTF, GLB or 3MF.
+        """Reads a folder of meshes, a manifest, URDF, glTF, GLB, 3MF, STEP or one mesh.
 
         Parameters
         ----------
@@ -356,21 +359,50 @@ class Assembly:
         allow_outside : bool
             Read files that the source names and that lie neither in its folder nor in one of
             ``packages``. Only for a source that you trust.
+        as_is : bool
+            Refuse parts whose surface has to be mended.
+        split : str
+            Which parts are made of a file with several bodies. ``names``: each object or group of
+            OBJ, each solid of STL; ``bodies``: each closed shell with the cavities in it, and each
+            open shell; ``never``: each file, node of glTF or item of a 3MF build is one part;
+            ``auto``: a source that would be a single part is taken apart, by names or else into
+            bodies.
+        chord : float
+            Of a STEP file: how far facets may be from its surfaces, about, in millimetres. It
+            needs ``pip install 'colltrans[step]'``.
 
         Returns
         -------
         Assembly
         """
         folders = [Path(package) for package in packages]
-        read = _colltrans.Assembly.read
-        return cls._of(
-            read(Path(path), folders, skip_missing, visual, dict(joints or {}), allow_outside)
+        glb = None
+        if Path(path).suffix.lower() in (".step", ".stp"):
+            from .step import convert
+
+            glb, _ = convert(path, chord)
+        read = _colltrans.Assembly.read(
+            Path(path),
+            folders,
+            skip_missing,
+            visual,
+            dict(joints or {}),
+            allow_outside,
+            as_is,
+            split,
+            glb,
         )
+        return cls._of(read)
 
     @property
     def parts(self) -> list[str]:
         """list of str: The names of the parts, in order."""
         return self._assembly.names
+
+    @property
+    def chord_errors(self) -> list[float | None]:
+        """list of float or None: How far the facets of each part are from its surface, if known."""
+        return self._assembly.chord_errors
 
     @property
     def unit(self) -> str | None:

@@ -83,7 +83,7 @@ pub(super) fn search(
     let cells = if options.prove { WayOptions::default().cells } else { 0 };
     let options = WayOptions::default()
         .with_cells(cells)
-        .with_tolerance(bodies.fit().tolerance())
+        .with_tolerance(bodies.least_tolerance(left))
         .with_legs(legs)
         .with_casts(CASTS * legs)
         .with_looks(options.looks / SHARE * legs as u64)

@@ -2,14 +2,16 @@
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use colltrans_mesh::Format;
-use glam::DAffine3;
+use colltrans_mesh::{Format, Mesh};
+use glam::{DAffine3, DVec3};
 
 use super::files::Source;
-use super::{assembled, in_file, io, piece, stem};
+use super::{Draft, Placed, assembled, io, mesh, stem};
 use crate::error::ReadError;
-use crate::part::{Assembly, Part};
+use crate::part::Assembly;
+use crate::units;
 
 pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     let (mut files, mut others) = (Vec::new(), Others::default());
@@ -33,16 +35,42 @@ pub(super) fn read_file(source: Source) -> Result<Assembly, ReadError> {
 }
 
 fn read_files(source: Source, files: &[PathBuf], holds: &str) -> Result<Assembly, ReadError> {
-    let mut parts = Vec::with_capacity(files.len());
+    let mut drafts = Vec::with_capacity(files.len());
+    let mut units = Units::default();
+    let mut up = None;
     for file in files {
-        let bytes = source.at(file)?;
-        let piece = piece(file, bytes, DAffine3::IDENTITY)?;
-        parts.push(
-            Part::with_options(stem(file), &[piece], &source.options.body())
-                .map_err(in_file(file))?,
-        );
+        let mesh = mesh(file, source.at(file)?)?;
+        let world = units.world_from(&mesh);
+        up = up.or(mesh.up);
+        let placed = Placed { mesh: Arc::new(mesh), world };
+        drafts.push(Draft { file: Some(file.clone()), ..Draft::new(stem(file), vec![placed]) });
     }
-    assembled(source, parts, holds)
+    let assembly = assembled(source, drafts, holds)?;
+    let assembly = up.into_iter().fold(assembly, Assembly::with_up);
+    Ok(units.name.into_iter().fold(assembly, Assembly::with_unit))
+}
+
+/// The unit of an assembly: that of the first file that says one.
+#[derive(Default)]
+struct Units {
+    name: Option<&'static str>,
+    metres: Option<f64>,
+}
+
+impl Units {
+    /// The scale of a mesh. What does not say its unit is in that of the others; a unit without a name becomes metres.
+    fn world_from(&mut self, mesh: &Mesh) -> DAffine3 {
+        let Some(own) = mesh.unit else { return DAffine3::IDENTITY };
+        let metres = *self.metres.get_or_insert_with(|| {
+            self.name = Some(units::name(own).unwrap_or("m"));
+            if units::name(own).is_some() { own } else { 1.0 }
+        });
+        if own == metres {
+            DAffine3::IDENTITY
+        } else {
+            DAffine3::from_scale(DVec3::splat(own / metres))
+        }
+    }
 }
 
 /// What is in a folder that is no mesh.
@@ -81,7 +109,7 @@ impl Others {
         }
         let has = |kinds: &[&str]| kinds.iter().any(|kind| self.by_kind.contains_key(*kind));
         let advice = if has(&["step", "stp"]) {
-            "; STEP files are not read: tessellate each part to a mesh file in its place first"
+            "; give a STEP file itself"
         } else if has(&["toml", "json", "urdf", "glb", "gltf", "3mf"]) {
             "; give the manifest, URDF, glTF or 3MF file itself"
         } else if self.folders > 0 {

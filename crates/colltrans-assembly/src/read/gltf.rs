@@ -6,20 +6,20 @@
 
 use std::collections::HashMap;
 use std::path::Path;
+use std::sync::Arc;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use colltrans_mesh::Mesh;
-use colltrans_mesh::body::BodyOptions;
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_json::Value;
 
 use super::files::{Source, percent_decoded, unescaped};
-use super::{Budget, Names, assembled, contents, in_file, plain};
+use super::{Budget, Draft, Names, Placed, assembled, contents, plain};
 use crate::error::ReadError;
-use crate::part::{Assembly, Part, Piece};
+use crate::part::Assembly;
 
 /// Nodes nested deeper than this are a ring.
 const DEEPEST: usize = 256;
@@ -46,19 +46,19 @@ pub(super) fn read(source: Source, bytes: &[u8]) -> Result<Assembly, ReadError> 
     let scene = document.scenes.get(document.scene.unwrap_or(0));
     let scene = scene.ok_or_else(|| contents(path, "scenes", "there is no scene"))?;
     let budget = Budget::of(size);
-    let options = source.options.body();
-    let placed = Vec::new();
-    let mut reader = Reader { path, document: &document, buffers, budget, options, placed };
+    let frame = document.asset.extras.frame();
+    let shown = Vec::new();
+    let mut reader = Reader { path, document: &document, buffers, budget, shown };
     for &node in &scene.nodes {
-        reader.node(node, DAffine3::IDENTITY, 0)?;
+        reader.node(node, frame.world, 0, None)?;
     }
-    let parts = reader.parts()?;
+    let drafts = reader.drafts(frame.per_metre)?;
     let holds = format!(
         "none of its {} nodes places a mesh of triangles; it has {} meshes",
         document.nodes.len(),
         document.meshes.len()
     );
-    let assembly = assembled(source, parts, &holds)?.with_unit("m").with_up(DVec3::Y);
+    let assembly = assembled(source, drafts, &holds)?.with_unit(frame.unit).with_up(frame.up);
     let shaped = document.meshes.iter().flat_map(|mesh| &mesh.primitives);
     let at_rest = shaped.filter(|shape| !shape.targets.is_empty()).count()
         + document.nodes.iter().filter(|node| node.skin.is_some()).count();
@@ -129,6 +129,56 @@ struct Document {
 #[serde(expecting = "an object with a version")]
 struct Asset {
     version: String,
+    #[serde(default)]
+    extras: Extras,
+}
+
+/// What `colltrans.step` writes beside what is glTF, whatever others write there.
+#[derive(Deserialize, Default)]
+#[serde(from = "Value")]
+struct Extras(Value);
+
+impl From<Value> for Extras {
+    fn from(value: Value) -> Self {
+        Self(value.get("colltrans").cloned().unwrap_or_default())
+    }
+}
+
+/// The frame of the file that a glTF file was made of, in which all is told.
+struct Frame {
+    world: DAffine3,
+    per_metre: f64,
+    unit: String,
+    up: DVec3,
+}
+
+impl Extras {
+    fn frame(&self) -> Frame {
+        let per_metre = self.0.get("per_metre").and_then(Value::as_f64);
+        let unit = self.0.get("unit").and_then(Value::as_str);
+        let (Some(per_metre), Some(unit)) = (per_metre.filter(|n| n.is_finite() && *n > 0.0), unit)
+        else {
+            let (world, unit) = (DAffine3::IDENTITY, "m".to_owned());
+            return Frame { world, per_metre: 1.0, unit, up: DVec3::Y };
+        };
+        let up = match self.0.get("up").and_then(Value::as_str) {
+            Some("z") => DVec3::Z,
+            _ => DVec3::Y,
+        };
+        let world = DAffine3::from_scale(DVec3::splat(per_metre));
+        Frame { world, per_metre, unit: unit.to_owned(), up }
+    }
+
+    /// Whether all that is below a node is one part.
+    fn is_part(&self) -> bool {
+        self.0.get("part").and_then(Value::as_bool).unwrap_or(false)
+    }
+
+    /// The chord error of a node's facets, in metres.
+    fn chord_error(&self) -> Option<f64> {
+        let error = self.0.get("chord_error").and_then(Value::as_f64)?;
+        (error.is_finite() && error >= 0.0).then_some(error)
+    }
 }
 
 #[derive(Deserialize)]
@@ -152,6 +202,8 @@ struct Node {
     scale: Option<[f64; 3]>,
     #[serde(default)]
     extensions: serde_json::Map<String, Value>,
+    #[serde(default)]
+    extras: Extras,
 }
 
 #[derive(Deserialize)]
@@ -286,20 +338,25 @@ struct Reader<'a> {
     document: &'a Document,
     buffers: Vec<Vec<u8>>,
     budget: Budget,
-    options: BodyOptions,
-    placed: Vec<Placed<'a>>,
+    shown: Vec<Shown<'a>>,
 }
 
-/// A mesh that a node places.
-struct Placed<'a> {
+/// What a node shows: its mesh, or all that is below it.
+struct Shown<'a> {
     node: usize,
     name: Option<&'a str>,
-    mesh: usize,
-    world: DAffine3,
+    meshes: Vec<(usize, DAffine3)>,
 }
 
-impl Reader<'_> {
-    fn node(&mut self, index: usize, above: DAffine3, depth: usize) -> Result<(), ReadError> {
+impl<'a> Reader<'a> {
+    /// A node and all below it; a part of `whole`, if that is one part.
+    fn node(
+        &mut self,
+        index: usize,
+        above: DAffine3,
+        depth: usize,
+        mut whole: Option<usize>,
+    ) -> Result<(), ReadError> {
         let refused = |reason: String| contents(self.path, format!("node {index}"), reason);
         let document = self.document;
         let node = document.nodes.get(index);
@@ -309,28 +366,36 @@ impl Reader<'_> {
         }
         self.budget.place().map_err(refused)?;
         let world = above * node.transform().map_err(refused)?;
+        if whole.is_none() && node.extras.is_part() {
+            whole = Some(self.shown.len());
+            self.shown.push(Shown { node: index, name: node.name(), meshes: Vec::new() });
+        }
         if let Some(mesh) = node.mesh {
             let shape = document.meshes.get(mesh);
             let shape = shape.ok_or_else(|| refused(format!("there is no mesh {mesh}")))?;
             if let Some(name) = node.extensions.keys().find(|name| name.contains("instancing")) {
                 return Err(refused(format!("its copies by {name} are not read")));
             }
-            let name = node.name.as_deref().or(shape.name.as_deref());
-            let name = name.filter(|name| !name.trim().is_empty());
-            self.placed.push(Placed { node: index, name, mesh, world });
+            if let Some(whole) = whole {
+                self.shown[whole].meshes.push((mesh, world));
+            } else {
+                let name = node.name().or(shape.name.as_deref().filter(|name| is_name(name)));
+                self.shown.push(Shown { node: index, name, meshes: vec![(mesh, world)] });
+            }
         }
         for &child in &node.children {
-            self.node(child, world, depth + 1)?;
+            self.node(child, world, depth + 1, whole)?;
         }
         Ok(())
     }
 
-    /// A part for each mesh that is placed; every mesh is read once, and all are counted before the
+    /// A part for each that is shown; every mesh is read once, and all are counted before the
     /// first part is built.
-    fn parts(mut self) -> Result<Vec<Part>, ReadError> {
+    fn drafts(mut self, per_metre: f64) -> Result<Vec<Draft>, ReadError> {
         let mut budget = std::mem::take(&mut self.budget);
-        let mut meshes: HashMap<usize, Mesh> = HashMap::new();
-        for &Placed { node, mesh, .. } in &self.placed {
+        let mut meshes: HashMap<usize, Arc<Mesh>> = HashMap::new();
+        let placed = self.shown.iter().flat_map(|s| s.meshes.iter().map(|(m, _)| (s.node, *m)));
+        for (node, mesh) in placed {
             let place = || format!("node {node}, mesh {mesh}");
             let refused = |reason| contents(self.path, place(), reason);
             if let Some(known) = meshes.get(&mesh) {
@@ -338,22 +403,25 @@ impl Reader<'_> {
             } else {
                 let shape = &self.document.meshes[mesh];
                 let read = self.mesh(shape, &mut budget).map_err(refused)?;
-                meshes.insert(mesh, read.weld());
+                meshes.insert(mesh, Arc::new(read.weld()));
             }
         }
-        let (mut parts, mut names) = (Vec::new(), Names::default());
-        for Placed { node, name, mesh, world } in self.placed {
-            let mesh = &meshes[&mesh];
-            if mesh.faces.is_empty() {
+        let (mut drafts, mut names) = (Vec::new(), Names::default());
+        for Shown { node, name, meshes: shown } in self.shown {
+            let placed = |(mesh, world)| Placed { mesh: Arc::clone(&meshes[&mesh]), world };
+            let pieces: Vec<Placed> = shown.into_iter().map(placed).collect();
+            let pieces: Vec<Placed> =
+                pieces.into_iter().filter(|placed| !placed.mesh.faces.is_empty()).collect();
+            if pieces.is_empty() {
                 continue;
             }
             let name = names.unique(&name.map_or(format!("node {node}"), str::to_owned));
-            let piece = Piece { mesh: mesh.clone(), world_from_piece: world };
-            parts.push(
-                Part::with_options(name, &[piece], &self.options).map_err(in_file(self.path))?,
-            );
+            let extras = &self.document.nodes[node].extras;
+            let chord_error = extras.chord_error().map(|error| error * per_metre);
+            let draft = Draft { chord_error, ..Draft::new(name, pieces) };
+            drafts.push(if extras.is_part() { draft.told() } else { draft });
         }
-        Ok(parts)
+        Ok(drafts)
     }
 
     /// The triangles of all primitives of a mesh.
@@ -465,7 +533,15 @@ impl Reader<'_> {
     }
 }
 
+fn is_name(name: &str) -> bool {
+    !name.trim().is_empty()
+}
+
 impl Node {
+    fn name(&self) -> Option<&str> {
+        self.name.as_deref().filter(|name| is_name(name))
+    }
+
     fn transform(&self) -> Result<DAffine3, String> {
         let transform = if let Some(columns) = &self.matrix {
             DAffine3::from_mat4(DMat4::from_cols_array(columns))

@@ -3,15 +3,19 @@
 //! The same fields in TOML and JSON; `docs/assemblies.md` lists them.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use serde::Deserialize;
 
 use super::files::Source;
-use super::{Budget, assembled, contents, in_file, piece, plain, plain_words, stem};
+use super::{
+    Budget, Draft, Placed, Split, assembled, contents, in_file, mesh, plain, plain_words, stem,
+};
 use crate::constraints::WITHIN_DEGREES;
 use crate::error::{AssemblyError, ReadError};
-use crate::part::{Assembly, Ignored, Part};
+use crate::part::{Assembly, Ignored};
+use crate::units;
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object that holds a manifest")]
@@ -68,6 +72,7 @@ struct Entry {
     scale: Option<Scale>,
     #[serde(default)]
     fixed: bool,
+    split: Option<String>,
 }
 
 #[derive(Deserialize)]
@@ -119,11 +124,12 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
         let place = |e: &serde_json::Error| format!("line {}, column {}", e.line(), e.column());
         serde_json::from_str(&text).map_err(|e| contents(path, place(&e), plain(&e)))?
     };
-    let mut gathered = Gathered { budget: Budget::of(text.len()), ..Gathered::default() };
+    let metres = manifest.unit.as_deref().and_then(units::metres);
+    let mut gathered = Gathered { budget: Budget::of(text.len()), metres, ..Gathered::default() };
     for (k, entry) in manifest.parts.iter().enumerate() {
         gathered.part(&source, k, entry)?;
     }
-    let Gathered { parts, missing, .. } = gathered;
+    let Gathered { drafts, missing, .. } = gathered;
     if !missing.is_empty() && !source.options.skip_missing {
         return Err(ReadError::Missing { path: path.into(), missing });
     }
@@ -131,7 +137,7 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
         0 => "it lists no part".to_owned(),
         missing => format!("none of its parts has all of its files; {missing} cannot be found"),
     };
-    let mut assembly = assembled(source, parts, &holds)?;
+    let mut assembly = assembled(source, drafts, &holds)?;
     let known = |n: &String| missing.is_empty() || assembly.index(n).is_ok();
     let found = |pairs: &[[String; 2]]| -> Vec<[String; 2]> {
         pairs.iter().filter(|pair| pair.iter().all(known)).cloned().collect()
@@ -170,7 +176,9 @@ impl Manifest {
 #[derive(Default)]
 struct Gathered {
     budget: Budget,
-    parts: Vec<Part>,
+    /// The unit of the manifest, if it names one that is known.
+    metres: Option<f64>,
+    drafts: Vec<Draft>,
     missing: Vec<String>,
 }
 
@@ -193,17 +201,25 @@ impl Gathered {
                 continue;
             };
             self.budget.read(&path, bytes.len());
-            let piece = piece(&path, bytes, world)?;
-            self.budget
-                .facets(piece.mesh.faces.len().max(piece.mesh.vertices.len()))
-                .map_err(refused)?;
-            pieces.push(piece);
+            let mesh = mesh(&path, bytes)?;
+            self.budget.facets(mesh.faces.len().max(mesh.vertices.len())).map_err(refused)?;
+            // A file that says its unit is told in that of the manifest.
+            let world = match (mesh.unit, self.metres) {
+                (Some(own), Some(metres)) if own != metres => {
+                    world * DAffine3::from_scale(DVec3::splat(own / metres))
+                }
+                _ => world,
+            };
+            pieces.push(Placed { mesh: Arc::new(mesh), world });
         }
         if self.missing.len() == missing {
             self.budget.place().map_err(refused)?;
-            let part = Part::with_options(name, &pieces, &source.options.body());
-            let part = part.map_err(in_file(source.path))?;
-            self.parts.push(part.with_fixed(entry.fixed));
+            let split = entry.split.as_ref().map(|word| word.parse::<Split>());
+            let split = split.transpose().map_err(|e| {
+                contents(source.path, format!("{} ({name})", place(k)), format!("split: {e}"))
+            })?;
+            let draft = Draft { fixed: entry.fixed, split, ..Draft::new(name, pieces) };
+            self.drafts.push(draft.told());
         }
         Ok(())
     }

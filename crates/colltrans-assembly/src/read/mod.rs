@@ -4,6 +4,7 @@
 //! and glTF, what a 3MF file or a manifest names); a folder of meshes does not say, and its lengths
 //! are taken as they are.
 
+mod drafts;
 mod files;
 #[cfg(feature = "files")]
 mod folder;
@@ -20,20 +21,18 @@ mod srdf;
 mod threemf;
 #[cfg(feature = "files")]
 mod urdf;
-#[cfg(feature = "files")]
-mod xml;
 
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::{Path, PathBuf};
 
-use colltrans_mesh::body::BodyOptions;
 #[cfg(feature = "files")]
-use glam::DAffine3;
+use colltrans_mesh::Mesh;
+use colltrans_mesh::body::BodyOptions;
 
 use crate::error::{AssemblyError, ReadError};
-#[cfg(feature = "files")]
-use crate::part::Piece;
-use crate::part::{Assembly, Part};
+use crate::part::Assembly;
+pub use drafts::Split;
+use drafts::{Draft, Placed, assembled};
 pub use files::{FileFault, Files};
 use files::{Nothing, Source};
 
@@ -62,6 +61,8 @@ pub struct ReadOptions {
     pub joints: BTreeMap<String, f64>,
     /// Whether surfaces that have to be mended are refused.
     pub as_is: bool,
+    /// Which parts are made of a file with several bodies.
+    pub split: Split,
     /// Whether a source may name files that lie neither in its own folder nor in one of `packages`,
     /// by absolute paths, `..` or links.
     pub allow_outside: bool,
@@ -98,6 +99,12 @@ impl ReadOptions {
         Self { as_is, ..self }
     }
 
+    /// The same with another [`split`](Self::split).
+    #[must_use]
+    pub fn with_split(self, split: Split) -> Self {
+        Self { split, ..self }
+    }
+
     /// How bodies are made.
     fn body(&self) -> BodyOptions {
         BodyOptions::default().with_as_is(self.as_is)
@@ -125,7 +132,7 @@ pub fn read(path: impl AsRef<Path>, options: &ReadOptions) -> Result<Assembly, R
     let known = is_known(path);
     match path.metadata() {
         Err(e) => Err(io(path)(e)),
-        Ok(_) if !known => Err(ReadError::UnknownSource { path: path.into() }),
+        Ok(_) if !known => Err(unknown(path)),
         // Whoever gives a link to the source means it.
         Ok(_) => {
             let files = files::Given { path, files: &folders };
@@ -164,8 +171,16 @@ pub fn read_from(
         }
         "3mf" => threemf::read(source),
         _ if is_known(path) => folder::read_file(source),
-        _ => Err(ReadError::UnknownSource { path: path.into() }),
+        _ => Err(unknown(path)),
     }
+}
+
+#[cfg(feature = "files")]
+fn unknown(path: &Path) -> ReadError {
+    let extension = path.extension().unwrap_or_default();
+    let is_step = ["step", "stp"].iter().any(|known| extension.eq_ignore_ascii_case(known));
+    let path = path.into();
+    if is_step { ReadError::Step { path } } else { ReadError::UnknownSource { path } }
 }
 
 /// Reads a robot that moves, from a URDF file: links with their bodies, and joints.
@@ -195,7 +210,19 @@ pub fn disabled(path: impl AsRef<Path>) -> Result<Vec<[String; 2]>, ReadError> {
 /// # Errors
 /// What cannot be read, with the place; a file without parts.
 pub fn glb(name: impl AsRef<Path>, bytes: &[u8]) -> Result<Assembly, ReadError> {
-    gltf::read(Source::new(name.as_ref(), &ReadOptions::default(), &Nothing), bytes)
+    glb_with(name, bytes, &ReadOptions::default())
+}
+
+/// [`glb`] with options.
+///
+/// # Errors
+/// As [`glb`].
+pub fn glb_with(
+    name: impl AsRef<Path>,
+    bytes: &[u8],
+    options: &ReadOptions,
+) -> Result<Assembly, ReadError> {
+    gltf::read(Source::new(name.as_ref(), options, &Nothing), bytes)
 }
 
 #[cfg(feature = "files")]
@@ -245,11 +272,11 @@ fn plain_words(message: &str) -> String {
     WORDS.iter().fold(message.to_owned(), |text, (theirs, ours)| text.replace(theirs, ours))
 }
 
-/// The bytes of a mesh file as a piece.
+/// The mesh of a file's bytes.
 #[cfg(feature = "files")]
-fn piece(path: &Path, bytes: Vec<u8>, world_from_piece: DAffine3) -> Result<Piece, ReadError> {
+fn mesh(path: &Path, bytes: Vec<u8>) -> Result<Mesh, ReadError> {
     let format = colltrans_mesh::Format::of_path(path)?;
-    Ok(Piece { mesh: colltrans_mesh::parse(format, bytes, path)?, world_from_piece })
+    Ok(colltrans_mesh::parse(format, bytes, path)?)
 }
 
 /// Nodes, components, links or parts of a source, each as often as it is placed, at most.
@@ -318,6 +345,11 @@ struct Names {
 }
 
 impl Names {
+    /// Names that are given to others.
+    fn take<'a>(&mut self, names: impl Iterator<Item = &'a String>) {
+        self.taken.extend(names.cloned());
+    }
+
     fn unique(&mut self, name: &str) -> String {
         let number = self.next.entry(name.to_owned()).or_insert(2);
         let mut chosen = name.to_owned();
@@ -327,14 +359,4 @@ impl Names {
         }
         chosen
     }
-}
-
-/// An assembly of parts that came from one source; what the source `holds` instead is said where
-/// there are none.
-fn assembled(source: Source, parts: Vec<Part>, holds: &str) -> Result<Assembly, ReadError> {
-    let path = source.path;
-    if parts.is_empty() {
-        return Err(ReadError::NoParts { path: path.into(), holds: holds.into() });
-    }
-    Ok(Assembly::new(parts).map_err(in_file(path))?.with_files(source.into_files()))
 }

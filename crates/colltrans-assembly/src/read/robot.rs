@@ -14,11 +14,11 @@ use glam::{DAffine3, DVec3};
 use super::files::Source;
 use super::shapes::{Round, SIDES};
 use super::urdf::{self, Gathered};
-use super::xml::Element;
 use super::{contents, in_file};
 use crate::error::{AssemblyError, ReadError};
 use crate::part::Piece;
 use crate::robot::{Kind, Link, Mimic, Robot, RobotJoint};
+use colltrans_mesh::xml::Element;
 
 pub(super) fn read(source: Source) -> Result<Robot, ReadError> {
     let (element, bytes) = urdf::robot(&source)?;

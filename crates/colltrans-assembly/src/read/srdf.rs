@@ -2,8 +2,8 @@
 
 use super::contents;
 use super::files::Source;
-use super::xml::Element;
 use crate::error::ReadError;
+use colltrans_mesh::xml::Element;
 
 /// The pairs of `disable_collisions`.
 pub(super) fn read(source: &Source) -> Result<Vec<[String; 2]>, ReadError> {

@@ -1,6 +1,7 @@
 //! 3MF packages: every item of the build is a part, its transform applied, in the file's unit.
 //!
-//! An object of components becomes one part for each mesh below it. A transform is twelve numbers,
+//! An object of components becomes one part for each mesh below it, or one part of all ([`Split::Never`]); what has no name
+//! takes that of what it is placed in. A transform is twelve numbers,
 //! the rows of a matrix by which a row vector is multiplied from the right (3MF core specification,
 //! 3.3). Objects may lie in other model files of the package (`p:path` of the production extension), as
 //! slicers write them: an object is known by its file and its number there. Paths may have characters as
@@ -12,6 +13,7 @@
 use std::collections::{HashMap, VecDeque};
 use std::io::{Cursor, Read};
 use std::rc::Rc;
+use std::sync::Arc;
 
 use colltrans_mesh::Mesh;
 use glam::{DAffine3, DMat3, DVec3};
@@ -21,10 +23,10 @@ use quick_xml::name::NamespaceResolver;
 use zip::ZipArchive;
 
 use super::files::{Source, unescaped};
-use super::xml::{self, Element, Lines};
-use super::{Budget, Names, assembled, contents};
+use super::{Budget, Draft, Names, Split, assembled, contents, drafts};
 use crate::error::ReadError;
-use crate::part::{Assembly, Part, Piece};
+use crate::part::Assembly;
+use colltrans_mesh::xml::{self, Element, Lines};
 
 /// All models of a package may unpack to so many bytes, and to so many for each byte of it.
 const LARGEST: u64 = 1 << 30;
@@ -60,29 +62,40 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     let mut placed = Vec::new();
     for (k, item) in models.root.items.iter().enumerate() {
         let place = format!("build item {}", k + 1);
-        let mut call = |name: &str, object: &Rc<Object>, at| {
+        // The name of what the item places.
+        let mut whole = None;
+        let mut call = |name: &str, object: &Object, world| {
             budget.place()?;
+            let whole = whole.get_or_insert_with(|| name.to_owned());
             if let Kind::Left(kind) = object.kind {
                 left_out.push(format!("{name} ({kind})"));
                 return Ok(false);
             }
-            budget.facets(object.faces.len().max(object.vertices.len()))?;
-            if !object.faces.is_empty() {
-                placed.push((k, name.to_owned(), Rc::clone(object), at));
+            budget.facets(object.mesh.faces.len().max(object.mesh.vertices.len()))?;
+            if !object.mesh.faces.is_empty() {
+                let mesh = Arc::clone(&object.mesh);
+                let name = if source.options.split == Split::Never { &*whole } else { name };
+                placed.push((k, name.to_owned(), drafts::Placed { mesh, world }));
             }
             Ok(true)
         };
         let refused = |reason: String| contents(source.path, &place, reason);
-        models.collect(&root, item, DAffine3::IDENTITY, 0, &mut call).map_err(refused)?;
+        models.collect(&root, item, &Above::default(), &mut call).map_err(refused)?;
     }
-    let (mut parts, mut names) = (Vec::with_capacity(placed.len()), Names::default());
-    let options = source.options.body();
-    for (k, name, object, world_from_piece) in placed {
-        let mesh = Mesh::new(object.vertices.clone(), object.faces.clone());
-        let part =
-            Part::with_options(names.unique(&name), &[Piece { mesh, world_from_piece }], &options);
-        let place = format!("build item {}", k + 1);
-        parts.push(part.map_err(|e| contents(source.path, place, e))?);
+    let mut drafts: Vec<Draft> = Vec::with_capacity(placed.len());
+    let (mut names, mut last) = (Names::default(), None);
+    for (k, name, piece) in placed {
+        match drafts.last_mut() {
+            // All of an item is one part.
+            Some(draft) if source.options.split == Split::Never && last == Some(k) => {
+                draft.pieces.push(piece);
+            }
+            _ => {
+                let place = Some(format!("build item {}", k + 1));
+                drafts.push(Draft { place, ..Draft::new(names.unique(&name), vec![piece]) });
+            }
+        }
+        last = Some(k);
     }
     let notes = notes(&models.root.items, &left_out);
     let (unit, mut holds) = (models.root.unit.clone(), package.holds());
@@ -90,7 +103,7 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     if let Some(note) = notes.first().filter(|_| !left_out.is_empty()) {
         holds = format!("{holds}; {note}");
     }
-    let assembly = assembled(source, parts, &holds)?.with_unit(unit);
+    let assembly = assembled(source, drafts, &holds)?.with_unit(unit);
     Ok(notes.into_iter().fold(assembly, Assembly::with_note))
 }
 
@@ -235,8 +248,7 @@ impl Kind {
 struct Object {
     name: Option<String>,
     kind: Kind,
-    vertices: Vec<DVec3>,
-    faces: Vec<Vec<u32>>,
+    mesh: Arc<Mesh>,
     components: Vec<Placed>,
     has_mesh: bool,
 }
@@ -303,7 +315,16 @@ fn models(source: &Source, package: &mut Package, root: &str) -> Result<Models, 
 }
 
 /// Told of an object, by its name, and where it is; says whether what is below it counts.
-type Call<'a> = dyn FnMut(&str, &Rc<Object>, DAffine3) -> Result<bool, String> + 'a;
+type Call<'a> = dyn FnMut(&str, &Object, DAffine3) -> Result<bool, String> + 'a;
+
+/// What an object is placed in.
+#[derive(Default)]
+struct Above {
+    world: DAffine3,
+    depth: usize,
+    /// The name that it takes if it has none.
+    name: Option<String>,
+}
 
 impl Models {
     /// Calls with every object below one that the model `from` places.
@@ -311,8 +332,7 @@ impl Models {
         &self,
         from: &str,
         placed: &Placed,
-        above: DAffine3,
-        depth: usize,
+        above: &Above,
         call: &mut Call,
     ) -> Result<(), String> {
         let path = placed.path.as_deref().unwrap_or(from);
@@ -322,19 +342,22 @@ impl Models {
             let place = placed.path.as_ref().map_or(String::new(), |path| format!(" in {path}"));
             format!("there is no object {id}{place}")
         })?;
-        if depth > DEEPEST {
+        if above.depth > DEEPEST {
             return Err("components are nested too deep, or in a ring".into());
         }
         if !object.has_mesh && object.components.is_empty() {
             return Err(format!("object {id} has neither a mesh nor components"));
         }
-        let name = object.name.clone().unwrap_or_else(|| format!("object_{id}"));
-        let at = above * placed.transform;
-        if !call(&name, object, at)? {
+        let name = object.name.clone().filter(|name| !name.trim().is_empty());
+        let name = name.or_else(|| above.name.clone());
+        let world = above.world * placed.transform;
+        let shown = name.clone().unwrap_or_else(|| format!("object_{id}"));
+        if !call(&shown, object, world)? {
             return Ok(());
         }
+        let above = Above { world, depth: above.depth + 1, name };
         for child in &object.components {
-            self.collect(path, child, at, depth + 1, call)?;
+            self.collect(path, child, &above, call)?;
         }
         Ok(())
     }
@@ -345,7 +368,7 @@ struct Parser {
     unit: Option<String>,
     objects: HashMap<String, Rc<Object>>,
     items: Vec<Placed>,
-    current: Option<(String, Object)>,
+    current: Option<(String, Object, Mesh)>,
 }
 
 impl Parser {
@@ -409,20 +432,21 @@ impl Parser {
                 let id = attributes.need("id")?.to_owned();
                 let name = attributes.get("name").map(str::to_owned);
                 let kind = Kind::of(attributes.get("type"))?;
-                self.current = Some((id, Object { name, kind, ..Object::default() }));
+                let object = Object { name, kind, ..Object::default() };
+                self.current = Some((id, object, Mesh::default()));
             }
             "item" => self.items.push(attributes.placed()?),
             _ => {
-                let Some((_, object)) = &mut self.current else { return Ok(()) };
+                let Some((_, object, mesh)) = &mut self.current else { return Ok(()) };
                 match name {
                     "mesh" => object.has_mesh = true,
                     "vertex" => {
                         let [x, y, z] = ["x", "y", "z"].map(|key| attributes.parsed(key));
-                        object.vertices.push(DVec3::new(x?, y?, z?));
+                        mesh.vertices.push(DVec3::new(x?, y?, z?));
                     }
                     "triangle" => {
                         let [a, b, c] = ["v1", "v2", "v3"].map(|key| attributes.parsed(key));
-                        object.faces.push(vec![a?, b?, c?]);
+                        mesh.faces.push(vec![a?, b?, c?]);
                     }
                     _ => object.components.push(attributes.placed()?),
                 }
@@ -435,7 +459,8 @@ impl Parser {
         if name != "object" {
             return Ok(());
         }
-        let Some((id, object)) = self.current.take() else { return Ok(()) };
+        let Some((id, mut object, mesh)) = self.current.take() else { return Ok(()) };
+        object.mesh = Arc::new(mesh);
         if self.objects.insert(id.clone(), Rc::new(object)).is_some() {
             return Err(format!("a second object has the id {id}"));
         }

@@ -9,10 +9,10 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 use super::files::Source;
 use super::manifest::rpy_matrix;
 use super::shapes::Round;
-use super::xml::Element;
-use super::{Budget, Geometry, assembled, contents, in_file, piece, shapes};
+use super::{Budget, Draft, Geometry, Placed, assembled, contents, mesh, shapes};
 use crate::error::ReadError;
-use crate::part::{Assembly, Part, Piece};
+use crate::part::{Assembly, Piece};
+use colltrans_mesh::xml::Element;
 
 pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     let (robot, bytes) = robot(&source)?;
@@ -23,7 +23,7 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
         let name = named(&source, link)?;
         gathered.link(link, name, places[name])?;
     }
-    let Gathered { parts, missing, mut notes, .. } = gathered;
+    let Gathered { drafts, missing, mut notes, .. } = gathered;
     if !missing.is_empty() && !source.options.skip_missing {
         return Err(ReadError::Missing { path: source.path.into(), missing });
     }
@@ -37,7 +37,7 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
         0 => format!("none of its {links} links {which} anything"),
         missing => format!("none of the {missing} meshes it names can be found"),
     };
-    let assembly = assembled(source, parts, &holds)?.with_unit("m");
+    let assembly = assembled(source, drafts, &holds)?.with_unit("m");
     Ok(notes.into_iter().fold(assembly, Assembly::with_note))
 }
 
@@ -62,7 +62,7 @@ pub(super) fn robot(source: &Source) -> Result<(Element, usize), ReadError> {
 pub(super) struct Gathered<'a> {
     source: &'a Source<'a>,
     budget: Budget,
-    parts: Vec<Part>,
+    drafts: Vec<Draft>,
     pub(super) missing: Vec<String>,
     pub(super) notes: Vec<String>,
     round: Round,
@@ -70,8 +70,8 @@ pub(super) struct Gathered<'a> {
 
 impl<'a> Gathered<'a> {
     pub(super) fn new(source: &'a Source<'a>, bytes: usize, round: Round) -> Self {
-        let (parts, missing, notes) = (Vec::new(), Vec::new(), Vec::new());
-        Self { source, budget: Budget::of(bytes), parts, missing, notes, round }
+        let (drafts, missing, notes) = (Vec::new(), Vec::new(), Vec::new());
+        Self { source, budget: Budget::of(bytes), drafts, missing, notes, round }
     }
 
     fn link(&mut self, link: &Element, name: &str, world: DAffine3) -> Result<(), ReadError> {
@@ -80,9 +80,8 @@ impl<'a> Gathered<'a> {
             let refused =
                 |reason: String| contents(self.source.path, format!("link {name}"), reason);
             self.budget.place().map_err(refused)?;
-            let part = Part::with_options(name, &pieces, &self.source.options.body())
-                .map_err(in_file(self.source.path))?;
-            self.parts.push(part);
+            let pieces = pieces.into_iter().map(Placed::from).collect();
+            self.drafts.push(Draft::new(name, pieces).told());
         }
         Ok(())
     }
@@ -133,11 +132,12 @@ impl<'a> Gathered<'a> {
             return Ok(None);
         };
         self.budget.read(&file, bytes.len());
-        let piece = piece(&file, bytes, at * DAffine3::from_scale(DVec3::from_array(scale)))?;
-        self.budget
-            .facets(piece.mesh.faces.len().max(piece.mesh.vertices.len()))
-            .map_err(refused)?;
-        Ok(Some(piece))
+        let found = self::mesh(&file, bytes)?;
+        self.budget.facets(found.faces.len().max(found.vertices.len())).map_err(refused)?;
+        // All of URDF is in metres; which axis a file has upwards does not matter.
+        let scale = DVec3::from_array(scale) * found.unit.unwrap_or(1.0);
+        let world_from_piece = at * DAffine3::from_scale(scale);
+        Ok(Some(Piece { mesh: found, world_from_piece }))
     }
 }
 

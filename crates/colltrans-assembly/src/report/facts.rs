@@ -19,7 +19,7 @@ pub fn json(f: &Findings) -> Value {
         told
     });
     let (fit, length) = match f.bodies.fit() {
-        Fit::Tolerance(length) => ("tolerance", length),
+        Fit::Tolerance(length) | Fit::Chords { largest: length, .. } => ("tolerance", length),
         Fit::Apart(length) => ("keep_apart", length),
     };
     let mut told = record::plan(f.bodies, f.plan);

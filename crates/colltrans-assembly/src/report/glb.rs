@@ -1,14 +1,15 @@
 //! The plan as an animated glTF binary that any viewer plays: one node for each part, the steps one
 //! after another; what has left stays out.
 //!
-//! glTF wants metres and `y` up: the root node turns and scales.
+//! glTF wants metres and `y` up: the root node turns and scales, so that what came as glTF lies where it was.
 
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
 
 use super::tint;
 use crate::part::{Assembly, Part};
 use crate::plan::{Leg, Plan};
+use crate::units;
 use colltrans::Aabb;
 
 /// Seconds of a move, and of the pause before a step.
@@ -24,7 +25,8 @@ pub fn animation(assembly: &Assembly, plan: &Plan) -> Vec<u8> {
     let mut file = File::default();
     let Aabb { low, high } = assembly.bounds();
     let size = (high - low).length();
-    let per_unit = metres_per_unit(assembly.unit());
+    // Where the unit is not known lengths stay the numbers that they are.
+    let per_unit = assembly.unit().and_then(units::metres).unwrap_or(1.0);
     let mut nodes = Vec::new();
     for (k, part) in assembly.parts().iter().enumerate() {
         let mesh = file.mesh(part, tint(k));
@@ -33,8 +35,8 @@ pub fn animation(assembly: &Assembly, plan: &Plan) -> Vec<u8> {
     let (channels, samplers) = channels(&mut file, assembly, plan, size);
     let root = nodes.len();
     let children: Vec<usize> = (0..root).collect();
-    // Quarter turn about x: z becomes y.
-    let turn = [-std::f64::consts::FRAC_1_SQRT_2, 0.0, 0.0, std::f64::consts::FRAC_1_SQRT_2];
+    // What is upwards becomes y; glTF stays as it is.
+    let turn = DQuat::from_rotation_arc(assembly.up(), DVec3::Y).to_array();
     nodes.push(json!({
         "name": "assembly",
         "children": children,
@@ -55,18 +57,6 @@ pub fn animation(assembly: &Assembly, plan: &Plan) -> Vec<u8> {
             json!([{ "name": "disassembly", "channels": channels, "samplers": samplers }]);
     }
     file.finish(document)
-}
-
-fn metres_per_unit(unit: Option<&str>) -> f64 {
-    match unit {
-        Some("mm" | "millimeter" | "millimetre") => 0.001,
-        Some("cm" | "centimeter" | "centimetre") => 0.01,
-        Some("in" | "inch") => 0.0254,
-        Some("foot" | "ft") => 0.3048,
-        Some("micron") => 1e-6,
-        // Metres, or not known: lengths stay the numbers that they are.
-        _ => 1.0,
-    }
 }
 
 /// Translations of every part that moves.

@@ -67,6 +67,7 @@ fn overview(f: &Findings) -> Markup {
     let unit = assembly.unit().map_or(String::new(), |unit| format!(" {unit}"));
     let (tolerance, word) = match f.bodies.fit() {
         crate::Fit::Tolerance(length) => (length, "tolerance"),
+        crate::Fit::Chords { largest, .. } => (largest, "tolerances from chord errors, at most"),
         crate::Fit::Apart(length) => (length, "length to keep"),
     };
     let summary = format!(

@@ -5,14 +5,15 @@ use std::path::PathBuf;
 
 use clap::Args;
 use colltrans::glam::DVec3;
+use colltrans_assembly::read::Split;
 
 use super::directions::WorkArguments;
-use super::values::{direction, legs, length, samples, threads};
+use super::values::{direction, factor, legs, length, samples, threads};
 
 #[derive(Debug, Args)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
 pub(crate) struct AssemblyArguments {
-    /// A folder of meshes, a manifest (.toml, .json), .urdf, .glb, .gltf or .3mf
+    /// A folder of meshes, a manifest (.toml, .json), .urdf, .glb, .gltf, .3mf, .step, or one mesh
     pub(crate) source: PathBuf,
     /// How deep parts may overlap and still pass: chord errors of curved fits, press fits
     ///
@@ -20,6 +21,11 @@ pub(crate) struct AssemblyArguments {
     /// assembly's size, for files in single precision]
     #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length)]
     pub(crate) tolerance: Option<f64>,
+    /// Of a STEP file: how far facets may be from its surfaces, about, in millimetres
+    ///
+    /// How far they are is measured, part by part, and is the tolerance unless --tolerance is given.
+    #[arg(long, value_name = "L", default_value_t = 0.05, allow_hyphen_values = true, value_parser = factor)]
+    pub(crate) chord: f64,
     /// How far parts must stay apart when they pass, in all directions
     #[arg(long, alias = "margin", value_name = "L", allow_hyphen_values = true, value_parser = length, conflicts_with = "tolerance")]
     pub(crate) keep_apart: Option<f64>,
@@ -76,6 +82,14 @@ pub(crate) struct AssemblyArguments {
     /// others, vertices that are not quite one
     #[arg(long)]
     pub(crate) as_is: bool,
+    /// Which parts are made of a file with several bodies: auto, never, names or bodies
+    ///
+    /// `names`: each object or group of OBJ, each solid of STL. `bodies`: each closed shell with the cavities in it, and
+    /// each open shell. `never`: a file, a node of glTF or an item of a 3MF build is one part. `auto`: a source that
+    /// would be a single part is taken apart, by names or else into bodies; files of a folder stay as they are, with a
+    /// note.
+    #[arg(long, value_name = "WHICH", default_value = "auto", hide_default_value = true)]
+    pub(crate) split: Split,
     /// Leave out meshes that cannot be found, with a note
     #[arg(long)]
     pub(crate) skip_missing: bool,

@@ -393,6 +393,7 @@ A manifest, in TOML (JSON has the same fields):
   rotation = { rpy_degrees = [0, 90, 0] }    # or quaternion = [x, y, z, w], or matrix = rows
   scale = 0.9
   fixed = true                               # never moved
+  split = "bodies"                           # or "names", "never": as --split
 
 With --json:
   {"parts": [{"name", "facets", "volume", "volume_bounds"}], "unit", "tolerance" (or "keep_apart"),

@@ -115,6 +115,9 @@ fn summary(f: &Findings) -> String {
     let names = |parts: &[usize]| shown(assembly.names(parts).join(", "));
     let fit = match f.bodies.fit() {
         Fit::Tolerance(length) => format!("tolerance {length}"),
+        Fit::Chords { largest, .. } => {
+            format!("tolerance of each pair by its chord errors, {largest} at most")
+        }
         Fit::Apart(length) => format!("{length} to keep apart"),
     };
     let mut text = format!("{}, {fit}\n", counted(assembly.parts().len(), "part", "parts"));

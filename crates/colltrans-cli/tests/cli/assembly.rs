@@ -254,11 +254,16 @@ fn sources_that_are_wrong_are_named() {
         refused(place, &["bad.urdf"], 3, &["bad.urdf: link arm", "finite and positive"]);
     }
     std::fs::create_dir(place.join("empty")).unwrap();
-    refused(place, &["empty"], 3, &["no STL, OBJ, PLY or OFF file is in this folder; it is empty"]);
+    refused(
+        place,
+        &["empty"],
+        3,
+        &["no STL, OBJ, PLY, OFF or DAE file is in this folder; it is empty"],
+    );
     std::fs::create_dir(place.join("steps")).unwrap();
     write("steps/a.step", "ISO-10303-21;");
     write("steps/b.STP", "ISO-10303-21;");
-    let words = ["but 1 .step file, 1 .stp file;", "tessellate each part"];
+    let words = ["but 1 .step file, 1 .stp file;", "give a STEP file itself"];
     refused(place, &["steps"], 3, &words);
     std::fs::create_dir_all(place.join("outer/inner")).unwrap();
     refused(place, &["outer"], 3, &["but 1 folder; give the folder that holds the meshes"]);

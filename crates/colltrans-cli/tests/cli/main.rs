@@ -17,4 +17,5 @@ mod proof;
 mod readme;
 mod replay;
 mod setup;
+mod step;
 mod support;

@@ -9,7 +9,7 @@ use colltrans::ConvexPolyhedron;
 use glam::DVec3;
 
 use crate::Mesh;
-use crate::merge::sides;
+use crate::edges::sides;
 
 /// Whether depths are looked at; volumes are in any case.
 const DEEP: bool = cfg!(feature = "depth");

@@ -17,10 +17,10 @@ use std::collections::{HashMap, HashSet};
 use glam::DVec3;
 
 use super::orient::consistent;
-use super::sets::Sets;
 use super::{Left, Note};
 use crate::Mesh;
-use crate::merge::sides;
+use crate::edges::{Use, by_edge, is_flat, normal, uses};
+use crate::sets::Sets;
 
 /// More of a piece than this share of its area is geometry, and stays.
 const MOST_LEFT_OUT: f64 = 0.01;
@@ -93,45 +93,6 @@ enum Fate {
     Double,
     Fin,
     Wall,
-}
-
-/// A facet at an edge.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Use {
-    edge: u64,
-    pub(super) face: usize,
-    /// From the edge's higher vertex to the lower one.
-    pub(super) backward: bool,
-}
-
-impl Use {
-    /// The ends of the edge, the lower vertex first.
-    pub(super) fn ends(&self) -> [u32; 2] {
-        [(self.edge >> 32) as u32, self.edge as u32]
-    }
-}
-
-/// The facets that count, by edges; each edge's are beside each other ([`by_edge`]).
-pub(super) fn uses(faces: &[Vec<u32>], counts: impl Fn(usize) -> bool) -> Vec<Use> {
-    let counted: Vec<usize> = (0..faces.len()).filter(|&k| counts(k)).collect();
-    let listed: Vec<&[u32]> = counted.iter().map(|&k| faces[k].as_slice()).collect();
-    let owner: Vec<usize> = counted.iter().flat_map(|&k| faces[k].iter().map(move |_| k)).collect();
-    let of = |(edge, side): (u64, u64)| Use {
-        edge,
-        face: owner[(side >> 1) as usize],
-        backward: side & 1 == 1,
-    };
-    sides(&listed).into_iter().map(of).collect()
-}
-
-/// The facets at each edge.
-pub(super) fn by_edge(uses: &[Use]) -> impl Iterator<Item = &[Use]> {
-    uses.chunk_by(|a, b| a.edge == b.edge)
-}
-
-/// Fewer than three different corners, so that no edge has a facet on either side.
-pub(super) fn is_flat(face: &[u32]) -> bool {
-    face.iter().all(|v| *v == face[0] || Some(v) == face.iter().find(|w| **w != face[0]))
 }
 
 /// A patch.
@@ -289,13 +250,6 @@ impl<'a> Surface<'a> {
             }
         }
     }
-}
-
-/// Twice the area of a facet along its normal.
-pub(super) fn normal(vertices: &[DVec3], face: &[u32]) -> DVec3 {
-    let at = |v: u32| vertices[v as usize];
-    let [first, rest @ ..] = face else { return DVec3::ZERO };
-    rest.windows(2).map(|t| (at(t[0]) - at(*first)).cross(at(t[1]) - at(*first))).sum()
 }
 
 /// The corners of a facet in an order that is the same for its double, and 1 or -1 by the way it runs.

@@ -9,7 +9,6 @@ mod excess;
 mod heal;
 mod note;
 mod orient;
-mod sets;
 
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
@@ -233,8 +232,45 @@ pub fn convex(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<ConvexPolyhed
 /// must not be.
 pub fn solid(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<Solid>, Refused> {
     let precision = mesh.precision * options.scale;
-    let mut notes: Vec<Note> = Note::merged(mesh).into_iter().collect();
     let mut mesh = options.scaled(mesh);
+    let (body, notes) = mended(&mut mesh, options)?;
+    Ok(Loaded { body, precision, notes })
+}
+
+/// A mesh in pieces.
+#[derive(Debug, Clone)]
+pub struct Apart {
+    /// The bodies, each with vertices of its own, in the order of their first faces.
+    pub meshes: Vec<Mesh>,
+    /// What was mended before.
+    pub notes: Vec<Note>,
+}
+
+/// The bodies that a mesh consists of: each closed shell with the cavities in it, and each open one. `None` if it is one.
+/// It is [mended](solid) first, and what was done is said of all together; faces without an area are left out.
+///
+/// # Errors
+/// As of [`solid`], with open shells allowed.
+pub fn bodies(mesh: &Mesh, options: &BodyOptions) -> Result<Option<Apart>, Refused> {
+    let mut mesh = options.scaled(mesh);
+    let (solid, mut notes) = mended(&mut mesh, &options.with_open(true))?;
+    let of_triangle = solid.bodies();
+    let count = of_triangle.iter().max().map_or(0, |last| *last as usize + 1);
+    if count < 2 {
+        return Ok(None);
+    }
+    let mut of_face = vec![u32::MAX; mesh.faces.len()];
+    for (facet, body) in solid.facet_indices().iter().zip(of_triangle) {
+        of_face[facet.index()] = body;
+    }
+    // What is true of shells is said of each.
+    notes.retain(Note::is_of_file);
+    Ok(Some(Apart { meshes: mesh.picked(&of_face, count), notes }))
+}
+
+/// A solid of a mesh that is mended if it has to be, and what is to be said of it.
+fn mended(mesh: &mut Cow<Mesh>, options: &BodyOptions) -> Result<(Solid, Vec<Note>), Refused> {
+    let mut notes: Vec<Note> = Note::merged(mesh).into_iter().collect();
     let mut built = Solid::from_mesh(&mesh.vertices, &mesh.faces);
     if let Err(SolidError::Inconsistent { .. } | SolidError::Open { .. }) = built {
         notes.extend(heal::heal(mesh.to_mut()).notes());
@@ -253,7 +289,7 @@ pub fn solid(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<Solid>, Refuse
     if options.as_is && mended().next().is_some() {
         return Err(Refused::Mended(mended().cloned().collect()));
     }
-    Ok(Loaded { body, precision, notes })
+    Ok((body, notes))
 }
 
 /// Reads a file as a [`convex`] body.

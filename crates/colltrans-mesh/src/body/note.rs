@@ -74,6 +74,19 @@ impl Note {
         )
     }
 
+    /// Whether it is of the file as a whole, no matter which of its shells are taken together.
+    pub(super) const fn is_of_file(&self) -> bool {
+        matches!(
+            self,
+            Self::Merged(_)
+                | Self::Doubles(_)
+                | Self::Fins(_)
+                | Self::Walls(_)
+                | Self::FacesTurned(_)
+                | Self::WithoutArea(_)
+        )
+    }
+
     /// What was merged when a mesh was read, if anything was.
     pub fn merged(mesh: &Mesh) -> Option<Self> {
         (mesh.merged.vertices > 0).then_some(Self::Merged(mesh.merged))
@@ -139,6 +152,9 @@ fn surface(
     first: Option<[usize; 3]>,
     what: &str,
 ) -> fmt::Result {
+    if open_edges == 0 {
+        return write!(f, "a surface with rims at edges where more than two faces meet: {what}");
+    }
     write!(f, "an open surface ({}", counted(open_edges, "open edge", "open edges"))?;
     if let Some([from, to, face]) = first {
         write!(f, ", the first from vertex {from} to vertex {to} of face {face}")?;

@@ -8,9 +8,9 @@
 
 use glam::DVec3;
 
-use super::heal::{Use, by_edge, is_flat, normal, uses};
-use super::sets::Sets;
 use crate::Mesh;
+use crate::edges::{Use, by_edge, is_flat, normal, uses};
+use crate::sets::Sets;
 
 /// Turns facets until neighbours agree; how many. `None` if they cannot, on a one-sided surface.
 pub(super) fn consistent(mesh: &mut Mesh) -> Option<usize> {

@@ -1,4 +1,4 @@
-//! XML as a tree, for files of some thousand elements: names, attributes, lines.
+//! XML as a tree: names, attributes, text, lines. For the readers of this crate and of others.
 
 use std::collections::HashMap;
 
@@ -6,23 +6,31 @@ use quick_xml::events::{BytesStart, Event};
 use quick_xml::name::ResolveResult;
 
 /// Elements nested deeper are refused.
-pub(super) const DEEPEST: usize = 64;
+const DEEPEST: usize = 64;
 
 /// A fault, and the line where it is.
-pub(super) type Fault = (String, String);
+pub type Fault = (String, String);
 
 /// An element.
 #[derive(Debug, Default)]
-pub(super) struct Element {
-    pub(super) name: String,
-    pub(super) line: usize,
+pub struct Element {
+    /// Its name, as it is written.
+    pub name: String,
+    /// Where it ends to begin, from 1.
+    pub line: usize,
     attributes: HashMap<String, String>,
-    pub(super) children: Vec<Element>,
+    /// The elements in it.
+    pub children: Vec<Element>,
+    /// The text in it, all of it one after another, but for what stands for something else (`&amp;`).
+    pub text: String,
 }
 
 impl Element {
     /// The element that holds all others.
-    pub(super) fn parse(text: &str) -> Result<Self, Fault> {
+    ///
+    /// # Errors
+    /// What is wrong, and in which line.
+    pub fn parse(text: &str) -> Result<Self, Fault> {
         let mut reader = quick_xml::Reader::from_str(text);
         let mut lines = Lines::new(text);
         // The last one is open; the first stands for the file.
@@ -38,6 +46,12 @@ impl Element {
                     close(&mut open);
                     continue;
                 }
+                Event::Text(text) => {
+                    if let Some(last) = open.last_mut() {
+                        last.text.push_str(text);
+                    }
+                    continue;
+                }
                 Event::Eof if open.len() > 1 => {
                     let name = open.pop().unwrap_or_default().name;
                     return Err(("end of file".into(), format!("the element {name} is not ended")));
@@ -51,7 +65,7 @@ impl Element {
             }
             let attributes = attributes(tag).map_err(|e| (place(), e))?;
             let name = tag.name().as_ref().to_owned();
-            open.push(Self { name, line, attributes, children: Vec::new() });
+            open.push(Self { name, line, attributes, ..Self::default() });
             if ends {
                 close(&mut open);
             }
@@ -61,27 +75,33 @@ impl Element {
     }
 
     /// The children of a name.
-    pub(super) fn all(&self, name: &'static str) -> impl Iterator<Item = &Self> {
+    pub fn all(&self, name: &'static str) -> impl Iterator<Item = &Self> {
         self.children.iter().filter(move |child| child.name == name)
     }
 
     /// The first child of a name.
-    pub(super) fn first(&self, name: &'static str) -> Option<&Self> {
+    pub fn first(&self, name: &'static str) -> Option<&Self> {
         self.all(name).next()
     }
 
     /// An attribute.
-    pub(super) fn get(&self, name: &str) -> Option<&str> {
+    pub fn get(&self, name: &str) -> Option<&str> {
         self.attributes.get(name).map(String::as_str)
     }
 
     /// An attribute that must be there.
-    pub(super) fn need(&self, name: &str) -> Result<&str, String> {
+    ///
+    /// # Errors
+    /// It is not.
+    pub fn need(&self, name: &str) -> Result<&str, String> {
         self.get(name).ok_or_else(|| format!("<{}> has no attribute {name}", self.name))
     }
 
     /// So many numbers of an attribute.
-    pub(super) fn numbers<const N: usize>(&self, name: &str) -> Result<Option<[f64; N]>, String> {
+    ///
+    /// # Errors
+    /// They are fewer, more, or no numbers.
+    pub fn numbers<const N: usize>(&self, name: &str) -> Result<Option<[f64; N]>, String> {
         let Some(text) = self.get(name) else { return Ok(None) };
         let refused = || {
             let wanted = if N == 1 { "a number".into() } else { format!("{N} numbers") };
@@ -114,22 +134,23 @@ fn attributes(tag: &BytesStart) -> Result<HashMap<String, String>, String> {
 }
 
 /// What is wrong with a text that is not XML, without the parser's own heads.
-pub(super) fn told(error: &quick_xml::Error) -> String {
+pub fn told(error: &quick_xml::Error) -> String {
     let message = error.to_string();
     let message = message.strip_prefix("ill-formed document: ").unwrap_or(&message);
     message.strip_prefix("syntax error: ").unwrap_or(message).to_owned()
 }
 
 /// The value of an attribute.
-pub(super) fn value(
-    attribute: &quick_xml::events::attributes::Attribute,
-) -> Result<String, String> {
+///
+/// # Errors
+/// What stands for something else in it (`&amp;`) is not known.
+pub fn value(attribute: &quick_xml::events::attributes::Attribute) -> Result<String, String> {
     let value = quick_xml::escape::unescape(&attribute.value).map_err(|e| e.to_string())?;
     Ok(value.into_owned())
 }
 
 /// The namespace of a name, if it has one.
-pub(super) fn namespace<'a>(resolved: &'a ResolveResult) -> Option<&'a str> {
+pub fn namespace<'a>(resolved: &'a ResolveResult) -> Option<&'a str> {
     match resolved {
         ResolveResult::Bound(namespace) => Some(namespace.0),
         _ => None,
@@ -137,19 +158,20 @@ pub(super) fn namespace<'a>(resolved: &'a ResolveResult) -> Option<&'a str> {
 }
 
 /// Lines of a text by places that only grow.
-pub(super) struct Lines<'a> {
+pub struct Lines<'a> {
     text: &'a str,
     seen: usize,
     line: usize,
 }
 
 impl<'a> Lines<'a> {
-    pub(super) fn new(text: &'a str) -> Self {
+    /// From its start.
+    pub fn new(text: &'a str) -> Self {
         Self { text, seen: 0, line: 1 }
     }
 
     /// The line, from 1, of a place.
-    pub(super) fn at(&mut self, place: u64) -> usize {
+    pub fn at(&mut self, place: u64) -> usize {
         let place = (place as usize).clamp(self.seen, self.text.len());
         self.line += self.text.get(self.seen..place).map_or(0, |text| text.matches('\n').count());
         self.seen = place;

@@ -1,0 +1,265 @@
+//! From what a source places to parts: each thing as it is placed, or what it consists of.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+use std::sync::Arc;
+
+use colltrans::solid::ShellKind;
+use colltrans_mesh::Mesh;
+use colltrans_mesh::body::{self, Apart};
+use glam::DAffine3;
+
+use super::files::Source;
+use super::{MOST_PLACED, Names, contents, in_file};
+use crate::error::{AssemblyError, ReadError};
+use crate::part::{Assembly, Part, Piece};
+
+/// Names that a note lists.
+const MOST_NAMED: usize = 4;
+
+/// Which parts are made of what a source places.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
+pub enum Split {
+    /// What would be a single part is taken apart: into what its file names, or else into its bodies. All else is as
+    /// with [`Never`](Self::Never), but that each object of 3MF with a mesh is a part.
+    #[default]
+    Auto,
+    /// Each mesh file, node of glTF, link, or item of a 3MF build is a part, whatever it consists of.
+    Never,
+    /// Each object, group or solid that a mesh file names is a part.
+    Names,
+    /// Each body is a part: a closed shell with the cavities in it, or an open shell.
+    Bodies,
+}
+
+impl Split {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Auto, Self::Never, Self::Names, Self::Bodies];
+
+    /// `auto`, `never`, `names` or `bodies`.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Never => "never",
+            Self::Names => "names",
+            Self::Bodies => "bodies",
+        }
+    }
+}
+
+impl FromStr for Split {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let known = Self::ALL.into_iter().find(|split| split.name() == text);
+        known.ok_or_else(|| format!("{text} is none of {}", Self::ALL.map(Self::name).join(", ")))
+    }
+}
+
+/// A part in the making.
+pub(super) struct Draft {
+    pub(super) name: String,
+    pub(super) pieces: Vec<Placed>,
+    pub(super) fixed: bool,
+    /// In the unit of the assembly.
+    pub(super) chord_error: Option<f64>,
+    /// The source says that this is one part.
+    pub(super) is_told: bool,
+    /// What the source says of it alone.
+    pub(super) split: Option<Split>,
+    /// The file that it is of, if it is not the source.
+    pub(super) file: Option<PathBuf>,
+    /// Where in the source it is placed, for messages.
+    pub(super) place: Option<String>,
+}
+
+/// A mesh at a place.
+#[derive(Clone)]
+pub(super) struct Placed {
+    pub(super) mesh: Arc<Mesh>,
+    pub(super) world: DAffine3,
+}
+
+impl From<Piece> for Placed {
+    fn from(Piece { mesh, world_from_piece: world }: Piece) -> Self {
+        Self { mesh: Arc::new(mesh), world }
+    }
+}
+
+impl Draft {
+    pub(super) fn new(name: impl Into<String>, pieces: Vec<Placed>) -> Self {
+        Self {
+            name: name.into(),
+            pieces,
+            fixed: false,
+            chord_error: None,
+            is_told: false,
+            split: None,
+            file: None,
+            place: None,
+        }
+    }
+
+    /// The same, of which the source says that it is one part.
+    pub(super) fn told(self) -> Self {
+        Self { is_told: true, ..self }
+    }
+
+    /// What is wrong with it, with its file and its place.
+    fn refused(&self, source: &Source, error: AssemblyError) -> ReadError {
+        let path = self.file.as_deref().unwrap_or(source.path);
+        match &self.place {
+            Some(place) => contents(path, place, error),
+            None => in_file(path)(error),
+        }
+    }
+}
+
+/// An assembly of what one source places; what the source `holds` instead is said where that is nothing.
+pub(super) fn assembled(
+    source: Source,
+    drafts: Vec<Draft>,
+    holds: &str,
+) -> Result<Assembly, ReadError> {
+    let path = source.path;
+    if drafts.is_empty() {
+        return Err(ReadError::NoParts { path: path.into(), holds: holds.into() });
+    }
+    let alone = drafts.len() == 1;
+    let mut made = Made::default();
+    made.names.take(drafts.iter().map(|draft| &draft.name));
+    for draft in &drafts {
+        made.draft(&source, draft, alone)?;
+        if made.parts.len() > MOST_PLACED {
+            let reason = format!("more than {MOST_PLACED} bodies are placed");
+            return Err(contents(path, "bodies", reason));
+        }
+    }
+    let kept = made.kept();
+    let assembly = Assembly::new(made.parts).map_err(in_file(path))?;
+    let notes = made.notes.into_iter().chain(kept);
+    Ok(notes.fold(assembly, Assembly::with_note).with_files(source.into_files()))
+}
+
+/// Parts that are made.
+#[derive(Default)]
+struct Made {
+    parts: Vec<Part>,
+    names: Names,
+    notes: Vec<String>,
+    /// What was kept together, with the number of its closed bodies.
+    kept: Vec<(String, usize)>,
+}
+
+impl Made {
+    fn draft(&mut self, source: &Source, draft: &Draft, alone: bool) -> Result<(), ReadError> {
+        let split = draft.split.unwrap_or(source.options.split);
+        let is_single = alone && !draft.is_told && draft.pieces.len() == 1;
+        let apart = match split {
+            Split::Auto if is_single => {
+                let named = named(draft);
+                if named.is_empty() { self.bodies(source, draft, named)? } else { named }
+            }
+            Split::Auto | Split::Never => Vec::new(),
+            Split::Names => named(draft),
+            Split::Bodies => self.bodies(source, draft, named(draft))?,
+        };
+        if apart.is_empty() {
+            let part = made(source, draft, &draft.name, &draft.pieces)?;
+            let of_body = |kind, volume: f64| kind == ShellKind::Closed && volume > 0.0;
+            let shells = &part.solid().report().shells;
+            let bodies = shells.iter().filter(|s| of_body(s.kind, s.volume)).count();
+            if split == Split::Auto && !draft.is_told && bodies > 1 {
+                self.kept.push((draft.name.clone(), bodies));
+            }
+            self.parts.push(part);
+            return Ok(());
+        }
+        if split == Split::Auto {
+            self.notes.push(format!(
+                "{}: {} in one mesh, each taken as a part; with `split never` they are one",
+                draft.name,
+                apart.len()
+            ));
+        }
+        for (name, placed) in apart {
+            let name = if alone { name } else { format!("{}/{name}", draft.name) };
+            let name = self.names.unique(&name);
+            self.parts.push(made(source, draft, &name, &[placed])?);
+        }
+        Ok(())
+    }
+
+    /// The bodies of what a draft names, or of itself; nothing if it is one.
+    fn bodies(
+        &mut self,
+        source: &Source,
+        draft: &Draft,
+        named: Vec<(String, Placed)>,
+    ) -> Result<Vec<(String, Placed)>, ReadError> {
+        let whole = || draft.pieces.iter().map(|placed| (draft.name.clone(), placed.clone()));
+        let all = if named.is_empty() { whole().collect() } else { named };
+        let mut apart = Vec::new();
+        for (name, placed) in all {
+            let refused = |source| AssemblyError::Part { part: name.clone(), source };
+            let found = body::bodies(&placed.mesh, &source.options.body())
+                .map_err(|e| draft.refused(source, refused(e)))?;
+            let Some(Apart { meshes, notes }) = found else {
+                apart.push((name, placed));
+                continue;
+            };
+            self.notes.extend(notes.iter().map(|note| format!("{name}: {note}")));
+            apart.extend(meshes.into_iter().zip(1..).map(|(mesh, k)| {
+                let mesh = Arc::new(mesh);
+                (format!("{name}_{k}"), Placed { mesh, world: placed.world })
+            }));
+        }
+        if apart.len() < 2 {
+            apart.clear();
+        }
+        Ok(apart)
+    }
+
+    /// What is said of parts that consist of several bodies.
+    fn kept(&self) -> Option<String> {
+        let told = |(name, bodies): &(String, usize)| format!("{name} ({bodies})");
+        let named: Vec<String> = self.kept.iter().take(MOST_NAMED).map(told).collect();
+        let more = match self.kept.len().saturating_sub(MOST_NAMED) {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        (!named.is_empty()).then(|| {
+            format!(
+                "several bodies are one part: {}{more}; with `split bodies` each is a part",
+                named.join(", ")
+            )
+        })
+    }
+}
+
+/// What the files of a draft name; nothing if that is not several.
+fn named(draft: &Draft) -> Vec<(String, Placed)> {
+    let mut all = Vec::new();
+    let mut several = false;
+    for placed in &draft.pieces {
+        let named = placed.mesh.named();
+        several |= !named.is_empty();
+        if named.is_empty() {
+            all.push((draft.name.clone(), placed.clone()));
+        }
+        all.extend(named.into_iter().map(|(name, mesh)| {
+            let name = if name.trim().is_empty() { draft.name.clone() } else { name };
+            (name, Placed { mesh: Arc::new(mesh), world: placed.world })
+        }));
+    }
+    if several { all } else { Vec::new() }
+}
+
+fn made(source: &Source, draft: &Draft, name: &str, placed: &[Placed]) -> Result<Part, ReadError> {
+    let piece =
+        |placed: &Placed| Piece { mesh: Mesh::clone(&placed.mesh), world_from_piece: placed.world };
+    let pieces: Vec<Piece> = placed.iter().map(piece).collect();
+    let part = Part::with_options(name, &pieces, &source.options.body());
+    let part = part.map_err(|e| draft.refused(source, e))?;
+    Ok(part.with_fixed(draft.fixed).with_chord_error(draft.chord_error))
+}

@@ -1,0 +1,458 @@
+//! COLLADA (`.dae`), as robot packages have it: the nodes of the scene, each with what it shows.
+//!
+//! Vertices are placed by the transforms of their node and of those above, in the file's own unit and axes, which are said
+//! ([`Mesh::unit`], [`Mesh::up`]). Each node that shows something is a group, named as the node. Triangles, strips,
+//! fans, `polylist` and `polygons` are read; lines are skipped, and so are materials, cameras, lights and animations. Skins
+//! are taken as they are at rest.
+//!
+//! A few lines can show a shape as often as they like, so what is placed is counted: no more than one face for each byte
+//! of the file, and [`MOST_REPEATED`].
+
+use std::collections::HashMap;
+
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+
+use crate::error::{Fault, Place};
+use crate::mesh::Mesh;
+use crate::text::{quoted, without_mark};
+use crate::xml::Element;
+
+/// Faces that are placed beyond one for each byte.
+const MOST_REPEATED: usize = 1 << 23;
+/// Nodes that are placed, one in another.
+const MOST_PLACED: usize = 1 << 16;
+/// Nodes nested deeper than this are a ring.
+const DEEPEST: usize = 64;
+
+pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
+    let text = String::from_utf8_lossy(without_mark(bytes)?);
+    let root = Element::parse(&text).map_err(|(place, what)| {
+        let line = place.strip_prefix("line ").and_then(|line| line.parse().ok());
+        Fault::new(line.map_or(Place::End, Place::Line), what)
+    })?;
+    if root.name != "COLLADA" {
+        return Err(at(&root, format!("its first element is {}, not COLLADA", quoted(&root.name))));
+    }
+    let mut reader = Reader {
+        ids: HashMap::new(),
+        shapes: HashMap::new(),
+        placed: 0,
+        left: bytes.len() + MOST_REPEATED,
+    };
+    reader.index(&root);
+    let mut mesh = Mesh::default();
+    (mesh.unit, mesh.up) = asset(&root)?;
+    let scene = root.first("scene").and_then(|scene| scene.first("instance_visual_scene"));
+    let scene = match scene {
+        Some(shown) => reader.named(shown)?,
+        None => {
+            let library = root.first("library_visual_scenes");
+            let first = library.and_then(|library| library.first("visual_scene"));
+            first.ok_or_else(|| at(&root, "it has no scene"))?
+        }
+    };
+    for node in scene.all("node") {
+        reader.node(node, DAffine3::IDENTITY, 0, &mut mesh)?;
+    }
+    mesh.groups = std::mem::take(&mut mesh.groups).several();
+    Ok(mesh)
+}
+
+fn at(element: &Element, what: impl Into<String>) -> Fault {
+    Fault::new(Place::Line(element.line), what)
+}
+
+/// The unit in metres, and what is upwards.
+fn asset(root: &Element) -> Result<(Option<f64>, Option<DVec3>), Fault> {
+    let Some(asset) = root.first("asset") else { return Ok((None, None)) };
+    let unit = match asset.first("unit") {
+        None => None,
+        Some(unit) => {
+            let metres =
+                unit.numbers::<1>("meter").map_err(|e| at(unit, e))?.map(|[metres]| metres);
+            if metres.is_some_and(|metres| !(metres.is_finite() && metres > 0.0)) {
+                return Err(at(unit, "its unit is no length"));
+            }
+            metres
+        }
+    };
+    let up = match asset.first("up_axis").map(|up| (up, up.text.trim())) {
+        None | Some((_, "Y_UP")) => DVec3::Y,
+        Some((_, "Z_UP")) => DVec3::Z,
+        Some((_, "X_UP")) => DVec3::X,
+        Some((up, other)) => return Err(at(up, format!("{} is no axis", quoted(other)))),
+    };
+    // What is not said is metres, and y.
+    Ok((unit.or(Some(1.0)), Some(up)))
+}
+
+/// Vertices and faces of a geometry.
+struct Shape {
+    vertices: Vec<DVec3>,
+    faces: Vec<Vec<u32>>,
+}
+
+struct Reader<'a> {
+    ids: HashMap<&'a str, &'a Element>,
+    shapes: HashMap<*const Element, Shape>,
+    placed: usize,
+    /// Faces that may still be placed.
+    left: usize,
+}
+
+impl<'a> Reader<'a> {
+    fn index(&mut self, element: &'a Element) {
+        if let Some(id) = element.get("id") {
+            self.ids.entry(id).or_insert(element);
+        }
+        element.children.iter().for_each(|child| self.index(child));
+    }
+
+    /// What an element names by its `url` or `source`.
+    fn named(&self, element: &Element) -> Result<&'a Element, Fault> {
+        let name = element.get("url").or_else(|| element.get("source"));
+        let name = name.ok_or_else(|| at(element, format!("<{}> names nothing", element.name)))?;
+        let Some(id) = name.strip_prefix('#') else {
+            return Err(at(
+                element,
+                format!("{} is in another file, which is not read", quoted(name)),
+            ));
+        };
+        let found = self.ids.get(id).copied();
+        found.ok_or_else(|| at(element, format!("there is no {}", quoted(name))))
+    }
+
+    fn node(
+        &mut self,
+        node: &'a Element,
+        above: DAffine3,
+        depth: usize,
+        mesh: &mut Mesh,
+    ) -> Result<(), Fault> {
+        self.placed += 1;
+        if depth > DEEPEST || self.placed > MOST_PLACED {
+            return Err(at(node, "nodes are nested too deep, in a ring, or are too many"));
+        }
+        let world = above * transform(node)?;
+        for child in &node.children {
+            match child.name.as_str() {
+                "instance_geometry" => {
+                    let geometry = self.named(child)?;
+                    self.place(geometry, child, world, mesh)?;
+                }
+                "instance_controller" => {
+                    let controller = self.named(child)?;
+                    let inner = controller
+                        .children
+                        .iter()
+                        .find(|c| ["skin", "morph"].contains(&c.name.as_str()));
+                    let inner = inner.ok_or_else(|| at(controller, "it controls no geometry"))?;
+                    self.place(self.named(inner)?, child, world, mesh)?;
+                }
+                _ => {}
+            }
+        }
+        // What the node shows itself is its group, before others begin.
+        let name = node.get("name").or_else(|| node.get("id")).unwrap_or_default();
+        mesh.groups.end(name, mesh.faces.len());
+        for child in &node.children {
+            match child.name.as_str() {
+                "instance_node" => self.node(self.named(child)?, world, depth + 1, mesh)?,
+                "node" => self.node(child, world, depth + 1, mesh)?,
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// The faces of a geometry at a place.
+    fn place(
+        &mut self,
+        geometry: &'a Element,
+        asked: &Element,
+        world: DAffine3,
+        mesh: &mut Mesh,
+    ) -> Result<(), Fault> {
+        let key: *const Element = geometry;
+        if !self.shapes.contains_key(&key) {
+            let shape = match geometry.first("mesh") {
+                Some(of) => self.shape(of)?,
+                None if geometry.name == "geometry" => {
+                    return Err(at(geometry, "a geometry that is no mesh of polygons is not read"));
+                }
+                None => {
+                    return Err(at(
+                        asked,
+                        format!("it shows a {}, no geometry", quoted(&geometry.name)),
+                    ));
+                }
+            };
+            self.shapes.insert(key, shape);
+        }
+        let Shape { vertices, faces } = &self.shapes[&key];
+        let count = faces.len().max(vertices.len());
+        let too_many =
+            || at(asked, format!("more than {MOST_REPEATED} faces or vertices are repeated"));
+        self.left = self.left.checked_sub(count).ok_or_else(too_many)?;
+        let base = u32::try_from(mesh.vertices.len())
+            .ok()
+            .and_then(|base| base.checked_add(u32::try_from(vertices.len()).ok()?).map(|_| base));
+        let base = base.ok_or_else(|| at(asked, "more than 4,294,967,295 vertices"))?;
+        mesh.vertices.extend(vertices.iter().map(|&v| world.transform_point3(v)));
+        let mirrored = world.matrix3.determinant() < 0.0;
+        mesh.faces.extend(faces.iter().map(|face| {
+            let mut face: Vec<u32> = face.iter().map(|v| v + base).collect();
+            if mirrored {
+                face.reverse();
+            }
+            face
+        }));
+        Ok(())
+    }
+
+    fn shape(&self, mesh: &'a Element) -> Result<Shape, Fault> {
+        let mut shape = Shape { vertices: Vec::new(), faces: Vec::new() };
+        let mut bases: HashMap<*const Element, u32> = HashMap::new();
+        for of in &mesh.children {
+            let kind = of.name.as_str();
+            if !["triangles", "trifans", "tristrips", "polylist", "polygons"].contains(&kind) {
+                continue;
+            }
+            let inputs = Inputs::of(of)?;
+            let Some(vertex) = inputs.vertex else {
+                return Err(at(of, format!("<{kind}> has no input VERTEX")));
+            };
+            let source = self.positions(vertex)?;
+            let key: *const Element = source;
+            let base = if let Some(&base) = bases.get(&key) {
+                base
+            } else {
+                let base = shape.vertices.len() as u32;
+                shape.vertices.extend(self.vectors(source)?);
+                bases.insert(key, base);
+                base
+            };
+            let total = shape.vertices.len() as u32 - base;
+            for corners in inputs.faces(of)? {
+                if let Some(beyond) = corners.iter().find(|&&v| v >= total) {
+                    return Err(at(of, format!("a face names vertex {beyond} of {total}")));
+                }
+                shape.faces.push(corners.iter().map(|v| v + base).collect());
+            }
+        }
+        Ok(shape)
+    }
+
+    /// The source of the positions of an input of vertices.
+    fn positions(&self, vertex: &Element) -> Result<&'a Element, Fault> {
+        let vertices = self.named(vertex)?;
+        let position = vertices.all("input").find(|i| i.get("semantic") == Some("POSITION"));
+        self.named(position.ok_or_else(|| at(vertices, "its vertices have no positions"))?)
+    }
+
+    /// The vectors of a source.
+    fn vectors(&self, source: &Element) -> Result<Vec<DVec3>, Fault> {
+        let accessor = source.first("technique_common").and_then(|t| t.first("accessor"));
+        let accessor = accessor.ok_or_else(|| at(source, "a source without an accessor"))?;
+        let array = self.named(accessor)?;
+        if array.name != "float_array" {
+            return Err(at(array, format!("positions are {}, not numbers", quoted(&array.name))));
+        }
+        let numbers: Vec<f64> = words(array)?;
+        let [count, stride, offset] = ["count", "stride", "offset"].map(|key| whole(accessor, key));
+        let (count, stride, offset) =
+            (count?.unwrap_or(0), stride?.unwrap_or(1), offset?.unwrap_or(0));
+        let named =
+            |(k, p): (usize, &Element)| p.get("name").is_some_and(|n| !n.is_empty()).then_some(k);
+        let places: Vec<usize> =
+            accessor.all("param").enumerate().filter_map(named).take(3).collect();
+        let [x, y, z] = places[..] else {
+            return Err(at(accessor, "positions do not have three coordinates"));
+        };
+        let last = count
+            .checked_sub(1)
+            .and_then(|last| last.checked_mul(stride)?.checked_add(offset)?.checked_add(z));
+        if x.max(y).max(z) >= stride
+            || last.is_some_and(|last| last >= numbers.len())
+            || count > numbers.len()
+        {
+            return Err(at(
+                accessor,
+                format!(
+                    "{count} positions lie beyond the {} numbers of their array",
+                    numbers.len()
+                ),
+            ));
+        }
+        let vector = |k: usize| {
+            let number = |place: usize| numbers[offset + k * stride + place];
+            DVec3::new(number(x), number(y), number(z))
+        };
+        Ok((0..count).map(vector).collect())
+    }
+}
+
+/// What the indices of faces stand for.
+struct Inputs<'a> {
+    /// Indices for each corner.
+    stride: usize,
+    /// Which of them is that of the vertex.
+    offset: usize,
+    vertex: Option<&'a Element>,
+}
+
+impl<'a> Inputs<'a> {
+    fn of(faces: &'a Element) -> Result<Self, Fault> {
+        let mut inputs = Self { stride: 1, offset: 0, vertex: None };
+        for input in faces.all("input") {
+            let offset = whole(input, "offset")?.unwrap_or(0);
+            if offset > 255 {
+                return Err(at(input, format!("an offset of {offset}")));
+            }
+            inputs.stride = inputs.stride.max(offset + 1);
+            if input.get("semantic") == Some("VERTEX") {
+                (inputs.offset, inputs.vertex) = (offset, Some(input));
+            }
+        }
+        Ok(inputs)
+    }
+
+    /// The vertices of each list of corners.
+    fn lists(&self, of: &Element) -> Result<Vec<Vec<u32>>, Fault> {
+        let list = |p: &Element| {
+            let indices: Vec<u32> = words(p)?;
+            if !indices.len().is_multiple_of(self.stride) {
+                let what = format!("{} indices, of {} for each corner", indices.len(), self.stride);
+                return Err(at(p, what));
+            }
+            Ok(indices.into_iter().skip(self.offset).step_by(self.stride).collect())
+        };
+        of.all("p").map(list).collect()
+    }
+
+    fn faces(&self, of: &Element) -> Result<Vec<Vec<u32>>, Fault> {
+        let lists = self.lists(of)?;
+        let mut faces: Vec<Vec<u32>> = Vec::new();
+        match of.name.as_str() {
+            "triangles" => {
+                for list in lists {
+                    if !list.len().is_multiple_of(3) {
+                        return Err(at(
+                            of,
+                            format!("{} corners do not make triangles", list.len()),
+                        ));
+                    }
+                    faces.extend(list.chunks_exact(3).map(<[u32]>::to_vec));
+                }
+            }
+            "trifans" => {
+                for list in lists {
+                    let Some((&middle, rim)) = list.split_first() else { continue };
+                    faces.extend(rim.windows(2).map(|e| vec![middle, e[0], e[1]]));
+                }
+            }
+            "tristrips" => {
+                for list in lists {
+                    faces.extend(list.windows(3).enumerate().map(|(k, t)| {
+                        if k % 2 == 0 { t.to_vec() } else { vec![t[1], t[0], t[2]] }
+                    }));
+                }
+            }
+            "polylist" => {
+                let counts =
+                    of.first("vcount").ok_or_else(|| at(of, "<polylist> has no vcount"))?;
+                let corners: Vec<u32> = lists.into_iter().flatten().collect();
+                let mut rest = &corners[..];
+                for count in words::<usize>(counts)? {
+                    let beyond = || at(counts, "it counts more corners than there are");
+                    let (face, others) = rest.split_at_checked(count).ok_or_else(beyond)?;
+                    faces.push(face.to_vec());
+                    rest = others;
+                }
+                if !rest.is_empty() {
+                    return Err(at(counts, format!("{} corners are in no face", rest.len())));
+                }
+            }
+            _ => {
+                if let Some(holed) = of.first("ph") {
+                    return Err(at(
+                        holed,
+                        "polygons with holes are not read; save them as triangles",
+                    ));
+                }
+                faces.extend(lists);
+            }
+        }
+        let promised = whole(of, "count")?;
+        let is_list = !matches!(of.name.as_str(), "trifans" | "tristrips");
+        if let Some(count) = promised.filter(|count| is_list && *count != faces.len()) {
+            return Err(at(
+                of,
+                format!("{count} faces are promised, and {} are there", faces.len()),
+            ));
+        }
+        faces.retain(|face| face.len() > 2);
+        Ok(faces)
+    }
+}
+
+/// The numbers that an element holds.
+fn words<T: std::str::FromStr>(element: &Element) -> Result<Vec<T>, Fault> {
+    let number = |word: &str| {
+        let refused =
+            || at(element, format!("{} in <{}> is no number for it", quoted(word), element.name));
+        word.parse().map_err(|_| refused())
+    };
+    element.text.split_whitespace().map(number).collect()
+}
+
+/// A whole number of an attribute.
+fn whole(element: &Element, key: &str) -> Result<Option<usize>, Fault> {
+    let parsed = element.get(key).map(|text| text.trim().parse::<usize>());
+    let refused = |_| at(element, format!("{key} of <{}> is no whole number", element.name));
+    parsed.transpose().map_err(refused)
+}
+
+/// The transforms of a node, one after another.
+fn transform(node: &Element) -> Result<DAffine3, Fault> {
+    let mut all = DAffine3::IDENTITY;
+    for child in &node.children {
+        let own = match child.name.as_str() {
+            "matrix" => {
+                let [a, b, c, _] = rows(&numbers::<16>(child)?);
+                let matrix = DMat3::from_cols(a.truncate(), b.truncate(), c.truncate()).transpose();
+                DAffine3::from_mat3_translation(matrix, DVec3::new(a.w, b.w, c.w))
+            }
+            "translate" => DAffine3::from_translation(DVec3::from_array(numbers(child)?)),
+            "scale" => DAffine3::from_scale(DVec3::from_array(numbers(child)?)),
+            "rotate" => {
+                let [x, y, z, degrees] = numbers(child)?;
+                let axis = DVec3::new(x, y, z).try_normalize();
+                let axis = axis.ok_or_else(|| at(child, "a turn about nothing"))?;
+                DAffine3::from_quat(DQuat::from_axis_angle(axis, degrees.to_radians()))
+            }
+            "lookat" | "skew" => {
+                return Err(at(
+                    child,
+                    format!("<{}> is not read; save it as a matrix", child.name),
+                ));
+            }
+            _ => continue,
+        };
+        all = all * own;
+    }
+    if all.is_finite() { Ok(all) } else { Err(at(node, "its transform is not finite")) }
+}
+
+fn rows(numbers: &[f64; 16]) -> [glam::DVec4; 4] {
+    [0, 1, 2, 3].map(|k| glam::DVec4::from_slice(&numbers[4 * k..]))
+}
+
+/// So many numbers, which an element holds.
+fn numbers<const N: usize>(element: &Element) -> Result<[f64; N], Fault> {
+    let found: Vec<f64> = words(element)?;
+    let count = found.len();
+    found
+        .try_into()
+        .map_err(|_| at(element, format!("<{}> has {count} numbers, not {N}", element.name)))
+}

@@ -1,0 +1,148 @@
+//! The parts of a mesh: what its file names, and faces that are picked by number.
+//!
+//! A group that a file names need not be a body: exporters make groups of materials and of the sides of one body. Groups
+//! whose surfaces go on in each other, each open along an edge of theirs, are one part, with the first one's name.
+
+use std::collections::BTreeMap;
+
+use crate::edges::{by_edge, uses};
+use crate::mesh::{Groups, Mesh};
+use crate::sets::Sets;
+
+/// A vertex that is not in use.
+const NONE: u32 = u32::MAX;
+
+impl Mesh {
+    /// The parts that the file names ([`Groups`]), in its order, each with vertices of its own; empty where these are
+    /// fewer than two.
+    ///
+    /// Groups that go on in each other are one part: at some edge either has a side without one that runs the other
+    /// way.
+    pub fn named(&self) -> Vec<(String, Self)> {
+        let Groups { names, of_face } = &self.groups;
+        if of_face.len() != self.faces.len() || of_face.iter().any(|&g| g as usize >= names.len()) {
+            return Vec::new();
+        }
+        let (_, faces) = self.welded();
+        let mut sets = Sets::new(names.len());
+        for edge in by_edge(&uses(&faces, |_| true)) {
+            let mut balance: BTreeMap<u32, i64> = BTreeMap::new();
+            for side in edge {
+                *balance.entry(of_face[side.face]).or_default() +=
+                    if side.backward { -1 } else { 1 };
+            }
+            // Also of faces that run against each other: what is left over of each is one side or more.
+            let mut open =
+                balance.into_iter().filter(|(_, sides)| *sides != 0).map(|(g, _)| g as usize);
+            if let Some(first) = open.next() {
+                open.for_each(|other| {
+                    sets.join(first, other, false);
+                });
+            }
+        }
+        // Sets stand in the order of their first groups, as those are the lowest of each.
+        let mut places: BTreeMap<usize, u32> = BTreeMap::new();
+        for &group in of_face {
+            places.insert(sets.find(group as usize).0, 0);
+        }
+        if places.len() < 2 {
+            return Vec::new();
+        }
+        for (place, number) in places.values_mut().zip(0..) {
+            *place = number;
+        }
+        let of_face: Vec<u32> = of_face.iter().map(|&g| places[&sets.find(g as usize).0]).collect();
+        let meshes = self.picked(&of_face, places.len());
+        places.keys().map(|&group| names[group].clone()).zip(meshes).collect()
+    }
+
+    /// Meshes of the faces with each number below `count`, in their order; each with the vertices in use alone, in the
+    /// order of this mesh.
+    pub(crate) fn picked(&self, number_of_face: &[u32], count: usize) -> Vec<Self> {
+        let mut faces: Vec<Vec<usize>> = vec![Vec::new(); count];
+        for (k, &number) in number_of_face.iter().enumerate() {
+            if let Some(faces) = faces.get_mut(number as usize) {
+                faces.push(k);
+            }
+        }
+        let mut names = vec![NONE; self.vertices.len()];
+        let mut pick = |faces: Vec<usize>| {
+            let mut used: Vec<u32> = faces.iter().flat_map(|&k| &self.faces[k]).copied().collect();
+            used.sort_unstable();
+            used.dedup();
+            for (&v, name) in used.iter().zip(0..) {
+                names[v as usize] = name;
+            }
+            let renamed = |k: usize| self.faces[k].iter().map(|&v| names[v as usize]).collect();
+            let vertices = used.iter().map(|&v| self.vertices[v as usize]).collect();
+            let mesh = Self::new(vertices, faces.into_iter().map(renamed).collect());
+            Self { precision: self.precision, unit: self.unit, up: self.up, ..mesh }
+        };
+        faces.into_iter().map(&mut pick).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use colltrans_testkit::shapes::{block, ring_sphere};
+    use glam::DVec3;
+
+    use super::*;
+
+    fn grouped(parts: &[(&str, &colltrans_testkit::shapes::Mesh)]) -> Mesh {
+        let (mut mesh, mut groups) = (Mesh::default(), Groups::default());
+        for (name, part) in parts {
+            let base = mesh.vertices.len() as u32;
+            mesh.vertices.extend(&part.vertices);
+            mesh.faces.extend(part.faces.iter().map(|f| f.iter().map(|v| v + base).collect()));
+            groups.end(name, mesh.faces.len());
+        }
+        Mesh { groups, ..mesh }
+    }
+
+    fn names(mesh: &Mesh) -> Vec<(String, usize)> {
+        mesh.named().into_iter().map(|(name, mesh)| (name, mesh.faces.len())).collect()
+    }
+
+    #[test]
+    fn named_parts_have_their_own_vertices() {
+        let (cube, ball) = (block(DVec3::ZERO, DVec3::ONE), ring_sphere(8, 3));
+        let mesh = grouped(&[("cube", &cube), ("ball", &ball), ("cube", &cube)]);
+        let named = mesh.named();
+        assert_eq!(
+            named.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(),
+            ["cube", "ball", "cube"]
+        );
+        for ((_, found), part) in named.iter().zip([&cube, &ball, &cube]) {
+            assert_eq!((&found.vertices, &found.faces), (&part.vertices, &part.faces));
+        }
+        assert!(grouped(&[("cube", &cube)]).named().is_empty());
+    }
+
+    #[test]
+    fn groups_that_go_on_in_each_other_are_one() {
+        // The sides of one cube, as groups of a material; and two cubes that touch, which are two.
+        let cube = block(DVec3::ZERO, DVec3::ONE);
+        let of = |range: std::ops::Range<usize>| {
+            let faces = cube.faces[range].to_vec();
+            colltrans_testkit::shapes::Mesh { vertices: cube.vertices.clone(), faces }
+        };
+        let (front, rest) = (of(0..2), of(2..6));
+        let beside = block(DVec3::X, DVec3::new(2.0, 1.0, 1.0));
+        assert!(grouped(&[("front", &front), ("rest", &rest)]).named().is_empty());
+        let all = grouped(&[("front", &front), ("beside", &beside), ("rest", &rest)]);
+        assert_eq!(names(&all), [("front".into(), 6), ("beside".into(), 6)]);
+    }
+
+    #[test]
+    fn what_does_not_fit_names_nothing() {
+        let cube = block(DVec3::ZERO, DVec3::ONE);
+        let mut mesh = grouped(&[("a", &cube), ("b", &cube)]);
+        mesh.faces.pop();
+        assert!(mesh.named().is_empty());
+        mesh.groups.of_face.pop();
+        assert_eq!(mesh.named().len(), 2);
+        mesh.groups.of_face[0] = 7;
+        assert!(mesh.named().is_empty());
+    }
+}

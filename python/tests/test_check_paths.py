@@ -2,10 +2,15 @@
 
 import json
 from collections.abc import Callable, Iterator
+from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from test_check import changed, check, proof, refused
+from test_schema import conform
+
+from colltrans import Robot, Solid
 
 ALL = ["contact", "free", "kept", "solid"]
 
@@ -155,3 +160,39 @@ def test_what_is_inside_where_a_path_begins_is_seen() -> None:
     assert refused(changed(file, way, lambda x: x + 20.0))
     later: tuple[Any, ...] = ("proof", "meeting", "place", "share")
     assert refused(changed(file, later, lambda t: 0.5))
+
+
+def test_solids_that_meet_face_to_face_do_by_a_point_inside_both(tmp_path: Path) -> None:
+    outline = [[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]]
+    n = len(outline)
+    sides = [[k, (k + 1) % n, n + (k + 1) % n, n + k] for k in range(n)]
+    faces = [list(range(n))[::-1], list(range(n, 2 * n)), *sides]
+
+    def upright(low: float, high: float) -> list[list[float]]:
+        return [[x, y, z] for z in (low, high) for x, y in outline]
+
+    lines = [f"v {x} {y} {z}" for x, y, z in upright(0, 0.25)]
+    lines += ["f " + " ".join(str(k + 1) for k in face) for face in faces]
+    (tmp_path / "plate.obj").write_text("\n".join(lines) + "\n")
+    (tmp_path / "lift.urdf").write_text(
+        '<robot name="lift"><link name="base"/><link name="plate"><collision><geometry>'
+        '<mesh filename="plate.obj"/></geometry></collision></link>'
+        '<joint name="down" type="prismatic"><parent link="base"/><child link="plate"/>'
+        '<origin xyz="0 0 1"/><axis xyz="0 0 -1"/>'
+        '<limit lower="0" upper="9" effort="1" velocity="1"/></joint></robot>'
+    )
+    column = Solid(np.array(upright(-3, 0)), faces)
+    found = Robot.read(tmp_path / "lift.urdf").first_contact([[0.0], [4.0]], {"column": column})
+    assert found.outcome == "contact" and found.upper is not None
+    assert found.lower <= 0.25 <= found.upper < 0.25 + 1e-11
+    found.verify()
+    file = json.loads(found.proof_json())
+    conform("path_proof", file)
+    report = check.check(json.dumps(file))
+    assert "'plate' and 'column' meet" in report.holds[-1] and not report.unchecked
+    point = file["proof"]["meeting"]["how"]["point"]["point"]
+    for axis, far in ((0, 3.0), (1, -3.0), (2, 1.0), (2, -1.0)):
+        point[axis] += far
+        with pytest.raises(check.RefusedError, match="the point is not inside"):
+            check.check(json.dumps(file))
+        point[axis] -= far

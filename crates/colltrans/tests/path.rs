@@ -4,8 +4,8 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::motion::path::{
-    Frame, Joint, JointPath, Mechanism, PathBody, PathCast, PathContact, PathError, PathOutcome,
-    PathProof, PathProofError, Place, Step,
+    Frame, How, Joint, JointPath, Mechanism, PathBody, PathCast, PathContact, PathError,
+    PathMeeting, PathOutcome, PathProof, PathProofError, Place, Step,
 };
 use colltrans::motion::{Motion, MotionCast, MotionOutcome};
 use colltrans::{ConvexPolyhedron, Pose, Solid};
@@ -397,5 +397,54 @@ fn a_cube_that_comes_down_flush_on_a_step_is_a_contact() {
         let found = contact(cast.first_contact().expect("an answer"));
         assert_eq!(cast.verify(&found.proof), Ok([found.lower, found.upper]));
         assert!((found.upper - meets).abs() < 1e-9, "{x}: {} {}", found.lower, found.upper);
+    }
+}
+
+#[test]
+fn solids_of_one_outline_that_come_down_on_each_other_are_a_contact() {
+    let solid = |low: [f64; 3], high: [f64; 3]| {
+        Solid::from_convex(&cuboid(low, high)).expect("a block is a solid")
+    };
+    let (plate, column) =
+        (solid([0.0; 3], [1.0, 1.0, 0.25]), solid([0.0, 0.0, -3.0], [1.0, 1.0, 0.0]));
+    let lift =
+        Frame { parent: None, origin: at(0.0, 0.0, 1.0), joint: Joint::Sliding(DVec3::NEG_Z) };
+    // Askew, and with its edges on diagonals of the column's face.
+    let post = solid([-0.25, -0.25, 0.0], [0.25, 0.25, 0.5]);
+    let turned = |angle: f64, x: f64, y: f64| {
+        Pose::new(DQuat::from_rotation_z(angle), DVec3::new(x, y, 0.0)).expect("a pose")
+    };
+    let meets = 0.25;
+    for (body, pose) in [
+        (&plate, Pose::IDENTITY),
+        (&plate, turned(FRAC_PI_2, 1.0, 0.0)),
+        (&post, turned(0.5 * FRAC_PI_2, 0.5, 0.5)),
+    ] {
+        let mechanism = Mechanism::new(vec![lift]).expect("a lift");
+        let path = JointPath::evenly(vec![vec![0.0], vec![4.0]]).expect("a path");
+        let bodies = vec![
+            PathBody::carried(0, body.at(pose)),
+            PathBody::standing(column.at(Pose::IDENTITY)),
+        ];
+        let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
+        let found = contact(cast.first_contact().expect("an answer"));
+        assert_eq!(cast.verify(&found.proof), Ok([found.lower, found.upper]));
+        assert!(found.lower < meets + 1e-11 && found.upper > meets - 1e-15, "{found:?}");
+        assert!(found.upper - found.lower < 1e-11, "{:e}", found.upper - found.lower);
+        let meeting = found.proof.meeting.clone().expect("it is proven");
+        let How::Point { pieces, point } = meeting.how else { continue };
+        // A point that is not inside both proves nothing, nor one at another time.
+        for (axis, far) in [(0, 2.0), (1, -2.0), (2, 1.0), (2, f64::NAN)] {
+            let mut elsewhere = point;
+            elsewhere[axis] += far;
+            let how = How::Point { pieces, point: elsewhere };
+            let mut proof = found.proof.clone();
+            proof.meeting = Some(PathMeeting { how, ..meeting.clone() });
+            assert!(cast.verify(&proof).is_err(), "{axis} {far}");
+        }
+        let mut proof = found.proof.clone();
+        let place = Place { share: found.lower, ..meeting.place };
+        proof.meeting = Some(PathMeeting { place, ..meeting });
+        assert!(cast.verify(&proof).is_err(), "too early");
     }
 }

@@ -2641,13 +2641,16 @@ def planes_of_path(
 def pieces_meet(walk: Walk, how: Any, row: int, share: Fraction) -> None:
     """That two pieces of bodies do at a place: whole bodies, or facets."""
     ((kind, claim),) = how.items()
-    if kind != "pieces":
+    if kind not in ("pieces", "point"):
         raise RefusedError(f"{kind!r} does not say that bodies meet")
     i, j = (
         whole(k, len(side.points)) for k, side in zip(claim["pieces"], walk.pieces, strict=True)
     )
     if walk.pieces[0].below[i] or walk.pieces[1].below[j]:
         raise RefusedError("what holds other pieces is none of a body's own")
+    if kind == "point":
+        is_in_both(walk, vector(claim["point"]), row, share)
+        return
     couple, refused = walk.of((i, j)), RefusedError("the pieces have no points")
     # Which corner of a facet is the first one is not told.
     own = begun(couple.own, walk.pieces[0])
@@ -2659,6 +2662,21 @@ def pieces_meet(walk: Walk, how: Any, row: int, share: Fraction) -> None:
         else:
             return
     raise refused
+
+
+def is_in_both(walk: Walk, point: Vector, row: int, share: Fraction) -> None:
+    """That a point in the second one's frame is inside both solids at a place."""
+    own, other = walk.pieces
+    if walk.keep or own.is_open or other.is_open or not (own.facets and other.facets):
+        raise RefusedError(
+            "a point says nothing of open surfaces, convex bodies, or a gap to be kept"
+        )
+    p, q = (of.at(row, share) for of in (walk.moving, walk.fixed))
+    placed = [(p.place(a), p.place(b), p.place(c)) for a, b, c in own.facets]
+    if not is_around(placed, q.place(point), 4 * walk.of((0, 0)).off()):
+        raise RefusedError("the point is not inside the first solid")
+    if not is_around(other.facets, point, Fraction()):
+        raise RefusedError("the point is not inside the second solid")
 
 
 def do_meet(couple: Couple, met: Any, row: int, share: Fraction) -> None:

@@ -144,6 +144,13 @@ pub enum How {
         /// What proves it.
         met: Met,
     },
+    /// A point is inside both solids, near these facets of theirs: of such as meet face to face.
+    Point {
+        /// The numbers of the facets, as pieces.
+        pieces: [usize; 2],
+        /// Where, in the frame of the second one.
+        point: [f64; 3],
+    },
     /// One is inside the other one, or a part of it is: only where the path begins.
     Inside,
 }

@@ -20,6 +20,7 @@ use super::super::course::Course;
 use super::super::span::Instant;
 use super::chain::{Chain, Most, RAISED, Rates};
 use super::mechanism::{JointPath, Place};
+use crate::body::solid::Solid;
 use crate::body::{ConvexPolyhedron, Placed};
 use crate::setting::TwoBodies;
 
@@ -70,6 +71,20 @@ impl<'a> Couple<'a> {
         let (here, next) = (self.ways[row], self.ways.get(row + 1).unwrap_or(&f64::INFINITY));
         let share = ((most - here) / (next - here)).clamp(0.0, 1.0);
         Place { row, share }.settled()
+    }
+
+    /// Both at a place, as solids, and how far computed places of them may be off each other.
+    pub(super) fn solids<'s>(
+        &self,
+        [moving, fixed]: [&'s Solid; 2],
+        place: Place,
+    ) -> (TwoBodies<'s, Solid>, f64) {
+        let [p, q] =
+            self.chains.each_ref().map(|chain| chain.at(self.path, place.row, place.share).0);
+        let bodies =
+            TwoBodies::new(Placed { body: moving, pose: p }, Placed { body: fixed, pose: q });
+        let off = bodies.noise().point() + self.chains[0].error + self.chains[1].error;
+        (bodies, off)
     }
 
     /// Pieces of the bodies from a row to the next one.

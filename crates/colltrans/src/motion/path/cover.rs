@@ -7,17 +7,20 @@
 //! Invariant. Up to where a cover ends, no two points of the pieces meet; it ends where it is to, or where two of
 //! the bodies' own pieces meet, or may.
 
-use super::super::answer::{Met, PlaneAt};
+use super::super::answer::PlaneAt;
 use super::super::bend::Climbing;
 use super::super::course::Course;
 use super::super::look::ConvexLooker;
+use super::super::solid::inside::Guesses;
 use super::super::soon::{Seen, soon};
-use super::answer::{Cover, Step};
+use super::answer::{Cover, How, Step};
 use super::couple::Couple;
 use super::follow::{Fate, Pieces, Way};
 use super::mechanism::Place;
 use super::shape::Shape;
 use crate::body::ConvexPolyhedron;
+use crate::body::solid::Solid;
+use crate::setting::TwoBodies;
 
 /// Steps of boxes are not smaller than such a share of their size.
 const SMALL: f64 = 0.25;
@@ -28,8 +31,8 @@ const MOST_SEEN: usize = 1 << 14;
 /// What ends the search.
 #[derive(Debug)]
 pub(super) enum Stop {
-    /// These pieces meet at a place.
-    Met(Place, [usize; 2], Met),
+    /// The bodies meet at a place.
+    Met(Place, How),
     /// They may.
     Blurred,
     /// Too many steps.
@@ -73,15 +76,16 @@ impl<'p> Search<'p> {
             return Some((until, stop));
         }
         let found = soon(share, known, 1.0, |share| self.seen(Place { row, share }));
-        Some(found.map_or((until, stop), |(share, (pieces, met))| {
+        Some(found.map_or((until, stop), |(share, how)| {
             let place = Place { row, share };
-            (place, Stop::Met(place, pieces, met))
+            (place, Stop::Met(place, how))
         }))
     }
 
     /// What the bodies are at one place.
-    fn seen(&mut self, place: Place) -> Seen<([usize; 2], Met)> {
+    fn seen(&mut self, place: Place) -> Seen<How> {
         let (mut stack, mut count, mut seen) = (vec![[0, 0]], 0, Seen::Apart);
+        let mut flush = Flush::new(self, place);
         while let Some(numbers) = stack.pop() {
             count += 1;
             if count > MOST_SEEN {
@@ -89,12 +93,15 @@ impl<'p> Search<'p> {
             }
             self.looker.forget();
             let pieces = self.pieces(numbers);
+            if let Some(flush) = &mut flush {
+                flush.take(numbers);
+            }
             if pieces.plane(&mut self.looker, place).is_some() {
                 continue;
             }
             let Some(which) = which_to_part(self.shapes, numbers) else {
                 if let Some(met) = pieces.met(&mut self.looker, place) {
-                    return Seen::Met((numbers, met));
+                    return Seen::Met(How::Pieces { pieces: numbers, met });
                 }
                 seen = Seen::Open;
                 continue;
@@ -105,7 +112,10 @@ impl<'p> Search<'p> {
                 below
             }));
         }
-        seen
+        match flush.and_then(|flush| flush.holding()) {
+            Some(how) if matches!(seen, Seen::Open) => Seen::Met(how),
+            _ => seen,
+        }
     }
 
     /// From a place to another one, or to the first stop.
@@ -132,7 +142,9 @@ impl<'p> Search<'p> {
         let reached = way.end().map_or(from, |(place, _)| place);
         let stop = match fate {
             Fate::Apart => None,
-            Fate::Met(place, met) => Some((place, Stop::Met(place, numbers, met))),
+            Fate::Met(place, met) => {
+                Some((place, Stop::Met(place, How::Pieces { pieces: numbers, met })))
+            }
             Fate::Blurred => Some((reached, Stop::Blurred)),
             Fate::Stalled => Some((reached, Stop::Stalled)),
         };
@@ -226,6 +238,42 @@ impl<'p> Search<'p> {
             }
             step *= 2.0;
         }
+    }
+}
+
+/// Two solids at a place, of which a point that is inside both is guessed where facets lie above each other.
+struct Flush<'p> {
+    shapes: [&'p Shape<'p>; 2],
+    bodies: TwoBodies<'p, Solid>,
+    off: f64,
+    guesses: Guesses,
+}
+
+impl<'p> Flush<'p> {
+    /// Of nothing but solids, if no gap is to be kept.
+    fn new(search: &Search<'p>, place: Place) -> Option<Self> {
+        let (couple, shapes) = (search.couple, search.shapes);
+        let solids = [shapes[0].solid()?, shapes[1].solid()?];
+        let (bodies, off) = couple.solids(solids, place);
+        let guesses = Guesses::default();
+        (couple.keep == 0.0).then_some(Self { shapes, bodies, off, guesses })
+    }
+
+    /// Takes two pieces into account, if they are facets.
+    fn take(&mut self, pieces: [usize; 2]) {
+        let [p, q] = [0, 1].map(|k| self.shapes[k].facet(pieces[k]));
+        if let (Some((own, f)), Some((other, g))) = (p, q) {
+            let TwoBodies { moving_matrix, fixed_matrix, offset, .. } = self.bodies;
+            let [f, g] = [f.map(|v| moving_matrix * v), g.map(|v| fixed_matrix * v + offset)];
+            self.guesses.take([own, other], [&f, &g], self.off);
+        }
+    }
+
+    /// A point that is inside both.
+    fn holding(&self) -> Option<How> {
+        let (facets, point) = self.guesses.holding(&self.bodies, self.off)?;
+        let pieces = [0, 1].map(|k| self.shapes[k].piece_of(facets[k]));
+        Some(How::Point { pieces, point: point.to_array() })
     }
 }
 

@@ -125,7 +125,21 @@ impl PathProofFile {
         Err(PathCheckError::Said { said: [lower, upper], proven })
     }
 
-    fn cast(&self) -> Result<PathCast<'_>, PathError> {
+    /// The names of its bodies.
+    pub fn names(&self) -> Vec<String> {
+        self.bodies.iter().map(|of| of.name.clone()).collect()
+    }
+
+    /// Its proof, checked or not.
+    pub const fn proof(&self) -> &PathProof {
+        &self.proof
+    }
+
+    /// What it is about.
+    ///
+    /// # Errors
+    /// Bodies that are none of a path.
+    pub fn cast(&self) -> Result<PathCast<'_>, PathError> {
         let body = |of| {
             let Carried { frame, pose, written, .. }: &Carried = of;
             PathBody { frame: *frame, placed: written.body.at(*pose) }

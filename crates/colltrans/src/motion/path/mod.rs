@@ -171,6 +171,16 @@ impl<'a> PathCast<'a> {
         &self.pairs
     }
 
+    /// The bodies, where they are in the frames that carry them.
+    pub fn bodies(&self) -> impl Iterator<Item = AnyPlaced<'a>> {
+        self.shapes.iter().map(|shape| shape.placed)
+    }
+
+    /// What the joints do.
+    pub const fn path(&self) -> &'a JointPath {
+        self.path
+    }
+
     /// Where a body is in the world, to rounding.
     pub fn pose(&self, body: usize, place: Place) -> Pose {
         let chain = self.chain(body, &self.mechanism.above(self.frames[body]));
@@ -259,8 +269,8 @@ impl<'a> PathCast<'a> {
     ) -> PathOutcome {
         match stopped {
             None => PathOutcome::Free(PathFree { proof, steps }),
-            Some((pair, Stop::Met(place, pieces, met))) => {
-                let meeting = PathMeeting { pair, place, how: How::Pieces { pieces, met } };
+            Some((pair, Stop::Met(place, how))) => {
+                let meeting = PathMeeting { pair, place, how };
                 if place == Place::START {
                     return self.overlapping(meeting, proof, steps);
                 }
@@ -325,7 +335,7 @@ impl<'a> PathCast<'a> {
         let couple = self.couple(pair);
         let shapes = self.shapes_of(pair);
         let pieces = match meeting.map(|meeting| &meeting.how) {
-            Some(How::Pieces { pieces, .. }) => *pieces,
+            Some(How::Pieces { pieces, .. } | How::Point { pieces, .. }) => *pieces,
             _ if shapes.iter().all(|shape| shape.count() == 1) => [0, 0],
             _ => return None,
         };

@@ -61,6 +61,26 @@ impl<'a> Shape<'a> {
         }
     }
 
+    /// The solid that it is.
+    pub(super) fn solid(&self) -> Option<&'a Solid> {
+        match self.placed {
+            ByKind::Convex(_) => None,
+            ByKind::Solid(placed) => Some(placed.body),
+        }
+    }
+
+    /// The facet that a piece is, and its corners.
+    pub(super) fn facet(&self, number: usize) -> Option<(u32, [DVec3; 3])> {
+        let solid = self.solid()?;
+        let facet = number.checked_sub(solid.nodes().len())?;
+        Some((facet as u32, corners_of(solid, facet)))
+    }
+
+    /// The piece that a facet of its solid is.
+    pub(super) fn piece_of(&self, facet: u32) -> usize {
+        self.solid().map_or(0, |solid| solid.nodes().len() + facet as usize)
+    }
+
     /// The pieces that a piece is made of; none, if it is itself one of the body's.
     pub(super) fn parts(&self, number: usize) -> Vec<usize> {
         let ByKind::Solid(placed) = self.placed else { return Vec::new() };
@@ -84,6 +104,10 @@ fn piece_of(solid: &Solid, number: usize) -> ConvexPolyhedron {
         let by = DVec3::splat(size * LARGER);
         return ConvexPolyhedron::cuboid(low - by, high + by).expect("a box that is wide");
     }
-    let corners = solid.triangles()[number - nodes.len()].map(|v| solid.vertices()[v as usize]);
-    ConvexPolyhedron::from_points(&corners).expect("the corners of a facet")
+    ConvexPolyhedron::from_points(&corners_of(solid, number - nodes.len()))
+        .expect("the corners of a facet")
+}
+
+fn corners_of(solid: &Solid, facet: usize) -> [DVec3; 3] {
+    solid.triangles()[facet].map(|v| solid.vertices()[v as usize])
 }

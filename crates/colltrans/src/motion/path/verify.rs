@@ -4,9 +4,11 @@
 //! what is between them; what is taken apart is so by all of its parts. That bodies meet is checked where they are
 //! then, and that none is inside another one where the path begins, anew.
 
+use glam::DVec3;
 use thiserror::Error;
 
 use super::super::answer::PlaneAt;
+use super::super::solid::inside;
 use super::super::verify::{Broken, chain, is_met};
 use super::answer::{Cover, How, PathMeeting, PathProof, Step, Stretch};
 use super::couple::Couple;
@@ -109,29 +111,31 @@ pub(super) fn verify(cast: &PathCast, proof: &PathProof) -> Result<[f64; 2], Pat
 
 fn meets(cast: &PathCast, meeting: &PathMeeting) -> Result<(), PathProofError> {
     let PathMeeting { pair, place, how } = meeting;
+    let (couple, shapes) = (cast.couple(*pair), cast.shapes_of(*pair));
     let fails = |reason| PathProofError::Meeting { pair: *pair, row: place.row, reason };
-    match how {
-        How::Inside => {
-            let starts = *place == Place::START;
-            let inside = starts && nested(cast, *pair).unwrap_or(false);
-            if inside { Ok(()) } else { Err(fails(None)) }
+    let are_own = |pieces: &[usize; 2]| {
+        (0..2).all(|k| pieces[k] < shapes[k].count() && shapes[k].parts(pieces[k]).is_empty())
+    };
+    let holds = match how {
+        How::Inside => *place == Place::START && nested(cast, *pair).unwrap_or(false),
+        How::Point { pieces, point } => {
+            are_own(pieces) && is_inside(&couple, shapes, *place, *point)
         }
-        How::Pieces { pieces, met } => {
-            let (couple, shapes) = (cast.couple(*pair), cast.shapes_of(*pair));
-            let own =
-                |k: usize| pieces[k] < shapes[k].count() && shapes[k].parts(pieces[k]).is_empty();
-            if !(own(0) && own(1)) {
-                return Err(fails(None));
-            }
+        How::Pieces { pieces, met } if are_own(pieces) => {
             let bodies = [shapes[0].piece(pieces[0]), shapes[1].piece(pieces[1])];
             let course = couple.course(bodies, place.row, [place.share; 2]);
-            match is_met(&course, place.share, met) {
-                Ok(true) => Ok(()),
-                Ok(false) => Err(fails(None)),
-                Err(reason) => Err(fails(Some(reason))),
-            }
+            is_met(&course, place.share, met).map_err(|reason| fails(Some(reason)))?
         }
-    }
+        How::Pieces { .. } => false,
+    };
+    if holds { Ok(()) } else { Err(fails(None)) }
+}
+
+/// Whether a point in the second one's frame is inside both solids at a place.
+fn is_inside(couple: &Couple, shapes: [&Shape; 2], place: Place, point: [f64; 3]) -> bool {
+    let [Some(p), Some(q)] = shapes.map(Shape::solid) else { return false };
+    let (bodies, off) = couple.solids([p, q], place);
+    couple.keep == 0.0 && inside::holds(&bodies, off, DVec3::from_array(point))
 }
 
 /// A pair whose cover is walked through.

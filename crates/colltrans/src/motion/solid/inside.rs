@@ -7,9 +7,9 @@
 
 use glam::DVec3;
 
-use super::super::span::Span;
 use super::tree::Tree;
-use crate::body::solid::crossing;
+use crate::body::Hull;
+use crate::body::solid::{Solid, crossing};
 use crate::number::range::{in_exact_range, without_traces};
 use crate::setting::TwoBodies;
 use crate::solve::solid::nearest::triangle::Corners;
@@ -20,9 +20,29 @@ const OFF: f64 = 4.0;
 /// How far beneath two facets in one plane a point is guessed, in what is asked for.
 const BENEATH: f64 = 2.0;
 
+/// A surface that goes round what is inside it, but for its open parts.
+pub(in crate::motion) trait Surface: Hull {
+    /// The facets of its closed parts, in the body's frame.
+    fn closed(&self) -> impl Iterator<Item = Corners>;
+}
+
+impl Surface for Solid {
+    fn closed(&self) -> impl Iterator<Item = Corners> {
+        let facets = self.triangles().iter().enumerate().filter(|(k, _)| !self.is_open(*k));
+        facets.map(|(_, corners)| corners.map(|v| self.vertices()[v as usize]))
+    }
+}
+
+impl Surface for Tree<'_> {
+    fn closed(&self) -> impl Iterator<Item = Corners> {
+        let facets = (0..self.solid.triangles().len()).filter(|k| !self.solid.is_open(*k));
+        facets.map(|k| self.facet(k as u32).corners)
+    }
+}
+
 /// Points that may be inside both, by two facets each: of such as face each other, and such as look the same way.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Guesses([Option<Guess>; 2]);
+pub(in crate::motion) struct Guesses([Option<Guess>; 2]);
 
 /// Where two facets lie above each other.
 #[derive(Debug, Clone, Copy)]
@@ -34,7 +54,7 @@ struct Guess {
 
 impl Guesses {
     /// Takes two facets in the setting frame into account: what has the largest area in common is kept.
-    pub(super) fn take(&mut self, triangles: [u32; 2], [f, g]: [&Corners; 2], off: f64) {
+    pub(in crate::motion) fn take(&mut self, triangles: [u32; 2], [f, g]: [&Corners; 2], off: f64) {
         let [own, other] = [normal(f), normal(g)];
         let size = other.length();
         let common = clipped(f, g, other);
@@ -53,12 +73,15 @@ impl Guesses {
         }
     }
 
-    /// One that is inside both, in the frame of the fixed body, and its facets.
-    pub(super) fn holding(&self, span: &Span<Tree>, time: f64) -> Option<([u32; 2], DVec3)> {
-        let bodies = span.instant(time).bodies;
+    /// One that is inside both, in the frame of the fixed body, and its facets; computed places may be off by so much.
+    pub(in crate::motion) fn holding<S: Surface>(
+        &self,
+        bodies: &TwoBodies<S>,
+        off: f64,
+    ) -> Option<([u32; 2], DVec3)> {
         self.0.into_iter().flatten().find_map(|Guess { point, triangles, .. }| {
             let point = bodies.fixed_matrix.transpose() * (point - bodies.offset);
-            holds(span, time, point).then_some((triangles, point))
+            holds(bodies, off, point).then_some((triangles, point))
         })
     }
 }
@@ -87,27 +110,27 @@ fn clipped(f: &Corners, g: &Corners, normal: DVec3) -> Vec<DVec3> {
     })
 }
 
-/// How far computed places of both bodies may be off each other.
-pub(super) fn off(span: &Span<Tree>, bodies: &TwoBodies<Tree>) -> f64 {
-    bodies.noise().point() + span.error
-}
-
-/// Whether a point that is fixed to the fixed body is inside both at a time, for certain.
-pub(super) fn holds(span: &Span<Tree>, time: f64, point: DVec3) -> bool {
-    let bodies = span.instant(time).bodies;
-    let off = OFF * off(span, &bodies);
+/// Whether a point that is fixed to the fixed body is inside both, for certain, if computed places of both may be off
+/// each other by so much.
+pub(in crate::motion) fn holds<S: Surface>(bodies: &TwoBodies<S>, off: f64, point: DVec3) -> bool {
+    let off = OFF * off;
     let there = bodies.fixed_matrix * point + bodies.offset;
     in_exact_range(without_traces(point))
         && in_exact_range(without_traces(there))
-        && is_inside(span.body(0), there, off, |v| bodies.moving_matrix * v)
-        && is_inside(span.body(1), point, off, |v| v)
+        && is_inside(bodies.moving, there, off, |v| bodies.moving_matrix * v)
+        && is_inside(bodies.fixed, point, off, |v| v)
 }
 
 /// Whether a closed surface goes round a point, and all of it is farther away.
-fn is_inside(tree: &Tree, point: DVec3, off: f64, place: impl Fn(DVec3) -> DVec3) -> bool {
+fn is_inside(
+    surface: &impl Surface,
+    point: DVec3,
+    off: f64,
+    place: impl Fn(DVec3) -> DVec3,
+) -> bool {
     let (point, mut winding) = (without_traces(point), 0);
-    for triangle in (0..tree.solid.triangles().len()).filter(|t| !tree.solid.is_open(*t)) {
-        let corners = tree.facet(triangle as u32).corners.map(|v| without_traces(place(v)));
+    for facet in surface.closed() {
+        let corners = facet.map(|v| without_traces(place(v)));
         if !is_away(corners.map(|v| v - point), off) {
             return false;
         }

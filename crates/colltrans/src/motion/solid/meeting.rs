@@ -6,7 +6,7 @@
 use super::super::look::Looker;
 use super::super::soon::Seen;
 use super::facets::{FacetLooker, FacetsMet, corners};
-use super::inside::{Guesses, off};
+use super::inside::Guesses;
 use super::search::{parted, split};
 use super::tree::Below;
 use super::window::{Frame, Part, Plane};
@@ -21,7 +21,8 @@ pub(super) fn seen(
     let snap = frame.snap(time);
     let mut all = Seen::Apart;
     let (mut stack, mut guesses) = (vec![[0, 0]], Guesses::default());
-    let may_be = off(frame.span, &frame.span.instant(time).bodies);
+    let bodies = frame.span.instant(time).bodies;
+    let off = bodies.noise().point() + frame.span.error;
     while let Some(at) = stack.pop() {
         let parts = [0, 1].map(|k| Part::of(trees[k], at[k]));
         let window = frame.window([&snap, &snap], parts.each_ref());
@@ -34,7 +35,7 @@ pub(super) fn seen(
         {
             let span = frame.span.part([f, g], [frame.span.from, frame.span.to]);
             let [own, other] = corners(&span.instant(time));
-            guesses.take([s, t], [&own, &other], may_be);
+            guesses.take([s, t], [&own, &other], off);
             if is_parted {
                 continue;
             }
@@ -50,7 +51,7 @@ pub(super) fn seen(
     }
     if let Seen::Open = all
         && frame.span.keep == 0.0
-        && let Some((pair, point)) = guesses.holding(frame.span, time)
+        && let Some((pair, point)) = guesses.holding(&bodies, off)
     {
         return Seen::Met((pair, FacetsMet::Inside { point: point.to_array() }));
     }

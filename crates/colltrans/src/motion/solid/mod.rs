@@ -12,7 +12,7 @@ mod clearance;
 mod facets;
 #[cfg(feature = "json")]
 mod file;
-mod inside;
+pub(super) mod inside;
 mod meeting;
 mod proof;
 mod search;

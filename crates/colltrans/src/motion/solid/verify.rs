@@ -125,7 +125,9 @@ fn meets(span: &Span<Tree>, FacetsMeeting { time, triangles, met }: &FacetsMeeti
         return false;
     }
     if let FacetsMet::Inside { point } = *met {
-        return span.keep == 0.0 && inside::holds(span, *time, DVec3::from_array(point));
+        let bodies = span.instant(*time).bodies;
+        let off = bodies.noise().point() + span.error;
+        return span.keep == 0.0 && inside::holds(&bodies, off, DVec3::from_array(point));
     }
     let [f, g] = [0, 1].map(|k| span.body(k).facet(triangles[k]));
     let part = span.part([&f, &g], [span.from, span.to]);

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::answer::PlaneAt;
 use super::arc;
-use super::bend::{SPARE, Supports, bend, most_bend, usual};
+use super::bend::{SPARE, Supports, across, bend, most_bend, usual};
 use super::span::{Instant, Span};
 use crate::body::Hull;
 use crate::body::motion::Moved;
@@ -56,6 +56,17 @@ pub(super) trait Course<'a> {
 
     /// How much of the gap that a plane leaves at the first of two times is lost until the second, at most.
     fn lost(&self, ends: [&Instant<'a, Self::Moved, Self::Body>; 2], normal: DVec3) -> f64;
+
+    /// A normal across the axis of a body that turns, to a point of the other one: of a plane beside all that its turn
+    /// sweeps, if that leaves one.
+    fn aside(
+        &self,
+        at: &Instant<'a, Self::Moved, Self::Body>,
+        points: [DVec3; 2],
+    ) -> Option<DVec3> {
+        let _ = (at, points);
+        None
+    }
 
     /// The same, if the plane is carried along by the moving body: little, where both spin as one.
     fn carried(
@@ -142,6 +153,19 @@ impl<'a, B: Hull> Course<'a> for Span<'a, B> {
 
     fn lost(&self, ends: [&Instant<'a, [Moved; 2], B>; 2], normal: DVec3) -> f64 {
         arc::lost(self, ends, normal)
+    }
+
+    fn aside(&self, at: &Instant<'a, [Moved; 2], B>, [p, q]: [DVec3; 2]) -> Option<DVec3> {
+        let bodies = &at.bodies;
+        let across = if self.piece(0).rate == 0.0 {
+            // From the fixed body's axis to a point of the moving one.
+            let to = bodies.moving_matrix * p - bodies.offset + at.moved[1].arm;
+            -across(to, self.piece(1).axis)
+        } else {
+            let to = bodies.fixed_matrix * q + bodies.offset + at.moved[0].arm;
+            across(to, self.piece(0).axis)
+        };
+        across.try_normalize()
     }
 
     fn carried(&self, from: &Instant<'a, [Moved; 2], B>, until: f64, normal: DVec3) -> f64 {

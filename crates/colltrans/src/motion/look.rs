@@ -7,10 +7,10 @@ use super::answer::{Met, MotionSteps};
 use super::bend::{Climbing, Supports};
 use super::course::Course;
 use super::span::Instant;
-use crate::answer::PlaneGap;
+use crate::answer::{Distance, PlaneGap};
 use crate::body::{ConvexPolyhedron, Hull};
-use crate::pair::Pair;
-use crate::setting::VertexPair;
+use crate::pair::{Pair, distance_from};
+use crate::setting::{TwoBodies, VertexPair};
 use crate::solve::nearest::{Difference, NearestPairs, nearly};
 
 /// Bodies that are farther apart than such a share of their size are looked at to such a share of what is beyond it: how
@@ -28,6 +28,8 @@ pub(super) struct Look<'a, M, B = ConvexPolyhedron> {
     pub(super) gap: f64,
     /// How fast the gap closes.
     pub(super) rate: f64,
+    /// Points that are near, in the frames of the moving and the fixed body.
+    pub(super) points: [DVec3; 2],
     /// Below this a gap is none, as rounding goes.
     pub(super) floor: f64,
 }
@@ -100,12 +102,9 @@ impl Looker<ConvexPolyhedron> for ConvexLooker {
             plane.map_or((DVec3::X, f64::NEG_INFINITY), |plane| (plane.normal, plane.gap));
         let gap = gap - keep - error;
         let (pairs, weights) = &points;
-        let rate = if gap > 0.0 {
-            closing(course, &at, at.bodies.weighted(pairs, weights), normal)
-        } else {
-            0.0
-        };
-        Look { at, normal, gap, rate, floor }
+        let points = at.bodies.weighted(pairs, weights);
+        let rate = if gap > 0.0 { closing(course, &at, points, normal) } else { 0.0 };
+        Look { at, normal, gap, rate, points, floor }
     }
 
     fn met<'a, C>(&mut self, course: &C, time: f64) -> Option<Met>
@@ -119,12 +118,17 @@ impl Looker<ConvexPolyhedron> for ConvexLooker {
             let near = pair.distance().ok()?.near;
             return (near.distance + error <= keep).then_some(Met::Near(near));
         }
-        let depth = pair.depth().ok()?;
+        let depth = pair.depth_beyond(error - keep).ok()?;
         (depth.lower > error - keep).then(|| Met::Deep(Box::new(depth)))
     }
 }
 
 impl ConvexLooker {
+    /// How far apart two bodies are that were looked at.
+    pub(super) fn distance(&mut self, bodies: TwoBodies) -> Option<Distance> {
+        distance_from(&Pair { bodies }, &mut self.pairs).ok()
+    }
+
     /// Nothing is known of the next bodies.
     pub(super) fn forget(&mut self) {
         self.pairs = NearestPairs::default();

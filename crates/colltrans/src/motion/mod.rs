@@ -80,7 +80,6 @@ pub use crate::body::motion::{Motion, Moving};
 use crate::body::{ConvexPolyhedron, Hull};
 use crate::number::noise::Noise;
 use crate::number::range::MAX_MAGNITUDE;
-use crate::pair::Pair;
 use crate::setting::check_keep;
 use crate::setting::error::{QueryError, Stalled};
 use crate::solid::StartOverlap;
@@ -182,11 +181,11 @@ impl MotionCast<'_> {
                 End::Free => {}
                 End::Met(time, met) => {
                     proof.meeting = Some(Meeting { time, met });
-                    return Ok(contact(&span, proof, steps));
+                    return Ok(contact(&span, &mut looker, proof, steps));
                 }
                 End::Blurred => {
                     check_fine(self.bodies(), span.error)?;
-                    return Ok(contact(&span, proof, steps));
+                    return Ok(contact(&span, &mut looker, proof, steps));
                 }
                 End::Stalled => return Err(QueryError::NotConverged { reason: Stalled::Motion }),
             }
@@ -217,13 +216,18 @@ fn check_fine<B: Hull>(bodies: [&B; 2], off: f64) -> Result<(), QueryError> {
 }
 
 /// What is to be said where the bodies meet, or may.
-fn contact(span: &Span, proof: MotionProof, steps: MotionSteps) -> MotionOutcome {
+fn contact(
+    span: &Span,
+    looker: &mut ConvexLooker,
+    proof: MotionProof,
+    steps: MotionSteps,
+) -> MotionOutcome {
     let lower = proof.spans.iter().flatten().last().map_or(0.0, |plane| plane.time);
     let upper = proof.meeting.as_ref().map_or(f64::INFINITY, |meeting| meeting.time);
     let bodies = span.instant(lower).bodies;
     let poses = [bodies.moving_placed().pose, bodies.fixed_placed().pose];
     // What is proven does not hang on it.
-    let near = Pair { bodies }.distance().ok();
+    let near = looker.distance(bodies);
     let points = near.map(|near| [near.on_moving, near.on_fixed]);
     let (normal, features) = near.map_or((None, None), |near| (near.normal, near.features));
     let starts = upper == 0.0;

@@ -8,8 +8,8 @@
 //! first time seen at which the bodies meet or are not told apart; those that wait on the stack are planes
 //! between left and `end`, the earliest on top.
 //!
-//! Where a step is to go: as far as the bound reaches, if the gap closes as it does now; but not beyond where
-//! it closes, by Newton: from the left first a little before that, so that a plane is there and the next step
+//! Where a step is to go: as far as the bound reaches, if the gap goes on as a parabola through what the last two
+//! planes saw, a little lower; but not beyond where that closes, so that a plane is there and the next step
 //! is quadratically nearer; when left is as near as rounding tells a little beyond, where the bodies meet.
 //! What is not joined waits, and time is halved. A search never ends because an estimate is small.
 
@@ -26,8 +26,20 @@ const MOST: usize = 20_000;
 /// Which share of the step that the bound allows is taken.
 const STEP: f64 = 0.95;
 
+/// By which share of `K` the gap may close faster than it was seen to.
+const DOUBT: f64 = 0.5;
+
+/// A gap that is so much smaller than the one before closes for good.
+const FELL: f64 = 0.1;
+
+/// The next look is beyond a contact from so many floors on: those before aim at one.
+const AT_FLOOR: f64 = 1.5;
+
+/// It is so many pads beyond, where a depth can be told from what places may be off.
+const BEYOND_FLOOR: f64 = 1.5;
+
 /// A search ends when the bodies meet so many pads after the last plane.
-const WIDTH: f64 = 40.0;
+const WIDTH: f64 = 4.0;
 
 /// Bodies with more vertices have none looked at on its arc.
 const ARCS: usize = 1_000;
@@ -35,10 +47,11 @@ const ARCS: usize = 1_000;
 /// Steps of which so many would be needed are short.
 const SHORT: f64 = 64.0;
 
-/// One plane alone is tried so many steps ahead, and may lose such a share of its gap, for the next one to
-/// lead on.
+/// One plane alone is tried so many steps ahead, and may lose such a share of its gap: for the next one to
+/// lead on, or at the end of a span.
 const SWING: f64 = 4.0;
 const KEPT: f64 = 0.75;
+const SPENT: f64 = 0.999;
 
 /// How often a time after a blur is doubled to find bodies that meet.
 const BEYOND: i32 = 48;
@@ -81,8 +94,17 @@ struct Search<'s, 'a, C: Course<'a>, L> {
     stack: Vec<Look<'a, C::Moved, C::Body>>,
     end: f64,
     ahead: Ahead,
-    /// `K`.
+    /// `K`, and what it usually is at most.
     curvature: f64,
+    usual: f64,
+    /// How the gap goes on, at least: its second derivative.
+    slowing: f64,
+    /// Whether left's gap is far smaller than that of the plane before.
+    fell: bool,
+    /// Whether the last look before a later one was no plane.
+    missed: bool,
+    /// Whether it was asked in vain if the bodies meet just beyond left.
+    is_asked: bool,
 }
 
 /// Proves as much of a span as it can.
@@ -92,6 +114,7 @@ pub(super) fn advance<'a, C: Course<'a>, L: Looker<C::Body>>(
 ) -> Advanced<L::Met> {
     let [from, to] = course.times();
     let left = looker.look(course, from);
+    let usual = course.usual();
     let mut search = Search {
         course,
         planes: Vec::new(),
@@ -99,7 +122,12 @@ pub(super) fn advance<'a, C: Course<'a>, L: Looker<C::Body>>(
         stack: Vec::new(),
         end: to,
         ahead: Ahead::Nothing,
-        curvature: course.usual(),
+        curvature: usual,
+        usual,
+        slowing: -usual,
+        fell: false,
+        missed: false,
+        is_asked: false,
         looker,
     };
     let end = if left.is_apart() {
@@ -128,6 +156,9 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
             if self.ahead == Ahead::Nothing && self.left.time() >= self.end {
                 return End::Free;
             }
+            if let Some((time, met)) = self.meets_soon() {
+                return End::Met(time, met);
+            }
             if self.ahead == Ahead::Something && self.is_narrow() {
                 return self.met_from(self.end);
             }
@@ -150,6 +181,14 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
 
     fn go_on(&mut self, look: &Look<'a, C::Moved, C::Body>) {
         self.note(look, false);
+        let h = look.time() - self.left.time();
+        if h > 0.0 {
+            let k = self.curvature;
+            let seen = ((self.left.rate - look.rate) / h).min(k);
+            self.slowing = seen - DOUBT * k.max(-seen);
+            self.fell = look.gap < FELL * self.left.gap;
+            self.missed = false;
+        }
         self.left = *look;
     }
 
@@ -164,7 +203,7 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
         let found = self.course.bend([&left.at, &next.at], normals, enough, &L::SUPPORTS);
         let h = next.time() - left.time();
         if h > 0.0 {
-            self.curvature = (found.max(0.0) / h / h).max(1e-3 * self.course.usual());
+            self.curvature = (found.max(0.0) / h / h).max(1e-3 * self.usual);
         }
         h == 0.0 || found <= enough || self.is_carried(left, next.time())
     }
@@ -216,6 +255,7 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
             self.stack.push(look);
         } else {
             self.stack.clear();
+            self.missed = self.ahead == Ahead::Something;
             (self.end, self.ahead) = (time, Ahead::Something);
         }
     }
@@ -236,59 +276,96 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
 
     /// Where to look next.
     fn next_time(&self) -> f64 {
-        let Look { gap, rate, floor, .. } = self.left;
         let (from, end) = (self.left.time(), self.end);
         if self.ahead == Ahead::Nothing && self.is_carried(&self.left, end) {
             return end;
         }
-        let root = gap.sqrt();
-        let c = STEP * (0.5 * self.curvature).sqrt();
-        let step = if rate > c * root {
-            let off = gap / rate;
-            let error = self.curvature * off * off / (2.0 * rate);
-            if gap <= 2.0 * floor {
-                off + (2.0 * error).max(2.0 * self.pad())
-            } else {
-                let before = off - (2.0 * error).max(self.pad());
-                if before > 0.0 { before } else { 0.5 * off }
-            }
-        } else if c > 0.0 {
-            (2.0 * c * root - rate) / (c * c)
-        } else {
-            f64::INFINITY
-        };
-        let time = from + step;
+        let time = from + if self.is_at_floor() { self.beyond() } else { self.step() };
         let between = |time: f64| time > from && time < end;
         match self.ahead {
             Ahead::Nothing if time >= end || time.is_nan() => end,
             _ if between(time) => time,
-            _ => (from + 0.5 * (end - from)).max(from.next_up()).min(end),
+            _ => (end - self.back_from_end()).max(from.next_up()).min(end),
         }
     }
 
-    /// Goes on by the plane at left alone, where that leads farther than the bound: tried from a few steps
-    /// on, and twice as far as long as that is proven.
+    /// How far before the end to look, where the gap seems to close only there or later: as far as that may be wrong,
+    /// if the last such look was not so wrong, and at most halfway.
+    fn back_from_end(&self) -> f64 {
+        let rest = self.end - self.left.time();
+        let off = DOUBT * self.curvature.max(-self.slowing) * rest * rest / self.left.rate;
+        let half = 0.5 * rest;
+        if self.missed || off.is_nan() || off <= 0.0 { half } else { off.max(self.pad()).min(half) }
+    }
+
+    /// As far as the bound reaches, but to a little before the gap closes.
+    fn step(&self) -> f64 {
+        let Look { gap, rate, .. } = self.left;
+        let (root, c) = (gap.sqrt(), STEP * (0.5 * self.curvature).sqrt());
+        let closed = closes_in(gap, rate, self.slowing);
+        if c * closed <= root {
+            let before = closed - self.pad();
+            if before > 0.0 { before } else { 0.5 * closed }
+        } else {
+            // Where the root of the gap that is left is `c` times the way less that of this one.
+            (2.0 * c * root - rate) / (c * c - 0.5 * self.slowing)
+        }
+    }
+
+    /// Whether left is so near to a contact that the next look is beyond it.
+    fn is_at_floor(&self) -> bool {
+        let Look { gap, rate, floor, .. } = self.left;
+        gap <= AT_FLOOR * floor && rate > STEP * (0.5 * self.curvature * gap).sqrt()
+    }
+
+    /// A little beyond where a gap of hardly more than nothing closes.
+    fn beyond(&self) -> f64 {
+        let Look { gap, rate, .. } = self.left;
+        let off = gap / rate;
+        let error = self.curvature * off * off / (2.0 * rate);
+        off + (2.0 * error).max(BEYOND_FLOOR * self.pad())
+    }
+
+    /// That the bodies meet just beyond a left that is as near as rounding tells; asked once.
+    fn meets_soon(&mut self) -> Option<(f64, L::Met)> {
+        if self.is_asked || !self.is_at_floor() {
+            return None;
+        }
+        let width = self.beyond();
+        let time = self.left.time() + width;
+        if !(time > self.left.time() && time < self.end && width <= WIDTH * self.pad()) {
+            return None;
+        }
+        self.is_asked = true;
+        Some((time, self.looker.met(self.course, time)?))
+    }
+
+    /// Goes on by the plane at left alone, or by one across the way from an axis, where that leads farther than the
+    /// bound: to the end, or from a few steps on twice as far as long as that is proven.
     fn swings_on(&mut self) -> bool {
         let (from, course) = (self.left.time(), self.course);
         let Look { gap, rate, .. } = self.left;
         let corners = course.arcs();
-        let step = self.next_time() - from;
-        let (end, rest) = (self.end, self.end - from);
-        // The sum of both may be rounded to before the end.
-        let at = |length: f64| if length >= rest { end } else { from + length };
-        let mut length = (SWING * step).min(rest);
-        // As fast as the gap closes now, there is not enough left of it; but steps that are so short are
-        // many.
-        let closes = rate * length >= KEPT * gap && SHORT * step > rest;
-        if corners == 0 || closes || corners > ARCS {
+        if corners == 0 || corners > ARCS {
             return false;
         }
-        let mut farthest = None;
-        loop {
-            let next = course.instant(at(length));
-            if course.lost([&self.left.at, &next], self.left.normal) >= KEPT * gap {
-                break;
-            }
+        let step = self.next_time() - from;
+        let (end, rest) = (self.end, self.end - from);
+        let first = (SWING * step).min(rest);
+        // As fast as the gap closes now, there is not enough left of it; but steps that are so short are
+        // many, if they do not lead to where it closes.
+        if rate * first >= KEPT * gap && (SHORT * step > rest || self.fell) {
+            return false;
+        }
+        if self.ahead == Ahead::Nothing && self.swings_to_end() {
+            return true;
+        }
+        // The sum of both may be rounded to before the end.
+        let at = |length: f64| if length >= rest { end } else { from + length };
+        let (mut length, mut farthest) = (first, None);
+        while course.lost([&self.left.at, &course.instant(at(length))], self.left.normal)
+            < KEPT * gap
+        {
             farthest = Some(length);
             if length >= rest {
                 break;
@@ -296,6 +373,34 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
             length = (2.0 * length).min(rest);
         }
         farthest.is_some_and(|length| self.swing_to(at(length)))
+    }
+
+    /// Ends the span by one plane alone.
+    fn swings_to_end(&mut self) -> bool {
+        let (left, course) = (self.left, self.course);
+        let at = course.instant(self.end);
+        let ends_with = |look: Look<'a, C::Moved, C::Body>| {
+            if course.lost([&left.at, &at], look.normal) >= SPENT * look.gap {
+                return None;
+            }
+            let gap = course.proven_gap(&at, look.normal);
+            (gap > 0.0).then_some((look, gap))
+        };
+        let aside = || {
+            let normal = course.aside(&left.at, left.points)?;
+            let gap = course.proven_gap(&left.at, normal);
+            (gap > 0.0).then_some(Look { normal, gap, ..left })
+        };
+        let Some((first, gap)) = ends_with(left).or_else(|| ends_with(aside()?)) else {
+            return false;
+        };
+        if first.normal != left.normal {
+            self.note(&first, false);
+        }
+        let last = Look { at, gap, rate: 0.0, ..first };
+        self.note(&last, true);
+        self.left = last;
+        true
     }
 
     fn swing_to(&mut self, time: f64) -> bool {
@@ -330,4 +435,11 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
         }
         End::Blurred
     }
+}
+
+/// When a gap closes that does so at a rate, which changes as fast as this; infinity if it does not.
+fn closes_in(gap: f64, rate: f64, slowing: f64) -> f64 {
+    let square = rate * rate - 2.0 * slowing * gap;
+    let sum = rate + square.max(0.0).sqrt();
+    if square >= 0.0 && sum > 0.0 { 2.0 * gap / sum } else { f64::INFINITY }
 }

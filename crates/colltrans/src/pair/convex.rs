@@ -116,6 +116,11 @@ impl Pair<'_> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn depth(&self) -> Result<Depth, QueryError> {
+        self.depth_beyond(f64::INFINITY)
+    }
+
+    /// The same with bounds as near to each other as they are when the lower one is more than so much.
+    pub(crate) fn depth_beyond(&self, enough: f64) -> Result<Depth, QueryError> {
         let difference = Difference::new(&self.bodies);
         let mut found = nearest(&difference, &difference.first_pair(), None);
         found.supports += 1;
@@ -124,10 +129,10 @@ impl Pair<'_> {
             let steps = found.steps();
             return Ok(Depth { lower: 0.0, upper: 0.0, direction, enclosure, steps });
         }
-        let best = deepest(&difference, &found);
+        let best = deepest(&difference, &found, enough);
         let (lower, upper) = (best.lower, best.upper);
         let tolerance = WIDEST * difference.noise.point() + best.beyond;
-        if upper - lower > tolerance {
+        if lower <= enough && upper - lower > tolerance {
             let reason = Stalled::Distance { lower, upper, tolerance };
             return Err(QueryError::NotConverged { reason });
         }

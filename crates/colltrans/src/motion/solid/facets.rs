@@ -73,15 +73,11 @@ impl Looker<Facet> for FacetLooker {
         let [f, g] = corners(&at);
         let found = triangle::nearest(&f, &g, noise);
         let gap = found.gap - GAP * noise - course.keep() - course.error();
-        let rate = if gap > 0.0 {
-            let [p, q] = [at.bodies.moving.corners, at.bodies.fixed.corners];
-            let points =
-                [triangle::mean(&p, found.weights[0]), triangle::mean(&q, found.weights[1])];
-            closing(course, &at, points, found.normal)
-        } else {
-            0.0
-        };
-        Look { at, normal: found.normal, gap, rate, floor: 4.0 * noise + course.error() }
+        let [p, q] = [at.bodies.moving.corners, at.bodies.fixed.corners];
+        let points = [triangle::mean(&p, found.weights[0]), triangle::mean(&q, found.weights[1])];
+        let (normal, floor) = (found.normal, 4.0 * noise + course.error());
+        let rate = if gap > 0.0 { closing(course, &at, points, normal) } else { 0.0 };
+        Look { at, normal, gap, rate, points, floor }
     }
 
     fn met<'a, C>(&mut self, course: &C, time: f64) -> Option<FacetsMet>

@@ -80,8 +80,8 @@ struct Polytope<'a> {
     rim: Vec<[u32; 2]>,
 }
 
-/// How deep the bodies overlap, from what was found of their distance.
-pub(crate) fn deepest(difference: &Difference, found: &Found) -> Deepest {
+/// How deep the bodies overlap, from what was found of their distance: at least, as soon as that is more than `enough`.
+pub(crate) fn deepest(difference: &Difference, found: &Found, enough: f64) -> Deepest {
     let mut best = Deepest {
         outward: DVec3::X,
         upper: f64::INFINITY,
@@ -94,20 +94,20 @@ pub(crate) fn deepest(difference: &Difference, found: &Found) -> Deepest {
         best.note(-plane.gap.normal, -plane.gap.gap, plane.beyond);
     }
     let pairs: Vec<VertexPair> = found.simplex().collect();
-    grow_from(difference, &pairs, &mut best);
-    if best.upper - best.lower > OPEN * difference.noise.point() {
+    grow_from(difference, &pairs, &mut best, enough);
+    if best.lower <= enough && best.upper - best.lower > OPEN * difference.noise.point() {
         // Slivers may leave no way to grow; from elsewhere there are others.
         let first = difference.lowest(-best.outward, None).pair;
         best.supports += 1;
-        grow_from(difference, &[first], &mut best);
+        grow_from(difference, &[first], &mut best, enough);
     }
     best
 }
 
 /// Grows a polytope that begins with some pairs, and notes what it proves.
-fn grow_from(difference: &Difference, pairs: &[VertexPair], best: &mut Deepest) {
+fn grow_from(difference: &Difference, pairs: &[VertexPair], best: &mut Deepest, enough: f64) {
     if let Some(mut polytope) = Polytope::begin(difference, pairs, best) {
-        polytope.grow(best);
+        polytope.grow(best, enough);
         polytope.prove(best);
     }
 }
@@ -223,13 +223,14 @@ impl<'a> Polytope<'a> {
         corners.map(|k| normal.dot(self.points[k as usize])).into_iter().fold(f64::MAX, f64::min)
     }
 
-    /// Grows where the polytope is nearest to the origin, until its faces there are those of `M`.
-    fn grow(&mut self, best: &mut Deepest) {
+    /// Grows where the polytope is nearest to the origin, until its faces there are those of `M`, or far enough.
+    fn grow(&mut self, best: &mut Deepest, enough: f64) {
         let noise = self.difference.noise.point();
+        let enough = enough + 2.0 * self.difference.noise.height_lowered();
         for _ in 0..MOST {
             let nearest = self.nearest();
             let Triangle { corners, normal, height, done, .. } = self.triangles[nearest];
-            if best.upper - height <= 2.5 * noise || best.upper == 0.0 {
+            if best.upper - height <= 2.5 * noise || best.upper == 0.0 || height > enough {
                 return;
             }
             if done {

@@ -43,13 +43,12 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
     let mut mesh = Mesh::default();
     (mesh.unit, mesh.up) = asset(&root)?;
     let scene = root.first("scene").and_then(|scene| scene.first("instance_visual_scene"));
-    let scene = match scene {
-        Some(shown) => reader.named(shown)?,
-        None => {
-            let library = root.first("library_visual_scenes");
-            let first = library.and_then(|library| library.first("visual_scene"));
-            first.ok_or_else(|| at(&root, "it has no scene"))?
-        }
+    let scene = if let Some(shown) = scene {
+        reader.named(shown)?
+    } else {
+        let library = root.first("library_visual_scenes");
+        let first = library.and_then(|library| library.first("visual_scene"));
+        first.ok_or_else(|| at(&root, "it has no scene"))?
     };
     for node in scene.all("node") {
         reader.node(node, DAffine3::IDENTITY, 0, &mut mesh)?;
@@ -439,7 +438,7 @@ fn transform(node: &Element) -> Result<DAffine3, Fault> {
             }
             _ => continue,
         };
-        all = all * own;
+        all *= own;
     }
     if all.is_finite() { Ok(all) } else { Err(at(node, "its transform is not finite")) }
 }

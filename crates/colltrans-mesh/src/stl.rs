@@ -172,7 +172,7 @@ fn parse_text(text: &str) -> Result<Mesh, Fault> {
                 return Err(at(format!("a loop of {} vertices; 3 are needed", corners.len())));
             }
             "endloop" => push_face(&mut mesh, &corners)?,
-            "solid" => name = line.trim_start()[keyword.len()..].trim().to_owned(),
+            "solid" => line.trim_start()[keyword.len()..].trim().clone_into(&mut name),
             "endsolid" => mesh.groups.end(&name, mesh.faces.len()),
             _ => {}
         }

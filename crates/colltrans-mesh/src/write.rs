@@ -15,9 +15,12 @@ use crate::mesh::Mesh;
 /// # Errors
 /// The extension names no format that can be written, a face is no triangle in an STL
 /// file, or the file cannot be written.
-#[expect(
-    clippy::match_wildcard_for_single_variants,
-    reason = "a new format is read before it is written"
+#[cfg_attr(
+    not(feature = "dae"),
+    expect(
+        clippy::match_wildcard_for_single_variants,
+        reason = "a new format is read before it is written"
+    )
 )]
 pub fn write(mesh: &Mesh, path: impl AsRef<Path>) -> Result<(), Error> {
     let path = path.as_ref();

@@ -128,8 +128,8 @@ pub(super) fn assembled(
     let alone = drafts.len() == 1;
     let mut made = Made::default();
     made.names.take(drafts.iter().map(|draft| &draft.name));
-    for draft in &drafts {
-        made.draft(&source, draft, alone)?;
+    for draft in drafts {
+        made.draft(&source, &draft, alone)?;
         if made.parts.len() > MOST_PLACED {
             let reason = format!("more than {MOST_PLACED} bodies are placed");
             return Err(contents(path, "bodies", reason));

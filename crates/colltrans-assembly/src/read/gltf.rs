@@ -348,7 +348,7 @@ struct Shown<'a> {
     meshes: Vec<(usize, DAffine3)>,
 }
 
-impl<'a> Reader<'a> {
+impl Reader<'_> {
     /// A node and all below it; a part of `whole`, if that is one part.
     fn node(
         &mut self,

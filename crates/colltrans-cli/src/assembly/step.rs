@@ -76,7 +76,7 @@ fn output(mut child: Child) -> io::Result<(Vec<u8>, Vec<String>, ExitStatus)> {
                 let Ok(line) = line else { break };
                 let line = String::from_utf8_lossy(&line).trim_end().to_owned();
                 if !line.is_empty() {
-                    bar.set_message(shown(&line).to_string());
+                    bar.set_message(shown(&line));
                     lines.push(line);
                 }
             }

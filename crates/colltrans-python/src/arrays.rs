@@ -164,9 +164,9 @@ fn wrong_shape(array: &Bound<'_, PyAny>, name: &str, wanted: &str) -> PyErr {
 }
 
 /// An array that says that writing to it would change nothing.
-pub(crate) fn read_only<'py, T: Element, D: numpy::ndarray::Dimension>(
-    array: Bound<'py, PyArray<T, D>>,
-) -> Bound<'py, PyArray<T, D>> {
+pub(crate) fn read_only<T: Element, D: numpy::ndarray::Dimension>(
+    array: Bound<'_, PyArray<T, D>>,
+) -> Bound<'_, PyArray<T, D>> {
     (*array.readwrite().make_nonwriteable()).clone()
 }
 

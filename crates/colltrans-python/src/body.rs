@@ -49,15 +49,6 @@ impl From<colltrans::ConvexPolyhedron> for ConvexPolyhedron {
     }
 }
 
-/// From so many vertices of both bodies on, a question without a search through facets takes several
-/// microseconds: other threads of Python may run meanwhile, though giving the lock away and taking it
-/// back costs some hundred nanoseconds, and more where they want it.
-const LARGE: usize = 1_000;
-
-pub(crate) fn are_large(bodies: &[&ConvexPolyhedron; 2]) -> bool {
-    bodies.iter().map(|body| body.0.vertices().len()).sum::<usize>() >= LARGE
-}
-
 /// A body as JSON, and its notes.
 type Read = (String, Vec<String>);
 

@@ -393,7 +393,7 @@ impl Answer for PairAnswer {
 
 /// The distance.
 pub(crate) fn distance_of<'py>(query: &Bound<'py, Pair>) -> PyResult<Bound<'py, PyAny>> {
-    let found: DistanceOf = Pair::ask(query, |pair| {
+    let found: DistanceOf = Pair::ask(query, false, |pair| {
         Ok(match pair {
             Of::Convex(pair) => Of::Convex(pair.distance()?),
             Of::Solids(pair) => Of::Solids(pair.distance()?),
@@ -404,7 +404,7 @@ pub(crate) fn distance_of<'py>(query: &Bound<'py, Pair>) -> PyResult<Bound<'py, 
 
 /// The depth of either kind.
 pub(crate) fn depth_of<'py>(query: &Bound<'py, Pair>) -> PyResult<Bound<'py, PyAny>> {
-    let found: PairAnswer = Pair::ask(query, |pair| {
+    let found: PairAnswer = Pair::ask(query, true, |pair| {
         Ok(match pair {
             Of::Convex(pair) => PairAnswer::Depth(pair.depth()?),
             Of::Solids(pair) => PairAnswer::OverlapDepth(pair.overlap_depth()?),
@@ -415,7 +415,7 @@ pub(crate) fn depth_of<'py>(query: &Bound<'py, Pair>) -> PyResult<Bound<'py, PyA
 
 /// Whether the bodies are closer than a length.
 pub(crate) fn within_of<'py>(query: &Bound<'py, Pair>, length: f64) -> PyResult<Bound<'py, PyAny>> {
-    let found = Pair::ask(query, move |pair| {
+    let found = Pair::ask(query, false, move |pair| {
         Ok(match pair {
             Of::Convex(pair) => Of::Convex(pair.within_counted(length)?),
             Of::Solids(pair) => Of::Solids(pair.within_counted(length)?),

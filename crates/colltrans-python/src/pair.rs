@@ -5,7 +5,6 @@ use colltrans::{ConvexPolyhedron, ProofFile, QueryError, Solid};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::body::are_large;
 use crate::errors::{OrRaise, error};
 use crate::frozen::{Options, Shown, html, show};
 use crate::pose::{Pose, pose};
@@ -74,9 +73,11 @@ impl Pair {
         pair.or_raise()
     }
 
-    /// An answer of the library's; without the interpreter's lock where it may take long.
+    /// An answer of the library's; without the interpreter's lock where it may take long, as between
+    /// solids and, `is_long`, where convex bodies are asked for more than a microsecond's work.
     pub(crate) fn ask<T: Send + 'static>(
         slf: &Bound<'_, Self>,
+        is_long: bool,
         question: impl FnOnce(&Asked<'_>) -> Result<T, QueryError> + Send + 'static,
     ) -> PyResult<T> {
         let query = slf.clone().unbind();
@@ -88,7 +89,7 @@ impl Pair {
             question(&query.get().asked()?).map_err(failed)
         };
         match &slf.get().bodies {
-            [Piece::Convex(p), Piece::Convex(q)] if !are_large(&[p.get(), q.get()]) => work(),
+            [Piece::Convex(_), Piece::Convex(_)] if !is_long => work(),
             [Piece::Convex(_), Piece::Convex(_)] => slf.py().detach(work),
             bodies => patiently(slf.py(), bodies, work),
         }

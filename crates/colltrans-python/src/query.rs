@@ -10,7 +10,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::arrays::{row, vector};
-use crate::body::{ConvexPolyhedron, are_large};
+use crate::body::ConvexPolyhedron;
 use crate::errors::{OrRaise, error, query_error};
 use crate::frozen::{Options as Shows, Shown, html, show};
 use crate::pose::{Pose, pose};
@@ -101,9 +101,9 @@ impl Cast {
         question: impl FnOnce(&colltrans::Cast<'a>) -> Result<T, QueryError> + Send,
     ) -> PyResult<T> {
         let work = || self.cast().and_then(|cast| question(&cast));
-        let is_long = self.options.keep != 0.0
-            || self.options.solver == colltrans::Solver::Cta
-            || are_large(&[self.moving.get(), self.fixed.get()]);
+        // All others take about a microsecond, of bodies of any size: waiting for the lock would take longer.
+        let options = &self.options;
+        let is_long = options.keep != 0.0 || options.solver == colltrans::Solver::Cta;
         let found = if is_long { py.detach(work) } else { work() };
         found.map_err(|what| self.error(&what))
     }

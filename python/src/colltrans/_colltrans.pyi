@@ -1031,7 +1031,7 @@ class Solid:
         scale: float = 1.0,
         merge_tolerance: float | None = None,
     ) -> Solid:
-        """Reads a part from a mesh file: STL, OBJ, PLY or OFF.
+        """Reads a part from a mesh file: STL, OBJ, PLY, OFF or COLLADA.
 
         Parameters
         ----------
@@ -3199,7 +3199,7 @@ def read(
     convex_tolerance: float | None = None,
     merge_tolerance: float | None = None,
 ) -> ConvexPolyhedron:
-    """Reads a convex body from a mesh file: STL, OBJ, PLY or OFF.
+    """Reads a convex body from a mesh file: STL, OBJ, PLY, OFF or COLLADA.
 
     Parameters
     ----------

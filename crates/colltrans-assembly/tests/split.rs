@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use colltrans_assembly::plan::Plan;
 use colltrans_assembly::read::{ReadOptions, Split, read_from};
-use colltrans_assembly::{Assembly, Bodies, Fit, ReadError, Room};
+use colltrans_assembly::{Assembly, Bodies, Fit, Part, ReadError, Room};
 use colltrans_testkit::shapes::{Mesh, block};
 use common::{CUBE, mesh_of_3mf, package};
 
@@ -114,7 +114,7 @@ fn a_manifest_says_it_of_each_part() {
     ]);
     let read = open("m.toml", &files, Split::Auto).unwrap();
     assert_eq!(parts(&read), [("a", 12), ("b/x", 6), ("b/y", 6)]);
-    assert!(read.parts().iter().skip(1).all(|part| part.fixed()));
+    assert!(read.parts().iter().skip(1).all(Part::fixed));
     assert_eq!(read.parts()[2].solid().bounds().low.to_array(), [4.0, 4.0, 13.0]);
     let all = open("m.toml", &files, Split::Bodies).unwrap();
     assert_eq!(parts(&all), [("a/x", 6), ("a/y", 6), ("b/x", 6), ("b/y", 6)]);

@@ -446,9 +446,11 @@ fn faults_of_collada_name_their_line() {
     let triangles =
         |p: &str| list(&format!("<triangles count=\"1\">{VERTEX}<p>{p}</p></triangles>"));
     let ring = "<node id=\"r\"><instance_node url=\"#r\"/></node>";
-    let doubling: String = (0..20)
-        .map(|k| format!("<node id=\"d{k}\"><instance_node url=\"#d{0}\"/><instance_node url=\"#d{0}\"/></node>", k + 1))
-        .collect();
+    let twice = |k: u32| {
+        let next = format!("<instance_node url=\"#d{}\"/>", k + 1);
+        format!("<node id=\"d{k}\">{next}{next}</node>")
+    };
+    let doubling = (0..20).map(twice).collect::<Vec<String>>().concat();
     let cases = [
         (triangles("0 1"), "2 corners do not make triangles"),
         (triangles("0 1 5"), "names vertex 5 of 5"),

@@ -1,5 +1,6 @@
 //! STEP files: the converter that is called, and what is said where there is none; and several bodies in one file.
 
+use std::fmt::Write as _;
 use std::path::Path;
 
 use crate::support::{answered, colltrans, folder, json, refused, stderr};
@@ -74,17 +75,17 @@ fn several_bodies_are_parts_or_one() {
     let cube = std::fs::read_to_string(at.join("cube.off")).unwrap();
     let mut text = String::new();
     for (name, z) in [("low", 0.0), ("high", 1.0)] {
-        text += &format!("o {name}\n");
+        writeln!(text, "o {name}").unwrap();
         for line in cube.lines().skip(2).take(8) {
             let [x, y, own] =
                 [0, 1, 2].map(|k| line.split(' ').nth(k).unwrap().parse::<f64>().unwrap());
-            text += &format!("v {x} {y} {}\n", own + z);
+            writeln!(text, "v {x} {y} {}", own + z).unwrap();
         }
         for line in cube.lines().skip(10) {
             // Counted from the end.
             let corner = |word: &str| (word.parse::<i64>().unwrap() - 8).to_string();
             let corners: Vec<String> = line.split(' ').skip(1).map(corner).collect();
-            text += &format!("f {}\n", corners.join(" "));
+            writeln!(text, "f {}", corners.join(" ")).unwrap();
         }
     }
     std::fs::write(at.join("two.obj"), text).unwrap();

@@ -1,9 +1,9 @@
 //! Motions that turn: the bodies of a setting, one of them or both turning, unscrewing or thrown, with gaps
 //! to be kept and depths that are tolerated. All proofs are checked by the library, a sample with the motion
-//! as a real function.
+//! as a real function. So are those of how far the body can go, and depths and distances on the way there.
 
-use colltrans::motion::{Motion, MotionCast, MotionOutcome};
-use colltrans::{Pose, QueryError};
+use colltrans::motion::{Motion, MotionCast, MotionClearance, MotionOutcome, MotionStop};
+use colltrans::{ConvexPolyhedron, MIN_MAGNITUDE, Pair, Pose, QueryError};
 use colltrans_testkit::oracle::check::Objection;
 use colltrans_testkit::oracle::motion::{Judge, Spin};
 use colltrans_testkit::oracle::settings::setting;
@@ -13,6 +13,9 @@ use glam::DVec3;
 /// One setting in so many is judged in whole numbers.
 const SAMPLE: u64 = 100;
 
+/// Times on the way of a body at which it is asked how deep it is.
+const TIMES: u32 = 8;
+
 /// What became of the settings of one family.
 #[derive(Debug, Default, Clone)]
 pub(crate) struct Tally {
@@ -21,6 +24,8 @@ pub(crate) struct Tally {
     grazing: u64,
     free: u64,
     overlapping: u64,
+    /// Of how far the body can go: not to the end, and as far as it is asked.
+    stopped: u64,
     looks: u64,
     most_looks: u32,
     judged: u64,
@@ -33,14 +38,15 @@ impl crate::Tally for Tally {
     const CHUNK: u64 = 64;
 
     fn header() -> String {
-        let heads = ["settings", "contacts", "grazing", "free", "overlap"];
+        let heads = ["settings", "contacts", "grazing", "free", "overlap", "stopped"];
         let rest = ["looks", "most", "judged", "open", "wrong"];
         heads.iter().chain(&rest).map(|head| format!("{head:>9} ")).collect::<Vec<_>>().concat()
     }
 
     fn line(&self) -> String {
         let looks = self.looks as f64 / self.settings.max(1) as f64;
-        let counts = [self.settings, self.contacts, self.grazing, self.free, self.overlapping]
+        let Self { settings, contacts, grazing, free, overlapping, stopped, .. } = self;
+        let counts = [settings, contacts, grazing, free, overlapping, stopped]
             .map(|count| format!("{count:>9} "))
             .concat();
         let Self { most_looks, judged, open, .. } = self;
@@ -54,6 +60,7 @@ impl crate::Tally for Tally {
         self.grazing += other.grazing;
         self.free += other.free;
         self.overlapping += other.overlapping;
+        self.stopped += other.stopped;
         self.looks += other.looks;
         self.most_looks = self.most_looks.max(other.most_looks);
         self.judged += other.judged;
@@ -75,9 +82,6 @@ pub(crate) fn examine(family: &str, seed: u64, tally: &mut Tally) {
     let Ok(cast) = setting.query(&bodies) else { return };
     let mut random = Random::new(seed ^ 0x0710_7104);
     let poses = [cast.moving_pose(), cast.fixed_pose()];
-    let reach = |body: &colltrans::ConvexPolyhedron| {
-        body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max)
-    };
     let [p, q] = [cast.moving(), cast.fixed()];
     let size = reach(p) + reach(q);
     let way = cast.direction().normalize_or_zero() * size;
@@ -97,6 +101,10 @@ pub(crate) fn examine(family: &str, seed: u64, tally: &mut Tally) {
     if let Err(Objection(what)) = examined(&judge, seed.is_multiple_of(SAMPLE), tally) {
         tally.disagreements.push(format!("{family}:{seed} {what}"));
     }
+}
+
+fn reach(body: &ConvexPolyhedron) -> f64 {
+    body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max)
 }
 
 fn rest(start: Pose) -> Spin {
@@ -160,9 +168,99 @@ fn examined(judge: &Judge, in_whole_numbers: bool, tally: &mut Tally) -> Result<
         _ => tally.free += 1,
     }
     let planes: usize = outcome.proof().spans.iter().map(Vec::len).sum();
-    if in_whole_numbers && planes < 60 && judge.bodies.iter().all(|b| b.vertices().len() < 60) {
+    let judged = in_whole_numbers && judge.bodies.iter().all(|b| b.vertices().len() < 60);
+    if judged && planes < 60 {
         tally.judged += 1;
         judge.check(&outcome)?;
+    }
+    clearance(judge, &cast, &outcome, judged, tally)
+}
+
+/// How far the body can go: as its proof says, not to the end where a contact is deep, and nowhere deep on the way.
+fn clearance(
+    judge: &Judge,
+    cast: &MotionCast,
+    first: &MotionOutcome,
+    judged: bool,
+    tally: &mut Tally,
+) -> Result<(), Objection> {
+    let found = match cast.clearance() {
+        Ok(found) => found,
+        Err(QueryError::NotConverged { .. }) => {
+            tally.open += 1;
+            return Ok(());
+        }
+        // Of bodies that are smaller than rounding.
+        Err(QueryError::Coarse { .. }) => return Ok(()),
+        Err(e) => return Err(Objection(format!("clearance: {e}"))),
+    };
+    let object =
+        |what: String| Err(Objection(format!("clearance up to {:?}: {what}", found.time())));
+    let cleared = cast.cleared();
+    let shrunk = match &found {
+        MotionClearance::Overlapping(_) => {
+            let overlaps = matches!(first, MotionOutcome::Overlapping(_));
+            return if overlaps { Ok(()) } else { object("no overlap at the start".into()) };
+        }
+        MotionClearance::Free(free) => MotionOutcome::Free(free.clone()),
+        MotionClearance::Blocked { time, contact } => {
+            tally.stopped += 1;
+            let MotionStop { time: place, shrunk, .. } = &**contact;
+            let is_bound = *time <= place.lower && *time <= shrunk.lower && *time >= 0.0;
+            if !is_bound || place.lower > place.value || place.value > place.upper {
+                return object("no bounds".into());
+            }
+            // What stops it in its true place has not met before the first contact, of which the tolerance is none.
+            let apart = if cast.tolerance() > 0.0 { 0.0 } else { apart_until(first) };
+            if place.upper < apart || matches!(first, MotionOutcome::Free(_)) {
+                return object(format!("no contact before {apart}"));
+            }
+            let proven = shrunk.upper.is_finite();
+            let of = if proven { MotionOutcome::Contact } else { MotionOutcome::Grazing };
+            of(shrunk.clone())
+        }
+    };
+    cleared.verify(shrunk.proof()).map_err(|e| Objection(format!("clearance: {e}")))?;
+    let keep = cleared.keep() - cleared.tolerance();
+    let planes: usize = shrunk.proof().spans.iter().map(Vec::len).sum();
+    if judged && planes < 60 {
+        let spins = judge.spins.clone();
+        Judge { bodies: judge.bodies, spins, keep }
+            .check(&shrunk)
+            .map_err(|Objection(what)| Objection(format!("clearance: {what}")))?;
+    }
+    on_the_way(cast, found.time().unwrap_or(0.0), keep)
+}
+
+/// Up to which time a first contact says that the bodies are apart.
+fn apart_until(first: &MotionOutcome) -> f64 {
+    match first {
+        MotionOutcome::Contact(of)
+        | MotionOutcome::Grazing(of)
+        | MotionOutcome::Overlapping(of) => of.lower,
+        _ => 1.0,
+    }
+}
+
+/// That a body is nowhere nearer than this, or, of a negative number, deeper, up to a time.
+fn on_the_way(cast: &MotionCast, until: f64, keep: f64) -> Result<(), Objection> {
+    for k in 0..=TIMES {
+        let time = until * f64::from(k) / f64::from(TIMES);
+        let [Ok(p), Ok(q)] = cast.motions().map(|motion| motion.at(time)) else { return Ok(()) };
+        let [moving, fixed] = cast.bodies();
+        let pair = Pair::new(moving.at(p), fixed.at(q)).map_err(|e| Objection(e.to_string()))?;
+        // Poses in the world are rounded where they are, and have no coordinates that are hardly any.
+        let far = [p, q].map(|pose| pose.translation().length());
+        let size = far[0] + far[1] + reach(moving) + reach(fixed);
+        let off = 256.0 * f64::EPSILON * size + 4.0 * MIN_MAGNITUDE;
+        let wrong = match (pair.depth(), pair.distance()) {
+            (Ok(depth), _) if keep <= 0.0 && depth.lower > off - keep => Some(-depth.lower),
+            (_, Ok(found)) if keep > 0.0 && found.upper < keep - off => Some(found.upper),
+            _ => None,
+        };
+        if let Some(gap) = wrong {
+            return Err(Objection(format!("clearance: up to {until}, a gap of {gap:e} at {time}")));
+        }
     }
     Ok(())
 }

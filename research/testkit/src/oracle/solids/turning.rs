@@ -1,7 +1,7 @@
 //! Judges first contacts of solids that turn: by the library's exact decision about solids at times on the way, by
 //! the convex search where both are convex, and by themselves with the bodies swapped.
 
-use colltrans::motion::{Motion, MotionCast, MotionOutcome, SolidMotionProof};
+use colltrans::motion::{Motion, MotionCast, MotionClearance, MotionOutcome, SolidMotionProof};
 use colltrans::{Cast, ConvexPolyhedron, Pose, QueryError, Solid};
 use glam::DVec3;
 
@@ -115,6 +115,7 @@ impl Turning {
         let swapped = swapped.first_contact().map_err(|e| e.to_string())?;
         agree(bounds(&swapped), claimed, 1e-9).map_err(|e| format!("swapped: {e}"))?;
         self.on_the_way(&outcome, [lower, upper])?;
+        self.how_far(&cast, &plain)?;
         if let Some([p, q]) = &self.convex {
             let [a, b] = &self.motions;
             let cast = MotionCast::new(p.along(a), q.along(b)).map_err(|e| e.to_string())?;
@@ -127,6 +128,46 @@ impl Turning {
             MotionOutcome::Grazing(_) => Seen::Grazing,
             _ => Seen::Contact,
         }))
+    }
+
+    /// How far the body can go: to where the bodies meet as the tolerance leaves them, not before what stops it has met in
+    /// its true place; and as far as convex ones.
+    fn how_far(&self, cast: &MotionCast<Solid>, first: &MotionOutcome<()>) -> Result<(), String> {
+        let found = cast.clearance().map_err(|e| format!("clearance: {e}"))?;
+        let object = |what: &str| Err(format!("clearance up to {:?}: {what}", found.time()));
+        let (time, contact) = match (&found, first) {
+            (MotionClearance::Overlapping(_), MotionOutcome::Overlapping(_))
+            | (MotionClearance::Free(_), MotionOutcome::Free(_)) => return Ok(()),
+            (
+                MotionClearance::Blocked { time, contact },
+                MotionOutcome::Contact(_) | MotionOutcome::Grazing(_),
+            ) => (*time, contact),
+            _ => return object("not what the first contact says"),
+        };
+        let (place, shrunk) = (contact.time, [contact.shrunk.lower, contact.shrunk.upper]);
+        if shrunk != bounds(first) {
+            return object("the shrunk bodies meet at another time");
+        }
+        let is_bound = time == place.lower.min(shrunk[0]) && time >= 0.0;
+        if !is_bound
+            || place.lower > place.value
+            || place.value > place.upper
+            || place.upper > shrunk[1]
+        {
+            return object("no bounds");
+        }
+        let Some([p, q]) = &self.convex else { return Ok(()) };
+        let [a, b] = &self.motions;
+        let convex = MotionCast::new(p.along(a), q.along(b)).and_then(|cast| cast.clearance());
+        match convex.map_err(|e| format!("clearance, convex: {e}"))? {
+            MotionClearance::Blocked { contact, .. } => {
+                agree(contact.time.bounds(), place.bounds(), AGREEMENT)
+                    .map_err(|e| format!("clearance, convex: {e}"))
+            }
+            // As solids they are a little smaller.
+            other if place.upper < 1.0 - AGREEMENT => Err(format!("clearance, convex: {other:?}")),
+            _ => Ok(()),
+        }
     }
 
     /// Exact solids at times before the contact, and at it.

@@ -2,6 +2,7 @@
 
 import copy
 import json
+import pickle
 import subprocess
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ import pytest
 from conftest import ROOT
 from test_schema import conform
 
+import colltrans
 from colltrans import (
     AssemblyError,
     ColltransError,
@@ -67,6 +69,37 @@ def test_a_wire_in_the_way_is_met_as_on_the_command_line(cli: Path, tmp_path: Pa
     match found:
         case PathContact("contact", lower):
             assert lower == found.lower
+
+
+def test_answers_are_pickled_and_drawn() -> None:
+    solid = Solid.from_pieces([ConvexPolyhedron.cuboid([0.5, -2, -1], [0.6, 2, 1])])
+    for scene in ({"wire": WIRE}, {"wall": solid}, {}):
+        found = ARM.first_contact(ROWS, scene)
+        again = pickle.loads(pickle.dumps(found))
+        assert isinstance(again, PathContact) and again.to_dict() == found.to_dict()
+        assert (again.lower, again.upper, again.notes) == (found.lower, found.upper, found.notes)
+        assert again.proof_json() == found.proof_json()
+        again.verify()
+        assert pickle.dumps(again) == pickle.dumps(found)
+    found = ARM.first_contact(ROWS, {"wire": WIRE})
+    here, start = found.meshes(), {name: v for name, v, _ in found.meshes((0, 0.0))}
+    assert {name for name, _, _ in here} == {*ARM.links, "wire"}
+    for name, vertices, triangles in here:
+        assert triangles.max() < len(vertices)
+        assert np.array_equal(vertices, start[name]) == (name in ("base", "wire")), name
+    # The nearest point is on the tool.
+    tool = next(v for name, v, _ in here if name == "tool")
+    assert found.point is not None
+    assert (tool.min(axis=0) - 1e-9 <= found.point).all() and (
+        found.point <= tool.max(axis=0) + 1e-9
+    ).all()
+    for place in ((2, 0.5), (3, 0.0), (0, -0.1)):
+        with pytest.raises(InputError, match="place"):
+            found.meshes(place)
+    pytest.importorskip("plotly")
+    names = [trace.name for trace in colltrans.picture(found).data if trace.name]
+    assert {"tool", "wire", "tool at the start", "point", "normal"} <= set(names)
+    assert "wire at the start" not in names
 
 
 def test_paths_are_files_or_arrays_with_names_and_times() -> None:

@@ -5,19 +5,22 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use colltrans::AnyBody;
-use colltrans::motion::path::{JointPath, PathCast, PathContact, PathOutcome, PathProofFile};
+use colltrans::{AnyBody, AnyPlaced};
+use colltrans::motion::path::{
+    JointPath, PathCast, PathContact, PathOutcome, PathProof, PathProofFile, Place,
+};
 use colltrans::record::PathRecord;
 use colltrans_assembly::read::{self, ReadOptions};
 use colltrans_assembly::robot::{Cell, Robot as Arm, RobotJoint, Table};
-use numpy::{IntoPyArray, PyArray1, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use colltrans::glam::DVec3;
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
 use crate::answer::save;
-use crate::arrays::{coordinates, row};
+use crate::arrays::{coordinates, row, table};
 use crate::errors::{OrRaise, error, input};
-use crate::frozen::{match_args, plain};
+use crate::frozen::{Options, Reduced, Shown, match_args, plain, read, reduced, show, written};
 use crate::obstacles::wait;
 use crate::solid::Piece;
 
@@ -103,7 +106,7 @@ impl Rows {
     ) -> PyResult<Self> {
         let is_file = path.is_instance_of::<PyString>() || path.hasattr("__fspath__")?;
         if !is_file {
-            return Ok(Self { table: table(path, columns, times)?, rest });
+            return Ok(Self { table: table_of(path, columns, times)?, rest });
         }
         if columns.is_some() || times.is_some() {
             return Err(input("path", "a file has its own columns and times"));
@@ -119,7 +122,7 @@ impl Rows {
 }
 
 /// An array of rows.
-fn table(
+fn table_of(
     rows: &Bound<'_, PyAny>,
     names: Option<Vec<String>>,
     times: Option<&Bound<'_, PyAny>>,
@@ -286,7 +289,8 @@ impl Robot {
         let notes = [asked.cell.notes(), &said].concat();
         let found = answered(py, || asked.first_contact(&path))?;
         let (found, record) = found.map_err(|what| error("QueryError", what))?;
-        Ok(PathAnswer { asked, path, found, record, notes })
+        let (end, question) = (end_of(&path), Question::Asked(asked, path));
+        Ok(PathAnswer { question, end, found, record, notes })
     }
 
     fn __repr__(&self) -> String {
@@ -318,11 +322,67 @@ fn answered<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResul
 /// after it; ``"free"``: no two meet on the whole path; ``"overlapping"``: two overlap where it begins.
 #[pyclass(frozen, module = "colltrans", name = "PathContact")]
 pub(crate) struct PathAnswer {
-    asked: Arc<Asked>,
-    path: JointPath,
+    question: Question,
+    /// When the path ends, and the number of its last row.
+    end: (f64, usize),
     found: PathOutcome,
     record: PathRecord,
     notes: Vec<String>,
+}
+
+/// What was asked: of a robot, or as a pickle has it.
+enum Question {
+    Asked(Arc<Asked>, JointPath),
+    Saved(Box<PathProofFile>),
+}
+
+impl Question {
+    /// What is asked, and the names of its bodies.
+    fn with<T>(
+        &self,
+        of: impl FnOnce(&PathCast<'_>, &[String]) -> Result<T, String>,
+    ) -> Result<T, String> {
+        match self {
+            Self::Asked(asked, path) => of(&asked.cast(path)?, asked.cell.names()),
+            Self::Saved(file) => {
+                of(&file.cast().map_err(|what| what.to_string())?, &file.names())
+            }
+        }
+    }
+}
+
+/// Where the proof of an answer is.
+fn proof_of(found: &mut PathOutcome) -> Option<&mut PathProof> {
+    match found {
+        PathOutcome::Contact(of) | PathOutcome::Grazing(of) | PathOutcome::Overlapping(of) => {
+            Some(&mut of.proof)
+        }
+        PathOutcome::Free(of) => Some(&mut of.proof),
+        _ => None,
+    }
+}
+
+/// A name, the vertices in the world, triangles.
+type NamedMesh<'py> = (String, Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>);
+
+/// The vertices of a body in its frame, and its triangles: faces of more corners as fans.
+fn mesh(body: AnyPlaced<'_>) -> (&[DVec3], Vec<[u32; 3]>) {
+    match body {
+        AnyPlaced::Solid(placed) => (placed.body.vertices(), placed.body.triangles().to_vec()),
+        AnyPlaced::Convex(placed) => {
+            let fan = |face: u32| {
+                let corners: Vec<u32> = placed.body.face_vertices(face).collect();
+                let ends = corners.windows(2).skip(1).map(|ends| [corners[0], ends[0], ends[1]]);
+                ends.collect::<Vec<_>>()
+            };
+            let faces = 0..placed.body.face_count() as u32;
+            (placed.body.vertices(), faces.flat_map(fan).collect())
+        }
+    }
+}
+
+fn end_of(path: &JointPath) -> (f64, usize) {
+    (path.ends()[1], path.rows().len() - 1)
 }
 
 match_args!(PathAnswer("outcome", "lower", "upper"));
@@ -335,6 +395,16 @@ impl PathAnswer {
             }
             _ => None,
         }
+    }
+
+    /// The question as a file with its proof, of which the answer is asked once more.
+    fn saved(&self, py: Python<'_>) -> PyResult<(PathOutcome, PathProofFile)> {
+        let told = answered(py, || {
+            self.question.with(|cast, names| {
+                PathProofFile::answer(cast, names).map_err(|what| what.to_string())
+            })
+        })?;
+        told.map_err(|what| error("CaseError", what))
     }
 }
 
@@ -349,7 +419,7 @@ impl PathAnswer {
     /// float: No two meet before: the end of the path if none do, its beginning if two overlap there.
     #[getter]
     fn lower(&self) -> f64 {
-        self.contact().map_or(self.path.ends()[1], |contact| contact.lower)
+        self.contact().map_or(self.end.0, |contact| contact.lower)
     }
 
     /// float or None: At this time two do meet; None where that is not proven, or none do.
@@ -415,8 +485,8 @@ impl PathAnswer {
     ///     What is not proven.
     fn verify(&self, py: Python<'_>) -> PyResult<()> {
         let checked = answered(py, || {
-            let cast = self.asked.cast(&self.path)?;
-            cast.verify(self.found.proof()).map_err(|what| what.to_string())
+            self.question
+                .with(|cast, _| cast.verify(self.found.proof()).map_err(|what| what.to_string()))
         })?;
         checked.map(|_| ()).map_err(|what| error("CertificateError", what))
     }
@@ -428,12 +498,7 @@ impl PathAnswer {
     /// -------
     /// str
     fn proof_json(&self, py: Python<'_>) -> PyResult<String> {
-        let told = answered(py, || {
-            let cast = self.asked.cast(&self.path)?;
-            let answer = PathProofFile::answer(&cast, self.asked.cell.names());
-            answer.map(|(_, file)| file.to_json()).map_err(|what| what.to_string())
-        })?;
-        told.map_err(|what| error("CaseError", what))
+        Ok(self.saved(py)?.1.to_json())
     }
 
     /// Writes :meth:`proof_json` as a file.
@@ -452,6 +517,83 @@ impl PathAnswer {
     /// dict
     fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         plain(py, &self.record)
+    }
+
+    /// All bodies as meshes, where they are in the world at a place of the path, to rounding.
+    ///
+    /// Parameters
+    /// ----------
+    /// place : tuple of (int, float), optional
+    ///     A row, and which part of the way to the next one; without it that of ``lower``, where the path ends if
+    ///     nothing meets.
+    ///
+    /// Returns
+    /// -------
+    /// list of tuple of (str, ndarray of shape (V, 3), ndarray of shape (T, 3))
+    ///     The links' bodies, then what stands around: the name of what each belongs to, its vertices, and its
+    ///     triangles by their numbers.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     A place beyond the path.
+    #[pyo3(signature = (place=None))]
+    fn meshes<'py>(
+        &self,
+        py: Python<'py>,
+        place: Option<(usize, f64)>,
+    ) -> PyResult<Vec<NamedMesh<'py>>> {
+        let (row, share) = place.or_else(|| self.place()).unwrap_or((self.end.1, 0.0));
+        let is_one = (0.0..=1.0).contains(&share) && (row < self.end.1 || (row, share) == (self.end.1, 0.0));
+        if !is_one {
+            return Err(input("place", format_args!("a path of {} rows has no {row}, {share}", self.end.1 + 1)));
+        }
+        let told = self.question.with(|cast, names| {
+            let place = Place { row, share };
+            let all = cast.bodies().zip(names).enumerate();
+            let placed = |(k, (body, name)): (usize, (AnyPlaced<'_>, &String))| {
+                let ((vertices, triangles), pose) = (mesh(body), cast.pose(k, place));
+                let vertices = vertices.iter().map(|v| pose.transform_point(*v).to_array());
+                (name.clone(), vertices.collect::<Vec<_>>(), triangles)
+            };
+            Ok(all.map(placed).collect::<Vec<_>>())
+        });
+        let told = told.map_err(|what| error("QueryError", what))?;
+        let arrays = told.into_iter().map(|(name, vertices, triangles)| {
+            Ok((name, table(py, vertices)?, table(py, triangles)?))
+        });
+        arrays.collect()
+    }
+
+    /// A picture: see :func:`colltrans.show`.
+    #[pyo3(signature = (**options))]
+    fn show<'py>(slf: &Bound<'py, Self>, options: Option<Options<'_, 'py>>) -> Shown<'py> {
+        show(slf, options)
+    }
+
+    /// What a pickle has: the file of the proof, the answer but for that, and what was noted.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py, (String, String, Vec<String>)>> {
+        let (mut found, file) = self.saved(py)?;
+        let record = file.cast().map(|cast| PathRecord::of(&found, &cast, &file.names()));
+        if record.map_err(|what| error("CaseError", what))? != self.record {
+            return Err(error("CaseError", "the bodies are not what their file makes of them"));
+        }
+        if let Some(proof) = proof_of(&mut found) {
+            *proof = PathProof::default();
+        }
+        reduced::<Self, _>(py, (file.to_json(), written(&found)?, self.notes.clone()))
+    }
+
+    #[staticmethod]
+    fn _of(file: &str, found: &str, notes: Vec<String>) -> PyResult<Self> {
+        let file = PathProofFile::from_json(file).map_err(|what| error("CaseError", what))?;
+        let mut found: PathOutcome = read(found)?;
+        if let Some(proof) = proof_of(&mut found) {
+            *proof = file.proof().clone();
+        }
+        let cast = file.cast().map_err(|what| error("CaseError", what))?;
+        let (record, end) = (PathRecord::of(&found, &cast, &file.names()), end_of(cast.path()));
+        Ok(Self { question: Question::Saved(Box::new(file)), end, found, record, notes })
     }
 
     fn __copy__(slf: Py<Self>) -> Py<Self> {

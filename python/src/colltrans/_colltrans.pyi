@@ -1964,6 +1964,34 @@ class PathContact:
         ----------
         path : str or os.PathLike
         """
+    def meshes(
+        self, place: tuple[int, float] | None = None
+    ) -> list[tuple[str, _Floats, NDArray[np.uint32]]]:
+        """All bodies as meshes, where they are in the world at a place of the path, to rounding.
+
+        Parameters
+        ----------
+        place : tuple of (int, float), optional
+            A row, and which part of the way to the next one; without it that of ``lower``, where the path ends if
+            nothing meets.
+
+        Returns
+        -------
+        list of tuple of (str, ndarray of shape (V, 3), ndarray of shape (T, 3))
+            The links' bodies, then what stands around: the name of what each belongs to, its vertices, and its
+            triangles by their numbers.
+
+        Raises
+        ------
+        InputError
+            A place beyond the path.
+        """
+    def show(self, **options: Any) -> Any:
+        """A picture: see :func:`colltrans.show`."""
+    def __reduce__(self) -> tuple[Any, Any]:
+        """What a pickle has: the file of the proof, the answer but for that, and what was noted."""
+    @staticmethod
+    def _of(file: str, found: str, notes: list[str]) -> PathContact: ...
     def to_dict(self) -> dict[str, Any]:
         """What it says, as plain Python: the fields of ``--json`` of ``colltrans path``, with the same bits.
 

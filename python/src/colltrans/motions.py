@@ -191,14 +191,11 @@ def motion_many(
     >>> columns.lower.round(6)
     array([     nan, 0.553574, 0.36905 ,      nan])
     """
-    queries = queries_of(
-        "motion",
+    sides = (
         (moving, moving_index, moving_motion, moving_pose),
         (fixed, fixed_index, fixed_motion, fixed_pose),
-        keep,
-        tolerance,
     )
-    return MotionColumns(**queries.ask_all(checked_threads(threads)))
+    return MotionColumns(**answers_of("motion", sides, keep, tolerance, threads))
 
 
 def motion_clearance_many(
@@ -220,16 +217,11 @@ def motion_clearance_many(
     Parameters
     ----------
     moving, fixed, moving_motion, fixed_motion, moving_pose, fixed_pose
-        As for :func:`motion_many`; so are all others.
+        As for :func:`motion_many`; so are all others, and errors.
 
     Returns
     -------
     MotionClearanceColumns
-
-    Raises
-    ------
-    InputError
-        Arrays whose shapes do not go together. Wrong numbers in a row are errors of that row.
 
     Examples
     --------
@@ -240,29 +232,37 @@ def motion_clearance_many(
     >>> motion_clearance_many(block, table, ways)
     MotionClearanceColumns(3 rows: 1 blocked, 2 free)
     """
-    queries = queries_of(
-        "motion_clearance",
+    sides = (
         (moving, moving_index, moving_motion, moving_pose),
         (fixed, fixed_index, fixed_motion, fixed_pose),
-        keep,
-        tolerance,
     )
-    return MotionClearanceColumns(**queries.ask_all(checked_threads(threads)))
+    return MotionClearanceColumns(**answers_of("motion_clearance", sides, keep, tolerance, threads))
 
 
 #: The bodies of a side, their numbers for each row, what they do and where.
 Side: TypeAlias = tuple[AnyBodies, ArrayLike | None, Motions, Poses]
 
 
+def answers_of(
+    question: Literal["motion", "motion_clearance"],
+    sides: tuple[Side, Side],
+    keep: ArrayLike,
+    tolerance: ArrayLike | None,
+    threads: int | None,
+) -> dict[str, Any]:
+    """The columns of a table of answers to what is asked, checked."""
+    queries = queries_of(question, sides, keep, tolerance)
+    return queries.ask_all(checked_threads(threads))
+
+
 def queries_of(
     question: Literal["motion", "motion_clearance"],
-    moving: Side,
-    fixed: Side,
+    sides: tuple[Side, Side],
     keep: ArrayLike,
     tolerance: ArrayLike | None,
 ) -> MotionQueries:
     """What is asked, checked."""
-    named = (("moving", moving), ("fixed", fixed))
+    named = tuple(zip(("moving", "fixed"), sides, strict=True))
     bodies = [body_list(side[0], side[1], name) for name, side in named]
     poses = [pose_table(side[3], f"{name}_pose") for name, side in named]
     motions = [motion_table(side[2], side[3], f"{name}_motion") for name, side in named]

@@ -31,6 +31,7 @@ from colltrans._colltrans import (
     OverlapDepth,
     Overlapping,
     Pair,
+    PathContact,
     Pose,
     Separated,
     Slides,
@@ -78,8 +79,8 @@ def picture(answer: Any) -> Any:
         A body and an assembly are drawn where they are; of a plan all that is taken out where its
         moves bring it. What an answer says of a contact is drawn: the moving body as it is and, as
         a ghost, where it touches; the point, and the normal from the moving body to the fixed one.
-        Of a distance the nearest points, joined; of a depth, as a ghost, where the moving body has
-        left.
+        Of a path the links where they touch, and, as ghosts, where they start. Of a distance the
+        nearest points, joined; of a depth, as a ghost, where the moving body has left.
 
     Returns
     -------
@@ -129,6 +130,8 @@ def _traces(go: Any, thing: Any) -> Iterator[Any]:
     match thing:
         case FirstContact():
             yield from _moved(go, thing)
+        case PathContact():
+            yield from _carried(go, thing)
         case ConvexPolyhedron() | Solid():
             yield from _body(go, placed(thing, Pose()), "body", MOVING, 1.0)
         case Assembly():
@@ -188,12 +191,31 @@ def _moved(go: Any, answer: FirstContact) -> Iterator[Any]:
     ghosts = {"end": 1.0} if answer.poses is None else {f"{answer.outcome} at {at:.6g}": at}
     for name, time in {**ghosts, "end": 1.0}.items():
         yield from _body(go, placed(query.moving, query.moving_motion.at(time)), name, MOVING, 0.3)
+    yield from _touch(go, answer, float(np.ptp(fixed[0], axis=0).max()) or 1.0)
+
+
+def _carried(go: Any, answer: PathContact) -> Iterator[Any]:
+    """All bodies where two touch, or where the path ends; as ghosts those that came there."""
+    starts, ends = answer.meshes((0, 0.0)), answer.meshes()
+    size = float(np.ptp(np.vstack([vertices for _, vertices, _ in ends]), axis=0).max()) or 1.0
+    for (name, start, triangles), (_, end, _) in zip(starts, ends, strict=True):
+        colour = FIXED if np.array_equal(start, end) else MOVING
+        if name in (answer.pair or ()):
+            colour = TOUCH
+        yield from _body(go, (end, triangles, _creases(end, triangles)), name, colour, 1.0)
+        if not np.array_equal(start, end):
+            ghost = (start, triangles, _creases(start, triangles))
+            yield from _body(go, ghost, f"{name} at the start", MOVING, 0.15)
+    yield from _touch(go, answer, size)
+
+
+def _touch(go: Any, answer: FirstContact | PathContact, size: float) -> Iterator[Any]:
+    """The point of a contact, and the normal there."""
     if answer.point is not None:
         x, y, z = answer.point.reshape(3, 1)
         marker = {"color": TOUCH, "size": 6}
         yield go.Scatter3d(x=x, y=y, z=z, mode="markers", marker=marker, name="point")
         if answer.normal is not None:
-            size = float(np.ptp(fixed[0], axis=0).max()) or 1.0
             tip = answer.point + answer.normal * (size / 4)
             yield _line(go, answer.point, tip, {"color": TOUCH, "width": 6}, "normal")
 

@@ -454,7 +454,7 @@ class Page {
     this.extras = state.tab;
     this.found?.show(state, state.tab === "found");
     if (state.tab !== "motion") this.time.show(times(state, answer, this.pass()));
-    view?.setLook(state.tab === "found" ? "ghosts" : state.tab === "motion" ? "fixed" : "answer");
+    view?.setLook(state.tab === "found" ? "ghosts" : state.tab === "motion" ? "resting" : "answer");
     view?.setNear(this.near);
     this.nearButton?.setAttribute("aria-pressed", String(state.near));
     if (this.along) this.along.textContent = state.tab === "motion" ? "Along axis" : "Along d";

@@ -7,7 +7,7 @@ import type { Pose, Vec } from "./math";
 export type Solver = "auto" | "cta" | "portal";
 export type Tab = "answer" | "motion" | "found" | "assembly";
 
-/** A turn about an axis through a point, and a way along it meanwhile: a hinge where there is none. */
+/** A turn about an axis through a point, and a way along it meanwhile: a hinge where there is none, a slide without a turn. */
 export interface Screw {
   point: Vec;
   axis: Vec;
@@ -37,6 +37,8 @@ export interface State {
   motion: {
     /** `null`: one that the page thinks of. */
     screw: Screw | null;
+    /** The body that moves; the other one rests. */
+    body: Slot;
     /** A gap to be kept. */
     keep: number;
     /** From 0 to 1, where the moving body is shown. */
@@ -51,6 +53,8 @@ export interface State {
     part: number | null;
   };
 }
+
+export const otherOf = (slot: Slot): Slot => (slot === "moving" ? "fixed" : "moving");
 
 export function fromExample(name: string): State {
   const example = EXAMPLES[Object.hasOwn(EXAMPLES, name) ? name : FIRST]!;
@@ -67,7 +71,7 @@ export function fromExample(name: string): State {
     near: false,
     t: null,
     tab: "answer",
-    motion: { screw: null, keep: 0, time: 0 },
+    motion: { screw: null, body: "moving", keep: 0, time: 0 },
     assembly: { direction: [0, 0, 1], tolerance: null, ignore: false, part: null },
   };
 }
@@ -100,9 +104,10 @@ export function toHash(state: State): string {
   return `#${given.map(([key, value]) => `${key}=${encodeURIComponent(value).replace(/%(2C|3A|2F)/g, decodeURIComponent)}`).join("&")}`;
 }
 
-function motionFields({ motion: { screw, keep, time } }: State): [string, string | undefined][] {
+function motionFields({ motion: { screw, body, keep, time } }: State): [string, string | undefined][] {
   return [
     ["screw", screw ? [screw.point, screw.axis, screw.angle, screw.rise].join() : undefined],
+    ["moves", body === "fixed" ? body : undefined],
     ["keep", keep ? String(keep) : undefined],
     ["time", time ? String(time) : undefined],
   ];
@@ -148,6 +153,7 @@ export function fromHash(hash: string): State {
   const { assembly, motion } = state;
   const [x, y, z, a, b, c, angle, rise] = numbers("screw", 8) ?? [];
   if (rise !== undefined) motion.screw = { point: [x!, y!, z!], axis: [a!, b!, c!], angle: angle!, rise };
+  if (fields.get("moves") === "fixed") motion.body = "fixed";
   motion.keep = Math.max(0, numbers("keep", 1)?.[0] ?? 0);
   motion.time = Math.min(1, Math.max(0, numbers("time", 1)?.[0] ?? 0));
   assembly.direction = (numbers("ad", 3) as Vec) ?? assembly.direction;

@@ -21,6 +21,10 @@ import { gone, judged, say, solids } from "./turning/words";
 import type { View } from "./view";
 import type { Drawn } from "./view/body";
 
+const KINDS = ["Hinge", "Screw", "Slide"] as const;
+/** Of a hinge that was a slide. */
+const USUAL_ANGLE = 90;
+
 /** What the page does for this part of it. */
 export interface Around {
   view: View;
@@ -45,6 +49,8 @@ export class Turning {
   private readonly verdict = h("span", { role: "status" });
   private readonly examples = h("select", { "aria-label": "A motion to look at" });
   private readonly kinds: HTMLButtonElement[];
+  private readonly movers: HTMLButtonElement[];
+  private readonly angle: HTMLElement;
   private readonly rise: HTMLElement;
   private readonly fields: { input: HTMLInputElement; read: (screw: Screw, state: State) => number | null }[] = [];
   private state: State | undefined;
@@ -61,13 +67,24 @@ export class Turning {
   constructor(private readonly around: Around) {
     this.grips = new Grips(around.view);
     this.grips.onScrew = (screw) => this.set(() => screw);
-    this.kinds = ["Hinge", "Screw"].map((text, k) => h("button", {
+    this.kinds = KINDS.map((kind) => h("button", {
       class: "small",
-      onclick: () => this.set((screw) => ({ ...screw, rise: k ? screw.rise || this.usualRise() : 0 })),
-    }, text));
+      onclick: () => this.set(({ angle, rise, ...axis }) => ({
+        ...axis, angle: kind === "Slide" ? 0 : angle || USUAL_ANGLE, rise: kind === "Hinge" ? 0 : rise || this.usualRise(),
+      })),
+    }, kind));
+    this.movers = (["moving", "fixed"] as Slot[]).map((slot) => h("button", {
+      class: "small",
+      // What was thought of for the other one stays.
+      onclick: () => this.around.change((state) => {
+        state.motion.body = slot;
+        state.motion.screw ??= this.screw ?? null;
+      }),
+    }, slot === "moving" ? "The moving body" : "The fixed one"));
     const vector = (name: string, of: "point" | "axis") => h("div", { class: "fields" }, h("span", {}, name.toLowerCase()),
       ...["x", "y", "z"].map((letter, k) => this.number(`${name} ${letter}`, (screw) => screw[of][k]!, (screw, x) => (screw[of][k] = x))));
     const axis = (text: string, d: Vec) => h("button", { class: "small", onclick: () => this.set((screw) => ({ ...screw, axis: [...d] })) }, text);
+    this.angle = h("label", {}, "Angle, in degrees", this.number("Angle", (screw) => screw.angle, (screw, x) => (screw.angle = x)));
     this.rise = h("label", {}, "Rise", this.number("Rise", (screw) => screw.rise, (screw, x) => (screw.rise = x)));
     this.examples.append(h("option", { value: "" }, "The bodies as they are"), ...Object.entries(EXAMPLES).map(([name, { title }]) => h("option", { value: name }, title)));
     this.examples.addEventListener("change", () => void this.choose(this.examples.value));
@@ -76,11 +93,12 @@ export class Turning {
       h("section", { class: "card" }, h("h3", {}, "Motion"),
         h("label", {}, "Look at ", this.examples),
         h("div", { class: "row", role: "group", "aria-label": "Kind of motion" }, ...this.kinds),
+        h("div", { class: "row", role: "group", "aria-label": "Which body moves" }, ...this.movers),
         vector("Point", "point"), vector("Axis", "axis"),
         h("div", { class: "row" }, axis("x", [1, 0, 0]), axis("y", [0, 1, 0]), axis("z", [0, 0, 1]),
           h("button", { class: "small", onclick: () => this.set((screw) => ({ ...screw, angle: -screw.angle || 0, rise: -screw.rise || 0 })) }, "the other way")),
         h("div", { class: "fields", style: "grid-template-columns: 1fr 1fr" },
-          h("label", {}, "Angle, in degrees", this.number("Angle", (screw) => screw.angle, (screw, x) => (screw.angle = x))), this.rise),
+          this.angle, this.rise),
         h("div", { class: "fields", style: "grid-template-columns: 1fr 1fr; align-items: end" },
           h("label", {}, "Gap to be kept", this.number("Gap to be kept", (_, { motion }) => motion.keep, (_, x, { motion }) => (motion.keep = Math.max(0, x)))),
           h("label", { title: "How deep convex bodies may overlap; by half of it both solids are shrunk, without it as the files ask for" }, "Tolerance (may be empty)",
@@ -137,7 +155,7 @@ export class Turning {
     this.fitted = true;
     await this.around.begin(example.pair, (state) => {
       state.poses = { moving, fixed };
-      state.motion = { screw, keep: 0, time: 0 };
+      state.motion = { screw, body: "moving", keep: 0, time: 0 };
     });
     this.examples.value = name;
   }
@@ -159,7 +177,8 @@ export class Turning {
       return undefined;
     }
     const bodies = this.bodies();
-    this.screw = state.motion.screw ?? (bodies && hinge(state.poses, bodies.moving, bodies.fixed));
+    const { screw, body } = state.motion;
+    this.screw = screw ?? (bodies && hinge(state.poses, bodies, body));
     if (bodies && !this.fitted) {
       this.fitted = true;
       this.fit();
@@ -179,13 +198,15 @@ export class Turning {
     const { time: met, outcome } = this.answer?.record ?? {};
     if (met) marks.push({ t: met.lower, text: outcome === "grazing" ? "touches" : "first contact", kind: "stop" });
     marks.push({ t: 1, text: "end", kind: "low" });
-    return { range: [0, 1], at: time, text: this.screw ? gone({ ...this.screw, rise: 0 }, time) : "", marks };
+    const { screw } = this;
+    return { range: [0, 1], at: time, text: screw ? gone(screw.angle ? { ...screw, rise: 0 } : screw, time) : "", marks };
   }
 
   private question(state: State, { point, axis, angle, rise }: Screw) {
     const turn = { point, axis, angle: angle * RADIANS };
-    const { poses, tolerance, motion: { keep } } = state;
-    return { moving_pose: poses.moving, fixed_pose: poses.fixed, motion: rise ? { screw: { ...turn, rise } } : { turn }, keep, tolerance };
+    const { poses, tolerance, motion: { body, keep } } = state;
+    const motion = rise ? { screw: { ...turn, rise } } : { turn };
+    return { moving_pose: poses.moving, fixed_pose: poses.fixed, [`${body}_motion`]: motion, keep, tolerance };
   }
 
   /** One question is on its way at a time; after it the one that is asked then. */
@@ -255,10 +276,13 @@ export class Turning {
       const value = read(screw, state);
       input.value = value === null ? "" : String(value);
     }
-    this.kinds.forEach((button, k) => button.setAttribute("aria-pressed", String((k === 1) === (screw.rise !== 0))));
-    this.rise.hidden = screw.rise === 0;
+    const kind = screw.rise === 0 ? "Hinge" : screw.angle === 0 ? "Slide" : "Screw";
+    this.kinds.forEach((button, k) => button.setAttribute("aria-pressed", String(KINDS[k] === kind)));
+    this.movers.forEach((button, k) => button.setAttribute("aria-pressed", String((k === 1) === (state.motion.body === "fixed"))));
+    this.angle.hidden = kind === "Slide";
+    this.rise.hidden = kind === "Hinge";
     const example = EXAMPLES[this.examples.value];
-    if (example && JSON.stringify([example.moving, example.fixed, example.screw]) !== JSON.stringify([state.poses.moving, state.poses.fixed, state.motion.screw])) this.examples.value = "";
+    if (example && JSON.stringify(["moving", example.moving, example.fixed, example.screw]) !== JSON.stringify([state.motion.body, state.poses.moving, state.poses.fixed, state.motion.screw])) this.examples.value = "";
   }
 
   private draw() {

@@ -14,7 +14,7 @@ import type { PageCast } from "./answers";
 import { type Slot, plane, touch } from "./engine";
 import type { Nearness } from "./near";
 import { type Pose, type Vec, length, times, unit } from "./math";
-import type { State } from "./state";
+import { type State, otherOf } from "./state";
 import { type Arrow, arrow } from "./view/arrow";
 import { type Bodies, type Drawn, matrixOf, placedBody } from "./view/body";
 import { contact, gap } from "./view/contact";
@@ -24,8 +24,8 @@ import type { Handles, Tool } from "./view/handles";
 import { Overlay } from "./view/overlay";
 import { type Frame, type Label, clear, inPicture } from "./view/shapes";
 
-/** All of an answer; bodies to look through, and what others add; the fixed body, and what others add. */
-export type Look = "answer" | "ghosts" | "fixed";
+/** All of an answer; bodies to look through, and what others add; the body that rests, and what others add. */
+export type Look = "answer" | "ghosts" | "resting";
 
 export class View {
   readonly scene = new Scene();
@@ -159,8 +159,10 @@ export class View {
       // An address may have begun with what cannot be drawn.
       if (!this.fitted) return this.fit(state, answer);
     }
-    if (fixed) shown.add(placedBody(fixed, matrixOf(state.poses.fixed, fixed.middle, frame.origin), frame.colours.fixed, this.look === "ghosts" ? "ghost" : "solid", frame.colours));
-    if (moving && this.look !== "fixed") this.addMoving(moving, state, answer);
+    const rests = this.look === "resting" ? otherOf(state.motion.body) : "fixed";
+    const resting = this.bodies[rests];
+    if (resting) shown.add(placedBody(resting, matrixOf(state.poses[rests], resting.middle, frame.origin), frame.colours[rests], this.look === "ghosts" ? "ghost" : "solid", frame.colours));
+    if (moving && this.look !== "resting") this.addMoving(moving, state, answer);
     shown.add(this.ground.grid(frame, this.bodies, state));
     if (this.look === "answer" && moving && fixed) this.addNotes(state, answer, moving, fixed);
     this.handles?.place(state);

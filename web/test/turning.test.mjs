@@ -152,6 +152,37 @@ test("a bolt is screwed out of its plate, and not by an axis that is askew; gaps
   assert.deepEqual(page.complaints, []);
 });
 
+test("either body moves; a slide is a motion too", async () => {
+  await example("hinge", "contact");
+  const moved = () => page.evaluate(() => {
+    const { view } = window.colltrans.probe();
+    const solid = view.extra.children.find(({ userData }) => userData.how === "solid");
+    return solid.userData.body === view.bodyOf("fixed") ? "fixed" : "moving";
+  });
+  assert.equal(await moved(), "moving");
+  const { answer, screw } = await probe();
+  await page.click(".turning button:text-is('The fixed one')");
+  // The same seen from it: it turns the other way.
+  await page.fill('[aria-label="Angle"]', String(-screw.angle));
+  await page.waitForFunction((last) => {
+    const { turning } = window.colltrans.probe();
+    return !turning.asking && turning.question.fixed_motion?.turn.angle < 0 && turning.answer?.record.time?.lower && turning.answer.record.time.lower !== last;
+  }, answer.record.time.lower);
+  const other = await probe();
+  assert.ok(Math.abs(other.answer.record.time.lower - answer.record.time.lower) < 1e-9, `${other.answer.record.time.lower}`);
+  assert.equal(await moved(), "fixed");
+  await page.waitForTimeout(400);
+  assert.match(new URL(page.url()).hash, /moves=fixed/);
+  await page.click(".turning button:text-is('The moving body')");
+  await page.click(".turning button:text-is('Slide')");
+  await page.waitForFunction(() => window.colltrans.probe().turning.screw.angle === 0 && !document.querySelector(".turning[aria-busy]"));
+  assert.ok(!(await page.isVisible('[aria-label="Angle"]')) && (await page.isVisible('[aria-label="Rise"]')));
+  assert.equal(await grip("angle"), undefined);
+  await page.click(".turning button:text-is('Hinge')");
+  await page.waitForFunction(() => window.colltrans.probe().turning.screw.angle === 90);
+  assert.deepEqual(page.complaints, []);
+});
+
 test("what has no answer is said: an axis without a direction, too many turns", async () => {
   const said = (text) => page.waitForFunction((text) => document.querySelector(".turning .said.care")?.textContent.includes(text), text);
   await page.fill('[aria-label="Angle"]', "1e9");
@@ -197,7 +228,7 @@ test("its answers are the native ones, bit for bit, and as the schema says", asy
       const at = () => [far * random(), far * random(), far * random()];
       const axis = { point: at(), axis: [random(), random(), random()], angle: 3 * random() };
       const motion = k % 2 ? { turn: axis } : { screw: { ...axis, rise: far * random() } };
-      const asked = { motion, moving_pose: [...at(), ...turn()], fixed_pose: [0, 0, 0, ...turn()], keep: k % 5 ? 0 : 0.25 };
+      const asked = { [k % 4 ? "moving_motion" : "fixed_motion"]: motion, moving_pose: [...at(), ...turn()], fixed_pose: [0, 0, 0, ...turn()], keep: k % 5 ? 0 : 0.25 };
       questions.push({ question: { do: "motion", ...asked } });
       if (k % 3 === 0) questions.push({ question: { do: "prove", ...asked } });
     }

@@ -4,7 +4,8 @@
 import { MeshBasicMaterial, MeshLambertMaterial, type Object3D } from "three";
 import type { PageMotion } from "../answers";
 import { type Pose, type Vec, add, placed, sub, times, unit } from "../math";
-import type { Screw, State } from "../state";
+import type { Slot } from "../engine";
+import { type Screw, type State, otherOf } from "../state";
 import type { View } from "../view";
 import { type Drawn, type How, matrixOf, placedBody } from "../view/body";
 import { disc, feature } from "../view/contact";
@@ -19,14 +20,14 @@ const PIECES = 48;
 const MOST_TURNS = 12;
 
 /** Everything into `view.extra`; what comes back are the handles. */
-export function draw(view: View, state: State, screw: Screw, answer: PageMotion | undefined, { moving, fixed }: { moving: Drawn; fixed: Drawn }): Grip[] {
+export function draw(view: View, state: State, screw: Screw, answer: PageMotion | undefined, bodies: Record<Slot, Drawn>): Grip[] {
   const { frame } = view;
   const { size, colours } = frame;
-  const { time } = state.motion;
-  const start = state.poses.moving;
+  const { time, body: moves } = state.motion;
+  const [start, mover] = [state.poses[moves], bodies[moves]];
   const stop = answer?.record.time?.lower;
   const body = (t: number, how: How) => {
-    view.extra.add(placedBody(moving, matrixOf(poseAt(screw, start, t), moving.middle, frame.origin), colours.moving, how, colours));
+    view.extra.add(placedBody(mover, matrixOf(poseAt(screw, start, t), mover.middle, frame.origin), colours[moves], how, colours));
   };
   body(time, "solid");
   if (time > 0) body(0, "outline");
@@ -35,7 +36,7 @@ export function draw(view: View, state: State, screw: Screw, answer: PageMotion 
   const parts: Object3D[] = [];
   const labels: Label[] = [];
   // The way of a point, dashed where the body does not come.
-  const middle = arm(screw, placed(start, moving.middle), moving.radius);
+  const middle = screw.angle ? arm(screw, placed(start, mover.middle), mover.radius) : placed(start, mover.middle);
   const turns = Math.min(Math.abs(screw.angle) / 360, MOST_TURNS);
   const count = Math.max(2, Math.ceil(PIECES * Math.max(turns, 0.25)));
   const way = (from: number, to: number) => Array.from({ length: count + 1 }, (_, k) => inPicture(frame, carried(screw, middle, from + ((to - from) * k) / count)));
@@ -48,7 +49,8 @@ export function draw(view: View, state: State, screw: Screw, answer: PageMotion 
   const at = (length: number) => add(screw.point, times(axis, length));
   const tip = at(reach);
   const look = () => new MeshLambertMaterial({ color: colours.way, emissive: colours.way, emissiveIntensity: 0.2 });
-  const grips: Grip[] = [{ name: "point", at: screw.point }, { name: "axis", at: tip }, { name: "angle", at: carried(screw, middle, 1) }];
+  const grips: Grip[] = [{ name: "point", at: screw.point }, { name: "axis", at: tip }];
+  if (screw.angle) grips.push({ name: "angle", at: carried(screw, middle, 1) });
   const handles: Object3D[] = [
     dashes([inPicture(frame, at(-reach)), inPicture(frame, screw.point)], colours.way, 0.8, size / 60),
     rod(inPicture(frame, screw.point), inPicture(frame, tip), colours.way, 0.006 * size),
@@ -63,14 +65,15 @@ export function draw(view: View, state: State, screw: Screw, answer: PageMotion 
   handles.forEach(above);
   labels.push({ text: "axis", start: inPicture(frame, screw.point), end: inPicture(frame, tip), kind: "way" });
   const end = inPicture(frame, carried(screw, middle, 1));
-  labels.push({ text: `${screw.angle}°`, start: inPicture(frame, carried(screw, middle, 0.97)), end, kind: "way" });
-  if (answer) parts.push(...contact(view, state.poses.fixed, poseAt(screw, start, stop ?? 0), answer, moving, fixed, labels));
+  if (screw.angle) labels.push({ text: `${screw.angle}°`, start: inPicture(frame, carried(screw, middle, 0.97)), end, kind: "way" });
+  if (answer) parts.push(...contact(view, { ...state.poses, [moves]: poseAt(screw, start, stop ?? 0) }, answer, bodies, labels));
   view.extra.add(...parts, ...handles);
   view.extraLabels = labels;
   return grips;
 }
 
-function contact(view: View, fixedPose: Pose, pose: Pose, { record: { point, normal }, lit }: PageMotion, moving: Drawn, fixed: Drawn, labels: Label[]): Object3D[] {
+/** What touches, where the bodies are then. */
+function contact(view: View, poses: Record<Slot, Pose>, { record: { point, normal }, lit }: PageMotion, { moving, fixed }: Record<Slot, Drawn>, labels: Label[]): Object3D[] {
   if (!point || !normal) return [];
   const { frame } = view;
   const { size, colours, origin } = frame;
@@ -84,19 +87,20 @@ function contact(view: View, fixedPose: Pose, pose: Pose, { record: { point, nor
     rod(from, end, colours.normal, 0.007 * size),
     ball(end, 0.013 * size, new MeshBasicMaterial({ color: colours.normal })),
     ...(lit ? [
-      feature(kind(lit.fixed.vertices, lit.fixed.face), lit.fixed, fixed, matrixOf(fixedPose, fixed.middle, origin), colours.fixedMark, size),
-      feature(kind(lit.moving.vertices, lit.moving.face), lit.moving, moving, matrixOf(pose, moving.middle, origin), colours.movingMark, size),
+      feature(kind(lit.fixed.vertices, lit.fixed.face), lit.fixed, fixed, matrixOf(poses.fixed, fixed.middle, origin), colours.fixedMark, size),
+      feature(kind(lit.moving.vertices, lit.moving.face), lit.moving, moving, matrixOf(poses.moving, moving.middle, origin), colours.movingMark, size),
     ] : []),
   ];
 }
 
-/** What is to be in the picture: both bodies, the moving one on its way, and the axis' point. */
-export function seen({ poses }: State, screw: Screw, { moving, fixed }: { moving: Drawn; fixed: Drawn }): Ball[] {
-  const middle = placed(poses.moving, moving.middle);
+/** What is to be in the picture: both bodies, the one that moves on its way, and the axis' point. */
+export function seen({ poses, motion: { body } }: State, screw: Screw, bodies: Record<Slot, Drawn>): Ball[] {
+  const [mover, rests] = [bodies[body], otherOf(body)];
+  const middle = placed(poses[body], mover.middle);
   const times = Array.from({ length: 9 }, (_, k) => k / 8);
   return [
-    [placed(poses.fixed, fixed.middle), fixed.radius], [screw.point, 0],
-    ...times.map((time): Ball => [carried(screw, middle, time), moving.radius]),
+    [placed(poses[rests], bodies[rests].middle), bodies[rests].radius], [screw.point, 0],
+    ...times.map((time): Ball => [carried(screw, middle, time), mover.radius]),
   ];
 }
 

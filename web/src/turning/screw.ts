@@ -1,7 +1,8 @@
 // A screw as a function of time, as pictures need it, and one to begin with. Answers are the library's.
 
 import { type Pose, type Vec, add, cross, length, placed, sub, times, turned, unit } from "../math";
-import type { Screw } from "../state";
+import type { Slot } from "../engine";
+import { type Screw, otherOf } from "../state";
 import type { Drawn } from "../view/body";
 
 export const RADIANS = Math.PI / 180;
@@ -33,11 +34,11 @@ function rotation(axis: Vec, degrees: number): Pose {
   return [0, 0, 0, ...times(unit(axis), Math.sin(half)), Math.cos(half)];
 }
 
-/** A hinge about which the moving body swings to where the fixed one is, and on. */
-export function hinge(poses: { moving: Pose; fixed: Pose }, moving: Drawn, fixed: Drawn): Screw {
-  const [from, to] = [placed(poses.moving, moving.middle), placed(poses.fixed, fixed.middle)];
+/** A hinge about which a body swings to where the other one is, and on. */
+export function hinge(poses: Record<Slot, Pose>, bodies: Record<Slot, Drawn>, body: Slot): Screw {
+  const [from, to] = [body, otherOf(body)].map((slot) => placed(poses[slot], bodies[slot].middle)) as [Vec, Vec];
   const way = sub(to, from);
-  const size = moving.radius + fixed.radius;
+  const size = bodies.moving.radius + bodies.fixed.radius;
   const fine = 10 ** Math.ceil(1.5 - Math.log10(size));
   const round = (v: Vec) => v.map((x) => Math.round(x * fine) / fine || 0) as Vec;
   if (length(way) < 1e-3 * size) return { point: round(from), axis: [0, 0, 1], angle: 90, rise: 0 };

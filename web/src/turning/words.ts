@@ -10,7 +10,8 @@ const kind = (of: { kind: string }) => (of.kind === "edge" ? "an edge" : `a ${of
 
 /** How far a screw has gone at a time. */
 export function gone({ angle, rise }: Screw, time: number): string {
-  return `${short(angle * time)}°${rise ? `, ${short(rise * time)} along the axis` : ""}`;
+  const ways = [angle || !rise ? `${short(angle * time)}°` : "", rise ? `${short(rise * time)} along the axis` : ""];
+  return ways.filter(Boolean).join(", ");
 }
 
 export function say({ record }: PageMotion, screw: Screw, keep: number): Said {
@@ -20,7 +21,7 @@ export function say({ record }: PageMotion, screw: Screw, keep: number): Said {
   if (time) {
     const { lower, upper } = time;
     rows.push(["time", `${short(lower, 12)} of the motion`], ["proven", upper === undefined ? `not before ${short(lower, 15)}` : `${short(lower, 15)} to ${short(upper, 15)}`]);
-    rows.push(["angle", `${short(screw.angle * lower, 12)}°`]);
+    if (screw.angle) rows.push(["angle", `${short(screw.angle * lower, 12)}°`]);
     if (screw.rise) rows.push(["along the axis", short(screw.rise * lower, 12)]);
   }
   if (normal) rows.push(["normal n", shown(normal as Vec)]);

@@ -25,12 +25,15 @@ enum Question {
     Prove(Asked),
 }
 
-/// What the moving body does, and where the other one rests. Poses are `x,y,z,qx,qy,qz,qw`.
+/// What a body does, and where one that does nothing rests. Poses are `x,y,z,qx,qy,qz,qw`.
 #[derive(Deserialize)]
 struct Asked {
     moving_pose: [f64; 7],
     fixed_pose: [f64; 7],
-    motion: Kind,
+    #[serde(default)]
+    moving_motion: Option<Kind>,
+    #[serde(default)]
+    fixed_motion: Option<Kind>,
     /// A gap to be kept.
     #[serde(default)]
     keep: f64,
@@ -45,6 +48,19 @@ struct Asked {
 enum Kind {
     Turn { point: [f64; 3], axis: [f64; 3], angle: f64 },
     Screw { point: [f64; 3], axis: [f64; 3], angle: f64, rise: f64 },
+}
+
+impl Kind {
+    fn from(&self, start: Pose) -> Result<Motion, String> {
+        let v = DVec3::from_array;
+        let motion = match *self {
+            Self::Turn { point, axis, angle } => Motion::turn(start, v(point), v(axis), angle),
+            Self::Screw { point, axis, angle, rise } => {
+                Motion::screw(start, v(point), v(axis), angle, rise)
+            }
+        };
+        motion.map_err(|error| error.to_string())
+    }
 }
 
 /// Two bodies, as files made them.
@@ -97,24 +113,18 @@ impl State {
 
 impl Asked {
     fn motions(&self) -> Result<[Motion; 2], String> {
-        let (start, there) = (pose(self.moving_pose, "moving")?, pose(self.fixed_pose, "fixed")?);
-        let v = DVec3::from_array;
-        let motion = match self.motion {
-            Kind::Turn { point, axis, angle } => Motion::turn(start, v(point), v(axis), angle),
-            Kind::Screw { point, axis, angle, rise } => {
-                Motion::screw(start, v(point), v(axis), angle, rise)
-            }
-        };
-        Ok([motion.map_err(|error| error.to_string())?, Motion::still(there)])
+        let motion = |kind: Option<&Kind>, start: Pose| kind.map_or(Ok(Motion::still(start)), |kind| kind.from(start));
+        let (moving, fixed) = (pose(self.moving_pose, "moving")?, pose(self.fixed_pose, "fixed")?);
+        Ok([motion(self.moving_motion.as_ref(), moving)?, motion(self.fixed_motion.as_ref(), fixed)?])
     }
 
     fn query<'a>(
         &self,
         [moving, fixed]: [&'a Part; 2],
-        [turns, rests]: &'a [Motion; 2],
+        [moves, other]: &'a [Motion; 2],
     ) -> Result<Query<'a>, String> {
         let query = if let (Part::Convex(p), Part::Convex(q)) = (moving, fixed) {
-            let cast = MotionCast::new(p.body.along(turns), q.body.along(rests));
+            let cast = MotionCast::new(p.body.along(moves), q.body.along(other));
             match self.tolerance {
                 Some(_) if self.keep > 0.0 => {
                     return Err("convex bodies have either a gap or a tolerance".into());
@@ -128,7 +138,7 @@ impl Asked {
             moving
                 .solid()
                 .and_then(|p| {
-                    let (p, q) = (p.along(turns), fixed.solid()?.along(rests));
+                    let (p, q) = (p.along(moves), fixed.solid()?.along(other));
                     between_motions(p, q, precisions, self.tolerance)
                 })
                 .and_then(|cast| cast.keeping(self.keep))

@@ -23,7 +23,7 @@ fn loaded(takes: [&str; 2]) -> State {
 
 /// The moving cube has its edge `x = y = 0` on the z axis, about which it turns; the other one is at a place.
 fn asked(question: &str, motion: &Value, x: f64, y: f64) -> Value {
-    json!({ "do": question, "motion": motion, "moving_pose": [0, 0, 0, 0, 0, 0, 1],
+    json!({ "do": question, "moving_motion": motion, "moving_pose": [0, 0, 0, 0, 0, 0, 1],
         "fixed_pose": [x, y, 0.25, 0, 0, 0, 1] })
 }
 
@@ -85,11 +85,40 @@ fn a_screw_rises_and_a_gap_is_kept() {
     assert_eq!(outcome(ask(&mut state, &question, "")).as_deref(), Some("free"));
     question["keep"] = json!(0.2);
     assert_eq!(outcome(ask(&mut state, &question, "")).as_deref(), Some("contact"));
-    question["motion"] = rise(50.0);
+    question["moving_motion"] = rise(50.0);
     assert_eq!(outcome(ask(&mut state, &question, "")).as_deref(), Some("free"));
     question["tolerance"] = json!(0.1);
     let error = ask(&mut state, &question, "");
     assert_eq!(error["error"], "convex bodies have either a gap or a tolerance");
+}
+
+#[test]
+fn either_body_moves_and_slides() {
+    for takes in KINDS {
+        let mut state = loaded(takes);
+        // A slide is a screw without a turn: up to 0.25 below the other one, from 3 below.
+        let up = json!({ "screw": { "point": [0, 0, 0], "axis": [0, 0, 1], "angle": 0.0, "rise": 4.0 } });
+        let mut question = asked("motion", &up, 0.0, 0.0);
+        question["moving_pose"] = json!([0.5, 0.5, -3, 0, 0, 0, 1]);
+        let time = |told: &Value| told["record"]["time"]["lower"].as_f64().expect("a contact");
+        let slid = ask(&mut state, &question, "");
+        assert!((time(&slid) - 2.25 / 4.0).abs() < 1e-5, "{slid}");
+        // The other one comes down as far.
+        let down = json!({ "screw": { "point": [0, 0, 0], "axis": [0, 0, -1], "angle": 0.0, "rise": 4.0 } });
+        question["moving_motion"] = Value::Null;
+        question["fixed_motion"] = down.clone();
+        let other = ask(&mut state, &question, "");
+        assert!((time(&other) - time(&slid)).abs() < 1e-9, "{other}");
+        let rests = other["pose"].as_array().expect("a pose").iter().map(Value::as_f64);
+        let rests: Vec<f64> = rests.map(|x| x.expect("a number")).collect();
+        assert_eq!(rests, [0.5, 0.5, -3.0, 0.0, 0.0, 0.0, 1.0]);
+        // Both meet in the middle.
+        question["moving_motion"] = up;
+        let both = ask(&mut state, &question, "");
+        assert!((2.0 * time(&both) - time(&slid)).abs() < 1e-5, "{both}");
+        question["do"] = json!("prove");
+        assert_eq!(ask(&mut state, &question, "")["holds"], true);
+    }
 }
 
 #[test]
@@ -105,7 +134,7 @@ fn what_is_wrong_is_said() {
     assert!(error(ask(&mut state, &with(axis), "")).contains("axis"));
     assert!(error(ask(&mut state, &with(turn(1e9)), "")).contains("1e5"));
     assert!(error(ask(&mut state, &json!({ "do": "dance" }), "")).contains("dance"));
-    let nan = json!({ "do": "motion", "motion": turn(1.0), "moving_pose": [0, 0, 0, 0, 0, 0, 0],
+    let nan = json!({ "do": "motion", "moving_motion": turn(1.0), "moving_pose": [0, 0, 0, 0, 0, 0, 0],
         "fixed_pose": [0, 0, 0, 0, 0, 0, 1] });
     assert!(error(ask(&mut state, &nan, "")).starts_with("pose of the moving body"));
 }

@@ -5,14 +5,14 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
-use colltrans::{AnyBody, AnyPlaced};
+use colltrans::glam::DVec3;
 use colltrans::motion::path::{
     JointPath, PathCast, PathContact, PathOutcome, PathProof, PathProofFile, Place,
 };
 use colltrans::record::PathRecord;
+use colltrans::{AnyBody, AnyPlaced};
 use colltrans_assembly::read::{self, ReadOptions};
 use colltrans_assembly::robot::{Cell, Robot as Arm, RobotJoint, Table};
-use colltrans::glam::DVec3;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
@@ -344,9 +344,7 @@ impl Question {
     ) -> Result<T, String> {
         match self {
             Self::Asked(asked, path) => of(&asked.cast(path)?, asked.cell.names()),
-            Self::Saved(file) => {
-                of(&file.cast().map_err(|what| what.to_string())?, &file.names())
-            }
+            Self::Saved(file) => of(&file.cast().map_err(|what| what.to_string())?, &file.names()),
         }
     }
 }
@@ -544,9 +542,13 @@ impl PathAnswer {
         place: Option<(usize, f64)>,
     ) -> PyResult<Vec<NamedMesh<'py>>> {
         let (row, share) = place.or_else(|| self.place()).unwrap_or((self.end.1, 0.0));
-        let is_one = (0.0..=1.0).contains(&share) && (row < self.end.1 || (row, share) == (self.end.1, 0.0));
+        let is_one =
+            (0.0..=1.0).contains(&share) && (row < self.end.1 || (row, share) == (self.end.1, 0.0));
         if !is_one {
-            return Err(input("place", format_args!("a path of {} rows has no {row}, {share}", self.end.1 + 1)));
+            return Err(input(
+                "place",
+                format_args!("a path of {} rows has no {row}, {share}", self.end.1 + 1),
+            ));
         }
         let told = self.question.with(|cast, names| {
             let place = Place { row, share };
@@ -572,7 +574,10 @@ impl PathAnswer {
     }
 
     /// What a pickle has: the file of the proof, the answer but for that, and what was noted.
-    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py, (String, String, Vec<String>)>> {
+    fn __reduce__<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<Reduced<'py, (String, String, Vec<String>)>> {
         let (mut found, file) = self.saved(py)?;
         let record = file.cast().map(|cast| PathRecord::of(&found, &cast, &file.names()));
         if record.map_err(|what| error("CaseError", what))? != self.record {

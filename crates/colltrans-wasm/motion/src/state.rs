@@ -113,9 +113,14 @@ impl State {
 
 impl Asked {
     fn motions(&self) -> Result<[Motion; 2], String> {
-        let motion = |kind: Option<&Kind>, start: Pose| kind.map_or(Ok(Motion::still(start)), |kind| kind.from(start));
+        let motion = |kind: Option<&Kind>, start: Pose| {
+            kind.map_or(Ok(Motion::still(start)), |kind| kind.from(start))
+        };
         let (moving, fixed) = (pose(self.moving_pose, "moving")?, pose(self.fixed_pose, "fixed")?);
-        Ok([motion(self.moving_motion.as_ref(), moving)?, motion(self.fixed_motion.as_ref(), fixed)?])
+        Ok([
+            motion(self.moving_motion.as_ref(), moving)?,
+            motion(self.fixed_motion.as_ref(), fixed)?,
+        ])
     }
 
     fn query<'a>(

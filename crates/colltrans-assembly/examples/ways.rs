@@ -1,9 +1,11 @@
-//! Ways out in several moves: `ways SOURCE [tolerance] [legs]` prints the legs that take a first part or group out.
+//! Ways out in several moves: `ways SOURCE [tolerance] [legs] [axes]` prints the legs that take a first part or group out.
+//! With more axes than the parts' large facets have, up to 13 in all, those of a cube's edges and diagonals are tried.
 
 use std::time::Instant;
 
 use colltrans::Pose;
-use colltrans::ways::{WayOptions, WaysOut};
+use colltrans::glam::DVec3;
+use colltrans::ways::{WayOptions, WaysOut, of_large_facets};
 use colltrans_assembly::read::{ReadOptions, read};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -14,7 +16,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let legs = arguments.get(2).map_or(Ok(12), |text| text.parse())?;
     let parts = assembly.parts();
     let bodies: Vec<_> = parts.iter().map(|part| part.solid().at(Pose::IDENTITY)).collect();
-    let options = WayOptions::default().with_tolerance(tolerance).with_legs(legs);
+    let axes = arguments.get(3).map_or(Ok(0), |text| text.parse::<usize>())?;
+    let mut options = WayOptions::default().with_tolerance(tolerance).with_legs(legs);
+    if axes > 0 {
+        let own = of_large_facets(&bodies);
+        let more =
+            of_a_cube().into_iter().filter(|d| own.iter().all(|a| a.cross(*d).length() > 1e-6));
+        options = options.with_directions(own.iter().copied().chain(more).take(axes).collect());
+    }
     let start = Instant::now();
     let found = WaysOut::among(&bodies, &[], &options, None)?;
     let seconds = start.elapsed().as_secs_f64();
@@ -39,4 +48,13 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         WaysOut::NotFound { searched } => println!("not found: {seconds:.4} s, {searched:?}"),
     }
     Ok(())
+}
+
+/// Axes of a cube: of its edges, and of the diagonals of its faces and its own.
+fn of_a_cube() -> Vec<DVec3> {
+    // Of three digits from 0 to 2 those after the middle one.
+    let of = |k: u32| DVec3::from([k / 9, k / 3 % 3, k % 3].map(f64::from)) - 1.0;
+    let mut axes: Vec<DVec3> = (14..27).map(|k| of(k).normalize()).collect();
+    axes.sort_by(|a, b| b.abs().max_element().total_cmp(&a.abs().max_element()));
+    axes
 }

@@ -88,6 +88,20 @@ fn no_way(a: &Placed<'_, Solid>, b: &Placed<'_, Solid>) -> NoWay {
     proof
 }
 
+/// Within the walls of a proof two bodies overlap, wherever: at one corner of every other, and somewhere in the others.
+fn overlap_in_walls(proof: &NoWay, a: &Placed<'_, Solid>, b: &Placed<'_, Solid>) {
+    let mut random = Random::new(7);
+    for (k, &(cell, _)) in proof.walls.iter().enumerate() {
+        let [low, high] = proof.room.corners(cell);
+        let share = DVec3::new(random.unit(), random.unit(), random.unit());
+        let place = if k % 2 == 0 { low + share * (high - low) } else { low };
+        let by = proof.room.axes * place;
+        let moved = a.body.at(a.pose.translated(by).unwrap());
+        let cast = Cast::new(moved, *b, DVec3::Z).unwrap();
+        assert!(cast.with_tolerance(proof.tolerance).unwrap().overlaps(), "{cell:?} {by}");
+    }
+}
+
 /// A closed box around a room from 0 to 4, with another one behind a wall at `x` from 4 to 5 if there are two; holes
 /// are square, in the middle: of the first room's roof, of the wall between and of the second room's roof.
 fn chambers(two: bool, holes: [f64; 3]) -> Solid {
@@ -141,16 +155,7 @@ fn a_cube_in_a_box_leaves_through_holes_that_are_large_enough_and_else_it_is_pro
         let walls = chambers(two, holes);
         let proof = no_way(&cube.at(at), &walls.at(at));
         assert!(proof.cells() < 4_000, "{holes:?}: {}", proof.cells());
-        // Within the walls of the proof they overlap, wherever.
-        let mut random = Random::new(7);
-        for (k, &(cell, _)) in proof.walls.iter().enumerate() {
-            let [low, high] = proof.room.corners(cell);
-            let share = DVec3::new(random.unit(), random.unit(), random.unit());
-            let by = if k % 2 == 0 { low + share * (high - low) } else { low };
-            let moved = cube.at(Pose::from_translation(by).unwrap());
-            let cast = Cast::new(moved, walls.at(at), DVec3::Z).unwrap();
-            assert!(cast.with_tolerance(proof.tolerance).unwrap().overlaps(), "{cell:?} {by}");
-        }
+        overlap_in_walls(&proof, &cube.at(at), &walls.at(at));
     }
     // Where two coordinates have to be right at once, cells in which nothing meets lead there.
     for (two, holes, legs) in [(false, [1.1, 0.0, 0.0], 3), (true, [0.0, 1.1, 1.5], 5)] {
@@ -177,18 +182,93 @@ fn bodies_that_are_turned_are_proven_to_stay_as_well() {
                 .map(|(turn, by)| Pose::from_matrix(turn, by).unwrap());
             let proof = no_way(&cube.at(p), &walls.at(q));
             assert!(proof.cells() < 20_000, "{holes:?} {round}: {}", proof.cells());
-            for &(cell, _) in &proof.walls {
-                let [low, high] = proof.room.corners(cell);
-                let share = DVec3::new(random.unit(), random.unit(), random.unit());
-                let by = middle + low + share * (high - low);
-                let moved = cube.at(Pose::from_matrix(turns[0], by).unwrap());
-                let cast = Cast::new(moved, walls.at(q), DVec3::Z).unwrap();
-                assert!(cast.with_tolerance(proof.tolerance).unwrap().overlaps(), "{cell:?} {by}");
-            }
+            overlap_in_walls(&proof, &cube.at(p), &walls.at(q));
             // Of a body that stands elsewhere it is no proof.
             let other = Pose::from_matrix(turns[0], middle + room * DVec3::X * 1.25).unwrap();
             let elsewhere = proof.verify(&cube.at(other), &walls.at(q));
             assert!(matches!(elsewhere, Err(FreeError::NotProven(_))), "{holes:?} {round}");
+        }
+    }
+}
+
+#[test]
+fn rooms_that_are_slanted_are_proven_closed_and_left_by_their_windows() {
+    let cube = solid(&[[[0.5, 0.75, 0.5], [1.5, 1.75, 1.5]]]);
+    let mut random = Random::new(29);
+    for (two, holes, closed) in [
+        (false, [0.0; 3], true),
+        (false, [0.9, 0.0, 0.0], true),
+        (true, [0.0, 0.9, 1.5], true),
+        (false, [1.1, 0.0, 0.0], false),
+        (true, [0.0, 1.1, 1.5], false),
+    ] {
+        let walls = chambers(two, holes);
+        for round in 0..4 {
+            let pose = Pose::new(random.rotation(), 3.0 * random.direction()).unwrap();
+            let (a, b) = (cube.at(pose), walls.at(pose));
+            if !closed {
+                let found = found(&[cube.clone(), walls.clone()], pose, &WayOptions::default());
+                assert!(found.is_some(), "{holes:?} {round}");
+                continue;
+            }
+            let proof = no_way(&a, &b);
+            // As many as along the axes, or nearly.
+            assert!(proof.cells() < 4_000, "{holes:?} {round}: {}", proof.cells());
+            overlap_in_walls(&proof, &a, &b);
+            // The same cells along other axes, or along such as lie in a plane, are no proof.
+            let [x, y, z] = [0, 1, 2].map(|k| proof.room.axes.col(k));
+            for axes in [
+                DMat3::IDENTITY,
+                DMat3::from_cols(x, y, DVec3::ZERO - z),
+                DMat3::from_cols(x, y, (x + y).normalize()),
+                DMat3::from_cols(x, y, 2.0 * z),
+                DMat3::from_cols(x, y, DVec3::NAN),
+                DMat3::ZERO,
+            ] {
+                let mut changed = proof.clone();
+                changed.room.axes = axes;
+                let said = changed.verify(&a, &b);
+                assert!(matches!(said, Err(FreeError::NotProven(_))), "{holes:?} {axes}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_room_whose_walls_are_askew_to_each_other_is_proven_closed() {
+    // A room whose walls are sheared, and a cube in it; with a hole in the roof that is as wide as the cube it leaves.
+    let sheared = |[low, high]: [[f64; 3]; 2]| {
+        let corner = |k: usize| {
+            [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { low[axis] } else { high[axis] })
+        };
+        let corners = (0..8).map(corner).map(|[x, y, z]| DVec3::new(x + 0.5 * y, y, z + 0.3 * y));
+        ConvexPolyhedron::from_points(&corners.collect::<Vec<_>>()).unwrap()
+    };
+    let turn = DMat3::from_euler(EulerRot::XYZ, 0.4, 0.7, 0.2);
+    let pose = Pose::from_matrix(turn, DVec3::ZERO).unwrap();
+    let cube = solid(&[[[1.5, 1.0, 1.5], [2.0, 1.5, 2.0]]]);
+    for open in [false, true] {
+        let mut blocks = vec![
+            [[-1.0, -1.0, -1.0], [5.0, 5.0, 0.0]],
+            [[-1.0, -1.0, 0.0], [0.0, 5.0, 4.0]],
+            [[4.0, -1.0, 0.0], [5.0, 5.0, 4.0]],
+            [[0.0, -1.0, 0.0], [4.0, 0.0, 4.0]],
+            [[0.0, 4.0, 0.0], [4.0, 5.0, 4.0]],
+        ];
+        if open {
+            blocks.push([[-1.0, -1.0, 4.0], [2.0, 5.0, 5.0]]);
+        } else {
+            blocks.push([[-1.0, -1.0, 4.0], [5.0, 5.0, 5.0]]);
+        }
+        let walls =
+            Solid::from_pieces(&blocks.into_iter().map(sheared).collect::<Vec<_>>()).unwrap();
+        let (a, b) = (cube.at(pose), walls.at(pose));
+        if open {
+            assert!(found(&[cube.clone(), walls.clone()], pose, &WayOptions::default()).is_some());
+        } else {
+            let proof = no_way(&a, &b);
+            assert!(proof.cells() < 4_000, "{}", proof.cells());
+            overlap_in_walls(&proof, &a, &b);
         }
     }
 }
@@ -223,6 +303,7 @@ fn proofs_of_no_way_that_were_changed_are_refused() {
     refused(&|proof| proof.room.side *= 1.5);
     refused(&|proof| proof.room.side = f64::NAN);
     refused(&|proof| proof.room.low.x -= 3.0);
+    refused(&|proof| proof.room.axes.x_axis = proof.room.axes.y_axis);
     // A hole that lets the cube through is another body.
     let open = chambers(false, [1.1, 0.0, 0.0]);
     assert!(matches!(proof.verify(&a, &open.at(at)), Err(FreeError::NotProven(_))));
@@ -244,7 +325,7 @@ fn legs_that_were_changed_are_refused() {
     refused(&|way| drop(way.legs.pop()));
     refused(&|way| way.legs[1].motion = -DVec3::Z);
     refused(&|way| way.legs[0].proofs.clear());
-    refused(&|way| way.legs[0].travel = 14.0);
+    refused(&|way| way.legs[0].travel += 0.25);
     refused(&|way| way.legs[0].bodies = vec![0, 1]);
     refused(&|way| way.legs[0].bodies = vec![0, 99]);
     refused(&|way| way.legs.clear());
@@ -329,10 +410,12 @@ fn a_last_leg_that_no_candidate_has_is_found_among_free_directions() {
 }
 
 #[test]
-fn new_regions_first_finds_ways_too() {
-    let options = WayOptions::default().with_order(Order::NewestFirst);
-    let way = found(&slot([14.0, 17.0]), Pose::IDENTITY, &options).unwrap();
-    assert_eq!(way.legs.len(), 2);
+fn either_order_finds_ways() {
+    for order in [Order::FewestLegs, Order::NewestFirst] {
+        let options = WayOptions::default().with_order(order);
+        let way = found(&slot([14.0, 17.0]), Pose::IDENTITY, &options).unwrap();
+        assert_eq!(way.legs.len(), 2);
+    }
 }
 
 #[test]

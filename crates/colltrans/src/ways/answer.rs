@@ -4,8 +4,8 @@ use std::sync::atomic::AtomicBool;
 
 use glam::DVec3;
 
-use super::candidates::directions;
-use super::enclosed::{Cells, NoWay, enclosed};
+use super::candidates::{directions, of_walls};
+use super::enclosed::{Cells, Enclosure, NoWay, axes_of};
 use super::options::{Searched, WayOptions};
 use super::pairs::{Pair, around, displaced};
 use super::search::{Group, Move, Run, Scale, Search, border};
@@ -141,11 +141,12 @@ impl WaysOut {
         }
         let tolerance = tolerance(bodies, options)?;
         let boxes: Vec<Aabb> = bodies.iter().map(around).collect();
+        let scale = scale(bodies, tolerance, options.step);
         let mut pairs = Vec::new();
         for j in 1..bodies.len() {
             for i in 0..j {
                 let both = [bodies[i], bodies[j]];
-                pairs.push(Pair::new(both, [boxes[i], boxes[j]], SLACK * tolerance)?);
+                pairs.push(Pair::new(both, [boxes[i], boxes[j]], (SLACK * tolerance, scale.step))?);
             }
         }
         if let [Pair { overlap: Some(place), .. }] = pairs[..] {
@@ -156,37 +157,47 @@ impl WaysOut {
         let base = stays.unwrap_or_else(|| largest(bodies));
         let directions = directions(bodies, &options.directions);
         let who = (bodies.len(), mask | 1 << base, base);
-        let scale = scale(bodies, tolerance, options.step);
         let mut search = Search::new(pairs, who, directions, scale, options, cancel);
-        let provable = bodies.len() == 2 && options.cells > 0;
-        let first = if provable { WayOptions::PLACES_FIRST } else { usize::MAX };
-        let mut run = search.run(first, |moves| certified(bodies, moves, tolerance))?;
-        if provable && !matches!(run, Run::Found(_)) {
-            let placed = [bodies[0], bodies[1]];
-            match enclosed(placed, tolerance, scale.far, options.cells, cancel)? {
-                Cells::Proven(proof) => return Ok(Self::Proven(proof)),
-                Cells::Way(places) => {
-                    let way = (&places[..], scale.grid, if base == 1 { 1.0 } else { -1.0 });
-                    let certified = |moves: &[Move]| certified(bodies, moves, tolerance);
-                    if let Some(legs) = search.shortened(1 - base, way, certified)? {
-                        let searched = search.searched;
-                        return Ok(Self::Found(WayOut { legs, tolerance, searched }));
+        let certified = |moves: &[Move]| certified(bodies, moves, tolerance);
+        let mut provable = bodies.len() == 2 && options.cells > 0;
+        let (mut cells, mut places) = (None, WayOptions::PLACES_FIRST);
+        let mut legs = loop {
+            let run = search.run(if provable { places } else { usize::MAX }, certified)?;
+            if let Run::Found(legs) = run {
+                break Some(legs);
+            }
+            let ended = matches!(run, Run::Ended);
+            if provable {
+                let of = match &mut cells {
+                    Some(of) => of,
+                    none => {
+                        let axes = axes_of(&of_walls(&bodies[base], middle(&bodies[1 - base])));
+                        let both = [bodies[0], bodies[1]];
+                        none.insert(Enclosure::new(both, tolerance, scale.far, axes)?)
                     }
+                };
+                let own = if ended { usize::MAX } else { WayOptions::CELLS_FOR_A_PLACE * places };
+                match of.go_on(own.min(options.cells), cancel)? {
+                    Some(Cells::Proven(proof)) => return Ok(Self::Proven(proof)),
+                    Some(Cells::Way(through)) => {
+                        let way = (&through[..], scale.grid, if base == 1 { 1.0 } else { -1.0 });
+                        if let Some(legs) = search.shortened(1 - base, way, certified)? {
+                            break Some(legs);
+                        }
+                        provable = false;
+                    }
+                    None => (),
                 }
-                Cells::Spent => (),
             }
-        }
-        if matches!(run, Run::Paused) {
-            run = search.run(usize::MAX, |moves| certified(bodies, moves, tolerance))?;
-        }
-        let legs = match run {
-            Run::Found(legs) => Some(legs),
-            // Of many bodies there are too many pairs.
-            Run::Ended if bodies.len() == 2 => {
-                search.askew(|moves| certified(bodies, moves, tolerance))?
+            if ended {
+                break None;
             }
-            Run::Ended | Run::Paused => None,
+            places *= 2;
         };
+        // Of many bodies there are too many pairs.
+        if legs.is_none() && bodies.len() == 2 && search.searched.complete {
+            legs = search.askew(certified)?;
+        }
         let searched = search.searched;
         Ok(match legs {
             Some(legs) => Self::Found(WayOut { legs, tolerance, searched }),
@@ -312,6 +323,11 @@ fn volume_of_box(body: &Placed<'_, Solid>) -> f64 {
 fn largest(bodies: &[Placed<'_, Solid>]) -> usize {
     let volume = |k: &usize| volume_of_box(&bodies[*k]);
     (0..bodies.len()).rev().max_by(|a, b| volume(a).total_cmp(&volume(b))).unwrap_or(0)
+}
+
+/// The middle of a body's box, in the world.
+fn middle(body: &Placed<'_, Solid>) -> DVec3 {
+    body.pose.transform_point(body.body.bounds().center())
 }
 
 fn scale(bodies: &[Placed<'_, Solid>], tolerance: f64, step: f64) -> Scale {

@@ -7,6 +7,8 @@ use crate::body::solid::Solid;
 
 /// Axes of the largest facets of each body.
 const AXES: usize = 3;
+/// Axes of walls around a place.
+const MOST_WALLS: usize = 8;
 /// Axes in all, each of which is two directions.
 const MOST: usize = 13;
 /// Axes whose cross product is shorter than this are one.
@@ -26,7 +28,7 @@ pub(super) fn directions(bodies: &[Placed<'_, Solid>], given: &[DVec3]) -> Vec<D
 pub fn of_large_facets(bodies: &[Placed<'_, Solid>]) -> Vec<DVec3> {
     let mut axes = Vec::new();
     for body in bodies {
-        for axis in large(body) {
+        for axis in large(body, |_| true).into_iter().take(AXES) {
             put(&mut axes, axis);
         }
     }
@@ -40,12 +42,26 @@ pub fn of_large_facets(bodies: &[Placed<'_, Solid>]) -> Vec<DVec3> {
     axes
 }
 
-/// The axes of a body that most of its area faces, in the world, the largest first.
-fn large(body: &Placed<'_, Solid>) -> Vec<DVec3> {
+/// Axes of the walls around a place: of facets of a body that face it, the largest first, and across the first two.
+pub(super) fn of_walls(body: &Placed<'_, Solid>, place: DVec3) -> Vec<DVec3> {
+    let within = body.pose.matrix().transpose() * (place - body.pose.translation());
+    let mut axes = large(body, |[a, b, c]| (b - a).cross(c - a).dot(within - a) > 0.0);
+    axes.truncate(MOST_WALLS);
+    if let [first, second, ..] = axes[..] {
+        axes.push(first.cross(second));
+    }
+    axes
+}
+
+/// The axes that most of the area of some facets of a body faces, in the world, the largest first.
+fn large(body: &Placed<'_, Solid>, among: impl Fn([DVec3; 3]) -> bool) -> Vec<DVec3> {
     let mut found: Vec<(DVec3, f64)> = Vec::new();
     let vertices = body.body.vertices();
     for t in body.body.triangles() {
         let [a, b, c] = t.map(|v| vertices[v as usize]);
+        if !among([a, b, c]) {
+            continue;
+        }
         let normal = (b - a).cross(c - a);
         let area = normal.length();
         let Some(unit) = normal.try_normalize() else { continue };
@@ -58,7 +74,6 @@ fn large(body: &Placed<'_, Solid>) -> Vec<DVec3> {
         }
     }
     found.sort_by(|x, y| y.1.total_cmp(&x.1));
-    found.truncate(AXES);
     found.iter().map(|(axis, _)| body.pose.transform_vector(*axis)).collect()
 }
 

@@ -12,13 +12,15 @@ use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashMap, HashSet, VecDeque};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use glam::DVec3;
+use glam::{DMat3, DVec3};
 
-use super::cells::{Crossing, DEEPEST, Displaced, Room, RoomCell, SIDES, Side};
+use super::cells::{
+    Crossing, DEEPEST, Displaced, Displacements, Room, RoomCell, SIDES, Side, are_independent,
+};
 use super::pairs::standing;
 use crate::answer::CertificateError;
-use crate::body::Placed;
 use crate::body::solid::{AsSolid, Solid};
+use crate::body::{Aabb, Placed};
 use crate::free::{Bodies, FreeError};
 use crate::setting::error::QueryError;
 
@@ -60,16 +62,14 @@ impl NoWay {
     ) -> Result<(), FreeError> {
         let a = moving.body.as_solid().map_err(QueryError::from)?.at(moving.pose);
         let b = fixed.body.as_solid().map_err(QueryError::from)?.at(fixed.pose);
-        let Room { low, side } = self.room;
         let refused = |entry: usize| Err(CertificateError::Cover { entry }.into());
         let all = || self.rooms.iter().chain(self.walls.iter().map(|wall| &wall.0));
         let proper =
             |cell: &RoomCell| cell.depth <= DEEPEST && cell.at.iter().all(|&x| x < 1 << cell.depth);
-        if !(low.is_finite() && side.is_finite() && side > 0.0 && all().all(proper)) {
+        if !(self.room.is_proper() && all().all(proper)) {
             return refused(0);
         }
-        let bodies = bodies([a, b], self.tolerance)?;
-        let displaced = Displaced::new(&bodies, self.room);
+        let displaced = Displaced::new(bodies([a, b], self.tolerance)?, self.room);
         let home = self.rooms.iter().any(|&cell| {
             let [low, high] = self.room.corners(cell);
             low.cmplt(DVec3::ZERO).all() && high.cmpgt(DVec3::ZERO).all()
@@ -78,7 +78,7 @@ impl NoWay {
             return refused(0);
         }
         for (k, &(cell, crossing)) in self.walls.iter().enumerate() {
-            if !displaced.blocks(crossing, self.room.corners(cell)) {
+            if !displaced.blocks(crossing, &self.room.displacements(cell)) {
                 return refused(self.rooms.len() + k);
             }
         }
@@ -107,6 +107,53 @@ fn is_covered_below(known: &HashSet<RoomCell>, cell: RoomCell, side: Side) -> bo
             && cell.parts_at(side).all(|part| is_covered_below(known, part, side))
 }
 
+/// Columns along which cells of displacements lie best: across the normals of three that are independent and among
+/// which are the earlier ones, as far as may be; of orthogonal ones along themselves. Those of the world if there are none.
+pub(super) fn axes_of(normals: &[DVec3]) -> DMat3 {
+    for (k, &w) in normals.iter().enumerate() {
+        for (l, &v) in normals[..k].iter().enumerate() {
+            for &u in &normals[..l] {
+                let [x, y, z] = [v.cross(w), w.cross(u), u.cross(v)].map(DVec3::normalize_or_zero);
+                let axes = DMat3::from_cols(x, y, z);
+                if are_independent(axes) {
+                    return along_the_world(axes);
+                }
+            }
+        }
+    }
+    DMat3::IDENTITY
+}
+
+/// The same columns in an order and with signs so that each is near the world's axis of its number.
+fn along_the_world(axes: DMat3) -> DMat3 {
+    let [x, y, z] = [axes.x_axis, axes.y_axis, axes.z_axis];
+    let orders = [[x, y, z], [x, z, y], [y, x, z], [y, z, x], [z, x, y], [z, y, x]];
+    let near = |[x, y, z]: &[DVec3; 3]| x.x.abs() + y.y.abs() + z.z.abs();
+    let [x, y, z] = orders
+        .into_iter()
+        .fold([x, y, z], |best, order| if near(&order) > near(&best) { order } else { best });
+    let toward = |axis: DVec3, along: f64| if along < 0.0 { DVec3::ZERO - axis } else { axis };
+    DMat3::from_cols(toward(x, x.x), toward(y, y.y), toward(z, z.z))
+}
+
+/// Boxes of all views of a body, its vertices seen by a matrix.
+fn boxes(displaced: &Displaced, moving: bool, seen: DMat3) -> Vec<Aabb> {
+    let bodies = &displaced.bodies;
+    let views = &bodies.views[usize::from(!moving)];
+    let mut boxes: Vec<Aabb> = vec![Aabb::EMPTY; views.len()];
+    // Parts come after what they are parts of.
+    for (k, view) in views.iter().enumerate().rev() {
+        boxes[k] = if view.is_facet() {
+            let corners = displaced.triangle(moving, bodies.triangle(moving, k as u32));
+            Aabb::of_points(corners.map(|p| seen * p))
+        } else {
+            let parts = view.parts().map(|part| boxes[part as usize]);
+            parts.fold(Aabb::EMPTY, |all, part| all.join(&part))
+        };
+    }
+    boxes
+}
+
 /// Both bodies, shrunk.
 fn bodies(placed: [Placed<'_, Solid>; 2], tolerance: f64) -> Result<Bodies<'_>, FreeError> {
     for (which, body) in [("moving", &placed[0]), ("fixed", &placed[1])] {
@@ -127,9 +174,13 @@ enum State {
     Wall(Crossing),
 }
 
-struct Search<'b, 'a> {
-    displaced: Displaced<'b, 'a>,
+/// A search for a proof that one body, of two, does not leave the other by translations, or for a way that is wide.
+pub(super) struct Enclosure<'a> {
+    tolerance: f64,
+    displaced: Displaced<'a>,
     room: Room,
+    /// Boxes of the views of either body, in multiples of the axes.
+    boxes: [Vec<Aabb>; 2],
     states: HashMap<RoomCell, State>,
     /// What blocked cells before, the last ones first.
     seen: VecDeque<Crossing>,
@@ -141,60 +192,64 @@ pub(super) enum Cells {
     Proven(NoWay),
     /// There may be one, from displacement to displacement; the last is beyond everything.
     Way(Vec<DVec3>),
-    /// Neither, with so many cells.
-    Spent,
 }
 
-/// Looks for a proof that one body, of two, does not leave the other by translations, or for a way that is wide.
-pub(super) fn enclosed(
-    placed: [Placed<'_, Solid>; 2],
-    tolerance: f64,
-    far: f64,
-    most: usize,
-    cancel: Option<&AtomicBool>,
-) -> Result<Cells, FreeError> {
-    let bodies = bodies(placed, tolerance)?;
-    let room = Room::around(far);
-    let displaced = Displaced::new(&bodies, room);
-    let (states, seen) = (HashMap::new(), VecDeque::new());
-    let mut search = Search { displaced, room, states, seen };
-    search.look(RoomCell::ALL);
-    loop {
-        if cancel.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
-            return Err(FreeError::Cancelled);
-        }
-        let way = match search.flood() {
-            Ok((rooms, walls)) => {
-                return Ok(Cells::Proven(NoWay { tolerance, room, rooms, walls }));
+impl<'a> Enclosure<'a> {
+    /// Of two bodies that are `far` away if one is displaced by that; cells lie along [axes](axes_of).
+    pub(super) fn new(
+        placed: [Placed<'a, Solid>; 2],
+        tolerance: f64,
+        far: f64,
+        axes: DMat3,
+    ) -> Result<Self, FreeError> {
+        let room = Room::around(far, axes);
+        let displaced = Displaced::new(bodies(placed, tolerance)?, room);
+        let boxes = [true, false].map(|moving| boxes(&displaced, moving, axes.inverse()));
+        let (states, seen) = (HashMap::new(), VecDeque::new());
+        let mut search = Self { tolerance, displaced, room, boxes, states, seen };
+        search.look(RoomCell::ALL);
+        Ok(search)
+    }
+
+    /// Goes on until there are so many cells, or it ends: then they say nothing yet.
+    pub(super) fn go_on(
+        &mut self,
+        most: usize,
+        cancel: Option<&AtomicBool>,
+    ) -> Result<Option<Cells>, FreeError> {
+        while self.states.len() <= most {
+            if cancel.is_some_and(|flag| flag.load(Ordering::Relaxed)) {
+                return Err(FreeError::Cancelled);
             }
-            Err(way) => way,
-        };
-        let may_be_cut = |cell: &&RoomCell| {
-            cell.depth < DEEPEST && matches!(search.states[*cell], State::Room(true))
-        };
-        let cut: Vec<RoomCell> = way.iter().filter(may_be_cut).copied().collect();
-        let Some(least) = cut.iter().map(|cell| cell.depth).min() else {
-            return Ok(if way.iter().all(|cell| cell.depth < DEEPEST) {
-                Cells::Way(search.through(&way))
-            } else {
-                Cells::Spent
-            });
-        };
-        for cell in cut.into_iter().filter(|cell| cell.depth == least) {
-            search.states.insert(cell, State::Cut);
-            for part in cell.parts() {
-                search.look(part);
+            let way = match self.flood() {
+                Ok((rooms, walls)) => {
+                    let Self { tolerance, room, .. } = *self;
+                    return Ok(Some(Cells::Proven(NoWay { tolerance, room, rooms, walls })));
+                }
+                Err(way) => way,
+            };
+            let may_be_cut = |cell: &&RoomCell| {
+                cell.depth < DEEPEST && matches!(self.states[*cell], State::Room(true))
+            };
+            let cut: Vec<RoomCell> = way.iter().filter(may_be_cut).copied().collect();
+            let Some(least) = cut.iter().map(|cell| cell.depth).min() else {
+                let wide = way.iter().all(|cell| cell.depth < DEEPEST);
+                return Ok(wide.then(|| Cells::Way(self.through(&way))));
+            };
+            for cell in cut.into_iter().filter(|cell| cell.depth == least) {
+                self.states.insert(cell, State::Cut);
+                for part in cell.parts() {
+                    self.look(part);
+                }
             }
         }
-        if search.states.len() > most {
-            return Ok(Cells::Spent);
-        }
+        Ok(None)
     }
 }
 
 type Walls = Vec<(RoomCell, Crossing)>;
 
-impl Search<'_, '_> {
+impl Enclosure<'_> {
     /// All rooms that are reached from the body's place, and the walls around; or rooms from there to the border.
     fn flood(&self) -> Result<(Vec<RoomCell>, Walls), Vec<RoomCell>> {
         let mut home = RoomCell::ALL;
@@ -244,15 +299,16 @@ impl Search<'_, '_> {
 
     /// Displacements from that of now through cells, one after another, and on.
     fn through(&self, way: &[RoomCell]) -> Vec<DVec3> {
-        let mut places = vec![DVec3::ZERO];
+        let (mut places, room) = (vec![DVec3::ZERO], self.room);
+        let mut between = |low: DVec3, high: DVec3| places.push(room.axes * ((low + high) / 2.0));
         for pair in way.windows(2) {
-            let [a, b] = [pair[0], pair[1]].map(|cell| self.room.corners(cell));
+            let [a, b] = [pair[0], pair[1]].map(|cell| room.corners(cell));
             // From the middle of one through the middle of what they have in common.
-            places.push((a[0] + a[1]) / 2.0);
-            places.push((a[0].max(b[0]) + a[1].min(b[1])) / 2.0);
+            between(a[0], a[1]);
+            between(a[0].max(b[0]), a[1].min(b[1]));
         }
-        let [low, high] = self.room.corners(way[way.len() - 1]);
-        places.push((low + high) / 2.0);
+        let [low, high] = room.corners(way[way.len() - 1]);
+        between(low, high);
         places
     }
 
@@ -270,63 +326,78 @@ impl Search<'_, '_> {
 
     /// Finds out about a new cell.
     fn look(&mut self, cell: RoomCell) {
-        let corners = self.room.corners(cell);
-        let known = self.seen.iter().position(|&seen| self.displaced.blocks(seen, corners));
+        let (by, corners) = (self.room.displacements(cell), self.room.corners(cell));
+        let known = self.seen.iter().position(|&seen| self.displaced.blocks(seen, &by));
         let state = if let Some(k) = known {
             self.seen.swap(0, k);
             State::Wall(self.seen[0])
-        } else if let Some(crossing) = self.crossing(corners) {
+        } else if let Some(crossing) = self.crossing(&by, corners) {
             self.seen.push_front(crossing);
             self.seen.truncate(MOST_SEEN);
             State::Wall(crossing)
         } else {
-            State::Room(self.may_meet(corners))
+            State::Room(self.may_meet(&by, corners))
         };
         self.states.insert(cell, state);
     }
 
     /// An edge and a facet that block all of a cell.
-    fn crossing(&self, corners: [DVec3; 2]) -> Option<Crossing> {
+    fn crossing(&self, by: &Displacements, [low, high]: [DVec3; 2]) -> Option<Crossing> {
         let mut tried = 0;
-        let [low, high] = corners;
         let mut found = None;
         // Their boxes have to meet wherever in the cell the body is.
-        let meets = |[a, b]: [&crate::free::View; 2]| {
+        let meets = |[a, b]: [&Aabb; 2]| {
             (a.low + high).cmple(b.high).all() && (a.high + low).cmpge(b.low).all()
         };
         self.pairs(meets, |triangles| {
             tried += 1;
-            found = self.of_facets(triangles, corners);
+            found = self.of_facets(triangles, by);
             found.is_some() || tried >= MOST_TRIED
         });
         found
     }
 
     /// Whether any facets may meet in a cell.
-    fn may_meet(&self, [low, high]: [DVec3; 2]) -> bool {
-        let meets = |[a, b]: [&crate::free::View; 2]| {
+    fn may_meet(&self, by: &Displacements, [low, high]: [DVec3; 2]) -> bool {
+        let meets = |[a, b]: [&Aabb; 2]| {
             (a.low + low).cmple(b.high).all() && (a.high + high).cmpge(b.low).all()
         };
-        self.pairs(meets, |_| true)
+        self.pairs(meets, |triangles| self.facets_may_meet(triangles, by))
+    }
+
+    /// Whether neither of two facets' normals parts them all over a cell, but for rounding.
+    fn facets_may_meet(&self, [a, b]: [u32; 2], by: &Displacements) -> bool {
+        let [f, g] = [(true, a), (false, b)].map(|(moving, k)| self.displaced.triangle(moving, k));
+        let normal = |t: &[DVec3; 3]| (t[1] - t[0]).cross(t[2] - t[0]);
+        let parts = |along: &DVec3| {
+            let shadow = |t: &[DVec3; 3]| {
+                let [x, y, z] = t.map(|p| along.dot(p));
+                [x.min(y).min(z), x.max(y).max(z)]
+            };
+            let ([f, g], middle, width) =
+                ([shadow(&f), shadow(&g)], along.dot(by.middle), by.width(*along));
+            f[0] + middle - width > g[1] || f[1] + middle + width < g[0]
+        };
+        ![normal(&f), normal(&g)].iter().any(parts)
     }
 
     /// Hands on pairs of triangles in nodes that meet until it is told to end; whether it was, or there were too many.
     fn pairs(
         &self,
-        meets: impl Fn([&crate::free::View; 2]) -> bool,
+        meets: impl Fn([&Aabb; 2]) -> bool,
         mut end: impl FnMut([u32; 2]) -> bool,
     ) -> bool {
-        let bodies = self.displaced.bodies;
+        let bodies = &self.displaced.bodies;
         let (mut stack, mut looks) = (vec![[0_u32, 0]], 0);
         while let Some(pair) = stack.pop() {
             looks += 1;
             if looks > MOST_LOOKS {
                 return true;
             }
-            let [a, b] = [0, 1].map(|k| &bodies.views[k][pair[k] as usize]);
-            if !meets([a, b]) {
+            if !meets([0, 1].map(|k| &self.boxes[k][pair[k] as usize])) {
                 continue;
             }
+            let [a, b] = [0, 1].map(|k| &bodies.views[k][pair[k] as usize]);
             if a.is_facet() && b.is_facet() {
                 if end([bodies.triangle(true, pair[0]), bodies.triangle(false, pair[1])]) {
                     return true;
@@ -341,11 +412,11 @@ impl Search<'_, '_> {
     }
 
     /// An edge of one of two facets that passes through the other in all of a cell.
-    fn of_facets(&self, [a, b]: [u32; 2], corners: [DVec3; 2]) -> Option<Crossing> {
+    fn of_facets(&self, [a, b]: [u32; 2], by: &Displacements) -> Option<Crossing> {
         let both = [(true, a, b), (false, b, a)].into_iter();
         let edges = |(moving, own, facet)| {
             (0..3).map(move |first| Crossing { moving, edge: (own, first), facet })
         };
-        both.flat_map(edges).find(|&crossing| self.displaced.blocks(crossing, corners))
+        both.flat_map(edges).find(|&crossing| self.displaced.blocks(crossing, by))
     }
 }

@@ -76,12 +76,31 @@ impl Question {
     /// The interval of a box of differences, cut to the range.
     fn of_differences(&self, low: DVec3, high: DVec3) -> Option<Span> {
         let [d, e] = self.along;
-        let mut polygon = Polygon::new([self.end, self.far]);
+        let mut range = Range { low: 0.0, high: self.end };
+        // Below and above which `tau` is: a value at 0 and a slope.
+        let (mut floors, mut roofs) = ([[0.0; 2]; 4], [[0.0; 2]; 4]);
+        roofs[0] = [self.far, 0.0];
+        let mut count = 1;
         for k in 0..3 {
-            polygon.cut([d[k], e[k]], high[k]);
-            polygon.cut([-d[k], -e[k]], -low[k]);
+            if e[k] == 0.0 {
+                range.keep([high[k], -d[k]]);
+                range.keep([-low[k], d[k]]);
+                continue;
+            }
+            let (share, slope) = (e[k].recip(), -d[k] / e[k]);
+            let (x, y) = (low[k] * share, high[k] * share);
+            floors[count] = [x.min(y), slope];
+            roofs[count] = [x.max(y), slope];
+            count += 1;
         }
-        polygon.range()
+        for (i, floor) in floors[..count].iter().enumerate() {
+            for (j, roof) in roofs[..count].iter().enumerate() {
+                if i != j {
+                    range.keep([roof[0] - floor[0], roof[1] - floor[1]]);
+                }
+            }
+        }
+        (range.low <= range.high).then_some([range.low, range.high])
     }
 
     /// The interval of two facets, if it meets the range.
@@ -146,53 +165,22 @@ fn shadow(points: &[[f64; 2]], far: f64) -> Option<Span> {
     (span[0] < span[1]).then_some(span)
 }
 
-/// A convex polygon in `(t, tau)`, of up to ten corners.
-struct Polygon {
-    corners: [[f64; 2]; 12],
-    count: usize,
+/// A range of `t`: empty if the lower end is above the upper one.
+struct Range {
+    low: f64,
+    high: f64,
 }
 
-impl Polygon {
-    /// The rectangle from the origin.
-    fn new([t, tau]: [f64; 2]) -> Self {
-        let mut corners = [[0.0; 2]; 12];
-        corners[1] = [t, 0.0];
-        corners[2] = [t, tau];
-        corners[3] = [0.0, tau];
-        Self { corners, count: 4 }
-    }
-
-    /// Keeps what has `a.x <= c`.
-    fn cut(&mut self, a: [f64; 2], c: f64) {
-        let height = |p: &[f64; 2]| c - a[0] * p[0] - a[1] * p[1];
-        let (old, count) = (self.corners, self.count);
-        self.count = 0;
-        for k in 0..count {
-            let (p, q) = (old[k], old[(k + 1) % count]);
-            let (u, v) = (height(&p), height(&q));
-            if u >= 0.0 {
-                self.push(p);
-            }
-            if (u > 0.0 && v < 0.0) || (u < 0.0 && v > 0.0) {
-                let share = u / (u - v);
-                self.push([0, 1].map(|k| p[k] + share * (q[k] - p[k])));
-            }
+impl Range {
+    /// Keeps where a value at 0 and a slope are not negative.
+    fn keep(&mut self, [value, slope]: [f64; 2]) {
+        let (at_low, at_high) = (value + slope * self.low, value + slope * self.high);
+        match (at_low >= 0.0, at_high >= 0.0) {
+            (true, true) => (),
+            (true, false) => self.high = self.high.min(self.low.max(value / -slope)),
+            (false, true) => self.low = self.low.max(self.high.min(value / -slope)),
+            (false, false) => self.high = f64::NEG_INFINITY,
         }
-    }
-
-    fn push(&mut self, p: [f64; 2]) {
-        // A line adds one corner to a convex polygon: ten are the most of six.
-        if self.count < self.corners.len() {
-            self.corners[self.count] = p;
-            self.count += 1;
-        }
-    }
-
-    fn range(&self) -> Option<Span> {
-        let corners = &self.corners[..self.count];
-        let least = corners.iter().map(|p| p[0]).reduce(f64::min)?;
-        let most = corners.iter().map(|p| p[0]).reduce(f64::max)?;
-        Some([least, most])
     }
 }
 
@@ -243,12 +231,47 @@ mod tests {
     }
 
     #[test]
-    fn a_polygon_is_cut_to_its_range() {
-        let mut polygon = Polygon::new([4.0, 4.0]);
-        polygon.cut([1.0, 1.0], 2.0);
-        polygon.cut([-1.0, 0.0], -0.5);
-        assert_eq!(polygon.range(), Some([0.5, 2.0]));
-        polygon.cut([1.0, 0.0], 0.0);
-        assert_eq!(polygon.range(), None);
+    fn a_box_of_differences_has_the_range_of_its_slice() {
+        let question =
+            |along: [DVec3; 2], end: f64, far: f64| Question { from: DVec3::ZERO, along, end, far };
+        let of = |question: &Question, low: [f64; 3], high: [f64; 3]| {
+            question.of_differences(DVec3::from(low), DVec3::from(high))
+        };
+        let across = question([DVec3::X, DVec3::Z], 4.0, 4.0);
+        assert_eq!(of(&across, [0.5, -1.0, 1.0], [2.0, 1.0, 9.0]), Some([0.5, 2.0]));
+        // Beside, beyond the second move, before the first.
+        assert_eq!(of(&across, [0.5, 1.0, 1.0], [2.0, 2.0, 9.0]), None);
+        assert_eq!(of(&across, [0.5, -1.0, 5.0], [2.0, 1.0, 9.0]), None);
+        assert_eq!(of(&across, [-2.0, -1.0, 1.0], [-1.0, 1.0, 9.0]), None);
+        // By many places where the slice is looked at, it is neither wider nor narrower.
+        let mut random = colltrans_testkit::random::Random::new(3);
+        let (mut met, mut missed) = (0, 0);
+        for _ in 0..300 {
+            let [a, b] = [random.direction(), random.direction()];
+            let question = question([a, b], 2.0, 1.5);
+            let (middle, half) = (1.5 * random.direction(), 0.6 * random.direction().abs());
+            let (low, high) = (middle - half, middle + half);
+            let places = (0..=400).flat_map(|i| (0..=300).map(move |j| (i, j)));
+            let mut seen = [f64::INFINITY, f64::NEG_INFINITY];
+            for (i, j) in places {
+                let (t, tau) = (f64::from(i) / 200.0, f64::from(j) / 200.0);
+                let at = a * t + b * tau;
+                if at.cmpge(low).all() && at.cmple(high).all() {
+                    seen = [seen[0].min(t), seen[1].max(t)];
+                }
+            }
+            match question.of_differences(low, high) {
+                Some([from, to]) if seen[0] <= seen[1] => {
+                    met += 1;
+                    assert!(from <= seen[0] + 1e-12 && to >= seen[1] - 1e-12);
+                    assert!(from >= seen[0] - 0.2 && to <= seen[1] + 0.2, "{from} {to} {seen:?}");
+                }
+                found => {
+                    missed += 1;
+                    assert!(seen[0] > seen[1], "{found:?} {seen:?}");
+                }
+            }
+        }
+        assert!(met > 20 && missed > 50, "{met} {missed}");
     }
 }

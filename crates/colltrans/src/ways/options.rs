@@ -12,16 +12,17 @@ pub struct WayOptions {
     pub tolerance: Option<f64>,
     /// At most so many legs, the last one included.
     pub legs: usize,
-    /// In which order places are left.
-    pub order: Order,
+    /// In which order places are left; `None`: of two bodies those in new regions first, of more the fewest legs.
+    pub order: Option<Order>,
     /// At most so many places are left along all directions.
     pub places: usize,
     /// At most so many casts of two bodies, all in all; a little more, as a place is ended once it is begun.
     pub casts: usize,
     /// Pairs of nodes that openings look at, at most, all in all; a little more, as one is ended once it is begun.
     pub looks: u64,
-    /// With two bodies of which no way out is found at [`PLACES_FIRST`](Self::PLACES_FIRST) places: at most so many cells
-    /// of displacements to prove that there is none; 0 for no such proof.
+    /// Of two bodies: at most so many cells of displacements to prove that there is no way out, as many for each place that
+    /// was left as [`CELLS_FOR_A_PLACE`](Self::CELLS_FOR_A_PLACE), and all of them once there is none left; 0 for no such
+    /// proof.
     pub cells: usize,
     /// A move is worth making if it is this share of the size of the largest body.
     pub step: f64,
@@ -34,7 +35,7 @@ impl Default for WayOptions {
         Self {
             tolerance: None,
             legs: 12,
-            order: Order::FewestLegs,
+            order: None,
             places: 2_000,
             casts: 200_000,
             looks: 50_000_000,
@@ -46,8 +47,11 @@ impl Default for WayOptions {
 }
 
 impl WayOptions {
-    /// Places that are left before it is tried to prove that there is no way.
-    pub const PLACES_FIRST: usize = 100;
+    /// Places that are left before it is first tried to prove that there is no way, and then at twice as many each time.
+    pub const PLACES_FIRST: usize = 25;
+    /// Cells of displacements for each place that was left: so neither the search for a way nor that for a proof takes
+    /// much longer than it would alone.
+    pub const CELLS_FOR_A_PLACE: usize = 20;
 
     /// With a tolerance, a length, or the default one. It is checked where it is used.
     #[must_use]
@@ -61,10 +65,10 @@ impl WayOptions {
         Self { legs, ..self }
     }
 
-    /// With an order.
+    /// With an order, or that of the number of bodies.
     #[must_use]
-    pub fn with_order(self, order: Order) -> Self {
-        Self { order, ..self }
+    pub fn with_order(self, order: impl Into<Option<Order>>) -> Self {
+        Self { order: order.into(), ..self }
     }
 
     /// With a number of casts.
@@ -105,7 +109,7 @@ impl WayOptions {
 }
 
 /// In which order places are left.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
@@ -113,7 +117,6 @@ impl WayOptions {
 )]
 pub enum Order {
     /// The fewest legs first: breadth first.
-    #[default]
     FewestLegs,
     /// Those in regions where few places are, and with few legs: best first.
     NewestFirst,

@@ -24,6 +24,9 @@ pub(super) fn bits(v: DVec3) -> [u64; 3] {
 type Key = ([u64; 3], usize);
 type OpeningKey = ([u64; 3], [usize; 2], [u64; 2]);
 
+/// Facets that were hit are kept, so many pairs at most.
+const MOST_HIT: usize = 32;
+
 /// Two bodies, as they are planned with.
 pub(super) struct Pair<'a> {
     placed: [Placed<'a, Solid>; 2],
@@ -34,7 +37,11 @@ pub(super) struct Pair<'a> {
     pub(super) overlap: Option<overlap::Overlap>,
     /// Made when openings are first asked for.
     bodies: Option<Bodies<'a>>,
+    /// A move is worth making from here on.
+    step: f64,
     rooms: HashMap<Key, f64>,
+    /// Facets that were hit, the last ones first.
+    hit: Vec<[u32; 2]>,
     blocked: HashMap<OpeningKey, Vec<[f64; 2]>>,
     workspace: Workspace,
 }
@@ -47,7 +54,7 @@ impl<'a> Pair<'a> {
     pub(super) fn new(
         placed: [Placed<'a, Solid>; 2],
         boxes: [Aabb; 2],
-        tolerance: f64,
+        (tolerance, step): (f64, f64),
     ) -> Result<Self, FreeError> {
         for (which, body) in [("moving", &placed[0]), ("fixed", &placed[1])] {
             if !body.body.is_closed() {
@@ -60,12 +67,22 @@ impl<'a> Pair<'a> {
         } else {
             None
         };
-        let (rooms, blocked) = (HashMap::new(), HashMap::new());
-        let (bodies, workspace) = (None, Workspace::default());
-        Ok(Self { placed, boxes, tolerance, overlap, bodies, rooms, blocked, workspace })
+        Ok(Self {
+            placed,
+            boxes,
+            tolerance,
+            overlap,
+            bodies: None,
+            step,
+            rooms: HashMap::new(),
+            hit: Vec::new(),
+            blocked: HashMap::new(),
+            workspace: Workspace::default(),
+        })
     }
 
-    /// How far the first body, displaced by `by`, goes along a direction of length 1.
+    /// How far the first body, displaced by `by`, goes along a direction of length 1; of less than a step, no more than
+    /// that it is less.
     pub(super) fn room(
         &mut self,
         by: DVec3,
@@ -82,7 +99,23 @@ impl<'a> Pair<'a> {
         if let Some(&room) = self.rooms.get(&key) {
             return Ok(room);
         }
-        let room = self.room_along(by, d, searched)?;
+        let cast = self.cast(by, d)?;
+        // What was hit last is often in the way again, and soon, along other directions too.
+        let soon = |facets: &[u32; 2]| {
+            cast.stop_by(*facets).is_some_and(|stop| stop.shrunk_distance.value < self.step)
+        };
+        let room = if let Some(k) = self.hit.iter().position(soon) {
+            self.hit[..=k].rotate_right(1);
+            0.0
+        } else {
+            searched.casts += 1;
+            let clearance = cast.clearance_in(&mut self.workspace)?;
+            if let Clearance::Blocked { contact, .. } = &clearance {
+                self.hit.insert(0, contact.triangles);
+                self.hit.truncate(MOST_HIT);
+            }
+            room_of(&clearance)
+        };
         self.rooms.insert(key, room);
         Ok(room)
     }
@@ -95,14 +128,13 @@ impl<'a> Pair<'a> {
         searched: &mut Searched,
     ) -> Result<f64, QueryError> {
         searched.casts += 1;
+        Ok(room_of(&self.cast(by, d)?.clearance_in(&mut self.workspace)?))
+    }
+
+    fn cast(&self, by: DVec3, d: DVec3) -> Result<Cast<'a, Solid>, QueryError> {
         let options =
             SolidOptions::default().with_tolerance(self.tolerance).with_overlapping(false);
-        let cast = displaced(self.placed, by, d)?.with_options(options)?;
-        Ok(match cast.clearance_in(&mut self.workspace)? {
-            Clearance::Blocked { contact, .. } => contact.shrunk_distance.value.max(0.0),
-            Clearance::Free(_) => f64::INFINITY,
-            Clearance::Overlapping(_) => 0.0,
-        })
+        displaced(self.placed, by, d)?.with_options(options)
     }
 
     /// Whether the box of the first, displaced by `by`, meets that of the second along a direction.
@@ -162,6 +194,14 @@ impl<'a> Pair<'a> {
     pub(super) fn placed(&self, by: DVec3) -> Result<[Placed<'a, Solid>; 2], QueryError> {
         let [a, b] = self.placed;
         Ok([a.body.at(moved(a, by)?), b])
+    }
+}
+
+fn room_of(clearance: &Clearance<Solid>) -> f64 {
+    match clearance {
+        Clearance::Blocked { contact, .. } => contact.shrunk_distance.value.max(0.0),
+        Clearance::Free(_) => f64::INFINITY,
+        Clearance::Overlapping(_) => 0.0,
     }
 }
 

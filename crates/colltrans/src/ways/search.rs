@@ -1,5 +1,5 @@
-//! The search over places: those with the fewest legs first, so the first way found has the fewest of those that it
-//! looks for; or those in new regions first.
+//! The search over places: those in regions where few places are first, so that a clearance, in which there are many, is left
+//! soon; or those with the fewest legs, so the first way found has the fewest of those that it looks for.
 //!
 //! At a place each pair of bodies is cast along all directions. Who is hit within a step moves along: so each body and
 //! each direction have a least group. A group that never hits the rest leaves, and that is the answer. Else it goes
@@ -15,7 +15,7 @@
 
 use std::cmp::Reverse;
 use std::collections::hash_map::DefaultHasher;
-use std::collections::{BinaryHeap, HashMap, HashSet};
+use std::collections::{BinaryHeap, HashMap, VecDeque};
 use std::hash::{Hash, Hasher};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -72,9 +72,9 @@ type Key = (Vec<[u64; 3]>, u64);
 /// How a search ended.
 pub(super) enum Run<P> {
     Found(P),
-    /// A limit was reached.
+    /// Places are left for another time.
     Paused,
-    /// All places were left.
+    /// A limit was reached, or all places were left: then what was searched is complete.
     Ended,
 }
 
@@ -88,6 +88,7 @@ pub(super) struct Search<'s, 'a> {
     pub(super) directions: Vec<DVec3>,
     pub(super) scale: Scale,
     pub(super) options: &'s WayOptions,
+    order: Order,
     pub(super) cancel: Option<&'s AtomicBool>,
     pub(super) searched: Searched,
     places: Vec<Place>,
@@ -95,8 +96,9 @@ pub(super) struct Search<'s, 'a> {
     queue: BinaryHeap<Reverse<(usize, usize)>>,
     /// Places that were left.
     left: Vec<usize>,
-    known: HashSet<Key>,
-    seen: HashSet<Vec<[u64; 3]>>,
+    /// Places that are one, and in the finest cells, with the fewest legs by which they were reached.
+    known: HashMap<Key, usize>,
+    seen: HashMap<Vec<[u64; 3]>, usize>,
     /// How many places were reached in each region.
     crowds: HashMap<Vec<[u64; 3]>, usize>,
 }
@@ -110,10 +112,12 @@ impl<'s, 'a> Search<'s, 'a> {
         options: &'s WayOptions,
         cancel: Option<&'s AtomicBool>,
     ) -> Self {
+        let own = if count == 2 { Order::NewestFirst } else { Order::FewestLegs };
+        let order = options.order.unwrap_or(own);
         let searched = Searched { directions: directions.len(), ..Searched::default() };
         let start = Place { at: vec![DVec3::ZERO; count], before: None, axis: None, legs: 0 };
         let (places, queue, left) = (vec![start], BinaryHeap::from([Reverse((0, 0))]), Vec::new());
-        let (seen, known, crowds) = (HashSet::new(), HashSet::new(), HashMap::new());
+        let (seen, known, crowds) = (HashMap::new(), HashMap::new(), HashMap::new());
         Self {
             pairs,
             count,
@@ -122,6 +126,7 @@ impl<'s, 'a> Search<'s, 'a> {
             directions,
             scale,
             options,
+            order,
             cancel,
             searched,
             places,
@@ -142,7 +147,10 @@ impl<'s, 'a> Search<'s, 'a> {
     ) -> Result<Run<P>, FreeError> {
         while let Some(&Reverse((_, at))) = self.queue.peek() {
             self.check()?;
-            if self.is_spent() || self.searched.places >= places {
+            if self.is_spent() {
+                return Ok(Run::Ended);
+            }
+            if self.searched.places >= places {
                 return Ok(Run::Paused);
             }
             self.queue.pop();
@@ -155,7 +163,8 @@ impl<'s, 'a> Search<'s, 'a> {
             }
             self.left.push(at);
             let goes_on = self.places[at].legs + 2 <= self.options.legs;
-            if goes_on && self.known.insert(self.key(at, &rooms)) {
+            let (key, legs) = (self.key(at, &rooms), self.places[at].legs);
+            if goes_on && is_new(&mut self.known, key, legs) {
                 let new = self.next(at, &rooms)?;
                 for place in new {
                     let cost = self.cost(place);
@@ -164,7 +173,7 @@ impl<'s, 'a> Search<'s, 'a> {
             }
         }
         self.searched.complete = !self.is_spent();
-        Ok(if self.searched.complete { Run::Ended } else { Run::Paused })
+        Ok(Run::Ended)
     }
 
     /// The same with a last leg along directions that are free at places which have been left, whatever they are.
@@ -186,7 +195,7 @@ impl<'s, 'a> Search<'s, 'a> {
     }
 
     /// A proposal of displacements of the first of two bodies, from one to the next and then on without an end, in as
-    /// few legs as casts allow that each go as far as they can; `sign` is -1 if it is the other that moves.
+    /// few legs from one of them to a later one as casts allow; `sign` is -1 if it is the other that moves.
     pub(super) fn shortened<P>(
         &mut self,
         body: usize,
@@ -196,35 +205,38 @@ impl<'s, 'a> Search<'s, 'a> {
         let group = 1 << body;
         let on_grid = |v: &DVec3| v.map(|x| (x / grid).round() * grid);
         let places: Vec<DVec3> = places.iter().map(on_grid).collect();
-        let (mut at, mut moves) = (0, Vec::new());
-        loop {
+        let leg = |motion: DVec3| Move { group, motion: motion * sign };
+        let (mut before, mut legs) = (vec![None; places.len()], vec![0; places.len()]);
+        let mut queue = VecDeque::from([0]);
+        while let Some(at) = queue.pop_front() {
             self.check()?;
             for &d in &self.directions.clone() {
-                if self.pairs[0].room_along(places[at], d, &mut self.searched)? == f64::INFINITY {
-                    moves.push(Move { group, motion: d * sign });
-                    if let Some(way) = proven(&moves)? {
-                        return Ok(Some(way));
-                    }
-                    moves.pop();
+                if self.pairs[0].room_along(places[at], d, &mut self.searched)? < f64::INFINITY {
+                    continue;
+                }
+                let way = std::iter::successors(Some(at), |&k| before[k]);
+                let step = |k: usize| before[k].map(|from: usize| leg(places[k] - places[from]));
+                let mut moves: Vec<Move> = way.filter_map(step).collect();
+                moves.reverse();
+                moves.push(leg(d));
+                if let Some(way) = proven(&moves)? {
+                    return Ok(Some(way));
                 }
             }
-            let mut next = None;
-            for k in (at + 1..places.len()).rev() {
-                let motion = places[k] - places[at];
+            let goes_on = legs[at] + 2 <= self.options.legs;
+            for next in (at + 1..places.len()).filter(|_| goes_on) {
+                let motion = places[next] - places[at];
                 let length = motion.length();
-                let far = length > 0.0 && {
+                if before[next].is_none() && length > 0.0 {
                     let d = motion / length;
-                    self.pairs[0].room_along(places[at], d, &mut self.searched)? > length
-                };
-                if far {
-                    next = Some(k);
-                    break;
+                    if self.pairs[0].room_along(places[at], d, &mut self.searched)? > length {
+                        (before[next], legs[next]) = (Some(at), legs[at] + 1);
+                        queue.push_back(next);
+                    }
                 }
             }
-            let Some(next) = next else { return Ok(None) };
-            moves.push(Move { group, motion: (places[next] - places[at]) * sign });
-            at = next;
         }
+        Ok(None)
     }
 
     fn check(&self) -> Result<(), FreeError> {
@@ -243,7 +255,7 @@ impl<'s, 'a> Search<'s, 'a> {
     /// What is left first: the least.
     fn cost(&mut self, place: usize) -> usize {
         let legs = self.places[place].legs;
-        if self.options.order == Order::FewestLegs {
+        if self.order == Order::FewestLegs {
             return legs;
         }
         let cell = |v: &DVec3| bits((*v / (REGION * self.scale.grain)).round());
@@ -455,10 +467,10 @@ impl<'s, 'a> Search<'s, 'a> {
         let at: Vec<DVec3> = self.places[place].at.iter().enumerate().map(moved).collect();
         let fine = 2.5 * self.scale.off;
         let key = at.iter().map(|v| bits((*v / fine).round())).collect();
-        if motion == DVec3::ZERO || !self.seen.insert(key) {
+        let legs = self.places[place].legs + 1;
+        if motion == DVec3::ZERO || !is_new(&mut self.seen, key, legs) {
             return None;
         }
-        let legs = self.places[place].legs + 1;
         let before = Some((place, Move { group, motion }));
         self.places.push(Place { at, before, axis: Some(d / 2), legs });
         Some(self.places.len() - 1)
@@ -486,6 +498,14 @@ impl<'s, 'a> Search<'s, 'a> {
         moves.reverse();
         moves
     }
+}
+
+/// Whether nobody was there with as few legs.
+fn is_new<K: Eq + Hash>(reached: &mut HashMap<K, usize>, key: K, legs: usize) -> bool {
+    let fewest = reached.entry(key).or_insert(usize::MAX);
+    let new = legs < *fewest;
+    *fewest = legs.min(*fewest);
+    new
 }
 
 /// Some free directions: the middles of all regions, then points, some of arcs, and what is free though undecided.

@@ -54,6 +54,8 @@ campaign --paths N [--seed S] [--only FAMILY]
 campaign --ways N [--seed S] [--only FAMILY]
 campaign --bulk CASTS [--seed S] [--only FAMILY]
 campaign --case FAMILY:SEED | FAMILY:SEED:STEP
+campaign --free 1 --case FAMILY:SEED
+    one setting of that campaign; so of all others, but for those of solids
 ";
 
 struct Arguments {
@@ -75,7 +77,28 @@ struct Arguments {
     lp: u64,
     seed: u64,
     only: Option<String>,
-    case: Option<String>,
+    case: Option<Case>,
+}
+
+/// One setting of a campaign, or a step of a sequence.
+struct Case {
+    family: String,
+    seed: u64,
+    step: Option<u32>,
+}
+
+impl FromStr for Case {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts: Vec<&str> = text.split(':').collect();
+        let (family, seed, step) = match parts[..] {
+            [family, seed] => (family, seed, None),
+            [family, seed, step] => (family, seed, Some(number(step)?)),
+            _ => return Err(format!("a case is FAMILY:SEED or FAMILY:SEED:STEP, not {text}")),
+        };
+        Ok(Self { family: family.to_owned(), seed: number(seed)?, step })
+    }
 }
 
 fn main() -> ExitCode {
@@ -90,13 +113,6 @@ fn main() -> ExitCode {
             return ExitCode::from(2);
         }
     };
-    if let Some(case) = &arguments.case {
-        let Some(clean) = replay(case) else {
-            eprintln!("a case is FAMILY:SEED or FAMILY:SEED:STEP");
-            return ExitCode::from(2);
-        };
-        return exit_code(clean);
-    }
     if let Some(count) = arguments.solids {
         return exit_code(solids::run(count, arguments.seed, arguments.only.as_deref()));
     }
@@ -131,6 +147,8 @@ fn main() -> ExitCode {
         run(&arguments, &families, count, keeping::examine)
     } else if let Some(queries) = arguments.sequences {
         run(&arguments, &families, queries.div_ceil(sequences::QUERIES), sequences::examine)
+    } else if let Some(case) = &arguments.case {
+        replay(case)
     } else {
         let every = (arguments.settings / arguments.lp.max(1)).max(1);
         run(&arguments, &families, arguments.settings, |name, seed, tally| {
@@ -186,7 +204,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
             "--lp" => arguments.lp = number(&value)?,
             "--seed" => arguments.seed = number(&value)?,
             "--only" => arguments.only = Some(value),
-            "--case" => arguments.case = Some(value),
+            "--case" => arguments.case = Some(value.parse()?),
             _ => return Err(format!("unknown option {word}\n{USAGE}")),
         }
     }
@@ -212,13 +230,24 @@ trait Tally: Default + Send {
     fn disagreements(&self) -> &[String];
 }
 
-/// Examines so many seeds, the same number of each family; `true` if nothing disagrees.
+/// Examines so many seeds, the same number of each family, or the one case that is asked for; `true` if nothing
+/// disagrees.
 fn run<T: Tally>(
     arguments: &Arguments,
     families: &[&str],
     count: u64,
     examine: impl Fn(&str, u64, &mut T) + Sync,
 ) -> bool {
+    if let Some(Case { family, seed, .. }) = &arguments.case {
+        if !families.contains(&family.as_str()) {
+            return unknown(family);
+        }
+        let mut tally = T::default();
+        examine(family, *seed, &mut tally);
+        println!("{:<20} {}", "family", T::header());
+        print(family, &tally);
+        return tally.disagreements().is_empty();
+    }
     let families: Vec<&str> = families
         .iter()
         .copied()
@@ -262,13 +291,18 @@ fn print(name: &str, tally: &impl Tally) {
     }
 }
 
-/// One setting, or one step of a sequence, with all its numbers; `None` if there is no such case.
-fn replay(case: &str) -> Option<bool> {
-    let mut parts = case.split(':');
-    let family = parts.next().filter(|name| FAMILIES.iter().any(|f| f.0 == *name))?;
-    let seed = number(parts.next()?).ok()?;
-    match parts.next() {
-        Some(step) => Some(sequences::replay(family, seed, number(step).ok()?)),
-        None => Some(casts::replay(family, seed)),
+/// One setting of casts, or one step of a sequence, with all its numbers.
+fn replay(Case { family, seed, step }: &Case) -> bool {
+    if !FAMILIES.iter().any(|f| f.0 == family) {
+        return unknown(family);
     }
+    match step {
+        Some(step) => sequences::replay(family, *seed, *step),
+        None => casts::replay(family, *seed),
+    }
+}
+
+fn unknown(family: &str) -> bool {
+    eprintln!("this campaign has no family {family}");
+    false
 }

@@ -1,14 +1,15 @@
 //! Ways out in several moves: puzzles of cubes, as they are and turned, against all moves of cubes, and boxes with holes
-//! that are large enough, or not. Every leg is looked at in 201 places.
+//! that are large enough, or not, along the axes and slanted. Every leg is looked at in 201 places.
 
-use colltrans::ways::{WayOptions, WayOut, WaysOut};
+use colltrans::ways::{Order, WayOptions, WayOut, WaysOut};
 use colltrans::{Cast, ConvexPolyhedron, Placed, Pose, Solid};
 use colltrans_testkit::oracle::cubes::Cubes;
 use colltrans_testkit::random::Random;
 use glam::DVec3;
 
 /// The kinds of settings.
-pub(crate) const FAMILIES: [&str; 3] = ["tunnels", "turned tunnels", "boxes with holes"];
+pub(crate) const FAMILIES: [&str; 4] =
+    ["tunnels", "turned tunnels", "boxes with holes", "turned boxes"];
 
 /// Moves, at most.
 const LEGS: usize = 12;
@@ -67,14 +68,15 @@ impl crate::Tally for Tally {
 pub(crate) fn examine(family: &str, seed: u64, tally: &mut Tally) {
     let mut random = Random::new(seed);
     tally.settings += 1;
-    let said = match family {
-        "boxes with holes" => holes(&mut random, tally),
-        "tunnels" => tunnels(&mut random, Pose::IDENTITY, tally),
-        _ => {
-            let pose = Pose::new(random.rotation(), DVec3::ZERO);
-            pose.map_err(|e| e.to_string()).and_then(|pose| tunnels(&mut random, pose, tally))
-        }
+    let pose = if family.starts_with("turned") {
+        Pose::new(random.rotation(), DVec3::ZERO).map_err(|e| e.to_string())
+    } else {
+        Ok(Pose::IDENTITY)
     };
+    let said = pose.and_then(|pose| match family {
+        "tunnels" | "turned tunnels" => tunnels(&mut random, pose, tally),
+        _ => holes(&mut random, pose, tally),
+    });
     if let Err(objection) = said {
         tally.disagreements.push(format!("{family}:{seed}: {objection}"));
     }
@@ -84,7 +86,11 @@ fn tunnels(random: &mut Random, pose: Pose, tally: &mut Tally) -> Result<(), Str
     let cubes = Cubes::random(random);
     let solids = cubes.solids();
     let placed: Vec<Placed<'_, Solid>> = solids.iter().map(|solid| solid.at(pose)).collect();
-    let options = WayOptions::default().with_tolerance(1e-5).with_legs(LEGS).with_cells(2_000);
+    let options = WayOptions::default()
+        .with_order(Order::FewestLegs)
+        .with_tolerance(1e-5)
+        .with_legs(LEGS)
+        .with_cells(2_000);
     let answer = WaysOut::among(&placed, &[], &options, None).map_err(|e| e.to_string())?;
     let level = cubes.level().filter(|level| level.moves <= LEGS);
     match (&answer, level) {
@@ -102,7 +108,7 @@ fn tunnels(random: &mut Random, pose: Pose, tally: &mut Tally) -> Result<(), Str
 }
 
 /// A cube in a box whose roof has a square hole.
-fn holes(random: &mut Random, tally: &mut Tally) -> Result<(), String> {
+fn holes(random: &mut Random, pose: Pose, tally: &mut Tally) -> Result<(), String> {
     let block = |low: [f64; 3], high: [f64; 3]| {
         ConvexPolyhedron::cuboid(DVec3::from(low), DVec3::from(high)).map_err(|e| e.to_string())
     };
@@ -124,7 +130,7 @@ fn holes(random: &mut Random, tally: &mut Tally) -> Result<(), String> {
     let at = DVec3::new(a - 1.0, b - 1.0, c - 1.0) * DVec3::splat(random.unit());
     let cube = block(at.to_array(), (at + 1.0).to_array())?;
     let cube = Solid::from_pieces([&cube]).map_err(|e| e.to_string())?;
-    let placed = [cube.at(Pose::IDENTITY), walls.at(Pose::IDENTITY)];
+    let placed = [cube.at(pose), walls.at(pose)];
     let options = WayOptions::default().with_tolerance(1e-5).with_places(200);
     let answer = WaysOut::among(&placed, &[1], &options, None).map_err(|e| e.to_string())?;
     match &answer {
@@ -133,9 +139,8 @@ fn holes(random: &mut Random, tally: &mut Tally) -> Result<(), String> {
         _ => (),
     }
     let overlap = |[i, j]: [usize; 2], by: DVec3| {
-        let pose = Pose::from_translation(by).expect("a place");
-        let bodies = [&cube, &walls].map(|solid| solid.at(Pose::IDENTITY));
-        let cast = Cast::new(bodies[i].body.at(pose), bodies[j], DVec3::Z);
+        let moved = pose.translated(by).expect("a place");
+        let cast = Cast::new(placed[i].body.at(moved), placed[j], DVec3::Z);
         cast.and_then(|cast| cast.with_tolerance(1e-5)).is_ok_and(|cast| cast.overlaps())
     };
     judged(&placed, &answer, tally, overlap)

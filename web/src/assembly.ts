@@ -534,7 +534,10 @@ function freedom({ free_share, exactly, regions, isolated: { length: single } }:
   const proven = exactly ? (unknown > 0 ? `, which is proven but for ${short(100 * unknown, 2)} %` : ", which is proven") : ", as sampled";
   // Regions that are too small to be seen are dots.
   const share = regions.length > 0 && `is free in ${short(100 * free_share, 3)} % of all directions (green)${proven}`;
-  const alone = single > 0 && `in ${single} single direction${single > 1 ? "s" : ""} (dots), a tight fit`;
+  const arcs = exactly?.arcs?.length ?? 0;
+  const several = (count: number, what: string) => `${count} ${what}${count > 1 ? "s" : ""}`;
+  const tight = [single > 0 && `in ${several(single, "single direction")} (dots)`, arcs > 0 && `along ${several(arcs, "arc")} (lines)`].filter(Boolean);
+  const alone = tight.length > 0 && `${tight.join(" and ")}, a tight fit`;
   if (share) return alone ? `${share}, and ${alone}` : share;
   if (alone) return `is free only ${alone}${proven}`;
   return exactly ? `is free in no direction${proven}` : "is free in no direction that was looked at";

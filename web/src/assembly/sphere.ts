@@ -109,6 +109,7 @@ export class Sphere {
     }
     context.fillStyle = context.strokeStyle = green(colours.dark);
     for (const { pieces } of map.exactly?.regions ?? []) for (const corners of pieces) this.fill(context, corners);
+    for (const { along } of map.exactly?.arcs ?? []) this.line(context, along);
     context.strokeStyle = colours.text;
     context.lineWidth = 1;
     context.beginPath();
@@ -116,12 +117,32 @@ export class Sphere {
     context.stroke();
     for (const d of map.isolated) this.dot(context, d, 5, colours.plane, colours.text);
     this.dot(context, this.chosen, 7, "rgba(0,0,0,0)", colours.normal, 3);
-    context.fillStyle = colours.text;
+    // To be read on light and on dark, and beside a dot.
+    [context.fillStyle, context.strokeStyle, context.lineWidth] = ["#fff", "rgba(0,0,0,0.65)", 3];
+    context.lineJoin = "round";
     context.font = "12px sans-serif";
     for (const [name, d] of [["x", [1, 0, 0]], ["y", [0, 1, 0]], ["z", [0, 0, 1]]] as [string, Vec][]) {
       const at = this.place(d);
-      if (at[2] > 0.05) context.fillText(name, at[0] + 3, at[1] - 3);
+      if (at[2] <= 0.05) continue;
+      context.strokeText(name, at[0] + 9, at[1] + 12);
+      context.fillText(name, at[0] + 9, at[1] + 12);
     }
+  }
+
+  /** An arc, by directions along it, as far as it is in front. */
+  private line(context: CanvasRenderingContext2D, along: Vec[]) {
+    context.lineWidth = 3;
+    context.beginPath();
+    let last = false;
+    for (const [k, a] of along.entries()) {
+      const b = along[k + 1] ?? a;
+      for (let j = 0; j < 4 * SIDE; j++) {
+        const [x, y, z] = this.place(unit(a.map((x, i) => x + ((b[i]! - x) * j) / (4 * SIDE)) as Vec));
+        if (z >= 0) context[last ? "lineTo" : "moveTo"](x, y);
+        last = z >= 0;
+      }
+    }
+    context.stroke();
   }
 
   /** A convex piece, as far as it is in front; its sides are parts of great circles. */

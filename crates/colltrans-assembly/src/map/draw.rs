@@ -131,12 +131,15 @@ pub fn png(map: &RemovalMap, width: u32) -> Vec<u8> {
     bytes
 }
 
+/// Half as wide as arcs are in a picture, whose half-axes are 2 and 1.
+const ARC: f64 = 0.009;
+
 /// What a cover has at each pixel: free, or not known, which is striped.
 fn raster(cover: &Cover, [width, height]: [u32; 2]) -> Vec<Option<[u8; 3]>> {
     let mut pixels = vec![None; (width * height) as usize];
     let scale = f64::from(width) / 4.0;
-    let mut fill = |corners: &[DVec3], paint: &dyn Fn(u32) -> Option<[u8; 3]>| {
-        for outline in outlines(corners) {
+    let mut fill = |outlines: &[Vec<DVec2>], paint: &dyn Fn(u32) -> Option<[u8; 3]>| {
+        for outline in outlines {
             let start = (DVec2::INFINITY, DVec2::NEG_INFINITY);
             let around = |(low, high): (DVec2, DVec2), p: &DVec2| (low.min(*p), high.max(*p));
             let (low, high) = outline.iter().fold(start, around);
@@ -145,7 +148,7 @@ fn raster(cover: &Cover, [width, height]: [u32; 2]) -> Vec<Option<[u8; 3]>> {
             for row in top.max(0.0) as u32..(bottom.ceil() as u32).min(height) {
                 for column in first.max(0.0) as u32..(last.ceil() as u32).min(width) {
                     let at = DVec2::new(f64::from(column) + 0.5, f64::from(row) + 0.5) / scale;
-                    if is_inside(&outline, DVec2::new(at.x - 2.0, 1.0 - at.y)) {
+                    if is_inside(outline, DVec2::new(at.x - 2.0, 1.0 - at.y)) {
                         let pixel = &mut pixels[(row * width + column) as usize];
                         *pixel = paint(row + column).or(*pixel);
                     }
@@ -154,10 +157,17 @@ fn raster(cover: &Cover, [width, height]: [u32; 2]) -> Vec<Option<[u8; 3]>> {
         }
     };
     for region in &cover.regions {
-        region.pieces.iter().for_each(|piece| fill(&piece.corners, &|_| Some(FREE)));
+        region.pieces.iter().for_each(|piece| fill(&outlines(&piece.corners), &|_| Some(FREE)));
+    }
+    for &[a, b] in &cover.arcs {
+        for ends in arcs(a, b).iter().flat_map(|part| part.windows(2)) {
+            let across = (ends[1] - ends[0]).normalize_or_zero().perp() * ARC;
+            let strip = [ends[0] - across, ends[1] - across, ends[1] + across, ends[0] + across];
+            fill(&[strip.to_vec()], &|_| Some(FREE));
+        }
     }
     for cell in &cover.undecided {
-        fill(cell, &|at| (at % 8 < 4).then_some(UNKNOWN));
+        fill(&outlines(cell), &|at| (at % 8 < 4).then_some(UNKNOWN));
     }
     pixels
 }
@@ -172,8 +182,8 @@ const MIDDLE: DVec2 = DVec2::new(360.0, 190.0);
 /// The map as an SVG picture with axes, marks and a legend.
 pub fn svg(map: &RemovalMap, title: &str) -> String {
     let mut text = String::from(
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 -14 720 454\" \
-         font-family=\"sans-serif\" font-size=\"13\">\n<rect y=\"-14\" width=\"720\" height=\"454\" \
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 -14 720 470\" \
+         font-family=\"sans-serif\" font-size=\"13\">\n<rect y=\"-14\" width=\"720\" height=\"470\" \
          fill=\"#fff\"/>\n",
     );
     for (class, path) in runs(map).into_iter().enumerate().filter(|(_, path)| !path.is_empty()) {
@@ -190,9 +200,9 @@ pub fn svg(map: &RemovalMap, title: &str) -> String {
         2.0 * SCALE
     );
     graticule(&mut text);
-    axes(&mut text);
-    for d in &map.isolated {
-        let at = in_picture(place(*d));
+    let dots: Vec<DVec2> = map.isolated.iter().map(|d| in_picture(place(*d))).collect();
+    axes(&mut text, &dots);
+    for at in &dots {
         let _ = writeln!(
             text,
             "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"5\" fill=\"#fff\" stroke=\"#111\" \
@@ -324,7 +334,8 @@ fn graticule(text: &mut String) {
     );
 }
 
-fn axes(text: &mut String) {
+/// Names of axes, beside dots.
+fn axes(text: &mut String, dots: &[DVec2]) {
     let names = [
         (DVec3::X, "+x"),
         (DVec3::Y, "+y"),
@@ -333,6 +344,8 @@ fn axes(text: &mut String) {
         (DVec3::NEG_Z, "−z"),
     ];
     let mut label = |at: DVec2, name: &str| {
+        let hidden = dots.iter().any(|dot| dot.distance(at) < 14.0);
+        let at = if hidden { at + DVec2::Y * 16.0 } else { at };
         let _ = writeln!(
             text,
             "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"middle\" fill=\"#111\" stroke=\"#fff\" \
@@ -369,8 +382,7 @@ fn legend(text: &mut String, map: &RemovalMap) {
     entry(9, "overlapping", 60.0);
     let told = match &map.cover {
         Ok(cover) => format!(
-            "free: {} % of all directions, exactly; a cross is the direction farthest from the border. \
-             {}",
+            "free: {} % of all directions, exactly. {}",
             percent(cover.free_share()),
             match cover.undecided_share() {
                 0.0 => "Nothing is undecided".to_owned(),
@@ -379,17 +391,29 @@ fn legend(text: &mut String, map: &RemovalMap) {
         ),
         Err(_) => "free: as sampled, without a proof".to_owned(),
     };
+    let cross = map.cover.is_ok() && !map.regions.is_empty();
+    let marks = [
+        (cross, "A cross is the direction farthest from the border"),
+        (!map.isolated.is_empty(), "A dot is free alone, or a region too small to be seen"),
+    ];
+    let marks: Vec<&str> = marks.into_iter().filter(|mark| mark.0).map(|mark| mark.1).collect();
     let _ = writeln!(
         text,
-        "<text x=\"40\" y=\"434\" font-size=\"11\" fill=\"#555\">blocked after, from</text>\n\
-         <text x=\"680\" y=\"434\" font-size=\"11\" fill=\"#555\" text-anchor=\"end\">{told}</text>"
+        "<g font-size=\"11\" fill=\"#555\"><text x=\"40\" y=\"434\">blocked after, from</text>\n\
+         <g text-anchor=\"end\"><text x=\"680\" y=\"434\">{told}</text>\n\
+         <text x=\"680\" y=\"449\">{}</text></g></g>",
+        marks.join(". ")
     );
 }
 
 /// A share as a percentage, small ones by their exponent.
 fn percent(share: f64) -> String {
     let x = 100.0 * share;
-    if x == 0.0 || x >= 1e-3 { rounded(x) } else { format!("{x:.2e}") }
+    match x {
+        0.0 => "0".to_owned(),
+        x if x < 1e-3 => format!("{x:.2e}"),
+        x => rounded(x),
+    }
 }
 
 /// Three digits.

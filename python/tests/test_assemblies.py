@@ -118,3 +118,42 @@ def test_what_is_asked_of_a_plan() -> None:
     for first in ("cover", "nobody"):
         with pytest.raises(AssemblyError):
             gearbox.with_before("bolt_0", "cover").with_before(first, "bolt*")
+
+
+def test_a_press_fit_has_a_tolerance_of_its_own() -> None:
+    floor = cuboid([-1, -1, -1], [3, 3, 0])
+    block, pin = cuboid([0, 0, 0], [1, 1, 1]), cuboid([0.95, 0, 0], [2, 1, 1])
+    parts = Assembly({"floor": floor, "block": block, "pin": pin}).with_fixed("floor", "block")
+    assert not parts.plan(samples=0).steps
+    (found,) = parts.suggestions()
+    assert found.parts == ("block", "pin") and found.tolerance is not None
+    for made in (
+        parts.with_suggestions([found]),
+        parts.with_pair("block", "pin*", role="press", tolerance=0.2),
+    ):
+        (step,) = made.plan(samples=0).steps
+        assert step.parts == ["pin"] and step.passed[0].parts == ("pin", "block")
+        assert "tolerance" in step.passed[0].words
+    with pytest.raises(InputError):
+        parts.with_pair("block", "pin", role="welded")
+    with pytest.raises(AssemblyError):
+        parts.with_pair("block", "pin", role="snap")
+
+
+def test_rounds_the_way_back_and_times(gearbox: Assembly) -> None:
+    plan = gearbox.plan()
+    level = {step: k for k, steps in enumerate(plan.rounds) for step in steps}
+    for k, step in enumerate(plan.steps):
+        assert level[k] == max((level[j] + 1 for j in step.after), default=0)
+    put = [step for step, _ in plan.assembly]
+    assert put == list(reversed(range(len(plan.steps))))
+    for at, (step, after) in enumerate(plan.assembly):
+        assert all(k < at and step in plan.steps[put[k]].after for k in after)
+    assert sum(len(after) for _, after in plan.assembly) == sum(len(s.after) for s in plan.steps)
+    twice = gearbox.plan(times={"move": 3.0})
+    moves = [len(step.path) + len(step.back) for step in plan.steps]
+    for now, then, count in zip(twice.seconds, plan.seconds, moves, strict=True):
+        assert now == pytest.approx(then + 1.5 * count)
+    for wrong in ({"walk": 1.0}, {"move": -1.0}, {"move": float("nan")}):
+        with pytest.raises(InputError):
+            gearbox.plan(times=wrong)

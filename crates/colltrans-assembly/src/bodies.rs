@@ -3,9 +3,11 @@
 //! With a tolerance `L` every body is shrunk by `L / 2` (`solids.md`: tolerance belongs to the body), or each by its own
 //! chord error;
 //! to keep `M` apart bodies stay as they are, and every question is about where two of them are as near as that
-//! ([`Cast::keeping`]); boxes are those of the bodies with half of it around.
+//! ([`Cast::keeping`]); boxes are those of the bodies with half of it around. A pair that has a [role](crate::roles) or
+//! a tolerance of its own has bodies of its own, which are asked of each other only.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use colltrans::free::{CellBlocker, FreeError, FreeOptions};
 use colltrans::solid::{
@@ -18,6 +20,8 @@ use rayon::prelude::*;
 use crate::boxes::BoxTree;
 use crate::error::AssemblyError;
 use crate::part::{Assembly, Ignored, Part};
+use crate::roles::{Role, Tolerated};
+use crate::threads::Thread;
 use colltrans::Aabb;
 
 /// Pairs of parts whose boxes meet: more are refused, for memory goes with their number.
@@ -124,16 +128,58 @@ pub enum Room {
     Overlapping,
 }
 
+/// A part as it is asked.
+struct Displaced {
+    /// Shrunk; to be kept apart, as it is.
+    solid: Solid,
+    /// What was shrunk, if it is not the part as given: the core of its thread.
+    core: Option<Solid>,
+    /// For each triangle of it the one of what was shrunk.
+    given: Vec<u32>,
+    /// What shrinking could not do as it should.
+    report: ShrinkReport,
+}
+
+impl Displaced {
+    fn new(part: &Part, core: Option<Solid>, fit: Fit) -> Result<Self, SolidError> {
+        let from = core.as_ref().unwrap_or(part.solid());
+        let (solid, report) = match fit {
+            Fit::Tolerance(_) | Fit::Chords { .. } => from.shrunk(fit.amount(part))?,
+            Fit::Apart(_) => (from.clone(), ShrinkReport::default()),
+        };
+        let given = same_triangles(&solid, from);
+        Ok(Self { solid, core, given, report })
+    }
+
+    /// What is wrong with it, in words.
+    fn faults(&self, given: &Solid) -> Vec<String> {
+        let ShrinkReport { stuck, inverted, .. } = &self.report;
+        let mut said = Vec::new();
+        if self.solid.is_closed() && volume(given) > 0.0 && volume(&self.solid) <= 0.0 {
+            said.push("nothing of it is left: it is thinner than that".to_owned());
+        }
+        if !inverted.is_empty() {
+            said.push(format!(
+                "facets that this turns inside out or through others: {}",
+                inverted.len()
+            ));
+        }
+        if !stuck.is_empty() {
+            said.push(format!("vertices that it cannot move: {}", stuck.len()));
+        }
+        said
+    }
+}
+
 /// The parts of an assembly, made ready to be asked with one fit.
 pub struct Bodies<'a> {
     assembly: &'a Assembly,
     fit: Fit,
-    /// The bodies, shrunk; to be kept apart, as they are.
-    solids: Vec<Solid>,
-    /// For each triangle of these the one of the part as given.
-    given: Vec<Vec<u32>>,
-    /// What shrinking could not do as it should.
-    displaced: Vec<ShrinkReport>,
+    displaced: Vec<Displaced>,
+    /// What pairs have of their own, the smaller index first.
+    pairs: BTreeMap<[usize; 2], OwnFit>,
+    /// The first part as it is asked of the second, where that is not as it is asked of all.
+    own: BTreeMap<[usize; 2], Arc<Displaced>>,
     boxes: Vec<Aabb>,
     tree: BoxTree,
     /// Pairs whose bodies overlap where they are, the smaller index first, sorted.
@@ -145,6 +191,13 @@ pub struct Bodies<'a> {
     /// How often two parts were asked about.
     #[cfg(test)]
     pub(crate) asked: std::sync::atomic::AtomicUsize,
+}
+
+/// What a pair has of its own.
+#[derive(Clone, Copy)]
+struct OwnFit {
+    fit: Fit,
+    tolerated: Tolerated,
 }
 
 /// How deep an overlap that is ignored may become, in multiples of its depth at the start: so much more
@@ -164,34 +217,26 @@ impl<'a> Bodies<'a> {
         if !(0.0..=MAX_MAGNITUDE).contains(&value) {
             return Err(AssemblyError::Length { what, value });
         }
-        let displaced = |part: &Part| {
-            let refused = |source: SolidError| AssemblyError::Part {
-                part: part.name().into(),
-                source: source.into(),
-            };
-            match fit {
-                Fit::Tolerance(_) | Fit::Chords { .. } => {
-                    part.solid().shrunk(fit.amount(part)).map_err(refused)
-                }
-                Fit::Apart(_) => Ok((part.solid().clone(), ShrinkReport::default())),
-            }
-        };
-        let both: Result<Vec<(Solid, ShrinkReport)>, AssemblyError> =
+        let displaced = |part: &Part| Displaced::new(part, None, fit).map_err(|e| refused(part, e));
+        let displaced: Result<Vec<Displaced>, AssemblyError> =
             assembly.parts().par_iter().map(displaced).collect();
-        let (solids, displaced): (Vec<Solid>, Vec<ShrinkReport>) = both?.into_iter().unzip();
-        let both = assembly.parts().par_iter().zip(&solids);
-        let given = both.map(|(part, solid)| same_triangles(solid, part.solid())).collect();
+        let displaced = displaced?;
+        let (pairs, own) = own_fits(assembly, fit)?;
         let around = fit.keep() / 2.0;
-        let boxes: Vec<Aabb> = solids.iter().map(|solid| solid.bounds().grown(around)).collect();
+        let mut boxes: Vec<Aabb> =
+            displaced.iter().map(|part| part.solid.bounds().grown(around)).collect();
+        for ([part, _], own) in &own {
+            boxes[*part] = boxes[*part].join(&own.solid.bounds());
+        }
         let tree = BoxTree::new(boxes.iter().copied());
         let noise = 4.0 * Fit::digits(assembly);
         let (overlapping, passing) = (Vec::new(), BTreeMap::new());
         let mut bodies = Self {
             assembly,
             fit,
-            solids,
-            given,
             displaced,
+            pairs,
+            own,
             boxes,
             tree,
             overlapping,
@@ -213,17 +258,40 @@ impl<'a> Bodies<'a> {
     /// A little more than the least further tolerance with which two parts do not overlap; `None` if
     /// there is none that leaves both parts as they are but smaller.
     fn passes_with(&self, pair: [usize; 2]) -> Option<f64> {
-        let [a, b] = pair.map(|k| self.solids[k].at(Pose::IDENTITY));
-        let cast = Cast::new(a, b, DVec3::Z).ok()?.keeping(self.fit.keep()).ok()?;
+        let solids = self.solids(pair);
+        let [a, b] = solids.map(|solid| solid.at(Pose::IDENTITY));
+        let cast = Cast::new(a, b, DVec3::Z).ok()?.keeping(self.fit_of(pair).keep()).ok()?;
         let tolerance = cast.least_tolerance()? * DEEPER;
-        let whole = |k: usize| {
-            let solid = &self.solids[k];
-            let fits = tolerance < solid.bounds().size().min_element();
-            fits && solid.shrunk(tolerance / 2.0).is_ok_and(|(smaller, report)| {
-                report.inverted.is_empty() && volume(&smaller) > 0.0 && smaller.is_closed()
-            })
-        };
-        pair.into_iter().all(whole).then_some(tolerance)
+        solids.into_iter().all(|solid| stays_whole(solid, tolerance)).then_some(tolerance)
+    }
+
+    /// A part as it is asked of another one.
+    fn body(&self, [part, other]: [usize; 2]) -> &Displaced {
+        self.own.get(&[part, other]).map_or(&self.displaced[part], |own| own)
+    }
+
+    /// What was shrunk to that.
+    fn given(&self, pair: [usize; 2]) -> &Solid {
+        let given = self.assembly.parts()[pair[0]].solid();
+        self.body(pair).core.as_ref().unwrap_or(given)
+    }
+
+    /// Two parts as they are asked of each other.
+    fn solids(&self, [a, b]: [usize; 2]) -> [&Solid; 2] {
+        [&self.body([a, b]).solid, &self.body([b, a]).solid]
+    }
+
+    fn own_fit(&self, [a, b]: [usize; 2]) -> Option<&OwnFit> {
+        self.pairs.get(&[a.min(b), a.max(b)])
+    }
+
+    fn fit_of(&self, pair: [usize; 2]) -> Fit {
+        self.own_fit(pair).map_or(self.fit, |own| own.fit)
+    }
+
+    /// What is let pass of two parts that have a fit of their own.
+    pub fn tolerated(&self, pair: [usize; 2]) -> Option<Tolerated> {
+        self.own_fit(pair).map(|own| own.tolerated)
     }
 
     /// The parts.
@@ -258,23 +326,18 @@ impl<'a> Bodies<'a> {
     /// is said about them is not what the part does. Vertices that stay are those of saddles: around
     /// them no displacement is inwards for all facets.
     pub fn remark(&self, part: usize) -> Option<String> {
-        let ShrinkReport { stuck, inverted, .. } = &self.displaced[part];
-        let mut said = vec!["shrunk by half the tolerance".to_owned()];
         let given = self.assembly.parts()[part].solid();
-        if self.solids[part].is_closed() && volume(given) > 0.0 && volume(&self.solids[part]) <= 0.0
-        {
-            said.push("nothing of it is left: it is thinner than that".into());
-        }
-        if !inverted.is_empty() {
-            said.push(format!(
-                "facets that this turns inside out or through others: {}",
-                inverted.len()
-            ));
-        }
-        if !stuck.is_empty() {
-            said.push(format!("vertices that it cannot move: {}", stuck.len()));
-        }
-        (said.len() > 1).then(|| said.join("; "))
+        let faults = |displaced: &Displaced, by: &str| {
+            let said = displaced.faults(displaced.core.as_ref().unwrap_or(given));
+            (!said.is_empty()).then(|| format!("{by}; {}", said.join("; ")))
+        };
+        let all = faults(&self.displaced[part], "shrunk by half the tolerance");
+        let own = self.own.iter().filter(|x| x.0[0] == part).filter_map(|([_, other], own)| {
+            let other = self.assembly.parts()[*other].name();
+            faults(own, &format!("shrunk by half the tolerance of its pair with {other}"))
+        });
+        let said: Vec<String> = all.into_iter().chain(own).collect();
+        (!said.is_empty()).then(|| said.join("; "))
     }
 
     /// Lengths below this are a matter of the files' last digits: `2^-19` of the assembly's size.
@@ -313,13 +376,15 @@ impl<'a> Bodies<'a> {
 
     fn always_ignored(&self, a: usize, b: usize) -> bool {
         self.assembly.ignored(a, b) == Some(Ignored::Always)
+            || self.tolerated([a, b]) == Some(Tolerated::AsOne)
     }
 
     /// What an overlap of two parts at the start means, where `start` is asked of all.
     pub(crate) fn start_of(&self, a: usize, b: usize, start: StartOverlap) -> StartOverlap {
+        let crossing = self.tolerated([a, b]) == Some(Tolerated::Crossing);
         match self.assembly.ignored(a, b) {
-            Some(_) => StartOverlap::Ignore,
-            None => start,
+            None if !crossing => start,
+            _ => StartOverlap::Ignore,
         }
     }
 
@@ -327,6 +392,7 @@ impl<'a> Bodies<'a> {
     /// everything.
     pub(crate) fn lets_pass(&self, a: usize, b: usize, start: StartOverlap) -> bool {
         self.always_ignored(a, b)
+            || matches!(self.tolerated([a, b]), Some(Tolerated::Bent(_)))
             || (self.overlaps(a, b) && self.start_of(a, b, start) == StartOverlap::Ignore)
     }
 
@@ -344,6 +410,9 @@ impl<'a> Bodies<'a> {
     ) -> Room {
         #[cfg(test)]
         self.asked.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        if let Some(Tolerated::Bent(length)) = self.tolerated([a, b]) {
+            return self.bent([a, b], d, length, before, workspace);
+        }
         let (overlapping, start) = (self.overlaps(a, b), self.start_of(a, b, start));
         if overlapping && start == StartOverlap::Refuse {
             return Room::Overlapping;
@@ -352,10 +421,10 @@ impl<'a> Bodies<'a> {
         let options = SolidOptions::default()
             .with_start_overlap(start)
             .with_tolerance(0.0)
-            .with_keep(self.fit.keep())
+            .with_keep(self.fit_of([a, b]).keep())
             .with_before(before.unwrap_or(f64::INFINITY))
             .with_overlapping(overlapping);
-        let solids = [&self.solids[a], &self.solids[b]];
+        let solids = self.solids([a, b]);
         let later = met(solids, d, options, workspace);
         let deeper = self.passing.get(&[a.min(b), a.max(b)]).and_then(|&tolerance| {
             let apart = options.with_start_overlap(StartOverlap::Refuse).with_overlapping(false);
@@ -365,6 +434,37 @@ impl<'a> Bodies<'a> {
         let stops = stops.map(|c| self.stop([a, b], d, c.triangles, &c));
         let nearest = stops.min_by(|x, y| x.displaced.value.total_cmp(&y.displaced.value));
         nearest.map_or(Room::Free, Room::Blocked)
+    }
+
+    /// The room of a part that snaps over another one: from where it has gone by a length, contacts that begin later.
+    fn bent(
+        &self,
+        pair: [usize; 2],
+        d: DVec3,
+        length: f64,
+        before: Option<f64>,
+        workspace: &mut Workspace,
+    ) -> Room {
+        let [moving, fixed] = self.solids(pair);
+        let options = SolidOptions::default()
+            .with_start_overlap(StartOverlap::Ignore)
+            .with_tolerance(0.0)
+            .with_keep(self.fit_of(pair).keep())
+            .with_before(before.map_or(f64::INFINITY, |before| (before - length).max(0.0)));
+        let answer = Pose::from_translation(d * length)
+            .ok()
+            .and_then(|pose| Cast::new(moving.at(pose), fixed.at(Pose::IDENTITY), d).ok())
+            .and_then(|cast| cast.with_options(options).ok())
+            .and_then(|cast| cast.clearance_in(workspace).ok());
+        let Some(Clearance::Blocked { contact, .. }) = answer else { return Room::Free };
+        let Bounded { value, lower, upper } = contact.translation;
+        let place = Bounded {
+            value: value + length,
+            lower: (lower + length).next_down(),
+            upper: (upper + length).next_up(),
+        };
+        let SolidContact { normal, point_on_fixed: point, triangles, .. } = contact;
+        Room::Blocked(Stop { translation: place, displaced: place, normal, point, triangles })
     }
 
     /// Pairs of a part of a group and one that is there, and not of the group, whose box it meets along a unit direction.
@@ -402,18 +502,18 @@ impl<'a> Bodies<'a> {
         let mut first = 0;
         let mut begin = |&part: &usize| {
             let here = first;
-            first += self.solids[part].input_counts()[1];
+            first += self.displaced[part].solid.input_counts()[1];
             (part, here)
         };
         let begins = parts.iter().map(&mut begin).collect();
-        let solid = Solid::from_pieces(parts.iter().map(|&part| &self.solids[part]));
+        let solid = Solid::from_pieces(parts.iter().map(|&part| &self.displaced[part].solid));
         let refused = |e| AssemblyError::Free(FreeError::Query(QueryError::NoSolid(e)));
         Ok((solid.map_err(refused)?, begins))
     }
 
     /// What blocks whole cells of directions of one part against another; `None` where they overlap.
-    pub(crate) fn cell_blocker(&self, [a, b]: [usize; 2]) -> Option<CellBlocker<'_>> {
-        let [moving, fixed] = [a, b].map(|part| self.solids[part].at(Pose::IDENTITY));
+    pub(crate) fn cell_blocker(&self, pair: [usize; 2]) -> Option<CellBlocker<'_>> {
+        let [moving, fixed] = self.solids(pair).map(|solid| solid.at(Pose::IDENTITY));
         CellBlocker::new(&moving, &fixed, FreeOptions::DEFAULT.with_no_tolerance()).ok()
     }
 
@@ -424,6 +524,8 @@ impl<'a> Bodies<'a> {
             "they are to be kept apart"
         } else if self.always_ignored(a, b) {
             "they are ignored"
+        } else if self.own_fit([a, b]).is_some() {
+            "they have a fit of their own"
         } else if self.overlaps(a, b) {
             "they overlap where they are"
         } else {
@@ -441,14 +543,17 @@ impl<'a> Bodies<'a> {
         d: DVec3,
         start: StartOverlap,
     ) -> Option<Stop> {
+        if matches!(self.tolerated([a, b]), Some(Tolerated::Bent(_))) {
+            return None;
+        }
         let start = self.start_of(a, b, start);
         let options = SolidOptions::default()
             .with_start_overlap(start)
             .with_tolerance(0.0)
-            .with_keep(self.fit.keep())
+            .with_keep(self.fit_of([a, b]).keep())
             .with_before(f64::INFINITY)
             .with_overlapping(start == StartOverlap::Ignore && self.overlaps(a, b));
-        let cast = placed([&self.solids[a], &self.solids[b]], d, options)?;
+        let cast = placed(self.solids([a, b]), d, options)?;
         let contact = cast.stop_by(triangles)?;
         Some(self.stop([a, b], d, triangles, &contact))
     }
@@ -473,22 +578,22 @@ impl<'a> Bodies<'a> {
         [moving, fixed]: [u32; 2],
         contact: &SolidContact,
     ) -> Option<Bounded> {
-        if self.fit.tolerance() <= 0.0 {
+        if self.fit_of([a, b]).tolerance() <= 0.0 {
             return None;
         }
-        let shift = self.displacement(a, moving as usize, contact.point_on_moving)
-            - self.displacement(b, fixed as usize, contact.point_on_fixed);
-        let triangles = [self.given[a][moving as usize], self.given[b][fixed as usize]];
-        let parts = [a, b].map(|k| self.assembly.parts()[k].solid());
+        let shift = self.displacement([a, b], moving as usize, contact.point_on_moving)
+            - self.displacement([b, a], fixed as usize, contact.point_on_fixed);
+        let [of, by] = [self.body([a, b]), self.body([b, a])];
+        let triangles = [of.given[moving as usize], by.given[fixed as usize]];
+        let parts = [self.given([a, b]), self.given([b, a])];
         let cast = placed(parts, d, SolidOptions::default())?;
         cast.true_place(triangles, contact.translation, contact.normal, shift)
     }
 
-    /// How far a point of a triangle was displaced when the part was shrunk: its corners
+    /// How far a point of a triangle of the first part was displaced when it was shrunk: its corners
     /// keep their numbers.
-    fn displacement(&self, part: usize, triangle: usize, point: DVec3) -> DVec3 {
-        let solid = &self.solids[part];
-        let given = self.assembly.parts()[part].solid();
+    fn displacement(&self, pair: [usize; 2], triangle: usize, point: DVec3) -> DVec3 {
+        let (solid, given) = (&self.body(pair).solid, self.given(pair));
         let corners = solid.triangles()[triangle].map(|v| v as usize);
         let weights = weights(corners.map(|v| solid.vertices()[v]), point);
         let of = |k: usize| solid.vertices()[corners[k]] - given.vertices()[corners[k]];
@@ -512,11 +617,7 @@ impl<'a> Bodies<'a> {
     /// Whether two parts, as the files have them, overlap; and the least tolerance with which they do
     /// not, if there is one up to their size.
     pub fn overlap_as_given(&self, a: usize, b: usize) -> Option<Option<f64>> {
-        let parts = self.assembly.parts();
-        let at = |k: usize| parts[k].solid().at(Pose::IDENTITY);
-        let options = SolidOptions::default().with_tolerance(0.0);
-        let cast = Cast::new(at(a), at(b), DVec3::Z).and_then(|c| c.with_options(options)).ok()?;
-        cast.overlaps().then(|| cast.least_tolerance())
+        overlap_as_given(self.assembly, [a, b])
     }
 
     /// How far part `a` must go along unit direction `d` until it lies wholly beyond `b`, as they were
@@ -564,11 +665,114 @@ impl<'a> Bodies<'a> {
         #[cfg(test)]
         self.asked.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let Ok(pose) = Pose::from_translation(by) else { return false };
-        let moving = self.solids[a].at(pose);
-        let options = SolidOptions::default().with_tolerance(0.0).with_keep(self.fit.keep());
-        let cast = Cast::new(moving, self.solids[b].at(Pose::IDENTITY), DVec3::Z);
+        let [moving, fixed] = self.solids([a, b]);
+        let options =
+            SolidOptions::default().with_tolerance(0.0).with_keep(self.fit_of([a, b]).keep());
+        let cast = Cast::new(moving.at(pose), fixed.at(Pose::IDENTITY), DVec3::Z);
         cast.and_then(|c| c.with_options(options)).is_ok_and(|cast| cast.overlaps())
     }
+}
+
+type OwnFits = (BTreeMap<[usize; 2], OwnFit>, BTreeMap<[usize; 2], Arc<Displaced>>);
+
+/// What pairs have of their own, and their parts as they are asked of each other.
+fn own_fits(assembly: &Assembly, fit: Fit) -> Result<OwnFits, AssemblyError> {
+    let (mut pairs, mut own) = (BTreeMap::new(), BTreeMap::new());
+    // Of a part that is in many pairs, as a base is with its screws, each tolerance is made once.
+    let mut known: BTreeMap<(usize, u64, bool), Arc<Displaced>> = BTreeMap::new();
+    for (pair, said) in assembly.pairs() {
+        let parts = pair.map(|k| &assembly.parts()[k]);
+        let (tolerated, thread) = match (said.role, said.tolerance) {
+            (Some(Role::Glued), _) => (Tolerated::AsOne, None),
+            (Some(Role::Snap), Some(length)) => (Tolerated::Bent(length), None),
+            (Some(Role::Thread), _) => {
+                let solids = parts.map(Part::solid);
+                let thread = Thread::of(solids);
+                let core = thread.and_then(|t| Some((t, t.core(solids[t.screw])?)));
+                let tolerated = core
+                    .as_ref()
+                    .map_or(Tolerated::Crossing, |(thread, _)| Tolerated::Core(thread.radii[0]));
+                (tolerated, core)
+            }
+            (_, Some(length)) => (Tolerated::Within(length), None),
+            (_, None) => match overlap_as_given(assembly, pair) {
+                None => continue,
+                Some(None) => (Tolerated::Crossing, None),
+                Some(Some(depth)) => {
+                    let length = two_digits_up(depth * DEEPER);
+                    let whole = parts.iter().all(|part| stays_whole(part.solid(), length));
+                    if matches!(fit, Fit::Tolerance(general) if length <= general) {
+                        continue;
+                    }
+                    (if whole { Tolerated::Within(length) } else { Tolerated::Crossing }, None)
+                }
+            },
+        };
+        let alike = match fit {
+            Fit::Tolerance(_) | Fit::Chords { .. } => fit,
+            Fit::Apart(_) => Fit::default_for(assembly),
+        };
+        let own_fit = match tolerated {
+            Tolerated::Within(length) => Fit::Tolerance(length),
+            Tolerated::Core(_) => alike,
+            _ => fit,
+        };
+        pairs.insert(pair, OwnFit { fit: own_fit, tolerated });
+        if own_fit == fit && thread.is_none() {
+            continue;
+        }
+        for k in [0, 1] {
+            let made = |core| {
+                let made = Displaced::new(parts[k], core, own_fit);
+                made.map(Arc::new).map_err(|e| refused(parts[k], e))
+            };
+            let body = match &thread {
+                Some((thread, core)) if thread.screw == k => made(Some(core.clone()))?,
+                _ => {
+                    let chords = matches!(own_fit, Fit::Chords { .. });
+                    let key = (pair[k], own_fit.tolerance().to_bits(), chords);
+                    if let Some(body) = known.get(&key) {
+                        Arc::clone(body)
+                    } else {
+                        let body = made(None)?;
+                        known.insert(key, Arc::clone(&body));
+                        body
+                    }
+                }
+            };
+            own.insert([pair[k], pair[1 - k]], body);
+        }
+    }
+    Ok((pairs, own))
+}
+
+fn refused(part: &Part, source: SolidError) -> AssemblyError {
+    AssemblyError::Part { part: part.name().into(), source: source.into() }
+}
+
+/// Whether two parts overlap, and the least tolerance with which they do not.
+#[expect(clippy::option_option, reason = "no overlap, or one that no tolerance ends")]
+fn overlap_as_given(assembly: &Assembly, pair: [usize; 2]) -> Option<Option<f64>> {
+    let [a, b] = pair.map(|k| assembly.parts()[k].solid().at(Pose::IDENTITY));
+    let options = SolidOptions::default().with_tolerance(0.0);
+    let cast = Cast::new(a, b, DVec3::Z).and_then(|c| c.with_options(options)).ok()?;
+    cast.overlaps().then(|| cast.least_tolerance())
+}
+
+/// Whether a tolerance leaves a body as it is, but smaller.
+fn stays_whole(solid: &Solid, tolerance: f64) -> bool {
+    let fits = tolerance < solid.bounds().size().min_element();
+    fits && solid.shrunk(tolerance / 2.0).is_ok_and(|(smaller, report)| {
+        report.inverted.is_empty() && volume(&smaller) > 0.0 && smaller.is_closed()
+    })
+}
+
+/// The next number of two decimal digits that is not smaller.
+pub(crate) fn two_digits_up(x: f64) -> f64 {
+    let exponent = 1 - x.log10().floor() as i32;
+    // Powers of ten as text: 0.06, not 0.060000000000000005.
+    let digits = (x * 10_f64.powi(exponent)).ceil();
+    format!("{digits}e{}", -exponent).parse().unwrap_or(x)
 }
 
 /// For each triangle of a solid the one with the same corners of another, whose vertices have the same

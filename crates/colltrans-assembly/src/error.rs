@@ -155,6 +155,12 @@ pub enum AssemblyError {
         /// Of how many.
         of: usize,
     },
+    /// A snap of which nobody says how far it bends.
+    #[error("{} and {} snap: say by how much, as a tolerance", names[0], names[1])]
+    NoTolerance {
+        /// The parts.
+        names: [String; 2],
+    },
     /// An angle that is none.
     #[error("an angle of {degrees} degrees: it must be at least 0 and less than 180")]
     Angle {

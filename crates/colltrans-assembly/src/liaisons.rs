@@ -100,55 +100,98 @@ fn triangles_in(solid: &Solid, region: &Aabb) -> Vec<Triangle> {
 }
 
 fn contacts(a: &Solid, b: &Solid, reach: f64) -> Vec<Patch> {
+    touching(a, b, reach).map(|(first, second, t)| t.patch(&first, &second)).collect()
+}
+
+/// Corners of where a part touches another one with facets that look along `down`, within [`OPPOSITE`].
+pub(crate) fn footprint(a: &Solid, b: &Solid, reach: f64, down: DVec3) -> Vec<DVec3> {
+    let below = touching(a, b, reach).filter(|(_, _, t)| t.normal.dot(down) >= OPPOSITE);
+    below.flat_map(|(_, _, t)| t.outline()).collect()
+}
+
+/// All pairs of facets in contact.
+fn touching(
+    a: &Solid,
+    b: &Solid,
+    reach: f64,
+) -> impl Iterator<Item = (Triangle, Triangle, Touching)> {
     let (p, q) = (a.bounds().grown(reach), b.bounds().grown(reach));
     let region = Aabb { low: p.low.max(q.low), high: p.high.min(q.high) };
     let (first, second) = (triangles_in(a, &region), triangles_in(b, &region));
     let tree = BoxTree::new(second.iter().map(|t| Aabb::of_points(*t)));
-    let mut patches = Vec::new();
-    for t in &first {
-        for k in tree.meeting(&Aabb::of_points(*t).grown(reach)) {
-            patches.extend(contact(t, &second[k], reach));
-        }
-    }
-    patches
+    first.into_iter().flat_map(move |t| {
+        let near = tree.meeting(&Aabb::of_points(t).grown(reach)).into_iter();
+        let found = near.filter_map(|k| Some((t, second[k], Touching::of(&t, &second[k], reach)?)));
+        found.collect::<Vec<_>>()
+    })
 }
 
-/// The contact of two facets, if they are in contact.
-fn contact(first: &Triangle, second: &Triangle, reach: f64) -> Option<Patch> {
-    let normal = |t: &Triangle| (t[1] - t[0]).cross(t[2] - t[0]).try_normalize();
-    let (n, m) = (normal(first)?, normal(second)?);
-    if -n.dot(m) < OPPOSITE {
-        return None;
+/// Two facets in contact: the common shadow, seen along the first one's normal.
+struct Touching {
+    normal: DVec3,
+    other: DVec3,
+    origin: DVec3,
+    axes: [DVec3; 2],
+    shadow: Vec<DVec2>,
+    area: f64,
+    middle: DVec2,
+}
+
+impl Touching {
+    fn of(first: &Triangle, second: &Triangle, reach: f64) -> Option<Self> {
+        let normal = |t: &Triangle| (t[1] - t[0]).cross(t[2] - t[0]).try_normalize();
+        let (n, m) = (normal(first)?, normal(second)?);
+        if -n.dot(m) < OPPOSITE {
+            return None;
+        }
+        let u = (first[1] - first[0]).try_normalize()?;
+        let v = n.cross(u);
+        let flat = |p: DVec3| DVec2::new((p - first[0]).dot(u), (p - first[0]).dot(v));
+        // The second runs clockwise, as seen along the first one's normal.
+        let mut shadow: Vec<DVec2> = [second[0], second[2], second[1]].map(flat).to_vec();
+        let corners = first.map(flat);
+        for k in 0..3 {
+            shadow = clipped(&shadow, corners[k], corners[(k + 1) % 3]);
+        }
+        let (area, middle) = centroid(&shadow)?;
+        let largest = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]).abs();
+        if area <= largest * 1e-9 {
+            return None;
+        }
+        // Height of the second facet's plane over the first one's.
+        let height = |s: DVec2| {
+            let foot = first[0] + u * s.x + v * s.y;
+            (second[0] - foot).dot(m) / n.dot(m)
+        };
+        let heights = shadow.iter().map(|s| height(*s));
+        let (low, high) =
+            heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+        let (origin, axes) = (first[0], [u, v]);
+        (low <= reach && high >= -reach).then_some(Self {
+            normal: n,
+            other: -m,
+            origin,
+            axes,
+            shadow,
+            area,
+            middle,
+        })
     }
-    let u = (first[1] - first[0]).try_normalize()?;
-    let v = n.cross(u);
-    let flat = |p: DVec3| DVec2::new((p - first[0]).dot(u), (p - first[0]).dot(v));
-    // The second runs clockwise, as seen along the first one's normal.
-    let mut shadow: Vec<DVec2> = [second[0], second[2], second[1]].map(flat).to_vec();
-    let corners = first.map(flat);
-    for k in 0..3 {
-        shadow = clipped(&shadow, corners[k], corners[(k + 1) % 3]);
+
+    fn place(&self, seen: DVec2) -> DVec3 {
+        self.origin + self.axes[0] * seen.x + self.axes[1] * seen.y
     }
-    let (area, center) = centroid(&shadow)?;
-    let largest = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]).abs();
-    if area <= largest * 1e-9 {
-        return None;
+
+    fn outline(&self) -> Vec<DVec3> {
+        self.shadow.iter().map(|seen| self.place(*seen)).collect()
     }
-    // Height of the second facet's plane over the first one's.
-    let height = |s: DVec2| {
-        let foot = first[0] + u * s.x + v * s.y;
-        (second[0] - foot).dot(m) / n.dot(m)
-    };
-    let heights = shadow.iter().map(|s| height(*s));
-    let (low, high) =
-        heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
-    (low <= reach && high >= -reach).then_some(Patch {
-        normal: n,
-        other: -m,
-        area,
-        area_error: shadow_rounding(first, second),
-        center: first[0] + u * center.x + v * center.y,
-    })
+
+    fn patch(&self, first: &Triangle, second: &Triangle) -> Patch {
+        let area_error = shadow_rounding(first, second);
+        let center = self.place(self.middle);
+        let Self { normal, other, area, .. } = *self;
+        Patch { normal, other, area, area_error, center }
+    }
 }
 
 /// How far the area of the common shadow of two triangles may be off.
@@ -204,6 +247,10 @@ mod tests {
     use colltrans_testkit::random::Random;
 
     use super::*;
+
+    fn contact(first: &Triangle, second: &Triangle, reach: f64) -> Option<Patch> {
+        Touching::of(first, second, reach).map(|touching| touching.patch(first, second))
+    }
 
     /// Triangles in parallel planes that have a vector for a normal which is not a number of this kind, the
     /// second's shadow all of the first's, a part of it, or around it: areas are known in fractions.

@@ -2,7 +2,7 @@
 //!
 //! Data flow: files -> [`read`] (parts in one world, one unit) -> [`Assembly`] -> [`Fit`] (how
 //! tight: shrunk by a tolerance, or to be kept a length apart) -> `bodies` (two parts and a direction: the
-//! only module that asks `colltrans`) -> [`start`] (overlaps now), [`liaisons`] (who touches whom) ->
+//! only module that asks `colltrans`; with [`roles`] and [`threads`] what a pair tolerates) -> [`start`] (overlaps now; [`suggest`] what they may be), [`liaisons`] (who touches whom) ->
 //! [`candidates`] (directions worth asking) -> [`matrix`] and [`rooms`] (who is stopped by whom) ->
 //! [`blocking`] (the graph; with [`constraints`] its arcs), [`likes`] (parts of one shape) -> [`plan`] (steps, and what is stuck) ; [`map`] (one part, all
 //! directions) -> [`record`] (JSON) -> [`report`] (pictures, one HTML file, an animation).
@@ -45,9 +45,12 @@ pub mod record;
 pub mod report;
 #[cfg(feature = "files")]
 pub mod robot;
+pub mod roles;
 pub mod rooms;
 pub mod sphere;
 pub mod start;
+pub mod suggest;
+pub mod threads;
 
 pub use bodies::{Bodies, Fit, Room, Stop};
 pub use error::{AssemblyError, ReadError};

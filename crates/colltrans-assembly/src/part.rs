@@ -4,13 +4,14 @@ use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
 
 use colltrans::solid::SolidError;
-use colltrans::{Aabb, Solid};
+use colltrans::{Aabb, MAX_MAGNITUDE, Solid};
 use colltrans_mesh::Mesh;
 use colltrans_mesh::body::{self, BodyOptions, Loaded, Refused};
 use glam::{DAffine3, DVec3};
 
 use crate::constraints::{Constraints, Unit};
 use crate::error::AssemblyError;
+use crate::roles::{PairFit, Role};
 
 /// A mesh and its place: a part has one or several, which may overlap each other.
 #[derive(Debug, Clone)]
@@ -155,6 +156,7 @@ pub struct Assembly {
     parts: Vec<Part>,
     ignored: BTreeMap<[usize; 2], Ignored>,
     constraints: Constraints,
+    pairs: BTreeMap<[usize; 2], PairFit>,
     unit: Option<String>,
     up: Option<DVec3>,
     notes: Vec<String>,
@@ -193,6 +195,46 @@ impl Assembly {
             }
             let known = self.ignored.entry([a.min(b), a.max(b)]).or_insert(ignored);
             *known = ignored.max(*known);
+        }
+        Ok(self)
+    }
+
+    /// The same, with what parts are to others where their contact is not like all others, and a tolerance of their own:
+    /// of each pair of one of the first and one of the second. What is said later counts. Names are as of
+    /// [`group`](Self::group).
+    ///
+    /// # Errors
+    /// A name that no part has; a part paired with itself alone; a tolerance that is none; a snap without one; what is
+    /// glued would leave before itself.
+    pub fn with_pair<S: AsRef<str>>(
+        mut self,
+        [first, second]: [&[S]; 2],
+        fit: PairFit,
+    ) -> Result<Self, AssemblyError> {
+        let (first, second) = (self.group(first)?, self.group(second)?);
+        if let ([a], [b]) = (&first[..], &second[..])
+            && a == b
+        {
+            return Err(AssemblyError::SamePart { name: self.parts[*a].name.clone() });
+        }
+        if let Some(value) = fit.tolerance.filter(|x| !(0.0..=MAX_MAGNITUDE).contains(x)) {
+            return Err(AssemblyError::Length { what: "tolerance", value });
+        }
+        if fit.role == Some(Role::Snap) && fit.tolerance.is_none() {
+            let names = [first[0], second[0]].map(|part| self.parts[part].name.clone());
+            return Err(AssemblyError::NoTolerance { names });
+        }
+        for [a, b] in first.iter().flat_map(|&a| second.iter().map(move |&b| [a, b])) {
+            if a == b {
+                continue;
+            }
+            let pair = [a.min(b), a.max(b)];
+            self.pairs.insert(pair, fit);
+            if fit.role == Some(Role::Glued) {
+                let unit = Unit { name: None, parts: pair.to_vec(), apart: false };
+                let name = |part: usize| self.parts[part].name();
+                self.constraints.add_unit(unit, name)?;
+            }
         }
         Ok(self)
     }
@@ -360,6 +402,16 @@ impl Assembly {
         group.sort_unstable();
         group.dedup();
         Ok(group)
+    }
+
+    /// What is said of two parts, if anything.
+    pub fn pair(&self, a: usize, b: usize) -> Option<PairFit> {
+        self.pairs.get(&[a.min(b), a.max(b)]).copied()
+    }
+
+    /// All pairs of which something is said, the smaller position first.
+    pub fn pairs(&self) -> impl Iterator<Item = ([usize; 2], PairFit)> {
+        self.pairs.iter().map(|(pair, fit)| (*pair, *fit))
     }
 
     /// Position of the part with a name.

@@ -18,11 +18,14 @@ mod least;
 mod loose;
 mod options;
 mod order;
+mod precedence;
 mod replay;
 mod several;
 mod single;
 mod stage;
+mod stand;
 mod step;
+mod times;
 mod wanted;
 
 use std::collections::{BTreeMap, HashSet};
@@ -41,6 +44,7 @@ use crate::free::Removal;
 use crate::likes::likes;
 use crate::map::{MapOptions, way_out};
 use crate::matrix::{Matrix, bits};
+use crate::roles::Passed;
 use crate::sphere::Sphere;
 use crate::watch::{Stage, Tally, Watch};
 
@@ -48,10 +52,12 @@ use certify::{Proof, certify};
 pub use hold::Hold;
 pub use options::PlanOptions;
 use order::{Choice, Order};
+pub use precedence::and_or;
 use several::Aside;
 pub use several::Moves;
 use single::Single;
 pub use step::{Leg, Step};
+pub use times::Times;
 pub use wanted::{Wanted, remove};
 
 /// Parts of which no group leaves along any direction at all, where that is [proven](Self::proven), or else along any
@@ -266,13 +272,14 @@ impl<'a> Planner<'a> {
             };
             let released = constraints.released(order.there());
             left.retain(|k| !way.parts.contains(k));
+            let unsettled = order.unsettled(&way.parts);
             order.remove(&way.parts, way.direction);
             if constraints.released(order.there()) > released {
                 single = alone(&order);
             } else {
                 way.parts.iter().for_each(|&part| single.remove(part));
             }
-            self.take_out(way, &left, matrix, within)?;
+            self.take_out(way, &left, unsettled, matrix, within)?;
         }
         Ok(left)
     }
@@ -282,6 +289,7 @@ impl<'a> Planner<'a> {
         &mut self,
         way: Way,
         left: &[usize],
+        [falls, off_balance]: [Vec<usize>; 2],
         matrix: &Matrix,
         within: Option<usize>,
     ) -> Result<(), AssemblyError> {
@@ -290,7 +298,11 @@ impl<'a> Planner<'a> {
         let Way { parts, direction, aside } = way;
         let start = self.options.start;
         let pairs = parts.iter().flat_map(|&a| left.iter().map(move |&b| [a, b]));
-        let ignored = pairs.filter(|&[a, b]| self.bodies.lets_pass(a, b, start)).collect();
+        let ignored = pairs.filter(|&[a, b]| {
+            self.bodies.tolerated([a, b]).is_none() && self.bodies.lets_pass(a, b, start)
+        });
+        let ignored = ignored.collect();
+        let passed = Passed::between(self.bodies, &parts, left);
         let surfaces = self.surfaces(&parts, left, direction);
         let after = self.after(&parts, direction, aside.is_some(), matrix, within);
         let (mut path, back) =
@@ -305,6 +317,9 @@ impl<'a> Planner<'a> {
             within,
             after,
             ignored,
+            passed,
+            falls,
+            off_balance,
             surfaces,
         });
         for _ in &parts {

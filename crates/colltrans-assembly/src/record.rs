@@ -16,8 +16,10 @@ use crate::map::{Region, RemovalMap};
 use crate::matrix::{Matrix, Meeting};
 use crate::part::{Assembly, Part};
 use crate::plan::{Leg, Moves, Plan, Step, Stuck};
+use crate::roles::{PairFit, Passed, Role, Tolerated};
 use crate::rooms::PartRoom;
 use crate::start::{Overlap, Start};
+use crate::suggest::Suggestion;
 
 /// A part as the file has it.
 pub fn part(part: &Part) -> Value {
@@ -50,6 +52,28 @@ pub fn overlaps(assembly: &Assembly, start: &Start) -> Value {
         })
     };
     start.overlaps.iter().map(told).collect()
+}
+
+/// What pairs that overlap may be to each other.
+pub fn suggestions(assembly: &Assembly, suggestions: &[Suggestion]) -> Value {
+    let told = |s: &Suggestion| {
+        json!({
+            "parts": assembly.names(&s.parts),
+            "role": s.fit.role.map(Role::name),
+            "tolerance": s.fit.tolerance,
+            "why": s.why,
+        })
+    };
+    suggestions.iter().map(told).collect()
+}
+
+/// Pairs that have a fit of their own, and what is let pass of them.
+pub fn pairs(bodies: &Bodies) -> Value {
+    let told = |(parts, fit): ([usize; 2], PairFit)| {
+        let tolerated = bodies.tolerated(parts)?;
+        Some(passed(bodies.assembly(), &Passed { parts, role: fit.role, tolerated }))
+    };
+    bodies.assembly().pairs().filter_map(told).collect()
 }
 
 /// Pairs that touch.
@@ -109,8 +133,8 @@ pub fn meetings(assembly: &Assembly, matrix: &Matrix, direction: usize) -> Value
     matrix.meetings(direction).iter().map(told).collect()
 }
 
-/// The fields of a plan: `plan` (its steps), `stages` (those that are told as one, by the first and last one), `last`,
-/// `left`, `stuck`.
+/// The fields of a plan: `plan` (its steps), `stages` (those that are told as one, by the first and last one), `rounds`
+/// (those that may go at once), `assembly` (how it is put together), `last`, `left`, `stuck`.
 pub fn plan(bodies: &Bodies, plan: &Plan) -> Value {
     let steps: Vec<Value> = plan.steps.iter().map(|s| step(bodies.assembly(), s)).collect();
     let stuck: Vec<Value> = plan.stuck.iter().map(|s| self::stuck(bodies, s)).collect();
@@ -121,9 +145,12 @@ pub fn plan(bodies: &Bodies, plan: &Plan) -> Value {
         json!({ "takes": takes, "steps": [first, last], "travel": plan.travel(&stage) })
     });
     let stages: Vec<Value> = stages.collect();
+    let put = |(step, after): (usize, Vec<usize>)| json!({ "step": step, "after": after });
     let mut told = json!({
         "plan": steps,
         "stages": stages,
+        "rounds": plan.rounds(),
+        "assembly": plan.assembly().into_iter().map(put).collect::<Vec<_>>(),
         "last": names(&plan.last),
         "left": names(&plan.left),
         "stuck": stuck,
@@ -157,12 +184,34 @@ fn step(assembly: &Assembly, step: &Step) -> Value {
         let pairs: Vec<_> = step.ignored.iter().map(|pair| assembly.names(pair)).collect();
         told["ignored"] = json!(pairs);
     }
+    if !step.passed.is_empty() {
+        told["passed"] = step.passed.iter().map(|passed| self::passed(assembly, passed)).collect();
+    }
+    for (name, parts) in [("falls", &step.falls), ("off_balance", &step.off_balance)] {
+        if !parts.is_empty() {
+            told[name] = json!(assembly.names(parts));
+        }
+    }
     told["after"] = json!(step.after);
     if let Some(within) = step.within {
         told["within"] = json!(within);
     }
     if !step.surfaces.is_empty() {
         told["surfaces"] = json!(assembly.names(&step.surfaces));
+    }
+    told
+}
+
+fn passed(assembly: &Assembly, passed: &Passed) -> Value {
+    let mut told = json!({
+        "parts": assembly.names(&passed.parts),
+        "role": passed.role.map(Role::name),
+        "words": passed.tolerated.words(passed.role),
+    });
+    match passed.tolerated {
+        Tolerated::Within(length) | Tolerated::Bent(length) => told["tolerance"] = json!(length),
+        Tolerated::Core(radius) => told["core_radius"] = json!(radius),
+        Tolerated::Crossing | Tolerated::AsOne => (),
     }
     told
 }

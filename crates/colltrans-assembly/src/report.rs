@@ -16,9 +16,10 @@ use crate::candidates::Candidate;
 use crate::liaisons::Liaison;
 use crate::map::RemovalMap;
 use crate::matrix::Matrix;
-use crate::plan::Plan;
+use crate::plan::{Plan, Times};
 use crate::rooms::PartRoom;
 use crate::start::Start;
+use crate::suggest::Suggestion;
 
 /// All that was found out about an assembly.
 pub struct Findings<'a> {
@@ -26,6 +27,8 @@ pub struct Findings<'a> {
     pub bodies: &'a Bodies<'a>,
     /// Overlaps at the start.
     pub start: &'a Start,
+    /// What overlaps may be.
+    pub suggestions: &'a [Suggestion],
     /// Who touches whom.
     pub liaisons: &'a [Liaison],
     /// The directions asked, and why.
@@ -36,6 +39,8 @@ pub struct Findings<'a> {
     pub more: &'a [(DVec3, Vec<PartRoom>)],
     /// How it comes apart.
     pub plan: &'a Plan,
+    /// What its steps take.
+    pub times: Times,
     /// Removal maps, with the names they were asked by.
     pub maps: &'a [(String, RemovalMap)],
 }

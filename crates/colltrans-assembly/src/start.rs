@@ -3,7 +3,7 @@
 
 use rayon::prelude::*;
 
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, two_digits_up};
 use crate::error::AssemblyError;
 use crate::watch::{Stage, Watch};
 
@@ -17,6 +17,14 @@ pub struct Overlap {
     pub depth: Option<f64>,
     /// Whether they still overlap with the fit that is asked about.
     pub remains: bool,
+}
+
+impl Overlap {
+    /// Whether it is small against both parts: else it is no tolerance, but a fault of the model.
+    pub(crate) fn is_shallow(&self, bodies: &Bodies) -> bool {
+        let thin = self.parts.map(|k| bodies.bounds(k).size().min_element());
+        self.depth.is_some_and(|depth| depth <= LARGEST_SHARE * thin[0].min(thin[1]))
+    }
 }
 
 /// How the assembly starts.
@@ -68,23 +76,12 @@ impl Start {
 }
 
 fn suggest(bodies: &Bodies, overlaps: &[Overlap]) -> Option<f64> {
-    let sound = |o: &&Overlap| {
-        let thin = o.parts.map(|k| {
-            let b = bodies.bounds(k);
-            (b.high - b.low).min_element()
-        });
-        o.depth.is_some_and(|depth| depth <= LARGEST_SHARE * thin[0].min(thin[1]))
-    };
-    let deepest = overlaps.iter().filter(sound).filter_map(|o| o.depth).reduce(f64::max)?;
+    let deepest = overlaps
+        .iter()
+        .filter(|o| o.is_shallow(bodies))
+        .filter_map(|o| o.depth)
+        .reduce(f64::max)?;
     Some(two_digits_up(deepest * 1.05))
-}
-
-/// The next number of two decimal digits that is not smaller.
-fn two_digits_up(x: f64) -> f64 {
-    let exponent = 1 - x.log10().floor() as i32;
-    // Powers of ten as text: 0.06, not 0.060000000000000005.
-    let digits = (x * 10_f64.powi(exponent)).ceil();
-    format!("{digits}e{}", -exponent).parse().unwrap_or(x)
 }
 
 #[cfg(test)]

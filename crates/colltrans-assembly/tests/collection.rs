@@ -165,5 +165,5 @@ fn a_3mf_package_and_a_glb_file_of_others_are_read() {
     assert_eq!(open("heartgears.3mf").unwrap().parts().len(), 1);
     assert!(open("ReciprocatingSaw.glb").unwrap().parts().len() > 10);
     let message = open("pillow_block.step").unwrap_err().to_string();
-    assert!(message.contains("neither a folder of meshes nor a known file"), "{message}");
+    assert!(message.contains("STEP files are converted to GLB first"), "{message}");
 }

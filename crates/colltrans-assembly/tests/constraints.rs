@@ -5,7 +5,7 @@ mod common;
 
 use colltrans::solid::{StartOverlap, Workspace};
 use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{Plan, PlanOptions, Step, disassemble, remove};
+use colltrans_assembly::plan::{Plan, PlanOptions, Step, and_or, disassemble, remove};
 use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Room, Watch};
 use colltrans_testkit::random::Random;
 use glam::DVec3;
@@ -128,6 +128,48 @@ impl Judge {
         }
         left
     }
+
+    /// All steps of a round in any order, and the way back, piece by piece; each way out of a part, once what it waits for
+    /// has gone.
+    fn backwards(&self, plan: &Plan, ways: &serde_json::Value) {
+        let all = (1_u32 << self.count) - 1;
+        let main = |k: &usize| plan.steps[*k].within.is_none();
+        let mut left = all;
+        for k in plan.rounds().into_iter().flat_map(|round| round.into_iter().rev()).filter(main) {
+            let step = &plan.steps[k];
+            assert!(self.leaves(bits(&step.parts), left, Self::position(step.direction)));
+            left &= !bits(&step.parts);
+        }
+        let order = plan.assembly();
+        for (at, (step, after)) in order.iter().enumerate() {
+            assert!(after.iter().all(|&k| k < at && plan.steps[order[k].0].after.contains(step)));
+        }
+        for k in order.into_iter().map(|(k, _)| k).filter(main) {
+            let set = bits(&plan.steps[k].parts);
+            left |= set;
+            assert!(self.leaves(set, left, Self::position(plan.steps[k].direction)), "put in");
+        }
+        assert_eq!(left, all);
+        for (name, node) in ways.as_object().unwrap() {
+            let part: usize = name.parse().unwrap();
+            if self.asked.fixed >> part & 1 == 1 {
+                // The base, as we judge it, is not fixed for the graph.
+                continue;
+            }
+            for way in node["or"].as_array().unwrap() {
+                let d: Vec<f64> = serde_json::from_value(way["direction"].clone()).unwrap();
+                let and: Vec<String> = serde_json::from_value(way["and"].clone()).unwrap();
+                let gone: Vec<usize> = and.iter().map(|name| name.parse().unwrap()).collect();
+                let (set, k) = (1 << part, Self::position(DVec3::from_slice(&d)));
+                assert!(self.leaves(set, all & !bits(&gone), k), "{name}: {way}");
+                // None of them is named in vain, but for what a subassembly is taken apart without at last.
+                let apart = self.asked.subassemblies.iter().any(|unit| unit >> part & 1 == 1);
+                for &one in gone.iter().filter(|_| !apart) {
+                    assert!(!self.leaves(set, all & !bits(&gone) | 1 << one, k), "{name}: {way}");
+                }
+            }
+        }
+    }
 }
 
 fn random_of<'a, T>(all: &'a [T], random: &mut Random) -> &'a T {
@@ -218,6 +260,7 @@ fn plans_take_as_much_apart_as_all_groups_tried_and_in_an_order_that_is_asked_fo
         for (k, step) in plan.steps.iter().enumerate().filter(|(_, step)| step.parts.len() > 1) {
             judge.walked(&plan, Some(k), bits(&step.parts), &mut random);
         }
+        judge.backwards(&plan, &and_or(&assembly, &matrix(&bodies)));
         whole += usize::from(plan.stuck.is_empty());
         held += usize::from(!plan.stuck.is_empty());
         moved += plan.steps.len();

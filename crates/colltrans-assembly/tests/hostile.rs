@@ -16,7 +16,7 @@ use colltrans_assembly::candidates::{Choice, candidates};
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{self, MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{PlanOptions, disassemble};
+use colltrans_assembly::plan::{PlanOptions, Times, disassemble};
 use colltrans_assembly::read::{ReadOptions, read_from};
 use colltrans_assembly::report::{Findings, facts, glb, html};
 use colltrans_assembly::start::Start;
@@ -60,11 +60,13 @@ fn outputs(assembly: &Assembly, title: &str) -> Outputs {
     let findings = Findings {
         bodies: &bodies,
         start: &overlaps,
+        suggestions: &[],
         liaisons: &touching,
         candidates: &found.main,
         matrix: &matrix,
         more: &[],
         plan: &plan,
+        times: Times::default(),
         maps: &maps,
     };
     Outputs {

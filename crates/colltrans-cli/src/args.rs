@@ -19,7 +19,7 @@ use colltrans_mesh::body::BodyOptions;
 
 use crate::among::is_list;
 use crate::failure::{Code, Failure};
-pub(crate) use assembly::{AssemblyArguments, ConstraintArguments};
+pub(crate) use assembly::{AssemblyArguments, ConstraintArguments, RoleArguments};
 pub(crate) use directions::DirectionsArguments;
 use help::{
     ASSEMBLY_FORMAT, BATCH_FORMAT, CAST_EXAMPLES, CLEARANCE_ANSWERS, DIRECTIONS_ANSWERS,

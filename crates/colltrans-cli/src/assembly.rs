@@ -13,15 +13,16 @@ use std::path::Path;
 use colltrans::glam::DVec3;
 use colltrans::solid::StartOverlap;
 use colltrans_assembly::candidates::{Candidates, Choice, Finer, Origin, candidates, unit};
-use colltrans_assembly::liaisons::liaisons;
+use colltrans_assembly::liaisons::{Liaison, liaisons};
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{PlanOptions, disassemble, remove};
+use colltrans_assembly::plan::{Plan, PlanOptions, disassemble, remove};
 use colltrans_assembly::read::{self, Geometry, ReadOptions};
 use colltrans_assembly::report::Findings;
 use colltrans_assembly::rooms::{PartRoom, rooms};
 use colltrans_assembly::sphere::Sphere;
 use colltrans_assembly::start::Start;
+use colltrans_assembly::suggest::{self, Suggestion, suggestions};
 use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Ignored, ReadError, Stage, Watch};
 use colltrans_mesh::body::Refused;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -42,6 +43,7 @@ fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
     let groups = groups(&arguments.map, &assembly)?;
     let leaving = self::groups(&arguments.free, &assembly)?;
     let wanted = assembly.group(&arguments.asked.remove)?;
+    let times = asked::times(arguments.times.as_deref())?;
     output::refuse_inputs(arguments, &assembly)?;
     let fit = match (arguments.tolerance, arguments.keep_apart) {
         (Some(tolerance), _) => Fit::Tolerance(tolerance),
@@ -60,50 +62,92 @@ fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
         }
     };
     let watch = Watch::default().with_progress(&progress);
-    let bodies = Bodies::new(&assembly, fit)?;
-    let start = Start::new(&bodies, watch)?;
-    let touching = liaisons(&bodies, watch)?;
-    let choice = Choice::default()
-        .with_given(arguments.direction.clone())
-        .with_gravity(arguments.gravity)
-        .with_search(!arguments.only);
-    let mut found = candidates(&bodies, &touching, &choice)?;
-    let finer = |&direction: &DVec3| Finer { direction, origin: Origin::Given, part: None };
-    found.finer.splice(0..0, given.iter().map(finer));
-    let overlap = overlap(arguments);
-    let all = vec![true; bodies.len()];
-    let matrix = Matrix::new(&bodies, &found.directions(), &all, overlap, watch)?;
-    let more = more_rooms(&bodies, &given, overlap, watch)?;
-    let samples = if arguments.only { 0 } else { PlanOptions::default().samples };
-    let options = PlanOptions::default()
-        .with_start(overlap)
-        .with_samples(samples)
-        .with_legs(arguments.legs)
-        .with_proofs(!arguments.no_proofs && !arguments.only)
-        .with_looks(arguments.work.looks());
-    let options = match arguments.gravity {
-        Some(gravity) => options.with_up(-gravity),
-        None => options,
-    };
-    let plan = match &wanted[..] {
-        [] => disassemble(&bodies, &matrix, &found.finer, options, watch)?,
-        parts => remove(&bodies, &matrix, &found.finer, parts, options, watch)?,
-    };
-    let maps = maps(&bodies, &groups, &found, overlap, watch)?;
+    let asked = Question { arguments, given: &given, wanted: &wanted, watch };
+    let once = Bodies::new(&assembly, fit)?;
+    let mut found = asked.answered(&once)?;
+    let suggested;
+    let again;
+    if arguments.roles.auto && !found.suggestions.is_empty() && !found.plan.stuck.is_empty() {
+        suggested = suggest::applied(assembly.clone(), &found.suggestions)?;
+        again = Bodies::new(&suggested, fit)?;
+        found = asked.answered(&again)?;
+    }
+    let bodies = found.bodies;
+    let maps = maps(bodies, &groups, &found.found, overlap(arguments), watch)?;
     let with_proofs = arguments.output.is_some();
-    let free = free::all(&bodies, leaving, arguments.work.options(), with_proofs)?;
+    let free = free::all(bodies, leaving, arguments.work.options(), with_proofs)?;
     bar.finish_and_clear();
     let findings = Findings {
-        bodies: &bodies,
-        start: &start,
-        liaisons: &touching,
-        candidates: &found.main,
-        matrix: &matrix,
-        more: &more,
-        plan: &plan,
+        bodies,
+        start: &found.start,
+        suggestions: &found.suggestions,
+        liaisons: &found.touching,
+        candidates: &found.found.main,
+        matrix: &found.matrix,
+        more: &found.more,
+        plan: &found.plan,
+        times,
         maps: &maps,
     };
     output::write(&findings, &free, arguments)
+}
+
+/// What is asked of the parts, with whatever fit.
+struct Question<'a> {
+    arguments: &'a AssemblyArguments,
+    /// Directions beside those that are found.
+    given: &'a [DVec3],
+    /// Parts that are to come out, if not all.
+    wanted: &'a [usize],
+    watch: Watch<'a>,
+}
+
+/// What came of it.
+struct Answer<'a> {
+    bodies: &'a Bodies<'a>,
+    start: Start,
+    suggestions: Vec<Suggestion>,
+    touching: Vec<Liaison>,
+    found: Candidates,
+    matrix: Matrix,
+    more: Vec<(DVec3, Vec<PartRoom>)>,
+    plan: Plan,
+}
+
+impl Question<'_> {
+    fn answered<'b>(&self, bodies: &'b Bodies<'b>) -> Result<Answer<'b>, Failure> {
+        let Self { arguments, given, wanted, watch } = *self;
+        let start = Start::new(bodies, watch)?;
+        let suggestions = suggestions(bodies, &start);
+        let touching = liaisons(bodies, watch)?;
+        let choice = Choice::default()
+            .with_given(arguments.direction.clone())
+            .with_gravity(arguments.gravity)
+            .with_search(!arguments.only);
+        let mut found = candidates(bodies, &touching, &choice)?;
+        let finer = |&direction: &DVec3| Finer { direction, origin: Origin::Given, part: None };
+        found.finer.splice(0..0, given.iter().map(finer));
+        let overlap = overlap(arguments);
+        let all = vec![true; bodies.len()];
+        let matrix = Matrix::new(bodies, &found.directions(), &all, overlap, watch)?;
+        let more = more_rooms(bodies, given, overlap, watch)?;
+        let samples = if arguments.only { 0 } else { PlanOptions::default().samples };
+        let options = PlanOptions::default()
+            .with_start(overlap)
+            .with_samples(samples)
+            .with_legs(arguments.legs)
+            .with_proofs(!arguments.no_proofs && !arguments.only)
+            .with_looks(arguments.work.looks());
+        let options = match arguments.gravity {
+            Some(gravity) => options.with_up(-gravity),
+            None => options,
+        };
+        let plan = match wanted {
+            [] => disassemble(bodies, &matrix, &found.finer, options, watch)?,
+            parts => remove(bodies, &matrix, &found.finer, parts, options, watch)?,
+        };
+        Ok(Answer { bodies, start, suggestions, touching, found, matrix, more, plan })
+    }
 }
 
 fn overlap(arguments: &AssemblyArguments) -> StartOverlap {
@@ -140,6 +184,7 @@ fn assembly(arguments: &AssemblyArguments) -> Result<Assembly, Failure> {
     let always = asked::pairs("--ignore-always", &arguments.ignore_always)?;
     let assembly = assembly.with_ignored(&ignore, Ignored::Overlap)?;
     let assembly = assembly.with_ignored(&always, Ignored::Always)?;
+    let assembly = asked::with_roles(assembly, &arguments.roles)?;
     asked::constrained(assembly, &arguments.asked)
 }
 
@@ -242,6 +287,7 @@ impl From<AssemblyError> for Failure {
             | AssemblyError::Order { .. }
             | AssemblyError::Subassemblies { .. }
             | AssemblyError::TooFew { .. }
+            | AssemblyError::NoTolerance { .. }
             | AssemblyError::Removal { .. }
             | AssemblyError::Angle { .. } => Code::Usage,
             AssemblyError::Replay { .. } | AssemblyError::Cancelled => Code::Query,

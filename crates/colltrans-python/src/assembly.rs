@@ -19,9 +19,12 @@ use colltrans_assembly::candidates::{Candidates, Choice, candidates, unit};
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{Leg, PlanOptions, Step, Wanted, disassemble, remove};
+use colltrans_assembly::plan::{Leg, PlanOptions, Step, Times, Wanted, disassemble, remove};
 use colltrans_assembly::read::{self, Geometry, ReadOptions};
+use colltrans_assembly::roles::{PairFit, Passed, Role, Tolerated};
 use colltrans_assembly::rooms::{PartRoom, rooms};
+use colltrans_assembly::start::Start;
+use colltrans_assembly::suggest::{Suggestion, suggestions};
 use colltrans_assembly::{AssemblyError, Bodies, Fit, Ignored, Part, Piece, Watch};
 use colltrans_mesh::Mesh;
 use numpy::PyArray2;
@@ -37,8 +40,9 @@ const PATIENCE: Duration = Duration::from_millis(50);
 type RoomRow = (Vec<f64>, Vec<i64>);
 /// Parts, direction and travel of a move.
 type LegRow = (Vec<usize>, [f64; 3], f64);
-/// Parts, direction, travel and its bounds, the moves out and back, the step that took the group out, the pairs that
-/// are ignored, and the surfaces it rests on.
+/// Parts, direction, travel and its bounds, the moves out and back, the step that took the group out, the steps before it,
+/// the pairs that are ignored, what is let pass of others, and the parts that then fall, that are off balance, and the
+/// surfaces it rests on.
 type StepRow = (
     Vec<usize>,
     [f64; 3],
@@ -48,13 +52,26 @@ type StepRow = (
     Option<usize>,
     Vec<usize>,
     Vec<[usize; 2]>,
-    Vec<usize>,
+    Vec<PassedRow>,
+    [Vec<usize>; 3],
 );
+/// Two parts, their role, their tolerance, and what is let pass in words.
+type PassedRow = ([usize; 2], Option<&'static str>, Option<f64>, String);
 /// What is taken away, from and to which step, and how far.
 type StageRow = (String, [usize; 2], f64);
-/// Steps, stages, what is last, what is left, what is stuck, and of a plan for some parts what goes.
-type PlanRows =
-    (Vec<StepRow>, Vec<StageRow>, Vec<usize>, Vec<usize>, Vec<StuckRow>, Option<WantedRow>);
+/// Steps, stages, what is last, what is left, what is stuck, of a plan for some parts what goes, the rounds, how it is
+/// put together, and the seconds of each step.
+type PlanRows = (
+    Vec<StepRow>,
+    Vec<StageRow>,
+    Vec<usize>,
+    Vec<usize>,
+    Vec<StuckRow>,
+    Option<WantedRow>,
+    Vec<Vec<usize>>,
+    Vec<(usize, Vec<usize>)>,
+    Vec<f64>,
+);
 /// Parts that are to come out, what else goes, whether that is the least, and whether they come out.
 type WantedRow = (Vec<usize>, Vec<usize>, bool, bool);
 /// Parts, how many directions were asked, in how many cells it is proven that none helps, why they are stuck, and for
@@ -164,6 +181,35 @@ fn room_row<'a>(rooms: impl Iterator<Item = &'a PartRoom> + Clone) -> RoomRow {
     (rooms.clone().map(PartRoom::distance).collect(), rooms.map(by).collect())
 }
 
+fn passed_row(passed: &Passed) -> PassedRow {
+    let Passed { parts, role, tolerated } = *passed;
+    let tolerance = match tolerated {
+        Tolerated::Within(length) | Tolerated::Bent(length) => Some(length),
+        _ => None,
+    };
+    (parts, role.map(Role::name), tolerance, tolerated.words(role))
+}
+
+/// A table of handling times.
+fn times(given: &BTreeMap<String, f64>) -> PyResult<Times> {
+    let refused = |reason: String| error("InputError", format!("times: {reason}"));
+    let value = serde_json::to_value(given).map_err(|e| refused(e.to_string()))?;
+    let times: Times = serde_json::from_value(value).map_err(|e| refused(e.to_string()))?;
+    match times.wrong() {
+        Some((name, seconds)) => Err(refused(format!("{name}: {seconds} is no time in seconds"))),
+        None => Ok(times),
+    }
+}
+
+/// The role with a name.
+fn role(name: Option<&str>) -> PyResult<Option<Role>> {
+    let named = |name: &str| {
+        let refused = || error("InputError", format!("role: {name} is none of them"));
+        Role::named(name).ok_or_else(refused)
+    };
+    name.map(named).transpose()
+}
+
 #[pymethods]
 impl Assembly {
     #[new]
@@ -238,6 +284,25 @@ impl Assembly {
     ) -> PyResult<Self> {
         let along = crate::arrays::vector(along, "along")?;
         self.with(|assembly| assembly.with_never(&names, along, within))
+    }
+
+    fn with_pair(
+        &self,
+        first: Vec<String>,
+        second: Vec<String>,
+        role: Option<&str>,
+        tolerance: Option<f64>,
+    ) -> PyResult<Self> {
+        let fit = PairFit { role: self::role(role)?, tolerance };
+        self.with(|assembly| assembly.with_pair([&first, &second], fit))
+    }
+
+    fn suggestions(&self, py: Python<'_>, tolerance: Option<f64>) -> PyResult<Vec<PassedRow>> {
+        let found = self.ask(py, Choices::new(tolerance, false), |bodies, watch| {
+            Ok(suggestions(bodies, &Start::new(bodies, watch)?))
+        })?;
+        let row = |s: Suggestion| (s.parts, s.fit.role.map(Role::name), s.fit.tolerance, s.why);
+        Ok(found.into_iter().map(row).collect())
     }
 
     fn group(&self, names: Vec<String>) -> PyResult<Vec<usize>> {
@@ -323,7 +388,9 @@ impl Assembly {
         ignore_overlaps: bool,
         gravity: Option<&Bound<'_, PyAny>>,
         wanted: Vec<usize>,
+        times: BTreeMap<String, f64>,
     ) -> PyResult<PlanRows> {
+        let times = self::times(&times)?;
         let given = points(directions, "directions")?;
         let gravity = gravity.map(|g| crate::arrays::vector(g, "gravity")).transpose()?;
         let choices = Choices::new(tolerance, ignore_overlaps);
@@ -350,13 +417,17 @@ impl Assembly {
             let stages: Vec<StageRow> = plan.stages().into_iter().map(stage).collect();
             Ok((plan, because, stages))
         })?;
+        let (rounds, reverse) = (plan.rounds(), plan.assembly());
+        let seconds = times.of(&plan);
         let steps = plan.steps.into_iter();
         let row = |s: Step| {
             let (direction, travel) = (s.direction.to_array(), s.travel);
             let leg = |leg: Leg| (leg.parts, leg.direction.to_array(), leg.travel);
             let legs = [s.path, s.back].map(|all| all.into_iter().map(leg).collect());
             let (travel, bounds) = (travel.value, travel.bounds());
-            (s.parts, direction, travel, bounds, legs, s.within, s.after, s.ignored, s.surfaces)
+            let passed = s.passed.iter().map(passed_row).collect();
+            let named = [s.falls, s.off_balance, s.surfaces];
+            (s.parts, direction, travel, bounds, legs, s.within, s.after, s.ignored, passed, named)
         };
         let steps = steps.map(row).collect();
         let stuck = plan.stuck.into_iter().zip(because).map(|(stuck, because)| {
@@ -370,7 +441,9 @@ impl Assembly {
             )
         });
         let wanted = |Wanted { parts, others, least, out, .. }| (parts, others, least, out);
-        Ok((steps, stages, plan.last, plan.left, stuck.collect(), plan.wanted.map(wanted)))
+        let goes = plan.wanted.map(wanted);
+        let stuck = stuck.collect();
+        Ok((steps, stages, plan.last, plan.left, stuck, goes, rounds, reverse, seconds))
     }
 
     #[expect(clippy::type_complexity, reason = "a map has four parts")]

@@ -427,6 +427,12 @@ class Assembly:
     def with_together(self, names: list[str]) -> Assembly: ...
     def with_subassembly(self, name: str, parts: list[str]) -> Assembly: ...
     def with_never(self, names: list[str], along: ArrayLike, within: float) -> Assembly: ...
+    def with_pair(
+        self, first: list[str], second: list[str], role: str | None, tolerance: float | None
+    ) -> Assembly: ...
+    def suggestions(
+        self, tolerance: float | None
+    ) -> list[tuple[list[int], str | None, float | None, str]]: ...
     def group(self, names: list[str]) -> list[int]: ...
     @property
     def names(self) -> list[str]: ...
@@ -453,6 +459,7 @@ class Assembly:
         ignore_overlaps: bool,
         gravity: ArrayLike | None,
         wanted: list[int],
+        times: dict[str, float],
     ) -> tuple[
         list[
             tuple[
@@ -464,7 +471,8 @@ class Assembly:
                 int | None,
                 list[int],
                 list[list[int]],
-                list[int],
+                list[tuple[list[int], str | None, float | None, str]],
+                list[list[int]],
             ]
         ],
         list[tuple[str, list[int], float]],
@@ -472,6 +480,9 @@ class Assembly:
         list[int],
         list[tuple[list[int], int, int | None, str, list[tuple[int, list[list[int]]]]]],
         tuple[list[int], list[int], bool, bool] | None,
+        list[list[int]],
+        list[tuple[int, list[int]]],
+        list[float],
     ]: ...
     def removal_map(
         self,

@@ -82,6 +82,28 @@ class Move:
 
 
 @dataclass(frozen=True)
+class PairFit:
+    """What two parts are to each other, said, suggested or let pass by a step.
+
+    Attributes
+    ----------
+    parts : tuple of (str, str)
+    role : str or None
+        ``"press"``, ``"thread"``, ``"soft"``, ``"snap"``, ``"glued"``; ``None`` where only a
+        tolerance is.
+    tolerance : float or None
+        Of this pair alone.
+    words : str
+        What is let pass, or what speaks for it.
+    """
+
+    parts: tuple[str, str]
+    role: str | None
+    tolerance: float | None
+    words: str
+
+
+@dataclass(frozen=True)
 class Step:
     """A group that is taken out.
 
@@ -107,6 +129,12 @@ class Step:
     ignored : list of tuple of (str, str)
         What the step does not speak of: the first part moves, the second stays, and their overlap
         at the start, or all that they do, is ignored on request.
+    passed : list of PairFit
+        What it lets pass of pairs with a role or a tolerance of their own.
+    falls : list of str
+        What then rests on nothing that is left.
+    off_balance : list of str
+        What stood before, and whose centre of mass then lies beyond what carries it.
     surfaces : list of str
         The open surfaces that the step rests on: parts of the group or in its way, not closed.
     """
@@ -120,6 +148,9 @@ class Step:
     within: int | None
     after: list[int]
     ignored: list[tuple[str, str]]
+    passed: list[PairFit]
+    falls: list[str]
+    off_balance: list[str]
     surfaces: list[str]
 
 
@@ -210,6 +241,13 @@ class Plan:
     stuck : list of Stuck
     wanted : Wanted or None
         Of a plan for some parts.
+    rounds : list of list of int
+        Positions of the steps that may go at once: each waits for some of the round before it.
+    assembly : list of tuple of (int, list of int)
+        How it is put together: the steps that are walked backwards, in order, each with the
+        positions in this list of those that have to come before it.
+    seconds : list of float
+        Of each step, by a table of handling times.
     """
 
     steps: list[Step]
@@ -218,6 +256,9 @@ class Plan:
     left: list[str]
     stuck: list[Stuck]
     wanted: Wanted | None
+    rounds: list[list[int]]
+    assembly: list[tuple[int, list[int]]]
+    seconds: list[float]
     _assembly: "Assembly | None" = field(default=None, repr=False, compare=False)
 
     def displacements(self) -> dict[str, Floats]:
@@ -453,6 +494,47 @@ class Assembly:
         """
         return self._of(self._assembly.with_never(list(names), along, within))
 
+    def with_pair(
+        self,
+        first: str | Sequence[str],
+        second: str | Sequence[str],
+        *,
+        role: str | None = None,
+        tolerance: float | None = None,
+    ) -> "Assembly":
+        """The same with what parts are to others where their contact is not like all others.
+
+        Parameters
+        ----------
+        first, second : str or sequence of str
+            Each of the first and each of the second are a pair; names may end with ``*``.
+        role : str, optional
+            ``"press"`` or ``"soft"``: both are shrunk, against each other only, by half of the
+            tolerance each, or from how deep they overlap; ``"thread"``: of the screw its core is
+            asked; ``"snap"``: contacts that begin within the tolerance of the start are let pass;
+            ``"glued"``: they leave as one.
+        tolerance : float, optional
+            Of these pairs alone.
+        """
+        lists = _list(first), _list(second)
+        return self._of(self._assembly.with_pair(*lists, role, tolerance))
+
+    def suggestions(self, *, tolerance: float | None = None) -> list[PairFit]:
+        """What pairs that overlap with a tolerance may be to each other; nothing is proven by it.
+
+        Examples
+        --------
+        ``parts.with_suggestions(parts.suggestions()).plan()`` takes them for granted.
+        """
+        return [self._fit(*pair) for pair in self._assembly.suggestions(tolerance)]
+
+    def with_suggestions(self, fits: Sequence[PairFit]) -> "Assembly":
+        """The same with these said of their pairs."""
+        made = self
+        for fit in fits:
+            made = made.with_pair(*fit.parts, role=fit.role, tolerance=fit.tolerance)
+        return made
+
     def rooms(
         self,
         directions: ArrayLike,
@@ -526,6 +608,7 @@ class Assembly:
         ignore_overlaps: bool = False,
         gravity: ArrayLike | None = None,
         remove: str | Sequence[str] = (),
+        times: Mapping[str, float] | None = None,
     ) -> Plan:
         """Takes apart what straight moves take apart.
 
@@ -550,6 +633,10 @@ class Assembly:
         remove : str or sequence of str, optional
             Parts that are to come out, and only what has to go for that: the fewest others, if that
             can be said. Names may end with ``*``.
+        times : mapping of str to float, optional
+            Handling times in seconds, what to replace of the table: ``grasp``, ``move``,
+            ``direction``, ``shape``, ``group``, ``hold``, ``press``, ``soft``, ``snap``,
+            ``thread``.
 
         Returns
         -------
@@ -564,9 +651,17 @@ class Assembly:
         """
         wanted = self._assembly.group(_list(remove))
         plan = self._assembly.plan(
-            directions, samples, legs, proofs, tolerance, ignore_overlaps, gravity, wanted
+            directions,
+            samples,
+            legs,
+            proofs,
+            tolerance,
+            ignore_overlaps,
+            gravity,
+            wanted,
+            dict(times or {}),
         )
-        steps, stages, last, left, stuck, goes = plan
+        steps, stages, last, left, stuck, goes, rounds, assembly, seconds = plan
         names = self.parts
 
         def moves(all_of: list[tuple[list[int], list[float], float]]) -> list[Move]:
@@ -584,12 +679,13 @@ class Assembly:
                     within,
                     after,
                     [(names[a], names[b]) for a, b in ignored],
-                    self._names(surfaces),
+                    [self._fit(*pair) for pair in passed],
+                    *map(self._names, named),
                 )
                 for parts, d, travel, travel_bounds, (
                     path,
                     back,
-                ), within, after, ignored, surfaces in steps
+                ), within, after, ignored, passed, named in steps
             ],
             [Stage(takes, range(*of), travel) for takes, of, travel in stages],
             self._names(last),
@@ -605,8 +701,17 @@ class Assembly:
                 for parts, directions, proven, because, holds in stuck
             ],
             self._wanted(*goes) if goes is not None else None,
+            rounds,
+            assembly,
+            seconds,
             self,
         )
+
+    def _fit(
+        self, parts: list[int], role: str | None, tolerance: float | None, words: str
+    ) -> PairFit:
+        first, second = self._names(parts)
+        return PairFit((first, second), role, tolerance, words)
 
     def _wanted(self, parts: list[int], others: list[int], least: bool, out: bool) -> Wanted:
         return Wanted(self._names(parts), self._names(others), least, out)

@@ -16,6 +16,7 @@ use glam::DVec3;
 use crate::blocking::Blocking;
 use crate::bodies::Bodies;
 use crate::error::AssemblyError;
+use crate::roles::Tolerated;
 use crate::watch::Watch;
 
 /// Sides of the cube are halved no more often.
@@ -94,7 +95,12 @@ pub(super) fn certify(
 /// Whether all pairs stop each other as they are: closed bodies, none ignored, none kept apart.
 fn is_plain(bodies: &Bodies, parts: &[usize], start: StartOverlap) -> bool {
     let assembly = bodies.assembly();
-    let ignored = |a: usize| parts.iter().any(|&b| assembly.ignored(a, b).is_some());
+    let lets_pass = |a, b| {
+        let own = bodies.tolerated([a, b]);
+        matches!(own, Some(Tolerated::Bent(_) | Tolerated::Crossing))
+    };
+    let ignored =
+        |a: usize| parts.iter().any(|&b| assembly.ignored(a, b).is_some() || lets_pass(a, b));
     start == StartOverlap::Refuse
         && bodies.fit().tolerance() >= 0.0
         && !parts.iter().any(|&a| assembly.parts()[a].is_surface() || ignored(a))

@@ -10,15 +10,17 @@
 //! of whose box it is ([`Bodies::past`]). Of a group's directions those count whose travel is at most [`LONGER`] times
 //! the least. Among all of these the one of least [cost](Order::cost) is taken, of equal ones that of the first part.
 //!
-//! Invariant: `props` counts of each part how many of those that are there it rests on; what is kept of a travel names
+//! Invariant: what is kept of a travel names
 //! the part that it ends behind, and is asked anew once that part has gone.
 
 use std::collections::BTreeMap;
 
 use colltrans::Aabb;
 use glam::DVec3;
+use rayon::prelude::*;
 
 use super::single::Single;
+use super::stand::{Base, Standing};
 use crate::bodies::Bodies;
 use crate::constraints::Constraints;
 use crate::liaisons::reach;
@@ -33,6 +35,8 @@ const SAME: f64 = 0.9999;
 
 /// What a step costs, beside its travel as a share of the assembly's size: each part that falls, ...
 const FALL: f64 = 2.0;
+/// ... each part that is off balance then, ...
+const TIP: f64 = 1.0;
 /// ... each part of another shape than the one before: another tool, ...
 const OTHER_SHAPE: f64 = 0.8;
 /// ... and that while others of its shape cannot leave yet, so that there will be a third time, ...
@@ -66,8 +70,8 @@ pub(super) struct Order<'a> {
     stays: Vec<bool>,
     /// By part: what rests on it, of all parts.
     carried: Vec<Vec<usize>>,
-    /// By part: on how many it rests; `None` if it does not fall whatever goes.
-    props: Vec<Option<usize>>,
+    /// By part: on what it rests; `None` if it does not fall whatever goes.
+    bases: Vec<Option<Base>>,
     /// By direction, those of the matrix first.
     shadows: Vec<Shadow>,
     last: Option<(DVec3, usize)>,
@@ -98,7 +102,7 @@ impl<'a> Order<'a> {
         let base = base(bodies, there, up, moves);
         let shadows = matrix.directions().iter().map(|d| Shadow::new(bodies, *d)).collect();
         let size = bodies.assembly().bounds().size().max_element().max(f64::MIN_POSITIVE);
-        let (carried, props) = supports(bodies, matrix, there, &base, up);
+        let (carried, bases) = supports(bodies, matrix, there, &base, up);
         let there = there.to_vec();
         let stays = if movable.is_some() {
             (0..likes.len()).map(|part| there[part] && !moves(part)).collect()
@@ -109,7 +113,7 @@ impl<'a> Order<'a> {
         for part in (0..likes.len()).filter(|&part| there[part]) {
             counts[likes[part]] += usize::from(!stays[part]);
         }
-        Self { bodies, up, size, likes, there, counts, stays, carried, props, shadows, last: None }
+        Self { bodies, up, size, likes, there, counts, stays, carried, bases, shadows, last: None }
     }
 
     /// By part, whether it is still there.
@@ -162,11 +166,6 @@ impl<'a> Order<'a> {
             // Of several moves the base may leave, which is not counted.
             let count = &mut self.counts[self.likes[part]];
             *count = count.saturating_sub(1);
-            for &above in &self.carried[part] {
-                if let Some(count) = &mut self.props[above] {
-                    *count -= 1;
-                }
-            }
         }
         for shadow in &mut self.shadows {
             for travel in &mut shadow.travels {
@@ -206,7 +205,8 @@ impl<'a> Order<'a> {
             let all = parts.len() == 1 && ready[&shape] >= self.counts[shape];
             let travels: Vec<f64> = ways.iter().map(|&k| self.travel(&parts, k)).collect();
             let least = travels.iter().copied().fold(f64::INFINITY, f64::min);
-            let falls = self.falls(&parts);
+            let unsettled = self.unsettled(&parts).map(|parts| parts.len() as f64);
+            let falls = FALL * unsettled[0] + TIP * unsettled[1];
             for (k, travel) in ways.into_iter().zip(travels) {
                 if travel > LONGER * least + self.bodies.noise() {
                     continue;
@@ -230,13 +230,13 @@ impl<'a> Order<'a> {
         })
     }
 
-    /// What it takes to take a group away along `d`, whereupon parts fall; and whether all of its shape could leave.
-    fn cost(&self, parts: &[usize], (falls, all): (usize, bool), d: DVec3, travel: f64) -> f64 {
+    /// What it takes to take a group away along `d`, beside what falls then; and whether all of its shape could leave.
+    fn cost(&self, parts: &[usize], (falls, all): (f64, bool), d: DVec3, travel: f64) -> f64 {
         let when = |what: bool, cost: f64| if what { cost } else { 0.0 };
         let (turn, other) = self.last.map_or((false, false), |(last, shape)| {
             (last.dot(d) < SAME, self.likes[parts[0]] != shape)
         });
-        FALL * falls as f64
+        falls
             + travel / self.size
             + when(turn, TURN)
             + when(other, OTHER_SHAPE)
@@ -246,20 +246,29 @@ impl<'a> Order<'a> {
             + GROUP * (parts.len() - 1) as f64 / self.there.len() as f64
     }
 
-    /// How many parts of those that are left rest on nothing but these.
-    fn falls(&self, parts: &[usize]) -> usize {
-        if let &[part] = parts {
-            let last = |&&above: &&usize| self.there[above] && self.props[above] == Some(1);
-            return self.carried[part].iter().filter(last).count();
+    /// Of the parts that are left once these have gone: which then rest on nothing, and which are then off balance, if they
+    /// stood before.
+    pub(super) fn unsettled(&self, parts: &[usize]) -> [Vec<usize>; 2] {
+        let mut above: Vec<usize> =
+            parts.iter().flat_map(|&part| self.carried[part].iter().copied()).collect();
+        above.sort_unstable();
+        above.dedup();
+        above.retain(|part| self.there[*part] && !parts.contains(part));
+        let (mut falls, mut tips) = (Vec::new(), Vec::new());
+        for part in above {
+            let Some(base) = &self.bases[part] else { continue };
+            let carries = |below: usize| self.there[below] && !parts.contains(&below);
+            match base.standing(carries) {
+                Standing::Falls => falls.push(part),
+                Standing::OffBalance
+                    if base.standing(|below| self.there[below]) == Standing::Stands =>
+                {
+                    tips.push(part);
+                }
+                _ => (),
+            }
         }
-        let mut taken: BTreeMap<usize, usize> = BTreeMap::new();
-        for &above in parts.iter().flat_map(|&part| &self.carried[part]) {
-            *taken.entry(above).or_default() += 1;
-        }
-        let falls = |&(&above, &count): &(&usize, &usize)| {
-            self.there[above] && !parts.contains(&above) && self.props[above] == Some(count)
-        };
-        taken.iter().filter(falls).count()
+        [falls, tips]
     }
 
     /// How far a group goes along a direction until it is beyond all that is left.
@@ -336,14 +345,14 @@ fn base(bodies: &Bodies, there: &[bool], up: DVec3, moves: impl Fn(usize) -> boo
     base
 }
 
-/// By part, what rests on it, and on how many it rests.
+/// By part, what rests on it, and on what it rests.
 fn supports(
     bodies: &Bodies,
     matrix: &Matrix,
     there: &[bool],
     base: &[bool],
     up: DVec3,
-) -> (Vec<Vec<usize>>, Vec<Option<usize>>) {
+) -> (Vec<Vec<usize>>, Vec<Option<Base>>) {
     let count = bodies.len();
     let near = RESTS * reach(bodies);
     let lowest = |k: usize| {
@@ -353,15 +362,20 @@ fn supports(
     let lows: Vec<f64> = (0..count).map(lowest).collect();
     let ground = (0..count).filter(|&k| there[k]).map(|k| lows[k]).fold(f64::INFINITY, f64::min);
     let held = |k: usize| !there[k] || base[k] || lows[k] <= ground + near;
-    let mut props: Vec<Option<usize>> = (0..count).map(|k| (!held(k)).then_some(0)).collect();
+    let mut below: Vec<Option<Vec<usize>>> =
+        (0..count).map(|k| (!held(k)).then(Vec::new)).collect();
     let mut carried = vec![Vec::new(); count];
     let down = matrix.directions().iter().position(|d| d.dot(-up) >= SAME);
     for met in down.map_or(&[][..], |k| matrix.meetings(k)) {
         let rests = met.displaced_distance() <= near && there[met.fixed];
-        if let Some(props) = props[met.moving].as_mut().filter(|_| rests) {
-            *props += 1;
+        if let Some(below) = below[met.moving].as_mut().filter(|_| rests) {
+            below.push(met.fixed);
             carried[met.fixed].push(met.moving);
         }
     }
-    (carried, props)
+    let base = |(part, on): (usize, &Option<Vec<usize>>)| {
+        on.as_ref().map(|on| Base::new(bodies, part, on, up))
+    };
+    let bases = below.par_iter().enumerate().map(base).collect();
+    (carried, bases)
 }

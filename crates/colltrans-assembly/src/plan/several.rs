@@ -130,6 +130,8 @@ fn not_asked(bodies: &Bodies, left: &[usize], options: PlanOptions) -> Option<&'
         Some("there are more than 24 parts")
     } else if left.iter().any(|&k| assembly.parts()[k].is_surface()) {
         Some("there are open surfaces among them")
+    } else if pairs().any(|p| bodies.tolerated(p).is_some()) {
+        Some("some of them have a fit of their own")
     } else if pairs().any(|p| ignored(p) || lets_pass && bodies.overlaps(p[0], p[1])) {
         Some("overlaps among them are ignored")
     } else {

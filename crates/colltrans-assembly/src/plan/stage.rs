@@ -5,6 +5,7 @@ use std::ops::Range;
 use super::{Plan, Step};
 use crate::likes::common_name;
 use crate::part::Assembly;
+use crate::roles::Passed;
 
 impl Plan {
     /// All steps in order, in runs of parts that are alike and leave alone along one direction, in one move each, in any
@@ -20,7 +21,8 @@ impl Plan {
         stages
     }
 
-    /// What a stage takes away: names of its parts, after that of their subassembly, or of several that are alike how many, and what their names share.
+    /// What a stage takes away: names of its parts, after that of their subassembly, or of several that are alike how
+    /// many, and what their names share.
     pub fn takes(&self, assembly: &Assembly, stage: &Range<usize>) -> String {
         let steps = &self.steps[stage.clone()];
         let all: Vec<usize> = steps.iter().flat_map(|step| step.parts.iter().copied()).collect();
@@ -45,6 +47,11 @@ impl Plan {
             1 => stage.end.to_string(),
             _ => format!("{}-{}", stage.start + 1, stage.end),
         }
+    }
+
+    /// What the steps of a stage let pass of pairs with a fit of their own.
+    pub fn passed(&self, stage: &Range<usize>) -> Vec<Passed> {
+        self.steps[stage.clone()].iter().flat_map(|step| step.passed.iter().copied()).collect()
     }
 
     fn joins(&self, stage: &Range<usize>, step: &Step) -> bool {

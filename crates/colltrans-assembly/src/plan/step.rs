@@ -4,6 +4,7 @@ use colltrans::Bounded;
 use glam::DVec3;
 
 use crate::part::Assembly;
+use crate::roles::Passed;
 
 /// Pairs that are ignored are named up to so many for a step.
 const MOST_NAMED: usize = 4;
@@ -44,6 +45,13 @@ pub struct Step {
     /// What the step does not speak of: of each pair the first part moves and the second stays, and
     /// their overlap at the start, or all that they do, is ignored on request.
     pub ignored: Vec<[usize; 2]>,
+    /// What it lets pass of pairs that have a [role](crate::roles) or a tolerance of their own.
+    pub passed: Vec<Passed>,
+    /// What then rests on nothing that is left, in increasing order: hold it.
+    pub falls: Vec<usize>,
+    /// What stood before, and whose centre of mass then lies beyond what carries it: it tips, unless it is held at its
+    /// sides.
+    pub off_balance: Vec<usize>,
     /// The open surfaces that it rests on, in increasing order: of the group, and of what is left and in
     /// its way or beside it. What they block is known; what is inside of them is not.
     pub surfaces: Vec<usize>,
@@ -59,6 +67,17 @@ impl Step {
             more => format!(" and {more} more pairs"),
         };
         (!named.is_empty()).then(|| format!("ignored: {}{more}", named.join(", ")))
+    }
+
+    /// What is no longer carried once it is done, in words.
+    pub fn unsettled(&self, assembly: &Assembly) -> Vec<String> {
+        let said = |parts: &[usize], what: &str| {
+            let names = assembly.names(parts).join(", ");
+            (!parts.is_empty()).then(|| format!("{what}: {names}"))
+        };
+        let falls = said(&self.falls, "then rests on nothing");
+        let tips = said(&self.off_balance, "then off balance");
+        falls.into_iter().chain(tips).collect()
     }
 
     /// All moves, as a picture shows them: the group goes `beyond` its travel before anything goes back.

@@ -15,6 +15,7 @@ use super::{
 use crate::constraints::WITHIN_DEGREES;
 use crate::error::{AssemblyError, ReadError};
 use crate::part::{Assembly, Ignored};
+use crate::roles::{PairFit, Role};
 use crate::units;
 
 #[derive(Deserialize)]
@@ -27,6 +28,8 @@ struct Manifest {
     ignore: Vec<[String; 2]>,
     #[serde(default)]
     ignore_always: Vec<[String; 2]>,
+    #[serde(default, alias = "pair")]
+    pairs: Vec<Contact>,
     #[serde(default)]
     before: Vec<[String; 2]>,
     #[serde(default)]
@@ -37,6 +40,15 @@ struct Manifest {
     subassemblies: Vec<Subassembly>,
     #[serde(default)]
     never: Vec<Kept>,
+}
+
+/// What two parts are to each other.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields, expecting = "an object that says what two parts are to each other")]
+struct Contact {
+    parts: [String; 2],
+    role: Option<Role>,
+    tolerance: Option<f64>,
 }
 
 /// Parts that leave as one and are taken apart by themselves.
@@ -155,6 +167,10 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
 impl Manifest {
     /// The assembly with what is asked of its plans.
     fn constrained(&self, mut assembly: Assembly) -> Result<Assembly, AssemblyError> {
+        for Contact { parts: [a, b], role, tolerance } in &self.pairs {
+            let fit = PairFit { role: *role, tolerance: *tolerance };
+            assembly = assembly.with_pair([&[a], &[b]], fit)?;
+        }
         let turned = self.after.iter().map(|[later, first]| [first, later]);
         for [first, later] in self.before.iter().map(|[a, b]| [a, b]).chain(turned) {
             assembly = assembly.with_before(&[first], &[later])?;

@@ -29,7 +29,10 @@ pub fn json(f: &Findings) -> Value {
         fit: length,
         "overlaps": record::overlaps(assembly, f.start),
         "suggested_tolerance": f.start.suggested,
+        "suggestions": record::suggestions(assembly, f.suggestions),
+        "pairs": record::pairs(f.bodies),
         "liaisons": record::liaisons(assembly, f.liaisons),
+        "seconds": f.times.of(f.plan),
         "rooms": rooms(f),
         "notes": assembly.notes(),
     });

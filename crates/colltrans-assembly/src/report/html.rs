@@ -16,6 +16,7 @@ use crate::map;
 use crate::part::Part;
 use crate::plan::{Leg, Plan, Step};
 use crate::rooms::PartRoom;
+use crate::suggest;
 
 const STYLE: &str = "body{font:15px/1.5 system-ui,sans-serif;margin:2em auto;max-width:70em;\
 padding:0 1em;color:#222}h1,h2{font-weight:600}h2{margin-top:2em;border-bottom:1px solid #ccc}\
@@ -48,6 +49,7 @@ pub fn page(f: &Findings, title: &str) -> String {
                 (viewer::section(f))
                 (overlaps(f))
                 (steps(f))
+                (order(f))
                 (stuck(f))
                 @for (name, map) in f.maps { (map_section(map, name)) }
                 (rooms(f))
@@ -123,6 +125,8 @@ fn overlaps(f: &Findings) -> Markup {
                         " Try a tolerance of " (short(tolerance)) " or, for curved fits, the chord \
                          errors of both parts together."
                     }
+                    @let said = suggest::told(f.bodies.assembly(), f.suggestions);
+                    @if !said.is_empty() { " They may be on purpose: " (said.join("; ")) "." }
                 }
             }
             table {
@@ -169,6 +173,52 @@ fn steps(f: &Findings) -> Markup {
     }
 }
 
+/// Which steps wait for which, how long it takes, and how it is put together.
+fn order(f: &Findings) -> Markup {
+    let steps = &f.plan.steps;
+    if steps.len() < 2 {
+        return Markup::default();
+    }
+    let names = |step: usize| f.bodies.assembly().names(&steps[step].parts).join(", ");
+    let numbers =
+        |all: &[usize]| all.iter().map(|k| (k + 1).to_string()).collect::<Vec<_>>().join(", ");
+    let seconds = f.times.of(f.plan);
+    html! {
+        h2 { "Which steps wait for which" }
+        p {
+            "Steps of one round may go at once. By the table of handling times all steps take "
+            (short(seconds.iter().sum::<f64>())) " s, one after another."
+        }
+        table {
+            tr { th { "round" } th { "step" } th { "takes" } th { "after" } th { "seconds" } }
+            @for (round, all) in f.plan.rounds().iter().enumerate() {
+                @for &step in all.iter().take(MOST_ROWS) {
+                    tr {
+                        td.n { (round + 1) }
+                        td.n { (step + 1) }
+                        td { (names(step)) }
+                        td { (numbers(&steps[step].after)) }
+                        td.n { (short(seconds[step])) }
+                    }
+                }
+            }
+        }
+        h2 { "Putting it together" }
+        p {
+            "The steps backwards, each move the other way"
+            @if !f.plan.last.is_empty() {
+                ", beginning with " (f.bodies.assembly().names(&f.plan.last).join(", "))
+            }
+            "."
+        }
+        ol {
+            @for (step, _) in f.plan.assembly().into_iter().take(MOST_ROWS) {
+                li { (names(step)) " (" (arrow(DVec3::ZERO - steps[step].direction)) ")" }
+            }
+        }
+    }
+}
+
 /// Steps that are told as one: the moves of the first one, and all of their parts.
 fn stage_figure(f: &Findings, stage: &Range<usize>, gone: &[bool]) -> Markup {
     let step = &f.plan.steps[stage.start];
@@ -196,6 +246,12 @@ fn stage_figure(f: &Findings, stage: &Range<usize>, gone: &[bool]) -> Markup {
                 }
                 @if let Some(ignored) = step.ignores(f.bodies.assembly()) {
                     br; span.warn { (ignored) }
+                }
+                @for step in &f.plan.steps[stage.clone()] {
+                    @for said in step.unsettled(f.bodies.assembly()) { br; span.warn { (said) } }
+                }
+                @for passed in f.plan.passed(stage) {
+                    br; span.warn { (passed.words(f.bodies.assembly())) }
                 }
             }
         }

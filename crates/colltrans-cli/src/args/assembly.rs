@@ -69,6 +69,8 @@ pub(crate) struct AssemblyArguments {
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = direction)]
     pub(crate) gravity: Option<DVec3>,
     #[command(flatten)]
+    pub(crate) roles: RoleArguments,
+    #[command(flatten)]
     pub(crate) asked: ConstraintArguments,
     /// Where `package://` of a URDF file is looked for
     #[arg(long, value_name = "DIR")]
@@ -102,9 +104,14 @@ pub(crate) struct AssemblyArguments {
     /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,
-    /// A folder for report.html, disassembly.glb, assembly.json, matrix.csv, maps, and proofs of --free
+    /// A folder for report.html, disassembly.glb, assembly.json, matrix.csv, precedence.csv and .json, maps, and proofs
+    /// of --free
     #[arg(short, long, value_name = "DIR")]
     pub(crate) output: Option<PathBuf>,
+    /// Handling times in seconds, as JSON: what to replace of the table, of grasp, move, direction, shape, group, hold,
+    /// press, soft, snap, thread
+    #[arg(long, value_name = "FILE.json")]
+    pub(crate) times: Option<PathBuf>,
     /// Number of threads [default: all cores]; the answer is the same
     #[arg(long, value_name = "N", value_parser = threads)]
     pub(crate) threads: Option<NonZeroUsize>,
@@ -135,4 +142,33 @@ pub(crate) struct ConstraintArguments {
     /// A part never goes along a direction, nor within 45 degrees of it, or so many as are given
     #[arg(long, value_name = "PART=X,Y,Z[@DEGREES]")]
     pub(crate) never: Vec<String>,
+}
+
+/// What pairs are to each other.
+#[derive(Debug, Args)]
+#[command(
+    next_help_heading = "Contacts that are not like the others; PART* is all parts whose names begin so"
+)]
+pub(crate) struct RoleArguments {
+    /// A press fit: both are shrunk, against each other only, by half of L each [default: from how deep they overlap]
+    #[arg(long, value_name = "A,B[=L]")]
+    pub(crate) press: Vec<String>,
+    /// One part is soft, as a seal or a belt: as --press
+    #[arg(long, value_name = "A,B[=L]")]
+    pub(crate) soft: Vec<String>,
+    /// One part is screwed into the other: of the screw its core is asked, without the thread
+    #[arg(long, value_name = "A,B")]
+    pub(crate) thread: Vec<String>,
+    /// One part snaps over the other: contacts that begin within L of the start let it pass
+    #[arg(long, value_name = "A,B=L")]
+    pub(crate) snap: Vec<String>,
+    /// Two parts that leave as one and are not taken apart
+    #[arg(long, value_name = "A,B")]
+    pub(crate) glued: Vec<String>,
+    /// A tolerance of a pair's own, whatever --tolerance is
+    #[arg(long, value_name = "A,B=L")]
+    pub(crate) pair: Vec<String>,
+    /// If parts overlap and do not come apart: once more, with what their overlaps suggest; it is said
+    #[arg(long, conflicts_with = "keep_apart")]
+    pub(crate) auto: bool,
 }

@@ -381,10 +381,13 @@ A manifest, in TOML (JSON has the same fields):
   unit = "mm"                                # said, never guessed; may be missing
   ignore = [["pin", "block"]]                # pairs whose overlap at the start lets them pass
   ignore_always = [["rubber", "lid"]]        # pairs that never block each other
+  pair = [{ parts = ["bush", "body"], role = "press", tolerance = 0.08 }]
+                                             # or thread, soft, snap, glued
   before = [["pin", "lid"]]                  # the second does not leave while the first stays
   after = [["block", "pin"]]                 # the other way round
   together = [["rotor", "magnet_*"]]         # leave as one, and are not taken apart
-  subassembly = [{ name = "pump", parts = ["rotor", "magnet_*", "ring"] }]   # as one, then apart
+  subassembly = [{ name = "pump", parts = ["rotor", "ring"] }]
+                                             # leave as one, then apart
   never = [{ parts = ["tank"], along = [0, 0, -1], within_degrees = 45 }]
   [[part]]
   file = "pin.stl"                           # or several: ["a.stl", "b.stl"]
@@ -397,13 +400,15 @@ A manifest, in TOML (JSON has the same fields):
 
 With --json:
   {"parts": [{"name", "facets", "volume", "volume_bounds"}], "unit", "tolerance" (or "keep_apart"),
-   "overlaps": [{"parts": [a, b], "depth"}], "suggested_tolerance",
+   "overlaps": [{"parts": [a, b], "least_tolerance", "remains"}], "suggested_tolerance",
+   "suggestions": [{"parts", "role", "tolerance", "why"}], "pairs": [{"parts", "role", "words"}],
    "liaisons": [{"parts": [a, b], "area", "area_bounds", "center"}],
    "rooms": [{"part", "direction", "outcome", "distance", "by", "point", "normal",
      "translation", "translation_bounds", "shrunk_distance", "shrunk_distance_bounds" (or "kept_distance", "kept_distance_bounds")}],
    "plan": [{"parts": [...], "direction": [x, y, z], "travel", "travel_bounds",
-     "path": [{"parts", "direction", "travel"}], "back", "within", "ignored", "surfaces",
-     "subassembly"}], "wanted" (of --remove): {"parts", "others", "least", "out"},
+     "path": [{"parts", "direction", "travel"}], "back", "within", "ignored", "passed",
+     "surfaces", "subassembly"}], "wanted" (of --remove): {"parts", "others", "least", "out"},
+   "rounds": [[step, ...]], "assembly": [{"step", "after"}], "seconds": [...],
    "left": [...], "stuck": [{"parts": [...], "because", "directions", "proof": {"proven": cells} or
      {"asked": directions}, "moves": {"legs", "directions", "places", "complete"} or
      {"proven": cells} or {"not_asked": why}, "holds"}],
@@ -415,8 +420,9 @@ With --json:
   "overlapping". A step with "within" takes apart the group that step (from 0) took out. "path" is
   its moves, in order: with the last one its parts leave. What made room before goes "back".
 
-With -o DIR: report.html, disassembly.glb, assembly.json, matrix.csv (who meets whom), and for each
-map a .svg, .png and .json, for each part of --free the proof."#;
+With -o DIR: report.html, disassembly.glb, assembly.json, matrix.csv (who meets whom), precedence.csv
+(the steps, and which wait for which), precedence.json (of each part its ways out: all parts of one
+have to go), and for each map a .svg, .png and .json, for each part of --free the proof."#;
 
 #[cfg(test)]
 mod tests {

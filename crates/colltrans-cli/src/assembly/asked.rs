@@ -1,9 +1,13 @@
-//! What is asked of a plan, from the command line to the parts.
+//! What is asked of a plan, and said of pairs, from the command line to the parts.
+
+use std::path::Path;
 
 use colltrans_assembly::Assembly;
 use colltrans_assembly::constraints::WITHIN_DEGREES;
+use colltrans_assembly::plan::Times;
+use colltrans_assembly::roles::{PairFit, Role};
 
-use crate::args::{ConstraintArguments, direction};
+use crate::args::{ConstraintArguments, RoleArguments, direction};
 use crate::failure::{Code, Failure};
 
 /// The assembly with what is asked of its plans.
@@ -40,6 +44,51 @@ pub(super) fn constrained(
     Ok(assembly)
 }
 
+/// The assembly with what is said of pairs.
+pub(super) fn with_roles(assembly: Assembly, asked: &RoleArguments) -> Result<Assembly, Failure> {
+    let all = [
+        ("--pair", None, &asked.pair),
+        ("--press", Some(Role::Press), &asked.press),
+        ("--soft", Some(Role::Soft), &asked.soft),
+        ("--thread", Some(Role::Thread), &asked.thread),
+        ("--snap", Some(Role::Snap), &asked.snap),
+        ("--glued", Some(Role::Glued), &asked.glued),
+    ];
+    let mut assembly = assembly;
+    for (flag, role, given) in all {
+        for said in given {
+            let takes = !matches!(role, Some(Role::Thread | Role::Glued));
+            let needs = matches!(role, None | Some(Role::Snap));
+            let (names, tolerance) = match said.rsplit_once('=').filter(|_| takes) {
+                Some((names, length)) => {
+                    let length = length.trim().parse();
+                    let refused = |_| usage(format!("{flag} {said}: not A,B=L"));
+                    (names, Some(length.map_err(refused)?))
+                }
+                None if needs => return Err(usage(format!("{flag} {said}: not A,B=L"))),
+                None => (&said[..], None),
+            };
+            let [a, b] = pair(flag, names)?;
+            assembly = assembly.with_pair([&[a], &[b]], PairFit { role, tolerance })?;
+        }
+    }
+    Ok(assembly)
+}
+
+/// The table of handling times in a file, or the one that there is.
+pub(super) fn times(file: Option<&Path>) -> Result<Times, Failure> {
+    let Some(path) = file else { return Ok(Times::default()) };
+    let refused =
+        |reason: String| Failure::new(Code::Input, format!("{}: {reason}", path.display()));
+    let text = colltrans_mesh::file::text(path);
+    let text = text.map_err(|e| refused(format!("cannot be read: {e}")))?;
+    let times: Times = serde_json::from_str(&text).map_err(|e| refused(e.to_string()))?;
+    match times.wrong() {
+        Some((name, seconds)) => Err(refused(format!("{name}: {seconds} is no time in seconds"))),
+        None => Ok(times),
+    }
+}
+
 fn usage(text: String) -> Failure {
     Failure::new(Code::Usage, text)
 }
@@ -53,9 +102,10 @@ fn halves<'a>(flag: &str, given: &'a str, form: &str) -> Result<(&'a str, &'a st
 
 /// Two names each.
 pub(super) fn pairs<'a>(flag: &str, given: &'a [String]) -> Result<Vec<[&'a str; 2]>, Failure> {
-    let names = |pair: &'a String| {
-        let found = pair.split_once(',').map(|(a, b)| [a.trim(), b.trim()]);
-        found.ok_or_else(|| usage(format!("{flag} {pair}: not two names with a comma between")))
-    };
-    given.iter().map(names).collect()
+    given.iter().map(|given| pair(flag, given)).collect()
+}
+
+fn pair<'a>(flag: &str, given: &'a str) -> Result<[&'a str; 2], Failure> {
+    let found = given.split_once(',').map(|(a, b)| [a.trim(), b.trim()]);
+    found.ok_or_else(|| usage(format!("{flag} {given}: not two names with a comma between")))
 }

@@ -5,10 +5,10 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use colltrans::glam::DVec3;
-use colltrans_assembly::plan::Plan;
+use colltrans_assembly::plan::{Plan, and_or};
 use colltrans_assembly::report::{Findings, facts, glb, html};
 use colltrans_assembly::{Assembly, Fit};
-use colltrans_assembly::{map, record};
+use colltrans_assembly::{map, record, suggest};
 
 use super::free::Leaving;
 use crate::args::AssemblyArguments;
@@ -60,6 +60,10 @@ fn files(
     put("disassembly.glb", &glb::animation(f.bodies.assembly(), f.plan))?;
     put("assembly.json", plain_json(&json.to_string()).as_bytes())?;
     put("matrix.csv", f.matrix.to_csv(f.bodies).as_bytes())?;
+    let assembly = f.bodies.assembly();
+    put("precedence.csv", f.plan.to_csv(assembly, &f.times).as_bytes())?;
+    let ways = and_or(assembly, f.matrix).to_string();
+    put("precedence.json", plain_json(&ways).as_bytes())?;
     let names = map_names(f.maps.iter().map(|(name, _)| name));
     for ((name, map), [svg, png, json]) in f.maps.iter().zip(names) {
         let title = format!("Room of {name} in all directions");
@@ -82,9 +86,16 @@ pub(super) fn refuse_inputs(
     assembly: &Assembly,
 ) -> Result<(), Failure> {
     let Some(folder) = &arguments.output else { return Ok(()) };
-    let files = assembly.files().iter().chain(&arguments.directions);
+    let files = assembly.files().iter().chain(&arguments.directions).chain(&arguments.times);
     let inputs: Vec<&Path> = files.map(PathBuf::as_path).collect();
-    let fixed = ["report.html", "disassembly.glb", "assembly.json", "matrix.csv"];
+    let fixed = [
+        "report.html",
+        "disassembly.glb",
+        "assembly.json",
+        "matrix.csv",
+        "precedence.csv",
+        "precedence.json",
+    ];
     let maps = map_names(&arguments.map).into_iter().flatten();
     let all = maps.chain(free_names(&arguments.free));
     for name in fixed.into_iter().map(str::to_owned).chain(all) {
@@ -132,6 +143,12 @@ fn summary(f: &Findings) -> String {
     }
     for stage in f.plan.stages() {
         tell(&mut text, f, &stage);
+    }
+    let (seconds, rounds) = (f.times.of(f.plan).iter().sum::<f64>(), f.plan.rounds().len());
+    if f.plan.steps.len() > 1 {
+        let rounds = counted(rounds, "round", "rounds");
+        let _ =
+            writeln!(text, "  about {seconds:.0} s by the table of handling times, in {rounds}");
     }
     if let Some(wanted) = &f.plan.wanted {
         let _ = writeln!(text, "to take out\n  {}", shown(wanted.words(assembly)));
@@ -205,6 +222,12 @@ fn tell(text: &mut String, f: &Findings, stage: &Range<usize>) {
     for ignored in steps.iter().filter_map(|step| step.ignores(assembly)) {
         let _ = writeln!(text, "     {}", shown(ignored));
     }
+    for said in steps.iter().flat_map(|step| step.unsettled(assembly)) {
+        let _ = writeln!(text, "     {}", shown(said));
+    }
+    for passed in f.plan.passed(stage) {
+        let _ = writeln!(text, "     {}", shown(passed.words(assembly)));
+    }
     let mut surfaces: Vec<usize> = steps.iter().flat_map(|s| s.surfaces.iter().copied()).collect();
     surfaces.sort_unstable();
     surfaces.dedup();
@@ -223,6 +246,10 @@ fn overlaps(text: &mut String, f: &Findings) {
         let [a, b] = o.parts.map(|k| shown(f.bodies.assembly().parts()[k].name()));
         let depth = o.depth.map_or("by more than their size".into(), |d| format!("by {d}"));
         let _ = writeln!(text, "  {a}, {b} {depth}");
+    }
+    for said in suggest::told(f.bodies.assembly(), f.suggestions) {
+        let _ =
+            writeln!(text, "  perhaps on purpose, which --auto takes for granted: {}", shown(said));
     }
     if let Some(tolerance) = f.start.suggested {
         let _ = writeln!(

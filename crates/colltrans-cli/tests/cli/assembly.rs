@@ -151,7 +151,9 @@ fn the_answer_is_the_same_on_any_number_of_threads() {
         (text, names, bytes)
     };
     let once = ask(&data(), &["gearbox_small"], "1");
-    assert_eq!(once.1, ["assembly.json", "disassembly.glb", "matrix.csv", "report.html"]);
+    let names = ["assembly.json", "disassembly.glb", "matrix.csv"];
+    let more = ["precedence.csv", "precedence.json", "report.html"];
+    assert_eq!(once.1, [names, more].concat());
     assert!(once == ask(&data(), &["gearbox_small"], "3"), "three threads");
     let mapped = ["two.toml", "--map", "low", "--samples", "100"];
     let once = ask(small.path(), &mapped, "1");
@@ -542,4 +544,63 @@ fn a_manifest_asks_for_an_order() {
     assert!(ask("together = [['low', 'high']]")["plan"].as_array().unwrap().is_empty());
     let kept = ask("never = [{ parts = ['h*'], along = [0, 0, 1] }]");
     assert!(kept["plan"][0]["direction"][2].as_f64().unwrap() < 0.8);
+}
+
+/// A block and a ring beside it that overlaps it by 0.05, on a floor.
+fn pressed() -> TempDir {
+    let folder = folder();
+    let mut parts = String::from("unit = 'mm'\n");
+    let mut place = |name: &str, files: &str, at: [f64; 3], scale: [f64; 3]| {
+        let place = format!("translation = {at:?}\nscale = {scale:?}\n");
+        parts.push_str("[[part]]\n");
+        parts.push_str(&[&format!("file = {files}\nname = '{name}'\n"), &place[..]].concat());
+    };
+    place("floor", "'cube.off'", [0.0, 0.0, -1.0], [4.0, 4.0, 1.0]);
+    place("block", "'cube.off'", [0.0; 3], [1.0; 3]);
+    place("o-ring", "'cube.off'", [0.95, 0.0, 0.0], [1.0; 3]);
+    std::fs::write(folder.path().join("press.toml"), &parts).unwrap();
+    let pair = "pair = [{ parts = ['o-*', 'block'], role = 'soft', tolerance = 0.2 }]\n";
+    std::fs::write(folder.path().join("said.toml"), pair.to_owned() + &parts).unwrap();
+    folder
+}
+
+#[test]
+fn pairs_have_roles_and_what_overlaps_is_suggested() {
+    let folder = pressed();
+    let ask = |words: &[&str]| facts(folder.path(), &[words, &["--fixed", "block"]].concat());
+    let plain = ask(&["press.toml"]);
+    let said = &plain["suggestions"][0];
+    assert_eq!((&said["role"], said["tolerance"].as_f64().unwrap() > 0.05), (&"soft".into(), true));
+    assert_eq!(plain["left"].as_array().unwrap().len(), 2);
+    let text = answered(folder.path(), &["press.toml", "--fixed", "block"]);
+    assert!(text.contains("perhaps on purpose, which --auto takes for granted: soft="), "{text}");
+    let ways: [(&[&str], &str); 6] = [
+        (&["press.toml", "--auto"], "soft"),
+        (&["said.toml"], "soft"),
+        (&["press.toml", "--soft", "o-ring,block"], "soft"),
+        (&["press.toml", "--press", "block,o-*=0.3"], "press"),
+        (&["press.toml", "--snap", "o-ring,block=0.5"], "snap"),
+        (&["press.toml", "--thread", "o-ring,block"], "thread"),
+    ];
+    for (words, role) in ways {
+        let found = ask(words);
+        let mut steps = found["plan"].as_array().unwrap().iter();
+        let step = steps.find(|step| names(&step["parts"]) == ["o-ring"]).unwrap();
+        assert_eq!(step["passed"][0]["role"], role);
+        assert_eq!(names(&found["left"]), ["block"], "{words:?}");
+        assert_eq!(found["pairs"][0]["role"], role);
+    }
+    let auto = ask(&["press.toml", "--auto"]);
+    assert!(auto["notes"][0].as_str().unwrap().contains("taken as suggested: soft="), "{auto}");
+    let glued = ask(&["said.toml", "--glued", "o-ring,floor"]);
+    assert!(glued["plan"].as_array().unwrap().iter().any(|s| names(&s["parts"]).len() == 2));
+    let wrong: [(&[&str], &[&str]); 4] = [
+        (&["--pair", "block,o-ring"], &["--pair block,o-ring: not A,B=L"]),
+        (&["--snap", "block,o-ring=x"], &["not A,B=L"]),
+        (&["--press", "block"], &["not two names"]),
+        (&["--press", "block,o-ring=-1"], &["-1"]),
+    ];
+    for (words, said) in wrong {
+        refused(folder.path(), &[&["press.toml"][..], words].concat(), 2, said);
+    }
 }

@@ -12,7 +12,7 @@ use colltrans_assembly::candidates::{Choice, candidates};
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{PlanOptions, disassemble};
+use colltrans_assembly::plan::{PlanOptions, Times, disassemble};
 use colltrans_assembly::read::{ReadOptions, read};
 use colltrans_assembly::report::{Findings, html};
 use colltrans_assembly::start::Start;
@@ -46,11 +46,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let findings = Findings {
         bodies: &bodies,
         start: &start,
+        suggestions: &[],
         liaisons: &liaisons,
         candidates: &found.main,
         matrix: &matrix,
         more: &[],
         plan: &plan,
+        times: Times::default(),
         maps: &maps,
     };
     Ok(std::fs::write(target, html::page(&findings, if is_manifest { &name } else { "parts" }))?)

@@ -1,0 +1,123 @@
+//! What comes before what: the partial order of a plan, its reverse, and tables of both.
+
+use serde_json::{Value, json};
+
+use super::{Plan, Times};
+use crate::csv::{Cell, Table};
+use crate::matrix::Matrix;
+use crate::part::Assembly;
+
+/// Ways out of a part are listed up to so many.
+const MOST_WAYS: usize = 16;
+
+impl Plan {
+    /// The steps in rounds: each waits for some of the round before it, so all of a round may go at once, if there are
+    /// hands enough.
+    pub fn rounds(&self) -> Vec<Vec<usize>> {
+        let mut round = vec![0; self.steps.len()];
+        let mut rounds: Vec<Vec<usize>> = Vec::new();
+        for (k, step) in self.steps.iter().enumerate() {
+            round[k] = step.after.iter().map(|&before| round[before] + 1).max().unwrap_or(0);
+            if rounds.len() <= round[k] {
+                rounds.push(Vec::new());
+            }
+            rounds[round[k]].push(k);
+        }
+        rounds
+    }
+
+    /// How it is put together: the steps that are walked backwards, in order, each with the positions in this list of those
+    /// that have to come before it. What takes a group apart comes before the group is put in.
+    ///
+    /// A straight move can be walked backwards as forwards, by the same proof.
+    pub fn assembly(&self) -> Vec<(usize, Vec<usize>)> {
+        let last = self.steps.len().saturating_sub(1);
+        let waits = |step: usize| {
+            let later = self.steps.iter().enumerate().filter(move |(_, s)| s.after.contains(&step));
+            let mut before: Vec<usize> = later.map(|(k, _)| last - k).collect();
+            before.sort_unstable();
+            before
+        };
+        (0..self.steps.len()).rev().map(|step| (step, waits(step))).collect()
+    }
+
+    /// The steps as CSV, numbered from 1: what leaves, where to and how far, after which steps, in which round, and how
+    /// long it takes.
+    pub fn to_csv(&self, assembly: &Assembly, times: &Times) -> String {
+        let heads = [
+            "step",
+            "parts",
+            "direction_x",
+            "direction_y",
+            "direction_z",
+            "travel",
+            "moves",
+            "within",
+            "after",
+            "round",
+            "seconds",
+        ];
+        let mut table = Table::new(&heads);
+        let seconds = times.of(self);
+        let rounds = self.rounds();
+        let numbers = |steps: &[usize]| {
+            steps.iter().map(|k| (k + 1).to_string()).collect::<Vec<_>>().join(" ")
+        };
+        for (k, step) in self.steps.iter().enumerate() {
+            let round = rounds.iter().position(|round| round.contains(&k)).unwrap_or(0);
+            let parts = assembly.names(&step.parts).join("; ");
+            let (within, after) = (step.within.map_or(Vec::new(), |w| vec![w]), &step.after);
+            table.row(&[
+                Cell::Number((k + 1) as f64),
+                Cell::Text(&parts),
+                Cell::Number(step.direction.x),
+                Cell::Number(step.direction.y),
+                Cell::Number(step.direction.z),
+                Cell::Number(step.travel.value),
+                Cell::Number(step.path.len() as f64),
+                Cell::Text(&numbers(&within)),
+                Cell::Text(&numbers(after)),
+                Cell::Number((round + 1) as f64),
+                Cell::Number(seconds[k]),
+            ]);
+        }
+        table.finish()
+    }
+}
+
+/// The precedence of all parts as a graph of AND and OR, along the directions of a matrix: a part is out of the way of
+/// all others if for one of its ways (OR) all parts of that way have gone or go along (AND). Of ways that hold another one
+/// nothing is told. Parts that hold each other, and those of a subassembly, stand in each other's ways: they leave as a group.
+pub fn and_or(assembly: &Assembly, matrix: &Matrix) -> Value {
+    let parts = assembly.parts();
+    let constraints = assembly.constraints();
+    let order = constraints.arcs(&vec![true; parts.len()]);
+    let mut told = serde_json::Map::new();
+    for (part, of) in parts.iter().enumerate().filter(|(_, of)| !of.fixed()) {
+        let mut ways: Vec<(Vec<usize>, usize)> = Vec::new();
+        let before = || order.iter().filter(|arc| arc.0 == part).map(|arc| arc.1);
+        for (k, &d) in matrix.directions().iter().enumerate() {
+            let mut met: Vec<usize> =
+                matrix.of_part(k, part).iter().map(|m| m.fixed).chain(before()).collect();
+            met.sort_unstable();
+            met.dedup();
+            if constraints.allows(&[part], d) && !met.iter().any(|&by| parts[by].fixed()) {
+                ways.push((met, k));
+            }
+        }
+        ways.sort_by_key(|(met, k)| (met.len(), *k));
+        let mut least: Vec<(Vec<usize>, usize)> = Vec::new();
+        for (met, k) in ways {
+            let holds = |(known, _): &(Vec<usize>, usize)| known.iter().all(|x| met.contains(x));
+            if least.len() < MOST_WAYS && !least.iter().any(holds) {
+                least.push((met, k));
+            }
+        }
+        let way = |(met, k): &(Vec<usize>, usize)| json!({ "direction": matrix.directions()[*k].to_array(), "and": assembly.names(met) });
+        told.insert(
+            of.name().to_owned(),
+            json!({ "or": least.iter().map(way).collect::<Value>() }),
+        );
+    }
+    Value::Object(told)
+}

@@ -1,0 +1,117 @@
+//! What overlaps may be on purpose: candidates for [roles](crate::roles), found and said, never applied silently.
+//!
+//! Two parts that overlap are, in this order: *soft*, if one of them is called so; a *thread*, if there is a helix; round,
+//! if one lies in the other about an axis all along their common length, and then it is a *press* fit if the vertices of
+//! the one lie farther out than those of the other, else chord errors of two tessellations; else no more than an overlap,
+//! for which there may be a tolerance. Nothing is proven by any of this.
+
+use std::collections::BTreeMap;
+
+use crate::bodies::{Bodies, two_digits_up};
+use crate::error::AssemblyError;
+use crate::likes::likes;
+use crate::part::{Assembly, Part};
+use crate::roles::{PairFit, Role};
+use crate::start::{Overlap, Start};
+use crate::threads::{Round, Thread};
+
+/// A part is soft if its name has one of these.
+const SOFT: [&str; 8] =
+    ["o-ring", "oring", "o_ring", "seal", "gasket", "belt", "rubber", "grommet"];
+/// A tolerance beyond the depth of an overlap.
+const BEYOND: f64 = 1.05;
+
+/// What two parts may be to each other.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct Suggestion {
+    /// Positions of the parts, the smaller first.
+    pub parts: [usize; 2],
+    /// What would be said of them.
+    pub fit: PairFit,
+    /// What speaks for it.
+    pub why: String,
+}
+
+/// What speaks for a role or a tolerance of pairs that overlap with the fit of the bodies, and of which nothing is said.
+pub fn suggestions(bodies: &Bodies, start: &Start) -> Vec<Suggestion> {
+    let unsaid =
+        start.remaining().filter(|o| bodies.assembly().pair(o.parts[0], o.parts[1]).is_none());
+    unsaid.filter_map(|overlap| suggestion(bodies, overlap)).collect()
+}
+
+fn suggestion(bodies: &Bodies, overlap: &Overlap) -> Option<Suggestion> {
+    let parts = overlap.parts;
+    let of = parts.map(|k| &bodies.assembly().parts()[k]);
+    let solids = of.map(Part::solid);
+    let tolerance = overlap.depth.map(|depth| two_digits_up(depth * BEYOND));
+    let said =
+        |role, tolerance, why| Some(Suggestion { parts, fit: PairFit { role, tolerance }, why });
+    let soft = of.iter().find(|part| {
+        let name = part.name().to_lowercase();
+        SOFT.iter().any(|word| name.contains(word))
+    });
+    if let Some(soft) = soft {
+        return said(Some(Role::Soft), tolerance, format!("{} is called so", soft.name()));
+    }
+    if let Some((thread, pitch)) = Thread::of(solids).and_then(|t| Some((t, t.pitch?))) {
+        let hand = if pitch < 0.0 { ", left-handed" } else { "" };
+        let [hole, crest] = thread.radii;
+        let why = format!(
+            "a helix of pitch {:.3}{hand}, between radii of {hole:.4} and {crest:.4}",
+            pitch.abs()
+        );
+        return said(Some(Role::Thread), None, why);
+    }
+    let tolerance = Some(tolerance?);
+    if let Some(round) = Round::of(solids) {
+        let by = round.interference();
+        let why = format!("one lies around the other, at a radius of {:.4}", round.radius());
+        return if by > bodies.noise() {
+            said(Some(Role::Press), tolerance, format!("{why}, by {by:.3} too large"))
+        } else {
+            said(None, tolerance, format!("{why}: chord errors"))
+        };
+    }
+    overlap.is_shallow(bodies).then_some(())?;
+    said(None, tolerance, "a shallow overlap".into())
+}
+
+/// The assembly with what is suggested, and a note of each.
+///
+/// # Errors
+/// As [`Assembly::with_pair`].
+pub fn applied(
+    mut assembly: Assembly,
+    suggestions: &[Suggestion],
+) -> Result<Assembly, AssemblyError> {
+    for said in told(&assembly, suggestions) {
+        assembly = assembly.with_note(format!("taken as suggested: {said}"));
+    }
+    for Suggestion { parts, fit, .. } in suggestions {
+        let [a, b] = parts.map(|k| assembly.parts()[k].name().to_owned());
+        assembly = assembly.with_pair([&[a], &[b]], *fit)?;
+    }
+    Ok(assembly)
+}
+
+/// In words; pairs of parts of the same shapes as one.
+pub fn told(assembly: &Assembly, suggestions: &[Suggestion]) -> Vec<String> {
+    let likes = likes(assembly);
+    let mut groups: BTreeMap<([usize; 2], Option<Role>), Vec<&Suggestion>> = BTreeMap::new();
+    for suggestion in suggestions {
+        let mut shapes = suggestion.parts.map(|k| likes[k]);
+        shapes.sort_unstable();
+        groups.entry((shapes, suggestion.fit.role)).or_default().push(suggestion);
+    }
+    let words = |((_, role), all): (([usize; 2], Option<Role>), Vec<&Suggestion>)| {
+        let pairs = all.iter().map(|s| assembly.names(&s.parts).join(","));
+        let role = role.map_or("tolerance", Role::name);
+        let length = all.iter().filter_map(|s| s.fit.tolerance).reduce(f64::max);
+        let length = length.map_or_else(String::new, |length| format!("={length}"));
+        let count = if all.len() > 1 { format!("{} x ", all.len()) } else { String::new() };
+        let pairs = pairs.collect::<Vec<_>>().join("; ");
+        format!("{count}{role}{length} of {pairs} ({})", all[0].why)
+    };
+    groups.into_iter().map(words).collect()
+}

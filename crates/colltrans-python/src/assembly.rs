@@ -245,7 +245,9 @@ impl Assembly {
             .with_joints(joints)
             .with_allow_outside(allow_outside)
             .with_as_is(as_is)
-            .with_split(split.parse().map_err(|e: String| error("AssemblyError", format!("split: {e}")))?);
+            .with_split(
+                split.parse().map_err(|e: String| error("AssemblyError", format!("split: {e}")))?,
+            );
         // What a STEP file was converted to.
         let read = || match &glb {
             Some(bytes) => read::glb_with(&path, bytes, &options),

@@ -224,7 +224,11 @@ impl Assembly {
     }
 
     #[staticmethod]
-    #[expect(clippy::too_many_arguments, reason = "they are keywords")]
+    #[expect(
+        clippy::too_many_arguments,
+        clippy::fn_params_excessive_bools,
+        reason = "they are keywords"
+    )]
     fn read(
         py: Python<'_>,
         path: PathBuf,

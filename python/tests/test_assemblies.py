@@ -147,8 +147,8 @@ def test_rounds_the_way_back_and_times(gearbox: Assembly) -> None:
         assert level[k] == max((level[j] + 1 for j in step.after), default=0)
     put = [step for step, _ in plan.assembly]
     assert put == list(reversed(range(len(plan.steps))))
-    for at, (step, after) in enumerate(plan.assembly):
-        assert all(k < at and step in plan.steps[put[k]].after for k in after)
+    for at, (index, after) in enumerate(plan.assembly):
+        assert all(k < at and index in plan.steps[put[k]].after for k in after)
     assert sum(len(after) for _, after in plan.assembly) == sum(len(s.after) for s in plan.steps)
     twice = gearbox.plan(times={"move": 3.0})
     moves = [len(step.path) + len(step.back) for step in plan.steps]

@@ -154,14 +154,10 @@ def test_answers_and_queries_come_back_with_their_bits(answer: FirstContact) -> 
 def test_proofs_are_checked_in_fractions_and_by_the_command_line(cli: Path, tmp_path: Path) -> None:
     file = tmp_path / "proof.json"
     for answer in answers():
-        if not isinstance(answer.query.moving, ConvexPolyhedron) or isinstance(
-            answer.query.fixed, Solid
-        ):
-            with pytest.raises(CaseError, match="has no file"):
-                answer.proof_json()
-            continue
         answer.save_proof(file)
-        conform("motion_proof", json.loads(file.read_text()))
+        saved = json.loads(file.read_text())
+        if "solids" not in saved["format"]:
+            conform("motion_proof", saved)
         said = subprocess.run([cli, "verify", file, "--json"], capture_output=True, text=True)
         assert said.returncode == 0, said.stderr
         told = json.loads(said.stdout)

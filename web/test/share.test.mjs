@@ -34,7 +34,7 @@ test("the same question as a command line, or none where none asks the same", ()
 
 test("a motion as an address and as a command line", () => {
   const state = fromHash("#example=bracket&tab=motion&screw=1,2e-7,-3,0,-1,0.1,-120.5,4&keep=0.25&time=0.5&fp=0,0,1,0,0,0,1&tol=1e-3");
-  assert.deepEqual(state.motion, { screw: { point: [1, 2e-7, -3], axis: [0, -1, 0.1], angle: -120.5, rise: 4 }, keep: 0.25, time: 0.5 });
+  assert.deepEqual(state.motion, { screw: { point: [1, 2e-7, -3], axis: [0, -1, 0.1], angle: -120.5, rise: 4 }, body: "moving", keep: 0.25, time: 0.5 });
   assert.deepEqual(fromHash(toHash(state)), state);
   const asked = "colltrans motion dodecahedron.off bracket.obj --screw 1,2e-7,-3 0,-1,0.1 -120.5 4 --moving-pose=6,1,9,0.2,0.3,0.1,0.9273618495495703 --fixed-pose=0,0,1,0,0,0,1 --keep=0.25 --tolerance=0.001";
   assert.equal(turningCommand(state, state.motion.screw), asked);

@@ -194,7 +194,11 @@ test("assemblies: parts, the sphere, the steps", async () => {
   await page.focus('[aria-label="Steps of the plan"]');
   await page.keyboard.press("End");
   assert.match(await page.textContent(".assembly-stage output"), /^Step (\d+) of \1:/);
+  // A row is a stage, and leads to its end.
   await page.focus(".assembly-panel ol button");
   await page.keyboard.press("Enter");
-  await page.waitForFunction(() => window.colltrans.probe().assembly.t === 1);
+  await page.waitForFunction(() => {
+    const { t, plan } = window.colltrans.probe().assembly;
+    return t === plan.stages[0].steps[1] + 1;
+  });
 });

@@ -4,6 +4,7 @@ use colltrans::free::FreeError;
 use colltrans::glam::{DMat3, DVec3, EulerRot};
 use colltrans::ways::{NoWay, Order, WayOptions, WayOut, WaysOut};
 use colltrans::{Cast, ConvexPolyhedron, Placed, Pose, Solid};
+use colltrans_testkit::oracle::cubes::Cubes;
 use colltrans_testkit::random::Random;
 
 fn solid(blocks: &[[[f64; 3]; 2]]) -> Solid {
@@ -416,6 +417,21 @@ fn either_order_finds_ways() {
         let way = found(&slot([14.0, 17.0]), Pose::IDENTITY, &options).unwrap();
         assert_eq!(way.legs.len(), 2);
     }
+}
+
+#[test]
+fn a_way_through_the_cells_of_a_proof_is_not_taken_where_one_of_fewer_legs_is_looked_for() {
+    // A proof is tried while there are places left, and its cells lead out in four legs.
+    let cubes = Cubes::random(&mut Random::new(450_971_566_688));
+    let [a, b] = &cubes.solids()[..] else { panic!("two bodies") };
+    let options =
+        WayOptions::default().with_order(Order::FewestLegs).with_tolerance(1e-5).with_cells(2_000);
+    let placed = [a.at(Pose::IDENTITY), b.at(Pose::IDENTITY)];
+    let WaysOut::Found(way) = WaysOut::among(&placed, &[], &options, None).unwrap() else {
+        panic!("there is one")
+    };
+    assert_eq!(way.legs.len(), cubes.level().unwrap().moves);
+    assert_eq!(way.legs.len(), 3);
 }
 
 #[test]

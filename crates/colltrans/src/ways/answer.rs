@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::candidates::{directions, of_walls};
 use super::enclosed::{Cells, Enclosure, NoWay, axes_of};
-use super::options::{Searched, WayOptions};
+use super::options::{Order, Searched, WayOptions};
 use super::pairs::{Pair, around, displaced};
 use super::search::{Group, Move, Run, Scale, Search, border};
 use crate::answer::CertificateError;
@@ -160,7 +160,8 @@ impl WaysOut {
         let mut search = Search::new(pairs, who, directions, scale, options, cancel);
         let certified = |moves: &[Move]| certified(bodies, moves, tolerance);
         let mut provable = bodies.len() == 2 && options.cells > 0;
-        let (mut cells, mut places) = (None, WayOptions::PLACES_FIRST);
+        let fewest = options.order == Some(Order::FewestLegs);
+        let (mut cells, mut through, mut places) = (None, None, WayOptions::PLACES_FIRST);
         let mut legs = loop {
             let run = search.run(if provable { places } else { usize::MAX }, certified)?;
             if let Run::Found(legs) = run {
@@ -179,14 +180,15 @@ impl WaysOut {
                 let own = if ended { usize::MAX } else { WayOptions::CELLS_FOR_A_PLACE * places };
                 match of.go_on(own.min(options.cells), cancel)? {
                     Some(Cells::Proven(proof)) => return Ok(Self::Proven(proof)),
-                    Some(Cells::Way(through)) => {
-                        let way = (&through[..], scale.grid, if base == 1 { 1.0 } else { -1.0 });
-                        if let Some(legs) = search.shortened(1 - base, way, certified)? {
-                            break Some(legs);
-                        }
-                        provable = false;
-                    }
+                    Some(Cells::Way(found)) => (provable, through) = (false, Some(found)),
                     None => (),
+                }
+            }
+            // A way through cells may have more legs than are needed.
+            if let Some(through) = through.take_if(|_| ended || !fewest) {
+                let way = (&through[..], scale.grid, if base == 1 { 1.0 } else { -1.0 });
+                if let Some(legs) = search.shortened(1 - base, way, certified)? {
+                    break Some(legs);
                 }
             }
             if ended {

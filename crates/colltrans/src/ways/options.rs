@@ -116,7 +116,8 @@ impl WayOptions {
     serde(rename_all = "snake_case")
 )]
 pub enum Order {
-    /// The fewest legs first: breadth first.
+    /// The fewest legs first: breadth first. A way through the cells of a proof, which may have more, is taken only
+    /// where no other is found.
     FewestLegs,
     /// Those in regions where few places are, and with few legs: best first.
     NewestFirst,

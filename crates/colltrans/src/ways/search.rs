@@ -524,10 +524,15 @@ pub(super) fn border(group: Group, count: usize) -> Vec<[usize; 2]> {
     (0..count).filter(within).flat_map(outside).collect()
 }
 
-/// Stops in openings that do not begin where the leg does, and in which there is none yet.
+/// Stops in openings in which there is none yet; in one that begins where the leg does, near its end.
 fn put(openings: &[[f64; 2]], off: f64, step: f64, stops: &mut Vec<f64>) {
     for &[low, high] in openings {
-        if low > off && !stops.iter().any(|t| (low..=high).contains(t)) {
+        if stops.iter().any(|t| (low..=high).contains(t)) {
+            continue;
+        }
+        if low <= off {
+            stops.push(high - off);
+        } else {
             stops.push(0.5 * (low + high));
             if high - low > 0.05 * step {
                 stops.extend([low + off, high - off]);

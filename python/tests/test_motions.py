@@ -156,8 +156,7 @@ def test_proofs_are_checked_in_fractions_and_by_the_command_line(cli: Path, tmp_
     for answer in answers():
         answer.save_proof(file)
         saved = json.loads(file.read_text())
-        if "solids" not in saved["format"]:
-            conform("motion_proof", saved)
+        conform("solid_motion_proof" if "solids" in saved["format"] else "motion_proof", saved)
         said = subprocess.run([cli, "verify", file, "--json"], capture_output=True, text=True)
         assert said.returncode == 0, said.stderr
         told = json.loads(said.stdout)

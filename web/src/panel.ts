@@ -248,7 +248,8 @@ export class AnswerPanel {
   }
 
   private showParts({ state, bodies, refusals }: Shown) {
-    if (!this.fresh("parts", [state.parts, bodies.moving?.body.facts, bodies.fixed?.body.facts, refusals])) return;
+    const mover = state.tab === "motion" ? state.motion.body : "moving";
+    if (!this.fresh("parts", [mover, state.parts, bodies.moving?.body.facts, bodies.fixed?.body.facts, refusals])) return;
     const rows = (["moving", "fixed"] as const).map((slot) => {
       const facts = bodies[slot]?.body.facts;
       const refusal = refusals[slot];
@@ -259,7 +260,7 @@ export class AnswerPanel {
         h("span", { class: `swatch ${slot}` }),
         h("strong", { title: file }, file.split("/").at(-1)!),
         h("button", { class: "small", onclick: () => this.act.choose(slot), "aria-label": `Choose a file for the ${slot} body` }, "Choose…"),
-        h("small", {}, `${slot === "moving" ? "moves" : "stays"}${count ? `; ${count}` : ""}`),
+        h("small", {}, `${slot === mover ? "moves" : "stays"}${count ? `; ${count}` : ""}`),
         ...(facts?.notes ?? []).map((note) => h("small", {}, note)),
         refusal && h("div", { class: "refused", role: "alert" }, refusal.message,
           h("div", { class: "row" },

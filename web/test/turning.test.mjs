@@ -173,6 +173,7 @@ test("either body moves; a slide is a motion too", async () => {
   assert.equal(await moved(), "fixed");
   await page.waitForTimeout(400);
   assert.match(new URL(page.url()).hash, /moves=fixed/);
+  assert.deepEqual(await page.$$eval(".body small:first-of-type", (said) => said.map((one) => one.textContent.split(";")[0])), ["stays", "moves"]);
   await page.click(".turning button:text-is('The moving body')");
   await page.click(".turning button:text-is('Slide')");
   await page.waitForFunction(() => window.colltrans.probe().turning.screw.angle === 0 && !document.querySelector(".turning[aria-busy]"));

@@ -254,7 +254,7 @@ def test_arguments_that_are_wrong() -> None:
         motion_many(CUBE, CUBE, {"twist": turn})
     with pytest.raises(InputError, match=r"axis: an array of shape \(2,\)"):
         motion_many(CUBE, CUBE, {"turn": {**turn, "axis": [0, 1]}})
-    with pytest.raises(InputError, match="arrays of 2, 3 rows"):
+    with pytest.raises(InputError, match="axis has 3 rows, moving_motion.angle has 2 rows"):
         motion_many(CUBE, CUBE, {"turn": {**turn, "axis": np.eye(3)}})
     with pytest.raises(InputError, match="different lengths"):
         motion_many(CUBE, CUBE, {"turn": turn}, keep=[1, 2, 3])

@@ -16,10 +16,10 @@ use std::time::{Duration, Instant};
 
 use colltrans::glam::DVec3;
 use colltrans::motion::Motion;
-use colltrans::record::{PairQuestion, Record};
+use colltrans::record::{FeatureRecord, PairQuestion, Record};
 use colltrans::{
-    Cast, Clearance, Contact, ContactRange, Options, Outcome, OverlapAhead, Pair, Placed, Pose,
-    Solver, WhyFree,
+    Cast, Clearance, Contact, ContactRange, Features, InputVertex, Options, Outcome, OverlapAhead,
+    Pair, Placed, Pose, Solver, WhyFree,
 };
 use numpy::{
     IntoPyArray, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
@@ -50,7 +50,16 @@ struct Row {
     outcome: u8,
     numbers: [f64; NUMBERS.len()],
     vectors: [[f64; 3]; VECTORS.len()],
+    /// The features of both bodies, if they are asked for.
+    features: [Corners; 2],
 }
+
+/// The first vertices of a feature, by the numbers of the input: one of a vertex, two of an edge, three of a face;
+/// -1 where there is none.
+type Corners = [i64; 3];
+const NO_CORNERS: Corners = [-1; 3];
+/// The names of the columns of features.
+const FEATURES: [&str; 2] = ["moving_feature", "fixed_feature"];
 
 /// The names of [`Row::numbers`].
 const NUMBERS: [&str; 15] = [
@@ -184,24 +193,29 @@ impl Question {
         }
     }
 
-    fn ask<'a>(self, cast: &Cast<'a>, by: &By<'_, '_, 'a>) -> Result<Row, colltrans::QueryError> {
+    /// `featured`: with the features that touch.
+    fn ask<'a>(
+        self,
+        cast: &Cast<'a>,
+        by: &By<'_, '_, 'a>,
+        featured: bool,
+    ) -> Result<Row, colltrans::QueryError> {
+        let of = |outcome: u8, first: &Contact| Row::of(outcome, first, cast, featured);
         Ok(match self {
             Self::Contact => match by.first_contact(cast)? {
-                Outcome::Contact(contact) => Row::of(0, &contact, cast),
-                Outcome::Grazing(grazing) => {
-                    Row::of(1, &grazing.contact, cast).with(OVERLAP, grazing.overlap)
-                }
+                Outcome::Contact(contact) => of(0, &contact),
+                Outcome::Grazing(grazing) => of(1, &grazing.contact).with(OVERLAP, grazing.overlap),
                 Outcome::Separated(separated) => Row::separated(2, &separated),
             },
             Self::Range => match by.contact_range(cast)? {
-                ContactRange::Contact { first, last } => Row::of(0, &first, cast).with_exit(&last),
-                ContactRange::Grazing { first, last } => Row::of(1, &first.contact, cast)
-                    .with_exit(&last.contact)
-                    .with(OVERLAP, first.overlap),
+                ContactRange::Contact { first, last } => of(0, &first).with_exit(&last),
+                ContactRange::Grazing { first, last } => {
+                    of(1, &first.contact).with_exit(&last.contact).with(OVERLAP, first.overlap)
+                }
                 ContactRange::Separated(separated) => Row::separated(2, &separated),
             },
             // The others have no direction.
-            _ => Row::clearance(&by.clearance(cast)?, cast),
+            _ => Row::clearance(&by.clearance(cast)?, cast, featured),
         })
     }
 }
@@ -211,6 +225,7 @@ impl Row {
         outcome: 0,
         numbers: [f64::NAN; NUMBERS.len()],
         vectors: [[f64::NAN; 3]; VECTORS.len()],
+        features: [NO_CORNERS; 2],
     };
 
     fn with(mut self, which: usize, number: f64) -> Self {
@@ -246,6 +261,10 @@ impl Row {
         for (which, vector) in vectors {
             row = vector.map_or(row, |vector| row.along(which, vector));
         }
+        if let Some(features) = &record.features {
+            let of = |feature: &FeatureRecord| corners(feature.vertices.iter().copied());
+            row.features = [of(&features.moving), of(&features.fixed)];
+        }
         row
     }
 
@@ -254,10 +273,15 @@ impl Row {
         self.with(EXIT, exit.value).with(EXIT_LOWER, exit.lower).with(EXIT_UPPER, exit.upper)
     }
 
-    fn of(outcome: u8, first: &Contact, cast: &Cast<'_>) -> Self {
-        let row = Self { outcome, ..Self::NONE }
+    fn of(outcome: u8, first: &Contact, cast: &Cast<'_>, featured: bool) -> Self {
+        let mut row = Self { outcome, ..Self::NONE }
             .along(NORMAL, coordinates(first.normal))
             .along(POINT, coordinates(first.points(cast).on_fixed));
+        if featured {
+            let Features { moving, fixed } = first.features(cast);
+            row.features =
+                [corners(moving.vertices(cast.moving())), corners(fixed.vertices(cast.fixed()))];
+        }
         let proof = &first.certificate;
         row.with(TRANSLATION, first.translation)
             .with(LOWER, proof.lower)
@@ -271,20 +295,21 @@ impl Row {
         row.with(MARGIN, separated.certificate.margin)
     }
 
-    fn clearance(answer: &Clearance, cast: &Cast<'_>) -> Self {
+    fn clearance(answer: &Clearance, cast: &Cast<'_>, featured: bool) -> Self {
+        let of = |outcome: u8, first: &Contact| Self::of(outcome, first, cast, featured);
         let row = match answer {
-            Clearance::Blocked { contact, .. } => Self::of(0, contact, cast),
+            Clearance::Blocked { contact, .. } => of(0, contact),
             Clearance::Free(WhyFree::Slides(grazing)) => {
-                Self::of(1, &grazing.contact, cast).with(OVERLAP, grazing.overlap)
+                of(1, &grazing.contact).with(OVERLAP, grazing.overlap)
             }
             // The last contact is the first one of the way back, whose bounds are not this way's.
             Clearance::Free(WhyFree::Behind(last)) => Self {
                 numbers: Self::NONE.with(ROUNDING, last.certificate.rounding).numbers,
-                ..Self::of(2, last, &cast.reversed())
+                ..Self::of(2, last, &cast.reversed(), featured)
             }
             .with_exit(last),
             Clearance::Free(WhyFree::Separated(separated)) => Self::separated(3, separated),
-            Clearance::Overlapping(OverlapAhead { first, last }) => Self::of(4, first, cast)
+            Clearance::Overlapping(OverlapAhead { first, last }) => of(4, first)
                 .with_exit(last)
                 .with(BACK, -first.certificate.lower)
                 .with(ON, -last.certificate.lower),
@@ -293,12 +318,23 @@ impl Row {
     }
 }
 
+/// The first of a feature's vertices.
+fn corners(vertices: impl IntoIterator<Item = InputVertex>) -> Corners {
+    let mut corners = NO_CORNERS;
+    for (corner, vertex) in corners.iter_mut().zip(vertices) {
+        *corner = u32::from(vertex).into();
+    }
+    corners
+}
+
 /// What is asked.
 struct Work<'a> {
     question: Question,
     bodies: [Bodies<'a>; 2],
     poses: [Table<'a>; 2],
     with: With<'a>,
+    /// Whether features are columns, too.
+    featured: bool,
 }
 
 /// What a question needs besides the bodies.
@@ -376,7 +412,7 @@ impl<'a> Work<'a> {
             options.with_graze_tolerance(graze_tolerances.row(row)[0]).with_keep(keeps.row(row)[0]);
         Cast::new(moving.at(at), fixed.at(to), directions.vector(row))
             .and_then(|cast| cast.with_options(options))
-            .and_then(|cast| self.question.ask(&cast, by))
+            .and_then(|cast| self.question.ask(&cast, by, self.featured))
             .map_err(|what| what.to_string())
     }
 
@@ -454,6 +490,8 @@ struct Part<'a> {
     outcome: &'a mut [u8],
     numbers: Vec<&'a mut [f64]>,
     vectors: Vec<&'a mut [[f64; 3]]>,
+    /// None, or of both bodies.
+    features: Vec<&'a mut [Corners]>,
 }
 
 /// All columns.
@@ -461,23 +499,27 @@ struct Columns {
     outcome: Vec<u8>,
     numbers: Vec<Vec<f64>>,
     vectors: Vec<Vec<[f64; 3]>>,
+    features: Vec<Vec<Corners>>,
 }
 
 impl Columns {
-    fn new(n: usize, question: Question) -> Self {
+    fn new(n: usize, question: Question, featured: bool) -> Self {
         let numbers = vec![vec![0.0; n]; question.numbers().len()];
         let vectors = vec![vec![[0.0; 3]; n]; question.vectors().len()];
-        Self { outcome: vec![0; n], numbers, vectors }
+        let features = vec![vec![NO_CORNERS; n]; if featured { FEATURES.len() } else { 0 }];
+        Self { outcome: vec![0; n], numbers, vectors, features }
     }
 
     fn parts(&mut self) -> Vec<Part<'_>> {
         let mut numbers: Vec<_> = self.numbers.iter_mut().map(|c| c.chunks_mut(CHUNK)).collect();
         let mut vectors: Vec<_> = self.vectors.iter_mut().map(|c| c.chunks_mut(CHUNK)).collect();
+        let mut features: Vec<_> = self.features.iter_mut().map(|c| c.chunks_mut(CHUNK)).collect();
         let part = |(chunk, outcome)| Part {
             first: chunk * CHUNK,
             outcome,
             numbers: numbers.iter_mut().filter_map(Iterator::next).collect(),
             vectors: vectors.iter_mut().filter_map(Iterator::next).collect(),
+            features: features.iter_mut().filter_map(Iterator::next).collect(),
         };
         self.outcome.chunks_mut(CHUNK).enumerate().map(part).collect()
     }
@@ -494,7 +536,7 @@ fn fill<'a>(
     failures: &Failures,
     mut stop: impl FnMut() -> bool,
 ) {
-    let Part { first, outcome, mut numbers, mut vectors } = part;
+    let Part { first, outcome, mut numbers, mut vectors, mut features } = part;
     let error = work.question.outcomes().len() as u8 - 1;
     for i in 0..outcome.len() {
         if i % LOOK == 0 && stop() {
@@ -511,6 +553,9 @@ fn fill<'a>(
         }
         for (column, which) in vectors.iter_mut().zip(work.question.vectors()) {
             column[i] = row.vectors[*which];
+        }
+        for (column, corners) in features.iter_mut().zip(row.features) {
+            column[i] = corners;
         }
     }
 }
@@ -589,6 +634,7 @@ pub(crate) fn ask_many<'py>(
     graze_tolerance: PyReadonlyArray2<'py, f64>,
     keep: PyReadonlyArray2<'py, f64>,
     solver: &Bound<'py, PyAny>,
+    featured: bool,
     threads: Option<usize>,
 ) -> PyResult<Answered<'py>> {
     let with = With::Direction {
@@ -598,7 +644,8 @@ pub(crate) fn ask_many<'py>(
         options: options_of(Some(solver))?,
     };
     let question = Question::called(question)?;
-    answered(py, n, question, [&moving, &fixed], [&moving_pose, &fixed_pose], with, threads)
+    let (sides, poses) = ([&moving, &fixed], [&moving_pose, &fixed_pose]);
+    answered(py, n, question, sides, poses, with, featured, threads)
 }
 
 /// The same of bodies where they are: what `colltrans.pairs` calls.
@@ -613,11 +660,13 @@ pub(crate) fn ask_pairs<'py>(
     moving_pose: PyReadonlyArray2<'py, f64>,
     fixed_pose: PyReadonlyArray2<'py, f64>,
     length: PyReadonlyArray2<'py, f64>,
+    featured: bool,
     threads: Option<usize>,
 ) -> PyResult<Answered<'py>> {
     let with = With::Length(table("length", &length, n)?);
     let question = Question::called(question)?;
-    answered(py, n, question, [&moving, &fixed], [&moving_pose, &fixed_pose], with, threads)
+    let (sides, poses) = ([&moving, &fixed], [&moving_pose, &fixed_pose]);
+    answered(py, n, question, sides, poses, with, featured, threads)
 }
 
 /// What bodies do: motions, or a table of numbers.
@@ -642,6 +691,7 @@ pub(crate) fn ask_motions<'py>(
     fixed_pose: PyReadonlyArray2<'py, f64>,
     keep: PyReadonlyArray2<'py, f64>,
     tolerance: PyReadonlyArray2<'py, f64>,
+    featured: bool,
     threads: Option<usize>,
 ) -> PyResult<Answered<'py>> {
     let with = With::Motion {
@@ -653,7 +703,7 @@ pub(crate) fn ask_motions<'py>(
         tolerances: table("tolerance", &tolerance, n)?,
     };
     let (sides, poses) = ([&moving, &fixed], [&moving_pose, &fixed_pose]);
-    answered(py, n, Question::called(question)?, sides, poses, with, threads)
+    answered(py, n, Question::called(question)?, sides, poses, with, featured, threads)
 }
 
 /// One motion for all rows, or one for each.
@@ -669,6 +719,7 @@ fn motions<'a>(name: &'static str, of: &'a MotionSide<'_>, n: usize) -> PyResult
     }
 }
 
+#[expect(clippy::too_many_arguments, reason = "they are columns")]
 fn answered<'py>(
     py: Python<'py>,
     n: usize,
@@ -676,6 +727,7 @@ fn answered<'py>(
     sides: [&Side<'py>; 2],
     poses: [&PyReadonlyArray2<'py, f64>; 2],
     with: With<'_>,
+    featured: bool,
     threads: Option<usize>,
 ) -> PyResult<Answered<'py>> {
     let threads = threads
@@ -690,8 +742,9 @@ fn answered<'py>(
         ],
         poses: [table("moving_pose", poses[0], n)?, table("fixed_pose", poses[1], n)?],
         with,
+        featured,
     };
-    let mut columns = Columns::new(n, question);
+    let mut columns = Columns::new(n, question, featured);
     let failures = Failures::default();
     py.detach(|| {
         let repeats = work.repeats(n);
@@ -706,6 +759,10 @@ fn answered<'py>(
     for (which, column) in question.vectors().iter().zip(columns.vectors) {
         let flat = column.into_flattened().into_pyarray(py);
         found.set_item(VECTORS[*which], flat.reshape([n, 3])?)?;
+    }
+    for (name, column) in FEATURES.iter().zip(columns.features) {
+        let flat = column.into_flattened().into_pyarray(py);
+        found.set_item(name, flat.reshape([n, 3])?)?;
     }
     let mut failures = failures.into_inner().unwrap_or_else(PoisonError::into_inner);
     failures.sort_unstable();

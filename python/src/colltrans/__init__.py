@@ -95,6 +95,7 @@ from colltrans.columns import (
     RangeColumns,
     concatenate,
 )
+from colltrans.directions import FreeColumns, free_directions_many
 from colltrans.errors import (
     AssemblyError,
     BuildError,
@@ -158,6 +159,7 @@ __all__ = [
     "Feature",
     "Features",
     "FirstContact",
+    "FreeColumns",
     "FreeDirections",
     "Grazing",
     "InputError",
@@ -227,6 +229,7 @@ __all__ = [
     "distance_many",
     "first_contact",
     "free_directions",
+    "free_directions_many",
     "intersects",
     "motion_clearance",
     "motion_clearance_many",

@@ -3277,6 +3277,7 @@ def ask_many(
     graze_tolerance: _Floats,
     keep: _Floats,
     solver: _Solver,
+    featured: bool,
     threads: int | None,
 ) -> tuple[dict[str, NDArray[Any]], list[str], dict[int, str]]:
     """Answers `n` queries: what `colltrans.many` calls when it has made all arguments what they have to
@@ -3294,6 +3295,7 @@ def ask_motions(
     fixed_pose: _Floats,
     keep: _Floats,
     tolerance: _Floats,
+    featured: bool,
     threads: int | None,
 ) -> tuple[dict[str, NDArray[Any]], list[str], dict[int, str]]:
     """The same of bodies that move: what `colltrans.motions` calls."""
@@ -3319,6 +3321,7 @@ def ask_pairs(
     moving_pose: _Floats,
     fixed_pose: _Floats,
     length: _Floats,
+    featured: bool,
     threads: int | None,
 ) -> tuple[dict[str, NDArray[Any]], list[str], dict[int, str]]:
     """The same of bodies where they are: what `colltrans.pairs` calls."""

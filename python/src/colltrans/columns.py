@@ -2,7 +2,7 @@
 
 import operator
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from typing import TYPE_CHECKING, Any, ClassVar, Generic, Self, TypeVar, overload
 
 import numpy as np
@@ -21,7 +21,7 @@ from colltrans._colltrans import (
 )
 from colltrans.errors import ColltransError, InputError
 from colltrans.outcomes import Outcomes
-from colltrans.queries import Floats
+from colltrans.queries import Floats, Shape
 
 if TYPE_CHECKING:
     import pandas
@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     import xarray
 
 Answer_co = TypeVar("Answer_co", covariant=True)
+#: The columns of vertices, which are there if they are asked for.
+FEATURES = ("moving_feature", "fixed_feature")
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,10 @@ class _Taken:
     of: Any
     rows: NDArray[np.intp]
 
+    @property
+    def shape(self) -> Shape:
+        return (len(self.rows),)
+
     def ask(self, question: Any, i: int) -> Any:
         return self.of.ask(question, int(self.rows[i]))
 
@@ -61,6 +67,10 @@ class _Joined:
 
     parts: tuple[Any, ...]
     ends: NDArray[np.intp]
+
+    @property
+    def shape(self) -> Shape:
+        return (int(self.ends[-1]),)
 
     def ask(self, question: Any, i: int) -> Any:
         part = int(np.searchsorted(self.ends, i, side="right"))
@@ -81,12 +91,17 @@ class Table(Generic[Answer_co]):
         What became of each row, by name: ``columns.outcome == "contact"`` is a mask.
     errors : dict of int to str
         The messages of the rows without an answer.
+    moving_feature, fixed_feature : ndarray of int64, shape (N, 3), or None
+        With ``features=True``, what touches: a vertex as its number in the input, an edge as two, a
+        face as its first three; -1 stands for none.
     """
 
     outcome: Outcomes
     outcomes: tuple[str, ...]
     errors: dict[int, str]
     _queries: Any
+    moving_feature: NDArray[np.int64] | None = field(default=None, kw_only=True)
+    fixed_feature: NDArray[np.int64] | None = field(default=None, kw_only=True)
 
     _question: ClassVar[Any]
 
@@ -96,6 +111,39 @@ class Table(Generic[Answer_co]):
 
     def __len__(self) -> int:
         return len(self.outcome)
+
+    @property
+    def shape(self) -> Shape:
+        """tuple of int: The axes that the arguments had together; rows are in C order."""
+        shape: Shape = self._queries.shape
+        return shape
+
+    def stacked(self, name: str) -> NDArray[Any]:
+        """A column with the axes that the arguments had, those of vectors last.
+
+        Parameters
+        ----------
+        name : str
+            Of a column, ``"outcome"`` among them.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> from colltrans import ConvexPolyhedron, cast_many
+        >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+        >>> starts = np.array([[[-3, 0, 0], [-3, 9, 0]], [[-4, 0, 0], [-5, 0, 0]]])
+        >>> columns = cast_many(cube, cube, [1, 0, 0], moving_pose=starts)
+        >>> columns.stacked("translation")
+        array([[ 2., nan],
+               [ 3.,  4.]])
+        >>> columns.stacked("normal").shape
+        (2, 2, 3)
+        """
+        known = {"outcome": np.asarray(self.outcome), **dict(self._numbers())}
+        if name not in known:
+            raise InputError(f"no column {name!r}: {', '.join(known)}")
+        column = known[name]
+        return column.reshape(*self.shape, *column.shape[1:])
 
     @overload
     def __getitem__(self, i: int) -> "Answer_co | Failed": ...
@@ -188,7 +236,8 @@ class Table(Generic[Answer_co]):
 
         columns: dict[str, Any] = {"outcome": ("query", np.asarray(self.outcome))}
         for name, column in self._numbers():
-            columns[name] = (("query", "axis")[: column.ndim], column)
+            of = "corner" if name in FEATURES else "axis"
+            columns[name] = (("query", of)[: column.ndim], column)
         messages = np.array([self.errors.get(i, "") for i in range(len(self))], dtype=str)
         columns["message"] = ("query", messages)
         return xr.Dataset(columns, coords={"axis": list("xyz")})
@@ -212,15 +261,17 @@ class Table(Generic[Answer_co]):
             if column.ndim == 1:
                 columns[name] = column
             else:
-                columns |= {f"{name}_{axis}": column[:, k] for k, axis in enumerate("xyz")}
+                of = "012" if name in FEATURES else "xyz"
+                columns |= {f"{name}_{axis}": column[:, k] for k, axis in enumerate(of)}
         columns["message"] = pd.Series(self.errors, dtype=object).reindex(range(len(self)))
         return pd.DataFrame(columns)
 
     def _numbers(self) -> Iterator[tuple[str, Floats]]:
-        for field in fields(self):
-            column = getattr(self, field.name)
+        names = [each.name for each in fields(self)]
+        for name in sorted(names, key=lambda name: name in FEATURES):
+            column = getattr(self, name)
             if isinstance(column, np.ndarray):
-                yield field.name, column
+                yield name, column
 
     def _is_row(self, answer: Any, i: int) -> bool:
         """Whether a row says what this answer does."""
@@ -350,6 +401,8 @@ def concatenate(columns: "Sequence[Columns_]") -> Columns_:
         kinds = ", ".join(sorted({type(each).__name__ for each in columns})) or "nothing"
         raise InputError(f"columns of one kind are joined, not {kinds}")
     first, ends = columns[0], np.cumsum([len(each) for each in columns])
+    if len({tuple(name for name, _ in each._numbers()) for each in columns}) != 1:
+        raise InputError("columns with features and columns without are not joined")
     for name in ("outcomes", "bodies"):
         if any(getattr(each, name, ()) != getattr(first, name, ()) for each in columns):
             raise InputError(f"columns of the same {name} are joined")

@@ -1,8 +1,9 @@
 """Queries in bulk: arrays in, columns out.
 
-Arguments have one row for all queries or one for each; bodies are one for all, or a list with an
-index for each. Rows are answered on all cores, without the interpreter's lock. A row without an
-answer has the outcome ``"error"`` and a message.
+Arguments have one row for all queries or one for each, or are stacks with more axes, which go
+together as arrays of numpy do (``columns.stacked`` has them again); bodies are one for all, or a
+list with an index for each. Rows are answered on all cores, without the interpreter's lock. A row
+without an answer has the outcome ``"error"`` and a message.
 
 Each row has the bits of the query asked alone, but for one case: where 564 rows or more (of boxes;
 more of larger bodies) ask about the same two convex bodies, turned in the same way, the faces of
@@ -25,7 +26,6 @@ from colltrans.queries import (
     Poses,
     Solver,
     checked_threads,
-    column,
     listed,
     queries_of,
     refuse_solids,
@@ -45,6 +45,7 @@ def cast_many(
     graze_tolerance: ArrayLike = 0.0,
     keep: ArrayLike = 0.0,
     solver: Solver = "auto",
+    features: bool = False,
     threads: int | None = None,
 ) -> ContactColumns:
     """:func:`cast` for every row.
@@ -67,6 +68,8 @@ def cast_many(
         A gap to be kept, a length: asked is where the bodies are first as near as that.
     solver : {"auto", "cta", "portal"} or Cta
         How the search is narrowed. Answers are the same.
+    features : bool
+        Whether the features that touch are columns, too: ``moving_feature`` and ``fixed_feature``.
     threads : int, optional
         By default all cores that this process may use. The bits do not depend on it.
 
@@ -96,7 +99,7 @@ def cast_many(
     poses, indices = (moving_pose, fixed_pose), (moving_index, fixed_index)
     refuse_solids(moving, fixed)
     queries = queries_of((moving, fixed), direction, poses, indices, graze_tolerance, keep, solver)
-    return ContactColumns(**queries.ask_all("contact", checked_threads(threads)))
+    return ContactColumns(**queries.ask_all("contact", features, checked_threads(threads)))
 
 
 def contact_range_many(
@@ -111,6 +114,7 @@ def contact_range_many(
     graze_tolerance: ArrayLike = 0.0,
     keep: ArrayLike = 0.0,
     solver: Solver = "auto",
+    features: bool = False,
     threads: int | None = None,
 ) -> RangeColumns:
     """:func:`contact_range` for every row: first and last contact.
@@ -119,7 +123,7 @@ def contact_range_many(
     ----------
     moving, fixed, direction, moving_pose, fixed_pose, moving_index, fixed_index
         As for :func:`cast_many`.
-    graze_tolerance, keep, solver, threads
+    graze_tolerance, keep, solver, features, threads
         As for :func:`cast_many`.
 
     Returns
@@ -137,7 +141,7 @@ def contact_range_many(
     poses, indices = (moving_pose, fixed_pose), (moving_index, fixed_index)
     refuse_solids(moving, fixed)
     queries = queries_of((moving, fixed), direction, poses, indices, graze_tolerance, keep, solver)
-    return RangeColumns(**queries.ask_all("range", checked_threads(threads)))
+    return RangeColumns(**queries.ask_all("range", features, checked_threads(threads)))
 
 
 @overload
@@ -153,6 +157,7 @@ def clearance_many(
     graze_tolerance: ArrayLike = 0.0,
     keep: ArrayLike = 0.0,
     solver: Solver = "auto",
+    features: bool = False,
     threads: int | None = None,
 ) -> ClearanceColumns: ...
 @overload
@@ -167,6 +172,7 @@ def clearance_many(
     fixed_index: ArrayLike | None = None,
     keep: ArrayLike = 0.0,
     solver: Solver = "auto",
+    features: bool = False,
     threads: int | None = None,
     tolerance: ArrayLike | None = None,
     ignore_start_overlaps: bool = False,
@@ -183,6 +189,7 @@ def clearance_many(
     fixed_index: ArrayLike | None = None,
     keep: ArrayLike = 0.0,
     solver: Solver = "auto",
+    features: bool = False,
     threads: int | None = None,
     tolerance: ArrayLike | None = None,
     ignore_start_overlaps: bool = False,
@@ -199,6 +206,7 @@ def clearance_many(
     fixed_index: ArrayLike | None = None,
     keep: ArrayLike = 0.0,
     solver: Solver = "auto",
+    features: bool = False,
     threads: int | None = None,
     tolerance: ArrayLike | None = None,
     ignore_start_overlaps: bool = False,
@@ -215,6 +223,7 @@ def clearance_many(
     graze_tolerance: ArrayLike = 0.0,
     keep: ArrayLike = 0.0,
     solver: Solver = "auto",
+    features: bool = False,
     threads: int | None = None,
     tolerance: ArrayLike | None = None,
     ignore_start_overlaps: bool = False,
@@ -227,7 +236,7 @@ def clearance_many(
         As for :func:`cast_many`. If one of them is a solid, all rows are asked as solids.
     direction, moving_pose, fixed_pose, moving_index, fixed_index
         As for :func:`cast_many`.
-    graze_tolerance, keep, solver, threads
+    graze_tolerance, keep, solver, features, threads
         As for :func:`cast_many`.
     tolerance : float or array_like of shape (N,), optional
         Of solids, as for :class:`SolidCast`.
@@ -253,10 +262,10 @@ def clearance_many(
         if np.any(graze_tolerance) or solver != "auto":
             told = "graze_tolerance, solver: are for convex bodies; solids have tolerance"
             raise InputError(told)
-        tolerances = None if tolerance is None else column(tolerance, "tolerance")
-        asked = queries_of(bodies, direction, poses, indices, 0.0, keep, solver, tolerances)
-        return ask_solids(asked, tolerances, ignore_start_overlaps, checked_threads(threads))
+        asked = queries_of(bodies, direction, poses, indices, 0.0, keep, solver, tolerance)
+        return ask_solids(asked, ignore_start_overlaps, features, checked_threads(threads))
     if tolerance is not None or ignore_start_overlaps:
         raise InputError("tolerance, ignore_start_overlaps: are for solids")
     queries = queries_of(bodies, direction, poses, indices, graze_tolerance, keep, solver)
-    return ClearanceColumns(**queries.ask_all("clearance", checked_threads(threads)))
+    found = queries.ask_all("clearance", features, checked_threads(threads))
+    return ClearanceColumns(**found)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from colltrans import _arrays, _colltrans
 from colltrans._colltrans import FirstContact, Motion, MotionClearance
@@ -14,13 +14,17 @@ from colltrans.errors import InputError
 from colltrans.queries import (
     AnyBodies,
     Floats,
+    Index,
     Poses,
+    Shape,
+    Stack,
     body_list,
     checked_threads,
     column,
-    count_of,
+    indices_of,
     pose_table,
     row_of,
+    together,
 )
 
 #: A motion for all rows, one for each, or one kind of them with its numbers as arrays.
@@ -41,19 +45,19 @@ class MotionQueries:
 
     question: Literal["motion", "motion_clearance"]
     bodies: tuple[list[Any], list[Any]]
-    indices: tuple[NDArray[np.int64] | None, NDArray[np.int64] | None]
+    indices: tuple[Index, Index]
     #: Lists of motions, or tables of 3 (slides), 8 (screws) or 9 numbers (what is thrown).
     motions: tuple[list[Motion] | Floats, list[Motion] | Floats]
     poses: tuple[Floats, Floats]
     keep: Floats
     #: NaN stands for none.
     tolerance: Floats
-    count: int
+    shape: Shape
 
-    def ask_all(self, threads: int | None) -> dict[str, Any]:
+    def ask_all(self, features: bool, threads: int | None) -> dict[str, Any]:
         (moving, fixed), (moving_index, fixed_index) = self.bodies, self.indices
         columns, outcomes, errors = _colltrans.ask_motions(
-            self.count,
+            int(np.prod(self.shape)),
             self.question,
             (moving, moving_index),
             (fixed, fixed_index),
@@ -61,6 +65,7 @@ class MotionQueries:
             *self.poses,
             self.keep,
             self.tolerance,
+            features,
             threads,
         )
         return {**columns, "outcomes": tuple(outcomes), "errors": errors, "_queries": self}
@@ -149,13 +154,14 @@ def motion_many(
     fixed_index: ArrayLike | None = None,
     keep: ArrayLike = 0.0,
     tolerance: ArrayLike | None = None,
+    features: bool = False,
     threads: int | None = None,
 ) -> MotionColumns:
     """:func:`first_contact` for every row.
 
     Parameters
     ----------
-    moving, fixed, moving_index, fixed_index, threads
+    moving, fixed, moving_index, fixed_index, features, threads
         As for :func:`distance_many`.
     moving_motion, fixed_motion : Motion, sequence of them, or dict
         What the bodies do: one motion for all rows, one for each, or ``{"screw": {"point", "axis",
@@ -195,7 +201,7 @@ def motion_many(
         (moving, moving_index, moving_motion, moving_pose),
         (fixed, fixed_index, fixed_motion, fixed_pose),
     )
-    return MotionColumns(**answers_of("motion", sides, keep, tolerance, threads))
+    return MotionColumns(**answers_of("motion", sides, keep, tolerance, features, threads))
 
 
 def motion_clearance_many(
@@ -210,6 +216,7 @@ def motion_clearance_many(
     fixed_index: ArrayLike | None = None,
     keep: ArrayLike = 0.0,
     tolerance: ArrayLike | None = None,
+    features: bool = False,
     threads: int | None = None,
 ) -> MotionClearanceColumns:
     """:func:`motion_clearance` for every row.
@@ -236,7 +243,8 @@ def motion_clearance_many(
         (moving, moving_index, moving_motion, moving_pose),
         (fixed, fixed_index, fixed_motion, fixed_pose),
     )
-    return MotionClearanceColumns(**answers_of("motion_clearance", sides, keep, tolerance, threads))
+    told = answers_of("motion_clearance", sides, keep, tolerance, features, threads)
+    return MotionClearanceColumns(**told)
 
 
 #: The bodies of a side, their numbers for each row, what they do and where.
@@ -248,11 +256,12 @@ def answers_of(
     sides: tuple[Side, Side],
     keep: ArrayLike,
     tolerance: ArrayLike | None,
+    features: bool,
     threads: int | None,
 ) -> dict[str, Any]:
     """The columns of a table of answers to what is asked, checked."""
     queries = queries_of(question, sides, keep, tolerance)
-    return queries.ask_all(checked_threads(threads))
+    return queries.ask_all(features, checked_threads(threads))
 
 
 def queries_of(
@@ -266,32 +275,40 @@ def queries_of(
     bodies = [body_list(side[0], side[1], name) for name, side in named]
     poses = [pose_table(side[3], f"{name}_pose") for name, side in named]
     motions = [motion_table(side[2], side[3], f"{name}_motion") for name, side in named]
-    none = np.full((1, 1), np.nan)
-    tables: dict[str, Any] = {
-        "moving_motion": motions[0],
-        "fixed_motion": motions[1],
-        "moving_pose": poses[0],
-        "fixed_pose": poses[1],
-        "keep": column(keep, "keep"),
-        "tolerance": none if tolerance is None else column(tolerance, "tolerance"),
-    }
-    indices = (bodies[0][1], bodies[1][1])
+    shape, tables = together(
+        {
+            "moving_motion": motions[0],
+            "fixed_motion": motions[1],
+            "moving_pose": poses[0],
+            "fixed_pose": poses[1],
+            "keep": column(keep, "keep"),
+            "tolerance": column(np.nan if tolerance is None else tolerance, "tolerance"),
+            "moving_index": bodies[0][1],
+            "fixed_index": bodies[1][1],
+        }
+    )
+
+    def motions_of(name: str) -> list[Motion] | Floats:
+        table = tables[name]
+        listed: list[Motion] = table.reshape(-1).tolist() if table.dtype == object else []
+        return listed or np.require(table, np.float64, ["C", "A"])
+
     return MotionQueries(
         question=question,
         bodies=(bodies[0][0], bodies[1][0]),
-        indices=indices,
-        motions=(motions[0], motions[1]),
-        poses=(poses[0], poses[1]),
+        indices=indices_of(tables, shape),
+        motions=(motions_of("moving_motion"), motions_of("fixed_motion")),
+        poses=(tables["moving_pose"], tables["fixed_pose"]),
         keep=tables["keep"],
         tolerance=tables["tolerance"],
-        count=count_of(tables, indices),
+        shape=shape,
     )
 
 
-def motion_table(motions: Motions, pose: Poses, name: str) -> list[Motion] | Floats:
-    """A list of one motion or several, or a table of the numbers of one kind."""
+def motion_table(motions: Motions, pose: Poses, name: str) -> Stack:
+    """Motions, one or several, or the numbers of one kind."""
     if motions is None:
-        return np.zeros((1, 3))
+        return Stack(np.zeros((1, 3)), ())
     if isinstance(motions, Mapping):
         return numbers_of(motions, name)
     listed = [motions] if isinstance(motions, Motion) else list(motions)
@@ -299,10 +316,12 @@ def motion_table(motions: Motions, pose: Poses, name: str) -> list[Motion] | Flo
         raise TypeError(f"{name}: neither a Motion, nor a list of them, nor a dict of arrays")
     if pose is not None:
         raise InputError(f"{name}: a motion has its own pose; give no other one")
-    return listed
+    table = np.empty((len(listed), 1), object)
+    table[:, 0] = listed
+    return Stack(table, () if isinstance(motions, Motion) else (len(listed),))
 
 
-def numbers_of(motions: Mapping[str, Mapping[str, ArrayLike]], name: str) -> Floats:
+def numbers_of(motions: Mapping[str, Mapping[str, ArrayLike]], name: str) -> Stack:
     """The arrays of a kind side by side."""
     if len(motions) != 1 or next(iter(motions)) not in KINDS:
         raise InputError(f"{name}: one of {', '.join(KINDS)}, not {', '.join(map(str, motions))}")
@@ -310,20 +329,21 @@ def numbers_of(motions: Mapping[str, Mapping[str, ArrayLike]], name: str) -> Flo
     known = KINDS[kind]
     if given.keys() != known.keys():
         raise InputError(f"{name}: {kind!r} has {', '.join(known)}, not {', '.join(given)}")
-    parts = []
+    parts: dict[str, Stack | None] = {}
     for part, width in known.items():
         array = _arrays.floats(given[part], f"{name}.{part}")
-        array = array.reshape(-1, 1) if width == 1 and array.ndim < 2 else np.atleast_2d(array)
-        if array.ndim != 2 or array.shape[1] != width:
+        if width == 1:
+            array = array[..., None]
+        if array.ndim == 0 or array.shape[-1] != width:
             shape = np.shape(given[part])
-            wanted = "a number or (N,)" if width == 1 else f"({width},) or (N, {width})"
+            wanted = f"({width},) or (N, {width})"
             raise InputError(f"{name}.{part}: an array of shape {shape}, not {wanted}")
-        parts.append(array)
+        parts[f"{name}.{part}"] = Stack(array.reshape(-1, width), array.shape[:-1])
     if kind == "turn":
-        parts.append(np.zeros((1, 1)))
-    rows = {len(part) for part in parts if len(part) != 1}
-    if len(rows) > 1:
-        raise InputError(f"{name}: arrays of {', '.join(map(str, sorted(rows)))} rows")
-    count = next(iter(rows), 1)
-    table = np.hstack([np.broadcast_to(part, (count, part.shape[1])) for part in parts])
-    return np.require(table, np.float64, ["C", "A"])
+        parts["rise"] = Stack(np.zeros((1, 1)), ())
+    alone = all(stack is None or stack.shape == () for stack in parts.values())
+    shape, tables = together(parts)
+    count = int(np.prod(shape))
+    wide = [np.broadcast_to(table, (count, table.shape[1])) for table in tables.values()]
+    table = np.require(np.hstack(wide), np.float64, ["C", "A"])
+    return Stack(table, () if alone else shape)

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from colltrans import _colltrans
 from colltrans._colltrans import Depth, Distance, OverlapDepth, Within
@@ -12,13 +12,16 @@ from colltrans.columns import Answer_co, Table
 from colltrans.queries import (
     AnyBodies,
     Floats,
+    Index,
     Poses,
+    Shape,
     body_list,
     checked_threads,
     column,
-    count_of,
+    indices_of,
     pose_table,
     row_of,
+    together,
 )
 
 PairQuestion: TypeAlias = Literal["distance", "depth", "within"]
@@ -29,21 +32,24 @@ class PairQueries:
     """What was asked: tables with one row or as many as there are queries."""
 
     bodies: tuple[list[Any], list[Any]]
-    indices: tuple[NDArray[np.int64] | None, NDArray[np.int64] | None]
+    indices: tuple[Index, Index]
     poses: tuple[Floats, Floats]
     #: Of :func:`within_many`.
     length: Floats | None
-    count: int
+    shape: Shape
 
-    def ask_all(self, question: PairQuestion, threads: int | None) -> dict[str, Any]:
+    def ask_all(
+        self, question: PairQuestion, threads: int | None, features: bool = False
+    ) -> dict[str, Any]:
         (moving, fixed), (moving_index, fixed_index) = self.bodies, self.indices
         columns, outcomes, errors = _colltrans.ask_pairs(
-            self.count,
+            int(np.prod(self.shape)),
             question,
             (moving, moving_index),
             (fixed, fixed_index),
             *self.poses,
             np.zeros((1, 1)) if self.length is None else self.length,
+            features,
             threads,
         )
         return {**columns, "outcomes": tuple(outcomes), "errors": errors, "_queries": self}
@@ -145,6 +151,7 @@ def distance_many(
     fixed_pose: Poses = None,
     moving_index: ArrayLike | None = None,
     fixed_index: ArrayLike | None = None,
+    features: bool = False,
     threads: int | None = None,
 ) -> DistanceColumns:
     """:func:`distance` for every row.
@@ -153,7 +160,7 @@ def distance_many(
     ----------
     moving, fixed : ConvexPolyhedron, Solid or sequence of them
         As for :func:`cast_many`; a row of which one body is a solid is asked as solids.
-    moving_pose, fixed_pose, moving_index, fixed_index, threads
+    moving_pose, fixed_pose, moving_index, fixed_index, features, threads
         As for :func:`cast_many`.
 
     Returns
@@ -176,7 +183,7 @@ def distance_many(
     """
     poses, indices = (moving_pose, fixed_pose), (moving_index, fixed_index)
     queries = _queries_of((moving, fixed), poses, indices)
-    return DistanceColumns(**queries.ask_all("distance", checked_threads(threads)))
+    return DistanceColumns(**queries.ask_all("distance", checked_threads(threads), features))
 
 
 def depth_many(
@@ -246,7 +253,7 @@ def within_many(
     array([ True, False])
     """
     poses, indices = (moving_pose, fixed_pose), (moving_index, fixed_index)
-    queries = _queries_of((moving, fixed), poses, indices, column(length, "length"))
+    queries = _queries_of((moving, fixed), poses, indices, length)
     return WithinColumns(**queries.ask_all("within", checked_threads(threads)))
 
 
@@ -254,19 +261,23 @@ def _queries_of(
     bodies: tuple[AnyBodies, AnyBodies],
     poses: tuple[Poses, Poses],
     indices: tuple[ArrayLike | None, ArrayLike | None],
-    length: Floats | None = None,
+    length: ArrayLike | None = None,
 ) -> PairQueries:
     moving, moving_index = body_list(bodies[0], indices[0], "moving")
     fixed, fixed_index = body_list(bodies[1], indices[1], "fixed")
-    tables = {
-        "moving_pose": pose_table(poses[0], "moving_pose"),
-        "fixed_pose": pose_table(poses[1], "fixed_pose"),
-        "length": np.zeros((1, 1)) if length is None else length,
-    }
+    shape, tables = together(
+        {
+            "moving_pose": pose_table(poses[0], "moving_pose"),
+            "fixed_pose": pose_table(poses[1], "fixed_pose"),
+            "length": None if length is None else column(length, "length"),
+            "moving_index": moving_index,
+            "fixed_index": fixed_index,
+        }
+    )
     return PairQueries(
         bodies=(moving, fixed),
-        indices=(moving_index, fixed_index),
+        indices=indices_of(tables, shape),
         poses=(tables["moving_pose"], tables["fixed_pose"]),
-        length=length,
-        count=count_of(tables, (moving_index, fixed_index)),
+        length=tables.get("length"),
+        shape=shape,
     )

@@ -1,9 +1,13 @@
-"""Arguments of queries in bulk, whatever was given: tables of one row, or of one for each query."""
+"""Arguments of queries in bulk, whatever was given: tables of one row, or of one for each query.
+
+Arguments may be stacks with any number of axes, which go together as arrays of numpy do. Their rows
+are the queries, those along the last axis one after the other.
+"""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -16,6 +20,9 @@ if TYPE_CHECKING:
     from colltrans._colltrans import HasMatrix
 
 Floats: TypeAlias = NDArray[np.float64]
+Shape: TypeAlias = tuple[int, ...]
+#: Which body, for each row; none where there is but one.
+Index: TypeAlias = NDArray[np.int64] | None
 Bodies: TypeAlias = "ConvexPolyhedron | Sequence[ConvexPolyhedron | ColltransError]"
 AnyBodies: TypeAlias = (
     "ConvexPolyhedron | Solid | Sequence[ConvexPolyhedron | Solid | ColltransError]"
@@ -25,20 +32,33 @@ Solver: TypeAlias = Literal["auto", "cta", "portal"] | Cta
 Question: TypeAlias = Literal["contact", "range", "clearance"]
 
 
+class Stack(NamedTuple):
+    """What was given for each query: rows, and the axes that they had."""
+
+    rows: NDArray[Any]
+    shape: Shape
+
+
 @dataclass(frozen=True)
 class Queries:
     """What was asked: tables with one row or as many as there are queries."""
 
     bodies: tuple[list[Any], list[Any]]
-    indices: tuple[NDArray[np.int64] | None, NDArray[np.int64] | None]
+    indices: tuple[Index, Index]
     direction: Floats
     poses: tuple[Floats, Floats]
     graze_tolerance: Floats
     keep: Floats
+    #: Of solids; NaN stands for none.
+    tolerance: Floats
     solver: Solver
-    count: int
+    shape: Shape
 
-    def ask_all(self, question: Question, threads: int | None) -> dict[str, Any]:
+    @property
+    def count(self) -> int:
+        return int(np.prod(self.shape))
+
+    def ask_all(self, question: Question, features: bool, threads: int | None) -> dict[str, Any]:
         (moving, fixed), (moving_index, fixed_index) = self.bodies, self.indices
         columns, outcomes, errors = _colltrans.ask_many(
             self.count,
@@ -50,6 +70,7 @@ class Queries:
             self.graze_tolerance,
             self.keep,
             self.solver,
+            features,
             threads,
         )
         return {**columns, "outcomes": tuple(outcomes), "errors": errors, "_queries": self}
@@ -99,96 +120,126 @@ def queries_of(
     graze_tolerance: ArrayLike,
     keep: ArrayLike,
     solver: Solver,
-    tolerance: Floats | None = None,
+    tolerance: ArrayLike | None = None,
 ) -> Queries:
-    """All arguments as tables, and how many rows they have together."""
+    """All arguments as tables, and which axes they have together."""
     moving_bodies, moving_index = body_list(bodies[0], indices[0], "moving")
     fixed_bodies, fixed_index = body_list(bodies[1], indices[1], "fixed")
-    tables = {
-        "direction": _table(direction, "direction", 3),
-        "moving_pose": pose_table(poses[0], "moving_pose"),
-        "fixed_pose": pose_table(poses[1], "fixed_pose"),
-        "graze_tolerance": column(graze_tolerance, "graze_tolerance"),
-        "keep": column(keep, "keep"),
-        "tolerance": np.zeros((1, 1)) if tolerance is None else tolerance,
-    }
+    shape, tables = together(
+        {
+            "direction": _table(direction, "direction", 3),
+            "moving_pose": pose_table(poses[0], "moving_pose"),
+            "fixed_pose": pose_table(poses[1], "fixed_pose"),
+            "graze_tolerance": column(graze_tolerance, "graze_tolerance"),
+            "keep": column(keep, "keep"),
+            "tolerance": column(np.nan if tolerance is None else tolerance, "tolerance"),
+            "moving_index": moving_index,
+            "fixed_index": fixed_index,
+        }
+    )
     return Queries(
         bodies=(moving_bodies, fixed_bodies),
-        indices=(moving_index, fixed_index),
+        indices=indices_of(tables, shape),
         direction=tables["direction"],
         poses=(tables["moving_pose"], tables["fixed_pose"]),
         graze_tolerance=tables["graze_tolerance"],
         keep=tables["keep"],
+        tolerance=tables["tolerance"],
         solver=solver,
-        count=count_of(tables, (moving_index, fixed_index)),
+        shape=shape,
     )
 
 
-def count_of(
-    tables: dict[str, Floats], indices: tuple[NDArray[np.int64] | None, NDArray[np.int64] | None]
-) -> int:
-    """How many rows tables of one for all, or of one for each, have together."""
-    rows = {name: len(table) for name, table in tables.items() if len(table) != 1}
-    for name, index in zip(("moving_index", "fixed_index"), indices, strict=True):
-        if index is not None:
-            rows[name] = len(index)
-    if len(set(rows.values())) > 1:
-        found = ", ".join(f"{name} has {n} rows" for name, n in rows.items())
-        raise InputError(f"arguments of different lengths: {found}")
-    return next(iter(rows.values()), 1)
+def together(stacks: Mapping[str, Stack | None]) -> tuple[Shape, dict[str, NDArray[Any]]]:
+    """The axes that all have together, and the rows of each: one for all, or one for each."""
+    given = {name: stack for name, stack in stacks.items() if stack is not None}
+    try:
+        shape = np.broadcast_shapes(*(stack.shape for stack in given.values())) or (1,)
+    except ValueError:
+        raise InputError(_apart(given)) from None
+    count = int(np.prod(shape))
+    rows = {}
+    for name, (table, axes) in given.items():
+        if len(table) != 1 and axes != shape:
+            wide = np.broadcast_to(table.reshape(*axes, table.shape[1]), (*shape, table.shape[1]))
+            table = np.ascontiguousarray(wide).reshape(count, table.shape[1])
+        rows[name] = table
+    return shape, rows
+
+
+def _apart(given: Mapping[str, Stack]) -> str:
+    """Why arguments do not go together."""
+    told = {name: stack for name, stack in given.items() if np.prod(stack.shape) != 1}
+    if all(len(stack.shape) == 1 for stack in told.values()):
+        found = ", ".join(f"{name} has {len(stack.rows)} rows" for name, stack in told.items())
+        return f"arguments of different lengths: {found}"
+    found = ", ".join(f"{name} {stack.shape}" for name, stack in told.items())
+    return f"arguments whose axes do not go together: {found}"
+
+
+def indices_of(tables: Mapping[str, NDArray[Any]], shape: Shape) -> tuple[Index, Index]:
+    """Which bodies, for each row: one that stands for all is there for each of them."""
+    count = int(np.prod(shape))
+
+    def index(name: str) -> Index:
+        if name not in tables:
+            return None
+        found = tables[name].reshape(-1)
+        return found if len(found) == count else np.full(count, found[0])
+
+    return index("moving_index"), index("fixed_index")
 
 
 def body_list(
     bodies: AnyBodies, index: ArrayLike | None, name: str
-) -> tuple[list[Any], NDArray[np.int64] | None]:
+) -> tuple[list[Any], Stack | None]:
     alone = isinstance(bodies, (ConvexPolyhedron, Solid))
     all_bodies: list[Any] = list(listed(bodies))
     for body in all_bodies:
         if not isinstance(body, (ConvexPolyhedron, Solid, Exception)):
             raise TypeError(f"{name}: not a ConvexPolyhedron, but {type(body).__name__}")
     if index is None:
-        return all_bodies, None if alone else np.arange(len(all_bodies))
+        if alone:
+            return all_bodies, None
+        return all_bodies, Stack(np.arange(len(all_bodies)).reshape(-1, 1), (len(all_bodies),))
     # A row that a masked array masks has no body.
     masked = isinstance(index, np.ma.MaskedArray)
     found = np.ma.filled(index, -1) if masked else np.asarray(index)
-    if found.ndim != 1 or (found.size > 0 and found.dtype.kind not in "iu"):
+    if found.ndim == 0 or (found.size > 0 and found.dtype.kind not in "iu"):
         raise InputError(f"{name}_index: no row of whole numbers")
     if found.dtype == np.uint64 and found.size > 0 and found.max() > np.iinfo(np.int64).max:
         raise InputError(f"{name}_index: {found.max()} is too large")
-    return all_bodies, np.require(found, np.int64, ["C", "A"])
+    return all_bodies, Stack(np.require(found, np.int64, ["C", "A"]).reshape(-1, 1), found.shape)
 
 
-def _table(values: ArrayLike, name: str, width: int) -> Floats:
+def _table(values: ArrayLike, name: str, width: int) -> Stack:
     array = _arrays.floats(values, name)
-    if array.ndim == 1:
-        array = array.reshape(1, -1)
-    if array.ndim != 2 or array.shape[1] != width:
+    if array.ndim == 0 or array.shape[-1] != width:
         shape = np.shape(values)
         raise InputError(f"{name}: an array of shape {shape}, not ({width},) or (N, {width})")
-    return array
+    return Stack(array.reshape(-1, width), array.shape[:-1])
 
 
-def column(values: ArrayLike, name: str) -> Floats:
+def column(values: ArrayLike, name: str) -> Stack:
     array = _arrays.floats(values, name)
-    if np.ndim(values) > 1:
-        raise InputError(f"{name}: an array of shape {np.shape(values)}, not a number or (N,)")
-    return array.reshape(-1, 1)
+    return Stack(array.reshape(-1, 1), array.shape)
 
 
-def pose_table(values: Poses, name: str) -> Floats:
+def pose_table(values: Poses, name: str) -> Stack:
     if values is None:
-        return np.zeros((1, 3))
+        return Stack(np.zeros((1, 3)), ())
     matrices = hasattr(values, "as_matrix")
     array = _arrays.floats(values.as_matrix() if matrices else values, name)  # type: ignore[union-attr]
     if matrices and array.shape[-2:] == (3, 3):
         array = np.concatenate([array, np.zeros((*array.shape[:-1], 1))], axis=-1)
     shape = array.shape
-    if shape in ((3, 4), (4, 4)):
-        return array.reshape(1, -1)
-    if len(shape) == 3 and shape[1:] in ((3, 4), (4, 4)):
-        return array.reshape(len(array), -1)
-    if len(shape) in (1, 2) and shape[-1] in (3, 7):
-        return array.reshape(-1, shape[-1])
+    if shape[-2:] in ((3, 4), (4, 4)):
+        return Stack(array.reshape(-1, 4 * shape[-2]), shape[:-2])
+    if shape[-2:] == (3, 3) and len(shape) > 2:
+        told = "rotations are given as (N, 3, 4), and stacks of three translations with quaternions"
+        raise InputError(f"{name}: an array of shape {shape}, which may be either: {told}")
+    if shape and shape[-1] in (3, 7):
+        return Stack(array.reshape(-1, shape[-1]), shape[:-1])
     raise InputError(
         f"{name}: an array of shape {shape}, not (3,), (7,), (3, 4) or (4, 4), "
         "nor a row of that for each query"

@@ -12,7 +12,7 @@ from colltrans import _colltrans
 from colltrans._colltrans import ConvexPolyhedron, PathContact, Robot, Solid
 from colltrans.columns import TimeColumns
 from colltrans.errors import InputError
-from colltrans.queries import Floats, checked_threads
+from colltrans.queries import Floats, Shape, checked_threads
 
 #: Rows of joint values, or a file of them.
 Path: TypeAlias = ArrayLike | str | PathLike[str]
@@ -30,6 +30,10 @@ class PathQueries:
     joints: dict[str, float]
     columns: list[str] | None
     times: list[Any] | None
+
+    @property
+    def shape(self) -> Shape:
+        return (len(self.paths),)
 
     def ask_all(self, threads: int | None) -> dict[str, Any]:
         columns, outcomes, bodies, errors = _colltrans.ask_paths(

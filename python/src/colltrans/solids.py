@@ -4,17 +4,19 @@ A row of solids takes so long that Python between two of them does not count. Th
 lock is free while a row is answered. Every row has its own place, so the threads need no other.
 """
 
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, wait
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from colltrans._colltrans import SolidBlocked, SolidCast, SolidFree, SolidOverlapping
 from colltrans.columns import Table
 from colltrans.errors import InputError
 from colltrans.outcomes import Outcomes
-from colltrans.queries import Floats, Queries, cores, row_of
+from colltrans.queries import Floats, Index, Queries, Shape, cores, row_of
 
 OUTCOMES = ("blocked", "free", "overlapping", "error")
 #: The columns of numbers, in the order of :func:`_values`.
@@ -34,16 +36,18 @@ PATIENCE = 0.1
 
 @dataclass(frozen=True)
 class SolidQueries:
-    """What was asked: the tables of all kinds of bodies, and the choices of solids."""
+    """What was asked: the tables of all kinds of bodies, and a choice of solids."""
 
     queries: Queries
-    #: NaN stands for none.
-    tolerance: Floats | None
     ignore_start_overlaps: bool
+
+    @property
+    def shape(self) -> Shape:
+        return self.queries.shape
 
     def ask(self, question: Any, i: int) -> Any:
         """One of them, alone."""
-        tolerance = np.nan if self.tolerance is None else float(row_of(self.tolerance, i)[0])
+        tolerance = float(row_of(self.queries.tolerance, i)[0])
         choices = {
             "tolerance": None if np.isnan(tolerance) else tolerance,
             "ignore_start_overlaps": self.ignore_start_overlaps,
@@ -114,21 +118,55 @@ def _values(answer: Any) -> tuple[Any, ...]:
     raise TypeError(type(answer).__name__)
 
 
+def _corners(answer: Any) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """The first vertices of the features that touch, -1 where there are no more."""
+    found = np.full((2, 3), -1, np.int64)
+    if isinstance(answer, SolidBlocked):
+        touching = (answer.contact.moving_feature, answer.contact.fixed_feature)
+        for corners, feature in zip(found, touching, strict=True):
+            vertices = feature.vertices[:3]
+            corners[: len(vertices)] = vertices
+    return found[0], found[1]
+
+
 def ask_solids(
-    queries: Queries, tolerance: Floats | None, ignore_start_overlaps: bool, threads: int | None
+    queries: Queries, ignore_start_overlaps: bool, features: bool, threads: int | None
 ) -> SolidColumns:
-    """Answers all rows. Ctrl-C ends it: rows that are being answered go on in the background."""
-    asked, n = SolidQueries(queries, tolerance, ignore_start_overlaps), queries.count
+    """Answers all rows."""
+    asked, n = SolidQueries(queries, ignore_start_overlaps), queries.count
+    corners = [np.full((n, 3), -1, np.int64) for _ in range(2)] if features else [None, None]
     columns = SolidColumns(
         outcome=Outcomes(np.full(n, OUTCOMES.index("error"), np.uint8), OUTCOMES),
         outcomes=OUTCOMES,
         errors={},
         _queries=asked,
+        moving_feature=corners[0],
+        fixed_feature=corners[1],
         **{name: np.full(n, np.nan) for name in _NUMBERS},
         **{name: np.full((n, 3), np.nan) for name in ("normal", "point")},
     )
     numbers = [getattr(columns, name) for name in _NUMBERS]
     places: list[Any] = [columns.outcome.codes, *numbers, columns.normal, columns.point]
+    places += [column for column in corners if column is not None]
+
+    def answer(i: int) -> None:
+        check_bodies(queries.bodies, queries.indices, i)
+        found = asked.ask(SolidCast.clearance, i)
+        values = (*_values(found), *(_corners(found) if features else ()))
+        for place, value in zip(places, values, strict=True):
+            place[i] = value
+
+    columns.errors.update(answer_rows(n, answer, threads))
+    return columns
+
+
+def answer_rows(
+    n: int, answer: Callable[[int], None], threads: int | None
+) -> list[tuple[int, str]]:
+    """Calls ``answer`` for every row; the rows that raised, and what they said.
+
+    Ctrl-C ends it: rows that are being answered go on in the background.
+    """
     rows, failed, stopped = iter(range(n)), {}, False
 
     def work() -> None:
@@ -137,13 +175,9 @@ def ask_solids(
             if stopped:
                 return
             try:
-                _check_bodies(queries, i)
-                values = _values(asked.ask(SolidCast.clearance, i))
+                answer(i)
             except Exception as error:
                 failed[i] = str(error)
-            else:
-                for place, value in zip(places, values, strict=True):
-                    place[i] = value
 
     count = max(1, min(threads or cores(), n))
     pool = ThreadPoolExecutor(count)
@@ -154,17 +188,14 @@ def ask_solids(
     finally:
         stopped = True
         pool.shutdown(wait=False, cancel_futures=True)
-    columns.errors.update(sorted(failed.items()))
-    return columns
+    return sorted(failed.items())
 
 
-def _check_bodies(queries: Queries, i: int) -> None:
+def check_bodies(bodies: tuple[list[Any], list[Any]], indices: tuple[Index, Index], i: int) -> None:
     """The words of the other bulk queries, where a row has no body."""
-    for side, bodies, index in zip(
-        ("moving", "fixed"), queries.bodies, queries.indices, strict=True
-    ):
+    for side, listed, index in zip(("moving", "fixed"), bodies, indices, strict=True):
         which = 0 if index is None else int(index[i])
-        if not 0 <= which < len(bodies):
-            raise InputError(f"{side}: no body {which} among {len(bodies)}")
-        if isinstance(bodies[which], Exception):
-            raise InputError(f"{side}: {bodies[which]}")
+        if not 0 <= which < len(listed):
+            raise InputError(f"{side}: no body {which} among {len(listed)}")
+        if isinstance(listed[which], Exception):
+            raise InputError(f"{side}: {listed[which]}")

@@ -41,6 +41,9 @@ def arguments(words: Sequence[str] | None) -> argparse.Namespace:
         metavar="A,B",
         help="columns of the queries that the answers have too; '*' for all",
     )
+    parser.add_argument(
+        "--features", action="store_true", help="answers have what touches: its first vertices"
+    )
     parser.add_argument("--check", action="store_true", help="answer nothing: say what is whole")
     parser.add_argument("--engine", choices=["local", "ray"], default="local")
     parser.add_argument("--address", help="of a Ray cluster; one is started here without")
@@ -56,7 +59,7 @@ def arguments(words: Sequence[str] | None) -> argparse.Namespace:
 
 def jobs_of(asked: argparse.Namespace) -> list[Job]:
     kept = tuple(name for name in asked.keep.split(",") if name)
-    options = Options(asked.question, asked.solver, keep_columns=kept)
+    options = Options(asked.question, asked.solver, keep_columns=kept, features=asked.features)
     options.reads(asked.solids)
     pairs = shards_of(asked.queries, asked.out)
     for file, target in pairs:

@@ -23,6 +23,7 @@ OF_CONVEX: dict[str, tuple[str, ...]] = {
     "distance": POSES,
     "depth": POSES,
     "within": (*POSES, "length"),
+    "directions": (*POSES, "tolerance"),
     "motion": _OF_MOTIONS,
     "motion_clearance": _OF_MOTIONS,
 }
@@ -40,6 +41,8 @@ MEANT = {
     "open",
     "tolerance",
     "convex_tolerance",
+    "depth",
+    "looks",
     "merge_tolerance",
     "ignore_start_overlaps",
     "moving_motion",

@@ -11,6 +11,7 @@ from colltrans.bulk.bodies import Bodies
 from colltrans.bulk.lines import REFUSED
 from colltrans.bulk.reads import EVERYTHING, OF_CONVEX, OF_SOLIDS, SCREWS, SIDES, Reads
 from colltrans.columns import Table
+from colltrans.directions import free_directions_many
 from colltrans.errors import InputError
 from colltrans.many import cast_many, clearance_many, contact_range_many
 from colltrans.motions import motion_clearance_many, motion_many
@@ -25,11 +26,14 @@ QUESTIONS: dict[str, Any] = {
     "distance": distance_many,
     "depth": depth_many,
     "within": within_many,
+    "directions": free_directions_many,
     "motion": motion_many,
     "motion_clearance": motion_clearance_many,
 }
 #: Of bodies along a direction.
 CASTS = ("contact", "range", "clearance")
+#: Whose answers have features.
+FEATURED = (*CASTS, "distance", "motion", "motion_clearance")
 #: Of bodies that turn.
 MOTIONS = ("motion", "motion_clearance")
 #: A screw that moves nothing: what a row without one does.
@@ -49,6 +53,9 @@ class Options:
         None stands for all processors.
     keep_columns : tuple of str
         Columns of the queries that the answers have too; ``"*"`` stands for all.
+    features : bool
+        Whether the answers have ``moving_feature`` and ``fixed_feature``, as of
+        :class:`colltrans.columns.Table`.
     """
 
     question: Literal[
@@ -58,12 +65,19 @@ class Options:
         "distance",
         "depth",
         "within",
+        "directions",
         "motion",
         "motion_clearance",
     ] = "range"
     solver: Literal["auto", "cta", "portal"] = "auto"
     threads: int | None = None
     keep_columns: tuple[str, ...] = ()
+    features: bool = False
+
+    def __post_init__(self) -> None:
+        if self.features and self.question not in FEATURED:
+            told = ", ".join(FEATURED)
+            raise InputError(f"features: the question {self.question!r} has none; {told} do")
 
     def reads(self, solids: bool) -> Reads:
         """What is done with the columns, of convex bodies or of solids."""
@@ -85,7 +99,8 @@ def answer_table(queries: Any, bodies: Bodies, options: Options = Options()) -> 
         ``id``. A distance, a depth and *within* have no ``direction``, the last has ``length``. A
         motion, or how far along one, has ``moving_screw``, ``fixed_screw`` or both, 8 numbers each:
         a point and the axis, the angle in radians and the rise; and ``keep`` or ``tolerance``, if
-        there is one. A clearance of solids has ``tolerance`` in the place of ``graze_tolerance``.
+        there is one. A clearance of solids has ``tolerance`` in the place of ``graze_tolerance``;
+        *directions* may have one.
     bodies : Bodies
     options : Options
 
@@ -138,10 +153,14 @@ def _answers(queries: Any, bodies: Bodies, options: Options) -> Table[Any]:
     elif options.question in CASTS:
         sides.append(_vectors(queries, "direction", (3,)))
         if bodies.solids:
-            return _solid_clearances(queries, sides, arguments, options.threads)
+            return _solid_clearances(queries, sides, arguments, options)
         arguments["solver"] = options.solver
         for name in {"graze_tolerance", "keep"} & set(names):
             arguments[name] = _numbers_of(queries, name, 0.0)
+    elif options.question == "directions" and "tolerance" in names:
+        arguments["tolerance"] = _numbers_of(queries, "tolerance", np.nan)
+    if options.features:
+        arguments["features"] = True
     columns: Table[Any] = QUESTIONS[options.question](*sides, **arguments, threads=options.threads)
     return columns
 
@@ -165,14 +184,14 @@ def _motion(queries: Any) -> dict[str, Any]:
 
 
 def _solid_clearances(
-    queries: Any, sides: list[Any], arguments: dict[str, Any], threads: int | None
+    queries: Any, sides: list[Any], arguments: dict[str, Any], options: Options
 ) -> Table[Any]:
     """As solids, whatever they are: the columns are the same if no body could be built."""
     names = queries.schema.names
     moving, fixed, direction = sides
     tolerance = None
     if "tolerance" in names:
-        tolerance = _numbers_of(queries, "tolerance", np.nan).reshape(-1, 1)
+        tolerance = _numbers_of(queries, "tolerance", np.nan)
     asked = queries_of(
         (moving, fixed),
         direction,
@@ -183,7 +202,7 @@ def _solid_clearances(
         solver="auto",
         tolerance=tolerance,
     )
-    return ask_solids(asked, tolerance, False, threads)
+    return ask_solids(asked, False, options.features, options.threads)
 
 
 def column_of(queries: Any, name: str) -> Any:

@@ -1,11 +1,14 @@
 """One cast by this package and by what is used in its place today: time, error, what is missed.
 
 ``pip install './python[peers]'``, then ``python python/benchmarks/peers.py [ROWS]``. All answer
-the same settings in one run: two polytopes, one turned about anyhow above the other and moved
-down, some past it. None of the others casts convex bodies, so each runs the best loop that its
-distance query allows, conservative advancement: move on by the distance over the part of the
-direction along its normal, until it is below a billionth, the bodies part, or 100 steps are
-done. python-fcl's own continuous collision has rows of its own.
+the same settings: two polytopes, one turned about anyhow above the other and moved down, some past
+it. They take turns: each row is asked of all, one after the other, in an order that goes round;
+and of each twice, so that a time is *in turns*, after the others have had the caches, and *hot*,
+right after the same row. Of the others only Bullet casts convex bodies (``convexSweepTest``, in
+Python by panda3d); each of the rest runs the best loop that its distance query allows, conservative
+advancement: move on by the distance over the part of the direction along its normal, until it is
+below a billionth, the bodies part, or 100 steps are done. python-fcl's own continuous collision has
+rows of its own.
 
 The reference is this package's answer with its proof: the error is against its certified
 bounds. *missed* are contacts that were not found, *invented* those that are none, *off* those
@@ -255,8 +258,37 @@ def trimesh(bodies):
     return ask
 
 
+def bullet(bodies):
+    from panda3d.bullet import BulletConvexHullShape, BulletRigidBodyNode, BulletWorld
+    from panda3d.core import BitMask32, LPoint3, LQuaternion, LVecBase3, TransformState
+
+    def shape(body):
+        hull = BulletConvexHullShape()
+        for point in body.vertices.tolist():
+            hull.add_point(LPoint3(*point))
+        hull.set_margin(0.0)
+        return hull
+
+    world, node, moving = BulletWorld(), BulletRigidBodyNode("fixed"), shape(bodies[0])
+    node.add_shape(shape(bodies[1]))
+    world.attach(node)
+    everything, reach = BitMask32.all_on(), 20.0
+
+    def ask(start, turn):
+        turned = LQuaternion(turn[3], *turn[:3])
+        begin, end = (
+            TransformState.make_pos_quat_scale(LPoint3(*place), turned, LVecBase3(1))
+            for place in (start, start + reach * DOWN)
+        )
+        found = world.sweep_test_closest(moving, begin, end, everything, 0.0)
+        return reach * found.get_hit_fraction() if found.has_hit() else None
+
+    return ask
+
+
 PEERS = {
     "colltrans": ("colltrans", ours),
+    "panda3d, Bullet's convexSweepTest": ("panda3d", bullet),
     "coal, distance": ("coal", coal),
     "python-fcl, distance": ("python-fcl", fcl_distance),
     "python-fcl, continuousCollide of convex bodies": ("python-fcl", fcl_continuous(fcl_objects)),
@@ -279,13 +311,20 @@ def judged(found, known):
     return max(proof.lower - found, found - proof.upper, 0.0)
 
 
-def line(name, spent, verdicts):
+def line(name, spent, again, verdicts):
     errors = np.array([v for v in verdicts if isinstance(v, float)])
     words = [v for v in verdicts if isinstance(v, str)]
     counts = [words.count("missed"), words.count("invented"), int((errors > OFF).sum())]
     counts.append(words.count("stuck"))
     largest = f"{errors.max():.1e}" if errors.size else "-"
-    return f"| {name} | {spent * 1e6:.1f} | {largest} | " + " | ".join(map(str, counts)) + " |"
+    times = " | ".join(f"{np.median(each) * 1e6:.1f}" for each in (spent, again))
+    return f"| {name} | {times} | {largest} | " + " | ".join(map(str, counts)) + " |"
+
+
+def timed(ask, start, turn):
+    began = time.perf_counter()
+    found = ask(start, turn)
+    return found, time.perf_counter() - began
 
 
 def main():
@@ -300,22 +339,28 @@ def main():
         assert all(not isinstance(k, Contact) or k.certificate.verify() < 1e-9 for k in known)
         hits = sum(isinstance(k, Contact) for k in known)
         print(f"\n{vertices} vertices, {rows} rows, {hits} contacts\n")
-        print("| who | us a cast, median | largest error | missed | invented | off | stuck |")
-        print("|---|---:|---:|---:|---:|---:|---:|")
+        print(
+            "| who | us a cast, median, in turns | hot | largest error "
+            "| missed | invented | off | stuck |"
+        )
+        print("|---|---:|---:|---:|---:|---:|---:|---:|")
+        asked = {}
         for name, (package, make) in PEERS.items():
             try:
-                told = f"{name} ({version(package)})"
-                ask = make(bodies)
+                asked[f"{name} ({version(package)})"] = make(bodies)
             except (PackageNotFoundError, ImportError) as error:
-                print(f"| {name} | not installed: {error} | | | | | |")
-                continue
-            verdicts, spent = [], []
-            for start, turn, truth in zip(starts, turns, known, strict=True):
-                began = time.perf_counter()
-                found = ask(start, turn)
-                spent.append(time.perf_counter() - began)
-                verdicts.append(judged(found, truth))
-            print(line(told, float(np.median(spent)), verdicts), flush=True)
+                print(f"| {name} | not installed: {error} | | | | | | |")
+        spent, again, verdicts = ({name: [] for name in asked} for _ in range(3))
+        names = list(asked)
+        for row, (start, turn, truth) in enumerate(zip(starts, turns, known, strict=True)):
+            first = row % len(names)
+            for name in names[first:] + names[:first]:
+                found, time_in_turns = timed(asked[name], start, turn)
+                spent[name].append(time_in_turns)
+                again[name].append(timed(asked[name], start, turn)[1])
+                verdicts[name].append(judged(found, truth))
+        for name in names:
+            print(line(name, spent[name], again[name], verdicts[name]), flush=True)
 
 
 if __name__ == "__main__":

@@ -1,37 +1,92 @@
-"""The documentation is whole, and builds without a warning and without a network."""
+"""The documentation is whole; the scripts of the site, which ``.ci/run site`` builds."""
 
+import importlib
+import json
 import re
 import subprocess
 import sys
-from pathlib import Path
+from pathlib import Path, PurePosixPath
+from types import ModuleType
 
 import pytest
 from conftest import ROOT
 
 import colltrans
 
-DOCS = ROOT / "python" / "docs"
+SITE = ROOT / "site"
 
 
 def test_every_public_name_is_in_the_reference() -> None:
-    told = re.findall(r":: colltrans\.(\w+)\n", (DOCS / "api.md").read_text())
+    told = re.findall(r":: colltrans\.(\w+)\n", (ROOT / "python/docs/api.md").read_text())
     assert sorted(told) == sorted(colltrans.__all__)
 
 
 def test_every_page_is_in_the_table_of_contents() -> None:
-    index = (DOCS / "index.md").read_text()
-    pages = {f"pages/{page.stem}" for page in (ROOT / "docs").glob("*.md")}
-    pages |= {f"tutorials/{page.stem}" for page in (DOCS / "tutorials").glob("*.md")}
-    assert all(f"\n{page}\n" in index for page in pages), pages
+    index = (SITE / "index.md").read_text()
+    pages = {f"docs/{page.stem}" for page in (ROOT / "docs").glob("*.md")}
+    pages |= {f"python/tutorials/{page.stem}" for page in ROOT.glob("python/docs/tutorials/*.md")}
+    pages |= {f"notebooks/{page.stem}" for page in (SITE / "notebooks").glob("*.ipynb")}
+    assert [page for page in sorted(pages) if f"\n{page}\n" not in index] == []
 
 
-def test_it_builds_without_a_warning(tmp_path: Path) -> None:
-    for package in ("sphinx", "numpydoc", "myst_parser"):
-        pytest.importorskip(package)
-    words = ["-q", "-W", "--keep-going", "-E", "-b", "html", "-d", str(tmp_path / "doctrees")]
-    command = [sys.executable, "-m", "sphinx", *words, str(DOCS), str(tmp_path / "html")]
+def test_the_gallery_has_twelve_programs_and_the_site_three_notebooks() -> None:
+    programs = sorted((SITE / "gallery").iterdir())
+    assert len(programs) == 12
+    for program in programs:
+        title, words = program.read_text().splitlines()[:2]
+        assert title.startswith("# ") and words.startswith("# "), program
+        assert ('"$1"' if program.suffix == ".sh" else "sys.argv[1]") in program.read_text()
+    notebooks = sorted((SITE / "notebooks").iterdir())
+    assert len(notebooks) == 3
+    for notebook in notebooks:
+        cells = json.loads(notebook.read_text())["cells"]
+        # What comes of them is made by the build, and not kept.
+        assert not any(cell.get("outputs") or cell.get("execution_count") for cell in cells)
+
+
+def links(folder: Path) -> list[str]:
+    command = [sys.executable, str(SITE / "links.py"), str(folder)]
     done = subprocess.run(command, capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-    page = (tmp_path / "html" / "api.html").read_text()
-    assert 'id="colltrans.Contact.pose_before"' in page
-    assert (tmp_path / "html" / "pages" / "solids.html").exists()
+    told = done.stdout.splitlines()
+    assert done.returncode == (told != ["every link leads somewhere"]), done.stderr
+    return [] if done.returncode == 0 else told
+
+
+def test_links_that_lead_nowhere_are_found(tmp_path: Path) -> None:
+    (tmp_path / "sub").mkdir()
+    (tmp_path / "sub" / "b.html").write_text('<h2 id="there">There</h2><a href="../a.html">a</a>')
+    good = '<a href="sub/b.html#there">b</a> <a href="#x">x</a><p id=x> <a href="https://a.b">c</a>'
+    (tmp_path / "a.html").write_text(good)
+    assert links(tmp_path) == []
+    bad = {
+        '<a href="sub/c.html">': "sub/c.html: leads nowhere",
+        '<img src="no.svg">': "no.svg: leads nowhere",
+        '<a href="sub/b.html#here">': "sub/b.html#here: there is no place #here",
+        '<a href="../../etc/passwd">': "../../etc/passwd: leads out of the site",
+        '<script src="https://cdn.example/x.js">': "https://cdn.example/x.js: is fetched",
+        '<link rel="stylesheet" href="//cdn.example/x.css">': "//cdn.example/x.css: is fetched",
+    }
+    for text, told in bad.items():
+        (tmp_path / "a.html").write_text(good + text)
+        (found,) = links(tmp_path)
+        assert found.startswith(f"a.html: {told}"), found
+
+
+@pytest.fixture
+def build(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    pytest.importorskip("nbclient")
+    monkeypatch.syspath_prepend(str(SITE))
+    return importlib.import_module("build")
+
+
+def test_links_between_files_become_links_between_pages(build: ModuleType) -> None:
+    places = {
+        "docs/a.md": "docs/a.md",
+        "python/docs/t/b.md": "python/t/b.md",
+        "docs/p.svg": "docs/p.svg",
+    }
+    text = (
+        "[b](../python/docs/t/b.md#x) ![p](p.svg) [code](../crates/x.rs) [w](https://w.org) [h](#h)"
+    )
+    told = build.relinked(text, PurePosixPath("docs/a.md"), places)
+    assert told == "[b](../python/t/b.md#x) ![p](p.svg) code [w](https://w.org) [h](#h)"

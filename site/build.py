@@ -1,0 +1,329 @@
+"""The whole site, by one command and without a network: ``python site/build.py OUT``.
+
+Pages of text by Sphinx (the repository's own Markdown, Python's reference, the command line's
+help), notebooks and the gallery, whose cells and programs are run for it; Rust's documentation; the
+page; a report of the laboratory. Then every link of it is followed (``links.py``).
+
+Needs what the repository's programs need, Rust and Python with ``pip install './python[docs]'``;
+and for the page Node, with ``npm ci`` done in ``web/``. ``--without page`` leaves it out, and the
+site says so.
+"""
+
+import argparse
+import os
+import re
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from html import escape
+from pathlib import Path, PurePosixPath
+from typing import Any
+
+import links
+import nbformat
+from nbclient import NotebookClient
+
+HERE = Path(__file__).resolve().parent
+ROOT = HERE.parent
+TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+#: What people build upon; the others are programs, or measure these.
+CRATES = ("colltrans", "colltrans-mesh", "colltrans-picture", "colltrans-assembly")
+#: Of each a text, or a folder of them, and its place on the site.
+TEXTS = {
+    "docs": "docs",
+    "python/docs": "python",
+    "site/index.md": "index.md",
+    "site/notebooks": "notebooks",
+    "ARCHITECTURE.md": "architecture.md",
+    "CONTRIBUTING.md": "contributing.md",
+    "CHANGELOG.md": "changelog.md",
+}
+KINDS = (".md", ".svg", ".ipynb", ".json")
+
+
+def run(*words: str | Path, **choices: Any) -> str:
+    """A program's standard output; a failure ends the build with what it said."""
+    told = [str(word) for word in words]
+    choices = {"cwd": ROOT, "stdout": subprocess.PIPE, "text": True} | choices
+    done = subprocess.run(told, check=False, **choices)
+    if done.returncode != 0:
+        raise SystemExit(f"{done.stdout or ''}\n{' '.join(told)}: exit code {done.returncode}")
+    return done.stdout or ""
+
+
+def gather(source: Path) -> None:
+    """All texts at their places, with links that lead to where things are on the site."""
+    places = dict(_files())
+    for file, place in places.items():
+        target = source / place
+        target.parent.mkdir(parents=True, exist_ok=True)
+        # What is written for the site links to places on it.
+        if file.endswith(".md") and not file.startswith("site/"):
+            text = (ROOT / file).read_text()
+            target.write_text(relinked(text, PurePosixPath(file), places))
+        else:
+            shutil.copy(ROOT / file, target)
+
+
+def _files() -> list[tuple[str, str]]:
+    found = []
+    for text, place in TEXTS.items():
+        if (ROOT / text).is_file():
+            found.append((text, place))
+            continue
+        for file in sorted((ROOT / text).rglob("*")):
+            if file.suffix in KINDS and "measurements" not in file.parent.parts:
+                inside = file.relative_to(ROOT / text).as_posix()
+                found += [(file.relative_to(ROOT).as_posix(), f"{place}/{inside}")]
+    return found
+
+
+def relinked(text: str, file: PurePosixPath, places: dict[str, str]) -> str:
+    """Links between files as links between their places; others of the repository as words."""
+
+    def kept(link: re.Match[str]) -> str:
+        bang, words, target, anchor = link.groups()
+        if re.match(r"(https?:|#|page/|rust/|laboratory/)", target + (anchor or "")):
+            return link[0]
+        led = os.path.normpath(file.parent / target)
+        if led not in places:
+            return words
+        here = PurePosixPath(places[str(file)]).parent
+        return f"{bang}[{words}]({os.path.relpath(places[led], here)}{anchor or ''})"
+
+    return re.sub(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)#\s]*)(#[^)\s]*)?\)", kept, text)
+
+
+def command_line(source: Path, program: Path) -> None:
+    """The help of every command, as the program gives it."""
+    wide = os.environ | {"COLUMNS": "100"}
+    text = [
+        "# The command line",
+        "",
+        "What the program says of itself. `colltrans setup` installs it as man pages.",
+        "",
+    ]
+    # A man page for each command, and one for all.
+    run(program, "setup", "--prefix", source.parent / "setup")
+    pages = (source.parent / "setup" / "share" / "man" / "man1").glob("*.1")
+    commands = sorted(page.stem.removeprefix("colltrans").removeprefix("-") for page in pages)
+    for command in commands:
+        told = run(program, *command.split(), "--help", env=wide).rstrip()
+        text += [f"## colltrans {command}".rstrip(), "", "````text", told, "````", ""]
+    (source / "command-line.md").write_text("\n".join(text))
+
+
+def gallery(source: Path, program: Path) -> None:
+    """Runs every program of the gallery: each writes one picture, which stands beside its text."""
+    programs = sorted(
+        file for file in (HERE / "gallery").iterdir() if file.suffix in (".sh", ".py")
+    )
+    folder = source / "gallery"
+    folder.mkdir()
+    tools = os.environ | {
+        "PATH": f"{program.parent}{os.pathsep}{os.environ['PATH']}",
+        "PYTHONDONTWRITEBYTECODE": "1",
+    }
+    shown, told = [], []
+    for file in programs:
+        picture = folder / f"{file.stem}.svg"
+        language = "sh" if file.suffix == ".sh" else "python"
+        start = ["bash", "-eu"] if file.suffix == ".sh" else [sys.executable]
+        run(*start, file, picture, env=tools)
+        if "<svg" not in picture.read_text():
+            raise SystemExit(f"{file}: wrote no picture")
+        title, *words = described(file.read_text())
+        shown.append(
+            f'<a href="#{anchor(title)}"><img src="{{}}" alt="">{escape(title)}</a>'.format(
+                f"_images/{picture.name}"
+            )
+        )
+        text = without_head(file.read_text())
+        told += [f"## {title}", "", " ".join(words), "", f"![{title}](gallery/{picture.name})", ""]
+        told += [
+            f"`site/gallery/{file.name} OUT.svg`",
+            "",
+            f"```{language}",
+            text.strip(),
+            "```",
+            "",
+        ]
+    head = [
+        "# Gallery",
+        "",
+        f"{len(programs)} pictures, each drawn by the program beside it when this site was built.",
+        "",
+    ]
+    cards = ["```{raw} html", '<div class="pictures">', *shown, "</div>", "```", ""]
+    (source / "gallery.md").write_text("\n".join(head + cards + told))
+
+
+def notebooks(source: Path) -> None:
+    """Runs every notebook, at the root of the checkout; a cell that fails ends the build."""
+    for file in sorted((source / "notebooks").glob("*.ipynb")):
+        book = nbformat.read(file, as_version=4)
+        NotebookClient(book, timeout=300, resources={"metadata": {"path": str(ROOT)}}).execute()
+        nbformat.write(book, file)
+
+
+def described(program: str) -> list[str]:
+    """The lines of its first comment, without their signs: a title, then what is seen."""
+    lines = program.splitlines()
+    lines = lines[1:] if lines[0].startswith("#!") else lines
+    told = []
+    for line in lines:
+        if not line.startswith("#"):
+            break
+        told.append(line.lstrip("# ").rstrip())
+    return told
+
+
+def without_head(program: str) -> str:
+    return re.sub(r"\A(#.*\n)+", "", program)
+
+
+def anchor(title: str) -> str:
+    return re.sub(r"[^a-z0-9]+", "-", title.lower()).strip("-")
+
+
+def sphinx(source: Path, out: Path) -> None:
+    words = [
+        "-q",
+        "-W",
+        "--keep-going",
+        "-E",
+        "-b",
+        "html",
+        "-c",
+        HERE,
+        "-d",
+        source.parent / "doctrees",
+    ]
+    run(
+        sys.executable,
+        "-m",
+        "sphinx",
+        *words,
+        source,
+        out,
+        env=os.environ | {"PYTHONDONTWRITEBYTECODE": "1"},
+    )
+
+
+def rust(out: Path) -> None:
+    # A folder of its own: what else has been documented is not on the site.
+    folder = TARGET / "site"
+    crates = [word for crate in CRATES for word in ("-p", crate)]
+    flags = {"RUSTDOCFLAGS": "-D warnings", "CARGO_TARGET_DIR": str(folder)}
+    run("cargo", "doc", "--no-deps", "--lib", "--quiet", *crates, env=os.environ | flags)
+    shutil.copytree(folder / "doc", out / "rust")
+    names = [crate.replace("-", "_") for crate in CRATES]
+    listed = "".join(f'<li><a href="{name}/index.html">{name}</a></li>' for name in names)
+    (out / "rust" / "index.html").write_text(page_of("Rust", f"<ul>{listed}</ul>"))
+
+
+def page(out: Path, built: Path | None) -> None:
+    if built is None:
+        run("node", "build.mjs", "--install", cwd=ROOT / "web", stdout=None)
+        built = ROOT / "web" / "dist"
+    shutil.copytree(built, out / "page")
+
+
+def laboratory(out: Path, results: Path | None) -> None:
+    if results is None:
+        results = out / "laboratory"
+        run(
+            "cargo",
+            "run",
+            "--release",
+            "--quiet",
+            "-p",
+            "colltrans-lab",
+            "--",
+            "all",
+            "--quick",
+            "-o",
+            results,
+        )
+        return
+    shutil.copytree(results, out / "laboratory")
+
+
+def not_built(out: Path, part: str) -> None:
+    """In the place of a part that was left out, a page that says so."""
+    names = {"page": "page/index.html", "laboratory": "laboratory/report.html"}
+    wanted = {"rust": [f"rust/{crate.replace('-', '_')}/index.html" for crate in CRATES]}
+    for name in wanted.get(part, [names.get(part, "")]):
+        file = out / name
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(
+            page_of("Not built", f"This site was built without its part <b>{part}</b>.")
+        )
+
+
+def page_of(title: str, body: str) -> str:
+    return (
+        '<!doctype html><html lang="en"><meta name="viewport" content="width=device-width">'
+        '<meta name="color-scheme" content="light dark">'
+        f"<title>{title}</title><h1>{title}</h1>{body}"
+    )
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
+    parser.add_argument("out", type=Path, help="a folder, which is made anew")
+    parser.add_argument(
+        "--without", action="append", default=[], choices=["rust", "page", "laboratory"]
+    )
+    parser.add_argument(
+        "--page",
+        type=Path,
+        metavar="DIST",
+        help="the page as it was built, in place of building it",
+    )
+    parser.add_argument(
+        "--laboratory", type=Path, metavar="DIR", help="results of a run, in place of a quick one"
+    )
+    asked = parser.parse_args()
+    out = asked.out.resolve()
+    if out.exists() and not (out / "objects.inv").exists() and any(out.iterdir()):
+        raise SystemExit(f"{out}: is no site; give it another place")
+    shutil.rmtree(out, ignore_errors=True)
+    work = TARGET / "site-source"
+    shutil.rmtree(work, ignore_errors=True)
+    source = work / "source"
+    source.mkdir(parents=True)
+    program = TARGET / "release" / "colltrans"
+
+    def part(name: str, make: Callable[[], object]) -> None:
+        began = time.monotonic()
+        if name in asked.without:
+            not_built(out, name)
+            print(f"{name:12} NOT BUILT", flush=True)
+            return
+        make()
+        print(f"{name:12} {time.monotonic() - began:6.1f} s", flush=True)
+
+    part(
+        "program",
+        lambda: run("cargo", "build", "--release", "--quiet", "-p", "colltrans-cli"),
+    )
+    part("texts", lambda: gather(source))
+    part("help", lambda: command_line(source, program))
+    part("gallery", lambda: gallery(source, program))
+    part("notebooks", lambda: notebooks(source))
+    part("sphinx", lambda: sphinx(source, out))
+    part("rust", lambda: rust(out))
+    part("page", lambda: page(out, asked.page))
+    part("laboratory", lambda: laboratory(out, asked.laboratory))
+    wrong = links.wrong(out)
+    print(f"links        {len(wrong)} that lead nowhere", flush=True)
+    raise SystemExit("\n".join(wrong) if wrong else 0)
+
+
+if __name__ == "__main__":
+    main()

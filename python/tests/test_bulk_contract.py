@@ -19,7 +19,7 @@ from colltrans import InputError, Solid, clearance_many, motion_clearance_many
 pa = pytest.importorskip("pyarrow")
 pq = pytest.importorskip("pyarrow.parquet")
 
-from shards import CORNERS, all_ids, ids, queries, shards, table_of, write, write_bodies  # noqa: E402
+from shards import CORNERS, KEYS, all_ids, ids, queries, shards, table_of, write, write_bodies  # noqa: E402
 
 from colltrans.bulk import Bodies, Options, answer_table, files  # noqa: E402
 from colltrans.bulk.__main__ import main  # noqa: E402
@@ -405,3 +405,29 @@ def test_an_s3_server(tmp_path: Path, bodies: Path, monkeypatch: Any) -> None:
         assert ids(tmp_path / "out") == all_ids(2, 40)
     finally:
         server.stop()
+
+
+def test_features_and_all_directions_are_columns(tmp_path: Path, bodies: Path) -> None:
+    asked = write(tmp_path / "queries.parquet", queries(1, 60))
+    words = [str(asked), "--bodies", str(bodies), "--question"]
+    assert main([*words[:1], str(tmp_path / "out"), *words[1:], "clearance", "--features"]) == 0
+    answers = pq.read_table(tmp_path / "out" / "queries.parquet")
+    columns = queries(1, 60)
+    known: Any = Bodies(str(bodies)).get(KEYS[:2])
+    row = clearance_many(
+        known,
+        known[1],
+        columns["direction"],
+        moving_index=np.arange(60) % 2,
+        moving_pose=columns["moving_pose"],
+        features=True,
+    )
+    assert row.moving_feature is not None and (row.moving_feature >= 0).any()
+    assert answers["moving_feature"].to_pylist() == row.moving_feature.tolist()
+    plain = {k: v for k, v in columns.items() if k != "direction"}
+    asked = write(tmp_path / "all.parquet", {k: v[:8] for k, v in plain.items()})
+    words = [str(asked), str(tmp_path / "out"), "--bodies", str(bodies), "--question", "directions"]
+    assert main(words) in (0, 5)  # Bodies that overlap have no directions.
+    answers = pq.read_table(tmp_path / "out" / "all.parquet")
+    assert "free" in answers["outcome"].to_pylist() and "free_lower" in answers.column_names
+    assert main([*words, "--features"]) == 2

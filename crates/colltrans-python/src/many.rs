@@ -506,8 +506,8 @@ impl Columns {
     fn new(n: usize, question: Question, featured: bool) -> Self {
         let numbers = vec![vec![0.0; n]; question.numbers().len()];
         let vectors = vec![vec![[0.0; 3]; n]; question.vectors().len()];
-        let features = vec![vec![NO_CORNERS; n]; if featured { FEATURES.len() } else { 0 }];
-        Self { outcome: vec![0; n], numbers, vectors, features }
+        let corners = vec![vec![NO_CORNERS; n]; if featured { FEATURES.len() } else { 0 }];
+        Self { outcome: vec![0; n], numbers, vectors, features: corners }
     }
 
     fn parts(&mut self) -> Vec<Part<'_>> {

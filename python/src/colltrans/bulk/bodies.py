@@ -52,9 +52,9 @@ class Bodies:
 
     def __getstate__(self) -> dict[str, Any]:
         kept = {k: v for k, v in self.__dict__.items() if k != "_lock"}
-        if self._rows is not None and any(self._rows.values()):
-            kept["_rows"] = None  # What is left of the table is read again.
-        return {**kept, "_built": dict(self._built)}
+        if self._rows is not None and None in self._rows.values():
+            kept["_rows"] = None  # What has been built is no more in the table: it is read again.
+        return {**kept, "_built": {}}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state, _lock=threading.RLock())
@@ -71,6 +71,8 @@ class Bodies:
                     built = pool.map(lambda key: self._build(key, rows), missing)
                     self._built.update(zip(missing, built, strict=True))
                 rows.update(dict.fromkeys(rows.keys() & missing))
+                if rows and not any(rows.values()):
+                    _release()
             return [self._built[key] for key in keys]
 
     def read_table(self) -> dict[str, Row]:
@@ -84,12 +86,17 @@ class Bodies:
         with self._lock:
             if self._rows is None:
                 self._rows = {} if self.table is None else rows_of(self.table)
+                _release()
             return self._rows
 
-    def build_table(self) -> None:
-        """Builds all bodies of the table, if there is one; copies of these read it no more."""
+    def share(self) -> None:
+        """Reads the table, if there is one; copies of these read it no more.
+
+        They build what they need, from numbers that all processes of a machine share where copies
+        go through shared memory (Arrow's arrays do, in Ray's object store).
+        """
         with self._lock:
-            self.get(self.read_table())
+            self.read_table()
             self.digest(())
 
     def digest(self, keys: Iterable[Any]) -> str:
@@ -135,6 +142,13 @@ class Bodies:
         if faces is None or self.hull:
             return ConvexPolyhedron(vertices)
         return ConvexPolyhedron.from_mesh(vertices, faces)
+
+
+def _release() -> None:
+    """Gives back what Arrow keeps for later: after a table has been read, its size again."""
+    import pyarrow as pa
+
+    pa.default_memory_pool().release_unused()
 
 
 def rows_of(table: str) -> dict[str, Row]:

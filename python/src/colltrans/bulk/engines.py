@@ -66,9 +66,10 @@ def ray(
 ) -> Iterator[Report]:
     """Shards as tasks of a Ray cluster, as they are done; here, if there is no address.
 
-    Files must be where every node finds them under the same name. The bodies of a table are built
-    here, go once through the object store, and every worker keeps them; meshes are read by every
-    worker. A task whose worker dies is done again, up to five times.
+    Files must be where every node finds them under the same name. The table of bodies is read here
+    and goes once through the object store, where all workers of a node read the same numbers; each
+    builds the bodies that it needs, and keeps them. Meshes are read by every worker. A task whose
+    worker dies is done again, up to five times.
     """
     import ray
 
@@ -76,7 +77,7 @@ def ray(
         here: dict[str, Any] = {"num_cpus": workers, "include_dashboard": False}
         here["object_store_memory"] = 256 << 20
         ray.init(address=address, log_to_driver=False, **({} if address else here))
-    bodies.build_table()
+    bodies.share()
     store = ray.put(bodies)
 
     def answer_with(job: Job, boxed: list[Any]) -> Report:

@@ -9,20 +9,8 @@ from numpy.typing import ArrayLike
 from colltrans._colltrans import FreeDirections, free_directions
 from colltrans.columns import Table
 from colltrans.outcomes import Outcomes
-from colltrans.queries import (
-    AnyBodies,
-    Floats,
-    Index,
-    Poses,
-    Shape,
-    body_list,
-    checked_threads,
-    column,
-    indices_of,
-    pose_table,
-    row_of,
-    together,
-)
+from colltrans.pairs import PairQueries, pair_queries
+from colltrans.queries import AnyBodies, Floats, Poses, Shape, checked_threads, row_of
 from colltrans.solids import answer_rows, check_bodies
 
 OUTCOMES = ("free", "blocked", "undecided", "error")
@@ -30,26 +18,22 @@ OUTCOMES = ("free", "blocked", "undecided", "error")
 
 @dataclass(frozen=True)
 class FreeQueries:
-    """What was asked: tables with one row or as many as there are queries."""
+    """What was asked: bodies where they are, and choices that are one for all rows."""
 
-    bodies: tuple[list[Any], list[Any]]
-    indices: tuple[Index, Index]
-    poses: tuple[Floats, Floats]
-    #: NaN stands for none.
-    tolerance: Floats
+    pairs: PairQueries
     choices: dict[str, Any]
-    shape: Shape
+
+    @property
+    def shape(self) -> Shape:
+        return self.pairs.shape
 
     def ask(self, question: Any, i: int) -> Any:
         """One of them, alone."""
-        moving, fixed = (
-            bodies[0 if index is None else index[i]]
-            for bodies, index in zip(self.bodies, self.indices, strict=True)
-        )
-        at, to = (row_of(table, i) for table in self.poses)
-        tolerance = float(row_of(self.tolerance, i)[0])
-        choices = {**self.choices, "tolerance": None if np.isnan(tolerance) else tolerance}
-        return question(moving, fixed, moving_pose=at, fixed_pose=to, **choices)
+        moving, fixed, places = self.pairs.placed(i)
+        # NaN stands for none.
+        found = np.nan if self.pairs.number is None else float(row_of(self.pairs.number, i)[0])
+        tolerance = None if np.isnan(found) else found
+        return question(moving, fixed, **places, **self.choices, tolerance=tolerance)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -124,28 +108,11 @@ def free_directions_many(
     >>> bool(columns.free_lower[0] <= 0.5 <= columns.free_upper[0]), columns.direction[0].tolist()
     (True, [0.0, 0.0, 1.0])
     """
-    moving_bodies, moving_numbers = body_list(moving, moving_index, "moving")
-    fixed_bodies, fixed_numbers = body_list(fixed, fixed_index, "fixed")
-    shape, tables = together(
-        {
-            "moving_pose": pose_table(moving_pose, "moving_pose"),
-            "fixed_pose": pose_table(fixed_pose, "fixed_pose"),
-            "tolerance": column(np.nan if tolerance is None else tolerance, "tolerance"),
-            "moving_index": moving_numbers,
-            "fixed_index": fixed_numbers,
-        }
-    )
+    poses, indices = (moving_pose, fixed_pose), (moving_index, fixed_index)
+    tolerances = {} if tolerance is None else {"tolerance": tolerance}
     asked = FreeQueries(
-        bodies=(moving_bodies, fixed_bodies),
-        indices=indices_of(tables, shape),
-        poses=(tables["moving_pose"], tables["fixed_pose"]),
-        tolerance=tables["tolerance"],
-        choices={
-            "ignore_start_overlaps": ignore_start_overlaps,
-            "depth": depth,
-            "looks": looks,
-        },
-        shape=shape,
+        pair_queries((moving, fixed), poses, indices, tolerances),
+        {"ignore_start_overlaps": ignore_start_overlaps, "depth": depth, "looks": looks},
     )
     return _answered(asked, checked_threads(threads))
 
@@ -164,7 +131,7 @@ def _answered(asked: FreeQueries, threads: int | None) -> FreeColumns:
     numbers = [getattr(columns, name) for name in names]
 
     def answer(i: int) -> None:
-        check_bodies(asked.bodies, asked.indices, i)
+        check_bodies(asked.pairs.bodies, asked.pairs.indices, i)
         found = asked.ask(free_directions, i)
         counts = map(len, (found.regions, found.arcs, found.points))
         values = (*found.free_share, found.undecided_share, *counts)

@@ -1,6 +1,8 @@
 """Bodies where they are, in bulk: distances, depths, comparisons with a length; columns out."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any, Literal, TypeAlias
 
 import numpy as np
@@ -34,8 +36,8 @@ class PairQueries:
     bodies: tuple[list[Any], list[Any]]
     indices: tuple[Index, Index]
     poses: tuple[Floats, Floats]
-    #: Of :func:`within_many`.
-    length: Floats | None
+    #: The length of :func:`within_many`; the tolerance of :func:`free_directions_many`.
+    number: Floats | None
     shape: Shape
 
     def ask_all(
@@ -48,7 +50,7 @@ class PairQueries:
             (moving, moving_index),
             (fixed, fixed_index),
             *self.poses,
-            np.zeros((1, 1)) if self.length is None else self.length,
+            np.zeros((1, 1)) if self.number is None else self.number,
             features,
             threads,
         )
@@ -56,13 +58,18 @@ class PairQueries:
 
     def ask(self, question: Any, i: int) -> Any:
         """One of them, alone."""
+        moving, fixed, places = self.placed(i)
+        number = () if self.number is None else (float(row_of(self.number, i)[0]),)
+        return question(moving, fixed, *number, **places)
+
+    def placed(self, i: int) -> tuple[Any, Any, dict[str, Floats]]:
+        """The bodies of a row, and where they are."""
         moving, fixed = (
             bodies[0 if index is None else index[i]]
             for bodies, index in zip(self.bodies, self.indices, strict=True)
         )
-        length = () if self.length is None else (float(row_of(self.length, i)[0]),)
         at, to = (row_of(table, i) for table in self.poses)
-        return question(moving, fixed, *length, moving_pose=at, fixed_pose=to)
+        return moving, fixed, {"moving_pose": at, "fixed_pose": to}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -182,7 +189,7 @@ def distance_many(
     'face'
     """
     poses, indices = (moving_pose, fixed_pose), (moving_index, fixed_index)
-    queries = _queries_of((moving, fixed), poses, indices)
+    queries = pair_queries((moving, fixed), poses, indices)
     return DistanceColumns(**queries.ask_all("distance", checked_threads(threads), features))
 
 
@@ -216,7 +223,7 @@ def depth_many(
     (array([0.25, 0.  ]), {'overlapping': 1, 'apart': 1})
     """
     poses, indices = (moving_pose, fixed_pose), (moving_index, fixed_index)
-    queries = _queries_of((moving, fixed), poses, indices)
+    queries = pair_queries((moving, fixed), poses, indices)
     return DepthColumns(**queries.ask_all("depth", checked_threads(threads)))
 
 
@@ -253,23 +260,24 @@ def within_many(
     array([ True, False])
     """
     poses, indices = (moving_pose, fixed_pose), (moving_index, fixed_index)
-    queries = _queries_of((moving, fixed), poses, indices, length)
+    queries = pair_queries((moving, fixed), poses, indices, {"length": length})
     return WithinColumns(**queries.ask_all("within", checked_threads(threads)))
 
 
-def _queries_of(
+def pair_queries(
     bodies: tuple[AnyBodies, AnyBodies],
     poses: tuple[Poses, Poses],
     indices: tuple[ArrayLike | None, ArrayLike | None],
-    length: ArrayLike | None = None,
+    number: Mapping[str, ArrayLike] = MappingProxyType({}),
 ) -> PairQueries:
+    """What is asked, checked; ``number`` is one for each row, by its name."""
     moving, moving_index = body_list(bodies[0], indices[0], "moving")
     fixed, fixed_index = body_list(bodies[1], indices[1], "fixed")
     shape, tables = together(
         {
             "moving_pose": pose_table(poses[0], "moving_pose"),
             "fixed_pose": pose_table(poses[1], "fixed_pose"),
-            "length": None if length is None else column(length, "length"),
+            **{name: column(values, name) for name, values in number.items()},
             "moving_index": moving_index,
             "fixed_index": fixed_index,
         }
@@ -278,6 +286,6 @@ def _queries_of(
         bodies=(moving, fixed),
         indices=indices_of(tables, shape),
         poses=(tables["moving_pose"], tables["fixed_pose"]),
-        length=tables.get("length"),
+        number=next((tables[name] for name in number), None),
         shape=shape,
     )

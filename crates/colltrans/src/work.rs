@@ -128,6 +128,37 @@ mod tests {
         }
     }
 
+    /// Neither a climb along a rim nor the proof at an apex looks at each of its corners.
+    #[test]
+    fn casts_of_bodies_with_rims() {
+        let rims: [(&str, &[[f64; 2]], &[f64]); 4] = [
+            ("cylinder", &[[1.0, -1.0], [1.0, 1.0]], &[]),
+            ("chamfers", &[[0.99, -1.0], [1.0, -0.99], [1.0, 0.99], [0.99, 1.0]], &[]),
+            ("cone", &[[1.0, -0.5]], &[1.0]),
+            ("bicone", &[[1.0, 0.0]], &[-1.0, 1.0]),
+        ];
+        for (what, rings, tips) in rims {
+            let [few, many] = [2_000, 20_000].map(|count| {
+                let rings = rings.iter().flat_map(|&[r, z]| ring(count / rings.len(), r, z));
+                let points: Vec<_> = rings.chain(tips.iter().map(|&z| DVec3::Z * z)).collect();
+                let body = hull(&points);
+                let mut random = Random::new(3);
+                looks(|| {
+                    for _ in 0..200 {
+                        let direction = random.direction();
+                        let aside = random.direction() * random.range(0.0, 0.8);
+                        let [start, target] = [aside - direction * 4.0, DVec3::ZERO]
+                            .map(|at| Pose::new(random.rotation(), at).expect("a pose"));
+                        let cast = Cast::new(body.at(start), body.at(target), direction);
+                        cast.and_then(|cast| cast.first_contact()).expect("an answer");
+                    }
+                }) / 200
+            });
+            println!("{what}: {few} looks a cast at 2,000 corners, {many} at 20,000");
+            assert!(many < 2 * few && many < 400, "{what}: {few} and {many} looks");
+        }
+    }
+
     /// An answer and its proof are of one search, where the file's bodies have the same trees.
     #[cfg(feature = "json")]
     #[test]

@@ -32,7 +32,7 @@ const CASTS: &[(&str, u64)] = &[
     ("identical", 0x44db_d371_dd8e_7572),
     ("peg", 0xb48a_cad8_d6ff_0af9),
     ("needle-plate", 0xc140_8d13_aa2d_171c),
-    ("size-ratio", 0x41cf_9ea4_2561_1caa),
+    ("size-ratio", 0x91d0_1124_cef6_9ba2),
     ("offset", 0xae36_e472_cd90_5537),
     ("far", 0xd083_07f2_cffa_dbbc),
     ("flat", 0x3521_d306_07f7_fa7d),
@@ -42,7 +42,7 @@ const CASTS: &[(&str, u64)] = &[
     ("thin", 0xe4d9_2e44_d028_1195),
     ("cylinders", 0xe767_8ebc_6617_7638),
     ("magnitude", 0x4347_023a_4585_a16f),
-    ("narrow-rings", 0x0c95_e6f2_e4b1_15be),
+    ("narrow-rings", 0x0c1b_ad95_c85c_ae36),
 ];
 
 /// Families of solids.

@@ -152,12 +152,6 @@ impl Topology {
         &self.outgoing[start..end]
     }
 
-    /// The half-edge from a vertex to a neighbour; `None` without faces.
-    pub(crate) fn edge_between(&self, from: u32, to: u32) -> Option<u32> {
-        let k = self.neighbours(from).iter().position(|&w| w == to)?;
-        self.outgoing(from).get(k).copied()
-    }
-
     /// Bytes on the heap.
     pub(crate) fn heap_bytes(&self) -> usize {
         self.half_edges.capacity() * size_of::<HalfEdge>()

@@ -181,9 +181,15 @@ impl<'a> MinkowskiDifference<'a> {
     pub(crate) fn vertex(&self, pair: VertexPair) -> Point {
         let p = self.setting.moving.vertices()[pair.moving.index()];
         let q = self.setting.fixed.vertices()[pair.fixed.index()];
-        let at = (transposed(&self.fixed_from_shadow, q) - transposed(&self.moving_from_shadow, p))
-            + self.offset;
-        Point { at, pair }
+        Point { at: self.difference(p, q), pair }
+    }
+
+    /// The difference of a place in the fixed body and one in the moving body, each in its body's frame.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+    pub(crate) fn difference(&self, moving: DVec3, fixed: DVec3) -> DVec3 {
+        (transposed(&self.fixed_from_shadow, fixed) - transposed(&self.moving_from_shadow, moving))
+            + self.offset
     }
 
     /// The same of `M` as it is widened: the corner that is lowest along a normal.
@@ -213,9 +219,7 @@ impl<'a> MinkowskiDifference<'a> {
     #[inline]
     pub(crate) fn center(&self) -> DVec3 {
         let (moving, fixed) = (self.setting.moving.inertia(), self.setting.fixed.inertia());
-        (transposed(&self.fixed_from_shadow, fixed.center)
-            - transposed(&self.moving_from_shadow, moving.center))
-            + self.offset
+        self.difference(moving.center, fixed.center)
     }
 
     /// Whether balls inside the bodies prove that the shadow of `M` contains all that is nearer to

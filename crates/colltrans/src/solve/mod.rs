@@ -268,7 +268,8 @@ impl<O: Observer> Run<'_, '_, '_, O> {
         self.context.watch.ended(Phase::Setup);
         let mut nearest = start;
         if start.normal.z > 0.0 {
-            let (followed, reached) = portal::approach(&mut self.context, &start);
+            let (followed, reached) =
+                portal::approach(&mut self.context, &start, &portal::OF_ELLIPSOIDS);
             nearest = reached;
             let found = match followed {
                 Followed::Portal(portal, known) => Some(Enclosure::Portal(portal, known)),
@@ -279,7 +280,19 @@ impl<O: Observer> Run<'_, '_, '_, O> {
                 return found;
             }
         }
-        portal::enclose(&mut self.context, &nearest)
+        Some(match portal::enclose(&mut self.context, &nearest)? {
+            Enclosure::Portal(portal, _) if self.has_rims() => {
+                let (portal, known) = portal::along_rims(&mut self.context, portal);
+                Enclosure::Portal(portal, known)
+            }
+            found => found,
+        })
+    }
+
+    #[inline]
+    fn has_rims(&self) -> bool {
+        let setting = self.context.difference.setting;
+        setting.moving.has_rims() || setting.fixed.has_rims()
     }
 
     /// Whether all of `M` lies beyond a lateral direction.

@@ -25,8 +25,11 @@
 use glam::DVec3;
 
 use super::ConvexPolyhedron;
+use super::fan::Above;
+use super::support::FAN;
 use crate::number::noise;
 use crate::number::plane::polygon_normal;
+use crate::work;
 
 /// Vertices of a plateau that are visited one by one; a larger one is taken to be the whole body.
 const VISITED: usize = 16;
@@ -35,7 +38,7 @@ const VISITED: usize = 16;
 const SMALL: usize = 48;
 
 /// A face with more corners is measured at three.
-const FEW: usize = 8;
+pub(super) const MANY: usize = 8;
 
 /// What may be hidden by measuring at three corners, in `GAIN reach`: an exactly flat face hides half of it.
 const ENOUGH: f64 = 32.0;
@@ -161,12 +164,24 @@ impl ConvexPolyhedron {
         let mut plateau = Plateau { vertices: [vertex; VISITED], count: 1 };
         let (mut next, mut highest, mut summit) = (0, 0.0, vertex);
         while next < plateau.count {
-            for &w in self.neighbours(plateau.vertices[next]) {
-                let gained = normal.dot(self.vertices[w as usize] - here);
-                summit = if gained > highest { w } else { summit };
-                highest = if gained > highest { gained } else { highest };
-                if gained > least && !plateau.add(w) {
-                    return self.summit_of_many(normal, length, vertex, most);
+            let from = plateau.vertices[next];
+            let neighbours = self.neighbours(from);
+            if neighbours.len() > FAN {
+                let reach = self.inertia.reach;
+                let above = Above { normal, length, here, least, reach };
+                match self.seen_in_fan(from, &above, &mut plateau, (summit, highest)) {
+                    Some(seen) => (summit, highest) = seen,
+                    None => return self.summit_of_many(normal, length, vertex, most),
+                }
+            } else {
+                work::count(neighbours.len());
+                for &w in neighbours {
+                    let gained = normal.dot(self.vertices[w as usize] - here);
+                    summit = if gained > highest { w } else { summit };
+                    highest = if gained > highest { gained } else { highest };
+                    if gained > least && !plateau.add(w) {
+                        return self.summit_of_many(normal, length, vertex, most);
+                    }
                 }
             }
             if highest > limit {
@@ -186,6 +201,29 @@ impl ConvexPolyhedron {
         }
         let excess = highest / length + noise::GAIN * self.inertia.reach;
         Some(Summit { vertex: summit, excess })
+    }
+
+    /// The highest and how high it is, after a look at those of many neighbours that may belong to the plateau;
+    /// `None` if these are too many.
+    #[cold]
+    #[inline(never)]
+    fn seen_in_fan(
+        &self,
+        from: u32,
+        above: &Above,
+        plateau: &mut Plateau,
+        (mut summit, mut highest): (u32, f64),
+    ) -> Option<(u32, f64)> {
+        let mut look = |w: u32| {
+            let gained = above.normal.dot(self.vertices[w as usize] - above.here);
+            if gained > highest {
+                (summit, highest) = (w, gained);
+            }
+            gained <= above.least || plateau.add(w)
+        };
+        let fan = self.support.fan(from);
+        let fits = fan.look_above(&self.vertices, &self.topology, above, &mut look);
+        fits.then_some((summit, highest))
     }
 
     /// The same where more may be in the plateau than is worth visiting.
@@ -236,14 +274,19 @@ impl ConvexPolyhedron {
         vertex: u32,
         most: f64,
     ) -> Option<Summit> {
-        let around = self.topology.outgoing(vertex).iter();
-        let large = around.map(|&h| self.topology.half_edge(h).face).filter_map(|face| {
-            let found = self.large_faces.binary_search_by_key(&face, |large| large.face);
-            found.ok().map(|k| &self.large_faces[k])
-        });
-        let mut near = large.filter(|large| normal.dot(large.normal) > ACROSS * length);
-        let excess_of = |large| self.excess_of_face(large, normal, length, vertex, most);
-        let (face, excess) = near.find_map(|large| Some((large.face, excess_of(large)?)))?;
+        let outgoing = self.topology.outgoing(vertex);
+        let excess_of = |face: u32| {
+            let found = self.large_faces.binary_search_by_key(&face, |large| large.face).ok()?;
+            let large = &self.large_faces[found];
+            let excess = || self.excess_of_face(large, normal, length, vertex, most);
+            let is_across = normal.dot(large.normal) > ACROSS * length;
+            is_across.then(excess).flatten().map(|excess| (face, excess))
+        };
+        let (face, excess) = if outgoing.len() > FAN {
+            self.support.fan(vertex).wide().iter().find_map(|&face| excess_of(face))?
+        } else {
+            outgoing.iter().find_map(|&h| excess_of(self.topology.half_edge(h).face))?
+        };
         let corners = self.face_vertices(face);
         let gain = noise::GAIN * self.inertia.reach;
         if excess <= ENOUGH * gain || corners.len() > SCANNED {
@@ -301,7 +344,7 @@ impl ConvexPolyhedron {
                 let first = corners.clone().next().unwrap_or_default();
                 let off = corners.map(|p| normal.dot(p - first).abs()).fold(0.0, f64::max);
                 self.flatness = self.flatness.max(off + noise::GAIN * self.inertia.reach);
-                if count > FEW {
+                if count > MANY {
                     self.large_faces.push(self.large_face(face, normal));
                 }
             }

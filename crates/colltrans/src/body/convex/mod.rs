@@ -7,6 +7,8 @@
 mod as_solid;
 mod build;
 mod excess;
+mod fan;
+mod ring;
 pub(crate) mod sections;
 mod support;
 #[cfg(test)]
@@ -23,9 +25,10 @@ use crate::body::{Inertia, InputVertex, VertexId};
 use crate::number::plane::polygon_normal;
 pub use build::{ConvexityDefect, OffsetReport, convexity_defect};
 pub(crate) use excess::LargeFace;
+pub(crate) use fan::greatest_on_cycle;
+use ring::Rim;
 use sections::SectionIndex;
 use support::SupportIndex;
-pub(crate) use support::greatest_on_cycle;
 
 /// A convex polyhedron in its own frame: the convex hull of finitely many points.
 ///
@@ -202,6 +205,25 @@ impl ConvexPolyhedron {
     #[inline]
     pub(crate) fn is_like_ball(&self) -> bool {
         self.vertices.len() <= FEW && self.inertia.round
+    }
+
+    /// Whether the body has faces with so many corners, or vertices with so many neighbours, that these lie on a
+    /// rim.
+    #[inline]
+    pub(crate) fn has_rims(&self) -> bool {
+        self.support.has_rings()
+    }
+
+    /// The number of the rim that a vertex lies on, or its own, if it stands for itself: of a body of few
+    /// vertices, or with many neighbours.
+    #[inline]
+    pub(crate) fn rim_of(&self, vertex: u32) -> Option<u32> {
+        self.support.rim_of(&self.topology, vertex)
+    }
+
+    /// The rim that a vertex lies on; itself, if it lies on none.
+    pub(crate) fn rim(&self, vertex: u32) -> Rim {
+        self.support.rim(&self.vertices, vertex)
     }
 
     /// Positions among the neighbours of `vertex` that may lie in its supporting plane along

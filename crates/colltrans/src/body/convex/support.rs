@@ -12,17 +12,16 @@
 //! corner), a cell is divided in four, and again, until its centre and its corners are a few edges
 //! apart. The number of cells is at most proportional to the number of vertices.
 //!
-//! A vertex with many neighbours (the apex of a cone) would make one step linear. Cut by a plane,
-//! the edges of a vertex are the corners of a convex polygon, over which a linear function has one
-//! maximum and one minimum: the steepest edge is found among widely spaced ones first, then among
-//! ever closer ones. Along the boundary of a face with many corners (the base of a cylinder) a climb
-//! would take a step for each: there it goes twice as far each time while the boundary still rises,
-//! and then searches where it began to fall.
+//! A vertex with many neighbours (the apex of a cone) would make one step linear, and along the boundary of
+//! a face with many corners (the base of a cylinder), or along what is beside it, a climb would take a step
+//! for each: there the place is found by its angle ([`ring`](super::ring), [`fan`](super::fan)).
 
 use std::hint::select_unpredictable;
 
 use glam::{DMat3, DVec2, DVec3};
 
+use super::fan::Fan;
+use super::ring::{Rim, Ring};
 use crate::body::Inertia;
 use crate::body::topology::Topology;
 use crate::number::noise;
@@ -44,12 +43,14 @@ const PATIENCE: usize = 2;
 /// single-precision models have.
 const MAX_DEPTH: u32 = 20;
 
-/// A vertex with more neighbours than this is searched, not scanned.
-const FAN: usize = 32;
+/// A vertex with more neighbours than this is searched, not scanned; a face with more corners has a ring.
+pub(super) const FAN: usize = 32;
 
-/// Steps after which a climb looks whether it goes along a face with more corners than [`FAN`]
-/// (measured).
-const LONG: usize = 6;
+/// Steps after which a climb looks whether it goes along a ring.
+const STRIDE: usize = 3;
+
+/// No ring.
+const NO_RING: u16 = u16::MAX;
 
 /// The table over directions.
 #[derive(Debug, Clone)]
@@ -62,11 +63,12 @@ pub(crate) struct SupportIndex {
     cells: Vec<u32>,
     /// The vertices of a body small enough to scan.
     groups: Vec<Group>,
-    /// Vertices with many neighbours, ascending, each with a vector that has a positive product
-    /// with all its edges.
-    fans: Vec<(u32, DVec3)>,
-    /// Whether there are faces with more corners than [`FAN`].
-    has_wide_faces: bool,
+    /// Vertices with many neighbours, ascending.
+    fans: Vec<Fan>,
+    /// The rings of faces with many corners, and those beside them.
+    rings: Vec<Ring>,
+    /// For each vertex its ring: a number in `rings`, or beyond these in `fans`. Empty without any.
+    ring_of: Vec<u16>,
 }
 
 impl SupportIndex {
@@ -77,9 +79,10 @@ impl SupportIndex {
             cells: Vec::new(),
             groups: Vec::new(),
             fans: fans(vertices, topology),
-            has_wide_faces: (0..topology.face_count() as u32)
-                .any(|face| topology.face(face).len() > FAN),
+            rings: rings(vertices, topology),
+            ring_of: Vec::new(),
         };
+        index.ring_of = index.rings_of_vertices(topology);
         if vertices.len() <= SCAN_LIMIT {
             index.groups = groups(vertices);
         } else {
@@ -149,6 +152,7 @@ impl SupportIndex {
         direction: DVec3,
         start: u32,
     ) -> u32 {
+        let start = self.along_ring(vertices, topology, direction, start);
         let (reached, steps) = self.climb(vertices, topology, direction, start, PATIENCE);
         if steps < PATIENCE {
             return reached;
@@ -179,7 +183,7 @@ impl SupportIndex {
             let (best, gain) = if neighbours.len() <= FAN {
                 steepest(vertices, neighbours, here, direction)
             } else {
-                let best = neighbours[self.steepest_in_fan(vertices, topology, at, direction)];
+                let best = neighbours[self.fan(at).steepest(vertices, topology, direction)];
                 (best, direction.dot(vertices[best as usize] - here))
             };
             if gain <= 0.0 {
@@ -198,15 +202,15 @@ impl SupportIndex {
     /// Steepest ascent from a vertex to the support point.
     #[inline]
     fn ascend(&self, vertices: &[DVec3], topology: &Topology, direction: DVec3, start: u32) -> u32 {
-        if self.has_wide_faces {
-            return self.ascend_along_faces(vertices, topology, direction, start);
+        if self.ring_of.is_empty() {
+            return self.climb(vertices, topology, direction, start, usize::MAX).0;
         }
-        self.climb(vertices, topology, direction, start, usize::MAX).0
+        self.ascend_by_rings(vertices, topology, direction, start)
     }
 
-    /// The same, with long strides along faces with many corners.
+    /// The same, along rings at once.
     #[inline(never)]
-    fn ascend_along_faces(
+    fn ascend_by_rings(
         &self,
         vertices: &[DVec3],
         topology: &Topology,
@@ -215,37 +219,89 @@ impl SupportIndex {
     ) -> u32 {
         let mut at = start;
         loop {
-            let (last, steps) = self.climb(vertices, topology, direction, at, LONG - 1);
-            if steps < LONG - 1 {
-                return last;
+            at = self.along_ring(vertices, topology, direction, at);
+            let (reached, steps) = self.climb(vertices, topology, direction, at, STRIDE);
+            if steps < STRIDE {
+                return reached;
             }
-            let (next, steps) = self.climb(vertices, topology, direction, last, 1);
-            if steps < 1 {
-                return last;
-            }
-            at = along_face(vertices, topology, direction, [last, next]);
+            at = reached;
         }
     }
 
-    /// Position among its neighbours of the steepest edge of a vertex with many.
-    fn steepest_in_fan(
+    /// The farthest vertex of the ring that a vertex is on, if it is on one and that is farther by more than
+    /// rounding.
+    #[inline]
+    fn along_ring(
         &self,
         vertices: &[DVec3],
         topology: &Topology,
-        vertex: u32,
         direction: DVec3,
-    ) -> usize {
-        let here = vertices[vertex as usize];
-        let neighbours = topology.neighbours(vertex);
-        let inward = self
-            .fans
-            .binary_search_by_key(&vertex, |fan| fan.0)
-            .map_or(DVec3::ZERO, |k| self.fans[k].1);
-        let slope = |i: usize| {
-            let edge = vertices[neighbours[i] as usize] - here;
-            direction.dot(edge) / inward.dot(edge)
-        };
-        greatest_on_cycle(neighbours.len(), slope)
+        at: u32,
+    ) -> u32 {
+        let Some(&number) = self.ring_of.get(at as usize) else { return at };
+        if number == NO_RING {
+            return at;
+        }
+        let there = self.ring(number).vertex(vertices, topology, direction);
+        let way = vertices[there as usize] - vertices[at as usize];
+        if direction.dot(way) > noise::GAIN * direction.abs().dot(way.abs()) { there } else { at }
+    }
+
+    fn ring(&self, number: u16) -> &Ring {
+        let number = usize::from(number);
+        self.rings.get(number).unwrap_or_else(|| self.fans[number - self.rings.len()].ring())
+    }
+
+    /// Whether a vertex may be on a ring.
+    #[inline]
+    pub(super) fn has_rings(&self) -> bool {
+        !self.ring_of.is_empty()
+    }
+
+    /// The number of a vertex's ring beyond those of vertices, or its own, if the body has few or it has many
+    /// neighbours.
+    #[inline]
+    pub(super) fn rim_of(&self, topology: &Topology, vertex: u32) -> Option<u32> {
+        match self.ring_of.get(vertex as usize) {
+            Some(&number) if number != NO_RING => {
+                Some(topology.vertex_count() as u32 + u32::from(number))
+            }
+            _ if topology.vertex_count() <= FAN || topology.neighbours(vertex).len() > FAN => {
+                Some(vertex)
+            }
+            _ => None,
+        }
+    }
+
+    /// The rim of a vertex's ring; a point of one that is on none.
+    pub(super) fn rim(&self, vertices: &[DVec3], vertex: u32) -> Rim {
+        match self.ring_of.get(vertex as usize) {
+            Some(&number) if number != NO_RING => *self.ring(number).rim(),
+            _ => Rim::point(vertices[vertex as usize]),
+        }
+    }
+
+    /// For each vertex the number of its ring, the one with the most corners.
+    fn rings_of_vertices(&self, topology: &Topology) -> Vec<u16> {
+        let count = (self.rings.len() + self.fans.len()).min(usize::from(NO_RING));
+        let mut ring_of =
+            if count > 0 { vec![NO_RING; topology.vertex_count()] } else { Vec::new() };
+        for number in 0..count as u16 {
+            let ring = self.ring(number);
+            for k in 0..ring.count() {
+                let known = &mut ring_of[ring.corner(topology, k) as usize];
+                if *known == NO_RING || self.ring(*known).count() < ring.count() {
+                    *known = number;
+                }
+            }
+        }
+        ring_of
+    }
+
+    /// That of a vertex with many neighbours.
+    pub(super) fn fan(&self, vertex: u32) -> &Fan {
+        let found = self.fans.binary_search_by_key(&vertex, |fan| fan.vertex);
+        &self.fans[found.unwrap_or_default()]
     }
 
     /// Candidates for neighbours in the supporting plane at `vertex`: positions of consecutive
@@ -263,7 +319,7 @@ impl SupportIndex {
         if count <= FAN {
             return (0, count);
         }
-        let best = self.steepest_in_fan(vertices, topology, vertex, direction);
+        let best = self.fan(vertex).steepest(vertices, topology, direction);
         ((best + count - 1) % count, 3)
     }
 
@@ -271,7 +327,11 @@ impl SupportIndex {
     pub(crate) fn heap_bytes(&self) -> usize {
         self.cells.capacity() * size_of::<u32>()
             + self.groups.capacity() * size_of::<Group>()
-            + self.fans.capacity() * size_of::<(u32, DVec3)>()
+            + self.ring_of.capacity() * size_of::<u16>()
+            + self.fans.capacity() * size_of::<Fan>()
+            + self.fans.iter().map(Fan::heap_bytes).sum::<usize>()
+            + self.rings.capacity() * size_of::<Ring>()
+            + self.rings.iter().map(Ring::heap_bytes).sum::<usize>()
     }
 
     /// The entry of the cell that a direction falls into.
@@ -383,6 +443,7 @@ impl Builder<'_> {
     /// Whether the support point is a few climbing steps from a vertex.
     fn is_near(&self, normalised: DVec3, start: u32) -> bool {
         let direction = self.to_body * normalised;
+        let start = self.index.along_ring(self.vertices, self.topology, direction, start);
         let most = NEAR_STEPS + 1;
         self.index.climb(self.vertices, self.topology, direction, start, most).1 < most
     }
@@ -470,96 +531,26 @@ fn steepest(vertices: &[DVec3], neighbours: &[u32], here: DVec3, direction: DVec
     (best, gain)
 }
 
-/// Where a function on a cycle with one maximum and one minimum is greatest.
-///
-/// Between samples with a common distance, the maximum is at most that distance from the greatest
-/// sample.
-pub(crate) fn greatest_on_cycle(count: usize, value: impl Fn(usize) -> f64) -> usize {
-    let mut stride = (count / 8).max(1).next_power_of_two();
-    let (mut best, mut greatest) = (0, f64::NEG_INFINITY);
-    let mut look = |i: usize, best: &mut usize| {
-        let v = value(i);
-        if v > greatest {
-            (*best, greatest) = (i, v);
-        }
-    };
-    for i in (0..count).step_by(stride) {
-        look(i, &mut best);
-    }
-    while stride > 1 {
-        stride /= 2;
-        let center = best;
-        look((center + stride) % count, &mut best);
-        look((center + count - stride) % count, &mut best);
-    }
-    best
-}
-
-/// Where the boundary of a face with many corners is highest beyond an edge that rises along it; the
-/// edge's end if neither face beside it has many.
-///
-/// A linear function rises along the boundary of a convex polygon up to one maximum, then falls, and
-/// rises again to where it began; so where it rises and is higher than there, the maximum is ahead.
-#[cold]
-#[inline(never)]
-fn along_face(
-    vertices: &[DVec3],
-    topology: &Topology,
-    direction: DVec3,
-    [from, at]: [u32; 2],
-) -> u32 {
-    let Some(left) = topology.edge_between(from, at) else { return at };
-    let right = topology.half_edge(left).twin;
-    let boundary = |edge: u32| topology.face(topology.half_edge(edge).face);
-    let is_wide = |edge: &u32| boundary(*edge).len() > FAN;
-    let Some(edge) = [left, right].into_iter().find(is_wide) else { return at };
-    let face = boundary(edge);
-    let (first, count) = (edge - face.start, face.len() as u32);
-    // The corner `k` edges beyond `at`.
-    let corner = |k: u32| {
-        let ahead = if edge == left { first + 1 + k } else { first + 2 * count - k };
-        topology.half_edge(face.start + ahead % count).origin
-    };
-    let here = vertices[at as usize];
-    let rises_to = |k: u32| {
-        let [last, there] = [k - 1, k].map(|k| vertices[corner(k) as usize]);
-        direction.dot(there - last) > 0.0 && direction.dot(there - here) > 0.0
-    };
-    // The boundary rises to `low`, and not to `high` or further than round.
-    let (mut low, mut high) = (0, 1);
-    while high < count && rises_to(high) {
-        (low, high) = (high, 2 * high);
-    }
-    high = high.min(count);
-    while high - low > 1 {
-        let middle = u32::midpoint(low, high);
-        if rises_to(middle) {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    let there = corner(low);
-    let way = vertices[there as usize] - here;
-    if direction.dot(way) > noise::GAIN * direction.abs().dot(way.abs()) { there } else { at }
-}
-
-/// The vertices with more than [`FAN`] neighbours, with the mean of the inward unit normals of
-/// their faces.
-fn fans(vertices: &[DVec3], topology: &Topology) -> Vec<(u32, DVec3)> {
-    let inward = |v: u32| {
-        let here = vertices[v as usize];
-        let neighbours = topology.neighbours(v);
-        let next = neighbours.iter().cycle().skip(1);
-        // Neighbours are clockwise from outside, so the product of two consecutive edges points
-        // inwards.
-        let normal = |(&a, &b): (&u32, &u32)| {
-            (vertices[a as usize] - here).cross(vertices[b as usize] - here).normalize_or_zero()
-        };
-        neighbours.iter().zip(next).map(normal).sum::<DVec3>()
-    };
+/// The vertices with more than [`FAN`] neighbours.
+fn fans(vertices: &[DVec3], topology: &Topology) -> Vec<Fan> {
     (0..topology.vertex_count() as u32)
         .filter(|&v| topology.neighbours(v).len() > FAN)
-        .map(|v| (v, inward(v)))
+        .map(|v| Fan::new(vertices, topology, v))
         .collect()
+}
+
+/// The rings of faces with more than [`FAN`] corners, then those beside them that are no rings of faces.
+fn rings(vertices: &[DVec3], topology: &Topology) -> Vec<Ring> {
+    let wide = || (0..topology.face_count() as u32).filter(|&f| topology.face(f).len() > FAN);
+    let mut rings: Vec<Ring> = wide().map(|f| Ring::of_face(vertices, topology, f)).collect();
+    if rings.is_empty() {
+        return rings;
+    }
+    let mut is_known = vec![false; vertices.len()];
+    wide().flat_map(|f| topology.face_vertices(f)).for_each(|v| is_known[v as usize] = true);
+    let is_new =
+        |ring: &Ring| (0..ring.count()).any(|k| !is_known[ring.corner(topology, k) as usize]);
+    let beside = wide().filter_map(|face| Ring::beside(vertices, topology, face)).filter(is_new);
+    rings.extend(beside);
+    rings
 }

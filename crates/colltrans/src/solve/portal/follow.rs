@@ -89,14 +89,14 @@ pub(crate) fn follow<O: Observer>(context: &mut Context<O>, last: &ContactPortal
             Line::Inside(known) => return Followed::Portal(portal, known),
         }
     }
-    walk(context, edge)
+    walk(context, edge, CROSSINGS)
 }
 
 /// From a face of `M` to the one that the line pierces, over one edge after another, of which the
 /// first is given.
 #[inline(never)]
-fn walk<O: Observer>(context: &mut Context<O>, mut edge: Edge) -> Followed {
-    for _ in 0..CROSSINGS {
+fn walk<O: Observer>(context: &mut Context<O>, mut edge: Edge, most: usize) -> Followed {
+    for _ in 0..most {
         context.watch.portal(|| [edge.from.at, edge.to.at, edge.third.at]);
         let Some(tilt) = edge.tilt() else { return Followed::Lost };
         // The edge that was crossed has the line on its left now.
@@ -112,16 +112,25 @@ fn walk<O: Observer>(context: &mut Context<O>, mut edge: Edge) -> Followed {
     Followed::Lost
 }
 
-/// How often a guess is corrected by the ellipsoids' curvature before the walk begins.
-const CORRECTIONS: usize = 4;
+/// How much is done to get from a guess to the line, face by face.
+pub(crate) struct Patience {
+    /// How often the guess is corrected by the ellipsoids' curvature before the walk begins.
+    corrections: usize,
+    /// A line no farther than this, in widths of the last triangle that is so near, is walked to if
+    /// corrections come no nearer. From farther away wide portals are the shorter way.
+    reach: f64,
+    /// Faces of `M` crossed before wide portals are the shorter way.
+    crossings: usize,
+}
+
+/// For a guess from ellipsoids, and for one that is right or wrong (both measured).
+pub(crate) const OF_ELLIPSOIDS: Patience =
+    Patience { corrections: 3, reach: 8.0, crossings: CROSSINGS };
+pub(super) const OF_RIMS: Patience = Patience { corrections: 0, reach: 4.0, crossings: 8 };
 
 /// A correction that leaves more of the distance from the line than this share says that the bodies
 /// are no ellipsoids.
 const PROGRESS: f64 = 0.5;
-
-/// A line no farther than this, in widths of the last triangle that is so near, is walked to if
-/// corrections come no nearer. From farther away wide portals are the shorter way (measured).
-const REACH: f64 = 8.0;
 
 /// From a guessed normal: the face of `M` beside its support point, and from there to the line.
 ///
@@ -133,6 +142,7 @@ const REACH: f64 = 8.0;
 pub(crate) fn approach<O: Observer>(
     context: &mut Context<O>,
     start: &FirstNormal,
+    patience: &Patience,
 ) -> (Followed, FirstNormal) {
     let reached = |portal, known| (Followed::Portal(portal, known), *start);
     let mut slope = start.normal.truncate();
@@ -144,7 +154,7 @@ pub(crate) fn approach<O: Observer>(
     let mut within_reach = None;
     // A corner that is farthest in what seems to be a face need not be one, and proves nothing.
     let mut is_support = true;
-    for _ in 0..CORRECTIONS {
+    for corrections in 0.. {
         let shadow = vertex.shadow();
         let mut toward_line = -shadow;
         let touching = context.difference.touching();
@@ -170,10 +180,10 @@ pub(crate) fn approach<O: Observer>(
         };
         let edge = Edge::of(&portal, from);
         let [distance, width] = [edge.distance(), edge.width()];
-        if distance <= REACH * width {
+        if distance <= patience.reach * width {
             within_reach = Some(edge);
         }
-        if distance <= FAR * width {
+        if distance <= FAR * width || corrections == patience.corrections {
             break;
         }
         if has_large_faces(&context.difference) {
@@ -202,7 +212,8 @@ pub(crate) fn approach<O: Observer>(
         }
     }
     let nearest = FirstNormal { normal: normal_of(slope), near: Some(vertex.pair) };
-    let followed = within_reach.map_or(Followed::Lost, |edge| walk(context, edge));
+    let followed =
+        within_reach.map_or(Followed::Lost, |edge| walk(context, edge, patience.crossings));
     (followed, nearest)
 }
 

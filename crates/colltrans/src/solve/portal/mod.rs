@@ -7,7 +7,7 @@
 //!
 //! The way: [`mod@facing`] answers for parts that stand on each other; else [`mod@start`] guesses a
 //! slope, [`mod@follow`] goes face by face from there to the line, or [`mod@enclose`] finds a first portal or a separating
-//! direction, [`mod@refine`] exchanges one point of the portal after another until its plane
+//! direction, [`mod@rims`] takes rims for ellipses and goes on from where these are met, [`mod@refine`] exchanges one point of the portal after another until its plane
 //! supports `M`, [`mod@graze`] measures how far the shadows overlap. Section 1 of the paper for the
 //! bounds; the exchange is the dual of the simplex method with two variables.
 
@@ -19,6 +19,7 @@ mod follow;
 mod graze;
 mod plane;
 mod refine;
+mod rims;
 mod start;
 mod tied;
 mod wrap;
@@ -29,10 +30,11 @@ use crate::setting::minkowski::{MinkowskiDifference, Point};
 use crate::solve::observe::Watch;
 pub(crate) use enclose::{Enclosure, SeparatingLine, around, enclose, widest_margin};
 pub(crate) use facing::facing;
-pub(crate) use follow::{ContactPortal, Followed, approach, follow};
+pub(crate) use follow::{ContactPortal, Followed, OF_ELLIPSOIDS, approach, follow};
 pub(crate) use graze::{Overlap, overlap};
 pub(crate) use plane::{Face, Plane};
 pub(crate) use refine::{MAX_PORTALS, Optimum, Refined, face, proven, refine};
+pub(crate) use rims::along_rims;
 pub(crate) use start::FirstNormal;
 
 /// Three points of `M` whose shadows, counter-clockwise, contain the line.

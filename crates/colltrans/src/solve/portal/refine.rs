@@ -155,7 +155,7 @@ pub(crate) fn proven(
 
 /// Whether a point lies below a portal by more than rounding.
 #[inline]
-fn is_below(portal: &Portal, normal: DVec3, point: &Point, rounding: f64) -> bool {
+pub(super) fn is_below(portal: &Portal, normal: DVec3, point: &Point, rounding: f64) -> bool {
     depth_below(portal, normal, point) > rounding * normal.length()
 }
 
@@ -177,7 +177,7 @@ pub(super) fn depth_below(portal: &Portal, normal: DVec3, point: &Point) -> f64 
 }
 
 /// Replaces the one point whose exchange keeps the line inside, and says which.
-fn exchange(difference: &MinkowskiDifference, portal: &mut Portal, new: Point) -> usize {
+pub(super) fn exchange(difference: &MinkowskiDifference, portal: &mut Portal, new: Point) -> usize {
     let left = |i: usize| difference.is_left(&portal[i], &new);
     let (first, second) = (left(0), left(1));
     // Seen from the new point, the line is inside the triangle with the edge `i -> j` where the

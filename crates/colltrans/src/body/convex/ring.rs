@@ -1,0 +1,212 @@
+//! Rings: the corners around a face with many, those beside them, and the neighbours of a vertex with many, by
+//! their angle.
+//!
+//! Notation. Seen along its *axis*, the normal of the face or that of a plane which cuts all edges of the
+//! vertex, a ring is a convex polygon. Its corner farthest along a direction is the one between whose edges'
+//! outward normals the direction lies: so the turn is divided into as many *cells* as there are corners, each
+//! with the first corner that a direction in it may ask for, and among those of one cell the edges that rise
+//! are counted by bisection. Along the rim of a cylinder that is one look or two, however many corners it has.
+//!
+//! What is found is where a climb goes on: of a ring that is not quite flat it need not be the farthest.
+//!
+//! The *rim* of a ring is the ellipse that its corners lie on, nearly: a smooth body to guess with.
+
+use glam::{DVec2, DVec3};
+
+use crate::body::topology::Topology;
+use crate::number::plane::polygon_normal;
+use crate::work;
+
+/// Whose corners a ring has.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Cycle {
+    /// Those of a face, from this half-edge on.
+    Face(u32),
+    /// Those that the edges which leave a face from its corners lead to, from this half-edge on.
+    Beside(u32),
+    /// A vertex's neighbours.
+    Fan(u32),
+}
+
+/// An ellipse, or a point, in the place of corners of a body.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Rim {
+    pub(crate) center: DVec3,
+    /// Conjugate semi-diameters; zero of a point.
+    pub(crate) semi_axes: [DVec3; 2],
+}
+
+#[derive(Debug, Clone)]
+pub(super) struct Ring {
+    cycle: Cycle,
+    rim: Rim,
+    /// Two vectors across the axis, so that the corners run counter-clockwise.
+    axes: [DVec3; 2],
+    /// The corner from which corners are counted: its edge's normal has the least angle.
+    first: u32,
+    /// For each cell the number of corners before those that it may ask for, and the number of all.
+    cells: Vec<u32>,
+}
+
+impl Cycle {
+    #[inline]
+    fn corner(self, topology: &Topology, k: u32) -> u32 {
+        match self {
+            Self::Face(start) => topology.half_edge(start + k).origin,
+            Self::Beside(start) => {
+                let twin = topology.half_edge(start + k).twin;
+                topology.target(topology.next(twin))
+            }
+            Self::Fan(vertex) => topology.neighbours(vertex)[k as usize],
+        }
+    }
+}
+
+impl Rim {
+    pub(super) fn point(center: DVec3) -> Self {
+        Self { center, semi_axes: [DVec3::ZERO; 2] }
+    }
+
+    /// The ellipse with the mean and the moments of corners, across an axis.
+    fn around(axes: [DVec3; 2], corners: impl Iterator<Item = DVec3> + Clone) -> Self {
+        let count = corners.clone().count() as f64;
+        let center = corners.clone().sum::<DVec3>() / count;
+        let [mut xx, mut xy, mut yy] = [0.0; 3];
+        for corner in corners {
+            let [x, y] = axes.map(|axis| axis.dot(corner - center));
+            (xx, xy, yy) = (xx + x * x, xy + x * y, yy + y * y);
+        }
+        // Of corners spread evenly over an ellipse the moments are half of its squared semi-axes.
+        let [xx, xy, yy] = [xx, xy, yy].map(|moment| 2.0 * moment / count);
+        let first = xx.sqrt();
+        let slant = if first > 0.0 { xy / first } else { 0.0 };
+        let second = (yy - slant * slant).max(0.0).sqrt();
+        Self { center, semi_axes: [axes[0] * first + axes[1] * slant, axes[1] * second] }
+    }
+}
+
+impl Ring {
+    /// The ring of a face.
+    pub(super) fn of_face(vertices: &[DVec3], topology: &Topology, face: u32) -> Self {
+        let range = topology.face(face);
+        Self::around(vertices, topology, Cycle::Face(range.start), range.len() as u32)
+    }
+
+    /// That beside a face, if it is not one vertex over and over.
+    pub(super) fn beside(vertices: &[DVec3], topology: &Topology, face: u32) -> Option<Self> {
+        let range = topology.face(face);
+        let (cycle, count) = (Cycle::Beside(range.start), range.len() as u32);
+        let follows = |k| cycle.corner(topology, k) == cycle.corner(topology, (k + 1) % count);
+        (!(0..count).any(follows)).then(|| Self::around(vertices, topology, cycle, count))
+    }
+
+    fn around(vertices: &[DVec3], topology: &Topology, cycle: Cycle, count: u32) -> Self {
+        let corners = (0..count).map(|k| vertices[cycle.corner(topology, k) as usize]);
+        let axis = polygon_normal(corners.clone());
+        Self::new(cycle, axis, corners.clone(), corners)
+    }
+
+    /// A ring, counter-clockwise about an axis, any length, with the polygon that it is seen as.
+    pub(super) fn new(
+        cycle: Cycle,
+        axis: DVec3,
+        corners: impl Iterator<Item = DVec3> + Clone,
+        seen: impl Iterator<Item = DVec3>,
+    ) -> Self {
+        let axis = axis.try_normalize().unwrap_or(DVec3::Z);
+        let x = axis.any_orthonormal_vector();
+        let axes = [x, axis.cross(x)];
+        let rim = Rim::around(axes, corners);
+        let polygon: Vec<DVec2> = seen.map(|p| DVec2::from(axes.map(|a| a.dot(p)))).collect();
+        let next = polygon.iter().cycle().skip(1);
+        let angles: Vec<f64> =
+            polygon.iter().zip(next).map(|(p, q)| turn(-(q - p).perp())).collect();
+        let count = angles.len();
+        let least = |best: usize, k: usize| if angles[k] < angles[best] { k } else { best };
+        let first = (0..count).fold(0, least);
+        let mut before = 0;
+        let mut cells: Vec<u32> = (0..count)
+            .map(|cell| {
+                let start = cell as f64 * (4.0 / count as f64);
+                while before < count && angles[(first + before) % count] < start {
+                    before += 1;
+                }
+                before as u32
+            })
+            .collect();
+        cells.push(count as u32);
+        Self { cycle, rim, axes, first: first as u32, cells }
+    }
+
+    /// The ellipse that the corners lie on, nearly.
+    pub(super) fn rim(&self) -> &Rim {
+        &self.rim
+    }
+
+    /// The number of corners.
+    pub(super) fn count(&self) -> u32 {
+        self.cells.len() as u32 - 1
+    }
+
+    /// The vertex of a corner.
+    pub(super) fn corner(&self, topology: &Topology, k: u32) -> u32 {
+        self.cycle.corner(topology, k)
+    }
+
+    /// The corner farthest along a direction, any length, if the edge from one corner to the next is told to rise
+    /// along it or not.
+    #[inline]
+    pub(super) fn farthest(&self, direction: DVec3, rises: impl Fn(u32, u32) -> bool) -> u32 {
+        let count = self.count();
+        let along = DVec2::from(self.axes.map(|axis| axis.dot(direction)));
+        // Casts saturate, so that along the axis, where it is not a number, it is cell 0.
+        let cell = (turn(along) * (0.25 * f64::from(count))) as usize;
+        let cell = cell.min(count as usize - 1);
+        let (mut low, mut high) = (self.cells[cell], self.cells[cell + 1]);
+        let corner = |k: u32| {
+            let k = self.first + k;
+            // Counted from one that is not the first of all, over the end at most once.
+            if k >= count { k - count } else { k }
+        };
+        while low < high {
+            work::count(1);
+            let middle = u32::midpoint(low, high);
+            let next = corner(if middle + 1 == count { 0 } else { middle + 1 });
+            if rises(corner(middle), next) {
+                low = middle + 1;
+            } else {
+                high = middle;
+            }
+        }
+        corner(if low == count { 0 } else { low })
+    }
+
+    /// The vertex farthest along a direction, any length.
+    #[inline]
+    pub(super) fn vertex(&self, vertices: &[DVec3], topology: &Topology, direction: DVec3) -> u32 {
+        let corner = |k: u32| self.cycle.corner(topology, k);
+        let rises = |from: u32, to: u32| {
+            let edge = vertices[corner(to) as usize] - vertices[corner(from) as usize];
+            direction.dot(edge) > 0.0
+        };
+        corner(self.farthest(direction, rises))
+    }
+
+    /// Bytes on the heap.
+    pub(super) fn heap_bytes(&self) -> usize {
+        self.cells.capacity() * size_of::<u32>()
+    }
+}
+
+/// How far round a vector points, from 0 along `x` to 4: alike on every machine, and rising with the angle.
+#[inline]
+fn turn(v: DVec2) -> f64 {
+    let along = v.y / (v.x.abs() + v.y.abs());
+    if v.x < 0.0 {
+        2.0 - along
+    } else if v.y < 0.0 {
+        4.0 + along
+    } else {
+        along
+    }
+}

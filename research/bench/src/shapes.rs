@@ -25,7 +25,20 @@ pub enum Shape {
     HalfEllipsoid,
     /// A prism of half as many sides.
     Prism,
+    /// A round cylinder, as parts of machines are: a prism over a regular polygon.
+    Cylinder,
+    /// A cylinder whose rims are cut off by a hundredth of its radius.
+    Chamfered,
+    /// A round cone: its apex has all others for neighbours.
+    Cone,
+    /// A cone without its tip.
+    Frustum,
+    /// Two cones on one base.
+    Bicone,
 }
+
+/// What is cut off the rims of a chamfered cylinder of radius 1.
+const CHAMFER: f64 = 0.01;
 
 impl Shape {
     /// The name in tables.
@@ -39,6 +52,11 @@ impl Shape {
             Self::Superellipsoid => "superellipsoid".into(),
             Self::HalfEllipsoid => "half ellipsoid".into(),
             Self::Prism => "prism".into(),
+            Self::Cylinder => "cylinder".into(),
+            Self::Chamfered => "chamfered".into(),
+            Self::Cone => "cone".into(),
+            Self::Frustum => "frustum".into(),
+            Self::Bicone => "bicone".into(),
         }
     }
 
@@ -50,6 +68,15 @@ impl Shape {
         let semi_axes = DVec3::from_array([0; 3].map(|_| random.range(0.6, 1.4)));
         let [around, rings] = shapes::even_rings(n);
         let scaled = |mesh: Mesh, by: DVec3| mesh.mapped(|v| v * by);
+        let round = DVec3::new(semi_axes.x, semi_axes.x, semi_axes.z);
+        // About as many vertices on so many rings of these radii and heights.
+        let turned = |rings: &[[f64; 2]], apexes: &[f64]| {
+            let sides = (n / rings.len()).max(3);
+            let rings = rings.iter().flat_map(|&[radius, z]| shapes::ring(sides, radius, z));
+            let tips = apexes.iter().map(|&z| DVec3::Z * z);
+            scaled(Mesh::of_points(rings.chain(tips).collect()), round)
+        };
+        let inner = 1.0 - CHAMFER;
         body(&match self {
             Self::Ellipsoid => scaled(shapes::ring_sphere(around, rings), semi_axes),
             Self::RandomHull => shapes::random_hull(n, random),
@@ -67,6 +94,13 @@ impl Shape {
             Self::Superellipsoid => scaled(shapes::superellipsoid(n, 4.0), semi_axes),
             Self::HalfEllipsoid => scaled(shapes::half_sphere(n), semi_axes),
             Self::Prism => scaled(shapes::prism((n / 2).max(3), 1.0), semi_axes),
+            Self::Cylinder => scaled(shapes::prism((n / 2).max(3), 1.0), round),
+            Self::Chamfered => {
+                turned(&[[inner, -1.0], [1.0, -inner], [1.0, inner], [inner, 1.0]], &[])
+            }
+            Self::Cone => turned(&[[1.0, -0.5]], &[1.0]),
+            Self::Frustum => turned(&[[1.0, -1.0], [0.6, 1.0]], &[]),
+            Self::Bicone => turned(&[[1.0, 0.0]], &[-1.0, 1.0]),
         })
     }
 }

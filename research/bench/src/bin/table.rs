@@ -3,8 +3,10 @@
 //! A query is timed alone, with the clock's own cost taken off. The solvers take turns, each on a
 //! block of settings that none of the others has just visited: each meets its bodies as cold as a
 //! program that does many different queries does, and a disturbance of the machine hits all of
-//! them.
+//! them. *Cold* rows go through 4 MiB of other data before each query.
 
+use std::cell::RefCell;
+use std::hint::black_box;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
@@ -29,6 +31,9 @@ struct Command {
     /// Only these rows
     #[arg(long, value_enum)]
     group: Option<Group>,
+    /// Of random positions only shapes with this in their names
+    #[arg(long)]
+    shape: Option<String>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -37,6 +42,8 @@ enum Group {
     General,
     /// Aligned, resting, edge over edge
     Ties,
+    /// The same after other work
+    Cold,
 }
 
 const SOLVERS: [(&str, Solver); 3] =
@@ -55,15 +62,18 @@ const COMPARED: usize = SOLVERS.len() + 1;
 const AGREEMENT: f64 = 1e-4;
 
 fn main() -> ExitCode {
-    let Command { arguments, group } = Command::parse();
+    let Command { arguments, group, shape: only } = Command::parse();
     let mut rows = Vec::new();
     let mut note = |row: Row| {
         row.print();
         rows.push(row.to_json());
     };
     print_header();
-    if group != Some(Group::Ties) {
+    if group.is_none_or(|group| group == Group::General) {
         for (shape, n) in plan(arguments.sizes.as_deref().unwrap_or(&SIZES)) {
+            if only.as_ref().is_some_and(|part| !shape.name().contains(part)) {
+                continue;
+            }
             match general(shape, n, &arguments) {
                 Ok(two) => two.into_iter().for_each(&mut note),
                 Err(error) => {
@@ -73,11 +83,17 @@ fn main() -> ExitCode {
             }
         }
     }
-    if group != Some(Group::General) {
+    if group.is_none_or(|group| group == Group::Ties) {
         for tie in Tie::ALL {
             for placement in Placement::ALL {
-                note(tied(tie, placement, &arguments));
+                note(tied(tie, placement, placement.name(), None, &arguments));
             }
+        }
+    }
+    if group.is_none_or(|group| group == Group::Cold) {
+        for tie in Tie::ALL {
+            let other = Some(RefCell::new(vec![0; OTHER / size_of::<u64>()]));
+            note(tied(tie, Placement::Rotated, "rotated, cold", other, &arguments));
         }
     }
     report::write("table", &arguments, &rows)
@@ -85,10 +101,13 @@ fn main() -> ExitCode {
 
 /// Which shapes in which sizes: all sizes of ellipsoids; of the others some.
 fn plan(sizes: &[usize]) -> Vec<(Shape, usize)> {
-    use Shape::{Box, Ellipsoid, HalfEllipsoid, Needle, Plate, Prism, RandomHull, Superellipsoid};
+    use Shape::{
+        Bicone, Box, Chamfered, Cone, Cylinder, Ellipsoid, Frustum, HalfEllipsoid, Needle, Plate,
+        Prism, RandomHull, Superellipsoid,
+    };
     let small = [8, 32, 128, 2_000, 10_000];
     let some = [32, 128, 2_000, 10_000, 200_000];
-    let rows: [(Shape, &[usize]); 10] = [
+    let rows: [(Shape, &[usize]); 15] = [
         (Ellipsoid, sizes),
         (RandomHull, &[32, 128, 2_000, 10_000, 200_000]),
         (Box, &[8]),
@@ -99,6 +118,11 @@ fn plan(sizes: &[usize]) -> Vec<(Shape, usize)> {
         (Superellipsoid, &small[1..]),
         (HalfEllipsoid, &small[1..]),
         (Prism, &small[1..]),
+        (Cylinder, &some),
+        (Chamfered, &small[2..]),
+        (Cone, &some),
+        (Frustum, &small[2..]),
+        (Bicone, &small[2..]),
     ];
     let of = |(shape, chosen): (Shape, &[usize])| {
         let here = sizes.iter().copied().filter(|n| chosen.contains(n));
@@ -107,12 +131,26 @@ fn plan(sizes: &[usize]) -> Vec<(Shape, usize)> {
     rows.into_iter().flat_map(of).collect()
 }
 
+/// Bytes that are gone through before each query where the caches are to be cold.
+const OTHER: usize = 4 << 20;
+
 /// Pairs of bodies and settings of them.
 struct Cases {
     pairs: Vec<Bodies>,
     /// With the number of its pair.
     settings: Vec<(usize, Setting)>,
     build: Duration,
+    /// What else is gone through before each query, if it is.
+    other: Option<RefCell<Vec<u64>>>,
+}
+
+impl Cases {
+    fn other_work(&self) {
+        if let Some(other) = &self.other {
+            other.borrow_mut().iter_mut().for_each(|x| *x = x.wrapping_add(1));
+            black_box(other);
+        }
+    }
 }
 
 /// Both rows of a shape and a size.
@@ -125,7 +163,7 @@ fn general(shape: Shape, n: usize, arguments: &Arguments) -> Result<[Row; 2], Bu
     };
     let pairs = (0..count).map(|_| pair()).collect::<Result<Vec<_>, _>>()?;
     let build = started.elapsed() / (2 * count);
-    let mut cases = Cases { pairs, settings: Vec::new(), build };
+    let mut cases = Cases { pairs, settings: Vec::new(), build, other: None };
     let settings = match (arguments.quick, n >= 100_000) {
         (true, true) => 100,
         (true, false) | (false, true) => 200,
@@ -147,7 +185,13 @@ fn general(shape: Shape, n: usize, arguments: &Arguments) -> Result<[Row; 2], Bu
 }
 
 /// A row of tied settings.
-fn tied(tie: Tie, placement: Placement, arguments: &Arguments) -> Row {
+fn tied(
+    tie: Tie,
+    placement: Placement,
+    name: &'static str,
+    other: Option<RefCell<Vec<u64>>>,
+    arguments: &Arguments,
+) -> Row {
     let mut random = Random::stream(arguments.seed, &[tie as u64, placement as u64, 2]);
     let started = Instant::now();
     let pairs: Vec<_> = (0..8).map(|_| tie.bodies(&mut random)).collect();
@@ -156,8 +200,8 @@ fn tied(tie: Tie, placement: Placement, arguments: &Arguments) -> Row {
     let settings = (0..count)
         .map(|k| (k % pairs.len(), tie.draw(&pairs[k % pairs.len()], placement, &mut random)))
         .collect();
-    let cases = Cases { pairs, settings, build };
-    Row::measure((tie.name().into(), 0), placement.name(), &cases, arguments)
+    let cases = Cases { pairs, settings, build, other };
+    Row::measure((tie.name().into(), 0), name, &cases, arguments)
 }
 
 /// Asks `colltrans`.
@@ -169,6 +213,7 @@ fn ask(bodies: &Bodies, setting: &Setting, solver: Solver) -> Result<Outcome, Qu
 fn measure(measured: &mut Measured, cases: &Cases, solver: Solver, block: &[(usize, Setting)]) {
     let stopwatch = Stopwatch::new();
     for (pair, setting) in block {
+        cases.other_work();
         let (outcome, spent) = stopwatch.time(|| ask(&cases.pairs[*pair], setting, solver));
         if measured.count(&outcome) {
             measured.times.add(spent);
@@ -253,6 +298,7 @@ impl Row {
                 continue;
             };
             let converted = ParrySetting::new(setting);
+            cases.other_work();
             let (answer, spent) = stopwatch.time(|| converted.cast(moving, fixed));
             self.theirs.times.add(spent);
             if compare && !agrees(setting, &cases.pairs[*pair], answer) {

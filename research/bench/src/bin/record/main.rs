@@ -278,7 +278,7 @@ fn ties(page: &mut String, run: &Value) -> Result<(), Failure> {
     page.push_str(
         "\n## Casts from scratch, ties\n\nThe same run. Means without the slowest hundredth, in ns: \
          ties are the case in which the mean tells. *x* is parry's mean over ours, *own* our mean \
-         over our mean for the same bodies in general position.\n\n\
+         over our mean for the same bodies in general position; *cold*: 4 MiB of other data before each query.\n\n\
          | tie | placement | `auto` | 99 % | parry | x | own | supports |\n\
          |---|---|---:|---:|---:|---:|---:|---:|\n",
     );

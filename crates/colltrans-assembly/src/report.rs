@@ -1,12 +1,23 @@
-//! What people read: pictures of steps ([`scene`]), blocking graphs ([`graph`]), one HTML file
-//! ([`html`]), and an animation ([`glb`]). The same facts as JSON: [`facts`].
+//! What people read: one HTML file ([`html`]), and an animation ([`glb`]). The same facts as JSON: [`facts`].
+//!
+//! The file has a first page (`cover`, with an `exploded` view), a page for each step (`sheet`), what follows them (`after`),
+//! `tables` with blocking graphs ([`graph`]), and a `viewer`. `words` says lengths and ways, `kinds` which parts are
+//! alike, `scene` draws with the `lines` of each part.
 
+mod after;
+mod cover;
+mod exploded;
 pub mod facts;
 pub mod glb;
 pub mod graph;
 pub mod html;
-pub mod scene;
+mod kinds;
+mod lines;
+mod scene;
+mod sheet;
+mod tables;
 mod viewer;
+mod words;
 
 pub use colltrans_picture::escaped;
 use glam::DVec3;
@@ -16,7 +27,7 @@ use crate::candidates::Candidate;
 use crate::liaisons::Liaison;
 use crate::map::RemovalMap;
 use crate::matrix::Matrix;
-use crate::plan::{Plan, Times};
+use crate::plan::{Plan, Step, Times};
 use crate::rooms::PartRoom;
 use crate::start::Start;
 use crate::suggest::Suggestion;
@@ -41,6 +52,8 @@ pub struct Findings<'a> {
     pub plan: &'a Plan,
     /// What its steps take.
     pub times: Times,
+    /// What is upwards, of length 1.
+    pub up: DVec3,
     /// Removal maps, with the names they were asked by.
     pub maps: &'a [(String, RemovalMap)],
 }
@@ -74,9 +87,35 @@ pub(crate) fn arrow(d: glam::DVec3) -> String {
     format!("({x:.3}, {y:.3}, {z:.3})")
 }
 
-/// A colour for each part, spread by the golden angle.
-pub(crate) fn tint(part: usize) -> [f64; 3] {
-    let hue = (part as f64 * 0.381_966_011_250_105 + 0.58) % 1.0;
+/// The parts that are there when a step begins: of all, or of the group that it takes apart.
+fn there<'a>(f: &'a Findings, step: usize) -> impl Iterator<Item = usize> + use<'a> {
+    let (steps, mut is_there) = (&f.plan.steps, vec![true; f.bodies.len()]);
+    let within = steps[step].within;
+    if let Some(group) = within {
+        is_there = f.bodies.mask(&steps[group].parts);
+    }
+    for before in steps[..step].iter().filter(|before| before.within == within) {
+        before.parts.iter().for_each(|&part| is_there[part] = false);
+    }
+    (0..is_there.len()).filter(move |&part| is_there[part])
+}
+
+/// By how much a part has been moved before the last move of a step.
+fn aside(step: &Step, part: usize) -> DVec3 {
+    let before = &step.path[..step.path.len() - 1];
+    let own = before.iter().filter(|leg| leg.parts.contains(&part));
+    own.map(|leg| leg.direction * leg.travel).sum()
+}
+
+/// A colour as HTML writes it.
+fn hexadecimal(colour: [f64; 3]) -> String {
+    let [r, g, b] = colour.map(|c| (c.clamp(0.0, 1.0) * 255.0) as u8);
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+/// A colour for each kind of parts, spread by the golden angle.
+pub(crate) fn tint(kind: usize) -> [f64; 3] {
+    let hue = (kind as f64 * 0.381_966_011_250_105 + 0.58) % 1.0;
     let channel = |shift: f64| {
         let h = (hue + shift).fract() * 6.0;
         let ramp = ((h - 3.0).abs() - 1.0).clamp(0.0, 1.0);

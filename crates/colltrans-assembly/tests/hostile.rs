@@ -67,6 +67,7 @@ fn outputs(assembly: &Assembly, title: &str) -> Outputs {
         more: &[],
         plan: &plan,
         times: Times::default(),
+        up: assembly.up(),
         maps: &maps,
     };
     Outputs {

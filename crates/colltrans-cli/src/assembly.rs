@@ -87,6 +87,7 @@ fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
         more: &found.more,
         plan: &found.plan,
         times,
+        up: arguments.gravity.map_or(assembly.up(), |gravity| (-gravity).normalize()),
         maps: &maps,
     };
     output::write(&findings, &free, arguments)

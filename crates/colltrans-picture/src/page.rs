@@ -126,7 +126,8 @@ impl Page {
     pub fn tiles(&mut self, look: &str, all: &[[usize; 4]]) {
         let mut data = String::new();
         for [x, y, right, bottom] in all {
-            let _ = write!(data, "M{x} {y}L{right} {y}L{right} {bottom}L{x} {bottom}Z");
+            let (width, height) = (right - x, bottom - y);
+            let _ = write!(data, "M{x} {y}h{width}v{height}h-{width}z");
         }
         self.path(look, &data);
     }
@@ -239,9 +240,10 @@ impl Page {
         );
     }
 
-    /// A picture to be put into a page, as wide as there is room.
-    pub fn inline(self, size: DVec2) -> String {
-        self.on_ground("", size, "#ffffff")
+    /// A picture to be put into a page, as wide as there is room, with what is told of it to who does not see it.
+    pub fn inline(self, size: DVec2, label: &str) -> String {
+        let told = format!(r#" role="img" aria-label="{}""#, escaped(label));
+        self.on_ground(&told, size, "#ffffff")
     }
 
     /// A picture of its own on a ground of this colour.

@@ -126,6 +126,17 @@ impl Raster {
         done
     }
 
+    /// What is seen at each sample, row by row: where it is on the page, and its tone.
+    pub fn samples(&self) -> impl Iterator<Item = (DVec2, Option<u32>)> {
+        let place = |cell: usize| {
+            DVec2::new((cell % self.grid.width) as f64, (cell / self.grid.width) as f64)
+        };
+        let sample = move |(cell, &tone): (usize, &u32)| {
+            ((place(cell) + 0.5) / FINE as f64, (tone != EMPTY).then_some(tone))
+        };
+        self.tones.iter().enumerate().map(sample)
+    }
+
     /// Leaves only what is nearer than another raster of the same window, which then hides as well.
     pub fn keep_before(&mut self, other: &Self) {
         for (cell, &covered) in other.depths.iter().enumerate() {
@@ -172,6 +183,12 @@ mod tests {
         let tiles = raster.tiles();
         assert_eq!(tiles[4], [[2, 3, 12, 9]]);
         assert_eq!(tiles.iter().map(Vec::len).sum::<usize>(), 1);
+        let seen = |(at, tone): (DVec2, Option<u32>)| {
+            let inside = at.x > 2.0 && at.x < 12.0 && at.y > 3.0 && at.y < 9.0;
+            assert_eq!(tone, inside.then_some(4), "{at}");
+            usize::from(inside)
+        };
+        assert_eq!(raster.samples().map(seen).sum::<usize>(), 60 * FINE * FINE);
     }
 
     #[test]

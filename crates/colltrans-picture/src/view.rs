@@ -1,6 +1,6 @@
 //! An orthographic view.
 //!
-//! Notation. `v` is the unit vector towards the viewer. World z points up on the page.
+//! Notation. `v` is the unit vector towards the viewer.
 
 use glam::{DVec2, DVec3};
 
@@ -14,7 +14,7 @@ pub struct View {
 }
 
 impl View {
-    /// From an azimuth and a height above the horizon, in radians.
+    /// From an azimuth and a height above the horizon, in radians; world z points up on the page.
     pub fn new(azimuth: f64, elevation: f64) -> Self {
         let (sin_a, cos_a) = libm::sincos(azimuth);
         let (sin_e, cos_e) = libm::sincos(elevation);
@@ -25,10 +25,10 @@ impl View {
         }
     }
 
-    /// From a direction towards the viewer that is not upright.
-    pub fn from(toward: DVec3) -> Self {
+    /// From a direction towards the viewer, with what points up on the page; the two are not parallel.
+    pub fn upright(toward: DVec3, up: DVec3) -> Self {
         let toward = toward.normalize();
-        let right = DVec3::Z.cross(toward).normalize();
+        let right = up.cross(toward).normalize();
         Self { right, up: toward.cross(right), toward }
     }
 

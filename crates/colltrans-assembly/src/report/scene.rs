@@ -2,42 +2,111 @@
 //!
 //! Parallel projection. Areas are tiles of a raster of depths, edges what of them the raster does not
 //! hide ([`colltrans_picture`]). So a picture's size grows with its pixels and lines, not with the
-//! facets.
+//! facets. Whatever is looked for, which view shows what moves, and what hides it, is asked of the same rasters.
 
-use colltrans_picture::{Frame, Page, Raster, SMOOTH, Stroke, View, edges};
+use std::collections::BTreeMap;
+
+use colltrans_picture::{Frame, Page, Raster, Stroke, View};
 use glam::{DVec2, DVec3};
+use rayon::prelude::*;
 
-use super::tint;
+use super::lines::Lines;
+use super::{Findings, hexadecimal, kinds, tint};
 use crate::part::Part;
 
+/// How a part is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Look {
+    /// In its colour.
+    Full,
+    /// In its colour, as what moves.
+    Moving,
+    /// Pale, as what stays.
+    Pale,
+    /// As glass, since it would hide what moves.
+    Glass,
+}
+
 /// A part and where it is drawn.
-pub struct Shown<'a> {
-    /// The part.
-    pub part: &'a Part,
-    /// Its colour's number.
-    pub color: usize,
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shown {
+    /// Its position in the assembly.
+    pub part: usize,
     /// How far it is displaced from its place.
     pub by: DVec3,
-    /// Whether it is drawn pale.
-    pub pale: bool,
+    /// How it is drawn.
+    pub look: Look,
 }
 
 /// An arrow in the world.
-pub struct Arrow {
+#[derive(Debug, Clone)]
+pub(super) struct Arrow {
     /// Where it begins.
     pub from: DVec3,
     /// Where it ends.
     pub to: DVec3,
+    /// What is written beside its tip.
+    pub label: String,
 }
 
-/// The picture's size in pixels.
-const SIZE: DVec2 = DVec2::new(400.0, 300.0);
+/// What a picture shows.
+pub(super) struct Scene {
+    /// In pixels.
+    pub size: DVec2,
+    pub shown: Vec<Shown>,
+    pub arrows: Vec<Arrow>,
+    /// Lines along which parts were moved.
+    pub traces: Vec<[DVec3; 2]>,
+    /// Numbers of kinds of parts, each at one of these parts.
+    pub numbers: Vec<(usize, Vec<usize>)>,
+    /// What is told to who does not see it.
+    pub label: String,
+}
+
+/// The assembly, made ready to be drawn often.
+pub(super) struct Studio<'a> {
+    parts: &'a [Part],
+    lines: Vec<Lines>,
+    colours: Vec<usize>,
+    up: DVec3,
+}
+
+/// A view, and how it is told from the ordinary one.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Viewpoint {
+    view: View,
+    /// "from below", if it is not the ordinary one.
+    pub name: &'static str,
+}
+
 const MARGIN: f64 = 14.0;
+/// The room for numbers at either side.
+const MARGIN_OF_NUMBERS: f64 = 52.0;
 const SHADES: usize = 6;
 /// Depths, in pixels, may be off by this much.
 const SLACK: f64 = 1.5;
+/// Pictures in which is counted what is seen are smaller by this factor.
+const COARSE: f64 = 0.25;
+/// What moves is seen well if so much of it is.
+const WELL_SEEN: f64 = 0.5;
+/// Parts are made glass in so many rounds at most.
+const MOST_ROUNDS: usize = 16;
+const ARROW: &str = "#c02020";
 
-/// From the world to the page: from the front, right and above; fits all points.
+/// From where it is looked, by azimuth and height in degrees, the ordinary one first; and how good that is as such.
+const VIEWPOINTS: [(f64, f64, f64, &str); 9] = [
+    (-43.6, 26.0, 0.0, ""),
+    (-43.6, 60.0, 0.08, "from high above"),
+    (46.4, 26.0, 0.1, "from the right"),
+    (-133.6, 26.0, 0.1, "from the left"),
+    (136.4, 26.0, 0.12, "from behind"),
+    (-43.6, -30.0, 0.12, "from below"),
+    (46.4, -30.0, 0.16, "from below, from the right"),
+    (-133.6, -30.0, 0.16, "from below, from the left"),
+    (136.4, -30.0, 0.18, "from below, from behind"),
+];
+
+/// From the world to the page; fits all points.
 struct Eye {
     view: View,
     scale: f64,
@@ -45,18 +114,22 @@ struct Eye {
 }
 
 impl Eye {
-    fn fitting(points: impl Iterator<Item = DVec3>) -> Self {
-        let view = View::from(DVec3::new(0.65, -0.62, 0.44));
+    fn fitting(
+        view: View,
+        points: impl Iterator<Item = DVec3>,
+        size: DVec2,
+        margin: DVec2,
+    ) -> Self {
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for p in points {
             let at = view.project(p) * DVec2::new(1.0, -1.0);
             low = low.min(at);
             high = high.max(at);
         }
-        let room = SIZE - 2.0 * MARGIN;
+        let room = size - 2.0 * margin;
         let span = (high - low).max(DVec2::splat(1e-12));
         let scale = (room / span).min_element();
-        let offset = DVec2::splat(MARGIN) + (room - span * scale) * 0.5 - low * scale;
+        let offset = margin + (room - span * scale) * 0.5 - low * scale;
         Self { view, scale, offset }
     }
 
@@ -65,87 +138,311 @@ impl Eye {
         let flat = self.view.project(p) * DVec2::new(1.0, -1.0) * self.scale + self.offset;
         flat.extend(p.dot(self.view.toward) * self.scale)
     }
-}
 
-/// A picture of parts.
-pub fn svg(shown: &[Shown], arrows: &[Arrow]) -> String {
-    let corners = shown.iter().flat_map(|s| {
-        let (part, by) = (s.part, s.by);
-        part.solid().vertices().iter().map(move |v| *v + by)
-    });
-    let eye = Eye::fitting(corners.chain(arrows.iter().flat_map(|a| [a.from, a.to])));
-    let window = Frame { low: DVec2::ZERO, high: SIZE };
-    let mut raster = Raster::new(window);
-    for (k, s) in shown.iter().enumerate() {
-        rasterise(&mut raster, s, k * SHADES, &eye);
-    }
-    let mut page = Page::new(window);
-    for (tone, tiles) in raster.tiles().iter().enumerate() {
-        let colour = colour(&shown[tone / SHADES], tone % SHADES);
-        // A thin rim of its own colour hides the seams between tiles.
-        page.tiles(&format!(r#"fill="{colour}" stroke="{colour}" stroke-width="0.3""#), tiles);
-    }
-    for s in shown {
-        let ends = |edge: [DVec3; 2]| edge.map(|p| eye.see(p + s.by));
-        let lines = features(s.part, eye.view.toward).into_iter().map(ends);
-        let colour = if s.pale { "#9a9a9a" } else { "#222222" };
-        let seen = lines.flat_map(|line| {
-            let [seen, _] = raster.split(line, SLACK);
-            seen
-        });
-        page.segments(Stroke::solid(colour, 0.7), seen);
-    }
-    for a in arrows {
-        page.arrow("#c02020", 2.5, [a.from, a.to].map(|p| eye.see(p).truncate()));
-    }
-    page.inline(SIZE)
-}
-
-/// Facets that look towards the viewer, and those of surfaces also from behind.
-fn rasterise(raster: &mut Raster, s: &Shown, first_tone: usize, eye: &Eye) {
-    let solid = s.part.solid();
-    for t in solid.triangles() {
-        let corners = t.map(|v| solid.vertices()[v as usize] + s.by);
-        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
-        let facing = normal.dot(eye.view.toward);
-        if solid.is_closed() && facing <= 0.0 {
-            continue;
-        }
-        let lit = eye.view.brightness(normal * facing.signum());
-        let shade = (lit * (SHADES as f64 - 0.01)) as usize;
-        raster.draw(corners.map(|c| eye.see(c)), (first_tone + shade) as u32);
+    /// The same on a page that is smaller by a factor.
+    fn smaller(&self, factor: f64) -> Self {
+        Self { view: self.view, scale: self.scale * factor, offset: self.offset * factor }
     }
 }
 
-fn colour(s: &Shown, shade: usize) -> String {
-    let light = 0.55 + 0.5 * shade as f64 / (SHADES - 1) as f64;
-    let [r, g, b] = tint(s.color).map(|c| {
-        let c = (c * light).min(1.0);
-        let c = if s.pale { 0.25 * c + 0.75 * (0.80 + 0.12 * light) } else { c };
-        (c.min(1.0) * 255.0) as u8
-    });
-    format!("#{r:02x}{g:02x}{b:02x}")
-}
+impl<'a> Studio<'a> {
+    pub(super) fn new(f: &Findings<'a>) -> Self {
+        let parts = f.bodies.assembly().parts();
+        let lines = parts.par_iter().map(|part| Lines::new(part.solid())).collect();
+        Self { parts, lines, colours: kinds::colours(f.plan, parts.len()), up: f.up }
+    }
 
-/// Sharp edges, silhouettes and rims.
-fn features(part: &Part, toward: DVec3) -> Vec<[DVec3; 2]> {
-    let solid = part.solid();
-    let corner = |v: u32| solid.vertices()[v as usize];
-    let normal = |face: u32| {
-        let [a, b, c] = solid.triangles()[face as usize].map(corner);
-        (b - a).cross(c - a).normalize_or_zero()
-    };
-    let drawn = |faces: &[u32]| {
-        // Pairs of facets, in their order, as they meet at an edge that several share.
-        faces.chunks(2).any(|pair| match *pair {
-            [f, g] => {
-                let (m, n) = (normal(f), normal(g));
-                let [x, y] = [m, n].map(|n| n.dot(toward) > 0.0);
-                (x || y) && (n.dot(m) < SMOOTH || x != y)
-            }
-            _ => true,
+    /// The ordinary view.
+    pub(super) fn front(&self) -> Viewpoint {
+        self.viewpoints().next().expect("there are some")
+    }
+
+    fn viewpoints(&self) -> impl Iterator<Item = Viewpoint> + use<> {
+        let up = self.up;
+        let turn = glam::DQuat::from_rotation_arc(DVec3::Z, up);
+        VIEWPOINTS.iter().map(move |&(azimuth, height, _, name)| {
+            let (sin_a, cos_a) = f64::to_radians(azimuth).sin_cos();
+            let (sin_h, cos_h) = f64::to_radians(height).sin_cos();
+            let toward = turn * DVec3::new(cos_h * cos_a, cos_h * sin_a, sin_h);
+            Viewpoint { view: View::upright(toward, up), name }
         })
-    };
-    let all = edges(solid.triangles()).into_iter().filter(|(_, faces)| drawn(faces));
-    all.map(|(ends, _)| ends.map(corner)).collect()
+    }
+
+    fn eye(&self, scene: &Scene, view: View) -> Eye {
+        let corners = scene.shown.iter().flat_map(|s| {
+            let vertices = self.parts[s.part].solid().vertices().iter();
+            vertices.map(move |v| *v + s.by)
+        });
+        let arrows = scene.arrows.iter().flat_map(|a| [a.from, a.to]);
+        let aside = if scene.numbers.is_empty() { MARGIN } else { MARGIN_OF_NUMBERS };
+        Eye::fitting(view, corners.chain(arrows), scene.size, DVec2::new(aside, MARGIN))
+    }
+
+    /// How high a picture of a scene is whose width is given, between two bounds.
+    pub(super) fn height(&self, scene: &Scene, [least, most]: [f64; 2]) -> f64 {
+        let eye = self.eye(scene, self.front().view);
+        let corners = scene.shown.iter().flat_map(|s| {
+            let vertices = self.parts[s.part].solid().vertices().iter();
+            vertices.map(move |v| eye.view.project(*v + s.by))
+        });
+        let (low, high) = corners.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(low, high), p| {
+            (low.min(p), high.max(p))
+        });
+        let span = high - low;
+        let room = scene.size.x - 2.0 * MARGIN_OF_NUMBERS;
+        (room * span.y / span.x.max(1e-12) + 2.0 * MARGIN).clamp(least, most)
+    }
+
+    /// The view from which most of each group is seen, after what hides them was made glass if it has to be.
+    pub(super) fn arrange(&self, scene: &mut Scene, groups: &[Vec<usize>]) -> Viewpoint {
+        let mut best = (f64::NEG_INFINITY, self.front());
+        for (viewpoint, (_, _, price, _)) in self.viewpoints().zip(VIEWPOINTS) {
+            let seen = self.least_seen(scene, viewpoint.view, groups);
+            if seen - price > best.0 {
+                best = (seen - price, viewpoint);
+            }
+            if best.0 >= WELL_SEEN {
+                break;
+            }
+        }
+        self.clear(scene, best.1.view, groups);
+        best.1
+    }
+
+    /// How much of the group is seen of which least is, of what would be seen of it alone.
+    fn least_seen(&self, scene: &Scene, view: View, groups: &[Vec<usize>]) -> f64 {
+        let eye = self.eye(scene, view).smaller(COARSE);
+        let all = count(&self.coarse(scene, &eye, |s| s.look != Look::Glass));
+        let share = |group: &Vec<usize>| {
+            let alone = count(&self.coarse(scene, &eye, |s| group.contains(&s.part)));
+            let [seen, whole] = [&all, &alone]
+                .map(|counts| group.iter().filter_map(|part| counts.get(part)).sum::<usize>());
+            seen as f64 / whole.max(1) as f64
+        };
+        groups.par_iter().map(share).reduce(|| 1.0, f64::min)
+    }
+
+    /// Makes glass of what hides a group, those first that hide most, until each group is seen well.
+    fn clear(&self, scene: &mut Scene, view: View, groups: &[Vec<usize>]) {
+        let eye = self.eye(scene, view).smaller(COARSE);
+        for _ in 0..MOST_ROUNDS {
+            if self.least_seen(scene, view, groups) >= WELL_SEEN {
+                break;
+            }
+            let all = self.coarse(scene, &eye, |s| s.look != Look::Glass);
+            let moving = self.coarse(scene, &eye, |s| s.look == Look::Moving);
+            let mut hides = BTreeMap::<usize, usize>::new();
+            for ((_, front), (_, behind)) in all.samples().zip(moving.samples()) {
+                if let (Some(front), Some(_)) = (front, behind) {
+                    *hides.entry(front as usize).or_default() += 1;
+                }
+            }
+            let stays = |s: &&Shown| s.look == Look::Pale && hides.contains_key(&s.part);
+            let most = scene.shown.iter().filter(stays).max_by_key(|s| (hides[&s.part], s.part));
+            let Some(part) = most.map(|s| s.part) else { break };
+            for s in scene.shown.iter_mut().filter(|s| s.part == part) {
+                s.look = Look::Glass;
+            }
+        }
+    }
+
+    /// Parts by their positions, on a small page.
+    fn coarse(&self, scene: &Scene, eye: &Eye, drawn: impl Fn(&Shown) -> bool) -> Raster {
+        let high = (scene.size * COARSE).ceil();
+        let mut raster = Raster::new(Frame { low: DVec2::ZERO, high });
+        for s in scene.shown.iter().filter(|s| drawn(s)) {
+            self.rasterise(&mut raster, s, eye, |_| s.part as u32);
+        }
+        raster
+    }
+
+    /// Facets that look towards the viewer, and those of surfaces also from behind; of each its tone by its brightness.
+    fn rasterise(&self, raster: &mut Raster, s: &Shown, eye: &Eye, tone: impl Fn(f64) -> u32) {
+        let solid = self.parts[s.part].solid();
+        for t in solid.triangles() {
+            let corners = t.map(|v| solid.vertices()[v as usize] + s.by);
+            let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+            let normal = normal.normalize_or_zero();
+            let facing = normal.dot(eye.view.toward);
+            if solid.is_closed() && facing <= 0.0 {
+                continue;
+            }
+            let lit = eye.view.brightness(normal * facing.signum());
+            raster.draw(corners.map(|c| eye.see(c)), tone(lit));
+        }
+    }
+
+    /// The picture of a scene.
+    pub(super) fn picture(&self, scene: &Scene, viewpoint: Viewpoint) -> String {
+        let eye = self.eye(scene, viewpoint.view);
+        let window = Frame { low: DVec2::ZERO, high: scene.size };
+        let (mut raster, mut glass) = (Raster::new(window), Raster::new(window));
+        for (k, s) in scene.shown.iter().enumerate() {
+            let shade = |lit: f64| (lit * (SHADES as f64 - 0.01)) as usize;
+            let tone = |lit| (k * SHADES + shade(lit)) as u32;
+            self.rasterise(
+                if s.look == Look::Glass { &mut glass } else { &mut raster },
+                s,
+                &eye,
+                tone,
+            );
+        }
+        glass.keep_before(&raster);
+        let mut page = Page::new(window);
+        let traces = scene.traces.iter().map(|ends| ends.map(|p| eye.see(p)));
+        let seen = traces.flat_map(|line| raster.split(line, SLACK)[0].clone());
+        page.segments(Stroke::dashed("#7a8896", 0.9, "7 3 1.5 3"), seen);
+        for look in [Look::Full, Look::Pale, Look::Moving] {
+            self.group(&mut page, (scene, look), &raster, &eye);
+        }
+        self.group(&mut page, (scene, Look::Glass), &glass, &eye);
+        for a in &scene.arrows {
+            let [from, to] = [a.from, a.to].map(|p| eye.see(p).truncate());
+            page.arrow(ARROW, 2.5, [from, to]);
+            if !a.label.is_empty() {
+                page.label(beside([from, to], scene.size), LABEL, &a.label);
+            }
+        }
+        balloons(&mut page, scene, &raster);
+        triad(&mut page, &eye.view, scene.size);
+        page.inline(scene.size, &scene.label)
+    }
+
+    /// All parts of one look: each of what moves in a group of its own.
+    fn group(&self, page: &mut Page, (scene, look): (&Scene, Look), raster: &Raster, eye: &Eye) {
+        let tiles = raster.tiles();
+        for (k, s) in scene.shown.iter().enumerate().filter(|(_, s)| s.look == look) {
+            let class = match look {
+                Look::Full => "full",
+                Look::Moving => "moving",
+                Look::Pale => "pale",
+                Look::Glass => "glass",
+            };
+            let own = tiles.iter().enumerate().skip(k * SHADES).take(SHADES);
+            let mut own = own.filter(|(_, tiles)| !tiles.is_empty()).peekable();
+            if own.peek().is_none() {
+                continue;
+            }
+            page.open_group(&format!(r#"class="{class}" data-part="{}""#, s.part));
+            if look == Look::Glass {
+                let all: Vec<[usize; 4]> =
+                    own.flat_map(|(_, tiles)| tiles.iter().copied()).collect();
+                page.tiles(r##"fill="#6f8fb5" fill-opacity="0.13""##, &all);
+            } else {
+                for (tone, tiles) in own {
+                    let colour = self.colour(s, tone % SHADES);
+                    // A thin rim of its own colour hides the seams between tiles.
+                    let look = format!(r#"fill="{colour}" stroke="{colour}" stroke-width="0.3""#);
+                    page.tiles(&look, tiles);
+                }
+            }
+            let ends = |edge: [DVec3; 2]| edge.map(|p| eye.see(p + s.by));
+            let lines = self.lines[s.part].seen(self.parts[s.part].solid(), eye.view.toward);
+            let colour = match look {
+                Look::Full | Look::Moving => "#222222",
+                Look::Pale => "#9a9a9a",
+                Look::Glass => "#8fa0b4",
+            };
+            let seen = lines.into_iter().map(ends).flat_map(|line| {
+                let [seen, _] = raster.split(line, SLACK);
+                seen
+            });
+            page.segments(Stroke::solid(colour, 0.7), seen);
+            page.close_group();
+        }
+    }
+
+    fn colour(&self, s: &Shown, shade: usize) -> String {
+        let light = 0.55 + 0.5 * shade as f64 / (SHADES - 1) as f64;
+        let mix =
+            |c: f64| if s.look == Look::Pale { 0.2 * c + 0.8 * (0.82 + 0.12 * light) } else { c };
+        hexadecimal(tint(self.colours[s.part]).map(|c| mix((c * light).min(1.0))))
+    }
+}
+
+const LABEL: &str =
+    r##"font-family="system-ui,sans-serif" font-size="15" font-weight="600" fill="#a01515""##;
+
+/// How many samples are seen of each part.
+fn count(raster: &Raster) -> BTreeMap<usize, usize> {
+    let mut counts = BTreeMap::new();
+    for part in raster.samples().filter_map(|(_, part)| part) {
+        *counts.entry(part as usize).or_default() += 1;
+    }
+    counts
+}
+
+/// Where the label of an arrow stands: beside its tip, on the page.
+fn beside([from, to]: [DVec2; 2], size: DVec2) -> DVec2 {
+    let along = (to - from).normalize_or(DVec2::NEG_Y);
+    let right = if along.x.abs() < 0.5 { DVec2::new(46.0, 0.0) } else { DVec2::new(0.0, -18.0) };
+    let room = DVec2::new(50.0, 14.0);
+    (to + right).clamp(room, size - room)
+}
+
+/// The axes of the world, in a corner.
+fn triad(page: &mut Page, view: &View, size: DVec2) {
+    let origin = DVec2::new(36.0, size.y - 36.0);
+    for (axis, name) in DVec3::AXES.into_iter().zip(["x", "y", "z"]) {
+        let along = view.project(axis) * DVec2::new(1.0, -1.0);
+        page.lines(r##"stroke="#6b7785" stroke-width="1.2""##, [[origin, origin + along * 20.0]]);
+        let look = r##"font-family="system-ui,sans-serif" font-size="11" fill="#6b7785""##;
+        let at = origin + along * 20.0 + along.normalize_or_zero() * 7.0;
+        page.text(at + DVec2::new(0.0, 4.0), "middle", look, name);
+    }
+}
+
+/// Numbers of parts at both sides of the page, each with a line to where most of its part is seen.
+fn balloons(page: &mut Page, scene: &Scene, raster: &Raster) {
+    let mut middles = BTreeMap::<usize, (usize, DVec2)>::new();
+    let part = |tone: u32| scene.shown[tone as usize / SHADES].part;
+    for (at, tone) in raster.samples() {
+        if let Some(tone) = tone {
+            let (count, sum) = middles.entry(part(tone)).or_default();
+            *count += 1;
+            *sum += at;
+        }
+    }
+    // The sample of each part that is nearest to the middle of all.
+    let mut anchors = BTreeMap::<usize, DVec2>::new();
+    for (at, tone) in raster.samples() {
+        let Some(part) = tone.map(part) else { continue };
+        let (count, sum) = middles[&part];
+        let middle = sum / count as f64;
+        let anchor = anchors.entry(part).or_insert(at);
+        if at.distance_squared(middle) < anchor.distance_squared(middle) {
+            *anchor = at;
+        }
+    }
+    let anchored = scene.numbers.iter().filter_map(|(number, parts)| {
+        let seen = |part: &&usize| middles.get(part).map_or(0, |middle| middle.0);
+        let best = parts.iter().max_by_key(seen).filter(|part| seen(part) > 0)?;
+        Some((*number, anchors[best]))
+    });
+    let mut all: Vec<(usize, DVec2)> = anchored.collect();
+    all.sort_by(|a, b| a.1.x.total_cmp(&b.1.x));
+    let right = all.split_off(all.len() / 2);
+    for (column, x) in [(all, 16.0), (right, scene.size.x - 16.0)] {
+        column_of(page, column, x, scene.size.y);
+    }
+}
+
+/// Balloons one below the other, as near to the heights of what they are of as they have room.
+fn column_of(page: &mut Page, mut column: Vec<(usize, DVec2)>, x: f64, height: f64) {
+    column.sort_by(|a, b| a.1.y.total_cmp(&b.1.y));
+    let pitch = (height / column.len().max(1) as f64).min(30.0);
+    let radius = (0.46 * pitch).min(11.0);
+    let mut y = f64::NEG_INFINITY;
+    for (k, (number, anchor)) in column.iter().enumerate() {
+        let below = (column.len() - k) as f64 * pitch;
+        y = anchor.y.max(y + pitch).max(0.5 * pitch).min(height - below + 0.5 * pitch);
+        let at = DVec2::new(x, y);
+        page.lines(r##"stroke="#445" stroke-width="0.7""##, [[at, *anchor]]);
+        page.dot(*anchor, 1.8, "#334", "#ffffff");
+        page.dot(at, radius, "#ffffff", "#334");
+        let size = if number > &99 { 0.95 } else { 1.15 } * radius;
+        let look =
+            format!(r##"font-family="system-ui,sans-serif" font-size="{size:.1}" fill="#112""##);
+        page.text(at + DVec2::new(0.0, 0.4 * size), "middle", &look, &number.to_string());
+    }
 }

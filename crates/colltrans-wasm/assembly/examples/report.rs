@@ -53,6 +53,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         more: &[],
         plan: &plan,
         times: Times::default(),
+        up: assembly.up(),
         maps: &maps,
     };
     Ok(std::fs::write(target, html::page(&findings, if is_manifest { &name } else { "parts" }))?)

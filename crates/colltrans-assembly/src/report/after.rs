@@ -1,0 +1,165 @@
+//! What follows the steps: their order, the way back, what stays together, what overlaps, and maps.
+
+use maud::{Markup, html};
+
+use super::html::{Report, picture};
+use super::sheet::{step_words, takes};
+use super::words::{numbers, time};
+use super::{arrow, short};
+use crate::map;
+use crate::suggest;
+
+pub(super) fn section(r: &Report) -> Markup {
+    let f = r.f;
+    html! {
+        section.sheet id="after" {
+            (order(r))
+            (backwards(r))
+            (stuck(r))
+            (overlaps(r))
+            @for (name, map) in f.maps { (map_section(map, name)) }
+        }
+    }
+}
+
+/// Which steps wait for which, and how long they take.
+fn order(r: &Report) -> Markup {
+    let steps = &r.f.plan.steps;
+    let rounds = r.rounds.iter().max().map_or(0, |k| k + 1);
+    html! {
+        h2 { "The steps" }
+        @if steps.is_empty() {
+            p { "Nothing can be taken out." }
+        } @else {
+            p {
+                "A step may be done as soon as those that it needs are done; steps of one round may be done at the same time. \
+                 There are " (rounds) " rounds. One after another they take about "
+                (time(r.seconds.iter().sum())) ", by the table of handling times."
+            }
+            div.wide {
+                table {
+                    thead { tr { th { "steps" } th { "take out" } th { "way" } th { "need" } th { "round" } th { "time" } } }
+                    tbody {
+                        @for stage in r.f.plan.stages() {
+                            @let all: Vec<usize> = stage.clone().collect();
+                            @let after: Vec<usize> = steps[stage.clone()].iter().flat_map(|s| s.after.iter().copied()).collect();
+                            @let rounds: Vec<usize> = all.iter().map(|&k| r.rounds[k]).collect();
+                            tr {
+                                td { (numbers(&all)) }
+                                td { (takes(r, &stage)) }
+                                td { (way(r, stage.start)) }
+                                td { @if !after.is_empty() { (numbers(&after)) } }
+                                td { (numbers(&rounds)) }
+                                td.n { (time(r.seconds[stage.clone()].iter().sum())) }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn way(r: &Report, step: usize) -> String {
+    match &r.f.plan.steps[step].path[..] {
+        [leg] => r.words.leg(leg),
+        path => format!("{} moves", path.len()),
+    }
+}
+
+/// How it is put together.
+fn backwards(r: &Report) -> Markup {
+    let plan = r.f.plan;
+    let stages = plan.stages();
+    html! {
+        @if plan.steps.len() > 1 {
+            h3 { "Putting it together" }
+            p {
+                "The steps backwards, each move the other way, which the same proofs allow"
+                @if !plan.last.is_empty() { "; it begins with " (r.words.names(&plan.last)) }
+                "."
+            }
+            ol {
+                @for stage in stages.iter().rev() {
+                    @let step = &plan.steps[stage.start];
+                    li {
+                        (takes(r, stage)) ": "
+                        @if step.path.len() > 1 {
+                            (step_words(&stage.clone().collect::<Vec<_>>())) " backwards"
+                        } @else {
+                            (r.words.way(glam::DVec3::ZERO - step.direction))
+                        }
+                        @if step.within.is_some() { ", before its group is put in" }
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn stuck(r: &Report) -> Markup {
+    html! {
+        @if !r.f.plan.stuck.is_empty() {
+            h3 { "What stays together, and why" }
+            ul {
+                @for s in &r.f.plan.stuck {
+                    li { b { (r.words.names(&s.parts)) } ": " (s.because(r.f.bodies)) "." }
+                }
+            }
+        }
+    }
+}
+
+/// What runs into each other as it is drawn, and what may help.
+fn overlaps(r: &Report) -> Markup {
+    let f = r.f;
+    let remaining = f.start.remaining().count();
+    html! {
+        @if remaining > 0 {
+            h3 { "Parts that run into each other" }
+            p {
+                (remaining) @if remaining == 1 { " pair overlaps" } @else { " pairs overlap" }
+                " with this tolerance, and count as one body where they meet; a table of them is at the end of the file."
+                @if let Some(tolerance) = f.start.suggested {
+                    " Try a tolerance of " (short(tolerance)) " or, for curved fits, the chord errors of both parts together."
+                }
+            }
+            @let said = suggest::told(f.bodies.assembly(), f.suggestions);
+            @if !said.is_empty() {
+                p { "They may be on purpose:" }
+                ul { @for said in said { li { (said) } } }
+            }
+        }
+    }
+}
+
+fn map_section(map: &map::RemovalMap, name: &str) -> Markup {
+    let title = format!("Room of {name} in all directions");
+    html! {
+        h3 { (title) }
+        figure { (picture(map::svg(map, &title))) }
+        @match &map.cover {
+            Ok(cover) => {
+                p {
+                    (share(cover.free_share())) " of all directions are free, which is proven; of "
+                    (share(cover.undecided_share())) " nothing is known."
+                }
+            }
+            Err(why) => {
+                p { (share(map.free_share())) " of the directions sampled are free: " (why) "." }
+            }
+        }
+        @for region in map.regions.iter().take(8) {
+            p {
+                "A free region of " (short(region.solid_angle)) " steradians around "
+                (arrow(region.center)) "."
+            }
+        }
+        @for d in &map.isolated { p { "An isolated free direction: " (arrow(*d)) "." } }
+    }
+}
+
+/// A share as a percentage.
+fn share(share: f64) -> String {
+    format!("{} %", short(100.0 * share))
+}

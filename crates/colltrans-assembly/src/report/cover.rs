@@ -1,0 +1,156 @@
+//! The first page: what it is, all of it in an exploded view, and a list of its parts.
+
+use colltrans::Aabb;
+use glam::{DVec2, DVec3};
+use maud::{Markup, html};
+
+use super::exploded::Exploded;
+use super::html::{Report, picture};
+use super::kinds::{Kind, kinds};
+use super::scene::{Look, Scene, Shown};
+use super::words::{numbers, time};
+use super::{hexadecimal, tint};
+use crate::Fit;
+
+/// The width of the picture in pixels, and bounds of its height.
+const WIDTH: f64 = 860.0;
+const HEIGHTS: [f64; 2] = [380.0, 900.0];
+/// Notes of the source are listed up to so many.
+const MOST_NOTES: usize = 5;
+/// Longer lists stand in columns.
+const ONE_COLUMN: usize = 14;
+
+pub(super) fn page(r: &Report, title: &str) -> Markup {
+    let kinds = kinds(r.f.plan, r.f.bodies.len());
+    html! {
+        section.sheet id="cover" {
+            h1 { (title) }
+            p { (summary(r, kinds.len())) }
+            (result(r))
+            (notes(r))
+            @if !kinds.is_empty() {
+                (exploded(r, &kinds, title))
+                (list(r, &kinds))
+            }
+        }
+    }
+}
+
+fn summary(r: &Report, kinds: usize) -> String {
+    let (assembly, words) = (r.f.bodies.assembly(), &r.words);
+    let Aabb { low, high } = assembly.bounds();
+    let count = assembly.parts().len();
+    let mut text = format!("{count} parts");
+    if kinds < count {
+        text += &format!(" of {kinds} shapes");
+    }
+    text += &format!(", {} overall.", words.extent(high - low));
+    if assembly.unit().is_none() {
+        text += " The file names no unit of length.";
+    }
+    let fit = match r.f.bodies.fit() {
+        Fit::Tolerance(length) if length <= 1.001 * Fit::digits(assembly) => String::new(),
+        Fit::Tolerance(length) => format!(" Tolerance {}.", words.length(length)),
+        Fit::Chords { largest, .. } => {
+            format!(
+                " Tolerances by the chord errors of the parts, {} at most.",
+                words.length(largest)
+            )
+        }
+        Fit::Apart(length) => format!(" To be kept apart by {}.", words.length(length)),
+    };
+    let seconds: f64 = r.seconds.iter().sum();
+    match r.f.plan.steps.len() {
+        0 => text + &fit,
+        steps => {
+            let steps = if steps == 1 { "1 step".into() } else { format!("{steps} steps") };
+            format!("{text}{fit} {steps}, about {} of handling.", time(seconds))
+        }
+    }
+}
+
+/// How far the plan comes, in a sentence.
+fn result(r: &Report) -> Markup {
+    let (plan, words) = (r.f.plan, &r.words);
+    let whole = plan.left.is_empty() && plan.stuck.is_empty();
+    html! {
+        @if let Some(wanted) = &plan.wanted {
+            p.partly { "To take out " (wanted.words(r.f.bodies.assembly())) "." }
+        } @else if plan.steps.is_empty() && !plan.left.is_empty() {
+            p.warn { "Nothing can be taken out; why is said at the end." }
+        } @else if whole && !plan.last.is_empty() {
+            p.proof { "It comes apart wholly. " (words.names(&plan.last)) " stays where it is, the rest is taken off it." }
+        } @else if !whole {
+            p.warn {
+                "What stays together, and why, is said at the end: "
+                (plan.stuck.iter().map(|s| words.group(&s.parts)).collect::<Vec<_>>().join("; ")) "."
+            }
+        }
+        @let remaining = r.f.start.remaining().count();
+        @if remaining > 0 {
+            p.warn {
+                @if remaining == 1 { "One pair of parts runs" } @else { (remaining) " pairs of parts run" }
+                " into each other as they are drawn, and are moved as one; which, and what may help, is said after the \
+                 steps."
+            }
+        }
+    }
+}
+
+fn notes(r: &Report) -> Markup {
+    let notes = r.f.bodies.assembly().notes();
+    html! {
+        @for note in notes.iter().take(MOST_NOTES) { p.warn { (note) } }
+        @if notes.len() > MOST_NOTES { p.soft { (notes.len() - MOST_NOTES) " more notes are in assembly.json." } }
+    }
+}
+
+fn exploded(r: &Report, kinds: &[Kind], title: &str) -> Markup {
+    let Exploded { by, traces } = Exploded::new(r.f);
+    let shown = |(part, &by): (usize, &DVec3)| Shown { part, by, look: Look::Full };
+    let numbers = kinds.iter().enumerate().map(|(k, kind)| (k + 1, kind.parts.clone()));
+    let mut scene = Scene {
+        size: DVec2::new(WIDTH, HEIGHTS[0]),
+        shown: by.iter().enumerate().map(shown).collect(),
+        arrows: Vec::new(),
+        traces,
+        numbers: numbers.collect(),
+        label: format!("{title}, each part moved away along its own way"),
+    };
+    scene.size.y = r.studio.height(&scene, HEIGHTS).round();
+    html! {
+        figure {
+            (picture(r.studio.picture(&scene, r.studio.front())))
+            figcaption { "Every part is drawn where its own way leads it. Numbers are those of the list." }
+        }
+    }
+}
+
+fn list(r: &Report, kinds: &[Kind]) -> Markup {
+    let assembly = r.f.bodies.assembly();
+    let fixed = |kind: &Kind| kind.parts.iter().any(|&part| assembly.parts()[part].fixed());
+    let class = if kinds.len() > ONE_COLUMN { "columns" } else { "wide" };
+    html! {
+        h2 { "Parts" }
+        div class=(class) {
+            table {
+                thead { tr { th { "no." } th { "count" } th { "part" } th { "size" } th { "step" } } }
+                tbody {
+                    @for (k, kind) in kinds.iter().enumerate() {
+                        tr {
+                            td.n { (k + 1) }
+                            td.n { (kind.parts.len()) " ×" }
+                            td {
+                                span.swatch style=(format!("background:{}", hexadecimal(tint(k)))) {}
+                                " " (r.words.kind(&kind.parts))
+                                @if fixed(kind) { " (fixed)" }
+                            }
+                            td { (r.words.extent(r.f.bodies.bounds(kind.parts[0]).size())) }
+                            td { @if kind.steps.is_empty() { "stays" } @else { (numbers(&kind.steps)) } }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

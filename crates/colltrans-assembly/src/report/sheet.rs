@@ -1,0 +1,313 @@
+//! A page for each step, or for steps that are one for whoever does them.
+
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use colltrans::Aabb;
+use glam::{DVec2, DVec3};
+use maud::{Markup, html};
+
+use super::html::{Report, picture};
+use super::scene::{Arrow, Look, Scene, Shown, Viewpoint};
+use super::words::{numbers, time};
+use super::there;
+use crate::Fit;
+use crate::plan::{Leg, Step};
+use crate::roles::Role;
+
+const SIZE: DVec2 = DVec2::new(760.0, 520.0);
+/// Of a picture of one move of several.
+const SMALL: DVec2 = DVec2::new(400.0, 300.0);
+/// Moves are drawn up to so many of a step.
+const MOST_FRAMES: usize = 9;
+/// How far out what moves is drawn, as shares of the assembly's size, at least and at most.
+const OUT: [f64; 2] = [0.12, 0.5];
+/// Pairs are named up to so many.
+const MOST_PAIRS: usize = 6;
+
+pub(super) fn page(r: &Report, stage: &Range<usize>) -> Markup {
+    let steps = &r.f.plan.steps[stage.clone()];
+    let all: Vec<usize> = stage.clone().collect();
+    let head = if stage.len() == 1 { "Step" } else { "Steps" };
+    html! {
+        section.sheet.step id=(format!("step-{}", stage.start + 1)) {
+            h2 { (head) " " (numbers(&all)) ": take out " (takes(r, stage)) }
+            @if let Some(within) = steps[0].within {
+                p.soft { "On the bench, from what step " (within + 1) " took out: " (r.words.group(&r.f.plan.steps[within].parts)) "." }
+            }
+            @if steps[0].path.len() > 1 { (frames(r, stage.start)) } @else { (one_picture(r, stage)) }
+            (facts(r, stage))
+            (warnings(r, steps))
+            (proof(r, steps))
+        }
+    }
+}
+
+/// What a stage takes away, in a few words.
+pub(super) fn takes(r: &Report, stage: &Range<usize>) -> String {
+    let steps = &r.f.plan.steps[stage.clone()];
+    match steps {
+        [step] => r.words.group(&step.parts),
+        _ => r.words.count(&parts(steps)),
+    }
+}
+
+fn parts(steps: &[Step]) -> Vec<usize> {
+    steps.iter().flat_map(|step| step.parts.iter().copied()).collect()
+}
+
+/// What is left, pale, and what moves, on its way out.
+fn one_picture(r: &Report, stage: &Range<usize>) -> Markup {
+    let steps = &r.f.plan.steps[stage.clone()];
+    let travel = r.f.plan.travel(stage);
+    let out = steps[0].direction * drawn_out(r, travel);
+    let moving = parts(steps);
+    let mut scene = Scene {
+        size: SIZE,
+        shown: shown(r, stage.start, &moving, |part| {
+            if moving.contains(&part) { out } else { DVec3::ZERO }
+        }),
+        arrows: steps.iter().map(|step| arrow(r, &step.parts, DVec3::ZERO, out)).collect(),
+        traces: Vec::new(),
+        numbers: Vec::new(),
+        label: format!(
+            "{} moves {}; it is drawn in colour, what stays is pale",
+            takes(r, stage),
+            r.words.leg(&steps[0].path[0])
+        ),
+    };
+    if travel > 0.0 {
+        scene.arrows[0].label = r.words.length(travel);
+    }
+    let groups: Vec<Vec<usize>> = steps.iter().map(|step| step.parts.clone()).collect();
+    let viewpoint = r.studio.arrange(&mut scene, &groups);
+    html! {
+        figure {
+            (picture(r.studio.picture(&scene, viewpoint)))
+            (caption(r, &scene, viewpoint, "", (moving.len() > 1).then(|| r.words.names(&moving))))
+        }
+    }
+}
+
+/// A picture for each move, with everything where the moves before have left it.
+fn frames(r: &Report, at: usize) -> Markup {
+    let step = &r.f.plan.steps[at];
+    let mut by = vec![DVec3::ZERO; r.f.bodies.len()];
+    let mut figures = Vec::new();
+    for (k, leg) in step.path.iter().enumerate().take(MOST_FRAMES) {
+        let is_last = k + 1 == step.path.len();
+        let out = leg.direction * if is_last { drawn_out(r, leg.travel) } else { leg.travel };
+        let before = by[leg.parts[0]];
+        leg.parts.iter().for_each(|&part| by[part] += out);
+        let mut scene = Scene {
+            size: SMALL,
+            shown: shown(r, at, &leg.parts, |part| by[part]),
+            arrows: vec![arrow(r, &leg.parts, before, out)],
+            traces: Vec::new(),
+            numbers: Vec::new(),
+            label: format!(
+                "Move {} of {}: {} {}",
+                k + 1,
+                step.path.len(),
+                r.words.names(&leg.parts),
+                r.words.leg(leg)
+            ),
+        };
+        let viewpoint = r.studio.arrange(&mut scene, std::slice::from_ref(&leg.parts));
+        let said = format!("{}. {}: {}. ", k + 1, r.words.names(&leg.parts), r.words.leg(leg));
+        figures.push(html! {
+            figure {
+                (picture(r.studio.picture(&scene, viewpoint)))
+                (caption(r, &scene, viewpoint, &said, None))
+            }
+        });
+    }
+    html! {
+        div.frames { @for figure in figures { (figure) } }
+        @if step.path.len() > MOST_FRAMES {
+            ol start=(MOST_FRAMES + 1) { @for leg in &step.path[MOST_FRAMES..] { (leg_item(r, leg)) } }
+        }
+        @if !step.back.is_empty() {
+            p { "Then back to its place:" }
+            ol { @for leg in &step.back { (leg_item(r, leg)) } }
+        }
+    }
+}
+
+fn leg_item(r: &Report, leg: &Leg) -> Markup {
+    html! { li { (r.words.names(&leg.parts)) ": " (r.words.leg(leg)) } }
+}
+
+fn caption(
+    r: &Report,
+    scene: &Scene,
+    viewpoint: Viewpoint,
+    said: &str,
+    names: Option<String>,
+) -> Markup {
+    let glass: Vec<usize> =
+        scene.shown.iter().filter(|s| s.look == Look::Glass).map(|s| s.part).collect();
+    html! {
+        figcaption {
+            (said)
+            @if let Some(names) = names { (names) ". " }
+            @if !viewpoint.name.is_empty() { "Seen " (viewpoint.name) ". " }
+            @if !glass.is_empty() { "Drawn as glass: " (r.words.names(&glass)) "." }
+        }
+    }
+}
+
+/// How far out what has to go by a travel is drawn.
+fn drawn_out(r: &Report, travel: f64) -> f64 {
+    let [least, most] = OUT.map(|share| share * r.diagonal);
+    (0.5 * travel).clamp(least, most)
+}
+
+fn shown(r: &Report, step: usize, moving: &[usize], by: impl Fn(usize) -> DVec3) -> Vec<Shown> {
+    let look = |part: usize| if moving.contains(&part) { Look::Moving } else { Look::Pale };
+    there(r.f, step).map(|part| Shown { part, by: by(part), look: look(part) }).collect()
+}
+
+/// From the middle of what moves, and beyond where it is drawn.
+fn arrow(r: &Report, parts: &[usize], before: DVec3, out: DVec3) -> Arrow {
+    let boxes = parts.iter().map(|&part| r.f.bodies.bounds(part));
+    let Aabb { low, high } = boxes.reduce(|a, b| a.join(&b)).expect("something moves");
+    let from = low.midpoint(high) + before;
+    let beyond = out.normalize_or_zero() * 0.1 * r.diagonal;
+    Arrow { from, to: from + out + beyond, label: String::new() }
+}
+
+fn facts(r: &Report, stage: &Range<usize>) -> Markup {
+    let steps = &r.f.plan.steps[stage.clone()];
+    let step = &steps[0];
+    let travel = r.f.plan.travel(stage);
+    let each = if steps.len() > 1 { " each" } else { "" };
+    let after: Vec<usize> = steps.iter().flat_map(|step| step.after.iter().copied()).collect();
+    let rounds: Vec<usize> = stage.clone().map(|k| r.rounds[k]).collect();
+    html! {
+        dl.facts {
+            @if step.path.len() == 1 {
+                div { dt { "Where to" } dd { (r.words.way(step.direction)) } }
+                div {
+                    dt { "How far until it is clear" }
+                    dd { @if travel > 0.0 { (r.words.length(travel)) (each) } @else { "nothing to pass: just take it off" } }
+                }
+            } @else {
+                div { dt { "Moves" } dd { (step.path.len()) @if !step.back.is_empty() { ", and " (step.back.len()) " back" } } }
+            }
+            div { dt { "Needs" } dd { @if after.is_empty() { "nothing before it" } @else { (step_words(&after)) } } }
+            div { dt { "Round" } dd { (numbers(&rounds)) " of " (r.rounds.iter().max().map_or(0, |k| k + 1)) } }
+            div { dt { "Time, about" } dd { (time(r.seconds[stage.clone()].iter().sum())) } }
+        }
+    }
+}
+
+pub(super) fn step_words(steps: &[usize]) -> String {
+    let one = steps.iter().all(|step| *step == steps[0]);
+    format!("{} {}", if one { "step" } else { "steps" }, numbers(steps))
+}
+
+/// What is no longer carried afterwards.
+fn warnings(r: &Report, steps: &[Step]) -> Markup {
+    let falls: Vec<usize> = steps.iter().flat_map(|step| step.falls.iter().copied()).collect();
+    let tips: Vec<usize> = steps.iter().flat_map(|step| step.off_balance.iter().copied()).collect();
+    html! {
+        @if !falls.is_empty() {
+            p.warn { b { "Hold " (r.words.names(&falls)) ":" } " then nothing that is left carries it." }
+        }
+        @if !tips.is_empty() {
+            p.warn { b { "Steady " (r.words.names(&tips)) ":" } " then its weight is beside what carries it, and it may tip over." }
+        }
+    }
+}
+
+/// What is behind a step: a proof, and what that does not speak of.
+fn proof(r: &Report, steps: &[Step]) -> Markup {
+    let (f, words) = (r.f, &r.words);
+    let mut surfaces: Vec<usize> = steps.iter().flat_map(|s| s.surfaces.iter().copied()).collect();
+    surfaces.sort_unstable();
+    surfaces.dedup();
+    let ignored: Vec<[usize; 2]> = steps.iter().flat_map(|s| s.ignored.iter().copied()).collect();
+    let passed = passed(r, steps);
+    let plain = surfaces.is_empty() && ignored.is_empty();
+    let way = match (steps, steps[0].path.len()) {
+        ([_], 1) => "this way meets nothing that is left".to_owned(),
+        (_, 1) => "none of them meets anything that is left on its way".to_owned(),
+        (_, moves) => format!("none of the {moves} moves meets anything"),
+    };
+    let class = if plain && passed.is_empty() { "proof" } else { "partly" };
+    html! {
+        div class=(class) {
+            b { @if plain { "Proven: " } @else { "Proven, as far as said below: " } }
+            (way) (fit(r)) "."
+            @if !(plain && passed.is_empty()) {
+                ul {
+                    @for said in &passed { li { (said) } }
+                    @if !surfaces.is_empty() {
+                        li {
+                            b { "Rests on open surfaces: " } (words.names(&surfaces))
+                            ". No surface is crossed; what would be inside of them is not known."
+                        }
+                    }
+                    @if !ignored.is_empty() {
+                        li {
+                            b { "Not looked at, as was asked: " }
+                            "where they are drawn into each other, "
+                            (pairs(&ignored, |pair| f.bodies.assembly().names(pair).join(" and "))) "."
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// With which fit that is so.
+fn fit(r: &Report) -> String {
+    let assembly = r.f.bodies.assembly();
+    match r.f.bodies.fit() {
+        Fit::Tolerance(length) if length <= 1.001 * Fit::digits(assembly) => {
+            format!(", with parts as they are drawn, to {}", r.words.length(length))
+        }
+        Fit::Tolerance(length) => format!(
+            ", with a tolerance of {}: each part is taken {} thinner all around",
+            r.words.length(length),
+            r.words.length(length / 2.0)
+        ),
+        Fit::Chords { largest, .. } => {
+            format!(
+                ", with tolerances by the chord errors of the parts, {} at most",
+                r.words.length(largest)
+            )
+        }
+        Fit::Apart(length) => format!(", and stays {} away from all of it", r.words.length(length)),
+    }
+}
+
+/// What is let pass of pairs with a fit of their own, like ones together.
+fn passed(r: &Report, steps: &[Step]) -> Vec<String> {
+    let like = |part: usize| r.f.plan.likes.get(part).copied().unwrap_or(part);
+    let mut groups = BTreeMap::<([usize; 2], Option<Role>, String), Vec<[usize; 2]>>::new();
+    for passed in steps.iter().flat_map(|step| &step.passed) {
+        let said = passed.tolerated.words(passed.role);
+        groups.entry((passed.parts.map(like), passed.role, said)).or_default().push(passed.parts);
+    }
+    let told = |((_, _, said), all): (([usize; 2], Option<Role>, String), Vec<[usize; 2]>)| {
+        let mut sides = [0, 1].map(|side| all.iter().map(|pair| pair[side]).collect::<Vec<_>>());
+        for side in &mut sides {
+            side.sort_unstable();
+            side.dedup();
+        }
+        format!("{} and {}: {said}", r.words.count(&sides[0]), r.words.count(&sides[1]))
+    };
+    groups.into_iter().map(told).collect()
+}
+
+/// Pairs in words, of many the first ones.
+fn pairs(all: &[[usize; 2]], words: impl Fn(&[usize; 2]) -> String) -> String {
+    let named: Vec<String> = all.iter().take(MOST_PAIRS).map(words).collect();
+    match all.len().saturating_sub(MOST_PAIRS) {
+        0 => named.join(", "),
+        more => format!("{} and {more} more pairs", named.join(", ")),
+    }
+}

@@ -1,0 +1,179 @@
+//! Lengths, directions and names as a mechanic reads them.
+
+use std::collections::BTreeSet;
+use std::ops::Range;
+
+use glam::DVec3;
+
+use super::{Findings, arrow, short};
+use crate::likes::common_name;
+use crate::part::Assembly;
+use crate::plan::Leg;
+use crate::units;
+
+/// Names are listed up to so many.
+const MOST_NAMES: usize = 8;
+/// Directions that differ by less than this angle in radians are told as one.
+const EQUAL: f64 = 1e-6;
+
+/// How lengths and directions are told.
+pub(super) struct Words<'a> {
+    assembly: &'a Assembly,
+    up: DVec3,
+    factor: f64,
+    unit: &'a str,
+}
+
+impl<'a> Words<'a> {
+    pub(super) fn new(f: &Findings<'a>) -> Self {
+        let assembly = f.bodies.assembly();
+        let unit = assembly.unit().unwrap_or_default();
+        // What fits on a bench is measured in millimetres.
+        let small = units::metres(unit) == Some(1.0) && assembly.size() < 2.0;
+        let (factor, unit) = if small { (1e3, "mm") } else { (1.0, unit) };
+        Self { assembly, up: f.up, factor, unit }
+    }
+
+    pub(super) fn length(&self, x: f64) -> String {
+        self.with_unit(short(x * self.factor))
+    }
+
+    fn with_unit(&self, number: String) -> String {
+        if self.unit.is_empty() { number } else { format!("{number} {}", self.unit) }
+    }
+
+    /// Width, depth and height.
+    pub(super) fn extent(&self, size: DVec3) -> String {
+        let sides = size.to_array().map(|x| short(x * self.factor));
+        self.with_unit(sides.join(" × "))
+    }
+
+    /// "up (+z)", "along −x", "12° off +y (0.2, 0.98, 0)".
+    pub(super) fn way(&self, d: DVec3) -> String {
+        let off = |axis: DVec3| angle(d, axis);
+        if off(self.up) < EQUAL {
+            return format!("up ({})", axis_name(d));
+        }
+        if off(DVec3::ZERO - self.up) < EQUAL {
+            return format!("down ({})", axis_name(d));
+        }
+        let axis = nearest_axis(d);
+        if off(axis) < EQUAL {
+            return format!("along {}", arrow(axis));
+        }
+        format!("{}° off {} {}", short(off(axis).to_degrees()), arrow(axis), arrow(d))
+    }
+
+    /// A move and how far it goes.
+    pub(super) fn leg(&self, leg: &Leg) -> String {
+        let way = self.way(leg.direction);
+        match leg.travel {
+            0.0 => way,
+            travel => format!("{way}, {}", self.length(travel)),
+        }
+    }
+
+    /// Names, of many the first ones.
+    pub(super) fn names(&self, parts: &[usize]) -> String {
+        let few = if parts.len() <= MOST_NAMES + 1 { parts } else { &parts[..MOST_NAMES] };
+        let names = self.assembly.names(few).join(", ");
+        match parts.len() - few.len() {
+            0 => names,
+            more => format!("{names} and {more} more"),
+        }
+    }
+
+    /// What leaves as one, in a few words.
+    pub(super) fn group(&self, parts: &[usize]) -> String {
+        let names = self.assembly.names(parts);
+        match (self.assembly.constraints().name(parts), &names[..]) {
+            (Some(name), _) => name.to_owned(),
+            (None, [first, rest @ ..]) if rest.len() > 3 => {
+                format!("{first} and {} more, as one", rest.len())
+            }
+            (None, [firsts @ .., last]) if !firsts.is_empty() => {
+                format!("{} and {last}, as one", firsts.join(", "))
+            }
+            _ => names.concat(),
+        }
+    }
+
+    /// What parts of one shape are called.
+    pub(super) fn kind(&self, parts: &[usize]) -> String {
+        let names = self.assembly.names(parts);
+        match &names[..] {
+            [name] => (*name).to_owned(),
+            _ => common_name(&names).unwrap_or_else(|| self.names(parts)),
+        }
+    }
+
+    /// What parts of one shape are, and how many.
+    pub(super) fn count(&self, parts: &[usize]) -> String {
+        let names = self.assembly.names(parts);
+        match (common_name(&names), &names[..]) {
+            (_, [name]) => (*name).to_owned(),
+            (Some(name), _) => format!("{} × {name}", parts.len()),
+            (None, _) => self.names(parts),
+        }
+    }
+}
+
+/// The angle between two directions of length 1, in radians.
+fn angle(a: DVec3, b: DVec3) -> f64 {
+    a.cross(b).length().atan2(a.dot(b))
+}
+
+/// The axis that a direction is nearest to.
+fn nearest_axis(d: DVec3) -> DVec3 {
+    let k = d.abs().max_position();
+    DVec3::AXES[k] * d[k].signum()
+}
+
+fn axis_name(d: DVec3) -> String {
+    let axis = nearest_axis(d);
+    arrow(if angle(d, axis) < EQUAL { axis } else { d })
+}
+
+/// Whole numbers, counted from 1: "1–8, 17".
+pub(super) fn numbers(all: &[usize]) -> String {
+    let mut runs: Vec<Range<usize>> = Vec::new();
+    for &k in &all.iter().copied().collect::<BTreeSet<usize>>() {
+        match runs.last_mut() {
+            Some(run) if run.end == k => run.end = k + 1,
+            _ => runs.push(k..k + 1),
+        }
+    }
+    let told = |run: &Range<usize>| match run.len() {
+        1 => run.end.to_string(),
+        2 => format!("{}, {}", run.start + 1, run.end),
+        _ => format!("{}–{}", run.start + 1, run.end),
+    };
+    runs.iter().map(told).collect::<Vec<_>>().join(", ")
+}
+
+/// Seconds, from two minutes on in minutes.
+pub(super) fn time(seconds: f64) -> String {
+    if seconds < 120.0 {
+        return format!("{} s", short(seconds));
+    }
+    let whole = seconds.round();
+    let (minutes, rest) = (whole.div_euclid(60.0), whole.rem_euclid(60.0));
+    if rest == 0.0 { format!("{minutes} min") } else { format!("{minutes} min {rest} s") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_runs() {
+        assert_eq!(numbers(&[3, 0, 1, 2, 5, 7, 8]), "1–4, 6, 8, 9");
+        assert_eq!(numbers(&[]), "");
+    }
+
+    #[test]
+    fn times_of_minutes() {
+        let told = [24.0, 94.5, 120.0, 228.4].map(time);
+        assert_eq!(told, ["24 s", "94.5 s", "2 min", "3 min 48 s"]);
+    }
+}

@@ -1,13 +1,19 @@
 //! What follows the steps: their order, the way back, what stays together, what overlaps, and maps.
 
+use std::ops::Range;
+
 use maud::{Markup, html};
 
 use super::html::{Report, picture};
-use super::sheet::{step_words, takes};
+use super::sheet::{self, far, step_words, takes};
 use super::words::{numbers, time};
 use super::{arrow, short};
 use crate::map;
+use crate::roles::{PairFit, Passed};
 use crate::suggest;
+
+/// What was asked is listed up to so many.
+const MOST_SAID: usize = 20;
 
 pub(super) fn section(r: &Report) -> Markup {
     let f = r.f;
@@ -16,6 +22,7 @@ pub(super) fn section(r: &Report) -> Markup {
             (order(r))
             (backwards(r))
             (stuck(r))
+            (asked(r))
             (overlaps(r))
             @for (name, map) in f.maps { (map_section(map, name)) }
         }
@@ -32,9 +39,14 @@ fn order(r: &Report) -> Markup {
             p { "Nothing can be taken out." }
         } @else {
             p {
-                "A step may be done as soon as those that it needs are done; steps of one round may be done at the same time. \
-                 There are " (rounds) " rounds. One after another they take about "
-                (time(r.seconds.iter().sum())) ", by the table of handling times."
+                @if steps.len() > 1 {
+                    "A step may be done as soon as those that it needs are done; steps of one round may be done at the \
+                     same time. "
+                    @if rounds > 1 { "There are " (rounds) " rounds. " }
+                }
+                "By the table of handling times it takes about " (time(r.seconds.iter().sum()))
+                @if steps.len() > 1 { ", one step after another" }
+                "."
             }
             div.wide {
                 table {
@@ -47,7 +59,7 @@ fn order(r: &Report) -> Markup {
                             tr {
                                 td { (numbers(&all)) }
                                 td { (takes(r, &stage)) }
-                                td { (way(r, stage.start)) }
+                                td { (way(r, &stage)) }
                                 td { @if !after.is_empty() { (numbers(&after)) } }
                                 td { (numbers(&rounds)) }
                                 td.n { (time(r.seconds[stage.clone()].iter().sum())) }
@@ -60,10 +72,13 @@ fn order(r: &Report) -> Markup {
     }
 }
 
-fn way(r: &Report, step: usize) -> String {
-    match &r.f.plan.steps[step].path[..] {
-        [leg] => r.words.leg(leg),
-        path => format!("{} moves", path.len()),
+fn way(r: &Report, stage: &Range<usize>) -> String {
+    let steps = &r.f.plan.steps[stage.clone()];
+    let way = r.words.way(steps[0].direction);
+    match (steps[0].path.len(), far(r, steps)) {
+        (1, None) => way,
+        (1, Some(far)) => format!("{way}, {far}"),
+        (moves, _) => format!("{moves} moves"),
     }
 }
 
@@ -108,6 +123,48 @@ fn stuck(r: &Report) -> Markup {
             }
         }
     }
+}
+
+/// What was said of pairs and asked of the order.
+fn asked(r: &Report) -> Markup {
+    let (assembly, words) = (r.f.bodies.assembly(), &r.words);
+    let constraints = assembly.constraints();
+    let name = |part: usize| assembly.parts()[part].name();
+    let mut said: Vec<String> = sheet::told(r, &tolerated(r));
+    let before = constraints.before().iter();
+    said.extend(before.map(|&[a, b]| format!("{} leaves before {}", name(a), name(b))));
+    said.extend(constraints.units().iter().map(|unit| {
+        let names = words.names(&unit.parts);
+        let apart = if unit.apart { ", and is then taken apart" } else { ", and stays together" };
+        match &unit.name {
+            Some(known) => format!("{known} ({names}) leaves as one{apart}"),
+            None => format!("{names} leave as one"),
+        }
+    }));
+    said.extend(constraints.never().iter().map(|never| {
+        let within = short(never.within);
+        format!(
+            "{} never goes {}, nor within {within}° of that",
+            name(never.part),
+            words.way(never.direction)
+        )
+    }));
+    html! {
+        @if !said.is_empty() {
+            h3 { "What was said of parts" }
+            ul { @for text in said.iter().take(MOST_SAID) { li { (text) } } }
+            @if said.len() > MOST_SAID { p { (said.len() - MOST_SAID) " more are in assembly.json." } }
+        }
+    }
+}
+
+/// All pairs with a fit of their own.
+fn tolerated(r: &Report) -> Vec<Passed> {
+    let bodies = r.f.bodies;
+    let pair = |(parts, fit): ([usize; 2], PairFit)| {
+        Some(Passed { parts, role: fit.role, tolerated: bodies.tolerated(parts)? })
+    };
+    bodies.assembly().pairs().filter_map(pair).collect()
 }
 
 /// What runs into each other as it is drawn, and what may help.

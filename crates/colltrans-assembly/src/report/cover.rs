@@ -8,7 +8,8 @@ use super::exploded::Exploded;
 use super::html::{Report, picture};
 use super::kinds::{Kind, kinds};
 use super::scene::{Look, Scene, Shown};
-use super::words::{numbers, time};
+use super::sheet::step_words;
+use super::words::time;
 use super::{hexadecimal, tint};
 use crate::Fit;
 
@@ -18,7 +19,7 @@ const HEIGHTS: [f64; 2] = [380.0, 900.0];
 /// Notes of the source are listed up to so many.
 const MOST_NOTES: usize = 5;
 /// Longer lists stand in columns.
-const ONE_COLUMN: usize = 14;
+const ONE_COLUMN: usize = 8;
 
 pub(super) fn page(r: &Report, title: &str) -> Markup {
     let kinds = kinds(r.f.plan, r.f.bodies.len());
@@ -129,26 +130,25 @@ fn exploded(r: &Report, kinds: &[Kind], title: &str) -> Markup {
 fn list(r: &Report, kinds: &[Kind]) -> Markup {
     let assembly = r.f.bodies.assembly();
     let fixed = |kind: &Kind| kind.parts.iter().any(|&part| assembly.parts()[part].fixed());
-    let class = if kinds.len() > ONE_COLUMN { "columns" } else { "wide" };
+    let class = if kinds.len() > ONE_COLUMN { "list columns" } else { "list" };
+    let unit = match r.words.unit() {
+        "" => String::new(),
+        unit => format!(", sizes in {unit}"),
+    };
     html! {
-        h2 { "Parts" }
-        div class=(class) {
-            table {
-                thead { tr { th { "no." } th { "count" } th { "part" } th { "size" } th { "step" } } }
-                tbody {
-                    @for (k, kind) in kinds.iter().enumerate() {
-                        tr {
-                            td.n { (k + 1) }
-                            td.n { (kind.parts.len()) " ×" }
-                            td {
-                                span.swatch style=(format!("background:{}", hexadecimal(tint(k)))) {}
-                                " " (r.words.kind(&kind.parts))
-                                @if fixed(kind) { " (fixed)" }
-                            }
-                            td { (r.words.extent(r.f.bodies.bounds(kind.parts[0]).size())) }
-                            td { @if kind.steps.is_empty() { "stays" } @else { (numbers(&kind.steps)) } }
-                        }
+        h2 { "Parts" span.soft { (unit) } }
+        ol class=(class) {
+            @for (k, kind) in kinds.iter().enumerate() {
+                li {
+                    b { (k + 1) }
+                    span { (kind.parts.len()) " ×" }
+                    span {
+                        span.swatch style=(format!("background:{}", hexadecimal(tint(k)))) {}
+                        " " (r.words.kind(&kind.parts))
+                        @if fixed(kind) { " (fixed)" }
                     }
+                    span { (r.words.sides(assembly.parts()[kind.parts[0]].bounds().size())) }
+                    span { @if kind.steps.is_empty() { "stays" } @else { (step_words(&kind.steps)) } }
                 }
             }
         }

@@ -300,7 +300,7 @@ impl<'a> Studio<'a> {
             let [from, to] = [a.from, a.to].map(|p| eye.see(p).truncate());
             page.arrow(ARROW, 2.5, [from, to]);
             if !a.label.is_empty() {
-                page.label(beside([from, to], scene.size), LABEL, &a.label);
+                page.label(beyond([from, to], &a.label, scene.size), LABEL, &a.label);
             }
         }
         balloons(&mut page, scene, &raster);
@@ -363,6 +363,9 @@ impl<'a> Studio<'a> {
 const LABEL: &str =
     r##"font-family="system-ui,sans-serif" font-size="15" font-weight="600" fill="#a01515""##;
 
+/// How wide a letter of it is, in pixels.
+const LETTER: f64 = 9.0;
+
 /// How many samples are seen of each part.
 fn count(raster: &Raster) -> BTreeMap<usize, usize> {
     let mut counts = BTreeMap::new();
@@ -372,12 +375,11 @@ fn count(raster: &Raster) -> BTreeMap<usize, usize> {
     counts
 }
 
-/// Where the label of an arrow stands: beside its tip, on the page.
-fn beside([from, to]: [DVec2; 2], size: DVec2) -> DVec2 {
+/// Where the label of an arrow stands: beyond its tip, on the page.
+fn beyond([from, to]: [DVec2; 2], label: &str, size: DVec2) -> DVec2 {
     let along = (to - from).normalize_or(DVec2::NEG_Y);
-    let right = if along.x.abs() < 0.5 { DVec2::new(46.0, 0.0) } else { DVec2::new(0.0, -18.0) };
-    let room = DVec2::new(50.0, 14.0);
-    (to + right).clamp(room, size - room)
+    let room = DVec2::new(LETTER * label.chars().count() as f64 / 2.0 + 4.0, 12.0);
+    (to + along * (4.0 + (along * room).abs().element_sum())).clamp(room, size - room)
 }
 
 /// The axes of the world, in a corner.

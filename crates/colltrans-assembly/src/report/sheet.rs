@@ -9,13 +9,13 @@ use maud::{Markup, html};
 
 use super::html::{Report, picture};
 use super::scene::{Arrow, Look, Scene, Shown, Viewpoint};
-use super::words::{numbers, time};
 use super::there;
+use super::words::{numbers, time};
 use crate::Fit;
 use crate::plan::{Leg, Step};
-use crate::roles::Role;
+use crate::roles::{Passed, Role};
 
-const SIZE: DVec2 = DVec2::new(760.0, 520.0);
+const SIZE: DVec2 = DVec2::new(760.0, 580.0);
 /// Of a picture of one move of several.
 const SMALL: DVec2 = DVec2::new(400.0, 300.0);
 /// Moves are drawn up to so many of a step.
@@ -180,8 +180,6 @@ fn arrow(r: &Report, parts: &[usize], before: DVec3, out: DVec3) -> Arrow {
 fn facts(r: &Report, stage: &Range<usize>) -> Markup {
     let steps = &r.f.plan.steps[stage.clone()];
     let step = &steps[0];
-    let travel = r.f.plan.travel(stage);
-    let each = if steps.len() > 1 { " each" } else { "" };
     let after: Vec<usize> = steps.iter().flat_map(|step| step.after.iter().copied()).collect();
     let rounds: Vec<usize> = stage.clone().map(|k| r.rounds[k]).collect();
     html! {
@@ -190,7 +188,7 @@ fn facts(r: &Report, stage: &Range<usize>) -> Markup {
                 div { dt { "Where to" } dd { (r.words.way(step.direction)) } }
                 div {
                     dt { "How far until it is clear" }
-                    dd { @if travel > 0.0 { (r.words.length(travel)) (each) } @else { "nothing to pass: just take it off" } }
+                    dd { (far(r, steps).unwrap_or_else(|| "nothing to pass: just take it off".into())) }
                 }
             } @else {
                 div { dt { "Moves" } dd { (step.path.len()) @if !step.back.is_empty() { ", and " (step.back.len()) " back" } } }
@@ -200,6 +198,18 @@ fn facts(r: &Report, stage: &Range<usize>) -> Markup {
             div { dt { "Time, about" } dd { (time(r.seconds[stage.clone()].iter().sum())) } }
         }
     }
+}
+
+/// How far the parts of a stage have to go; `None` if there is nothing to pass.
+pub(super) fn far(r: &Report, steps: &[Step]) -> Option<String> {
+    let all = steps.iter().map(|step| step.travel.value);
+    let (least, most) = all.fold((f64::INFINITY, 0.0_f64), |(a, b), x| (a.min(x), b.max(x)));
+    let [least, most, each] = match steps.len() {
+        1 => [r.words.length(most), r.words.length(most), String::new()],
+        _ => [r.words.length(least), r.words.length(most), " each".into()],
+    };
+    let told = if least == most { most + &each } else { format!("{least} to {most}") };
+    steps.iter().any(|step| step.travel.value > 0.0).then_some(told)
 }
 
 pub(super) fn step_words(steps: &[usize]) -> String {
@@ -228,7 +238,8 @@ fn proof(r: &Report, steps: &[Step]) -> Markup {
     surfaces.sort_unstable();
     surfaces.dedup();
     let ignored: Vec<[usize; 2]> = steps.iter().flat_map(|s| s.ignored.iter().copied()).collect();
-    let passed = passed(r, steps);
+    let passed: Vec<Passed> = steps.iter().flat_map(|step| step.passed.iter().copied()).collect();
+    let passed = told(r, &passed);
     let plain = surfaces.is_empty() && ignored.is_empty();
     let way = match (steps, steps[0].path.len()) {
         ([_], 1) => "this way meets nothing that is left".to_owned(),
@@ -267,7 +278,7 @@ fn fit(r: &Report) -> String {
     let assembly = r.f.bodies.assembly();
     match r.f.bodies.fit() {
         Fit::Tolerance(length) if length <= 1.001 * Fit::digits(assembly) => {
-            format!(", with parts as they are drawn, to {}", r.words.length(length))
+            ", with the parts as they are drawn, to the file's last digits".into()
         }
         Fit::Tolerance(length) => format!(
             ", with a tolerance of {}: each part is taken {} thinner all around",
@@ -285,10 +296,10 @@ fn fit(r: &Report) -> String {
 }
 
 /// What is let pass of pairs with a fit of their own, like ones together.
-fn passed(r: &Report, steps: &[Step]) -> Vec<String> {
+pub(super) fn told(r: &Report, all: &[Passed]) -> Vec<String> {
     let like = |part: usize| r.f.plan.likes.get(part).copied().unwrap_or(part);
     let mut groups = BTreeMap::<([usize; 2], Option<Role>, String), Vec<[usize; 2]>>::new();
-    for passed in steps.iter().flat_map(|step| &step.passed) {
+    for passed in all {
         let said = passed.tolerated.words(passed.role);
         groups.entry((passed.parts.map(like), passed.role, said)).or_default().push(passed.parts);
     }

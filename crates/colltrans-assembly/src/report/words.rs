@@ -5,7 +5,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::{Findings, arrow, short};
+use super::{Findings, arrow, digits, short};
 use crate::likes::common_name;
 use crate::part::Assembly;
 use crate::plan::Leg;
@@ -13,6 +13,10 @@ use crate::units;
 
 /// Names are listed up to so many.
 const MOST_NAMES: usize = 8;
+/// Parts that leave as one are all named up to one more than so many, ...
+const MOST_OF_GROUP: usize = 4;
+/// ... and names of parts of one shape, without their numbers, up to so many.
+const MOST_STEMS: usize = 3;
 /// Directions that differ by less than this angle in radians are told as one.
 const EQUAL: f64 = 1e-6;
 
@@ -44,8 +48,17 @@ impl<'a> Words<'a> {
 
     /// Width, depth and height.
     pub(super) fn extent(&self, size: DVec3) -> String {
-        let sides = size.to_array().map(|x| short(x * self.factor));
-        self.with_unit(sides.join(" × "))
+        self.with_unit(self.sides(size))
+    }
+
+    /// The same without the unit.
+    pub(super) fn sides(&self, size: DVec3) -> String {
+        size.to_array().map(|x| digits(x * self.factor, 3)).join(" × ")
+    }
+
+    /// What lengths are measured in; nothing, if that is not known.
+    pub(super) const fn unit(&self) -> &str {
+        self.unit
     }
 
     /// "up (+z)", "along −x", "12° off +y (0.2, 0.98, 0)".
@@ -75,46 +88,59 @@ impl<'a> Words<'a> {
 
     /// Names, of many the first ones.
     pub(super) fn names(&self, parts: &[usize]) -> String {
-        let few = if parts.len() <= MOST_NAMES + 1 { parts } else { &parts[..MOST_NAMES] };
-        let names = self.assembly.names(few).join(", ");
-        match parts.len() - few.len() {
-            0 => names,
-            more => format!("{names} and {more} more"),
-        }
+        listed(&self.assembly.names(parts), MOST_NAMES)
     }
 
-    /// What leaves as one, in a few words.
+    /// What leaves as one, in a few words: its name, or the largest part of it and how many others.
     pub(super) fn group(&self, parts: &[usize]) -> String {
         let names = self.assembly.names(parts);
-        match (self.assembly.constraints().name(parts), &names[..]) {
-            (Some(name), _) => name.to_owned(),
-            (None, [first, rest @ ..]) if rest.len() > 3 => {
-                format!("{first} and {} more, as one", rest.len())
+        if let Some(name) = self.assembly.constraints().name(parts) {
+            return name.to_owned();
+        }
+        match &names[..] {
+            [all @ .., last] if (1..MOST_OF_GROUP).contains(&all.len()) => {
+                format!("{} and {last}, as one", all.join(", "))
             }
-            (None, [firsts @ .., last]) if !firsts.is_empty() => {
-                format!("{} and {last}, as one", firsts.join(", "))
+            [_, _, ..] => {
+                let size = |&&part: &&usize| self.assembly.parts()[part].bounds().size().length();
+                let largest = parts.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
+                let name = largest.map_or("", |&part| self.assembly.parts()[part].name());
+                format!("{name} with {} others, as one", names.len() - 1)
             }
             _ => names.concat(),
         }
     }
 
-    /// What parts of one shape are called.
+    /// What parts of one shape are called: their names without numbers.
     pub(super) fn kind(&self, parts: &[usize]) -> String {
         let names = self.assembly.names(parts);
-        match &names[..] {
-            [name] => (*name).to_owned(),
-            _ => common_name(&names).unwrap_or_else(|| self.names(parts)),
+        if let [name] = &names[..] {
+            return (*name).to_owned();
         }
+        let mut stems: Vec<String> = Vec::new();
+        for name in names {
+            let stem = common_name(&[name]).unwrap_or_else(|| name.to_owned());
+            if !stems.contains(&stem) {
+                stems.push(stem);
+            }
+        }
+        listed(&stems, MOST_STEMS)
     }
 
     /// What parts of one shape are, and how many.
     pub(super) fn count(&self, parts: &[usize]) -> String {
-        let names = self.assembly.names(parts);
-        match (common_name(&names), &names[..]) {
-            (_, [name]) => (*name).to_owned(),
-            (Some(name), _) => format!("{} × {name}", parts.len()),
-            (None, _) => self.names(parts),
-        }
+        let kind = self.kind(parts);
+        if parts.len() > 1 { format!("{} × {kind}", parts.len()) } else { kind }
+    }
+}
+
+/// The first ones of many, and how many others there are.
+fn listed<T: AsRef<str>>(all: &[T], most: usize) -> String {
+    let few = if all.len() <= most + 1 { all } else { &all[..most] };
+    let named: Vec<&str> = few.iter().map(AsRef::as_ref).collect();
+    match all.len() - few.len() {
+        0 => named.join(", "),
+        more => format!("{} and {more} more", named.join(", ")),
     }
 }
 

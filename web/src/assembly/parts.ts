@@ -20,7 +20,7 @@ export interface Part {
 /** Moves one after another, each of parts that move together; `way`: how far they are moved in the picture. */
 export type Move = { parts: number[]; way: Vec }[];
 
-/** A colour for each part, spread by the golden angle: as in the report. */
+/** A colour for each part, spread by the golden angle; in a report, parts of one shape share one. */
 export function tint(part: number): Vec {
   const hue = (part * 0.381966011250105 + 0.58) % 1;
   const channel = (shift: number) => {

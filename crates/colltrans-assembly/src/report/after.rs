@@ -9,8 +9,9 @@ use super::sheet::{self, far, step_words, takes};
 use super::words::{numbers, time};
 use super::{arrow, short};
 use crate::map;
-use crate::roles::{PairFit, Passed};
-use crate::suggest;
+use crate::plan::{Moves, Stuck};
+use crate::roles::{PairFit, Passed, Role};
+use crate::suggest::Suggestion;
 
 /// What was asked is listed up to so many.
 const MOST_SAID: usize = 20;
@@ -117,12 +118,61 @@ fn stuck(r: &Report) -> Markup {
         @if !r.f.plan.stuck.is_empty() {
             h3 { "What stays together, and why" }
             ul {
-                @for s in &r.f.plan.stuck {
-                    li { b { (r.words.names(&s.parts)) } ": " (s.because(r.f.bodies)) "." }
-                }
+                @for s in &r.f.plan.stuck { li { b { (r.words.names(&s.parts)) } ": " (why(r, s)) } }
             }
         }
     }
+}
+
+/// Why parts stay together, in sentences.
+fn why(r: &Report, stuck: &Stuck) -> String {
+    let name = |part: usize| r.f.bodies.assembly().parts()[part].name();
+    let mut said = Vec::new();
+    if let [[a, b], rest @ ..] = &stuck.overlapping[..] {
+        let more = match rest.len() {
+            0 => String::new(),
+            1 => ", as are those of one more pair".into(),
+            more => format!(", as are those of {more} more pairs"),
+        };
+        said.push(format!(
+            "{} and {} are drawn into each other{more}; such parts are moved as one, unless a tolerance or a role is \
+             given for them.",
+            name(*a),
+            name(*b)
+        ));
+    }
+    let off = if stuck.fixed { "from the others or from what is fixed" } else { "from the others" };
+    said.push(match stuck.proven {
+        Some(_) => format!("No straight move in any direction takes one of them {off}: that is proven."),
+        None => format!(
+            "Along the {} directions that were tried none of them comes {off}; along others it is not known.",
+            stuck.directions
+        ),
+    });
+    said.push(match &stuck.moves {
+        Moves::Proven { .. } => {
+            "Nor do several moves, one after another: that is proven, too.".into()
+        }
+        Moves::NotFound { legs, searched } => {
+            let end = if searched.complete { "" } else { "; the search was ended by its limit" };
+            format!("Up to {legs} moves one after another were searched and none found{end}.")
+        }
+        Moves::NotAsked(why) => {
+            format!("Several moves one after another were not searched: {why}.")
+        }
+    });
+    if stuck.constrained {
+        said.push("The order and directions that were asked for count here.".into());
+    }
+    let held = stuck.holds.iter().filter(|hold| !hold.by.is_empty());
+    if let Some(hold) = held.min_by_key(|hold| hold.by[0].0.len()) {
+        said.push(format!(
+            "Easiest to free is {}: it is held by {}.",
+            name(hold.part),
+            r.words.names(&hold.by[0].0)
+        ));
+    }
+    said.join(" ")
 }
 
 /// What was said of pairs and asked of the order.
@@ -181,13 +231,35 @@ fn overlaps(r: &Report) -> Markup {
                     " Try a tolerance of " (short(tolerance)) " or, for curved fits, the chord errors of both parts together."
                 }
             }
-            @let said = suggest::told(f.bodies.assembly(), f.suggestions);
+            @let said = suggested(r);
             @if !said.is_empty() {
-                p { "They may be on purpose:" }
-                ul { @for said in said { li { (said) } } }
+                p { "They may be on purpose; --auto takes all of these for granted:" }
+                ul { @for text in said.iter().take(MOST_SAID) { li { (text) } } }
+                @if said.len() > MOST_SAID { p { (said.len() - MOST_SAID) " more are in assembly.json." } }
             }
         }
     }
+}
+
+/// What pairs that overlap may be, the largest overlap of like ones first.
+fn suggested(r: &Report) -> Vec<String> {
+    let mut all: Vec<&Suggestion> = r.f.suggestions.iter().collect();
+    let tolerance = |s: &Suggestion| s.fit.tolerance.unwrap_or(0.0);
+    all.sort_by(|a, b| tolerance(b).total_cmp(&tolerance(a)));
+    let said = |s: &Suggestion| {
+        let what = match s.fit.role {
+            Some(Role::Press) => "perhaps a press fit",
+            Some(Role::Thread) => "perhaps a thread",
+            Some(Role::Soft) => "perhaps soft",
+            Some(Role::Snap) => "perhaps a snap",
+            Some(Role::Glued) => "perhaps glued",
+            None => "perhaps no more than rounded shapes",
+        };
+        let enough =
+            s.fit.tolerance.map(|t| format!("; a tolerance of {} is enough", r.words.length(t)));
+        format!("{what} ({}){}", s.why, enough.unwrap_or_default())
+    };
+    sheet::alike(r, all.into_iter().map(|s| (s.parts, s.fit.role, said(s))))
 }
 
 fn map_section(map: &map::RemovalMap, name: &str) -> Markup {

@@ -37,18 +37,14 @@ pub(super) fn page(r: &Report, title: &str) -> Markup {
     }
 }
 
+/// How many parts of how many shapes, how large it is, with which fit, and how long it takes.
 fn summary(r: &Report, kinds: usize) -> String {
     let (assembly, words) = (r.f.bodies.assembly(), &r.words);
     let Aabb { low, high } = assembly.bounds();
     let count = assembly.parts().len();
-    let mut text = format!("{count} parts");
-    if kinds < count {
-        text += &format!(" of {kinds} shapes");
-    }
-    text += &format!(", {} overall.", words.extent(high - low));
-    if assembly.unit().is_none() {
-        text += " The file names no unit of length.";
-    }
+    let shapes = if kinds < count { format!(" of {kinds} shapes") } else { String::new() };
+    let size = words.extent(high - low);
+    let unit = if assembly.unit().is_none() { " The file names no unit of length." } else { "" };
     let fit = match r.f.bodies.fit() {
         Fit::Tolerance(length) if length <= 1.001 * Fit::digits(assembly) => String::new(),
         Fit::Tolerance(length) => format!(" Tolerance {}.", words.length(length)),
@@ -61,13 +57,12 @@ fn summary(r: &Report, kinds: usize) -> String {
         Fit::Apart(length) => format!(" To be kept apart by {}.", words.length(length)),
     };
     let seconds: f64 = r.seconds.iter().sum();
-    match r.f.plan.steps.len() {
-        0 => text + &fit,
-        steps => {
-            let steps = if steps == 1 { "1 step".into() } else { format!("{steps} steps") };
-            format!("{text}{fit} {steps}, about {} of handling.", time(seconds))
-        }
-    }
+    let work = match r.f.plan.steps.len() {
+        0 => String::new(),
+        1 => format!(" 1 step, about {} of handling.", time(seconds)),
+        steps => format!(" {steps} steps, about {} of handling.", time(seconds)),
+    };
+    format!("{count} parts{shapes}, {size} overall.{unit}{fit}{work}")
 }
 
 /// How far the plan comes, in a sentence.

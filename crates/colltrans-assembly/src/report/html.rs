@@ -31,7 +31,9 @@ impl<'a> Report<'a> {
     fn new(f: &'a Findings<'a>) -> Self {
         let mut rounds = vec![0; f.plan.steps.len()];
         for (round, steps) in f.plan.rounds().iter().enumerate() {
-            steps.iter().for_each(|&step| rounds[step] = round);
+            for &step in steps {
+                rounds[step] = round;
+            }
         }
         let bounds = f.bodies.assembly().bounds();
         let diagonal = DVec3::length(bounds.high - bounds.low);

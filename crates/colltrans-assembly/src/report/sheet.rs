@@ -13,7 +13,7 @@ use super::there;
 use super::words::{numbers, time};
 use crate::Fit;
 use crate::plan::{Leg, Step};
-use crate::roles::{Passed, Role};
+use crate::roles::Passed;
 
 const SIZE: DVec2 = DVec2::new(760.0, 580.0);
 /// Of a picture of one move of several.
@@ -47,7 +47,11 @@ pub(super) fn page(r: &Report, stage: &Range<usize>) -> Markup {
 pub(super) fn takes(r: &Report, stage: &Range<usize>) -> String {
     let steps = &r.f.plan.steps[stage.clone()];
     match steps {
-        [step] => r.words.group(&step.parts),
+        [step] => {
+            let named = r.f.bodies.assembly().constraints().name(&step.parts).is_some();
+            let as_one = if named || step.parts.len() == 1 { "" } else { ", as one" };
+            r.words.group(&step.parts) + as_one
+        }
         _ => r.words.count(&parts(steps)),
     }
 }
@@ -297,21 +301,33 @@ fn fit(r: &Report) -> String {
 
 /// What is let pass of pairs with a fit of their own, like ones together.
 pub(super) fn told(r: &Report, all: &[Passed]) -> Vec<String> {
+    let said = |passed: &Passed| passed.tolerated.words(passed.role);
+    alike(r, all.iter().map(|passed| (passed.parts, said(passed), said(passed))))
+}
+
+/// What is said of pairs, as "8 × bolt and plate: ...", those of the same shapes and with the same key together: the
+/// words of the first one.
+pub(super) fn alike<K: Ord>(
+    r: &Report,
+    all: impl Iterator<Item = ([usize; 2], K, String)>,
+) -> Vec<String> {
     let like = |part: usize| r.f.plan.likes.get(part).copied().unwrap_or(part);
-    let mut groups = BTreeMap::<([usize; 2], Option<Role>, String), Vec<[usize; 2]>>::new();
-    for passed in all {
-        let said = passed.tolerated.words(passed.role);
-        groups.entry((passed.parts.map(like), passed.role, said)).or_default().push(passed.parts);
+    let mut groups = BTreeMap::<([usize; 2], K), (String, [Vec<usize>; 2])>::new();
+    for (parts, key, said) in all {
+        let (_, sides) = groups.entry((parts.map(like), key)).or_insert((said, Default::default()));
+        for (side, part) in sides.iter_mut().zip(parts) {
+            side.push(part);
+        }
     }
-    let told = |((_, _, said), all): (([usize; 2], Option<Role>, String), Vec<[usize; 2]>)| {
-        let mut sides = [0, 1].map(|side| all.iter().map(|pair| pair[side]).collect::<Vec<_>>());
-        for side in &mut sides {
+    let told = |(said, sides): (String, [Vec<usize>; 2])| {
+        let [a, b] = sides.map(|mut side| {
             side.sort_unstable();
             side.dedup();
-        }
-        format!("{} and {}: {said}", r.words.count(&sides[0]), r.words.count(&sides[1]))
+            r.words.count(&side)
+        });
+        format!("{a} and {b}: {said}")
     };
-    groups.into_iter().map(told).collect()
+    groups.into_values().map(told).collect()
 }
 
 /// Pairs in words, of many the first ones.

@@ -74,7 +74,8 @@ impl<'a> Words<'a> {
         if off(axis) < EQUAL {
             return format!("along {}", arrow(axis));
         }
-        format!("{}° off {} {}", short(off(axis).to_degrees()), arrow(axis), arrow(d))
+        let by = digits(off(axis).to_degrees(), 2);
+        format!("{by}° off {} {}", arrow(axis), arrow(d).replace('-', "−"))
     }
 
     /// A move and how far it goes.
@@ -91,7 +92,7 @@ impl<'a> Words<'a> {
         listed(&self.assembly.names(parts), MOST_NAMES)
     }
 
-    /// What leaves as one, in a few words: its name, or the largest part of it and how many others.
+    /// Parts that stay together, in a few words: their name, or the largest part of it and how many others.
     pub(super) fn group(&self, parts: &[usize]) -> String {
         let names = self.assembly.names(parts);
         if let Some(name) = self.assembly.constraints().name(parts) {
@@ -99,13 +100,13 @@ impl<'a> Words<'a> {
         }
         match &names[..] {
             [all @ .., last] if (1..MOST_OF_GROUP).contains(&all.len()) => {
-                format!("{} and {last}, as one", all.join(", "))
+                format!("{} and {last}", all.join(", "))
             }
             [_, _, ..] => {
                 let size = |&&part: &&usize| self.assembly.parts()[part].bounds().size().length();
                 let largest = parts.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
                 let name = largest.map_or("", |&part| self.assembly.parts()[part].name());
-                format!("{name} with {} others, as one", names.len() - 1)
+                format!("{name} with {} others", names.len() - 1)
             }
             _ => names.concat(),
         }

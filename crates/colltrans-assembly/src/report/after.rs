@@ -256,7 +256,7 @@ fn suggested(r: &Report) -> Vec<String> {
             None => "perhaps no more than rounded shapes",
         };
         let enough =
-            s.fit.tolerance.map(|t| format!("; a tolerance of {} is enough", r.words.length(t)));
+            s.fit.tolerance.map(|t| format!("; a tolerance of {} ends that", r.words.length(t)));
         format!("{what} ({}){}", s.why, enough.unwrap_or_default())
     };
     sheet::alike(r, all.into_iter().map(|s| (s.parts, s.fit.role, said(s))))

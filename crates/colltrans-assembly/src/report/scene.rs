@@ -278,7 +278,9 @@ impl<'a> Studio<'a> {
         let window = Frame { low: DVec2::ZERO, high: scene.size };
         let (mut raster, mut glass) = (Raster::new(window), Raster::new(window));
         for (k, s) in scene.shown.iter().enumerate() {
-            let shade = |lit: f64| (lit * (SHADES as f64 - 0.01)) as usize;
+            // What stays has half of the shades: its picture has half of the tiles.
+            let step = if s.look == Look::Pale { 2 } else { 1 };
+            let shade = |lit: f64| (lit * (SHADES as f64 - 0.01)) as usize / step * step;
             let tone = |lit| (k * SHADES + shade(lit)) as u32;
             self.rasterise(
                 if s.look == Look::Glass { &mut glass } else { &mut raster },

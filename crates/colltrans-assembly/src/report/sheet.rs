@@ -18,6 +18,8 @@ use crate::roles::Passed;
 const SIZE: DVec2 = DVec2::new(760.0, 580.0);
 /// Of a picture of one move of several.
 const SMALL: DVec2 = DVec2::new(400.0, 300.0);
+/// Of parts that are alike so many have an arrow at most: more would hide them.
+const MOST_ARROWS: usize = 12;
 /// Moves are drawn up to so many of a step.
 const MOST_FRAMES: usize = 9;
 /// How far out what moves is drawn, as shares of the assembly's size, at least and at most.
@@ -71,7 +73,11 @@ fn one_picture(r: &Report, stage: &Range<usize>) -> Markup {
         shown: shown(r, stage.start, &moving, |part| {
             if moving.contains(&part) { out } else { DVec3::ZERO }
         }),
-        arrows: steps.iter().map(|step| arrow(r, &step.parts, DVec3::ZERO, out)).collect(),
+        arrows: steps
+            .iter()
+            .step_by(steps.len().div_ceil(MOST_ARROWS))
+            .map(|step| arrow(r, &step.parts, DVec3::ZERO, out))
+            .collect(),
         traces: Vec::new(),
         numbers: Vec::new(),
         label: format!(
@@ -80,7 +86,7 @@ fn one_picture(r: &Report, stage: &Range<usize>) -> Markup {
             r.words.leg(&steps[0].path[0])
         ),
     };
-    if travel > 0.0 {
+    if r.words.is_far(travel) {
         scene.arrows[0].label = r.words.length(travel);
     }
     let groups: Vec<Vec<usize>> = steps.iter().map(|step| step.parts.clone()).collect();
@@ -213,7 +219,7 @@ pub(super) fn far(r: &Report, steps: &[Step]) -> Option<String> {
         _ => [r.words.length(least), r.words.length(most), " each".into()],
     };
     let told = if least == most { most + &each } else { format!("{least} to {most}") };
-    steps.iter().any(|step| step.travel.value > 0.0).then_some(told)
+    steps.iter().any(|step| r.words.is_far(step.travel.value)).then_some(told)
 }
 
 pub(super) fn step_words(steps: &[usize]) -> String {

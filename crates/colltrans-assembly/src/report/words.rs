@@ -9,7 +9,7 @@ use super::{Findings, arrow, digits, short};
 use crate::likes::common_name;
 use crate::part::Assembly;
 use crate::plan::Leg;
-use crate::units;
+use crate::{Fit, units};
 
 /// Names are listed up to so many.
 const MOST_NAMES: usize = 8;
@@ -17,6 +17,8 @@ const MOST_NAMES: usize = 8;
 const MOST_OF_GROUP: usize = 4;
 /// ... and names of parts of one shape, without their numbers, up to so many.
 const MOST_STEMS: usize = 3;
+/// Runs of numbers are all told up to so many.
+const MOST_RUNS: usize = 5;
 /// Directions that differ by less than this angle in radians are told as one.
 const EQUAL: f64 = 1e-6;
 
@@ -81,10 +83,12 @@ impl<'a> Words<'a> {
     /// A move and how far it goes.
     pub(super) fn leg(&self, leg: &Leg) -> String {
         let way = self.way(leg.direction);
-        match leg.travel {
-            0.0 => way,
-            travel => format!("{way}, {}", self.length(travel)),
-        }
+        if self.is_far(leg.travel) { format!("{way}, {}", self.length(leg.travel)) } else { way }
+    }
+
+    /// Whether a length is more than the last digits of the file.
+    pub(super) fn is_far(&self, travel: f64) -> bool {
+        travel > Fit::digits(self.assembly)
     }
 
     /// Names, of many the first ones.
@@ -161,7 +165,7 @@ fn axis_name(d: DVec3) -> String {
     arrow(if angle(d, axis) < EQUAL { axis } else { d })
 }
 
-/// Whole numbers, counted from 1: "1–8, 17".
+/// Whole numbers, counted from 1: "1–8, 17"; of many runs the first one and where the last one ends.
 pub(super) fn numbers(all: &[usize]) -> String {
     let mut runs: Vec<Range<usize>> = Vec::new();
     for &k in &all.iter().copied().collect::<BTreeSet<usize>>() {
@@ -175,7 +179,10 @@ pub(super) fn numbers(all: &[usize]) -> String {
         2 => format!("{}, {}", run.start + 1, run.end),
         _ => format!("{}–{}", run.start + 1, run.end),
     };
-    runs.iter().map(told).collect::<Vec<_>>().join(", ")
+    match &runs[..] {
+        [first, .., last] if runs.len() > MOST_RUNS => format!("{}, … {}", told(first), last.end),
+        _ => runs.iter().map(told).collect::<Vec<_>>().join(", "),
+    }
 }
 
 /// Seconds, from two minutes on in minutes.
@@ -196,6 +203,7 @@ mod tests {
     fn numbers_are_runs() {
         assert_eq!(numbers(&[3, 0, 1, 2, 5, 7, 8]), "1–4, 6, 8, 9");
         assert_eq!(numbers(&[]), "");
+        assert_eq!(numbers(&[2, 5, 6, 9, 11, 14, 17]), "3, … 18");
     }
 
     #[test]

@@ -528,6 +528,8 @@ impl<'a> Bodies<'a> {
             "they have a fit of their own"
         } else if self.overlaps(a, b) {
             "they overlap where they are"
+        } else if [a, b].iter().any(|&k| !self.assembly.parts()[k].solid().is_closed()) {
+            "they are not both closed"
         } else {
             return Ok(());
         };

@@ -26,6 +26,9 @@ impl Removal {
     /// A group of none or of all; parts that are to be kept apart; parts that are ignored, or that overlap where they are.
     pub fn new(bodies: &Bodies, group: &[usize]) -> Result<Self, AssemblyError> {
         let others: Vec<usize> = (0..bodies.len()).filter(|k| !group.contains(k)).collect();
+        if group.is_empty() || others.is_empty() {
+            return Err(AssemblyError::Removal { count: group.len(), of: bodies.len() });
+        }
         Self::among(bodies, group, &others)
     }
 

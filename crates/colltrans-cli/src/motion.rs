@@ -192,12 +192,12 @@ impl Found {
 /// The readable answer; `motions` are those of both bodies.
 pub(crate) fn words(told: &Line, motions: [&Motion; 2]) -> String {
     let record = &told.record;
-    let mut text = String::from(match record.outcome {
-        Ending::Contact => "contact\n",
-        Ending::Grazing => "grazing: the bodies come nearer than rounding can tell\n",
-        Ending::Overlapping => "overlapping: the bodies overlap when the motion begins\n",
-        _ => "free: the bodies never meet throughout the motion\n",
-    });
+    let mut text = match record.outcome {
+        Ending::Contact => "contact\n".into(),
+        Ending::Grazing => "grazing: the bodies come nearer than rounding can tell\n".into(),
+        Ending::Overlapping => "overlapping: the bodies overlap when the motion begins\n".into(),
+        _ => format!("free: {} throughout the motion\n", never(record)),
+    };
     for (name, file) in [("moving mesh", &record.moving), ("fixed mesh", &record.fixed)] {
         if let Some(file) = file {
             line(&mut text, name, file);
@@ -243,15 +243,31 @@ pub(crate) fn words(told: &Line, motions: [&Motion; 2]) -> String {
         line(&mut text, "tolerance", &number(tolerance));
     }
     overlaps(&mut text, record, "ignored");
-    kept(&mut text, record);
+    kept(&mut text, record.keep);
     hulls(&mut text, told);
     text
+}
+
+/// What bodies that are free never do: with a tolerance they may be in each other all the time.
+pub(crate) fn never(record: &Record) -> String {
+    let meet = record.keep.map_or("meet".into(), |gap| format!("come as near as {}", number(gap)));
+    match record.tolerance {
+        None => format!("the bodies never {meet}"),
+        // Of convex bodies a depth, whose proof has planes; solids are shrunk.
+        Some(depth) if record.planes.is_some() => {
+            format!("the bodies never overlap by more than {}", number(depth))
+        }
+        Some(_) => format!("the bodies, each shrunk by half of the tolerance, never {meet}"),
+    }
 }
 
 fn times(text: &mut String, TimeRecord { lower, upper }: TimeRecord) {
     if let Some(upper) = upper {
         let value = lower + 0.5 * (upper - lower);
-        line(text, "time", &format!("{} of the motion", known(value, upper - lower)));
+        // Of bounds that are far apart the middle says nothing.
+        if upper - lower < 1e-3 {
+            line(text, "time", &format!("{} of the motion", known(value, upper - lower)));
+        }
         line(text, "bounds", &format!("{} to {}", number(lower), number(upper)));
     } else {
         line(text, "no earlier", &number(lower));

@@ -17,7 +17,7 @@ use crate::body;
 use crate::failure::{Code, Failure, note, print, print_json};
 use crate::numbers::{counted, known, known_vector, number, unit_vector};
 use crate::proof::{self, refuse_proof};
-use crate::report::line;
+use crate::report::{kept, line};
 
 pub(crate) fn run(arguments: &PathArguments) -> Result<(), Failure> {
     let PathArguments { robot, rows, scene, srdf, .. } = arguments;
@@ -26,7 +26,10 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<(), Failure> {
     refuse_proof(arguments.save_proof.as_deref(), None, &inputs)?;
     let Asked { cell, path } = Asked::read(arguments)?;
     let query = |e: PathError| Failure::new(Code::Query, cell.words(&e));
-    let cast = cell.along(&path, arguments.keep).map_err(query)?;
+    let cast = cell.along(&path, arguments.keep).map_err(|e| match e {
+        PathError::Query { .. } => query(e),
+        wrong => Failure::new(Code::Input, cell.words(&wrong)),
+    })?;
     let outcome = match &arguments.save_proof {
         None => cast.first_contact().map_err(query)?,
         Some(file) => {
@@ -142,12 +145,17 @@ fn text(file: &Path) -> Result<String, Failure> {
 
 /// The readable answer.
 fn words(record: &PathRecord, outcome: &PathOutcome) -> String {
-    let mut text = String::from(match record.outcome {
-        Ending::Contact => "contact\n",
-        Ending::Grazing => "grazing: two bodies come nearer than rounding can tell\n",
-        Ending::Overlapping => "overlapping: two bodies overlap where the path begins\n",
-        _ => "free: no two bodies meet on the whole path\n",
-    });
+    let asked = if record.left_out.is_empty() { "" } else { " of those asked about" };
+    let mut text = match record.outcome {
+        Ending::Contact => "contact\n".into(),
+        Ending::Grazing => "grazing: two bodies come nearer than rounding can tell\n".into(),
+        Ending::Overlapping => "overlapping: two bodies overlap where the path begins\n".into(),
+        _ => {
+            let meet =
+                record.keep.map_or("meet".into(), |gap| format!("come as near as {}", number(gap)));
+            format!("free: no two bodies{asked} {meet} on the whole path\n")
+        }
+    };
     if let Some([a, b]) = &record.pair {
         line(&mut text, "bodies", &format!("{a}, {b}"));
     }
@@ -176,6 +184,11 @@ fn words(record: &PathRecord, outcome: &PathOutcome) -> String {
         line(&mut text, "normal", &unit_vector(normal.into()));
     }
     line(&mut text, "asked", &counted(record.pairs, "pair of bodies", "pairs of bodies"));
+    if !record.left_out.is_empty() {
+        let pairs: Vec<String> = record.left_out.iter().map(|[a, b]| format!("{a}, {b}")).collect();
+        line(&mut text, "left out", &pairs.join("; "));
+    }
+    kept(&mut text, record.keep);
     let looks = counted(outcome.steps().looks as usize, "look", "looks");
     let planes = counted(record.planes, "plane", "planes");
     line(&mut text, "proof", &format!("{planes}, found in {looks}"));

@@ -43,7 +43,7 @@ pub(crate) fn cast(answer: &ContactRange, told: &Line, direction: DVec3) -> Stri
             separated(&mut text, answer);
         }
     }
-    kept(&mut text, record);
+    kept(&mut text, record.keep);
     hulls(&mut text, told);
     text
 }
@@ -89,7 +89,7 @@ fn clearance(answer: &Clearance, told: &Line, direction: DVec3) -> String {
             }
         }
     }
-    kept(&mut text, record);
+    kept(&mut text, record.keep);
     hulls(&mut text, told);
     text
 }
@@ -231,8 +231,8 @@ fn separated(text: &mut String, separated: &Separated) {
 }
 
 /// The gap that is kept, if there is one.
-pub(crate) fn kept(text: &mut String, record: &Record) {
-    if let Some(gap) = record.keep {
+pub(crate) fn kept(text: &mut String, keep: Option<f64>) {
+    if let Some(gap) = keep {
         let what = "a gap: they count as meeting where they are as near";
         line(text, "kept", &format!("{}, {what}", number(gap)));
     }

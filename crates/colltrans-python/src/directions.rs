@@ -313,6 +313,9 @@ pub(crate) fn free_directions(
     depth: u32,
     looks: u64,
 ) -> PyResult<FreeDirections> {
+    if depth > 50 {
+        return Err(error("InputError", format!("depth: at most 50, not {depth}")));
+    }
     let bodies = [Piece::of(moving, "moving")?, Piece::of(fixed, "fixed")?];
     let poses = [pose(moving_pose, "moving_pose")?, pose(fixed_pose, "fixed_pose")?];
     let start = if ignore_start_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse };

@@ -461,8 +461,8 @@ type Found = Of<MotionOutcome, MotionOutcome<()>>;
 ///
 /// ``outcome`` is ``"contact"``: they do not meet before ``lower``, and at ``upper`` they do;
 /// ``"grazing"``: they come nearer than rounding can tell, not before ``lower``, and nothing is said
-/// after it; ``"free"``: they never meet throughout the motion; ``"overlapping"``: they overlap when it
-/// begins.
+/// after it; ``"free"``: they never meet throughout the motion (never come as near as the gap to be kept, or
+/// never overlap by more than the tolerance); ``"overlapping"``: they overlap when it begins.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct FirstContact {
     found: Found,

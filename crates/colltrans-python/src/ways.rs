@@ -157,6 +157,9 @@ pub(crate) fn ways_out(
     looks: u64,
     cells: usize,
 ) -> PyResult<WaysOut> {
+    if legs == 0 {
+        return Err(error("InputError", "legs: at least one move"));
+    }
     let bodies = [Piece::of(moving, "moving")?, Piece::of(fixed, "fixed")?];
     let poses = [pose(moving_pose, "moving_pose")?, pose(fixed_pose, "fixed_pose")?];
     let directions = directions.map_or_else(|| Ok(Vec::new()), |all| points(all, "directions"))?;

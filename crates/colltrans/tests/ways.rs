@@ -435,6 +435,19 @@ fn a_way_through_the_cells_of_a_proof_is_not_taken_where_one_of_fewer_legs_is_lo
 }
 
 #[test]
+fn what_is_asked_wrongly_is_refused_as_it_was_asked() {
+    let [key, plate] = slot([14.0, 17.0]);
+    let placed = [key.at(Pose::IDENTITY), plate.at(Pose::IDENTITY)];
+    let refused = |options: &WayOptions| {
+        WaysOut::among(&placed, &[], options, None).expect_err("refused").to_string()
+    };
+    let none = WayOptions::default().with_directions(vec![DVec3::X, DVec3::ZERO]);
+    assert!(refused(&none).contains("direction"), "{}", refused(&none));
+    let negative = WayOptions::default().with_tolerance(-1.0);
+    assert!(refused(&negative).contains("-1"), "{}", refused(&negative));
+}
+
+#[test]
 fn bodies_that_overlap_move_as_one_unless_there_are_two() {
     let [key, plate] = slot([14.0, 17.0]);
     // A knob that is pressed onto the key's stem.

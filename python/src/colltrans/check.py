@@ -320,9 +320,9 @@ def entry(points: Sequence[Vector], d: Vector) -> tuple[Fraction, Fraction] | No
     return (min(found), max(found)) if found else None
 
 
-def unit(normal: Vector) -> None:
+def unit(normal: Vector, what: str = "the normal") -> None:
     if not (1 - _UNIT_VECTOR) ** 2 <= dot(normal, normal) <= (1 + _UNIT_VECTOR) ** 2:
-        raise RefusedError("the normal is not a unit vector")
+        raise RefusedError(f"{what} is not a unit vector")
 
 
 def contact(
@@ -2233,6 +2233,7 @@ def solid_motion(file: Any) -> Report:
         report.holds.append(f"{of} {meet} at the time {float(time)!r}")
     if moved:
         report.unchecked.append("whether facets were moved inwards as the tolerance says")
+        report.partly = True
     return report
 
 
@@ -2245,6 +2246,9 @@ def motions(file: Any) -> Report:
         found = motion(proof)
         report.holds += [f"pair {number_}: {line}" for line in found.holds]
         report.unchecked += [f"pair {number_}: {line}" for line in found.unchecked]
+        if not found.holds:
+            report.unchecked.append(f"pair {number_}: nothing is proven of it")
+            report.partly = True
     return report
 
 
@@ -2721,7 +2725,7 @@ def path(file: Any) -> Report:
         ((kind, axis),) = joint.items()
         if kind not in ("turning", "sliding"):
             raise NoProofError(f"a joint is turning or sliding, not {kind!r}")
-        unit(vector(axis))
+        unit(vector(axis), f"the axis of joint {column}")
         frames.append(Stage(origin, kind, vector(axis), column))
         column += 1
     if any(len(row) != column for row in rows):
@@ -2777,8 +2781,18 @@ def path(file: Any) -> Report:
     lower, meeting = number(file["said"]["lower"]), proof["meeting"]
     if lower > time(*reached):
         raise RefusedError(f"up to {float(lower)!r} it is not proven")
+    asked = {frozenset(pair) for pair in file["pairs"]}
+    moved_by = [[k for k in way if frames[k].kind != "fixed"] for way, _, _ in bodies]
+    left_out = [
+        f"{bodies[i][2]['name']!r} and {bodies[j][2]['name']!r}"
+        for i, j in combinations(range(len(bodies)), 2)
+        if moved_by[i] != moved_by[j] and frozenset((i, j)) not in asked
+    ]
+    if left_out:
+        report.unchecked.append(f"what is left out of the question: {', '.join(left_out)}")
     if skipped < len(walks) and lower > times[0]:
         of = "no two bodies" if not skipped else "no two convex bodies"
+        of += " of those asked about" if left_out else ""
         report.holds.append(f"{of} {meet} up to the time {float(lower)!r}")
     if skipped:
         report.unchecked.append(f"what solids do, in {skipped} of {len(walks)} pairs")
@@ -2792,8 +2806,9 @@ def path(file: Any) -> Report:
         return report
     which, place = whole(meeting["pair"], len(walks)), meeting["place"]
     row, share = whole(place["row"], last + 1), number(place["share"])
-    upper = number(file["said"]["upper"])
-    if not 0 <= share <= 1 or (row == last and share) or time(row, share) > upper:
+    upper = None if (said := file["said"]["upper"]) is None else number(said)
+    late = upper is not None and time(row, share) > upper
+    if not 0 <= share <= 1 or (row == last and share) or late:
         raise RefusedError(f"that two bodies {meet} is said of another time")
     found = walks[which]
     names = " and ".join(repr(bodies[k][2]["name"]) for k in file["pairs"][which])
@@ -2806,7 +2821,8 @@ def path(file: Any) -> Report:
             raise RefusedError("neither body is inside the other where the path begins")
     else:
         pieces_meet(found, how, row, share)
-    report.holds.append(f"{names} {meet} at the time {float(upper)!r}")
+    told = f"by the time {float(upper)!r}" if upper is not None else "on the path"
+    report.holds.append(f"{names} {meet} {told}")
     return report
 
 

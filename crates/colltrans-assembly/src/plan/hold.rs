@@ -84,6 +84,7 @@ impl Stuck {
             Some(cells) => {
                 format!("in any direction, which is proven in {cells} cells of the sphere,")
             }
+            None if self.directions == 1 => "along the direction asked".into(),
             None => format!("along the {} directions asked", self.directions),
         };
         let mut text = match (&self.overlapping[..], self.fixed) {

@@ -4,7 +4,7 @@ use colltrans::motion::path::{JointPath, PathBody, PathCast, PathError};
 use colltrans::{AnyBody, Pose};
 
 use super::table::twice;
-use super::{Robot, RobotError};
+use super::{Robot, RobotError, RobotJoint};
 
 /// A robot among bodies that stand in the world.
 #[derive(Debug, Clone)]
@@ -119,6 +119,14 @@ impl Cell {
             PathError::Query { pair, reason } => {
                 let [a, b] = pair.map(|k| self.names[k].as_str());
                 format!("{a} and {b}: {reason}")
+            }
+            PathError::Value { row, frame, value } => {
+                let moves = |joint: &&RobotJoint| joint.frame == *frame;
+                let name = self.robot.joints().iter().find(moves).map_or("?", |joint| &joint.name);
+                format!(
+                    "row {}: the value {value} of joint {name} is not finite, or too large (1e5 radians)",
+                    row + 1
+                )
             }
             other => other.to_string(),
         }

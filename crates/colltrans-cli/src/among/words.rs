@@ -73,7 +73,7 @@ pub(super) fn clearance(told: &Line, direction: DVec3, error: f64, is_default: b
         };
         line(&mut text, "tolerance", &format!("{} ({source})", number(tolerance)));
     }
-    kept(&mut text, record);
+    kept(&mut text, record.keep);
     text
 }
 

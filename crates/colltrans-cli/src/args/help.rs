@@ -178,9 +178,10 @@ With --json one object:
   outcome          one of these
   free_share       [at least, at most]: the share of all directions that is free, from 0 to 1
   undecided_share  at most that share is not known
-  regions          [{\"share\", \"center\": [x,y,z], \"corners\": [[x,y,z],...], \"pieces\"}]: connected
-                   regions, the largest first; pieces are convex polygons that together are it; as
-                   arcs and points, absent where there are none
+  regions          [{\"share\", \"center\": [x,y,z], \"margin\", \"corners\": [[x,y,z],...], \"pieces\"}]:
+                   connected regions, the largest first; margin is the angle from the center to the border, in
+                   radians; pieces are convex polygons that together are it; as arcs and points, absent
+                   where there are none
   arcs points      directions with no region beside them: [[from, to],...], [[x,y,z],...]
   also_free        free directions among what is undecided, found by casts: [[x,y,z],...]
   blocked_by       [{\"moving\", \"fixed\", \"share\"}] of several files: what was found to block, at least
@@ -201,7 +202,8 @@ pub(super) const MOTION_ANSWERS: &str = "\
 Answers:
   contact      the bodies first meet at a time between two bounds; point, normal and what touches
   grazing      they come nearer than rounding can tell; not before the time, and nothing is said after it
-  free         they never meet throughout the motion
+  free         they never meet throughout the motion; with --keep they never come as near, with --tolerance they
+               never overlap by more, or never meet as it leaves them
   overlapping  they overlap when it begins
 
 Of several meshes it is the first contact of any two, and says of which.
@@ -213,7 +215,7 @@ With --json one object:
   point normal features   as of `cast`, at that time
   moving fixed   of several meshes: which
   keep tolerance   as they were asked for
-  looks planes   how often the bodies were looked at, and planes in the proof
+  looks planes   how often the bodies were looked at, and planes in the proof, which only convex meshes have unasked
 
 Examples:
   Does a door that swings by 90 degrees about the z axis hit a post?

@@ -66,21 +66,21 @@ pub(crate) struct MotionArguments {
 
 /// What the moving mesh does; angles are in degrees.
 #[derive(Debug, Args)]
-#[group(required = true, multiple = false)]
+#[group(required = false, multiple = false)]
 #[command(next_help_heading = "What the moving mesh does (angles in degrees)")]
 struct KindArguments {
     /// A turn about an axis through a point of the world: counter-clockwise as seen against the axis
-    #[arg(long, num_args = 3, value_names = ["POINT", "AXIS", "ANGLE"], allow_hyphen_values = true)]
+    #[arg(long, num_args = 3, action = clap::ArgAction::Set, value_names = ["POINT", "AXIS", "ANGLE"], allow_hyphen_values = true)]
     turn: Option<Vec<String>>,
     /// The same, and a way along the axis meanwhile
-    #[arg(long, num_args = 4, value_names = ["POINT", "AXIS", "ANGLE", "RISE"], allow_hyphen_values = true)]
+    #[arg(long, num_args = 4, action = clap::ArgAction::Set, value_names = ["POINT", "AXIS", "ANGLE", "RISE"], allow_hyphen_values = true)]
     screw: Option<Vec<String>>,
     /// A translation
     #[arg(long, value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector)]
     slide: Option<DVec3>,
     /// A point of the mesh, given in the world, goes straight so far, and the mesh turns about it by the
     /// length of SPIN, about its direction
-    #[arg(long, num_args = 3, value_names = ["CENTER", "WAY", "SPIN"], allow_hyphen_values = true)]
+    #[arg(long, num_args = 3, action = clap::ArgAction::Set, value_names = ["CENTER", "WAY", "SPIN"], allow_hyphen_values = true)]
     thrown: Option<Vec<String>>,
     /// The screw from where the mesh is to another pose, written like --moving-pose, by the shorter turn
     #[arg(long, value_name = "POSE", allow_hyphen_values = true, value_parser = place)]
@@ -97,16 +97,16 @@ struct KindArguments {
 #[command(next_help_heading = "What the fixed mesh does in the same time, if it moves as well")]
 struct FixedArguments {
     /// Written like --turn
-    #[arg(id = "fixed_turn", long = "fixed-turn", num_args = 3, value_names = ["POINT", "AXIS", "ANGLE"], allow_hyphen_values = true)]
+    #[arg(id = "fixed_turn", long = "fixed-turn", num_args = 3, action = clap::ArgAction::Set, value_names = ["POINT", "AXIS", "ANGLE"], allow_hyphen_values = true)]
     turn: Option<Vec<String>>,
     /// Written like --screw
-    #[arg(id = "fixed_screw", long = "fixed-screw", num_args = 4, value_names = ["POINT", "AXIS", "ANGLE", "RISE"], allow_hyphen_values = true)]
+    #[arg(id = "fixed_screw", long = "fixed-screw", num_args = 4, action = clap::ArgAction::Set, value_names = ["POINT", "AXIS", "ANGLE", "RISE"], allow_hyphen_values = true)]
     screw: Option<Vec<String>>,
     /// Written like --slide
     #[arg(id = "fixed_slide", long = "fixed-slide", value_name = "X,Y,Z", allow_hyphen_values = true, value_parser = vector)]
     slide: Option<DVec3>,
     /// Written like --thrown
-    #[arg(id = "fixed_thrown", long = "fixed-thrown", num_args = 3, value_names = ["CENTER", "WAY", "SPIN"], allow_hyphen_values = true)]
+    #[arg(id = "fixed_thrown", long = "fixed-thrown", num_args = 3, action = clap::ArgAction::Set, value_names = ["CENTER", "WAY", "SPIN"], allow_hyphen_values = true)]
     thrown: Option<Vec<String>>,
     /// Written like --to
     #[arg(id = "fixed_to", long = "fixed-to", value_name = "POSE", allow_hyphen_values = true, value_parser = place)]
@@ -150,10 +150,13 @@ impl MotionArguments {
     /// What both sides do.
     pub(crate) fn motions(&self) -> Result<[Motion; 2], Failure> {
         let [start, there] = self.places.poses()?;
-        Ok([
-            self.motion.kind().motion("--", start)?,
-            self.fixed_motion.kind().motion("--fixed-", there)?,
-        ])
+        let kinds = [self.motion.kind(), self.fixed_motion.kind()];
+        if let [Kind::Still, Kind::Still] = kinds {
+            let why = "nothing moves: give one of --turn, --screw, --slide, --thrown, --to and --through, or of what \
+                       the fixed mesh does";
+            return Err(Failure::new(Code::Usage, why));
+        }
+        Ok([kinds[0].motion("--", start)?, kinds[1].motion("--fixed-", there)?])
     }
 }
 

@@ -55,7 +55,7 @@ pub(super) fn answer(answer: &Answer, direction: DVec3, is_default: bool) -> Str
         (false, false) => "as asked: both bodies are shrunk by half of it",
     };
     line(&mut text, "tolerance", &format!("{} ({source})", number(tolerance)));
-    kept(&mut text, record);
+    kept(&mut text, record.keep);
     text
 }
 

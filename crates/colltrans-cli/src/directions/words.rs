@@ -93,7 +93,9 @@ pub(crate) fn verified(record: &FreeRecord) -> String {
         "the moving body cannot leave along any direction".to_owned()
     } else {
         let free = record.free_share.unwrap_or_default();
-        format!("the moving body can leave along {}", shares(free))
+        let none = free[1] == 0.0;
+        let what = if none { "no region of directions that is known".into() } else { shares(free) };
+        format!("the moving body can leave along {what}")
     };
     let kinds = [
         (record.arcs.len(), "arc", "arcs"),
@@ -121,6 +123,7 @@ fn region(region: &FreeRegionRecord) -> String {
     let mut text =
         format!("{} around {}", percent(region.share), unit_vector(region.center.into()));
     let corners = &region.corners;
+    let _ = write!(text, ", {} degrees from its border", six_digits(region.margin.to_degrees()));
     if corners.is_empty() {
         text.push_str(", without corners");
     } else if corners.len() <= MOST_CORNERS {

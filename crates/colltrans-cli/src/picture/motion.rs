@@ -14,6 +14,7 @@ use super::parts::Eye;
 use super::solid::Solid;
 use super::subject::{Subject, components, short};
 use super::viewpoint;
+use crate::motion::never;
 
 /// Pieces of the way that is drawn: one turn of them is round, and so are twenty.
 const WAY: u32 = 480;
@@ -116,7 +117,7 @@ fn headline(record: &Record) -> String {
             format!("Grazing: perhaps a contact at {} of the motion", short(time.lower))
         }
         (Ending::Overlapping, _) => "Overlapping: the bodies overlap when it begins".into(),
-        _ => "Free: the bodies never meet throughout the motion".into(),
+        _ => format!("Free: {} throughout the motion", never(record)),
     }
 }
 

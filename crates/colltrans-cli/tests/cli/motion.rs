@@ -45,6 +45,35 @@ fn angles_are_degrees() {
 }
 
 #[test]
+fn what_is_given_twice_or_not_at_all_is_refused() {
+    let folder = folder();
+    let turn = ["--turn", "0,0,0", "z", "90"];
+    let fixed = ["--fixed-turn", "0,0,0", "z", "90"];
+    let ask = |more: &[&[&str]]| {
+        [&["motion", "cube.off", "cube.off", "--moving-pose=4,0,0"][..], &more.concat()].concat()
+    };
+    refused(folder.path(), &ask(&[&turn, &turn]), 2, &["--turn", "multiple times"]);
+    refused(folder.path(), &ask(&[&turn, &fixed, &fixed]), 2, &["--fixed-turn", "multiple times"]);
+    refused(folder.path(), &ask(&[]), 2, &["nothing moves: give one of --turn"]);
+    assert!(answered(folder.path(), &ask(&[&fixed])).starts_with("free"));
+}
+
+#[test]
+fn free_says_what_never_happens() {
+    let folder = folder();
+    let free = |more: &[&str]| {
+        let words = ["motion", "cube.off", "cube.off", "--slide", "0,0,1"];
+        let text = answered(folder.path(), &[&words[..], more].concat());
+        text.lines().next().unwrap().to_owned()
+    };
+    let never = |what: &str| format!("free: the bodies never {what} throughout the motion");
+    assert_eq!(free(&["--fixed-pose=4,0,0"]), never("meet"));
+    assert_eq!(free(&["--fixed-pose=4,0,0", "--keep", "0.5"]), never("come as near as 0.5"));
+    let deep = free(&["--fixed-pose=0.75,0,0", "--tolerance", "0.9"]);
+    assert_eq!(deep, never("overlap by more than 0.9"));
+}
+
+#[test]
 fn poses_are_gone_through() {
     let folder = folder();
     let poses = folder.path().join("poses.json");

@@ -22,10 +22,24 @@ fn a_wire_in_the_way_is_met() {
     let told = read(&answered(folder.path(), &["path", &arm, &rows, &wire, "--json"]));
     assert_eq!((&told["pair"], &told["pairs"]), (&json!(["tool", "wire"]), &json!(6)));
     assert_eq!(told["place"]["row"], 0);
+    assert!(told.get("keep").is_none());
+    // Links with a joint between them touch: they are not asked about, and that is said.
+    let touching = json!([["base", "upper"], ["upper", "fore"], ["fore", "tool"]]);
+    assert_eq!(told["left_out"], touching);
     let free = ["path", &arm, &rows, &wire, "--ignore", "wire, tool", "--json"];
-    assert_eq!(read(&answered(folder.path(), &free))["outcome"], "free");
+    let free = read(&answered(folder.path(), &free));
+    assert_eq!(
+        (&free["outcome"], &free["left_out"][3]),
+        (&json!("free"), &json!(["tool", "wire"]))
+    );
     let alone = answered(folder.path(), &["path", &arm, &rows]);
-    assert!(alone.starts_with("free: no two bodies meet on the whole path"), "{alone}");
+    assert!(alone.starts_with("free: no two bodies of those asked about meet on"), "{alone}");
+    assert!(alone.contains("  left out     base, upper; upper, fore; fore, tool\n"), "{alone}");
+    let kept = ["path", &arm, &rows, &wire, "--keep", "0.2"];
+    let text = answered(folder.path(), &kept);
+    assert!(text.contains("  kept         0.2, a gap"), "{text}");
+    let kept = read(&answered(folder.path(), &[&kept[..], &["--json"]].concat()));
+    assert_eq!((&kept["outcome"], &kept["keep"]), (&json!("contact"), &json!(0.2)));
     let small = ["path", &arm, &rows, &wire, "--scene-scale", "0.001", "--json"];
     assert_eq!(read(&answered(folder.path(), &small))["outcome"], "free");
 }

@@ -15,6 +15,8 @@ use super::answer::FreePiece;
 const BESIDE: f64 = 1e-12;
 /// Borders that turn by less, in radians, have no corner.
 const TURN: f64 = 1e-6;
+/// Regions of at least this area have no border.
+const WHOLE: f64 = 4.0 * PI * (1.0 - 1e-9);
 /// Parts of a side that are shorter than this share of it are nothing.
 const PART: f64 = 1e-9;
 /// Pieces whose middles are tried for the direction farthest from a border; steps from there, and how short these get
@@ -31,7 +33,7 @@ pub struct FreeRegion {
     pub center: DVec3,
     /// The angle between that and the border, in radians; `PI` if there is none.
     pub margin: f64,
-    /// Where its border turns, by more than a millionth of a right angle: directions with a largest component of 1 (or
+    /// Where its border turns, by more than a millionth of a radian: directions with a largest component of 1 (or
     /// -1), exact but for their last roundings, in no order.
     pub corners: Vec<DVec3>,
     /// Arcs that together are its border, by their ends, in no order.
@@ -108,10 +110,15 @@ fn region(
             }
         }
     }
-    let area = own.iter().map(|piece| piece.area).sum();
+    let area: f64 = own.iter().map(|piece| piece.area).sum();
     let mean: DVec3 = own.iter().map(|piece| center(piece) * piece.area).sum();
-    let border: Vec<[DVec3; 2]> =
+    let mut border: Vec<[DVec3; 2]> =
         members.iter().flat_map(|&at| outer_sides(pieces, at, &touching[at])).collect();
+    if border.is_empty() && area < WHOLE {
+        // Narrower than roundings, so its sides lie on each other: all of them are its border.
+        border = own.iter().flat_map(sides).collect();
+        corners = own.iter().flat_map(|piece| piece.corners.iter().copied()).collect();
+    }
     let inside = mean.try_normalize().filter(|d| is_free(*d));
     let (center, margin) = farthest(&border, inside.into_iter().chain(middles(&own)));
     // The middle of a piece is free whatever the border is.
@@ -125,6 +132,12 @@ fn middles(pieces: &[FreePiece]) -> impl Iterator<Item = DVec3> {
     let mut order: Vec<&FreePiece> = pieces.iter().collect();
     order.sort_by(|a, b| b.area.total_cmp(&a.area));
     order.into_iter().take(MIDDLES).map(center)
+}
+
+/// The sides of a piece.
+fn sides(piece: &FreePiece) -> impl Iterator<Item = [DVec3; 2]> + '_ {
+    let next = piece.corners.iter().cycle().skip(1);
+    piece.corners.iter().zip(next).map(|(a, b)| [*a, *b])
 }
 
 /// What other pieces leave of the sides of one.

@@ -1,5 +1,7 @@
 //! A first contact on a path of joints, as front ends write it.
 
+use std::collections::HashSet;
+
 use serde::Serialize;
 
 use super::{Ending, TimeRecord, coordinates};
@@ -26,8 +28,14 @@ pub struct PathRecord {
     /// Unit vector in the world, from the first to the second.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub normal: Option<[f64; 3]>,
+    /// The gap that is kept, a length: two bodies count as meeting where they are as near as that.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub keep: Option<f64>,
     /// How many pairs of bodies were asked about.
     pub pairs: usize,
+    /// The names of those that were not, though a joint may move one against the other: nothing is said of them.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<[String; 2]>,
     /// How often two bodies were looked at.
     pub looks: u32,
     /// Planes in the proof.
@@ -45,7 +53,10 @@ impl PathRecord {
         };
         let (looks, planes) = (outcome.steps().looks, outcome.proof().planes());
         let pairs = cast.pairs().len();
-        let record = Self { outcome: ending, pairs, looks, planes, ..Self::default() };
+        let keep = Some(cast.keep()).filter(|gap| *gap > 0.0);
+        let left_out = left_out(cast, names);
+        let record =
+            Self { outcome: ending, keep, pairs, left_out, looks, planes, ..Self::default() };
         let name = |body: usize| names.get(body).cloned().unwrap_or_default();
         match outcome {
             PathOutcome::Contact(of) | PathOutcome::Grazing(of) | PathOutcome::Overlapping(of) => {
@@ -63,4 +74,17 @@ impl PathRecord {
             PathOutcome::Free(_) => record,
         }
     }
+}
+
+/// The names of bodies none of whose parts were asked about, each two once.
+fn left_out(cast: &PathCast<'_>, names: &[String]) -> Vec<[String; 2]> {
+    let named = |pair: &[usize; 2]| pair.map(|body| names.get(body).cloned().unwrap_or_default());
+    let mut told: HashSet<[String; 2]> = cast.pairs().iter().map(named).collect();
+    let mut left_out = Vec::new();
+    for [a, b] in cast.left_out().iter().map(named) {
+        if !told.contains(&[b.clone(), a.clone()]) && told.insert([a.clone(), b.clone()]) {
+            left_out.push([a, b]);
+        }
+    }
+    left_out
 }

@@ -139,6 +139,10 @@ impl WaysOut {
         if !(2..=MOST_BODIES).contains(&bodies.len()) {
             return Ok(Self::NotFound { searched: Searched::default() });
         }
+        let wrong = |d: &&DVec3| !(d.is_finite() && d.try_normalize().is_some());
+        if let Some(&direction) = options.directions.iter().find(wrong) {
+            return Err(QueryError::Direction { direction }.into());
+        }
         let tolerance = tolerance(bodies, options)?;
         let boxes: Vec<Aabb> = bodies.iter().map(around).collect();
         let scale = scale(bodies, tolerance, options.step);
@@ -306,13 +310,15 @@ fn certified(
 
 /// That of all casts: the one given, or the largest default one.
 fn tolerance(bodies: &[Placed<'_, Solid>], options: &WayOptions) -> Result<f64, QueryError> {
-    if let Some(given) = options.tolerance {
-        return Ok(given);
-    }
     let mut most = 0.0_f64;
     for j in 1..bodies.len() {
         for i in 0..j {
-            most = most.max(Cast::new(bodies[i], bodies[j], DVec3::Z)?.tolerance());
+            let cast = Cast::new(bodies[i], bodies[j], DVec3::Z)?;
+            most = most.max(match options.tolerance {
+                // It is refused as it was given, not as it is planned with.
+                Some(given) => cast.with_tolerance(given)?.tolerance(),
+                None => cast.tolerance(),
+            });
         }
     }
     Ok(most)

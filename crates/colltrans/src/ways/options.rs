@@ -101,7 +101,7 @@ impl WayOptions {
         Self { step, ..self }
     }
 
-    /// With directions to try; those of length 0, or not finite, are left out.
+    /// With directions to try, none of length 0; they are checked where they are used.
     #[must_use]
     pub fn with_directions(self, directions: Vec<DVec3>) -> Self {
         Self { directions, ..self }

@@ -63,6 +63,8 @@ mod mechanism;
 mod shape;
 mod verify;
 
+use std::collections::HashSet;
+
 use crate::Solid;
 use crate::among::{AnyPlaced, ByKind};
 use crate::body::{Placed, Pose};
@@ -169,6 +171,27 @@ impl<'a> PathCast<'a> {
     /// The pairs that are asked about.
     pub fn pairs(&self) -> &[[usize; 2]] {
         &self.pairs
+    }
+
+    /// Two bodies each that are not asked about, though joints may move one against the other: nothing is said of them.
+    pub fn left_out(&self) -> Vec<[usize; 2]> {
+        let moved_by = |frame: &Option<usize>| {
+            let mut above = self.mechanism.above(*frame);
+            above.retain(|k| self.mechanism.frames()[*k].joint != Joint::Fixed);
+            above
+        };
+        let moved_by: Vec<Vec<usize>> = self.frames.iter().map(moved_by).collect();
+        let asked: HashSet<[usize; 2]> =
+            self.pairs.iter().flat_map(|&[i, j]| [[i, j], [j, i]]).collect();
+        let pairs = (0..self.frames.len()).flat_map(|j| (0..j).map(move |i| [i, j]));
+        pairs
+            .filter(|pair| moved_by[pair[0]] != moved_by[pair[1]] && !asked.contains(pair))
+            .collect()
+    }
+
+    /// The gap to be kept, 0 for none.
+    pub const fn keep(&self) -> f64 {
+        self.keep
     }
 
     /// The bodies, where they are in the frames that carry them.

@@ -101,6 +101,24 @@ def test_the_time_of_contact_may_not_be_moved() -> None:
         assert refused(changed(file, ("proof", "meeting"), lambda of: None))
 
 
+def test_a_later_time_is_a_bound_and_none_is_no_claim() -> None:
+    file = proof("path_contact")
+    for upper, told in ((file["said"]["upper"] + 1.0, "by the time"), (None, "on the path")):
+        report = check.check(json.dumps({**file, "said": {**file["said"], "upper": upper}}))
+        (meeting,) = (line for line in report.holds if " and " in line)
+        assert f"meet {told}" in meeting
+
+
+def test_pairs_that_were_left_out_are_named() -> None:
+    file = proof("path_free")
+    (first, *others), covers = file["pairs"], file["proof"]["covers"]
+    less = {**file, "pairs": others, "proof": {**file["proof"], "covers": covers[1:]}}
+    report = check.check(json.dumps(less))
+    a, b = (repr(file["bodies"][k]["name"]) for k in first)
+    assert any(f"{a} and {b}" in line or f"{b} and {a}" in line for line in report.unchecked)
+    assert any("of those asked about" in line for line in report.holds)
+
+
 @pytest.mark.parametrize(
     ("part", "by"),
     [

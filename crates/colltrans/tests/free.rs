@@ -92,7 +92,7 @@ fn a_rail_has_two_directions() {
         assert_eq!(all.says(d), Ok(Verdict::Free));
     }
     // With a tolerance of roundings they are regions, narrower than sides are told apart.
-    let all = free(&bar, &rail, FreeOptions::DEFAULT);
+    let all = free(&bar, &rail, FreeOptions::DEFAULT.with_tolerance(1e-13));
     assert_eq!(all.regions().len(), 2);
     for region in all.regions() {
         assert!(region.margin < 1e-12 && !region.corners.is_empty(), "{region:?}");

@@ -21,15 +21,24 @@ ALL = ["contact", "free", "kept", "solid"]
         (
             "contact",
             [
-                "no two bodies meet up to the time 0.60356132767",
-                "'tool' and 'wire' meet at the time",
+                "no two bodies of those asked about meet up to the time 0.60356132767",
+                "'tool' and 'wire' meet by the time",
             ],
         ),
-        ("free", ["no two bodies meet up to the time 2.0"]),
-        ("kept", ["no two bodies are as near as 0.01 up to", "are as near as 0.01 at the time"]),
+        ("free", ["no two bodies of those asked about meet up to the time 2.0"]),
+        (
+            "kept",
+            [
+                "no two bodies of those asked about are as near as 0.01 up to",
+                "are as near as 0.01 by the time",
+            ],
+        ),
         (
             "solid",
-            ["no two bodies meet up to the time 0.5581803", "'tool' and 'frame' meet at the time"],
+            [
+                "no two bodies of those asked about meet up to the time 0.5581803",
+                "'tool' and 'frame' meet by the time",
+            ],
         ),
     ],
 )
@@ -172,7 +181,7 @@ def test_parts_of_a_solid_may_not_be_left_out() -> None:
 def test_what_is_inside_where_a_path_begins_is_seen() -> None:
     file = proof("path_inside")
     (line,) = check.check(json.dumps(file)).holds
-    assert "'upper' and 'room' meet at the time 0.0" in line
+    assert "'upper' and 'room' meet by the time 0.0" in line
     (at,) = (k for k, body in enumerate(file["bodies"]) if "parts" in body)
     way: tuple[Any, ...] = ("bodies", at, "pose", "translation", 0)
     assert refused(changed(file, way, lambda x: x + 20.0))

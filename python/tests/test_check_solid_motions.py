@@ -27,7 +27,7 @@ WAY = ("proof", "spans", 0, "cover")
 )
 def test_a_proof_holds(name: str, holds: list[str]) -> None:
     report = check.check(json.dumps(proof(f"solids_{name}")))
-    assert len(report.holds) == len(holds) and not report.partly
+    assert len(report.holds) == len(holds) and report.partly
     assert all(words in line for words, line in zip(holds, report.holds, strict=True))
     assert report.unchecked == ["whether facets were moved inwards as the tolerance says"]
 

@@ -49,13 +49,13 @@ fn what_is_given_twice_or_not_at_all_is_refused() {
     let folder = folder();
     let turn = ["--turn", "0,0,0", "z", "90"];
     let fixed = ["--fixed-turn", "0,0,0", "z", "90"];
-    let ask = |more: &[&[&str]]| {
-        [&["motion", "cube.off", "cube.off", "--moving-pose=4,0,0"][..], &more.concat()].concat()
-    };
-    refused(folder.path(), &ask(&[&turn, &turn]), 2, &["--turn", "multiple times"]);
-    refused(folder.path(), &ask(&[&turn, &fixed, &fixed]), 2, &["--fixed-turn", "multiple times"]);
-    refused(folder.path(), &ask(&[]), 2, &["nothing moves: give one of --turn"]);
-    assert!(answered(folder.path(), &ask(&[&fixed])).starts_with("free"));
+    let cubes = ["motion", "cube.off", "cube.off", "--moving-pose=4,0,0"];
+    let twice = [&cubes[..], &turn, &turn].concat();
+    refused(folder.path(), &twice, 2, &["--turn", "multiple times"]);
+    let twice = [&cubes[..], &turn, &fixed, &fixed].concat();
+    refused(folder.path(), &twice, 2, &["--fixed-turn", "multiple times"]);
+    refused(folder.path(), &cubes, 2, &["nothing moves: give one of --turn"]);
+    assert!(answered(folder.path(), &[&cubes[..], &fixed].concat()).starts_with("free"));
 }
 
 #[test]

@@ -131,7 +131,8 @@ mod tests {
     /// Neither a climb along a rim nor the proof at an apex looks at each of its corners.
     #[test]
     fn casts_of_bodies_with_rims() {
-        let rims: [(&str, &[[f64; 2]], &[f64]); 4] = [
+        type Turned = (&'static str, &'static [[f64; 2]], &'static [f64]);
+        let rims: [Turned; 4] = [
             ("cylinder", &[[1.0, -1.0], [1.0, 1.0]], &[]),
             ("chamfers", &[[0.99, -1.0], [1.0, -0.99], [1.0, 0.99], [0.99, 1.0]], &[]),
             ("cone", &[[1.0, -0.5]], &[1.0]),

@@ -12,8 +12,10 @@ const CASTS: usize = 20;
 /// Bounds are no farther from each other, as a share of the size, along the contact normal.
 const OPEN: f64 = 1e-13;
 
-/// Rings of so many sides, by radius and height, and tips.
-const KINDS: [(&str, &[[f64; 2]], &[f64]); 7] = [
+/// A name, rings by radius and height, and tips.
+type Kind = (&'static str, &'static [[f64; 2]], &'static [f64]);
+
+const KINDS: [Kind; 7] = [
     ("cylinder", &[[1.0, -1.0], [1.0, 1.0]], &[]),
     ("disc", &[[1.0, -0.01], [1.0, 0.01]], &[]),
     ("chamfers", &[[0.99, -1.0], [1.0, -0.99], [1.0, 0.99], [0.99, 1.0]], &[]),
@@ -64,7 +66,7 @@ fn examined(cast: &Cast, size: f64) -> Result<bool, String> {
     if open > OPEN * size {
         return Err(format!("bounds {open:e} apart"));
     }
-    let by_cta = cast.clone().with_solver(Solver::Cta).first_contact();
+    let by_cta = (*cast).with_solver(Solver::Cta).first_contact();
     match by_cta.map_err(|error| error.to_string())? {
         Outcome::Contact(other)
             if (other.translation - contact.translation).abs() * inclination > OPEN * size =>
@@ -97,7 +99,7 @@ fn proofs_hold_and_are_close() {
                     match examined(&cast.expect("a query"), 10.0) {
                         Ok(contact) => contacts += u32::from(contact),
                         Err(objection) => {
-                            wrong.push(format!("{moving}, {fixed}, {sides}, {which}: {objection}"))
+                            wrong.push(format!("{moving}, {fixed}, {sides}, {which}: {objection}"));
                         }
                     }
                 }

@@ -2,7 +2,7 @@
 //!
 //! Data flow: files -> [`read`] (parts in one world, one unit) -> [`Assembly`] -> [`Fit`] (how
 //! tight: shrunk by a tolerance, or to be kept a length apart) -> `bodies` (two parts and a direction: the
-//! only module that asks `colltrans`; with [`roles`] and [`threads`] what a pair tolerates) -> [`start`] (overlaps now; [`suggest`] what they may be), [`liaisons`] (who touches whom) ->
+//! only module that asks `colltrans`; with [`roles`] and [`threads`] what a pair tolerates) -> [`start`] (overlaps now; [`suggest`] what they may be, [`hints`] what is odd about parts), [`liaisons`] (who touches whom) ->
 //! [`candidates`] (directions worth asking) -> [`matrix`] and [`rooms`] (who is stopped by whom) ->
 //! [`blocking`] (the graph; with [`constraints`] its arcs), [`likes`] (parts of one shape) -> [`plan`] (steps, and what is stuck) ; [`map`] (one part, all
 //! directions) -> [`record`] (JSON) -> [`report`] (pictures, one HTML file, an animation).
@@ -34,6 +34,7 @@ pub mod blocking;
 pub mod candidates;
 pub mod constraints;
 pub mod free;
+pub mod hints;
 pub mod liaisons;
 pub mod likes;
 pub mod map;

@@ -4,6 +4,7 @@
 
 mod common;
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use base64::Engine;
@@ -132,6 +133,64 @@ fn links_of_a_robot_are_placed_by_its_joints() {
     options.joints.insert("elbow".into(), 1.0);
     let message = read(&file, &options).unwrap_err().to_string();
     assert!(message.contains("there is no joint elbow"), "{message}");
+}
+
+#[test]
+fn what_is_said_of_parts_that_are_left_out_is_dropped_and_that_is_said() {
+    let manifest = r#"
+        ignore = [["a", "gone"]]
+        before = [["a", "gone"]]
+        together = [["a", "b", "gone"]]
+        [[part]]
+        file = "a.off"
+        [[part]]
+        file = "b.off"
+        [[part]]
+        file = "missing.off"
+        name = "gone"
+        [[pair]]
+        parts = ["go*", "b"]
+        role = "press"
+        [[never]]
+        parts = ["gone"]
+        along = [0, 0, 1]
+    "#;
+    let files = [("m.toml", manifest), ("a.off", CUBE), ("b.off", CUBE)];
+    let file = folder(&files);
+    let path = file.path().join("m.toml");
+    assert!(matches!(open(&path), Err(ReadError::Missing { .. })));
+    let options = ReadOptions::default().with_skip_missing(true);
+    let assembly = read(&path, &options).unwrap();
+    let wanted = [
+        "ignore of a, gone is not asked, as parts of it are left out",
+        "before of a, gone is not asked, as parts of it are left out",
+        "pair of go*, b is not asked, as parts of it are left out",
+        "together of a, b, gone is asked of a, b only, as parts of it are left out",
+        "never of gone is not asked, as parts of it are left out",
+        "missing.off cannot be found and is left out",
+    ];
+    assert_eq!(assembly.notes(), wanted);
+    assert_eq!(assembly.constraints().units()[0].parts, [0, 1]);
+    // A name that no part has is an error as before.
+    let wrong = manifest.replace("[[\"a\", \"b\", \"gone\"]]", "[[\"a\", \"bb\"]]");
+    let files = [("m.toml", &wrong[..]), ("a.off", CUBE), ("b.off", CUBE)];
+    let file = folder(&files);
+    let refused = read(file.path().join("m.toml"), &options).unwrap_err().to_string();
+    assert!(refused.contains("bb"), "{refused}");
+}
+
+#[test]
+fn parts_in_another_unit_are_scaled_where_that_is_asked_for() {
+    let file = folder(&[("bolt_1.off", CUBE), ("bolt_2.off", CUBE), ("lid.off", CUBE)]);
+    let scales = BTreeMap::from([("bolt_*".to_owned(), 25.4)]);
+    let options = ReadOptions::default().with_scales(scales.clone());
+    let assembly = read(file.path(), &options).unwrap();
+    let size = |k: usize| assembly.parts()[k].solid().bounds().size().x;
+    assert_eq!([0, 1, 2].map(size), [25.4, 25.4, 1.0]);
+    for (name, factor) in [("nut", 1.0), ("lid", 0.0), ("lid", f64::NAN)] {
+        let options = ReadOptions::default().with_scales(BTreeMap::from([(name.into(), factor)]));
+        assert!(read(file.path(), &options).is_err());
+    }
 }
 
 #[test]

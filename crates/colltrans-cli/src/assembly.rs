@@ -176,6 +176,12 @@ fn assembly(arguments: &AssemblyArguments) -> Result<Assembly, Failure> {
             .ok_or_else(|| usage(format!("--joint {joint}: not NAME=VALUE")))?;
         options.joints.insert(name.trim().to_owned(), value);
     }
+    for scale in &arguments.scale {
+        let (name, factor) = asked::halves("--scale", scale, "PART=FACTOR")?;
+        let factor: Option<f64> = factor.parse().ok().filter(|x: &f64| x.is_finite() && *x > 0.0);
+        let factor = factor.ok_or_else(|| usage(format!("--scale {scale}: not PART=FACTOR")))?;
+        options.scales.insert(name.to_owned(), factor);
+    }
     let refused = |e: ReadError| Failure::new(Code::Input, format!("{e}{}", advice(&e)));
     let source = &arguments.source;
     let assembly = if step::is_step(source) {

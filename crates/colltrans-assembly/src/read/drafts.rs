@@ -7,7 +7,7 @@ use std::sync::Arc;
 use colltrans::solid::ShellKind;
 use colltrans_mesh::Mesh;
 use colltrans_mesh::body::{self, Apart};
-use glam::DAffine3;
+use glam::{DAffine3, DVec3};
 
 use super::files::Source;
 use super::{MOST_PLACED, Names, contents, in_file};
@@ -125,6 +125,7 @@ pub(super) fn assembled(
     if drafts.is_empty() {
         return Err(ReadError::NoParts { path: path.into(), holds: holds.into() });
     }
+    let drafts = scaled(&source, drafts)?;
     let alone = drafts.len() == 1;
     let mut made = Made::default();
     made.names.take(drafts.iter().map(|draft| &draft.name));
@@ -139,6 +140,32 @@ pub(super) fn assembled(
     let assembly = Assembly::new(made.parts).map_err(in_file(path))?;
     let notes = made.notes.into_iter().chain(kept);
     Ok(notes.fold(assembly, Assembly::with_note).with_files(source.into_files()))
+}
+
+/// The same with the factors that are asked for.
+fn scaled(source: &Source, mut drafts: Vec<Draft>) -> Result<Vec<Draft>, ReadError> {
+    for (name, &factor) in &source.options.scales {
+        let refused = |error| in_file(source.path)(error);
+        if !(factor.is_finite() && factor > 0.0) {
+            return Err(refused(AssemblyError::Length { what: "scale", value: factor }));
+        }
+        let is_meant = |draft: &Draft| match name.strip_suffix('*') {
+            Some(prefix) => draft.name.starts_with(prefix),
+            None => draft.name == *name,
+        };
+        let mut count = 0;
+        for draft in drafts.iter_mut().filter(|draft| is_meant(draft)) {
+            for piece in &mut draft.pieces {
+                piece.world = DAffine3::from_scale(DVec3::splat(factor)) * piece.world;
+            }
+            draft.chord_error = draft.chord_error.map(|error| error * factor);
+            count += 1;
+        }
+        if count == 0 {
+            return Err(refused(AssemblyError::UnknownPart { name: name.clone(), near: None }));
+        }
+    }
+    Ok(drafts)
 }
 
 /// Parts that are made.

@@ -141,7 +141,7 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     for (k, entry) in manifest.parts.iter().enumerate() {
         gathered.part(&source, k, entry)?;
     }
-    let Gathered { drafts, missing, .. } = gathered;
+    let Gathered { drafts, missing, left_out, .. } = gathered;
     if !missing.is_empty() && !source.options.skip_missing {
         return Err(ReadError::Missing { path: path.into(), missing });
     }
@@ -150,14 +150,14 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
         missing => format!("none of its parts has all of its files; {missing} cannot be found"),
     };
     let mut assembly = assembled(source, drafts, &holds)?;
-    let known = |n: &String| missing.is_empty() || assembly.index(n).is_ok();
-    let found = |pairs: &[[String; 2]]| -> Vec<[String; 2]> {
-        pairs.iter().filter(|pair| pair.iter().all(known)).cloned().collect()
-    };
-    let (ignore, always) = (found(&manifest.ignore), found(&manifest.ignore_always));
-    assembly = assembly.with_ignored(&ignore, Ignored::Overlap).map_err(in_file(path))?;
-    assembly = assembly.with_ignored(&always, Ignored::Always).map_err(in_file(path))?;
+    let (manifest, dropped) = manifest.without(&left_out, &assembly);
+    let Manifest { ignore, ignore_always: always, .. } = &manifest;
+    assembly = assembly.with_ignored(ignore, Ignored::Overlap).map_err(in_file(path))?;
+    assembly = assembly.with_ignored(always, Ignored::Always).map_err(in_file(path))?;
     assembly = manifest.constrained(assembly).map_err(in_file(path))?;
+    for said in dropped {
+        assembly = assembly.with_note(format!("{said}, as parts of it are left out"));
+    }
     for file in missing {
         assembly = assembly.with_note(format!("{file} cannot be found and is left out"));
     }
@@ -165,6 +165,44 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
 }
 
 impl Manifest {
+    /// The same without what is said of parts that are left out, and that in words. What is said of several others holds
+    /// of those.
+    fn without(mut self, left_out: &[String], assembly: &Assembly) -> (Self, Vec<String>) {
+        let like = |name: &str, part: &String| match name.trim().strip_suffix('*') {
+            Some(prefix) => part.starts_with(prefix),
+            None => part == name.trim(),
+        };
+        let is_there = |name: &String| {
+            !left_out.iter().any(|part| like(name, part)) || assembly.group(&[name]).is_ok()
+        };
+        let mut dropped = Vec::new();
+        let mut keep = |what: &str, names: &mut Vec<String>, fewest: usize| {
+            let before = names.join(", ");
+            let count = names.len();
+            names.retain(is_there);
+            let kept = names.len() >= fewest.min(count);
+            if !kept {
+                dropped.push(format!("{what} of {before} is not asked"));
+            } else if names.len() < count {
+                dropped.push(format!("{what} of {before} is asked of {} only", names.join(", ")));
+            }
+            kept
+        };
+        let mut pairs = |what: &str, all: &mut Vec<[String; 2]>| {
+            all.retain(|pair| keep(what, &mut pair.to_vec(), 2));
+        };
+        pairs("ignore", &mut self.ignore);
+        pairs("ignore_always", &mut self.ignore_always);
+        pairs("before", &mut self.before);
+        pairs("after", &mut self.after);
+        self.pairs.retain(|contact| keep("pair", &mut contact.parts.to_vec(), 2));
+        self.together.retain_mut(|parts| keep("together", parts, 2));
+        self.subassemblies
+            .retain_mut(|of| keep(&format!("subassembly {}", of.name), &mut of.parts, 2));
+        self.never.retain_mut(|of| keep("never", &mut of.parts, 1));
+        (self, dropped)
+    }
+
     /// The assembly with what is asked of its plans.
     fn constrained(&self, mut assembly: Assembly) -> Result<Assembly, AssemblyError> {
         for Contact { parts: [a, b], role, tolerance } in &self.pairs {
@@ -196,6 +234,8 @@ struct Gathered {
     metres: Option<f64>,
     drafts: Vec<Draft>,
     missing: Vec<String>,
+    /// Names of parts of which files are missing.
+    left_out: Vec<String>,
 }
 
 impl Gathered {
@@ -236,6 +276,8 @@ impl Gathered {
             })?;
             let draft = Draft { fixed: entry.fixed, split, ..Draft::new(name, pieces) };
             self.drafts.push(draft.told());
+        } else {
+            self.left_out.push(name);
         }
         Ok(())
     }

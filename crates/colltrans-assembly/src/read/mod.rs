@@ -66,9 +66,18 @@ pub struct ReadOptions {
     /// Whether a source may name files that lie neither in its own folder nor in one of `packages`,
     /// by absolute paths, `..` or links.
     pub allow_outside: bool,
+    /// Factors of parts whose files are in another unit, about the origin, by name; `bolt*` is all whose names begin with
+    /// `bolt`.
+    pub scales: BTreeMap<String, f64>,
 }
 
 impl ReadOptions {
+    /// The same with other [`scales`](Self::scales).
+    #[must_use]
+    pub fn with_scales(self, scales: BTreeMap<String, f64>) -> Self {
+        Self { scales, ..self }
+    }
+
     /// The same with another [`packages`](Self::packages).
     #[must_use]
     pub fn with_packages(self, packages: Vec<PathBuf>) -> Self {

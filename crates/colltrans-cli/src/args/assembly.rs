@@ -92,7 +92,10 @@ pub(crate) struct AssemblyArguments {
     /// note.
     #[arg(long, value_name = "WHICH", default_value = "auto", hide_default_value = true)]
     pub(crate) split: Split,
-    /// Leave out meshes that cannot be found, with a note
+    /// A part whose file is in another unit: so many times as large; PART* is all parts whose names begin so
+    #[arg(long, value_name = "PART=FACTOR")]
+    pub(crate) scale: Vec<String>,
+    /// Leave out meshes that cannot be found, and what a manifest says of them, with a note
     #[arg(long)]
     pub(crate) skip_missing: bool,
     /// Read what URDF links show, not what they collide with
@@ -156,8 +159,8 @@ pub(crate) struct RoleArguments {
     /// One part is soft, as a seal or a belt: as --press
     #[arg(long, value_name = "A,B[=L]")]
     pub(crate) soft: Vec<String>,
-    /// One part is screwed into the other: of the screw its core is asked, without the thread
-    #[arg(long, value_name = "A,B")]
+    /// One part is screwed into the other, with a tolerance of the thread: it is unscrewed, which is certified where it can be
+    #[arg(long, value_name = "A,B[=L]")]
     pub(crate) thread: Vec<String>,
     /// One part snaps over the other: contacts that begin within L of the start let it pass
     #[arg(long, value_name = "A,B=L")]

@@ -57,7 +57,7 @@ pub(super) fn with_roles(assembly: Assembly, asked: &RoleArguments) -> Result<As
     let mut assembly = assembly;
     for (flag, role, given) in all {
         for said in given {
-            let takes = !matches!(role, Some(Role::Thread | Role::Glued));
+            let takes = role != Some(Role::Glued);
             let needs = matches!(role, None | Some(Role::Snap));
             let (names, tolerance) = match said.rsplit_once('=').filter(|_| takes) {
                 Some((names, length)) => {
@@ -94,7 +94,11 @@ fn usage(text: String) -> Failure {
 }
 
 /// What stands before and after the last `=`: names may hold others.
-fn halves<'a>(flag: &str, given: &'a str, form: &str) -> Result<(&'a str, &'a str), Failure> {
+pub(super) fn halves<'a>(
+    flag: &str,
+    given: &'a str,
+    form: &str,
+) -> Result<(&'a str, &'a str), Failure> {
     let found = given.rsplit_once('=').map(|(a, b)| (a.trim(), b.trim()));
     let found = found.filter(|(name, _)| !name.is_empty());
     found.ok_or_else(|| usage(format!("{flag} {given}: not {form}")))

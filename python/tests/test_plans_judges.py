@@ -70,7 +70,31 @@ class Judge:
         self.looks += 1
         return float((p.translate(tuple(by)) ^ q).volume())
 
+    def turn(self, leg: dict[str, Any], others: list[str]) -> None:
+        """A screw, of parts where they stand; they count as straight there once it is over."""
+        turn = leg["turn"]
+        axis, pivot = np.array(turn["axis"]), np.array(turn["point"])
+        for part in leg["parts"]:
+            own = pivot - turn["aside"]
+            for share in np.linspace(0, 1, PLACES + 1):
+                angle = 2 * np.pi * (turn["phase"] + turn["turns"] * share)
+                k = np.cross(np.eye(3), axis).T
+                rotation = np.eye(3) + np.sin(angle) * k + (1 - np.cos(angle)) * k @ k
+                by = pivot - rotation @ own + axis * leg["travel"] * share
+                body = self.bodies[part].transform(np.column_stack([rotation, by]))
+                for other in others:
+                    self.looks += 1
+                    common = float((body ^ self.bodies[other]).volume())
+                    layer = self.layer(part, other)
+                    layer += turn["proof"]["tolerance"] * body.surface_area()
+                    assert common <= layer, (part, other, share, leg)
+            self.bodies[part] = body.translate(tuple(-axis * leg["travel"]))
+            self.at[part] = axis * leg["travel"]
+
     def move(self, leg: dict[str, Any], others: list[str]) -> None:
+        if "turn" in leg:
+            self.turn(leg, others)
+            return
         motion = np.array(leg["direction"]) * leg["travel"]
         for a in leg["parts"]:
             for b in others:

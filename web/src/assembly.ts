@@ -14,7 +14,7 @@ import { palette } from "./colours";
 import { h, refill, soon } from "./dom";
 import { Engine, bytesOf } from "./engine";
 import { ACCEPTED, names } from "./formats";
-import { type Vec, length, short, shown, times, unit } from "./math";
+import { type Vec, length, short, shown, sub, times, unit } from "./math";
 import { quoted } from "./share";
 import type { State } from "./state";
 import { above, ball, clear, rod } from "./view/shapes";
@@ -300,12 +300,16 @@ export class AssemblyTab {
       const { facts } = await this.engine.ask({ do: "plan" });
       if (turn !== this.turn || !this.facts) return;
       const plan = (this.plan = facts);
-      const { size, unit: of } = this.facts;
+      const { size, middle, unit: of } = this.facts;
       const places = new Map(this.facts.parts.map(({ name }, k) => [name, k]));
       this.moves = plan.plan.map(({ path, back = [] }) => [...path, ...back].map((leg, l) => {
         // With the last move of its path a step leaves.
         const leaves = l === path.length - 1;
-        return { parts: leg.parts.map((name) => places.get(name)!), way: times(leg.direction, leg.travel + (leaves ? 0.35 * size : 0)) };
+        const moved = { parts: leg.parts.map((name) => places.get(name)!), way: times(leg.direction, leg.travel + (leaves ? 0.35 * size : 0)) };
+        if (!leg.turn) return moved;
+        // Parts are shown about their middle.
+        const { point, axis, aside, phase, turns } = leg.turn, at = sub(point, middle);
+        return { ...moved, turn: { own: sub(at, aside), point: at, axis, phase, turns } };
       }));
       this.player.show(
         plan.plan.map(({ parts, path, direction, travel }) => `${parts.join(", ")} ${severally(path)}along ${arrow(direction)}${travel ? `, ${short(travel, 4)} ${of ?? ""}` : ""}`),
@@ -550,4 +554,9 @@ function arrow(d: Vec): string {
 }
 
 /** Before where a step leads to, if it has more moves than one. */
-const severally = (path: unknown[]) => (path.length > 1 ? `in ${path.length} moves, the last ` : "");
+const severally = (path: { travel: number; turn?: { turns: number } }[]) => {
+  const { turn, travel } = path[0]!;
+  if (turn && !travel) return `turned by ${short(360 * turn.turns, 4)}°, then `;
+  if (turn) return `unscrewed, ${short(Math.abs(turn.turns), 3)} turns, then `;
+  return path.length > 1 ? `in ${path.length} moves, the last ` : "";
+};

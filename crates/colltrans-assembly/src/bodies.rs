@@ -6,6 +6,8 @@
 //! ([`Cast::keeping`]); boxes are those of the bodies with half of it around. A pair that has a [role](crate::roles) or
 //! a tolerance of its own has bodies of its own, which are asked of each other only.
 
+mod turning;
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -23,6 +25,8 @@ use crate::part::{Assembly, Ignored, Part};
 use crate::roles::{Role, Tolerated};
 use crate::threads::Thread;
 use colltrans::Aabb;
+
+pub(crate) use turning::Turned;
 
 /// Pairs of parts whose boxes meet: more are refused, for memory goes with their number.
 pub(crate) const MOST_NEIGHBOURS: usize = 1 << 19;
@@ -198,6 +202,8 @@ pub struct Bodies<'a> {
 struct OwnFit {
     fit: Fit,
     tolerated: Tolerated,
+    /// Of those whose screw is taken as its core.
+    thread: Option<Thread>,
 }
 
 /// How deep an overlap that is ignored may become, in multiples of its depth at the start: so much more
@@ -634,19 +640,33 @@ impl<'a> Bodies<'a> {
 
     /// The same from where the first one is displaced by `by`.
     pub(crate) fn past_displaced(&self, a: usize, by: DVec3, b: usize, d: DVec3) -> Bounded {
+        // A displaced vertex is rounded once more.
+        let sums = if by == DVec3::ZERO { 9.0 } else { 10.0 };
+        self.past_moved((a, |p| p + by), b, d, sums)
+    }
+
+    /// The same from where a map has brought the vertices of the first one, each off by `sums - 9` roundings of its
+    /// coordinates' size.
+    pub(crate) fn past_moved(
+        &self,
+        (a, moved): (usize, impl Fn(DVec3) -> DVec3),
+        b: usize,
+        d: DVec3,
+        sums: f64,
+    ) -> Bounded {
         const U: f64 = f64::EPSILON / 2.0;
         let (u, v) = d.any_orthonormal_pair();
         let (mut terms, mut reach) = (0.0_f64, 0.0_f64);
-        let mut around = |part: usize, by: DVec3| {
+        let mut around = |part: usize, moved: &dyn Fn(DVec3) -> DVec3| {
             let vertices = self.assembly.parts()[part].solid().vertices().iter();
             Aabb::of_points(vertices.map(|p| {
-                let p = *p + by;
+                let p = moved(*p);
                 terms = terms.max(p.abs().dot(d.abs()));
                 reach = reach.max(p.abs().max_element());
                 DVec3::new(p.dot(u), p.dot(v), p.dot(d))
             }))
         };
-        let (moving, fixed) = (around(a, by), around(b, DVec3::ZERO));
+        let (moving, fixed) = (around(a, &moved), around(b, &|p| p));
         // Three terms of at most this each, and axes that are rounded.
         let flush = 32.0 * U * reach;
         let apart = |k: usize| (fixed.low[k] - moving.high[k]).max(moving.low[k] - fixed.high[k]);
@@ -654,8 +674,6 @@ impl<'a> Bodies<'a> {
             return Bounded { value: 0.0, lower: 0.0, upper: 0.0 };
         }
         let way = fixed.high.z - moving.low.z;
-        // A displaced vertex is rounded once more.
-        let sums = if by == DVec3::ZERO { 9.0 } else { 10.0 };
         let error = U * (sums * terms + 9.0 * way.abs());
         let [value, lower, upper] = [way, way - error, way + error].map(|x| x.max(0.0));
         Bounded { value, lower, upper }
@@ -716,10 +734,15 @@ fn own_fits(assembly: &Assembly, fit: Fit) -> Result<OwnFits, AssemblyError> {
         };
         let own_fit = match tolerated {
             Tolerated::Within(length) => Fit::Tolerance(length),
-            Tolerated::Core(_) => alike,
+            Tolerated::Core(_) => match (said.tolerance, &thread) {
+                (Some(length), _) => Fit::Tolerance(length),
+                (None, Some((thread, core))) => beside_thread(parts, thread, core, alike),
+                (None, None) => alike,
+            },
             _ => fit,
         };
-        pairs.insert(pair, OwnFit { fit: own_fit, tolerated });
+        let found = thread.as_ref().map(|(thread, _)| *thread);
+        pairs.insert(pair, OwnFit { fit: own_fit, tolerated, thread: found });
         if own_fit == fit && thread.is_none() {
             continue;
         }
@@ -748,6 +771,16 @@ fn own_fits(assembly: &Assembly, fit: Fit) -> Result<OwnFits, AssemblyError> {
     Ok((pairs, own))
 }
 
+/// What ends the overlap of a screw's core, if it is shallow: of a tip that is a little in the bottom of its hole.
+fn beside_thread(parts: [&Part; 2], thread: &Thread, core: &Solid, fit: Fit) -> Fit {
+    let mut solids = parts.map(Part::solid);
+    solids[thread.screw] = core;
+    let Some(Some(depth)) = overlapping(solids) else { return fit };
+    let length = two_digits_up(depth * DEEPER);
+    let deepest = thread.radii[1] - thread.radii[0];
+    if length > fit.tolerance() && length <= deepest { Fit::Tolerance(length) } else { fit }
+}
+
 fn refused(part: &Part, source: SolidError) -> AssemblyError {
     AssemblyError::Part { part: part.name().into(), source: source.into() }
 }
@@ -755,7 +788,13 @@ fn refused(part: &Part, source: SolidError) -> AssemblyError {
 /// Whether two parts overlap, and the least tolerance with which they do not.
 #[expect(clippy::option_option, reason = "no overlap, or one that no tolerance ends")]
 fn overlap_as_given(assembly: &Assembly, pair: [usize; 2]) -> Option<Option<f64>> {
-    let [a, b] = pair.map(|k| assembly.parts()[k].solid().at(Pose::IDENTITY));
+    overlapping(pair.map(|k| assembly.parts()[k].solid()))
+}
+
+/// The same of two solids.
+#[expect(clippy::option_option, reason = "no overlap, or one that no tolerance ends")]
+fn overlapping(solids: [&Solid; 2]) -> Option<Option<f64>> {
+    let [a, b] = solids.map(|solid| solid.at(Pose::IDENTITY));
     let options = SolidOptions::default().with_tolerance(0.0);
     let cast = Cast::new(a, b, DVec3::Z).and_then(|c| c.with_options(options)).ok()?;
     cast.overlaps().then(|| cast.least_tolerance())

@@ -1,4 +1,4 @@
-//! Disassembly by straight moves: steps, what is left, and why.
+//! Disassembly by straight moves, and turns of what is screwed: steps, what is left, and why.
 //!
 //! All parts stand where they were, so what a part meets along a direction does not depend on what
 //! was taken out before: one matrix answers for every state, as the subgraph of the parts that are
@@ -12,6 +12,7 @@
 //! Every step is replayed before it is reported: asked again, pair by pair, against what is left, and
 //! looked at in a few places on its way for overlaps.
 
+mod bayonet;
 mod certify;
 mod hold;
 mod least;
@@ -26,11 +27,13 @@ mod stage;
 mod stand;
 mod step;
 mod times;
+mod turn;
 mod wanted;
 
 use std::collections::{BTreeMap, HashSet};
 use std::sync::atomic::AtomicBool;
 
+use colltrans::Bounded;
 use colltrans::free::FreeOptions;
 use colltrans::solid::Workspace;
 use glam::DVec3;
@@ -48,6 +51,7 @@ use crate::roles::Passed;
 use crate::sphere::Sphere;
 use crate::watch::{Stage, Tally, Watch};
 
+use bayonet::Bayonet;
 use certify::{Proof, certify};
 pub use hold::Hold;
 pub use options::PlanOptions;
@@ -56,7 +60,7 @@ pub use precedence::and_or;
 use several::Aside;
 pub use several::Moves;
 use single::Single;
-pub use step::{Leg, Step};
+pub use step::{Leg, Step, Turn, TurnProof};
 pub use times::Times;
 pub use wanted::{Wanted, remove};
 
@@ -154,11 +158,13 @@ struct Way {
     direction: DVec3,
     /// What is moved aside before, if anything is.
     aside: Option<Aside>,
+    /// How it is turned before, and how far it goes then, if that has been looked for.
+    bayonet: Option<(Leg, Bounded)>,
 }
 
 impl Way {
     fn straight(parts: Vec<usize>, direction: DVec3) -> Self {
-        Self { parts, direction, aside: None }
+        Self { parts, direction, aside: None, bayonet: None }
     }
 }
 
@@ -260,6 +266,13 @@ impl<'a> Planner<'a> {
             if way.is_none() {
                 (way, moves) = self.several(&left, matrix)?;
             }
+            if way.is_none() {
+                let found = bayonet::search(bodies, &order, &left, self.options, self.watch)?;
+                way = found.map(|Bayonet { turn, direction, travel }| Way {
+                    bayonet: Some((turn.clone(), travel)),
+                    ..Way::straight(turn.parts, direction)
+                });
+            }
             let Some(way) = way else {
                 self.explain(&left, matrix, (asked.len(), proven, moves));
                 let alone = within.is_none() && !self.plan.steps.is_empty();
@@ -293,9 +306,12 @@ impl<'a> Planner<'a> {
         matrix: &Matrix,
         within: Option<usize>,
     ) -> Result<(), AssemblyError> {
-        let travel = replay::checked(self.bodies, &way, left, self.options.start)?;
+        let mut travel = match &way.bayonet {
+            Some((_, travel)) => *travel,
+            None => replay::checked(self.bodies, &way, left, self.options.start)?,
+        };
         let at = self.plan.steps.len();
-        let Way { parts, direction, aside } = way;
+        let Way { parts, direction, aside, bayonet } = way;
         let start = self.options.start;
         let pairs = parts.iter().flat_map(|&a| left.iter().map(move |&b| [a, b]));
         let ignored = pairs.filter(|&[a, b]| {
@@ -304,10 +320,20 @@ impl<'a> Planner<'a> {
         let ignored = ignored.collect();
         let passed = Passed::between(self.bodies, &parts, left);
         let surfaces = self.surfaces(&parts, left, direction);
-        let after = self.after(&parts, direction, aside.is_some(), matrix, within);
+        let several = aside.is_some() || bayonet.is_some();
+        let after = self.after(&parts, direction, several, matrix, within);
         let (mut path, back) =
             aside.map_or_else(Default::default, |aside| (aside.legs, aside.back));
-        path.push(Leg { parts: parts.clone(), direction, travel: travel.value });
+        path.extend(bayonet.map(|(turn, _)| turn));
+        let along = (&parts[..], direction);
+        let unscrewed = || turn::unscrewed(self.bodies, along, left, travel, self.options.start);
+        match path.is_empty().then(unscrewed).flatten() {
+            Some((legs, rest)) => {
+                path.extend(legs);
+                travel = rest;
+            }
+            None => path.push(Leg::straight(parts.clone(), direction, travel.value)),
+        }
         self.plan.steps.push(Step {
             parts: parts.clone(),
             direction,
@@ -577,7 +603,7 @@ impl<'a> Planner<'a> {
         Ok(match several::search(self.bodies, left, matrix, self.options, self.watch)? {
             Ok(aside) => {
                 let (parts, direction) = (aside.parts.clone(), aside.direction);
-                (Some(Way { parts, direction, aside: Some(aside) }), None)
+                (Some(Way { aside: Some(aside), ..Way::straight(parts, direction) }), None)
             }
             Err(moves) => (None, Some(moves)),
         })

@@ -11,11 +11,12 @@ use serde_json::{Value, json};
 
 use crate::bodies::{Bodies, Fit};
 use crate::free::Removal;
+use crate::hints::Hint;
 use crate::liaisons::Liaison;
 use crate::map::{Region, RemovalMap};
 use crate::matrix::{Matrix, Meeting};
 use crate::part::{Assembly, Part};
-use crate::plan::{Leg, Moves, Plan, Step, Stuck};
+use crate::plan::{Leg, Moves, Plan, Step, Stuck, Turn, TurnProof};
 use crate::roles::{PairFit, Passed, Role, Tolerated};
 use crate::rooms::PartRoom;
 use crate::start::{Overlap, Start};
@@ -65,6 +66,18 @@ pub fn suggestions(assembly: &Assembly, suggestions: &[Suggestion]) -> Value {
         })
     };
     suggestions.iter().map(told).collect()
+}
+
+/// What looks odd about parts, and which are identical.
+pub fn hints(assembly: &Assembly, hints: &[Hint]) -> Value {
+    let told = |hint: &Hint| {
+        json!({
+            "kind": hint.kind.name(),
+            "parts": assembly.names(&hint.parts),
+            "words": hint.words,
+        })
+    };
+    hints.iter().map(told).collect()
 }
 
 /// Pairs that have a fit of their own, and what is let pass of them.
@@ -218,13 +231,36 @@ fn passed(assembly: &Assembly, passed: &Passed) -> Value {
 
 fn legs(assembly: &Assembly, legs: &[Leg]) -> Value {
     let told = |leg: &Leg| {
-        json!({
+        let mut told = json!({
             "parts": assembly.names(&leg.parts),
             "direction": leg.direction.to_array(),
             "travel": leg.travel,
-        })
+        });
+        if let Some(turn) = &leg.turn {
+            told["turn"] = self::turn(leg, turn);
+        }
+        told
     };
     legs.iter().map(told).collect()
+}
+
+fn turn(leg: &Leg, turn: &Turn) -> Value {
+    let mut told = json!({
+        "point": turn.point.to_array(),
+        "axis": leg.direction.to_array(),
+        "turns": turn.turns,
+        "pitch": leg.travel / turn.turns,
+        "phase": turn.phase,
+        "aside": turn.aside.to_array(),
+        "words": turn.words(),
+    });
+    match &turn.proof {
+        Ok(TurnProof { tolerance, pairs, .. }) => {
+            told["proof"] = json!({ "tolerance": tolerance, "pairs": pairs });
+        }
+        Err(why) => told["not_proven"] = json!(why),
+    }
+    told
 }
 
 fn moves(moves: &Moves) -> Value {

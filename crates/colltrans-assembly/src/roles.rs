@@ -6,8 +6,8 @@
 //! - a *tolerance* `L`: both are shrunk by `L / 2`, as of all parts by the general one. *Press* and *soft* are words for why;
 //!   without a length it is a little more than the overlap is deep;
 //! - a *thread*: the screw is taken as its core, what of it lies on the thread is moved inwards up to where the other one
-//!   begins ([`threads`](crate::threads)). So it may be pulled out of what it is screwed into; that it can be turned out is
-//!   not proven by that;
+//!   begins ([`threads`](crate::threads)). So it may be pulled out of what it is screwed into; how it is turned out, and
+//!   whether that is proven, a step of a plan says by itself ([`Turn`](crate::plan::Turn));
 //! - a *snap* by `L`: contacts that begin before the part has gone by `L` are let pass, as it bends; those that begin later
 //!   count;
 //! - *glued*: the two leave as one, and are not taken apart.
@@ -85,9 +85,7 @@ impl Tolerated {
             (Self::Within(length), Some(_)) => format!("{name}, tolerance {length}"),
             (Self::Within(length), None) => format!("tolerance {length}"),
             (Self::Core(radius), _) => {
-                format!(
-                    "thread, the screw taken as its core of radius {radius}; turning is not asked"
-                )
+                format!("thread, the screw taken as its core of radius {radius}")
             }
             (Self::Bent(length), _) => format!("snap, contacts within {length} let pass"),
             (Self::Crossing, _) => format!("{name}, what crosses at the start let pass"),

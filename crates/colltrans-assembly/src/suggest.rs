@@ -3,11 +3,16 @@
 //! Two parts that overlap are, in this order: *soft*, if one of them is called so; a *thread*, if there is a helix; round,
 //! if one lies in the other about an axis all along their common length, and then it is a *press* fit if the vertices of
 //! the one lie farther out than those of the other, else chord errors of two tessellations; else no more than an overlap,
-//! for which there may be a tolerance. Nothing is proven by any of this.
+//! for which there may be a tolerance. A ring that is called circlip, or the like, *snaps* into the groove of a part that
+//! stops it either way. Nothing is proven by any of this.
 
 use std::collections::BTreeMap;
 
-use crate::bodies::{Bodies, two_digits_up};
+use colltrans::solid::{StartOverlap, Workspace};
+use glam::DVec3;
+
+use crate::bodies::{Bodies, Room, two_digits_up};
+use crate::candidates::inertia;
 use crate::error::AssemblyError;
 use crate::likes::likes;
 use crate::part::{Assembly, Part};
@@ -18,6 +23,9 @@ use crate::threads::{Round, Thread};
 /// A part is soft if its name has one of these.
 const SOFT: [&str; 8] =
     ["o-ring", "oring", "o_ring", "seal", "gasket", "belt", "rubber", "grommet"];
+/// A ring that snaps into a groove has one of these.
+const SNAPS: [&str; 7] =
+    ["circlip", "snap ring", "snap_ring", "snapring", "retaining ring", "retaining_ring", "e-clip"];
 /// A tolerance beyond the depth of an overlap.
 const BEYOND: f64 = 1.05;
 
@@ -33,11 +41,67 @@ pub struct Suggestion {
     pub why: String,
 }
 
-/// What speaks for a role or a tolerance of pairs that overlap with the fit of the bodies, and of which nothing is said.
+/// What speaks for a role or a tolerance of pairs that overlap with the fit of the bodies, and of rings that snap into a
+/// groove, of which nothing is said.
 pub fn suggestions(bodies: &Bodies, start: &Start) -> Vec<Suggestion> {
-    let unsaid =
-        start.remaining().filter(|o| bodies.assembly().pair(o.parts[0], o.parts[1]).is_none());
-    unsaid.filter_map(|overlap| suggestion(bodies, overlap)).collect()
+    let is_unsaid = |[a, b]: [usize; 2]| bodies.assembly().pair(a, b).is_none();
+    let snaps: Vec<Suggestion> =
+        snaps(bodies).into_iter().filter(|snap| is_unsaid(snap.parts)).collect();
+    let unsaid = start
+        .remaining()
+        .filter(|o| is_unsaid(o.parts) && !snaps.iter().any(|snap| snap.parts == o.parts));
+    unsaid.filter_map(|overlap| suggestion(bodies, overlap)).chain(snaps.clone()).collect()
+}
+
+/// Rings by their names, each with the part in whose groove it is: that stops it either way along its axis at once.
+fn snaps(bodies: &Bodies) -> Vec<Suggestion> {
+    let parts = bodies.assembly().parts();
+    let mut found = Vec::new();
+    for ring in (0..parts.len()).filter(|&k| is_called(&parts[k], &SNAPS)) {
+        let thickness = |axis: DVec3| {
+            let along = parts[ring].solid().vertices().iter().map(|p| p.dot(axis));
+            let [low, high] = along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], z| {
+                [low.min(z), high.max(z)]
+            });
+            high - low
+        };
+        let axes = inertia::axes(parts[ring].solid()).into_iter();
+        let Some(axis) = axes.min_by(|a, b| thickness(*a).total_cmp(&thickness(*b))) else {
+            continue;
+        };
+        let length = thickness(axis);
+        let mut workspace = Workspace::default();
+        let mut stops = |other: usize, d: DVec3| match bodies.room(
+            [ring, other],
+            d,
+            None,
+            StartOverlap::Refuse,
+            &mut workspace,
+        ) {
+            Room::Free => false,
+            Room::Blocked(stop) => stop.distance() <= length,
+            Room::Overlapping => true,
+        };
+        for other in (0..parts.len()).filter(|&k| k != ring) {
+            let near = bodies.bounds(ring).grown(length).meets(&bodies.bounds(other));
+            if near && stops(other, axis) && stops(other, DVec3::ZERO - axis) {
+                let fit =
+                    PairFit { role: Some(Role::Snap), tolerance: Some(two_digits_up(length)) };
+                let why = format!(
+                    "{} is called so, {length:.3} thick, and {} stops it either way",
+                    parts[ring].name(),
+                    parts[other].name()
+                );
+                found.push(Suggestion { parts: [ring.min(other), ring.max(other)], fit, why });
+            }
+        }
+    }
+    found
+}
+
+fn is_called(part: &Part, words: &[&str]) -> bool {
+    let name = part.name().to_lowercase();
+    words.iter().any(|word| name.contains(word))
 }
 
 fn suggestion(bodies: &Bodies, overlap: &Overlap) -> Option<Suggestion> {
@@ -47,10 +111,7 @@ fn suggestion(bodies: &Bodies, overlap: &Overlap) -> Option<Suggestion> {
     let tolerance = overlap.depth.map(|depth| two_digits_up(depth * BEYOND));
     let said =
         |role, tolerance, why| Some(Suggestion { parts, fit: PairFit { role, tolerance }, why });
-    let soft = of.iter().find(|part| {
-        let name = part.name().to_lowercase();
-        SOFT.iter().any(|word| name.contains(word))
-    });
+    let soft = of.iter().find(|part| is_called(part, &SOFT));
     if let Some(soft) = soft {
         return said(Some(Role::Soft), tolerance, format!("{} is called so", soft.name()));
     }

@@ -2,18 +2,23 @@
 //!
 //! Notation: about an axis, `r` is a point's distance from it and `z` its place along it. The *hole* is as wide as the part
 //! around it comes near the axis, over the length that both parts have in common; the *crest* is as far as the vertices of
-//! the screw reach there, heads aside. They interlock: the hole is narrower than the crest. Edges from crest to crest climb
-//! by the *pitch* `P` in a turn, which is positive of a right-handed thread.
+//! the screw reach there, heads aside. They interlock: the hole is narrower than the crest. In a turn the crest climbs by
+//! the *pitch* `P`, which is positive of a right-handed thread (module `helix`).
 //!
 //! The *core* of the screw is the same surface with all vertices from the hole to the crest moved inwards, to the hole: on a
 //! thread `r` is a function of angle and `z`, so it stays a surface, and what of it is not thread stays where it is.
 
-use std::f64::consts::{PI, TAU};
+mod helix;
+mod seat;
+mod surface;
 
 use colltrans::Solid;
 use glam::{DVec2, DVec3};
 
 use crate::candidates::{cylinders, inertia};
+
+pub use seat::Seat;
+use surface::About;
 
 /// A crest is no wider than this many holes: of M1.6 it is 1.31 times as wide, and a head wider.
 const WIDEST: f64 = 1.35;
@@ -23,11 +28,10 @@ const LEAST: f64 = 1.02;
 const ENDS: f64 = 0.05;
 /// So many vertices make a crest.
 const FEWEST: usize = 12;
-/// Edges of one crest climb alike within this share, and so many of all.
-const ALIKE: f64 = 0.03;
-const MOST_ALIKE: f64 = 0.4;
 /// What is moved to the hole stops short of it by this share.
 const SHORT: f64 = 1e-6;
+/// Rows in which a solid is seen to be round.
+const ROUND_ROWS: usize = 24;
 /// Beyond the crest, as it was measured about an axis that was found, by this share of it: heads begin farther out.
 const OVER: f64 = 0.01;
 
@@ -78,11 +82,6 @@ impl Thread {
         let vertices: Vec<DVec3> = screw.vertices().iter().map(inwards).collect();
         let faces: Vec<Vec<u32>> = screw.triangles().iter().map(|t| t.to_vec()).collect();
         Solid::from_mesh(&vertices, &faces).ok()
-    }
-
-    /// How many turns it takes to screw it out, if there is a helix.
-    pub fn turns(&self) -> Option<f64> {
-        self.pitch.map(|pitch| self.length / pitch.abs())
     }
 }
 
@@ -199,8 +198,19 @@ impl Round {
         if crest < LEAST * hole || count < FEWEST {
             return None;
         }
-        let pitch = pitch(own, is_top, |p| ((flat(p) - middle).to_angle(), p.dot(axis)));
-        Some(Thread { screw, axis: [point, axis], radii: [hole, crest], length, pitch })
+        let about = About { axis, middle, range: [low, high] };
+        let outer = crest * (1.0 + OVER);
+        let found = helix::pitch(own, &about, [hole, outer]);
+        let better = found.and_then(|(pitch, strength)| {
+            let [point, axis] = helix::straightened(own, &about, pitch, outer);
+            let range = common(own, parts[1 - screw], axis)?;
+            let about = About { axis, middle: flattened(axis)(point), range };
+            let (pitch, more) = helix::pitch(own, &about, [hole, outer])?;
+            (more >= strength).then_some(([point, axis], pitch))
+        });
+        let known = || ([point, axis], found.map(|found| found.0));
+        let (axis, pitch) = better.map_or_else(known, |(axis, pitch)| (axis, Some(pitch)));
+        Some(Thread { screw, axis, radii: [hole, crest], length, pitch })
     }
 }
 
@@ -224,6 +234,23 @@ fn rounds(parts: [&Solid; 2]) -> impl Iterator<Item = Round> {
             about.into_iter().chain(better.and_then(|axis| Round::about(parts, inner, axis)))
         };
         of(0).chain(of(1)).collect::<Vec<_>>()
+    })
+}
+
+/// Whether a solid looks the same however it is turned about an axis through a point, to its facets: not by more than a
+/// share of its radius.
+pub(crate) fn is_round(solid: &Solid, [point, axis]: [DVec3; 2], share: f64) -> bool {
+    let Some([low, high]) = common(solid, solid, axis) else { return false };
+    let flat = flattened(axis);
+    let middle = flat(point);
+    let far = solid.vertices().iter().map(|p| flat(*p).distance(middle)).fold(0.0, f64::max);
+    let about = About { axis, middle, range: [low, high] };
+    let rows = about.envelope(solid, far, ROUND_ROWS, f64::max);
+    rows.iter().all(|row| {
+        let seen = || row.iter().flatten();
+        let [few, most] =
+            seen().fold([f64::INFINITY, 0.0_f64], |[few, most], r| [few.min(*r), most.max(*r)]);
+        seen().count() == 0 || seen().count() == row.len() && most - few <= share * far
     })
 }
 
@@ -251,41 +278,6 @@ fn inverse(axis: DVec3, seen: DVec2) -> DVec3 {
     u * seen.x + v * seen.y
 }
 
-/// How far edges between vertices of a crest climb in a turn, if most do alike.
-fn pitch(
-    solid: &Solid,
-    is_top: impl Fn(DVec3) -> bool,
-    place: impl Fn(DVec3) -> (f64, f64),
-) -> Option<f64> {
-    let mut climbs = Vec::new();
-    for t in solid.triangles() {
-        for k in 0..3 {
-            let (a, b) = (t[k], t[(k + 1) % 3]);
-            let ends = [a, b].map(|k| solid.vertices()[k as usize]);
-            if a < b && ends.iter().all(|p| is_top(*p)) {
-                let [(turn, from), (next, to)] = ends.map(&place);
-                let turned = (next - turn + PI).rem_euclid(TAU) - PI;
-                if turned.abs() > 1e-6 {
-                    climbs.push((to - from) / turned * TAU);
-                }
-            }
-        }
-    }
-    climbs.sort_by(f64::total_cmp);
-    // The edges along a crest, or on either side of a flat one, are most of those that climb; around and across are others.
-    let alike = |pitch: f64| {
-        let near = ALIKE * pitch.abs();
-        let from = climbs.partition_point(|c| *c < pitch - near);
-        let to = climbs.partition_point(|c| *c <= pitch + near);
-        to - from
-    };
-    let best = climbs.iter().copied().max_by_key(|&climb| alike(climb))?;
-    let count = alike(best);
-    let long: f64 = climbs.iter().map(|c| c.abs()).fold(0.0, f64::max);
-    let sound = count >= FEWEST && count as f64 >= MOST_ALIKE * climbs.len() as f64;
-    (sound && best.abs() > 1e-3 * long.max(f64::MIN_POSITIVE)).then_some(best)
-}
-
 /// How near a triangle in the plane comes to a point; 0 if the point is in it.
 fn distance(point: DVec2, corners: [DVec2; 3]) -> f64 {
     let mut least = f64::INFINITY;
@@ -304,69 +296,13 @@ fn distance(point: DVec2, corners: [DVec2; 3]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use colltrans_testkit::shapes;
+
     use super::*;
 
-    /// A screw or a nut: `r` over angle and height, as a tube of rings that climb, closed at its ends.
     fn helical(inner: Option<f64>, outer: impl Fn(f64) -> f64, pitch: f64, turns: usize) -> Solid {
-        const SIDES: usize = 24;
-        // As many to a turn as sides: edges run along the crest.
-        const ROWS: usize = SIDES;
-        let (rows, length) = (turns * ROWS, pitch.abs() * turns as f64);
-        let mut vertices = Vec::new();
-        for row in 0..=rows {
-            for side in 0..SIDES {
-                let (turn, z) = (side as f64 / SIDES as f64, length * row as f64 / rows as f64);
-                let phase = (z / pitch - turn).rem_euclid(1.0);
-                let r = outer(phase);
-                let angle = TAU * turn;
-                vertices.push(DVec3::new(r * angle.cos(), r * angle.sin(), z));
-            }
-        }
-        let wall = vertices.len();
-        for z in [0.0, length] {
-            match inner {
-                None => vertices.push(DVec3::Z * z),
-                Some(r) => vertices.extend((0..SIDES).map(|side| {
-                    let angle = TAU * side as f64 / SIDES as f64;
-                    DVec3::new(r * angle.cos(), r * angle.sin(), z)
-                })),
-            }
-        }
-        let mut faces: Vec<Vec<u32>> = Vec::new();
-        let at = |row: usize, side: usize| (row * SIDES + side % SIDES) as u32;
-        let rim = |end: usize, side: usize| {
-            (wall + if inner.is_some() { end * SIDES + side % SIDES } else { end }) as u32
-        };
-        for side in 0..SIDES {
-            for row in 0..rows {
-                let q =
-                    [at(row, side), at(row, side + 1), at(row + 1, side + 1), at(row + 1, side)];
-                // The diagonal that lies along the crest.
-                let split = if pitch > 0.0 { [0, 1, 2, 0, 2, 3] } else { [0, 1, 3, 1, 2, 3] };
-                faces.push(split[..3].iter().map(|&k| q[k]).collect());
-                faces.push(split[3..].iter().map(|&k| q[k]).collect());
-            }
-            let ends = [
-                vec![rim(0, side), rim(0, side + 1), at(0, side + 1), at(0, side)],
-                vec![rim(1, side), at(rows, side), at(rows, side + 1), rim(1, side + 1)],
-            ];
-            for mut end in ends {
-                end.dedup();
-                if end.first() == end.last() {
-                    end.pop();
-                }
-                faces.push(end);
-            }
-            if inner.is_some() {
-                faces.push(vec![rim(0, side + 1), rim(0, side), rim(1, side), rim(1, side + 1)]);
-            }
-        }
-        if inner.is_some_and(|r| r > outer(0.0)) {
-            for face in &mut faces {
-                face.reverse();
-            }
-        }
-        Solid::from_mesh(&vertices, &faces).unwrap()
+        let mesh = shapes::helical(inner, outer, pitch, turns);
+        Solid::from_mesh(&mesh.vertices, &mesh.faces).unwrap()
     }
 
     /// A triangle of a wave, from 0 to 1 and back.

@@ -19,7 +19,9 @@ use colltrans_assembly::candidates::{Candidates, Choice, candidates, unit};
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{Leg, PlanOptions, Step, Times, Wanted, disassemble, remove};
+use colltrans_assembly::plan::{
+    Leg, PlanOptions, Step, Times, Turn, Wanted, disassemble, remove,
+};
 use colltrans_assembly::read::{self, Geometry, ReadOptions};
 use colltrans_assembly::roles::{PairFit, Passed, Role, Tolerated};
 use colltrans_assembly::rooms::{PartRoom, rooms};
@@ -38,8 +40,10 @@ const PATIENCE: Duration = Duration::from_millis(50);
 
 /// A vector, and the distance and the part (-1 for none) of rooms along it.
 type RoomRow = (Vec<f64>, Vec<i64>);
-/// Parts, direction and travel of a move.
-type LegRow = (Vec<usize>, [f64; 3], f64);
+/// Parts, direction, travel and turn of a move.
+type LegRow = (Vec<usize>, [f64; 3], f64, Option<TurnRow>);
+/// A point of an axis, turns, where they begin, by how much aside, with which tolerance they are proven, and all in words.
+type TurnRow = ([f64; 3], f64, f64, [f64; 3], Option<f64>, String);
 /// Parts, direction, travel and its bounds, the moves out and back, the step that took the group out, the steps before it,
 /// the pairs that are ignored, what is let pass of others, and the parts that then fall, that are off balance, and the
 /// surfaces it rests on.
@@ -179,6 +183,12 @@ fn found(
 fn room_row<'a>(rooms: impl Iterator<Item = &'a PartRoom> + Clone) -> RoomRow {
     let by = |room: &PartRoom| room.by().map_or(-1, |by| by as i64);
     (rooms.clone().map(PartRoom::distance).collect(), rooms.map(by).collect())
+}
+
+fn turn_row(turn: &Turn) -> TurnRow {
+    let tolerance = turn.proof.as_ref().ok().map(|proof| proof.tolerance);
+    let [point, aside] = [turn.point, turn.aside].map(|vector| vector.to_array());
+    (point, turn.turns, turn.phase, aside, tolerance, turn.words())
 }
 
 fn passed_row(passed: &Passed) -> PassedRow {
@@ -428,7 +438,10 @@ impl Assembly {
         let steps = plan.steps.into_iter();
         let row = |s: Step| {
             let (direction, travel) = (s.direction.to_array(), s.travel);
-            let leg = |leg: Leg| (leg.parts, leg.direction.to_array(), leg.travel);
+            let leg = |leg: Leg| {
+                let turn = leg.turn.as_ref().map(turn_row);
+                (leg.parts, leg.direction.to_array(), leg.travel, turn)
+            };
             let legs = [s.path, s.back].map(|all| all.into_iter().map(leg).collect());
             let (travel, bounds) = (travel.value, travel.bounds());
             let passed = s.passed.iter().map(passed_row).collect();

@@ -85,6 +85,7 @@ from colltrans.assembly import (
     Stage,
     Step,
     Stuck,
+    Turn,
     Wanted,
 )
 from colltrans.columns import (
@@ -211,6 +212,7 @@ __all__ = [
     "Steps",
     "Stuck",
     "Tracker",
+    "Turn",
     "Wanted",
     "WaysOut",
     "Within",

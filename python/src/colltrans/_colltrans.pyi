@@ -467,7 +467,16 @@ class Assembly:
                 list[float],
                 float,
                 list[float],
-                list[list[tuple[list[int], list[float], float]]],
+                list[
+                    list[
+                        tuple[
+                            list[int],
+                            list[float],
+                            float,
+                            tuple[list[float], float, float, list[float], float | None, str] | None,
+                        ]
+                    ]
+                ],
                 int | None,
                 list[int],
                 list[list[int]],

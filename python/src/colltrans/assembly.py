@@ -4,7 +4,7 @@ Lengths are in the unit of the files. Directions are made of length 1, so distan
 """
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from html import escape
 from os import PathLike
 from pathlib import Path
@@ -64,8 +64,36 @@ class Blocking:
 
 
 @dataclass(frozen=True)
+class Turn:
+    """How parts turn while they go along a move, about an axis along its direction.
+
+    Attributes
+    ----------
+    point : tuple of float
+        A point on the axis.
+    turns : float
+        Counter-clockwise as seen against the direction if positive.
+    phase : float
+        Threads overlap least where the parts are first turned by so many turns, ...
+    aside : tuple of float
+        ... and put aside by this vector.
+    tolerance : float or None
+        Of the thread, with which it is proven that they may turn so; ``None`` if it is not proven.
+    words : str
+        All of it, and why it is not proven.
+    """
+
+    point: tuple[float, ...]
+    turns: float
+    phase: float
+    aside: tuple[float, ...]
+    tolerance: float | None
+    words: str
+
+
+@dataclass(frozen=True)
 class Move:
-    """A straight move of some parts, as one.
+    """A move of some parts, as one: straight, or as a screw.
 
     Attributes
     ----------
@@ -74,11 +102,14 @@ class Move:
         Of length 1.
     travel : float
         How far.
+    turn : Turn or None
+        How they turn meanwhile, if they do.
     """
 
     parts: list[str]
     direction: tuple[float, ...]
     travel: float
+    turn: Turn | None = None
 
 
 @dataclass(frozen=True)
@@ -248,6 +279,8 @@ class Plan:
         positions in this list of those that have to come before it.
     seconds : list of float
         Of each step, by a table of handling times.
+    taken : list of PairFit
+        With ``auto``, what was suggested and taken for granted.
     """
 
     steps: list[Step]
@@ -259,10 +292,14 @@ class Plan:
     rounds: list[list[int]]
     assembly: list[tuple[int, list[int]]]
     seconds: list[float]
+    taken: list[PairFit] = field(default_factory=list)
     _assembly: "Assembly | None" = field(default=None, repr=False, compare=False)
 
     def displacements(self) -> dict[str, Floats]:
-        """By how much each part that moves is away from its place when all steps are done."""
+        """By how much each part that moves is away from its place when all steps are done.
+
+        How it is turned then is not told.
+        """
         found: dict[str, Floats] = {}
         for step in self.steps:
             for move in (*step.path, *step.back):
@@ -609,8 +646,9 @@ class Assembly:
         gravity: ArrayLike | None = None,
         remove: str | Sequence[str] = (),
         times: Mapping[str, float] | None = None,
+        auto: bool = False,
     ) -> Plan:
-        """Takes apart what straight moves take apart.
+        """Takes apart what straight moves take apart, and unscrews what is screwed.
 
         The smallest groups come first, in a natural order: what carries nothing, by the shortest
         way, parts of one shape one after another, rather up, and away from the largest part.
@@ -637,6 +675,9 @@ class Assembly:
             Handling times in seconds, what to replace of the table: ``grasp``, ``move``,
             ``direction``, ``shape``, ``group``, ``hold``, ``press``, ``soft``, ``snap``,
             ``thread``.
+        auto : bool
+            If parts overlap and do not come apart: once more, with what their overlaps
+            :meth:`suggest <suggestions>`; ``taken`` of the plan says what.
 
         Returns
         -------
@@ -649,6 +690,23 @@ class Assembly:
         >>> gearbox.plan(remove="cover").wanted.others
         ['bolt_0', 'bolt_1', 'bolt_2', 'bolt_3']
         """
+        if auto:
+            asked: dict[str, Any] = {
+                "samples": samples,
+                "legs": legs,
+                "proofs": proofs,
+                "tolerance": tolerance,
+                "ignore_overlaps": ignore_overlaps,
+                "gravity": gravity,
+                "remove": remove,
+                "times": times,
+            }
+            once = self.plan(directions, **asked)
+            taken = self.suggestions(tolerance=tolerance) if once.stuck else []
+            if not taken:
+                return once
+            again = self.with_suggestions(taken).plan(directions, **asked)
+            return replace(again, taken=taken)
         wanted = self._assembly.group(_list(remove))
         plan = self._assembly.plan(
             directions,
@@ -664,8 +722,11 @@ class Assembly:
         steps, stages, last, left, stuck, goes, rounds, assembly, seconds = plan
         names = self.parts
 
-        def moves(all_of: list[tuple[list[int], list[float], float]]) -> list[Move]:
-            return [Move(self._names(parts), tuple(d), travel) for parts, d, travel in all_of]
+        def moves(all_of: list[tuple[list[int], list[float], float, Any]]) -> list[Move]:
+            return [
+                Move(self._names(parts), tuple(d), travel, turn and _turn(*turn))
+                for parts, d, travel, turn in all_of
+            ]
 
         return Plan(
             [
@@ -704,7 +765,7 @@ class Assembly:
             rounds,
             assembly,
             seconds,
-            self,
+            _assembly=self,
         )
 
     def _fit(
@@ -771,3 +832,14 @@ class Assembly:
 
     def __repr__(self) -> str:
         return f"Assembly({len(self.parts)} parts)"
+
+
+def _turn(
+    point: list[float],
+    turns: float,
+    phase: float,
+    aside: list[float],
+    tolerance: float | None,
+    words: str,
+) -> Turn:
+    return Turn(tuple(point), turns, phase, tuple(aside), tolerance, words)

@@ -201,6 +201,69 @@ pub fn random_hull(n: usize, random: &mut Random) -> Mesh {
     Mesh::of_points((0..n).map(|_| random.direction()).collect())
 }
 
+/// A screw or, with an `inner` radius beyond it, a nut: the radius over the phase `z / pitch - turn`, from 0 to 1, as a tube
+/// of rings from `z = 0` on, closed at its ends. Facets lie along the helix.
+pub fn helical(inner: Option<f64>, outer: impl Fn(f64) -> f64, pitch: f64, turns: usize) -> Mesh {
+    const SIDES: usize = 24;
+    // As many to a turn as sides: edges run along the crest.
+    const ROWS: usize = SIDES;
+    let (rows, length) = (turns * ROWS, pitch.abs() * turns as f64);
+    let mut vertices = Vec::new();
+    for row in 0..=rows {
+        for side in 0..SIDES {
+            let (turn, z) = (side as f64 / SIDES as f64, length * row as f64 / rows as f64);
+            let phase = (z / pitch - turn).rem_euclid(1.0);
+            let r = outer(phase);
+            let angle = TAU * turn;
+            vertices.push(DVec3::new(r * angle.cos(), r * angle.sin(), z));
+        }
+    }
+    let wall = vertices.len();
+    for z in [0.0, length] {
+        match inner {
+            None => vertices.push(DVec3::Z * z),
+            Some(r) => vertices.extend((0..SIDES).map(|side| {
+                let angle = TAU * side as f64 / SIDES as f64;
+                DVec3::new(r * angle.cos(), r * angle.sin(), z)
+            })),
+        }
+    }
+    let mut faces: Vec<Vec<u32>> = Vec::new();
+    let at = |row: usize, side: usize| (row * SIDES + side % SIDES) as u32;
+    let rim = |end: usize, side: usize| {
+        (wall + if inner.is_some() { end * SIDES + side % SIDES } else { end }) as u32
+    };
+    for side in 0..SIDES {
+        for row in 0..rows {
+            let q = [at(row, side), at(row, side + 1), at(row + 1, side + 1), at(row + 1, side)];
+            // The diagonal that lies along the crest.
+            let split = if pitch > 0.0 { [0, 1, 2, 0, 2, 3] } else { [0, 1, 3, 1, 2, 3] };
+            faces.push(split[..3].iter().map(|&k| q[k]).collect());
+            faces.push(split[3..].iter().map(|&k| q[k]).collect());
+        }
+        let ends = [
+            vec![rim(0, side), rim(0, side + 1), at(0, side + 1), at(0, side)],
+            vec![rim(1, side), at(rows, side), at(rows, side + 1), rim(1, side + 1)],
+        ];
+        for mut end in ends {
+            end.dedup();
+            if end.first() == end.last() {
+                end.pop();
+            }
+            faces.push(end);
+        }
+        if inner.is_some() {
+            faces.push(vec![rim(0, side + 1), rim(0, side), rim(1, side), rim(1, side + 1)]);
+        }
+    }
+    if inner.is_some_and(|r| r > outer(0.0)) {
+        for face in &mut faces {
+            face.reverse();
+        }
+    }
+    Mesh { vertices, faces }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,7 +2,7 @@
 
 import {
   AmbientLight, BufferAttribute, BufferGeometry, Color, DirectionalLight, DoubleSide, EdgesGeometry, Group, LineBasicMaterial,
-  LineSegments, Mesh, MeshLambertMaterial, Object3D, PerspectiveCamera, Scene, Vector3, WebGLRenderer,
+  LineSegments, Mesh, MeshLambertMaterial, Object3D, PerspectiveCamera, Quaternion, Scene, Vector3, WebGLRenderer,
 } from "three";
 import { OrbitControls } from "three/addons/controls/OrbitControls.js";
 import { casterAt } from "../aim";
@@ -18,7 +18,10 @@ export interface Part {
 }
 
 /** Moves one after another, each of parts that move together; `way`: how far they are moved in the picture. */
-export type Move = { parts: number[]; way: Vec }[];
+export type Move = { parts: number[]; way: Vec; turn?: Turn }[];
+
+/** What turns about an axis meanwhile: from `own` it is put on a `point` of the axis; angles are in turns. */
+export type Turn = { own: Vec; point: Vec; axis: Vec; phase: number; turns: number };
 
 /** A colour for each part, spread by the golden angle; in a report, parts of one shape share one. */
 export function tint(part: number): Vec {
@@ -116,12 +119,23 @@ export class Parts {
 
   /** Everything where it is after `t` of the moves. */
   place(moves: Move[], t: number) {
-    for (const { group } of this.parts) group.position.set(0, 0, 0);
-    moves.forEach((legs, k) => legs.forEach(({ parts, way }, leg) => {
+    for (const { group } of this.parts) {
+      group.position.set(0, 0, 0);
+      group.quaternion.identity();
+    }
+    moves.forEach((legs, k) => legs.forEach(({ parts, way, turn }, leg) => {
       const share = Math.min(1, Math.max(0, (t - k) * legs.length - leg));
       // Slow at either end.
       const eased = share * share * (3 - 2 * share);
-      for (const part of parts) this.parts[part]?.group.position.addScaledVector(new Vector3(...way), eased);
+      for (const part of parts) {
+        const group = this.parts[part]?.group;
+        if (group && turn && share) {
+          const by = new Quaternion().setFromAxisAngle(new Vector3(...turn.axis), 2 * Math.PI * (turn.phase + turn.turns * eased));
+          group.position.sub(new Vector3(...turn.own)).applyQuaternion(by).add(new Vector3(...turn.point));
+          group.quaternion.premultiply(by);
+        }
+        group?.position.addScaledVector(new Vector3(...way), eased);
+      }
     }));
     this.widen();
     this.render();

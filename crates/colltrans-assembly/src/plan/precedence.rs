@@ -29,7 +29,7 @@ impl Plan {
     /// How it is put together: the steps that are walked backwards, in order, each with the positions in this list of those
     /// that have to come before it. What takes a group apart comes before the group is put in.
     ///
-    /// A straight move can be walked backwards as forwards, by the same proof.
+    /// A move can be walked backwards as forwards, by the same proof; what is unscrewed is screwed in.
     pub fn assembly(&self) -> Vec<(usize, Vec<usize>)> {
         let last = self.steps.len().saturating_sub(1);
         let waits = |step: usize| {
@@ -51,6 +51,7 @@ impl Plan {
             "direction_y",
             "direction_z",
             "travel",
+            "turns",
             "moves",
             "within",
             "after",
@@ -74,6 +75,7 @@ impl Plan {
                 Cell::Number(step.direction.y),
                 Cell::Number(step.direction.z),
                 Cell::Number(step.travel.value),
+                Cell::Number(step.turn().map_or(0.0, |turn| turn.turns)),
                 Cell::Number(step.path.len() as f64),
                 Cell::Text(&numbers(&within)),
                 Cell::Text(&numbers(after)),

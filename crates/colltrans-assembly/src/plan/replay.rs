@@ -99,7 +99,7 @@ fn several(bodies: &Bodies, aside: &Aside, others: &[usize]) -> Result<Bounded, 
 const NOTHING: Bounded = Bounded { value: 0.0, lower: 0.0, upper: 0.0 };
 
 /// The larger one of two numbers.
-fn larger(a: Bounded, b: Bounded) -> Bounded {
+pub(super) fn larger(a: Bounded, b: Bounded) -> Bounded {
     Bounded {
         value: a.value.max(b.value),
         lower: a.lower.max(b.lower),

@@ -173,7 +173,7 @@ fn aside(count: usize, left: &[usize], way: &WayOut) -> Aside {
         for &part in &parts {
             at[part] += leg.motion;
         }
-        legs.push(Leg { parts, direction: leg.direction, travel: leg.travel });
+        legs.push(Leg::straight(parts, leg.direction, leg.travel));
     }
     let gone = parts(last);
     // What left as it stood need not go back.
@@ -183,7 +183,7 @@ fn aside(count: usize, left: &[usize], way: &WayOut) -> Aside {
         moved.retain(|part| !(as_it_stood && gone.contains(part)));
         if !moved.is_empty() {
             let direction = DVec3::ZERO - leg.direction;
-            back.push(Leg { parts: moved, direction, travel: leg.travel });
+            back.push(Leg::straight(moved, direction, leg.travel));
         }
     }
     let motions = before.iter().map(|leg| leg.motion).collect();

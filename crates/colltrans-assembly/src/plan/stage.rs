@@ -7,6 +7,9 @@ use crate::likes::common_name;
 use crate::part::Assembly;
 use crate::roles::Passed;
 
+/// Screws that are told as one take the same turns, to this.
+const SAME_TURNS: f64 = 0.01;
+
 impl Plan {
     /// All steps in order, in runs of parts that are alike and leave alone along one direction, in one move each, in any
     /// order: none of them waits for another one.
@@ -56,12 +59,17 @@ impl Plan {
 
     fn joins(&self, stage: &Range<usize>, step: &Step) -> bool {
         let first = &self.steps[stage.start];
-        let plain = |step: &Step| step.parts.len() == 1 && step.path.len() == 1;
+        let turns = |step: &Step| step.turn().map_or(0.0, |turn| turn.turns);
+        let plain = |step: &Step| {
+            let moves = if step.turn().is_some() { 2 } else { 1 };
+            step.parts.len() == 1 && step.path.len() == moves
+        };
         plain(first)
             && plain(step)
             && self.likes[first.parts[0]] == self.likes[step.parts[0]]
             && first.direction == step.direction
             && first.within == step.within
+            && (turns(first) - turns(step)).abs() < SAME_TURNS
             && !step.after.iter().any(|k| stage.contains(k))
     }
 }

@@ -5,6 +5,7 @@ use serde_json::{Value, json};
 
 use super::Findings;
 use crate::bodies::Fit;
+use crate::hints::hints;
 use crate::record;
 use crate::rooms::PartRoom;
 
@@ -30,6 +31,7 @@ pub fn json(f: &Findings) -> Value {
         "overlaps": record::overlaps(assembly, f.start),
         "suggested_tolerance": f.start.suggested,
         "suggestions": record::suggestions(assembly, f.suggestions),
+        "hints": record::hints(assembly, &hints(f.bodies, f.start)),
         "pairs": record::pairs(f.bodies),
         "liaisons": record::liaisons(assembly, f.liaisons),
         "seconds": f.times.of(f.plan),

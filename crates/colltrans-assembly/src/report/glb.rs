@@ -15,6 +15,9 @@ use colltrans::Aabb;
 /// Seconds of a move, and of the pause before a step.
 const STEP: f64 = 1.6;
 const PAUSE: f64 = 0.4;
+/// Seconds of a turn, at least, and in how many places of it a part is told where it is.
+const TURN: f64 = 0.5;
+const PLACES: f64 = 64.0;
 /// What has come out is put away so far beyond its travel, as a share of the assembly's size, or
 /// farther: in moves of a tenth of that size, so many at most.
 const NEAREST: f64 = 0.35;
@@ -60,7 +63,7 @@ pub fn animation(assembly: &Assembly, plan: &Plan) -> Vec<u8> {
     file.finish(document)
 }
 
-/// Translations of every part that moves.
+/// Translations of every part that moves, and rotations of those that turn.
 fn channels(
     file: &mut File,
     assembly: &Assembly,
@@ -70,32 +73,50 @@ fn channels(
     let parked = parked(assembly, plan, size);
     let (mut channels, mut samplers) = (Vec::new(), Vec::new());
     for part in 0..assembly.parts().len() {
-        let (mut at, mut times, mut places) = (DVec3::ZERO, vec![0.0], vec![DVec3::ZERO]);
+        let (mut at, mut turned) = (DVec3::ZERO, DQuat::IDENTITY);
+        let mut keys = vec![(0.0, at, turned)];
         let mut time = 0.0;
         for (k, step) in plan.steps.iter().enumerate() {
             time += PAUSE;
             for (leg, motion) in step.shown(parked[k]) {
+                let seconds =
+                    leg.turn.as_ref().map_or(STEP, |turn| STEP.max(TURN * turn.turns.abs()));
                 if leg.parts.contains(&part) {
-                    times.extend([time, time + STEP]);
-                    places.push(at);
-                    at += motion;
-                    places.push(at);
+                    keys.push((time, at, turned));
+                    let shares =
+                        leg.turn.as_ref().map_or(1.0, |turn| (PLACES * turn.turns.abs()).ceil());
+                    let before = (at, turned);
+                    for share in (1..=shares as usize).map(|n| n as f64 / shares) {
+                        (at, turned) = match &leg.turn {
+                            None => (before.0 + motion, before.1),
+                            Some(turn) => {
+                                (leg.moved(before.0, share), turn.rotation(leg, share) * before.1)
+                            }
+                        };
+                        keys.push((time + share * seconds, at, turned));
+                    }
                 }
-                time += STEP;
+                time += seconds;
             }
         }
-        if places.len() == 1 {
+        if keys.len() == 1 {
             continue;
         }
-        let times: Vec<[f32; 1]> = times.into_iter().map(|t| [t as f32]).collect();
-        let places: Vec<[f32; 3]> = places.into_iter().map(|p| p.as_vec3().to_array()).collect();
+        let times: Vec<[f32; 1]> = keys.iter().map(|key| [key.0 as f32]).collect();
         let input = file.accessor(&times, "SCALAR", None);
-        let output = file.accessor(&places, "VEC3", None);
-        channels.push(json!({
-            "sampler": samplers.len(),
-            "target": { "node": part, "path": "translation" },
-        }));
-        samplers.push(json!({ "input": input, "output": output, "interpolation": "LINEAR" }));
+        let places: Vec<[f32; 3]> = keys.iter().map(|key| key.1.as_vec3().to_array()).collect();
+        let mut outputs = vec![("translation", file.accessor(&places, "VEC3", None))];
+        if keys.iter().any(|key| key.2 != DQuat::IDENTITY) {
+            let turns: Vec<[f32; 4]> = keys.iter().map(|key| key.2.as_quat().to_array()).collect();
+            outputs.push(("rotation", file.accessor(&turns, "VEC4", None)));
+        }
+        for (path, output) in outputs {
+            channels.push(json!({
+                "sampler": samplers.len(),
+                "target": { "node": part, "path": path },
+            }));
+            samplers.push(json!({ "input": input, "output": output, "interpolation": "LINEAR" }));
+        }
     }
     (channels, samplers)
 }

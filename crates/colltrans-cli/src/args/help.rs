@@ -408,7 +408,8 @@ With --json:
    "rooms": [{"part", "direction", "outcome", "distance", "by", "point", "normal",
      "translation", "translation_bounds", "shrunk_distance", "shrunk_distance_bounds" (or "kept_distance", "kept_distance_bounds")}],
    "plan": [{"parts": [...], "direction": [x, y, z], "travel", "travel_bounds",
-     "path": [{"parts", "direction", "travel"}], "back", "within", "ignored", "passed",
+     "path": [{"parts", "direction", "travel", "turn": {"point", "axis", "turns", "pitch",
+       "phase", "aside", "words", "proof": {"tolerance", "pairs"} or "not_proven"}}], "back", "within", "ignored", "passed",
      "surfaces", "subassembly"}], "wanted" (of --remove): {"parts", "others", "least", "out"},
    "rounds": [[step, ...]], "assembly": [{"step", "after"}], "seconds": [...],
    "left": [...], "stuck": [{"parts": [...], "because", "directions", "proof": {"proven": cells} or

@@ -5,6 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use colltrans::glam::DVec3;
+use colltrans_assembly::hints::hints;
 use colltrans_assembly::plan::{Plan, and_or};
 use colltrans_assembly::report::{Findings, facts, glb, html};
 use colltrans_assembly::{Assembly, Fit};
@@ -137,6 +138,9 @@ fn summary(f: &Findings) -> String {
             let _ = writeln!(text, "  {}: {}", shown(p.name()), shown(defect));
         }
     }
+    for hint in hints(f.bodies, f.start) {
+        let _ = writeln!(text, "  {}", shown(hint.words));
+    }
     overlaps(&mut text, f);
     if !f.plan.steps.is_empty() {
         text.push_str("plan\n");
@@ -204,7 +208,13 @@ fn tell(text: &mut String, f: &Findings, stage: &Range<usize>) {
     };
     let (numbers, takes) = (Plan::numbers(stage), shown(f.plan.takes(assembly, stage)));
     let head = format!("  {numbers}. {takes}{within}: ");
-    if let [_] = &step.path[..] {
+    if let (Some(turn), [screwed, rest]) = (step.turn(), &step.path[..]) {
+        let turns = match screwed.travel {
+            0.0 => format!("turn by {:.2} degrees", 360.0 * turn.turns),
+            way => format!("unscrew, {:.2} turns, {way}", turn.turns.abs()),
+        };
+        let _ = writeln!(text, "{head}{turns}, then {}", way(rest.travel, rest.direction));
+    } else if let [_] = &step.path[..] {
         let _ = writeln!(text, "{head}{}", way(f.plan.travel(stage), step.direction));
     } else {
         let _ = writeln!(text, "{head}in {} moves", step.path.len());
@@ -228,6 +238,11 @@ fn tell(text: &mut String, f: &Findings, stage: &Range<usize>) {
     for passed in f.plan.passed(stage) {
         let _ = writeln!(text, "     {}", shown(passed.words(assembly)));
     }
+    for step in steps {
+        if let Some(turn) = step.turn() {
+            let _ = writeln!(text, "     {}: {}", names(&step.parts), shown(turn.words()));
+        }
+    }
     let mut surfaces: Vec<usize> = steps.iter().flat_map(|s| s.surfaces.iter().copied()).collect();
     surfaces.sort_unstable();
     surfaces.dedup();
@@ -238,11 +253,10 @@ fn tell(text: &mut String, f: &Findings, stage: &Range<usize>) {
 
 fn overlaps(text: &mut String, f: &Findings) {
     let remaining: Vec<_> = f.start.remaining().collect();
-    if remaining.is_empty() {
-        return;
+    if !remaining.is_empty() {
+        text.push_str("overlapping with this tolerance\n");
     }
-    text.push_str("overlapping with this tolerance\n");
-    for o in remaining {
+    for o in &remaining {
         let [a, b] = o.parts.map(|k| shown(f.bodies.assembly().parts()[k].name()));
         let depth = o.depth.map_or("by more than their size".into(), |d| format!("by {d}"));
         let _ = writeln!(text, "  {a}, {b} {depth}");
@@ -251,7 +265,7 @@ fn overlaps(text: &mut String, f: &Findings) {
         let _ =
             writeln!(text, "  perhaps on purpose, which --auto takes for granted: {}", shown(said));
     }
-    if let Some(tolerance) = f.start.suggested {
+    if let Some(tolerance) = f.start.suggested.filter(|_| !remaining.is_empty()) {
         let _ = writeln!(
             text,
             "  try --tolerance {tolerance} or, for curved fits, the chord errors of both parts together"

@@ -61,8 +61,8 @@ impl Left {
 }
 
 impl Note {
-    /// Whether the surface is another one than that of the file: what was merged, left out or turned.
-    pub const fn is_mended(&self) -> bool {
+    /// Whether faces of the file were merged, left out or turned.
+    const fn changes_faces(&self) -> bool {
         matches!(
             self,
             Self::Merged(_)
@@ -70,21 +70,17 @@ impl Note {
                 | Self::Fins(_)
                 | Self::Walls(_)
                 | Self::FacesTurned(_)
-                | Self::ShellsTurned(_)
         )
+    }
+
+    /// Whether the surface is another one than that of the file: what was merged, left out or turned.
+    pub const fn is_mended(&self) -> bool {
+        self.changes_faces() || matches!(self, Self::ShellsTurned(_))
     }
 
     /// Whether it is of the file as a whole, no matter which of its shells are taken together.
     pub(super) const fn is_of_file(&self) -> bool {
-        matches!(
-            self,
-            Self::Merged(_)
-                | Self::Doubles(_)
-                | Self::Fins(_)
-                | Self::Walls(_)
-                | Self::FacesTurned(_)
-                | Self::WithoutArea(_)
-        )
+        self.changes_faces() || matches!(self, Self::WithoutArea(_))
     }
 
     /// What was merged when a mesh was read, if anything was.

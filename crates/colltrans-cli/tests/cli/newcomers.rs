@@ -404,7 +404,7 @@ fn a_mesh_that_is_not_finite_has_no_volume() {
 fn help_fits_the_terminal() {
     let folder = folder();
     let version = colltrans(folder.path()).arg("--version").output().unwrap();
-    assert_eq!(stdout(&version), "colltrans 0.1.0\n");
+    assert_eq!(stdout(&version), "colltrans 0.2.0\n");
     for command in ["", "cast", "clearance", "clear", "batch", "assembly", "info", "replay"] {
         for columns in [80, 120] {
             for flag in ["--help", "-h"] {

@@ -19,9 +19,7 @@ use colltrans_assembly::candidates::{Candidates, Choice, candidates, unit};
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{
-    Leg, PlanOptions, Step, Times, Turn, Wanted, disassemble, remove,
-};
+use colltrans_assembly::plan::{Leg, PlanOptions, Step, Times, Turn, Wanted, disassemble, remove};
 use colltrans_assembly::read::{self, Geometry, ReadOptions};
 use colltrans_assembly::roles::{PairFit, Passed, Role, Tolerated};
 use colltrans_assembly::rooms::{PartRoom, rooms};

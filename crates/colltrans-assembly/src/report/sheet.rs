@@ -1,6 +1,6 @@
 //! A page for each step, or for steps that are one for whoever does them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
 use colltrans::Aabb;
@@ -250,19 +250,34 @@ fn proof(r: &Report, steps: &[Step]) -> Markup {
     let ignored: Vec<[usize; 2]> = steps.iter().flat_map(|s| s.ignored.iter().copied()).collect();
     let passed: Vec<Passed> = steps.iter().flat_map(|step| step.passed.iter().copied()).collect();
     let passed = told(r, &passed);
-    let plain = surfaces.is_empty() && ignored.is_empty();
+    let turns = steps.iter().flat_map(|step| &step.path).filter_map(|leg| leg.turn.as_ref());
+    let unproven: BTreeSet<&String> =
+        turns.clone().filter_map(|turn| turn.proof.as_ref().err()).collect();
+    let threads: BTreeSet<String> = turns
+        .filter_map(|turn| turn.proof.as_ref().ok())
+        .map(|proof| words.length(proof.tolerance))
+        .collect();
+    let plain = surfaces.is_empty() && ignored.is_empty() && unproven.is_empty();
     let way = match (steps, steps[0].path.len()) {
+        _ if !unproven.is_empty() => "no straight move meets anything".to_owned(),
         ([_], 1) => "this way meets nothing that is left".to_owned(),
         (_, 1) => "none of them meets anything that is left on its way".to_owned(),
         (_, moves) => format!("none of the {moves} moves meets anything"),
     };
-    let class = if plain && passed.is_empty() { "proof" } else { "partly" };
+    let plain_only = plain && passed.is_empty() && threads.is_empty();
+    let class = if plain_only { "proof" } else { "partly" };
     html! {
         div class=(class) {
             b { @if plain { "Proven: " } @else { "Proven, as far as said below: " } }
             (way) (fit(r)) "."
-            @if !(plain && passed.is_empty()) {
+            @if !plain_only {
                 ul {
+                    @for why in &unproven {
+                        li { b { "That it can be turned so is not proven: " } (why) "." }
+                    }
+                    @for length in &threads {
+                        li { "Turning is proven with the sides of the thread " (length) " thinner together." }
+                    }
                     @for said in &passed { li { (said) } }
                     @if !surfaces.is_empty() {
                         li {

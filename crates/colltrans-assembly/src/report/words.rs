@@ -80,10 +80,20 @@ impl<'a> Words<'a> {
         format!("{by}° off {} {}", arrow(axis), arrow(d).replace('-', "−"))
     }
 
-    /// A move and how far it goes.
+    /// A move, how far it goes, and how much it is turned meanwhile.
     pub(super) fn leg(&self, leg: &Leg) -> String {
-        let way = self.way(leg.direction);
-        if self.is_far(leg.travel) { format!("{way}, {}", self.length(leg.travel)) } else { way }
+        let mut said = self.way(leg.direction);
+        if self.is_far(leg.travel) {
+            said = format!("{said}, {}", self.length(leg.travel));
+        }
+        let Some(turn) = &leg.turn else { return said };
+        let hand = if turn.turns < 0.0 { "clockwise" } else { "counter-clockwise" };
+        let turns = if leg.travel == 0.0 {
+            format!("turned by {:.0} degrees", 360.0 * turn.turns.abs())
+        } else {
+            format!("unscrewed by {:.1} turns", turn.turns.abs())
+        };
+        format!("{turns} {hand} as seen from where it goes; {said}")
     }
 
     /// Whether a length is more than the last digits of the file.

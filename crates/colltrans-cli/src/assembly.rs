@@ -39,7 +39,7 @@ pub(crate) fn run(arguments: &AssemblyArguments) -> Result<(), Failure> {
 
 fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
     let given = given_directions(arguments)?;
-    if arguments.only && given.is_empty() {
+    if arguments.only && given.is_empty() && arguments.direction.is_empty() {
         let why = "--only asks the directions that are given, and there are none: give --direction, --directions or --samples";
         return Err(Failure::new(Code::Usage, why));
     }

@@ -1664,8 +1664,8 @@ class FirstContact(_Answer):
 
     ``outcome`` is ``"contact"``: they do not meet before ``lower``, and at ``upper`` they do;
     ``"grazing"``: they come nearer than rounding can tell, not before ``lower``, and nothing is said
-    after it; ``"free"``: they never meet throughout the motion; ``"overlapping"``: they overlap when it
-    begins.
+    after it; ``"free"``: they never meet throughout the motion (never come as near as the gap to be kept, or
+    never overlap by more than the tolerance); ``"overlapping"``: they overlap when it begins.
     """
 
     __match_args__: Final = ("outcome", "lower", "upper")

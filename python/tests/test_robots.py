@@ -166,7 +166,9 @@ def test_what_is_wrong_is_said(tmp_path: Path) -> None:
     refused(InputError, "ignore: there is no hand among base", ROWS, ignore=[("tool", "hand")])
     refused(QueryError, "gap", ROWS, keep=-1.0)
     refused(
-        QueryError, "row 1: the value NaN of joint shoulder is not finite", [[np.nan, 0, 0], [0, 0, 0]]
+        QueryError,
+        "row 1: the value NaN of joint shoulder is not finite",
+        [[np.nan, 0, 0], [0, 0, 0]],
     )
     with pytest.raises(TypeError, match="neither a ConvexPolyhedron nor a Solid"):
         ARM.first_contact(ROWS, {"wire": "wire.obj"})  # type: ignore[dict-item]

@@ -22,7 +22,7 @@ use crate::picture::{Moved, draw_motion};
 use crate::proof::{self, refuse_proof};
 use crate::record::{Hulls, Line};
 use crate::replay;
-use crate::report::{feature, hulls, kept, line};
+use crate::report::{feature, hulls, kept, line, meet};
 use crate::solid::{PartsMotion, surface_of};
 
 pub(crate) fn run(arguments: &MotionArguments) -> Result<(), Failure> {
@@ -250,7 +250,7 @@ pub(crate) fn words(told: &Line, motions: [&Motion; 2]) -> String {
 
 /// What bodies that are free never do: with a tolerance they may be in each other all the time.
 pub(crate) fn never(record: &Record) -> String {
-    let meet = record.keep.map_or("meet".into(), |gap| format!("come as near as {}", number(gap)));
+    let meet = meet(record.keep);
     match record.tolerance {
         None => format!("the bodies never {meet}"),
         // Of convex bodies a depth, whose proof has planes; solids are shrunk.

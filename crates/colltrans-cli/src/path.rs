@@ -17,7 +17,7 @@ use crate::body;
 use crate::failure::{Code, Failure, note, print, print_json};
 use crate::numbers::{counted, known, known_vector, number, unit_vector};
 use crate::proof::{self, refuse_proof};
-use crate::report::{kept, line};
+use crate::report::{kept, line, meet};
 
 pub(crate) fn run(arguments: &PathArguments) -> Result<(), Failure> {
     let PathArguments { robot, rows, scene, srdf, .. } = arguments;
@@ -150,11 +150,7 @@ fn words(record: &PathRecord, outcome: &PathOutcome) -> String {
         Ending::Contact => "contact\n".into(),
         Ending::Grazing => "grazing: two bodies come nearer than rounding can tell\n".into(),
         Ending::Overlapping => "overlapping: two bodies overlap where the path begins\n".into(),
-        _ => {
-            let meet =
-                record.keep.map_or("meet".into(), |gap| format!("come as near as {}", number(gap)));
-            format!("free: no two bodies{asked} {meet} on the whole path\n")
-        }
+        _ => format!("free: no two bodies{asked} {} on the whole path\n", meet(record.keep)),
     };
     if let Some([a, b]) = &record.pair {
         line(&mut text, "bodies", &format!("{a}, {b}"));

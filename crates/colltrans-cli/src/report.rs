@@ -230,6 +230,11 @@ fn separated(text: &mut String, separated: &Separated) {
     line(text, "solver", &work(separated.solver, separated.steps));
 }
 
+/// What bodies do that touch, or come as near as the gap that is kept.
+pub(crate) fn meet(keep: Option<f64>) -> String {
+    keep.map_or("meet".into(), |gap| format!("come as near as {}", number(gap)))
+}
+
 /// The gap that is kept, if there is one.
 pub(crate) fn kept(text: &mut String, keep: Option<f64>) {
     if let Some(gap) = keep {

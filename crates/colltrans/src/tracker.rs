@@ -19,7 +19,7 @@ use crate::setting::error::QueryError;
 use crate::solve::nearest::NearestPairs;
 use crate::solve::observe::{NoObserver, Observer};
 use crate::solve::options::{Focus, Region};
-use crate::solve::{WarmStart, search};
+use crate::solve::{Pace, WarmStart, search};
 
 /// Queries that follow each other closely, each starting from the answer of the one before.
 ///
@@ -30,9 +30,11 @@ use crate::solve::{WarmStart, search};
 /// widened by rounding. Poses and direction may jump, the bodies may meet now and pass each other
 /// then, or be other bodies: a poor beginning costs time, never the answer.
 ///
-/// A tracker is small (less than 450 bytes), allocates nothing and may be
+/// A tracker is small (less than 500 bytes), allocates nothing and may be
 /// cloned, to follow several motions from one place. [`Focus`] says what it makes of its last
-/// answer: with [`Solver::Cta`](crate::Solver::Cta) its region, as the paper, else its features. A body's first query that solves a planar problem makes
+/// answer: with [`Solver::Cta`](crate::Solver::Cta) its region, as the paper, else its features. Where these take
+/// more work than casts from scratch (as steps count it), a tracker without a focus of its own casts from scratch
+/// and tries again now and then; with [`with_focus`](Self::with_focus) it always starts as it is told. A body's first query that solves a planar problem makes
 /// its sections, tracked or not: see [`ConvexPolyhedron::prepare_sections`](crate::ConvexPolyhedron::prepare_sections).
 ///
 /// ```
@@ -64,6 +66,8 @@ pub struct Tracker<'a> {
     direction: DVec3,
     /// What the last casts left: along the direction, against it, and between the centres.
     warm_starts: [WarmStart; 3],
+    /// Whether it pays to start from them.
+    paces: [Pace; 3],
     /// The pairs of vertices that the last distance ended with.
     nearest: NearestPairs,
     steps: Steps,
@@ -94,6 +98,7 @@ impl<'a> Tracker<'a> {
     /// Forgets the last answer: the next query starts from scratch.
     pub fn reset(&mut self) {
         self.warm_starts = [WarmStart::Nothing; 3];
+        self.paces = [Pace::default(); 3];
         self.nearest = NearestPairs::default();
     }
 
@@ -207,6 +212,7 @@ impl<'a> Tracker<'a> {
         self.follow([cast.moving(), cast.fixed()]);
         if cast.direction().dot(self.direction) < 0.0 {
             self.warm_starts.swap(0, 1);
+            self.paces.swap(0, 1);
         }
         self.direction = cast.direction();
     }
@@ -226,10 +232,18 @@ impl<'a> Tracker<'a> {
     ) -> Result<Outcome, QueryError> {
         let next = &mut self.warm_starts[which];
         let last = *next;
+        let pace = &mut self.paces[which];
+        let own = Focus::of(cast.options.solver);
+        let follows = !matches!(last, WarmStart::Nothing);
+        let focus = match self.focus {
+            Some(chosen) => chosen,
+            None if own.features && !pace.follows() => own.with_features(false),
+            None => own,
+        };
         // Matched in place: an outcome is large, and moving it costs a tenth of a coherent query.
-        let focus = self.focus.unwrap_or_else(|| Focus::of(cast.options.solver));
         let outcome = search(&cast.setting, &cast.options, &focus, &last, next, observer);
         if let Ok(outcome) = &outcome {
+            pace.note(focus.features && follows, &outcome.steps());
             self.steps += outcome.steps();
         }
         outcome

@@ -15,6 +15,7 @@ pub(crate) mod keep;
 pub(crate) mod nearest;
 pub mod observe;
 pub(crate) mod options;
+mod pace;
 pub(crate) mod portal;
 mod proof;
 pub(crate) mod solid;
@@ -30,6 +31,7 @@ use crate::setting::{Setting, VertexPair};
 use cta::{CtaOptions, Guess, Origin, RegionFocus};
 use observe::{Observer, Phase, ShadowFrame, Support, Watch};
 use options::{Focus, NarrowFrom, Narrowing, Options, Region};
+pub(crate) use pace::Pace;
 use portal::{
     Context, Enclosure, Face, FirstNormal, Followed, Known, Overlap, Plane, Portal, Refined,
     SeparatingLine,

@@ -44,25 +44,26 @@ const ALPHAS_DEG: [f64; 10] = [0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0, 90.0, 
 struct Compared {
     name: &'static str,
     solver: Solver,
-    focus: Focus,
+    /// If none, the tracker decides.
+    focus: Option<Focus>,
     narrowing: Narrowing,
 }
 
 const COMPARED: [Compared; 6] = [
-    Compared { name: "scratch", solver: Solver::Auto, focus: Focus::NONE, narrowing: PAPER },
-    Compared { name: "tracker", solver: Solver::Auto, focus: BOTH, narrowing: PAPER },
-    Compared { name: "cta", solver: Solver::Cta, focus: Focus::NONE, narrowing: PAPER },
-    Compared { name: "cta region", solver: Solver::Cta, focus: REGION, narrowing: PAPER },
+    Compared { name: "scratch", solver: Solver::Auto, focus: Some(Focus::NONE), narrowing: PAPER },
+    Compared { name: "tracker", solver: Solver::Auto, focus: None, narrowing: PAPER },
+    Compared { name: "cta", solver: Solver::Cta, focus: Some(Focus::NONE), narrowing: PAPER },
+    Compared { name: "cta region", solver: Solver::Cta, focus: Some(REGION), narrowing: PAPER },
     Compared {
         name: "rough",
         solver: Solver::Cta,
-        focus: Focus::NONE,
+        focus: Some(Focus::NONE),
         narrowing: Narrowing::ROUGH,
     },
     Compared {
         name: "rough tracker",
         solver: Solver::Cta,
-        focus: BOTH,
+        focus: Some(BOTH),
         narrowing: Narrowing::ROUGH,
     },
 ];
@@ -149,12 +150,19 @@ fn follow(
     let stopwatch = Stopwatch::new();
     let Compared { solver, narrowing, focus, .. } = *compared;
     let options = Options::default().with_solver(solver).with_narrowing(narrowing);
-    let mut tracker = Tracker::new().with_focus(focus).expect("a focus");
+    let mut tracker = match focus {
+        Some(focus) => Tracker::new().with_focus(focus).expect("a focus"),
+        None => Tracker::new(),
+    };
     let mut outcomes = Vec::with_capacity(sequence.len());
     for setting in sequence {
         let (outcome, spent) = stopwatch.time(|| {
             let cast = setting.cast(bodies, &options)?;
-            if focus == Focus::NONE { cast.first_contact() } else { tracker.first_contact(&cast) }
+            if focus == Some(Focus::NONE) {
+                cast.first_contact()
+            } else {
+                tracker.first_contact(&cast)
+            }
         });
         measured.note(spent, &outcome);
         outcomes.push(outcome);

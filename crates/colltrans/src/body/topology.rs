@@ -8,6 +8,11 @@
 //! the faces around a vertex form one fan. Of a convex body the surface is one sphere, too.
 //! Bodies of lower dimension fit in: a flat polygon is a front and a back face; a segment is
 //! two vertices that are each other's neighbour, a point one vertex, both without faces.
+//!
+//! Links, half of the memory, are known once the faces have been checked. Who does without, as support points
+//! do, lets go of them; they are made again when they are next asked for.
+
+use std::sync::OnceLock;
 
 use crate::body::error::TopologyError;
 
@@ -26,14 +31,22 @@ pub struct HalfEdge {
 /// Vertices, half-edges and faces, by index.
 #[derive(Debug, Clone)]
 pub(crate) struct Topology {
-    half_edges: Vec<HalfEdge>,
+    /// The vertex that each half-edge starts from: the corners of all faces, one after the other.
+    origins: Vec<u32>,
     /// First half-edge of each face, and one entry past the end.
     face_start: Vec<u32>,
     /// First entry of each vertex in `neighbours` and `outgoing`, and one entry past the end.
     vertex_start: Vec<u32>,
     /// The neighbours of each vertex, clockwise as seen from outside.
     neighbours: Vec<u32>,
-    /// The half-edges to these neighbours, in the same order (empty without faces).
+    links: OnceLock<Links>,
+}
+
+/// How the half-edges hang together.
+#[derive(Debug, Clone, Default)]
+struct Links {
+    half_edges: Vec<HalfEdge>,
+    /// The half-edges to the neighbours of each vertex, in the same order (empty without faces).
     outgoing: Vec<u32>,
 }
 
@@ -44,7 +57,7 @@ impl Topology {
     pub(crate) fn sphere(
         vertex_count: usize,
         face_start: Vec<u32>,
-        face_vertices: &[u32],
+        face_vertices: Vec<u32>,
     ) -> Result<Self, TopologyError> {
         let topology = Self::from_faces(vertex_count, face_start, face_vertices)?;
         topology.check_sphere()?;
@@ -57,26 +70,21 @@ impl Topology {
     /// Vertices that no face uses are allowed here and have no neighbours.
     pub(crate) fn from_faces(
         vertex_count: usize,
-        face_start: Vec<u32>,
-        face_vertices: &[u32],
+        mut face_start: Vec<u32>,
+        mut face_vertices: Vec<u32>,
     ) -> Result<Self, TopologyError> {
-        check_faces(vertex_count, &face_start, face_vertices)?;
-        let mut half_edges = Vec::with_capacity(face_vertices.len());
-        for (face, bounds) in face_start.windows(2).enumerate() {
-            for &origin in &face_vertices[bounds[0] as usize..bounds[1] as usize] {
-                half_edges.push(HalfEdge { origin, twin: NONE, face: face as u32 });
-            }
-        }
-        let mut topology = Self {
-            half_edges,
+        check_faces(vertex_count, &face_start, &face_vertices)?;
+        face_start.shrink_to_fit();
+        face_vertices.shrink_to_fit();
+        let (links, vertex_start) = Links::new(vertex_count, &face_start, &face_vertices)?;
+        let target = |&h: &u32| links.half_edges[links.half_edges[h as usize].twin as usize].origin;
+        Ok(Self {
+            neighbours: links.outgoing.iter().map(target).collect(),
+            origins: face_vertices,
             face_start,
-            vertex_start: Vec::new(),
-            neighbours: Vec::new(),
-            outgoing: Vec::new(),
-        };
-        topology.pair_twins(vertex_count)?;
-        topology.link_vertices(vertex_count)?;
-        Ok(topology)
+            vertex_start,
+            links: links.into(),
+        })
     }
 
     /// A segment (2 vertices) or a point (1 vertex).
@@ -84,12 +92,27 @@ impl Topology {
         debug_assert!(vertex_count == 1 || vertex_count == 2, "no faces only below dimension 2");
         let segment = vertex_count == 2;
         Self {
-            half_edges: Vec::new(),
+            origins: Vec::new(),
             face_start: vec![0],
             vertex_start: if segment { vec![0, 1, 2] } else { vec![0, 0] },
             neighbours: if segment { vec![1, 0] } else { Vec::new() },
-            outgoing: Vec::new(),
+            links: Links::default().into(),
         }
+    }
+
+    /// Lets go of what is made again when it is next asked for.
+    pub(crate) fn let_go_of_links(&mut self) {
+        self.links.take();
+    }
+
+    /// # Panics
+    /// Never: the faces were linked when they were checked.
+    #[inline]
+    fn links(&self) -> &Links {
+        self.links.get_or_init(|| {
+            let again = Links::new(self.vertex_count(), &self.face_start, &self.origins);
+            again.expect("faces that were linked once").0
+        })
     }
 
     pub(crate) fn vertex_count(&self) -> usize {
@@ -104,12 +127,24 @@ impl Topology {
         self.neighbours.len() / 2
     }
 
+    #[inline]
     pub(crate) fn half_edge(&self, h: u32) -> HalfEdge {
-        self.half_edges[h as usize]
+        self.links().half_edges[h as usize]
     }
 
     pub(crate) fn half_edges(&self) -> &[HalfEdge] {
-        &self.half_edges
+        &self.links().half_edges
+    }
+
+    /// The vertices that the half-edges start from.
+    pub(crate) fn origins(&self) -> &[u32] {
+        &self.origins
+    }
+
+    /// The vertex that a half-edge starts from.
+    #[inline]
+    pub(crate) fn origin(&self, h: u32) -> u32 {
+        self.origins[h as usize]
     }
 
     /// The half-edges of a face, in order.
@@ -123,7 +158,7 @@ impl Topology {
         face: u32,
     ) -> impl ExactSizeIterator<Item = u32> + Clone + '_ {
         let range = self.face(face);
-        self.half_edges[range.start as usize..range.end as usize].iter().map(|h| h.origin)
+        self.origins[range.start as usize..range.end as usize].iter().copied()
     }
 
     /// The next half-edge along the same face.
@@ -134,7 +169,7 @@ impl Topology {
 
     /// The vertex a half-edge ends at.
     pub(crate) fn target(&self, h: u32) -> u32 {
-        self.half_edge(self.half_edge(h).twin).origin
+        self.origin(self.half_edge(h).twin)
     }
 
     /// The neighbours of a vertex, clockwise as seen from outside.
@@ -145,98 +180,26 @@ impl Topology {
 
     /// The half-edges that leave a vertex, in the order of [`Self::neighbours`].
     pub(crate) fn outgoing(&self, vertex: u32) -> &[u32] {
-        if self.outgoing.is_empty() {
+        let outgoing = &self.links().outgoing;
+        if outgoing.is_empty() {
             return &[];
         }
         let (start, end) = self.vertex_range(vertex);
-        &self.outgoing[start..end]
+        &outgoing[start..end]
     }
 
     /// Bytes on the heap.
     pub(crate) fn heap_bytes(&self) -> usize {
-        self.half_edges.capacity() * size_of::<HalfEdge>()
-            + 4 * (self.face_start.capacity()
-                + self.vertex_start.capacity()
-                + self.neighbours.capacity()
-                + self.outgoing.capacity())
+        4 * (self.origins.capacity()
+            + self.face_start.capacity()
+            + self.vertex_start.capacity()
+            + self.neighbours.capacity())
+            + self.links.get().map_or(0, Links::heap_bytes)
     }
 
     fn vertex_range(&self, vertex: u32) -> (usize, usize) {
         let v = vertex as usize;
         (self.vertex_start[v] as usize, self.vertex_start[v + 1] as usize)
-    }
-
-    /// Finds the twins: edges are bucketed by their smaller vertex, then sorted by the larger.
-    fn pair_twins(&mut self, vertex_count: usize) -> Result<(), TopologyError> {
-        let ends: Vec<(u32, u32)> = (0..self.half_edges.len() as u32)
-            .map(|h| {
-                let (u, v) = (self.half_edge(h).origin, self.half_edge(self.next(h)).origin);
-                (u.min(v), u.max(v))
-            })
-            .collect();
-        let (start, mut order) = bucket(vertex_count, ends.iter().map(|e| e.0));
-        for v in 0..vertex_count {
-            let run = &mut order[start[v] as usize..start[v + 1] as usize];
-            run.sort_unstable_by_key(|&h| ends[h as usize].1);
-            for group in run.chunk_by(|&g, &h| ends[g as usize].1 == ends[h as usize].1) {
-                self.pair(group, ends[group[0] as usize])?;
-            }
-        }
-        Ok(())
-    }
-
-    /// Makes twins of the half-edges along one edge, if there are two and they run in opposite
-    /// directions.
-    fn pair(&mut self, group: &[u32], (from, to): (u32, u32)) -> Result<(), TopologyError> {
-        match *group {
-            [g, h] if self.half_edge(g).origin != self.half_edge(h).origin => {
-                self.half_edges[g as usize].twin = h;
-                self.half_edges[h as usize].twin = g;
-                Ok(())
-            }
-            [h] => {
-                let HalfEdge { origin, face, .. } = self.half_edge(h);
-                let end = if origin == from { to } else { from };
-                Err(TopologyError::OpenEdge {
-                    from: origin as usize,
-                    to: end as usize,
-                    face: face as usize,
-                })
-            }
-            _ => Err(TopologyError::NonManifoldEdge {
-                from: from as usize,
-                to: to as usize,
-                count: group.len(),
-            }),
-        }
-    }
-
-    /// Orders the half-edges around each vertex and checks that they form one fan.
-    fn link_vertices(&mut self, vertex_count: usize) -> Result<(), TopologyError> {
-        let (start, mut outgoing) = bucket(vertex_count, self.half_edges.iter().map(|h| h.origin));
-        for v in 0..vertex_count {
-            let (begin, end) = (start[v] as usize, start[v + 1] as usize);
-            if begin == end {
-                continue;
-            }
-            let first = outgoing[begin];
-            let mut h = first;
-            for slot in &mut outgoing[begin..end] {
-                *slot = h;
-                h = self.next(self.half_edge(h).twin);
-                if h == first {
-                    break;
-                }
-            }
-            let last = outgoing[end - 1];
-            if self.next(self.half_edge(last).twin) != first {
-                return Err(TopologyError::NonManifoldVertex { vertex: v });
-            }
-        }
-        self.neighbours = outgoing.iter().map(|&h| self.target(h)).collect();
-        self.outgoing = outgoing;
-        self.vertex_start = start;
-        Ok(())
     }
 
     fn check_sphere(&self) -> Result<(), TopologyError> {
@@ -256,7 +219,7 @@ impl Topology {
         let mut seen = vec![false; self.vertex_count()];
         let mut stack = Vec::new();
         let mut shells = 0;
-        for start in self.half_edges.iter().map(|h| h.origin) {
+        for start in self.origins.iter().copied() {
             if std::mem::replace(&mut seen[start as usize], true) {
                 continue;
             }
@@ -274,8 +237,119 @@ impl Topology {
     }
 }
 
+impl Links {
+    /// Those of faces, and where the entries of each vertex start.
+    fn new(
+        vertex_count: usize,
+        face_start: &[u32],
+        origins: &[u32],
+    ) -> Result<(Self, Vec<u32>), TopologyError> {
+        let mut half_edges = Vec::with_capacity(origins.len());
+        for (face, bounds) in face_start.windows(2).enumerate() {
+            for &origin in &origins[bounds[0] as usize..bounds[1] as usize] {
+                half_edges.push(HalfEdge { origin, twin: NONE, face: face as u32 });
+            }
+        }
+        let mut links = Self { half_edges, outgoing: Vec::new() };
+        links.pair_twins(vertex_count, face_start)?;
+        let vertex_start = links.link_vertices(vertex_count, face_start)?;
+        Ok((links, vertex_start))
+    }
+
+    fn next(&self, face_start: &[u32], h: u32) -> u32 {
+        let face = self.half_edges[h as usize].face as usize;
+        if h + 1 == face_start[face + 1] { face_start[face] } else { h + 1 }
+    }
+
+    /// Finds the twins: edges are bucketed by their smaller vertex, then sorted by the larger.
+    fn pair_twins(&mut self, vertex_count: usize, face_start: &[u32]) -> Result<(), TopologyError> {
+        let origin = |h: u32| self.half_edges[h as usize].origin;
+        let ends: Vec<(u32, u32)> = (0..self.half_edges.len() as u32)
+            .map(|h| {
+                let (u, v) = (origin(h), origin(self.next(face_start, h)));
+                (u.min(v), u.max(v))
+            })
+            .collect();
+        let (start, mut order) = bucket(vertex_count, ends.iter().map(|e| e.0));
+        for v in 0..vertex_count {
+            let run = &mut order[start[v] as usize..start[v + 1] as usize];
+            run.sort_unstable_by_key(|&h| ends[h as usize].1);
+            for group in run.chunk_by(|&g, &h| ends[g as usize].1 == ends[h as usize].1) {
+                self.pair(group, ends[group[0] as usize])?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Makes twins of the half-edges along one edge, if there are two and they run in opposite
+    /// directions.
+    fn pair(&mut self, group: &[u32], (from, to): (u32, u32)) -> Result<(), TopologyError> {
+        let at = |h: u32| self.half_edges[h as usize];
+        match *group {
+            [g, h] if at(g).origin != at(h).origin => {
+                self.half_edges[g as usize].twin = h;
+                self.half_edges[h as usize].twin = g;
+                Ok(())
+            }
+            [h] => {
+                let HalfEdge { origin, face, .. } = at(h);
+                let end = if origin == from { to } else { from };
+                Err(TopologyError::OpenEdge {
+                    from: origin as usize,
+                    to: end as usize,
+                    face: face as usize,
+                })
+            }
+            _ => Err(TopologyError::NonManifoldEdge {
+                from: from as usize,
+                to: to as usize,
+                count: group.len(),
+            }),
+        }
+    }
+
+    /// Orders the half-edges around each vertex and checks that they form one fan; where those of each
+    /// vertex start.
+    fn link_vertices(
+        &mut self,
+        vertex_count: usize,
+        face_start: &[u32],
+    ) -> Result<Vec<u32>, TopologyError> {
+        let origins = self.half_edges.iter().map(|h| h.origin);
+        let (start, mut outgoing) = bucket(vertex_count, origins);
+        let after = |h: u32| self.next(face_start, self.half_edges[h as usize].twin);
+        for v in 0..vertex_count {
+            let (begin, end) = (start[v] as usize, start[v + 1] as usize);
+            if begin == end {
+                continue;
+            }
+            let first = outgoing[begin];
+            let mut h = first;
+            for slot in &mut outgoing[begin..end] {
+                *slot = h;
+                h = after(h);
+                if h == first {
+                    break;
+                }
+            }
+            if after(outgoing[end - 1]) != first {
+                return Err(TopologyError::NonManifoldVertex { vertex: v });
+            }
+        }
+        self.outgoing = outgoing;
+        Ok(start)
+    }
+
+    fn heap_bytes(&self) -> usize {
+        self.half_edges.capacity() * size_of::<HalfEdge>() + 4 * self.outgoing.capacity()
+    }
+}
+
 /// Counting sort: the indices of `keys` grouped by key, and where each group starts.
-fn bucket(key_count: usize, keys: impl Iterator<Item = u32> + Clone) -> (Vec<u32>, Vec<u32>) {
+pub(crate) fn bucket(
+    key_count: usize,
+    keys: impl Iterator<Item = u32> + Clone,
+) -> (Vec<u32>, Vec<u32>) {
     let mut start = vec![0_u32; key_count + 1];
     for key in keys.clone() {
         start[key as usize + 1] += 1;
@@ -331,7 +405,7 @@ mod tests {
             vertices.extend_from_slice(face);
             start.push(vertices.len() as u32);
         }
-        Topology::sphere(vertex_count, start, &vertices)
+        Topology::sphere(vertex_count, start, vertices)
     }
 
     const TETRAHEDRON: [&[u32]; 4] = [&[0, 2, 1], &[0, 1, 3], &[1, 2, 3], &[2, 0, 3]];

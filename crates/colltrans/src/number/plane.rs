@@ -13,14 +13,16 @@ const NEARLY_PARALLEL: f64 = 0.1;
 /// Where the angle at `a` is small, or `a b c` is a sliver, from other edges.
 #[inline]
 pub(crate) fn triangle_normal(corners: [DVec3; 3]) -> DVec3 {
-    let [a, b, c] = corners;
+    wide_normal(corners).unwrap_or_else(|| normal_of_sliver(corners))
+}
+
+/// The same where the angle at `a` is not small.
+#[inline]
+fn wide_normal([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
     let (u, v) = (b - a, c - a);
     let normal = u.cross(v);
     let size = u.length_squared() * v.length_squared();
-    if normal.length_squared() >= NEARLY_PARALLEL * NEARLY_PARALLEL * size {
-        return normal;
-    }
-    normal_of_sliver(corners)
+    (normal.length_squared() >= NEARLY_PARALLEL * NEARLY_PARALLEL * size).then_some(normal)
 }
 
 /// From its two shorter edges, which determine it best: the product of two long, nearly parallel
@@ -49,6 +51,12 @@ fn normal_of_sliver([a, b, c]: [DVec3; 3]) -> DVec3 {
 pub(crate) fn polygon_normal<I: Iterator<Item = DVec3> + Clone>(mut corners: I) -> DVec3 {
     let all = corners.clone();
     let Some(a) = corners.next() else { return DVec3::ZERO };
+    let mut others = corners.clone();
+    if let (Some(b), Some(c), None) = (others.next(), others.next(), others.next())
+        && let Some(normal) = wide_normal([a, b, c])
+    {
+        return normal.normalize_or_zero();
+    }
     let farthest = |measure: &dyn Fn(DVec3) -> f64| {
         all.clone().enumerate().fold((0, a, 0.0), |best, (k, p)| {
             let value = measure(p);

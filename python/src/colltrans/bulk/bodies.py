@@ -18,6 +18,8 @@ from colltrans.queries import cores
 Body: TypeAlias = ConvexPolyhedron | Solid | ColltransError
 #: A row of a table: where it is, and its number there; None when its body is built.
 Row: TypeAlias = tuple[Any, int] | None
+#: Bytes of a table that are let go of together, when all bodies in them are built: about.
+PIECE = 1 << 22
 
 
 @dataclass
@@ -65,15 +67,23 @@ class Bodies:
         with self._lock:
             missing = [key for key in dict.fromkeys(keys) if key not in self._built]
             if missing:
-                rows = self.read_table()
+                rows, gone = self.read_table(), 0
                 # They are built without the interpreter's lock.
                 with ThreadPoolExecutor(min(len(missing), cores())) as pool:
-                    built = pool.map(lambda key: self._build(key, rows), missing)
-                    self._built.update(zip(missing, built, strict=True))
-                rows.update(dict.fromkeys(rows.keys() & missing))
-                if rows and not any(rows.values()):
-                    _release()
+                    for taken in pool.map(lambda key: self._make(key, rows), missing):
+                        gone += taken
+                        if gone > PIECE:
+                            gone = 0
+                            _release()
             return [self._built[key] for key in keys]
+
+    def _make(self, key: Any, rows: dict[str, Row]) -> int:
+        """Builds a body, and lets go of its row; how many bytes of numbers that had, about."""
+        body = self._built[key] = self._build(key, rows)
+        if rows.get(key) is None:
+            return 0
+        rows[key] = None
+        return 0 if isinstance(body, ColltransError) else body.nbytes // 4
 
     def read_table(self) -> dict[str, Row]:
         """The rows of the table, if there is one, by their keys.
@@ -176,9 +186,11 @@ def _batches(file: Any, table: str) -> Iterator[Any]:
         for name in ("key", "vertices"):
             if name not in names:
                 raise InputError(f"{table} has no column {name!r}")
-        yield from parquet.iter_batches(
-            columns=[name for name in ("key", "vertices", "faces") if name in names]
-        )
+        columns = [name for name in ("key", "vertices", "faces") if name in names]
+        for number in range(parquet.num_row_groups):
+            group = parquet.metadata.row_group(number)
+            rows = max(1, group.num_rows * PIECE // max(PIECE, group.total_byte_size))
+            yield from parquet.iter_batches(rows, row_groups=[number], columns=columns)
 
 
 def _lists(column: Any, row: int, name: str) -> Any:

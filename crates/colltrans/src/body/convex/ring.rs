@@ -52,7 +52,7 @@ impl Cycle {
     #[inline]
     fn corner(self, topology: &Topology, k: u32) -> u32 {
         match self {
-            Self::Face(start) => topology.half_edge(start + k).origin,
+            Self::Face(start) => topology.origin(start + k),
             Self::Beside(start) => {
                 let twin = topology.half_edge(start + k).twin;
                 topology.target(topology.next(twin))

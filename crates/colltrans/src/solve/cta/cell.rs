@@ -227,7 +227,7 @@ impl Cell {
         if boundary.len() > FACE_SIDES {
             return None;
         }
-        let corner = |h: u32| on.corner(side, topology.half_edge(h).origin);
+        let corner = |h: u32| on.corner(side, topology.origin(h));
         let first = corner(boundary.start);
         let mut from = first;
         for h in boundary.clone() {

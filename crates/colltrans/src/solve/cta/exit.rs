@@ -227,7 +227,7 @@ impl ExitTest<'_, '_> {
     fn across(&self, e: u32, f: u32) -> Option<DVec3> {
         let along = |body: usize, h: u32| {
             let topology = self.sides[body].topology;
-            let way = self.way(body, topology.half_edge(h).origin, topology.target(h));
+            let way = self.way(body, topology.origin(h), topology.target(h));
             *self.matrix(body) * way
         };
         let (p, q) = (along(0, e), along(1, f));
@@ -240,7 +240,7 @@ impl ExitTest<'_, '_> {
     fn face_normal(&self, body: usize, half_edge: u32) -> DVec3 {
         let topology = self.sides[body].topology;
         let third = topology.target(topology.next(half_edge));
-        let first = topology.half_edge(half_edge).origin;
+        let first = topology.origin(half_edge);
         let along = self.way(body, first, topology.target(half_edge));
         *self.matrix(body) * along.cross(self.way(body, first, third))
     }
@@ -342,7 +342,7 @@ impl ExitTest<'_, '_> {
     fn vertex_of(&self, body: usize, feature: Feature) -> u32 {
         match feature {
             Feature::Vertex(v) => v,
-            Feature::Edge(h) | Feature::Face(h) => self.sides[body].topology.half_edge(h).origin,
+            Feature::Edge(h) | Feature::Face(h) => self.sides[body].topology.origin(h),
         }
     }
 
@@ -366,7 +366,7 @@ impl ExitTest<'_, '_> {
             [Feature::Edge(e), Feature::Edge(f)] => {
                 let ends = |body: usize, h: u32| {
                     let topology = self.sides[body].topology;
-                    [topology.half_edge(h).origin, topology.target(h)]
+                    [topology.origin(h), topology.target(h)]
                 };
                 let (p, q) = (ends(0, e), ends(1, f));
                 let pair = |i: usize, j: usize| VertexPair::of(p[i], q[j]);
@@ -389,7 +389,7 @@ impl ExitTest<'_, '_> {
     fn around(&self, body: usize, half_edge: u32, point: DVec3) -> [u32; 4] {
         let topology = self.sides[body].topology;
         let boundary = topology.face(topology.half_edge(half_edge).face);
-        let corner = |i: u32| topology.half_edge(boundary.start + i).origin;
+        let corner = |i: u32| topology.origin(boundary.start + i);
         let count = boundary.len() as u32;
         if count == 3 {
             return [corner(0), corner(1), corner(2), corner(2)];
@@ -421,7 +421,7 @@ fn bounds(topology: &Topology, edge: u32, of_face: u32) -> bool {
 
 /// The vertex that two different edges share.
 fn shared(topology: &Topology, e: u32, f: u32) -> Option<u32> {
-    let ends = |h: u32| [topology.half_edge(h).origin, topology.target(h)];
+    let ends = |h: u32| [topology.origin(h), topology.target(h)];
     let (of_e, of_f) = (ends(e), ends(f));
     if f == e || f == topology.half_edge(e).twin {
         return None;

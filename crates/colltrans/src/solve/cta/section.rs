@@ -58,7 +58,7 @@ impl Section<'_> {
     fn crossing(&self, up: u32) -> Crossing {
         self.side.count(1);
         let topology = self.side.topology;
-        let vertices = [topology.half_edge(up).origin, topology.target(up)];
+        let vertices = [topology.origin(up), topology.target(up)];
         let (low, high) = (self.side.point(vertices[0]), self.side.point(vertices[1]));
         let drift = (high.shadow - low.shadow) * (1.0 / (high.level - low.level));
         Crossing {
@@ -107,7 +107,7 @@ impl Section<'_> {
         let topology = self.side.topology;
         let mut up = from;
         for step in 0..=self.limit {
-            let (low, high) = (topology.half_edge(up).origin, topology.target(up));
+            let (low, high) = (topology.origin(up), topology.target(up));
             let (vertex, sign) = if self.side.level(high) <= self.x {
                 (high, 1.0)
             } else if self.side.level(low) > self.x {
@@ -323,7 +323,7 @@ impl Section<'_> {
         if boundary.len() > FACE_SIDES {
             return None;
         }
-        let above = |h: u32| self.side.level(topology.half_edge(h).origin) > self.x;
+        let above = |h: u32| self.side.level(topology.origin(h)) > self.x;
         let (mut from, mut to) = (None, None);
         let mut last = boundary.end - 1;
         for h in boundary {

@@ -453,8 +453,7 @@ fn colliding(random: &mut Random) -> Example {
 fn polygon(side: &Side, x: f64) -> Vec<Crossing> {
     let section = Section { side, x, limit: side.topology.edge_count() };
     let above = |h: &u32| {
-        side.level(side.topology.half_edge(*h).origin) <= x
-            && side.level(side.topology.target(*h)) > x
+        side.level(side.topology.origin(*h)) <= x && side.level(side.topology.target(*h)) > x
     };
     let crossing = (0..side.topology.half_edges().len() as u32).find(above).unwrap();
     let first = section.bottom(crossing).unwrap().vertex;

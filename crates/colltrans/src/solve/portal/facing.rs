@@ -48,7 +48,7 @@ fn between(difference: &MinkowskiDifference) -> Option<(Portal, Face)> {
         return None;
     }
     let corner = |moving: u32, fixed: u32| {
-        let origin = |body: &ConvexPolyhedron, h: u32| body.topology().half_edge(h).origin;
+        let origin = |body: &ConvexPolyhedron, h: u32| body.topology().origin(h);
         let (moving, fixed) = (origin(setting.moving, moving), origin(setting.fixed, fixed));
         difference.vertex(VertexPair::of(moving, fixed))
     };

@@ -114,7 +114,7 @@ impl Surface {
             }
             face_start.push(corners.len() as u32);
         }
-        let topology = Topology::sphere(vertices.len(), face_start, &corners)?;
+        let topology = Topology::sphere(vertices.len(), face_start, corners)?;
         let surface = if used.iter().all(|&u| u) {
             Self {
                 points: vertices.to_vec(),
@@ -139,11 +139,10 @@ impl Surface {
         for (k, &v) in index.iter().enumerate() {
             position[v as usize] = k as u32;
         }
-        let corners: Vec<u32> =
-            topology.half_edges().iter().map(|h| position[h.origin as usize]).collect();
+        let corners: Vec<u32> = topology.origins().iter().map(|&v| position[v as usize]).collect();
         let face_start = (0..topology.face_count() as u32).map(|f| topology.face(f).start);
         let face_start = face_start.chain([corners.len() as u32]).collect();
-        let topology = Topology::sphere(index.len(), face_start, &corners)?;
+        let topology = Topology::sphere(index.len(), face_start, corners)?;
         Ok(Self { points: index.iter().map(|&v| vertices[v as usize]).collect(), index, topology })
     }
 
@@ -233,12 +232,12 @@ impl<'a> Depths<'a> {
     fn of_face(&self, face: u32, known: f64, near: &mut usize) -> f64 {
         let topology = &self.surface.topology;
         let at = |v: u32| self.surface.points[v as usize];
-        let middle = |h: u32| (at(topology.half_edge(h).origin) + at(topology.target(h))) * 0.5;
+        let middle = |h: u32| (at(topology.origin(h)) + at(topology.target(h))) * 0.5;
         match self.hull.dimension {
             0 | 1 => 0.0,
             2 => {
                 let rim = topology.face(face).filter(|&h| self.turns_back(h));
-                let points = rim.flat_map(|h| [at(topology.half_edge(h).origin), middle(h)]);
+                let points = rim.flat_map(|h| [at(topology.origin(h)), middle(h)]);
                 points.map(|p| self.of_point(p)).fold(0.0, f64::max)
             }
             _ if self.lies_on_hull(face) => 0.0,

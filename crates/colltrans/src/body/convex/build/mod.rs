@@ -167,6 +167,10 @@ impl ConvexPolyhedron {
             solid: OnceLock::new(),
         };
         body.measure_faces();
+        // Along the rims of large faces queries go by them.
+        if body.large_faces.is_empty() {
+            body.topology.let_go_of_links();
+        }
         body
     }
 
@@ -179,7 +183,7 @@ impl ConvexPolyhedron {
             face_vertices.extend_from_slice(face);
             face_start.push(face_vertices.len() as u32);
         }
-        let topology = Topology::sphere(vertices.len(), face_start, &face_vertices).unwrap();
+        let topology = Topology::sphere(vertices.len(), face_start, face_vertices).unwrap();
         let vertices_in_order = (0..vertices.len() as u32).collect();
         let hull = Hull { dimension: 3, vertices: vertices_in_order, topology, violation: 0.0 };
         Self::from_hull(vertices, hull)

@@ -164,7 +164,7 @@ fn planes_of(body: &ConvexPolyhedron) -> Vec<Plane> {
     if body.dimension == 2 {
         let up = planes[0].normal;
         let edges = body.topology.face(0).map(|h| {
-            let along = at(body.topology.target(h)) - at(body.topology.half_edge(h).origin);
+            let along = at(body.topology.target(h)) - at(body.topology.origin(h));
             along.cross(up).normalize_or_zero()
         });
         planes.extend(edges.map(supporting));

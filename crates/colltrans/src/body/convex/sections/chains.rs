@@ -158,7 +158,7 @@ impl<L: Fn(u32) -> f64, C: Fn(u32)> Search<'_, L, C> {
     /// The one of a chain's edges that crosses the level.
     fn crossing(&self, edges: &[u32]) -> Option<u32> {
         (self.count)(edges.len().checked_ilog2().unwrap_or(0));
-        let below = |up: &u32| (self.level)(self.topology.half_edge(*up).origin) <= self.x;
+        let below = |up: &u32| (self.level)(self.topology.origin(*up)) <= self.x;
         let last = edges[..edges.partition_point(below)].last();
         let found = last.filter(|&&up| (self.level)(self.topology.target(up)) > self.x);
         // Who looks at a crossing counts it.
@@ -181,7 +181,7 @@ impl<L: Fn(u32) -> f64, C: Fn(u32)> Search<'_, L, C> {
         if sides <= MANY_SIDES {
             return None;
         }
-        let level = |h: u32| (self.level)(topology.half_edge(h).origin);
+        let level = |h: u32| (self.level)(topology.origin(h));
         let is_below = level(from) <= self.x;
         let next = topology.next(from);
         // On and on in the turn in which levels come nearer.

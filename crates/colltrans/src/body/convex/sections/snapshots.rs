@@ -70,7 +70,7 @@ pub(super) struct Mesh<'a> {
 impl Mesh<'_> {
     /// Whether a half-edge runs upwards.
     pub(super) fn is_up(&self, h: u32) -> bool {
-        let [from, to] = [self.topology.half_edge(h).origin, self.topology.target(h)];
+        let [from, to] = [self.topology.origin(h), self.topology.target(h)];
         self.levels[from as usize] < self.levels[to as usize]
     }
 
@@ -89,7 +89,7 @@ impl Mesh<'_> {
 
     /// Where a mesh edge, by a half-edge upwards, crosses a level.
     fn crossing(&self, up: u32, level: f64) -> DVec3 {
-        let [low, high] = [self.topology.half_edge(up).origin, self.topology.target(up)];
+        let [low, high] = [self.topology.origin(up), self.topology.target(up)];
         let [from, to] = [low, high].map(|v| self.levels[v as usize]);
         let share = ((level - from) / (to - from)).min(1.0);
         let [low, high] = [low, high].map(|v| self.vertices[v as usize]);

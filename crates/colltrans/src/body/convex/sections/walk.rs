@@ -38,7 +38,7 @@ fn run_end(topology: &Topology, from: u32, inside: impl Fn(u32) -> bool) -> u32 
         let h = from + offset;
         if h >= face.end { h - count } else { h }
     };
-    let is_inside = |offset: u32| inside(topology.half_edge(wrap(offset)).origin);
+    let is_inside = |offset: u32| inside(topology.origin(wrap(offset)));
     if count <= 4 {
         // Without branches, which would be unpredictable. The fourth corner of three is the first,
         // which is inside.

@@ -39,9 +39,7 @@ fn crossing(body: &ConvexPolyhedron, axis: DVec3, x: f64) -> Vec<u32> {
     let topology = body.topology();
     let above = |v: u32| axis.dot(body.vertices()[v as usize]) > x;
     let half_edges = 0..topology.half_edges().len() as u32;
-    half_edges
-        .filter(|&h| !above(topology.half_edge(h).origin) && above(topology.target(h)))
-        .collect()
+    half_edges.filter(|&h| !above(topology.origin(h)) && above(topology.target(h))).collect()
 }
 
 #[test]
@@ -79,7 +77,7 @@ fn walks_are_counter_clockwise_from_the_tip_of_the_axis() {
             let x = axis.dot(centre);
             let above = |v: u32| axis.dot(body.vertices()[v as usize]) > x;
             let point = |h: u32| {
-                let low = body.vertices()[body.topology().half_edge(h).origin as usize];
+                let low = body.vertices()[body.topology().origin(h) as usize];
                 let high = body.vertices()[body.topology().target(h) as usize];
                 low + (high - low) * ((x - axis.dot(low)) / axis.dot(high - low)) - centre
             };
@@ -177,7 +175,7 @@ fn snapshots_show_the_points_of_their_own_level() {
                 let halfway = f64::midpoint(level, next);
                 let snapshot = index.axis(i).snapshot(&map, halfway);
                 for (k, up) in entries.into_iter().enumerate() {
-                    let ends = [body.topology().half_edge(up).origin, body.topology().target(up)];
+                    let ends = [body.topology().origin(up), body.topology().target(up)];
                     let [low, high] = ends.map(|v| body.vertices()[v as usize]);
                     let share = (halfway - axis.dot(low)) / axis.dot(high - low);
                     let point = low + (high - low) * share;

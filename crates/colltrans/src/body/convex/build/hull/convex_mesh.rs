@@ -39,7 +39,7 @@ struct Mesh<'a> {
 impl Mesh<'_> {
     fn corners(&self, face: u32) -> [u32; 3] {
         let first = self.topology.face(face).start;
-        [first, first + 1, first + 2].map(|h| self.topology.half_edge(h).origin)
+        [first, first + 1, first + 2].map(|h| self.topology.origin(h))
     }
 
     fn at(&self, face: u32) -> [DVec3; 3] {
@@ -52,11 +52,15 @@ impl Mesh<'_> {
         side(a, b, c, p) < 0.0
     }
 
-    /// Whether no neighbour's third corner is above a triangle's plane.
+    /// Whether no neighbour's third corner is above a triangle's plane; that of a neighbour with a smaller
+    /// number has said so of both.
     fn bends_outwards(&self, face: u32) -> bool {
         let [a, b, c] = self.at(face);
         self.topology.face(face).all(|h| {
             let twin = self.topology.half_edge(h).twin;
+            if twin < h {
+                return true;
+            }
             let third = self.topology.target(self.topology.next(twin));
             side(a, b, c, self.points[third as usize]) <= 0.0
         })

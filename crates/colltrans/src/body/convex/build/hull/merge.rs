@@ -36,6 +36,9 @@ pub(super) fn regions(points: &[DVec3], simplicial: &Simplicial, tolerance: f64)
         let [a, b, c] = triangles[t as usize].corners.map(|i| points[i as usize]);
         (b - a).cross(c - a).length_squared()
     };
+    if !(0..triangles.len() as u32).any(|t| grows(points, triangles, t, tolerance)) {
+        return Regions::triangles(simplicial);
+    }
     let mut seeds: Vec<(f64, u32)> = (0..triangles.len() as u32).map(|t| (area(t), t)).collect();
     seeds.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
     let mut regions = Regions { of: vec![NONE; triangles.len()], count: 0, seed: Vec::new() };
@@ -52,6 +55,19 @@ pub(super) fn regions(points: &[DVec3], simplicial: &Simplicial, tolerance: f64)
     regions
 }
 
+/// Whether a triangle's plane contains a neighbour.
+fn grows(points: &[DVec3], triangles: &[Triangle], t: u32, tolerance: f64) -> bool {
+    let plane = &triangles[t as usize];
+    plane.neighbours.into_iter().any(|n| lies_in(points, &triangles[n as usize], plane, tolerance))
+}
+
+/// Whether all corners of a triangle lie within the tolerance of the plane of another one.
+fn lies_in(points: &[DVec3], inner: &Triangle, plane: &Triangle, tolerance: f64) -> bool {
+    let origin = points[plane.corners[0] as usize];
+    let on_plane = |i: u32| plane.normal.dot(points[i as usize] - origin).abs() <= tolerance;
+    inner.corners.into_iter().all(on_plane)
+}
+
 fn grow(
     points: &[DVec3],
     simplicial: &Simplicial,
@@ -62,8 +78,6 @@ fn grow(
 ) {
     let triangles = &simplicial.triangles;
     let plane = &triangles[seed as usize];
-    let origin = points[plane.corners[0] as usize];
-    let on_plane = |i: u32| plane.normal.dot(points[i as usize] - origin).abs() <= tolerance;
     regions.of[seed as usize] = regions.count;
     regions.seed.push(seed);
     members.push(seed);
@@ -72,7 +86,7 @@ fn grow(
         work::count(1);
         for n in triangles[members[k] as usize].neighbours {
             let free = regions.of[n as usize] == NONE;
-            if free && triangles[n as usize].corners.into_iter().all(on_plane) {
+            if free && lies_in(points, &triangles[n as usize], plane, tolerance) {
                 regions.of[n as usize] = regions.count;
                 members.push(n);
             }
@@ -202,14 +216,9 @@ pub(super) fn redundant(
 /// Whether each of two triangles lies in the other's plane.
 fn coplanar(points: &[DVec3], simplicial: &Simplicial, [a, b]: [u32; 2], tolerance: f64) -> bool {
     let [a, b] = [a, b].map(|t| &simplicial.triangles[t as usize]);
-    let lies_in = |inner: &Triangle, plane: &Triangle| {
-        let origin = points[plane.corners[0] as usize];
-        inner
-            .corners
-            .iter()
-            .all(|&i| plane.normal.dot(points[i as usize] - origin).abs() <= tolerance)
-    };
-    a.normal.dot(b.normal) > 0.0 && lies_in(a, b) && lies_in(b, a)
+    a.normal.dot(b.normal) > 0.0
+        && lies_in(points, a, b, tolerance)
+        && lies_in(points, b, a, tolerance)
 }
 
 /// Which of the `dropped` points lie outside the hull of the `kept` ones by more than the
@@ -241,6 +250,11 @@ pub(super) fn polygons(simplicial: &Simplicial, regions: &Regions) -> (Vec<u32>,
         let rim = (0..3).find(|&k| regions.of[triangle.neighbours[k] as usize] != region);
         let Some(side) = rim else { continue };
         done[region as usize] = true;
+        if triangle.neighbours.iter().all(|&n| regions.of[n as usize] != region) {
+            corners.extend(triangle.corners);
+            start.push(corners.len() as u32);
+            continue;
+        }
         if let Some(loop_) = trace(simplicial, regions, (t as u32, side)) {
             corners.extend(loop_);
             start.push(corners.len() as u32);

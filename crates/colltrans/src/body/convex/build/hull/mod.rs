@@ -25,7 +25,7 @@ use glam::DVec3;
 
 use crate::body::Aabb;
 use crate::body::error::{BuildError, TopologyError};
-use crate::body::topology::Topology;
+use crate::body::topology::{Topology, bucket};
 use crate::number::noise;
 use crate::number::range::in_exact_range;
 use quickhull::Simplicial;
@@ -223,9 +223,7 @@ fn faces(
     regions: &merge::Regions,
 ) -> Result<(Vec<u32>, Topology), TopologyError> {
     let (face_start, corners) = merge::polygons(simplicial, regions);
-    let mut vertices = corners.clone();
-    vertices.sort_unstable();
-    vertices.dedup();
+    let mut vertices = each_once(corners.iter().copied());
     let large = vertices.len() > LARGE;
     if large {
         sort_by_place(points, &mut vertices);
@@ -239,8 +237,15 @@ fn faces(
     if large {
         (face_start, face_vertices) = sorted_by_vertex(&face_start, &face_vertices);
     }
-    let topology = Topology::sphere(vertices.len(), face_start, &face_vertices)?;
+    let topology = Topology::sphere(vertices.len(), face_start, face_vertices)?;
     Ok((vertices, topology))
+}
+
+/// The numbers that occur, ascending.
+fn each_once(numbers: impl Iterator<Item = u32> + Clone) -> Vec<u32> {
+    let mut occurs = vec![false; numbers.clone().max().map_or(0, |most| most as usize + 1)];
+    numbers.for_each(|k| occurs[k as usize] = true);
+    (0..occurs.len() as u32).filter(|&k| occurs[k as usize]).collect()
 }
 
 /// More vertices than this are numbered by place: what a query visits one after the other is then
@@ -275,9 +280,11 @@ fn sorted_by_vertex(face_start: &[u32], face_vertices: &[u32]) -> (Vec<u32>, Vec
     let face = |f: u32| {
         &face_vertices[face_start[f as usize] as usize..face_start[f as usize + 1] as usize]
     };
-    let mut order: Vec<u32> = (0..face_start.len() as u32 - 1).collect();
-    order.sort_by_cached_key(|&f| face(f).iter().min().copied());
-    let mut start = vec![0];
+    let lowest = (0..face_start.len() as u32 - 1).map(|f| face(f).iter().min().copied());
+    let most = face_vertices.iter().max().map_or(0, |&v| v as usize);
+    let (_, order) = bucket(most + 1, lowest.map(Option::unwrap_or_default));
+    let mut start = Vec::with_capacity(face_start.len());
+    start.push(0);
     let mut vertices = Vec::with_capacity(face_vertices.len());
     for f in order {
         vertices.extend_from_slice(face(f));

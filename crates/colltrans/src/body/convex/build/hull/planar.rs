@@ -70,7 +70,7 @@ impl Plane<'_> {
         let back: Vec<u32> = face_vertices.iter().rev().copied().collect();
         face_vertices.extend(back);
         let count = corners.len() as u32;
-        let topology = Topology::sphere(vertices.len(), vec![0, count, 2 * count], &face_vertices)
+        let topology = Topology::sphere(vertices.len(), vec![0, count, 2 * count], face_vertices)
             .expect("the front and the back of a polygon are a closed surface");
         let hull = Hull { dimension: 2, vertices, topology, violation: 0.0 };
         measured(self.points, hull, kept.iter().copied(), tolerance).0

@@ -15,6 +15,7 @@ use std::collections::VecDeque;
 
 use glam::DVec3;
 
+use super::each_once;
 use super::fan::Fan;
 use crate::body::Aabb;
 use crate::number::plane::triangle_normal;
@@ -38,6 +39,8 @@ struct Growing {
     corners: [u32; 3],
     neighbours: [u32; 3],
     normal: DVec3,
+    /// Its first corner.
+    origin: DVec3,
     /// Distance below which a rounded distance from the plane may have the wrong sign.
     doubt: f64,
     /// Head of the list of points outside.
@@ -62,10 +65,7 @@ pub(super) struct Simplicial {
 impl Simplicial {
     /// The points that are corners, ascending.
     pub(super) fn vertices(&self) -> Vec<u32> {
-        let mut vertices: Vec<u32> = self.triangles.iter().flat_map(|t| t.corners).collect();
-        vertices.sort_unstable();
-        vertices.dedup();
-        vertices
+        each_once(self.triangles.iter().flat_map(|t| t.corners))
     }
 }
 
@@ -227,14 +227,14 @@ impl<'a> Builder<'a> {
         let area = normal.length();
         // The product of the two shorter edges, and the distance of a point `extent` away, are off
         // by a few roundings.
-        let lengths = [a.distance(b), b.distance(c), c.distance(a)];
-        let longest = lengths[0].max(lengths[1]).max(lengths[2]);
-        let product = lengths[0] * lengths[1] * lengths[2] / longest;
+        let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(p, q)| p.distance_squared(q));
+        let product = (ab * bc).min(bc * ca).min(ca * ab).sqrt();
         let doubt = 16.0 * f64::EPSILON * product * self.extent / area;
         let triangle = Growing {
             corners,
             neighbours: [NONE; 3],
             normal: if area > 0.0 { normal / area } else { DVec3::ZERO },
+            origin: a,
             doubt: if area > 0.0 { doubt } else { f64::INFINITY },
             outside: NONE,
             farthest: (f64::NEG_INFINITY, NONE),
@@ -254,7 +254,7 @@ impl<'a> Builder<'a> {
     /// Signed distance of a point from a triangle's plane, rounded.
     fn distance(&self, face: u32, p: DVec3) -> f64 {
         let triangle = &self.triangles[face as usize];
-        triangle.normal.dot(p - self.at(triangle.corners[0]))
+        triangle.normal.dot(p - triangle.origin)
     }
 
     /// Puts a point on the list of the triangle it is farthest outside of, if by more than the
@@ -333,13 +333,7 @@ impl<'a> Builder<'a> {
 
     /// Whether a point sees a triangle, strictly; exact.
     fn sees(&self, face: u32, p: DVec3) -> bool {
-        let triangle = &self.triangles[face as usize];
-        let distance = triangle.normal.dot(p - self.at(triangle.corners[0]));
-        if distance.abs() > triangle.doubt {
-            return distance > 0.0;
-        }
-        let [a, b, c] = triangle.corners.map(|i| self.at(i));
-        side(a, b, c, p) > 0.0
+        self.is_outside(face, p, self.distance(face, p))
     }
 
     /// Inserts the farthest point of a triangle's list.

@@ -232,7 +232,7 @@ impl<'a> Gauge<'a> {
         let mut is_below_some = false;
         for face in 0..self.topology.face_count() as u32 {
             let range = self.topology.face(face);
-            let at = |h: u32| self.vertices[self.topology.half_edge(h).origin as usize];
+            let at = |h: u32| self.vertices[self.topology.origin(h) as usize];
             for h in range.start + 1..range.end - 1 {
                 let height = side(at(range.start), at(h), at(h + 1), p);
                 if height > 0.0 {
@@ -248,9 +248,8 @@ impl<'a> Gauge<'a> {
     /// looked at where it makes a difference.
     fn to_face(&self, p: DVec3, face: usize, search: Search) -> f64 {
         let range = self.topology.face(face as u32);
-        let corner = |k: usize| {
-            self.vertices[self.topology.half_edge(range.start + k as u32).origin as usize]
-        };
+        let corner =
+            |k: usize| self.vertices[self.topology.origin(range.start + k as u32) as usize];
         let normal = self.locator.planes[face].0;
         let projection = Projection::along(normal);
         let first = corner(0);

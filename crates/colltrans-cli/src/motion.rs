@@ -94,7 +94,7 @@ fn parts(
         bodies: bodies_asked,
         motions,
         tolerance,
-        clears: false,
+        clears: arguments.clearance,
         ignore_start_overlaps,
         keep,
     };
@@ -149,13 +149,23 @@ fn first_of_all(
                 Some(depth) => cast.tolerating(depth)?,
                 None => cast.keeping(arguments.keep)?,
             };
-            let outcome = cast.first_contact();
-            let outcome = outcome.map_err(|error| replay::motion_failure(error, &cast))?;
-            let hull = Hulls::of([moving, fixed]);
-            let told = Line { hull, ..Record::of_motion(&outcome, &cast).into() };
-            if arguments.save_proof.is_some() {
-                proofs.push(MotionProofFile::of(&cast, &outcome));
-            }
+            let failed = |error| replay::motion_failure(error, &cast);
+            let record = if arguments.clearance {
+                let mut record =
+                    Record::of_motion_clearance(&cast.clearance().map_err(failed)?, &cast);
+                for overlap in &mut record.start_overlaps {
+                    overlap.moving = Some(files[0][i].display().to_string());
+                    overlap.fixed = Some(files[1][j].display().to_string());
+                }
+                record
+            } else {
+                let outcome = cast.first_contact().map_err(failed)?;
+                if arguments.save_proof.is_some() {
+                    proofs.push(MotionProofFile::of(&cast, &outcome));
+                }
+                Record::of_motion(&outcome, &cast)
+            };
+            let told = Line { hull: Hulls::of([moving, fixed]), ..record.into() };
             let found = Found { told, pair: [i, j] };
             let upper = found.told.record.time.and_then(|time| time.upper);
             if let Some(upper) = upper.filter(|upper| meets.is_none_or(|least| *upper < least.0)) {
@@ -194,6 +204,7 @@ pub(crate) fn words(told: &Line, motions: [&Motion; 2]) -> String {
     let record = &told.record;
     let mut text = match record.outcome {
         Ending::Contact => "contact\n".into(),
+        Ending::Blocked => "blocked: it can go so far\n".into(),
         Ending::Grazing => "grazing: the bodies come nearer than rounding can tell\n".into(),
         Ending::Overlapping => "overlapping: the bodies overlap when the motion begins\n".into(),
         _ => format!("free: {} throughout the motion\n", never(record)),
@@ -242,7 +253,8 @@ pub(crate) fn words(told: &Line, motions: [&Motion; 2]) -> String {
     if let Some(tolerance) = record.tolerance {
         line(&mut text, "tolerance", &number(tolerance));
     }
-    overlaps(&mut text, record, "ignored");
+    let is_overlap = record.outcome == Ending::Overlapping;
+    overlaps(&mut text, record, if is_overlap { "overlap" } else { "ignored" });
     kept(&mut text, record.keep);
     hulls(&mut text, told);
     text

@@ -205,6 +205,7 @@ Answers:
   free         they never meet throughout the motion; with --keep they never come as near, with --tolerance they
                never overlap by more, or never meet as it leaves them
   overlapping  they overlap when it begins
+  blocked      with --clearance, in the place of both contacts: up to the first time it can go
 
 Of several meshes it is the first contact of any two, and says of which.
 
@@ -214,7 +215,8 @@ With --json one object:
             motion, 1 its end
   point normal features   as of `cast`, at that time
   moving fixed   of several meshes: which
-  keep tolerance   as they were asked for
+  keep tolerance   as they were asked for; with --clearance the tolerance that was used
+  shrunk_time start_overlaps   with --clearance: when they meet as the tolerance leaves them; what overlaps
   looks planes   how often the bodies were looked at, and planes in the proof, which only convex meshes have unasked
 
 Examples:
@@ -223,6 +225,8 @@ Examples:
   Which of three machines does a crane hit first, while a cart comes the other way?
     colltrans motion hook.stl --from lathe.stl press.stl saw.stl --turn 0,0,0 z 180
     colltrans motion hook.stl cart.stl --turn 0,0,0 z 180 --fixed-slide -2,0,0
+  How far can a box that stands on a table be tipped, or turned there?
+    colltrans motion box.stl table.stl --turn 0,0,0 y 30 --clearance
   A bolt is unscrewed by two turns, 3 up:
     colltrans motion bolt.stl plate.stl --screw 0,0,0 z 720 3 --save-proof bolt.json
     colltrans verify bolt.json";

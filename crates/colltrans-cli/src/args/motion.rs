@@ -25,6 +25,12 @@ pub(crate) struct MotionArguments {
     /// A gap to be kept: ask when the meshes are first as near as that, not when they touch
     #[arg(long, value_name = "GAP", allow_hyphen_values = true, value_parser = length, default_value = "0")]
     pub(crate) keep: f64,
+    /// Ask how far the mesh can go, not when it first touches: what touches may slide, turn and leave
+    ///
+    /// It is stopped where it is pushed in, by more than the tolerance: of convex meshes without --tolerance what
+    /// rounding can do to a fit.
+    #[arg(long, conflicts_with = "save_proof")]
+    pub(crate) clearance: bool,
     /// How deep the meshes may overlap: ask when they first do by more [default: 0; of parts, what the
     /// files' precision asks for]
     ///

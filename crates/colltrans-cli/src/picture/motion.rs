@@ -113,6 +113,7 @@ fn subject(moved: &Moved<'_>, fixed: Pose) -> Subject {
 fn headline(record: &Record) -> String {
     match (record.outcome, record.time) {
         (Ending::Contact, Some(time)) => format!("Contact at {} of the motion", short(time.lower)),
+        (Ending::Blocked, Some(time)) => format!("Free to go {} of the motion", short(time.lower)),
         (Ending::Grazing, Some(time)) => {
             format!("Grazing: perhaps a contact at {} of the motion", short(time.lower))
         }

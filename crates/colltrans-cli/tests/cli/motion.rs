@@ -44,6 +44,33 @@ fn angles_are_degrees() {
     assert_eq!(told(&["--slide", "1,0,0"])["outcome"], "overlapping");
 }
 
+/// On what it stands it turns freely, and is not tipped into it; as parts, too.
+#[test]
+fn how_far_it_can_go_is_the_clearance() {
+    let folder = folder();
+    let words = ["motion", "cube.off", "cube.off", "--fixed-pose=0,0,-1", "--clearance", "--json"];
+    for more in [&[][..], &["--ignore-start-overlaps"]] {
+        let asked =
+            |motion: &[&str]| read(&answered(folder.path(), &[&words[..], motion, more].concat()));
+        assert_eq!(asked(&["--turn", "0.5,0.5,0", "z", "360"])["outcome"], "free");
+        let tipped = asked(&["--turn", "0.5,0.5,0", "x", "30"]);
+        let [outcome, time] = ["outcome", "time"].map(|name| tipped[name].clone());
+        assert_eq!((outcome, &time["lower"]), (json!("blocked"), &json!(0.0)), "{tipped}");
+        let raised = asked(&["--thrown", "0.5,0.5,0.5", "0,0,1", "0,0,90"]);
+        assert_eq!(raised["outcome"], "free", "{raised}");
+    }
+    let stopped = ["--moving-pose=0,0,1", "--fixed-pose=3,0,1", "--slide", "4,0,0"];
+    let cubes = ["motion", "cube.off", "cube.off", "--clearance"];
+    let text = answered(folder.path(), &[&cubes[..], &stopped].concat());
+    assert!(text.starts_with("blocked: it can go so far\n") && text.contains("0.5 of"), "{text}");
+    let inside = ["--moving-pose=0.25,0,0", "--slide", "4,0,0"];
+    let text = answered(folder.path(), &[&cubes[..], &inside].concat());
+    assert!(text.contains("cube.off in cube.off: a tolerance of 0.75"), "{text}");
+    let refusal = ["--save-proof", "proof.json"];
+    let words = [&cubes[..], &stopped, &refusal].concat();
+    refused(folder.path(), &words, 2, &["cannot be used with"]);
+}
+
 #[test]
 fn what_is_given_twice_or_not_at_all_is_refused() {
     let folder = folder();

@@ -1,6 +1,9 @@
 //! Proofs as files: they hold, and whatever number of what is claimed is changed, they do not.
 #![cfg(feature = "json")]
 
+use colltrans::motion::path::{
+    Frame, Joint, JointPath, Mechanism, PathBody, PathCast, PathProofFile,
+};
 use colltrans::solid::StartOverlap;
 use colltrans::{
     Among, CaseError, Cast, CertificateError, ConvexPolyhedron, ObstacleId, Obstacles, Pair, Pose,
@@ -544,4 +547,32 @@ fn distances_of_solids_hold_and_their_numbers_count() {
     assert!(matches!(other, Err(CaseError::Changed { which: "moving" })), "{other:?}");
     let negative = ProofFile::of_solid_distance(&pair, [&[&a], &[&b]], Some(-1.0));
     assert!(matches!(negative, Err(CaseError::Query(QueryError::Length { .. }))), "{negative:?}");
+}
+
+/// As the checker in fractions does.
+#[test]
+fn axes_of_a_path_are_unit_vectors() {
+    let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a box");
+    let frame = |joint| Frame { parent: None, origin: Pose::IDENTITY, joint };
+    for (joint, kind) in
+        [(Joint::Sliding(DVec3::X * 3.0), "sliding"), (Joint::Turning(DVec3::Z * 0.1), "turning")]
+    {
+        // Where a mechanism is made of it, any length will do.
+        let mechanism = Mechanism::new(vec![frame(joint)]).expect("a joint");
+        let path = JointPath::evenly(vec![vec![0.0], vec![0.5]]).expect("a path");
+        let there = Pose::from_translation(DVec3::X * 4.0).expect("a pose");
+        let bodies =
+            vec![PathBody::carried(0, cube.at(Pose::IDENTITY)), PathBody::standing(cube.at(there))];
+        let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
+        let (_, file) = PathProofFile::answer(&cast, &[]).expect("an answer");
+        let mut file: Value = serde_json::from_str(&file.to_json()).expect("JSON");
+        let read = |file: &Value| PathProofFile::from_json(&file.to_string());
+        assert!(read(&file).expect("a proof").check().is_ok());
+        let axis = file["frames"][0]["joint"][kind].as_array_mut().expect("an axis");
+        for x in axis {
+            *x = Value::from(2.0 * x.as_f64().expect("a number"));
+        }
+        let refused = read(&file).expect_err("an axis of length 2").to_string();
+        assert!(refused.ends_with("of frame 0 is not a unit vector"), "{refused}");
+    }
 }

@@ -2,7 +2,9 @@
 
 Nothing of the library is used and nothing is rounded: every number of the file is the fraction
 that its 64 bits are, and bodies stand where the nine entries of their poses put them. It needs no
-other package: ``python check.py PROOF`` does without the extension, too.
+other package: ``python check.py PROOF`` does without the extension, too. It is one file, long as it
+is, so that who does not trust the library can take this file alone, read it from its beginning, as
+each part uses what stands before it, and run it anywhere.
 
 With the moving body ``P``, the fixed one ``Q``, the direction ``d``, all points in the world:
 

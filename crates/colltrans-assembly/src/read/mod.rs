@@ -278,7 +278,14 @@ fn plain_words(message: &str) -> String {
         ("trailing characters", "there is more than there should be"),
         (", expected literal string", ""),
     ];
-    WORDS.iter().fold(message.to_owned(), |text, (theirs, ours)| text.replace(theirs, ours))
+    let types_named =
+        WORDS.iter().fold(message.to_owned(), |text, (theirs, ours)| text.replace(theirs, ours));
+    let Some((found, named)) = types_named.split_once("expected struct ") else {
+        return types_named;
+    };
+    let is_name = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
+    let rest = named.trim_start_matches("variant ").trim_start_matches(is_name);
+    format!("{found}expected an object{rest}")
 }
 
 /// The mesh of a file's bytes.

@@ -124,8 +124,7 @@ impl Cell {
                 let moves = |joint: &&RobotJoint| joint.frame == *frame;
                 let name = self.robot.joints().iter().find(moves).map_or("?", |joint| &joint.name);
                 format!(
-                    "row {}: the value {value} of joint {name} is not finite, or too large (1e5 radians)",
-                    row + 1
+                    "row {row}: the value {value} of joint {name} is not finite, or too large (1e5 radians)"
                 )
             }
             other => other.to_string(),

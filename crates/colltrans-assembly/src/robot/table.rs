@@ -127,7 +127,7 @@ impl Table {
             None => Ok(self),
             Some(k) => {
                 let (found, wanted) = (self.rows[k].len(), columns.unwrap_or(0));
-                Err(wrong(format!("row {}", k + 1), format!("it has {found} values, not {wanted}")))
+                Err(wrong(format!("row {k}"), format!("it has {found} values, not {wanted}")))
             }
         }
     }
@@ -198,7 +198,7 @@ mod tests {
         assert_eq!(told("1,2\n1,x\n"), "line 2: `1,x` are not numbers");
         assert_eq!(told("a,b\n"), "end of file: there are no rows");
         assert_eq!(told("1,inf\n"), "line 1: `1,inf` are not numbers");
-        assert_eq!(told("[[1, 2], [1]]"), "row 2: it has 1 values, not 2");
+        assert_eq!(told("[[1, 2], [1]]"), "row 1: it has 1 values, not 2");
         assert!(told("{\"points\": []}").contains("it is neither a list of rows nor"));
         assert!(told("[[1, 2").contains("line 1"));
         let mixed = r#"{"joint_names": ["a"], "points": [

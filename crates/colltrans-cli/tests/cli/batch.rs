@@ -443,6 +443,8 @@ fn motions_are_asked_in_lines() {
             "moving_motion: a motion is of one kind; there is `still` besides",
         ),
         (asked(r#""moving_motion":{}"#), "no field that says of which kind it is"),
+        (asked(r#""moving_motion":{"still":null}"#), "found null, expected an object"),
+        (asked(r#""moving_motion":{"slide":[1,0,0]}"#), "found a list, expected an object"),
         (asked(&moved.replace("\"axis\":[0,0,1],", "")), "missing field `axis`"),
         (asked(&moved.replace("turn", "twist")), "unknown word `twist`"),
         (asked(r#""moving_motion":{"through":{"poses":[]}}"#), "at least one pose"),

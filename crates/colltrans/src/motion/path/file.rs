@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
@@ -12,6 +13,7 @@ use super::{
 use crate::among::{AnyBody, ByKind};
 use crate::body::{InputFacet, Pose};
 use crate::cast::CaseError;
+use crate::number::noise;
 use crate::proof_file::{BodyFile, Written, kept, said};
 
 /// What a file of this version calls itself.
@@ -76,6 +78,14 @@ pub enum PathFileError {
     /// What is asked has no answer.
     #[error(transparent)]
     Path(#[from] PathError),
+    /// An axis has another length than 1: frames would be elsewhere by what rounding makes of it.
+    #[error("the axis {:?} of frame {frame} is not a unit vector", .axis.to_array())]
+    Axis {
+        /// Which frame.
+        frame: usize,
+        /// Its axis.
+        axis: DVec3,
+    },
 }
 
 impl PathProofFile {
@@ -188,6 +198,12 @@ impl PathProofFile {
             }
             Ok(Carried { name: of.name, frame: of.frame, pose: of.pose, written })
         };
+        for (frame, of) in file.frames.iter().enumerate() {
+            let is_unit = |axis: &DVec3| (axis.length() - 1.0).abs() <= noise::UNIT_VECTOR;
+            if let Some(axis) = of.joint.axis().filter(|axis| !is_unit(axis)) {
+                return Err(PathFileError::Axis { frame, axis });
+            }
+        }
         Ok(Self {
             mechanism: Mechanism::new(file.frames)?,
             path: file.path,

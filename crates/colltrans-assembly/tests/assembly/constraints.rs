@@ -1,0 +1,382 @@
+//! Plans with an order, subassemblies and directions that parts never take, and the least that goes for some to come out,
+//! held against all groups of parts tried in all directions.
+
+use colltrans::solid::{StartOverlap, Workspace};
+use colltrans_assembly::matrix::Matrix;
+use colltrans_assembly::plan::{Plan, PlanOptions, Step, and_or, disassemble, remove};
+use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Room, Watch};
+use colltrans_testkit::random::Random;
+use glam::DVec3;
+
+use crate::common::{cuboid, part, well};
+
+const AXES: [DVec3; 6] = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
+
+fn options() -> PlanOptions {
+    PlanOptions::default().with_samples(0).with_legs(1).with_proofs(false)
+}
+
+fn matrix(bodies: &Bodies) -> Matrix {
+    let all = vec![true; bodies.len()];
+    Matrix::new(bodies, &AXES, &all, StartOverlap::Refuse, Watch::default()).unwrap()
+}
+
+/// What is asked, once more, in sets of bits.
+#[derive(Debug, Default)]
+struct Asked {
+    before: Vec<[usize; 2]>,
+    together: Vec<u32>,
+    subassemblies: Vec<u32>,
+    never: Vec<(usize, usize)>,
+    fixed: u32,
+}
+
+/// All pairs in all directions.
+struct Judge {
+    count: usize,
+    /// By direction and part: whom it meets.
+    met: Vec<Vec<u32>>,
+    asked: Asked,
+}
+
+fn bits(parts: &[usize]) -> u32 {
+    parts.iter().map(|&part| 1_u32 << part).sum()
+}
+
+impl Judge {
+    fn new(bodies: &Bodies, asked: Asked) -> Self {
+        let mut workspace = Workspace::default();
+        let mut meets = |a: usize, b: usize, d: DVec3| {
+            let start = StartOverlap::Refuse;
+            a != b && bodies.room([a, b], d, None, start, &mut workspace) != Room::Free
+        };
+        let count = bodies.len();
+        let met = AXES.map(|d| {
+            let row =
+                (0..count).map(|a| (0..count).filter(|&b| meets(a, b, d)).map(|b| 1 << b).sum());
+            row.collect()
+        });
+        Self { count, met: met.to_vec(), asked }
+    }
+
+    /// Whether a set can leave the others that are left along a direction.
+    fn leaves(&self, set: u32, left: u32, k: usize) -> bool {
+        let (rest, has) = (left & !set, |part: usize| set >> part & 1 == 1);
+        let Asked { before, together, subassemblies, never, fixed } = &self.asked;
+        let as_one = |unit: &u32| set & unit == 0 || unit & rest == 0;
+        set & fixed == 0
+            && (0..self.count).all(|part| !has(part) || self.met[k][part] & rest == 0)
+            && before.iter().all(|&[a, b]| !has(b) || rest >> a & 1 == 0)
+            && together.iter().all(as_one)
+            && subassemblies.iter().all(|unit| left & !unit == 0 || as_one(unit))
+            && !never.iter().any(|&(part, d)| has(part) && d == k)
+    }
+
+    /// What is left once whatever of `movable` can leave has, again and again; of `left` something stays.
+    fn left(&self, mut left: u32, movable: u32) -> u32 {
+        loop {
+            let leaving = (1..1_u32 << self.count).find(|&set| {
+                set & !(left & movable) == 0
+                    && set != left
+                    && (0..AXES.len()).any(|k| self.leaves(set, left, k))
+            });
+            match leaving {
+                Some(set) => left &= !set,
+                None => return left,
+            }
+        }
+    }
+
+    /// The fewest parts that are enough for these to come out.
+    fn least(&self, wanted: u32) -> Option<u32> {
+        let all = (1_u32 << self.count) - 1;
+        let enough =
+            |set: &u32| set & wanted == wanted && *set != all && self.left(all, *set) & wanted == 0;
+        (1..all).filter(enough).map(u32::count_ones).min()
+    }
+
+    fn position(d: DVec3) -> usize {
+        AXES.iter().position(|axis| *axis == d).unwrap()
+    }
+
+    /// Each step leaves what is left then, in any order that the steps allow; what is left at the end.
+    fn walked(&self, plan: &Plan, within: Option<usize>, all: u32, random: &mut Random) -> u32 {
+        let own = plan.steps.iter().enumerate().filter(|(_, step)| step.within == within);
+        let steps: Vec<(usize, &Step)> = own.collect();
+        let mut left = all;
+        for &(_, step) in &steps {
+            let set = bits(&step.parts);
+            assert!(self.leaves(set, left, Self::position(step.direction)), "{:?}", step.parts);
+            left &= !set;
+        }
+        for _ in 0..3 {
+            let (mut left, mut done) = (all, vec![false; plan.steps.len()]);
+            for _ in 0..steps.len() {
+                let ready = |(k, step): &&(usize, &Step)| {
+                    !done[*k] && step.after.iter().all(|&j| done[j] || Some(j) == within)
+                };
+                let ready: Vec<_> = steps.iter().filter(ready).collect();
+                let &&(k, step) = random_of(&ready, random);
+                let set = bits(&step.parts);
+                let d = Self::position(step.direction);
+                assert!(self.leaves(set, left, d), "{:?} too early", step.parts);
+                left &= !set;
+                done[k] = true;
+            }
+        }
+        left
+    }
+
+    /// All steps of a round in any order, and the way back, piece by piece; each way out of a part, once what it waits for
+    /// has gone.
+    fn backwards(&self, plan: &Plan, ways: &serde_json::Value) {
+        let all = (1_u32 << self.count) - 1;
+        let main = |k: &usize| plan.steps[*k].within.is_none();
+        let mut left = all;
+        for k in plan.rounds().into_iter().flat_map(|round| round.into_iter().rev()).filter(main) {
+            let step = &plan.steps[k];
+            assert!(self.leaves(bits(&step.parts), left, Self::position(step.direction)));
+            left &= !bits(&step.parts);
+        }
+        let order = plan.assembly();
+        for (at, (step, after)) in order.iter().enumerate() {
+            assert!(after.iter().all(|&k| k < at && plan.steps[order[k].0].after.contains(step)));
+        }
+        for k in order.into_iter().map(|(k, _)| k).filter(main) {
+            let set = bits(&plan.steps[k].parts);
+            left |= set;
+            assert!(self.leaves(set, left, Self::position(plan.steps[k].direction)), "put in");
+        }
+        assert_eq!(left, all);
+        for (name, node) in ways.as_object().unwrap() {
+            let part: usize = name.parse().unwrap();
+            if self.asked.fixed >> part & 1 == 1 {
+                // The base, as we judge it, is not fixed for the graph.
+                continue;
+            }
+            for way in node["or"].as_array().unwrap() {
+                let d: Vec<f64> = serde_json::from_value(way["direction"].clone()).unwrap();
+                let and: Vec<String> = serde_json::from_value(way["and"].clone()).unwrap();
+                let gone: Vec<usize> = and.iter().map(|name| name.parse().unwrap()).collect();
+                let (set, k) = (1 << part, Self::position(DVec3::from_slice(&d)));
+                assert!(self.leaves(set, all & !bits(&gone), k), "{name}: {way}");
+                // None of them is named in vain, but for what a subassembly is taken apart without at last.
+                let apart = self.asked.subassemblies.iter().any(|unit| unit >> part & 1 == 1);
+                for &one in gone.iter().filter(|_| !apart) {
+                    assert!(!self.leaves(set, all & !bits(&gone) | 1 << one, k), "{name}: {way}");
+                }
+            }
+        }
+    }
+}
+
+fn random_of<'a, T>(all: &'a [T], random: &mut Random) -> &'a T {
+    &all[random.index(all.len())]
+}
+
+/// Boxes that touch, some with a pocket in which another one is.
+fn boxes(random: &mut Random) -> Assembly {
+    let mut parts = vec![part("0", &[cuboid([0.0, 0.0, -1.0], [6.0, 6.0, 0.0])])];
+    let count = 3 + random.index(4);
+    for k in 0..count {
+        let low = [k % 2, k / 2 % 2, k / 4].map(|x| 3.0 * x as f64);
+        let high = low.map(|x| x + [2.0, 2.5, 3.0][random.index(3)]);
+        if random.unit() < 0.3 && parts.len() < 7 {
+            let inner = [0, 1, 2].map(|i| (low[i] + 0.5, high[i] - 0.5));
+            let walls = well(inner.map(|x| x.0), [inner[0].1, inner[1].1, high[2]], 0.5);
+            parts.push(part(&parts.len().to_string(), &walls));
+            let core = cuboid(inner.map(|x| x.0), inner.map(|x| x.1));
+            parts.push(part(&parts.len().to_string(), &[core]));
+        } else if parts.len() < 8 {
+            parts.push(part(&parts.len().to_string(), &[cuboid(low, high)]));
+        }
+    }
+    Assembly::new(parts).unwrap()
+}
+
+/// The same with demands that do not contradict each other, both ways.
+fn asked(mut assembly: Assembly, random: &mut Random) -> (Assembly, Asked) {
+    let count = assembly.parts().len();
+    let mut asked = Asked::default();
+    if random.unit() < 0.5 {
+        assembly = assembly.with_fixed(&["0"]).unwrap();
+        asked.fixed = 1;
+    }
+    let name = |k: usize| k.to_string();
+    for _ in 0..random.index(4) {
+        let (a, b) = (random.index(count), random.index(count));
+        let next =
+            if a == b { continue } else { assembly.clone().with_before(&[name(a)], &[name(b)]) };
+        if let Ok(next) = next {
+            assembly = next;
+            asked.before.push([a, b]);
+        }
+    }
+    for apart in [false, true] {
+        let unit: Vec<usize> = (0..count).filter(|_| random.unit() < 0.35).collect();
+        let names: Vec<String> = unit.iter().map(|&k| name(k)).collect();
+        let before = assembly.clone();
+        let next = if apart {
+            before.with_subassembly("unit", &names)
+        } else {
+            before.with_together(&names)
+        };
+        if let Ok(next) = next.map_err(drop) {
+            assembly = next;
+        }
+    }
+    for unit in assembly.constraints().units() {
+        let which = if unit.apart { &mut asked.subassemblies } else { &mut asked.together };
+        which.push(bits(&unit.parts));
+    }
+    for _ in 0..random.index(4) {
+        let (k, d) = (random.index(count), random.index(AXES.len()));
+        assembly = assembly.with_never(&[name(k)], AXES[d] * 3.0, 20.0).unwrap();
+        asked.never.push((k, d));
+    }
+    (assembly, asked)
+}
+
+#[test]
+fn plans_take_as_much_apart_as_all_groups_tried_and_in_an_order_that_is_asked_for() {
+    let mut random = Random::new(2);
+    let (mut whole, mut held, mut moved) = (0, 0, 0);
+    for round in 0..400 {
+        let (assembly, asked) = asked(boxes(&mut random), &mut random);
+        let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-9)).unwrap();
+        let mut judge = Judge::new(&bodies, asked);
+        let plan =
+            disassemble(&bodies, &matrix(&bodies), &[], options(), Watch::default()).unwrap();
+        let all = (1_u32 << bodies.len()) - 1;
+        let left = judge.walked(&plan, None, all, &mut random);
+        assert_eq!(left, bits(&plan.left) | bits(&plan.last), "round {round}");
+        // The plate is the base, unless it has to leave before others.
+        if judge.asked.fixed == 1 || judge.asked.before.iter().all(|pair| pair[0] != 0) {
+            judge.asked.fixed = 1;
+            assert_eq!(left, judge.left(all, all), "round {round}");
+        }
+        for (k, step) in plan.steps.iter().enumerate().filter(|(_, step)| step.parts.len() > 1) {
+            judge.walked(&plan, Some(k), bits(&step.parts), &mut random);
+        }
+        judge.backwards(&plan, &and_or(&assembly, &matrix(&bodies)));
+        whole += usize::from(plan.stuck.is_empty());
+        held += usize::from(!plan.stuck.is_empty());
+        moved += plan.steps.len();
+        assert!(
+            plan.stuck
+                .iter()
+                .filter(|s| s.constrained)
+                .all(|s| { s.because(&bodies).contains("what is asked of their order") })
+        );
+    }
+    assert!(whole > 100 && held > 30 && moved > 700, "{whole} {held} {moved}");
+}
+
+#[test]
+fn the_least_is_that_of_all_sets() {
+    let mut random = Random::new(5);
+    let (mut out, mut alone, mut held) = (0, 0, 0);
+    for round in 0..400 {
+        let assembly = boxes(&mut random);
+        let (assembly, asked) = if round % 2 == 0 {
+            (assembly, Asked::default())
+        } else {
+            asked(assembly, &mut random)
+        };
+        let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-9)).unwrap();
+        let judge = Judge::new(&bodies, asked);
+        let wanted: Vec<usize> = match random.index(3) {
+            0 => vec![1, bodies.len() - 1],
+            _ => vec![random.index(bodies.len())],
+        };
+        let plan =
+            remove(&bodies, &matrix(&bodies), &[], &wanted, options(), Watch::default()).unwrap();
+        let found = plan.wanted.as_ref().unwrap();
+        let least = judge.least(bits(&wanted));
+        assert_eq!(found.out, least.is_some(), "round {round}: {found:?}");
+        if let Some(least) = least {
+            let count = found.parts.len() + found.others.len();
+            assert_eq!((count as u32, found.least), (least, true), "round {round}: {found:?}");
+            let all = (1_u32 << bodies.len()) - 1;
+            let left = judge.walked(&plan, None, all, &mut random);
+            assert_eq!(left & bits(&wanted), 0);
+            assert_eq!(left, bits(&plan.last), "what remains");
+            out += 1;
+            alone += usize::from(found.others.is_empty());
+        } else {
+            held += 1;
+        }
+    }
+    assert!(out > 200 && alone > 50 && out > alone + 50 && held > 20, "{out} {alone} {held}");
+}
+
+/// A box with a lid, a core in it, and a cup on the lid.
+fn closed() -> Assembly {
+    let parts = vec![
+        part("box", &well([0.0; 3], [3.0; 3], 1.0)),
+        part("core", &[cuboid([0.0; 3], [3.0, 3.0, 2.5])]),
+        part("lid", &[cuboid([-1.0, -1.0, 3.0], [4.0, 4.0, 3.5])]),
+        part("cup", &[cuboid([0.0, 0.0, 3.5], [1.0, 1.0, 5.0])]),
+        part("post", &[cuboid([9.0, 0.0, -1.0], [10.0, 1.0, 6.0])]),
+    ];
+    Assembly::new(parts).unwrap()
+}
+
+fn taken(assembly: &Assembly, wanted: &[&str]) -> (Vec<Vec<String>>, Plan) {
+    let bodies = Bodies::new(assembly, Fit::Tolerance(1e-9)).unwrap();
+    let (matrix, watch) = (matrix(&bodies), Watch::default());
+    let plan = match wanted {
+        [] => disassemble(&bodies, &matrix, &[], options(), watch).unwrap(),
+        names => {
+            let parts = assembly.group(names).unwrap();
+            remove(&bodies, &matrix, &[], &parts, options(), watch).unwrap()
+        }
+    };
+    let names = |step: &Step| assembly.names(&step.parts).into_iter().map(str::to_owned).collect();
+    (plan.steps.iter().map(names).collect(), plan)
+}
+
+#[test]
+fn a_core_comes_out_without_what_is_not_in_its_way() {
+    let assembly = closed().with_fixed(&["box"]).unwrap();
+    let (steps, plan) = taken(&assembly, &["core"]);
+    assert_eq!(steps, [["cup"], ["lid"], ["core"]]);
+    assert_eq!(assembly.names(&plan.last), ["box", "post"]);
+    let words = plan.wanted.unwrap().words(&assembly);
+    assert!(words.starts_with("core: 2 other parts go (lid, cup); no fewer"), "{words}");
+    let (steps, plan) = taken(&assembly, &["post"]);
+    assert_eq!(steps, [["post"]]);
+    assert!(plan.wanted.unwrap().words(&assembly).contains("nothing else has to go"));
+    let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-9)).unwrap();
+    for parts in [vec![], vec![0, 1, 2, 3, 4]] {
+        let none = remove(&bodies, &matrix(&bodies), &[], &parts, options(), Watch::default());
+        assert!(matches!(none, Err(AssemblyError::Removal { of: 5, .. })));
+    }
+}
+
+#[test]
+fn a_subassembly_leaves_as_one_and_is_taken_apart_and_what_stays_together_is_not() {
+    let plain = closed().with_fixed(&["box"]).unwrap();
+    let sub = plain.clone().with_subassembly("top", &["lid", "cup"]).unwrap();
+    let (steps, plan) = taken(&sub, &[]);
+    let at = steps.iter().position(|step| *step == ["lid", "cup"]).unwrap();
+    assert_eq!((steps[at + 1].clone(), plan.steps[at + 1].within), (vec!["cup".into()], Some(at)));
+    assert_eq!(sub.constraints().name(&plan.steps[at].parts), Some("top"));
+    let one = plain.clone().with_together(&["lid", "cup"]).unwrap();
+    let (steps, plan) = taken(&one, &[]);
+    assert!(steps.contains(&vec!["lid".into(), "cup".into()]) && steps.len() == 3);
+    assert!(plan.stuck.is_empty() && assembly_left(&one, &plan) == ["box"]);
+    // Never up: the core cannot leave, and it is said that this is asked for.
+    let never = plain.with_never(&["co*"], DVec3::Z, 30.0).unwrap();
+    let (_, plan) = taken(&never, &[]);
+    assert_eq!(assembly_left(&never, &plan), ["box", "core"]);
+    assert!(plan.stuck[0].constrained);
+    let order = closed().with_before(&["box"], &["post", "cup"]).unwrap();
+    let (steps, _) = taken(&order, &[]);
+    let first = |name: &str| steps.iter().position(|step| step[0] == name).unwrap();
+    assert!(first("box") < first("cup") && first("box") < first("post"), "{steps:?}");
+}
+
+fn assembly_left<'a>(assembly: &'a Assembly, plan: &Plan) -> Vec<&'a str> {
+    assembly.names(&[&plan.left[..], &plan.last].concat())
+}

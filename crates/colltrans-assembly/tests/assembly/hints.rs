@@ -1,0 +1,70 @@
+//! What looks odd about parts: identical ones, frames of their own, other units; and what looks well is not said to be odd.
+
+use colltrans_assembly::hints::{Hint, HintKind, hints};
+use colltrans_assembly::start::Start;
+use colltrans_assembly::{Assembly, Bodies, Fit, Part, Watch};
+use glam::{DAffine3, DVec3};
+
+use crate::common::{cuboid, part, turned};
+
+fn found(parts: Vec<Part>) -> Vec<Hint> {
+    let assembly = Assembly::new(parts).unwrap();
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    hints(&bodies, &Start::new(&bodies, Watch::default()).unwrap())
+}
+
+fn of_kind(hints: &[Hint], kind: HintKind) -> Vec<&Hint> {
+    hints.iter().filter(|hint| hint.kind == kind).collect()
+}
+
+/// A plate and bolts of `size` in a row on it.
+fn machine(size: f64) -> Vec<Part> {
+    let bolt = |k: usize| {
+        let x = 3.0 * k as f64;
+        part(&format!("bolt_{k}"), &[cuboid([x, 0.0, 1.0], [x + size, size, 1.0 + 2.0 * size])])
+    };
+    let plate = part("plate", &[cuboid([-1.0, -1.0, 0.0], [12.0, 4.0, 1.0])]);
+    (0..4).map(bolt).chain([plate]).collect()
+}
+
+#[test]
+fn identical_parts_are_said_and_nothing_else_of_a_sound_machine() {
+    let hints = found(machine(1.0));
+    assert_eq!(hints.len(), 1, "{hints:?}");
+    assert_eq!((hints[0].kind, &hints[0].parts[..]), (HintKind::Identical, &[0, 1, 2, 3][..]));
+    assert_eq!(hints[0].words, "4 x bolt are identical");
+    assert!(found(vec![machine(1.0).remove(4)]).is_empty());
+}
+
+#[test]
+fn parts_in_frames_of_their_own_are_told() {
+    // Bolts of one file each, none of them placed.
+    let bolt = |k: usize| part(&format!("bolt_{k}"), &[cuboid([0.0; 3], [1.0, 1.0, 2.0])]);
+    let hints = found((0..3).map(bolt).collect());
+    let [frames] = of_kind(&hints, HintKind::Frames)[..] else { panic!("{hints:?}") };
+    assert_eq!(frames.parts, [0, 1, 2]);
+    assert!(frames.words.contains("one body in one place"), "{}", frames.words);
+    // Different parts, all about the origin.
+    let long = |k: usize, x: f64, y: f64| {
+        part(&format!("p{k}"), &[cuboid([-x, -y, -1.0], [x, y, 1.0 + 0.25 * k as f64])])
+    };
+    let hints = found(vec![long(0, 3.0, 1.0), long(1, 1.0, 3.0), long(2, 2.0, 2.5)]);
+    let [frames] = of_kind(&hints, HintKind::Frames)[..] else { panic!("{hints:?}") };
+    assert!(frames.words.starts_with("3 of 3 pairs of parts overlap deeply"), "{}", frames.words);
+}
+
+#[test]
+fn other_units_are_told_with_the_factor_that_corrects_them() {
+    let hints = found(machine(0.001));
+    let [units] = of_kind(&hints, HintKind::Units)[..] else { panic!("{hints:?}") };
+    assert_eq!(units.parts, [0, 1, 2, 3]);
+    assert!(units.words.contains("1000 times too small"), "{}", units.words);
+    // One shape in inches and in millimetres.
+    let nut = cuboid([20.0; 3], [21.0, 21.5, 22.0]);
+    let inches = DAffine3::from_scale(DVec3::splat(1.0 / 25.4));
+    let parts = vec![part("nut_1", std::slice::from_ref(&nut)), turned("nut_2", &[nut], inches)];
+    let hints = found(parts);
+    let [units] = of_kind(&hints, HintKind::Units)[..] else { panic!("{hints:?}") };
+    assert_eq!(units.parts, [1]);
+    assert!(units.words.ends_with("nut_1 has its shape; --scale nut_2=25.4 corrects it"));
+}

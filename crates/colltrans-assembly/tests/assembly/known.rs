@@ -1,0 +1,607 @@
+//! Assemblies whose answers are known.
+
+#![expect(
+    clippy::default_trait_access,
+    clippy::needless_range_loop,
+    reason = "what is the default, and what is numbered, is said by the calls around"
+)]
+
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+
+use crate::common::*;
+use colltrans::solid::StartOverlap;
+use colltrans_assembly::candidates::{Choice, Finer, Origin, candidates};
+use colltrans_assembly::liaisons::liaisons;
+use colltrans_assembly::map::{MapOptions, RemovalMap};
+use colltrans_assembly::matrix::Matrix;
+use colltrans_assembly::plan::{Plan, PlanOptions, disassemble};
+use colltrans_assembly::read::{ReadOptions, read};
+use colltrans_assembly::rooms::{PartRoom, room_of, rooms};
+use colltrans_assembly::sphere::angle;
+use colltrans_assembly::start::Start;
+use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Ignored, Part, Piece, Room, Watch};
+use colltrans_testkit::random::Random;
+use glam::{DAffine3, DVec3};
+
+fn planned(assembly: &Assembly) -> Plan {
+    planned_with(assembly, PlanOptions::default())
+}
+
+fn planned_with(assembly: &Assembly, options: PlanOptions) -> Plan {
+    let bodies = Bodies::new(assembly, Fit::default_for(assembly)).unwrap();
+    let touching = liaisons(&bodies, Watch::default()).unwrap();
+    let found = candidates(&bodies, &touching, &Choice::default()).unwrap();
+    let all = vec![true; bodies.len()];
+    let start = StartOverlap::Refuse;
+    let matrix = Matrix::new(&bodies, &found.directions(), &all, start, Watch::default()).unwrap();
+    disassemble(&bodies, &matrix, &found.finer, options, Watch::default()).unwrap()
+}
+
+/// What leaves, in order, and what all of it leaves.
+fn steps<'a>(assembly: &'a Assembly, plan: &Plan) -> Vec<Vec<&'a str>> {
+    let last = Some(&plan.last).filter(|parts| !parts.is_empty());
+    let steps = plan.steps.iter().map(|s| &s.parts).chain(last);
+    steps.map(|parts| assembly.names(parts)).collect()
+}
+
+/// The room of a part among all others.
+fn room_of_part(assembly: &Assembly, fit: Fit, part: usize, d: DVec3) -> PartRoom {
+    let bodies = Bodies::new(assembly, fit).unwrap();
+    let (all, start) = (vec![true; bodies.len()], StartOverlap::Refuse);
+    room_of(&bodies, &[part], &all, d, start, &mut Default::default())
+}
+
+#[test]
+fn linked_rings_do_not_come_apart() {
+    let assembly = Assembly::new(links().to_vec()).unwrap();
+    let plan = planned(&assembly);
+    assert!(plan.steps.is_empty());
+    assert_eq!(plan.left, [0, 1]);
+    assert_eq!(plan.stuck.len(), 1);
+    assert_eq!(plan.stuck[0].parts, [0, 1]);
+    assert_eq!(plan.stuck[0].holds[0].by[0].0, [1]);
+}
+
+#[test]
+fn that_linked_rings_are_stuck_is_proven_in_few_cells() {
+    let assembly = Assembly::new(links().to_vec()).unwrap();
+    let plan = planned(&assembly);
+    let [stuck] = &plan.stuck[..] else { panic!("one group: {:?}", plan.stuck) };
+    let cells = stuck.proven.expect("a proof");
+    assert!((3..1_000).contains(&cells), "{cells}");
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    assert!(stuck.because(&bodies).contains(&format!("proven in {cells} cells")));
+    // The plan is the same but for the proof.
+    let asked = planned_with(&assembly, PlanOptions::default().with_proofs(false));
+    assert_eq!((asked.stuck[0].proven, &asked.left), (None, &plan.left));
+    assert!(asked.stuck[0].because(&bodies).contains("directions asked"));
+}
+
+#[test]
+fn what_is_ignored_is_not_proven_to_be_stuck() {
+    let [a, b] = links();
+    let names = [a.name().to_owned(), b.name().to_owned()];
+    let pair = [[names[0].as_str(), names[1].as_str()]];
+    let assembly = Assembly::new(links().to_vec()).unwrap();
+    let assembly = assembly.with_ignored(&pair, Ignored::Overlap).unwrap();
+    let plan = planned(&assembly);
+    assert_eq!(plan.stuck.iter().map(|stuck| stuck.proven).collect::<Vec<_>>(), [None]);
+}
+
+#[test]
+fn linked_rings_leave_a_well_as_one() {
+    let [a, b] = links();
+    let well = part("well", &well([-2.5, -2.5, -3.0], [4.5, 2.5, 5.0], 1.0)).with_fixed(true);
+    let assembly = Assembly::new(vec![a, b, well]).unwrap();
+    let plan = planned(&assembly);
+    assert_eq!(steps(&assembly, &plan), [["a", "b"]]);
+    assert_eq!(plan.steps[0].direction, DVec3::Z);
+    // The lowest point is at -2.5, the rim at 5.
+    assert!((plan.steps[0].travel.value - 7.5).abs() < 1e-9);
+    assert_eq!(plan.left, [2]);
+    assert_eq!(plan.stuck.len(), 1, "the rings themselves");
+}
+
+#[test]
+fn a_tight_peg_finds_its_only_direction_in_any_rotation() {
+    let mut random = Random::new(21);
+    for _ in 0..5 {
+        let turn = DAffine3::from_rotation_translation(random.rotation(), random.direction() * 3.0);
+        let peg = turned("peg", &[cuboid([-1.0, -1.0, 0.0], [1.0, 1.0, 6.0])], turn);
+        let block = turned("block", &well([-1.0, -1.0, 0.0], [1.0, 1.0, 5.0], 2.0), turn);
+        let assembly = Assembly::new(vec![peg, block]).unwrap();
+        let plan = planned(&assembly);
+        assert_eq!(steps(&assembly, &plan), [vec!["peg"], vec!["block"]]);
+        let axis = turn.transform_vector3(DVec3::Z);
+        assert!(angle(plan.steps[0].direction, axis) < 1e-6);
+        assert!((plan.steps[0].travel.value - 5.0).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn the_lid_goes_before_what_it_covers() {
+    let assembly = boxed();
+    let plan = planned(&assembly);
+    let order = steps(&assembly, &plan);
+    let at = |name| order.iter().position(|s| s == &[name]).unwrap();
+    assert!(at("lid") < at("core"), "{order:?}");
+    assert!(plan.left.is_empty() && plan.stuck.is_empty());
+}
+
+#[test]
+fn what_is_walled_in_by_what_is_fixed_stays() {
+    let core = part("core", &[cuboid([1.0; 3], [2.0; 3])]);
+    let mut walls = well([0.0; 3], [3.0; 3], 1.0);
+    walls.push(cuboid([-1.0, -1.0, 3.0], [4.0, 4.0, 4.0]));
+    let assembly = Assembly::new(vec![core, part("walls", &walls).with_fixed(true)]).unwrap();
+    let plan = planned(&assembly);
+    assert!(plan.steps.is_empty());
+    assert_eq!(plan.left, [0, 1]);
+    assert_eq!(plan.stuck[0].holds.len(), 1);
+    assert_eq!(plan.stuck[0].holds[0].by[0].0, [1]);
+}
+
+#[test]
+fn no_parts_one_part_and_parts_far_apart() {
+    let none = Assembly::default();
+    assert_eq!(planned(&none), Plan::default());
+    let one = Assembly::new(vec![part("one", &[cuboid([0.0; 3], [1.0; 3])])]).unwrap();
+    let plan = planned(&one);
+    assert_eq!((plan.steps.len(), &plan.last[..]), (0, &[0][..]));
+    let at = |k: usize| {
+        let low = 1e4 * k as f64;
+        part(&format!("p{k}"), &[cuboid([low; 3], [low + 1.0; 3])])
+    };
+    let far = Assembly::new((0..5).map(at).collect()).unwrap();
+    let plan = planned(&far);
+    assert_eq!((plan.steps.len(), plan.last.len()), (4, 1));
+    assert!(plan.steps.iter().all(|s| s.travel.value == 0.0));
+}
+
+#[test]
+fn a_thousand_cubes_come_out_one_by_one() {
+    let mut parts = Vec::new();
+    for (x, y, z) in (0..1_000).map(|k| (k % 10, k / 10 % 10, k / 100)) {
+        let low = [x, y, z].map(f64::from);
+        parts.push(part(&format!("{x}{y}{z}"), &[cuboid(low, low.map(|c| c + 1.0))]));
+    }
+    let assembly = Assembly::new(parts).unwrap();
+    let plan = planned(&assembly);
+    assert_eq!((plan.steps.len(), plan.last.len()), (999, 1));
+    assert!(plan.steps.iter().all(|s| s.parts.len() == 1));
+    assert!(plan.left.is_empty() && plan.stuck.is_empty());
+}
+
+#[test]
+fn rooms_with_the_best_so_far_are_rooms_of_all_pairs() {
+    let mut random = Random::new(4);
+    for round in 0..20 {
+        let assembly = scattered(&mut random, 12, round % 2 == 0);
+        let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
+        let directions: Vec<DVec3> = DVec3::AXES
+            .into_iter()
+            .flat_map(|d| [d, -d])
+            .chain((0..6).map(|_| random.direction()))
+            .collect();
+        let start = StartOverlap::Ignore;
+        let table = rooms(&bodies, &directions, start, Watch::default()).unwrap();
+        let all = vec![true; bodies.len()];
+        let matrix = Matrix::new(&bodies, &directions, &all, start, Watch::default()).unwrap();
+        let mut workspace = Default::default();
+        for (k, &d) in directions.iter().enumerate() {
+            for a in 0..bodies.len() {
+                let mut least = f64::INFINITY;
+                for b in (0..bodies.len()).filter(|&b| b != a) {
+                    let room = bodies.room([a, b], d, None, start, &mut workspace);
+                    let met = matrix.of_part(k, a).iter().find(|m| m.fixed == b);
+                    match room {
+                        Room::Free => assert!(met.is_none()),
+                        Room::Overlapping => panic!("overlaps are ignored"),
+                        Room::Blocked(stop) => {
+                            let distance = met.expect("it meets").displaced_distance();
+                            assert!((distance - stop.displaced.value).abs() < 1e-9);
+                            least = least.min(stop.displaced.value);
+                        }
+                    }
+                }
+                let found = table[a][k].displaced_distance();
+                let equal = found == least || (found - least).abs() < 1e-9;
+                // Of what stops a part at once, among those it overlaps, the first found is named.
+                let at_once = 4.0 * Fit::default_for(&assembly).tolerance();
+                let overlaps = (0..bodies.len()).any(|b| b != a && bodies.overlaps(a, b));
+                let same = overlaps && least <= at_once && (least..=at_once).contains(&found);
+                assert!(equal || same, "{found} {least}");
+                let room = matrix.room(k, a).displaced_distance();
+                assert!(room == least || (room - least).abs() < 1e-9);
+            }
+        }
+    }
+}
+
+#[test]
+fn the_answer_does_not_depend_on_threads() {
+    let assembly = boxed();
+    let ask = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| planned(&assembly))
+    };
+    let once = ask(1);
+    assert_eq!(once, ask(2));
+    assert_eq!(once, ask(7));
+}
+
+#[test]
+fn a_cancelled_run_says_so() {
+    let assembly = boxed();
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    let flag = AtomicBool::new(true);
+    let watch = Watch::default().with_cancel(&flag);
+    let result = rooms(&bodies, &[DVec3::X], StartOverlap::Refuse, watch);
+    assert!(matches!(result, Err(AssemblyError::Cancelled)));
+}
+
+type Stage<'a> = &'a dyn Fn(Watch) -> Result<(), AssemblyError>;
+
+#[test]
+fn any_stage_ends_soon_after_it_is_cancelled() {
+    let assembly = boxed();
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    // Called off by the observer, after so many calls: in the midst of each stage.
+    let asked = |limit: usize, work: Stage| {
+        let (flag, calls) = (AtomicBool::new(false), AtomicUsize::new(0));
+        let look = |_, _, _| {
+            if calls.fetch_add(1, Ordering::Relaxed) + 1 >= limit {
+                flag.store(true, Ordering::Relaxed);
+            }
+        };
+        let result = work(Watch::default().with_cancel(&flag).with_progress(&look));
+        (result, calls.into_inner())
+    };
+    let touching = liaisons(&bodies, Watch::default()).unwrap();
+    let found = candidates(&bodies, &touching, &Choice::default()).unwrap();
+    let (all, start) = (vec![true; bodies.len()], StartOverlap::Refuse);
+    let directions = found.directions();
+    let matrix = Matrix::new(&bodies, &directions, &all, start, Watch::default()).unwrap();
+    let options = MapOptions::default().with_samples(162);
+    let stages: [Stage; 6] = [
+        &|w| Start::new(&bodies, w).map(drop),
+        &|w| liaisons(&bodies, w).map(drop),
+        &|w| Matrix::new(&bodies, &directions, &all, start, w).map(drop),
+        &|w| rooms(&bodies, &directions, start, w).map(drop),
+        &|w| disassemble(&bodies, &matrix, &found.finer, Default::default(), w).map(drop),
+        &|w| RemovalMap::new(&bodies, &[0], &directions, options, w).map(drop),
+    ];
+    for (k, stage) in stages.iter().enumerate() {
+        let (result, whole) = asked(usize::MAX, stage);
+        assert!(result.is_ok(), "stage {k}");
+        for limit in [1, 2] {
+            let (result, calls) = asked(limit, stage);
+            assert!(matches!(result, Err(AssemblyError::Cancelled)), "stage {k}, {limit}");
+            assert!(calls < whole.max(limit + rayon::current_num_threads() + 1), "stage {k}");
+        }
+    }
+}
+
+#[test]
+fn rooms_maps_and_plans_are_the_same_on_any_number_of_threads() {
+    let mut random = Random::new(14);
+    let assembly = scattered(&mut random, 14, false);
+    let directions: Vec<DVec3> = (0..150).map(|_| random.direction()).collect();
+    let ask = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
+            let start = StartOverlap::Ignore;
+            let table = rooms(&bodies, &directions, start, Watch::default()).unwrap();
+            let options =
+                MapOptions::default().with_samples(162).with_border(0.05).with_start(start);
+            let map = RemovalMap::new(&bodies, &[3], &[], options, Watch::default()).unwrap();
+            let all = vec![true; bodies.len()];
+            let axes = DVec3::AXES;
+            let matrix = Matrix::new(&bodies, &axes, &all, start, Watch::default()).unwrap();
+            let options = PlanOptions::default().with_start(start);
+            let plan = disassemble(&bodies, &matrix, &[], options, Watch::default()).unwrap();
+            (table, map.rooms, matrix, plan)
+        })
+    };
+    let once = ask(1);
+    assert!(once.0.iter().flatten().any(PartRoom::is_free));
+    assert_eq!(once, ask(2));
+    assert_eq!(once, ask(5));
+}
+
+#[test]
+fn parts_thinner_than_the_tolerance_are_told_of() {
+    let plate = part("plate", &[cuboid([0.0, 0.0, 0.0], [9.0, 9.0, 0.1])]);
+    let cube = part("cube", &[cuboid([0.0, 0.0, 1.0], [1.0, 1.0, 2.0])]);
+    let assembly = Assembly::new(vec![plate, cube]).unwrap();
+    let remarks = |fit: Fit| {
+        let bodies = Bodies::new(&assembly, fit).unwrap();
+        [0, 1].map(|k| bodies.remark(k))
+    };
+    assert_eq!(remarks(Fit::Tolerance(0.05)), [None, None]);
+    let [plate, cube] = remarks(Fit::Tolerance(0.3));
+    let plate = plate.unwrap();
+    assert!(plate.contains("nothing of it is left") && plate.contains("inside out"), "{plate}");
+    assert_eq!(cube, None);
+    // Turned through its middle a cube has all its facets the right way round.
+    let [_, cube] = remarks(Fit::Tolerance(5.0));
+    assert!(cube.unwrap().contains("nothing of it is left"));
+    assert_eq!(remarks(Fit::Apart(0.3)), [None, None]);
+}
+
+#[test]
+fn a_margin_is_kept_or_not() {
+    // 0.5 of air on every side.
+    let peg = part("peg", &[cuboid([-0.5, -0.5, 0.5], [0.5, 0.5, 6.0])]);
+    let block = part("block", &well([-1.0, -1.0, 0.0], [1.0, 1.0, 5.0], 2.0));
+    let assembly = Assembly::new(vec![peg, block]).unwrap();
+    let room = |apart: f64, d: DVec3| room_of_part(&assembly, Fit::Apart(apart), 0, d);
+    assert!(room(0.4, DVec3::Z).is_free());
+    assert!(matches!(room(0.6, DVec3::Z), PartRoom::Overlapping { .. }));
+    let aside = room(0.4, DVec3::X);
+    assert!((aside.displaced_distance() - 0.1).abs() < 1e-12, "{aside:?}");
+    assert!(aside.distance() <= 0.1 && aside.distance() > 0.1 - 1e-11, "{aside:?}");
+    for length in [f64::NAN, -1.0, f64::INFINITY, 1e61] {
+        let refused = Bodies::new(&assembly, Fit::Apart(length));
+        assert!(matches!(refused, Err(AssemblyError::Length { .. })), "{length}");
+    }
+}
+
+/// Parts that were grown by half of the length each would meet at their corners.
+#[test]
+fn corners_pass_each_other_diagonally_at_the_length_to_keep() {
+    let a = part("a", &[cuboid([0.0; 3], [1.0; 3])]);
+    let b = part("b", &[cuboid([1.4, 1.4, 4.0], [2.4, 2.4, 5.0])]);
+    let assembly = Assembly::new(vec![a, b]).unwrap();
+    let room = |apart: f64| room_of_part(&assembly, Fit::Apart(apart), 0, DVec3::Z);
+    assert!(room(0.5).is_free());
+    let stopped = room(0.6);
+    let right = 3.0 - (0.36_f64 - 0.32).sqrt();
+    assert!((stopped.displaced_distance() - right).abs() < 1e-9, "{stopped:?}");
+}
+
+#[test]
+fn overlaps_at_the_start_are_measured_and_can_be_ignored() {
+    // A press fit of 0.05 on every side: half of a tolerance of 0.05 from the pin, half from the block.
+    let parts = vec![
+        part("pin", &[cuboid([-1.05, -1.05, 1.0], [1.05, 1.05, 6.0])]),
+        part("block", &well([-1.0, -1.0, 0.0], [1.0, 1.0, 5.0], 2.0)),
+    ];
+    let assembly = Assembly::new(parts).unwrap();
+    let bodies = Bodies::new(&assembly, Fit::Tolerance(0.0)).unwrap();
+    let start = Start::new(&bodies, Watch::default()).unwrap();
+    assert_eq!(start.overlaps.len(), 1);
+    let depth = start.overlaps[0].depth.unwrap();
+    assert!((depth - 0.05).abs() < 1e-6, "{depth}");
+    let suggested = start.suggested.unwrap();
+    assert!(suggested > depth && suggested < 1.2 * depth);
+    let room = |fit: Fit, d: DVec3| room_of_part(&assembly, fit, 0, d);
+    assert!(matches!(room(Fit::Tolerance(0.0), DVec3::Z), PartRoom::Overlapping { .. }));
+    assert!(room(Fit::Tolerance(suggested), DVec3::Z).is_free());
+    let stopped = room(Fit::Tolerance(suggested), DVec3::NEG_Z);
+    assert!((stopped.displaced_distance() - 1.0 - suggested).abs() < 1e-9, "{stopped:?}");
+    assert!(stopped.distance() <= 1.0 && 1.0 - stopped.distance() < 1e-9, "{stopped:?}");
+    let listed = assembly.clone().with_ignored(&[["pin", "block"]], Ignored::Overlap).unwrap();
+    let bodies = Bodies::new(&listed, Fit::Tolerance(0.0)).unwrap();
+    assert!(Start::new(&bodies, Watch::default()).unwrap().overlaps.is_empty());
+}
+
+fn room_with(assembly: &Assembly, d: DVec3) -> PartRoom {
+    room_of_part(assembly, Fit::Tolerance(0.0), 0, d)
+}
+
+#[test]
+fn an_overlap_that_is_ignored_lets_pass_what_begins_later_does_not() {
+    // The pin is pressed into the walls of the well, whose floor is 1 below it.
+    let parts = vec![
+        part("pin", &[cuboid([-1.05, -1.05, 1.0], [1.05, 1.05, 6.0])]),
+        part("block", &well([-1.0, -1.0, 0.0], [1.0, 1.0, 5.0], 2.0)),
+    ];
+    let assembly = Assembly::new(parts).unwrap();
+    let pair = [["block", "pin"]];
+    let ignored = assembly.clone().with_ignored(&pair, Ignored::Overlap).unwrap();
+    assert!(room_with(&ignored, DVec3::Z).is_free());
+    let PartRoom::Blocked { stop, .. } = room_with(&ignored, DVec3::NEG_Z) else {
+        panic!("the floor is below")
+    };
+    // Asked with the depth of the overlap, 0.05, and a twentieth more as a tolerance; said of the true
+    // place.
+    assert!((stop.distance() - 1.0).abs() < 1e-9, "{stop:?}");
+    let plan = planned(&ignored);
+    assert_eq!(steps(&ignored, &plan), [["pin"], ["block"]]);
+    assert_eq!((plan.steps[0].direction, &plan.steps[0].ignored[..]), (DVec3::Z, &[[0, 1]][..]));
+    assert_eq!(plan.steps[0].ignores(&ignored).unwrap(), "ignored: pin and block");
+    let always = ignored.with_ignored(&pair, Ignored::Always).unwrap();
+    assert!(room_with(&always, DVec3::NEG_Z).is_free());
+    // What lets more pass stays, in whatever order they are named.
+    let again = always.with_ignored(&pair, Ignored::Overlap).unwrap();
+    assert!(room_with(&again, DVec3::NEG_Z).is_free());
+    assert!(planned(&again).steps[0].ignores(&again).is_some());
+}
+
+#[test]
+fn an_overlap_that_is_ignored_does_not_become_deeper() {
+    let parts = vec![
+        part("cube", &[cuboid([0.0; 3], [1.0; 3])]),
+        part("long", &[cuboid([0.75, -1.0, -1.0], [9.0, 2.0, 2.0])]),
+    ];
+    let assembly = Assembly::new(parts).unwrap();
+    let ignored = assembly.with_ignored(&[["cube", "long"]], Ignored::Overlap).unwrap();
+    for free in [DVec3::NEG_X, DVec3::Y, DVec3::NEG_Z] {
+        assert!(room_with(&ignored, free).is_free(), "{free}");
+    }
+    // In their true place the faces that stop it are past each other by the depth, 0.25; a twentieth
+    // deeper is let pass as rounding.
+    let PartRoom::Blocked { stop, .. } = room_with(&ignored, DVec3::X) else { panic!("deeper") };
+    assert_eq!(stop.distance(), 0.0);
+    assert!((stop.displaced.value + 0.25).abs() < 1e-9, "{stop:?}");
+    let away = steps(&ignored, &planned(&ignored));
+    assert_eq!(away, [["cube"], ["long"]]);
+    assert!(planned(&ignored).steps[0].direction.x <= 0.0);
+}
+
+#[test]
+fn what_is_stuck_is_said_of_the_directions_asked() {
+    let assembly = Assembly::new(links().to_vec()).unwrap();
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    let (axes, all) = ([DVec3::X, DVec3::Y, DVec3::Z], [true; 2]);
+    let start = StartOverlap::Refuse;
+    let matrix = Matrix::new(&bodies, &axes, &all, start, Watch::default()).unwrap();
+    // The finer directions repeat one of the matrix, and each other: each counts once.
+    let finer: Vec<Finer> = [DVec3::X, DVec3::NEG_X, DVec3::NEG_X]
+        .map(|direction| Finer { direction, origin: Origin::Given, part: None })
+        .to_vec();
+    let options = PlanOptions::default().with_samples(0).with_proofs(false);
+    let plan = disassemble(&bodies, &matrix, &finer, options, Watch::default()).unwrap();
+    assert_eq!(plan.stuck[0].directions, 4);
+    let because = plan.stuck[0].because(&bodies);
+    assert!(
+        because
+            .starts_with("no single straight motion along the 4 directions asked takes them apart"),
+        "{because}"
+    );
+}
+
+#[test]
+fn maps_find_half_spheres_and_isolated_directions() {
+    let map = |parts: Vec<_>, directions: &[DVec3]| {
+        let assembly = Assembly::new(parts).unwrap();
+        let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
+        let options = MapOptions::default().with_samples(642).with_border(0.02);
+        RemovalMap::new(&bodies, &[0], directions, options, Watch::default()).unwrap()
+    };
+    let cube = part("cube", &[cuboid([-0.5, -0.5, 0.0], [0.5, 0.5, 1.0])]);
+    let floor = part("floor", &[cuboid([-1e4, -1e4, -1.0], [1e4, 1e4, 0.0])]);
+    let resting = map(vec![cube, floor], &[]);
+    assert_eq!(resting.regions.len(), 1);
+    assert!((resting.free_share() - 0.5).abs() < 0.01, "{}", resting.free_share());
+    assert!(angle(resting.regions[0].center, DVec3::Z) < 0.01);
+    assert!(resting.regions[0].border.iter().all(|d| d.z.abs() < 0.02));
+    let axis = DVec3::new(0.2, 0.3, 0.9).normalize();
+    let turn = DAffine3::from_quat(glam::DQuat::from_rotation_arc(DVec3::Z, axis));
+    let peg = turned("peg", &[cuboid([-1.0, -1.0, 0.0], [1.0, 1.0, 6.0])], turn);
+    let block = turned("block", &well([-1.0, -1.0, 0.0], [1.0, 1.0, 5.0], 2.0), turn);
+    let tight = map(vec![peg, block], &[axis, DVec3::X]);
+    assert!(tight.isolated.len() == 1 && angle(tight.isolated[0], axis) < 1e-6);
+    assert!(tight.free_share() < 1e-3);
+    for exact in [&resting, &tight] {
+        let cover = exact.cover.as_ref().unwrap();
+        assert!(cover.undecided.is_empty() && cover.undecided_share() == 0.0);
+        assert_eq!((cover.regions.len(), cover.arcs.len(), cover.points.len()), (1, 0, 0));
+    }
+    let half = resting.cover.as_ref().unwrap();
+    assert!((half.free_share() - 0.5).abs() < 1e-9, "{}", half.free_share());
+    // What overlaps where it is has no cover; samples are told, and why.
+    let lower = part("lower", &[cuboid([-0.5, -0.5, -0.5], [0.5, 0.5, 0.5])]);
+    let floor = part("floor", &[cuboid([-9.0, -9.0, -1.0], [9.0, 9.0, 0.0])]);
+    let sunk = map(vec![lower, floor], &[]);
+    assert!(sunk.cover.is_err_and(|why| why.contains("overlap")));
+}
+
+#[test]
+fn directions_and_names_that_are_wrong_are_refused() {
+    let assembly = boxed();
+    assert!(matches!(assembly.index("lod"), Err(AssemblyError::UnknownPart { near: Some(_), .. })));
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    for given in [DVec3::ZERO, DVec3::splat(f64::NAN), DVec3::splat(f64::INFINITY)] {
+        let choice = Choice::default().with_given(vec![given]);
+        assert!(matches!(candidates(&bodies, &[], &choice), Err(AssemblyError::Direction { .. })));
+    }
+    let twice = vec![part("a", &[cuboid([0.0; 3], [1.0; 3])]); 2];
+    assert!(matches!(Assembly::new(twice), Err(AssemblyError::SameName { .. })));
+    let alone = assembly.clone().with_ignored(&[["lid", "lid"]], Ignored::Overlap);
+    assert!(matches!(alone, Err(AssemblyError::SamePart { .. })));
+    assert!(matches!(Part::new(" ", &[]), Err(AssemblyError::NoName)));
+}
+
+/// The sides of a box that are listed, of sheet.
+fn sheets(low: [f64; 3], high: [f64; 3], sides: &[usize]) -> Piece {
+    let mut piece = cuboid(low, high);
+    piece.mesh.faces = sides.iter().map(|&side| piece.mesh.faces[side].clone()).collect();
+    piece
+}
+
+fn along(assembly: &Assembly, part: usize, d: DVec3) -> PartRoom {
+    room_of_part(assembly, Fit::Tolerance(1e-6), part, d)
+}
+
+#[test]
+fn a_sheet_on_edge_does_not_pass_through_a_block() {
+    // In the plane y = 1, beside a block; a wall of a box that is flat.
+    let sheet = part("sheet", &[sheets([-9.0, 1.0, -1.0], [-3.0, 1.0, 1.0], &[2])]);
+    let block = part("block", &[cuboid([0.0, -4.0, -4.0], [4.0; 3])]);
+    let assembly = Assembly::new(vec![sheet, block]).unwrap();
+    assert!(assembly.parts()[0].is_surface() && !assembly.parts()[1].is_surface());
+    let room = along(&assembly, 0, DVec3::X);
+    assert!((room.distance() - 3.0).abs() < 1e-5, "{room:?}");
+    assert!(along(&assembly, 0, DVec3::NEG_X).is_free());
+    assert!((along(&assembly, 1, DVec3::NEG_X).distance() - 3.0).abs() < 1e-5);
+    let plan = planned(&assembly);
+    assert_eq!(steps(&assembly, &plan)[0], ["sheet"]);
+    assert_eq!(plan.steps[0].surfaces, [0], "it rests on itself");
+}
+
+#[test]
+fn a_cube_leaves_a_tray_of_sheets_upwards() {
+    let tray = part("tray", &[sheets([-4.0, -4.0, 0.0], [4.0, 4.0, 5.0], &[0, 2, 3, 4, 5])]);
+    let cube = part("cube", &[cuboid([-1.0, -1.0, 0.0], [1.0, 1.0, 2.0])]);
+    let assembly = Assembly::new(vec![cube, tray]).unwrap();
+    for d in [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y] {
+        assert!((along(&assembly, 0, d).distance() - 3.0).abs() < 1e-5, "{d}");
+        assert!((along(&assembly, 1, d).distance() - 3.0).abs() < 1e-5, "{d}");
+    }
+    assert!(along(&assembly, 0, DVec3::NEG_Z).distance() < 1e-5);
+    let plan = planned(&assembly);
+    assert_eq!(steps(&assembly, &plan), [["cube"], ["tray"]]);
+    assert_eq!(plan.steps[0].direction, DVec3::Z);
+    assert_eq!(plan.steps[0].surfaces, [1], "the tray, which it leaves");
+}
+
+#[test]
+fn files_of_sheets_say_the_same() {
+    let folder =
+        std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/assemblies");
+    for (name, first, d) in
+        [("cube_in_tray", "cube", Some(DVec3::Z)), ("sheet_through_block", "sheet", None)]
+    {
+        let source = folder.join(name);
+        if !source.exists() {
+            continue;
+        }
+        let assembly = read(&source, &ReadOptions::default()).unwrap();
+        let plan = planned(&assembly);
+        assert_eq!(steps(&assembly, &plan)[0], [first], "{name}");
+        assert!(d.is_none_or(|d| plan.steps[0].direction == d), "{name}");
+        assert_eq!(plan.steps[0].surfaces.len(), 1, "{name}");
+    }
+}
+
+/// Fins, doubled squares and turned facets of CAD exports: 5 of 6 bodies are whole then.
+#[test]
+fn surfaces_that_enclose_nothing_are_mended_or_refused() {
+    let folder = std::path::Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../../shared/data/assemblies/pairs");
+    for (name, mended, fins) in
+        [("00638", "plug", 14), ("00117", "socket", 50), ("01132", "plug", 16)]
+    {
+        let source = folder.join(name);
+        if !source.exists() {
+            continue;
+        }
+        let assembly = read(&source, &ReadOptions::default()).unwrap();
+        let part = &assembly.parts()[assembly.index(mended).unwrap()];
+        let said = format!("{fins} faces that hung on the surface left out");
+        assert!(part.defects()[0].starts_with(&said), "{name}: {:?}", part.defects());
+        // One of 01132 is all but closed: two of its facets are folded onto others.
+        assert_eq!(part.is_surface(), name == "01132", "{name}");
+        assert!(!planned(&assembly).steps.is_empty(), "{name}");
+        let refused =
+            read(&source, &ReadOptions::default().with_as_is(true)).unwrap_err().to_string();
+        assert!(
+            refused.contains(&format!("part {mended}: it would have to be mended")),
+            "{refused}"
+        );
+        assert!(refused.contains(&said), "{refused}");
+    }
+}

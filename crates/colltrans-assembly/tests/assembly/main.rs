@@ -1,0 +1,23 @@
+//! Assemblies and robots, in one program: each is linked for itself.
+
+#[path = "../common/mod.rs"]
+mod common;
+
+mod bounds;
+mod collection;
+mod constraints;
+mod fuzz_corpus;
+mod hints;
+mod hostile;
+mod known;
+mod oracle;
+mod order;
+mod read;
+mod report;
+mod robot;
+mod roles;
+mod several;
+mod split;
+mod stand;
+mod turning;
+mod validation;

@@ -1,0 +1,326 @@
+//! Answers held against something slow and obvious: boxes whose rooms are intervals, steps walked bit
+//! by bit, and small machines that anyone takes apart by hand.
+
+use crate::common::*;
+use colltrans::solid::{StartOverlap, Workspace};
+use colltrans_assembly::candidates::{Choice, candidates};
+use colltrans_assembly::liaisons::liaisons;
+use colltrans_assembly::matrix::Matrix;
+use colltrans_assembly::plan::{Plan, PlanOptions, disassemble};
+use colltrans_assembly::rooms::{PartRoom, room_of, rooms};
+use colltrans_assembly::sphere::Sphere;
+use colltrans_assembly::{Assembly, Bodies, Fit, Watch};
+use colltrans_testkit::random::Random;
+use glam::{DAffine3, DVec3};
+
+fn planned(bodies: &Bodies, options: PlanOptions) -> Plan {
+    let touching = liaisons(bodies, Watch::default()).unwrap();
+    let found = candidates(bodies, &touching, &Choice::default()).unwrap();
+    let all = vec![true; bodies.len()];
+    let matrix =
+        Matrix::new(bodies, &found.directions(), &all, options.start, Watch::default()).unwrap();
+    disassemble(bodies, &matrix, &found.finer, options, Watch::default()).unwrap()
+}
+
+/// Taken apart with a tolerance; the names of each step that is not within a group.
+fn taken_apart(parts: Vec<colltrans_assembly::Part>, tolerance: f64) -> (Assembly, Plan) {
+    let assembly = Assembly::new(parts).unwrap();
+    let bodies = Bodies::new(&assembly, Fit::Tolerance(tolerance)).unwrap();
+    let plan = planned(&bodies, PlanOptions::default());
+    walk(&bodies, &plan);
+    (assembly.clone(), plan)
+}
+
+/// What leaves, in order, and what all of it leaves.
+fn names<'a>(assembly: &'a Assembly, plan: &Plan) -> Vec<Vec<&'a str>> {
+    let last = Some(&plan.last).filter(|parts| !parts.is_empty());
+    let steps = plan.steps.iter().map(|s| &s.parts).chain(last);
+    steps.map(|parts| assembly.names(parts)).collect()
+}
+
+/// Walks every step in small moves, and looks whether anything overlaps that did not before; at the
+/// end each part has left once or is left.
+fn walk(bodies: &Bodies, plan: &Plan) {
+    let mut gone = vec![false; bodies.len()];
+    for (k, step) in plan.steps.iter().enumerate() {
+        let group: Vec<usize> = match step.within {
+            None => (0..bodies.len()).filter(|&p| !gone[p]).collect(),
+            // What is left of the group that was taken out before.
+            Some(outer) => {
+                let earlier = plan.steps[..k].iter().filter(|s| s.within == Some(outer));
+                let apart: Vec<usize> = earlier.flat_map(|s| s.parts.clone()).collect();
+                let all = plan.steps[outer].parts.iter().copied();
+                all.filter(|p| !apart.contains(p)).collect()
+            }
+        };
+        assert!(step.parts.iter().all(|p| group.contains(p)));
+        let mut at = vec![DVec3::ZERO; bodies.len()];
+        // Each leg, and those that go back to where they were once the parts are gone.
+        for (n, leg) in step.path.iter().chain(&step.back).enumerate() {
+            let out = n >= step.path.len();
+            let others = group.iter().filter(|p| !leg.parts.contains(p));
+            let others: Vec<usize> =
+                others.copied().filter(|p| !out || !step.parts.contains(p)).collect();
+            for share in 1..=100 {
+                let by = leg.direction * (leg.travel * f64::from(share) / 100.0);
+                for (&a, &b) in leg.parts.iter().flat_map(|a| others.iter().map(move |b| (a, b))) {
+                    let by = at[a] + by - at[b];
+                    assert!(!bodies.overlaps_displaced(a, by, b), "step {k}, {a} meets {b}");
+                }
+            }
+            leg.parts.iter().for_each(|&p| at[p] += leg.direction * leg.travel);
+        }
+        if step.within.is_none() {
+            step.parts.iter().for_each(|&p| gone[p] = true);
+        }
+    }
+    let left: Vec<usize> = (0..bodies.len()).filter(|&p| !gone[p]).collect();
+    assert_eq!(left, [&plan.left[..], &plan.last].concat());
+}
+
+/// How far an open box can go before it meets another: `None` if never, negative if they overlap now.
+fn room_of_boxes(a: [DVec3; 2], b: [DVec3; 2], d: DVec3) -> Option<f64> {
+    let (mut enter, mut exit) = (f64::NEG_INFINITY, f64::INFINITY);
+    for k in 0..3 {
+        let (low, high) = (b[0][k] - a[1][k], b[1][k] - a[0][k]);
+        if d[k] == 0.0 {
+            if low >= 0.0 || high <= 0.0 {
+                return None;
+            }
+        } else {
+            let (x, y) = (low / d[k], high / d[k]);
+            enter = enter.max(x.min(y));
+            exit = exit.min(x.max(y));
+        }
+    }
+    (enter < exit && exit > 0.0).then_some(enter)
+}
+
+#[test]
+fn rooms_of_boxes_are_intervals() {
+    let mut random = Random::new(77);
+    let (mut free, mut blocked, mut overlapping, mut near) = (0, 0, 0, 0);
+    for round in 0..40 {
+        let snapped = round % 2 == 0;
+        let tolerance = if round % 4 < 2 { 0.0 } else { 0.125 };
+        let assembly = scattered(&mut random, 12, snapped);
+        let bodies = Bodies::new(&assembly, Fit::Tolerance(tolerance)).unwrap();
+        let boxes: Vec<[DVec3; 2]> = assembly
+            .parts()
+            .iter()
+            .map(|p| p.solid().bounds().grown(-tolerance / 2.0))
+            .map(|b| [b.low, b.high])
+            .collect();
+        let mut directions = vec![DVec3::X, DVec3::NEG_Z];
+        // Edges pass exactly by edges: no component is rounded.
+        directions.push(DVec3::new(0.75, 0.0, -1.0));
+        directions.extend((0..4).map(|_| random.direction()));
+        let found = rooms(&bodies, &directions, StartOverlap::Refuse, Watch::default()).unwrap();
+        for a in 0..12 {
+            for (k, &d) in directions.iter().enumerate() {
+                let all = (0..12)
+                    .filter(|&b| b != a)
+                    .filter_map(|b| room_of_boxes(boxes[a], boxes[b], d));
+                match (all.reduce(f64::min), found[a][k]) {
+                    (None, PartRoom::Free) => free += 1,
+                    (Some(t), PartRoom::Overlapping { .. }) if t < 1e-9 => overlapping += 1,
+                    (Some(t), PartRoom::Blocked { stop, by, .. }) => {
+                        blocked += 1;
+                        assert!(
+                            t > -1e-9 && (stop.displaced.value - t).abs() < 1e-9,
+                            "{t}, {stop:?}"
+                        );
+                        let own = room_of_boxes(boxes[a], boxes[by], d).unwrap();
+                        assert!((own - t).abs() < 1e-9, "{by} is at {own}, not {t}");
+                        // Faces that were moved by half of the tolerance each: where these meet, or, if
+                        // the edge that meets the one is past it as it is, where another of its face does.
+                        let place = t - tolerance / stop.normal.dot(d);
+                        let distance = stop.distance();
+                        assert!(
+                            distance >= place - 1e-9 && distance <= stop.displaced.lower.max(0.0)
+                        );
+                        near += usize::from(distance - place.max(0.0) < 1e-9);
+                        // Beyond the upper bound the boxes as given overlap.
+                        let as_given = [a, by].map(|k| {
+                            let bounds = assembly.parts()[k].solid().bounds();
+                            [bounds.low, bounds.high]
+                        });
+                        let given = room_of_boxes(as_given[0], as_given[1], d).unwrap();
+                        assert!(given <= stop.translation.upper, "{given}, {stop:?}");
+                    }
+                    // Rounding: corners that pass corners in a direction that is no axis.
+                    (expected, found) => {
+                        let turned = d.to_array().iter().all(|c| *c != 0.0);
+                        assert!(!turned && !snapped, "{expected:?}, {found:?} along {d}");
+                    }
+                }
+            }
+        }
+    }
+    assert!(free > 300 && blocked > 300 && overlapping > 300, "{free} {blocked} {overlapping}");
+    assert!(near > blocked * 9 / 10, "{near} of {blocked}");
+}
+
+#[test]
+fn plans_of_boxes_can_be_walked() {
+    let mut random = Random::new(31);
+    let mut steps = 0;
+    for round in 0..12 {
+        let assembly = scattered(&mut random, 10, round % 2 == 0);
+        for tolerance in [0.0, 0.25] {
+            let bodies = Bodies::new(&assembly, Fit::Tolerance(tolerance)).unwrap();
+            let plan = planned(&bodies, PlanOptions::default());
+            walk(&bodies, &plan);
+            steps += plan.steps.len();
+        }
+    }
+    assert!(steps > 100, "{steps}");
+}
+
+#[test]
+fn a_drawer_comes_out_with_what_is_in_it() {
+    // The cabinet is open towards x, the drawer towards z.
+    let cabinet = [
+        cuboid([-1.0, -3.0, -1.0], [0.0, 3.0, 4.0]),
+        cuboid([-1.0, -3.0, -1.0], [8.0, -2.0, 4.0]),
+        cuboid([-1.0, 2.0, -1.0], [8.0, 3.0, 4.0]),
+        cuboid([-1.0, -3.0, -1.0], [8.0, 3.0, 0.0]),
+        cuboid([-1.0, -3.0, 3.0], [8.0, 3.0, 4.0]),
+    ];
+    let parts = vec![
+        part("cabinet", &cabinet).with_fixed(true),
+        part("drawer", &well([0.5, -1.5, 0.5], [7.5, 1.5, 3.0], 0.5)),
+        part("cup", &[cuboid([1.0, -0.5, 0.5], [2.0, 0.5, 2.5])]),
+    ];
+    let (assembly, plan) = taken_apart(parts, 1e-9);
+    let order = names(&assembly, &plan);
+    assert_eq!(order[0], ["drawer", "cup"]);
+    assert_eq!(plan.steps[0].direction, DVec3::X);
+    assert!((plan.steps[0].travel.value - 8.0).abs() < 1e-6);
+    assert_eq!((order[1].as_slice(), plan.steps[1].within), (&["cup"][..], Some(0)));
+    assert_eq!(plan.left, [0]);
+}
+
+#[test]
+fn a_bolt_stops_where_its_head_sits() {
+    // A square bolt, 1 above its seat, a blind hole with 2 below its end.
+    let bolt =
+        [cuboid([-2.0, -2.0, 1.0], [2.0, 2.0, 2.0]), cuboid([-1.0, -1.0, -4.0], [1.0, 1.0, 1.5])];
+    let parts =
+        vec![part("bolt", &bolt), part("block", &well([-1.0, -1.0, -6.0], [1.0, 1.0, 0.0], 3.0))];
+    let assembly = Assembly::new(parts.clone()).unwrap();
+    let bodies = Bodies::new(&assembly, Fit::Tolerance(0.02)).unwrap();
+    let room = |d| {
+        let start = StartOverlap::Refuse;
+        room_of(&bodies, &[0], &[true; 2], d, start, &mut Workspace::default())
+    };
+    assert!(room(DVec3::Z).is_free());
+    let PartRoom::Blocked { stop, .. } = room(DVec3::NEG_Z) else { panic!("it is stopped") };
+    assert!(
+        (stop.displaced.value - 1.02).abs() < 1e-9 && (stop.distance() - 1.0).abs() < 1e-9,
+        "{stop:?}"
+    );
+    assert_eq!(stop.normal, DVec3::NEG_Z);
+    assert!((stop.point.z + 0.01).abs() < 1e-9);
+    assert!((room(DVec3::X).displaced_distance() - 0.02).abs() < 1e-9);
+    let (assembly, plan) = taken_apart(parts, 0.02);
+    assert_eq!(names(&assembly, &plan), [["bolt"], ["block"]]);
+    assert!((plan.steps[0].travel.value - 4.0).abs() < 0.1);
+}
+
+#[test]
+fn three_links_of_a_chain_leave_their_box_as_one() {
+    let ring = |x: f64| {
+        [
+            cuboid([x - 2.0, -2.0, -0.5], [x - 1.0, 2.0, 0.5]),
+            cuboid([x + 1.0, -2.0, -0.5], [x + 2.0, 2.0, 0.5]),
+            cuboid([x - 2.0, -2.0, -0.5], [x + 2.0, -1.0, 0.5]),
+            cuboid([x - 2.0, 1.0, -0.5], [x + 2.0, 2.0, 0.5]),
+        ]
+    };
+    let long = [
+        cuboid([-0.5, -0.5, -2.5], [0.5, 0.5, 2.5]),
+        cuboid([5.5, -0.5, -2.5], [6.5, 0.5, 2.5]),
+        cuboid([-0.5, -0.5, -2.5], [6.5, 0.5, -1.5]),
+        cuboid([-0.5, -0.5, 1.5], [6.5, 0.5, 2.5]),
+    ];
+    let parts = vec![
+        part("first", &ring(0.0)),
+        part("second", &long),
+        part("third", &ring(6.0)),
+        part("box", &well([-2.5, -2.5, -3.0], [8.5, 2.5, 5.0], 1.0)).with_fixed(true),
+    ];
+    let (assembly, plan) = taken_apart(parts, 1e-9);
+    assert_eq!(names(&assembly, &plan)[0], ["first", "second", "third"]);
+    assert_eq!(plan.steps[0].direction, DVec3::Z);
+    assert_eq!(plan.stuck.len(), 1);
+    assert_eq!(plan.stuck[0].parts, [0, 1, 2]);
+    // The ends hold each other through the link between them only.
+    assert_eq!(plan.stuck[0].holds[0].by[0].0, [1]);
+}
+
+#[test]
+fn a_pair_that_holds_each_other_is_stuck() {
+    // A dovetail across, closed at both ends: neither up nor along.
+    let rail = [
+        cuboid([-5.0, -2.0, 0.0], [5.0, 2.0, 1.0]),
+        cuboid([-5.0, -2.0, 1.0], [5.0, -1.0, 2.0]),
+        cuboid([-5.0, 1.0, 1.0], [5.0, 2.0, 2.0]),
+        cuboid([-5.0, -2.0, 2.0], [5.0, -0.5, 3.0]),
+        cuboid([-5.0, 0.5, 2.0], [5.0, 2.0, 3.0]),
+        cuboid([-6.0, -2.0, 0.0], [-5.0, 2.0, 3.0]),
+        cuboid([5.0, -2.0, 0.0], [6.0, 2.0, 3.0]),
+    ];
+    let slide =
+        [cuboid([-1.0, -1.0, 1.0], [1.0, 1.0, 2.0]), cuboid([-1.0, -0.5, 1.5], [1.0, 0.5, 4.0])];
+    let (_, plan) = taken_apart(vec![part("rail", &rail), part("slide", &slide)], 1e-9);
+    assert!(plan.steps.is_empty());
+    assert_eq!((plan.left.as_slice(), plan.stuck.len()), (&[0, 1][..], 1));
+    // Open at one end it comes out there.
+    let (assembly, plan) = taken_apart(vec![part("rail", &rail[..6]), part("slide", &slide)], 1e-9);
+    assert_eq!(names(&assembly, &plan), [["slide"], ["rail"]]);
+    assert_eq!(plan.steps[0].direction, DVec3::X);
+}
+
+#[test]
+fn a_way_between_the_samples_is_found_for_what_is_loose() {
+    // A room with a window, and a cube within: it leaves through 0.4 % of the sphere.
+    let room = [
+        cuboid([-2.2, -2.2, -2.2], [2.2, 2.2, -2.0]),
+        cuboid([-2.2, -2.2, 2.0], [2.2, 2.2, 2.2]),
+        cuboid([-2.2, -2.2, -2.2], [-2.0, 2.2, 2.2]),
+        cuboid([-2.2, -2.2, -2.2], [2.2, -2.0, 2.2]),
+        cuboid([-2.2, 2.0, -2.2], [2.2, 2.2, 2.2]),
+        cuboid([2.0, -2.2, -2.2], [2.2, 2.2, 0.5]),
+        cuboid([2.0, -2.2, 1.3], [2.2, 2.2, 2.2]),
+        cuboid([2.0, -2.2, -2.2], [2.2, -0.8, 2.2]),
+        cuboid([2.0, 0.8, -2.2], [2.2, 2.2, 2.2]),
+    ];
+    let cube = [cuboid([-0.2, -0.2, -0.2], [0.2, 0.2, 0.2])];
+    let samples = Sphere::with_directions(PlanOptions::default().samples).directions;
+    let mut random = Random::new(5);
+    let mut missed = 0;
+    for _ in 0..8 {
+        let turn = DAffine3::from_rotation_translation(random.rotation(), DVec3::ZERO);
+        let parts = vec![turned("cube", &cube, turn), turned("room", &room, turn)];
+        let assembly = Assembly::new(parts).unwrap();
+        let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
+        let found = rooms(&bodies, &samples, StartOverlap::Refuse, Watch::default()).unwrap();
+        let plan = planned(&bodies, PlanOptions::default());
+        walk(&bodies, &plan);
+        assert_eq!(names(&assembly, &plan), [["cube"], ["room"]]);
+        let out = turn.inverse().transform_vector3(plan.steps[0].direction);
+        assert!((0.38..0.47).contains(&(out.z / out.x)), "{out}");
+        if found[0].iter().any(PartRoom::is_free) {
+            continue;
+        }
+        missed += 1;
+        // Without the cover and what a proof leaves open it is not found in one move, but in two: to the window, and out.
+        let options = PlanOptions::default().with_samples(0).with_proofs(false);
+        assert!(planned(&bodies, options.with_legs(1)).steps.is_empty());
+        let plan = planned(&bodies, options);
+        walk(&bodies, &plan);
+        assert_eq!(plan.steps[0].path.len(), 2, "{:?}", plan.steps[0].path);
+    }
+    assert!(missed > 2, "the samples miss it in {missed} of 8 positions");
+}

@@ -1,0 +1,218 @@
+//! The order of plans, held against all pairs asked at each state: which directions are free, how far it is along each,
+//! what rests on what, and which steps might be exchanged.
+
+use colltrans::solid::{StartOverlap, Workspace};
+use colltrans_assembly::candidates::{Choice, candidates};
+use colltrans_assembly::liaisons::liaisons;
+use colltrans_assembly::matrix::Matrix;
+use colltrans_assembly::plan::{Plan, PlanOptions, Step, disassemble};
+use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Room, Watch};
+use colltrans_testkit::random::Random;
+use glam::{DAffine3, DVec3};
+
+use crate::common::cuboid;
+
+fn planned(bodies: &Bodies, options: PlanOptions) -> (Plan, Vec<DVec3>) {
+    let watch = Watch::default();
+    let touching = liaisons(bodies, watch).unwrap();
+    let given = options.up.map_or(Vec::new(), |up| vec![up, -up]);
+    let choice = Choice::default().with_given(given);
+    let directions = candidates(bodies, &touching, &choice).unwrap().directions();
+    let all = vec![true; bodies.len()];
+    let matrix = Matrix::new(bodies, &directions, &all, options.start, watch).unwrap();
+    (disassemble(bodies, &matrix, &[], options, watch).unwrap(), directions)
+}
+
+fn is_free(bodies: &Bodies, group: &[usize], others: &[usize], d: DVec3) -> bool {
+    let mut workspace = Workspace::default();
+    let mut pairs = group.iter().flat_map(|&a| others.iter().map(move |&b| [a, b]));
+    let start = StartOverlap::Refuse;
+    pairs.all(|pair| bodies.room(pair, d, None, start, &mut workspace) == Room::Free)
+}
+
+fn travel(bodies: &Bodies, group: &[usize], others: &[usize], d: DVec3) -> f64 {
+    let pairs = group.iter().flat_map(|&a| others.iter().map(move |&b| [a, b]));
+    pairs.map(|[a, b]| bodies.past(a, b, d).value).fold(0.0, f64::max)
+}
+
+/// Whether a part would go down by more than a hair.
+fn falls(bodies: &Bodies, part: usize, others: &[usize], up: DVec3) -> bool {
+    let mut workspace = Workspace::default();
+    let mut rooms = others
+        .iter()
+        .map(|&b| bodies.room([part, b], -up, None, StartOverlap::Refuse, &mut workspace));
+    rooms.all(|room| {
+        matches!(room, Room::Free) || matches!(room, Room::Blocked(s) if s.distance() > 1e-3)
+    })
+}
+
+/// Steps of the whole, not of a group that was taken out.
+fn main_steps(plan: &Plan) -> Vec<(usize, &Step)> {
+    plan.steps.iter().enumerate().filter(|(_, step)| step.within.is_none()).collect()
+}
+
+/// What is left while others go, in the order of these steps.
+fn judged(bodies: &Bodies, plan: &Plan, directions: &[DVec3], up: DVec3) -> usize {
+    let mut left: Vec<usize> = (0..bodies.len()).collect();
+    let mut kept_up = 0;
+    for (k, step) in main_steps(plan) {
+        let single = left.len() - 1;
+        assert!(step.parts.len() <= single, "step {k} leaves something");
+        let held: Vec<usize> = left
+            .iter()
+            .copied()
+            .filter(|&p| {
+                let others: Vec<usize> = left.iter().copied().filter(|&q| q != p).collect();
+                !falls(bodies, p, &others, up)
+            })
+            .collect();
+        left.retain(|p| !step.parts.contains(p));
+        assert!(is_free(bodies, &step.parts, &left, step.direction), "step {k}");
+        let own = travel(bodies, &step.parts, &left, step.direction);
+        assert!((own - step.travel.value).abs() < 1e-9);
+        let free = directions.iter().filter(|d| is_free(bodies, &step.parts, &left, **d));
+        let least = free.map(|d| travel(bodies, &step.parts, &left, *d)).fold(own, f64::min);
+        assert!(own <= 1.1 * least + 1e-3, "step {k}: {own} where {least} is enough");
+        let ground = |p: &usize| bodies.assembly().parts()[*p].solid().bounds().low.dot(up) < 1e-3;
+        let mut kept =
+            left.iter().filter(|p| held.contains(p) && !plan.last.contains(p) && !ground(p));
+        let dropped = kept.any(|&p| {
+            let others: Vec<usize> = left.iter().copied().filter(|&q| q != p).collect();
+            falls(bodies, p, &others, up)
+        });
+        kept_up += usize::from(!dropped);
+    }
+    kept_up
+}
+
+/// Any order in which each step comes after those that it names can be walked.
+fn exchanged(bodies: &Bodies, plan: &Plan, random: &mut Random) {
+    let steps = main_steps(plan);
+    for _ in 0..4 {
+        let (mut done, mut left) =
+            (vec![false; plan.steps.len()], (0..bodies.len()).collect::<Vec<_>>());
+        for _ in 0..steps.len() {
+            let ready =
+                |(k, step): &&(usize, &Step)| !done[*k] && step.after.iter().all(|&j| done[j]);
+            let ready: Vec<_> = steps.iter().filter(ready).collect();
+            let (k, step) = *ready[random.index(ready.len())];
+            left.retain(|p| !step.parts.contains(p));
+            assert!(is_free(bodies, &step.parts, &left, step.direction), "step {k} too early");
+            done[k] = true;
+        }
+    }
+}
+
+fn boxes(random: &mut Random, count: usize) -> Assembly {
+    // A grid of boxes of random extents that touch or leave a gap, in layers.
+    let mut parts = Vec::new();
+    for k in 0..count {
+        let low = [k % 3, k / 3 % 3, k / 9].map(|x| 2.0 * x as f64);
+        let high = low.map(|x| x + [1.0, 1.5, 2.0][random.index(3)]);
+        parts.push(Part::new(format!("box {k}"), &[cuboid(low, high)]).unwrap());
+    }
+    Assembly::new(parts).unwrap()
+}
+
+#[test]
+fn steps_are_short_and_may_be_exchanged_as_they_say() {
+    let mut random = Random::new(77);
+    let (mut steps, mut kept_up) = (0, 0);
+    for round in 0..40 {
+        let count = 4 + random.index(20);
+        let assembly = boxes(&mut random, count);
+        let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-9)).unwrap();
+        let (plan, directions) = planned(&bodies, PlanOptions::default().with_samples(0));
+        assert!(plan.left.is_empty() && plan.last.len() == 1, "round {round}");
+        kept_up += judged(&bodies, &plan, &directions, DVec3::Z);
+        steps += main_steps(&plan).len();
+        exchanged(&bodies, &plan, &mut random);
+    }
+    // Boxes of a grid can always be taken from above.
+    assert_eq!(kept_up, steps, "nothing falls");
+}
+
+/// A lower plate, an upper one, and screws of two kinds through both, with a washer under each head.
+fn joint(place: DAffine3) -> Assembly {
+    let mut parts = Vec::new();
+    let mut add = |name: String, pieces: &[Piece]| {
+        let turned = |piece: &Piece| Piece {
+            mesh: piece.mesh.clone(),
+            world_from_piece: place * piece.world_from_piece,
+        };
+        let pieces: Vec<Piece> = pieces.iter().map(turned).collect();
+        parts.push(Part::new(name, &pieces).unwrap());
+    };
+    let plate = |z: f64| -> Vec<Piece> {
+        // A grid of 9 x 3 blocks without those of the holes.
+        let all = (0..27).map(|k| (k % 9, k / 9)).filter(|(x, y)| *y != 1 || x % 2 == 0);
+        let block = |(x, y): (i32, i32)| {
+            let [x, y] = [x, y].map(f64::from);
+            cuboid([x, y, z], [x + 1.0, y + 1.0, z + 1.0])
+        };
+        all.map(block).collect()
+    };
+    add("lower".into(), &plate(0.0));
+    add("upper".into(), &plate(1.0));
+    for k in 0..4 {
+        let x = 1.0 + 2.0 * f64::from(k);
+        let long = f64::from(k / 2) * 0.25;
+        let shaft = cuboid([x, 1.0, -0.5 - long], [x + 1.0, 2.0, 2.5]);
+        let head = cuboid([x - 0.25, 0.75, 2.125], [x + 1.25, 2.25, 2.75]);
+        let ring = |low: [f64; 2], high: [f64; 2]| {
+            cuboid([low[0], low[1], 2.0], [high[0], high[1], 2.125])
+        };
+        let washer = [
+            ring([x - 0.25, 0.75], [x, 2.25]),
+            ring([x + 1.0, 0.75], [x + 1.25, 2.25]),
+            ring([x - 0.25, 0.75], [x + 1.25, 1.0]),
+            ring([x - 0.25, 2.0], [x + 1.25, 2.25]),
+        ];
+        add(format!("screw_{k}"), &[shaft, head]);
+        add(format!("washer_{k}"), &washer);
+    }
+    Assembly::new(parts).unwrap()
+}
+
+#[test]
+fn likes_go_together_and_the_lower_plate_stays() {
+    let mut random = Random::new(8);
+    for round in 0..5 {
+        let turn =
+            if round == 0 { DAffine3::IDENTITY } else { DAffine3::from_quat(random.rotation()) };
+        let up = turn.transform_vector3(DVec3::Z);
+        let assembly = joint(turn);
+        let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
+        let (plan, _) = planned(&bodies, PlanOptions::default().with_samples(0).with_up(up));
+        let told: Vec<String> =
+            plan.stages().iter().map(|stage| plan.takes(&assembly, stage)).collect();
+        assert_eq!(told, ["2 x screw", "2 x screw", "4 x washer", "upper"], "round {round}");
+        assert_eq!(assembly.names(&plan.last), ["lower"]);
+        assert!(plan.steps.iter().all(|step| step.direction.dot(up) > 0.999_999));
+        let upper = plan.steps.last().unwrap();
+        assert_eq!(upper.after.len(), 8, "all screws and washers are in its way");
+    }
+}
+
+#[test]
+fn the_other_way_up_parts_are_lifted_the_other_way() {
+    // Two plates and a peg that holds neither: whatever is below carries what is above.
+    let part = |name: &str, piece: Piece| Part::new(name, &[piece]).unwrap();
+    let assembly = Assembly::new(vec![
+        part("a", cuboid([0.0; 3], [2.0, 2.0, 1.0])),
+        part("b", cuboid([0.0, 0.0, 1.0], [2.0, 2.0, 2.0])),
+        part("c", cuboid([0.0, 0.0, 2.0], [2.0, 2.0, 3.0])),
+    ])
+    .unwrap();
+    let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-9)).unwrap();
+    for (up, order) in [(DVec3::Z, ["c", "b"]), (DVec3::NEG_Z, ["a", "b"])] {
+        let (plan, _) = planned(&bodies, PlanOptions::default().with_up(up));
+        let names: Vec<&str> = plan.steps.iter().flat_map(|s| assembly.names(&s.parts)).collect();
+        assert_eq!(names, order);
+        assert!(plan.steps.iter().all(|step| step.direction == up));
+    }
+    let none = PlanOptions::default().with_up(DVec3::ZERO);
+    let watch = Watch::default();
+    let matrix = Matrix::default();
+    assert!(disassemble(&bodies, &matrix, &[], none, watch).is_err());
+}

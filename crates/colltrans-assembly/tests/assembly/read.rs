@@ -1,0 +1,295 @@
+//! Every kind of source, in small files that the tests write.
+
+#![allow(clippy::format_push_string, reason = "small files, written for people to read")]
+
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use crate::common::*;
+use base64::Engine;
+use colltrans_assembly::plan::Plan;
+use colltrans_assembly::read::{Geometry, ReadOptions, read};
+use colltrans_assembly::report::glb::animation;
+use colltrans_assembly::{Assembly, Ignored, ReadError};
+use glam::DVec3;
+
+fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, text) in files {
+        let path = folder.path().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, text).unwrap();
+    }
+    folder
+}
+
+fn open(path: impl AsRef<Path>) -> Result<Assembly, ReadError> {
+    read(path, &ReadOptions::default())
+}
+
+fn bounds(assembly: &Assembly, name: &str) -> [DVec3; 2] {
+    let bounds = assembly.parts()[assembly.index(name).unwrap()].solid().bounds();
+    [bounds.low, bounds.high]
+}
+
+fn near(found: [DVec3; 2], low: [f64; 3], high: [f64; 3]) {
+    let off = (found[0] - DVec3::from(low)).abs().max((found[1] - DVec3::from(high)).abs());
+    assert!(off.max_element() < 1e-6, "{found:?} is not {low:?} to {high:?}");
+}
+
+#[test]
+fn a_folder_is_read_in_natural_order() {
+    let folder = folder(&[("p10.off", CUBE), ("p9.off", CUBE), ("notes.txt", "no mesh")]);
+    let assembly = open(folder.path()).unwrap();
+    assert_eq!(assembly.names(&[0, 1]), ["p9", "p10"]);
+    assert_eq!(assembly.parts()[0].facets(), 6);
+    assert!((assembly.parts()[0].solid().volume() - 1.0).abs() < 1e-12);
+    assert_eq!(assembly.unit(), None);
+}
+
+#[test]
+fn manifests_place_parts_in_toml_and_json() {
+    let toml = "unit = 'mm'\nignore = [['a', 'b']]\nignore_always = [['c', 'b']]\n\
+        [[part]]\nfile = 'c.off'\nname = 'a'\n\
+        translation = [5, 0, 0]\nrotation = { rpy_degrees = [0, 0, 90] }\nscale = 2\nfixed = true\n\
+        [[part]]\nfile = ['c.off', 'c.off']\nname = 'b'\nrotation = [0, 0, 1, 0]\n\
+        scale = [1, 1, 3]\n[[part]]\nfile = 'c.off'\nrotation = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]\n";
+    let json = r#"{"unit": "mm", "ignore": [["a", "b"]], "ignore_always": [["c", "b"]],
+        "parts": [
+        {"file": "c.off", "name": "a", "translation": [5, 0, 0],
+         "rotation": {"rpy_degrees": [0, 0, 90]}, "scale": 2, "fixed": true},
+        {"file": ["c.off", "c.off"], "name": "b", "rotation": {"quaternion": [0, 0, 1, 0]},
+         "scale": [1, 1, 3]},
+        {"file": "c.off", "rotation": {"matrix": [[0, -1, 0], [1, 0, 0], [0, 0, 1]]}}]}"#;
+    let folder = folder(&[("c.off", CUBE), ("m.toml", toml), ("m.json", json)]);
+    for file in ["m.toml", "m.json"] {
+        let assembly = open(folder.path().join(file)).unwrap();
+        assert_eq!(assembly.unit(), Some("mm"));
+        assert_eq!(assembly.ignored(1, 0), Some(Ignored::Overlap));
+        assert_eq!(assembly.ignored(1, 2), Some(Ignored::Always));
+        assert_eq!(assembly.ignored(0, 2), None);
+        assert!(assembly.parts()[0].fixed());
+        near(bounds(&assembly, "a"), [3.0, 0.0, 0.0], [5.0, 2.0, 2.0]);
+        near(bounds(&assembly, "b"), [-1.0, -1.0, 0.0], [0.0, 0.0, 3.0]);
+        near(bounds(&assembly, "c"), [-1.0, 0.0, 0.0], [0.0, 1.0, 1.0]);
+        assert_eq!(assembly.parts()[1].facets(), 12);
+    }
+}
+
+#[test]
+fn faults_of_manifests_are_named_with_their_place() {
+    let cases = [
+        ("[[part]]\nfile = 'c.off'\nturned = 3\n", "line 3"),
+        ("[[part]]\nfile = 'c.off'\nscale = 0\n", "part 1 (c): scale"),
+        ("[[part]]\nfile = 'c.off'\nrotation = [0, 0, 0, 2]\n", "has length 2, not 1"),
+        ("[[part]]\nfile = 'c.off'\nrotation = [[2,0,0],[0,1,0],[0,0,1]]\n", "is not a rotation"),
+        ("[[part]]\nfile = 'gone.off'\n", "gone.off"),
+        ("ignore = [['c', 'd']]\n[[part]]\nfile = 'c.off'\n", "no part is named d"),
+        ("[[part]]\nfile = 'c.off'\n[[part]]\nfile = 'c.off'\n", "two parts are named c"),
+    ];
+    for (text, wanted) in cases {
+        let folder = folder(&[("c.off", CUBE), ("m.toml", text)]);
+        let message = open(folder.path().join("m.toml")).unwrap_err().to_string();
+        assert!(message.contains(wanted), "{message}");
+        assert!(message.contains("m.toml"), "{message}");
+    }
+    let message = open("/nowhere/at.all").unwrap_err().to_string();
+    assert!(message.contains("cannot be read"), "{message}");
+}
+
+const URDF: &str = r#"<robot name="r">
+  <link name="base"><collision><geometry><mesh filename="package://kit/meshes/c.off"/></geometry>
+    </collision></link>
+  <link name="arm"><collision><origin xyz="1 0 0" rpy="0 0 0"/><geometry>
+    <mesh filename="package://kit/meshes/c.off" scale="2 1 1"/></geometry></collision>
+    <visual><geometry><box size="2 2 2"/></geometry></visual></link>
+  <link name="lost"><collision><geometry><mesh filename="package://kit/gone.stl"/></geometry>
+    </collision></link>
+  <joint name="turn" type="revolute"><origin xyz="0 0 1" rpy="0 0 0"/><parent link="base"/>
+    <child link="arm"/><axis xyz="0 0 1"/><limit lower="-2" upper="2" effort="1" velocity="1"/>
+    </joint>
+  <joint name="slide" type="prismatic"><parent link="base"/><child link="lost"/><axis xyz="1 0 0"/>
+    <limit lower="0" upper="2" effort="1" velocity="1"/></joint>
+</robot>"#;
+
+#[test]
+fn links_of_a_robot_are_placed_by_its_joints() {
+    let folder = folder(&[("robot.urdf", URDF), ("kit/meshes/c.off", CUBE)]);
+    let file = folder.path().join("robot.urdf");
+    let mut options = ReadOptions::default().with_packages(vec![folder.path().into()]);
+    options.joints.insert("turn".into(), std::f64::consts::FRAC_PI_2);
+    let message = read(&file, &options).unwrap_err().to_string();
+    assert!(message.contains("package://kit/gone.stl"), "{message}");
+    options.skip_missing = true;
+    let assembly = read(&file, &options).unwrap();
+    assert_eq!(assembly.names(&[0, 1]), ["base", "arm"]);
+    assert_eq!(assembly.notes().len(), 1);
+    // From 1 to 3 along x, turned to y, one up.
+    near(bounds(&assembly, "arm"), [-1.0, 1.0, 1.0], [0.0, 3.0, 2.0]);
+    options.geometry = Geometry::Visual;
+    near(bounds(&read(&file, &options).unwrap(), "arm"), [-1.0, -1.0, 0.0], [1.0, 1.0, 2.0]);
+    options.joints.insert("elbow".into(), 1.0);
+    let message = read(&file, &options).unwrap_err().to_string();
+    assert!(message.contains("there is no joint elbow"), "{message}");
+}
+
+#[test]
+fn what_is_said_of_parts_that_are_left_out_is_dropped_and_that_is_said() {
+    let manifest = r#"
+        ignore = [["a", "gone"]]
+        before = [["a", "gone"]]
+        together = [["a", "b", "gone"]]
+        [[part]]
+        file = "a.off"
+        [[part]]
+        file = "b.off"
+        [[part]]
+        file = "missing.off"
+        name = "gone"
+        [[pair]]
+        parts = ["go*", "b"]
+        role = "press"
+        [[never]]
+        parts = ["gone"]
+        along = [0, 0, 1]
+    "#;
+    let files = [("m.toml", manifest), ("a.off", CUBE), ("b.off", CUBE)];
+    let file = folder(&files);
+    let path = file.path().join("m.toml");
+    assert!(matches!(open(&path), Err(ReadError::Missing { .. })));
+    let options = ReadOptions::default().with_skip_missing(true);
+    let assembly = read(&path, &options).unwrap();
+    let wanted = [
+        "ignore of a, gone is not asked, as parts of it are left out",
+        "before of a, gone is not asked, as parts of it are left out",
+        "pair of go*, b is not asked, as parts of it are left out",
+        "together of a, b, gone is asked of a, b only, as parts of it are left out",
+        "never of gone is not asked, as parts of it are left out",
+        "missing.off cannot be found and is left out",
+    ];
+    assert_eq!(assembly.notes(), wanted);
+    assert_eq!(assembly.constraints().units()[0].parts, [0, 1]);
+    // A name that no part has is an error as before.
+    let wrong = manifest.replace("[[\"a\", \"b\", \"gone\"]]", "[[\"a\", \"bb\"]]");
+    let files = [("m.toml", &wrong[..]), ("a.off", CUBE), ("b.off", CUBE)];
+    let file = folder(&files);
+    let refused = read(file.path().join("m.toml"), &options).unwrap_err().to_string();
+    assert!(refused.contains("bb"), "{refused}");
+}
+
+#[test]
+fn parts_in_another_unit_are_scaled_where_that_is_asked_for() {
+    let file = folder(&[("bolt_1.off", CUBE), ("bolt_2.off", CUBE), ("lid.off", CUBE)]);
+    let scales = BTreeMap::from([("bolt_*".to_owned(), 25.4)]);
+    let options = ReadOptions::default().with_scales(scales.clone());
+    let assembly = read(file.path(), &options).unwrap();
+    let size = |k: usize| assembly.parts()[k].solid().bounds().size().x;
+    assert_eq!([0, 1, 2].map(size), [25.4, 25.4, 1.0]);
+    for (name, factor) in [("nut", 1.0), ("lid", 0.0), ("lid", f64::NAN)] {
+        let options = ReadOptions::default().with_scales(BTreeMap::from([(name.into(), factor)]));
+        assert!(read(file.path(), &options).is_err());
+    }
+}
+
+#[test]
+fn what_is_written_as_glb_is_read_back() {
+    let parts = vec![
+        part("well", &well([0.0; 3], [2.0; 3], 1.0)),
+        part("cube", &[cuboid([0.0; 3], [1.0, 2.0, 3.0])]),
+    ];
+    let assembly = Assembly::new(parts).unwrap().with_unit("m");
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.glb");
+    std::fs::write(&file, animation(&assembly, &Plan::default())).unwrap();
+    let back = open(&file).unwrap();
+    assert_eq!(back.names(&[0, 1]), ["well", "cube"]);
+    assert_eq!(back.unit(), Some("m"));
+    // z has become y.
+    near(bounds(&back, "cube"), [0.0, 0.0, -2.0], [1.0, 3.0, 0.0]);
+    std::fs::write(&file, b"glTF but not really").unwrap();
+    assert!(open(&file).unwrap_err().to_string().contains("a.glb"));
+}
+
+#[test]
+fn items_of_a_3mf_package_are_placed_and_its_unit_is_said() {
+    let mut model = String::from(
+        r#"<?xml version="1.0"?><model unit="inch" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">
+        <resources><object id="1" name="cube" type="model">"#,
+    );
+    model += &mesh_of_3mf([1.0; 3]);
+    model += r#"</object><object id="2"><components>
+        <component objectid="1" transform="0 1 0 -1 0 0 0 0 1 0 0 0"/></components></object></resources>
+        <build><item objectid="1" transform="2 0 0 0 2 0 0 0 2 10 0 0"/><item objectid="2"/></build></model>"#;
+    let package = |model: &str| package(&[("3D/3dmodel.model", model)]);
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.3mf");
+    std::fs::write(&file, package(&model)).unwrap();
+    let assembly = open(&file).unwrap();
+    assert_eq!(assembly.unit(), Some("inch"));
+    assert_eq!(assembly.names(&[0, 1]), ["cube", "cube_2"]);
+    near(bounds(&assembly, "cube"), [10.0, 0.0, 0.0], [12.0, 2.0, 2.0]);
+    near(bounds(&assembly, "cube_2"), [-1.0, 0.0, 0.0], [0.0, 1.0, 1.0]);
+    std::fs::write(&file, package(&model.replace("objectid=\"2\"", "objectid=\"7\""))).unwrap();
+    let message = open(&file).unwrap_err().to_string();
+    assert!(message.contains("build item 2: there is no object 7"), "{message}");
+    let refused = |model: &str, words: &str| {
+        std::fs::write(&file, package(model)).unwrap();
+        let message = open(&file).unwrap_err().to_string();
+        assert!(message.contains(words), "{message}");
+    };
+    refused(&model.replace("inch", "league"), "the unit league is none of micron");
+    // Each holds the one before ten times: 10^12 cubes in a few lines.
+    let ten = |k: usize| {
+        let below = format!("<component objectid=\"{}\"/>", k - 1).repeat(10);
+        format!("<object id=\"{k}\"><components>{below}</components></object>")
+    };
+    let nested: String = (3..15).map(ten).collect();
+    let many = model.replace("</resources>", &format!("{nested}</resources>"));
+    refused(
+        &many.replace("<item objectid=\"2\"/>", "<item objectid=\"14\"/>"),
+        "build item 2: more than",
+    );
+    let none = r#"<model unit="foot"><resources/><build/></model>"#;
+    std::fs::write(&file, package(none)).unwrap();
+    let message = open(&file).unwrap_err().to_string();
+    assert!(message.contains("holds no parts: its build places no mesh"), "{message}");
+}
+
+#[test]
+fn gltf_files_whose_numbers_do_not_fit_are_refused() {
+    // A triangle three times over, 36 bytes of positions and 18 of indices.
+    let file = |positions: usize, indices: usize| {
+        let mut bytes = Vec::new();
+        for x in [0.0_f32, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0] {
+            bytes.extend(x.to_le_bytes());
+        }
+        bytes.extend([0_u16, 1, 2].repeat(3).iter().flat_map(|k| k.to_le_bytes()));
+        let data = base64::engine::general_purpose::STANDARD.encode(&bytes);
+        serde_json::json!({
+            "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}],
+            "nodes": [{"mesh": 0, "name": "leaf"}],
+            "meshes": [{"primitives": [{"attributes": {"POSITION": 0}, "indices": 1}]}],
+            "accessors": [
+                {"bufferView": 0, "componentType": 5126, "count": positions, "type": "VEC3",
+                 "min": [0, 0, 0], "max": [1, 1, 0]},
+                {"bufferView": 1, "componentType": 5123, "count": indices, "type": "SCALAR"}],
+            "bufferViews": [{"buffer": 0, "byteOffset": 0, "byteLength": 36},
+                            {"buffer": 0, "byteOffset": 36, "byteLength": 18}],
+            "buffers": [{"byteLength": 54, "uri": format!("data:;base64,{data}")}],
+        })
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.gltf");
+    let read = |positions: usize, indices: usize| {
+        std::fs::write(&path, file(positions, indices).to_string()).unwrap();
+        open(&path).map_err(|e| e.to_string())
+    };
+    assert_eq!(read(3, 3).unwrap().names(&[0]), ["leaf"]);
+    let refused = |positions: usize, indices: usize, words: &str| {
+        let message = read(positions, indices).unwrap_err();
+        assert!(message.contains("node 0, mesh 0") && message.contains(words), "{message}");
+    };
+    refused(1_000_000, 3, "positions lie beyond");
+    refused(3, 1_000_000, "indices lie beyond");
+    refused(3, 8, "8 corners do not make triangles");
+}

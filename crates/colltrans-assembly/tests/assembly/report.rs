@@ -1,0 +1,260 @@
+//! The file that is printed for the workshop: its pages, what its pictures show, how it is printed and looks on a phone.
+
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+use crate::common::{cuboid, well};
+use colltrans::solid::StartOverlap;
+use colltrans_assembly::candidates::{Choice, candidates};
+use colltrans_assembly::liaisons::liaisons;
+use colltrans_assembly::matrix::Matrix;
+use colltrans_assembly::plan::{Plan, PlanOptions, Times, disassemble};
+use colltrans_assembly::report::{Findings, html};
+use colltrans_assembly::start::Start;
+use colltrans_assembly::suggest::suggestions;
+use colltrans_assembly::{Assembly, Bodies, Fit, Part, Watch};
+
+/// A plan, and its report.
+fn reported(assembly: &Assembly, title: &str) -> (Plan, String) {
+    let (watch, start) = (Watch::default(), StartOverlap::Refuse);
+    let bodies = Bodies::new(assembly, Fit::default_for(assembly)).unwrap();
+    let overlaps = Start::new(&bodies, watch).unwrap();
+    let touching = liaisons(&bodies, watch).unwrap();
+    let found = candidates(&bodies, &touching, &Choice::default()).unwrap();
+    let all = vec![true; bodies.len()];
+    let matrix = Matrix::new(&bodies, &found.directions(), &all, start, watch).unwrap();
+    let options = PlanOptions::default().with_legs(4);
+    let plan = disassemble(&bodies, &matrix, &found.finer, options, watch).unwrap();
+    let findings = Findings {
+        bodies: &bodies,
+        start: &overlaps,
+        suggestions: &suggestions(&bodies, &overlaps),
+        liaisons: &touching,
+        candidates: &found.main,
+        matrix: &matrix,
+        more: &[],
+        plan: &plan,
+        times: Times::default(),
+        up: assembly.up(),
+        maps: &[],
+    };
+    let page = html::page(&findings, title);
+    (plan, page)
+}
+
+fn part(name: &str, pieces: &[colltrans_assembly::Piece]) -> Part {
+    Part::new(name, pieces).unwrap()
+}
+
+/// A core in a box with a lid, and four pegs on that.
+fn boxed() -> Assembly {
+    let mut parts = vec![
+        part("box", &well([0.0; 3], [20.0, 20.0, 10.0], 2.0)),
+        part("core", &[cuboid([4.0, 4.0, 0.0], [16.0, 16.0, 9.0])]),
+        part("lid", &[cuboid([-2.0, -2.0, 10.0], [22.0, 22.0, 12.0])]),
+    ];
+    for (k, [x, y]) in [[0.0, 0.0], [16.0, 0.0], [0.0, 16.0], [16.0, 16.0]].into_iter().enumerate()
+    {
+        parts.push(part(&format!("peg_{k}"), &[cuboid([x, y, 12.0], [x + 3.0, y + 4.0, 17.0])]));
+    }
+    Assembly::new(parts).unwrap().with_unit("mm")
+}
+
+/// A bar deep in a long tunnel that hides it from all sides.
+fn tunnel() -> Assembly {
+    let wall = |low, high| cuboid(low, high);
+    let tunnel = [
+        wall([-50.0, -4.0, -4.0], [50.0, -1.0, 4.0]),
+        wall([-50.0, 1.0, -4.0], [50.0, 4.0, 4.0]),
+        wall([-50.0, -4.0, -4.0], [50.0, 4.0, -1.0]),
+        wall([-50.0, -4.0, 1.0], [50.0, 4.0, 4.0]),
+    ];
+    let bar = part("bar", &[cuboid([-3.0, -1.0, -1.0], [3.0, 1.0, 1.0])]);
+    Assembly::new(vec![part("tunnel", &tunnel), bar]).unwrap()
+}
+
+/// A stud that goes along a slot before it comes out: a head below a plate with an L of two slots, wide at its end.
+fn stud() -> Assembly {
+    let plate = [
+        cuboid([-2.0, -6.0, 0.0], [14.0, -1.0, 2.0]),
+        cuboid([-2.0, 1.0, 0.0], [6.0, 6.0, 2.0]),
+        cuboid([-6.0, -6.0, 0.0], [-2.0, 6.0, 2.0]),
+        cuboid([6.0, 4.0, 0.0], [14.0, 6.0, 2.0]),
+        cuboid([12.0, -1.0, 0.0], [14.0, 4.0, 2.0]),
+        cuboid([6.0, -6.0, 0.0], [12.0, -4.0, 2.0]),
+        cuboid([-6.0, -6.0, -8.0], [14.0, 6.0, -6.0]),
+    ];
+    let stud =
+        [cuboid([-1.0, -1.0, -1.0], [1.0, 1.0, 6.0]), cuboid([-1.9, -2.0, -2.0], [1.9, 2.0, -0.5])];
+    Assembly::new(vec![part("plate", &plate), part("stud", &stud)]).unwrap()
+}
+
+/// The section of a page with an id.
+fn section<'a>(page: &'a str, id: &str) -> &'a str {
+    let at = page.find(&format!("id=\"{id}\"")).unwrap_or_else(|| panic!("no {id}"));
+    &page[at..at + page[at..].find("</section>").unwrap()]
+}
+
+/// The pictures of a section.
+fn pictures(section: &str) -> Vec<&str> {
+    let from = section.match_indices("<svg").map(|(at, _)| &section[at..]);
+    from.map(|text| &text[..text.find("</svg>").unwrap()]).collect()
+}
+
+/// Pixels of a part that are drawn in a look: its tiles are rectangles, `M x y h width v height h -width z`.
+fn area(picture: &str, look: &str, part: usize) -> f64 {
+    let mut area = 0.0;
+    let head = format!("<g class=\"{look}\" data-part=\"{part}\">");
+    for (at, _) in picture.match_indices(&head) {
+        let group = &picture[at..at + picture[at..].find("</g>").unwrap()];
+        // Of lines nothing is filled.
+        for path in group.split("<path ").skip(1).filter(|path| !path.contains("fill=\"none\"")) {
+            let data = path.split(" d=\"").nth(1).unwrap().split('"').next().unwrap();
+            for tile in data.split('h').skip(1).filter(|tile| tile.contains('v')) {
+                let (width, height) = tile.split_once('v').unwrap();
+                area += width.parse::<f64>().unwrap() * height.parse::<f64>().unwrap();
+            }
+        }
+    }
+    area
+}
+
+/// What is left of a page for who reads it: without styles, scripts and pictures.
+fn read_aloud(page: &str) -> String {
+    let mut text = page.to_owned();
+    for [from, to] in [["<style>", "</style>"], ["<script", "</script>"], ["<svg", "</svg>"]] {
+        while let Some(at) = text.find(from) {
+            let end = at + text[at..].find(to).unwrap() + to.len();
+            let label = text[at..end].split("aria-label=\"").nth(1);
+            let label = label.map(|rest| format!("[{}]", rest.split('"').next().unwrap()));
+            text.replace_range(at..end, &label.unwrap_or_default());
+        }
+    }
+    for tag in ["h1", "h2", "h3", "p", "li", "dt", "tr", "figcaption", "div", "summary", "section"]
+    {
+        text = text.replace(&format!("<{tag}"), &format!("\n<{tag}"));
+    }
+    for tag in ["td", "th", "dd", "span"] {
+        text = text.replace(&format!("<{tag}"), &format!(" <{tag}"));
+    }
+    let (mut plain, mut inside) = (String::new(), false);
+    for c in text.chars() {
+        match c {
+            '<' => inside = true,
+            '>' => inside = false,
+            c if !inside => plain.push(c),
+            _ => (),
+        }
+    }
+    let lines = plain.lines().map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "));
+    lines.filter(|line| !line.is_empty()).collect::<Vec<_>>().join("\n") + "\n"
+}
+
+#[test]
+fn every_step_has_its_page_and_shows_what_moves() {
+    for (assembly, stages) in [(boxed(), 3), (tunnel(), 1), (stud(), 1)] {
+        let (plan, page) = reported(&assembly, "small");
+        assert_eq!(plan.stages().len(), stages, "{:?}", plan.steps);
+        assert_eq!(page.matches("class=\"sheet step\"").count(), stages);
+        for stage in plan.stages() {
+            let sheet = section(&page, &format!("step-{}", stage.start + 1));
+            let drawn = pictures(sheet);
+            let legs: Vec<&[usize]> = match &plan.steps[stage.start].path[..] {
+                [_] => plan.steps[stage.clone()].iter().map(|step| &step.parts[..]).collect(),
+                path => path.iter().map(|leg| &leg.parts[..]).collect(),
+            };
+            let several = plan.steps[stage.start].path.len() > 1;
+            assert_eq!(drawn.len(), if several { legs.len() } else { 1 });
+            for (k, moving) in legs.into_iter().enumerate() {
+                let picture = drawn[if several { k } else { 0 }];
+                let seen: f64 = moving.iter().map(|&part| area(picture, "moving", part)).sum();
+                assert!(seen > 100.0, "{moving:?} of {stage:?}: {seen}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_hides_what_moves_is_glass_and_nothing_else_is() {
+    let (_, page) = reported(&tunnel(), "tunnel");
+    let [picture] = pictures(section(&page, "step-1"))[..] else { panic!("one picture") };
+    assert!(area(picture, "glass", 0) > 1000.0 && area(picture, "pale", 0) == 0.0);
+    assert!(section(&page, "step-1").contains("Drawn as glass: tunnel."));
+    let (_, page) = reported(&boxed(), "box");
+    assert!(!page.contains("class=\"glass\""));
+}
+
+#[test]
+fn the_first_page_shows_and_counts_all_parts() {
+    let (_, page) = reported(&boxed(), "box");
+    let cover = section(&page, "cover");
+    let [picture] = pictures(cover)[..] else { panic!("one picture") };
+    for part in 0..7 {
+        assert!(area(picture, "full", part) > 50.0, "{part}");
+    }
+    assert_eq!(cover.matches("<li>").count(), 4, "four shapes");
+}
+
+/// If it has changed, look at the page before the new text is kept.
+#[test]
+fn what_is_read_of_a_small_assembly() {
+    let mut told = read_aloud(&reported(&boxed(), "box").1);
+    told += &read_aloud(&reported(&stud(), "stud").1);
+    let kept = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/golden/report.txt");
+    if std::env::var_os("WRITE_GOLDEN").is_some() {
+        std::fs::write(&kept, &told).unwrap();
+    }
+    let known = std::fs::read_to_string(kept).unwrap();
+    for (k, (told, known)) in told.lines().zip(known.lines()).enumerate() {
+        assert_eq!(told, known, "line {}", k + 1);
+    }
+    assert_eq!(told.lines().count(), known.lines().count());
+}
+
+/// A browser that prints, if there is one.
+fn chromium(folder: &Path, arguments: &[&str], page: &Path) -> Option<std::process::Output> {
+    let known = ["chromium", "chromium-browser", "google-chrome"];
+    let paths = std::env::var_os("PATH").unwrap_or_default();
+    let find = |name| std::env::split_paths(&paths).map(move |folder: PathBuf| folder.join(name));
+    let program = known.into_iter().flat_map(find).find(|path| path.is_file())?;
+    let profile = format!("--user-data-dir={}", folder.join("profile").display());
+    let plain = ["--headless", "--no-sandbox", "--disable-gpu", &profile];
+    let output = Command::new(program).args(plain).args(arguments).arg(page).output().unwrap();
+    Some(output)
+}
+
+#[test]
+fn the_browser_prints_a_page_a_step() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, assembly) in [("box", boxed()), ("stud", stud())] {
+        let (plan, page) = reported(&assembly, name);
+        let (html, pdf) = (folder.path().join("report.html"), folder.path().join("report.pdf"));
+        std::fs::write(&html, page).unwrap();
+        let print = format!("--print-to-pdf={}", pdf.display());
+        let Some(said) = chromium(folder.path(), &["--no-pdf-header-footer", &print], &html) else {
+            eprintln!("skipped: no Chromium");
+            return;
+        };
+        let bytes = std::fs::read(&pdf).unwrap_or_else(|e| panic!("{e}: {said:?}"));
+        let pages = bytes.windows(12).filter(|w| w.starts_with(b"/Type /Page") && w[11] != b's');
+        // The first one, and one for what follows the steps.
+        assert_eq!(pages.count(), 1 + plan.stages().len() + 1, "{name}");
+    }
+}
+
+#[test]
+fn nothing_is_wider_than_a_phone() {
+    let folder = tempfile::tempdir().unwrap();
+    let page = reported(&boxed(), "box").1;
+    let measure = "<script>document.documentElement.style.width = '390px';
+        for (const d of document.querySelectorAll('details')) d.open = true;
+        const wide = [...document.querySelectorAll('body, main, section, details, figure, svg, p, ol, li, dl, div, h1, h2, h3')]
+            .filter((e) => !e.parentElement.closest('.wide, svg') && e.getBoundingClientRect().right > 390.5);
+        document.title = 'too wide: ' + wide.map((e) => e.tagName + '.' + e.className).join(' ');</script>";
+    let html = folder.path().join("report.html");
+    std::fs::write(&html, page.replace("</body>", &format!("{measure}</body>"))).unwrap();
+    if let Some(said) = chromium(folder.path(), &["--dump-dom"], &html) {
+        let told = String::from_utf8_lossy(&said.stdout);
+        assert!(told.contains("<title>too wide: </title>"), "{:?}", told.get(..600));
+    }
+}

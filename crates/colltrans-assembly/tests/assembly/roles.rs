@@ -1,0 +1,256 @@
+//! Pairs with a fit of their own, held against bodies that have that fit throughout, and small machines.
+
+use colltrans::solid::{StartOverlap, Workspace};
+use colltrans_assembly::candidates::{Choice, candidates};
+use colltrans_assembly::liaisons::liaisons;
+use colltrans_assembly::matrix::Matrix;
+use colltrans_assembly::plan::{Plan, PlanOptions, disassemble};
+use colltrans_assembly::roles::{PairFit, Role, Tolerated};
+use colltrans_assembly::start::Start;
+use colltrans_assembly::suggest::{applied, suggestions, told};
+use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Part, Piece, Room, Watch};
+use colltrans_mesh::Mesh;
+use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::prism;
+use glam::{DAffine3, DVec3};
+
+use crate::common::{cuboid, part, scattered, well};
+
+const PRESS: PairFit = PairFit { role: Some(Role::Press), tolerance: None };
+
+fn own(tolerance: f64) -> PairFit {
+    PairFit { role: None, tolerance: Some(tolerance) }
+}
+
+fn planned(bodies: &Bodies) -> Plan {
+    let watch = Watch::default();
+    let touching = liaisons(bodies, watch).unwrap();
+    let found = candidates(bodies, &touching, &Choice::default()).unwrap();
+    let (all, options) = (vec![true; bodies.len()], PlanOptions::default().with_samples(0));
+    let matrix = Matrix::new(bodies, &found.directions(), &all, options.start, watch).unwrap();
+    disassemble(bodies, &matrix, &found.finer, options, watch).unwrap()
+}
+
+#[test]
+fn a_pair_is_asked_as_if_all_had_its_tolerance_and_others_as_if_none_had() {
+    let mut random = Random::new(12);
+    let (mut asked, mut changed) = (0, 0);
+    for round in 0..20 {
+        let assembly = scattered(&mut random, 8, round % 2 == 0);
+        let general = [1e-6, 0.125][round % 2];
+        let plain = Bodies::new(&assembly, Fit::Tolerance(general)).unwrap();
+        let mut with = assembly.clone();
+        let mut said = Vec::new();
+        for _ in 0..6 {
+            let (a, b) = (random.index(8), random.index(8));
+            let length = [0.0, 0.0625, 0.5, 1.25][random.index(4)];
+            let names = [a, b].map(|k| format!("p{k}"));
+            if let Ok(next) = with.clone().with_pair([&names[..1], &names[1..]], own(length)) {
+                with = next;
+                said.retain(|(pair, _)| *pair != [a.min(b), a.max(b)]);
+                said.push(([a.min(b), a.max(b)], length));
+            }
+        }
+        let bodies = Bodies::new(&with, Fit::Tolerance(general)).unwrap();
+        let mut workspace = Workspace::default();
+        let directions = [DVec3::X, DVec3::NEG_Z, random.direction(), random.direction()];
+        for (a, b) in (0..8).flat_map(|a| (0..8).map(move |b| (a, b))).filter(|(a, b)| a != b) {
+            let length = said.iter().find(|x| x.0 == [a.min(b), a.max(b)]).map(|x| x.1);
+            let alike =
+                length.map(|length| Bodies::new(&assembly, Fit::Tolerance(length)).unwrap());
+            let alike = alike.as_ref().unwrap_or(&plain);
+            assert_eq!(bodies.overlaps(a, b), alike.overlaps(a, b));
+            for d in directions {
+                for start in [StartOverlap::Refuse, StartOverlap::Ignore] {
+                    let room = bodies.room([a, b], d, None, start, &mut workspace);
+                    assert_eq!(room, alike.room([a, b], d, None, start, &mut workspace));
+                    let other = plain.room([a, b], d, None, start, &mut workspace);
+                    changed += usize::from(room != other);
+                    asked += 1;
+                }
+            }
+        }
+        // One direction is asked, the other is its mirror image.
+        let all = vec![true; 8];
+        let watch = Watch::default();
+        let both = [DVec3::X, DVec3::NEG_X];
+        let matrix = Matrix::new(&bodies, &both, &all, StartOverlap::Refuse, watch).unwrap();
+        for met in matrix.meetings(1) {
+            let pair = [met.moving, met.fixed];
+            let room = bodies.room(pair, DVec3::NEG_X, None, StartOverlap::Refuse, &mut workspace);
+            assert!(room != Room::Free);
+        }
+    }
+    assert!(asked > 8_000 && changed > 60, "{asked} {changed}");
+}
+
+/// A pin with a collar below, pressed into a plate from below, by 0.05; and a cap on it, which overlaps the pin by less.
+fn pressed() -> Assembly {
+    let plate = well([0.0, 0.0, 0.0], [2.0, 2.0, 2.0], 1.0);
+    let pin = [
+        cuboid([-0.025, -0.025, -3.0], [2.025, 2.025, 2.0]),
+        cuboid([-0.5, -0.5, -3.0], [2.5, 2.5, -2.0]),
+    ];
+    let cap = [cuboid([-1.0, -1.0, 1.999], [3.0, 3.0, 3.0])];
+    let parts =
+        vec![part("plate", &plate[1..]).with_fixed(true), part("pin", &pin), part("cap", &cap)];
+    Assembly::new(parts).unwrap()
+}
+
+#[test]
+fn a_press_fit_comes_out_and_its_later_contacts_count() {
+    let plain = pressed();
+    let bodies = Bodies::new(&plain, Fit::Tolerance(0.002)).unwrap();
+    assert!(bodies.overlaps(0, 1), "too tight");
+    assert!(planned(&bodies).steps.iter().all(|step| step.parts == [2]));
+    for (fit, length) in [(PRESS, 0.027), (PairFit { tolerance: Some(0.2), ..PRESS }, 0.2)] {
+        let with = plain.clone().with_pair([&["pin"], &["pl*"]], fit).unwrap();
+        let bodies = Bodies::new(&with, Fit::Tolerance(0.002)).unwrap();
+        assert_eq!(bodies.tolerated([1, 0]), Some(Tolerated::Within(length)));
+        let plan = planned(&bodies);
+        let step = plan.steps.iter().find(|step| step.parts == [1]).unwrap();
+        // The collar is below.
+        assert_eq!(step.direction, DVec3::NEG_Z);
+        assert_eq!(step.passed.len(), 1);
+        assert_eq!(
+            step.passed[0].words(&with),
+            format!("pin and plate: press fit, tolerance {length}")
+        );
+        assert!(step.ignored.is_empty() && plan.left == [0], "{:?}", plan.left);
+        let (mut workspace, start) = (Workspace::default(), StartOverlap::Refuse);
+        let up = bodies.room([1, 0], DVec3::Z, None, start, &mut workspace);
+        let Room::Blocked(stop) = up else { panic!("the collar stops it") };
+        assert!((stop.translation.value - 1.0).abs() < 1e-9 && stop.distance() <= 1.0, "{stop:?}");
+    }
+    // A tolerance for all would let the cap into the plate by as much.
+    let wide = Bodies::new(&plain, Fit::Tolerance(0.2)).unwrap();
+    assert!(!wide.overlaps(0, 1) && planned(&wide).left == [0]);
+}
+
+#[test]
+fn what_snaps_passes_what_it_meets_at_once_and_nothing_later() {
+    let mut random = Random::new(3);
+    let mut seen = [0; 3];
+    for _ in 0..300 {
+        let gap = random.unit();
+        let bend = [0.25, 0.5][random.index(2)];
+        let wall = cuboid([1.0 + gap, -2.0, -2.0], [2.0 + gap, 3.0, 3.0]);
+        let far = cuboid([6.0, -2.0, -2.0], [7.0, 3.0, 3.0]);
+        let both = random.unit() < 0.5;
+        let frame = if both { vec![wall, far] } else { vec![wall] };
+        let parts = vec![part("clip", &[cuboid([0.0; 3], [1.0; 3])]), part("frame", &frame)];
+        let snap = PairFit { role: Some(Role::Snap), tolerance: Some(bend) };
+        let assembly = Assembly::new(parts).unwrap().with_pair([&["clip"], &["frame"]], snap);
+        let assembly = assembly.unwrap();
+        let bodies = Bodies::new(&assembly, Fit::Tolerance(0.0)).unwrap();
+        let mut workspace = Workspace::default();
+        let room = bodies.room([0, 1], DVec3::X, None, StartOverlap::Refuse, &mut workspace);
+        let expected = if gap >= bend {
+            Some(gap)
+        } else if both {
+            Some(5.0)
+        } else {
+            None
+        };
+        seen[usize::from(gap < bend) + usize::from(gap < bend && both)] += 1;
+        match (room, expected) {
+            (Room::Free, None) => (),
+            (Room::Blocked(stop), Some(at)) => {
+                assert!((stop.translation.value - at).abs() < 1e-9, "{stop:?}, {at}");
+                assert!(stop.distance() <= at);
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+    assert!(seen.iter().all(|n| *n > 40), "{seen:?}");
+    let parts =
+        vec![part("a", &[cuboid([0.0; 3], [1.0; 3])]), part("b", &[cuboid([2.0; 3], [3.0; 3])])];
+    let snap = PairFit { role: Some(Role::Snap), tolerance: None };
+    let none = Assembly::new(parts).unwrap().with_pair([&["a"], &["b"]], snap);
+    assert!(matches!(none, Err(AssemblyError::NoTolerance { .. })));
+}
+
+#[test]
+fn what_is_glued_leaves_as_one_and_an_overlap_without_end_lets_what_crosses_pass() {
+    let glued = PairFit { role: Some(Role::Glued), tolerance: None };
+    let parts = vec![
+        part("floor", &[cuboid([0.0, 0.0, -1.0], [9.0, 9.0, 0.0])]),
+        part("foot", &[cuboid([1.0, 1.0, 0.0], [3.0, 3.0, 1.0])]),
+        part("post", &[cuboid([1.5, 1.5, 0.5], [2.5, 2.5, 4.0])]),
+    ];
+    let assembly = Assembly::new(parts).unwrap().with_pair([&["foot"], &["post"]], glued).unwrap();
+    let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
+    let plan = planned(&bodies);
+    assert_eq!((plan.steps.len(), plan.steps[0].parts.clone()), (1, vec![1, 2]));
+    assert!(plan.stuck.is_empty() && plan.steps[0].passed.is_empty());
+    // A sheet through a block: no tolerance ends that.
+    let sheet = Mesh::new(
+        vec![DVec3::new(1.2, 1.2, -1.0), DVec3::new(1.8, 1.2, -1.0), DVec3::new(1.5, 1.8, 3.0)],
+        vec![vec![0, 1, 2]],
+    );
+    let sheet = Piece { mesh: sheet, world_from_piece: DAffine3::IDENTITY };
+    let block = cuboid([1.0, 1.0, 0.0], [3.0, 3.0, 1.0]);
+    let soft = PairFit { role: Some(Role::Soft), tolerance: None };
+    let parts = vec![part("block", &[block]), Part::new("sheet", &[sheet]).unwrap()];
+    let assembly = Assembly::new(parts).unwrap().with_pair([&["block"], &["sheet"]], soft).unwrap();
+    let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
+    assert_eq!(bodies.tolerated([0, 1]), Some(Tolerated::Crossing));
+    let plan = planned(&bodies);
+    assert!(
+        plan.steps[0].passed[0].words(&assembly).contains("what crosses at the start let pass")
+    );
+}
+
+fn round(name: &str, sides: usize, radius: f64, low: f64, high: f64) -> Part {
+    let shape = prism(sides, (high - low) / 2.0);
+    let place = DAffine3::from_translation(DVec3::Z * low.midpoint(high))
+        * DAffine3::from_scale(DVec3::new(radius, radius, 1.0));
+    let mesh = Mesh::new(shape.vertices, shape.faces);
+    Part::new(name, &[Piece { mesh, world_from_piece: place }]).unwrap()
+}
+
+/// A ring with a hole of so many sides, as one surface.
+fn ring(name: &str, sides: usize, [inner, outer]: [f64; 2], height: f64) -> Part {
+    let mut vertices = Vec::new();
+    for (r, z) in [(inner, 0.0), (outer, 0.0), (outer, height), (inner, height)] {
+        vertices.extend((0..sides).map(|k| {
+            let angle = std::f64::consts::TAU * (k as f64 + 0.5) / sides as f64;
+            DVec3::new(r * angle.cos(), r * angle.sin(), z)
+        }));
+    }
+    let at = |row: usize, k: usize| ((row % 4) * sides + k % sides) as u32;
+    let faces = (0..4).flat_map(|row| {
+        (0..sides)
+            .map(move |k| vec![at(row, k), at(row + 1, k), at(row + 1, k + 1), at(row, k + 1)])
+    });
+    let mesh = Mesh::new(vertices, faces.collect());
+    Part::new(name, &[Piece { mesh, world_from_piece: DAffine3::IDENTITY }]).unwrap()
+}
+
+#[test]
+fn overlaps_are_told_apart_and_what_is_suggested_takes_the_machine_apart() {
+    let cases: [(&str, f64, Option<Role>, &str); 3] = [
+        ("pin", 5.01, Some(Role::Press), "too large"),
+        ("pin", 4.995, None, "chord errors"),
+        ("o-ring", 5.3, Some(Role::Soft), "is called so"),
+    ];
+    for (name, radius, role, why) in cases {
+        let parts = vec![ring("ring", 32, [5.0, 8.0], 4.0), round(name, 48, radius, 1.0, 7.0)];
+        let assembly = Assembly::new(parts).unwrap();
+        let fit = Fit::default_for(&assembly);
+        let bodies = Bodies::new(&assembly, fit).unwrap();
+        let start = Start::new(&bodies, Watch::default()).unwrap();
+        let found = suggestions(&bodies, &start);
+        assert_eq!(found.len(), 1, "{name} {radius}");
+        assert_eq!(found[0].fit.role, role, "{name} {radius}: {}", found[0].why);
+        assert!(found[0].why.contains(why), "{}", found[0].why);
+        assert!(planned(&bodies).steps.is_empty());
+        let next = applied(assembly.clone(), &found).unwrap();
+        assert!(next.notes().iter().any(|note| note.contains("taken as suggested")));
+        assert_eq!(told(&assembly, &found).len(), 1);
+        let bodies = Bodies::new(&next, fit).unwrap();
+        let plan = planned(&bodies);
+        assert_eq!(plan.steps.len(), 1, "{name} {radius}");
+        assert_eq!(plan.steps[0].passed[0].role, role);
+    }
+}

@@ -1,0 +1,227 @@
+//! Plans of several moves: closed forms, burrs against all moves of cubes, the collection where it is.
+
+use std::path::Path;
+
+use crate::common::*;
+use colltrans::solid::StartOverlap;
+use colltrans_assembly::candidates::{Choice, candidates};
+use colltrans_assembly::liaisons::liaisons;
+use colltrans_assembly::matrix::Matrix;
+use colltrans_assembly::plan::{Leg, Moves, Plan, PlanOptions, disassemble};
+use colltrans_assembly::read::{ReadOptions, read};
+use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Watch, record};
+use colltrans_testkit::oracle::cubes::Cubes;
+use colltrans_testkit::random::Random;
+use glam::DVec3;
+
+fn planned(assembly: &Assembly, options: PlanOptions) -> Plan {
+    let bodies = Bodies::new(assembly, Fit::default_for(assembly)).unwrap();
+    let watch = Watch::default();
+    let touching = liaisons(&bodies, watch).unwrap();
+    let found = candidates(&bodies, &touching, &Choice::default()).unwrap();
+    let (all, start) = (vec![true; bodies.len()], StartOverlap::Refuse);
+    let matrix = Matrix::new(&bodies, &found.directions(), &all, start, watch).unwrap();
+    let plan = disassemble(&bodies, &matrix, &found.finer, options, watch).unwrap();
+    judged(&bodies, &plan);
+    plan
+}
+
+/// Every move of every step, at 201 places, by overlaps of the parts as they are shrunk; and that what makes room
+/// goes back.
+fn judged(bodies: &Bodies, plan: &Plan) {
+    let mut there = vec![true; bodies.len()];
+    for (k, step) in plan.steps.iter().enumerate() {
+        // A step of a group has only its parts around it, those that it has left.
+        let group = step.within.map(|w| &plan.steps[w].parts);
+        let inside = |p: usize| match group {
+            Some(group) => {
+                let before = plan.steps[..k].iter().filter(|s| s.within == step.within);
+                group.contains(&p) && !before.into_iter().any(|s| s.parts.contains(&p))
+            }
+            None => there[p],
+        };
+        let all: Vec<usize> = (0..bodies.len()).filter(|&p| inside(p)).collect();
+        let mut at = vec![DVec3::ZERO; bodies.len()];
+        let mut go = |leg: &Leg, gone: &[usize]| {
+            let motion = leg.direction * leg.travel;
+            let outside = |p: &&usize| !leg.parts.contains(p);
+            // What has left is far away.
+            let apart = |a: usize, b: usize| gone.contains(&a) != gone.contains(&b);
+            for &a in &leg.parts {
+                for &b in all.iter().filter(outside).filter(|&&b| !apart(a, b)) {
+                    for share in 0..=200 {
+                        let by = at[a] - at[b] + motion * (f64::from(share) / 200.0);
+                        assert!(!bodies.overlaps_displaced(a, by, b), "{a} {b} {share} {leg:?}");
+                    }
+                }
+            }
+            for &part in &leg.parts {
+                at[part] += motion;
+            }
+        };
+        for leg in &step.path {
+            go(leg, &[]);
+        }
+        let last = step.path.last().unwrap();
+        assert_eq!((&last.parts, last.travel), (&step.parts, step.travel.value));
+        for leg in &step.back {
+            go(leg, &step.parts);
+        }
+        for &part in all.iter().filter(|p| !step.parts.contains(p)) {
+            assert!(at[part].length() < 1e-9, "{part} is not back");
+        }
+        let first = at[step.parts[0]];
+        assert!(
+            step.parts.iter().all(|&p| (at[p] - first).length() < 1e-9),
+            "the group is as it was"
+        );
+        if step.within.is_none() {
+            step.parts.iter().for_each(|&p| there[p] = false);
+        }
+    }
+}
+
+fn blocks(name: &str, all: &[[[f64; 3]; 2]]) -> Part {
+    let pieces: Vec<Piece> = all.iter().map(|[low, high]| cuboid(*low, *high)).collect();
+    part(name, &pieces)
+}
+
+/// A T-slot along x, closed at both ends, whose lips are open from 14 to 17; and a bar with a stem in it.
+fn slot() -> Assembly {
+    let plate = blocks(
+        "plate",
+        &[
+            [[-1.0, -3.0, -1.0], [21.0, 3.0, 0.0]],
+            [[-1.0, -3.0, 0.0], [0.0, 3.0, 2.0]],
+            [[20.0, -3.0, 0.0], [21.0, 3.0, 2.0]],
+            [[0.0, -3.0, 0.0], [20.0, -2.0, 2.0]],
+            [[0.0, 2.0, 0.0], [20.0, 3.0, 2.0]],
+            [[0.0, -2.0, 1.0], [14.0, -1.0, 2.0]],
+            [[0.0, 1.0, 1.0], [14.0, 2.0, 2.0]],
+            [[17.0, -2.0, 1.0], [20.0, -1.0, 2.0]],
+            [[17.0, 1.0, 1.0], [20.0, 2.0, 2.0]],
+        ],
+    );
+    let key =
+        blocks("key", &[[[0.5, -1.5, 0.2], [2.5, 1.5, 0.8]], [[0.5, -0.5, 0.5], [2.5, 0.5, 3.0]]]);
+    Assembly::new(vec![key, plate]).unwrap()
+}
+
+#[test]
+fn a_key_leaves_in_two_moves_without_being_asked_for() {
+    let assembly = slot();
+    let plan = planned(&assembly, PlanOptions::default());
+    assert!(plan.stuck.is_empty() && plan.left.is_empty());
+    let step = &plan.steps[0];
+    assert_eq!((&step.parts[..], step.path.len(), step.back.len()), (&[0][..], 2, 0));
+    assert_eq!(step.path[0].direction, DVec3::X);
+    assert_eq!(step.direction, DVec3::Z);
+    // From 0.2 up until it is above the lips, which end at 2.
+    assert!((step.travel.value - 1.8).abs() < 1e-12, "{:?}", step.travel);
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    let told = record::plan(&bodies, &plan);
+    assert_eq!(told["plan"][0]["path"][0]["parts"][0], "key");
+    assert!(told["plan"][0].get("back").is_none());
+    assert_eq!((&told["last"][0], told["plan"].as_array().unwrap().len()), (&"plate".into(), 1));
+}
+
+#[test]
+fn one_move_is_asked_for_and_two_are_not_looked_for() {
+    let plan = planned(&slot(), PlanOptions::default().with_legs(1));
+    assert_eq!(plan.stuck[0].moves, Moves::NotAsked("no more than one was asked for"));
+    assert_eq!(plan.left, [0, 1]);
+}
+
+/// A box whose lid slides in grooves, as far as a stop, with a cube in it.
+fn sliding_lid() -> Assembly {
+    let tray = blocks(
+        "tray",
+        &[
+            [[-1.0, -1.0, -1.0], [5.0, 4.0, 0.0]],
+            [[-1.0, -1.0, 0.0], [0.0, 4.0, 3.5]],
+            [[4.0, -1.0, 0.0], [5.0, 4.0, 2.0]],
+            [[0.0, -1.0, 0.0], [4.0, 0.0, 2.0]],
+            [[0.0, 3.0, 0.0], [4.0, 4.0, 2.0]],
+            [[-1.0, -1.0, 2.0], [9.0, -0.5, 4.0]],
+            [[-1.0, 3.5, 2.0], [9.0, 4.0, 4.0]],
+            [[-1.0, -0.5, 3.0], [9.0, 0.0, 4.0]],
+            [[-1.0, 3.0, 3.0], [9.0, 3.5, 4.0]],
+            [[8.5, -1.0, 2.0], [9.0, 4.0, 4.0]],
+        ],
+    );
+    let cube = blocks("cube", &[[[1.0, 1.0, 0.5], [2.0, 2.0, 1.5]]]);
+    let lid = blocks("lid", &[[[0.1, -0.4, 2.2], [3.9, 3.4, 2.8]]]);
+    Assembly::new(vec![cube, lid, tray]).unwrap()
+}
+
+#[test]
+fn a_lid_makes_room_and_goes_back() {
+    let assembly = sliding_lid();
+    let plan = planned(&assembly, PlanOptions::default());
+    let step = &plan.steps[0];
+    assert_eq!(assembly.names(&step.parts), ["cube"]);
+    assert_eq!(assembly.names(&step.path[0].parts), ["lid"]);
+    assert_eq!(step.back.len(), 1);
+    assert_eq!(step.back[0].parts, step.path[0].parts);
+    assert_eq!(step.back[0].direction, -step.path[0].direction);
+    assert_eq!(step.back[0].travel, step.path[0].travel);
+    // The lid is kept by its stop: that is proven, or told with what was searched.
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    for (proofs, words) in [(true, "nor do several moves"), (false, "up to 2 moves one after")] {
+        let plan = planned(&assembly, PlanOptions::default().with_proofs(proofs));
+        let stuck = &plan.stuck[0];
+        assert_eq!(assembly.names(&stuck.parts), ["lid", "tray"]);
+        assert_eq!(stuck.proven.is_some(), proofs);
+        let because = stuck.because(&bodies);
+        assert!(because.contains(words), "{because}");
+    }
+}
+
+fn of_cubes(cubes: &Cubes) -> Assembly {
+    let cube = |c: &[i32; 3]| cuboid(c.map(f64::from), c.map(|x| f64::from(x + 1)));
+    let part = |(k, cells): (usize, &Vec<[i32; 3]>)| {
+        part(&format!("piece{k}"), &cells.iter().map(cube).collect::<Vec<_>>())
+    };
+    Assembly::new(cubes.pieces.iter().enumerate().map(part).collect()).unwrap()
+}
+
+#[test]
+fn random_puzzles_come_apart_as_all_moves_of_cubes_say() {
+    let mut random = Random::new(29);
+    // Stuck, taken apart, and with more than one, two and three moves.
+    let mut counts = [0; 5];
+    for case in 0..150 {
+        let cubes = Cubes::random(&mut random);
+        let assembly = of_cubes(&cubes);
+        let plan = planned(&assembly, PlanOptions::default().with_legs(12).with_samples(0));
+        let (expected, level) = (cubes.comes_apart(), cubes.level());
+        assert_eq!(plan.stuck.is_empty(), expected, "case {case}: {cubes:?} {plan:?}");
+        if let Some(level) = level {
+            let first = plan.steps[0].path.len();
+            assert_eq!(first, level.moves, "case {case}: {cubes:?} {plan:?}");
+            (1..4).for_each(|more| counts[1 + more] += usize::from(first > more));
+        }
+        counts[usize::from(expected)] += 1;
+    }
+    assert!(counts[0] >= 20 && counts[1] >= 100 && counts[2] >= 15 && counts[3] >= 3, "{counts:?}");
+}
+
+fn collected(name: &str) -> Option<Assembly> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data/assemblies");
+    let folder = folder.join(name);
+    folder.is_dir().then(|| read(folder, &ReadOptions::default()).unwrap())
+}
+
+#[test]
+fn a_burr_of_level_six_comes_apart_whole() {
+    let Some(assembly) = collected("burr_p3_19") else { return };
+    let plan = planned(&assembly, PlanOptions::default().with_legs(12).with_samples(0));
+    assert!(plan.left.is_empty() && plan.stuck.is_empty());
+    assert_eq!(plan.steps[0].path.len(), 6);
+    let taken: usize = plan.steps.iter().filter(|s| s.parts.len() == 1).count();
+    assert!(taken + plan.last.len() >= 5, "every piece gets out: {:?}", plan.steps);
+    // Two moves are not enough, and that is said.
+    let plan = planned(&assembly, PlanOptions::default().with_samples(0));
+    let Moves::NotFound { legs: 2, searched } = plan.stuck[0].moves else { panic!("{plan:?}") };
+    assert!(searched.complete && searched.places > 1, "{searched:?}");
+}

@@ -1,0 +1,272 @@
+//! What is unscrewed: bolts in nuts whose threads are known, each move held against places of the bodies themselves.
+
+use std::f64::consts::TAU;
+
+use colltrans::motion::{MotionCast, MotionOutcome};
+use colltrans::solid::SolidOptions;
+use colltrans::{Cast, Pose, Solid};
+use colltrans_assembly::candidates::{Choice, candidates};
+use colltrans_assembly::liaisons::liaisons;
+use colltrans_assembly::matrix::Matrix;
+use colltrans_assembly::plan::{Leg, Plan, PlanOptions, Turn, disassemble};
+use colltrans_assembly::roles::{PairFit, Role};
+use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Watch, record};
+use colltrans_mesh::Mesh;
+use colltrans_testkit::shapes::{self, helical};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+
+use crate::common::{cuboid, part};
+
+const THREAD: PairFit = PairFit { role: Some(Role::Thread), tolerance: None };
+const FIT: Fit = Fit::Tolerance(1e-6);
+
+/// A triangle of a wave, from 0 to 1 and back.
+fn wave(phase: f64) -> f64 {
+    1.0 - (2.0 * phase - 1.0).abs()
+}
+
+fn piece(mesh: shapes::Mesh, world_from_piece: DAffine3) -> Piece {
+    Piece { mesh: Mesh::new(mesh.vertices, mesh.faces), world_from_piece }
+}
+
+/// Four turns from `z = 0` on, from a radius of 5 to 5.6.
+fn screw(pitch: f64) -> shapes::Mesh {
+    helical(None, |phase| 5.0 + 0.6 * wave(phase), pitch, 4)
+}
+
+/// Two turns in a nut with so much play across.
+fn nut(pitch: f64, play: f64) -> shapes::Mesh {
+    helical(Some(9.0), |phase| 5.0 + play + 0.6 * wave(phase), pitch, 2)
+}
+
+/// The screw goes through the nut and stands out on both sides.
+fn through(pitch: f64) -> DAffine3 {
+    DAffine3::from_translation(DVec3::Z * pitch.abs())
+}
+
+fn turned(by: f64, aside: DVec3) -> DAffine3 {
+    DAffine3::from_translation(aside) * DAffine3::from_rotation_z(TAU * by)
+}
+
+fn bolted(screw: &[Piece], nut: &[Piece]) -> Assembly {
+    let parts = vec![part("screw", screw), part("nut", nut)];
+    Assembly::new(parts).unwrap().with_pair([&["screw"], &["nut"]], THREAD).unwrap()
+}
+
+fn planned(bodies: &Bodies) -> Plan {
+    let watch = Watch::default();
+    let touching = liaisons(bodies, watch).unwrap();
+    let choice = Choice::default().with_given(vec![DVec3::Z, DVec3::NEG_Z]).with_search(false);
+    let found = candidates(bodies, &touching, &choice).unwrap();
+    let (all, options) = (vec![true; bodies.len()], PlanOptions::default().with_samples(0));
+    let matrix = Matrix::new(bodies, &found.directions(), &all, options.start, watch).unwrap();
+    disassemble(bodies, &matrix, &found.finer, options.with_proofs(false), watch).unwrap()
+}
+
+/// The only step's turn, of a plan that takes all apart.
+fn turn(plan: &Plan) -> (&Leg, &Turn) {
+    assert!(plan.stuck.is_empty() && plan.steps.len() == 1, "{plan:?}");
+    let leg = &plan.steps[0].path[0];
+    (leg, leg.turn.as_ref().unwrap())
+}
+
+/// The motion has a certificate, which is checked, and in places all along both moves bodies that are shrunk by half of the
+/// tolerance each do not overlap.
+fn is_free(assembly: &Assembly, plan: &Plan) {
+    let step = &plan.steps[0];
+    let (leg, turn) = turn(plan);
+    let tolerance = turn.proof.as_ref().unwrap().tolerance;
+    let options = SolidOptions::default().with_tolerance(tolerance);
+    for &moving in &step.parts {
+        for fixed in (0..assembly.parts().len()).filter(|k| !step.parts.contains(k)) {
+            let [own, other] = [moving, fixed].map(|k| assembly.parts()[k].solid());
+            let motion = leg.motion().unwrap();
+            let cast = MotionCast::new(own.along(&motion), other.at(Pose::IDENTITY)).unwrap();
+            let cast = cast.tolerating(tolerance).unwrap();
+            let MotionOutcome::Free(free) = cast.certified_first_contact().unwrap() else {
+                panic!()
+            };
+            assert_eq!(cast.verify(&free.proof).unwrap(), [1.0, f64::INFINITY]);
+            for k in 0..=60 {
+                let (share, beyond) = ((f64::from(k) / 45.0).min(1.0), f64::from(k - 45).max(0.0));
+                let matrix = DMat3::from_quat(turn.rotation(leg, share));
+                let by = leg.moved(DVec3::ZERO, share) + step.direction * 0.3 * beyond;
+                let pose = Pose::from_matrix(matrix, by).unwrap();
+                let cast = Cast::<Solid>::new(own.at(pose), other.at(Pose::IDENTITY), DVec3::Z);
+                let cast = cast.unwrap().with_options(options).unwrap();
+                assert!(!cast.overlaps(), "{moving} {fixed} {share} {beyond}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_screw_with_play_is_unscrewed_as_it_is() {
+    for pitch in [1.0, -1.25] {
+        for fixed in ["screw", "nut"] {
+            // The nut is in the middle: it has as far to either end.
+            let nut = vec![piece(nut(pitch, 0.2), through(pitch))];
+            let assembly = bolted(&[piece(screw(pitch), DAffine3::IDENTITY)], &nut);
+            let assembly = assembly.with_fixed(&[fixed]).unwrap();
+            let plan = planned(&Bodies::new(&assembly, FIT).unwrap());
+            let (leg, turn) = turn(&plan);
+            assert!(turn.proof.as_ref().is_ok_and(|proof| proof.tolerance == 1e-6), "{turn:?}");
+            assert_eq!((turn.phase, turn.aside), (0.0, DVec3::ZERO));
+            // From one end of the screw to the other of the nut, and hardly farther: the axis is found from facets.
+            let way = 3.0 * pitch.abs();
+            assert!((way..1.01 * way).contains(&leg.travel), "{leg:?}");
+            assert!((turn.turns - leg.travel / pitch).abs() < 0.03, "{turn:?}");
+            is_free(&assembly, &plan);
+        }
+    }
+}
+
+#[test]
+fn a_thread_without_play_takes_the_tolerance_of_its_facets() {
+    let nut = vec![piece(nut(1.0, 0.0), through(1.0))];
+    let assembly = bolted(&[piece(screw(1.0), DAffine3::IDENTITY)], &nut);
+    let plan = planned(&Bodies::new(&assembly, FIT).unwrap());
+    let (_, turn) = turn(&plan);
+    let tolerance = turn.proof.as_ref().unwrap().tolerance;
+    // The height of a chord of 24 sides is 0.048; the thread is 0.6 deep.
+    assert!((1e-6..0.15).contains(&tolerance), "{tolerance}");
+    is_free(&assembly, &plan);
+    // With less than that it is not said to be certified.
+    let said = PairFit { tolerance: Some(1e-4), ..THREAD };
+    let tight = assembly.with_pair([&["screw"], &["nut"]], said).unwrap();
+    let plan = planned(&Bodies::new(&tight, FIT).unwrap());
+    let why = plan.steps[0].turn().unwrap().proof.clone().unwrap_err();
+    assert!(why.contains("no more than 1.00e-4 is let pass"), "{why}");
+}
+
+#[test]
+fn a_screw_that_is_turned_or_beside_its_hole_begins_where_it_fits() {
+    for (by, aside) in [(0.3, DVec3::ZERO), (-0.2, DVec3::new(0.1, -0.15, 0.0))] {
+        let nut = vec![piece(nut(1.0, 0.2), through(1.0))];
+        let assembly = bolted(&[piece(screw(1.0), turned(by, aside))], &nut);
+        let bodies = Bodies::new(&assembly, FIT).unwrap();
+        let plan = planned(&bodies);
+        let (leg, turn) = turn(&plan);
+        let sense = leg.direction.z * if plan.steps[0].parts == [0] { 1.0 } else { -1.0 };
+        assert!((turn.phase * sense + by).abs() < 0.1, "{turn:?}");
+        assert!((turn.aside.length() - aside.length()).abs() < 0.05, "{turn:?}");
+        is_free(&assembly, &plan);
+        let told = record::plan(&bodies, &plan);
+        let leg = &told["plan"][0]["path"][0]["turn"];
+        assert_eq!(leg["proof"]["tolerance"], 1e-6);
+        assert!((leg["pitch"].as_f64().unwrap() - 1.0).abs() < 0.01);
+        assert!(leg["turns"].as_f64().unwrap() > 2.9);
+    }
+}
+
+#[test]
+fn what_cannot_be_certified_is_said_with_why() {
+    let own = || vec![piece(screw(1.0), DAffine3::IDENTITY)];
+    let plain = piece(helical(Some(9.0), |_| 5.2, 1.0, 2), through(1.0));
+    let plan = planned(&Bodies::new(&bolted(&own(), &[plain]), FIT).unwrap());
+    let why = turn(&plan).1.proof.clone().unwrap_err();
+    assert_eq!(
+        why,
+        "the hole of nut has no thread, it is plain and narrower than the thread of screw"
+    );
+    // A wing that can be pulled past a wall, but not be turned past it.
+    let wing = [own(), vec![cuboid([0.0, -1.0, 4.0], [12.0, 1.0, 6.0])]].concat();
+    let assembly = bolted(&wing, &[piece(nut(1.0, 0.2), through(1.0))]);
+    let mut parts: Vec<Part> = assembly.parts().to_vec();
+    parts.push(part("wall", &[cuboid([8.0, 2.0, 3.5], [14.0, 4.0, 20.0])]));
+    let assembly = Assembly::new(parts).unwrap().with_fixed(&["nut", "wall"]).unwrap();
+    let assembly = assembly.with_pair([&["screw"], &["nut"]], THREAD).unwrap();
+    let plan = planned(&Bodies::new(&assembly, FIT).unwrap());
+    let why = turn(&plan).1.proof.clone().unwrap_err();
+    assert!(why.starts_with("after 0.") && why.ends_with("of screw meet those of wall"), "{why}");
+}
+
+#[test]
+fn equal_screws_are_told_as_one() {
+    let plate = [10.0, 30.0].map(|x| {
+        let place = DAffine3::from_translation(DVec3::X * x);
+        [piece(nut(1.0, 0.2), place * through(1.0)), piece(screw(1.0), place)]
+    });
+    let [[a, first], [b, second]] = plate;
+    let parts = vec![part("plate", &[a, b]), part("screw_1", &[first]), part("screw_2", &[second])];
+    let assembly = Assembly::new(parts).unwrap().with_fixed(&["plate"]).unwrap();
+    let assembly = assembly.with_pair([&["screw_*"], &["plate"]], THREAD).unwrap();
+    let bodies = Bodies::new(&assembly, FIT).unwrap();
+    let plan = planned(&bodies);
+    let stages = plan.stages();
+    assert_eq!((stages.len(), plan.steps.len()), (1, 2));
+    assert_eq!(plan.takes(&assembly, &stages[0]), "2 x screw");
+    assert!(plan.steps.iter().all(|step| step.turn().unwrap().proof.is_ok()));
+}
+
+#[test]
+fn a_turn_moves_points_as_its_numbers_say() {
+    let nut = vec![piece(nut(1.0, 0.2), through(1.0))];
+    let plan = planned(
+        &Bodies::new(&bolted(&[piece(screw(1.0), turned(0.3, DVec3::ZERO))], &nut), FIT).unwrap(),
+    );
+    let (leg, turn) = turn(&plan);
+    let p = DVec3::new(5.0, 1.0, 2.0);
+    let angle = TAU * (turn.phase + turn.turns * 0.5);
+    let wanted =
+        DQuat::from_axis_angle(leg.direction, angle) * p + leg.direction * (leg.travel / 2.0);
+    assert!(leg.moved(p, 0.5).distance(wanted) < 0.01, "{leg:?}");
+}
+
+/// A socket whose ring keeps two lugs down but for a slot that is as wide as they are and a little more, at an angle.
+fn socket(at: f64) -> Vec<Piece> {
+    let slot = DAffine3::from_rotation_z(at);
+    let mut pieces = vec![cuboid([-12.0, -12.0, -2.0], [12.0, 12.0, -1.0])];
+    // The ring beside the slot, in two halves of one block each, with the hole for the shaft left out.
+    for side in [-1.0, 1.0] {
+        let [low, high] = if side < 0.0 { [-9.0, -1.1] } else { [1.1, 9.0] };
+        let half = cuboid([-9.0, low, 1.5], [9.0, high, 2.5]);
+        pieces.push(Piece { world_from_piece: slot, ..half });
+    }
+    // Walls that hold the ring up.
+    for k in 0..4 {
+        let turned = DAffine3::from_rotation_z(TAU / 4.0 * f64::from(k));
+        let wall = cuboid([9.5, -12.0, -1.0], [12.0, 12.0, 3.0]);
+        pieces.push(Piece { world_from_piece: turned, ..wall });
+    }
+    // Lids over all but the round in the middle, so that the ring is no part of its own.
+    pieces.push(cuboid([-12.0, 8.0, 2.0], [12.0, 12.0, 3.0]));
+    pieces.push(cuboid([-12.0, -12.0, 2.0], [12.0, -8.0, 3.0]));
+    pieces
+}
+
+/// A plug with a lug on either side of its shaft, which lies under the ring.
+fn plug() -> Vec<Piece> {
+    vec![cuboid([-0.7, -0.7, -0.9], [0.7, 0.7, 6.0]), cuboid([-6.0, -1.0, 0.0], [6.0, 1.0, 1.4])]
+}
+
+#[test]
+fn a_bayonet_is_turned_and_then_pulled() {
+    let parts = vec![part("socket", &socket(0.7)), part("plug", &plug())];
+    let assembly = Assembly::new(parts).unwrap().with_fixed(&["socket"]).unwrap();
+    let bodies = Bodies::new(&assembly, FIT).unwrap();
+    let plan = planned(&bodies);
+    let (leg, turn) = turn(&plan);
+    assert_eq!((leg.travel, plan.steps[0].parts[0]), (0.0, 1));
+    assert!(plan.steps[0].direction.z > 0.999);
+    // The slot is 0.1 wider on either side, at a radius of 6.
+    let angle = TAU * turn.turns * leg.direction.z;
+    assert!(
+        (angle - 0.7).abs() < 0.02 || (angle + std::f64::consts::PI - 0.7).abs() < 0.02,
+        "{turn:?}"
+    );
+    is_free(&assembly, &plan);
+    // Without the slot there is no way.
+    let closed = [
+        socket(0.7),
+        vec![
+            cuboid([-9.0, -9.0, 1.5], [-1.6, 9.0, 2.5]),
+            cuboid([1.6, -9.0, 1.5], [9.0, 9.0, 2.5]),
+        ],
+    ]
+    .concat();
+    let assembly = Assembly::new(vec![part("socket", &closed), part("plug", &plug())]).unwrap();
+    let assembly = assembly.with_fixed(&["socket"]).unwrap();
+    let plan = planned(&Bodies::new(&assembly, FIT).unwrap());
+    assert!(plan.steps.is_empty(), "{plan:?}");
+}

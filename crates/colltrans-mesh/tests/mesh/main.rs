@@ -1,0 +1,5 @@
+//! Mesh files, in one program: each is linked for itself.
+
+mod collection;
+mod formats;
+mod validation;

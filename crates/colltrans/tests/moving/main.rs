@@ -1,0 +1,8 @@
+//! Bodies that turn, in one program: each is linked for itself.
+
+mod motion;
+mod motion_clearance;
+mod motion_properties;
+mod path;
+mod published_motions;
+mod solids_motion;

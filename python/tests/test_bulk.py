@@ -269,9 +269,10 @@ def killed_and_repeated(asked: Path, out: Path, bodies: Path, *more: str) -> str
         while not list(out.glob("shard-*.parquet")) and time.monotonic() - began < 300:
             time.sleep(0.002)
         os.killpg(process.pid, signal.SIGKILL)
-    done = list(out.glob("shard-*.parquet"))
-    assert done
-    return subprocess.run(run, check=True, capture_output=True, text=True).stdout
+    assert list(out.glob("shard-*.parquet")), "no shard was answered in 300 s"
+    again = subprocess.run(run, capture_output=True, text=True)
+    assert again.returncode == 0, again.stderr
+    return again.stdout
 
 
 @pytest.mark.skipif(os.name == "nt", reason="processes are killed another way")

@@ -102,22 +102,20 @@ fn is_free(assembly: &Assembly, plan: &Plan) {
 
 #[test]
 fn a_screw_with_play_is_unscrewed_as_it_is() {
-    for pitch in [1.0, -1.25] {
-        for fixed in ["screw", "nut"] {
-            // The nut is in the middle: it has as far to either end.
-            let nut = vec![piece(nut(pitch, 0.2), through(pitch))];
-            let assembly = bolted(&[piece(screw(pitch), DAffine3::IDENTITY)], &nut);
-            let assembly = assembly.with_fixed(&[fixed]).unwrap();
-            let plan = planned(&Bodies::new(&assembly, FIT).unwrap());
-            let (leg, turn) = turn(&plan);
-            assert!(turn.proof.as_ref().is_ok_and(|proof| proof.tolerance == 1e-6), "{turn:?}");
-            assert_eq!((turn.phase, turn.aside), (0.0, DVec3::ZERO));
-            // From one end of the screw to the other of the nut, and hardly farther: the axis is found from facets.
-            let way = 3.0 * pitch.abs();
-            assert!((way..1.01 * way).contains(&leg.travel), "{leg:?}");
-            assert!((turn.turns - leg.travel / pitch).abs() < 0.03, "{turn:?}");
-            is_free(&assembly, &plan);
-        }
+    for (pitch, fixed) in [(1.0, "screw"), (-1.25, "nut")] {
+        // The nut is in the middle: it has as far to either end.
+        let nut = vec![piece(nut(pitch, 0.2), through(pitch))];
+        let assembly = bolted(&[piece(screw(pitch), DAffine3::IDENTITY)], &nut);
+        let assembly = assembly.with_fixed(&[fixed]).unwrap();
+        let plan = planned(&Bodies::new(&assembly, FIT).unwrap());
+        let (leg, turn) = turn(&plan);
+        assert!(turn.proof.as_ref().is_ok_and(|proof| proof.tolerance == 1e-6), "{turn:?}");
+        assert_eq!((turn.phase, turn.aside), (0.0, DVec3::ZERO));
+        // From one end of the screw to the other of the nut, and hardly farther: the axis is found from facets.
+        let way = 3.0 * pitch.abs();
+        assert!((way..1.01 * way).contains(&leg.travel), "{leg:?}");
+        assert!((turn.turns - leg.travel / pitch).abs() < 0.03, "{turn:?}");
+        is_free(&assembly, &plan);
     }
 }
 

@@ -76,7 +76,8 @@ def ray(
     if not ray.is_initialized():
         here: dict[str, Any] = {"num_cpus": workers, "include_dashboard": False}
         here["object_store_memory"] = 256 << 20
-        ray.init(address=address, log_to_driver=False, **({} if address else here))
+        # Without an address Ray would take a cluster that it finds on this machine.
+        ray.init(address=address or "local", log_to_driver=False, **({} if address else here))
     bodies.share()
     store = ray.put(bodies)
 

@@ -1,6 +1,6 @@
 //! Fuzz targets for the readers of assemblies: arbitrary bytes as sources, from memory. Whatever they
 //! hold, the answer is an assembly or an error. Their corpora run as ordinary tests too
-//! (`crates/colltrans-assembly/tests/fuzz_corpus.rs`).
+//! (`crates/colltrans-assembly/tests/assembly/fuzz_corpus.rs`).
 
 use std::collections::BTreeMap;
 use std::io::{Cursor, Write};

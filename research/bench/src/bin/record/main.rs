@@ -517,6 +517,13 @@ mod tests {
     }
 
     #[test]
+    fn pages_are_made_of_the_runs_beside_them() {
+        let root = PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."));
+        let changed = run(&Command { root, check: true }).unwrap();
+        assert!(changed.is_empty(), "not up to date with docs/measurements: {changed:?}");
+    }
+
+    #[test]
     fn commands_name_no_folders() {
         let run = serde_json::json!({ "command": "table --quick --json /elsewhere/t.json" });
         let line = cargo_command(&run);

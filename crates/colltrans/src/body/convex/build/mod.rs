@@ -167,8 +167,8 @@ impl ConvexPolyhedron {
             solid: OnceLock::new(),
         };
         body.measure_faces();
-        // Along the rims of large faces queries go by them.
-        if body.large_faces.is_empty() {
+        // Queries go by them around the faces of small bodies, and along the rims of large faces.
+        if body.vertices.len() > hull::LARGE && body.large_faces.is_empty() {
             body.topology.let_go_of_links();
         }
         body

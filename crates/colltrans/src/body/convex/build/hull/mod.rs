@@ -250,7 +250,7 @@ fn each_once(numbers: impl Iterator<Item = u32> + Clone) -> Vec<u32> {
 
 /// More vertices than this are numbered by place: what a query visits one after the other is then
 /// near in memory. Smaller bodies fit in the fastest cache in any order.
-const LARGE: usize = 500;
+pub(super) const LARGE: usize = 500;
 
 /// Sorts points along a space-filling curve (Morton's).
 fn sort_by_place(points: &[DVec3], vertices: &mut [u32]) {

@@ -15,6 +15,7 @@ use super::{
 use crate::failure::{Code, Failure};
 
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a flag of its own")]
 pub(crate) struct MotionArguments {
     /// The mesh that moves and the one that it may meet; with --from all that move, together
     #[arg(required = true, value_name = "MESH")]

@@ -25,6 +25,7 @@ pub(crate) enum Key {
 
 /// What is built.
 #[derive(Debug)]
+#[expect(clippy::large_enum_variant, reason = "each is behind a pointer of its own")]
 pub(crate) enum Shape {
     Convex(Part),
     Solid(solid::Body),

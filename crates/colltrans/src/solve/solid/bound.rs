@@ -188,15 +188,17 @@ pub(crate) fn apart(scene: &Scene, a: &Projected, b: &Projected) -> bool {
     !a.bounds.meets(&b.bounds) || beyond(scene, (p, a), (q, b)) || beyond(scene, (q, b), (p, a))
 }
 
-/// Whether a node is certainly beyond a side of another's box or slab.
+/// Whether a node is certainly beyond a side of another's box or slab: of two that are opposite, the one nearer to it.
 pub(crate) fn beyond(
     scene: &Scene,
     (p, a): (&Side, &Projected),
     (q, b): (&Side, &Projected),
 ) -> bool {
-    let apart = |axis: DVec3, range: [f64; 2]| {
-        let [least, largest] = b.range(q, axis, 2.0 * scene.noise);
-        least > range[1] + scene.noise || largest < range[0] - scene.noise
+    let middle = b.bounds.center();
+    let apart = |axis: DVec3, [low, high]: [f64; 2]| {
+        let above = 2.0 * axis.dot(middle) > low + high;
+        let (axis, end) = if above { (axis, high) } else { (-axis, -low) };
+        b.is_beyond(q, axis, 2.0 * scene.noise, end + scene.noise)
     };
     a.slab[1] < f64::INFINITY && apart(a.axis, a.slab)
         || p.aligned == [false; 3] && (0..3).any(|k| apart(p.view.col(k), a.local_range(p, k)))

@@ -117,6 +117,18 @@ impl Projected {
     /// The least `m.x` over the node, `m` a unit vector, by its cut box: of what is left of `m` next to
     /// its part along the slab, if that is most of it.
     pub(crate) fn least_along(&self, side: &Side, m: DVec3, noise: f64) -> f64 {
+        let (least, local) = self.least_uncut(side, m, noise);
+        least + self.gain(side, local)
+    }
+
+    /// Whether it lies beyond a place along a unit vector. What is cut off its box is looked at only if it has to be.
+    pub(crate) fn is_beyond(&self, side: &Side, m: DVec3, noise: f64, place: f64) -> bool {
+        let (least, local) = self.least_uncut(side, m, noise);
+        least > place || least + self.gain(side, local) > place
+    }
+
+    /// The least `m.x` by its whole box, and along what in the body's frame that was asked.
+    fn least_uncut(&self, side: &Side, m: DVec3, noise: f64) -> (f64, DVec3) {
         let along = self.axis.dot(m);
         let (mut rest, mut slab) = (m, 0.0);
         if along.abs() > PARALLEL && self.slab[1] < f64::INFINITY {
@@ -128,9 +140,13 @@ impl Projected {
         let (local, bounds) = (side.view.transpose() * rest, self.local);
         let middle = local.dot(bounds.center()) + rest.dot(side.view_offset);
         let spread = local.abs().dot(bounds.size() * 0.5) + noise;
+        (slab + middle - spread - side.swell, local)
+    }
+
+    /// What the cuts of its box take from how far that reaches against a vector of the body's frame.
+    fn gain(&self, side: &Side, local: DVec3) -> f64 {
         let node = &side.solid.nodes()[self.node as usize];
-        let gain = Parts::new(-local).gain_of(&node.cuts, node.bounds.size(), side.moved());
-        slab + middle - spread + gain - side.swell
+        Parts::new(-local).gain_of(&node.cuts, node.bounds.size(), side.moved())
     }
 
     /// Whether its slab bounds heights.

@@ -48,11 +48,11 @@ const CASTS: &[(&str, u64)] = &[
 /// Families of solids.
 const SOLIDS: &[(&str, u64)] = &[
     ("grid", 0x7f4d_12c6_7c07_0c04),
-    ("sheared", 0xdd44_5186_578a_2dad),
+    ("sheared", 0x770c_8211_b115_3581),
     ("quarter", 0xe22c_07c1_5311_8aba),
-    ("halves", 0x15a5_3ee3_0af8_4a79),
+    ("halves", 0x956b_efe9_e35f_8274),
     ("mould", 0x82bc_b2a1_ee94_1a82),
-    ("rotated", 0x53e4_792b_290c_9f5c),
+    ("rotated", 0x689e_be44_e5e8_7340),
 ];
 
 /// Fowler, Noll and Vo's hash, 64 bits, 1a.

@@ -104,13 +104,13 @@ fn flat_faces_part_at_once() {
     }
 }
 
-/// The least tolerance of an overlap takes a few looks at the bodies, not one for each binary digit.
+/// The least tolerance of an overlap takes a few looks at the bodies and at each place, not one for each binary digit.
 #[test]
 fn least_tolerances_take_a_few_looks() {
     let body = bumpy_ball(4_000);
     let body = Solid::from_mesh(&body.vertices, &body.faces).expect("a ball");
     let mut random = Random::new(5);
-    let (mut sunk, mut sum) = (0, 0);
+    let (mut sunk, mut sum, mut looks) = (0, 0, 0);
     for _ in 0..40 {
         let direction = random.direction();
         let [start, target] = [-direction * 4.0, DVec3::ZERO]
@@ -126,9 +126,35 @@ fn least_tolerances_take_a_few_looks() {
             assert!(least > 0.0 && least < 1e-5, "{least}");
             sunk += 1;
             sum += found.steps.nodes;
+            looks += found.steps.leaves;
         }
     }
     assert!(sunk > 20, "{sunk} overlaps");
-    let mean = f64::from(sum) / f64::from(sunk);
-    assert!(mean < 1000.0, "{mean} pairs of nodes");
+    let [nodes, looks] = [sum, looks].map(|count| f64::from(count) / f64::from(sunk));
+    println!("{nodes} pairs of nodes, {looks} looks at places and leaves");
+    assert!(nodes < 1000.0 && looks < 60.0, "{nodes} pairs of nodes, {looks} looks");
+}
+
+/// So does that of convex bodies deep in each other, which are parted by a plane (some
+/// 700,000 pairs of nodes by their trees).
+#[test]
+fn least_tolerances_of_deep_convex_bodies_take_a_few_looks() {
+    let Mesh { vertices, faces } = ring_sphere(25, 20);
+    let ball = Solid::from_mesh(&vertices, &faces).expect("a ball");
+    let mut random = Random::new(5);
+    for depth in [0.25, 0.5, 0.75] {
+        let turned = |at| Pose::new(random.rotation(), at).expect("a pose");
+        let [p, q] = [DVec3::X * (2.0 - depth), DVec3::ZERO].map(turned);
+        let cast = Cast::new(ball.at(p), ball.at(q), DVec3::X).expect("a query");
+        let Clearance::Overlapping(found) = cast.clearance().expect("an answer") else {
+            panic!("they overlap")
+        };
+        let least = found.least_tolerance.expect("something is left of both");
+        println!("{depth}: {least}, {:?}", found.steps);
+        // Chords of balls are nearer than their arcs.
+        assert!(least < depth && least > depth - 0.1, "{least} of {depth}");
+        assert!(found.steps.nodes < 120_000, "{:?}", found.steps);
+        let just = |share| cast.with_tolerance(share * least).expect("a tolerance").overlaps();
+        assert!(just(1.0 - 1e-9) && !just(1.0));
+    }
 }

@@ -298,7 +298,7 @@ impl<'a> Pair<'a, Solid> {
         let found = cast.intersects()?;
         let (meets, mut steps) = (found.meets, found.evidence.steps);
         let least_tolerance =
-            if meets { cast.least_tolerance_counting(&mut steps) } else { Some(0.0) };
+            if meets { cast.least_tolerance_from(None, &mut steps) } else { Some(0.0) };
         Ok(OverlapDepth { meets, least_tolerance, steps })
     }
 

@@ -28,6 +28,8 @@ const DOUBLE: f64 = 1.0 / (1_u64 << 48) as f64;
 pub(crate) struct Faces {
     /// The least number of the input facets that the face is made of.
     of: Vec<u32>,
+    /// Of each vertex, whether more than two sharp edges end there.
+    corners: Vec<bool>,
     /// How far apart coordinates may be that were meant to be one, a length.
     precision: f64,
 }
@@ -73,17 +75,38 @@ impl Faces {
             let number = members.iter().map(|&t| of[t as usize]).min().unwrap_or(NONE);
             members.drain(..).for_each(|t| of[t as usize] = number);
         }
-        Self { of, precision }
+        let corners = corners(solid, &of);
+        Self { of, corners, precision }
     }
 
     /// Of the same triangles in another order.
     pub(super) fn ordered(&self, order: &[u32]) -> Self {
-        Self { of: order.iter().map(|&t| self.of[t as usize]).collect(), ..*self }
+        let of = order.iter().map(|&t| self.of[t as usize]).collect();
+        Self { of, corners: self.corners.clone(), ..*self }
     }
 
     pub(crate) fn heap_bytes(&self) -> usize {
-        self.of.capacity() * size_of::<u32>()
+        self.of.capacity() * size_of::<u32>() + self.corners.capacity()
     }
+}
+
+/// Of each vertex, whether more than two sharp edges end there.
+fn corners(solid: &Solid, of: &[u32]) -> Vec<bool> {
+    let mut ends = vec![0_u8; solid.vertices.len()];
+    let mut count = |v: u32| ends[v as usize] = ends[v as usize].saturating_add(1);
+    for (t, neighbours) in solid.neighbours.iter().enumerate() {
+        for (k, &n) in neighbours.iter().enumerate() {
+            let rim = n == NONE;
+            if rim || of[n as usize] != of[t] {
+                // What is across tells of its other end.
+                count(solid.triangles[t][k]);
+            }
+            if rim {
+                count(solid.triangles[t][(k + 1) % 3]);
+            }
+        }
+    }
+    ends.into_iter().map(|count| count > 2).collect()
 }
 
 /// The plane of the triangles of a face: their area vector, and their centre.
@@ -214,12 +237,16 @@ impl Solid {
     /// What corner `k` of a triangle is part of: a corner of the solid, an edge or a face.
     fn corner_feature(&self, triangle: u32, k: usize) -> Feature {
         let vertex = self.triangles[triangle as usize][k];
+        let corner = Feature::Vertex(self.vertex_index[vertex as usize]);
+        if self.is_corner(vertex) {
+            return corner;
+        }
         let sharp = self.sharp_at(vertex, triangle);
         let [[a, s], [b, t]] = sharp.ends;
         match sharp.count {
             0 => self.face_feature(triangle),
             2 if self.is_straight([a, vertex, b]) => self.edge_through([a, vertex, b], [s, t]),
-            _ => Feature::Vertex(self.vertex_index[vertex as usize]),
+            _ => corner,
         }
     }
 
@@ -228,6 +255,11 @@ impl Solid {
         let n = self.neighbours[triangle as usize][k];
         let of = &self.faces().of;
         n == NONE || of[n as usize] != of[triangle as usize]
+    }
+
+    /// Whether more than two sharp edges end at a vertex.
+    fn is_corner(&self, vertex: u32) -> bool {
+        self.faces().corners[vertex as usize]
     }
 
     /// Goes around a vertex of a triangle, or from rim to rim, until `visit` says stop: the triangles,
@@ -319,6 +351,9 @@ impl Solid {
     /// straight, as seen from its other `end`.
     fn end_of_edge(&self, end: u32, [mut before, mut at]: [u32; 2], mut triangle: u32) -> u32 {
         for _ in 0..self.vertices.len() {
+            if self.is_corner(at) {
+                break;
+            }
             let sharp = self.sharp_at(at, triangle);
             let ahead = sharp.ends.into_iter().find(|[next, _]| *next != before);
             let Some([next, t]) = ahead.filter(|_| sharp.count == 2) else { break };

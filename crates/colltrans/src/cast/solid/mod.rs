@@ -1,15 +1,13 @@
 //! How far a solid can move from where it is.
 //!
 //! With a tolerance `L` both bodies are shrunk by `L / 2`. If their interiors then share a point, they
-//! overlap, and the least tolerance with which they do not is found from above. The place that shows an overlap
-//! is asked first, alone, with which tolerance it is gone: doubled until it is, then halved between the two. With
-//! that the bodies are asked; if they overlap in another place, that one is next. Where the tolerance is not small,
-//! facets may come to overlap again: there the bodies are asked each time, unless the last place tells.
+//! overlap: how much has a file of its own, [`tolerance`].
 
 mod hulls;
 mod proof;
 #[cfg(feature = "serde")]
 mod saved;
+mod tolerance;
 mod verify;
 
 use glam::DVec3;
@@ -28,19 +26,12 @@ use crate::solve::solid::overlap::{self, Overlap};
 use crate::solve::solid::scene::Scene;
 use crate::solve::solid::search::{Aim, Found, Search, Workspace};
 use crate::solve::solid::separate::separation;
-use hulls::Told;
+use hulls::{Guessed, Hulls};
 pub use proof::{Claim, Cover, SolidCertificate, StartProof, StopProof};
 pub use verify::SolidProof;
 
 /// Default tolerance, in multiples of the rounding error of a coordinate.
 const NOISES: f64 = 8.0;
-/// The least tolerance is found to this share of itself.
-const TOLERANCE_ACCURACY: f64 = 1e-12;
-/// Halvings of a tolerance.
-const MOST_HALVINGS: usize = 128;
-/// Places of an overlap that are asked for their tolerance, one after the other; then the bodies are asked each time.
-const MOST_PLACES: usize = 24;
-
 /// What an overlap at the start means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 #[cfg_attr(
@@ -287,7 +278,7 @@ impl<'a> Cast<'a, Solid> {
 
     /// The tolerance that is used, as a length.
     pub fn tolerance(&self) -> f64 {
-        self.options.tolerance.unwrap_or_else(|| default_tolerance(&self.scene(0.0)))
+        self.options.tolerance.unwrap_or_else(|| tolerance_by_default(&self.scene(0.0)))
     }
 
     pub(crate) fn scene(&self, tolerance: f64) -> Scene<'a> {
@@ -304,7 +295,7 @@ impl<'a> Cast<'a, Solid> {
             return (self.scene(tolerance), tolerance);
         }
         let bare = self.scene(0.0);
-        let tolerance = default_tolerance(&bare);
+        let tolerance = tolerance_by_default(&bare);
         let asked =
             if tolerance == 0.0 { bare } else { bare.resized(tolerance / 2.0, self.options.keep) };
         (asked, tolerance)
@@ -336,11 +327,15 @@ impl<'a> Cast<'a, Solid> {
     /// # Errors
     /// As [`Self::clearance`].
     pub fn clearance_in(&self, workspace: &mut Workspace) -> Result<Clearance<Solid>, QueryError> {
-        let scene = self.asked_of_something()?;
-        let mut steps = SolidSteps::default();
-        if let Some((answer, _)) = self.told_by_hulls(&scene) {
+        let hulls = Hulls::of(self);
+        if let Some(answer) = hulls.as_ref().and_then(|hulls| hulls.certain(self)) {
             return Ok(answer);
         }
+        let scene = self.asked_of_something()?;
+        if let Some(answer) = hulls.and_then(|hulls| self.guessed_by_hulls(&hulls, &scene)) {
+            return Ok(answer);
+        }
+        let mut steps = SolidSteps::default();
         let ignored = self.options.start_overlap == StartOverlap::Ignore;
         let aim = match self.options.overlapping {
             Some(false) => Aim::Stop,
@@ -456,22 +451,19 @@ impl<'a> Cast<'a, Solid> {
         self.options.before.map_or(f64::INFINITY, |t| t * scene.setting.length)
     }
 
-    /// What the cast of the bodies' hulls tells of the clearance, with the facets that stop the moving body; the same
-    /// whether a proof is wanted or not.
-    fn told_by_hulls(&self, scene: &Scene) -> Option<(Clearance<Solid>, Option<Found>)> {
-        if self.options.overlapping == Some(true) {
-            return None;
-        }
+    /// What the bodies' hulls tell of the clearance; the same whether a proof is wanted or not.
+    fn told_by_hulls(&self, scene: &Scene) -> Option<Clearance<Solid>> {
+        let hulls = Hulls::of(self)?;
+        hulls.certain(self).or_else(|| self.guessed_by_hulls(&hulls, scene))
+    }
+
+    fn guessed_by_hulls(&self, hulls: &Hulls, scene: &Scene) -> Option<Clearance<Solid>> {
         let mut steps = SolidSteps::default();
-        let told = hulls::told(self, scene, self.limit(scene), &mut steps.leaves)?;
-        Some(match told {
-            Told::Stop(found) => (self.answer(scene, Some(&found), steps), Some(found)),
-            Told::Apart(plane) => {
-                let separation = self.options.before.is_none().then_some(plane);
-                (Clearance::Free(SolidFree { separation, steps }), None)
-            }
-            Told::Free => (self.answer(scene, None, steps), None),
-        })
+        let found = match hulls.guessed(scene, self.limit(scene), &mut steps.leaves)? {
+            Guessed::Stop(found) => Some(found),
+            Guessed::Free => None,
+        };
+        Some(self.answer(scene, found.as_ref(), steps))
     }
 
     /// What a search has found, as an answer.
@@ -492,7 +484,7 @@ impl<'a> Cast<'a, Solid> {
     }
 
     pub(crate) fn overlap_at(&self, place: Overlap, mut steps: SolidSteps) -> SolidOverlap {
-        let least_tolerance = self.least_tolerance_counting(&mut steps);
+        let least_tolerance = self.least_tolerance_from(Some(place), &mut steps);
         SolidOverlap { place, least_tolerance, steps }
     }
 
@@ -540,53 +532,6 @@ impl<'a> Cast<'a, Solid> {
         Ok(Intersection { meets: place.is_some(), evidence })
     }
 
-    /// The least tolerance with which the bodies do not overlap, from above: 0 if they do not, `None`
-    /// if there is none that leaves something of both, as of one that lies deep inside the other. Nor is there one
-    /// where they overlap and one of them has open
-    /// shells: less of a solid does not free a sheet that passes through it. How far convex bodies have to
-    /// go back along a direction is another question: [`Cast::directional_depth`].
-    pub fn least_tolerance(&self) -> Option<f64> {
-        self.least_tolerance_counting(&mut SolidSteps::default())
-    }
-
-    pub(crate) fn least_tolerance_counting(&self, steps: &mut SolidSteps) -> Option<f64> {
-        let bare = self.scene(0.0);
-        let Some(mut place) = overlap::find(&bare, steps) else { return Some(0.0) };
-        if !(self.moving().is_closed() && self.fixed().is_closed()) {
-            return None;
-        }
-        // Shrunk by more than there is of it, a body is inside out.
-        let vanishes = |tolerance: f64| self.check_left(tolerance).is_err();
-        let shrunk = |tolerance: f64| bare.shrunk(tolerance / 2.0, tolerance / 2.0);
-        // As long as shrinking turns nothing inside out, what is free with one tolerance is so with more.
-        let most = 2.0 * self.moving().shrinking().most.min(self.fixed().shrinking().most);
-        let mut overlapping = 0.0;
-        for _ in 0..MOST_PLACES {
-            let is_gone = |tolerance| {
-                tolerance > overlapping && !overlap::is_overlap(&shrunk(tolerance), place)
-            };
-            let Some(least) = least_of_all([bare.noise, most], is_gone) else { break };
-            if vanishes(least) {
-                break;
-            }
-            let Some(next) = overlap::find(&shrunk(least), steps) else { return Some(least) };
-            (place, overlapping) = (next, least);
-        }
-        let is_free = |tolerance| {
-            if vanishes(tolerance) {
-                return true;
-            }
-            let shrunk = shrunk(tolerance);
-            if overlap::is_overlap(&shrunk, place) {
-                return false;
-            }
-            let found = overlap::find(&shrunk, steps);
-            place = found.unwrap_or(place);
-            found.is_none()
-        };
-        least_of_all([bare.noise, bare.size()], is_free).filter(|least| !vanishes(*least))
-    }
-
     /// The translation after which the bodies, as they are, never meet again, in multiples of the
     /// direction: the last contact of [`Self::contact_range`] alone, and 0 if it lies behind; `None` if
     /// they never meet. Beyond `upper` they are apart for certain.
@@ -604,29 +549,13 @@ impl<'a> Cast<'a, Solid> {
 }
 
 /// The tolerance of bodies for which none was given, which `bare` has as they are.
-fn default_tolerance(bare: &Scene) -> f64 {
-    let squared = bare.moving.permutes && bare.fixed.permutes;
-    if squared { 0.0 } else { NOISES * bare.noise }
+fn tolerance_by_default(bare: &Scene) -> f64 {
+    default_tolerance(bare.moving.permutes && bare.fixed.permutes, bare.noise)
 }
 
-/// The least of all tolerances, from above, from which on something holds: doubled from the first end until it
-/// does, then halved between the last two; `None` if that is beyond the second end.
-fn least_of_all([first, last]: [f64; 2], mut holds: impl FnMut(f64) -> bool) -> Option<f64> {
-    let (mut low, mut high) = (0.0, first);
-    while !holds(high) {
-        (low, high) = (high, 2.0 * high);
-        if high > last {
-            return None;
-        }
-    }
-    for _ in 0..MOST_HALVINGS {
-        let middle = low + 0.5 * (high - low);
-        if high - low <= TOLERANCE_ACCURACY * high || middle <= low || middle >= high {
-            break;
-        }
-        *(if holds(middle) { &mut high } else { &mut low }) = middle;
-    }
-    Some(high)
+/// The same of bodies whose matrices permute axes, or not.
+fn default_tolerance(permuted: bool, noise: f64) -> f64 {
+    if permuted { 0.0 } else { NOISES * noise }
 }
 
 /// The least gap below a limit.

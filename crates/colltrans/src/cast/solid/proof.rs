@@ -235,13 +235,12 @@ impl Cast<'_, Solid> {
         let end = search.limit;
         steps += search.steps;
         certificate.cover = Cover::new(bodies, &cuts);
-        let (answer, found) = self
-            .told_by_hulls(&scene)
-            .unwrap_or_else(|| (self.answer(&scene, found.as_ref(), steps), found));
-        certificate.stop = found.map(|found| StopProof {
-            shrunk_distance: found.gap / scene.setting.length,
-            triangles: [found.moving, found.fixed],
-        });
+        let told = self.told_by_hulls(&scene);
+        let answer = told.unwrap_or_else(|| self.answer(&scene, found.as_ref(), steps));
+        if let Clearance::Blocked { contact, .. } = &answer {
+            let shrunk_distance = contact.shrunk_distance.value;
+            certificate.stop = Some(StopProof { shrunk_distance, triangles: contact.triangles });
+        }
         certificate.lower = proven(&scene, aim, end, &certificate.cover) / scene.setting.length;
         if certificate.lower <= 0.0 {
             // Nothing contributes less than 0.

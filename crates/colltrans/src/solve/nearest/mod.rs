@@ -22,7 +22,7 @@
 
 mod depth;
 mod gjk;
-mod simplex;
+pub(in crate::solve) mod simplex;
 mod surround;
 
 use glam::{DMat3, DVec3};

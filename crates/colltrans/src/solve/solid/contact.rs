@@ -189,14 +189,18 @@ pub(crate) fn contact(
         let pair = [found.moving, found.fixed];
         true_place(&scene.shrunk(0.0, 0.0), pair, shrunk_distance, normal, shift)
     };
+    let named = |side: &Side, triangle, foot: &Foot| {
+        let at = foot.mean(|v| side.solid.vertices()[v as usize]);
+        feature(side.solid, triangle, (at, side.matrix.transpose() * normal), scene.noise)
+    };
     SolidContact {
         translation,
         shrunk_distance,
         normal,
         point_on_moving: on_f.point(moving) + origin,
         point_on_fixed: on_g.point(fixed) + origin,
-        moving_feature: feature(scene, moving, found.moving, &on_f, normal),
-        fixed_feature: feature(scene, fixed, found.fixed, &on_g, normal),
+        moving_feature: named(moving, found.moving, &on_f),
+        fixed_feature: named(fixed, found.fixed, &on_g),
         triangles: [found.moving, found.fixed],
         steps,
     }
@@ -334,9 +338,13 @@ fn meeting(a: [DVec3; 2], b: [DVec3; 2]) -> (f64, f64) {
     (share(w.perp_dot(v)), share(w.perp_dot(u)))
 }
 
-/// What a foot names, to within the precision of the coordinates and rounding.
-fn feature(scene: &Scene, side: &Side, triangle: u32, foot: &Foot, normal: DVec3) -> Feature {
-    let at = foot.mean(|v| side.solid.vertices()[v as usize]);
-    let slack = 2.0 * side.solid.precision() + scene.noise;
-    side.solid.feature_at(triangle, at, side.matrix.transpose() * normal, slack)
+/// What is at a point of a triangle, with a normal there, both in the body's frame: to within the precision of its
+/// coordinates and rounding.
+pub(crate) fn feature(
+    solid: &Solid,
+    triangle: u32,
+    (at, normal): (DVec3, DVec3),
+    noise: f64,
+) -> Feature {
+    solid.feature_at(triangle, at, normal, 2.0 * solid.precision() + noise)
 }

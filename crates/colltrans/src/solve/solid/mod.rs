@@ -3,7 +3,7 @@
 //! Data flow: [`scene`] (two placed solids and a direction) -> [`overlap`] (do they overlap where
 //! they are?) -> [`search`] (best first through both trees, with [`bound`] for pairs of nodes and
 //! [`leaf`] for pairs of facets, [`rim`] for what is on edge in open shells) -> [`contact`], or a plane between
-//! the bodies ([`separate`]) where there is one. [`sign`] decides what rounding cannot. [`nearest`] is of the same
+//! the bodies ([`separate`]) where there is one; [`parted`] has one of any direction. [`sign`] decides what rounding cannot. [`nearest`] is of the same
 //! scene without a direction. The questions are in `cast/solid` and `pair/solid`.
 
 pub(crate) mod bound;
@@ -12,6 +12,7 @@ mod inside;
 pub(crate) mod leaf;
 pub(crate) mod nearest;
 pub(crate) mod overlap;
+pub(crate) mod parted;
 pub(crate) mod projected;
 pub(crate) mod rim;
 pub(crate) mod scene;

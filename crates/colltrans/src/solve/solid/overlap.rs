@@ -26,6 +26,8 @@
 
 use std::cmp::Ordering;
 
+use glam::DVec3;
+
 use super::bound::{Reason, apart, beyond};
 use super::inside;
 use super::leaf::Facets;
@@ -34,7 +36,7 @@ use super::scene::{Corner, Scene, Side};
 use super::search::{children, splits_moving};
 use super::triangle::Triangle;
 use crate::answer::SolidSteps;
-use crate::body::solid::tree::Node;
+use crate::body::solid::tree::{LEAF, Node};
 use crate::body::solid::wedge::{Axis, Ray, Wedge};
 
 /// Where the solids overlap: positions in [`Solid::triangles`](crate::Solid::triangles);
@@ -100,6 +102,32 @@ pub(crate) fn is_overlap(scene: &Scene, overlap: Overlap) -> bool {
         Overlap::MovingInside(t) => t < count(&scene.moving) && inside::is_inside(scene, true, t),
         Overlap::FixedInside(t) => t < count(&scene.fixed) && inside::is_inside(scene, false, t),
     }
+}
+
+/// How far the facets of an overlap are apart, as computed, along a normal of one of them or across two edges, less than 0 if
+/// they are not, and that normal in the world, from the moving body on; the one along which it is most. `None` of shells.
+pub(crate) fn widest(scene: &Scene, overlap: Overlap) -> Option<(f64, DVec3)> {
+    let Overlap::Facets(f, g) = overlap else { return None };
+    let corners = |side: &Side, t: u32| side.corners(t as usize).map(|c| c.at);
+    let (f, g) = (corners(&scene.moving, f), corners(&scene.fixed, g));
+    let edges = |[a, b, c]: [DVec3; 3]| [b - a, c - b, a - c];
+    let (e, h) = (edges(f), edges(g));
+    let across = e.into_iter().flat_map(|a| h.map(|b| a.cross(b)));
+    let mut widest: Option<(f64, DVec3)> = None;
+    for normal in across.chain([e[0].cross(e[1]), h[0].cross(h[1])]) {
+        let Some(normal) = normal.try_normalize() else { continue };
+        let ends = |corners: [DVec3; 3]| {
+            let [a, b, c] = corners.map(|p| normal.dot(p));
+            [a.min(b).min(c), a.max(b).max(c)]
+        };
+        let ([low, high], [least, most]) = (ends(f), ends(g));
+        for (gap, normal) in [(least - high, normal), (low - most, -normal)] {
+            if widest.is_none_or(|(best, _)| gap > best) {
+                widest = Some((gap, normal));
+            }
+        }
+    }
+    widest.map(|(gap, normal)| (gap, scene.frame.transpose() * normal))
 }
 
 /// Whether solids, as closed sets, have a point in common where it is said: facets that share one, or a shell
@@ -220,12 +248,13 @@ fn descend(
 }
 
 fn leaves(scene: &Scene, a: &Node, b: &Node, judge: Judge) -> Option<(u32, u32)> {
+    let mut facets = a.facets().map(|s| Triangle::new(&scene.moving, s));
+    let of_moving: [Option<Triangle>; LEAF] = std::array::from_fn(|_| facets.next());
     for t in b.facets() {
         let g = Triangle::new(&scene.fixed, t);
-        for s in a.facets() {
-            let f = Triangle::new(&scene.moving, s);
-            if (judge.holds)(scene, &f, &g) {
-                return Some((s as u32, t as u32));
+        for f in of_moving.iter().flatten() {
+            if (judge.holds)(scene, f, &g) {
+                return Some((f.index as u32, t as u32));
             }
         }
     }

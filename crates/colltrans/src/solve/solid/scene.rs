@@ -140,7 +140,7 @@ impl<'a> Scene<'a> {
 
     /// Size `S` of the configuration, with the gap that is to be kept.
     pub(crate) fn size(&self) -> f64 {
-        self.noise / (16.0 * f64::EPSILON)
+        size(self.noise)
     }
 }
 
@@ -330,6 +330,11 @@ pub(crate) fn place_exactly<const N: usize>(
     })
 }
 
+/// Size `S` of a configuration with this noise.
+pub(crate) fn size(noise: f64) -> f64 {
+    noise / (16.0 * f64::EPSILON)
+}
+
 /// Rows `x, y, d` of a right-handed frame. Its axes are the world's where that is possible.
 fn frame_along(unit: DVec3) -> DMat3 {
     let zeros = unit.to_array().map(|c| c == 0.0);
@@ -363,7 +368,8 @@ fn defect(m: DMat3) -> f64 {
     if defect > ROTATION { 1.01 * defect } else { 0.0 }
 }
 
-fn permutes(m: DMat3) -> bool {
+/// Whether a matrix permutes axes and changes signs.
+pub(crate) fn permutes(m: DMat3) -> bool {
     let rows = m.transpose();
     [m.x_axis, m.y_axis, m.z_axis, rows.x_axis, rows.y_axis, rows.z_axis].into_iter().all(is_axis)
 }

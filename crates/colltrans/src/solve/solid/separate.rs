@@ -14,16 +14,19 @@
 use glam::{DVec2, DVec3};
 
 use super::projected::Projected;
-use super::scene::{Scene, Side};
+use super::scene::{Scene, Side, size};
 use super::search::children;
 use crate::answer::{CertificateError, Separation};
 use crate::number::noise::UNIT_VECTOR;
+use crate::setting::Setting;
 
 /// Each round ends or comes closer; rounding alone could make it last.
 const MOST_ROUNDS: usize = 32;
 /// Rounding of a gap, in multiples of the noise of coordinates: half of it for each of two points that
 /// are taken for the farthest, and what computing them takes.
-const ROUNDING: f64 = 4.0;
+pub(crate) const ROUNDING: f64 = 4.0;
+/// What of that is for ties among farthest points.
+const TIES: f64 = 0.5;
 /// Rounding of a gap between heights along any normal, likewise: with the bodies' reaches together `S`, the normal in a
 /// body's frame and its product with a vertex take `10 u S`, as much the bound of a box that is not looked into,
 /// what is taken for a tie `16 u S`, and the sums a few more; a noise is `32 u S`.
@@ -67,7 +70,7 @@ fn between_boxes(scene: &Scene, p: &Projected, q: &Projected) -> Option<Separati
         }
     }
     let normal = (scene.frame.transpose() * best.normal).normalize_or_zero();
-    let margin = best.margin - closing(scene, normal);
+    let margin = best.margin - closing(&scene.setting, normal, scene.noise);
     (margin > scene.keep).then_some(Separation { normal, margin })
 }
 
@@ -80,7 +83,7 @@ fn between_hulls(scene: &Scene) -> Option<Separation> {
         let axis = v.try_normalize()?;
         let normal = (scene.frame.transpose() * axis.extend(0.0)).normalize_or_zero();
         let sides = facing_sides(scene, normal);
-        let margin = margin_along(scene, normal, &sides);
+        let margin = margin(scene, normal, sides.each_ref().map(Farthest::reach));
         if margin > scene.keep {
             return Some(Separation { normal, margin });
         }
@@ -107,7 +110,14 @@ pub(crate) fn verify(scene: &Scene, separation: &Separation) -> Result<f64, Cert
     if !unit || (normal.dot(scene.setting.direction) / scene.setting.length).abs() > UNIT_VECTOR {
         return Err(CertificateError::Normal { normal });
     }
-    let proven = margin_along(scene, normal, &facing_sides(scene, normal));
+    let highest = |side: &Side| {
+        let local = side.matrix.transpose() * if side.moving { normal } else { -normal };
+        let heights = (0..side.solid.vertices().len() as u32).map(|v| local.dot(side.vertex(v)));
+        heights.fold(f64::NEG_INFINITY, f64::max)
+    };
+    let reaches = [&scene.moving, &scene.fixed].map(highest);
+    // Nothing is taken for a tie here.
+    let proven = margin(scene, normal, reaches) + TIES * scene.noise;
     let claimed = separation.margin;
     if claimed > scene.keep && claimed <= proven {
         Ok(proven)
@@ -116,13 +126,10 @@ pub(crate) fn verify(scene: &Scene, separation: &Separation) -> Result<f64, Cert
     }
 }
 
-/// A plane between the bodies with a normal across the direction, if boxes do not tell one and that is one.
-pub(crate) fn plane_along(scene: &Scene, normal: DVec3) -> Option<Separation> {
-    let [p, q] = [&scene.moving, &scene.fixed].map(|side| Projected::new(scene, side, 0));
-    between_boxes(scene, &p, &q).or_else(|| {
-        let margin = margin_along(scene, normal, &facing_sides(scene, normal));
-        (margin > scene.keep).then_some(Separation { normal, margin })
-    })
+/// Whether all of the bodies is on either side of a plane, the moving one below.
+pub(crate) fn parts(scene: &Scene, normal: DVec3) -> bool {
+    let [p, q] = facing_sides(scene, normal).map(|side| side.reach());
+    normal.dot(scene.fixed.offset[0]) - q - p > HEIGHTS * scene.noise
 }
 
 /// No vertex of a body is farther along a normal of the world, from its frame's origin; rounded, see [`HEIGHTS`].
@@ -138,15 +145,15 @@ fn facing_sides<'s, 'a>(scene: &'s Scene<'a>, normal: DVec3) -> [Farthest<'s, 'a
     [Farthest::new(&scene.moving, normal), Farthest::new(&scene.fixed, -normal)]
 }
 
-/// The margin that the two prove.
-fn margin_along(scene: &Scene, normal: DVec3, [p, q]: &[Farthest; 2]) -> f64 {
-    let fixed = normal.dot(scene.fixed.offset[0]) - q.reach();
-    fixed - p.reach() - ROUNDING * scene.noise - closing(scene, normal)
+/// The margin along a normal, of the moving body that reaches so far along it, and of the fixed one against it.
+fn margin(scene: &Scene, normal: DVec3, [moving, fixed]: [f64; 2]) -> f64 {
+    let fixed = normal.dot(scene.fixed.offset[0]) - fixed;
+    fixed - moving - ROUNDING * scene.noise - closing(&scene.setting, normal, scene.noise)
 }
 
 /// How far a normal that is not quite orthogonal lets the gap close as far away as the bodies reach.
-fn closing(scene: &Scene, normal: DVec3) -> f64 {
-    (normal.dot(scene.setting.direction) / scene.setting.length).abs() * scene.size()
+pub(crate) fn closing<B>(setting: &Setting<B>, normal: DVec3, noise: f64) -> f64 {
+    (normal.dot(setting.direction) / setting.length).abs() * size(noise)
 }
 
 /// Leaves that are looked into for one farthest vertex. More are needed where a large flat face is

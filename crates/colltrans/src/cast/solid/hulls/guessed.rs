@@ -1,28 +1,13 @@
-//! A first try by the convex hulls of both bodies: solids that are convex are told by it, nearly always.
-//!
-//! The hulls' cast only guesses: a normal, and a place on either body. What it guesses is proven of the solids
-//! themselves, and the search answers where that fails.
-//!
-//! - *Nothing is earlier.* A plane with that normal, all of the moving body (shrunk, if there is a tolerance) below it
-//!   and all of the fixed one above, bounds all gaps of facets. How far each reaches is told by the vertices that may
-//!   be farthest, or by its tree ([`separate`](crate::solve::solid::separate)). Where the bound is positive the bodies
-//!   do not overlap where they are.
-//! - *There is a contact.* The gap of two facets around the place, as the search would take it. If it is above that
-//!   bound by no more than the search may leave open, it is the answer of the search, with the bounds of one.
-//! - *Nothing is in the way.* A plane along the direction, or one that the moving body leaves behind, with the bodies
-//!   on either side.
-//!
-//! So it does not matter how the hull was rounded, nor whether the solid is quite as convex as it is taken for.
+//! The facets around a place of the hulls' contact, as the search would take them: where bodies are shrunk by more than
+//! rounding, or the hulls leave something in doubt.
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
 
-use crate::answer::{Contact, Outcome, Separation};
-use crate::body::ConvexPolyhedron;
-use crate::body::solid::{Keepable, Solid};
-use crate::cast::Cast;
+use super::{Body, Hulls};
+use crate::answer::{Contact, Outcome};
 use crate::solve::solid::scene::{Scene, Side};
 use crate::solve::solid::search::{Aim, Found, SLACK, Search};
-use crate::solve::solid::separate::{HEIGHTS, farthest, plane_along};
+use crate::solve::solid::separate::{HEIGHTS, farthest};
 
 /// Steps from facet to facet towards a place; facets there that are held against each other.
 const MOST_STEPS: usize = 32;
@@ -30,69 +15,34 @@ const MOST_FACETS: usize = 4;
 /// Vertices that are held against each other for the farthest.
 const MOST_TOP: usize = 32;
 
-/// A facet may rise so far, as a share of the size, beyond the plane of the next one in a body that counts as convex.
-const BENT: f64 = 1e-9;
-
-/// The convex hull of a solid, if that is convex.
-#[derive(Debug)]
-struct Hull(Option<Body>);
-
-#[derive(Debug)]
-struct Body {
-    hull: ConvexPolyhedron,
-    /// A triangle of the solid at each vertex of the hull.
-    at: Vec<u32>,
-    /// Whether the solid has no other vertices.
-    whole: bool,
-}
-
-/// What the hulls tell.
-pub(super) enum Told {
-    /// A plane along the direction lies between the bodies.
-    Apart(Separation),
+/// What the hulls tell of gaps below a limit.
+pub(in crate::cast::solid) enum Guessed {
     /// Nothing stops the moving body.
     Free,
     Stop(Found),
 }
 
-impl Keepable for Hull {
-    fn heap_bytes(&self) -> usize {
-        self.0
-            .as_ref()
-            .map_or(0, |body| body.hull.memory_bytes() + body.at.capacity() * size_of::<u32>())
-    }
-}
-
-impl Hull {
-    fn new(solid: &Solid) -> Self {
-        Self(is_convex(solid).then(|| Body::new(solid)).flatten())
+impl Hulls<'_> {
+    /// What the facets around their contact tell of gaps below a limit; `None` if that is nothing. Counts pairs of facets.
+    pub(in crate::cast::solid) fn guessed(
+        &self,
+        scene: &Scene,
+        limit: f64,
+        leaves: &mut u32,
+    ) -> Option<Guessed> {
+        match &self.first {
+            Outcome::Contact(contact) if contact.certificate.lower > 0.0 => {
+                stop(scene, self.bodies, contact, limit, leaves)
+            }
+            Outcome::Contact(contact) if contact.certificate.upper < 0.0 => {
+                (margin(scene, self.bodies, self.last()?) > 0.0).then_some(Guessed::Free)
+            }
+            _ => None,
+        }
     }
 }
 
 impl Body {
-    /// That of a convex solid, made when it is first asked for.
-    fn of(solid: &Solid) -> Option<&Self> {
-        solid.kept().get_or_make(|| Hull::new(solid))?.0.as_ref()
-    }
-
-    fn new(solid: &Solid) -> Option<Self> {
-        let hull = ConvexPolyhedron::from_points(solid.vertices()).ok()?;
-        let mut triangle = vec![0; solid.vertices().len()];
-        for (t, corners) in solid.triangles().iter().enumerate() {
-            for &v in corners {
-                triangle[v as usize] = t as u32;
-            }
-        }
-        let at = hull.input_indices().iter().map(|v| triangle[v.index()]).collect();
-        let whole = hull.vertices().len() == solid.vertices().len();
-        (hull.dimension() == 3).then_some(Self { hull, at, whole })
-    }
-
-    /// Number in the solid of a vertex of the hull.
-    fn number(&self, vertex: u32) -> u32 {
-        self.hull.input_indices()[vertex as usize].0
-    }
-
     /// No vertex of the solid, shrunk, is farther along a normal than this, up to rounding. What lies lower than one
     /// vertex by twice what shrinking moves is not; what does not is found from there over edges, as the plateau of a
     /// support point is.
@@ -120,47 +70,6 @@ impl Body {
     }
 }
 
-/// Whether a solid is one closed shell that bends outwards at each edge, to within a little.
-fn is_convex(solid: &Solid) -> bool {
-    let (triangles, vertices) = (solid.triangles(), solid.vertices());
-    let place = |v: u32| vertices[v as usize];
-    let bends_outwards = |t: usize| {
-        let [a, b, c] = triangles[t].map(place);
-        let normal = (b - a).cross(c - a).normalize_or_zero();
-        let mut across = solid.neighbours()[t].iter().flat_map(|&n| triangles[n as usize]);
-        across.all(|v| normal.dot(place(v) - a) <= BENT * solid.reach())
-    };
-    solid.is_closed() && solid.spans().len() == 1 && (0..triangles.len()).all(bends_outwards)
-}
-
-/// What the hulls tell of gaps below a limit; `None` if that is nothing. Counts pairs of facets.
-pub(super) fn told(
-    cast: &Cast<Solid>,
-    scene: &Scene,
-    limit: f64,
-    leaves: &mut u32,
-) -> Option<Told> {
-    if scene.keeps() {
-        return None;
-    }
-    let bodies = [Body::of(cast.moving())?, Body::of(cast.fixed())?];
-    let [p, q] = [bodies[0].hull.at(cast.moving_pose()), bodies[1].hull.at(cast.fixed_pose())];
-    let ahead = Cast::new(p, q, cast.direction()).ok()?;
-    match ahead.first_contact().ok()? {
-        Outcome::Separated(apart) => plane_along(scene, apart.certificate.normal).map(Told::Apart),
-        Outcome::Contact(contact) if contact.certificate.lower > 0.0 => {
-            stop(scene, bodies, &contact, limit, leaves)
-        }
-        Outcome::Contact(contact) if contact.certificate.upper < 0.0 => {
-            let Outcome::Contact(last) = ahead.reversed().first_contact().ok()? else {
-                return None;
-            };
-            (margin(scene, bodies, &last) > 0.0).then_some(Told::Free)
-        }
-        _ => None,
-    }
-}
-
 /// How far apart the bodies are along the normal of a contact of their hulls, for certain; negative if they are not.
 fn margin(scene: &Scene, [p, q]: [&Body; 2], contact: &Contact) -> f64 {
     let (normal, pair) = (contact.certificate.normal, contact.certificate.pairs[0]);
@@ -176,7 +85,7 @@ fn stop(
     contact: &Contact,
     limit: f64,
     leaves: &mut u32,
-) -> Option<Told> {
+) -> Option<Guessed> {
     let proof = &contact.certificate;
     let slope = proof.normal.dot(scene.setting.direction) / scene.setting.length;
     let least = margin(scene, bodies, contact) / slope;
@@ -185,7 +94,7 @@ fn stop(
     }
     // So that a search, which rounds otherwise, finds nothing below the limit either.
     if least >= limit + SLACK * scene.noise {
-        return Some(Told::Free);
+        return Some(Guessed::Free);
     }
     let around = |k: usize| {
         let side = [&scene.moving, &scene.fixed][k];
@@ -214,7 +123,7 @@ fn stop(
             break;
         }
     }
-    best.map(|found| Told::Stop(found.among_all(scene)))
+    best.map(|found| Guessed::Stop(found.among_all(scene)))
 }
 
 /// Facets of one body around a place, by shadows.

@@ -1,0 +1,357 @@
+//! The answer of the hulls' cast as that of the solids.
+//!
+//! *Below.* The solids, and the smaller ones that they are shrunk to, lie in their hulls, to within the hulls' errors
+//! where those lack a vertex: what is proven of the hulls holds of them.
+//!
+//! *Above.* The line pierces a triangle of `M`. If what is deeper than `e` below the surface of a hull is in the smaller
+//! body, that holds the hull shrunk about a point by the share `e / r`, where a ball of radius `r` around the point lies in
+//! the hull: each point of the hull is within `2 R e / r` of one of it, `R` being how far the hull reaches. So each corner
+//! of the triangle is within some `s` of a point of the smaller bodies' `M`, whose differences are convex too. With `a` the
+//! triangle's least altitude across the line, the line's weights change by at most `s / (a - 2 s)`, and the line still
+//! pierces the triangle if all of them are larger, along the contact's normal no higher than the highest corner and `s`.
+//! And what is deeper than the dent of a convex solid ([`Body`]) and than its vertices are moved when it is shrunk is in
+//! the smaller body: a surface that moves by no more than that passes no such point.
+//!
+//! *Facets.* The contact point lies on a corner, on an edge or within a facet of either body: clearly, or it is not told
+//! here. Then the shadows of two such facets that face each other overlap, and their gap is the answer.
+
+use glam::{DMat3, DVec3};
+
+use super::{Body, Hulls};
+use crate::answer::{Bounded, Clearance, Contact, Outcome, Separation, SolidSteps};
+use crate::body::Feature;
+use crate::body::solid::Solid;
+use crate::cast::Cast;
+use crate::cast::solid::{SolidFree, default_tolerance};
+use crate::setting::VertexPair;
+use crate::solve::solid::contact::{SolidContact, feature};
+use crate::solve::solid::scene::permutes;
+use crate::solve::solid::search::SLACK;
+use crate::solve::solid::separate;
+
+/// Steps from facet to facet around a corner, or towards a place.
+const MOST_STEPS: usize = 32;
+/// Poses may be off rotations, and facets off their plane across the direction, by such a share.
+const SHEARED: f64 = 1e-5;
+/// Contacts in planes that are steeper along the direction are not told.
+const STEEPEST: f64 = 1.0 / 16.0;
+/// Noises that a place may be off sideways, and an altitude has to be more than.
+const SIDEWAYS: f64 = 8.0;
+const ALTITUDES: f64 = 1024.0;
+/// Noises that the heights of vertices over a plane may be off in its check, and another one.
+const MARGIN: f64 = separate::ROUNDING + 1.0;
+
+impl Hulls<'_> {
+    /// The clearance of the solids, if what is proven of their hulls is proven of them.
+    pub(in crate::cast::solid) fn certain(
+        &self,
+        solids: &Cast<'_, Solid>,
+    ) -> Option<Clearance<Solid>> {
+        let told = Told::new(solids, self)?;
+        match &self.first {
+            Outcome::Separated(apart) => told.apart(&apart.certificate),
+            Outcome::Contact(contact) if contact.certificate.lower > 0.0 => told.ahead(contact),
+            Outcome::Contact(contact) if contact.certificate.upper < 0.0 => {
+                // Along the direction no plane parts shadows that overlap.
+                let pierced = Pierced::new(&self.cast.reversed(), self.last()?, told.noise)?;
+                pierced.height(told.shift(true)).map(|_| free(None))
+            }
+            _ => None,
+        }
+    }
+}
+
+fn free(separation: Option<Separation>) -> Clearance<Solid> {
+    Clearance::Free(SolidFree { separation, steps: SolidSteps::default() })
+}
+
+/// The solids of a query beside their hulls.
+struct Told<'h, 'a> {
+    solids: &'h Cast<'a, Solid>,
+    hulls: &'h Hulls<'a>,
+    sides: [Side<'a>; 2],
+    noise: f64,
+}
+
+/// One of them.
+struct Side<'a> {
+    solid: &'a Solid,
+    body: &'a Body,
+    matrix: DMat3,
+    /// By how much it is shrunk.
+    amount: f64,
+    /// How far that moves a vertex, at most.
+    moved: f64,
+    /// The direction, of the fixed body against it, at length 1 in the body's frame.
+    ahead: DVec3,
+}
+
+impl<'h, 'a> Told<'h, 'a> {
+    /// `None` where shrinking is more than rounding asks for.
+    fn new(solids: &'h Cast<'a, Solid>, hulls: &'h Hulls<'a>) -> Option<Self> {
+        let setting = &solids.setting;
+        let noise = setting.noise().point();
+        let squared = permutes(setting.moving_matrix) && permutes(setting.fixed_matrix);
+        let tolerance = solids.options.tolerance.unwrap_or(default_tolerance(squared, noise));
+        if tolerance > default_tolerance(false, noise) || solids.check_left(tolerance).is_err() {
+            return None;
+        }
+        let amount = 0.5 * tolerance;
+        let side = |solid: &'a Solid, body, matrix: DMat3, ahead: DVec3| {
+            let moved = if amount == 0.0 { 0.0 } else { solid.shrinking().farthest * amount };
+            Side { solid, body, matrix, amount, moved, ahead: matrix.transpose() * ahead }
+        };
+        let [p, q] = hulls.bodies;
+        let sides = [
+            side(setting.moving, p, setting.moving_matrix, setting.unit),
+            side(setting.fixed, q, setting.fixed_matrix, -setting.unit),
+        ];
+        Some(Self { solids, hulls, sides, noise })
+    }
+
+    /// What the hulls may lack of the solids, together.
+    fn lacking(&self) -> f64 {
+        let lacking = |side: &Side| if side.body.whole { 0.0 } else { side.body.hull.hull_error() };
+        lacking(&self.sides[0]) + lacking(&self.sides[1])
+    }
+
+    /// How far a point of `M` may be from one of the solids' own, as they are or shrunk.
+    fn shift(&self, shrunk: bool) -> f64 {
+        let of = |side: &Side| {
+            let depth = side.body.dent + if shrunk { side.moved } else { 0.0 };
+            let share = depth / side.body.inner;
+            // A plate without an inside has no share of it.
+            if (0.0..1.0).contains(&share) {
+                2.0 * side.solid.reach() * share
+            } else {
+                f64::INFINITY
+            }
+        };
+        (1.0 + SHEARED) * (of(&self.sides[0]) + of(&self.sides[1]))
+    }
+
+    fn apart(&self, plane: &Separation) -> Option<Clearance<Solid>> {
+        let normal = plane.normal;
+        let closing = separate::closing(&self.solids.setting, normal, self.noise);
+        let margin = plane.margin - self.lacking() - MARGIN * self.noise - closing;
+        let told = self.solids.options.before.is_none().then_some(Separation { normal, margin });
+        (margin > 0.0).then(|| free(told))
+    }
+
+    fn ahead(&self, contact: &Contact) -> Option<Clearance<Solid>> {
+        let (setting, proof) = (&self.solids.setting, &contact.certificate);
+        let (normal, length) = (contact.normal, setting.length);
+        let pierced = Pierced::new(&self.hulls.cast, contact, self.noise)?;
+        let lower = proof.lower - self.lacking() / (pierced.slope * length);
+        if lower <= 0.0 {
+            return None;
+        }
+        let end = self.solids.options.before.unwrap_or(f64::INFINITY);
+        // So that a search, which rounds otherwise, finds nothing before the end either.
+        if lower >= end + SLACK * self.noise / length {
+            return Some(free(None));
+        }
+        let upper = |shrunk| Some(proof.upper + pierced.height(self.shift(shrunk))? / length);
+        let value = contact.translation;
+        let translation = Bounded { value, lower, upper: upper(false)? };
+        let shrunk_distance = if self.sides[0].amount == 0.0 {
+            translation
+        } else {
+            let upper = upper(true)?;
+            let back = normal.dot(self.moved(contact)) / (pierced.slope * length);
+            Bounded { value: (value + back).clamp(lower, upper), lower, upper }
+        };
+        if shrunk_distance.upper >= end {
+            return None;
+        }
+        let [moving, fixed] = self.spots(contact)?;
+        let points = contact.points(&self.hulls.cast);
+        let contact = SolidContact {
+            translation,
+            shrunk_distance,
+            normal,
+            point_on_moving: points.on_moving,
+            point_on_fixed: points.on_fixed,
+            moving_feature: self.sides[0].feature(&moving, normal, self.noise),
+            fixed_feature: self.sides[1].feature(&fixed, normal, self.noise),
+            triangles: [moving.triangle, fixed.triangle],
+            steps: SolidSteps::default(),
+        };
+        Some(Clearance::Blocked { distance: lower, contact })
+    }
+
+    /// By how much shrinking moves the point of the fixed body against that of the moving one.
+    fn moved(&self, contact: &Contact) -> DVec3 {
+        let proof = &contact.certificate;
+        let of = |k: usize| {
+            let Side { solid, body, matrix, amount, .. } = self.sides[k];
+            let field = &solid.shrinking().field;
+            let terms = proof.pairs.iter().zip(proof.weights);
+            let mean = terms.map(|(pair, w)| field[body.number(pair.numbers()[k]) as usize] * w);
+            matrix * (mean.sum::<DVec3>() * amount)
+        };
+        of(1) - of(0)
+    }
+
+    /// Where the bodies touch: a corner of one and a face of the other, or two edges.
+    fn spots(&self, contact: &Contact) -> Option<[Spot; 2]> {
+        let pairs = &contact.certificate.pairs;
+        let places = [0, 1].map(|k| Place::of(pairs, k));
+        let ([Place::Corner(_), Place::Face(_)]
+        | [Place::Face(_), Place::Corner(_)]
+        | [Place::Edge(_), Place::Edge(_)]) = places
+        else {
+            return None;
+        };
+        let points = self.hulls.cast.setting.weighted(pairs, &contact.certificate.weights);
+        let spot = |k: usize| {
+            let side = &self.sides[k];
+            let outward = if k == 0 { contact.normal } else { -contact.normal };
+            let outward = side.matrix.transpose() * outward;
+            let (at, noise) = (points[k], self.noise);
+            Some(Spot { triangle: side.facet(places[k], (at, outward), noise)?, at })
+        };
+        Some([spot(0)?, spot(1)?])
+    }
+}
+
+/// A triangle of `M` that the line pierces.
+struct Pierced {
+    /// The least one across the direction.
+    altitude: f64,
+    least_weight: f64,
+    /// How much higher along the contact's normal a corner is than where the line pierces.
+    rise: f64,
+    /// The normal's part along the direction.
+    slope: f64,
+    noise: f64,
+}
+
+impl Pierced {
+    fn new(cast: &Cast, contact: &Contact, noise: f64) -> Option<Self> {
+        let (proof, unit) = (&contact.certificate, cast.setting.unit);
+        let [a, b, c] = proof.pairs.each_ref().map(|pair| cast.setting.difference(*pair));
+        let [u, v] = [b - a, c - a];
+        let sides = [u, v, c - b].map(DVec3::length_squared);
+        let longest = sides.into_iter().fold(0.0, f64::max).sqrt();
+        let altitude = u.cross(v).dot(unit).abs() / longest;
+        let least_weight = proof.weights.into_iter().fold(1.0, f64::min);
+        let rises = [0.0, contact.normal.dot(u), contact.normal.dot(v)];
+        let mean = proof.weights[1] * rises[1] + proof.weights[2] * rises[2];
+        let rise = rises.into_iter().fold(0.0, f64::max) - mean;
+        let slope = contact.normal.dot(unit);
+        let clear = altitude > ALTITUDES * noise && slope >= STEEPEST;
+        clear.then_some(Self { altitude, least_weight, rise, slope, noise })
+    }
+
+    /// By how much the line may pierce it higher when its corners are moved by so much; `None` if it may miss it.
+    fn height(&self, shift: f64) -> Option<f64> {
+        let room = self.altitude - 2.0 * shift;
+        let clear = 2.0 * shift / room + SIDEWAYS * self.noise / self.altitude;
+        let pierces = room > 0.5 * self.altitude && self.least_weight > clear;
+        pierces.then_some((shift + self.rise + 2.0 * self.noise) / self.slope)
+    }
+}
+
+/// What of a hull is in a contact, by its vertices.
+#[derive(Clone, Copy)]
+enum Place {
+    Corner(u32),
+    Edge([u32; 2]),
+    Face([u32; 3]),
+}
+
+impl Place {
+    fn of(pairs: &[VertexPair; 3], k: usize) -> Self {
+        let [a, b, c] = pairs.each_ref().map(|pair| pair.numbers()[k]);
+        match (a == b, b == c, a == c) {
+            (true, true, _) => Self::Corner(a),
+            (true, false, _) | (_, false, true) => Self::Edge([b, c]),
+            (false, true, _) => Self::Edge([a, b]),
+            (false, false, false) => Self::Face([a, b, c]),
+        }
+    }
+}
+
+/// A point of a facet, in the body's frame.
+struct Spot {
+    triangle: u32,
+    at: DVec3,
+}
+
+impl Side<'_> {
+    fn feature(&self, spot: &Spot, normal: DVec3, noise: f64) -> Feature {
+        feature(self.solid, spot.triangle, (spot.at, self.matrix.transpose() * normal), noise)
+    }
+
+    /// A facet that looks at the other body, shrunk or not, with a point in it, or on an edge or a corner, clearly.
+    fn facet(&self, place: Place, within: (DVec3, DVec3), noise: f64) -> Option<u32> {
+        let looks = |t: u32| self.looks_ahead(t, noise).then_some(t);
+        match place {
+            Place::Corner(v) => self.around(v).find_map(|(t, _)| looks(t)),
+            Place::Edge([a, b]) => {
+                self.beside(a, b).or_else(|| self.beside(b, a))?.into_iter().find_map(looks)
+            }
+            Place::Face(corners) => self.face(corners, within, noise),
+        }
+    }
+
+    fn corners(&self, triangle: u32) -> [DVec3; 3] {
+        self.solid.triangles()[triangle as usize].map(|v| self.solid.vertices()[v as usize])
+    }
+
+    /// The triangles around a vertex of the hull, with which of their corners it is.
+    fn around(&self, vertex: u32) -> impl Iterator<Item = (u32, usize)> {
+        let (first, number) = (self.body.at[vertex as usize], self.body.number(vertex));
+        let place = move |t: u32| {
+            Some((t, self.solid.triangles()[t as usize].iter().position(|&v| v == number)?))
+        };
+        let next = move |&(t, k): &(u32, usize)| {
+            let next = self.solid.neighbours()[t as usize][k];
+            if next == first { None } else { place(next) }
+        };
+        std::iter::successors(place(first), next).take(MOST_STEPS)
+    }
+
+    /// The triangles on either side of an edge of the hull.
+    fn beside(&self, from: u32, to: u32) -> Option<[u32; 2]> {
+        let to = self.body.number(to);
+        self.around(from).find_map(|(t, k)| {
+            let leads = self.solid.triangles()[t as usize][(k + 1) % 3] == to;
+            leads.then(|| [t, self.solid.neighbours()[t as usize][k]])
+        })
+    }
+
+    /// Whether a facet looks along the direction, or against it, by more than shrinking and poses turn it.
+    fn looks_ahead(&self, triangle: u32, noise: f64) -> bool {
+        let [a, b, c] = self.corners(triangle);
+        let [u, v] = [b - a, c - a];
+        let (area, sides) = (u.cross(v), (u.abs() + v.abs()).element_sum());
+        let least = SHEARED * area.abs().element_sum() + 8.0 * (self.moved + noise) * sides;
+        area.dot(self.ahead) > least
+    }
+
+    /// The facet with a point clearly inside, from one at a corner of its face on; `outward` is the face's normal.
+    fn face(&self, corners: [u32; 3], (at, outward): (DVec3, DVec3), noise: f64) -> Option<u32> {
+        let looks = |t: u32| {
+            let [a, b, c] = self.corners(t);
+            (b - a).cross(c - a).dot(outward) > 0.0
+        };
+        let near = 2.0 * self.moved + SIDEWAYS * noise;
+        let mut triangle = self.around(corners[0]).map(|(t, _)| t).find(|&t| looks(t))?;
+        for _ in 0..MOST_STEPS {
+            let [a, b, c] = self.corners(triangle);
+            let inside = |from: DVec3, to: DVec3| {
+                let side = to - from;
+                side.cross(at - from).dot(outward) - near * side.abs().element_sum()
+            };
+            let sides = [inside(a, b), inside(b, c), inside(c, a)];
+            let worst = (0..3).fold(0, |worst, k| if sides[k] < sides[worst] { k } else { worst });
+            if sides[worst] > 0.0 {
+                return self.looks_ahead(triangle, noise).then_some(triangle);
+            }
+            triangle = self.solid.neighbours()[triangle as usize][worst];
+        }
+        None
+    }
+}

@@ -1,0 +1,59 @@
+//! A plane between two solids anywhere, by all of their vertices, as Gilbert, Johnson and Keerthi find it.
+//!
+//! Bodies that are shrunk far are bounded badly by their trees, but a plane between all vertices parts whatever facets there
+//! are. Of convex bodies there is one, unless they overlap.
+
+use glam::DVec3;
+
+use super::scene::{Scene, Side};
+use super::separate::HEIGHTS;
+use crate::number::real::Vector;
+use crate::setting::VertexPair;
+use crate::solve::nearest::simplex::{Corner, Simplex};
+
+/// Each round ends or comes closer; rounding alone could make it last.
+const MOST_ROUNDS: usize = 64;
+
+/// The normal in the world, from the moving body on, of a plane between the bodies that rounding can tell, if there is one;
+/// `near` is one to begin with.
+pub(crate) fn plane(scene: &Scene, near: Option<DVec3>) -> Option<DVec3> {
+    let middle = |side: &Side| side.matrix * side.solid.bounds().center() + side.offset[0];
+    let apart = || (middle(&scene.fixed) - middle(&scene.moving)).try_normalize();
+    let mut normal = near.or_else(apart)?;
+    let mut simplex: Option<Simplex<f64>> = None;
+    for _ in 0..MOST_ROUNDS {
+        let [(p, from), (q, to)] =
+            [farthest(&scene.moving, normal), farthest(&scene.fixed, -normal)];
+        let lowest = to - from;
+        if normal.dot(lowest) > HEIGHTS * scene.noise {
+            return Some(normal);
+        }
+        let corner = Corner { at: Vector(lowest.to_array()), pair: VertexPair::of(p, q) };
+        let simplex = match &mut simplex {
+            Some(simplex) => {
+                simplex.push(corner);
+                simplex
+            }
+            none => none.insert(Simplex::new(corner)),
+        };
+        let nearest = simplex.reduce();
+        if simplex.is_full() {
+            return None;
+        }
+        normal = simplex.normal(&nearest).try_normalize()?;
+    }
+    None
+}
+
+/// The vertex of a body that is farthest along a normal, and where it is.
+fn farthest(side: &Side, normal: DVec3) -> (u32, DVec3) {
+    let local = side.matrix.transpose() * normal;
+    let mut best = (0, f64::NEG_INFINITY);
+    for v in 0..side.solid.vertices().len() as u32 {
+        let height = local.dot(side.vertex(v));
+        if height > best.1 {
+            best = (v, height);
+        }
+    }
+    (best.0, side.matrix * side.vertex(best.0) + side.offset[0])
+}

@@ -3,9 +3,11 @@
 ``python python/benchmarks/shards.py ROWS [FOLDER]`` writes shards of 500,000 rows of random
 settings of two polytopes of 128 vertices, answers them by ``local`` and by ``ray`` (where it is
 installed) on two threads, and prints CPU time a row against the bare ``contact_range_many``, rows a
-second of wall time, and the largest resident memory of any process.
+second of wall time, and the largest resident memory of any process. The files of both have the same
+bytes, or it fails.
 """
 
+import filecmp
 import os
 import subprocess
 import sys
@@ -128,6 +130,11 @@ def main():
                 flush=True,
             )
         print(f"answers: {written:.0f} bytes a row")
+        if (folder / "ray").exists():
+            names = [f.name for f in (folder / "local").iterdir()]
+            same, *others = filecmp.cmpfiles(folder / "local", folder / "ray", names, shallow=False)
+            assert others == [[], []], f"not the same: {others}"
+            print(f"{len(same)} files of both engines have the same bytes")
 
 
 if __name__ == "__main__":

@@ -57,8 +57,8 @@ pub enum BuildError {
     },
     /// The mesh is closed but not convex.
     #[error(
-        "the mesh is not convex: face {face} lies {depth:e} below the convex hull \
-         (tolerated: {tolerance:e})"
+        "the mesh is not convex: face {face} lies {depth:?} below the convex hull \
+         (tolerated: {tolerance:?})"
     )]
     NotConvex {
         /// The face that lies deepest below the convex hull.

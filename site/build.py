@@ -98,7 +98,7 @@ def relinked(text: str, file: PurePosixPath, places: dict[str, str]) -> str:
 
 def command_line(source: Path, program: Path) -> None:
     """The help of every command, as the program gives it."""
-    wide = os.environ | {"COLUMNS": "100"}
+    wide = os.environ | {"COLUMNS": "88"}
     text = [
         "# The command line",
         "",

@@ -1,6 +1,6 @@
 //! What the tests of V-Clip and H-Walk share: settings, and the exact distance beside an answer.
 
-#![allow(unreachable_pub, reason = "a module of two test programs")]
+#![allow(unreachable_pub, reason = "shared by files of this program")]
 
 use std::f64::consts::TAU;
 

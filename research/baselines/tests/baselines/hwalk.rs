@@ -1,13 +1,11 @@
 //! H-Walk against the exact distance, and against V-Clip on large bodies.
 
-mod walks;
-
+use crate::walks::{
+    Placed, coherent, hard_settings, large, pairs_anew_and_after, random_settings, wide_settings,
+};
 use colltrans_baselines::Proximity;
 use colltrans_baselines::hwalk::{HWalk, Hierarchy, Steps};
 use colltrans_baselines::vclip::{Shell, VClip};
-use walks::{
-    Placed, coherent, hard_settings, large, pairs_anew_and_after, random_settings, wide_settings,
-};
 
 fn hierarchies(placed: &Placed) -> [Hierarchy; 2] {
     [&placed.moving, &placed.fixed].map(|body| Hierarchy::new(body).unwrap())

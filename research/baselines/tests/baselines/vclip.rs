@@ -1,12 +1,10 @@
 //! V-Clip against the exact distance.
 
-mod walks;
-
-use colltrans_baselines::Proximity;
-use colltrans_baselines::vclip::{Shell, Steps, VClip};
-use walks::{
+use crate::walks::{
     Placed, coherent, hard_settings, large, pairs_anew_and_after, random_settings, wide_settings,
 };
+use colltrans_baselines::Proximity;
+use colltrans_baselines::vclip::{Shell, Steps, VClip};
 
 fn shells(placed: &Placed) -> [Shell; 2] {
     [&placed.moving, &placed.fixed].map(|body| Shell::new(body).unwrap())

@@ -57,8 +57,8 @@ impl Mesh {
     }
 
     /// Meshes of the faces with each number below `count`, in their order; each with the vertices in use alone, in the
-    /// order of this mesh.
-    pub(crate) fn picked(&self, number_of_face: &[u32], count: usize) -> Vec<Self> {
+    /// order of this mesh. Corners of faces are vertices of the mesh.
+    pub fn picked(&self, number_of_face: &[u32], count: usize) -> Vec<Self> {
         let mut faces: Vec<Vec<usize>> = vec![Vec::new(); count];
         for (k, &number) in number_of_face.iter().enumerate() {
             if let Some(faces) = faces.get_mut(number as usize) {

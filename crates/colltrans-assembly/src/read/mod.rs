@@ -16,6 +16,8 @@ mod robot;
 #[cfg(feature = "files")]
 mod shapes;
 #[cfg(feature = "files")]
+mod slicer;
+#[cfg(feature = "files")]
 mod srdf;
 #[cfg(feature = "files")]
 mod threemf;

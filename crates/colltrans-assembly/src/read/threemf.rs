@@ -7,7 +7,7 @@
 //! slicers write them: an object is known by its file and its number there. Paths may have characters as
 //! `%20`, in the archive as well. Objects that are supports, or of another kind that is never built
 //! (3.4: `support`, `solidsupport`, `other`), are left out, with a note; surfaces are parts that may be
-//! open. Whether an item is to be printed (`printable`, which slicers write) is noted, not obeyed. What a file says a reader
+//! open. What slicers say of objects (`slicer`) are names, and which bodies are none. Whether an item is to be printed (`printable`, which slicers write) is noted, not obeyed. What a file says a reader
 //! must know (`requiredextensions`) and this one does not is refused, for the shapes may be in it.
 
 use std::collections::{HashMap, VecDeque};
@@ -23,6 +23,7 @@ use quick_xml::name::NamespaceResolver;
 use zip::ZipArchive;
 
 use super::files::{Source, unescaped};
+use super::slicer::{self, Told, Whole};
 use super::{Budget, Draft, Names, Split, assembled, contents, drafts};
 use crate::error::ReadError;
 use crate::part::Assembly;
@@ -64,18 +65,24 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
         let place = format!("build item {}", k + 1);
         // The name of what the item places.
         let mut whole = None;
-        let mut call = |name: &str, object: &Object, world| {
+        let mut call = |name: &str, object: &Object, told: Said, world| {
             budget.place()?;
             let whole = whole.get_or_insert_with(|| name.to_owned());
-            if let Kind::Left(kind) = object.kind {
+            let never = match object.kind {
+                Kind::Left(kind) => Some(kind),
+                Kind::Model => told.instead,
+            };
+            if let Some(kind) = never {
                 left_out.push(format!("{name} ({kind})"));
                 return Ok(false);
             }
             budget.facets(object.mesh.faces.len().max(object.mesh.vertices.len()))?;
-            if !object.mesh.faces.is_empty() {
-                let mesh = Arc::clone(&object.mesh);
-                let name = if source.options.split == Split::Never { &*whole } else { name };
-                placed.push((k, name.to_owned(), drafts::Placed { mesh, world }));
+            if object.mesh.faces.is_empty() {
+                return Ok(true);
+            }
+            for (own, mesh) in bodies(name, object, told, &mut left_out) {
+                let name = if source.options.split == Split::Never { whole.clone() } else { own };
+                placed.push((k, name, drafts::Placed { mesh, world }));
             }
             Ok(true)
         };
@@ -105,6 +112,33 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     }
     let assembly = assembled(source, drafts, &holds)?.with_unit(unit);
     Ok(notes.into_iter().fold(assembly, Assembly::with_note))
+}
+
+/// The bodies of an object's mesh, with their names: all of it, unless a slicer says of which bodies it is.
+fn bodies(
+    name: &str,
+    object: &Object,
+    told: Said,
+    left_out: &mut Vec<String>,
+) -> Vec<(String, Arc<Mesh>)> {
+    let mesh = &object.mesh;
+    let runs = told.whole.and_then(|whole| whole.bodies(mesh.faces.len()));
+    // A corner that there is not is refused later, with its place.
+    let is_sound = || mesh.faces.iter().flatten().all(|&v| (v as usize) < mesh.vertices.len());
+    let Some(runs) = runs.filter(|_| is_sound()) else {
+        return vec![(name.to_owned(), Arc::clone(mesh))];
+    };
+    let body_of_face = runs.iter().zip(0..).flat_map(|((run, _), k)| run.clone().map(move |_| k));
+    let meshes = mesh.picked(&body_of_face.collect::<Vec<u32>>(), runs.len());
+    let mut found = Vec::new();
+    for ((_, body), mesh) in runs.iter().zip(meshes) {
+        let name = body.name.as_deref().unwrap_or(name).to_owned();
+        match body.instead {
+            Some(kind) => left_out.push(format!("{name} ({kind})")),
+            None => found.push((name, Arc::new(mesh))),
+        }
+    }
+    found
 }
 
 /// Names that a note lists.
@@ -276,6 +310,7 @@ struct Models {
     root: Rc<Model>,
     /// By their paths, in small letters.
     by_path: HashMap<String, Rc<Model>>,
+    told: Told,
 }
 
 /// A path in a package without what may differ: the first `/`, letters of either case, `%20`.
@@ -311,19 +346,36 @@ fn models(source: &Source, package: &mut Package, root: &str) -> Result<Models, 
             return Err(contents(source.path, path, reason));
         }
     }
-    Ok(Models { root: model, by_path })
+    let mut told = Told::default();
+    for path in slicer::FILES {
+        if let Some(text) = package.find(path).and_then(|name| package.text(&name).ok()) {
+            told.add(&text);
+        }
+    }
+    Ok(Models { root: model, by_path, told })
+}
+
+/// What a slicer says of an object.
+#[derive(Clone, Copy, Default)]
+struct Said<'a> {
+    /// Of one that an item of the build places.
+    whole: Option<&'a Whole>,
+    /// What it is instead of a part of the model.
+    instead: Option<&'static str>,
 }
 
 /// Told of an object, by its name, and where it is; says whether what is below it counts.
-type Call<'a> = dyn FnMut(&str, &Object, DAffine3) -> Result<bool, String> + 'a;
+type Call<'a> = dyn FnMut(&str, &Object, Said, DAffine3) -> Result<bool, String> + 'a;
 
 /// What an object is placed in.
 #[derive(Default)]
-struct Above {
+struct Above<'a> {
     world: DAffine3,
     depth: usize,
     /// The name that it takes if it has none.
     name: Option<String>,
+    /// Of an object that an item of the build places: what a slicer says of it.
+    whole: Option<&'a Whole>,
 }
 
 impl Models {
@@ -348,14 +400,19 @@ impl Models {
         if !object.has_mesh && object.components.is_empty() {
             return Err(format!("object {id} has neither a mesh nor components"));
         }
-        let name = object.name.clone().filter(|name| !name.trim().is_empty());
-        let name = name.or_else(|| above.name.clone());
+        let whole = if above.depth == 0 { self.told.of(id) } else { None };
+        let body = above.whole.and_then(|whole| whole.parts.get(id));
+        // As the slicer shows it, if there is one.
+        let name = whole.and_then(|whole| whole.name.as_ref());
+        let name = name.or(body.and_then(|body| body.name.as_ref())).or(object.name.as_ref());
+        let name = name.or(above.name.as_ref()).filter(|name| !name.trim().is_empty()).cloned();
+        let told = Said { whole, instead: body.and_then(|body| body.instead) };
         let world = above.world * placed.transform;
         let shown = name.clone().unwrap_or_else(|| format!("object_{id}"));
-        if !call(&shown, object, world)? {
+        if !call(&shown, object, told, world)? {
             return Ok(());
         }
-        let above = Above { world, depth: above.depth + 1, name };
+        let above = Above { world, depth: above.depth + 1, name, whole };
         for child in &object.components {
             self.collect(path, child, &above, call)?;
         }

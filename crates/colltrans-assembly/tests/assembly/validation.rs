@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use crate::common::{CUBE, mesh_of_3mf, package};
 use allocation_counter::measure;
 use base64::Engine;
-use colltrans_assembly::read::{ReadOptions, read, read_from};
+use colltrans_assembly::read::{ReadOptions, Split, read, read_from};
 use colltrans_assembly::{Assembly, Bodies, Fit, ReadError};
 use colltrans_testkit::shapes::block;
 use glam::DVec3;
@@ -272,6 +272,84 @@ fn objects_in_other_files_of_a_3mf_package_are_read() {
     );
     let gone = refusal("a.3mf", &[("a.3mf", slicer("/3D/other.model"))]);
     says(&gone, &["a.3mf: /3D/other.model: this file is not in the package"]);
+}
+
+/// Names and notes of what is read of a package with what a slicer says of it.
+fn as_sliced(files: &[(&str, String)], options: &ReadOptions) -> (Vec<String>, Vec<String>) {
+    let files = BTreeMap::from([(PathBuf::from("a.3mf"), package(files))]);
+    let read = read_from("a.3mf", &files, options).unwrap();
+    let names = read.parts().iter().map(|part| part.name().to_owned());
+    (names.collect(), read.notes().to_vec())
+}
+
+#[test]
+fn names_of_parts_are_those_that_slicers_show() {
+    let part = |id: u32, kind: &str, name: &str| {
+        format!(
+            "<part id=\"{id}\" subtype=\"{kind}\"><metadata key=\"name\" value=\"{name}\"/></part>"
+        )
+    };
+    let parts = [part(1, "normal_part", "lid &amp; knob"), part(2, "modifier_part", "denser")];
+    let settings = |id: u32| {
+        format!(
+            "<config><object id=\"{id}\"><metadata key=\"name\" value=\"tin\"/><metadata \
+             key=\"extruder\" value=\"1\"/>{}</object></config>",
+            parts.concat()
+        )
+    };
+    let whole = "<object id=\"3\" name=\"of the core\"><components><component objectid=\"1\"/><component \
+        objectid=\"2\"/><component objectid=\"4\"/></components></object>";
+    let objects = [1, 2, 4].map(|id| object(id, [f64::from(id), 1.0, 1.0])).concat() + whole;
+    let root = || ("3D/3dmodel.model", model("", &objects, "<item objectid=\"3\"/>"));
+    let read = |config: String, split: Split| {
+        let files = [root(), ("Metadata/model_settings.config", config)];
+        as_sliced(&files, &ReadOptions::default().with_split(split))
+    };
+    let (names, notes) = read(settings(3), Split::Auto);
+    // Of a component of which nothing is said, the name of the whole.
+    assert_eq!(names, ["lid & knob", "tin"]);
+    assert_eq!(notes, ["left out, as they are no parts of the model: denser (modifier)"]);
+    assert_eq!(read(settings(3), Split::Never).0, ["tin"]);
+    // Of another object, or of none.
+    for config in [settings(1), "<config".into(), "no xml".into()] {
+        let (names, notes) = read(config, Split::Auto);
+        assert!(names.len() == 3 && names[0] == "of the core" && notes.is_empty(), "{names:?}");
+    }
+    let two = mesh_of_3mf([1.0; 3]).replace("</vertices>", "").replace("</mesh>", "");
+    let other = mesh_of_3mf([5.0; 3]);
+    let corners = other.split("<vertices>").nth(1).unwrap().split("</vertices>").next().unwrap();
+    let corners = corners.replace("=\"0\"", "=\"2\"");
+    let faces = other.split("<triangles>").nth(1).unwrap().split("</triangles>").next().unwrap();
+    let more: String = (0..8).rev().fold(faces.to_owned(), |text, k| {
+        text.replace(&format!("=\"{k}\""), &format!("=\"{}\"", k + 8))
+    });
+    let (head, own) = two.split_once("<triangles>").unwrap();
+    let own = own.replace("</triangles>", "");
+    let mesh = format!("{head}{corners}</vertices><triangles>{own}{more}</triangles></mesh>");
+    let volume = |[first, last]: [u32; 2], kind: &str, name: &str| {
+        let said = |key: &str, value: &str| {
+            format!("<metadata type=\"volume\" key=\"{key}\" value=\"{value}\"/>")
+        };
+        let said = said("name", name) + &said("volume_type", kind);
+        format!("<volume firstid=\"{first}\" lastid=\"{last}\">{said}</volume>")
+    };
+    let sliced = |volumes: &[String], split: Split| {
+        let object = format!("<object id=\"1\" type=\"model\">{mesh}</object>");
+        let config = format!("<config><object id=\"1\">{}</object></config>", volumes.concat());
+        let root = ("3D/3dmodel.model", model("", &object, "<item objectid=\"1\"/>"));
+        let files = [root, ("Metadata/Slic3r_PE_model.config", config)];
+        as_sliced(&files, &ReadOptions::default().with_split(split)).0
+    };
+    let [small, large] =
+        [volume([0, 11], "ModelPart", "small"), volume([12, 23], "ModelPart", "large")];
+    assert_eq!(sliced(&[small.clone(), large], Split::Auto), ["small", "large"]);
+    let negative = volume([12, 23], "NegativeVolume", "hole");
+    assert_eq!(sliced(&[small.clone(), negative], Split::Auto), ["small"]);
+    // Runs that are not all triangles are not believed.
+    for wrong in [[12, 22], [11, 23], [12, 24], [13, 23]] {
+        let names = sliced(&[small.clone(), volume(wrong, "ModelPart", "large")], Split::Never);
+        assert_eq!(names, ["object_1"], "{wrong:?}");
+    }
 }
 
 #[test]

@@ -1,6 +1,7 @@
 """Assemblies: the command line's rooms and plans, and refusals."""
 
 import json
+import pickle
 import subprocess
 from pathlib import Path
 
@@ -158,3 +159,14 @@ def test_rounds_the_way_back_and_times(gearbox: Assembly) -> None:
     for wrong in ({"walk": 1.0}, {"move": -1.0}, {"move": float("nan")}):
         with pytest.raises(InputError):
             gearbox.plan(times=wrong)
+
+
+def test_the_report_is_the_command_lines(cli: Path, gearbox: Assembly, tmp_path: Path) -> None:
+    command: list[str | Path] = [cli, "assembly", GEARBOX, "-o", tmp_path / "out"]
+    subprocess.run(command, check=True, capture_output=True)
+    plan = gearbox.plan()
+    plan.report(tmp_path / "report.html", title="gearbox_small")
+    known = (tmp_path / "out" / "report.html").read_text(encoding="utf-8")
+    assert (tmp_path / "report.html").read_text(encoding="utf-8") == known
+    with pytest.raises(InputError, match="pickle"):
+        pickle.loads(pickle.dumps(plan)).report(tmp_path / "none.html")

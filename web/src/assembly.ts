@@ -11,7 +11,7 @@ import { type Move, Parts, tint } from "./assembly/parts";
 import { Player } from "./assembly/player";
 import { type RemovalMap, Sphere } from "./assembly/sphere";
 import { palette } from "./colours";
-import { h, refill, soon } from "./dom";
+import { h, refill, save, soon } from "./dom";
 import { Engine, bytesOf } from "./engine";
 import { ACCEPTED, names } from "./formats";
 import { type Vec, length, short, shown, sub, times, unit } from "./math";
@@ -322,6 +322,21 @@ export class AssemblyTab {
     this.show();
   }
 
+  /** What is printed for the workshop, as a file. */
+  private async report() {
+    const turn = this.turn;
+    this.wait("Drawing a page for each step");
+    try {
+      const { numbers } = await this.engine.ask({ do: "report", title: this.source });
+      if (turn !== this.turn) return;
+      save(new Blob([numbers], { type: "text/html" }), "report.html");
+    } catch (error) {
+      if (turn === this.turn) this.refuse(error);
+    } finally {
+      if (turn === this.turn) this.wait("");
+    }
+  }
+
   /** What takes too long is given up: the worker goes, and another one reads the files again. */
   private async giveUp() {
     this.engine.stop("it was given up");
@@ -490,13 +505,17 @@ export class AssemblyTab {
     }
     const rows = plan.stages.map(({ takes, steps: [first, last] }) => {
       const { path, direction, within, surfaces } = plan.plan[first]!;
+      const own = plan.plan.slice(first, last + 1).some((step) => step.direction.some((c, k) => c !== direction[k]));
       return h("li", { value: first + 1 }, h("button", { class: "link", onclick: () => this.player.go(last + 1) },
-        `${within === undefined ? "" : `of step ${within + 1}: `}${takes} ${severally(path)}along ${arrow(direction)}`),
+        `${within === undefined ? "" : `of step ${within + 1}: `}${takes} ${severally(path)}along ${own ? "their own ways" : arrow(direction)}`),
         ...(surfaces ? [h("small", {}, ` rests on an open surface: ${surfaces.join(", ")}`)] : []));
     });
     const remains = plan.last.length ? [h("p", { class: "proof" }, `What remains: ${plan.last.join(", ")}.`)] : [];
     const stuck = plan.stuck.map(({ parts, because }) => h("p", { class: "proof" }, `${parts.join(", ")}: ${because}.`));
-    refill(this.planCard, h("p", { class: "proof" }, `${plan.directions} directions were asked for all parts; each step was checked again, pair by pair.`), h("ol", {}, ...rows), ...remains, ...stuck);
+    refill(this.planCard,
+      h("p", { class: "proof" }, `${plan.directions} directions were asked for all parts; each step was checked again, pair by pair.`),
+      h("ol", {}, ...rows), ...remains, ...stuck,
+      h("div", { class: "row" }, h("button", { class: "small", disabled: !!this.busy, onclick: () => void this.report() }, "Download report.html"), h("small", {}, "a page for each step, to be printed")));
   }
 
   /** The tip of the arrow. */

@@ -61,3 +61,10 @@ export function soon(f: () => void): () => void {
     });
   };
 }
+
+/** Saves a file as the visitor's browser saves files. */
+export function save(blob: Blob, name: string) {
+  const link = h("a", { href: URL.createObjectURL(blob), download: name });
+  link.click();
+  URL.revokeObjectURL(link.href);
+}

@@ -23,6 +23,7 @@ interface Answers {
   along: PageAlong;
   map: PageMap;
   plan: PagePlan;
+  report: { title: string };
   draw: PageDraw;
   place: PagePlace;
   distance: PageDistance;

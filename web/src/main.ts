@@ -5,7 +5,7 @@
 // of those that come meanwhile only the last is asked.
 
 import { onChange } from "./colours";
-import { h, named, soon } from "./dom";
+import { h, named, save, soon } from "./dom";
 import type { PageCast, PageCertify } from "./answers";
 import { Engine, type Pair, Refused, type Slot, type Take, bytesOf } from "./engine";
 import { EXAMPLES, type Part, SLOTS } from "./examples";
@@ -641,10 +641,7 @@ class Page {
       const blob = how === "png"
         ? await this.view.picture()
         : new Blob([how === "svg" ? this.shadow.source() : await this.view.drawing()], { type: "image/svg+xml" });
-      const name = { png: "contact.png", svg: "shadows.svg", drawing: "contact.svg" }[how];
-      const link = h("a", { href: URL.createObjectURL(blob), download: name });
-      link.click();
-      URL.revokeObjectURL(link.href);
+      save(blob, { png: "contact.png", svg: "shadows.svg", drawing: "contact.svg" }[how]);
     } catch (error) {
       toast(error instanceof Error ? error.message : String(error));
     }

@@ -1,6 +1,7 @@
 // The page's part for assemblies, in a browser, held against the same code built natively and by hand.
 
 import assert from "node:assert/strict";
+import { readFile } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
 import { answers, data, isCut, launchPlain, site, watch } from "../browser.mjs";
@@ -73,6 +74,10 @@ test("the gearbox: the plan, its slider, and the native answers", async () => {
   assert.match(await page.textContent(".assembly-stage output"), /^Step 1 of \d+: bolt_0 along \+z/);
   await page.locator('[aria-label="Steps of the plan"]').press("End");
   assert.match(await page.textContent(".assembly-stage output"), new RegExp(`^Step ${plan.plan.length} of`));
+  const [report] = await Promise.all([page.waitForEvent("download"), page.click("text=Download report.html")]);
+  assert.equal(report.suggestedFilename(), "report.html");
+  const sheets = (await readFile(await report.path(), "utf8")).match(/class="sheet step"/g);
+  assert.equal(sheets.length, plan.stages.length);
   assert.equal(await isCut(page, ".assembly-view canvas"), false);
   // The same questions natively: what the page has asked by itself, and two more.
   const files = facts.parts.map(({ name }) => `${name}.off`);

@@ -5,7 +5,7 @@
 //! only module that asks `colltrans`; with [`roles`] and [`threads`] what a pair tolerates) -> [`start`] (overlaps now; [`suggest`] what they may be, [`hints`] what is odd about parts), [`liaisons`] (who touches whom) ->
 //! [`candidates`] (directions worth asking) -> [`matrix`] and [`rooms`] (who is stopped by whom) ->
 //! [`blocking`] (the graph; with [`constraints`] its arcs), [`likes`] (parts of one shape) -> [`plan`] (steps, and what is stuck) ; [`map`] (one part, all
-//! directions) -> [`record`] (JSON) -> [`report`] (pictures, one HTML file, an animation).
+//! directions); all of that by one [`Question`] -> [`record`] (JSON) -> [`report`] (pictures, one HTML file, an animation).
 //!
 //! [`robot`] is of a robot that moves: what its links and joints are, as [`read`] makes it of URDF, and what of it is
 //! asked.
@@ -20,8 +20,10 @@
 
 mod bodies;
 mod boxes;
+mod colour;
 mod csv;
 mod error;
+mod findings;
 mod part;
 #[cfg(any(feature = "files", feature = "report"))]
 mod units;
@@ -55,6 +57,7 @@ pub mod threads;
 
 pub use bodies::{Bodies, Fit, Room, Stop};
 pub use error::{AssemblyError, ReadError};
+pub use findings::{Findings, Question};
 pub use part::{Assembly, Ignored, Part, Piece};
 #[cfg(feature = "files")]
 pub use robot::Robot;

@@ -31,6 +31,7 @@ pub struct Part {
     fixed: bool,
     defects: Vec<String>,
     chord_error: Option<f64>,
+    colour: Option<[f64; 3]>,
 }
 
 impl Part {
@@ -72,7 +73,7 @@ impl Part {
             [_] => solids.remove(0),
             _ => Solid::from_pieces(&solids).map_err(|e| refused(e.into()))?,
         };
-        Ok(Self { name, solid, facets, fixed: false, defects, chord_error: None })
+        Ok(Self { name, solid, facets, fixed: false, defects, chord_error: None, colour: None })
     }
 
     /// The same part, which is never moved if `fixed`.
@@ -85,6 +86,13 @@ impl Part {
     #[must_use]
     pub fn with_chord_error(self, chord_error: Option<f64>) -> Self {
         Self { chord_error, ..self }
+    }
+
+    /// The same part in a colour, of which red, green and blue are as screens have them, from 0 to 1; `None` if nobody
+    /// knows.
+    #[must_use]
+    pub fn with_colour(self, colour: Option<[f64; 3]>) -> Self {
+        Self { colour, ..self }
     }
 
     /// Its name, unique in an assembly.
@@ -110,6 +118,11 @@ impl Part {
     /// How far its facets are from the surface that they stand for, at most, as its source says; `None` if nobody knows.
     pub const fn chord_error(&self) -> Option<f64> {
         self.chord_error
+    }
+
+    /// Its colour, if its source has one.
+    pub const fn colour(&self) -> Option<[f64; 3]> {
+        self.colour
     }
 
     /// What was mended of its surface, or is wrong with it, in words.

@@ -266,6 +266,7 @@ fn turn(leg: &Leg, turn: &Turn) -> Value {
 fn moves(moves: &Moves) -> Value {
     match moves {
         Moves::NotAsked(why) => json!({ "not_asked": why }),
+        Moves::NotKept => json!({ "not_kept": true }),
         Moves::Proven { cells } => json!({ "proven": cells }),
         Moves::NotFound { legs, searched } => json!({
             "legs": legs,

@@ -22,41 +22,8 @@ mod words;
 pub use colltrans_picture::escaped;
 use glam::DVec3;
 
-use crate::bodies::Bodies;
-use crate::candidates::Candidate;
-use crate::liaisons::Liaison;
-use crate::map::RemovalMap;
-use crate::matrix::Matrix;
-use crate::plan::{Plan, Step, Times};
-use crate::rooms::PartRoom;
-use crate::start::Start;
-use crate::suggest::Suggestion;
-
-/// All that was found out about an assembly.
-pub struct Findings<'a> {
-    /// The parts, with the fit.
-    pub bodies: &'a Bodies<'a>,
-    /// Overlaps at the start.
-    pub start: &'a Start,
-    /// What overlaps may be.
-    pub suggestions: &'a [Suggestion],
-    /// Who touches whom.
-    pub liaisons: &'a [Liaison],
-    /// The directions asked, and why.
-    pub candidates: &'a [Candidate],
-    /// Who meets whom along them.
-    pub matrix: &'a Matrix,
-    /// Rooms of all parts in more directions, by direction.
-    pub more: &'a [(DVec3, Vec<PartRoom>)],
-    /// How it comes apart.
-    pub plan: &'a Plan,
-    /// What its steps take.
-    pub times: Times,
-    /// What is upwards, of length 1.
-    pub up: DVec3,
-    /// Removal maps, with the names they were asked by.
-    pub maps: &'a [(String, RemovalMap)],
-}
+use crate::findings::Findings;
+use crate::plan::Step;
 
 /// Up to four significant digits, for people.
 pub(crate) fn short(x: f64) -> String {
@@ -119,7 +86,7 @@ fn hexadecimal(colour: [f64; 3]) -> String {
 }
 
 /// A colour for each kind of parts, spread by the golden angle.
-pub(crate) fn tint(kind: usize) -> [f64; 3] {
+fn tint(kind: usize) -> [f64; 3] {
     let hue = (kind as f64 * 0.381_966_011_250_105 + 0.58) % 1.0;
     let channel = |shift: f64| {
         let h = (hue + shift).fract() * 6.0;

@@ -22,8 +22,13 @@ pub struct Overlap {
 impl Overlap {
     /// Whether it is small against both parts: else it is no tolerance, but a fault of the model.
     pub(crate) fn is_shallow(&self, bodies: &Bodies) -> bool {
+        self.is_within(bodies, LARGEST_SHARE)
+    }
+
+    /// Whether its depth is at most such a share of the thickness of both parts.
+    pub(crate) fn is_within(&self, bodies: &Bodies, share: f64) -> bool {
         let thin = self.parts.map(|k| bodies.bounds(k).size().min_element());
-        self.depth.is_some_and(|depth| depth <= LARGEST_SHARE * thin[0].min(thin[1]))
+        self.depth.is_some_and(|depth| depth <= share * thin[0].min(thin[1]))
     }
 }
 
@@ -80,6 +85,8 @@ fn suggest(bodies: &Bodies, overlaps: &[Overlap]) -> Option<f64> {
         .iter()
         .filter(|o| o.is_shallow(bodies))
         .filter_map(|o| o.depth)
+        // What is rounded off goes without saying.
+        .filter(|depth| *depth > bodies.noise())
         .reduce(f64::max)?;
     Some(two_digits_up(deepest * 1.05))
 }

@@ -4,7 +4,8 @@
 //! if one lies in the other about an axis all along their common length, and then it is a *press* fit if the vertices of
 //! the one lie farther out than those of the other, else chord errors of two tessellations; else no more than an overlap,
 //! for which there may be a tolerance. A ring that is called circlip, or the like, *snaps* into the groove of a part that
-//! stops it either way. Nothing is proven by any of this.
+//! stops it either way. Nothing is proven by any of this. What overlaps deeper, as balls in rings that are drawn too tight, moves as
+//! one: with a tolerance that lets them pass they would slip through what holds them.
 
 use std::collections::BTreeMap;
 
@@ -26,6 +27,9 @@ const SOFT: [&str; 8] =
 /// A ring that snaps into a groove has one of these.
 const SNAPS: [&str; 7] =
     ["circlip", "snap ring", "snap_ring", "snapring", "retaining ring", "retaining_ring", "e-clip"];
+/// Facets of a round part of 16 sides lie so far inside of it, as a share of its thickness: what overlaps by more overlaps in
+/// the model, and what moves apart then need not be what is built.
+const FACETS: f64 = 0.01;
 /// A tolerance beyond the depth of an overlap.
 const BEYOND: f64 = 1.05;
 
@@ -134,7 +138,7 @@ fn suggestion(bodies: &Bodies, overlap: &Overlap) -> Option<Suggestion> {
             said(None, tolerance, format!("{why}: chord errors"))
         };
     }
-    overlap.is_shallow(bodies).then_some(())?;
+    overlap.is_within(bodies, FACETS).then_some(())?;
     said(None, tolerance, "a shallow overlap".into())
 }
 

@@ -12,18 +12,16 @@ use std::path::Path;
 
 use colltrans::glam::DVec3;
 use colltrans::solid::StartOverlap;
-use colltrans_assembly::candidates::{Candidates, Choice, Finer, Origin, candidates, unit};
-use colltrans_assembly::liaisons::{Liaison, liaisons};
+use colltrans_assembly::candidates::{Candidates, Choice, unit};
 use colltrans_assembly::map::{MapOptions, RemovalMap};
-use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{Plan, PlanOptions, disassemble, remove};
+use colltrans_assembly::plan::PlanOptions;
 use colltrans_assembly::read::{self, Geometry, ReadOptions};
-use colltrans_assembly::report::Findings;
 use colltrans_assembly::rooms::{PartRoom, rooms};
 use colltrans_assembly::sphere::Sphere;
-use colltrans_assembly::start::Start;
-use colltrans_assembly::suggest::{self, Suggestion, suggestions};
-use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Ignored, ReadError, Stage, Watch};
+use colltrans_assembly::suggest;
+use colltrans_assembly::{
+    Assembly, AssemblyError, Bodies, Fit, Ignored, Question, ReadError, Stage, Watch,
+};
 use colltrans_mesh::body::Refused;
 use indicatif::{ProgressBar, ProgressStyle};
 
@@ -66,92 +64,45 @@ fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
         }
     };
     let watch = Watch::default().with_progress(&progress);
-    let asked = Question { arguments, given: &given, wanted: &wanted, watch };
+    let question = question(arguments, &given, wanted);
     let once = Bodies::new(&assembly, fit)?;
-    let mut found = asked.answered(&once)?;
+    let mut found = question.ask(&once, watch)?;
     let suggested;
     let again;
     if arguments.roles.auto && !found.suggestions.is_empty() && !found.plan.stuck.is_empty() {
         suggested = suggest::applied(assembly.clone(), &found.suggestions)?;
         again = Bodies::new(&suggested, fit)?;
-        found = asked.answered(&again)?;
+        found = question.ask(&again, watch)?;
     }
     let bodies = found.bodies;
-    let maps = maps(bodies, &groups, &found.found, overlap(arguments), watch)?;
+    found.more = more_rooms(bodies, &given, overlap(arguments), watch)?;
+    found.maps = maps(bodies, &groups, &found.candidates, overlap(arguments), watch)?;
+    found.times = times;
     let with_proofs = arguments.output.is_some();
     let free = free::all(bodies, leaving, arguments.work.options(), with_proofs)?;
     bar.finish_and_clear();
-    let findings = Findings {
-        bodies,
-        start: &found.start,
-        suggestions: &found.suggestions,
-        liaisons: &found.touching,
-        candidates: &found.found.main,
-        matrix: &found.matrix,
-        more: &found.more,
-        plan: &found.plan,
-        times,
-        up: arguments.gravity.map_or(assembly.up(), |gravity| (-gravity).normalize()),
-        maps: &maps,
-    };
-    output::write(&findings, &free, arguments)
+    output::write(&found, &free, arguments)
 }
 
 /// What is asked of the parts, with whatever fit.
-struct Question<'a> {
-    arguments: &'a AssemblyArguments,
-    /// Directions beside those that are found.
-    given: &'a [DVec3],
-    /// Parts that are to come out, if not all.
-    wanted: &'a [usize],
-    watch: Watch<'a>,
-}
-
-/// What came of it.
-struct Answer<'a> {
-    bodies: &'a Bodies<'a>,
-    start: Start,
-    suggestions: Vec<Suggestion>,
-    touching: Vec<Liaison>,
-    found: Candidates,
-    matrix: Matrix,
-    more: Vec<(DVec3, Vec<PartRoom>)>,
-    plan: Plan,
-}
-
-impl Question<'_> {
-    fn answered<'b>(&self, bodies: &'b Bodies<'b>) -> Result<Answer<'b>, Failure> {
-        let Self { arguments, given, wanted, watch } = *self;
-        let start = Start::new(bodies, watch)?;
-        let suggestions = suggestions(bodies, &start);
-        let touching = liaisons(bodies, watch)?;
-        let choice = Choice::default()
-            .with_given(arguments.direction.clone())
-            .with_gravity(arguments.gravity)
-            .with_search(!arguments.only);
-        let mut found = candidates(bodies, &touching, &choice)?;
-        let finer = |&direction: &DVec3| Finer { direction, origin: Origin::Given, part: None };
-        found.finer.splice(0..0, given.iter().map(finer));
-        let overlap = overlap(arguments);
-        let all = vec![true; bodies.len()];
-        let matrix = Matrix::new(bodies, &found.directions(), &all, overlap, watch)?;
-        let more = more_rooms(bodies, given, overlap, watch)?;
-        let samples = if arguments.only { 0 } else { PlanOptions::default().samples };
-        let options = PlanOptions::default()
-            .with_start(overlap)
-            .with_samples(samples)
-            .with_legs(arguments.legs)
-            .with_proofs(!arguments.no_proofs && !arguments.only)
-            .with_looks(arguments.work.looks());
-        let options = match arguments.gravity {
-            Some(gravity) => options.with_up(-gravity),
-            None => options,
-        };
-        let plan = match wanted {
-            [] => disassemble(bodies, &matrix, &found.finer, options, watch)?,
-            parts => remove(bodies, &matrix, &found.finer, parts, options, watch)?,
-        };
-        Ok(Answer { bodies, start, suggestions, touching, found, matrix, more, plan })
+fn question(arguments: &AssemblyArguments, given: &[DVec3], wanted: Vec<usize>) -> Question {
+    let choice =
+        Choice::default().with_given(arguments.direction.clone()).with_search(!arguments.only);
+    let samples = if arguments.only { 0 } else { PlanOptions::default().samples };
+    let options = PlanOptions::default()
+        .with_start(overlap(arguments))
+        .with_samples(samples)
+        .with_legs(arguments.legs)
+        .with_proofs(!arguments.no_proofs && !arguments.only)
+        .with_looks(arguments.work.looks());
+    let question = Question::default()
+        .with_choice(choice)
+        .with_finer(given.to_vec())
+        .with_options(options)
+        .with_wanted(wanted);
+    match arguments.gravity {
+        Some(gravity) => question.with_gravity(gravity),
+        None => question,
     }
 }
 

@@ -15,17 +15,20 @@ use std::time::Duration;
 use colltrans::glam::{DAffine3, DVec3};
 use colltrans::solid::StartOverlap;
 use colltrans_assembly::blocking::Blocking;
-use colltrans_assembly::candidates::{Candidates, Choice, candidates, unit};
+use colltrans_assembly::candidates::{Choice, candidates, unit};
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{Leg, PlanOptions, Step, Times, Turn, Wanted, disassemble, remove};
+use colltrans_assembly::plan::{Leg, Plan, PlanOptions, Step, Times, Turn, Wanted};
 use colltrans_assembly::read::{self, Geometry, ReadOptions};
+use colltrans_assembly::report::html;
 use colltrans_assembly::roles::{PairFit, Passed, Role, Tolerated};
 use colltrans_assembly::rooms::{PartRoom, rooms};
 use colltrans_assembly::start::Start;
 use colltrans_assembly::suggest::{Suggestion, suggestions};
-use colltrans_assembly::{AssemblyError, Bodies, Fit, Ignored, Part, Piece, Watch};
+use colltrans_assembly::{
+    AssemblyError, Bodies, Findings, Fit, Ignored, Part, Piece, Question, Watch,
+};
 use colltrans_mesh::Mesh;
 use numpy::PyArray2;
 use pyo3::prelude::*;
@@ -62,7 +65,7 @@ type PassedRow = ([usize; 2], Option<&'static str>, Option<f64>, String);
 /// What is taken away, from and to which step, and how far.
 type StageRow = (String, [usize; 2], f64);
 /// Steps, stages, what is last, what is left, what is stuck, of a plan for some parts what goes, the rounds, how it is
-/// put together, and the seconds of each step.
+/// put together, the seconds of each step, and what a report is made of.
 type PlanRows = (
     Vec<StepRow>,
     Vec<StageRow>,
@@ -73,6 +76,7 @@ type PlanRows = (
     Vec<Vec<usize>>,
     Vec<(usize, Vec<usize>)>,
     Vec<f64>,
+    Planned,
 );
 /// Parts that are to come out, what else goes, whether that is the least, and whether they come out.
 type WantedRow = (Vec<usize>, Vec<usize>, bool, bool);
@@ -92,6 +96,10 @@ impl Choices {
         let start = if ignore_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse };
         Self { tolerance, start }
     }
+
+    fn fit(self, assembly: &colltrans_assembly::Assembly) -> Fit {
+        self.tolerance.map_or_else(|| Fit::default_for(assembly), Fit::Tolerance)
+    }
 }
 
 /// Vertices and triangles.
@@ -100,6 +108,29 @@ type Surface<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<u32>>);
 /// The extension's half of ``colltrans.Assembly``.
 #[pyclass(frozen, module = "colltrans._colltrans")]
 pub(crate) struct Assembly(Arc<colltrans_assembly::Assembly>);
+
+/// A plan, and of what it is one.
+#[pyclass(frozen, module = "colltrans._colltrans")]
+pub(crate) struct Planned {
+    assembly: Arc<colltrans_assembly::Assembly>,
+    choices: Choices,
+    question: Question,
+    plan: Plan,
+    times: Times,
+}
+
+#[pymethods]
+impl Planned {
+    /// The page that is printed for the workshop.
+    fn report(&self, py: Python<'_>, title: &str) -> PyResult<String> {
+        let Self { assembly, choices, question, plan, times } = self;
+        interruptible(py, |watch| {
+            let bodies = Bodies::new(assembly, choices.fit(assembly))?;
+            let found = Findings { plan: plan.clone(), times: *times, ..question.look(&bodies, watch)? };
+            Ok(html::page(&found, title))
+        })
+    }
+}
 
 impl Assembly {
     /// The same with something asked of it.
@@ -120,11 +151,7 @@ impl Assembly {
         choices: Choices,
         work: impl FnOnce(&Bodies<'_>, Watch<'_>) -> Result<T, AssemblyError> + Send,
     ) -> PyResult<T> {
-        interruptible(py, |watch| {
-            let default = Fit::default_for(&self.0);
-            let fit = choices.tolerance.map_or(default, Fit::Tolerance);
-            work(&Bodies::new(&self.0, fit)?, watch)
-        })
+        interruptible(py, |watch| work(&Bodies::new(&self.0, choices.fit(&self.0))?, watch))
     }
 }
 
@@ -164,18 +191,9 @@ fn units(directions: &[DVec3]) -> Result<Vec<DVec3>, AssemblyError> {
     directions.iter().map(|d| unit(*d)).collect()
 }
 
-/// The directions that are worth asking: those given, and if none are those found.
-fn found(
-    bodies: &Bodies<'_>,
-    given: &[DVec3],
-    gravity: Option<DVec3>,
-    watch: Watch<'_>,
-) -> Result<Candidates, AssemblyError> {
-    let choice = Choice::default()
-        .with_given(units(given)?)
-        .with_gravity(gravity)
-        .with_search(given.is_empty());
-    candidates(bodies, &liaisons(bodies, watch)?, &choice)
+/// Which directions are worth asking: those given, and if none are those found.
+fn choice(given: &[DVec3]) -> Result<Choice, AssemblyError> {
+    Ok(Choice::default().with_given(units(given)?).with_search(given.is_empty()))
 }
 
 fn room_row<'a>(rooms: impl Iterator<Item = &'a PartRoom> + Clone) -> RoomRow {
@@ -408,20 +426,21 @@ impl Assembly {
         let given = points(directions, "directions")?;
         let gravity = gravity.map(|g| crate::arrays::vector(g, "gravity")).transpose()?;
         let choices = Choices::new(tolerance, ignore_overlaps);
+        let options = PlanOptions::default()
+            .with_start(choices.start)
+            .with_samples(samples)
+            .with_legs(legs)
+            .with_proofs(proofs);
+        let question = Question::default()
+            .with_choice(choice(&given).or_raise()?)
+            .with_options(options)
+            .with_wanted(wanted);
+        let question = match gravity {
+            Some(gravity) => question.with_gravity(gravity),
+            None => question,
+        };
         let (plan, because, stages) = self.ask(py, choices, |bodies, watch| {
-            let found = found(bodies, &given, gravity, watch)?;
-            let all = vec![true; bodies.len()];
-            let matrix = Matrix::new(bodies, &found.directions(), &all, choices.start, watch)?;
-            let options = PlanOptions::default()
-                .with_start(choices.start)
-                .with_samples(samples)
-                .with_legs(legs)
-                .with_proofs(proofs);
-            let options = gravity.map_or(options, |gravity| options.with_up(-gravity));
-            let plan = match &wanted[..] {
-                [] => disassemble(bodies, &matrix, &found.finer, options, watch)?,
-                parts => remove(bodies, &matrix, &found.finer, parts, options, watch)?,
-            };
+            let plan = question.ask(bodies, watch)?.plan;
             let because = plan.stuck.iter().map(|stuck| stuck.because(bodies));
             let because: Vec<String> = because.collect();
             let stage = |stage: Range<usize>| {
@@ -433,6 +452,8 @@ impl Assembly {
         })?;
         let (rounds, reverse) = (plan.rounds(), plan.assembly());
         let seconds = times.of(&plan);
+        let planned =
+            Planned { assembly: self.0.clone(), choices, question, plan: plan.clone(), times };
         let steps = plan.steps.into_iter();
         let row = |s: Step| {
             let (direction, travel) = (s.direction.to_array(), s.travel);
@@ -460,7 +481,7 @@ impl Assembly {
         let wanted = |Wanted { parts, others, least, out, .. }| (parts, others, least, out);
         let goes = plan.wanted.map(wanted);
         let stuck = stuck.collect();
-        Ok((steps, stages, plan.last, plan.left, stuck, goes, rounds, reverse, seconds))
+        Ok((steps, stages, plan.last, plan.left, stuck, goes, rounds, reverse, seconds, planned))
     }
 
     #[expect(clippy::type_complexity, reason = "a map has four parts")]
@@ -475,7 +496,8 @@ impl Assembly {
     ) -> PyResult<(Vec<[f64; 3]>, RoomRow, Vec<(f64, [f64; 3])>, Vec<[f64; 3]>)> {
         let choices = Choices::new(tolerance, ignore_overlaps);
         let map = self.ask(py, choices, |bodies, watch| {
-            let directions = found(bodies, &[], None, watch)?.directions();
+            let touching = liaisons(bodies, watch)?;
+            let directions = candidates(bodies, &touching, &Choice::default())?.directions();
             let options = MapOptions::default()
                 .with_samples(samples)
                 .with_border(border)

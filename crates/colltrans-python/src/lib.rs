@@ -51,7 +51,7 @@ mod ways;
 #[pyo3::pymodule(gil_used = false)]
 mod _colltrans {
     #[pymodule_export]
-    use crate::assembly::Assembly;
+    use crate::assembly::{Assembly, Planned};
     #[pymodule_export]
     use crate::body::{ConvexPolyhedron, read};
     #[pymodule_export]

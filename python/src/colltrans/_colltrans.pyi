@@ -47,6 +47,7 @@ __all__ = [
     "Overlapping",
     "Pair",
     "PathContact",
+    "Planned",
     "Pose",
     "Robot",
     "Separated",
@@ -492,6 +493,7 @@ class Assembly:
         list[list[int]],
         list[tuple[int, list[int]]],
         list[float],
+        Planned,
     ]: ...
     def removal_map(
         self,
@@ -506,6 +508,13 @@ class Assembly:
         list[tuple[float, list[float]]],
         list[list[float]],
     ]: ...
+
+@final
+class Planned:
+    """A plan, and of what it is one."""
+
+    def report(self, title: str) -> str:
+        """The page that is printed for the workshop."""
 
 @final
 class Cast:

@@ -216,7 +216,9 @@ class Stuck:
 
 @dataclass(frozen=True)
 class Stage:
-    """Steps that are one for whoever does them: parts of one shape that leave along one direction.
+    """Steps that are one for whoever does them.
+
+    Parts of one shape that leave along one direction, or equally far each along its own.
 
     Attributes
     ----------
@@ -294,6 +296,7 @@ class Plan:
     seconds: list[float]
     taken: list[PairFit] = field(default_factory=list)
     _assembly: "Assembly | None" = field(default=None, repr=False, compare=False)
+    _planned: "_colltrans.Planned | None" = field(default=None, repr=False, compare=False)
 
     def displacements(self) -> dict[str, Floats]:
         """By how much each part that moves is away from its place when all steps are done.
@@ -321,12 +324,49 @@ class Plan:
         show(self, **options)
 
     def __getstate__(self) -> dict[str, Any]:
-        return {**self.__dict__, "_assembly": None}
+        return {**self.__dict__, "_assembly": None, "_planned": None}
+
+    def _way(self, stage: Stage) -> str:
+        first, *rest = {self.steps[k].direction: None for k in stage.steps}
+        return "each its own" if rest else ", ".join(f"{c:.3g}" for c in first)
+
+    def report(self, path: str | PathLike[str], *, title: str = "assembly") -> None:
+        """Writes what is printed for the workshop: one HTML file, as ``assembly -o`` has it.
+
+        Overlaps, contacts and who meets whom, which it tells beside the plan, are found once more.
+
+        Parameters
+        ----------
+        path : str or os.PathLike
+            It is written anew if it is there.
+        title : str
+            Of its first page.
+
+        Raises
+        ------
+        InputError
+            A plan that comes from a pickle: it has no bodies.
+
+        Examples
+        --------
+        >>> from pathlib import Path
+        >>> from tempfile import TemporaryDirectory
+        >>> from colltrans import Assembly
+        >>> plan = Assembly.read("data/gearbox_small").plan()
+        >>> with TemporaryDirectory() as folder:
+        ...     file = Path(folder) / "report.html"
+        ...     plan.report(file, title="gearbox")
+        ...     "Proven:" in file.read_text()
+        True
+        """
+        if self._planned is None:
+            raise InputError("a plan that comes from a pickle has no bodies")
+        Path(path).write_text(self._planned.report(title), encoding="utf-8")
 
     def _repr_html_(self) -> str:
         rows = "".join(
             f"<tr><th>{number}</th><td>{escape(stage.takes)}</td>"
-            f"<td>{', '.join(f'{c:.3g}' for c in self.steps[stage.steps[0]].direction)}</td>"
+            f"<td>{self._way(stage)}</td>"
             f"<td>{stage.travel:.6g}</td></tr>"
             for number, stage in enumerate(self.stages, 1)
         )
@@ -719,7 +759,7 @@ class Assembly:
             wanted,
             dict(times or {}),
         )
-        steps, stages, last, left, stuck, goes, rounds, assembly, seconds = plan
+        steps, stages, last, left, stuck, goes, rounds, assembly, seconds, planned = plan
         names = self.parts
 
         def moves(all_of: list[tuple[list[int], list[float], float, Any]]) -> list[Move]:
@@ -766,6 +806,7 @@ class Assembly:
             assembly,
             seconds,
             _assembly=self,
+            _planned=planned,
         )
 
     def _fit(

@@ -25,6 +25,7 @@ import os
 import re
 import struct
 import sys
+import time
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -43,6 +44,8 @@ PER_METRE = 1000.0
 _SAMPLES = np.array([(i, j, 8 - i - j) for i in range(9) for j in range(9 - i)]) / 8.0
 #: Pairs of points and facets that are compared at once.
 _AT_ONCE = 1 << 20
+#: Seconds between two words about how far it has come.
+_SAID_EVERY = 0.5
 #: Cells along the longest side of a face, by which its points are compared.
 _CELLS = 32
 
@@ -228,9 +231,14 @@ def beside(fine: Points, facets: Points) -> float:
 
 
 def measure(glb: Glb, finer: Glb | None) -> list[Measured]:
-    """The chord error of every mesh."""
+    """The chord error of every mesh; says from time to time how many are measured."""
     found = []
-    for mesh in range(len(glb.document.get("meshes", []))):
+    count = len(glb.document.get("meshes", []))
+    said = time.monotonic()
+    for mesh in range(count):
+        if time.monotonic() - said > _SAID_EVERY:
+            said = time.monotonic()
+            _say(f"measuring chord errors: {mesh} of {count} shapes")
         measured = Measured()
         fine = {number: facets for number, _, facets in finer.faces(mesh)} if finer else {}
         for number, surface, facets in glb.faces(mesh):

@@ -98,13 +98,24 @@ impl Stuck {
                 )
             }
             ([[a, b], rest @ ..], _) => {
-                let more = if rest.is_empty() {
-                    String::new()
-                } else {
-                    format!(", and {} more pairs", rest.len())
+                let more = match rest.len() {
+                    0 => String::new(),
+                    1 => ", and so do those of one more pair".into(),
+                    more => format!(", and so do those of {more} more pairs"),
+                };
+                let parts = bodies.assembly().parts();
+                let open = self.parts.iter().filter(|&&part| parts[part].is_surface()).count();
+                let open = match open {
+                    0 => String::new(),
+                    open => format!(
+                        "; {open} of these {} are open surfaces, of which it is not known what is \
+                         inside",
+                        self.parts.len()
+                    ),
                 };
                 format!(
-                    "{} and {} overlap with this tolerance{more}, and parts that overlap move as one",
+                    "{} and {} run into each other as they are drawn{more}, and such parts move as \
+                     one, unless a tolerance or a role is given for them{open}",
                     name(*a),
                     name(*b)
                 )
@@ -139,6 +150,10 @@ impl Moves {
         };
         match self {
             Self::NotAsked(why) => format!("; several moves were not looked for: {why}"),
+            Self::NotKept => {
+                "; several moves that were found do not keep what is asked of order and directions"
+                    .into()
+            }
             Self::Proven { cells } => format!(
                 "; nor do several moves, whichever, which is proven in {cells} cells of displacements"
             ),

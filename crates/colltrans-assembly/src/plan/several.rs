@@ -13,12 +13,16 @@ use glam::DVec3;
 use super::{Leg, PlanOptions};
 use crate::blocking::Blocking;
 use crate::bodies::Bodies;
+use crate::constraints::Constraints;
 use crate::error::AssemblyError;
 use crate::matrix::Matrix;
 use crate::watch::Watch;
 
 /// Axes that are tried, at most.
 const MOST_AXES: usize = 13;
+/// Where what was found does not keep what is asked, it is looked for once more, so often, with the parts that do not in their
+/// places.
+const MOST_TRIES: usize = 3;
 /// Parts, at most.
 const MOST_PARTS: usize = 24;
 /// Casts for each move that is asked for, and the share of the work that goes to it.
@@ -45,6 +49,8 @@ pub enum Moves {
         /// What was searched.
         searched: Searched,
     },
+    /// Those that were found do not keep the order, or the directions, that are asked for.
+    NotKept,
 }
 
 /// Moves that take a group out, the last one apart.
@@ -79,7 +85,7 @@ pub(super) fn search(
     }
     let parts = bodies.assembly().parts();
     let placed: Vec<_> = left.iter().map(|&k| parts[k].solid().at(Pose::IDENTITY)).collect();
-    let fixed: Vec<usize> = (0..left.len()).filter(|&k| parts[left[k]].fixed()).collect();
+    let mut fixed: Vec<usize> = (0..left.len()).filter(|&k| parts[left[k]].fixed()).collect();
     let cells = if options.prove { WayOptions::default().cells } else { 0 };
     let options = WayOptions::default()
         .with_cells(cells)
@@ -88,23 +94,63 @@ pub(super) fn search(
         .with_casts(CASTS * legs)
         .with_looks(options.looks / SHARE * legs as u64)
         .with_directions(directions(&placed, matrix));
-    let found = WaysOut::among(&placed, &fixed, &options, watch.flag());
-    let way = match found {
-        Ok(WaysOut::Found(way)) => way,
-        Ok(WaysOut::Proven(proof)) => {
-            let [a, b] = [&placed[0], &placed[1]];
-            proof.verify(a, b).map_err(refused)?;
-            return Ok(Err(Moves::Proven { cells: proof.cells() }));
+    let constraints = bodies.assembly().constraints();
+    for tries in 0.. {
+        let way = match WaysOut::among(&placed, &fixed, &options, watch.flag()) {
+            Ok(WaysOut::Found(way)) => way,
+            Ok(WaysOut::Proven(proof)) => {
+                let [a, b] = [&placed[0], &placed[1]];
+                proof.verify(a, b).map_err(refused)?;
+                return Ok(Err(Moves::Proven { cells: proof.cells() }));
+            }
+            Ok(WaysOut::NotFound { searched }) => {
+                return Ok(Err(Moves::NotFound { legs, searched }));
+            }
+            Err(FreeError::Overlapping { .. }) => {
+                let why = "they overlap with 0.8 of the tolerance, with which moves are planned";
+                return Ok(Err(Moves::NotAsked(why)));
+            }
+            Err(error) => return Err(refused(error)),
+        };
+        let found = aside(bodies.len(), left, &way);
+        let against = found.against(constraints, &bodies.mask(left));
+        if against.is_empty() {
+            way.verify(&placed).map_err(refused)?;
+            return Ok(Ok(found));
         }
-        Ok(WaysOut::NotFound { searched }) => return Ok(Err(Moves::NotFound { legs, searched })),
-        Err(FreeError::Overlapping { .. }) => {
-            let why = "they overlap with 0.8 of the tolerance, with which moves are planned";
-            return Ok(Err(Moves::NotAsked(why)));
+        fixed.extend((0..left.len()).filter(|&k| against.contains(&left[k])));
+        fixed.sort_unstable();
+        fixed.dedup();
+        if tries == MOST_TRIES || fixed.len() >= left.len() {
+            break;
         }
-        Err(error) => return Err(refused(error)),
-    };
-    way.verify(&placed).map_err(refused)?;
-    Ok(Ok(aside(bodies.len(), left, &way)))
+    }
+    Ok(Err(Moves::NotKept))
+}
+
+impl Aside {
+    /// What does not do as is asked: parts that leave before others, parts of what stays together that are moved without
+    /// the rest of it, and parts that go where they never go, on the way back, too.
+    fn against(&self, constraints: &Constraints, there: &[bool]) -> Vec<usize> {
+        let mut found = Vec::new();
+        for (a, b) in constraints.arcs(there) {
+            if self.parts.contains(&a) && !self.parts.contains(&b) {
+                found.push(a);
+            }
+        }
+        let last = Leg::straight(self.parts.clone(), self.direction, 0.0);
+        for leg in self.legs.iter().chain([&last]).chain(&self.back) {
+            let torn =
+                |pair: &[usize; 2]| leg.parts.contains(&pair[0]) != leg.parts.contains(&pair[1]);
+            found.extend(constraints.pairs(there).into_iter().filter(torn).flatten());
+            found.extend(
+                leg.parts.iter().filter(|&&part| !constraints.allows(&[part], leg.direction)),
+            );
+        }
+        found.sort_unstable();
+        found.dedup();
+        found
+    }
 }
 
 fn refused(error: FreeError) -> AssemblyError {
@@ -124,8 +170,6 @@ fn not_asked(bodies: &Bodies, left: &[usize], options: PlanOptions) -> Option<&'
         Some("no more than one was asked for")
     } else if bodies.fit().tolerance() < 0.0 {
         Some("the parts are to be kept apart")
-    } else if assembly.constraints().concern(left) {
-        Some("an order, or where parts never go, is asked for")
     } else if left.len() > MOST_PARTS {
         Some("there are more than 24 parts")
     } else if left.iter().any(|&k| assembly.parts()[k].is_surface()) {

@@ -2,17 +2,23 @@
 
 use std::ops::Range;
 
-use super::{Plan, Step};
+use glam::DVec3;
+
+use super::{Leg, Plan, Step};
 use crate::likes::common_name;
 use crate::part::Assembly;
 use crate::roles::Passed;
 
 /// Screws that are told as one take the same turns, to this.
 const SAME_TURNS: f64 = 0.01;
+/// Parts that are told as one though each has its own direction go equally far, but for this share.
+const SAME_TRAVEL: f64 = 1e-3;
+/// Stages of what comes several times over, at most.
+const MOST_PERIOD: usize = 12;
 
 impl Plan {
-    /// All steps in order, in runs of parts that are alike and leave alone along one direction, in one move each, in any
-    /// order: none of them waits for another one.
+    /// All steps in order, in runs of parts that are alike and leave alone, in one move each, in any order: none of them
+    /// waits for another one. They leave along one direction, or equally far each along its own.
     pub fn stages(&self) -> Vec<Range<usize>> {
         let mut stages: Vec<Range<usize>> = Vec::new();
         for (k, step) in self.steps.iter().enumerate() {
@@ -22,6 +28,58 @@ impl Plan {
             }
         }
         stages
+    }
+
+    /// Of stages, runs that come several times over, one right after another, with parts that are alike and go along one
+    /// direction, or as far along another: "barrel, pin, piston, rod", nine times. Each is the positions of the first run and how many there are; all others are runs of one
+    /// stage, once.
+    pub fn repeats(&self, stages: &[Range<usize>]) -> Vec<(Range<usize>, usize)> {
+        let mut found = Vec::new();
+        let mut at = 0;
+        while at < stages.len() {
+            let times = |period: usize| {
+                let block = |k: usize| stages.get(at + k * period..at + (k + 1) * period);
+                let again = |k: &usize| match (block(0), block(*k)) {
+                    (Some(first), Some(next)) => {
+                        first.iter().zip(next).all(|(a, b)| self.are_alike(a, b))
+                    }
+                    _ => false,
+                };
+                1 + (1..stages.len()).take_while(again).count()
+            };
+            let runs = (1..=MOST_PERIOD).map(|period| (period, times(period)));
+            let several = runs.filter(|(_, times)| *times > 1);
+            // Of equally many stages the shortest run.
+            let best = several.reduce(|a, b| if b.0 * b.1 > a.0 * a.1 { b } else { a });
+            let (period, times) = best.unwrap_or((1, 1));
+            found.push((at..at + period, times));
+            at += period * times;
+        }
+        found
+    }
+
+    /// Whether two stages are the same work, elsewhere.
+    fn are_alike(&self, a: &Range<usize>, b: &Range<usize>) -> bool {
+        let likes = |step: &Step| {
+            let mut likes: Vec<usize> = step.parts.iter().map(|&part| self.likes[part]).collect();
+            likes.sort_unstable();
+            likes
+        };
+        let leg = |[a, b]: [&Leg; 2]| {
+            let equal = |x: f64, y: f64| (x - y).abs() <= SAME_TRAVEL * x.abs().max(y.abs());
+            let turns = |leg: &Leg| leg.turn.as_ref().map_or(0.0, |turn| turn.turns);
+            let one_way = a.direction == b.direction;
+            (one_way || equal(a.travel, b.travel)) && equal(turns(a), turns(b))
+        };
+        let legs =
+            |a: &[Leg], b: &[Leg]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| leg([a, b]));
+        let step = |(a, b): (&Step, &Step)| {
+            // Of groups that were taken out in the run before, or of none.
+            let within = a.within.is_some() == b.within.is_some();
+            within && likes(a) == likes(b) && legs(&a.path, &b.path) && legs(&a.back, &b.back)
+        };
+        let (first, second) = (&self.steps[a.clone()], &self.steps[b.clone()]);
+        first.len() == second.len() && first.iter().zip(second).all(step)
     }
 
     /// What a stage takes away: names of its parts, after that of their subassembly, or of several that are alike how
@@ -37,6 +95,12 @@ impl Plan {
             Some(name) if steps.len() > 1 => format!("{} x {name}", steps.len()),
             _ => names.join(", "),
         }
+    }
+
+    /// Where the parts of a stage go; `None` if each goes its own way.
+    pub fn direction(&self, stage: &Range<usize>) -> Option<DVec3> {
+        let first = self.steps[stage.start].direction;
+        self.steps[stage.clone()].iter().all(|step| step.direction == first).then_some(first)
     }
 
     /// How far the parts of a stage have to go, at most; of several moves the last one.
@@ -64,10 +128,15 @@ impl Plan {
             let moves = if step.turn().is_some() { 2 } else { 1 };
             step.parts.len() == 1 && step.path.len() == moves
         };
+        let equally = |other: &Step| {
+            let [a, b] = [step, other].map(|step| step.travel.value);
+            (a - b).abs() <= SAME_TRAVEL * a.max(b)
+        };
+        let one_way = self.direction(stage) == Some(step.direction);
         plain(first)
             && plain(step)
             && self.likes[first.parts[0]] == self.likes[step.parts[0]]
-            && first.direction == step.direction
+            && (one_way || self.steps[stage.clone()].iter().all(equally))
             && first.within == step.within
             && (turns(first) - turns(step)).abs() < SAME_TURNS
             && !step.after.iter().any(|k| stage.contains(k))

@@ -63,6 +63,8 @@ pub(super) struct Draft {
     pub(super) fixed: bool,
     /// In the unit of the assembly.
     pub(super) chord_error: Option<f64>,
+    /// As screens have it.
+    pub(super) colour: Option<[f64; 3]>,
     /// The source says that this is one part.
     pub(super) is_told: bool,
     /// What the source says of it alone.
@@ -93,6 +95,7 @@ impl Draft {
             pieces,
             fixed: false,
             chord_error: None,
+            colour: None,
             is_told: false,
             split: None,
             file: None,
@@ -288,5 +291,6 @@ fn made(source: &Source, draft: &Draft, name: &str, placed: &[Placed]) -> Result
     let pieces: Vec<Piece> = placed.iter().map(piece).collect();
     let part = Part::with_options(name, &pieces, &source.options.body());
     let part = part.map_err(|e| draft.refused(source, e))?;
-    Ok(part.with_fixed(draft.fixed).with_chord_error(draft.chord_error))
+    let part = part.with_fixed(draft.fixed).with_colour(draft.colour);
+    Ok(part.with_chord_error(draft.chord_error))
 }

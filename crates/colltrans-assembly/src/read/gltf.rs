@@ -1,7 +1,7 @@
 //! glTF and GLB: every node with a mesh is a part, in metres, its transform and those above applied.
 //!
 //! Vertices of one place that differ in normal or texture are welded: glTF stores them apart. Nothing
-//! is read of materials, pictures and animations. Every offset, stride and count is held against the
+//! is read of pictures and animations, of materials one colour for each part: that of its largest primitive. Every offset, stride and count is held against the
 //! bytes that are there before anything is made of them.
 
 use std::collections::HashMap;
@@ -18,6 +18,7 @@ use serde_json::Value;
 
 use super::files::{Source, percent_decoded, unescaped};
 use super::{Budget, Draft, Names, Placed, assembled, contents, plain};
+use crate::colour::on_screen;
 use crate::error::ReadError;
 use crate::part::Assembly;
 
@@ -122,6 +123,8 @@ struct Document {
     #[serde(default)]
     buffers: Vec<Buffer>,
     #[serde(default)]
+    materials: Vec<Value>,
+    #[serde(default)]
     extensions_required: Vec<String>,
 }
 
@@ -219,6 +222,8 @@ struct Primitive {
     attributes: Attributes,
     indices: Option<usize>,
     mode: Option<u32>,
+    #[serde(default)]
+    material: Value,
     #[serde(default)]
     targets: Vec<IgnoredAny>,
 }
@@ -341,6 +346,27 @@ struct Reader<'a> {
     shown: Vec<Shown<'a>>,
 }
 
+impl Document {
+    /// The colour of the largest primitive of some meshes, if it is one colour.
+    fn colour(&self, meshes: impl Iterator<Item = usize>) -> Option<[f64; 3]> {
+        let count = |accessor: Option<usize>| Some(self.accessors.get(accessor?)?.count);
+        let size = |shape: &&Primitive| {
+            count(shape.indices).or_else(|| count(shape.attributes.position)).unwrap_or(0)
+        };
+        let shapes = meshes.flat_map(|mesh| &self.meshes[mesh].primitives);
+        // Of equal ones the first.
+        let largest = shapes.reduce(|a, b| if size(&b) > size(&a) { b } else { a })?;
+        let number = usize::try_from(largest.material.as_u64()?).ok()?;
+        let look = self.materials.get(number)?.get("pbrMetallicRoughness")?;
+        if look.get("baseColorTexture").is_some() {
+            return None;
+        }
+        let factor = look.get("baseColorFactor")?.as_array()?;
+        let channel = |k: usize| Some(on_screen(factor.get(k)?.as_f64()?.clamp(0.0, 1.0)));
+        Some([channel(0)?, channel(1)?, channel(2)?])
+    }
+}
+
 /// What a node shows: its mesh, or all that is below it.
 struct Shown<'a> {
     node: usize,
@@ -408,6 +434,7 @@ impl Reader<'_> {
         }
         let (mut drafts, mut names) = (Vec::new(), Names::default());
         for Shown { node, name, meshes: shown } in self.shown {
+            let colour = self.document.colour(shown.iter().map(|(mesh, _)| *mesh));
             let placed = |(mesh, world)| Placed { mesh: Arc::clone(&meshes[&mesh]), world };
             let pieces: Vec<Placed> = shown.into_iter().map(placed).collect();
             let pieces: Vec<Placed> =
@@ -418,7 +445,7 @@ impl Reader<'_> {
             let name = names.unique(&name.map_or(format!("node {node}"), str::to_owned));
             let extras = &self.document.nodes[node].extras;
             let chord_error = extras.chord_error().map(|error| error * per_metre);
-            let draft = Draft { chord_error, ..Draft::new(name, pieces) };
+            let draft = Draft { chord_error, colour, ..Draft::new(name, pieces) };
             drafts.push(if extras.is_part() { draft.told() } else { draft });
         }
         Ok(drafts)

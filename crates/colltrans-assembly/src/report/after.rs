@@ -5,7 +5,7 @@ use std::ops::Range;
 use maud::{Markup, html};
 
 use super::html::{Report, picture};
-use super::sheet::{self, far, step_words, takes};
+use super::sheet::{self, far, step_words, takes, ways};
 use super::words::{numbers, time};
 use super::{arrow, short};
 use crate::map;
@@ -25,7 +25,7 @@ pub(super) fn section(r: &Report) -> Markup {
             (stuck(r))
             (asked(r))
             (overlaps(r))
-            @for (name, map) in f.maps { (map_section(map, name)) }
+            @for (name, map) in &f.maps { (map_section(map, name)) }
         }
     }
 }
@@ -75,7 +75,7 @@ fn order(r: &Report) -> Markup {
 
 fn way(r: &Report, stage: &Range<usize>) -> String {
     let steps = &r.f.plan.steps[stage.clone()];
-    let way = r.words.way(steps[0].direction);
+    let way = ways(r, stage, 1.0);
     match (steps[0].path.len(), far(r, steps)) {
         (1, None) => way,
         (1, Some(far)) => format!("{way}, {far}"),
@@ -85,7 +85,7 @@ fn way(r: &Report, stage: &Range<usize>) -> String {
 
 /// How it is put together.
 fn backwards(r: &Report) -> Markup {
-    let plan = r.f.plan;
+    let plan = &r.f.plan;
     let stages = plan.stages();
     html! {
         @if plan.steps.len() > 1 {
@@ -103,7 +103,7 @@ fn backwards(r: &Report) -> Markup {
                         @if step.path.len() > 1 {
                             (step_words(&stage.clone().collect::<Vec<_>>())) " backwards"
                         } @else {
-                            (r.words.way(glam::DVec3::ZERO - step.direction))
+                            (ways(r, stage, -1.0))
                         }
                         @if step.within.is_some() { ", before its group is put in" }
                     }
@@ -156,6 +156,10 @@ fn why(r: &Report, stuck: &Stuck) -> String {
         Moves::NotFound { legs, searched } => {
             let end = if searched.complete { "" } else { "; the search was ended by its limit" };
             format!("Up to {legs} moves one after another were searched and none found{end}.")
+        }
+        Moves::NotKept => {
+            "Several moves that were found do not keep what is asked of order and directions."
+                .into()
         }
         Moves::NotAsked(why) => {
             format!("Several moves one after another were not searched: {why}.")

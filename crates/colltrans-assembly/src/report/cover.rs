@@ -5,12 +5,12 @@ use glam::{DVec2, DVec3};
 use maud::{Markup, html};
 
 use super::exploded::Exploded;
+use super::hexadecimal;
 use super::html::{Report, picture};
 use super::kinds::{Kind, kinds};
 use super::scene::{Look, Scene, Shown};
 use super::sheet::step_words;
 use super::words::time;
-use super::{hexadecimal, tint};
 use crate::Fit;
 
 /// The width of the picture in pixels, and bounds of its height.
@@ -22,7 +22,7 @@ const MOST_NOTES: usize = 5;
 const ONE_COLUMN: usize = 8;
 
 pub(super) fn page(r: &Report, title: &str) -> Markup {
-    let kinds = kinds(r.f.plan, r.f.bodies.len());
+    let kinds = kinds(&r.f.plan, r.f.bodies.len());
     html! {
         section.sheet id="cover" {
             h1 { (title) }
@@ -67,7 +67,7 @@ fn summary(r: &Report, kinds: usize) -> String {
 
 /// How far the plan comes, in a sentence.
 fn result(r: &Report) -> Markup {
-    let (plan, words) = (r.f.plan, &r.words);
+    let (plan, words) = (&r.f.plan, &r.words);
     let whole = plan.left.is_empty() && plan.stuck.is_empty();
     html! {
         @if let Some(wanted) = &plan.wanted {
@@ -138,7 +138,7 @@ fn list(r: &Report, kinds: &[Kind]) -> Markup {
                     b { (k + 1) }
                     span { (kind.parts.len()) " ×" }
                     span {
-                        span.swatch style=(format!("background:{}", hexadecimal(tint(k)))) {}
+                        span.swatch style=(format!("background:{}", hexadecimal(r.studio.own_colour(kind.parts[0])))) {}
                         " " (r.words.kind(&kind.parts))
                         @if fixed(kind) { " (fixed)" }
                     }

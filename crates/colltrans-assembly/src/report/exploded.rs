@@ -69,16 +69,16 @@ impl Boxes<'_> {
     fn beyond(&mut self, stage: &Range<usize>, by: &[DVec3], gap: f64) -> f64 {
         let f = self.f;
         let steps = &f.plan.steps[stage.clone()];
-        let (to_frame, boxes) = self.along(steps[0].direction);
         let moving = |part: usize| steps.iter().any(|step| step.parts.contains(&part));
         let left: Vec<usize> = there(f, stage.start).filter(|&part| !moving(part)).collect();
-        let placed = |part: usize, more: DVec3| {
-            let by = to_frame * (by[part] + more);
-            let Aabb { low, high } = boxes[part];
-            Aabb { low: low + by, high: high + by }
-        };
         let mut far = gap;
         for step in steps {
+            let &(to_frame, ref boxes) = self.along(step.direction);
+            let placed = |part: usize, more: DVec3| {
+                let by = to_frame * (by[part] + more);
+                let Aabb { low, high } = boxes[part];
+                Aabb { low: low + by, high: high + by }
+            };
             for &a in &step.parts {
                 let own = placed(a, aside(step, a));
                 for other in left.iter().map(|&b| placed(b, DVec3::ZERO)) {

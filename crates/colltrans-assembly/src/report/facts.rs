@@ -3,8 +3,8 @@
 use glam::DVec3;
 use serde_json::{Value, json};
 
-use super::Findings;
 use crate::bodies::Fit;
+use crate::findings::Findings;
 use crate::hints::hints;
 use crate::record;
 use crate::rooms::PartRoom;
@@ -23,18 +23,18 @@ pub fn json(f: &Findings) -> Value {
         Fit::Tolerance(length) | Fit::Chords { largest: length, .. } => ("tolerance", length),
         Fit::Apart(length) => ("keep_apart", length),
     };
-    let mut told = record::plan(f.bodies, f.plan);
+    let mut told = record::plan(f.bodies, &f.plan);
     let more = json!({
         "parts": parts.collect::<Vec<_>>(),
         "unit": assembly.unit(),
         fit: length,
-        "overlaps": record::overlaps(assembly, f.start),
+        "overlaps": record::overlaps(assembly, &f.start),
         "suggested_tolerance": f.start.suggested,
-        "suggestions": record::suggestions(assembly, f.suggestions),
-        "hints": record::hints(assembly, &hints(f.bodies, f.start)),
+        "suggestions": record::suggestions(assembly, &f.suggestions),
+        "hints": record::hints(assembly, &hints(f.bodies, &f.start)),
         "pairs": record::pairs(f.bodies),
-        "liaisons": record::liaisons(assembly, f.liaisons),
-        "seconds": f.times.of(f.plan),
+        "liaisons": record::liaisons(assembly, &f.liaisons),
+        "seconds": f.times.of(&f.plan),
         "rooms": rooms(f),
         "notes": assembly.notes(),
     });

@@ -6,7 +6,8 @@
 use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
 
-use super::{kinds, tint};
+use super::kinds;
+use crate::colour::linear;
 use crate::part::{Assembly, Part};
 use crate::plan::{Leg, Plan};
 use crate::units;
@@ -31,9 +32,9 @@ pub fn animation(assembly: &Assembly, plan: &Plan) -> Vec<u8> {
     // Where the unit is not known lengths stay the numbers that they are.
     let per_unit = assembly.unit().and_then(units::metres).unwrap_or(1.0);
     let mut nodes = Vec::new();
-    let colours = kinds::colours(plan, assembly.parts().len());
-    for (part, kind) in assembly.parts().iter().zip(colours) {
-        let mesh = file.mesh(part, tint(kind));
+    let colours = kinds::colours(plan, assembly.parts());
+    for (part, colour) in assembly.parts().iter().zip(colours) {
+        let mesh = file.mesh(part, colour.map(linear));
         nodes.push(json!({ "name": part.name(), "mesh": mesh }));
     }
     let (channels, samplers) = channels(&mut file, assembly, plan, size);

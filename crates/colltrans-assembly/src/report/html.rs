@@ -4,6 +4,8 @@
 //! Written with `maud`, which escapes every text that is put in. Let through as they are, and marked
 //! [`PreEscaped`], are only what this crate holds (style, script) or draws (pictures, see `picture`).
 
+use std::ops::Range;
+
 use glam::DVec3;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use rayon::prelude::*;
@@ -37,7 +39,7 @@ impl<'a> Report<'a> {
         }
         let bounds = f.bodies.assembly().bounds();
         let diagonal = DVec3::length(bounds.high - bounds.low);
-        let (words, studio, seconds) = (Words::new(f), Studio::new(f), f.times.of(f.plan));
+        let (words, studio, seconds) = (Words::new(f), Studio::new(f), f.times.of(&f.plan));
         Self { f, words, studio, seconds, rounds, diagonal }
     }
 }
@@ -45,8 +47,15 @@ impl<'a> Report<'a> {
 /// The report.
 pub fn page(f: &Findings, title: &str) -> String {
     let r = Report::new(f);
-    let sheets: Vec<Markup> =
-        f.plan.stages().par_iter().map(|stage| sheet::page(&r, stage)).collect();
+    let stages = f.plan.stages();
+    let repeats = f.plan.repeats(&stages);
+    let mut drawn: Vec<Vec<&Range<usize>>> = Vec::new();
+    for (run, times) in &repeats {
+        for k in run.clone() {
+            drawn.push((0..*times).map(|time| &stages[k + time * run.len()]).collect());
+        }
+    }
+    let sheets: Vec<Markup> = drawn.par_iter().map(|again| sheet::page(&r, again)).collect();
     let page = html! {
         (DOCTYPE)
         html lang="en" {

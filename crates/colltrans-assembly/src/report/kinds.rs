@@ -2,6 +2,8 @@
 
 use std::collections::BTreeMap;
 
+use super::tint;
+use crate::part::Part;
 use crate::plan::Plan;
 
 /// Parts of one shape.
@@ -34,11 +36,16 @@ pub(super) fn kinds(plan: &Plan, parts: usize) -> Vec<Kind> {
     all
 }
 
-/// For each part the number of its kind, from 0: what its colour is chosen by.
-pub(super) fn colours(plan: &Plan, parts: usize) -> Vec<usize> {
-    let mut colours = vec![0; parts];
-    for (k, kind) in kinds(plan, parts).iter().enumerate() {
-        kind.parts.iter().for_each(|&part| colours[part] = k);
+/// The colour of each part, as screens have it: its own, if the parts have colours that tell some of them apart; else that of
+/// its kind.
+pub(super) fn colours(plan: &Plan, parts: &[Part]) -> Vec<[f64; 3]> {
+    let own: Option<Vec<[f64; 3]>> = parts.iter().map(Part::colour).collect();
+    if let Some(own) = own.filter(|own| own.iter().any(|colour| *colour != own[0])) {
+        return own;
+    }
+    let mut colours = vec![tint(0); parts.len()];
+    for (k, kind) in kinds(plan, parts.len()).iter().enumerate() {
+        kind.parts.iter().for_each(|&part| colours[part] = tint(k));
     }
     colours
 }

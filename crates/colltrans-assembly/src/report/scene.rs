@@ -11,7 +11,7 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use super::lines::Lines;
-use super::{Findings, hexadecimal, kinds, tint};
+use super::{Findings, hexadecimal, kinds};
 use crate::part::Part;
 
 /// How a part is drawn.
@@ -67,7 +67,7 @@ pub(super) struct Scene {
 pub(super) struct Studio<'a> {
     parts: &'a [Part],
     lines: Vec<Lines>,
-    colours: Vec<usize>,
+    colours: Vec<[f64; 3]>,
     up: DVec3,
 }
 
@@ -149,7 +149,7 @@ impl<'a> Studio<'a> {
     pub(super) fn new(f: &Findings<'a>) -> Self {
         let parts = f.bodies.assembly().parts();
         let lines = parts.par_iter().map(|part| Lines::new(part.solid())).collect();
-        Self { parts, lines, colours: kinds::colours(f.plan, parts.len()), up: f.up }
+        Self { parts, lines, colours: kinds::colours(&f.plan, parts), up: f.up }
     }
 
     /// The ordinary view.
@@ -358,7 +358,12 @@ impl<'a> Studio<'a> {
         let light = 0.55 + 0.5 * shade as f64 / (SHADES - 1) as f64;
         let mix =
             |c: f64| if s.look == Look::Pale { 0.2 * c + 0.8 * (0.82 + 0.12 * light) } else { c };
-        hexadecimal(tint(self.colours[s.part]).map(|c| mix((c * light).min(1.0))))
+        hexadecimal(self.colours[s.part].map(|c| mix((c * light).min(1.0))))
+    }
+
+    /// The colour of a part.
+    pub(super) fn own_colour(&self, part: usize) -> [f64; 3] {
+        self.colours[part]
     }
 }
 

@@ -27,10 +27,14 @@ const OUT: [f64; 2] = [0.12, 0.5];
 /// Pairs are named up to so many.
 const MOST_PAIRS: usize = 6;
 
-pub(super) fn page(r: &Report, stage: &Range<usize>) -> Markup {
+/// Of stages that are the same work elsewhere, of which the first is drawn.
+pub(super) fn page(r: &Report, again: &[&Range<usize>]) -> Markup {
+    let stage = again[0];
     let steps = &r.f.plan.steps[stage.clone()];
     let all: Vec<usize> = stage.clone().collect();
     let head = if stage.len() == 1 { "Step" } else { "Steps" };
+    let told: Vec<Step> =
+        again.iter().flat_map(|stage| r.f.plan.steps[(*stage).clone()].to_vec()).collect();
     html! {
         section.sheet.step id=(format!("step-{}", stage.start + 1)) {
             h2 { (head) " " (numbers(&all)) ": take out " (takes(r, stage)) }
@@ -39,8 +43,28 @@ pub(super) fn page(r: &Report, stage: &Range<usize>) -> Markup {
             }
             @if steps[0].path.len() > 1 { (frames(r, stage.start)) } @else { (one_picture(r, stage)) }
             (facts(r, stage))
-            (warnings(r, steps))
-            (proof(r, steps))
+            (likewise(r, &again[1..]))
+            (warnings(r, &told))
+            (proof(r, &told))
+        }
+    }
+}
+
+/// The same work elsewhere, which is not drawn.
+fn likewise(r: &Report, others: &[&Range<usize>]) -> Markup {
+    html! {
+        @if !others.is_empty() {
+            p { b { (others.len() + 1) " ×, " } "the others in their turn, with the steps between:" }
+            ul {
+                @for stage in others {
+                    @let all: Vec<usize> = (*stage).clone().collect();
+                    @let far = far(r, &r.f.plan.steps[(*stage).clone()]);
+                    li {
+                        (step_words(&all)) ": " (takes(r, stage)) ", " (ways(r, stage, 1.0))
+                        @if let Some(far) = far { ", " (far) }
+                    }
+                }
+            }
         }
     }
 }
@@ -66,24 +90,29 @@ fn parts(steps: &[Step]) -> Vec<usize> {
 fn one_picture(r: &Report, stage: &Range<usize>) -> Markup {
     let steps = &r.f.plan.steps[stage.clone()];
     let travel = r.f.plan.travel(stage);
-    let out = steps[0].direction * drawn_out(r, travel);
+    let out = drawn_out(r, travel);
     let moving = parts(steps);
+    let by = |part: usize| {
+        let own = steps.iter().find(|step| step.parts.contains(&part));
+        own.map_or(DVec3::ZERO, |step| step.direction * out)
+    };
     let mut scene = Scene {
         size: SIZE,
-        shown: shown(r, stage.start, &moving, |part| {
-            if moving.contains(&part) { out } else { DVec3::ZERO }
-        }),
+        shown: shown(r, stage.start, &moving, by),
         arrows: steps
             .iter()
             .step_by(steps.len().div_ceil(MOST_ARROWS))
-            .map(|step| arrow(r, &step.parts, DVec3::ZERO, out))
+            .map(|step| arrow(r, &step.parts, DVec3::ZERO, step.direction * out))
             .collect(),
         traces: Vec::new(),
         numbers: Vec::new(),
         label: format!(
             "{} moves {}; it is drawn in colour, what stays is pale",
             takes(r, stage),
-            r.words.leg(&steps[0].path[0])
+            match r.f.plan.direction(stage) {
+                Some(_) => r.words.leg(&steps[0].path[0]),
+                None => ways(r, stage, 1.0),
+            }
         ),
     };
     if r.words.is_far(travel) {
@@ -195,7 +224,7 @@ fn facts(r: &Report, stage: &Range<usize>) -> Markup {
     html! {
         dl.facts {
             @if step.path.len() == 1 {
-                div { dt { "Where to" } dd { (r.words.way(step.direction)) } }
+                div { dt { "Where to" } dd { (ways(r, stage, 1.0)) } }
                 div {
                     dt { "How far until it is clear" }
                     dd { (far(r, steps).unwrap_or_else(|| "nothing to pass: just take it off".into())) }
@@ -207,6 +236,14 @@ fn facts(r: &Report, stage: &Range<usize>) -> Markup {
             div { dt { "Round" } dd { (numbers(&rounds)) " of " (r.rounds.iter().max().map_or(0, |k| k + 1)) } }
             div { dt { "Time, about" } dd { (time(r.seconds[stage.clone()].iter().sum())) } }
         }
+    }
+}
+
+/// Where the parts of a stage go, or with -1 where they come from.
+pub(super) fn ways(r: &Report, stage: &Range<usize>, sign: f64) -> String {
+    match r.f.plan.direction(stage) {
+        Some(d) => r.words.way(d * sign + DVec3::ZERO),
+        None => "each along its own way, as it is drawn".into(),
     }
 }
 

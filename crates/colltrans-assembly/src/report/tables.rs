@@ -88,8 +88,8 @@ fn graphs(f: &Findings) -> Markup {
         return Markup::default();
     }
     let all = vec![true; f.bodies.len()];
-    let graph = |k: usize| graph::svg(f.bodies, &Blocking::new(f.matrix, k, &all));
-    let origin = |k: usize| f.candidates.get(k).map_or("", |c| c.origin.name());
+    let graph = |k: usize| graph::svg(f.bodies, &Blocking::new(&f.matrix, k, &all));
+    let origin = |k: usize| f.candidates.main.get(k).map_or("", |c| c.origin.name());
     html! {
         p {
             "An arrow from a part to each one that it meets. Orange: comes out as it is, alone or with \

@@ -10,7 +10,7 @@ use glam::DVec3;
 use maud::{Markup, PreEscaped, html};
 use serde_json::{Value, json};
 
-use super::{Findings, arrow, kinds, tint};
+use super::{Findings, arrow, kinds};
 use crate::part::Part;
 
 const SCRIPT: &str = include_str!("../../assets/viewer.js");
@@ -49,8 +49,8 @@ fn data(f: &Findings) -> Value {
     let assembly = f.bodies.assembly();
     let Aabb { low, high } = assembly.bounds();
     let (middle, size) = ((low + high) / 2.0, (high - low).length());
-    let colours = kinds::colours(f.plan, f.bodies.len());
-    let parts = assembly.parts().iter().zip(colours).map(|(p, kind)| part(p, tint(kind), middle));
+    let colours = kinds::colours(&f.plan, assembly.parts());
+    let parts = assembly.parts().iter().zip(colours).map(|(p, colour)| part(p, colour, middle));
     let parts: Vec<Value> = parts.collect();
     let steps = f.plan.steps.iter().map(|step| {
         let legs = step

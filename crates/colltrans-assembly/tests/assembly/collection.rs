@@ -3,11 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use colltrans::solid::{StartOverlap, Workspace};
-use colltrans_assembly::candidates::{Choice, candidates};
-use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
-use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{Plan, PlanOptions, disassemble};
+use colltrans_assembly::plan::{Plan, PlanOptions};
 use colltrans_assembly::read::{ReadOptions, read};
 use colltrans_assembly::rooms::rooms;
 use colltrans_assembly::sphere::Sphere;
@@ -25,12 +22,7 @@ fn elsewhere() -> ReadOptions {
 }
 
 fn planned(bodies: &Bodies) -> Plan {
-    let watch = Watch::default();
-    let touching = liaisons(bodies, watch).unwrap();
-    let found = candidates(bodies, &touching, &Choice::default()).unwrap();
-    let (all, options) = (vec![true; bodies.len()], PlanOptions::default());
-    let matrix = Matrix::new(bodies, &found.directions(), &all, options.start, watch).unwrap();
-    disassemble(bodies, &matrix, &found.finer, options, watch).unwrap()
+    crate::common::planned(bodies, PlanOptions::default())
 }
 
 #[test]

@@ -3,12 +3,12 @@
 
 use colltrans::solid::{StartOverlap, Workspace};
 use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{Plan, PlanOptions, Step, and_or, disassemble, remove};
+use colltrans_assembly::plan::{Moves, Plan, PlanOptions, Step, and_or, disassemble, remove};
 use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Room, Watch};
 use colltrans_testkit::random::Random;
 use glam::DVec3;
 
-use crate::common::{cuboid, part, well};
+use crate::common::{cuboid, part, planned, stud, well};
 
 const AXES: [DVec3; 6] = [DVec3::X, DVec3::NEG_X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::NEG_Z];
 
@@ -379,4 +379,32 @@ fn a_subassembly_leaves_as_one_and_is_taken_apart_and_what_stays_together_is_not
 
 fn assembly_left<'a>(assembly: &'a Assembly, plan: &Plan) -> Vec<&'a str> {
     assembly.names(&[&plan.left[..], &plan.last].concat())
+}
+
+#[test]
+fn several_moves_keep_the_order_and_the_directions_that_are_asked_for() {
+    let plan = |assembly: Assembly| {
+        let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+        planned(&bodies, PlanOptions::default().with_legs(4))
+    };
+    let plain = plan(stud());
+    let [step] = &plain.steps[..] else { panic!("{plain:?}") };
+    assert!(step.parts == [1] && step.path.len() > 1, "{step:?}");
+    let first = step.path[0].direction;
+    // The plate goes, the other way.
+    let turned = plan(stud().with_before(&["plate"], &["stud"]).unwrap());
+    let [step] = &turned.steps[..] else { panic!("{turned:?}") };
+    assert!(step.parts == [0] && step.path.iter().all(|leg| leg.parts == [0]), "{step:?}");
+    // Or neither goes that way.
+    let never = stud().with_never(&["stud"], first, 45.0).unwrap();
+    for step in &plan(never.clone()).steps {
+        let mut own = step.path.iter().filter(|leg| leg.parts.contains(&1));
+        assert!(own.all(|leg| leg.direction.dot(first) < 0.7), "{step:?}");
+    }
+    let held = plan(never.with_fixed(&["plate"]).unwrap());
+    assert!(held.steps.is_empty() && held.stuck[0].constrained);
+    assert_eq!(held.stuck[0].moves, Moves::NotKept);
+    // What leaves as one is not moved one by one.
+    let as_one = plan(stud().with_together(&["plate", "stud"]).unwrap());
+    assert!(as_one.steps.is_empty(), "{as_one:?}");
 }

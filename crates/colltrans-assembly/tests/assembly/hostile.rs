@@ -10,16 +10,11 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use crate::common::{CUBE, mesh_of_3mf, package};
-use colltrans::solid::StartOverlap;
-use colltrans_assembly::candidates::{Choice, candidates};
-use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{self, MapOptions, RemovalMap};
-use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{PlanOptions, Times, disassemble};
+use colltrans_assembly::plan::PlanOptions;
 use colltrans_assembly::read::{ReadOptions, read_from};
-use colltrans_assembly::report::{Findings, facts, glb, html};
-use colltrans_assembly::start::Start;
-use colltrans_assembly::{Assembly, Bodies, Fit, Watch};
+use colltrans_assembly::report::{facts, glb, html};
+use colltrans_assembly::{Assembly, Bodies, Fit, Question, Watch};
 use quick_xml::events::Event;
 use serde_json::{Value, json};
 
@@ -43,36 +38,19 @@ struct Outputs {
 }
 
 fn outputs(assembly: &Assembly, title: &str) -> Outputs {
-    let (watch, start) = (Watch::default(), StartOverlap::Refuse);
+    let watch = Watch::default();
     let bodies = Bodies::new(assembly, Fit::Tolerance(1e-6)).unwrap();
-    let overlaps = Start::new(&bodies, watch).unwrap();
-    let touching = liaisons(&bodies, watch).unwrap();
-    let found = candidates(&bodies, &touching, &Choice::default()).unwrap();
-    let all = vec![true; bodies.len()];
-    let matrix = Matrix::new(&bodies, &found.directions(), &all, start, watch).unwrap();
-    let options = PlanOptions::default().with_samples(12).with_start(start);
-    let plan = disassemble(&bodies, &matrix, &found.finer, options, watch).unwrap();
-    let options = MapOptions::default().with_samples(12).with_border(1.0).with_start(start);
+    let question = Question::default().with_options(PlanOptions::default().with_samples(12));
+    let mut findings = question.ask(&bodies, watch).unwrap();
+    let options = MapOptions::default().with_samples(12).with_border(1.0);
+    let options = options.with_start(PlanOptions::default().start);
     let map = RemovalMap::new(&bodies, &[0], &[], options, watch).unwrap();
-    let maps = [(title.to_owned(), map)];
-    let findings = Findings {
-        bodies: &bodies,
-        start: &overlaps,
-        suggestions: &[],
-        liaisons: &touching,
-        candidates: &found.main,
-        matrix: &matrix,
-        more: &[],
-        plan: &plan,
-        times: Times::default(),
-        up: assembly.up(),
-        maps: &maps,
-    };
+    findings.maps = vec![(title.to_owned(), map)];
     Outputs {
         page: html::page(&findings, title),
-        table: matrix.to_csv(&bodies),
-        pictures: maps.iter().map(|(name, found)| map::svg(found, name)).collect(),
-        animation: glb::animation(assembly, &plan),
+        table: findings.matrix.to_csv(&bodies),
+        pictures: findings.maps.iter().map(|(name, found)| map::svg(found, name)).collect(),
+        animation: glb::animation(assembly, &findings.plan),
         facts: facts::json(&findings),
     }
 }

@@ -29,12 +29,7 @@ fn planned(assembly: &Assembly) -> Plan {
 
 fn planned_with(assembly: &Assembly, options: PlanOptions) -> Plan {
     let bodies = Bodies::new(assembly, Fit::default_for(assembly)).unwrap();
-    let touching = liaisons(&bodies, Watch::default()).unwrap();
-    let found = candidates(&bodies, &touching, &Choice::default()).unwrap();
-    let all = vec![true; bodies.len()];
-    let start = StartOverlap::Refuse;
-    let matrix = Matrix::new(&bodies, &found.directions(), &all, start, Watch::default()).unwrap();
-    disassemble(&bodies, &matrix, &found.finer, options, Watch::default()).unwrap()
+    crate::common::planned(&bodies, options)
 }
 
 /// What leaves, in order, and what all of it leaves.

@@ -3,24 +3,12 @@
 
 use crate::common::*;
 use colltrans::solid::{StartOverlap, Workspace};
-use colltrans_assembly::candidates::{Choice, candidates};
-use colltrans_assembly::liaisons::liaisons;
-use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{Plan, PlanOptions, disassemble};
+use colltrans_assembly::plan::{Plan, PlanOptions};
 use colltrans_assembly::rooms::{PartRoom, room_of, rooms};
 use colltrans_assembly::sphere::Sphere;
 use colltrans_assembly::{Assembly, Bodies, Fit, Watch};
 use colltrans_testkit::random::Random;
 use glam::{DAffine3, DVec3};
-
-fn planned(bodies: &Bodies, options: PlanOptions) -> Plan {
-    let touching = liaisons(bodies, Watch::default()).unwrap();
-    let found = candidates(bodies, &touching, &Choice::default()).unwrap();
-    let all = vec![true; bodies.len()];
-    let matrix =
-        Matrix::new(bodies, &found.directions(), &all, options.start, Watch::default()).unwrap();
-    disassemble(bodies, &matrix, &found.finer, options, Watch::default()).unwrap()
-}
 
 /// Taken apart with a tolerance; the names of each step that is not within a group.
 fn taken_apart(parts: Vec<colltrans_assembly::Part>, tolerance: f64) -> (Assembly, Plan) {

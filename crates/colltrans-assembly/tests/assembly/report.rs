@@ -3,47 +3,19 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::common::{cuboid, well};
-use colltrans::solid::StartOverlap;
-use colltrans_assembly::candidates::{Choice, candidates};
-use colltrans_assembly::liaisons::liaisons;
-use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{Plan, PlanOptions, Times, disassemble};
-use colltrans_assembly::report::{Findings, html};
-use colltrans_assembly::start::Start;
-use colltrans_assembly::suggest::suggestions;
-use colltrans_assembly::{Assembly, Bodies, Fit, Part, Watch};
+use crate::common::{cuboid, part, stud, well};
+use colltrans_assembly::plan::{Plan, PlanOptions};
+use colltrans_assembly::report::html;
+use colltrans_assembly::{Assembly, Bodies, Fit, Question, Watch};
 
 /// A plan, and its report.
 fn reported(assembly: &Assembly, title: &str) -> (Plan, String) {
-    let (watch, start) = (Watch::default(), StartOverlap::Refuse);
     let bodies = Bodies::new(assembly, Fit::default_for(assembly)).unwrap();
-    let overlaps = Start::new(&bodies, watch).unwrap();
-    let touching = liaisons(&bodies, watch).unwrap();
-    let found = candidates(&bodies, &touching, &Choice::default()).unwrap();
-    let all = vec![true; bodies.len()];
-    let matrix = Matrix::new(&bodies, &found.directions(), &all, start, watch).unwrap();
     let options = PlanOptions::default().with_legs(4);
-    let plan = disassemble(&bodies, &matrix, &found.finer, options, watch).unwrap();
-    let findings = Findings {
-        bodies: &bodies,
-        start: &overlaps,
-        suggestions: &suggestions(&bodies, &overlaps),
-        liaisons: &touching,
-        candidates: &found.main,
-        matrix: &matrix,
-        more: &[],
-        plan: &plan,
-        times: Times::default(),
-        up: assembly.up(),
-        maps: &[],
-    };
+    let question = Question::default().with_options(options);
+    let findings = question.ask(&bodies, Watch::default()).unwrap();
     let page = html::page(&findings, title);
-    (plan, page)
-}
-
-fn part(name: &str, pieces: &[colltrans_assembly::Piece]) -> Part {
-    Part::new(name, pieces).unwrap()
+    (findings.plan, page)
 }
 
 /// A core in a box with a lid, and four pegs on that.
@@ -71,22 +43,6 @@ fn tunnel() -> Assembly {
     ];
     let bar = part("bar", &[cuboid([-3.0, -1.0, -1.0], [3.0, 1.0, 1.0])]);
     Assembly::new(vec![part("tunnel", &tunnel), bar]).unwrap()
-}
-
-/// A stud that goes along a slot before it comes out: a head below a plate with an L of two slots, wide at its end.
-fn stud() -> Assembly {
-    let plate = [
-        cuboid([-2.0, -6.0, 0.0], [14.0, -1.0, 2.0]),
-        cuboid([-2.0, 1.0, 0.0], [6.0, 6.0, 2.0]),
-        cuboid([-6.0, -6.0, 0.0], [-2.0, 6.0, 2.0]),
-        cuboid([6.0, 4.0, 0.0], [14.0, 6.0, 2.0]),
-        cuboid([12.0, -1.0, 0.0], [14.0, 4.0, 2.0]),
-        cuboid([6.0, -6.0, 0.0], [12.0, -4.0, 2.0]),
-        cuboid([-6.0, -6.0, -8.0], [14.0, 6.0, -6.0]),
-    ];
-    let stud =
-        [cuboid([-1.0, -1.0, -1.0], [1.0, 1.0, 6.0]), cuboid([-1.9, -2.0, -2.0], [1.9, 2.0, -0.5])];
-    Assembly::new(vec![part("plate", &plate), part("stud", &stud)]).unwrap()
 }
 
 /// The section of a page with an id.

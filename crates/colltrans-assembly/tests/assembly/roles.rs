@@ -1,10 +1,8 @@
 //! Pairs with a fit of their own, held against bodies that have that fit throughout, and small machines.
 
 use colltrans::solid::{StartOverlap, Workspace};
-use colltrans_assembly::candidates::{Choice, candidates};
-use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{Plan, PlanOptions, disassemble};
+use colltrans_assembly::plan::{Plan, PlanOptions};
 use colltrans_assembly::roles::{PairFit, Role, Tolerated};
 use colltrans_assembly::start::Start;
 use colltrans_assembly::suggest::{applied, suggestions, told};
@@ -23,12 +21,7 @@ fn own(tolerance: f64) -> PairFit {
 }
 
 fn planned(bodies: &Bodies) -> Plan {
-    let watch = Watch::default();
-    let touching = liaisons(bodies, watch).unwrap();
-    let found = candidates(bodies, &touching, &Choice::default()).unwrap();
-    let (all, options) = (vec![true; bodies.len()], PlanOptions::default().with_samples(0));
-    let matrix = Matrix::new(bodies, &found.directions(), &all, options.start, watch).unwrap();
-    disassemble(bodies, &matrix, &found.finer, options, watch).unwrap()
+    crate::common::planned(bodies, PlanOptions::default().with_samples(0))
 }
 
 #[test]
@@ -82,6 +75,39 @@ fn a_pair_is_asked_as_if_all_had_its_tolerance_and_others_as_if_none_had() {
         }
     }
     assert!(asked > 8_000 && changed > 60, "{asked} {changed}");
+}
+
+/// With tolerances by chord errors, a pair that has one of its own is answered as if all had it, and all others as without.
+#[test]
+fn tolerances_of_pairs_stand_beside_those_of_chord_errors() {
+    let mut random = Random::new(31);
+    let (mut asked, mut changed) = (0, 0);
+    for _ in 0..12 {
+        let parts = scattered(&mut random, 6, true).parts().to_vec();
+        let errors = [0.0, 0.03125, 0.125];
+        let mut known = |part: Part| part.with_chord_error(Some(errors[random.index(3)]));
+        let assembly = Assembly::new(parts.into_iter().map(&mut known).collect()).unwrap();
+        let fit = Fit::default_for(&assembly);
+        assert!(matches!(fit, Fit::Chords { .. }), "{fit:?}");
+        let names = [["p0"], ["p1"]];
+        let with = assembly.clone().with_pair([&names[0], &names[1]], own(0.5)).unwrap();
+        let of = |assembly, fit| Bodies::new(assembly, fit).unwrap();
+        let (bodies, plain, alike) =
+            (of(&with, fit), of(&assembly, fit), of(&assembly, Fit::Tolerance(0.5)));
+        let mut workspace = Workspace::default();
+        for (a, b) in (0..6).flat_map(|a| (0..6).map(move |b| (a, b))).filter(|(a, b)| a != b) {
+            let other = if a + b == 1 { &alike } else { &plain };
+            assert_eq!(bodies.overlaps(a, b), other.overlaps(a, b));
+            for d in [DVec3::X, DVec3::NEG_Z, random.direction()] {
+                let start = StartOverlap::Refuse;
+                let room = bodies.room([a, b], d, None, start, &mut workspace);
+                assert_eq!(room, other.room([a, b], d, None, start, &mut workspace));
+                changed += usize::from(room != alike.room([a, b], d, None, start, &mut workspace));
+                asked += 1;
+            }
+        }
+    }
+    assert!(asked > 1_000 && changed > 20, "{asked} {changed}");
 }
 
 /// A pin with a collar below, pressed into a plate from below, by 0.05; and a cap on it, which overlaps the pin by less.

@@ -3,25 +3,16 @@
 use std::path::Path;
 
 use crate::common::*;
-use colltrans::solid::StartOverlap;
-use colltrans_assembly::candidates::{Choice, candidates};
-use colltrans_assembly::liaisons::liaisons;
-use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{Leg, Moves, Plan, PlanOptions, disassemble};
+use colltrans_assembly::plan::{Leg, Moves, Plan, PlanOptions};
 use colltrans_assembly::read::{ReadOptions, read};
-use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Watch, record};
+use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, record};
 use colltrans_testkit::oracle::cubes::Cubes;
 use colltrans_testkit::random::Random;
 use glam::DVec3;
 
 fn planned(assembly: &Assembly, options: PlanOptions) -> Plan {
     let bodies = Bodies::new(assembly, Fit::default_for(assembly)).unwrap();
-    let watch = Watch::default();
-    let touching = liaisons(&bodies, watch).unwrap();
-    let found = candidates(&bodies, &touching, &Choice::default()).unwrap();
-    let (all, start) = (vec![true; bodies.len()], StartOverlap::Refuse);
-    let matrix = Matrix::new(&bodies, &found.directions(), &all, start, watch).unwrap();
-    let plan = disassemble(&bodies, &matrix, &found.finer, options, watch).unwrap();
+    let plan = crate::common::planned(&bodies, options);
     judged(&bodies, &plan);
     plan
 }

@@ -5,7 +5,8 @@
 
 use std::io::Write;
 
-use colltrans_assembly::{Assembly, Part, Piece};
+use colltrans_assembly::plan::{Plan, PlanOptions};
+use colltrans_assembly::{Assembly, Bodies, Part, Piece, Question, Watch};
 use colltrans_mesh::Mesh;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::block;
@@ -33,6 +34,12 @@ pub fn mesh_of_3mf(corner: [f64; 3]) -> String {
         text += &format!("<triangle v1=\"{a}\" v2=\"{b}\" v3=\"{c}\"/>");
     }
     text + "</triangles></mesh>"
+}
+
+/// The plan, along directions that are found.
+pub fn planned(bodies: &Bodies, options: PlanOptions) -> Plan {
+    let question = Question::default().with_options(options);
+    question.ask(bodies, Watch::default()).unwrap().plan
 }
 
 /// A package of files, zipped.
@@ -66,6 +73,22 @@ pub fn part(name: &str, pieces: &[Piece]) -> Part {
 pub fn turned(name: &str, pieces: &[Piece], world: DAffine3) -> Part {
     let turned = |p: &Piece| Piece { world_from_piece: world, ..p.clone() };
     Part::new(name, &pieces.iter().map(turned).collect::<Vec<_>>()).unwrap()
+}
+
+/// A stud that goes along a slot before it comes out: a head below a plate with an L of two slots, wide at its end.
+pub fn stud() -> Assembly {
+    let plate = [
+        cuboid([-2.0, -6.0, 0.0], [14.0, -1.0, 2.0]),
+        cuboid([-2.0, 1.0, 0.0], [6.0, 6.0, 2.0]),
+        cuboid([-6.0, -6.0, 0.0], [-2.0, 6.0, 2.0]),
+        cuboid([6.0, 4.0, 0.0], [14.0, 6.0, 2.0]),
+        cuboid([12.0, -1.0, 0.0], [14.0, 4.0, 2.0]),
+        cuboid([6.0, -6.0, 0.0], [12.0, -4.0, 2.0]),
+        cuboid([-6.0, -6.0, -8.0], [14.0, 6.0, -6.0]),
+    ];
+    let stud =
+        [cuboid([-1.0, -1.0, -1.0], [1.0, 1.0, 6.0]), cuboid([-1.9, -2.0, -2.0], [1.9, 2.0, -0.5])];
+    Assembly::new(vec![part("plate", &plate), part("stud", &stud)]).unwrap()
 }
 
 /// Two links of a chain.

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 use colltrans::glam::DVec3;
 use colltrans_assembly::hints::hints;
 use colltrans_assembly::plan::{Plan, and_or};
-use colltrans_assembly::report::{Findings, facts, glb, html};
-use colltrans_assembly::{Assembly, Fit};
+use colltrans_assembly::report::{facts, glb, html};
+use colltrans_assembly::{Assembly, Findings, Fit};
 use colltrans_assembly::{map, record, suggest};
 
 use super::free::Leaving;
@@ -58,12 +58,12 @@ fn files(
     let source = arguments.source.canonicalize().unwrap_or_else(|_| arguments.source.clone());
     let title = source.file_stem().map_or("assembly".into(), |s| s.to_string_lossy().into_owned());
     put("report.html", html::page(f, &title).as_bytes())?;
-    put("disassembly.glb", &glb::animation(f.bodies.assembly(), f.plan))?;
+    put("disassembly.glb", &glb::animation(f.bodies.assembly(), &f.plan))?;
     put("assembly.json", plain_json(&json.to_string()).as_bytes())?;
     put("matrix.csv", f.matrix.to_csv(f.bodies).as_bytes())?;
     let assembly = f.bodies.assembly();
     put("precedence.csv", f.plan.to_csv(assembly, &f.times).as_bytes())?;
-    let ways = and_or(assembly, f.matrix).to_string();
+    let ways = and_or(assembly, &f.matrix).to_string();
     put("precedence.json", plain_json(&ways).as_bytes())?;
     let names = map_names(f.maps.iter().map(|(name, _)| name));
     for ((name, map), [svg, png, json]) in f.maps.iter().zip(names) {
@@ -124,7 +124,7 @@ fn free_names<'a>(parts: impl IntoIterator<Item = &'a String>) -> Vec<String> {
 /// A few lines for people.
 fn summary(f: &Findings) -> String {
     let assembly = f.bodies.assembly();
-    let names = |parts: &[usize]| shown(assembly.names(parts).join(", "));
+    let names = |parts: &[usize]| shown(listed(&assembly.names(parts)));
     let fit = match f.bodies.fit() {
         Fit::Tolerance(length) => format!("tolerance {length}"),
         Fit::Chords { largest, .. } => {
@@ -138,7 +138,7 @@ fn summary(f: &Findings) -> String {
             let _ = writeln!(text, "  {}: {}", shown(p.name()), shown(defect));
         }
     }
-    for hint in hints(f.bodies, f.start) {
+    for hint in hints(f.bodies, &f.start) {
         let _ = writeln!(text, "  {}", shown(hint.words));
     }
     overlaps(&mut text, f);
@@ -148,7 +148,7 @@ fn summary(f: &Findings) -> String {
     for stage in f.plan.stages() {
         tell(&mut text, f, &stage);
     }
-    let (seconds, rounds) = (f.times.of(f.plan).iter().sum::<f64>(), f.plan.rounds().len());
+    let (seconds, rounds) = (f.times.of(&f.plan).iter().sum::<f64>(), f.plan.rounds().len());
     if f.plan.steps.len() > 1 {
         let rounds = counted(rounds, "round", "rounds");
         let _ =
@@ -172,7 +172,7 @@ fn summary(f: &Findings) -> String {
         };
         let _ = writeln!(text, "{head}\n  {}: {because}", names(&stuck.parts));
     }
-    for (name, map) in f.maps {
+    for (name, map) in &f.maps {
         match &map.cover {
             Ok(cover) => {
                 let _ = writeln!(text, "map of {}: {}", shown(name), cover.record.outcome);
@@ -195,10 +195,30 @@ fn summary(f: &Findings) -> String {
     text
 }
 
+/// What a stage takes away.
+fn takes(f: &Findings, stage: &Range<usize>) -> String {
+    let (assembly, parts) = (f.bodies.assembly(), &f.plan.steps[stage.start].parts);
+    if stage.len() == 1 && assembly.constraints().name(parts).is_none() {
+        return listed(&assembly.names(parts));
+    }
+    f.plan.takes(assembly, stage)
+}
+
+/// Names are listed up to so many.
+const MOST_NAMES: usize = 12;
+
+/// Names, of very many the first ones: all are in JSON.
+fn listed(names: &[&str]) -> String {
+    match names.len().saturating_sub(MOST_NAMES) {
+        0 | 1 => names.join(", "),
+        more => format!("{} and {more} more", names[..MOST_NAMES].join(", ")),
+    }
+}
+
 /// Steps that are one for whoever does them.
 fn tell(text: &mut String, f: &Findings, stage: &Range<usize>) {
     let assembly = f.bodies.assembly();
-    let names = |parts: &[usize]| shown(assembly.names(parts).join(", "));
+    let names = |parts: &[usize]| shown(listed(&assembly.names(parts)));
     let steps = &f.plan.steps[stage.clone()];
     let step = &steps[0];
     let within = step.within.map_or(String::new(), |w| format!(", of the group of step {}", w + 1));
@@ -206,7 +226,7 @@ fn tell(text: &mut String, f: &Findings, stage: &Range<usize>) {
         0.0 => format!("away along {},{},{}", d.x, d.y, d.z),
         _ => format!("{travel} along {},{},{}", d.x, d.y, d.z),
     };
-    let (numbers, takes) = (Plan::numbers(stage), shown(f.plan.takes(assembly, stage)));
+    let (numbers, takes) = (Plan::numbers(stage), shown(takes(f, stage)));
     let head = format!("  {numbers}. {takes}{within}: ");
     if let (Some(turn), [screwed, rest]) = (step.turn(), &step.path[..]) {
         let turns = match screwed.travel {
@@ -215,7 +235,12 @@ fn tell(text: &mut String, f: &Findings, stage: &Range<usize>) {
         };
         let _ = writeln!(text, "{head}{turns}, then {}", way(rest.travel, rest.direction));
     } else if let [_] = &step.path[..] {
-        let _ = writeln!(text, "{head}{}", way(f.plan.travel(stage), step.direction));
+        let told = match (f.plan.direction(stage), f.plan.travel(stage)) {
+            (Some(d), travel) => way(travel, d),
+            (None, 0.0) => "away, each along its own way".into(),
+            (None, travel) => format!("{travel} each along its own way"),
+        };
+        let _ = writeln!(text, "{head}{told}");
     } else {
         let _ = writeln!(text, "{head}in {} moves", step.path.len());
         for (back, leg) in
@@ -261,7 +286,7 @@ fn overlaps(text: &mut String, f: &Findings) {
         let depth = o.depth.map_or("by more than their size".into(), |d| format!("by {d}"));
         let _ = writeln!(text, "  {a}, {b} {depth}");
     }
-    for said in suggest::told(f.bodies.assembly(), f.suggestions) {
+    for said in suggest::told(f.bodies.assembly(), &f.suggestions) {
         let _ =
             writeln!(text, "  perhaps on purpose, which --auto takes for granted: {}", shown(said));
     }

@@ -7,16 +7,10 @@
 use std::error::Error;
 use std::path::Path;
 
-use colltrans::solid::StartOverlap;
-use colltrans_assembly::candidates::{Choice, candidates};
-use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
-use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{PlanOptions, Times, disassemble};
 use colltrans_assembly::read::{ReadOptions, read};
-use colltrans_assembly::report::{Findings, html};
-use colltrans_assembly::start::Start;
-use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Watch};
+use colltrans_assembly::report::html;
+use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Question, Watch};
 use glam::DAffine3;
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -24,38 +18,18 @@ fn main() -> Result<(), Box<dyn Error>> {
     let [tolerance, target, files @ ..] = &arguments[..] else {
         return Err("give a tolerance, where to write, and files".into());
     };
-    let (watch, overlap) = (Watch::default(), StartOverlap::Refuse);
+    let watch = Watch::default();
     let (assembly, is_manifest) = match files {
         [one] if one.ends_with(".json") => (read(one, &ReadOptions::default())?, true),
         _ => (assembly(files)?, false),
     };
     let bodies = Bodies::new(&assembly, Fit::Tolerance(tolerance.parse()?))?;
-    let start = Start::new(&bodies, watch)?;
-    let liaisons = liaisons(&bodies, watch)?;
-    let found = candidates(&bodies, &liaisons, &Choice::default())?;
-    let all = vec![true; bodies.len()];
-    let matrix = Matrix::new(&bodies, &found.directions(), &all, overlap, watch)?;
-    let options = PlanOptions::default().with_start(overlap);
-    let plan = disassemble(&bodies, &matrix, &found.finer, options, watch)?;
-    let mut maps = Vec::new();
+    let mut findings = Question::default().ask(&bodies, watch)?;
     let name = assembly.parts()[0].name().to_owned();
     if is_manifest {
-        let options = MapOptions::default().with_samples(42).with_border(0.1).with_start(overlap);
-        maps.push((name.clone(), RemovalMap::new(&bodies, &[0], &[], options, watch)?));
+        let options = MapOptions::default().with_samples(42).with_border(0.1);
+        findings.maps.push((name.clone(), RemovalMap::new(&bodies, &[0], &[], options, watch)?));
     }
-    let findings = Findings {
-        bodies: &bodies,
-        start: &start,
-        suggestions: &[],
-        liaisons: &liaisons,
-        candidates: &found.main,
-        matrix: &matrix,
-        more: &[],
-        plan: &plan,
-        times: Times::default(),
-        up: assembly.up(),
-        maps: &maps,
-    };
     Ok(std::fs::write(target, html::page(&findings, if is_manifest { &name } else { "parts" }))?)
 }
 

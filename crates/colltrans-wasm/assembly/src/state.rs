@@ -7,7 +7,8 @@
 //!   touches whom;
 //! - `along` a `direction`: who stops whom, and what comes out;
 //! - `map` of the parts `group`: their free travel in all directions;
-//! - `plan`: how everything comes apart.
+//! - `plan`: how everything comes apart;
+//! - `report` with a `title`: that, as the file that is printed for the workshop.
 
 use std::path::Path;
 
@@ -16,9 +17,10 @@ use colltrans_assembly::candidates::{Candidates, Choice, candidates, unit};
 use colltrans_assembly::liaisons::{Liaison, liaisons};
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
-use colltrans_assembly::plan::{PlanOptions, disassemble};
+use colltrans_assembly::plan::{Plan, PlanOptions};
+use colltrans_assembly::report::html;
 use colltrans_assembly::start::Start;
-use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Watch, read};
+use colltrans_assembly::{Assembly, Bodies, Findings, Fit, Part, Piece, Question, Watch, read};
 use colltrans_mesh::Format;
 use glam::{DAffine3, DVec3};
 use serde_json::{Value, json};
@@ -55,6 +57,7 @@ struct Fitted {
     bodies: Bodies<'static>,
     start: StartOverlap,
     candidates: Candidates,
+    plan: Option<Plan>,
 }
 
 impl State {
@@ -78,6 +81,7 @@ impl State {
             "along" => self.along(asked.array("direction")?),
             "map" => self.map(&asked.list("group")?),
             "plan" => self.plan(),
+            "report" => self.report(asked.text("title")?),
             other => Err(format!("nothing is known to do for {other}").into()),
         }
     }
@@ -154,16 +158,16 @@ impl State {
         let candidates = candidates(&bodies, &touching, &Choice::default()).map_err(said)?;
         let answer = tell::fit(&bodies, default.tolerance(), &start, &touching);
         let overlaps = if ignore { StartOverlap::Ignore } else { StartOverlap::Refuse };
-        set.fitted = Some(Fitted { bodies, start: overlaps, candidates });
+        set.fitted = Some(Fitted { bodies, start: overlaps, candidates, plan: None });
         Ok(answer)
     }
 
-    fn fitted(&self) -> Result<&Fitted, Refusal> {
-        let fitted = self.set.as_ref().and_then(|set| set.fitted.as_ref());
+    fn fitted(&mut self) -> Result<&mut Fitted, Refusal> {
+        let fitted = self.set.as_mut().and_then(|set| set.fitted.as_mut());
         fitted.ok_or_else(|| "the parts have no fit yet".to_owned().into())
     }
 
-    fn along(&self, direction: [f64; 3]) -> Result<Answer, Refusal> {
+    fn along(&mut self, direction: [f64; 3]) -> Result<Answer, Refusal> {
         let Fitted { bodies, start, .. } = self.fitted()?;
         let d = unit(DVec3::from_array(direction)).map_err(|error| error.to_string())?;
         let all = vec![true; bodies.len()];
@@ -171,8 +175,8 @@ impl State {
         Ok(tell::along(&matrix.map_err(|error| error.to_string())?, bodies))
     }
 
-    fn map(&self, group: &[f64]) -> Result<Answer, Refusal> {
-        let Fitted { bodies, start, candidates } = self.fitted()?;
+    fn map(&mut self, group: &[f64]) -> Result<Answer, Refusal> {
+        let Fitted { bodies, start, candidates, .. } = self.fitted()?;
         let mut parts: Vec<usize> = group.iter().map(|k| *k as usize).collect();
         parts.sort_unstable();
         parts.dedup();
@@ -186,14 +190,27 @@ impl State {
         Ok(tell::map(&map.map_err(|error| error.to_string())?, bodies.assembly()))
     }
 
-    fn plan(&self) -> Result<Answer, Refusal> {
-        let Fitted { bodies, start, candidates } = self.fitted()?;
-        let (all, watch) = (vec![true; bodies.len()], Watch::default());
-        let directions = candidates.directions();
-        let matrix = Matrix::new(bodies, &directions, &all, *start, watch);
-        let matrix = matrix.map_err(|error| error.to_string())?;
-        let options = PlanOptions::default().with_start(*start);
-        let plan = disassemble(bodies, &matrix, &candidates.finer, options, watch);
-        Ok(tell::plan(bodies, &plan.map_err(|error| error.to_string())?, directions.len()))
+    fn plan(&mut self) -> Result<Answer, Refusal> {
+        let Fitted { bodies, start, plan, .. } = self.fitted()?;
+        let found = question(*start).ask(bodies, Watch::default());
+        let found = found.map_err(|error| error.to_string())?;
+        let answer = tell::plan(bodies, &found.plan, found.matrix.directions().len());
+        *plan = Some(found.plan);
+        Ok(answer)
     }
+
+    /// The bytes of the file are the answer's numbers.
+    fn report(&mut self, title: &str) -> Result<Answer, Refusal> {
+        let Fitted { bodies, start, plan, .. } = self.fitted()?;
+        let Some(plan) = plan.clone() else { return Err("nothing is planned yet".to_owned().into()) };
+        let found = question(*start).look(bodies, Watch::default());
+        let found = Findings { plan, ..found.map_err(|error| error.to_string())? };
+        let page = html::page(&found, title).into_bytes();
+        Ok(Answer { numbers: page, ..Answer::of(&json!({ "title": title })) })
+    }
+}
+
+/// What a plan is asked for.
+fn question(start: StartOverlap) -> Question {
+    Question::default().with_options(PlanOptions::default().with_start(start))
 }

@@ -58,6 +58,11 @@ fn the_gearbox_comes_apart() {
     moved.extend(plan["last"].as_array().unwrap().iter().map(|p| p.as_str().unwrap()));
     moved.sort_unstable();
     assert_eq!(moved, names, "{plan}");
+    let (_, page) = ask(&mut state, &json!({ "do": "report", "title": "Gears" }), Vec::new());
+    let page = String::from_utf8(page).unwrap();
+    let sheets = plan["stages"].as_array().unwrap().len();
+    assert_eq!(page.matches("class=\"sheet step\"").count(), sheets);
+    assert!(page.contains("<h1>Gears</h1>"));
     let (along, _) = ask(&mut state, &json!({ "do": "along", "direction": [0, 0, 2] }), Vec::new());
     // Who is free along it comes out alone.
     for (k, room) in along["rooms"].as_array().unwrap().iter().enumerate() {

@@ -5,6 +5,7 @@ have in common is at most a layer as thick as the tolerance on the surface of th
 """
 
 import json
+import os
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
@@ -22,7 +23,9 @@ ROUNDING = 1e-9
 #: What is not part of this repository is looked at where it is.
 COLLECTION = ROOT.parent / "shared" / "data" / "assemblies"
 NAMES = ["burr_p3_19", "key", "key_tight_turned", "keyhole_L", "maze_2", "maze_8"]
-NAMES += ["two_step_pocket", "captive_bar", "dovetail", "pillow_block"]
+NAMES += ["two_step_pocket", "captive_bar", "dovetail", "flange8", "pillow_block"]
+#: Folders of parts that are judged as well, as `plans --parts` of the benchmarks writes them.
+MACHINES = os.environ.get("COLLTRANS_MACHINES")
 
 
 def write(path: Path, body: Any) -> None:
@@ -188,3 +191,10 @@ def test_the_collection(cli: Path, name: str) -> None:
         pytest.skip("it is not there")
     told, judge = judged(cli, folder, "--legs", "12")
     assert told["plan"] and judge.looks > 0
+
+
+@pytest.mark.skipif(MACHINES is None, reason="COLLTRANS_MACHINES names no folder")
+def test_machines(cli: Path) -> None:
+    for folder in sorted(Path(MACHINES or ".").iterdir()):
+        told, judge = judged(cli, folder)
+        assert told["plan"] and not told["stuck"] and judge.looks > 0, folder

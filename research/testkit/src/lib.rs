@@ -2,9 +2,10 @@
 //!
 //! [`oracle`]: the judge, in exact rational arithmetic, with the settings that are hard on purpose.
 //! Beside it what knows nothing of the library: [`random`] numbers on streams that do not disturb each
-//! other, [`shapes`] and [`solids`] as vertices and faces, [`timing`] of single calls with the statistics
+//! other, [`shapes`] and [`solids`] as vertices and faces, [`machines`] made of parts, [`timing`] of single calls with the statistics
 //! of many, and [`provenance`]: where numbers come from.
 
+pub mod machines;
 pub mod oracle;
 pub mod provenance;
 pub mod random;

@@ -2,6 +2,7 @@
 //!
 //! Notation. A *ring body* has `rings` parallels of `around` vertices each between two poles.
 
+use std::collections::HashMap;
 use std::f64::consts::{PI, TAU};
 
 use glam::DVec3;
@@ -60,6 +61,24 @@ impl Mesh {
     pub fn triangulated(mut self) -> Self {
         self.faces = self.triangles().map(Vec::from).collect();
         self
+    }
+
+    /// The same surface, each triangle cut into four at the middles of its edges.
+    #[must_use]
+    pub fn quartered(&self) -> Self {
+        let mut made = Self::of_points(self.vertices.clone());
+        let mut known: HashMap<[u32; 2], u32> = HashMap::new();
+        for [a, b, c] in self.triangles() {
+            let [ab, bc, ca] = [[a, b], [b, c], [c, a]].map(|[from, to]| {
+                *known.entry([from.min(to), from.max(to)]).or_insert_with(|| {
+                    let ends = [from, to].map(|v| self.vertices[v as usize]);
+                    made.vertices.push(ends[0].midpoint(ends[1]));
+                    made.vertices.len() as u32 - 1
+                })
+            });
+            made.faces.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]].map(Vec::from));
+        }
+        made
     }
 
     /// The corners of the triangles into which the faces are cut from their first corners.

@@ -10,6 +10,7 @@ mod fuzz_corpus;
 mod hints;
 mod hostile;
 mod known;
+mod machines;
 mod oracle;
 mod order;
 mod read;

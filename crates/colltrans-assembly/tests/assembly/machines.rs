@@ -1,0 +1,82 @@
+//! Machines whose right order is known: plans without options come to it.
+
+use colltrans_assembly::plan::{Plan, PlanOptions};
+use colltrans_assembly::report::html;
+use colltrans_assembly::roles::{PairFit, Role};
+use colltrans_assembly::{Assembly, Bodies, Findings, Fit, Part, Piece, Question, Watch};
+use colltrans_mesh::Mesh;
+use colltrans_testkit::machines::{NamedPart, flange, radial_engine, threaded_block};
+use glam::DAffine3;
+
+fn assembled(parts: Vec<NamedPart>) -> Assembly {
+    let piece = |mesh: colltrans_testkit::shapes::Mesh| Piece {
+        mesh: Mesh::new(mesh.vertices, mesh.faces),
+        world_from_piece: DAffine3::IDENTITY,
+    };
+    let part = |(name, bodies): NamedPart| {
+        crate::common::part(&name, &bodies.into_iter().map(piece).collect::<Vec<_>>())
+    };
+    Assembly::new(parts.into_iter().map(part).collect::<Vec<Part>>()).unwrap()
+}
+
+/// What is told of a plan, and that it is whole.
+fn told(assembly: &Assembly, plan: &Plan, last: &str) -> Vec<String> {
+    assert!(plan.left.is_empty() && plan.stuck.is_empty(), "{:?}", plan.stuck);
+    assert_eq!(assembly.names(&plan.last), [last]);
+    plan.stages().iter().map(|stage| plan.takes(assembly, stage)).collect()
+}
+
+#[test]
+fn flanges_come_apart_as_a_mechanic_does_it() {
+    for bolts in [4, 12] {
+        let assembly = assembled(flange(bolts, 16));
+        let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+        let plan = crate::common::planned(&bodies, PlanOptions::default());
+        let all = |what: &str| format!("{bolts} x {what}");
+        let known = [all("bolt"), all("washer"), "upper".into(), "gasket".into(), all("nut")];
+        assert_eq!(told(&assembly, &plan, "lower"), known);
+        let nut = plan.steps.last().unwrap();
+        assert!(nut.direction.z < -0.999 && nut.travel.value < 9.0, "{nut:?}");
+    }
+}
+
+#[test]
+fn a_radial_engine_comes_apart_cylinder_by_cylinder() {
+    let assembly = assembled(radial_engine(5));
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    let plan = crate::common::planned(&bodies, PlanOptions::default());
+    let told = told(&assembly, &plan, "case");
+    let at = |name: &str| {
+        let found = told.iter().position(|step| step == name);
+        found.unwrap_or_else(|| panic!("no {name} in {told:?}"))
+    };
+    // All heads first; then one cylinder after another: what its barrel held is taken care of at once.
+    assert!(at("5 x screw") < at("cover") && at("cover") < at("shaft"), "{told:?}");
+    for k in 0..5 {
+        let chain = ["barrel", "pin", "piston", "rod"].map(|name| at(&format!("{name}_{k}")));
+        assert!(at("5 x head") < chain[0], "{told:?}");
+        assert!(chain.windows(2).all(|pair| pair[1] == pair[0] + 1), "{told:?}");
+    }
+    assert_eq!(told.len(), 4 + 5 * 4, "{told:?}");
+    let repeats = plan.repeats(&plan.stages());
+    assert_eq!(repeats.last(), Some(&(4..8, 5)), "{repeats:?}");
+    assert_eq!(repeats.len(), 5);
+    let findings = Question::default().look(&bodies, Watch::default()).unwrap();
+    let page = html::page(&Findings { plan, ..findings }, "engine");
+    assert_eq!(page.matches("class=\"sheet step\"").count(), 4 + 4);
+    assert!(page.contains("barrel_4") && page.contains("rod_3"));
+}
+
+#[test]
+fn screws_in_modelled_threads_are_unscrewed() {
+    let thread = PairFit { role: Some(Role::Thread), tolerance: None };
+    let assembly = assembled(threaded_block());
+    let assembly = assembly.with_pair([&["base"], &["screw*"]], thread).unwrap();
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    let plan = crate::common::planned(&bodies, PlanOptions::default());
+    assert_eq!(told(&assembly, &plan, "base"), ["2 x screw", "cap", "shaft"]);
+    for step in &plan.steps[..2] {
+        let turn = step.turn().unwrap();
+        assert!(turn.proof.is_ok() && (1.8..2.3).contains(&turn.turns.abs()), "{turn:?}");
+    }
+}

@@ -1,0 +1,249 @@
+//! Plans that a mechanic would follow: machines whose right order is known, and real ones where they are. How far each comes
+//! apart, with which reason if not wholly; how much longer its ways are than the shortest that are free, and what rays say
+//! of them ([`judge`]); and how long it takes.
+//!
+//! `cargo run --release -p colltrans-bench --bin plans -- [--data DIR] [--only NAME] [--turned] [--fine] [--parts DIR]
+//! [--json FILE]`
+
+mod judge;
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use clap::Parser;
+use colltrans_assembly::read::{ReadOptions, read};
+use colltrans_assembly::{Assembly, Bodies, Findings, Fit, Part, Piece, Question, Watch, suggest};
+use colltrans_mesh::Mesh;
+use colltrans_testkit::machines::{NamedPart, flange, radial_engine, threaded_block};
+use colltrans_testkit::random::Random;
+use glam::DAffine3;
+use serde_json::{Value, json};
+
+use judge::Judged;
+
+#[derive(Parser)]
+struct Arguments {
+    /// Where real assemblies are
+    #[arg(long, default_value = "../shared/data")]
+    data: PathBuf,
+    /// Only those whose names begin so
+    #[arg(long, default_value = "")]
+    only: String,
+    /// How much longer it takes if all is turned anyhow, so that no facets that touch are in one plane to the bit
+    #[arg(long)]
+    turned: bool,
+    /// Machines of three million facets
+    #[arg(long)]
+    fine: bool,
+    /// Also write the parts of the machines that are made here, for other judges
+    #[arg(long)]
+    parts: Option<PathBuf>,
+    /// Also write the figures to this file
+    #[arg(long)]
+    json: Option<PathBuf>,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments = Arguments::parse();
+    let mut rows = Vec::new();
+    let wanted = |name: &str| name.starts_with(&arguments.only);
+    if arguments.turned {
+        for (name, parts) in machines().into_iter().filter(|(name, _)| wanted(name)) {
+            rows.push(turned(&name, &parts)?);
+        }
+    } else if arguments.fine {
+        for (name, parts) in fine().into_iter().filter(|(name, _)| wanted(name)) {
+            rows.push(row(&name, &assembly(&parts, DAffine3::IDENTITY)?, false)?);
+        }
+    } else {
+        for (name, parts) in machines().into_iter().filter(|(name, _)| wanted(name)) {
+            if let Some(folder) = &arguments.parts {
+                written(&folder.join(&name), &parts)?;
+            }
+            rows.push(row(&name, &assembly(&parts, DAffine3::IDENTITY)?, true)?);
+        }
+        for (name, path) in real(&arguments.data).into_iter().filter(|(name, _)| wanted(name)) {
+            if !path.exists() {
+                println!("{name:>16}: not there");
+                continue;
+            }
+            rows.push(row(&name, &read(path, &ReadOptions::default())?, true)?);
+        }
+    }
+    if let Some(path) = &arguments.json {
+        std::fs::write(path, serde_json::to_string_pretty(&rows)?)?;
+    }
+    Ok(())
+}
+
+fn machines() -> Vec<(String, Vec<NamedPart>)> {
+    let mut all: Vec<_> =
+        [8, 16, 32, 64].map(|bolts| (format!("flange_{bolts}"), flange(bolts, 32))).into();
+    all.extend(
+        [5, 7, 9].map(|cylinders| (format!("engine_{cylinders}"), radial_engine(cylinders))),
+    );
+    all.push(("threaded_block".into(), threaded_block()));
+    all
+}
+
+/// Of some three million facets: long thin ones, as programs make them of large cylinders, and many small ones.
+fn fine() -> Vec<(String, Vec<NamedPart>)> {
+    let quartered = |sides: usize, times: usize| {
+        let mut parts = flange(8, sides);
+        for mesh in parts.iter_mut().flat_map(|part| &mut part.1) {
+            for _ in 0..times {
+                *mesh = mesh.quartered();
+            }
+        }
+        parts
+    };
+    vec![("fine_sides".into(), quartered(880, 2)), ("fine_facets".into(), quartered(56, 4))]
+}
+
+fn real(data: &Path) -> Vec<(String, PathBuf)> {
+    let mut all = vec![("gearbox".to_owned(), data.join("gearbox"))];
+    let folder = data.join("assemblies");
+    for name in ["flange8", "pillow_block", "valve_oring"] {
+        all.push((name.into(), folder.join(name)));
+    }
+    all.push(("square_table".into(), folder.join("square_table/assembly.toml")));
+    for pair in ["00004", "00007", "00014", "00117", "00638", "01132"] {
+        all.push((format!("pair_{pair}"), folder.join("pairs").join(pair)));
+    }
+    all.push(("saw".into(), folder.join("ReciprocatingSaw.glb")));
+    all
+}
+
+fn assembly(parts: &[NamedPart], placed: DAffine3) -> Result<Assembly, Box<dyn Error>> {
+    let part = |(name, bodies): &NamedPart| -> Result<Part, Box<dyn Error>> {
+        let piece = |mesh: &colltrans_testkit::shapes::Mesh| Piece {
+            mesh: Mesh::new(mesh.vertices.clone(), mesh.faces.clone()),
+            world_from_piece: placed,
+        };
+        Ok(Part::new(name, &bodies.iter().map(piece).collect::<Vec<_>>())?)
+    };
+    let parts = parts.iter().map(part).collect::<Result<Vec<_>, _>>()?;
+    Ok(Assembly::new(parts)?.with_unit("mm"))
+}
+
+/// Each part as a file; those of several bodies are left out.
+fn written(folder: &Path, parts: &[NamedPart]) -> Result<(), Box<dyn Error>> {
+    std::fs::create_dir_all(folder)?;
+    for (name, bodies) in parts {
+        let [mesh] = &bodies[..] else { continue };
+        let mesh = Mesh::new(mesh.vertices.clone(), mesh.faces.clone());
+        colltrans_mesh::write(&mesh, folder.join(format!("{name}.off")))?;
+    }
+    Ok(())
+}
+
+/// A plan without options, and if it is not whole another one with what is suggested.
+fn row(name: &str, assembly: &Assembly, judged: bool) -> Result<Value, Box<dyn Error>> {
+    let (watch, question) = (Watch::default(), Question::default());
+    let fit = Fit::default_for(assembly);
+    let clock = Clock::start();
+    let bodies = Bodies::new(assembly, fit)?;
+    let found = question.ask(&bodies, watch)?;
+    let mut told = vec![said(name, "", &found, clock.seconds(), judged)];
+    if !found.plan.stuck.is_empty() && !found.suggestions.is_empty() {
+        let clock = Clock::start();
+        let suggested = suggest::applied(assembly.clone(), &found.suggestions)?;
+        let bodies = Bodies::new(&suggested, fit)?;
+        let found = question.ask(&bodies, watch)?;
+        told.push(said(name, "--auto", &found, clock.seconds(), judged));
+    }
+    Ok(json!({ "name": name, "plans": told }))
+}
+
+fn said(name: &str, options: &str, found: &Findings, seconds: f64, judged: bool) -> Value {
+    let (plan, assembly) = (&found.plan, found.bodies.assembly());
+    let facets: usize = assembly.parts().iter().map(Part::facets).sum();
+    let stages = plan.stages().len();
+    println!(
+        "{name:>16} {options}: {} parts, {facets} facets, {seconds:.2} s: {} steps, told as {stages}",
+        assembly.parts().len(),
+        plan.steps.len(),
+    );
+    let whole = plan.left.is_empty() && plan.stuck.is_empty();
+    let reasons: Vec<String> = plan.stuck.iter().map(|s| s.because(found.bodies)).collect();
+    for reason in &reasons {
+        println!("{:>20}{reason}", "");
+    }
+    let Judged { travel, least, worst, rays, crossing } =
+        if judged { Judged::of(found) } else { Judged::default() };
+    let ratio = if least > 0.0 { travel / least } else { 1.0 };
+    if judged {
+        let crossings: Vec<String> =
+            crossing.iter().map(|(step, count)| format!("{count} in step {}", step + 1)).collect();
+        println!(
+            "{:>20}travel {travel:.4}, {ratio:.3} times the least; longest step {worst:.3}; of {rays} rays that cross: {}",
+            "",
+            if crossings.is_empty() { "none".into() } else { crossings.join(", ") },
+        );
+    }
+    json!({
+        "options": options, "parts": assembly.parts().len(), "facets": facets, "seconds": seconds,
+        "steps": plan.steps.len(), "stages": stages, "whole": whole, "reasons": reasons,
+        "travel": travel, "ratio": ratio, "longest": worst, "rays": rays,
+        "crossing": crossing.iter().map(|(_, count)| count).sum::<usize>(),
+    })
+}
+
+/// The same machine as it is and turned anyhow, in turns.
+fn turned(name: &str, parts: &[NamedPart]) -> Result<Value, Box<dyn Error>> {
+    let mut random = Random::new(31);
+    let mut ratios = Vec::new();
+    let mut seconds = [0.0; 2];
+    for _ in 0..3 {
+        let places = [DAffine3::IDENTITY, DAffine3::from_quat(random.rotation())];
+        let mut steps = [0; 2];
+        for (k, place) in places.into_iter().enumerate() {
+            let assembly = assembly(parts, place)?;
+            let up = place.transform_vector3(glam::DVec3::Z);
+            let question = Question::default().with_gravity(-up);
+            let clock = Clock::start();
+            let bodies = Bodies::new(&assembly, Fit::default_for(&assembly))?;
+            let found = question.ask(&bodies, Watch::default())?;
+            seconds[k] = clock.seconds();
+            steps[k] = found.plan.steps.len();
+        }
+        println!(
+            "{name:>16}: {:.3} s, turned {:.3} s: {:.2} times; {} and {} steps",
+            seconds[0],
+            seconds[1],
+            seconds[1] / seconds[0],
+            steps[0],
+            steps[1],
+        );
+        ratios.push(seconds[1] / seconds[0]);
+    }
+    Ok(json!({ "name": name, "ratios": ratios }))
+}
+
+/// Time of all processors that this process takes, where the system tells it; else time on the wall.
+struct Clock {
+    wall: Instant,
+    spent: Option<f64>,
+}
+
+impl Clock {
+    fn start() -> Self {
+        Self { wall: Instant::now(), spent: spent() }
+    }
+
+    fn seconds(&self) -> f64 {
+        match (self.spent, spent()) {
+            (Some(before), Some(now)) => now - before,
+            _ => self.wall.elapsed().as_secs_f64(),
+        }
+    }
+}
+
+/// In hundredths of seconds, as Linux counts them for programs.
+fn spent() -> Option<f64> {
+    let stat = std::fs::read_to_string("/proc/self/stat").ok()?;
+    let fields: Vec<&str> = stat.rsplit_once(')')?.1.split_whitespace().collect();
+    let ticks = |k: usize| fields.get(k)?.parse::<f64>().ok();
+    Some((ticks(11)? + ticks(12)?) / 100.0)
+}

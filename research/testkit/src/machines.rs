@@ -1,0 +1,386 @@
+//! Machines whose right order of taking apart is known: flanges, a radial engine, a block on threaded screws. Parts with
+//! their names, each where it belongs; `z` is upwards. Fits have no clearance: both sides have the same corners.
+//!
+//! Notation: an *outline* is a polygon in `x, y`, counter-clockwise; a *loop* is one in space.
+
+use std::collections::HashMap;
+use std::f64::consts::{PI, TAU};
+
+use earcut::Earcut;
+use glam::{DMat3, DVec2, DVec3};
+
+use crate::shapes::{Mesh, helical};
+
+/// A name and the bodies of a part, mostly one.
+pub type NamedPart = (String, Vec<Mesh>);
+
+/// Sides of what is round, elsewhere than on flanges.
+const SIDES: usize = 32;
+
+/// Two flanges with a gasket, held by so many bolts with washers and nuts, and what is round has so many sides. First the
+/// bolts go, upwards, then washers, the upper flange and the gasket; nuts go down, and the lower flange stays.
+pub fn flange(bolts: usize, sides: usize) -> Vec<NamedPart> {
+    let circle = (14.0 * bolts as f64 / TAU).max(40.0);
+    let at = |k: usize| DVec2::from_angle(TAU * k as f64 / bolts as f64) * circle;
+    let around = (4 * bolts).max(2 * sides);
+    let plate = |[inner, outer]: [f64; 2], [low, high]: [f64; 2]| {
+        let mut holes = vec![round(inner, around)];
+        holes.extend((0..bolts).map(|k| moved(&round(3.0, sides), at(k))));
+        stacked(low, &[(round(outer, around), high)], &holes)
+    };
+    let mut parts: Vec<NamedPart> = vec![
+        ("lower".into(), vec![plate([circle - 20.0, circle + 12.0], [-12.0, 0.0])]),
+        ("gasket".into(), vec![plate([circle - 16.0, circle + 8.0], [0.0, 2.0])]),
+        ("upper".into(), vec![plate([circle - 20.0, circle + 12.0], [2.0, 14.0])]),
+    ];
+    let bolt = stacked(-20.0, &[(round(3.0, sides), 15.0), (round(5.5, 6), 19.0)], &[]);
+    let washer = stacked(14.0, &[(round(6.0, sides), 15.0)], &[round(3.0, sides)]);
+    let nut = stacked(-17.0, &[(round(5.5, 6), -12.0)], &[round(3.0, sides)]);
+    for k in 0..bolts {
+        let place = |mesh: &Mesh| vec![mesh.clone().translated(at(k).extend(0.0))];
+        parts.push((format!("bolt_{k}"), place(&bolt)));
+        parts.push((format!("washer_{k}"), place(&washer)));
+        parts.push((format!("nut_{k}"), place(&nut)));
+    }
+    parts
+}
+
+/// A radial engine, its shaft along `z`, with a cover that so many bolts hold. Of each cylinder the head leaves first, then
+/// the barrel; then the pin, along the shaft; then the piston, and the rod after it. The shaft waits for the cover, which
+/// waits for its bolts. The case stays.
+pub fn radial_engine(cylinders: usize) -> Vec<NamedPart> {
+    const DEPTH: f64 = 14.0;
+    const CORNER: f64 = 1.0;
+    const PIN: f64 = 2.5;
+    let slope = (PI / cylinders as f64).tan();
+    let inner = 13.0 / slope;
+    let outer = inner + 6.0;
+    let corner = |k: usize| {
+        DVec2::from_angle(TAU * (k as f64 + 0.5) / cylinders as f64)
+            * (f64::midpoint(inner, outer) * (1.0 + slope * slope).sqrt())
+    };
+    let screws: Vec<Vec<DVec2>> =
+        (0..cylinders).map(|k| moved(&round(CORNER, SIDES), corner(k))).collect();
+    let case = Drum {
+        sides: cylinders,
+        apothems: [inner, outer],
+        heights: [-DEPTH, DEPTH],
+        floor: 5.0,
+        bore: (12.0, 0.0),
+        bored: vec![true; cylinders],
+        screws: screws.clone(),
+    };
+    let (rim, neck) = (polygon(outer, cylinders), round(4.0, SIDES));
+    let cover_holes: Vec<Vec<DVec2>> = std::iter::once(neck.clone()).chain(screws).collect();
+    let cover = stacked(DEPTH, &[(rim, DEPTH + 4.0)], &cover_holes);
+    let hub = 6.0 * cylinders as f64 / TAU + 2.0;
+    let shaft = stacked(-DEPTH, &[(polygon(hub, cylinders), 6.0), (neck, DEPTH + 20.0)], &[]);
+    let mut parts: Vec<NamedPart> = vec![
+        ("case".into(), vec![case.mesh()]),
+        ("cover".into(), vec![cover]),
+        ("shaft".into(), vec![shaft]),
+    ];
+    let screw = [(round(CORNER, SIDES), DEPTH + 4.0), (round(2.2, 6), DEPTH + 6.0)];
+    let screw = stacked(-DEPTH, &screw, &[]);
+    // Along their own axes, which are `z`, with the pin along `x`.
+    let seat = outer + 24.0;
+    let bore = polygon(10.0, 8);
+    let barrel = [(round(12.0, SIDES), outer), (polygon(13.0, 8), seat)];
+    let barrel = stacked(inner + 1.0, &barrel, std::slice::from_ref(&bore));
+    let head = stacked(seat - 2.0, &[(bore, seat), (polygon(13.5, 8), seat + 4.0)], &[]);
+    let pin_at = outer + 7.0;
+    let piston = Drum {
+        sides: 8,
+        apothems: [7.0, 10.0],
+        heights: [-(pin_at + 9.0), -(pin_at - 5.0)],
+        floor: 3.0,
+        bore: (PIN, -pin_at),
+        bored: (0..8).map(|k| k % 4 == 0).collect(),
+        screws: Vec::new(),
+    };
+    // A drum has its floor below, a piston above.
+    let piston = piston.mesh().mapped(|p| DVec3::new(p.x, -p.y, -p.z));
+    let upright = |p: DVec3| DVec3::new(p.z, p.x, p.y);
+    let pin = stacked(-9.0, &[(round(PIN, SIDES), 9.0)], &[]).mapped(upright);
+    let pin = pin.translated(DVec3::Z * pin_at);
+    let rod =
+        stacked(-3.0, &[(rod(hub, pin_at), 3.0)], &[moved(&round(PIN, SIDES), DVec2::Y * pin_at)]);
+    let rod = rod.mapped(upright);
+    for k in 0..cylinders {
+        let angle = TAU * k as f64 / cylinders as f64;
+        let out = DVec3::new(angle.cos(), angle.sin(), 0.0);
+        let place = DMat3::from_cols(DVec3::Z, out.cross(DVec3::Z), out);
+        let mut add = |name: &str, mesh: &Mesh| {
+            parts.push((format!("{name}_{k}"), vec![mesh.clone().mapped(|p| place * p)]));
+        };
+        add("head", &head);
+        add("barrel", &barrel);
+        add("piston", &piston);
+        add("pin", &pin);
+        add("rod", &rod);
+        let at = corner(k).extend(0.0);
+        parts.push((format!("screw_{k}"), vec![screw.clone().translated(at)]));
+    }
+    parts
+}
+
+/// A cap on a base, around a shaft, held by two screws in modelled threads of two turns of the base: inserts, which are bodies of
+/// the base. The screws are unscrewed, then the cap is lifted, and the shaft.
+pub fn threaded_block() -> Vec<NamedPart> {
+    let wave = |phase: f64| 1.0 - (2.0 * phase - 1.0).abs();
+    let at = |k: usize| DVec2::X * [14.0, -14.0][k];
+    let holes = |radius: f64, sides: usize| -> Vec<Vec<DVec2>> {
+        (0..2).map(|k| moved(&round(radius, sides), at(k))).collect()
+    };
+    let square = |x: f64, y: f64| -> Vec<DVec2> {
+        [[-x, -y], [x, -y], [x, y], [-x, y]].map(DVec2::from_array).to_vec()
+    };
+    let insert = helical(Some(4.0), |phase| 2.5 + 0.05 + 0.3 * wave(phase), 2.0, 2);
+    let mut base = vec![stacked(0.0, &[(square(30.0, 22.0), 4.0)], &holes(4.0, 24))];
+    let mut screws = Vec::new();
+    for k in 0..2 {
+        let place = at(k).extend(0.0);
+        base.push(insert.clone().translated(place));
+        let thread = helical(None, |phase| 2.5 + 0.3 * wave(phase), 2.0, 2);
+        let shank = stacked(4.0, &[(round(2.4, SIDES), 10.0), (round(4.5, 6), 13.0)], &[]);
+        screws
+            .push((format!("screw_{k}"), vec![thread.translated(place), shank.translated(place)]));
+    }
+    let along_y = |p: DVec3| DVec3::new(p.x, -p.z, p.y);
+    let arch = [
+        [8.0, 4.0],
+        [8.0, 10.0],
+        [-8.0, 10.0],
+        [-8.0, 4.0],
+        [-4.0, 4.0],
+        [-4.0, 8.0],
+        [4.0, 8.0],
+        [4.0, 4.0],
+    ];
+    let arch: Vec<DVec2> = arch.map(DVec2::from_array).to_vec();
+    let middle = stacked(-16.0, &[(arch, 16.0)], &[]).mapped(along_y);
+    let ear = |side: f64| {
+        let shifted = |hole: Vec<DVec2>| moved(&hole, DVec2::new(-15.0 * side, 0.0));
+        let own = |k: usize| at(k).x * side > 0.0;
+        let holes = holes(3.0, SIDES).into_iter().enumerate().filter(|(k, _)| own(*k));
+        let holes: Vec<_> = holes.map(|(_, hole)| shifted(hole)).collect();
+        stacked(4.0, &[(square(7.0, 16.0), 10.0)], &holes).translated(DVec3::X * 15.0 * side)
+    };
+    let bar = stacked(-30.0, &[(moved(&square(4.0, 2.0), DVec2::Y * 6.0), 30.0)], &[]);
+    let mut parts = vec![
+        ("base".into(), base),
+        ("cap".into(), vec![middle, ear(1.0), ear(-1.0)]),
+        ("shaft".into(), vec![bar.mapped(along_y)]),
+    ];
+    parts.extend(screws);
+    parts
+}
+
+/// The outline of a rod, from its foot at a height to an eye around another one.
+fn rod(foot: f64, eye: f64) -> Vec<DVec2> {
+    const EYE: f64 = 5.0;
+    let steps = 24;
+    let arc = (0..=steps).map(|k| {
+        let angle = PI * (-1.0 / 3.0 + 5.0 / 3.0 * f64::from(k) / f64::from(steps));
+        DVec2::from_angle(angle) * EYE + DVec2::Y * eye
+    });
+    [DVec2::new(-2.5, foot), DVec2::new(2.5, foot)].into_iter().chain(arc).collect()
+}
+
+/// Corners at a radius, the first one on the `x` axis.
+fn round(radius: f64, sides: usize) -> Vec<DVec2> {
+    (0..sides).map(|k| DVec2::from_angle(TAU * k as f64 / sides as f64) * radius).collect()
+}
+
+/// A regular polygon whose sides are at a distance from the middle, the first side across the `x` axis.
+fn polygon(apothem: f64, sides: usize) -> Vec<DVec2> {
+    let radius = apothem / (PI / sides as f64).cos();
+    let angle = |k: usize| TAU * (k as f64 - 0.5) / sides as f64;
+    (0..sides).map(|k| DVec2::from_angle(angle(k)) * radius).collect()
+}
+
+fn moved(outline: &[DVec2], by: DVec2) -> Vec<DVec2> {
+    outline.iter().map(|p| *p + by).collect()
+}
+
+fn lifted(outline: &[DVec2], z: f64) -> Vec<DVec3> {
+    outline.iter().map(|p| p.extend(z)).collect()
+}
+
+fn turned(mut loops: Vec<DVec3>) -> Vec<DVec3> {
+    loops.reverse();
+    loops
+}
+
+/// Prisms one on another, from a height on, each an outline and its upper end, with holes through all of them. Of two
+/// outlines one lies in the other.
+fn stacked(mut low: f64, prisms: &[(Vec<DVec2>, f64)], holes: &[Vec<DVec2>]) -> Mesh {
+    let mut made = Surface::default();
+    let through =
+        |z: f64| -> Vec<Vec<DVec3>> { holes.iter().map(|hole| lifted(hole, z)).collect() };
+    let bottom = low;
+    made.face(&turned(lifted(&prisms[0].0, low)), &through(low));
+    for (k, (outline, high)) in prisms.iter().enumerate() {
+        made.wall(&lifted(outline, low), &lifted(outline, *high));
+        low = *high;
+        match prisms.get(k + 1) {
+            None => made.face(&lifted(outline, low), &through(low)),
+            Some((next, _)) if area(next) > area(outline) => {
+                made.face(&turned(lifted(next, low)), &[lifted(outline, low)]);
+            }
+            Some((next, _)) => made.face(&lifted(outline, low), &[lifted(next, low)]),
+        }
+    }
+    for hole in holes {
+        made.wall(&turned(lifted(hole, bottom)), &turned(lifted(hole, low)));
+    }
+    made.mesh
+}
+
+fn area(outline: &[DVec2]) -> f64 {
+    let next = outline.iter().cycle().skip(1);
+    outline.iter().zip(next).map(|(a, b)| a.perp_dot(*b)).sum::<f64>() / 2.0
+}
+
+/// Flat walls around `z` on a floor, with round holes through the middle of some.
+struct Drum {
+    sides: usize,
+    /// Of the walls' inner and outer sides.
+    apothems: [f64; 2],
+    /// Of the walls, inside.
+    heights: [f64; 2],
+    /// How thick it is, below.
+    floor: f64,
+    /// Radius and height of the holes.
+    bore: (f64, f64),
+    /// Which walls have one.
+    bored: Vec<bool>,
+    /// Holes through walls and floor, along `z`.
+    screws: Vec<Vec<DVec2>>,
+}
+
+impl Drum {
+    fn mesh(&self) -> Mesh {
+        let mut made = Surface::default();
+        let [inner, outer] = self.apothems.map(|apothem| polygon(apothem, self.sides));
+        let [low, high] = self.heights;
+        let below = low - self.floor;
+        let screws = |z: f64| -> Vec<Vec<DVec3>> {
+            self.screws.iter().map(|hole| lifted(hole, z)).collect()
+        };
+        let mut top = vec![lifted(&inner, high)];
+        top.extend(screws(high));
+        made.face(&lifted(&outer, high), &top);
+        made.face(&turned(lifted(&outer, below)), &screws(below));
+        made.face(&lifted(&inner, low), &[]);
+        for hole in &self.screws {
+            made.wall(&turned(lifted(hole, below)), &turned(lifted(hole, high)));
+        }
+        for k in 0..self.sides {
+            let next = (k + 1) % self.sides;
+            let panel = |outline: &[DVec2], low: f64| {
+                [(k, low), (next, low), (next, high), (k, high)]
+                    .map(|(corner, z)| outline[corner].extend(z))
+            };
+            let out = DVec2::from_angle(TAU * k as f64 / self.sides as f64);
+            let ring = |apothem: f64| -> Vec<DVec3> {
+                let (radius, z) = self.bore;
+                let across = out.perp().extend(0.0);
+                let middle = (out * apothem).extend(z);
+                let point = |p: DVec2| middle + across * p.x + DVec3::Z * p.y;
+                round(radius, SIDES).into_iter().map(point).collect()
+            };
+            let [near, far] = self.apothems.map(ring);
+            let holes =
+                |ring: &Vec<DVec3>| if self.bored[k] { vec![ring.clone()] } else { Vec::new() };
+            made.face(&panel(&outer, below), &holes(&far));
+            let mut inside = panel(&inner, low);
+            inside.reverse();
+            made.face(&inside, &holes(&near));
+            if self.bored[k] {
+                made.wall(&turned(near), &turned(far));
+            }
+        }
+        made.mesh
+    }
+}
+
+/// A closed surface as it is made, of corners that are equal to the bit.
+#[derive(Default)]
+struct Surface {
+    mesh: Mesh,
+    known: HashMap<[u64; 3], u32>,
+}
+
+impl Surface {
+    fn vertex(&mut self, p: DVec3) -> u32 {
+        // No zero is negative.
+        let p = p + DVec3::ZERO;
+        *self.known.entry(p.to_array().map(f64::to_bits)).or_insert_with(|| {
+            self.mesh.vertices.push(p);
+            self.mesh.vertices.len() as u32 - 1
+        })
+    }
+
+    /// A flat face whose outer loop runs counter-clockwise as seen from outside, with holes.
+    fn face(&mut self, outer: &[DVec3], holes: &[Vec<DVec3>]) {
+        let next = outer.iter().cycle().skip(1);
+        let normal: DVec3 =
+            outer.iter().zip(next).map(|(a, b)| (a - outer[0]).cross(b - outer[0])).sum();
+        let (u, v) = normal.normalize().any_orthonormal_pair();
+        let points: Vec<DVec3> = outer.iter().chain(holes.iter().flatten()).copied().collect();
+        let mut starts = Vec::new();
+        let mut count = outer.len();
+        for hole in holes {
+            starts.push(count as u32);
+            count += hole.len();
+        }
+        let mut corners: Vec<u32> = Vec::new();
+        let flat = points.iter().map(|p| [p.dot(u), p.dot(v)]);
+        Earcut::new().earcut(flat, &starts, &mut corners);
+        for triangle in corners.chunks_exact(3) {
+            let [a, b, c] = [0, 1, 2].map(|k| points[triangle[k] as usize]);
+            let outwards = (b - a).cross(c - a).dot(normal) > 0.0;
+            let mut face = vec![self.vertex(a), self.vertex(b), self.vertex(c)];
+            if !outwards {
+                face.reverse();
+            }
+            self.mesh.faces.push(face);
+        }
+    }
+
+    /// Flat quadrilaterals from one loop to another one, seen from the side where the first is below and runs to the right.
+    fn wall(&mut self, low: &[DVec3], high: &[DVec3]) {
+        for k in 0..low.len() {
+            let next = (k + 1) % low.len();
+            let quad = [low[k], low[next], high[next], high[k]].map(|p| self.vertex(p));
+            self.mesh.faces.push(quad.to_vec());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_bodies_are_closed_and_of_positive_volume() {
+        let machines =
+            [flange(8, 32), flange(16, 24), radial_engine(5), radial_engine(9), threaded_block()];
+        for (name, bodies) in machines.into_iter().flatten() {
+            for mesh in bodies {
+                let mut edges: HashMap<[u32; 2], i32> = HashMap::new();
+                for [a, b, c] in mesh.triangles() {
+                    for [from, to] in [[a, b], [b, c], [c, a]] {
+                        *edges.entry([from.min(to), from.max(to)]).or_default() +=
+                            if from < to { 1 } else { 1000 };
+                    }
+                }
+                assert!(edges.values().all(|count| *count == 1001), "{name}");
+                let at = |v: u32| mesh.vertices[v as usize];
+                let volumes = mesh.triangles().map(|[a, b, c]| at(a).dot(at(b).cross(at(c))));
+                assert!(volumes.sum::<f64>() > 0.0, "{name}");
+            }
+        }
+    }
+}

@@ -126,7 +126,8 @@ impl Planned {
         let Self { assembly, choices, question, plan, times } = self;
         interruptible(py, |watch| {
             let bodies = Bodies::new(assembly, choices.fit(assembly))?;
-            let found = Findings { plan: plan.clone(), times: *times, ..question.look(&bodies, watch)? };
+            let found =
+                Findings { plan: plan.clone(), times: *times, ..question.look(&bodies, watch)? };
             Ok(html::page(&found, title))
         })
     }

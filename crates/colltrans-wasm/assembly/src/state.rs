@@ -202,7 +202,9 @@ impl State {
     /// The bytes of the file are the answer's numbers.
     fn report(&mut self, title: &str) -> Result<Answer, Refusal> {
         let Fitted { bodies, start, plan, .. } = self.fitted()?;
-        let Some(plan) = plan.clone() else { return Err("nothing is planned yet".to_owned().into()) };
+        let Some(plan) = plan.clone() else {
+            return Err("nothing is planned yet".to_owned().into());
+        };
         let found = question(*start).look(bodies, Watch::default());
         let found = Findings { plan, ..found.map_err(|error| error.to_string())? };
         let page = html::page(&found, title).into_bytes();

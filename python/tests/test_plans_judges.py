@@ -48,8 +48,9 @@ class Judge:
 
     def __init__(self, manifold3d: Any, told: dict[str, Any], parts: dict[str, Solid]) -> None:
         def body(part: Solid) -> Any:
-            triangles = np.asarray(part.triangles, np.uint64)
-            made = manifold3d.Manifold(manifold3d.Mesh64(part.vertices, triangles))
+            # Copies: it asks for arrays that may be written to.
+            vertices, triangles = np.array(part.vertices), np.array(part.triangles, np.uint64)
+            made = manifold3d.Manifold(manifold3d.Mesh64(vertices, triangles))
             assert made.status() == manifold3d.Error.NoError
             return made
 

@@ -176,7 +176,7 @@ fn bad_files_are_named_with_what_helps() {
     assert_error(
         &cast("dent.off", &[]),
         3,
-        &["dent.off", "not convex", "2.5e-1", "--hull", "`colltrans clearance`"],
+        &["dent.off", "not convex", "0.25 below", "--hull", "`colltrans clearance`"],
     );
     assert_error(&cast("points.ply", &[]), 3, &["points.ply", "no faces", "--hull"]);
     for good in [

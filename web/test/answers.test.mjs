@@ -32,8 +32,9 @@ test("it opens solved, without a complaint, and is small", async () => {
   const loaded = code.filter((file) => read.has(file)).map((file) => [file, size(file)]);
   const total = loaded.reduce((sum, [, n]) => sum + n, 0);
   console.log(`${loaded.map(([file, n]) => `${file} ${n}`).join(", ")}: ${total} bytes with brotli`);
-  // Of 400,000 that were asked: 398,681 before convex solids were told by their hulls, 413,636 since, 420,512 with rims.
-  assert.ok(total < 422_000, `${total} bytes`);
+  // Of 400,000 that were asked: 398,681 before convex solids were told by their hulls, 413,636 since, 420,512 with rims,
+  // 428,050 with what proves their hulls' answers.
+  assert.ok(total < 430_000, `${total} bytes`);
   assert.ok(!read.has("colltrans_assembly.wasm"));
 });
 

@@ -124,7 +124,7 @@ def test_what_is_asked_of_a_plan() -> None:
 
 def test_a_press_fit_has_a_tolerance_of_its_own() -> None:
     floor = cuboid([-1, -1, -1], [3, 3, 0])
-    block, pin = cuboid([0, 0, 0], [1, 1, 1]), cuboid([0.95, 0, 0], [2, 1, 1])
+    block, pin = cuboid([0, 0, 0], [1, 1, 1]), cuboid([0.995, 0, 0], [2, 1, 1])
     parts = Assembly({"floor": floor, "block": block, "pin": pin}).with_fixed("floor", "block")
     assert not parts.plan(samples=0).steps
     (found,) = parts.suggestions()

@@ -167,7 +167,7 @@ def test_what_is_wrong_is_said(tmp_path: Path) -> None:
     refused(QueryError, "gap", ROWS, keep=-1.0)
     refused(
         QueryError,
-        "row 1: the value NaN of joint shoulder is not finite",
+        "row 0: the value NaN of joint shoulder is not finite",
         [[np.nan, 0, 0], [0, 0, 0]],
     )
     with pytest.raises(TypeError, match="neither a ConvexPolyhedron nor a Solid"):

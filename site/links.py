@@ -15,6 +15,10 @@ TARGET = re.compile(r"""\b(?:href|src)\s*=\s*(?:"([^"]*)"|'([^']*)')""", re.IGNO
 NAME = re.compile(r"""\b(?:id|name)\s*=\s*(?:"([^"]*)"|'([^']*)'|([^\s"'>]+))""")
 #: Source code of Rust: its pages are led to, and lead to lines by scripts.
 SOURCES = re.compile(r"rust/src/")
+#: A page of Rust's documentation that leads on, by a script with the place that was asked for.
+LEADS_ON = re.compile(
+    r'<meta http-equiv="refresh" content="0;URL=([^"]+)">.*location\.hash', re.DOTALL
+)
 
 
 def wrong(folder: Path) -> list[str]:
@@ -67,6 +71,8 @@ def fault(folder: Path, file: Path, kind: str, target: str, names) -> str | None
     fragment = unquote(parts.fragment)
     if not fragment or led.suffix != ".html" or SOURCES.match(led.relative_to(folder).as_posix()):
         return None
+    if (on := LEADS_ON.search(led.read_text(errors="replace"))) is not None:
+        led = Path(led.parent, unquote(on[1])).resolve()
     # The page's addresses are what is asked, not places.
     if "page/" in led.relative_to(folder).as_posix() or {fragment, parts.fragment} & names(led):
         return None

@@ -22,6 +22,7 @@ mod bodies;
 mod boxes;
 mod colour;
 mod csv;
+mod digits;
 mod error;
 mod findings;
 mod part;

@@ -14,6 +14,7 @@ use glam::DVec3;
 
 use crate::bodies::{Bodies, Room, two_digits_up};
 use crate::candidates::inertia;
+use crate::digits::short;
 use crate::error::AssemblyError;
 use crate::likes::likes;
 use crate::part::{Assembly, Part};
@@ -92,8 +93,9 @@ fn snaps(bodies: &Bodies) -> Vec<Suggestion> {
                 let fit =
                     PairFit { role: Some(Role::Snap), tolerance: Some(two_digits_up(length)) };
                 let why = format!(
-                    "{} is called so, {length:.3} thick, and {} stops it either way",
+                    "{} is called so, {} thick, and {} stops it either way",
                     parts[ring].name(),
+                    short(length),
                     parts[other].name()
                 );
                 found.push(Suggestion { parts: [ring.min(other), ring.max(other)], fit, why });
@@ -123,17 +125,19 @@ fn suggestion(bodies: &Bodies, overlap: &Overlap) -> Option<Suggestion> {
         let hand = if pitch < 0.0 { ", left-handed" } else { "" };
         let [hole, crest] = thread.radii;
         let why = format!(
-            "a helix of pitch {:.3}{hand}, between radii of {hole:.4} and {crest:.4}",
-            pitch.abs()
+            "a helix of pitch {}{hand}, between radii of {} and {}",
+            short(pitch.abs()),
+            short(hole),
+            short(crest)
         );
         return said(Some(Role::Thread), None, why);
     }
     let tolerance = Some(tolerance?);
     if let Some(round) = Round::of(solids) {
         let by = round.interference();
-        let why = format!("one lies around the other, at a radius of {:.4}", round.radius());
+        let why = format!("one lies around the other, at a radius of {}", short(round.radius()));
         return if by > bodies.noise() {
-            said(Some(Role::Press), tolerance, format!("{why}, by {by:.3} too large"))
+            said(Some(Role::Press), tolerance, format!("{why}, by {} too large", short(by)))
         } else {
             said(None, tolerance, format!("{why}: chord errors"))
         };

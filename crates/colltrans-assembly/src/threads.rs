@@ -114,21 +114,22 @@ impl Round {
         self.radii[2] - self.radii[1]
     }
 
-    /// About one direction, if the one part lies around the other there and overlaps it.
+    /// About one direction, through the middle of what is within, if the one part lies around the other there and overlaps it.
     fn about(parts: [&Solid; 2], inner: usize, axis: DVec3) -> Option<Self> {
+        let own = parts[inner];
+        let [low, high] = common(own, parts[1 - inner], axis)?;
+        let seen = seen(own, axis, [low, high]);
+        let few = seen.iter().copied().reduce(DVec2::min)?;
+        let most = seen.into_iter().reduce(DVec2::max)?;
+        Self::around(parts, inner, [axis * low + inverse(axis, (few + most) * 0.5), axis])
+    }
+
+    /// The same about an axis through a point.
+    fn around(parts: [&Solid; 2], inner: usize, [point, axis]: [DVec3; 2]) -> Option<Self> {
         let (own, other) = (parts[inner], parts[1 - inner]);
         let [low, high] = common(own, other, axis)?;
-        let within = |z: f64| z > low && z < high;
         let flat = flattened(axis);
-        let seen = own.vertices().iter().filter(|p| within(p.dot(axis))).map(|p| flat(*p));
-        // A cylinder has vertices at its ends only.
-        let seen: Vec<DVec2> = match seen.collect::<Vec<_>>() {
-            none if none.is_empty() => own.vertices().iter().map(|p| flat(*p)).collect(),
-            some => some,
-        };
-        let few = seen.iter().copied().reduce(DVec2::min)?;
-        let most = seen.iter().copied().reduce(DVec2::max)?;
-        let middle = (few + most) * 0.5;
+        let (middle, seen) = (flat(point), seen(own, axis, [low, high]));
         let height = |p: DVec3| p.dot(axis);
         let meets = |corners: [DVec3; 3]| {
             let z = corners.map(height);
@@ -152,7 +153,6 @@ impl Round {
         let outwards = outwards.sum::<f64>() > 0.0;
         let rim = other.vertices().iter().map(|p| flat(*p).distance(middle));
         let rim = rim.filter(|r| *r >= hole * (1.0 - SHORT)).fold(f64::INFINITY, f64::min);
-        let point = axis * low + inverse(axis, middle);
         (hole > 0.0 && crest > hole && outwards).then_some(Self {
             inner,
             axis: [point, axis],
@@ -200,17 +200,24 @@ impl Round {
         }
         let about = About { axis, middle, range: [low, high] };
         let outer = crest * (1.0 + OVER);
-        let found = helix::pitch(own, &about, [hole, outer]);
-        let better = found.and_then(|(pitch, strength)| {
+        let pitch = helix::pitch(own, &about, [hole, outer]);
+        let known = Thread { screw, axis: [point, axis], radii: [hole, crest], length, pitch };
+        let better = pitch.and_then(|pitch| {
             let [point, axis] = helix::straightened(own, &about, pitch, outer);
-            let range = common(own, parts[1 - screw], axis)?;
-            let about = About { axis, middle: flattened(axis)(point), range };
-            let (pitch, more) = helix::pitch(own, &about, [hole, outer])?;
-            (more >= strength).then_some(([point, axis], pitch))
+            let round = Self::around(parts, screw, [point, axis])?;
+            let [hole, _, crest] = round.radii;
+            let about = About {
+                axis,
+                middle: flattened(axis)(point),
+                range: common(own, parts[1 - screw], axis)?,
+            };
+            let pitch = Some(helix::pitch(own, &about, [hole, crest * (1.0 + OVER)])?);
+            let (axis, length) = (round.axis, round.length);
+            Some(Thread { screw, axis, radii: [hole, crest], length, pitch })
         });
-        let known = || ([point, axis], found.map(|found| found.0));
-        let (axis, pitch) = better.map_or_else(known, |(axis, pitch)| (axis, Some(pitch)));
-        Some(Thread { screw, axis, radii: [hole, crest], length, pitch })
+        // Nor is an axis better about which the hole is narrower, or the crest wider.
+        let better = better.filter(|better| better.tightness() > known.tightness());
+        Some(better.unwrap_or(known))
     }
 }
 
@@ -252,6 +259,15 @@ pub(crate) fn is_round(solid: &Solid, [point, axis]: [DVec3; 2], share: f64) -> 
             seen().fold([f64::INFINITY, 0.0_f64], |[few, most], r| [few.min(*r), most.max(*r)]);
         seen().count() == 0 || seen().count() == row.len() && most - few <= share * far
     })
+}
+
+/// The vertices of a solid in a range along an axis, as seen along it; of a cylinder, which has vertices at its ends only, all.
+fn seen(solid: &Solid, axis: DVec3, [low, high]: [f64; 2]) -> Vec<DVec2> {
+    let flat = flattened(axis);
+    let within = |p: &DVec3| p.dot(axis) > low && p.dot(axis) < high;
+    let seen = |p: &DVec3| flat(*p);
+    let all: Vec<DVec2> = solid.vertices().iter().filter(|p| within(p)).map(seen).collect();
+    if all.is_empty() { solid.vertices().iter().map(seen).collect() } else { all }
 }
 
 /// Where along an axis both parts are, but for its ends.

@@ -1,5 +1,5 @@
-//! Machines whose right order of taking apart is known: flanges, a radial engine, a block on threaded screws. Parts with
-//! their names, each where it belongs; `z` is upwards. Fits have no clearance: both sides have the same corners.
+//! Machines whose right order of taking apart is known: flanges, a radial engine, a block on threaded screws, a table on
+//! legs that are screwed in. Parts with their names, each where it belongs; `z` is upwards. Fits have no clearance: both sides have the same corners.
 //!
 //! Notation: an *outline* is a polygon in `x, y`, counter-clockwise; a *loop* is one in space.
 
@@ -173,6 +173,37 @@ pub fn threaded_block() -> Vec<NamedPart> {
         ("shaft".into(), vec![bar.mapped(along_y)]),
     ];
     parts.extend(screws);
+    parts
+}
+
+/// By how many turns the legs of [`screwed_table`] are turned from where they fit, and by how much they stand beside it.
+pub const TABLE_LEGS: [(f64, [f64; 2]); 4] =
+    [(0.2, [0.0, 0.0]), (-0.3, [0.03, -0.02]), (0.45, [0.0, 0.05]), (-0.15, [-0.04, 0.0])];
+
+/// A top with four legs, each screwed into an insert, which is a body of the top: placed by eye, so that threads run into each
+/// other. They end within the length that both parts have in common. The legs are unscrewed, and the top stays.
+pub fn screwed_table() -> Vec<NamedPart> {
+    let wave = |phase: f64| 1.0 - (2.0 * phase - 1.0).abs();
+    let corners = [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]];
+    let corners = corners.map(|corner| DVec2::from_array(corner) * 22.0);
+    let holes = corners.map(|corner| moved(&round(4.0, 24), corner));
+    let insert = helical(Some(4.0), |phase| 2.6 + 0.3 * wave(phase), 2.0, 3);
+    let thread = helical(None, |phase| 2.5 + 0.3 * wave(phase), 2.0, 2);
+    let leg = stacked(-35.0, &[(polygon(4.5, 4), 0.0), (round(2.4, SIDES), 5.5)], &[]);
+    let mut top = vec![stacked(0.0, &[(polygon(30.0, 4), 6.0)], &holes)];
+    let mut legs = Vec::new();
+    for (k, (by, aside)) in TABLE_LEGS.into_iter().enumerate() {
+        let at = corners[k].extend(0.0);
+        top.push(insert.clone().translated(at));
+        let turned = DMat3::from_rotation_z(TAU * by);
+        let place = |mesh: &Mesh| {
+            let aside = DVec2::from_array(aside).extend(0.0);
+            mesh.clone().mapped(|p| turned * p).translated(at + aside)
+        };
+        legs.push((format!("leg_{k}"), vec![place(&thread), place(&leg)]));
+    }
+    let mut parts = vec![("top".into(), top)];
+    parts.extend(legs);
     parts
 }
 
@@ -365,9 +396,10 @@ mod tests {
 
     #[test]
     fn all_bodies_are_closed_and_of_positive_volume() {
-        let machines =
-            [flange(8, 32), flange(16, 24), radial_engine(5), radial_engine(9), threaded_block()];
-        for (name, bodies) in machines.into_iter().flatten() {
+        let engines = [radial_engine(5), radial_engine(9)];
+        let threaded = [threaded_block(), screwed_table()];
+        let machines = [flange(8, 32), flange(16, 24)].into_iter().chain(engines).chain(threaded);
+        for (name, bodies) in machines.flatten() {
             for mesh in bodies {
                 let mut edges: HashMap<[u32; 2], i32> = HashMap::new();
                 for [a, b, c] in mesh.triangles() {

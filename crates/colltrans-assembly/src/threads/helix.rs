@@ -23,15 +23,16 @@ const BEYOND: f64 = 1.5;
 const NEAREST: f64 = 0.8;
 /// Frequencies are tried so close: shares of the inverse length.
 const STEPS: f64 = 8.0;
+/// Waves of rows that are this share as high as the median are those of whole crests.
+const STRONG: f64 = 0.9;
 /// Middles are compared that are so many turns apart at least.
 const APART: f64 = 0.5;
 /// Rows along the axis: so many in a depth, but not more than these.
 const ALONG: f64 = 5.0;
 const MOST_ALONG: usize = 512;
 
-/// How far the crest climbs in a turn, and how strong the correlation is; `None` if there is no helix. `radii` are those of
-/// the hole and the crest.
-pub(super) fn pitch(screw: &Solid, about: &About, radii: [f64; 2]) -> Option<(f64, f64)> {
+/// How far the crest climbs in a turn; `None` if there is no helix. `radii` are those of the hole and the crest.
+pub(super) fn pitch(screw: &Solid, about: &About, radii: [f64; 2]) -> Option<f64> {
     let [low, high] = about.range;
     let (length, depth) = (high - low, radii[1] - radii[0]);
     if !(length > 0.0 && depth > 0.0) {
@@ -80,15 +81,26 @@ pub(super) fn pitch(screw: &Solid, about: &About, radii: [f64; 2]) -> Option<(f6
     }
     let (_, k, starts) = best;
     let own = waves(starts);
-    let frequency = peak(f64::from(k) * step, step, |f| strength(&own, f));
+    // Where a thread ends, a part of a crest is seen, whose middle is not on the helix.
+    let whole_crests = strong(&own);
+    let frequency = peak(f64::from(k) * step, step, |f| strength(&whole_crests, f));
     let found = strength(&own, frequency);
     let others = strength(&waves(0), frequency).max(strength(&own, 0.0));
     let sound = k > 0 && found >= LEAST && found >= BEYOND * others;
-    sound.then(|| (f64::from(starts) / frequency, found))
+    sound.then(|| f64::from(starts) / frequency)
+}
+
+/// The waves that are nearly as high as most, and nothing elsewhere.
+fn strong(waves: &[DVec2]) -> Vec<DVec2> {
+    let mut heights: Vec<f64> =
+        waves.iter().map(|wave| wave.length()).filter(|h| *h > 0.0).collect();
+    heights.sort_by(f64::total_cmp);
+    let least = STRONG * heights.get(heights.len() / 2).copied().unwrap_or(0.0);
+    waves.iter().map(|wave| if wave.length() >= least { *wave } else { DVec2::ZERO }).collect()
 }
 
 /// The axis of a screw of that pitch, through a point, more closely than it is known: through its middles in the first turns
-/// and in the last ones. Where a thread ends within these that is no better: see how strong its correlation is then.
+/// and in the last ones. Where a thread ends within these that is no better: see how wide its crest is then.
 pub(super) fn straightened(screw: &Solid, about: &About, pitch: f64, crest: f64) -> [DVec3; 2] {
     let mut about = *about;
     let turn = pitch.abs();

@@ -6,6 +6,7 @@ use colltrans::solid::{StartOverlap, Workspace};
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::plan::{Plan, PlanOptions};
 use colltrans_assembly::read::{ReadOptions, read};
+use colltrans_assembly::roles::{PairFit, Role};
 use colltrans_assembly::rooms::rooms;
 use colltrans_assembly::sphere::Sphere;
 use colltrans_assembly::start::Start;
@@ -70,6 +71,29 @@ fn the_suggested_tolerance_takes_the_gearbox_apart() {
     let mut sizes: Vec<usize> = plan.steps.iter().map(|s| s.parts.len()).collect();
     sizes.sort_unstable();
     assert_eq!(sizes, [&[1; 8][..], &[2, 9, 9]].concat());
+}
+
+/// Four legs, drawn anyhow into their threads, which end within them.
+#[test]
+fn the_legs_of_the_table_are_unscrewed() {
+    let Some(folder) = collection() else { return };
+    let file = folder.join("assemblies/square_table/assembly.toml");
+    let assembly = read(file, &ReadOptions::default()).unwrap();
+    let thread = PairFit { role: Some(Role::Thread), tolerance: None };
+    let assembly = assembly.with_pair([&["top"], &["leg*"]], thread).unwrap();
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    let plan = planned(&bodies);
+    assert!(plan.stuck.is_empty() && plan.steps.len() == 4, "{:?}", plan.stuck);
+    assert_eq!(assembly.names(&plan.last), ["top"]);
+    // One is drawn by so much into the top.
+    let drawn: [f64; 4] = [0.0, 2.7e-4, 0.0, 0.0];
+    for step in &plan.steps {
+        let turn = step.turn().unwrap();
+        let most = drawn[step.parts[0] - 1].max(bodies.fit().tolerance());
+        assert!(turn.proof.as_ref().is_ok_and(|proof| proof.tolerance <= most), "{turn:?}");
+        let pitch = step.path[0].travel / turn.turns.abs();
+        assert!((pitch / 0.009_375 - 1.0).abs() < 0.015, "two turns of the drawn helix: {pitch}");
+    }
 }
 
 /// 24 overlapping pieces of a car, each a part: rooms where overlaps are ignored.

@@ -3,9 +3,12 @@
 use colltrans_assembly::plan::{Plan, PlanOptions};
 use colltrans_assembly::report::html;
 use colltrans_assembly::roles::{PairFit, Role};
+use colltrans_assembly::suggest::applied;
 use colltrans_assembly::{Assembly, Bodies, Findings, Fit, Part, Piece, Question, Watch};
 use colltrans_mesh::Mesh;
-use colltrans_testkit::machines::{NamedPart, flange, radial_engine, threaded_block};
+use colltrans_testkit::machines::{
+    NamedPart, TABLE_LEGS, flange, radial_engine, screwed_table, threaded_block,
+};
 use glam::DAffine3;
 
 fn assembled(parts: Vec<NamedPart>) -> Assembly {
@@ -78,5 +81,30 @@ fn screws_in_modelled_threads_are_unscrewed() {
     for step in &plan.steps[..2] {
         let turn = step.turn().unwrap();
         assert!(turn.proof.is_ok() && (1.8..2.3).contains(&turn.turns.abs()), "{turn:?}");
+    }
+}
+
+#[test]
+fn legs_that_run_into_their_threads_are_turned_to_where_they_fit_and_unscrewed() {
+    let drawn = assembled(screwed_table());
+    let fit = Fit::default_for(&drawn);
+    let found = crate::common::suggested(&Bodies::new(&drawn, fit).unwrap());
+    assert_eq!(found.len(), 4, "{found:?}");
+    let assembly = applied(drawn.clone(), &found).unwrap();
+    let bodies = Bodies::new(&assembly, fit).unwrap();
+    let plan = crate::common::planned(&bodies, PlanOptions::default());
+    assert_eq!(told(&assembly, &plan, "top"), ["4 x leg"]);
+    for step in &plan.steps {
+        let (by, aside) = TABLE_LEGS[step.parts[0] - 1];
+        let turn = step.turn().unwrap();
+        let known = glam::DVec2::from(aside).length();
+        assert!(
+            turn.proof.as_ref().is_ok_and(|proof| proof.tolerance == fit.tolerance()),
+            "{turn:?}"
+        );
+        assert!((1.95..2.1).contains(&turn.turns.abs()), "{turn:?}");
+        // The leg goes down: it is turned back, as seen from there.
+        assert!((turn.phase - by).abs() < 0.1, "{by} {turn:?}");
+        assert!((turn.aside.length() - known).abs() < 0.02, "{aside:?} {turn:?}");
     }
 }

@@ -6,6 +6,7 @@
 use std::io::Write;
 
 use colltrans_assembly::plan::{Plan, PlanOptions};
+use colltrans_assembly::suggest::Suggestion;
 use colltrans_assembly::{Assembly, Bodies, Part, Piece, Question, Watch};
 use colltrans_mesh::Mesh;
 use colltrans_testkit::random::Random;
@@ -40,6 +41,13 @@ pub fn mesh_of_3mf(corner: [f64; 3]) -> String {
 pub fn planned(bodies: &Bodies, options: PlanOptions) -> Plan {
     let question = Question::default().with_options(options);
     question.ask(bodies, Watch::default()).unwrap().plan
+}
+
+/// What is suggested of parts as they are.
+pub fn suggested(bodies: &Bodies) -> Vec<Suggestion> {
+    let options = PlanOptions::default().with_proofs(false).with_legs(1);
+    let question = Question::default().with_options(options);
+    question.ask(bodies, Watch::default()).unwrap().suggestions
 }
 
 /// A package of files, zipped.

@@ -15,7 +15,9 @@ use clap::Parser;
 use colltrans_assembly::read::{ReadOptions, read};
 use colltrans_assembly::{Assembly, Bodies, Findings, Fit, Part, Piece, Question, Watch, suggest};
 use colltrans_mesh::Mesh;
-use colltrans_testkit::machines::{NamedPart, flange, radial_engine, threaded_block};
+use colltrans_testkit::machines::{
+    NamedPart, flange, radial_engine, screwed_table, threaded_block,
+};
 use colltrans_testkit::random::Random;
 use glam::DAffine3;
 use serde_json::{Value, json};
@@ -84,6 +86,7 @@ fn machines() -> Vec<(String, Vec<NamedPart>)> {
         [5, 7, 9].map(|cylinders| (format!("engine_{cylinders}"), radial_engine(cylinders))),
     );
     all.push(("threaded_block".into(), threaded_block()));
+    all.push(("screwed_table".into(), screwed_table()));
     all
 }
 

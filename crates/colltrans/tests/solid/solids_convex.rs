@@ -192,3 +192,66 @@ fn convex_solids_ahead_are_told_by_their_hulls_alone() {
     assert!(blocked > 1_000 && passing == blocked, "{blocked} blocked, {passing} passing");
     assert!(20 * alone > 17 * asked && 20 * searched < asked, "{alone}, {searched} of {asked}");
 }
+
+/// A plate on another one, of few facets in each plane or many: told without a look at nodes of the trees, but for the whole
+/// bodies where they touch, and by a few facets at most, however many there are.
+#[test]
+fn plates_on_plates_are_told_without_a_search() {
+    let (low, high) = (DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.25));
+    // The height of the upper plate, its direction, and how far it goes.
+    let cases = [
+        (0.25, DVec3::NEG_Z, Some(0.0)),
+        (0.25, DVec3::X, None),
+        (0.25, DVec3::new(0.6, 0.8, 0.0), None),
+        (0.25, DVec3::Z, None),
+        (1.25, DVec3::NEG_Z, Some(1.0)),
+        (0.251, DVec3::NEG_Z, Some(0.001)),
+        (0.250_001, DVec3::X, None),
+    ];
+    let mut random = Random::new(5);
+    let (mut asked, mut looked, mut told) = (0, 0, 0);
+    for parts in [[1, 1, 1], [4, 4, 1], [24, 24, 2], [90, 90, 2]] {
+        let body = solid(&slab(low, high, parts));
+        for (height, direction, goes) in cases {
+            for rotation in [DQuat::IDENTITY, random.rotation(), random.rotation()] {
+                for _ in 0..8 {
+                    let [x, y] = [0, 1].map(|_| random.range(-0.4, 0.4));
+                    let [p, q] = [DVec3::new(x, y, height), DVec3::ZERO]
+                        .map(|at| Pose::new(rotation, rotation * at).expect("a pose"));
+                    let cast = Cast::new(body.at(p), body.at(q), rotation * direction);
+                    let cast = cast.expect("a query");
+                    let (answer, proof) = cast.certified_clearance().expect("an answer");
+                    let gap = cast.verify(&proof).expect("a proof");
+                    assert!(gap < 1e-11, "{gap}");
+                    let what = format!("{parts:?}, {height}, {direction}: {answer:?}");
+                    let leaves = match (cast.clearance().expect("an answer"), goes) {
+                        (Clearance::Blocked { distance, contact }, Some(right)) => {
+                            let translation = contact.translation;
+                            assert!((translation.value - right).abs() < 1e-14, "{what}");
+                            assert!(distance <= right + 1e-15 && translation.upper >= right);
+                            assert!(translation.upper - translation.lower < 1e-11, "{what}");
+                            assert_eq!(contact.moving_feature.kind(), "face", "{what}");
+                            assert_eq!(contact.fixed_feature.kind(), "face", "{what}");
+                            assert_eq!(contact.steps.nodes, 0, "{what}");
+                            contact.steps.leaves
+                        }
+                        (Clearance::Free(free), None) => {
+                            if let Some(plane) = &free.separation {
+                                assert!(cast.verify(plane).expect("a plane") >= plane.margin);
+                                told += 1;
+                            }
+                            assert!(free.steps.nodes <= 1 && free.steps.leaves == 0, "{what}");
+                            0
+                        }
+                        _ => panic!("{what}"),
+                    };
+                    assert!(leaves <= 16, "{what}");
+                    asked += 1;
+                    looked += usize::from(leaves > 0);
+                }
+            }
+        }
+    }
+    println!("{asked} plates, {looked} by facets, {told} with a plane between them");
+    assert!(5 * looked < asked && 4 * told > asked, "{looked}, {told} of {asked}");
+}

@@ -385,6 +385,23 @@ impl Solid {
         self.nodes[0].bounds
     }
 
+    /// What shrinking it by this amount takes; `None` where it stays as it is.
+    fn shrinking_by(&self, amount: f64) -> Option<&Shrinking> {
+        (amount != 0.0 && self.can_shrink()).then(|| self.shrinking())
+    }
+
+    /// A box around the body, shrunk by this amount.
+    pub(crate) fn box_shrunk_by(&self, amount: f64) -> Aabb {
+        let bounds = self.bounds();
+        let shrinking = self.shrinking_by(amount);
+        shrinking.map_or(bounds, |shrinking| shrinking.boxed(bounds, amount, 0))
+    }
+
+    /// How far shrinking it by this amount moves a vertex, at most.
+    pub(crate) fn moved_by(&self, amount: f64) -> f64 {
+        self.shrinking_by(amount).map_or(0.0, |shrinking| shrinking.farthest * amount.abs())
+    }
+
     /// Bytes of memory that the solid occupies now, on the heap and in itself: what is made when it is first
     /// asked for (shrunk facets, polygons) counts once it is there.
     pub fn memory_bytes(&self) -> usize {

@@ -3,6 +3,7 @@
 //! With a tolerance `L` both bodies are shrunk by `L / 2`. If their interiors then share a point, they
 //! overlap: how much has a file of its own, [`tolerance`].
 
+mod boxes;
 mod hulls;
 mod proof;
 #[cfg(feature = "serde")]
@@ -23,7 +24,7 @@ use crate::setting::error::QueryError;
 use crate::solve::solid::contact::{SolidContact, contact, true_place};
 use crate::solve::solid::nearest::{SolidGap, SolidNear};
 use crate::solve::solid::overlap::{self, Overlap};
-use crate::solve::solid::scene::Scene;
+use crate::solve::solid::scene::{Scene, noise_of, permutes};
 use crate::solve::solid::search::{Aim, Found, Search, Workspace};
 use crate::solve::solid::separate::separation;
 use hulls::{Guessed, Hulls};
@@ -278,37 +279,30 @@ impl<'a> Cast<'a, Solid> {
 
     /// The tolerance that is used, as a length.
     pub fn tolerance(&self) -> f64 {
-        self.options.tolerance.unwrap_or_else(|| tolerance_by_default(&self.scene(0.0)))
+        self.options.tolerance.unwrap_or_else(|| {
+            let (setting, keep) = (&self.setting, self.options.keep);
+            let permuted = permutes(setting.moving_matrix) && permutes(setting.fixed_matrix);
+            default_tolerance(permuted, noise_of(setting.scale(), keep).0)
+        })
     }
 
     pub(crate) fn scene(&self, tolerance: f64) -> Scene<'a> {
         Scene::new(&self.setting, [tolerance / 2.0; 2], self.options.keep)
     }
 
+    /// The bodies shrunk by half the tolerance.
     pub(crate) fn asked(&self) -> Scene<'a> {
-        self.asked_with_tolerance().0
-    }
-
-    /// The bodies shrunk by half the tolerance, and that.
-    fn asked_with_tolerance(&self) -> (Scene<'a>, f64) {
-        if let Some(tolerance) = self.options.tolerance {
-            return (self.scene(tolerance), tolerance);
-        }
-        let bare = self.scene(0.0);
-        let tolerance = tolerance_by_default(&bare);
-        let asked =
-            if tolerance == 0.0 { bare } else { bare.resized(tolerance / 2.0, self.options.keep) };
-        (asked, tolerance)
+        self.scene(self.tolerance())
     }
 
     /// The same, of bodies that the default tolerance leaves something of.
     pub(crate) fn asked_of_something(&self) -> Result<Scene<'a>, QueryError> {
-        let (scene, tolerance) = self.asked_with_tolerance();
+        let tolerance = self.tolerance();
         // One that was given was checked then.
         if self.options.tolerance.is_none() {
             self.check_left(tolerance)?;
         }
-        Ok(scene)
+        Ok(self.scene(tolerance))
     }
 
     /// How far the moving body can move from where it is.
@@ -327,15 +321,29 @@ impl<'a> Cast<'a, Solid> {
     /// # Errors
     /// As [`Self::clearance`].
     pub fn clearance_in(&self, workspace: &mut Workspace) -> Result<Clearance<Solid>, QueryError> {
+        let mut steps = SolidSteps::default();
+        if let Some(answer) = self.passing() {
+            return Ok(answer);
+        }
+        let mut scene = None;
+        if self.boxes_touch() {
+            let scene = scene.insert(self.asked_of_something()?);
+            if overlap::pass(scene, self.limit(scene)) {
+                steps.nodes += 1;
+                return Ok(self.answer(scene, None, steps));
+            }
+        }
         let hulls = Hulls::of(self);
         if let Some(answer) = hulls.as_ref().and_then(|hulls| hulls.certain(self)) {
             return Ok(answer);
         }
-        let scene = self.asked_of_something()?;
+        let scene = match scene {
+            Some(scene) => scene,
+            None => self.asked_of_something()?,
+        };
         if let Some(answer) = hulls.and_then(|hulls| self.guessed_by_hulls(&hulls, &scene)) {
             return Ok(answer);
         }
-        let mut steps = SolidSteps::default();
         let ignored = self.options.start_overlap == StartOverlap::Ignore;
         let aim = match self.options.overlapping {
             Some(false) => Aim::Stop,
@@ -451,19 +459,27 @@ impl<'a> Cast<'a, Solid> {
         self.options.before.map_or(f64::INFINITY, |t| t * scene.setting.length)
     }
 
-    /// What the bodies' hulls tell of the clearance; the same whether a proof is wanted or not.
-    fn told_by_hulls(&self, scene: &Scene) -> Option<Clearance<Solid>> {
+    /// What is told of the clearance before any search; the same whether a proof is wanted or not.
+    fn told_at_once(&self, scene: &Scene) -> Option<Clearance<Solid>> {
+        if let Some(answer) = self.passing() {
+            return Some(answer);
+        }
         let hulls = Hulls::of(self)?;
         hulls.certain(self).or_else(|| self.guessed_by_hulls(&hulls, scene))
     }
 
     fn guessed_by_hulls(&self, hulls: &Hulls, scene: &Scene) -> Option<Clearance<Solid>> {
+        if let Some(answer) = hulls.touching(self, scene) {
+            return Some(answer);
+        }
         let mut steps = SolidSteps::default();
-        let found = match hulls.guessed(scene, self.limit(scene), &mut steps.leaves)? {
-            Guessed::Stop(found) => Some(found),
-            Guessed::Free => None,
-        };
-        Some(self.answer(scene, found.as_ref(), steps))
+        Some(match hulls.guessed(scene, self.limit(scene), &mut steps.leaves)? {
+            Guessed::Stop(found, least) => {
+                let told = hulls.stopped_by(self, &found, least, steps);
+                told.unwrap_or_else(|| self.answer(scene, Some(&found), steps))
+            }
+            Guessed::Free => self.answer(scene, None, steps),
+        })
     }
 
     /// What a search has found, as an answer.
@@ -548,12 +564,7 @@ impl<'a> Cast<'a, Solid> {
     }
 }
 
-/// The tolerance of bodies for which none was given, which `bare` has as they are.
-fn tolerance_by_default(bare: &Scene) -> f64 {
-    default_tolerance(bare.moving.permutes && bare.fixed.permutes, bare.noise)
-}
-
-/// The same of bodies whose matrices permute axes, or not.
+/// The tolerance of bodies for which none was given, whose matrices permute axes, or not.
 fn default_tolerance(permuted: bool, noise: f64) -> f64 {
     if permuted { 0.0 } else { NOISES * noise }
 }

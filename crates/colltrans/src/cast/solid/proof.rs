@@ -235,7 +235,7 @@ impl Cast<'_, Solid> {
         let end = search.limit;
         steps += search.steps;
         certificate.cover = Cover::new(bodies, &cuts);
-        let told = self.told_by_hulls(&scene);
+        let told = self.told_at_once(&scene);
         let answer = told.unwrap_or_else(|| self.answer(&scene, found.as_ref(), steps));
         if let Clearance::Blocked { contact, .. } = &answer {
             let shrunk_distance = contact.shrunk_distance.value;

@@ -139,8 +139,8 @@ fn boxes_apart(a: &Projected, b: &Projected) -> bool {
     low.x >= high.x || low.y >= high.y
 }
 
-/// Bounds of all gaps, by the boxes.
-fn box_gaps(a: &Projected, b: &Projected) -> [f64; 2] {
+/// Bounds of all gaps, by the boxes. Bodies of whose boxes the first is not negative do not overlap.
+pub(crate) fn box_gaps(a: &Projected, b: &Projected) -> [f64; 2] {
     [b.bounds.low.z - a.bounds.high.z, b.bounds.high.z - a.bounds.low.z]
 }
 

@@ -28,7 +28,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use super::bound::{Reason, apart, beyond};
+use super::bound::{Reason, apart, beyond, dismissed};
 use super::inside;
 use super::leaf::Facets;
 use super::projected::Projected;
@@ -64,7 +64,7 @@ pub(crate) fn find(scene: &Scene, steps: &mut SolidSteps) -> Option<Overlap> {
 /// The same, telling of every pair of nodes in the order of the descent whether it was split (`None`)
 /// or why it was not.
 pub(crate) fn find_with(scene: &Scene, cut: &mut impl FnMut(Option<Reason>)) -> Option<Overlap> {
-    let (a, b) = (Projected::new(scene, &scene.moving, 0), Projected::new(scene, &scene.fixed, 0));
+    let [a, b] = Projected::roots(scene);
     if never_overlap(scene, &a, &b) {
         cut(Some(Reason::Disjoint));
         return None;
@@ -80,6 +80,12 @@ pub(crate) fn never_overlap(scene: &Scene, a: &Projected, b: &Projected) -> bool
         || beyond(scene, (q, b), (p, a))
         || a.bounds.low.cmpge(b.bounds.high).any()
         || b.bounds.low.cmpge(a.bounds.high).any()
+}
+
+/// Whether the boxes around two bodies say that they do not overlap and that nothing stops the moving one below a limit.
+pub(crate) fn pass(scene: &Scene, limit: f64) -> bool {
+    let [a, b] = Projected::roots(scene);
+    never_overlap(scene, &a, &b) && dismissed(&a, &b, limit, true).is_some()
 }
 
 /// Whether a shell of one body lies inside the other, of bodies whose surfaces do not cross.
@@ -152,7 +158,7 @@ pub(crate) fn leaves_apart(scene: &Scene, a: &Node, b: &Node) -> bool {
 
 /// Where the solids, as closed sets, have a point in common.
 pub(crate) fn touch(scene: &Scene, steps: &mut SolidSteps) -> Option<Overlap> {
-    let (a, b) = (Projected::new(scene, &scene.moving, 0), Projected::new(scene, &scene.fixed, 0));
+    let [a, b] = Projected::roots(scene);
     let mut count = |entry| steps.count(entry);
     if apart(scene, &a, &b) {
         count(Some(Reason::Disjoint));

@@ -38,6 +38,11 @@ pub(crate) struct Projected {
 }
 
 impl Projected {
+    /// Both bodies as they are whole.
+    pub(crate) fn roots(scene: &Scene) -> [Self; 2] {
+        [&scene.moving, &scene.fixed].map(|side| Self::new(scene, side, 0))
+    }
+
     pub(crate) fn new(scene: &Scene, side: &Side, at: usize) -> Self {
         let node = &side.solid.nodes()[at];
         let axis = side.view * node.axis;

@@ -18,6 +18,7 @@ use std::cell::OnceCell;
 
 use glam::{DMat3, DVec3};
 
+use crate::body::Aabb;
 use crate::body::pose::rotation_defect;
 use crate::body::solid::{Shrinking, Solid, displace};
 use crate::number::error_free::sum_error;
@@ -90,11 +91,11 @@ impl<'a> Scene<'a> {
     fn measure(&mut self, keep: f64) {
         let Self { setting, moving, fixed, .. } = self;
         let size = moving.reach() + fixed.reach() + setting.offset.length();
-        let keep = if Noise::of(size + keep).is_slight(keep) { 0.0 } else { keep };
+        let (noise, keep) = noise_of(size, keep);
         // Along axes that a pose stretches, and rounded.
         let stretch = 1.0 + 2.0 * moving.defect.max(fixed.defect) + 16.0 * f64::EPSILON;
         moving.swell = keep * stretch;
-        self.noise = Noise::of(size + keep).point();
+        self.noise = noise;
         self.keep = keep;
     }
 
@@ -120,13 +121,6 @@ impl<'a> Scene<'a> {
             Side { amount, shrinking, inward, ..*side }
         };
         Self { moving: resized(&self.moving, moving), fixed: resized(&self.fixed, fixed), ..*self }
-    }
-
-    /// The same with both bodies shrunk by so much, as [`Self::new`] has it with these amounts.
-    pub(crate) fn resized(&self, amount: f64, keep: f64) -> Self {
-        let mut scene = self.shrunk(amount, amount);
-        scene.measure(keep);
-        scene
     }
 
     /// Whether both bodies have the axes of the query frame.
@@ -189,7 +183,12 @@ impl<'a> Side<'a> {
 
     /// How far shrinking moves a vertex, at most.
     pub(crate) fn moved(&self) -> f64 {
-        self.shrinking.map_or(0.0, |s| s.farthest * self.amount.abs())
+        self.solid.moved_by(self.amount)
+    }
+
+    /// The box around the body, shrunk, in its frame.
+    pub(crate) fn boxed(&self) -> Aabb {
+        self.solid.box_shrunk_by(self.amount)
     }
 
     pub(crate) fn vertex(&self, v: u32) -> DVec3 {
@@ -330,6 +329,13 @@ pub(crate) fn place_exactly<const N: usize>(
     })
 }
 
+/// The noise of a configuration of this size whose bodies are to keep a gap, and that gap: 0 where rounding leaves no room in
+/// it.
+pub(crate) fn noise_of(size: f64, keep: f64) -> (f64, f64) {
+    let keep = if Noise::of(size + keep).is_slight(keep) { 0.0 } else { keep };
+    (Noise::of(size + keep).point(), keep)
+}
+
 /// Size `S` of a configuration with this noise.
 pub(crate) fn size(noise: f64) -> f64 {
     noise / (16.0 * f64::EPSILON)
@@ -368,8 +374,7 @@ fn defect(m: DMat3) -> f64 {
     if defect > ROTATION { 1.01 * defect } else { 0.0 }
 }
 
-/// Whether a matrix permutes axes and changes signs.
+/// Whether a matrix of a pose permutes axes and changes signs: it is a rotation, to within a little.
 pub(crate) fn permutes(m: DMat3) -> bool {
-    let rows = m.transpose();
-    [m.x_axis, m.y_axis, m.z_axis, rows.x_axis, rows.y_axis, rows.z_axis].into_iter().all(is_axis)
+    m.to_cols_array().iter().all(|&entry| entry == 0.0 || entry.abs() == 1.0)
 }

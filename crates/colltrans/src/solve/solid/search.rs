@@ -272,7 +272,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
         let Workspace { queue, seen } = workspace;
         queue.clear();
         let scene = self.scene;
-        let [p, q] = [&scene.moving, &scene.fixed].map(|side| Projected::new(scene, side, 0));
+        let [p, q] = Projected::roots(scene);
         if let Some(reason) = dismissed(&p, &q, self.limit, self.aim != Aim::Least) {
             // Most pairs of parts: no need for the directions of the query.
             self.steps.nodes += 1;

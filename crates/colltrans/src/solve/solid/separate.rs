@@ -11,12 +11,14 @@
 //! the shadow of one of six axes that parts them most. Boxes say no more than the bodies, so such a margin is
 //! proven by the vertices as well.
 
-use glam::{DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3};
 
 use super::projected::Projected;
 use super::scene::{Scene, Side, size};
 use super::search::children;
 use crate::answer::{CertificateError, Separation};
+use crate::body::Aabb;
+use crate::body::solid::Solid;
 use crate::number::noise::UNIT_VECTOR;
 use crate::setting::Setting;
 
@@ -31,47 +33,105 @@ const TIES: f64 = 0.5;
 /// body's frame and its product with a vertex take `10 u S`, as much the bound of a box that is not looked into,
 /// what is taken for a tie `16 u S`, and the sums a few more; a noise is `32 u S`.
 pub(crate) const HEIGHTS: f64 = 1.5;
-/// The same of boxes, besides: their middles and extents are off by less than a noise of the query frame, and
+/// The same of boxes, besides: how far their middles and extents reach along a normal is off by less than a noise, and
 /// heights of vertices, by which the margin is checked, by less than another.
 const BOXES: f64 = 2.0;
 
 /// A separating plane of the bodies as they are shrunk, if rounding can tell that there is one; not
 /// always where large faces are apart by no more than they were shrunk.
 pub(crate) fn separation(scene: &Scene) -> Option<Separation> {
-    let [p, q] = [&scene.moving, &scene.fixed].map(|side| Projected::new(scene, side, 0));
-    between_boxes(scene, &p, &q).or_else(|| between_hulls(scene))
+    let boxes = [&scene.moving, &scene.fixed].map(Side::boxed);
+    between_boxes(scene, &boxes).or_else(|| between_hulls(scene))
 }
 
 /// Whether the boxes of two bodies are so far apart that the separating axes of their query, by which a proof is
 /// checked, say so as well: they take a node for 2 noises more than it is along each coordinate.
 pub(crate) fn shadows_apart(scene: &Scene, p: &Projected, q: &Projected) -> bool {
     let clear = |found: Separation| found.margin > ROUNDING * scene.noise;
-    !scene.keeps() && between_boxes(scene, p, q).is_some_and(clear)
+    !scene.keeps() && between_boxes(scene, &[p.local, q.local]).is_some_and(clear)
 }
 
 /// The plane between the boxes of both bodies that leaves the most room, along an edge of one of them.
-fn between_boxes(scene: &Scene, p: &Projected, q: &Projected) -> Option<Separation> {
-    let sides = [&scene.moving, &scene.fixed];
-    let boxes = [p.local, q.local];
-    let middles = [0, 1].map(|k| sides[k].view * boxes[k].center() + sides[k].view_offset);
-    let apart = middles[1] - middles[0];
-    let mut best = Separation { normal: DVec3::ZERO, margin: 0.0 };
-    for axis in sides.into_iter().flat_map(|s| [s.view.x_axis, s.view.y_axis, s.view.z_axis]) {
-        let Some(across) = axis.truncate().perp().try_normalize() else { continue };
-        let across = across.extend(0.0);
-        let half = |k: usize| {
-            let local: DVec3 = sides[k].view.transpose() * across;
-            0.5 * local.abs().dot(boxes[k].size())
-        };
-        let away = apart.dot(across);
-        let margin = away.abs() - half(0) - half(1) - (ROUNDING + BOXES) * scene.noise;
-        if margin > best.margin {
-            best = Separation { normal: across * away.signum(), margin };
-        }
-    }
-    let normal = (scene.frame.transpose() * best.normal).normalize_or_zero();
-    let margin = best.margin - closing(&scene.setting, normal, scene.noise);
+fn between_boxes(scene: &Scene, boxes: &[Aabb; 2]) -> Option<Separation> {
+    let boxes = Boxes::new(&scene.setting, boxes);
+    let normal = boxes.across(0.0)?;
+    let margin = boxes.margin(normal, scene.noise);
     (margin > scene.keep).then_some(Separation { normal, margin })
+}
+
+/// Two boxes in the frames of their bodies.
+pub(crate) struct Boxes<'s, 'a> {
+    setting: &'s Setting<'a, Solid>,
+    matrices: [DMat3; 2],
+    halves: [DVec3; 2],
+    /// From the middle of the moving body's box to that of the fixed one's, in the setting frame.
+    apart: DVec3,
+}
+
+impl<'s, 'a> Boxes<'s, 'a> {
+    pub(crate) fn new(setting: &'s Setting<'a, Solid>, boxes: &[Aabb; 2]) -> Self {
+        let matrices = [setting.moving_matrix, setting.fixed_matrix];
+        let [p, q] = [0, 1].map(|k| matrices[k] * boxes[k].center());
+        let halves = boxes.each_ref().map(|b| b.size() * 0.5);
+        Self { setting, matrices, halves, apart: q + setting.offset - p }
+    }
+
+    /// Across the direction and an edge of one of the boxes, the normal along which they are farthest apart, from the moving
+    /// body on; `None` if they overlap along all of them by more than `slack`. A guess, but for what it is across.
+    pub(crate) fn across(&self, slack: f64) -> Option<DVec3> {
+        let Self { matrices, halves, apart, .. } = self;
+        let unit = self.setting.unit;
+        // Balls inside of boxes that are parted are, too.
+        let inner = halves[0].min_element() + halves[1].min_element() - slack;
+        let ahead = apart.dot(unit);
+        if inner > 0.0 && apart.length_squared() - ahead * ahead < inner * inner {
+            return None;
+        }
+        let between = matrices[0].transpose() * matrices[1];
+        // Of distances their squares, with their signs: no roots are needed to compare them.
+        let (mut most, mut widest) = (-slack * slack, None);
+        for (k, other) in [(0, between.transpose()), (1, between)] {
+            let back = matrices[k].transpose();
+            let (along, apart) = (back * unit, back * *apart);
+            for axis in 0..3 {
+                // Of the direction's cross product with the axis the two parts that are not 0.
+                let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+                let (x, y) = (along[j], -along[i]);
+                let away = apart[i] * x + apart[j] * y;
+                let turned = other.col(i) * x + other.col(j) * y;
+                let own = x.abs() * halves[k][i] + y.abs() * halves[k][j];
+                let room = away.abs() - own - turned.abs().dot(halves[1 - k]);
+                let square = room * room.abs();
+                if room > -slack && square > most * (x * x + y * y) {
+                    most = square / (x * x + y * y);
+                    let across = matrices[k].col(i) * x + matrices[k].col(j) * y;
+                    widest = Some(across * away.signum());
+                }
+            }
+        }
+        widest?.reject_from_normalized(unit).try_normalize()
+    }
+
+    /// The margin that is proven along a normal of the world, from the moving body on.
+    pub(crate) fn margin(&self, normal: DVec3, noise: f64) -> f64 {
+        self.room(normal) - (ROUNDING + BOXES) * noise - closing(self.setting, normal, noise)
+    }
+
+    /// Whether the moving one is below a side of one of them for certain, and does not come nearer to it.
+    pub(crate) fn are_left_behind(&self, noise: f64) -> bool {
+        self.matrices.iter().any(|matrix| {
+            [matrix.x_axis, matrix.y_axis, matrix.z_axis].into_iter().any(|axis| {
+                let axis = axis * self.apart.dot(axis).signum();
+                axis.dot(self.setting.unit) <= 0.0 && self.room(axis) > (ROUNDING + BOXES) * noise
+            })
+        })
+    }
+
+    /// How far they are apart along a normal of the world.
+    fn room(&self, normal: DVec3) -> f64 {
+        let half = |k: usize| (self.matrices[k].transpose() * normal).abs().dot(self.halves[k]);
+        normal.dot(self.apart) - half(0) - half(1)
+    }
 }
 
 fn between_hulls(scene: &Scene) -> Option<Separation> {

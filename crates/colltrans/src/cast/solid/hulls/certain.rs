@@ -13,24 +13,24 @@
 //! the smaller body: a surface that moves by no more than that passes no such point.
 //!
 //! *Facets.* The contact point lies on a corner, on an edge or within a facet of either body: clearly, or it is not told
-//! here. Then the shadows of two such facets that face each other overlap, and their gap is the answer.
+//! here. Then the shadows of two such facets that face each other overlap, and their gap is the answer: not both points are
+//! corners, nor one a corner and the other on an edge, nor do edges line up, as the triangle has an altitude.
 
 use glam::{DMat3, DVec3};
 
-use super::{Body, Hulls};
-use crate::answer::{Bounded, Clearance, Contact, Outcome, Separation, SolidSteps};
+use super::guessed::least_gap;
+use super::{Hulls, Spot, Surface};
+use crate::answer::{Bounded, Certificate, Clearance, Contact, Outcome, Separation, SolidSteps};
 use crate::body::Feature;
 use crate::body::solid::Solid;
 use crate::cast::Cast;
 use crate::cast::solid::{SolidFree, default_tolerance};
 use crate::setting::VertexPair;
 use crate::solve::solid::contact::{SolidContact, feature};
-use crate::solve::solid::scene::permutes;
-use crate::solve::solid::search::SLACK;
+use crate::solve::solid::scene::{Scene, permutes};
+use crate::solve::solid::search::{Found, SLACK};
 use crate::solve::solid::separate;
 
-/// Steps from facet to facet around a corner, or towards a place.
-const MOST_STEPS: usize = 32;
 /// Poses may be off rotations, and facets off their plane across the direction, by such a share.
 const SHEARED: f64 = 1e-5;
 /// Contacts in planes that are steeper along the direction are not told.
@@ -50,14 +50,50 @@ impl Hulls<'_> {
         let told = Told::new(solids, self)?;
         match &self.first {
             Outcome::Separated(apart) => told.apart(&apart.certificate),
-            Outcome::Contact(contact) if contact.certificate.lower > 0.0 => told.ahead(contact),
+            Outcome::Contact(contact) if contact.certificate.lower > 0.0 => {
+                told.stopped(contact, 0.0, None)
+            }
             Outcome::Contact(contact) if contact.certificate.upper < 0.0 => {
+                if solids.leaves_behind(told.sides[0].amount) {
+                    let pierced = Pierced::new(&self.cast, contact, told.noise)?;
+                    return pierced.height(told.shift(true)).map(|_| free(None));
+                }
                 // Along the direction no plane parts shadows that overlap.
-                let pierced = Pierced::new(&self.cast.reversed(), self.last()?, told.noise)?;
+                let last = self.last().filter(|last| last.certificate.lower > 0.0)?;
+                let pierced = Pierced::new(&self.cast.reversed(), last, told.noise)?;
                 pierced.height(told.shift(true)).map(|_| free(None))
             }
             _ => None,
         }
+    }
+
+    /// The same of bodies that touch, as far as their hulls tell, but do not, or do not overlap, as `scene` has them.
+    pub(in crate::cast::solid) fn touching(
+        &self,
+        solids: &Cast<'_, Solid>,
+        scene: &Scene,
+    ) -> Option<Clearance<Solid>> {
+        let Outcome::Contact(contact) = &self.first else { return None };
+        let proof = &contact.certificate;
+        if proof.lower > 0.0 || proof.upper < 0.0 {
+            return None;
+        }
+        let told = Told::new(solids, self)?;
+        let least = least_gap(scene, &self.bodies, contact)?;
+        told.stopped(contact, least, None)
+    }
+
+    /// The same of bodies that two facets are known to stop, and of whose gaps none is known to be less than a length.
+    pub(in crate::cast::solid) fn stopped_by(
+        &self,
+        solids: &Cast<'_, Solid>,
+        found: &Found,
+        least: f64,
+        steps: SolidSteps,
+    ) -> Option<Clearance<Solid>> {
+        let Outcome::Contact(contact) = &self.first else { return None };
+        let told = Told::new(solids, self)?;
+        told.stopped(contact, least, Some(([found.moving, found.fixed], steps)))
     }
 }
 
@@ -75,8 +111,7 @@ struct Told<'h, 'a> {
 
 /// One of them.
 struct Side<'a> {
-    solid: &'a Solid,
-    body: &'a Body,
+    surface: Surface<'a>,
     matrix: DMat3,
     /// By how much it is shrunk.
     amount: f64,
@@ -97,35 +132,34 @@ impl<'h, 'a> Told<'h, 'a> {
             return None;
         }
         let amount = 0.5 * tolerance;
-        let side = |solid: &'a Solid, body, matrix: DMat3, ahead: DVec3| {
-            let moved = if amount == 0.0 { 0.0 } else { solid.shrinking().farthest * amount };
-            Side { solid, body, matrix, amount, moved, ahead: matrix.transpose() * ahead }
+        let side = |surface: Surface<'a>, matrix: DMat3, ahead: DVec3| {
+            let moved = surface.solid.moved_by(amount);
+            Side { surface, matrix, amount, moved, ahead: matrix.transpose() * ahead }
         };
         let [p, q] = hulls.bodies;
         let sides = [
-            side(setting.moving, p, setting.moving_matrix, setting.unit),
-            side(setting.fixed, q, setting.fixed_matrix, -setting.unit),
+            side(p, setting.moving_matrix, setting.unit),
+            side(q, setting.fixed_matrix, -setting.unit),
         ];
         Some(Self { solids, hulls, sides, noise })
     }
 
     /// What the hulls may lack of the solids, together.
     fn lacking(&self) -> f64 {
-        let lacking = |side: &Side| if side.body.whole { 0.0 } else { side.body.hull.hull_error() };
-        lacking(&self.sides[0]) + lacking(&self.sides[1])
+        let lacking = |surface: &Surface| {
+            if surface.body.whole { 0.0 } else { surface.body.hull.hull_error() }
+        };
+        lacking(&self.sides[0].surface) + lacking(&self.sides[1].surface)
     }
 
     /// How far a point of `M` may be from one of the solids' own, as they are or shrunk.
     fn shift(&self, shrunk: bool) -> f64 {
         let of = |side: &Side| {
-            let depth = side.body.dent + if shrunk { side.moved } else { 0.0 };
-            let share = depth / side.body.inner;
+            let Surface { solid, body } = side.surface;
+            let depth = body.dent + if shrunk { side.moved } else { 0.0 };
+            let share = depth / body.inner;
             // A plate without an inside has no share of it.
-            if (0.0..1.0).contains(&share) {
-                2.0 * side.solid.reach() * share
-            } else {
-                f64::INFINITY
-            }
+            if (0.0..1.0).contains(&share) { 2.0 * solid.reach() * share } else { f64::INFINITY }
         };
         (1.0 + SHEARED) * (of(&self.sides[0]) + of(&self.sides[1]))
     }
@@ -138,33 +172,49 @@ impl<'h, 'a> Told<'h, 'a> {
         (margin > 0.0).then(|| free(told))
     }
 
-    fn ahead(&self, contact: &Contact) -> Option<Clearance<Solid>> {
+    /// By a contact of the hulls, of bodies of whose gaps, shrunk, none is known to be less than a length; and by which facets,
+    /// if that is known, with the work that it took.
+    fn stopped(
+        &self,
+        contact: &Contact,
+        least: f64,
+        known: Option<([u32; 2], SolidSteps)>,
+    ) -> Option<Clearance<Solid>> {
         let (setting, proof) = (&self.solids.setting, &contact.certificate);
         let (normal, length) = (contact.normal, setting.length);
         let pierced = Pierced::new(&self.hulls.cast, contact, self.noise)?;
         let lower = proof.lower - self.lacking() / (pierced.slope * length);
-        if lower <= 0.0 {
+        let touching = proof.lower <= 0.0;
+        if !touching && lower <= 0.0 {
             return None;
         }
+        // Less by what dividing may round away.
+        let least = lower.max(least / length * (1.0 - 2.0 * f64::EPSILON));
         let end = self.solids.options.before.unwrap_or(f64::INFINITY);
         // So that a search, which rounds otherwise, finds nothing before the end either.
-        if lower >= end + SLACK * self.noise / length {
+        if least >= end + SLACK * self.noise / length {
             return Some(free(None));
         }
         let upper = |shrunk| Some(proof.upper + pierced.height(self.shift(shrunk))? / length);
-        let value = contact.translation;
-        let translation = Bounded { value, lower, upper: upper(false)? };
-        let shrunk_distance = if self.sides[0].amount == 0.0 {
-            translation
-        } else {
-            let upper = upper(true)?;
-            let back = normal.dot(self.moved(contact)) / (pierced.slope * length);
-            Bounded { value: (value + back).clamp(lower, upper), lower, upper }
-        };
-        if shrunk_distance.upper >= end {
+        let shrunk = self.sides[0].amount != 0.0;
+        let back =
+            if shrunk { normal.dot(self.moved(contact)) / (pierced.slope * length) } else { 0.0 };
+        let (value, most) = (contact.translation + back, upper(shrunk)?);
+        if most < least || most >= end {
             return None;
         }
-        let [moving, fixed] = self.spots(contact)?;
+        let shrunk_distance =
+            Bounded { value: value.clamp(least, most), lower: least, upper: most };
+        let translation = if shrunk {
+            Bounded { value: contact.translation, lower, upper: upper(false)? }
+        } else {
+            shrunk_distance
+        };
+        let spots = self.spots(contact);
+        let (triangles, steps) = match known {
+            Some(known) => known,
+            None => (self.facets(contact, &spots)?, SolidSteps::default()),
+        };
         let points = contact.points(&self.hulls.cast);
         let contact = SolidContact {
             translation,
@@ -172,19 +222,19 @@ impl<'h, 'a> Told<'h, 'a> {
             normal,
             point_on_moving: points.on_moving,
             point_on_fixed: points.on_fixed,
-            moving_feature: self.sides[0].feature(&moving, normal, self.noise),
-            fixed_feature: self.sides[1].feature(&fixed, normal, self.noise),
-            triangles: [moving.triangle, fixed.triangle],
-            steps: SolidSteps::default(),
+            moving_feature: self.sides[0].feature(triangles[0], &spots[0], self.noise),
+            fixed_feature: self.sides[1].feature(triangles[1], &spots[1], self.noise),
+            triangles,
+            steps,
         };
-        Some(Clearance::Blocked { distance: lower, contact })
+        Some(Clearance::Blocked { distance: translation.lower.max(0.0), contact })
     }
 
     /// By how much shrinking moves the point of the fixed body against that of the moving one.
     fn moved(&self, contact: &Contact) -> DVec3 {
         let proof = &contact.certificate;
         let of = |k: usize| {
-            let Side { solid, body, matrix, amount, .. } = self.sides[k];
+            let Side { surface: Surface { solid, body }, matrix, amount, .. } = self.sides[k];
             let field = &solid.shrinking().field;
             let terms = proof.pairs.iter().zip(proof.weights);
             let mean = terms.map(|(pair, w)| field[body.number(pair.numbers()[k]) as usize] * w);
@@ -193,25 +243,23 @@ impl<'h, 'a> Told<'h, 'a> {
         of(1) - of(0)
     }
 
-    /// Where the bodies touch: a corner of one and a face of the other, or two edges.
-    fn spots(&self, contact: &Contact) -> Option<[Spot; 2]> {
-        let pairs = &contact.certificate.pairs;
-        let places = [0, 1].map(|k| Place::of(pairs, k));
-        let ([Place::Corner(_), Place::Face(_)]
-        | [Place::Face(_), Place::Corner(_)]
-        | [Place::Edge(_), Place::Edge(_)]) = places
-        else {
-            return None;
+    /// Where the bodies touch.
+    fn spots(&self, contact: &Contact) -> [Spot; 2] {
+        let Certificate { pairs, weights, .. } = &contact.certificate;
+        let points = self.hulls.cast.setting.weighted(pairs, weights);
+        [(0, contact.normal), (1, -contact.normal)].map(|(k, outward)| Spot {
+            at: points[k],
+            outward: self.sides[k].matrix.transpose() * outward,
+        })
+    }
+
+    /// A facet of either body there.
+    fn facets(&self, contact: &Contact, spots: &[Spot; 2]) -> Option<[u32; 2]> {
+        let facet = |k: usize| {
+            let place = Place::of(&contact.certificate.pairs, k);
+            self.sides[k].facet(place, &spots[k], self.noise)
         };
-        let points = self.hulls.cast.setting.weighted(pairs, &contact.certificate.weights);
-        let spot = |k: usize| {
-            let side = &self.sides[k];
-            let outward = if k == 0 { contact.normal } else { -contact.normal };
-            let outward = side.matrix.transpose() * outward;
-            let (at, noise) = (points[k], self.noise);
-            Some(Spot { triangle: side.facet(places[k], (at, outward), noise)?, at })
-        };
-        Some([spot(0)?, spot(1)?])
+        Some([facet(0)?, facet(1)?])
     }
 }
 
@@ -273,85 +321,43 @@ impl Place {
     }
 }
 
-/// A point of a facet, in the body's frame.
-struct Spot {
-    triangle: u32,
-    at: DVec3,
-}
-
 impl Side<'_> {
-    fn feature(&self, spot: &Spot, normal: DVec3, noise: f64) -> Feature {
-        feature(self.solid, spot.triangle, (spot.at, self.matrix.transpose() * normal), noise)
+    /// What of the body touches, with a triangle at a place.
+    fn feature(&self, triangle: u32, spot: &Spot, noise: f64) -> Feature {
+        feature(self.surface.solid, triangle, (spot.at, spot.outward), noise)
     }
 
     /// A facet that looks at the other body, shrunk or not, with a point in it, or on an edge or a corner, clearly.
-    fn facet(&self, place: Place, within: (DVec3, DVec3), noise: f64) -> Option<u32> {
+    fn facet(&self, place: Place, spot: &Spot, noise: f64) -> Option<u32> {
         let looks = |t: u32| self.looks_ahead(t, noise).then_some(t);
         match place {
-            Place::Corner(v) => self.around(v).find_map(|(t, _)| looks(t)),
+            Place::Corner(v) => self.surface.around(v).find_map(|(t, _)| looks(t)),
             Place::Edge([a, b]) => {
-                self.beside(a, b).or_else(|| self.beside(b, a))?.into_iter().find_map(looks)
+                let beside = self.surface.beside(a, b).or_else(|| self.surface.beside(b, a));
+                match beside {
+                    Some(beside) => beside.into_iter().find_map(looks),
+                    // Across a face.
+                    None => looks(self.face(a, spot, noise)?),
+                }
             }
-            Place::Face(corners) => self.face(corners, within, noise),
+            Place::Face([corner, ..]) => looks(self.face(corner, spot, noise)?),
         }
-    }
-
-    fn corners(&self, triangle: u32) -> [DVec3; 3] {
-        self.solid.triangles()[triangle as usize].map(|v| self.solid.vertices()[v as usize])
-    }
-
-    /// The triangles around a vertex of the hull, with which of their corners it is.
-    fn around(&self, vertex: u32) -> impl Iterator<Item = (u32, usize)> {
-        let (first, number) = (self.body.at[vertex as usize], self.body.number(vertex));
-        let place = move |t: u32| {
-            Some((t, self.solid.triangles()[t as usize].iter().position(|&v| v == number)?))
-        };
-        let next = move |&(t, k): &(u32, usize)| {
-            let next = self.solid.neighbours()[t as usize][k];
-            if next == first { None } else { place(next) }
-        };
-        std::iter::successors(place(first), next).take(MOST_STEPS)
-    }
-
-    /// The triangles on either side of an edge of the hull.
-    fn beside(&self, from: u32, to: u32) -> Option<[u32; 2]> {
-        let to = self.body.number(to);
-        self.around(from).find_map(|(t, k)| {
-            let leads = self.solid.triangles()[t as usize][(k + 1) % 3] == to;
-            leads.then(|| [t, self.solid.neighbours()[t as usize][k]])
-        })
     }
 
     /// Whether a facet looks along the direction, or against it, by more than shrinking and poses turn it.
     fn looks_ahead(&self, triangle: u32, noise: f64) -> bool {
-        let [a, b, c] = self.corners(triangle);
+        let [a, b, c] = self.surface.corners(triangle);
         let [u, v] = [b - a, c - a];
         let (area, sides) = (u.cross(v), (u.abs() + v.abs()).element_sum());
         let least = SHEARED * area.abs().element_sum() + 8.0 * (self.moved + noise) * sides;
         area.dot(self.ahead) > least
     }
 
-    /// The facet with a point clearly inside, from one at a corner of its face on; `outward` is the face's normal.
-    fn face(&self, corners: [u32; 3], (at, outward): (DVec3, DVec3), noise: f64) -> Option<u32> {
-        let looks = |t: u32| {
-            let [a, b, c] = self.corners(t);
-            (b - a).cross(c - a).dot(outward) > 0.0
-        };
+    /// The facet with a point clearly inside, of a face with a corner.
+    fn face(&self, corner: u32, spot: &Spot, noise: f64) -> Option<u32> {
         let near = 2.0 * self.moved + SIDEWAYS * noise;
-        let mut triangle = self.around(corners[0]).map(|(t, _)| t).find(|&t| looks(t))?;
-        for _ in 0..MOST_STEPS {
-            let [a, b, c] = self.corners(triangle);
-            let inside = |from: DVec3, to: DVec3| {
-                let side = to - from;
-                side.cross(at - from).dot(outward) - near * side.abs().element_sum()
-            };
-            let sides = [inside(a, b), inside(b, c), inside(c, a)];
-            let worst = (0..3).fold(0, |worst, k| if sides[k] < sides[worst] { k } else { worst });
-            if sides[worst] > 0.0 {
-                return self.looks_ahead(triangle, noise).then_some(triangle);
-            }
-            triangle = self.solid.neighbours()[triangle as usize][worst];
-        }
-        None
+        let triangle = self.surface.facet_at(corner, spot, near)?;
+        let inside = self.surface.inside(triangle, spot, near);
+        inside.iter().all(|&side| side > 0.0).then_some(triangle)
     }
 }

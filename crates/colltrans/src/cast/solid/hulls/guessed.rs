@@ -1,17 +1,20 @@
 //! The facets around a place of the hulls' contact, as the search would take them: where bodies are shrunk by more than
 //! rounding, or the hulls leave something in doubt.
 
-use glam::{DVec2, DVec3, Vec3Swizzles};
+use glam::DVec3;
 
-use super::{Body, Hulls};
+use super::{Hulls, Spot, Surface};
 use crate::answer::{Contact, Outcome};
+use crate::solve::solid::bound::box_gaps;
+use crate::solve::solid::projected::Projected;
 use crate::solve::solid::scene::{Scene, Side};
 use crate::solve::solid::search::{Aim, Found, SLACK, Search};
 use crate::solve::solid::separate::{HEIGHTS, farthest};
 
-/// Steps from facet to facet towards a place; facets there that are held against each other.
-const MOST_STEPS: usize = 32;
+/// Facets at a place that are held against each other; how near a place is to a facet's sides for those across to be
+/// among them, in noises.
 const MOST_FACETS: usize = 4;
+const NEAR: f64 = 64.0;
 /// Vertices that are held against each other for the farthest.
 const MOST_TOP: usize = 32;
 
@@ -19,7 +22,8 @@ const MOST_TOP: usize = 32;
 pub(in crate::cast::solid) enum Guessed {
     /// Nothing stops the moving body.
     Free,
-    Stop(Found),
+    /// Two facets do, and no gap is less than a length.
+    Stop(Found, f64),
 }
 
 impl Hulls<'_> {
@@ -31,30 +35,31 @@ impl Hulls<'_> {
         leaves: &mut u32,
     ) -> Option<Guessed> {
         match &self.first {
-            Outcome::Contact(contact) if contact.certificate.lower > 0.0 => {
-                stop(scene, self.bodies, contact, limit, leaves)
+            Outcome::Contact(contact) if contact.certificate.upper >= 0.0 => {
+                stop(scene, &self.bodies, contact, limit, leaves)
             }
-            Outcome::Contact(contact) if contact.certificate.upper < 0.0 => {
-                (margin(scene, self.bodies, self.last()?) > 0.0).then_some(Guessed::Free)
+            Outcome::Contact(_) => {
+                (margin(scene, &self.bodies, self.last()?) > 0.0).then_some(Guessed::Free)
             }
             _ => None,
         }
     }
 }
 
-impl Body {
+impl Surface<'_> {
     /// No vertex of the solid, shrunk, is farther along a normal than this, up to rounding. What lies lower than one
     /// vertex by twice what shrinking moves is not; what does not is found from there over edges, as the plateau of a
     /// support point is.
     fn reach(&self, scene: &Scene, side: &Side, normal: DVec3, from: u32) -> f64 {
+        let Self { body, .. } = self;
         let local = side.matrix.transpose() * normal;
-        let height = |v: u32| local.dot(self.hull.vertices()[v as usize]);
-        let end = height(from) - 2.0 * side.moved() - scene.noise - self.hull.plateau_depth();
+        let height = |v: u32| local.dot(body.hull.vertices()[v as usize]);
+        let end = height(from) - 2.0 * side.moved() - scene.noise - body.hull.plateau_depth();
         let (mut top, mut count, mut next) = ([from; MOST_TOP], 1, 0);
         let mut reach = f64::NEG_INFINITY;
-        while self.whole && next < count {
-            reach = reach.max(local.dot(side.vertex(self.number(top[next]))));
-            for &v in self.hull.neighbours(top[next]) {
+        while body.whole && next < count {
+            reach = reach.max(local.dot(side.vertex(body.number(top[next]))));
+            for &v in body.hull.neighbours(top[next]) {
                 if height(v) < end || top[..count].contains(&v) {
                     continue;
                 }
@@ -66,32 +71,44 @@ impl Body {
             }
             next += 1;
         }
-        if self.whole { reach } else { farthest(side, normal) }
+        if body.whole { reach } else { farthest(side, normal) }
     }
 }
 
 /// How far apart the bodies are along the normal of a contact of their hulls, for certain; negative if they are not.
-fn margin(scene: &Scene, [p, q]: [&Body; 2], contact: &Contact) -> f64 {
+fn margin(scene: &Scene, [p, q]: &[Surface; 2], contact: &Contact) -> f64 {
     let (normal, pair) = (contact.certificate.normal, contact.certificate.pairs[0]);
     let moving = p.reach(scene, &scene.moving, normal, pair.moving.0);
     let fixed = q.reach(scene, &scene.fixed, -normal, pair.fixed.0);
     normal.dot(scene.fixed.offset[0]) - fixed - moving - HEIGHTS * scene.noise
 }
 
+/// No gap of facets is less, but for the rounding of a division, and the bodies do not overlap: by boxes along the direction, where that is an axis of both, or by
+/// a plane between them along the normal of a contact of their hulls.
+pub(super) fn least_gap(scene: &Scene, bodies: &[Surface; 2], contact: &Contact) -> Option<f64> {
+    let (proof, length) = (&contact.certificate, scene.setting.length);
+    if scene.moving.aligned[2] && scene.fixed.aligned[2] {
+        let [p, q] = Projected::roots(scene);
+        let gap = box_gaps(&p, &q)[0];
+        if gap >= (proof.lower * length).max(0.0) {
+            return Some(gap);
+        }
+    }
+    // A little less, for the normal's part along the direction.
+    let margin = margin(scene, bodies, contact) - scene.noise;
+    (margin > 0.0).then(|| margin * length / proof.normal.dot(scene.setting.direction))
+}
+
 /// What stops the moving body, if it is the facets around a contact of the hulls.
 fn stop(
     scene: &Scene,
-    bodies: [&Body; 2],
+    bodies: &[Surface; 2],
     contact: &Contact,
     limit: f64,
     leaves: &mut u32,
 ) -> Option<Guessed> {
     let proof = &contact.certificate;
-    let slope = proof.normal.dot(scene.setting.direction) / scene.setting.length;
-    let least = margin(scene, bodies, contact) / slope;
-    if least <= 0.0 {
-        return None;
-    }
+    let least = least_gap(scene, bodies, contact)?;
     // So that a search, which rounds otherwise, finds nothing below the limit either.
     if least >= limit + SLACK * scene.noise {
         return Some(Guessed::Free);
@@ -99,13 +116,13 @@ fn stop(
     let around = |k: usize| {
         let side = [&scene.moving, &scene.fixed][k];
         let vertex = |i: usize| [proof.pairs[i].moving, proof.pairs[i].fixed][k];
-        let local = |i: usize| bodies[k].hull.vertices()[vertex(i).index()] * proof.weights[i];
-        let at = side.view * (local(0) + local(1) + local(2)) + side.view_offset;
-        let first = vertex(0);
-        let from = [bodies[k].at[first.index()], bodies[k].number(first.0)];
-        Around::new(scene, side, from, at.xy())
+        let local = |i: usize| bodies[k].body.hull.vertices()[vertex(i).index()] * proof.weights[i];
+        let outward = if side.moving { proof.normal } else { -proof.normal };
+        let spot =
+            Spot { at: local(0) + local(1) + local(2), outward: side.matrix.transpose() * outward };
+        Around::new(&bodies[k], vertex(0).0, &spot, NEAR * scene.noise + 2.0 * side.moved())
     };
-    let [p, q] = [around(0), around(1)];
+    let [p, q] = [around(0)?, around(1)?];
     let pairs = p.facets().iter().flat_map(|&f| q.facets().iter().map(move |&g| [f, g]));
     let mut best: Option<Found> = None;
     for pair in pairs {
@@ -123,81 +140,30 @@ fn stop(
             break;
         }
     }
-    best.map(|found| Guessed::Stop(found.among_all(scene)))
+    best.map(|found| Guessed::Stop(found.among_all(scene), least))
 }
 
-/// Facets of one body around a place, by shadows.
+/// Facets of one body around a place.
 struct Around {
     facets: [u32; MOST_FACETS],
     count: usize,
 }
 
 impl Around {
-    /// From a facet of a convex body on, first around its corner to one that faces the other body, then towards the
-    /// place: the shadows of such facets lie side by side.
-    fn new(scene: &Scene, side: &Side, [from, corner]: [u32; 2], at: DVec2) -> Self {
-        let solid = side.solid;
-        let near = 64.0 * scene.noise + 2.0 * side.moved();
-        let mut shadow = Shadow::new(side, from);
-        for _ in 0..MOST_STEPS {
-            if shadow.faces {
-                break;
+    /// The facet there, and those across a side that the place is near, too; from a corner of its face on.
+    fn new(surface: &Surface, corner: u32, spot: &Spot, near: f64) -> Option<Self> {
+        let triangle = surface.facet_at(corner, spot, near)?;
+        let mut around = Self { facets: [triangle; MOST_FACETS], count: 1 };
+        for (k, inside) in surface.inside(triangle, spot, near).into_iter().enumerate() {
+            if inside <= 0.0 {
+                around.facets[around.count] = surface.solid.neighbours()[triangle as usize][k];
+                around.count += 1;
             }
-            let own = solid.triangles()[shadow.facet as usize];
-            let k = own.iter().position(|&v| v == corner).unwrap_or(0);
-            shadow = Shadow::new(side, solid.neighbours()[shadow.facet as usize][k]);
         }
-        for _ in 0..MOST_STEPS {
-            let (k, outside) = shadow.farthest_outside(at);
-            if outside <= near {
-                break;
-            }
-            let next = Shadow::new(side, solid.neighbours()[shadow.facet as usize][k]);
-            if !next.faces {
-                break;
-            }
-            shadow = next;
-        }
-        // Those across a side that the place is near, too.
-        let mut around = Self { facets: [shadow.facet; MOST_FACETS], count: 1 };
-        for k in (0..3).filter(|&k| shadow.outside(k, at) >= -near) {
-            around.facets[around.count] = solid.neighbours()[shadow.facet as usize][k];
-            around.count += 1;
-        }
-        around
+        Some(around)
     }
 
     fn facets(&self) -> &[u32] {
         &self.facets[..self.count]
-    }
-}
-
-/// The shadow of a facet, counter-clockwise if the facet faces the other body.
-struct Shadow {
-    facet: u32,
-    corners: [DVec2; 3],
-    /// 1 if it runs as the body lists it, else -1.
-    way: f64,
-    faces: bool,
-}
-
-impl Shadow {
-    fn new(side: &Side, facet: u32) -> Self {
-        let corners = side.corners(facet as usize).map(|c| c.at.xy());
-        let way = if side.moving { 1.0 } else { -1.0 };
-        let area = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]);
-        Self { facet, corners, way, faces: area * way > 0.0 }
-    }
-
-    /// How far outside of side `k` a point lies.
-    fn outside(&self, k: usize, at: DVec2) -> f64 {
-        let [a, b] = [self.corners[k], self.corners[(k + 1) % 3]];
-        self.way * (b - a).normalize_or_zero().perp_dot(a - at)
-    }
-
-    /// Outside of which side it lies farthest, and how far.
-    fn farthest_outside(&self, at: DVec2) -> (usize, f64) {
-        let of = [0, 1, 2].map(|k| (k, self.outside(k, at)));
-        of.into_iter().fold(of[0], |best, next| if next.1 > best.1 { next } else { best })
     }
 }

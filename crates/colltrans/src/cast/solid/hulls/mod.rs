@@ -5,7 +5,8 @@
 //!
 //! - *Nothing is earlier.* A plane with that normal, all of the moving body (shrunk, if there is a tolerance) below it
 //!   and all of the fixed one above, bounds all gaps of facets. How far each reaches is told by the vertices that may
-//!   be farthest. Where the bound is positive the bodies do not overlap where they are.
+//!   be farthest. Where the bound is positive the bodies do not overlap where they are. Boxes that touch along an axis
+//!   without rounding bound them by 0, and do not overlap either.
 //! - *There is a contact.* The gap of two facets around the place, as the search would take it. If it is above that
 //!   bound by no more than the search may leave open, it is the answer of the search, with the bounds of one.
 //! - *Nothing is in the way.* A plane that the moving body leaves behind, with the bodies on either side.
@@ -15,6 +16,7 @@
 
 mod certain;
 mod guessed;
+mod surface;
 
 use std::cell::OnceCell;
 
@@ -27,6 +29,7 @@ use crate::cast::Cast;
 use crate::setting::Setting;
 use crate::solve::options::Options;
 pub(super) use guessed::Guessed;
+use surface::{Spot, Surface};
 
 /// A facet may rise so far, as a share of the size, beyond the plane of the next one in a body that counts as convex.
 const BENT: f64 = 1e-9;
@@ -35,7 +38,7 @@ const HEIGHT: f64 = 16.0 * f64::EPSILON;
 
 /// The convex hulls of the two solids of a query, and their cast.
 pub(super) struct Hulls<'a> {
-    bodies: [&'a Body; 2],
+    bodies: [Surface<'a>; 2],
     cast: Cast<'a>,
     /// What it is answered.
     first: Outcome,
@@ -50,18 +53,18 @@ impl<'a> Hulls<'a> {
         if options.keep > 0.0 || options.overlapping == Some(true) {
             return None;
         }
-        let bodies = [Body::of(cast.moving())?, Body::of(cast.fixed())?];
+        let bodies = [Surface::of(cast.moving())?, Surface::of(cast.fixed())?];
         let Setting { direction, length, unit, .. } = cast.setting;
-        let held = cast.setting.bodies.holding(bodies.map(|body| &body.hull));
+        let held = cast.setting.bodies.holding(bodies.map(|surface| &surface.body.hull));
         let setting = Setting { bodies: held, direction, length, unit };
         let cast = Cast { setting, options: Options::default() };
         Some(Self { bodies, cast, first: cast.first_contact().ok()?, last: OnceCell::new() })
     }
 
-    /// Where the bodies meet last, of such as meet first behind and do not overlap.
+    /// Where the bodies meet last, of such as meet first behind and do not certainly overlap.
     fn last(&self) -> Option<&Contact> {
         let last = || match self.cast.reversed().first_contact().ok()? {
-            Outcome::Contact(last) if last.certificate.lower > 0.0 => Some(last),
+            Outcome::Contact(last) if last.certificate.upper >= 0.0 => Some(last),
             _ => None,
         };
         self.last.get_or_init(last).as_ref()

@@ -25,9 +25,14 @@ pub(super) fn exact(
     of_g: &Turns,
     keep: impl Fn(Meeting) -> bool,
 ) -> Gap {
-    let fine = FinePair::new(scene, f, g);
     let mut gap = NO_GAP;
-    for at in corners(of_f, of_g).filter(|&at| keep(at)) {
+    let corners = corners(of_f, of_g).filter(|&at| keep(at));
+    if f.is_level_with(g) {
+        corners.for_each(|at| gap.add(scene, Above::LEVEL, at));
+        return gap;
+    }
+    let fine = FinePair::new(scene, f, g);
+    for at in corners {
         let above = fine
             .above(at)
             .or_else(|| above_at::<SMALL>(scene, f, g, at))

@@ -67,6 +67,13 @@ impl Facet {
         self.slope.height_above(p)
     }
 
+    /// Whether both lie in one plane across the direction, for certain.
+    pub(super) fn is_level_with(&self, other: &Self) -> bool {
+        let height = self.corners[0].at.z;
+        let mut corners = self.corners.iter().chain(&other.corners);
+        corners.all(|corner| corner.exact && corner.at.z == height)
+    }
+
     pub(crate) fn side(&self, k: usize) -> [&Corner; 2] {
         [&self.corners[k], &self.corners[(k + 1) % 3]]
     }

@@ -255,3 +255,42 @@ fn plates_on_plates_are_told_without_a_search() {
     println!("{asked} plates, {looked} by facets, {told} with a plane between them");
     assert!(5 * looked < asked && 4 * told > asked, "{looked}, {told} of {asked}");
 }
+
+/// Sunk into each other by little, convex solids are seen to overlap by facets around the contact of their hulls; the least
+/// tolerance is the one of the place that a search finds, and the proof names what the answer does.
+#[test]
+fn convex_solids_that_are_sunk_are_seen_to_overlap_at_their_contact() {
+    let mut random = Random::new(19);
+    let all = bodies(&mut random);
+    let (mut asked, mut searched) = (0, 0);
+    for round in 0..1_500 {
+        let [i, j] = [0, 1].map(|_| random.range(0.0, all.len() as f64) as usize);
+        let direction = random.direction();
+        let start = random.direction() * random.range(0.0, 0.5) - direction * 4.0;
+        let rotations = [random.rotation(), random.rotation()];
+        let at = |start| {
+            let [p, q] = [(rotations[0], start), (rotations[1], DVec3::ZERO)]
+                .map(|(q, at)| Pose::new(q, at).expect("a pose"));
+            Cast::new(all[i].at(p), all[j].at(q), direction).expect("a query")
+        };
+        let Clearance::Blocked { contact, .. } = at(start).clearance().expect("an answer") else {
+            continue;
+        };
+        let by = [1e-9, 1e-6, 1e-4][round % 3];
+        let cast = at(start + direction * (contact.translation.value + by));
+        let (answer, proof) = cast.certified_clearance().expect("an answer");
+        let Clearance::Overlapping(overlap) = answer else { panic!("{round}: {answer:?}") };
+        assert_eq!(cast.clearance(), Ok(answer), "{round}");
+        assert_eq!(cast.start_overlap(), Some(overlap), "{round}");
+        assert_eq!(cast.verify(&proof), Ok(0.0), "{round}");
+        let ignoring = cast.with_start_overlap(StartOverlap::Ignore);
+        assert!(nodes(&ignoring.clearance().expect("an answer")) > 0, "{round}");
+        let least = cast.least_tolerance().expect("a tolerance");
+        let told = overlap.least_tolerance.expect("a tolerance");
+        assert!((told - least).abs() <= 1e-12 * least + 1e-12, "{round}: {told}, but {least}");
+        asked += 1;
+        searched += usize::from(overlap.steps.nodes > 0);
+    }
+    println!("{searched} of {asked} are searched");
+    assert!(asked > 1_000 && 20 * searched < asked, "{searched} of {asked}");
+}

@@ -325,30 +325,33 @@ impl<'a> Cast<'a, Solid> {
         if let Some(answer) = self.passing() {
             return Ok(answer);
         }
-        let mut scene = None;
-        if self.boxes_touch() {
-            let scene = scene.insert(self.asked_of_something()?);
-            if overlap::pass(scene, self.limit(scene)) {
-                steps.nodes += 1;
-                return Ok(self.answer(scene, None, steps));
-            }
-        }
-        let hulls = Hulls::of(self);
-        if let Some(answer) = hulls.as_ref().and_then(|hulls| hulls.certain(self)) {
+        // Hulls are asked first, unless boxes touch, and for all unless they say that the bodies overlap.
+        let touching = self.boxes_touch();
+        let hulls = if touching { None } else { Hulls::of(self) };
+        let in_doubt = touching || hulls.as_ref().is_some_and(Hulls::are_sunk);
+        if !in_doubt && let Some(answer) = hulls.as_ref().and_then(|hulls| hulls.certain(self)) {
             return Ok(answer);
         }
-        let scene = match scene {
-            Some(scene) => scene,
-            None => self.asked_of_something()?,
-        };
-        if let Some(answer) = hulls.and_then(|hulls| self.guessed_by_hulls(&hulls, &scene)) {
+        let scene = self.asked_of_something()?;
+        if touching && overlap::pass(&scene, self.limit(&scene)) {
+            steps.nodes += 1;
+            return Ok(self.answer(&scene, None, steps));
+        }
+        let hulls = if touching { Hulls::of(self) } else { hulls };
+        let place = self.sunk(hulls.as_ref(), &scene, &mut steps);
+        if place.is_none()
+            && let Some(answer) = hulls.and_then(|hulls| {
+                let certain = if in_doubt { hulls.certain(self) } else { None };
+                certain.or_else(|| self.guessed_by_hulls(&hulls, &scene))
+            })
+        {
             return Ok(answer);
         }
         let ignored = self.options.start_overlap == StartOverlap::Ignore;
         let aim = match self.options.overlapping {
             Some(false) => Aim::Stop,
             Some(true) if ignored => Aim::LaterStop,
-            _ => match overlap::find(&scene, &mut steps) {
+            _ => match place.or_else(|| overlap::find(&scene, &mut steps)) {
                 Some(_) if ignored => Aim::LaterStop,
                 Some(place) => return Ok(Clearance::Overlapping(self.overlap_at(place, steps))),
                 None => Aim::Stop,
@@ -468,6 +471,25 @@ impl<'a> Cast<'a, Solid> {
         hulls.certain(self).or_else(|| self.guessed_by_hulls(&hulls, scene))
     }
 
+    /// Where the bodies overlap, if they do by little, by what is around a contact of their hulls.
+    fn sunk(
+        &self,
+        hulls: Option<&Hulls>,
+        scene: &Scene,
+        steps: &mut SolidSteps,
+    ) -> Option<Overlap> {
+        if self.options.overlapping == Some(false) {
+            return None;
+        }
+        hulls?.sunk(scene, &mut steps.leaves)
+    }
+
+    /// Where they overlap.
+    fn place_of_overlap(&self, scene: &Scene, steps: &mut SolidSteps) -> Option<Overlap> {
+        let sunk = self.sunk(Hulls::of(self).as_ref(), scene, steps);
+        sunk.or_else(|| overlap::find(scene, steps))
+    }
+
     fn guessed_by_hulls(&self, hulls: &Hulls, scene: &Scene) -> Option<Clearance<Solid>> {
         if let Some(answer) = hulls.touching(self, scene) {
             return Some(answer);
@@ -532,7 +554,7 @@ impl<'a> Cast<'a, Solid> {
     /// ```
     pub fn start_overlap(&self) -> Option<SolidOverlap> {
         let mut steps = SolidSteps::default();
-        let place = overlap::find(&self.asked(), &mut steps)?;
+        let place = self.place_of_overlap(&self.asked(), &mut steps)?;
         Some(self.overlap_at(place, steps))
     }
 

@@ -11,6 +11,7 @@
 
 use std::collections::HashMap;
 
+use super::hulls::Hulls;
 use super::{SolidOptions, StartOverlap};
 use crate::answer::{Clearance, SolidSteps};
 use crate::body::solid::Solid;
@@ -257,6 +258,9 @@ impl Cast<'_, Solid> {
             options.overlapping == Some(true) && options.start_overlap == StartOverlap::Refuse;
         if options.overlapping.is_some() && !is_answer {
             return StartProof::Assumed;
+        }
+        if let Some(place) = self.sunk(Hulls::of(self).as_ref(), scene, steps) {
+            return StartProof::Overlapping(place);
         }
         let mut entries = Vec::new();
         let mut note = |entry| {

@@ -6,6 +6,7 @@ use glam::DVec3;
 use super::{Hulls, Spot, Surface};
 use crate::answer::{Contact, Outcome};
 use crate::solve::solid::bound::box_gaps;
+use crate::solve::solid::overlap::{Overlap, is_overlap};
 use crate::solve::solid::projected::Projected;
 use crate::solve::solid::scene::{Scene, Side};
 use crate::solve::solid::search::{Aim, Found, SLACK, Search};
@@ -15,6 +16,8 @@ use crate::solve::solid::separate::{HEIGHTS, farthest};
 /// among them, in noises.
 const MOST_FACETS: usize = 4;
 const NEAR: f64 = 64.0;
+/// Share of the size up to which bodies that overlap are looked at where their hulls meet.
+const SUNK: f64 = 1e-3;
 /// Vertices that are held against each other for the farthest.
 const MOST_TOP: usize = 32;
 
@@ -43,6 +46,31 @@ impl Hulls<'_> {
             }
             _ => None,
         }
+    }
+}
+
+impl Hulls<'_> {
+    /// Whether the bodies overlap by as little, as far as their hulls tell, as facets around their contact may show.
+    pub(in crate::cast::solid) fn are_sunk(&self) -> bool {
+        let Outcome::Contact(contact) = &self.first else { return false };
+        let proof = &contact.certificate;
+        let depth = -proof.lower * proof.normal.dot(self.cast.setting.direction);
+        proof.upper < 0.0 && depth < SUNK * self.cast.setting.scale()
+    }
+
+    /// A place where they do: two of these facets. Counts pairs of them.
+    pub(in crate::cast::solid) fn sunk(&self, scene: &Scene, leaves: &mut u32) -> Option<Overlap> {
+        let Outcome::Contact(contact) = &self.first else { return None };
+        if !self.are_sunk() {
+            return None;
+        }
+        let [p, q] = around(scene, &self.bodies, contact)?;
+        let pairs = p.facets().iter().flat_map(|&f| q.facets().iter().map(move |&g| (f, g)));
+        let mut places = pairs.map(|(f, g)| Overlap::Facets(f, g));
+        places.find(|&place| {
+            *leaves += 1;
+            is_overlap(scene, place)
+        })
     }
 }
 
@@ -107,22 +135,12 @@ fn stop(
     limit: f64,
     leaves: &mut u32,
 ) -> Option<Guessed> {
-    let proof = &contact.certificate;
     let least = least_gap(scene, bodies, contact)?;
     // So that a search, which rounds otherwise, finds nothing below the limit either.
     if least >= limit + SLACK * scene.noise {
         return Some(Guessed::Free);
     }
-    let around = |k: usize| {
-        let side = [&scene.moving, &scene.fixed][k];
-        let vertex = |i: usize| [proof.pairs[i].moving, proof.pairs[i].fixed][k];
-        let local = |i: usize| bodies[k].body.hull.vertices()[vertex(i).index()] * proof.weights[i];
-        let outward = if side.moving { proof.normal } else { -proof.normal };
-        let spot =
-            Spot { at: local(0) + local(1) + local(2), outward: side.matrix.transpose() * outward };
-        Around::new(&bodies[k], vertex(0).0, &spot, NEAR * scene.noise + 2.0 * side.moved())
-    };
-    let [p, q] = [around(0)?, around(1)?];
+    let [p, q] = around(scene, bodies, contact)?;
     let pairs = p.facets().iter().flat_map(|&f| q.facets().iter().map(move |&g| [f, g]));
     let mut best: Option<Found> = None;
     for pair in pairs {
@@ -141,6 +159,21 @@ fn stop(
         }
     }
     best.map(|found| Guessed::Stop(found.among_all(scene), least))
+}
+
+/// The facets of both bodies around a contact of their hulls.
+fn around(scene: &Scene, bodies: &[Surface; 2], contact: &Contact) -> Option<[Around; 2]> {
+    let proof = &contact.certificate;
+    let around = |k: usize| {
+        let side = [&scene.moving, &scene.fixed][k];
+        let vertex = |i: usize| [proof.pairs[i].moving, proof.pairs[i].fixed][k];
+        let local = |i: usize| bodies[k].body.hull.vertices()[vertex(i).index()] * proof.weights[i];
+        let outward = if side.moving { proof.normal } else { -proof.normal };
+        let spot =
+            Spot { at: local(0) + local(1) + local(2), outward: side.matrix.transpose() * outward };
+        Around::new(&bodies[k], vertex(0).0, &spot, NEAR * scene.noise + 2.0 * side.moved())
+    };
+    Some([around(0)?, around(1)?])
 }
 
 /// Facets of one body around a place.

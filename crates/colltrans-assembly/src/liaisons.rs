@@ -2,12 +2,15 @@
 //!
 //! Two facets are in contact if their normals are nearly opposite, and somewhere over the common
 //! shadow, seen along the first one's normal, they lie within `reach` of each other. Curved fits are
-//! tessellated differently on either side: hence "nearly", and a reach of the tolerance.
+//! tessellated differently on either side: hence "nearly", and a reach of the tolerance. Facets of one plane are taken
+//! together, as [faces](face): of two that are level with each other a sweep finds what they have in common.
 //!
-//! An area is the sum of what has been clipped, and its rounding is bounded (`shadow_rounding`). Which
+//! An area is the sum of what has been clipped, and its rounding is bounded ([`rounding`]). Which
 //! facets are in contact, at 25 degrees and at `reach`, is decided as it is computed.
 //! Notation: `n` is the unit normal of the first part's facet, outwards: from the first part to the
 //! second.
+
+mod face;
 
 use colltrans::Solid;
 use glam::{DVec2, DVec3};
@@ -19,18 +22,20 @@ use crate::error::AssemblyError;
 use crate::watch::{Stage, Watch};
 use colltrans::Aabb;
 
+use face::{Face, Swept};
+
 /// Normals farther from opposite than this are no contact: the cosine of 25 degrees, a step of a
 /// round of 14 sides.
 const OPPOSITE: f64 = 0.906;
 
-/// Two facets in contact.
+/// Two flat faces in contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Patch {
-    /// Unit normal of the first part's facet, from the first part to the second.
+    /// Unit normal of the first part's face, from the first part to the second.
     pub normal: DVec3,
-    /// Unit normal of the second part's facet, turned round: from the first part to the second.
+    /// Unit normal of the second part's face, turned round: from the first part to the second.
     pub other: DVec3,
-    /// Area of the common shadow, seen along the normal.
+    /// Area of the common shadow, seen along the normal; of facets that are in contact.
     pub area: f64,
     /// The area is off by no more than this.
     pub area_error: f64,
@@ -93,140 +98,291 @@ pub fn liaisons(bodies: &Bodies, watch: Watch) -> Result<Vec<Liaison>, AssemblyE
 
 type Triangle = [DVec3; 3];
 
-fn triangles_in(solid: &Solid, region: &Aabb) -> Vec<Triangle> {
-    let corner = |v: u32| solid.vertices()[v as usize];
-    let all = solid.triangles().iter().map(|t| t.map(corner));
-    all.filter(|t| Aabb::of_points(*t).meets(region)).collect()
-}
-
+/// Where parts touch, a patch for two faces that do.
 fn contacts(a: &Solid, b: &Solid, reach: f64) -> Vec<Patch> {
-    touching(a, b, reach).map(|(first, second, t)| t.patch(&first, &second)).collect()
+    let mut patches = Vec::new();
+    touching(a, b, reach, &mut |[p, q]| {
+        let mut patch = Patch::empty(p.normal, -q.normal);
+        let error = common(p, q, reach, &mut |piece| patch.add(piece));
+        let [a, b, c] = p.facets[0];
+        patches.extend(patch.finished((b - a).cross(c - a).length() * LEAST, error));
+    });
+    patches
 }
 
 /// Corners of where a part touches another one with facets that look along `down`, within [`OPPOSITE`].
 pub(crate) fn footprint(a: &Solid, b: &Solid, reach: f64, down: DVec3) -> Vec<DVec3> {
-    let below = touching(a, b, reach).filter(|(_, _, t)| t.normal.dot(down) >= OPPOSITE);
-    below.flat_map(|(_, _, t)| t.outline()).collect()
+    let mut corners = Vec::new();
+    touching(a, b, reach, &mut |[p, q]| {
+        if p.normal.dot(down) >= OPPOSITE {
+            common(p, q, reach, &mut |piece| {
+                // What is left between rims that agree but for rounding carries nothing.
+                if piece.area > piece.error {
+                    corners.extend(piece.outline());
+                }
+            });
+        }
+    });
+    corners
 }
 
-/// All pairs of facets in contact.
-fn touching(
-    a: &Solid,
-    b: &Solid,
-    reach: f64,
-) -> impl Iterator<Item = (Triangle, Triangle, Touching)> {
+/// Calls with all pairs of faces that look at each other and are near.
+fn touching(a: &Solid, b: &Solid, reach: f64, call: &mut impl FnMut([&Face; 2])) {
     let (p, q) = (a.bounds().grown(reach), b.bounds().grown(reach));
     let region = Aabb { low: p.low.max(q.low), high: p.high.min(q.high) };
-    let (first, second) = (triangles_in(a, &region), triangles_in(b, &region));
-    let tree = BoxTree::new(second.iter().map(|t| Aabb::of_points(*t)));
-    first.into_iter().flat_map(move |t| {
-        let near = tree.meeting(&Aabb::of_points(t).grown(reach)).into_iter();
-        let found = near.filter_map(|k| Some((t, second[k], Touching::of(&t, &second[k], reach)?)));
-        found.collect::<Vec<_>>()
-    })
+    let [first, second] = [a, b].map(|solid| Face::all_in(solid, &region, reach));
+    let tree = BoxTree::new(second.iter().map(|face| face.bounds));
+    for face in &first {
+        for k in tree.meeting(&face.bounds.grown(reach)) {
+            if -face.normal.dot(second[k].normal) >= OPPOSITE {
+                call([face, &second[k]]);
+            }
+        }
+    }
 }
 
-/// Two facets in contact: the common shadow, seen along the first one's normal.
-struct Touching {
+/// What has an area of no more than this share of a facet's, twice, does not touch it.
+const LEAST: f64 = 1e-9;
+/// Pairs of facets of two faces, from which on they are held against each other as wholes.
+const MANY: usize = 64;
+/// Planes are level with each other if heights differ by no more than this share of the reach.
+const LEVEL: f64 = 1.0 / 64.0;
+
+/// Calls with what two faces have in common, seen along the first one's normal, in pieces. By how much the sum of their
+/// areas may be off besides what they say.
+fn common(p: &Face, q: &Face, reach: f64, call: &mut impl FnMut(&Piece)) -> f64 {
+    let mut clipping = Clipping::default();
+    let many = p.facets.len() * q.facets.len() >= MANY;
+    if many {
+        let height = |at: DVec3| (q.facets[0][0] - at).dot(q.normal) / p.normal.dot(q.normal);
+        let heights = p.corners().map(height);
+        let (low, high) =
+            heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+        if low > reach || high < -reach {
+            return 0.0;
+        }
+        if high - low <= reach * LEVEL {
+            return swept(p, q, &mut clipping, call);
+        }
+    }
+    let tree = many.then(|| BoxTree::new(q.facets.iter().map(|t| Aabb::of_points(*t))));
+    for first in &p.facets {
+        let Some(plane) = Plane::of(first) else { continue };
+        let mut look = |second: &Triangle| {
+            if let Some(piece) = plane.touches(second, reach, &mut clipping) {
+                call(&piece);
+            }
+        };
+        match &tree {
+            Some(tree) => {
+                let near = tree.meeting(&Aabb::of_points(*first).grown(reach));
+                for k in near {
+                    look(&q.facets[k]);
+                }
+            }
+            None => q.facets.iter().for_each(look),
+        }
+    }
+    0.0
+}
+
+/// The same of two faces that are level with each other.
+fn swept(p: &Face, q: &Face, clipping: &mut Clipping, call: &mut impl FnMut(&Piece)) -> f64 {
+    let Some(plane) = Plane::of(&p.facets[0]) else { return 0.0 };
+    let range = |face: &Face| {
+        let places = face.corners().map(|at| plane.flat(at).x);
+        places.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| [l.min(x), h.max(x)])
+    };
+    let ([low, high], [least, most]) = (range(p), range(q));
+    let range = [low.max(least), high.min(most)];
+    let [first, second] =
+        [(p, 1.0), (q, -1.0)].map(|(face, way)| Swept::new(face, |at| plane.flat(at), way, range));
+    let off = plane.displacement(p.corners().chain(q.corners()));
+    first.each_pair(&second, |a, b| {
+        let ([a, b], reached) = ([a.corners(), b.corners()], &mut *clipping);
+        let error = rounding(off, [perimeter(&a), perimeter(&b)]);
+        if let Some(piece) = plane.piece(&a, &b, error, reached) {
+            call(&piece);
+        }
+    });
+    rounding(off, [p.perimeter(), q.perimeter()])
+}
+
+/// The plane of a facet.
+struct Plane<'t> {
+    facet: &'t Triangle,
     normal: DVec3,
-    other: DVec3,
+    axes: [DVec3; 2],
+    /// The facet, in the plane.
+    corners: [DVec2; 3],
+}
+
+/// A part of what two faces have in common, in the plane of the first.
+struct Piece<'c> {
     origin: DVec3,
     axes: [DVec3; 2],
-    shadow: Vec<DVec2>,
+    shadow: &'c [DVec2],
     area: f64,
+    error: f64,
     middle: DVec2,
 }
 
-impl Touching {
-    fn of(first: &Triangle, second: &Triangle, reach: f64) -> Option<Self> {
-        let normal = |t: &Triangle| (t[1] - t[0]).cross(t[2] - t[0]).try_normalize();
-        let (n, m) = (normal(first)?, normal(second)?);
+impl<'t> Plane<'t> {
+    fn of(facet: &'t Triangle) -> Option<Self> {
+        let normal = (facet[1] - facet[0]).cross(facet[2] - facet[0]).try_normalize()?;
+        let along = (facet[1] - facet[0]).try_normalize()?;
+        let axes = [along, normal.cross(along)];
+        let mut plane = Self { facet, normal, axes, corners: [DVec2::ZERO; 3] };
+        plane.corners = facet.map(|at| plane.flat(at));
+        Some(plane)
+    }
+
+    fn flat(&self, at: DVec3) -> DVec2 {
+        let from = at - self.facet[0];
+        DVec2::new(from.dot(self.axes[0]), from.dot(self.axes[1]))
+    }
+
+    /// Its own facet and another one, if they are in contact.
+    fn touches<'c>(
+        &self,
+        other: &Triangle,
+        reach: f64,
+        clipping: &'c mut Clipping,
+    ) -> Option<Piece<'c>> {
+        let n = self.normal;
+        let m = (other[1] - other[0]).cross(other[2] - other[0]).try_normalize()?;
         if -n.dot(m) < OPPOSITE {
             return None;
         }
-        let u = (first[1] - first[0]).try_normalize()?;
-        let v = n.cross(u);
-        let flat = |p: DVec3| DVec2::new((p - first[0]).dot(u), (p - first[0]).dot(v));
         // The second runs clockwise, as seen along the first one's normal.
-        let mut shadow: Vec<DVec2> = [second[0], second[2], second[1]].map(flat).to_vec();
-        let corners = first.map(flat);
-        for k in 0..3 {
-            shadow = clipped(&shadow, corners[k], corners[(k + 1) % 3]);
-        }
-        let (area, middle) = centroid(&shadow)?;
-        let largest = (corners[1] - corners[0]).perp_dot(corners[2] - corners[0]).abs();
-        if area <= largest * 1e-9 {
+        let seen = [other[0], other[2], other[1]].map(|at| self.flat(at));
+        let largest = perp_area(&self.corners);
+        let mut piece = self.piece(&self.corners, &seen, 0.0, clipping)?;
+        if piece.area <= largest * LEAST {
             return None;
         }
         // Height of the second facet's plane over the first one's.
-        let height = |s: DVec2| {
-            let foot = first[0] + u * s.x + v * s.y;
-            (second[0] - foot).dot(m) / n.dot(m)
-        };
-        let heights = shadow.iter().map(|s| height(*s));
+        let height = |s: &DVec2| (other[0] - piece.place(*s)).dot(m) / n.dot(m);
+        let heights = piece.shadow.iter().map(height);
         let (low, high) =
             heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
-        let (origin, axes) = (first[0], [u, v]);
-        (low <= reach && high >= -reach).then_some(Self {
-            normal: n,
-            other: -m,
-            origin,
-            axes,
-            shadow,
-            area,
-            middle,
-        })
+        let off = self.displacement(self.facet.iter().chain(other).copied());
+        piece.error = rounding(off, [perimeter(&self.corners), perimeter(&seen)]);
+        (low <= reach && high >= -reach).then_some(piece)
     }
 
+    /// What two convex shapes in the plane have in common, both counter-clockwise, if it has an area.
+    fn piece<'c>(
+        &self,
+        first: &[DVec2],
+        second: &[DVec2],
+        error: f64,
+        clipping: &'c mut Clipping,
+    ) -> Option<Piece<'c>> {
+        let shadow = clipping.common(first, second);
+        let (area, middle) = centroid(shadow)?;
+        Some(Piece { origin: self.facet[0], axes: self.axes, shadow, area, error, middle })
+    }
+
+    /// How far flat coordinates of points may be off.
+    ///
+    /// Let `D` be how far one is from the facet, and `s` the inverse sine of the facet's angle there. The normal is off by
+    /// `8 u s` and the other two axes by that and `4 u`, so coordinates by `32 u D (1 + s)`.
+    fn displacement(&self, points: impl Iterator<Item = DVec3>) -> f64 {
+        const U: f64 = f64::EPSILON / 2.0;
+        let farthest = points.map(|p| p.distance(self.facet[0])).fold(0.0, f64::max);
+        let (e, f) = (self.facet[1] - self.facet[0], self.facet[2] - self.facet[0]);
+        let inverse_sine = e.length() * f.length() / e.cross(f).length();
+        32.0 * U * farthest * (1.0 + inverse_sine)
+    }
+}
+
+impl Piece<'_> {
     fn place(&self, seen: DVec2) -> DVec3 {
         self.origin + self.axes[0] * seen.x + self.axes[1] * seen.y
     }
 
-    fn outline(&self) -> Vec<DVec3> {
-        self.shadow.iter().map(|seen| self.place(*seen)).collect()
-    }
-
-    fn patch(&self, first: &Triangle, second: &Triangle) -> Patch {
-        let area_error = shadow_rounding(first, second);
-        let center = self.place(self.middle);
-        let Self { normal, other, area, .. } = *self;
-        Patch { normal, other, area, area_error, center }
+    fn outline(&self) -> impl Iterator<Item = DVec3> {
+        self.shadow.iter().map(|seen| self.place(*seen))
     }
 }
 
-/// How far the area of the common shadow of two triangles may be off.
+impl Patch {
+    const fn empty(normal: DVec3, other: DVec3) -> Self {
+        Self { normal, other, area: 0.0, area_error: 0.0, center: DVec3::ZERO }
+    }
+
+    /// Until it is finished, the centre is times the area.
+    fn add(&mut self, piece: &Piece) {
+        self.area += piece.area;
+        // And what the sum is rounded by.
+        self.area_error += piece.error + f64::EPSILON * self.area;
+        self.center += piece.place(piece.middle) * piece.area;
+    }
+
+    /// If it has an area, more than `least`; `error` is how much that may be off besides.
+    fn finished(self, least: f64, error: f64) -> Option<Self> {
+        let (center, area_error) = (self.center / self.area, 1.01 * (self.area_error + error));
+        (self.area > least).then_some(Self { area_error, center, ..self })
+    }
+}
+
+/// How far the area that two shapes have in common may be off, whose corners are displaced by so much.
 ///
-/// Let `D` be how far a corner is from the first one, `s` the inverse sine of the first triangle's angle
-/// there, and `P` both perimeters. The normal is off by `8 u s` and the other two axes by that and `4 u`, so
-/// flat coordinates by `32 u D (1 + s)`: that far off are the corners of both shadows, and, by the rounding
-/// of `side` over the length of the line, each of the three cuts. A convex shape all of whose boundary
-/// lies within `h` of another's has an area that differs by no more than `h` times the perimeter, to first
-/// order. Five such displacements; the sum over the corners takes less than as much again.
-fn shadow_rounding(first: &Triangle, second: &Triangle) -> f64 {
-    const U: f64 = f64::EPSILON / 2.0;
-    let perimeter = |t: &Triangle| (0..3).map(|k| t[k].distance(t[(k + 1) % 3])).sum::<f64>();
-    let farthest = first.iter().chain(second).map(|p| p.distance(first[0])).fold(0.0, f64::max);
-    let (e, f) = (first[1] - first[0], first[2] - first[0]);
-    let inverse_sine = e.length() * f.length() / e.cross(f).length();
-    let off = 32.0 * U * farthest * (1.0 + inverse_sine);
-    10.0 * off * (perimeter(first) + perimeter(second))
+/// That far off are the boundaries of both, and, by the rounding of `side` over the length of the line, each of the
+/// cuts; a strip's ends lie on its rims but for `4 u D`. A convex shape all of whose boundary lies within `h` of another's
+/// has an area that differs by no more than `h` times the perimeter, to first order. Five such displacements; the sum
+/// over the corners takes less than as much again.
+fn rounding(off: f64, perimeters: [f64; 2]) -> f64 {
+    10.0 * off * (perimeters[0] + perimeters[1])
 }
 
-/// What of a convex polygon lies to the left of a line.
-fn clipped(polygon: &[DVec2], from: DVec2, to: DVec2) -> Vec<DVec2> {
-    let side = |p: DVec2| (to - from).perp_dot(p - from);
-    let mut kept = Vec::with_capacity(polygon.len() + 1);
-    for (k, &p) in polygon.iter().enumerate() {
-        let q = polygon[(k + 1) % polygon.len()];
-        let (x, y) = (side(p), side(q));
-        if x >= 0.0 {
-            kept.push(p);
+fn perimeter(corners: &[DVec2]) -> f64 {
+    (0..corners.len()).map(|k| corners[k].distance(corners[(k + 1) % corners.len()])).sum()
+}
+
+/// Twice the area of a triangle.
+fn perp_area([a, b, c]: &[DVec2; 3]) -> f64 {
+    (b - a).perp_dot(c - a).abs()
+}
+
+/// Memory for what is left of a shape while it is cut.
+#[derive(Default)]
+struct Clipping {
+    kept: Vec<DVec2>,
+    next: Vec<DVec2>,
+}
+
+impl Clipping {
+    /// What of a convex shape lies within another, both counter-clockwise.
+    fn common(&mut self, first: &[DVec2], second: &[DVec2]) -> &[DVec2] {
+        self.kept.clear();
+        self.kept.extend_from_slice(second);
+        for (k, &from) in first.iter().enumerate() {
+            self.cut(from, first[(k + 1) % first.len()]);
+            if self.kept.is_empty() {
+                break;
+            }
         }
-        if (x > 0.0 && y < 0.0) || (x < 0.0 && y > 0.0) {
-            kept.push(p + (q - p) * (x / (x - y)));
-        }
+        &self.kept
     }
-    kept
+
+    /// Keeps what lies to the left of a line.
+    fn cut(&mut self, from: DVec2, to: DVec2) {
+        let side = |p: DVec2| (to - from).perp_dot(p - from);
+        self.next.clear();
+        for (k, &p) in self.kept.iter().enumerate() {
+            let q = self.kept[(k + 1) % self.kept.len()];
+            let (x, y) = (side(p), side(q));
+            if x >= 0.0 {
+                self.next.push(p);
+            }
+            if (x > 0.0 && y < 0.0) || (x < 0.0 && y > 0.0) {
+                self.next.push(p + (q - p) * (x / (x - y)));
+            }
+        }
+        std::mem::swap(&mut self.kept, &mut self.next);
+    }
 }
 
 /// Area and centre of a convex polygon that has an area.
@@ -249,7 +405,10 @@ mod tests {
     use super::*;
 
     fn contact(first: &Triangle, second: &Triangle, reach: f64) -> Option<Patch> {
-        Touching::of(first, second, reach).map(|touching| touching.patch(first, second))
+        let normal = |t: &Triangle| (t[1] - t[0]).cross(t[2] - t[0]).normalize();
+        let mut patch = Patch::empty(normal(first), -normal(second));
+        patch.add(&Plane::of(first)?.touches(second, reach, &mut Clipping::default())?);
+        patch.finished(0.0, 0.0)
     }
 
     /// Triangles in parallel planes that have a vector for a normal which is not a number of this kind, the
@@ -300,5 +459,114 @@ mod tests {
         assert!(contact(&low, &beside, 0.02).is_none());
         let facing_away = [low[0], low[1], low[2]];
         assert!(contact(&low, &facing_away, 0.02).is_none());
+    }
+
+    /// A sheet of squares of a grid, of which some are left out, each two facets.
+    fn sheet(random: &mut Random, place: impl Fn(DVec2) -> DVec3, turned: bool) -> Solid {
+        const SIDE: usize = 7;
+        let at = |k: usize| DVec2::new((k % SIDE) as f64, (k / SIDE) as f64);
+        let vertices: Vec<DVec3> = (0..SIDE * SIDE).map(|k| place(at(k))).collect();
+        let mut faces = Vec::new();
+        for k in (0..SIDE * (SIDE - 1)).filter(|k| k % SIDE + 1 < SIDE) {
+            if random.unit() < 0.75 {
+                let [a, b, c, d] = [k, k + 1, k + SIDE + 1, k + SIDE].map(|v| v as u32);
+                faces.extend([vec![a, b, c], vec![a, c, d]]);
+            }
+        }
+        if turned {
+            for face in &mut faces {
+                face.reverse();
+            }
+        }
+        Solid::from_open_mesh(&vertices, &faces).expect("a sheet")
+    }
+
+    /// Sheets with holes face to face, in any plane, on grids that agree, are turned, or lie anyhow: the sweep finds the
+    /// area, its middle and its corners as all pairs of facets do.
+    #[test]
+    fn faces_have_in_common_what_their_facets_have() {
+        let mut random = Random::new(8);
+        for round in 0..200 {
+            let (turn, shift) = match round % 4 {
+                0 => (0.0, DVec2::ZERO),
+                1 => (0.0, DVec2::new(0.5, -1.0)),
+                2 => (std::f64::consts::FRAC_PI_2, DVec2::new(6.0, 0.25)),
+                _ => (random.unit(), DVec2::new(random.unit(), random.unit())),
+            };
+            let world = if round % 8 < 4 { glam::DQuat::IDENTITY } else { random.rotation() };
+            let place = |p: DVec2| world * p.extend(0.0);
+            let first = sheet(&mut random, place, false);
+            let turn = DVec2::from_angle(turn);
+            let second = sheet(&mut random, |p| place(turn.rotate(p) + shift), true);
+            let patches = contacts(&first, &second, 1e-3);
+            let corners = |solid: &Solid| -> Vec<Triangle> {
+                let corner = |v: u32| solid.vertices()[v as usize];
+                solid.triangles().iter().map(|t| t.map(corner)).collect()
+            };
+            let (first_facets, second_facets) = (corners(&first), corners(&second));
+            let each =
+                || first_facets.iter().flat_map(|p| second_facets.iter().map(move |q| (p, q)));
+            let all: Vec<Patch> = each().filter_map(|(p, q)| contact(p, q, 1e-3)).collect();
+            let sum = |patches: &[Patch]| {
+                let area: f64 = patches.iter().map(|p| p.area).sum();
+                let error: f64 = patches.iter().map(|p| p.area_error).sum();
+                let center: DVec3 = patches.iter().map(|p| p.center * p.area).sum();
+                (area, error, center)
+            };
+            let ([area, other], [error, more], [center, middle]) = {
+                let (a, b) = (sum(&patches), sum(&all));
+                ([a.0, b.0], [a.1, b.1], [a.2, b.2])
+            };
+            assert!((area - other).abs() <= error + more, "{round}: {area} {other}");
+            assert!(error < 1e-8 && area > 1.0, "{round}: {area}, {error}");
+            assert!(center.distance(middle) < 1e-9, "{round}: {center} {middle}");
+            assert!(patches.len() <= 16, "{round}: {}", patches.len());
+            let down = world * DVec3::Z;
+            let seen = |p: DVec3| (world.inverse() * p).truncate();
+            let reached = |points: Vec<DVec3>| -> Vec<f64> {
+                let along = |d: DVec2| points.iter().map(|p| seen(*p).dot(d)).fold(0.0, f64::max);
+                (0..16).map(|k| along(DVec2::from_angle(f64::from(k) * 0.4))).collect()
+            };
+            let pieces = |(p, q): (&Triangle, &Triangle)| {
+                let mut clipping = Clipping::default();
+                let piece = Plane::of(p)?.touches(q, 1e-3, &mut clipping)?.outline().collect();
+                Some::<Vec<DVec3>>(piece)
+            };
+            let ends = reached(each().filter_map(pieces).flatten().collect());
+            for (a, b) in reached(footprint(&first, &second, 1e-3, down)).into_iter().zip(ends) {
+                assert!((a - b).abs() < 1e-4, "{round}: {a} {b}");
+            }
+        }
+    }
+
+    /// Discs of a thousand long thin facets, all from one corner, which is another one of the other disc: as many pieces as
+    /// rims, not as pairs of facets that cross.
+    #[test]
+    fn slivers_that_cross_are_not_held_against_each_other() {
+        const SIDES: u32 = 1_000;
+        let disc = |corner: u32, turned: bool| {
+            let angle = |k: u32| f64::from(k) / f64::from(SIDES) * std::f64::consts::TAU;
+            let vertices: Vec<DVec3> =
+                (0..SIDES).map(|k| DVec2::from_angle(angle(k)).extend(0.0)).collect();
+            let side = |k: u32| [corner, (corner + k) % SIDES, (corner + k + 1) % SIDES];
+            let mut faces: Vec<[u32; 3]> = (1..SIDES - 1).map(side).collect();
+            if turned {
+                for face in &mut faces {
+                    face.reverse();
+                }
+            }
+            Solid::from_open_mesh(&vertices, &faces).expect("a sheet")
+        };
+        let (first, second) = (disc(0, false), disc(SIDES / 3, true));
+        let (mut faces, mut pieces) = (0, 0);
+        touching(&first, &second, 1e-6, &mut |[p, q]| {
+            faces += 1;
+            common(p, q, 1e-6, &mut |_| pieces += 1);
+        });
+        assert!(faces == 1 && pieces <= 4 * SIDES, "{faces} {pieces}");
+        let [low, high] =
+            Liaison { parts: [0, 1], patches: contacts(&first, &second, 1e-6) }.area_bounds();
+        let area = 0.5 * f64::from(SIDES) * (std::f64::consts::TAU / f64::from(SIDES)).sin();
+        assert!(low <= area && area <= high && high - low < 1e-6, "{low} {area} {high}");
     }
 }

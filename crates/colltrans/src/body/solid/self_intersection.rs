@@ -299,11 +299,16 @@ impl Placing<'_> {
             return false;
         }
         let (f, g) = (self.corners(s), self.corners(t));
-        if !Aabb::of_points(f).meets(&Aabb::of_points(g)) {
+        if !Aabb::of_points(f).meets(&Aabb::of_points(g)) || are_apart(&f, &g) {
             return false;
         }
-        let pierces = |f: [DVec3; 3], [a, b, c]: [DVec3; 3]| {
+        let sides = |f: [DVec3; 3], [a, b, c]: [DVec3; 3]| {
             let sides = f.map(|p| side(a, b, c, p));
+            (sides[0] != sides[1] || sides[0] != sides[2]).then_some(sides)
+        };
+        // Of one plane, or one beside the other's.
+        let (Some(of_f), Some(of_g)) = (sides(f, g), sides(g, f)) else { return false };
+        let pierces = |f: [DVec3; 3], sides: [Ordering; 3], [a, b, c]: [DVec3; 3]| {
             (0..3).any(|k| {
                 let (p, q) = (f[k], f[(k + 1) % 3]);
                 let ends = [sides[k], sides[(k + 1) % 3]];
@@ -311,6 +316,26 @@ impl Placing<'_> {
                     && holds(ends, [(a, b), (b, c), (c, a)].map(|(u, v)| side(p, q, u, v)))
             })
         };
-        pierces(f, g) || pierces(g, f)
+        pierces(f, of_f, g) || pierces(g, of_g, f)
     }
+}
+
+/// Whether one of the planes of the sides of two facets, upright on them, has the facets on different sides for certain.
+/// Any vector may say so; products with it are off by less than `4 u` of its sum norm times the largest coordinate.
+fn are_apart(f: &[DVec3; 3], g: &[DVec3; 3]) -> bool {
+    let size = |t: &[DVec3; 3]| t.iter().fold(0.0_f64, |most, p| most.max(p.abs().max_element()));
+    let size = size(f).max(size(g));
+    [f, g].into_iter().any(|t| {
+        let normal = (t[1] - t[0]).cross(t[2] - t[0]);
+        (0..3).any(|k| {
+            let across = normal.cross(t[(k + 1) % 3] - t[k]);
+            let ends = |t: &[DVec3; 3]| {
+                let [a, b, c] = t.map(|p| across.dot(p));
+                [a.min(b).min(c), a.max(b).max(c)]
+            };
+            let ([low, high], [least, most]) = (ends(f), ends(g));
+            let slack = 8.0 * f64::EPSILON * across.abs().element_sum() * size;
+            low - most > slack || least - high > slack
+        })
+    })
 }

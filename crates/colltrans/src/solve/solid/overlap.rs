@@ -283,8 +283,17 @@ fn meet(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
     }
     let flat = |signs: [Ordering; 3]| signs.iter().all(|s| *s == Ordering::Equal);
     if flat(of_g) || flat(of_f) {
-        if !f.is_open() && !g.is_open() && share_a_side(scene, f, g) {
-            return true;
+        if !f.is_open() && !g.is_open() {
+            let (axis, facing) = f.open_axis(scene);
+            let [a, b, c] = &g.corners;
+            let other = scene.turn_about(axis, a, b, c);
+            // As for whole nodes: face to face.
+            if other == facing.reverse() {
+                return false;
+            }
+            if other == facing && share_a_part(scene, (axis, facing), f, g) {
+                return true;
+            }
         }
     } else if straddles(of_g) && straddles(of_f) && cross(scene, f, of_f, g, of_g) {
         return true;
@@ -380,13 +389,13 @@ fn alone_first<'c>(triangle: &'c Triangle, signs: [Ordering; 3]) -> ([&'c Corner
     (corners, signs[first] == Ordering::Greater)
 }
 
-/// Case 2, for triangles in one plane.
-fn share_a_side(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
-    let (axis, facing) = f.open_axis(scene);
-    let [a, b, c] = &g.corners;
-    if scene.turn_about(axis, a, b, c) != facing {
-        return false;
-    }
+/// Case 2, for triangles in one plane that both turn as `facing` says about an axis.
+fn share_a_part(
+    scene: &Scene,
+    (axis, facing): (usize, Ordering),
+    f: &Triangle,
+    g: &Triangle,
+) -> bool {
     let separates = |f: &Triangle, g: &Triangle| {
         (0..3).any(|k| {
             let (a, b) = (&f.corners[k], &f.corners[(k + 1) % 3]);

@@ -9,11 +9,14 @@ mod judge;
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
 use std::time::Instant;
 
 use clap::Parser;
 use colltrans_assembly::read::{ReadOptions, read};
-use colltrans_assembly::{Assembly, Bodies, Findings, Fit, Part, Piece, Question, Watch, suggest};
+use colltrans_assembly::{
+    Assembly, Bodies, Findings, Fit, Part, Piece, Question, Stage, Watch, suggest,
+};
 use colltrans_mesh::Mesh;
 use colltrans_testkit::machines::{
     NamedPart, flange, radial_engine, screwed_table, threaded_block,
@@ -56,6 +59,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     } else if arguments.fine {
         for (name, parts) in fine().into_iter().filter(|(name, _)| wanted(name)) {
+            if let Some(folder) = &arguments.parts {
+                written(&folder.join(&name), &parts)?;
+            }
             rows.push(row(&name, &assembly(&parts, DAffine3::IDENTITY)?, false)?);
         }
     } else {
@@ -143,20 +149,45 @@ fn written(folder: &Path, parts: &[NamedPart]) -> Result<(), Box<dyn Error>> {
 
 /// A plan without options, and if it is not whole another one with what is suggested.
 fn row(name: &str, assembly: &Assembly, judged: bool) -> Result<Value, Box<dyn Error>> {
-    let (watch, question) = (Watch::default(), Question::default());
+    let question = Question::default();
     let fit = Fit::default_for(assembly);
     let clock = Clock::start();
     let bodies = Bodies::new(assembly, fit)?;
-    let found = question.ask(&bodies, watch)?;
+    let ready = clock.seconds();
+    let stages = Mutex::new(Vec::<(&str, f64)>::new());
+    let reached = |stage: Stage, _: usize, _: usize| {
+        let mut stages = stages.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        if stages.last().is_none_or(|(name, _)| *name != stage.name()) {
+            stages.push((stage.name(), clock.seconds()));
+        }
+    };
+    let found = question.ask(&bodies, Watch::default().with_progress(&reached))?;
     let mut told = vec![said(name, "", &found, clock.seconds(), judged)];
+    println!(
+        "{:>20}{}",
+        "",
+        by_stage(
+            ready,
+            &stages.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner),
+            clock.seconds()
+        )
+    );
     if !found.plan.stuck.is_empty() && !found.suggestions.is_empty() {
         let clock = Clock::start();
         let suggested = suggest::applied(assembly.clone(), &found.suggestions)?;
         let bodies = Bodies::new(&suggested, fit)?;
-        let found = question.ask(&bodies, watch)?;
+        let found = question.ask(&bodies, Watch::default())?;
         told.push(said(name, "--auto", &found, clock.seconds(), judged));
     }
     Ok(json!({ "name": name, "plans": told }))
+}
+
+/// What of the time went where.
+fn by_stage(ready: f64, stages: &[(&str, f64)], end: f64) -> String {
+    let ends = stages.iter().skip(1).map(|stage| stage.1).chain([end]);
+    let each =
+        stages.iter().zip(ends).map(|((name, from), to)| format!(", {name} {:.2}", to - from));
+    format!("of it bodies {ready:.2}{} s", each.collect::<String>())
 }
 
 fn said(name: &str, options: &str, found: &Findings, seconds: f64, judged: bool) -> Value {

@@ -1,0 +1,229 @@
+//! Flat faces: facets in one plane, that hang together, as one.
+//!
+//! Two flat faces of many facets have as many common shadows as pairs of facets that cross, which for long thin facets are
+//! their product. So what they have in common is found by a sweep over their *rims*, the edges that only one facet of the
+//! face has: along an axis of the plane both are cut into strips, convex, between one rim and another, each strip as wide
+//! as rims there have no end; and strips of the one are held against those of the other that are at the same place.
+//!
+//! Notation: `n` is the unit normal of a face, that of its largest facet; `x, y` are places in its plane, and the sweep is
+//! along `x`. Facets run counter-clockwise, so that inside is above a rim that runs along `x`, and below one that runs
+//! against it; where faces fold, inside is what is to be counted at least once.
+
+use colltrans::{Aabb, Solid};
+use glam::{DVec2, DVec3};
+
+use super::Triangle;
+
+/// How far corners may lie beside the plane of a face, as a share of the reach of contacts.
+const FLAT: f64 = 1.0 / 1024.0;
+/// Cosine of how far a facet of a face may be turned from it.
+const TURNED: f64 = 0.5;
+/// No neighbour.
+const NONE: usize = usize::MAX;
+
+/// Facets of one plane.
+pub(super) struct Face {
+    /// The largest first.
+    pub(super) facets: Vec<Triangle>,
+    pub(super) bounds: Aabb,
+    pub(super) normal: DVec3,
+    /// As their facets have them.
+    rims: Vec<[DVec3; 2]>,
+}
+
+impl Face {
+    fn new(solid: &Solid, facets: &[[u32; 3]], normal: DVec3) -> Self {
+        let corner = |v: u32| solid.vertices()[v as usize];
+        let mut edges: Vec<([u32; 2], bool)> =
+            facets.iter().flat_map(|&facet| sides(facet)).collect();
+        edges.sort_unstable();
+        let alone = edges.chunk_by(|a, b| a.0 == b.0).filter_map(|same| {
+            let turned = same.iter().filter(|(_, turned)| *turned).count();
+            // Those that run both ways are inside; of a fold more may run one way.
+            let more = same.len().abs_diff(2 * turned);
+            let ([a, b], turned) = (same[0].0.map(corner), 2 * turned > same.len());
+            (more > 0).then(|| std::iter::repeat_n(if turned { [b, a] } else { [a, b] }, more))
+        });
+        let rims: Vec<_> = alone.flatten().collect();
+        let facets: Vec<Triangle> = facets.iter().map(|t| t.map(corner)).collect();
+        let bounds = Aabb::of_points(facets.iter().flatten().copied());
+        Self { facets, bounds, normal, rims }
+    }
+
+    /// The faces of what lies in a region, the largest facets' first.
+    pub(super) fn all_in(solid: &Solid, region: &Aabb, reach: f64) -> Vec<Self> {
+        let corner = |v: u32| solid.vertices()[v as usize];
+        let within = |t: &[u32; 3]| Aabb::of_points(t.map(corner)).meets(region);
+        let facets: Vec<[u32; 3]> = solid.triangles().iter().copied().filter(within).collect();
+        let areas: Vec<DVec3> = facets.iter().map(|t| twice_area(&t.map(corner))).collect();
+        let mut order: Vec<usize> = (0..facets.len()).collect();
+        order.sort_by(|&a, &b| areas[b].length_squared().total_cmp(&areas[a].length_squared()));
+        let neighbours = neighbours(&facets);
+        let mut taken = vec![false; facets.len()];
+        let mut faces = Vec::new();
+        for seed in order {
+            let Some(normal) = areas[seed].try_normalize().filter(|_| !taken[seed]) else {
+                continue;
+            };
+            let foot = normal.dot(corner(facets[seed][0]));
+            taken[seed] = true;
+            let mut own = vec![seed];
+            let mut next = 0;
+            while let Some(&at) = own.get(next) {
+                next += 1;
+                for other in neighbours[at].into_iter().filter(|&other| other != NONE) {
+                    let flat = |v: u32| (normal.dot(corner(v)) - foot).abs() <= reach * FLAT;
+                    let along = areas[other].dot(normal) >= TURNED * areas[other].length();
+                    if !taken[other] && along && facets[other].into_iter().all(flat) {
+                        taken[other] = true;
+                        own.push(other);
+                    }
+                }
+            }
+            let own: Vec<[u32; 3]> = own.into_iter().map(|k| facets[k]).collect();
+            faces.push(Self::new(solid, &own, normal));
+        }
+        faces
+    }
+
+    /// Corners of its rims, or of its facets if there are fewer.
+    pub(super) fn corners(&self) -> impl Iterator<Item = DVec3> {
+        let few = 3 * self.facets.len() < self.rims.len();
+        let facets = self.facets.iter().flatten().filter(move |_| few);
+        let rims = self.rims.iter().map(|rim| &rim[0]).filter(move |_| !few);
+        facets.chain(rims).copied()
+    }
+
+    /// The length of its rims.
+    pub(super) fn perimeter(&self) -> f64 {
+        self.rims.iter().map(|[a, b]| a.distance(*b)).sum()
+    }
+}
+
+/// The sides of a facet, the smaller vertex first, and whether the facet has it the other way.
+fn sides([a, b, c]: [u32; 3]) -> [([u32; 2], bool); 3] {
+    [[a, b], [b, c], [c, a]].map(|[a, b]| ([a.min(b), a.max(b)], a > b))
+}
+
+/// Across each side the facet that has it too, if one only has.
+fn neighbours(facets: &[[u32; 3]]) -> Vec<[usize; 3]> {
+    let mut edges: Vec<([u32; 2], usize, usize)> = Vec::with_capacity(3 * facets.len());
+    for (k, facet) in facets.iter().enumerate() {
+        edges
+            .extend(sides(*facet).into_iter().enumerate().map(|(side, (ends, _))| (ends, k, side)));
+    }
+    edges.sort_unstable();
+    let mut across = vec![[NONE; 3]; facets.len()];
+    for same in edges.chunk_by(|a, b| a.0 == b.0) {
+        if let &[(_, a, i), (_, b, j)] = same {
+            across[a][i] = b;
+            across[b][j] = a;
+        }
+    }
+    across
+}
+
+fn twice_area(t: &Triangle) -> DVec3 {
+    (t[1] - t[0]).cross(t[2] - t[0])
+}
+
+/// What of a face lies between two rims and two places along `x`.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Strip {
+    x: [f64; 2],
+    low: [f64; 2],
+    high: [f64; 2],
+}
+
+impl Strip {
+    /// Its corners, counter-clockwise.
+    pub(super) fn corners(&self) -> [DVec2; 4] {
+        let ([l, r], low, high) = (self.x, self.low, self.high);
+        [(l, low[0]), (r, low[1]), (r, high[1]), (l, high[0])].map(|(x, y)| DVec2::new(x, y))
+    }
+
+    fn meets(&self, other: &Self) -> bool {
+        let ends = |s: &Self| [s.low[0].min(s.low[1]), s.high[0].max(s.high[1])];
+        let ([low, high], [least, most]) = (ends(self), ends(other));
+        low < most && least < high
+    }
+}
+
+/// A face as it is swept: its strips in the order of their places, those of one place from below.
+pub(super) struct Swept(Vec<Strip>);
+
+impl Swept {
+    /// Within a range of `x`. `flat` is where a point is in the plane; `way` is 1, or -1 if facets run clockwise there.
+    pub(super) fn new(
+        face: &Face,
+        flat: impl Fn(DVec3) -> DVec2,
+        way: f64,
+        [from, to]: [f64; 2],
+    ) -> Self {
+        let mut rims: Vec<[DVec2; 2]> = face.rims.iter().map(|rim| rim.map(&flat)).collect();
+        if way < 0.0 {
+            for rim in &mut rims {
+                rim.swap(0, 1);
+            }
+        }
+        // From left to right; what runs along the other axis bounds nothing.
+        let mut lines: Vec<([DVec2; 2], i32)> = rims
+            .into_iter()
+            .filter(|[a, b]| a.x != b.x)
+            .map(|[a, b]| if a.x < b.x { ([a, b], 1) } else { ([b, a], -1) })
+            .collect();
+        lines.sort_by(|a, b| a.0[0].x.total_cmp(&b.0[0].x));
+        let mut places: Vec<f64> = lines.iter().flat_map(|(line, _)| line.map(|p| p.x)).collect();
+        places.extend([from, to]);
+        places.retain(|x| (from..=to).contains(x));
+        places.sort_unstable_by(f64::total_cmp);
+        places.dedup();
+        let mut strips = Vec::new();
+        let (mut active, mut next) = (Vec::new(), lines.into_iter().peekable());
+        for x in places.windows(2).map(|x| [x[0], x[1]]) {
+            active.retain(|(line, _): &([DVec2; 2], i32)| line[1].x > x[0]);
+            while let Some(line) = next.next_if(|(line, _)| line[0].x <= x[0]) {
+                if line.0[1].x > x[0] {
+                    active.push(line);
+                }
+            }
+            between(&active, x, &mut strips);
+        }
+        Self(strips)
+    }
+
+    /// Calls with all pairs of strips that may have something in common.
+    pub(super) fn each_pair(&self, other: &Self, mut call: impl FnMut(&Strip, &Strip)) {
+        let (mut first, all) = (0, &other.0);
+        for own in &self.0 {
+            while all.get(first).is_some_and(|strip| strip.x[1] <= own.x[0]) {
+                first += 1;
+            }
+            for strip in all[first..].iter().take_while(|strip| strip.x[0] < own.x[1]) {
+                if own.meets(strip) {
+                    call(own, strip);
+                }
+            }
+        }
+    }
+}
+
+/// The strips between lines that have no end between two places.
+fn between(active: &[([DVec2; 2], i32)], x: [f64; 2], strips: &mut Vec<Strip>) {
+    let at = |[a, b]: [DVec2; 2], x: f64| {
+        let share = ((x - a.x) / (b.x - a.x)).clamp(0.0, 1.0);
+        if share < 1.0 { a.y + (b.y - a.y) * share } else { b.y }
+    };
+    let mut lines: Vec<([f64; 2], i32)> =
+        active.iter().map(|&(line, way)| (x.map(|x| at(line, x)), way)).collect();
+    lines.sort_by(|a, b| (a.0[0] + a.0[1]).total_cmp(&(b.0[0] + b.0[1])));
+    let (mut inside, mut low) = (0, [0.0; 2]);
+    for (y, way) in lines {
+        if inside <= 0 && inside + way > 0 {
+            low = y;
+        } else if inside > 0 && inside + way <= 0 {
+            strips.push(Strip { x, low, high: y });
+        }
+        inside += way;
+    }
+}

@@ -1,5 +1,6 @@
 //! Where numbers come from: the machine, the build, the day and the command.
 
+use std::path::Path;
 use std::thread::available_parallelism;
 use std::time::{Duration, SystemTime};
 
@@ -90,11 +91,17 @@ fn system() -> String {
     }
 }
 
-/// The command as one could type it, with the program's name for its path.
+/// The command as one could type it, with names for paths from the root: folders are this machine's affair.
 fn command(mut arguments: impl Iterator<Item = String>) -> String {
-    let program = arguments.next().unwrap_or_default();
-    let name = program.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
+    let named = |path: &str| path.rsplit(['/', '\\']).next().unwrap_or_default().to_owned();
+    let name = named(&arguments.next().unwrap_or_default());
     let quoted = arguments.map(|argument| {
+        let (option, value) = argument.split_once('=').unwrap_or(("", &argument));
+        let argument = match (Path::new(value).has_root(), option) {
+            (false, _) => argument,
+            (true, "") => named(value),
+            (true, option) => format!("{option}={}", named(value)),
+        };
         let is_plain = |c: char| c.is_alphanumeric() || "-_./=,:".contains(c);
         if !argument.is_empty() && argument.chars().all(is_plain) {
             argument
@@ -128,6 +135,9 @@ mod tests {
             "colltrans-lab all -o 'my dir'"
         );
         assert_eq!(typed(&["colltrans", "it's", ""]), r"colltrans 'it'\''s' ''");
+        let absolute =
+            ["solids", "--data", "/a/data", "--json=/tmp/b/c.json", "-o", "e/f", "g=h/i"];
+        assert_eq!(typed(&absolute), "solids --data data --json=c.json -o e/f g=h/i");
         assert_eq!(typed(&[]), "");
     }
 

@@ -9,7 +9,7 @@ mod judge;
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use clap::Parser;
@@ -153,25 +153,9 @@ fn row(name: &str, assembly: &Assembly, judged: bool) -> Result<Value, Box<dyn E
     let fit = Fit::default_for(assembly);
     let clock = Clock::start();
     let bodies = Bodies::new(assembly, fit)?;
-    let ready = clock.seconds();
-    let stages = Mutex::new(Vec::<(&str, f64)>::new());
-    let reached = |stage: Stage, _: usize, _: usize| {
-        let mut stages = stages.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        if stages.last().is_none_or(|(name, _)| *name != stage.name()) {
-            stages.push((stage.name(), clock.seconds()));
-        }
-    };
-    let found = question.ask(&bodies, Watch::default().with_progress(&reached))?;
+    let (found, stages) = asked(&question, &bodies, &clock)?;
     let mut told = vec![said(name, "", &found, clock.seconds(), judged)];
-    println!(
-        "{:>20}{}",
-        "",
-        by_stage(
-            ready,
-            &stages.into_inner().unwrap_or_else(std::sync::PoisonError::into_inner),
-            clock.seconds()
-        )
-    );
+    println!("{:>20}{stages}", "");
     if !found.plan.stuck.is_empty() && !found.suggestions.is_empty() {
         let clock = Clock::start();
         let suggested = suggest::applied(assembly.clone(), &found.suggestions)?;
@@ -182,12 +166,28 @@ fn row(name: &str, assembly: &Assembly, judged: bool) -> Result<Value, Box<dyn E
     Ok(json!({ "name": name, "plans": told }))
 }
 
-/// What of the time went where.
-fn by_stage(ready: f64, stages: &[(&str, f64)], end: f64) -> String {
-    let ends = stages.iter().skip(1).map(|stage| stage.1).chain([end]);
-    let each =
-        stages.iter().zip(ends).map(|((name, from), to)| format!(", {name} {:.2}", to - from));
-    format!("of it bodies {ready:.2}{} s", each.collect::<String>())
+/// What is found, and what of the time went where.
+fn asked<'a>(
+    question: &Question,
+    bodies: &'a Bodies<'a>,
+    clock: &Clock,
+) -> Result<(Findings<'a>, String), Box<dyn Error>> {
+    let stages = Mutex::new(vec![("bodies", 0.0), ("", clock.seconds())]);
+    let known = || stages.lock().unwrap_or_else(PoisonError::into_inner);
+    let reached = |stage: Stage, _: usize, _: usize| {
+        let mut stages = known();
+        if stages.last().is_none_or(|(name, _)| *name != stage.name()) {
+            stages.push((stage.name(), clock.seconds()));
+        }
+    };
+    let found = question.ask(bodies, Watch::default().with_progress(&reached))?;
+    let stages = known();
+    let ends = stages.iter().skip(1).map(|stage| stage.1).chain([clock.seconds()]);
+    let each = stages.iter().zip(ends).filter(|((name, _), _)| !name.is_empty());
+    let each: Vec<String> =
+        each.map(|((name, from), to)| format!("{name} {:.2}", to - from)).collect();
+    let directions = found.matrix.directions().len();
+    Ok((found, format!("of it {} s; {directions} directions", each.join(", "))))
 }
 
 fn said(name: &str, options: &str, found: &Findings, seconds: f64, judged: bool) -> Value {
@@ -238,8 +238,9 @@ fn turned(name: &str, parts: &[NamedPart]) -> Result<Value, Box<dyn Error>> {
             let question = Question::default().with_gravity(-up);
             let clock = Clock::start();
             let bodies = Bodies::new(&assembly, Fit::default_for(&assembly))?;
-            let found = question.ask(&bodies, Watch::default())?;
+            let (found, stages) = asked(&question, &bodies, &clock)?;
             seconds[k] = clock.seconds();
+            println!("{:>20}{stages}", "");
             steps[k] = found.plan.steps.len();
         }
         println!(

@@ -1,5 +1,7 @@
-//! What the boxes around two bodies tell of a cast, before anything is searched: that one passes the other, or that they
-//! touch, so that nothing but their exact places says more.
+//! What the boxes around two bodies tell of a cast, before anything is searched: that one passes the other, or leaves it
+//! behind, or that they touch, so that nothing but their exact places says more.
+
+use glam::DVec3;
 
 use super::{Cast, NOISES, SolidFree};
 use crate::answer::{Clearance, Separation, SolidSteps};
@@ -11,23 +13,40 @@ use crate::solve::solid::separate::Boxes;
 /// Boxes touch that are apart, or overlap, by so many noises.
 const TOUCHING: f64 = 16.0;
 
+/// What the boxes tell.
+pub(super) enum Told {
+    /// Nothing stops the moving body.
+    Passing(Clearance<Solid>),
+    /// They touch, to within rounding, and have the axes of the world, up to signs.
+    Touching,
+    Nothing,
+}
+
 impl Cast<'_, Solid> {
-    /// That nothing stops the moving body, if a plane along the direction parts the boxes.
-    pub(super) fn passing(&self) -> Option<Clearance<Solid>> {
+    /// What the boxes around the bodies tell, unless a gap is to be kept or the bodies are said to overlap.
+    pub(super) fn told_by_boxes(&self) -> Told {
         let (setting, options) = (&self.setting, self.options);
         if options.keep > 0.0 || options.overlapping == Some(true) {
-            return None;
+            return Told::Nothing;
         }
-        let bodies = [self.moving(), self.fixed()];
         let noise = setting.noise().point();
+        let boxes = Boxes::new(setting, &[self.moving().bounds(), self.fixed().bounds()]);
         // Shrunk, they have more room.
         let slack = TOUCHING * noise + 2.0 * options.tolerance.unwrap_or(NOISES * noise);
-        let normal = Boxes::new(setting, &bodies.map(Solid::bounds)).across(slack)?;
+        if let Some(passing) = boxes.across(slack).and_then(|normal| self.passing(normal)) {
+            return Told::Passing(passing);
+        }
+        let squared = permutes(setting.moving_matrix) && permutes(setting.fixed_matrix);
+        if squared && boxes.touch(TOUCHING * noise) { Told::Touching } else { Told::Nothing }
+    }
+
+    /// That nothing stops the moving body, if a plane along the direction, with a normal, parts the boxes.
+    fn passing(&self, normal: DVec3) -> Option<Clearance<Solid>> {
         let tolerance = self.tolerance();
         self.check_left(tolerance).ok()?;
         let (boxes, noise) = self.shrunk_boxes(tolerance / 2.0);
         let margin = boxes.margin(normal, noise);
-        let separation = options.before.is_none().then_some(Separation { normal, margin });
+        let separation = self.options.before.is_none().then_some(Separation { normal, margin });
         let free = SolidFree { separation, steps: SolidSteps::default() };
         (margin > 0.0).then_some(Clearance::Free(free))
     }
@@ -44,22 +63,5 @@ impl Cast<'_, Solid> {
         let moved: f64 = bodies.map(|body| body.moved_by(amount)).iter().sum();
         let noise = Noise::of(self.setting.scale() + moved).point();
         (Boxes::new(&self.setting, &bodies.map(|body| body.box_shrunk_by(amount))), noise)
-    }
-
-    /// Whether the bodies have the axes of the world, up to signs, and their boxes touch, to within rounding.
-    pub(super) fn boxes_touch(&self) -> bool {
-        let (setting, options) = (&self.setting, self.options);
-        if options.keep > 0.0 || options.overlapping == Some(true) {
-            return false;
-        }
-        let matrices = [&setting.moving_matrix, &setting.fixed_matrix];
-        if !matrices.iter().all(|matrix| permutes(**matrix)) {
-            return false;
-        }
-        let boxes = [self.moving(), self.fixed()].map(Solid::bounds);
-        let [p, q] = [0, 1].map(|k| *matrices[k] * boxes[k].center());
-        let [a, b] = [0, 1].map(|k| (*matrices[k] * (boxes[k].size() * 0.5)).abs());
-        let room = ((q + setting.offset - p).abs() - a - b).max_element();
-        room.abs() <= TOUCHING * setting.noise().point()
     }
 }

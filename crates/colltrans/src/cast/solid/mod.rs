@@ -322,11 +322,12 @@ impl<'a> Cast<'a, Solid> {
     /// As [`Self::clearance`].
     pub fn clearance_in(&self, workspace: &mut Workspace) -> Result<Clearance<Solid>, QueryError> {
         let mut steps = SolidSteps::default();
-        if let Some(answer) = self.passing() {
+        let by_boxes = self.told_by_boxes();
+        if let boxes::Told::Passing(answer) = by_boxes {
             return Ok(answer);
         }
-        // Hulls are asked first, unless boxes touch, and for all unless they say that the bodies overlap.
-        let touching = self.boxes_touch();
+        // Where boxes touch, the bodies' exact places are asked before their hulls; where hulls overlap by little, facets.
+        let touching = matches!(by_boxes, boxes::Told::Touching);
         let hulls = if touching { None } else { Hulls::of(self) };
         let in_doubt = touching || hulls.as_ref().is_some_and(Hulls::are_sunk);
         if !in_doubt && let Some(answer) = hulls.as_ref().and_then(|hulls| hulls.certain(self)) {
@@ -464,7 +465,7 @@ impl<'a> Cast<'a, Solid> {
 
     /// What is told of the clearance before any search; the same whether a proof is wanted or not.
     fn told_at_once(&self, scene: &Scene) -> Option<Clearance<Solid>> {
-        if let Some(answer) = self.passing() {
+        if let boxes::Told::Passing(answer) = self.told_by_boxes() {
             return Some(answer);
         }
         let hulls = Hulls::of(self)?;

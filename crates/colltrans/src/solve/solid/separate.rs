@@ -11,7 +11,7 @@
 //! the shadow of one of six axes that parts them most. Boxes say no more than the bodies, so such a margin is
 //! proven by the vertices as well.
 
-use glam::{DMat3, DVec2, DVec3};
+use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 
 use super::projected::Projected;
 use super::scene::{Scene, Side, size};
@@ -81,10 +81,7 @@ impl<'s, 'a> Boxes<'s, 'a> {
     pub(crate) fn across(&self, slack: f64) -> Option<DVec3> {
         let Self { matrices, halves, apart, .. } = self;
         let unit = self.setting.unit;
-        // Balls inside of boxes that are parted are, too.
-        let inner = halves[0].min_element() + halves[1].min_element() - slack;
-        let ahead = apart.dot(unit);
-        if inner > 0.0 && apart.length_squared() - ahead * ahead < inner * inner {
+        if self.is_middle_ahead() {
             return None;
         }
         let between = matrices[0].transpose() * matrices[1];
@@ -110,6 +107,21 @@ impl<'s, 'a> Boxes<'s, 'a> {
             }
         }
         widest?.reject_from_normalized(unit).try_normalize()
+    }
+
+    /// Whether the line through the middle of the moving one meets the fixed one: then no plane along it parts them.
+    fn is_middle_ahead(&self) -> bool {
+        let back = self.matrices[1].transpose();
+        let (along, apart, half) = (back * self.setting.unit, back * self.apart, self.halves[1]);
+        let (away, size) = (apart.cross(along).abs(), along.abs());
+        let reach = half.yzx() * size.zxy() + half.zxy() * size.yzx();
+        away.cmple(reach).all()
+    }
+
+    /// Whether they touch, to within rounding, of bodies that have the axes of the world, up to signs.
+    pub(crate) fn touch(&self, rounding: f64) -> bool {
+        let [p, q] = [0, 1].map(|k| (self.matrices[k] * self.halves[k]).abs());
+        (self.apart.abs() - p - q).max_element().abs() <= rounding
     }
 
     /// The margin that is proven along a normal of the world, from the moving body on.

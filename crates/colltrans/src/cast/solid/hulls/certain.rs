@@ -213,7 +213,7 @@ impl<'h, 'a> Told<'h, 'a> {
         let spots = self.spots(contact);
         let (triangles, steps) = match known {
             Some(known) => known,
-            None => (self.facets(contact, &spots)?, SolidSteps::default()),
+            None => (self.facets(contact, &spots, pierced.sine)?, SolidSteps::default()),
         };
         let points = contact.points(&self.hulls.cast);
         let contact = SolidContact {
@@ -253,11 +253,11 @@ impl<'h, 'a> Told<'h, 'a> {
         })
     }
 
-    /// A facet of either body there.
-    fn facets(&self, contact: &Contact, spots: &[Spot; 2]) -> Option<[u32; 2]> {
+    /// A facet of either body there; edges cross with at least this sine of their angle.
+    fn facets(&self, contact: &Contact, spots: &[Spot; 2], sine: f64) -> Option<[u32; 2]> {
         let facet = |k: usize| {
             let place = Place::of(&contact.certificate.pairs, k);
-            self.sides[k].facet(place, &spots[k], self.noise)
+            self.sides[k].facet(place, &spots[k], [self.noise, sine])
         };
         Some([facet(0)?, facet(1)?])
     }
@@ -265,8 +265,9 @@ impl<'h, 'a> Told<'h, 'a> {
 
 /// A triangle of `M` that the line pierces.
 struct Pierced {
-    /// The least one across the direction.
+    /// The least one across the direction, and as a share of the longest side.
     altitude: f64,
+    sine: f64,
     least_weight: f64,
     /// How much higher along the contact's normal a corner is than where the line pierces.
     rise: f64,
@@ -289,7 +290,8 @@ impl Pierced {
         let rise = rises.into_iter().fold(0.0, f64::max) - mean;
         let slope = contact.normal.dot(unit);
         let clear = altitude > ALTITUDES * noise && slope >= STEEPEST;
-        clear.then_some(Self { altitude, least_weight, rise, slope, noise })
+        let sine = altitude / longest;
+        clear.then_some(Self { altitude, sine, least_weight, rise, slope, noise })
     }
 
     /// By how much the line may pierce it higher when its corners are moved by so much; `None` if it may miss it.
@@ -328,17 +330,14 @@ impl Side<'_> {
     }
 
     /// A facet that looks at the other body, shrunk or not, with a point in it, or on an edge or a corner, clearly.
-    fn facet(&self, place: Place, spot: &Spot, noise: f64) -> Option<u32> {
+    fn facet(&self, place: Place, spot: &Spot, [noise, sine]: [f64; 2]) -> Option<u32> {
         let looks = |t: u32| self.looks_ahead(t, noise).then_some(t);
         match place {
             Place::Corner(v) => self.surface.around(v).find_map(|(t, _)| looks(t)),
             Place::Edge([a, b]) => {
                 let beside = self.surface.beside(a, b).or_else(|| self.surface.beside(b, a));
-                match beside {
-                    Some(beside) => beside.into_iter().find_map(looks),
-                    // Across a face.
-                    None => looks(self.face(a, spot, noise)?),
-                }
+                let beside = beside.or_else(|| self.part_of_edge(a, spot, noise, sine))?;
+                beside.into_iter().find_map(looks)
             }
             Place::Face([corner, ..]) => looks(self.face(corner, spot, noise)?),
         }
@@ -353,9 +352,29 @@ impl Side<'_> {
         area.dot(self.ahead) > least
     }
 
+    /// The facets on either side of a part of an edge of the hull, from a corner of that on, with a point clearly on it: so
+    /// far from its ends as edges may be off each other along it; the same facet twice if it has the point clearly inside,
+    /// as where the edge is no more than a line across a face.
+    fn part_of_edge(&self, corner: u32, spot: &Spot, noise: f64, sine: f64) -> Option<[u32; 2]> {
+        let near = self.near(noise);
+        let triangle = self.surface.facet_at(corner, spot, near)?;
+        let [beside, clear] =
+            [near, near / sine].map(|slack| self.surface.inside(triangle, spot, slack));
+        let Some(k) = beside.iter().position(|&side| side <= 0.0) else {
+            return Some([triangle; 2]);
+        };
+        let on = clear[(k + 1) % 3] > 0.0 && clear[(k + 2) % 3] > 0.0;
+        on.then(|| [triangle, self.surface.solid.neighbours()[triangle as usize][k]])
+    }
+
+    /// How near to a facet's sides a point has to be to be in doubt.
+    fn near(&self, noise: f64) -> f64 {
+        2.0 * self.moved + SIDEWAYS * noise
+    }
+
     /// The facet with a point clearly inside, of a face with a corner.
     fn face(&self, corner: u32, spot: &Spot, noise: f64) -> Option<u32> {
-        let near = 2.0 * self.moved + SIDEWAYS * noise;
+        let near = self.near(noise);
         let triangle = self.surface.facet_at(corner, spot, near)?;
         let inside = self.surface.inside(triangle, spot, near);
         inside.iter().all(|&side| side > 0.0).then_some(triangle)

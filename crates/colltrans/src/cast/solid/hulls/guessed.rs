@@ -47,9 +47,7 @@ impl Hulls<'_> {
             _ => None,
         }
     }
-}
 
-impl Hulls<'_> {
     /// Whether the bodies overlap by as little, as far as their hulls tell, as facets around their contact may show.
     pub(in crate::cast::solid) fn are_sunk(&self) -> bool {
         let Outcome::Contact(contact) = &self.first else { return false };

@@ -1,9 +1,13 @@
 """STEP files: tessellated, with chord errors that are measured."""
 
 import json
+import re
 import subprocess
 import sys
+import time
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -14,7 +18,9 @@ from colltrans import step
 RADIUS, HEIGHT = 10.0, 30.0
 
 
-def rod(name: str = "rod", scale: str = ".MILLI.") -> str:
+def rod(
+    name: str = "rod", scale: str = ".MILLI.", colour: tuple[float, float, float] | None = None
+) -> str:
     """A cylinder about z, as a STEP file."""
     lines: list[str] = []
 
@@ -73,6 +79,16 @@ def rod(name: str = "rod", scale: str = ".MILLI.") -> str:
     definition = put(f"PRODUCT_DEFINITION('design','',{formation},{design})")
     defined = put(f"PRODUCT_DEFINITION_SHAPE('','',{definition})")
     put(f"SHAPE_DEFINITION_REPRESENTATION({defined},{shape})")
+    if colour is not None:
+        rgb = put("COLOUR_RGB('',{!r},{!r},{!r})".format(*colour))
+        of = put(f"FILL_AREA_STYLE_COLOUR('',{rgb})")
+        area = put(f"FILL_AREA_STYLE('',({of}))")
+        filled = put(f"SURFACE_STYLE_FILL_AREA({area})")
+        sides = put(f"SURFACE_SIDE_STYLE('',({filled}))")
+        usage = put(f"SURFACE_STYLE_USAGE(.BOTH.,{sides})")
+        style = put(f"PRESENTATION_STYLE_ASSIGNMENT(({usage}))")
+        item = put(f"STYLED_ITEM('color',({style}),{brep})")
+        put(f"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',({item}),{context})")
     body = "\n".join(lines)
     return (
         "ISO-10303-21;\nHEADER;\nFILE_DESCRIPTION((''),'2;1');\nFILE_NAME('','',(''),(''),'','','');\n"
@@ -150,6 +166,46 @@ def test_the_command_line_writes_a_file(tmp_path: Path) -> None:
     assert [part["name"] for part in told["parts"]] == ["rod"]
     piped = subprocess.run([*call, "-"], cwd=tmp_path, capture_output=True, check=True)
     assert piped.stdout == (tmp_path / "rod.glb").read_bytes()
+
+
+def test_colours_are_those_of_the_file(tmp_path: Path) -> None:
+    """Of STEP as screens have them, of glTF linear; without a colour none is made up."""
+    pytest.importorskip("cascadio")
+
+    def material(text: str) -> object:
+        (tmp_path / "rod.step").write_text(text)
+        glb, _ = step.convert(tmp_path / "rod.step")
+        document = step.Glb.parse(glb).document
+        (primitive,) = document["meshes"][0]["primitives"]
+        if "material" not in primitive:
+            return None
+        look = document["materials"][primitive["material"]]["pbrMetallicRoughness"]
+        return look["baseColorFactor"]
+
+    assert material(rod(colour=(1.0, 0.0, 0.5))) == pytest.approx([1.0, 0.0, 0.214, 1.0], abs=1e-3)
+    assert material(rod()) is None
+
+
+class Shapes(step.Glb):
+    """A file whose shapes have no faces, each of which takes some time."""
+
+    def faces(self, mesh: int) -> Iterator[Any]:
+        time.sleep(0.03)
+        yield from ()
+
+
+def test_big_files_say_how_far_they_are(
+    monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    """Now and then, not of every shape, and not of small ones at all."""
+    shapes = Shapes({"meshes": [{}] * 10}, b"")
+    step.measure(shapes, None)
+    assert capfd.readouterr().err == ""
+    monkeypatch.setattr(step, "_SAID_EVERY", 0.1)
+    assert len(step.measure(shapes, None)) == 10
+    said = capfd.readouterr().err.splitlines()
+    assert 0 < len(said) < 4
+    assert all(re.fullmatch(r"measuring chord errors: \d of 10 shapes", line) for line in said)
 
 
 def test_what_is_no_step_file_is_refused(tmp_path: Path) -> None:

@@ -11,7 +11,7 @@ use crate::matrix::Matrix;
 use crate::plan::{Plan, PlanOptions, Times, disassemble, remove};
 use crate::rooms::PartRoom;
 use crate::start::Start;
-use crate::suggest::{Suggestion, suggestions};
+use crate::suggest::{Suggestion, loose_threads, suggestions};
 use crate::watch::Watch;
 
 /// What is asked of an assembly.
@@ -35,7 +35,7 @@ pub struct Findings<'a> {
     pub bodies: &'a Bodies<'a>,
     /// Overlaps at the start.
     pub start: Start,
-    /// What overlaps may be.
+    /// What overlaps may be, and threads with play that hold what does not come apart.
     pub suggestions: Vec<Suggestion>,
     /// Who touches whom.
     pub liaisons: Vec<Liaison>,
@@ -103,6 +103,9 @@ impl Question {
             [] => disassemble(bodies, matrix, &candidates.finer, self.options, watch)?,
             parts => remove(bodies, matrix, &candidates.finer, parts, self.options, watch)?,
         };
+        for stuck in &found.plan.stuck {
+            found.suggestions.extend(loose_threads(bodies, &stuck.parts)?);
+        }
         Ok(found)
     }
 

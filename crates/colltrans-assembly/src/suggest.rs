@@ -4,13 +4,15 @@
 //! if one lies in the other about an axis all along their common length, and then it is a *press* fit if the vertices of
 //! the one lie farther out than those of the other, else chord errors of two tessellations; else no more than an overlap,
 //! for which there may be a tolerance. A ring that is called circlip, or the like, *snaps* into the groove of a part that
-//! stops it either way. Nothing is proven by any of this. What overlaps deeper, as balls in rings that are drawn too tight, moves as
+//! stops it either way. Of parts that do not come apart threads with play are found, too, which do not overlap. Nothing is proven by any of this. What overlaps deeper, as balls in rings that are drawn too tight, moves as
 //! one: with a tolerance that lets them pass they would slip through what holds them.
 
 use std::collections::BTreeMap;
 
+use colltrans::Solid;
 use colltrans::solid::{StartOverlap, Workspace};
 use glam::DVec3;
+use rayon::prelude::*;
 
 use crate::bodies::{Bodies, Room, two_digits_up};
 use crate::candidates::inertia;
@@ -121,16 +123,8 @@ fn suggestion(bodies: &Bodies, overlap: &Overlap) -> Option<Suggestion> {
     if let Some(soft) = soft {
         return said(Some(Role::Soft), tolerance, format!("{} is called so", soft.name()));
     }
-    if let Some((thread, pitch)) = Thread::of(solids).and_then(|t| Some((t, t.pitch?))) {
-        let hand = if pitch < 0.0 { ", left-handed" } else { "" };
-        let [hole, crest] = thread.radii;
-        let why = format!(
-            "a helix of pitch {}{hand}, between radii of {} and {}",
-            short(pitch.abs()),
-            short(hole),
-            short(crest)
-        );
-        return said(Some(Role::Thread), None, why);
+    if let Some((thread, pitch)) = helix(solids) {
+        return said(Some(Role::Thread), None, helix_words(&thread, pitch));
     }
     let tolerance = Some(tolerance?);
     if let Some(round) = Round::of(solids) {
@@ -144,6 +138,48 @@ fn suggestion(bodies: &Bodies, overlap: &Overlap) -> Option<Suggestion> {
     }
     overlap.is_within(bodies, FACETS).then_some(())?;
     said(None, tolerance, "a shallow overlap".into())
+}
+
+/// The thread of two parts and its pitch, if there is a helix.
+fn helix(solids: [&Solid; 2]) -> Option<(Thread, f64)> {
+    let thread = Thread::of(solids)?;
+    Some((thread, thread.pitch?))
+}
+
+fn helix_words(thread: &Thread, pitch: f64) -> String {
+    let hand = if pitch < 0.0 { ", left-handed" } else { "" };
+    let [hole, crest] = thread.radii.map(short);
+    format!("a helix of pitch {}{hand}, between radii of {hole} and {crest}", short(pitch.abs()))
+}
+
+/// Threads with play among parts that do not come apart: of pairs that do not overlap, and of which nothing is said. One is all
+/// around the helix of the other, and stops it either way along its axis within a turn.
+///
+/// # Errors
+/// Too many parts lie within each other's boxes.
+pub fn loose_threads(bodies: &Bodies, stuck: &[usize]) -> Result<Vec<Suggestion>, AssemblyError> {
+    let among = bodies.mask(stuck);
+    let mut pairs = bodies.neighbours(0.0)?;
+    pairs.retain(|&[a, b]| {
+        among[a] && among[b] && bodies.assembly().pair(a, b).is_none() && !bodies.overlaps(a, b)
+    });
+    let found = pairs.into_par_iter().filter_map(|parts| {
+        let solids = parts.map(|k| bodies.assembly().parts()[k].solid());
+        let (thread, pitch) = helix(solids)?;
+        let mut workspace = Workspace::default();
+        let mut stops = |d: DVec3| {
+            let room = bodies.room(parts, d, None, StartOverlap::Refuse, &mut workspace);
+            matches!(room, Room::Blocked(stop) if stop.distance() <= pitch.abs())
+        };
+        let axis = thread.axis[1];
+        let holds = thread.is_surrounded(solids[1 - thread.screw])
+            && stops(axis)
+            && stops(DVec3::ZERO - axis);
+        let fit = PairFit { role: Some(Role::Thread), tolerance: None };
+        let why = format!("{}, with play", helix_words(&thread, pitch));
+        holds.then_some(Suggestion { parts, fit, why })
+    });
+    Ok(found.collect())
 }
 
 /// The assembly with what is suggested, and a note of each.

@@ -64,6 +64,23 @@ impl Thread {
         self.radii[0] / self.radii[1]
     }
 
+    /// Whether the other part is on all sides of the screw, as near as its crest; a wheel that a worm drives is not.
+    pub(crate) fn is_surrounded(&self, other: &Solid) -> bool {
+        let [point, axis] = self.axis;
+        let flat = flattened(axis);
+        let middle = flat(point);
+        let mut sides = [false; 4];
+        for t in other.triangles() {
+            let corners = t.map(|v| flat(other.vertices()[v as usize]));
+            if distance(middle, corners) <= self.radii[1] {
+                for out in corners.map(|corner| corner - middle) {
+                    sides[usize::from(out.x < 0.0) + 2 * usize::from(out.y < 0.0)] = true;
+                }
+            }
+        }
+        sides == [true; 4]
+    }
+
     /// The screw with its thread moved inwards; `None` if that is no surface of a solid.
     pub fn core(&self, screw: &Solid) -> Option<Solid> {
         let [point, axis] = self.axis;

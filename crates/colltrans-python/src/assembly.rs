@@ -25,7 +25,7 @@ use colltrans_assembly::report::html;
 use colltrans_assembly::roles::{PairFit, Passed, Role, Tolerated};
 use colltrans_assembly::rooms::{PartRoom, rooms};
 use colltrans_assembly::start::Start;
-use colltrans_assembly::suggest::{Suggestion, suggestions};
+use colltrans_assembly::suggest::{Suggestion, loose_threads, suggestions};
 use colltrans_assembly::{
     AssemblyError, Bodies, Findings, Fit, Ignored, Part, Piece, Question, Watch,
 };
@@ -330,9 +330,18 @@ impl Assembly {
         self.with(|assembly| assembly.with_pair([&first, &second], fit))
     }
 
-    fn suggestions(&self, py: Python<'_>, tolerance: Option<f64>) -> PyResult<Vec<PassedRow>> {
+    fn suggestions(
+        &self,
+        py: Python<'_>,
+        tolerance: Option<f64>,
+        stuck: Vec<Vec<usize>>,
+    ) -> PyResult<Vec<PassedRow>> {
         let found = self.ask(py, Choices::new(tolerance, false), |bodies, watch| {
-            Ok(suggestions(bodies, &Start::new(bodies, watch)?))
+            let mut all = suggestions(bodies, &Start::new(bodies, watch)?);
+            for parts in &stuck {
+                all.extend(loose_threads(bodies, parts)?);
+            }
+            Ok(all)
         })?;
         let row = |s: Suggestion| (s.parts, s.fit.role.map(Role::name), s.fit.tolerance, s.why);
         Ok(found.into_iter().map(row).collect())

@@ -596,14 +596,25 @@ class Assembly:
         lists = _list(first), _list(second)
         return self._of(self._assembly.with_pair(*lists, role, tolerance))
 
-    def suggestions(self, *, tolerance: float | None = None) -> list[PairFit]:
+    def suggestions(
+        self, *, tolerance: float | None = None, stuck: Sequence[Stuck] = ()
+    ) -> list[PairFit]:
         """What pairs that overlap with a tolerance may be to each other; nothing is proven by it.
+
+        Parameters
+        ----------
+        tolerance : float, optional
+            As for :meth:`rooms`.
+        stuck : sequence of Stuck
+            Of a plan, what does not come apart: threads with play are looked for among its parts.
 
         Examples
         --------
         ``parts.with_suggestions(parts.suggestions()).plan()`` takes them for granted.
         """
-        return [self._fit(*pair) for pair in self._assembly.suggestions(tolerance)]
+        number = {name: k for k, name in enumerate(self.parts)}
+        held = [[number[part] for part in group.parts] for group in stuck]
+        return [self._fit(*pair) for pair in self._assembly.suggestions(tolerance, held)]
 
     def with_suggestions(self, fits: Sequence[PairFit]) -> "Assembly":
         """The same with these said of their pairs."""
@@ -716,7 +727,7 @@ class Assembly:
             ``direction``, ``shape``, ``group``, ``hold``, ``press``, ``soft``, ``snap``,
             ``thread``.
         auto : bool
-            If parts overlap and do not come apart: once more, with what their overlaps
+            If parts do not come apart: once more, with what their overlaps and threads
             :meth:`suggest <suggestions>`; ``taken`` of the plan says what.
 
         Returns
@@ -742,7 +753,7 @@ class Assembly:
                 "times": times,
             }
             once = self.plan(directions, **asked)
-            taken = self.suggestions(tolerance=tolerance) if once.stuck else []
+            taken = self.suggestions(tolerance=tolerance, stuck=once.stuck) if once.stuck else []
             if not taken:
                 return once
             again = self.with_suggestions(taken).plan(directions, **asked)

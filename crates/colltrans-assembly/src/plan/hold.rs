@@ -11,6 +11,8 @@ use crate::matrix::Matrix;
 
 /// Least sets are listed up to this many for a part.
 const MOST_SETS: usize = 4;
+/// In a sentence so many parts are named, and one more.
+const MOST_NAMES: usize = 3;
 
 /// The least that would have to go for a part to come out.
 #[derive(Debug, Clone, PartialEq)]
@@ -77,9 +79,50 @@ fn keep_least(sets: &mut Vec<(Vec<usize>, DVec3)>, set: Vec<usize>, d: DVec3) {
 }
 
 impl Stuck {
-    /// The reason in words.
-    pub fn because(&self, bodies: &Bodies) -> String {
+    /// Why, in one sentence.
+    pub fn reason(&self, bodies: &Bodies) -> String {
         let name = |k: usize| bodies.assembly().parts()[k].name();
+        if let [[a, b], rest @ ..] = &self.overlapping[..] {
+            let more = match rest.len() {
+                0 => String::new(),
+                1 => ", and so does one more pair".into(),
+                more => format!(", and so do {more} more pairs"),
+            };
+            return format!(
+                "As they are drawn, {} and {} run into each other{more}, and such parts cannot be parted.",
+                name(*a),
+                name(*b)
+            );
+        }
+        let count = self.parts.len();
+        let pulled = if count == 2 { "it is pulled" } else { "they are pulled" };
+        let way = match (self.proven, self.directions) {
+            (Some(_), _) => format!("Whichever way {pulled}"),
+            (None, 1) => "In the direction that was asked".into(),
+            (None, directions) => format!("In all {directions} directions that were tried"),
+        };
+        let asked =
+            if self.constrained { ", as the order and directions are asked for" } else { "" };
+        match self.easiest() {
+            Some((part, by)) if count == 2 => {
+                format!("{way}, {} is held by {}{asked}.", name(part), listed(bodies, by))
+            }
+            Some((part, by)) => format!(
+                "{way}, these {count} parts hold each other{asked}, and {} is held by the fewest, {}.",
+                name(part),
+                listed(bodies, by)
+            ),
+            None => format!("{way}, none of these {count} parts leaves the others{asked}."),
+        }
+    }
+
+    /// Why, in words: the [reason](Self::reason), and how that is known.
+    pub fn because(&self, bodies: &Bodies) -> String {
+        format!("{} {}", self.reason(bodies), self.details(bodies))
+    }
+
+    /// How that is known, and what may help.
+    pub fn details(&self, bodies: &Bodies) -> String {
         let directions = match self.proven {
             Some(cells) => {
                 format!("in any direction, which is proven in {cells} cells of the sphere,")
@@ -89,55 +132,66 @@ impl Stuck {
         };
         let mut text = match (&self.overlapping[..], self.fixed) {
             ([], false) => {
-                format!("no single straight motion {directions} takes them apart")
+                format!("No single straight motion {directions} takes them apart")
             }
             ([], true) => {
                 format!(
-                    "no single straight motion {directions} takes any of them from what is fixed or \
+                    "No single straight motion {directions} takes any of them from what is fixed or \
                      from each other"
                 )
             }
-            ([[a, b], rest @ ..], _) => {
-                let more = match rest.len() {
-                    0 => String::new(),
-                    1 => ", and so do those of one more pair".into(),
-                    more => format!(", and so do those of {more} more pairs"),
-                };
-                let parts = bodies.assembly().parts();
-                let open = self.parts.iter().filter(|&&part| parts[part].is_surface()).count();
-                let open = match open {
-                    0 => String::new(),
-                    open => format!(
-                        "; {open} of these {} are open surfaces, of which it is not known what is \
-                         inside",
-                        self.parts.len()
-                    ),
-                };
-                format!(
-                    "{} and {} run into each other as they are drawn{more}, and such parts move as \
-                     one, unless a tolerance or a role is given for them{open}",
-                    name(*a),
-                    name(*b)
-                )
-            }
+            _ => self.as_one(bodies),
         };
         if self.constrained {
             text.push_str("; what is asked of their order and directions counts");
         }
         text.push_str(&self.moves.words());
-        let easiest =
-            self.holds.iter().filter(|h| !h.by.is_empty()).min_by_key(|h| h.by[0].0.len());
-        if let Some(hold) = easiest {
-            let (set, _) = &hold.by[0];
-            let names: Vec<&str> = set.iter().map(|&k| name(k)).collect();
+        if let Some((part, by)) = self.easiest() {
             let _ = write!(
                 text,
                 "; the least that holds a part: {} is held by {}",
-                name(hold.part),
-                names.join(", ")
+                bodies.assembly().parts()[part].name(),
+                bodies.assembly().names(by).join(", ")
             );
         }
         text
+    }
+
+    /// What becomes of parts that overlap.
+    fn as_one(&self, bodies: &Bodies) -> String {
+        let parts = bodies.assembly().parts();
+        let open = self.parts.iter().filter(|&&part| parts[part].is_surface()).count();
+        let open = match open {
+            0 => String::new(),
+            open => format!(
+                "; {open} of these {} are open surfaces, of which it is not known what is inside",
+                self.parts.len()
+            ),
+        };
+        format!(
+            "Parts that overlap move as one, unless a tolerance or a role is given for them{open}"
+        )
+    }
+
+    /// The part that the fewest others hold, and those.
+    fn easiest(&self) -> Option<(usize, &[usize])> {
+        let held = self.holds.iter().filter_map(|hold| Some((hold.part, &hold.by.first()?.0[..])));
+        held.filter(|(_, by)| !by.is_empty()).min_by_key(|(_, by)| by.len())
+    }
+}
+
+/// Names in a sentence, of many the first ones.
+fn listed(bodies: &Bodies, parts: &[usize]) -> String {
+    let names = bodies.assembly().names(parts);
+    match &names[..] {
+        [first @ .., last] if (1..=MOST_NAMES).contains(&first.len()) => {
+            format!("{} and {last}", first.join(", "))
+        }
+        [first @ .., _] if !first.is_empty() => {
+            let more = names.len() - MOST_NAMES;
+            format!("{} and {more} more", names[..MOST_NAMES].join(", "))
+        }
+        _ => names.concat(),
     }
 }
 

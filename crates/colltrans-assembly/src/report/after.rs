@@ -118,28 +118,22 @@ fn stuck(r: &Report) -> Markup {
         @if !r.f.plan.stuck.is_empty() {
             h3 { "What stays together, and why" }
             ul {
-                @for s in &r.f.plan.stuck { li { b { (r.words.names(&s.parts)) } ": " (why(r, s)) } }
+                @for s in &r.f.plan.stuck {
+                    li { b { (r.words.names(&s.parts)) ": " (s.reason(r.f.bodies)) } " " (known(s)) }
+                }
             }
         }
     }
 }
 
-/// Why parts stay together, in sentences.
-fn why(r: &Report, stuck: &Stuck) -> String {
-    let name = |part: usize| r.f.bodies.assembly().parts()[part].name();
+/// How it is known that parts stay together, in sentences.
+fn known(stuck: &Stuck) -> String {
     let mut said = Vec::new();
-    if let [[a, b], rest @ ..] = &stuck.overlapping[..] {
-        let more = match rest.len() {
-            0 => String::new(),
-            1 => ", as are those of one more pair".into(),
-            more => format!(", as are those of {more} more pairs"),
-        };
-        said.push(format!(
-            "{} and {} are drawn into each other{more}; such parts are moved as one, unless a tolerance or a role is \
-             given for them.",
-            name(*a),
-            name(*b)
-        ));
+    if !stuck.overlapping.is_empty() {
+        said.push(
+            "Parts that overlap move as one, unless a tolerance or a role is given for them."
+                .into(),
+        );
     }
     let off = if stuck.fixed { "from the others or from what is fixed" } else { "from the others" };
     said.push(match stuck.proven {
@@ -167,14 +161,6 @@ fn why(r: &Report, stuck: &Stuck) -> String {
     });
     if stuck.constrained {
         said.push("The order and directions that were asked for count here.".into());
-    }
-    let held = stuck.holds.iter().filter(|hold| !hold.by.is_empty());
-    if let Some(hold) = held.min_by_key(|hold| hold.by[0].0.len()) {
-        said.push(format!(
-            "Easiest to free is {}: it is held by {}.",
-            name(hold.part),
-            r.words.names(&hold.by[0].0)
-        ));
     }
     said.join(" ")
 }
@@ -235,17 +221,22 @@ fn overlaps(r: &Report) -> Markup {
                     " Try a tolerance of " (short(tolerance)) " or, for curved fits, the chord errors of both parts together."
                 }
             }
-            @let said = suggested(r);
-            @if !said.is_empty() {
+        }
+        @let said = suggested(r);
+        @if !said.is_empty() {
+            @if remaining > 0 {
                 p { "They may be on purpose; --auto takes all of these for granted:" }
-                ul { @for text in said.iter().take(MOST_SAID) { li { (text) } } }
-                @if said.len() > MOST_SAID { p { (said.len() - MOST_SAID) " more are in assembly.json." } }
+            } @else {
+                h3 { "What may hold" }
+                p { "With --auto all of these are taken for granted:" }
             }
+            ul { @for text in said.iter().take(MOST_SAID) { li { (text) } } }
+            @if said.len() > MOST_SAID { p { (said.len() - MOST_SAID) " more are in assembly.json." } }
         }
     }
 }
 
-/// What pairs that overlap may be, the largest overlap of like ones first.
+/// What pairs may be, the largest overlap of like ones first.
 fn suggested(r: &Report) -> Vec<String> {
     let mut all: Vec<&Suggestion> = r.f.suggestions.iter().collect();
     let tolerance = |s: &Suggestion| s.fit.tolerance.unwrap_or(0.0);

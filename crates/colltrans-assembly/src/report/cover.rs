@@ -10,8 +10,9 @@ use super::html::{Report, picture};
 use super::kinds::{Kind, kinds};
 use super::scene::{Look, Scene, Shown};
 use super::sheet::step_words;
-use super::words::time;
+use super::words::{sentence, time};
 use crate::Fit;
+use crate::plan::Stuck;
 
 /// The width of the picture in pixels, and bounds of its height.
 const WIDTH: f64 = 860.0;
@@ -65,6 +66,15 @@ fn summary(r: &Report, kinds: usize) -> String {
     format!("{count} parts{shapes}, {size} overall.{unit}{fit}{work}")
 }
 
+/// Why parts stay together, a sentence for each group of them.
+fn reasons(r: &Report) -> String {
+    let reason = |stuck: &Stuck| {
+        let parts = r.words.group(&stuck.parts);
+        format!("{parts}: {}", stuck.reason(r.f.bodies))
+    };
+    r.f.plan.stuck.iter().map(reason).collect::<Vec<_>>().join(" ")
+}
+
 /// How far the plan comes, in a sentence.
 fn result(r: &Report) -> Markup {
     let (plan, words) = (&r.f.plan, &r.words);
@@ -73,14 +83,11 @@ fn result(r: &Report) -> Markup {
         @if let Some(wanted) = &plan.wanted {
             p.partly { "To take out " (wanted.words(r.f.bodies.assembly())) "." }
         } @else if plan.steps.is_empty() && !plan.left.is_empty() {
-            p.warn { "Nothing can be taken out; why is said at the end." }
+            p.warn { "Nothing can be taken out. " (reasons(r)) }
         } @else if whole && !plan.last.is_empty() {
             p.proof { "It comes apart wholly. " (words.names(&plan.last)) " stays where it is, the rest is taken off it." }
         } @else if !whole {
-            p.warn {
-                "What stays together, and why, is said at the end: "
-                (plan.stuck.iter().map(|s| words.group(&s.parts)).collect::<Vec<_>>().join("; ")) "."
-            }
+            p.warn { "Not all comes apart. " (reasons(r)) }
         }
         @let remaining = r.f.start.remaining().count();
         @if remaining > 0 {
@@ -96,7 +103,7 @@ fn result(r: &Report) -> Markup {
 fn notes(r: &Report) -> Markup {
     let notes = r.f.bodies.assembly().notes();
     html! {
-        @for note in notes.iter().take(MOST_NOTES) { p.warn { (note) } }
+        @for note in notes.iter().take(MOST_NOTES) { p.warn { (sentence(note)) } }
         @if notes.len() > MOST_NOTES { p.soft { (notes.len() - MOST_NOTES) " more notes are in assembly.json." } }
     }
 }

@@ -195,6 +195,14 @@ pub(super) fn numbers(all: &[usize]) -> String {
     }
 }
 
+/// A note as a sentence: begun with a capital, unless it begins with a name, and with a full stop.
+pub(super) fn sentence(note: &str) -> String {
+    let first = note.split(' ').next().unwrap_or_default();
+    let is_word = !first.is_empty() && first.bytes().all(|c| c.is_ascii_lowercase());
+    let begun = if is_word { first[..1].to_uppercase() + &note[1..] } else { note.to_owned() };
+    if begun.ends_with(['.', '!', '?']) { begun } else { begun + "." }
+}
+
 /// Seconds, from two minutes on in minutes.
 pub(super) fn time(seconds: f64) -> String {
     if seconds < 120.0 {
@@ -214,6 +222,13 @@ mod tests {
         assert_eq!(numbers(&[3, 0, 1, 2, 5, 7, 8]), "1–4, 6, 8, 9");
         assert_eq!(numbers(&[]), "");
         assert_eq!(numbers(&[2, 5, 6, 9, 11, 14, 17]), "3, … 18");
+    }
+
+    #[test]
+    fn notes_are_sentences() {
+        let told = ["taken as suggested: soft of a,b", "bolt.stl: open.", "leg_1 is open", ""];
+        let known = ["Taken as suggested: soft of a,b.", "bolt.stl: open.", "leg_1 is open.", "."];
+        assert_eq!(told.map(sentence), known);
     }
 
     #[test]

@@ -450,12 +450,11 @@ fn what_is_stuck_is_said_of_the_directions_asked() {
     let options = PlanOptions::default().with_samples(0).with_proofs(false);
     let plan = disassemble(&bodies, &matrix, &finer, options, Watch::default()).unwrap();
     assert_eq!(plan.stuck[0].directions, 4);
+    let reason = "In all 4 directions that were tried, a is held by b.";
+    assert_eq!(plan.stuck[0].reason(&bodies), reason);
+    let details = "No single straight motion along the 4 directions asked takes them apart; ";
     let because = plan.stuck[0].because(&bodies);
-    assert!(
-        because
-            .starts_with("no single straight motion along the 4 directions asked takes them apart"),
-        "{because}"
-    );
+    assert!(because.starts_with(&format!("{reason} {details}")), "{because}");
 }
 
 #[test]

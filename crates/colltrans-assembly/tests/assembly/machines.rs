@@ -2,7 +2,7 @@
 
 use colltrans_assembly::plan::{Plan, PlanOptions};
 use colltrans_assembly::report::html;
-use colltrans_assembly::roles::{PairFit, Role};
+use colltrans_assembly::roles::Role;
 use colltrans_assembly::suggest::applied;
 use colltrans_assembly::{Assembly, Bodies, Findings, Fit, Part, Piece, Question, Watch};
 use colltrans_mesh::Mesh;
@@ -70,18 +70,33 @@ fn a_radial_engine_comes_apart_cylinder_by_cylinder() {
     assert!(page.contains("barrel_4") && page.contains("rod_3"));
 }
 
+/// Steps that unscrew parts: proven, and looked at against what is left.
+fn unscrewed(assembly: &Assembly, plan: &Plan, turns: std::ops::Range<f64>) {
+    let mut left: Vec<usize> = (0..assembly.parts().len()).collect();
+    for step in &plan.steps {
+        left.retain(|part| !step.parts.contains(part));
+        if let Some(turn) = step.turn() {
+            assert!(turns.contains(&turn.turns.abs()), "{turn:?}");
+            crate::common::turns_freely(assembly, step, &left);
+        }
+    }
+}
+
+/// Threads with play, which do not overlap: found where they hold, and taken as suggested.
 #[test]
-fn screws_in_modelled_threads_are_unscrewed() {
-    let thread = PairFit { role: Some(Role::Thread), tolerance: None };
-    let assembly = assembled(threaded_block());
-    let assembly = assembly.with_pair([&["base"], &["screw*"]], thread).unwrap();
-    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+fn screws_in_modelled_threads_are_found_and_unscrewed() {
+    let drawn = assembled(threaded_block());
+    let fit = Fit::default_for(&drawn);
+    let found = crate::common::suggested(&Bodies::new(&drawn, fit).unwrap());
+    let pairs: Vec<Vec<&str>> = found.iter().map(|s| drawn.names(&s.parts)).collect();
+    assert_eq!(pairs, [["base", "screw_0"], ["base", "screw_1"]], "{found:?}");
+    assert!(found.iter().all(|s| s.fit.role == Some(Role::Thread) && s.why.ends_with("with play")));
+    let assembly = applied(drawn.clone(), &found).unwrap();
+    let bodies = Bodies::new(&assembly, fit).unwrap();
     let plan = crate::common::planned(&bodies, PlanOptions::default());
     assert_eq!(told(&assembly, &plan, "base"), ["2 x screw", "cap", "shaft"]);
-    for step in &plan.steps[..2] {
-        let turn = step.turn().unwrap();
-        assert!(turn.proof.is_ok() && (1.8..2.3).contains(&turn.turns.abs()), "{turn:?}");
-    }
+    assert!(plan.steps[..2].iter().all(|step| step.turn().is_some()), "{plan:?}");
+    unscrewed(&assembly, &plan, 1.8..2.3);
 }
 
 #[test]
@@ -102,9 +117,9 @@ fn legs_that_run_into_their_threads_are_turned_to_where_they_fit_and_unscrewed()
             turn.proof.as_ref().is_ok_and(|proof| proof.tolerance == fit.tolerance()),
             "{turn:?}"
         );
-        assert!((1.95..2.1).contains(&turn.turns.abs()), "{turn:?}");
         // The leg goes down: it is turned back, as seen from there.
         assert!((turn.phase - by).abs() < 0.1, "{by} {turn:?}");
         assert!((turn.aside.length() - known).abs() < 0.02, "{aside:?} {turn:?}");
     }
+    unscrewed(&assembly, &plan, 1.95..2.1);
 }

@@ -2,9 +2,6 @@
 
 use std::f64::consts::TAU;
 
-use colltrans::motion::{MotionCast, MotionOutcome};
-use colltrans::solid::SolidOptions;
-use colltrans::{Cast, Pose, Solid};
 use colltrans_assembly::candidates::{Choice, candidates};
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::matrix::Matrix;
@@ -13,7 +10,7 @@ use colltrans_assembly::roles::{PairFit, Role};
 use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Watch, record};
 use colltrans_mesh::Mesh;
 use colltrans_testkit::shapes::{self, helical};
-use glam::{DAffine3, DMat3, DQuat, DVec3};
+use glam::{DAffine3, DQuat, DVec3};
 
 use crate::common::{cuboid, part};
 
@@ -70,34 +67,10 @@ fn turn(plan: &Plan) -> (&Leg, &Turn) {
     (leg, leg.turn.as_ref().unwrap())
 }
 
-/// The motion has a certificate, which is checked, and in places all along both moves bodies that are shrunk by half of the
-/// tolerance each do not overlap.
 fn is_free(assembly: &Assembly, plan: &Plan) {
-    let step = &plan.steps[0];
-    let (leg, turn) = turn(plan);
-    let tolerance = turn.proof.as_ref().unwrap().tolerance;
-    let options = SolidOptions::default().with_tolerance(tolerance);
-    for &moving in &step.parts {
-        for fixed in (0..assembly.parts().len()).filter(|k| !step.parts.contains(k)) {
-            let [own, other] = [moving, fixed].map(|k| assembly.parts()[k].solid());
-            let motion = leg.motion().unwrap();
-            let cast = MotionCast::new(own.along(&motion), other.at(Pose::IDENTITY)).unwrap();
-            let cast = cast.tolerating(tolerance).unwrap();
-            let MotionOutcome::Free(free) = cast.certified_first_contact().unwrap() else {
-                panic!()
-            };
-            assert_eq!(cast.verify(&free.proof).unwrap(), [1.0, f64::INFINITY]);
-            for k in 0..=60 {
-                let (share, beyond) = ((f64::from(k) / 45.0).min(1.0), f64::from(k - 45).max(0.0));
-                let matrix = DMat3::from_quat(turn.rotation(leg, share));
-                let by = leg.moved(DVec3::ZERO, share) + step.direction * 0.3 * beyond;
-                let pose = Pose::from_matrix(matrix, by).unwrap();
-                let cast = Cast::<Solid>::new(own.at(pose), other.at(Pose::IDENTITY), DVec3::Z);
-                let cast = cast.unwrap().with_options(options).unwrap();
-                assert!(!cast.overlaps(), "{moving} {fixed} {share} {beyond}");
-            }
-        }
-    }
+    let others: Vec<usize> =
+        (0..assembly.parts().len()).filter(|k| !plan.steps[0].parts.contains(k)).collect();
+    crate::common::turns_freely(assembly, &plan.steps[0], &others);
 }
 
 #[test]

@@ -8,7 +8,9 @@ use std::path::{Path, PathBuf};
 use crate::common::{CUBE, mesh_of_3mf, package};
 use allocation_counter::measure;
 use base64::Engine;
+use colltrans_assembly::plan::Plan;
 use colltrans_assembly::read::{ReadOptions, Split, read, read_from};
+use colltrans_assembly::report::glb::animation;
 use colltrans_assembly::{Assembly, Bodies, Fit, ReadError};
 use colltrans_testkit::shapes::block;
 use glam::DVec3;
@@ -59,6 +61,57 @@ fn gltf(change: impl FnOnce(&mut Value)) -> Vec<u8> {
     let mut file = cube_gltf();
     change(&mut file);
     file.to_string().into_bytes()
+}
+
+/// Two cubes, the first of two primitives, each of some material.
+fn coloured(materials: &Value, [large, small, other]: [Value; 3]) -> Assembly {
+    let file = gltf(|file| {
+        let shape = |material: Value, indices: usize| {
+            let mut shape = json!({"attributes": {"POSITION": 0}, "indices": indices});
+            if !material.is_null() {
+                shape["material"] = material;
+            }
+            shape
+        };
+        file["materials"] = materials.clone();
+        file["scenes"][0]["nodes"] = json!([0, 1]);
+        file["nodes"] =
+            json!([{"mesh": 0, "name": "a"}, {"mesh": 1, "name": "b", "translation": [3, 0, 0]}]);
+        let cube = json!({"bufferView": 1, "componentType": 5123, "count": 12, "type": "SCALAR"});
+        file["accessors"].as_array_mut().unwrap().push(cube);
+        file["meshes"] = json!([
+            {"primitives": [shape(small, 2), shape(large, 1)]},
+            {"primitives": [shape(other, 1)]},
+        ]);
+    });
+    from_memory("a.gltf", &[("a.gltf", file)]).unwrap()
+}
+
+/// Linear in the file, as screens have it in parts; and so again where a plan is written and read.
+#[test]
+fn parts_have_the_colour_of_their_largest_primitive() {
+    let of = |colour: [f64; 4]| json!({"pbrMetallicRoughness": {"baseColorFactor": colour}});
+    let materials = json!([
+        of([1.0, 0.0, 0.214_041, 1.0]),
+        of([0.0, 1.0, 0.0, 1.0]),
+        {"pbrMetallicRoughness": {"baseColorFactor": [1, 1, 1, 1], "baseColorTexture": {"index": 0}}},
+    ]);
+    let near = |found: Option<[f64; 3]>, known: [f64; 3]| {
+        let found = found.expect("it has a colour");
+        assert!((0..3).all(|k| (found[k] - known[k]).abs() < 1e-3), "{found:?} {known:?}");
+    };
+    let read = coloured(&materials, [json!(0), json!(1), json!(1)]);
+    let written = animation(&read, &Plan::default());
+    for assembly in [&read, &colltrans_assembly::read::glb("b.glb", &written).unwrap()] {
+        near(assembly.parts()[0].colour(), [1.0, 0.0, 0.5]);
+        near(assembly.parts()[1].colour(), [0.0, 1.0, 0.0]);
+    }
+    // A picture, no material, and one that is not there are no colour.
+    for none in [json!(2), Value::Null, json!(7)] {
+        let read = coloured(&materials, [json!(0), json!(1), none]);
+        near(read.parts()[0].colour(), [1.0, 0.0, 0.5]);
+        assert_eq!(read.parts()[1].colour(), None);
+    }
 }
 
 /// Something that is changed in a file.

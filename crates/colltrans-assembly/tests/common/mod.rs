@@ -5,13 +5,16 @@
 
 use std::io::Write;
 
-use colltrans_assembly::plan::{Plan, PlanOptions};
+use colltrans::motion::{MotionCast, MotionOutcome};
+use colltrans::solid::SolidOptions;
+use colltrans::{Cast, Pose, Solid};
+use colltrans_assembly::plan::{Plan, PlanOptions, Step};
 use colltrans_assembly::suggest::Suggestion;
 use colltrans_assembly::{Assembly, Bodies, Part, Piece, Question, Watch};
 use colltrans_mesh::Mesh;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::block;
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 /// The unit cube, as a file.
 pub const CUBE: &str = "OFF\n8 6 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n\
@@ -48,6 +51,34 @@ pub fn suggested(bodies: &Bodies) -> Vec<Suggestion> {
     let options = PlanOptions::default().with_proofs(false).with_legs(1);
     let question = Question::default().with_options(options);
     question.ask(bodies, Watch::default()).unwrap().suggestions
+}
+
+/// The motion of a step that unscrews has a certificate against these parts, which is checked, and in places all along both
+/// moves bodies that are shrunk by half of the tolerance each do not overlap.
+pub fn turns_freely(assembly: &Assembly, step: &Step, others: &[usize]) {
+    let leg = &step.path[0];
+    let turn = leg.turn.as_ref().unwrap();
+    let tolerance = turn.proof.as_ref().unwrap().tolerance;
+    let options = SolidOptions::default().with_tolerance(tolerance);
+    let motion = leg.motion().unwrap();
+    for (moving, fixed) in step.parts.iter().flat_map(|a| others.iter().map(move |b| (a, b))) {
+        let [own, other] = [moving, fixed].map(|k| assembly.parts()[*k].solid());
+        let cast = MotionCast::new(own.along(&motion), other.at(Pose::IDENTITY)).unwrap();
+        let cast = cast.tolerating(tolerance).unwrap();
+        let MotionOutcome::Free(free) = cast.certified_first_contact().unwrap() else {
+            panic!("{moving} meets {fixed}")
+        };
+        assert_eq!(cast.verify(&free.proof).unwrap(), [1.0, f64::INFINITY]);
+        for k in 0..=60 {
+            let (share, beyond) = ((f64::from(k) / 45.0).min(1.0), f64::from(k - 45).max(0.0));
+            let matrix = DMat3::from_quat(turn.rotation(leg, share));
+            let by = leg.moved(DVec3::ZERO, share) + step.direction * 0.3 * beyond;
+            let pose = Pose::from_matrix(matrix, by).unwrap();
+            let cast = Cast::<Solid>::new(own.at(pose), other.at(Pose::IDENTITY), DVec3::Z);
+            let cast = cast.unwrap().with_options(options).unwrap();
+            assert!(!cast.overlaps(), "{moving} {fixed} {share} {beyond}");
+        }
+    }
 }
 
 /// A package of files, zipped.

@@ -171,7 +171,7 @@ pub(crate) struct RoleArguments {
     /// A tolerance of a pair's own, whatever --tolerance is
     #[arg(long, value_name = "A,B=L")]
     pub(crate) pair: Vec<String>,
-    /// If parts overlap and do not come apart: once more, with what their overlaps suggest; it is said
+    /// If parts do not come apart: once more, with what their overlaps and threads suggest; it is said
     #[arg(long, conflicts_with = "keep_apart")]
     pub(crate) auto: bool,
 }

@@ -164,13 +164,14 @@ fn summary(f: &Findings) -> String {
         let _ = writeln!(text, "left\n  {}", names(&f.plan.left));
     }
     for stuck in &f.plan.stuck {
-        let because = shown(stuck.because(f.bodies));
+        let (reason, details) = (stuck.reason(f.bodies), stuck.details(f.bodies));
+        let (reason, details) = (shown(reason), shown(details));
         let head = match (stuck.proven, &stuck.overlapping[..]) {
             (Some(_), []) => "stuck along all directions, proven",
             (Some(_), _) => "stuck along all directions, proven of what overlaps as one",
             (None, _) => "stuck along the directions asked",
         };
-        let _ = writeln!(text, "{head}\n  {}: {because}", names(&stuck.parts));
+        let _ = writeln!(text, "{head}\n  {}: {reason}\n    {details}", names(&stuck.parts));
     }
     for (name, map) in &f.maps {
         match &map.cover {
@@ -285,6 +286,9 @@ fn overlaps(text: &mut String, f: &Findings) {
         let [a, b] = o.parts.map(|k| shown(f.bodies.assembly().parts()[k].name()));
         let depth = o.depth.map_or("by more than their size".into(), |d| format!("by {d}"));
         let _ = writeln!(text, "  {a}, {b} {depth}");
+    }
+    if remaining.is_empty() && !f.suggestions.is_empty() {
+        text.push_str("what may hold\n");
     }
     for said in suggest::told(f.bodies.assembly(), &f.suggestions) {
         let _ =

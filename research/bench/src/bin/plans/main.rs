@@ -200,7 +200,7 @@ fn said(name: &str, options: &str, found: &Findings, seconds: f64, judged: bool)
         plan.steps.len(),
     );
     let whole = plan.left.is_empty() && plan.stuck.is_empty();
-    let reasons: Vec<String> = plan.stuck.iter().map(|s| s.because(found.bodies)).collect();
+    let reasons: Vec<String> = plan.stuck.iter().map(|s| s.reason(found.bodies)).collect();
     for reason in &reasons {
         println!("{:>20}{reason}", "");
     }

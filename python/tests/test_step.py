@@ -80,13 +80,17 @@ def rod(
     defined = put(f"PRODUCT_DEFINITION_SHAPE('','',{definition})")
     put(f"SHAPE_DEFINITION_REPRESENTATION({defined},{shape})")
     if colour is not None:
-        rgb = put("COLOUR_RGB('',{!r},{!r},{!r})".format(*colour))
-        of = put(f"FILL_AREA_STYLE_COLOUR('',{rgb})")
-        area = put(f"FILL_AREA_STYLE('',({of}))")
-        filled = put(f"SURFACE_STYLE_FILL_AREA({area})")
-        sides = put(f"SURFACE_SIDE_STYLE('',({filled}))")
-        usage = put(f"SURFACE_STYLE_USAGE(.BOTH.,{sides})")
-        style = put(f"PRESENTATION_STYLE_ASSIGNMENT(({usage}))")
+        style = "{!r},{!r},{!r}".format(*colour)
+        for text in (
+            "COLOUR_RGB('',{})",
+            "FILL_AREA_STYLE_COLOUR('',{})",
+            "FILL_AREA_STYLE('',({}))",
+            "SURFACE_STYLE_FILL_AREA({})",
+            "SURFACE_SIDE_STYLE('',({}))",
+            "SURFACE_STYLE_USAGE(.BOTH.,{})",
+            "PRESENTATION_STYLE_ASSIGNMENT(({}))",
+        ):
+            style = put(text.format(style))
         item = put(f"STYLED_ITEM('color',({style}),{brep})")
         put(f"MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',({item}),{context})")
     body = "\n".join(lines)

@@ -9,7 +9,7 @@
 mod turning;
 
 use std::collections::BTreeMap;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use colltrans::free::{CellBlocker, FreeError, FreeOptions};
 use colltrans::solid::{
@@ -23,6 +23,7 @@ use crate::boxes::BoxTree;
 use crate::error::AssemblyError;
 use crate::part::{Assembly, Ignored, Part};
 use crate::roles::{Role, Tolerated};
+use crate::slabs::Slabs;
 use crate::threads::Thread;
 use colltrans::Aabb;
 
@@ -186,6 +187,8 @@ pub struct Bodies<'a> {
     own: BTreeMap<[usize; 2], Arc<Displaced>>,
     boxes: Vec<Aabb>,
     tree: BoxTree,
+    /// Along the directions that are asked of all, once they are known.
+    slabs: OnceLock<Slabs>,
     /// Pairs whose bodies overlap where they are, the smaller index first, sorted.
     overlapping: Vec<[usize; 2]>,
     /// Pairs whose overlap is ignored, with the further tolerance with which there is none, if there is
@@ -245,6 +248,7 @@ impl<'a> Bodies<'a> {
             own,
             boxes,
             tree,
+            slabs: OnceLock::new(),
             overlapping,
             passing,
             noise,
@@ -359,7 +363,29 @@ impl<'a> Bodies<'a> {
     pub(crate) fn ahead(&self, part: usize, d: DVec3) -> Vec<(f64, usize)> {
         let mut found = self.tree.ahead(&self.boxes[part], d);
         found.retain(|&(_, other)| other != part && !self.always_ignored(part, other));
+        if let Some(slabs) = self.slabs.get() {
+            found.retain_mut(|(t, other)| {
+                slabs.entry([part, *other], d).is_some_and(|least| {
+                    *t = t.max(least);
+                    true
+                })
+            });
+            found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        }
         found
+    }
+
+    /// From now on it is known how far parts reach along these unit directions, where such were not told before: what is
+    /// asked of it then, in any direction, takes less time.
+    pub(crate) fn measure_along(&self, directions: &[DVec3]) {
+        self.slabs.get_or_init(|| {
+            let mut bodies: Vec<Vec<&Solid>> =
+                self.displaced.iter().map(|part| vec![&part.solid]).collect();
+            for ([part, _], own) in &self.own {
+                bodies[*part].push(&own.solid);
+            }
+            Slabs::new(&bodies, self.fit.keep() / 2.0, directions)
+        });
     }
 
     /// Pairs whose boxes, grown by a length, meet; the smaller index first, in order.

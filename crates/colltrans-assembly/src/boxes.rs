@@ -12,19 +12,26 @@ pub(crate) fn entry(moving: &Aabb, other: &Aabb, d: DVec3) -> Option<f64> {
     let size = moving.low.abs().max(moving.high.abs()).max(other.low.abs()).max(other.high.abs());
     let slack = 8.0 * f64::EPSILON * size.max_element();
     let (low, high) = (other.low - moving.high - slack, other.high - moving.low + slack);
-    let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
+    let mut range = [0.0, f64::INFINITY];
     for k in 0..3 {
-        if d[k] == 0.0 {
-            if low[k] > 0.0 || high[k] < 0.0 {
-                return None;
-            }
-            continue;
-        }
-        let (x, y) = (low[k] / d[k], high[k] / d[k]);
-        enter = enter.max(x.min(y));
-        leave = leave.min(x.max(y));
+        range = narrowed(range, [low[k], high[k]], d[k])?;
     }
+    let [enter, leave] = range;
     (enter <= leave * (1.0 + 8.0 * f64::EPSILON)).then_some(enter * (1.0 - 8.0 * f64::EPSILON))
+}
+
+/// Of translations those at which an interval that moves meets another one, which is from `low` to `high` away from it;
+/// `None` if it does not move, and does not meet it. It may be empty.
+pub(crate) fn narrowed(
+    [enter, leave]: [f64; 2],
+    [low, high]: [f64; 2],
+    speed: f64,
+) -> Option<[f64; 2]> {
+    if speed == 0.0 {
+        return (low <= 0.0 && high >= 0.0).then_some([enter, leave]);
+    }
+    let (x, y) = (low / speed, high / speed);
+    Some([enter.max(x.min(y)), leave.min(x.max(y))])
 }
 
 const LEAF: usize = 4;

@@ -124,6 +124,7 @@ impl Question {
         let finer = |&direction: &DVec3| Finer { direction, origin: Origin::Given, part: None };
         candidates.finer.splice(0..0, self.finer.iter().map(finer));
         let (all, overlap) = (vec![true; bodies.len()], self.options.start);
+        bodies.measure_along(&candidates.directions());
         let matrix = Matrix::new(bodies, &candidates.directions(), &all, overlap, watch)?;
         Ok(Findings {
             suggestions: suggestions(bodies, &start),

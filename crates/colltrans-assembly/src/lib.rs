@@ -51,6 +51,7 @@ pub mod report;
 pub mod robot;
 pub mod roles;
 pub mod rooms;
+mod slabs;
 pub mod sphere;
 pub mod start;
 pub mod suggest;

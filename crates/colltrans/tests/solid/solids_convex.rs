@@ -258,6 +258,31 @@ fn plates_on_plates_are_told_without_a_search() {
 
 /// Sunk into each other by little, convex solids are seen to overlap by facets around the contact of their hulls; the least
 /// tolerance is the one of the place that a search finds, and the proof names what the answer does.
+/// Plates in different numbers of parts, whose sides and diagonals lie on each other's lines: facets that are said to stop
+/// the body do, with more than an edge of their shadows in common.
+#[test]
+fn facets_of_plates_whose_sides_line_up_stop_the_body() {
+    let (low, high) = (DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.25));
+    let bodies = [[1, 1, 1], [2, 2, 1], [3, 2, 1], [4, 4, 1], [6, 3, 1]]
+        .map(|parts| solid(&slab(low, high, parts)));
+    let mut told = 0;
+    for (moving, fixed) in bodies.iter().flat_map(|p| bodies.iter().map(move |q| (p, q))) {
+        for (i, j) in (-11..=11).flat_map(|i| (-11..=11).map(move |j| (i, j))) {
+            for direction in [DVec3::NEG_Z, DVec3::new(1.0, 0.0, -1.0), DVec3::new(1.0, 2.0, -3.0)]
+            {
+                let up = DVec3::new(f64::from(i) / 6.0, f64::from(j) / 6.0, 1.25);
+                let start = Pose::from_translation(up - direction).expect("a pose");
+                let cast = Cast::new(moving.at(start), fixed.at(Pose::IDENTITY), direction);
+                let cast = cast.expect("a query");
+                let (answer, proof) = cast.certified_clearance().expect("an answer");
+                cast.verify(&proof).unwrap_or_else(|fault| panic!("{i} {j}: {fault} {answer:?}"));
+                told += usize::from(nodes(&answer) == 0);
+            }
+        }
+    }
+    assert!(told > 10_000, "{told}");
+}
+
 #[test]
 fn convex_solids_that_are_sunk_are_seen_to_overlap_at_their_contact() {
     let mut random = Random::new(19);

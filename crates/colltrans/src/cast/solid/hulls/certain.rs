@@ -336,7 +336,7 @@ impl Side<'_> {
             Place::Corner(v) => self.surface.around(v).find_map(|(t, _)| looks(t)),
             Place::Edge([a, b]) => {
                 let beside = self.surface.beside(a, b).or_else(|| self.surface.beside(b, a));
-                let beside = beside.or_else(|| self.part_of_edge(a, spot, noise, sine))?;
+                let beside = beside.or_else(|| self.part_of_edge([a, b], spot, noise, sine))?;
                 beside.into_iter().find_map(looks)
             }
             Place::Face([corner, ..]) => looks(self.face(corner, spot, noise)?),
@@ -352,18 +352,24 @@ impl Side<'_> {
         area.dot(self.ahead) > least
     }
 
-    /// The facets on either side of a part of an edge of the hull, from a corner of that on, with a point clearly on it: so
+    /// The facets on either side of a part of an edge of the hull with a point clearly on it: so
     /// far from its ends as edges may be off each other along it; the same facet twice if it has the point clearly inside,
-    /// as where the edge is no more than a line across a face.
-    fn part_of_edge(&self, corner: u32, spot: &Spot, noise: f64, sine: f64) -> Option<[u32; 2]> {
+    /// as where the edge is no more than a line across a face. A side that crosses such a line is no part of it: it may run
+    /// along the other body's edge, and facets beside that have no more than the edge in common.
+    fn part_of_edge(&self, ends: [u32; 2], spot: &Spot, noise: f64, sine: f64) -> Option<[u32; 2]> {
         let near = self.near(noise);
-        let triangle = self.surface.facet_at(corner, spot, near)?;
+        let triangle = self.surface.facet_at(ends[0], spot, near)?;
         let [beside, clear] =
             [near, near / sine].map(|slack| self.surface.inside(triangle, spot, slack));
         let Some(k) = beside.iter().position(|&side| side <= 0.0) else {
             return Some([triangle; 2]);
         };
-        let on = clear[(k + 1) % 3] > 0.0 && clear[(k + 2) % 3] > 0.0;
+        let [from, to] = ends.map(|v| self.surface.body.hull.vertices()[v as usize]);
+        let along = (to - from).try_normalize()?;
+        let corners = self.surface.corners(triangle);
+        let lies = |at: DVec3| along.cross(at - from).length() <= noise;
+        let runs_along = lies(corners[k]) && lies(corners[(k + 1) % 3]);
+        let on = runs_along && clear[(k + 1) % 3] > 0.0 && clear[(k + 2) % 3] > 0.0;
         on.then(|| [triangle, self.surface.solid.neighbours()[triangle as usize][k]])
     }
 

@@ -4,8 +4,9 @@
 //! if one lies in the other about an axis all along their common length, and then it is a *press* fit if the vertices of
 //! the one lie farther out than those of the other, else chord errors of two tessellations; else no more than an overlap,
 //! for which there may be a tolerance. A ring that is called circlip, or the like, *snaps* into the groove of a part that
-//! stops it either way. Of parts that do not come apart threads with play are found, too, which do not overlap. Nothing is proven by any of this. What overlaps deeper, as balls in rings that are drawn too tight, moves as
-//! one: with a tolerance that lets them pass they would slip through what holds them.
+//! stops it either way. Of parts that do not come apart threads with play are found, too, which do not overlap. Nothing is
+//! proven by any of this. What overlaps deeper, as balls in rings that are drawn too tight, moves as one: with a tolerance that
+//! lets them pass they would slip through what holds them.
 
 use std::collections::BTreeMap;
 
@@ -165,16 +166,20 @@ pub fn loose_threads(bodies: &Bodies, stuck: &[usize]) -> Result<Vec<Suggestion>
     });
     let found = pairs.into_par_iter().filter_map(|parts| {
         let solids = parts.map(|k| bodies.assembly().parts()[k].solid());
-        let (thread, pitch) = helix(solids)?;
         let mut workspace = Workspace::default();
-        let mut stops = |d: DVec3| {
+        let mut stops = |d: DVec3, within: f64| {
             let room = bodies.room(parts, d, None, StartOverlap::Refuse, &mut workspace);
-            matches!(room, Room::Blocked(stop) if stop.distance() <= pitch.abs())
+            matches!(room, Room::Blocked(stop) if stop.distance() <= within)
         };
-        let axis = thread.axis[1];
-        let holds = thread.is_surrounded(solids[1 - thread.screw])
-            && stops(axis)
-            && stops(DVec3::ZERO - axis);
+        let mut held =
+            |axis: DVec3, within| stops(axis, within) && stops(DVec3::ZERO - axis, within);
+        // What is screwed in goes no way at all; a helix is not looked for where something does.
+        if !DVec3::AXES.into_iter().all(|axis| held(axis, f64::INFINITY)) {
+            return None;
+        }
+        let (thread, pitch) = helix(solids)?;
+        let holds =
+            thread.is_surrounded(solids[1 - thread.screw]) && held(thread.axis[1], pitch.abs());
         let fit = PairFit { role: Some(Role::Thread), tolerance: None };
         let why = format!("{}, with play", helix_words(&thread, pitch));
         holds.then_some(Suggestion { parts, fit, why })

@@ -3,9 +3,9 @@
 //! Two facets are in contact if their normals are nearly opposite, and somewhere over the common
 //! shadow, seen along the first one's normal, they lie within `reach` of each other. Curved fits are
 //! tessellated differently on either side: hence "nearly", and a reach of the tolerance. Facets of one plane are taken
-//! together, as [faces](face): of two that are level with each other a sweep finds what they have in common.
+//! together, as faces (module `face`): of two that are level with each other a sweep finds what they have in common.
 //!
-//! An area is the sum of what has been clipped, and its rounding is bounded ([`rounding`]). Which
+//! An area is the sum of what has been clipped, and its rounding is bounded (`rounding`). Which
 //! facets are in contact, at 25 degrees and at `reach`, is decided as it is computed.
 //! Notation: `n` is the unit normal of the first part's facet, outwards: from the first part to the
 //! second.

@@ -14,7 +14,6 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::boxes::narrowed;
-use crate::matrix::bits;
 
 /// Rounding of how far apart slabs are, in multiples of the largest coordinate.
 const SLACK: f64 = 32.0 * f64::EPSILON;
@@ -35,7 +34,7 @@ impl Slabs {
     pub(crate) fn new(parts: &[Vec<&Solid>], around: f64, directions: &[DVec3]) -> Self {
         let mut normals: Vec<DVec3> = Vec::new();
         for &d in directions {
-            if !normals.iter().any(|n| [bits(d), bits(-d)].contains(&bits(*n))) {
+            if !normals.iter().any(|&n| n == d || n == -d) {
                 normals.push(d);
             }
         }

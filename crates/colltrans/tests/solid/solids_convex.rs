@@ -319,3 +319,74 @@ fn convex_solids_that_are_sunk_are_seen_to_overlap_at_their_contact() {
     println!("{searched} of {asked} are searched");
     assert!(asked > 1_000 && 20 * searched < asked, "{searched} of {asked}");
 }
+
+/// A vertex that rises over its face by so little that the hull is without it: what leaves the hull behind may overlap the
+/// solid, and then no answer says that it is free.
+#[test]
+fn what_a_hull_lacks_is_not_left_behind() {
+    const LAST: f64 = f64::EPSILON / 2.0;
+    let (mut lacking, mut overlapping) = (0, 0);
+    for rise in (10..130).step_by(8) {
+        let mut bar = slab(DVec3::new(-0.02, -1.0, -0.02), DVec3::new(0.0, 1.0, 0.02), [1, 2, 2]);
+        for v in bar.vertices.iter_mut().filter(|v| **v == DVec3::ZERO) {
+            v.x = f64::from(rise) * LAST;
+        }
+        let bar = bar.triangulated();
+        let Ok(bar) = Solid::from_mesh(&bar.vertices, &bar.faces) else { continue };
+        let hull = ConvexPolyhedron::from_points(bar.vertices()).expect("a hull");
+        lacking += usize::from(hull.vertices().len() < bar.vertices().len());
+        let cube = solid(&slab(DVec3::splat(-0.001), DVec3::splat(0.001), [1, 1, 1]));
+        for behind in (1..rise).step_by(3) {
+            for direction in [DVec3::X, DVec3::new(1.0, 0.3, 0.2), DVec3::new(1.0, 2.0, 0.0)] {
+                let place = DVec3::new(0.001 + f64::from(behind) * LAST, 0.0, 0.0);
+                let pose = Pose::from_translation(place).expect("a pose");
+                let cast = Cast::new(cube.at(pose), bar.at(Pose::IDENTITY), direction);
+                let cast = cast.and_then(|cast| cast.with_tolerance(0.0)).expect("a query");
+                let answer = cast.clearance().expect("an answer");
+                let told = matches!(answer, Clearance::Overlapping(_));
+                assert_eq!(told, cast.overlaps(), "{rise} {behind} {direction}: {answer:?}");
+                overlapping += usize::from(told);
+            }
+        }
+    }
+    assert!(lacking > 2 && overlapping > 100, "{lacking} {overlapping}");
+}
+
+/// Plates with vertices off their planes by more than rounding, as files of few digits have them: facets that lean out are
+/// not named for what lies over them, and the bounds are as near as those of a search.
+#[test]
+fn facets_of_dented_plates_stop_the_body() {
+    let mut random = Random::new(3);
+    for dent in [0.0, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 3e-10] {
+        for round in 0..400 {
+            let mut plate = |parts| loop {
+                let mut mesh = slab(DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.25), parts);
+                for v in &mut mesh.vertices {
+                    *v += random.direction() * dent;
+                }
+                let mesh = mesh.triangulated();
+                if let Ok(body) = Solid::from_mesh(&mesh.vertices, &mesh.faces) {
+                    break body;
+                }
+            };
+            let (moving, fixed) = (plate([3, 2, 1]), plate([2, 2, 1]));
+            let rotation = if round % 2 == 0 { DQuat::IDENTITY } else { random.rotation() };
+            let mut aside = |most: f64| random.range(-most, most);
+            let direction = rotation * DVec3::new(aside(0.3), aside(0.3), -1.0);
+            let above = rotation * DVec3::new(aside(1.0), aside(1.0), 1.25);
+            let [p, q] = [above, DVec3::ZERO].map(|at| Pose::new(rotation, at).expect("a pose"));
+            let cast = Cast::new(moving.at(p), fixed.at(q), direction).expect("a query");
+            let (answer, proof) = cast.certified_clearance().expect("an answer");
+            cast.verify(&proof)
+                .unwrap_or_else(|fault| panic!("{dent} {round}: {fault} {answer:?}"));
+            let Clearance::Blocked { contact, .. } = answer else { panic!("{answer:?}") };
+            let bounds = contact.shrunk_distance;
+            assert!(bounds.upper - bounds.lower < 1e-10, "{dent} {round}: {bounds:?}");
+            let stop = cast.stop_by(contact.triangles).expect("a stop").shrunk_distance;
+            assert!(
+                (stop.value - bounds.value).abs() < 1e-11,
+                "{dent} {round}: {stop:?} {bounds:?}"
+            );
+        }
+    }
+}

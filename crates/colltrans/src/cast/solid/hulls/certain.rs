@@ -59,9 +59,11 @@ impl Hulls<'_> {
                     return pierced.height(told.shift(true)).map(|_| free(None));
                 }
                 // Along the direction no plane parts shadows that overlap.
-                let last = self.last().filter(|last| last.certificate.lower > 0.0)?;
+                let last = self.last()?;
                 let pierced = Pierced::new(&self.cast.reversed(), last, told.noise)?;
-                pierced.height(told.shift(true)).map(|_| free(None))
+                let lacking = told.lacking() / (pierced.slope * solids.setting.length);
+                let is_behind = last.certificate.lower - lacking > 0.0;
+                is_behind.then(|| pierced.height(told.shift(true))).flatten().map(|_| free(None))
             }
             _ => None,
         }
@@ -122,13 +124,18 @@ struct Side<'a> {
 }
 
 impl<'h, 'a> Told<'h, 'a> {
-    /// `None` where shrinking is more than rounding asks for.
+    /// `None` where shrinking is more than rounding asks for, or bodies are dented by more: then the facets of a place may
+    /// lie below it, or lean out over those that have it.
     fn new(solids: &'h Cast<'a, Solid>, hulls: &'h Hulls<'a>) -> Option<Self> {
         let setting = &solids.setting;
         let noise = setting.noise().point();
         let squared = permutes(setting.moving_matrix) && permutes(setting.fixed_matrix);
         let tolerance = solids.options.tolerance.unwrap_or(default_tolerance(squared, noise));
-        if tolerance > default_tolerance(false, noise) || solids.check_left(tolerance).is_err() {
+        let is_dented = |surface: &Surface| surface.body.dent > SIDEWAYS * noise;
+        if tolerance > default_tolerance(false, noise)
+            || hulls.bodies.iter().any(is_dented)
+            || solids.check_left(tolerance).is_err()
+        {
             return None;
         }
         let amount = 0.5 * tolerance;

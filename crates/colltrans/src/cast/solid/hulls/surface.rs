@@ -79,7 +79,7 @@ impl<'a> Surface<'a> {
             let sides = self.inside(triangle, spot, -slack);
             let worst = (0..3).fold(0, |worst, k| if sides[k] < sides[worst] { k } else { worst });
             if sides[worst] > 0.0 {
-                return Some(triangle);
+                return self.looks(triangle, spot).then_some(triangle);
             }
             triangle = if step == FEW_STEPS {
                 self.found(spot, slack)?

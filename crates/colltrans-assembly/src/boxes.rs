@@ -12,26 +12,31 @@ pub(crate) fn entry(moving: &Aabb, other: &Aabb, d: DVec3) -> Option<f64> {
     let size = moving.low.abs().max(moving.high.abs()).max(other.low.abs()).max(other.high.abs());
     let slack = 8.0 * f64::EPSILON * size.max_element();
     let (low, high) = (other.low - moving.high - slack, other.high - moving.low + slack);
-    let mut range = [0.0, f64::INFINITY];
-    for k in 0..3 {
-        range = narrowed(range, [low[k], high[k]], d[k])?;
+    first_meeting([0, 1, 2].map(|k| ([low[k], high[k]], d[k])))
+}
+
+/// The least translation, from below, at which intervals that move each meet another one, which is from `low` to `high` away
+/// from it; `None` if there is none at which all do.
+pub(crate) fn first_meeting(gaps: impl IntoIterator<Item = ([f64; 2], f64)>) -> Option<f64> {
+    let (mut enter, mut leave) = (0.0_f64, f64::INFINITY);
+    for ([low, high], speed) in gaps {
+        if speed == 0.0 {
+            if low > 0.0 || high < 0.0 {
+                return None;
+            }
+            continue;
+        }
+        let (x, y) = (low / speed, high / speed);
+        enter = enter.max(x.min(y));
+        leave = leave.min(x.max(y));
     }
-    let [enter, leave] = range;
     (enter <= leave * (1.0 + 8.0 * f64::EPSILON)).then_some(enter * (1.0 - 8.0 * f64::EPSILON))
 }
 
-/// Of translations those at which an interval that moves meets another one, which is from `low` to `high` away from it;
-/// `None` if it does not move, and does not meet it. It may be empty.
-pub(crate) fn narrowed(
-    [enter, leave]: [f64; 2],
-    [low, high]: [f64; 2],
-    speed: f64,
-) -> Option<[f64; 2]> {
-    if speed == 0.0 {
-        return (low <= 0.0 && high >= 0.0).then_some([enter, leave]);
-    }
-    let (x, y) = (low / speed, high / speed);
-    Some([enter.max(x.min(y)), leave.min(x.max(y))])
+/// The least and the largest of some numbers; of none, infinities the wrong way round.
+pub(crate) fn span(values: impl IntoIterator<Item = f64>) -> [f64; 2] {
+    let none = [f64::INFINITY, f64::NEG_INFINITY];
+    values.into_iter().fold(none, |[low, high], x| [low.min(x), high.max(x)])
 }
 
 const LEAF: usize = 4;

@@ -17,12 +17,12 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 use crate::bodies::Bodies;
-use crate::boxes::BoxTree;
+use crate::boxes::{BoxTree, span};
 use crate::error::AssemblyError;
 use crate::watch::{Stage, Watch};
 use colltrans::Aabb;
 
-use face::{Face, Swept};
+use face::{Face, Swept, twice_area};
 
 /// Normals farther from opposite than this are no contact: the cosine of 25 degrees, a step of a
 /// round of 14 sides.
@@ -104,8 +104,7 @@ fn contacts(a: &Solid, b: &Solid, reach: f64) -> Vec<Patch> {
     touching(a, b, reach, &mut |[p, q]| {
         let mut patch = Patch::empty(p.normal, -q.normal);
         let error = common(p, q, reach, &mut |piece| patch.add(piece));
-        let [a, b, c] = p.facets[0];
-        patches.extend(patch.finished((b - a).cross(c - a).length() * LEAST, error));
+        patches.extend(patch.finished(twice_area(&p.facets[0]).length() * LEAST, error));
     });
     patches
 }
@@ -156,8 +155,7 @@ fn common(p: &Face, q: &Face, reach: f64, call: &mut impl FnMut(&Piece)) -> f64 
     if many {
         let height = |at: DVec3| (q.facets[0][0] - at).dot(q.normal) / p.normal.dot(q.normal);
         let heights = p.corners().map(height);
-        let (low, high) =
-            heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+        let [low, high] = span(heights);
         if low > reach || high < -reach {
             return 0.0;
         }
@@ -189,10 +187,7 @@ fn common(p: &Face, q: &Face, reach: f64, call: &mut impl FnMut(&Piece)) -> f64 
 /// The same of two faces that are level with each other.
 fn swept(p: &Face, q: &Face, clipping: &mut Clipping, call: &mut impl FnMut(&Piece)) -> f64 {
     let Some(plane) = Plane::of(&p.facets[0]) else { return 0.0 };
-    let range = |face: &Face| {
-        let places = face.corners().map(|at| plane.flat(at).x);
-        places.fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], x| [l.min(x), h.max(x)])
-    };
+    let range = |face: &Face| span(face.corners().map(|at| plane.flat(at).x));
     let ([low, high], [least, most]) = (range(p), range(q));
     let range = [low.max(least), high.min(most)];
     let [first, second] =
@@ -229,7 +224,7 @@ struct Piece<'c> {
 
 impl<'t> Plane<'t> {
     fn of(facet: &'t Triangle) -> Option<Self> {
-        let normal = (facet[1] - facet[0]).cross(facet[2] - facet[0]).try_normalize()?;
+        let normal = twice_area(facet).try_normalize()?;
         let along = (facet[1] - facet[0]).try_normalize()?;
         let axes = [along, normal.cross(along)];
         let mut plane = Self { facet, normal, axes, corners: [DVec2::ZERO; 3] };
@@ -250,7 +245,7 @@ impl<'t> Plane<'t> {
         clipping: &'c mut Clipping,
     ) -> Option<Piece<'c>> {
         let n = self.normal;
-        let m = (other[1] - other[0]).cross(other[2] - other[0]).try_normalize()?;
+        let m = twice_area(other).try_normalize()?;
         if -n.dot(m) < OPPOSITE {
             return None;
         }
@@ -264,8 +259,7 @@ impl<'t> Plane<'t> {
         // Height of the second facet's plane over the first one's.
         let height = |s: &DVec2| (other[0] - piece.place(*s)).dot(m) / n.dot(m);
         let heights = piece.shadow.iter().map(height);
-        let (low, high) =
-            heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(x), h.max(x)));
+        let [low, high] = span(heights);
         let off = self.displacement(self.facet.iter().chain(other).copied());
         piece.error = rounding(off, [perimeter(&self.corners), perimeter(&seen)]);
         (low <= reach && high >= -reach).then_some(piece)

@@ -13,7 +13,7 @@ use colltrans::Solid;
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::boxes::narrowed;
+use crate::boxes::{first_meeting, span};
 
 /// Rounding of how far apart slabs are, in multiples of the largest coordinate.
 const SLACK: f64 = 32.0 * f64::EPSILON;
@@ -41,8 +41,7 @@ impl Slabs {
         let reach = |bodies: &Vec<&Solid>| -> Vec<[f64; 2]> {
             let along = |&n: &DVec3| {
                 let places = bodies.iter().flat_map(|body| body.vertices()).map(|p| n.dot(*p));
-                let ends = [f64::INFINITY, f64::NEG_INFINITY];
-                let [low, high] = places.fold(ends, |[low, high], x| [low.min(x), high.max(x)]);
+                let [low, high] = span(places);
                 [low - around, high + around]
             };
             normals.iter().map(along).collect()
@@ -56,16 +55,13 @@ impl Slabs {
 
     /// The least translation at which a part may meet another one, from below; `None` if it never does.
     pub(crate) fn entry(&self, [moving, fixed]: [usize; 2], d: DVec3) -> Option<f64> {
-        let mut range = [0.0, f64::INFINITY];
         let (own, other) = (&self.ends[moving], &self.ends[fixed]);
-        for ((n, [low, high]), [least, most]) in self.normals.iter().zip(own).zip(other) {
+        let each = self.normals.iter().zip(own).zip(other);
+        first_meeting(each.map(|((n, [low, high]), [least, most])| {
             let along = n.dot(d);
             let along = if along.abs() <= LEVEL { 0.0 } else { along };
-            let gaps = [least - high - self.slack, most - low + self.slack];
-            range = narrowed(range, gaps, along)?;
-        }
-        let [enter, leave] = range;
-        (enter <= leave * (1.0 + 8.0 * f64::EPSILON)).then_some(enter * (1.0 - 8.0 * f64::EPSILON))
+            ([least - high - self.slack, most - low + self.slack], along)
+        }))
     }
 }
 

@@ -16,6 +16,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 
 use crate::bodies::{Bodies, Room, two_digits_up};
+use crate::boxes::span;
 use crate::candidates::inertia;
 use crate::digits::short;
 use crate::error::AssemblyError;
@@ -68,9 +69,7 @@ fn snaps(bodies: &Bodies) -> Vec<Suggestion> {
     for ring in (0..parts.len()).filter(|&k| is_called(&parts[k], &SNAPS)) {
         let thickness = |axis: DVec3| {
             let along = parts[ring].solid().vertices().iter().map(|p| p.dot(axis));
-            let [low, high] = along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], z| {
-                [low.min(z), high.max(z)]
-            });
+            let [low, high] = span(along);
             high - low
         };
         let axes = inertia::axes(parts[ring].solid()).into_iter();

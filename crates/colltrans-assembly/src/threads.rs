@@ -15,6 +15,7 @@ mod surface;
 use colltrans::Solid;
 use glam::{DVec2, DVec3};
 
+use crate::boxes::span;
 use crate::candidates::{cylinders, inertia};
 
 pub use seat::Seat;
@@ -289,10 +290,7 @@ fn seen(solid: &Solid, axis: DVec3, [low, high]: [f64; 2]) -> Vec<DVec2> {
 
 /// Where along an axis both parts are, but for its ends.
 fn common(own: &Solid, other: &Solid, axis: DVec3) -> Option<[f64; 2]> {
-    let along = |solid: &Solid| {
-        let z = solid.vertices().iter().map(|p| p.dot(axis));
-        z.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], z| [low.min(z), high.max(z)])
-    };
+    let along = |solid: &Solid| span(solid.vertices().iter().map(|p| p.dot(axis)));
     let ([a, b], [c, d]) = (along(own), along(other));
     let (low, high) = (a.max(c), b.min(d));
     let end = ENDS * (high - low);

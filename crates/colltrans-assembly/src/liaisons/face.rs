@@ -123,7 +123,8 @@ fn neighbours(facets: &[[u32; 3]]) -> Vec<[usize; 3]> {
     across
 }
 
-fn twice_area(t: &Triangle) -> DVec3 {
+/// Along its normal, twice its area long.
+pub(super) fn twice_area(t: &Triangle) -> DVec3 {
     (t[1] - t[0]).cross(t[2] - t[0])
 }
 

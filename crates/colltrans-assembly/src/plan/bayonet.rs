@@ -14,6 +14,7 @@ use super::order::Order;
 use super::replay::larger;
 use super::step::{Leg, Turn, TurnProof};
 use crate::bodies::{Bodies, Turned};
+use crate::boxes::span;
 use crate::candidates::{cylinders, inertia};
 use crate::error::AssemblyError;
 use crate::threads::is_round;
@@ -99,9 +100,7 @@ fn axes(bodies: &Bodies, part: usize) -> Vec<[DVec3; 2]> {
         let (u, v) = axis.any_orthonormal_pair();
         let extent = |d: DVec3| {
             let along = solid.vertices().iter().map(|p| p.dot(d));
-            let [low, high] = along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], z| {
-                [low.min(z), high.max(z)]
-            });
+            let [low, high] = span(along);
             d * low.midpoint(high)
         };
         [extent(u) + extent(v), axis]

@@ -12,6 +12,7 @@ use glam::{DVec2, DVec3};
 
 use super::surface::About;
 use super::{OVER, Thread, WIDEST, common, flattened, inverse};
+use crate::boxes::span;
 
 /// Places of a profile.
 const PLACES: usize = 128;
@@ -54,16 +55,14 @@ impl Thread {
         let outer = crest * (1.0 + OVER);
         let screw = profile(own, &about(middle), pitch, outer, f64::max)?;
         let wall = profile(other, &about(center), pitch, 2.0 * crest, f64::min)?;
-        let [least, most] = bounds(&wall);
+        let [least, most] = span(wall.iter().copied());
         let (phase, overlap) = best(&screw, &wall, EQUAL * depth);
         let [low, high] = ends(other, axis, center, crest);
         let threaded = own.vertices().iter().filter(|p| {
             let r = flat(**p).distance(middle);
             r > hole && r <= outer
         });
-        let [bottom, top] = threaded
-            .map(|p| p.dot(axis))
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], z| [low.min(z), high.max(z)]);
+        let [bottom, top] = span(threaded.map(|p| p.dot(axis)));
         Some(Seat {
             aside,
             phase,
@@ -146,8 +145,4 @@ fn best(screw: &[f64], hole: &[f64], equal: f64) -> (f64, f64) {
     let middle = (longest.0 + longest.1 / 2) % PLACES;
     let turns = middle as f64 / PLACES as f64;
     (if turns > 0.5 { turns - 1.0 } else { turns }, all[middle])
-}
-
-fn bounds(all: &[f64]) -> [f64; 2] {
-    all.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &r| [low.min(r), high.max(r)])
 }

@@ -109,8 +109,8 @@ fn margin(scene: &Scene, [p, q]: &[Surface; 2], contact: &Contact) -> f64 {
     normal.dot(scene.fixed.offset[0]) - fixed - moving - HEIGHTS * scene.noise
 }
 
-/// No gap of facets is less, but for the rounding of a division, and the bodies do not overlap: by boxes along the direction, where that is an axis of both, or by
-/// a plane between them along the normal of a contact of their hulls.
+/// No gap of facets is less, but for the rounding of a division, and the bodies do not overlap: by boxes along the direction,
+/// where that is an axis of both, or by a plane between them along the normal of a contact of their hulls.
 pub(super) fn least_gap(scene: &Scene, bodies: &[Surface; 2], contact: &Contact) -> Option<f64> {
     let (proof, length) = (&contact.certificate, scene.setting.length);
     if scene.moving.aligned[2] && scene.fixed.aligned[2] {

@@ -22,6 +22,7 @@ mod order;
 mod precedence;
 mod replay;
 mod several;
+mod shadow;
 mod single;
 mod stage;
 mod stand;
@@ -50,6 +51,7 @@ use crate::matrix::{Matrix, bits};
 use crate::roles::Passed;
 use crate::sphere::Sphere;
 use crate::watch::{Stage, Tally, Watch};
+use crate::witness::Memory;
 
 use bayonet::Bayonet;
 use certify::{Proof, certify};
@@ -235,7 +237,9 @@ impl<'a> Planner<'a> {
         let mut left = group.to_vec();
         let movable = self.movable.filter(|_| within.is_none());
         let (bodies, likes, wanted) = (self.bodies, self.likes, self.wanted);
-        let mut order = Order::new(bodies, matrix, likes, &alive, self.up, movable, wanted);
+        let PlanOptions { samples, start, .. } = self.options;
+        let mut order = Order::new(bodies, matrix, likes, &alive, self.up, movable, wanted)
+            .with_shortcuts(samples, start);
         let constraints = self.bodies.assembly().constraints();
         let alone =
             |order: &Order| Single::new(matrix, &order.arcs(), order.there(), |k| !order.stays(k));
@@ -559,7 +563,11 @@ impl<'a> Planner<'a> {
         let mut directions = vec![found, DVec3::ZERO - found];
         directions.extend(self.middle(&parts, &others, found)?);
         let constraints = self.bodies.assembly().constraints();
-        directions.retain(|&d| constraints.allows(&parts, d) && self.is_free(&parts, &others, d));
+        let (mut memory, there) = (Memory::default(), self.bodies.mask(&others));
+        directions.retain(|&d| {
+            constraints.allows(&parts, d)
+                && memory.is_free(self.bodies, &parts, &there, d, self.options.start)
+        });
         let ways = directions.into_iter().map(|d| order.position(d)).collect();
         Ok(order.best([(parts, ways)]).map_or(way, Way::from))
     }
@@ -583,12 +591,6 @@ impl<'a> Planner<'a> {
         let near = |d: &DVec3| d.dot(direction);
         let around = free.regions().into_iter().map(|region| region.center);
         Ok(around.max_by(|a, b| near(a).total_cmp(&near(b))))
-    }
-
-    fn is_free(&self, parts: &[usize], others: &[usize], d: DVec3) -> bool {
-        let (mut workspace, start) = (Workspace::default(), self.options.start);
-        let ahead = self.bodies.pairs_ahead(parts, d, &self.bodies.mask(others));
-        !ahead.into_iter().any(|pair| self.bodies.meets(pair, d, start, &mut workspace))
     }
 
     /// A way in several moves, or what is known of them.

@@ -7,10 +7,10 @@
 
 use std::collections::HashMap;
 
-use colltrans::solid::StartOverlap;
+use colltrans::solid::{StartOverlap, Workspace};
 use glam::DVec3;
 
-use crate::bodies::{Bodies, Stop};
+use crate::bodies::{Bodies, Room, Stop};
 
 /// Facets of two parts that met along some direction.
 struct Witness {
@@ -50,5 +50,46 @@ impl Witnesses {
         let kept = self.0.get(&pair)?.iter().filter(|w| w.normal.dot(d) > ASKEW);
         kept.filter_map(|w| bodies.stop_by(pair, w.triangles, d, start))
             .find(|stop| stop.displaced.value <= within)
+    }
+}
+
+/// What is kept from one question to the next, where it is asked only whether something is in the way.
+#[derive(Default)]
+pub(crate) struct Memory {
+    workspace: Workspace,
+    witnesses: Witnesses,
+}
+
+impl Memory {
+    /// Whether a part ever meets another one along a unit direction.
+    pub(crate) fn meets(
+        &mut self,
+        bodies: &Bodies,
+        pair: [usize; 2],
+        d: DVec3,
+        start: StartOverlap,
+    ) -> bool {
+        let Self { workspace, witnesses } = self;
+        if witnesses.stop(bodies, pair, d, f64::INFINITY, start).is_some() {
+            return true;
+        }
+        let room = bodies.room(pair, d, None, start, workspace);
+        if let Room::Blocked(stop) = &room {
+            witnesses.keep(pair, stop);
+        }
+        room != Room::Free
+    }
+
+    /// Whether a group never meets any part that is there, and not of the group.
+    pub(crate) fn is_free(
+        &mut self,
+        bodies: &Bodies,
+        group: &[usize],
+        there: &[bool],
+        d: DVec3,
+        start: StartOverlap,
+    ) -> bool {
+        let ahead = bodies.pairs_ahead(group, d, there);
+        !ahead.into_iter().any(|pair| self.meets(bodies, pair, d, start))
     }
 }

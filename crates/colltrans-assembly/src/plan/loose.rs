@@ -6,24 +6,24 @@
 //! none leaves, and ask its pairs with the parts outside: if one blocks, there is one arc more; if
 //! none does, the group is removable. Once all parts are one component there is none. For parts that
 //! hold each other, that takes about as many casts as parts, not as pairs; and most of them are of two
-//! facets that met along another direction ([`Witnesses`]). That changes no answer, so each thread may
+//! facets that met along another direction ([`Memory`]). That changes no answer, so each thread may
 //! keep its own. Parts stay where they are while others are taken out, so what a pair does is asked
 //! once, whatever is left ([`Known`]).
 
 use std::collections::HashMap;
 use std::sync::{Mutex, PoisonError};
 
-use colltrans::solid::{StartOverlap, Workspace};
+use colltrans::solid::StartOverlap;
 use glam::DVec3;
 use rayon::prelude::*;
 
 use super::Way;
 use crate::blocking::Blocking;
-use crate::bodies::{Bodies, Room};
+use crate::bodies::Bodies;
 use crate::error::AssemblyError;
 use crate::matrix::bits;
 use crate::watch::Watch;
-use crate::witness::Witnesses;
+use crate::witness::Memory;
 
 /// What was asked: whether one part meets another, by direction.
 #[derive(Default)]
@@ -95,13 +95,6 @@ pub(super) fn smallest(
 /// A group with how many parts move for it, and the position of its direction.
 type Ranked = ((usize, usize), Vec<usize>);
 
-/// What a thread keeps from one direction to the next.
-#[derive(Default)]
-struct Memory {
-    workspace: Workspace,
-    witnesses: Witnesses,
-}
-
 /// Questions along one direction.
 struct Asked<'a> {
     bodies: &'a Bodies<'a>,
@@ -117,16 +110,7 @@ impl Asked<'_> {
         if let Some(known) = self.known.get(&pair) {
             return *known;
         }
-        let Self { bodies, d, start, .. } = *self;
-        let Memory { workspace, witnesses } = &mut *self.memory;
-        let seen = witnesses.stop(bodies, pair, d, f64::INFINITY, start);
-        let meets = seen.is_some() || {
-            let room = bodies.room(pair, d, None, start, workspace);
-            if let Room::Blocked(stop) = &room {
-                witnesses.keep(pair, stop);
-            }
-            room != Room::Free
-        };
+        let meets = self.memory.meets(self.bodies, pair, self.d, self.start);
         self.known.insert(pair, meets);
         meets
     }

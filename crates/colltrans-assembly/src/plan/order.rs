@@ -8,26 +8,32 @@
 //! that is left *falls*, unless it stands on the ground, as the lowest parts do, or is held: the *base* and parts that
 //! are fixed. The *travel* of a group along `d` is how far it goes until it is beyond all that is left and in the shadow
 //! of whose box it is ([`Bodies::past`]). Of a group's directions those count whose travel is at most [`LONGER`] times
-//! the least. Among all of these the one of least [cost](Order::cost) is taken, of equal ones that of the first part.
-//!
-//! Invariant: what is kept of a travel names
-//! the part that it ends behind, and is asked anew once that part has gone.
+//! the least. Among all of these the one of least [cost](Order::cost) is taken, of equal ones that of the first part. Before
+//! it is, it is asked whether the group can leave by a much shorter way, along samples of the sphere: of several like parts
+//! in one housing each may have a gap of its own.
 
 use std::collections::BTreeMap;
 
-use colltrans::Aabb;
+use colltrans::solid::StartOverlap;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::shadow::Shadow;
 use super::single::Single;
 use super::stand::{Base, Standing};
 use crate::bodies::Bodies;
 use crate::constraints::Constraints;
 use crate::liaisons::reach;
 use crate::matrix::{Matrix, bits};
+use crate::sphere::Sphere;
+use crate::witness::Memory;
 
 /// Ways that are up to so much longer than the shortest one are as good.
 const LONGER: f64 = 1.1;
+/// A way that is so much longer than one along a sample is not taken, ...
+const MUCH_LONGER: f64 = 1.5;
+/// ... unless it is shorter than this share of the assembly's size.
+const SHORT: f64 = 1e-3;
 /// A part rests on what it meets within so many reaches of contacts: both are shrunk, and touch at a slant.
 const RESTS: f64 = 4.0;
 /// Directions with a larger product are one: 0.8 degrees.
@@ -75,15 +81,20 @@ pub(super) struct Order<'a> {
     /// By direction, those of the matrix first.
     shadows: Vec<Shadow>,
     last: Option<(DVec3, usize)>,
+    shortcuts: Shortcuts,
 }
 
-/// All parts as seen along a direction.
-struct Shadow {
-    direction: DVec3,
-    /// In a frame whose third axis is the direction.
-    boxes: Vec<Aabb>,
-    /// By part: its travel alone and the part that it ends behind, once asked.
-    travels: Vec<Option<(f64, Option<usize>)>>,
+/// What is asked for much shorter ways.
+#[derive(Default)]
+struct Shortcuts {
+    /// How many samples, at least, and what overlaps at the start mean.
+    samples: usize,
+    start: StartOverlap,
+    /// Along the samples, once they are asked.
+    shadows: Vec<Shadow>,
+    /// By group: the positions of directions that were found.
+    found: BTreeMap<Vec<usize>, Vec<usize>>,
+    memory: Memory,
 }
 
 impl<'a> Order<'a> {
@@ -100,7 +111,8 @@ impl<'a> Order<'a> {
     ) -> Self {
         let moves = |part: usize| movable.unwrap_or(wanted).contains(&part);
         let base = base(bodies, there, up, moves);
-        let shadows = matrix.directions().iter().map(|d| Shadow::new(bodies, *d)).collect();
+        let shadows = matrix.directions().iter().map(|d| Shadow::new(bodies, there, *d));
+        let shadows = shadows.collect();
         let size = bodies.assembly().bounds().size().max_element().max(f64::MIN_POSITIVE);
         let (carried, bases) = supports(bodies, matrix, there, &base, up);
         let there = there.to_vec();
@@ -113,7 +125,27 @@ impl<'a> Order<'a> {
         for part in (0..likes.len()).filter(|&part| there[part]) {
             counts[likes[part]] += usize::from(!stays[part]);
         }
-        Self { bodies, up, size, likes, there, counts, stays, carried, bases, shadows, last: None }
+        let (last, shortcuts) = (None, Shortcuts::default());
+        Self {
+            bodies,
+            up,
+            size,
+            likes,
+            there,
+            counts,
+            stays,
+            carried,
+            bases,
+            shadows,
+            last,
+            shortcuts,
+        }
+    }
+
+    /// Much shorter ways are looked for along so many samples of the sphere, beside all directions that are known.
+    pub(super) fn with_shortcuts(self, samples: usize, start: StartOverlap) -> Self {
+        let shortcuts = Shortcuts { samples, start, ..self.shortcuts };
+        Self { shortcuts, ..self }
     }
 
     /// By part, whether it is still there.
@@ -167,12 +199,8 @@ impl<'a> Order<'a> {
             let count = &mut self.counts[self.likes[part]];
             *count = count.saturating_sub(1);
         }
-        for shadow in &mut self.shadows {
-            for travel in &mut shadow.travels {
-                if travel.is_some_and(|(_, behind)| behind.is_some_and(|b| !self.there[b])) {
-                    *travel = None;
-                }
-            }
+        for shadow in self.shadows.iter_mut().chain(&mut self.shortcuts.shadows) {
+            shadow.update(&self.there);
         }
         self.last = parts.first().map(|&part| (direction, self.likes[part]));
     }
@@ -194,38 +222,87 @@ impl<'a> Order<'a> {
         &mut self,
         groups: impl IntoIterator<Item = (Vec<usize>, Vec<usize>)>,
     ) -> Option<Choice> {
-        let groups: Vec<_> = groups.into_iter().collect();
+        let mut groups: Vec<_> = groups.into_iter().collect();
         let mut ready: BTreeMap<usize, usize> = BTreeMap::new();
-        for (parts, _) in &groups {
+        for (parts, ways) in &mut groups {
             *ready.entry(self.likes[parts[0]]).or_default() += 1;
+            ways.extend(self.shortcuts.found.get(parts).into_iter().flatten());
         }
-        let mut best: Option<(f64, Vec<usize>, usize)> = None;
-        for (parts, ways) in groups {
+        loop {
+            let (at, k) = self.cheapest(&groups, &ready)?;
+            let (parts, ways) = &mut groups[at];
+            let Some(shortcut) = self.shortcut(parts, k) else {
+                let (parts, direction) = (groups.swap_remove(at).0, self.shadows[k].direction);
+                return Some(Choice { parts, direction });
+            };
+            ways.push(shortcut);
+            self.shortcuts.found.entry(parts.clone()).or_default().push(shortcut);
+        }
+    }
+
+    /// The position of the group of least cost, and of its direction; `ready` is by shape how many groups can leave.
+    fn cheapest(
+        &mut self,
+        groups: &[(Vec<usize>, Vec<usize>)],
+        ready: &BTreeMap<usize, usize>,
+    ) -> Option<(usize, usize)> {
+        let mut best: Option<(f64, usize, usize)> = None;
+        for (at, (parts, ways)) in groups.iter().enumerate() {
             let shape = self.likes[parts[0]];
             let all = parts.len() == 1 && ready[&shape] >= self.counts[shape];
-            let travels: Vec<f64> = ways.iter().map(|&k| self.travel(&parts, k)).collect();
+            let travels: Vec<f64> =
+                ways.iter().map(|&k| self.shadows[k].travel(parts, &self.there)).collect();
             let least = travels.iter().copied().fold(f64::INFINITY, f64::min);
-            let unsettled = self.unsettled(&parts).map(|parts| parts.len() as f64);
+            let unsettled = self.unsettled(parts).map(|parts| parts.len() as f64);
             let falls = FALL * unsettled[0] + TIP * unsettled[1];
-            for (k, travel) in ways.into_iter().zip(travels) {
+            for (&k, travel) in ways.iter().zip(travels) {
                 if travel > LONGER * least + self.bodies.noise() {
                     continue;
                 }
-                let cost = self.cost(&parts, (falls, all), self.shadows[k].direction, travel);
+                let cost = self.cost(parts, (falls, all), self.shadows[k].direction, travel);
                 // Noise of the sum is far below what any choice differs by.
-                if best.as_ref().is_none_or(|b| cost < b.0 - 1e-9) {
-                    best = Some((cost, parts.clone(), k));
+                if best.is_none_or(|b| cost < b.0 - 1e-9) {
+                    best = Some((cost, at, k));
                 }
             }
         }
-        best.map(|(_, parts, k)| Choice { parts, direction: self.shadows[k].direction })
+        best.map(|(_, at, k)| (at, k))
+    }
+
+    /// The position of the direction of the shortest way of a group, if that along `k` is [`MUCH_LONGER`].
+    fn shortcut(&mut self, parts: &[usize], k: usize) -> Option<usize> {
+        let Self { bodies, there, shadows, shortcuts, .. } = self;
+        let way = shadows[k].travel(parts, there);
+        if way <= SHORT * self.size {
+            return None;
+        }
+        if shortcuts.shadows.is_empty() && shortcuts.samples > 0 {
+            let samples = Sphere::with_directions(shortcuts.samples).directions;
+            let shadow = |d: &DVec3| Shadow::new(bodies, there, *d);
+            shortcuts.shadows = samples.par_iter().map(shadow).collect();
+        }
+        let mut shorter: Vec<(f64, DVec3)> = Vec::new();
+        for shadow in shadows.iter_mut().chain(&mut shortcuts.shadows) {
+            let travel = shadow.travel(parts, there);
+            if MUCH_LONGER * travel < way {
+                shorter.push((travel, shadow.direction));
+            }
+        }
+        shorter.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let constraints = bodies.assembly().constraints();
+        let (memory, start) = (&mut shortcuts.memory, shortcuts.start);
+        let mut free = shorter.into_iter().map(|(_, d)| d).filter(|&d| {
+            constraints.allows(parts, d) && memory.is_free(bodies, parts, there, d, start)
+        });
+        let direction = free.next()?;
+        Some(self.position(direction))
     }
 
     /// The position of a direction, which need not be one of the matrix.
     pub(super) fn position(&mut self, direction: DVec3) -> usize {
         let known = self.shadows.iter().position(|s| bits(s.direction) == bits(direction));
         known.unwrap_or_else(|| {
-            self.shadows.push(Shadow::new(self.bodies, direction));
+            self.shadows.push(Shadow::new(self.bodies, &self.there, direction));
             self.shadows.len() - 1
         })
     }
@@ -269,47 +346,6 @@ impl<'a> Order<'a> {
             }
         }
         [falls, tips]
-    }
-
-    /// How far a group goes along a direction until it is beyond all that is left.
-    fn travel(&mut self, parts: &[usize], k: usize) -> f64 {
-        let Self { there, shadows, .. } = self;
-        let shadow = &mut shadows[k];
-        if let &[part] = parts {
-            return shadow.travels[part]
-                .get_or_insert_with(|| past(&shadow.boxes, part, &[], there))
-                .0;
-        }
-        let each = parts.iter().map(|&part| past(&shadow.boxes, part, parts, there).0);
-        each.fold(0.0, f64::max)
-    }
-}
-
-/// How far a part goes along the third axis until it is beyond all that are there, but for those of its group; and the
-/// part that it ends behind.
-fn past(boxes: &[Aabb], part: usize, group: &[usize], there: &[bool]) -> (f64, Option<usize>) {
-    let own = boxes[part];
-    let mut found = (0.0, None);
-    for (other, seen) in boxes.iter().enumerate() {
-        let way = seen.high.z - own.low.z;
-        if way <= found.0 || other == part || !there[other] || group.contains(&other) {
-            continue;
-        }
-        let beside = (0..2).any(|k| seen.low[k] > own.high[k] || own.low[k] > seen.high[k]);
-        if !beside {
-            found = (way, Some(other));
-        }
-    }
-    found
-}
-
-impl Shadow {
-    fn new(bodies: &Bodies, direction: DVec3) -> Self {
-        let (u, v) = direction.any_orthonormal_pair();
-        let seen = |p: &DVec3| DVec3::new(p.dot(u), p.dot(v), p.dot(direction));
-        let parts = bodies.assembly().parts();
-        let boxes = parts.iter().map(|p| Aabb::of_points(p.solid().vertices().iter().map(seen)));
-        Self { direction, boxes: boxes.collect(), travels: vec![None; parts.len()] }
     }
 }
 

@@ -6,6 +6,7 @@ use colltrans_assembly::candidates::{Choice, candidates};
 use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::matrix::Matrix;
 use colltrans_assembly::plan::{Plan, PlanOptions, Step, disassemble};
+use colltrans_assembly::sphere::Sphere;
 use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Room, Watch};
 use colltrans_testkit::random::Random;
 use glam::{DAffine3, DVec3};
@@ -215,4 +216,59 @@ fn the_other_way_up_parts_are_lifted_the_other_way() {
     let watch = Watch::default();
     let matrix = Matrix::default();
     assert!(disassemble(&bodies, &matrix, &[], none, watch).is_err());
+}
+
+/// A deep shaft around `x = at`, open at the top, with a block at its bottom; `gap` is where its wall ahead begins to be open.
+fn shaft(at: f64, gap: f64) -> (Vec<Piece>, Piece) {
+    let wall = |low: [f64; 2], high: [f64; 2]| {
+        cuboid([low[0] + at, low[1], 0.0], [high[0] + at, high[1], 12.0])
+    };
+    let mut walls = vec![cuboid([at - 2.0, -3.0, -1.0], [at + 2.0, 3.5, 0.0])];
+    walls.push(wall([-2.0, -3.0], [-1.5, 3.5]));
+    walls.push(wall([1.5, -3.0], [2.0, 3.5]));
+    walls.push(wall([-1.5, -3.0], [1.5, -2.5]));
+    walls.push(wall([-1.5, 3.0], [gap, 3.5]));
+    (walls, cuboid([at - 0.25, -0.25, 0.0], [at + 0.25, 0.25, 0.5]))
+}
+
+#[test]
+fn a_gap_that_leads_out_much_sooner_is_found_for_the_one_of_two_likes_that_has_it() {
+    let [(mut walls, a), (others, b)] = [shaft(0.0, 0.5), shaft(4.0, 1.5)];
+    walls.extend(others);
+    let part = |name: &str, pieces: &[Piece]| Part::new(name, pieces).unwrap();
+    let parts = vec![part("walls", &walls), part("block_a", &[a]), part("block_b", &[b])];
+    let assembly = Assembly::new(parts).unwrap();
+    let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-9)).unwrap();
+    let (plan, directions) = planned(&bodies, PlanOptions::default().with_samples(0));
+    let ways: Vec<DVec3> = plan.steps.iter().map(|step| step.direction).collect();
+    assert_eq!(ways, [DVec3::Z; 2], "of the directions of contacts");
+    for k in [1, 2] {
+        let free = directions.iter().filter(|d| is_free(&bodies, &[k], &[0], **d));
+        assert_eq!(free.count(), 1);
+    }
+
+    let (plan, _) = planned(&bodies, PlanOptions::default());
+    let samples = Sphere::with_directions(PlanOptions::default().samples).directions;
+    let mut shorter = Vec::new();
+    for step in &plan.steps {
+        assert!(is_free(&bodies, &step.parts, &[0], step.direction));
+        let ways = samples.iter().filter(|d| is_free(&bodies, &step.parts, &[0], **d));
+        let ways = ways.map(|d| travel(&bodies, &step.parts, &[0], *d));
+        let least = ways.fold(f64::INFINITY, f64::min);
+        let own = step.travel.value;
+        assert!(own <= 1.5 * least, "{own} where {least} is enough");
+        if own < 11.0 {
+            shorter.push(assembly.names(&step.parts).concat());
+        }
+    }
+    assert_eq!(shorter, ["block_a"]);
+    // Where it must not go aslant it goes up.
+    let never = assembly.clone().with_never(&["block_a"], shorter_way(&plan), 60.0).unwrap();
+    let bodies = Bodies::new(&never, Fit::Tolerance(1e-9)).unwrap();
+    let (plan, _) = planned(&bodies, PlanOptions::default());
+    assert!(plan.steps.iter().all(|step| step.direction == DVec3::Z));
+}
+
+fn shorter_way(plan: &Plan) -> DVec3 {
+    plan.steps.iter().map(|step| step.direction).find(|d| *d != DVec3::Z).unwrap()
 }

@@ -511,7 +511,7 @@ export class AssemblyTab {
         ...(surfaces ? [h("small", {}, ` rests on an open surface: ${surfaces.join(", ")}`)] : []));
     });
     const remains = plan.last.length ? [h("p", { class: "proof" }, `What remains: ${plan.last.join(", ")}.`)] : [];
-    const stuck = plan.stuck.map(({ parts, because }) => h("p", { class: "proof" }, `${parts.join(", ")}: ${because}.`));
+    const stuck = plan.stuck.map(({ parts, because }) => h("p", { class: "proof" }, `${parts.join(", ")}: ${because}`));
     refill(this.planCard,
       h("p", { class: "proof" }, `${plan.directions} directions were asked for all parts; each step was checked again, pair by pair.`),
       h("ol", {}, ...rows), ...remains, ...stuck,

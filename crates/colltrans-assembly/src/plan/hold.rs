@@ -1,7 +1,5 @@
 //! What holds parts that do not come apart, and how that is said.
 
-use std::fmt::Write;
-
 use glam::DVec3;
 
 use super::{Moves, Stuck};
@@ -121,40 +119,47 @@ impl Stuck {
         format!("{} {}", self.reason(bodies), self.details(bodies))
     }
 
-    /// How that is known, and what may help.
+    /// How that is known, and what may help, in sentences.
     pub fn details(&self, bodies: &Bodies) -> String {
-        let directions = match self.proven {
-            Some(cells) => {
-                format!("in any direction, which is proven in {cells} cells of the sphere,")
-            }
-            None if self.directions == 1 => "along the direction asked".into(),
-            None => format!("along the {} directions asked", self.directions),
-        };
-        let mut text = match (&self.overlapping[..], self.fixed) {
-            ([], false) => {
-                format!("No single straight motion {directions} takes them apart")
-            }
-            ([], true) => {
-                format!(
-                    "No single straight motion {directions} takes any of them from what is fixed or \
-                     from each other"
-                )
-            }
-            _ => self.as_one(bodies),
-        };
+        let overlaps = !self.overlapping.is_empty();
+        let mut said = Vec::new();
+        if overlaps {
+            said.push(self.as_one(bodies));
+        }
+        said.push(self.single());
+        said.push(self.moves.words());
         if self.constrained {
-            text.push_str("; what is asked of their order and directions counts");
+            said.push("What is asked of their order and directions counts.".into());
         }
-        text.push_str(&self.moves.words());
-        if let Some((part, by)) = self.easiest() {
-            let _ = write!(
-                text,
-                "; the least that holds a part: {} is held by {}",
-                bodies.assembly().parts()[part].name(),
-                bodies.assembly().names(by).join(", ")
-            );
+        // The reason names them all if they are few.
+        let held = self.easiest().filter(|(_, by)| overlaps || by.len() > MOST_NAMES + 1);
+        if let Some((part, by)) = held {
+            let names = bodies.assembly().names(by).join(", ");
+            let part = bodies.assembly().parts()[part].name();
+            said.push(format!("The least that holds a part: {part} is held by {names}."));
         }
-        text
+        said.join(" ")
+    }
+
+    /// What is known of single moves.
+    fn single(&self) -> String {
+        let apart = if self.fixed {
+            "takes any of them from what is fixed or from each other"
+        } else {
+            "takes them apart"
+        };
+        let single = "No single straight motion";
+        match (self.proven, self.directions) {
+            (Some(cells), _) => format!(
+                "{single} in any direction {apart}, which is proven in {cells} cells of the sphere."
+            ),
+            (None, 1) => {
+                format!("{single} along the direction asked {apart}; of others it is not known.")
+            }
+            (None, count) => format!(
+                "{single} along the {count} directions asked {apart}; of others it is not known."
+            ),
+        }
     }
 
     /// What becomes of parts that overlap.
@@ -169,7 +174,7 @@ impl Stuck {
             ),
         };
         format!(
-            "Parts that overlap move as one, unless a tolerance or a role is given for them{open}"
+            "Parts that overlap move as one, unless a tolerance or a role is given for them{open}."
         )
     }
 
@@ -196,28 +201,29 @@ fn listed(bodies: &Bodies, parts: &[usize]) -> String {
 }
 
 impl Moves {
-    /// What goes on after what is said of a single move.
+    /// What is known of several moves, in a sentence.
     fn words(&self) -> String {
-        let several = |count: usize, one: &str, more: &str| match count {
-            1 => format!("1 {one}"),
-            count => format!("{count} {more}"),
-        };
         match self {
-            Self::NotAsked(why) => format!("; several moves were not looked for: {why}"),
+            Self::NotAsked(why) => {
+                format!("Several moves, one after another, were not looked for: {why}.")
+            }
             Self::NotKept => {
-                "; several moves that were found do not keep what is asked of order and directions"
+                "Several moves that were found do not keep what is asked of order and directions."
                     .into()
             }
             Self::Proven { cells } => format!(
-                "; nor do several moves, whichever, which is proven in {cells} cells of displacements"
+                "Nor do several moves, one after another, which is proven in {cells} cells of displacements."
             ),
             Self::NotFound { legs, searched } => {
-                let places = several(searched.places, "place", "places");
+                let places = match searched.places {
+                    1 => "1 place".into(),
+                    places => format!("{places} places"),
+                };
                 let end =
                     if searched.complete { "" } else { ", where the limit of work was reached" };
                 format!(
-                    "; up to {legs} moves one after another, searched from {places} along {} directions{end}, \
-                     were not found either",
+                    "Up to {legs} moves, one after another, were not found either, searched from {places} along {} \
+                     directions{end}.",
                     searched.directions
                 )
             }

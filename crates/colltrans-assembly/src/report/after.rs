@@ -9,7 +9,6 @@ use super::sheet::{self, far, step_words, takes, ways};
 use super::words::{numbers, time};
 use super::{arrow, short};
 use crate::map;
-use crate::plan::{Moves, Stuck};
 use crate::roles::{PairFit, Passed, Role};
 use crate::suggest::Suggestion;
 
@@ -119,50 +118,12 @@ fn stuck(r: &Report) -> Markup {
             h3 { "What stays together, and why" }
             ul {
                 @for s in &r.f.plan.stuck {
-                    li { b { (r.words.names(&s.parts)) ": " (s.reason(r.f.bodies)) } " " (known(s)) }
+                    @let (reason, details) = (s.reason(r.f.bodies), s.details(r.f.bodies));
+                    li { b { (r.words.names(&s.parts)) ": " (reason) } " " (details) }
                 }
             }
         }
     }
-}
-
-/// How it is known that parts stay together, in sentences.
-fn known(stuck: &Stuck) -> String {
-    let mut said = Vec::new();
-    if !stuck.overlapping.is_empty() {
-        said.push(
-            "Parts that overlap move as one, unless a tolerance or a role is given for them."
-                .into(),
-        );
-    }
-    let off = if stuck.fixed { "from the others or from what is fixed" } else { "from the others" };
-    said.push(match stuck.proven {
-        Some(_) => format!("No straight move in any direction takes one of them {off}: that is proven."),
-        None => format!(
-            "Along the {} directions that were tried none of them comes {off}; along others it is not known.",
-            stuck.directions
-        ),
-    });
-    said.push(match &stuck.moves {
-        Moves::Proven { .. } => {
-            "Nor do several moves, one after another: that is proven, too.".into()
-        }
-        Moves::NotFound { legs, searched } => {
-            let end = if searched.complete { "" } else { "; the search was ended by its limit" };
-            format!("Up to {legs} moves one after another were searched and none found{end}.")
-        }
-        Moves::NotKept => {
-            "Several moves that were found do not keep what is asked of order and directions."
-                .into()
-        }
-        Moves::NotAsked(why) => {
-            format!("Several moves one after another were not searched: {why}.")
-        }
-    });
-    if stuck.constrained {
-        said.push("The order and directions that were asked for count here.".into());
-    }
-    said.join(" ")
 }
 
 /// What was said of pairs and asked of the order.

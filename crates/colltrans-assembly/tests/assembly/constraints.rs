@@ -266,7 +266,7 @@ fn plans_take_as_much_apart_as_all_groups_tried_and_in_an_order_that_is_asked_fo
             plan.stuck
                 .iter()
                 .filter(|s| s.constrained)
-                .all(|s| { s.because(&bodies).contains("what is asked of their order") })
+                .all(|s| { s.because(&bodies).contains("What is asked of their order") })
         );
     }
     assert!(whole > 100 && held > 30 && moved > 700, "{whole} {held} {moved}");

@@ -452,7 +452,8 @@ fn what_is_stuck_is_said_of_the_directions_asked() {
     assert_eq!(plan.stuck[0].directions, 4);
     let reason = "In all 4 directions that were tried, a is held by b.";
     assert_eq!(plan.stuck[0].reason(&bodies), reason);
-    let details = "No single straight motion along the 4 directions asked takes them apart; ";
+    let details =
+        "No single straight motion along the 4 directions asked takes them apart; of others ";
     let because = plan.stuck[0].because(&bodies);
     assert!(because.starts_with(&format!("{reason} {details}")), "{because}");
 }

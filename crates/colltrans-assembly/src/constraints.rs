@@ -12,8 +12,8 @@ use petgraph::algo::tarjan_scc;
 use petgraph::graph::DiGraph;
 use petgraph::unionfind::UnionFind;
 
-use crate::candidates::unit;
 use crate::error::AssemblyError;
+use crate::sphere::unit;
 
 /// Parts that leave as one.
 #[derive(Debug, Clone, PartialEq)]

@@ -6,6 +6,7 @@
 use std::sync::atomic::AtomicBool;
 
 use colltrans::free::{FreeDirections, FreeError, FreeOptions};
+use colltrans::record::FreeRecord;
 use colltrans::{Pose, Solid};
 
 use crate::bodies::Bodies;
@@ -66,9 +67,17 @@ impl Removal {
         })
     }
 
-    /// How many parts there are of the group, 0, or of the others, 1.
-    pub(crate) fn count(&self, side: usize) -> usize {
-        self.parts[side].len()
+    /// What was found as it is written; of several parts on a side with their names.
+    pub fn record(&self, bodies: &Bodies, free: &FreeDirections) -> FreeRecord {
+        let several = self.parts.each_ref().map(|parts| parts.len() > 1);
+        let name = |part: usize| bodies.assembly().parts()[part].name().to_owned();
+        let names = |triangles: [u32; 2]| {
+            let parts = self.parts(triangles);
+            [0, 1].map(|k| several[k].then(|| name(parts[k])))
+        };
+        let mut record = FreeRecord::of(free, names);
+        record.tolerance = Some(bodies.fit().tolerance());
+        record
     }
 
     /// Both as solids, as they are asked: shrunk by half the tolerance of the bodies.

@@ -3,7 +3,7 @@
 //! Data flow: files -> [`read`] (parts in one world, one unit) -> [`Assembly`] -> [`Fit`] (how
 //! tight: shrunk by a tolerance, or to be kept a length apart) -> `bodies` (two parts and a direction: the
 //! only module that asks `colltrans`; with [`roles`] and [`threads`] what a pair tolerates) -> [`start`] (overlaps now; [`suggest`] what they may be, [`hints`] what is odd about parts), [`liaisons`] (who touches whom) ->
-//! [`candidates`] (directions worth asking) -> [`matrix`] and [`rooms`] (who is stopped by whom) ->
+//! [`candidates`] (directions worth asking, axes of [`cylinders`] and of [`inertia`] among them) -> [`matrix`] and [`rooms`] (who is stopped by whom) ->
 //! [`blocking`] (the graph; with [`constraints`] its arcs), [`likes`] (parts of one shape) -> [`plan`] (steps, and what is stuck) ; [`map`] (one part, all
 //! directions); all of that by one [`Question`] -> [`record`] (JSON) -> [`report`] (pictures, one HTML file, an animation).
 //!
@@ -26,6 +26,7 @@ mod digits;
 mod error;
 mod findings;
 mod part;
+mod plain;
 #[cfg(any(feature = "files", feature = "report"))]
 mod units;
 mod watch;
@@ -36,8 +37,10 @@ mod work;
 pub mod blocking;
 pub mod candidates;
 pub mod constraints;
+pub mod cylinders;
 pub mod free;
 pub mod hints;
+pub mod inertia;
 pub mod liaisons;
 pub mod likes;
 pub mod map;

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use colltrans::Solid;
 use glam::DVec3;
 
-use crate::candidates::inertia;
+use crate::inertia;
 use crate::part::Assembly;
 
 /// Numbers that differ by less than this share of the larger one are equal: some roundings of single precision, far from

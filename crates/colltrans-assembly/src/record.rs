@@ -3,21 +3,18 @@
 //! Parts are told by their names, directions have length 1; `docs/assemblies.md` describes the fields,
 //! `docs/answers.schema.json` holds them.
 
-use colltrans::free::FreeDirections;
-use colltrans::record::FreeRecord;
 use colltrans::solid::ShellKind;
 use glam::DVec3;
 use serde_json::{Value, json};
 
 use crate::bodies::{Bodies, Fit};
-use crate::free::Removal;
 use crate::hints::Hint;
 use crate::liaisons::Liaison;
 use crate::map::{Region, RemovalMap};
 use crate::matrix::{Matrix, Meeting};
 use crate::part::{Assembly, Part};
-use crate::plan::{Leg, Moves, Plan, Step, Stuck, Turn, TurnProof};
-use crate::roles::{PairFit, Passed, Role, Tolerated};
+use crate::plan::{Leg, Moves, Passed, Plan, Step, Stuck, Turn, TurnProof};
+use crate::roles::{PairFit, Role, Tolerated};
 use crate::rooms::PartRoom;
 use crate::start::{Overlap, Start};
 use crate::suggest::Suggestion;
@@ -299,19 +296,6 @@ fn stuck(bodies: &Bodies, stuck: &Stuck) -> Value {
         told["constrained"] = json!(true);
     }
     told
-}
-
-/// All directions along which a group can leave the others; of several parts on a side with their names.
-pub fn free(bodies: &Bodies, removal: &Removal, free: &FreeDirections) -> FreeRecord {
-    let several = [0, 1].map(|k| removal.count(k) > 1);
-    let name = |part: usize| bodies.assembly().parts()[part].name().to_owned();
-    let names = |triangles: [u32; 2]| {
-        let parts = removal.parts(triangles);
-        [0, 1].map(|k| several[k].then(|| name(parts[k])))
-    };
-    let mut record = FreeRecord::of(free, names);
-    record.tolerance = Some(bodies.fit().tolerance());
-    record
 }
 
 /// A removal map without its samples: free regions with points of their borders, isolated directions, and all that is

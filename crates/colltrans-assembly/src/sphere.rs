@@ -1,4 +1,4 @@
-//! Directions spread over the sphere: an icosahedron, its triangles halved as often as wanted.
+//! Directions: of length 1, the angle between two, and samples spread over the sphere: an icosahedron, its triangles halved as often as wanted.
 //!
 //! Every vertex is the normalised middle of an edge, so the same edge gives the same bits whichever
 //! triangle asks.
@@ -6,6 +6,8 @@
 use std::collections::HashMap;
 
 use glam::DVec3;
+
+use crate::error::AssemblyError;
 
 /// Triangles over the sphere, in a hierarchy.
 #[derive(Debug, Clone)]
@@ -114,6 +116,18 @@ impl Sphere {
         let volume = a.dot(b.cross(c));
         2.0 * volume.atan2(1.0 + a.dot(b) + b.dot(c) + c.dot(a))
     }
+}
+
+/// A direction of length 1; axes stay as they are.
+///
+/// # Errors
+/// It is zero, not finite or out of range.
+pub fn unit(direction: DVec3) -> Result<DVec3, AssemblyError> {
+    let scale = direction.abs().max_element();
+    let sound = scale.is_finite() && scale >= colltrans::MIN_MAGNITUDE;
+    let scaled = if sound { direction / scale } else { DVec3::ZERO };
+    let refused = AssemblyError::Direction { direction: direction.to_array() };
+    scaled.try_normalize().filter(|d| d.is_finite()).ok_or(refused)
 }
 
 /// The angle between two unit vectors, exact for small ones too.

@@ -17,9 +17,9 @@ use rayon::prelude::*;
 
 use crate::bodies::{Bodies, Room, two_digits_up};
 use crate::boxes::span;
-use crate::candidates::inertia;
 use crate::digits::short;
 use crate::error::AssemblyError;
+use crate::inertia;
 use crate::likes::likes;
 use crate::part::{Assembly, Part};
 use crate::roles::{PairFit, Role};

@@ -16,7 +16,7 @@ use colltrans::Solid;
 use glam::{DVec2, DVec3};
 
 use crate::boxes::span;
-use crate::candidates::{cylinders, inertia};
+use crate::{cylinders, inertia};
 
 pub use seat::Seat;
 use surface::About;

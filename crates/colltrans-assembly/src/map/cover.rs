@@ -11,7 +11,6 @@ use super::Region;
 use crate::bodies::Bodies;
 use crate::error::AssemblyError;
 use crate::free::Removal;
-use crate::record;
 use crate::watch::Watch;
 
 /// Pairs of boxes that are looked at for a map, at most.
@@ -56,7 +55,7 @@ impl Cover {
             Err(error) => return Ok(Err(error.to_string())),
             Ok(free) => free,
         };
-        let record = record::free(bodies, &removal, &free);
+        let record = removal.record(bodies, &free);
         let also = record.also_free.iter().copied().map(DVec3::from);
         let undecided = free.cells().filter(|cell| cell.kind == CellKind::Undecided);
         Ok(Ok(Self {

@@ -15,10 +15,10 @@ use super::replay::larger;
 use super::step::{Leg, Turn, TurnProof};
 use crate::bodies::{Bodies, Turned};
 use crate::boxes::span;
-use crate::candidates::{cylinders, inertia};
 use crate::error::AssemblyError;
 use crate::threads::is_round;
 use crate::watch::Watch;
+use crate::{cylinders, inertia};
 
 /// Parts among which a turn is looked for, axes of each, at most.
 const MOST_PARTS: usize = 24;

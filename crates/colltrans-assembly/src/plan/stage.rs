@@ -4,10 +4,9 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use super::{Leg, Plan, Step};
+use super::{Leg, Passed, Plan, Step};
 use crate::likes::common_name;
 use crate::part::Assembly;
-use crate::roles::Passed;
 
 /// Screws that are told as one take the same turns, to this.
 const SAME_TURNS: f64 = 0.01;

@@ -10,7 +10,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::bodies::Bodies;
-use crate::candidates::inertia;
+use crate::inertia;
 use crate::liaisons::{footprint, reach};
 
 /// How a part stands.

@@ -6,8 +6,8 @@ use colltrans::motion::{Motion, MotionError};
 use colltrans::{Bounded, Pose};
 use glam::{DQuat, DVec3};
 
+use super::Passed;
 use crate::part::Assembly;
-use crate::roles::Passed;
 
 /// Pairs that are ignored are named up to so many for a step.
 const MOST_NAMED: usize = 4;

@@ -9,7 +9,8 @@ use super::sheet::{self, far, step_words, takes, ways};
 use super::words::{numbers, time};
 use super::{arrow, short};
 use crate::map;
-use crate::roles::{PairFit, Passed, Role};
+use crate::plan::Passed;
+use crate::roles::{PairFit, Role};
 use crate::suggest::Suggestion;
 
 /// What was asked is listed up to so many.

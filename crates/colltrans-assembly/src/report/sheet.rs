@@ -12,8 +12,8 @@ use super::scene::{Arrow, Look, Scene, Shown, Viewpoint};
 use super::there;
 use super::words::{numbers, time};
 use crate::Fit;
+use crate::plan::Passed;
 use crate::plan::{Leg, Step};
-use crate::roles::Passed;
 
 const SIZE: DVec2 = DVec2::new(760.0, 580.0);
 /// Of a picture of one move of several.

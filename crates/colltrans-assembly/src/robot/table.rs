@@ -105,7 +105,7 @@ impl Table {
             0 => "JSON".into(),
             line => format!("line {line} column {}", e.column()),
         };
-        let at = |e: &serde_json::Error| wrong(place(e), crate::read::plain(e));
+        let at = |e: &serde_json::Error| wrong(place(e), crate::plain::plain(e));
         let read: Json = serde_json::from_str(text).map_err(|e| at(&e))?;
         let (names, points) = match read {
             Json::Rows(rows) => return Self { rows, ..Self::default() }.even(),

@@ -6,8 +6,8 @@ use std::sync::atomic::AtomicBool;
 use colltrans::ProofFile;
 use colltrans::free::FreeOptions;
 use colltrans::record::FreeRecord;
+use colltrans_assembly::Bodies;
 use colltrans_assembly::free::Removal;
-use colltrans_assembly::{Bodies, record};
 use serde_json::{Value, json};
 
 use crate::directions;
@@ -40,7 +40,7 @@ pub(super) fn all(
         });
         let refused = |error: colltrans::CaseError| Failure::new(Code::Query, error.to_string());
         let parts = bodies.assembly().names(&group).into_iter().map(str::to_owned).collect();
-        let record = record::free(bodies, &removal, &free);
+        let record = removal.record(bodies, &free);
         Ok(Leaving { name, parts, record, proof: proof.transpose().map_err(refused)? })
     };
     groups.into_iter().map(of).collect()

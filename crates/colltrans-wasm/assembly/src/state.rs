@@ -13,12 +13,13 @@
 use std::path::Path;
 
 use colltrans::solid::StartOverlap;
-use colltrans_assembly::candidates::{Candidates, Choice, candidates, unit};
+use colltrans_assembly::candidates::{Candidates, Choice, candidates};
 use colltrans_assembly::liaisons::{Liaison, liaisons};
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
 use colltrans_assembly::plan::{Plan, PlanOptions};
 use colltrans_assembly::report::html;
+use colltrans_assembly::sphere::unit;
 use colltrans_assembly::start::Start;
 use colltrans_assembly::{Assembly, Bodies, Findings, Fit, Part, Piece, Question, Watch, read};
 use colltrans_mesh::Format;

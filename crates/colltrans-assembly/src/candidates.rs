@@ -2,13 +2,10 @@
 //!
 //! A sphere of samples misses tight fits, whose free directions are isolated. Those come from the
 //! parts: normals of contacts, and what is orthogonal to two of them (a pin in a hole, a key in its
-//! groove); axes of cylinders ([`cylinders`]); principal axes of inertia ([`inertia`]); the axes of
+//! groove); axes of cylinders ([`cylinders`](crate::cylinders)); principal axes of inertia ([`inertia`](crate::inertia)); the axes of
 //! the world. Directions closer than an angle to one that was found before are left out; the most
 //! significant (largest contact, longest cylinder) come first, so that slivers do not stand for
 //! them.
-
-pub mod cylinders;
-pub mod inertia;
 
 use colltrans::glam::DVec3;
 
@@ -17,7 +14,8 @@ use rayon::prelude::*;
 use crate::bodies::Bodies;
 use crate::error::AssemblyError;
 use crate::liaisons::Liaison;
-use crate::sphere::angle;
+use crate::sphere::{angle, unit};
+use crate::{cylinders, inertia};
 
 /// Where a direction comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -177,18 +175,6 @@ pub fn candidates(
         }
     }
     Ok(chosen.found)
-}
-
-/// A direction of length 1; axes stay as they are.
-///
-/// # Errors
-/// It is zero, not finite or out of range.
-pub fn unit(direction: DVec3) -> Result<DVec3, AssemblyError> {
-    let scale = direction.abs().max_element();
-    let sound = scale.is_finite() && scale >= colltrans::MIN_MAGNITUDE;
-    let scaled = if sound { direction / scale } else { DVec3::ZERO };
-    let refused = AssemblyError::Direction { direction: direction.to_array() };
-    scaled.try_normalize().filter(|d| d.is_finite()).ok_or(refused)
 }
 
 struct Chosen {

@@ -2,7 +2,7 @@
 //!
 //! A sphere of samples misses tight fits, whose free directions are isolated. Those come from the
 //! parts: normals of contacts, and what is orthogonal to two of them (a pin in a hole, a key in its
-//! groove); axes of cylinders ([`cylinders`](crate::cylinders)); principal axes of inertia ([`inertia`](crate::inertia)); the axes of
+//! groove); axes of cylinders ([`cylinders`]); principal axes of inertia ([`inertia`]); the axes of
 //! the world. Directions closer than an angle to one that was found before are left out; the most
 //! significant (largest contact, longest cylinder) come first, so that slivers do not stand for
 //! them.

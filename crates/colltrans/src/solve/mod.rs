@@ -270,8 +270,14 @@ impl<O: Observer> Run<'_, '_, '_, O> {
         self.context.watch.ended(Phase::Setup);
         let mut nearest = start;
         if start.normal.z > 0.0 {
-            let (followed, reached) =
-                portal::approach(&mut self.context, &start, &portal::OF_ELLIPSOIDS);
+            let by_outlines = if self.has_rims() {
+                portal::between_outlines(&mut self.context, &start)
+            } else {
+                None
+            };
+            let (followed, reached) = by_outlines.unwrap_or_else(|| {
+                portal::approach(&mut self.context, &start, &portal::OF_ELLIPSOIDS)
+            });
             nearest = reached;
             let found = match followed {
                 Followed::Portal(portal, known) => Some(Enclosure::Portal(portal, known)),
@@ -282,13 +288,7 @@ impl<O: Observer> Run<'_, '_, '_, O> {
                 return found;
             }
         }
-        Some(match portal::enclose(&mut self.context, &nearest)? {
-            Enclosure::Portal(portal, _) if self.has_rims() => {
-                let (portal, known) = portal::along_rims(&mut self.context, portal);
-                Enclosure::Portal(portal, known)
-            }
-            found => found,
-        })
+        portal::enclose(&mut self.context, &nearest)
     }
 
     #[inline]

@@ -3,9 +3,8 @@
 //! Cut by a plane, the edges of such a vertex are the corners of a convex polygon, a [`Ring`], over which the
 //! slope along a direction, a linear function, has one maximum and one minimum.
 //!
-//! A proof has to know all neighbours above some level, and may not trust in that, as corners are rounded.
-//! So neighbours are taken in blocks of 8, 16, 32, ...: none of a block is farther from the segment between its
-//! ends than the block's *bulge*, so none is higher than the higher end by more than that.
+//! A proof has to know all neighbours above some level. Where the polygon is seen to be convex whatever rounding
+//! does, these are next to each other, and nothing has to be known of the others.
 
 use glam::DVec3;
 
@@ -15,25 +14,22 @@ use crate::body::topology::Topology;
 use crate::number::noise;
 use crate::work;
 
-/// Neighbours in the smallest block.
-const BLOCK: usize = 8;
-
-/// Blocks of the largest size, about.
-const FEW: usize = 4;
-
-/// By how much the heights and distances that are compared may be off together, in `GAIN reach`.
+/// By how much slopes that are compared may be off together, in `GAIN` times what edges reach over their length
+/// inwards, and that squared.
 const DOUBT: f64 = 8.0;
 
 #[derive(Debug, Clone)]
 pub(super) struct Fan {
     pub(super) vertex: u32,
-    /// It has a positive product with all edges.
+    /// A unit vector that has a positive product with all edges.
     inward: DVec3,
+    /// The least of these.
+    least: f64,
     ring: Ring,
+    /// Whether the polygon is convex whatever rounding does.
+    is_convex: bool,
     /// The faces with many corners around the vertex.
     wide: Vec<u32>,
-    /// The bulges of all blocks of each size, the smallest first.
-    bulges: Vec<Vec<f64>>,
 }
 
 /// What is asked for: neighbours more than `least` above a place along a normal of this length.
@@ -54,20 +50,19 @@ impl Fan {
         // Neighbours are clockwise from outside, so the product of two consecutive edges points inwards.
         let consecutive = edges().zip(edges().cycle().skip(1));
         let inward = consecutive.map(|(a, b)| a.cross(b).normalize_or_zero()).sum::<DVec3>();
+        let inward = inward.normalize_or_zero();
+        let least = edges().map(|edge| inward.dot(edge)).fold(f64::INFINITY, f64::min);
         let cut = edges().map(|edge| edge / inward.dot(edge));
         let corners = neighbours.iter().map(|&w| vertices[w as usize]);
-        let ring = Ring::new(Cycle::Fan(vertex), inward, corners, cut);
+        let longest = edges().map(DVec3::length).fold(0.0, f64::max);
+        let rounding = 8.0 * f64::EPSILON * (1.0 + longest / least);
+        let seen = (cut, rounding);
+        let (ring, is_convex) =
+            Ring::new((Cycle::Fan(vertex), neighbours[0]), inward, corners, seen);
+        let is_convex = is_convex && least > 0.0;
         let faces = topology.outgoing(vertex).iter().map(|&h| topology.half_edge(h).face);
         let wide = faces.filter(|&face| topology.face(face).len() > MANY).collect();
-        let mut bulges = Vec::new();
-        let mut size = BLOCK;
-        loop {
-            bulges.push(bulges_of(vertices, neighbours, size));
-            if neighbours.len() <= FEW * size {
-                return Self { vertex, inward, ring, wide, bulges };
-            }
-            size *= 2;
-        }
+        Self { vertex, inward, least, ring, is_convex, wide }
     }
 
     pub(super) fn ring(&self) -> &Ring {
@@ -86,15 +81,10 @@ impl Fan {
         topology: &Topology,
         direction: DVec3,
     ) -> usize {
-        let here = vertices[self.vertex as usize];
-        let neighbours = topology.neighbours(self.vertex);
-        let slope = |k: usize| {
-            let edge = vertices[neighbours[k] as usize] - here;
-            direction.dot(edge) / self.inward.dot(edge)
-        };
+        let count = topology.neighbours(self.vertex).len();
+        let slope = |k: usize| self.slope(vertices, topology, direction, k);
         let rises = |from: u32, to: u32| slope(to as usize) > slope(from as usize);
         let found = self.ring.farthest(direction, rises) as usize;
-        let count = neighbours.len();
         let beside = [found + 1, found + count - 1].map(|k| slope(k % count));
         if beside.into_iter().all(|other| other <= slope(found)) {
             found
@@ -103,7 +93,18 @@ impl Fan {
         }
     }
 
+    /// How steep an edge is along a direction: what it rises over its length inwards.
+    #[inline]
+    fn slope(&self, vertices: &[DVec3], topology: &Topology, direction: DVec3, k: usize) -> f64 {
+        let neighbour = topology.neighbours(self.vertex)[k];
+        let edge = vertices[neighbour as usize] - vertices[self.vertex as usize];
+        direction.dot(edge) / self.inward.dot(edge)
+    }
+
     /// Looks at all neighbours that are asked for, and at some others, until a look says `false`.
+    ///
+    /// From the steepest edge on to either side, until one is less steep than that and than any asked for: those
+    /// beyond are less steep still.
     pub(super) fn look_above(
         &self,
         vertices: &[DVec3],
@@ -111,65 +112,45 @@ impl Fan {
         above: &Above,
         look: &mut impl FnMut(u32) -> bool,
     ) -> bool {
-        let top = self.bulges.len() - 1;
         let neighbours = topology.neighbours(self.vertex);
-        (0..self.bulges[top].len())
-            .all(|block| self.look_in(vertices, neighbours, above, [top, block], look))
-    }
-
-    fn look_in(
-        &self,
-        vertices: &[DVec3],
-        neighbours: &[u32],
-        above: &Above,
-        [level, block]: [usize; 2],
-        look: &mut impl FnMut(u32) -> bool,
-    ) -> bool {
-        work::count(1);
+        if !self.is_convex {
+            work::count(neighbours.len());
+            return neighbours.iter().all(|&w| look(w));
+        }
+        let slope = |k: usize| self.slope(vertices, topology, above.normal, k);
+        let steepest = self.steepest(vertices, topology, above.normal);
+        let asked = above.least - above.normal.dot(vertices[self.vertex as usize] - above.here);
+        // Lengths inwards are rounded, too.
+        let over = above.reach / self.least;
+        let doubt = DOUBT * noise::GAIN * above.length * (over + over * over);
+        let enough = slope(steepest).min(asked.min(0.0) / self.least) - doubt;
         let count = neighbours.len();
-        let size = BLOCK << level;
-        let (from, to) = (block * size, ((block + 1) * size).min(count));
-        let gain =
-            |k: usize| above.normal.dot(vertices[neighbours[k % count] as usize] - above.here);
-        let beyond = self.bulges[level][block] + DOUBT * noise::GAIN * above.reach;
-        if gain(from).max(gain(to)) + beyond * above.length <= above.least {
-            return true;
+        let (mut ahead, mut behind) = (0, 1);
+        let mut is_seen = look(neighbours[steepest]);
+        while is_seen && ahead + behind < count {
+            ahead += 1;
+            let k = (steepest + ahead) % count;
+            is_seen = look(neighbours[k]);
+            if slope(k) < enough {
+                break;
+            }
         }
-        if level == 0 {
-            return neighbours[from..to].iter().all(|&w| look(w));
+        while is_seen && ahead + behind < count {
+            let k = (steepest + count - behind) % count;
+            is_seen = look(neighbours[k]);
+            if slope(k) < enough {
+                break;
+            }
+            behind += 1;
         }
-        let halves = [2 * block, 2 * block + 1];
-        halves
-            .into_iter()
-            .filter(|&half| half < self.bulges[level - 1].len())
-            .all(|half| self.look_in(vertices, neighbours, above, [level - 1, half], look))
+        work::count(ahead + behind);
+        is_seen
     }
 
     /// Bytes on the heap.
     pub(super) fn heap_bytes(&self) -> usize {
-        let blocks = self.bulges.iter().map(Vec::capacity).sum::<usize>();
-        let wide = self.wide.capacity() * size_of::<u32>();
-        let levels = self.bulges.capacity() * size_of::<Vec<f64>>();
-        self.ring.heap_bytes() + wide + levels + blocks * size_of::<f64>()
+        self.ring.heap_bytes() + self.wide.capacity() * size_of::<u32>()
     }
-}
-
-/// For each block of consecutive neighbours the largest distance of one from the segment between the first and
-/// the one after the last.
-fn bulges_of(vertices: &[DVec3], neighbours: &[u32], size: usize) -> Vec<f64> {
-    let at = |k: usize| vertices[neighbours[k % neighbours.len()] as usize];
-    let bulge = |from: usize| {
-        let to = (from + size).min(neighbours.len());
-        let (a, way) = (at(from), at(to) - at(from));
-        let square = way.length_squared();
-        let distance = |k: usize| {
-            let off = at(k) - a;
-            let share = if square > 0.0 { (off.dot(way) / square).clamp(0.0, 1.0) } else { 0.0 };
-            (off - way * share).length()
-        };
-        (from..to).map(distance).fold(0.0, f64::max)
-    };
-    (0..neighbours.len()).step_by(size).map(bulge).collect()
 }
 
 /// Where a function on a cycle with one maximum and one minimum is greatest.

@@ -26,8 +26,9 @@ use crate::number::plane::polygon_normal;
 pub use build::{ConvexityDefect, OffsetReport, convexity_defect};
 pub(crate) use excess::LargeFace;
 pub(crate) use fan::greatest_on_cycle;
-use ring::Rim;
+pub(crate) use ring::Rim;
 use sections::SectionIndex;
+pub(crate) use support::MOST_RIMS;
 use support::SupportIndex;
 
 /// A convex polyhedron in its own frame: the convex hull of finitely many points.
@@ -214,16 +215,19 @@ impl ConvexPolyhedron {
         self.support.has_rings()
     }
 
-    /// The number of the rim that a vertex lies on, or its own, if it stands for itself: of a body of few
-    /// vertices, or with many neighbours.
+    /// At most [`MOST_RIMS`] rims and points that the body is nearly the hull of; none if it is no such body.
     #[inline]
-    pub(crate) fn rim_of(&self, vertex: u32) -> Option<u32> {
-        self.support.rim_of(&self.topology, vertex)
+    pub(crate) fn outline(&self) -> impl ExactSizeIterator<Item = Rim> {
+        let known = self.support.outline();
+        let few = known.is_empty() && self.vertices.len() <= MOST_RIMS;
+        let count = if few { self.vertices.len() } else { known.len() };
+        let point = |k: usize| Rim::point(k as u32, self.vertices[k]);
+        (0..count).map(move |k| if few { point(k) } else { known[k] })
     }
 
-    /// The rim that a vertex lies on; itself, if it lies on none.
-    pub(crate) fn rim(&self, vertex: u32) -> Rim {
-        self.support.rim(&self.vertices, vertex)
+    /// The vertex farthest along `direction` of the rim that a vertex is on; that vertex if it is on none.
+    pub(crate) fn farthest_on_rim(&self, direction: DVec3, vertex: u32) -> u32 {
+        self.support.farthest_on_ring(&self.vertices, &self.topology, direction, vertex)
     }
 
     /// Positions among the neighbours of `vertex` that may lie in its supporting plane along

@@ -17,6 +17,9 @@ use crate::body::topology::Topology;
 use crate::number::plane::polygon_normal;
 use crate::work;
 
+/// Corners this near an ellipse, as a share of its size, are taken to lie on it.
+const NEARLY: f64 = 0.02;
+
 /// Whose corners a ring has.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Cycle {
@@ -34,12 +37,16 @@ pub(crate) struct Rim {
     pub(crate) center: DVec3,
     /// Conjugate semi-diameters; zero of a point.
     pub(crate) semi_axes: [DVec3; 2],
+    /// One of the corners.
+    pub(crate) vertex: u32,
 }
 
 #[derive(Debug, Clone)]
 pub(super) struct Ring {
     cycle: Cycle,
     rim: Rim,
+    /// Whether all corners are near the rim.
+    is_round: bool,
     /// Two vectors across the axis, so that the corners run counter-clockwise.
     axes: [DVec3; 2],
     /// The corner from which corners are counted: its edge's normal has the least angle.
@@ -63,16 +70,20 @@ impl Cycle {
 }
 
 impl Rim {
-    pub(super) fn point(center: DVec3) -> Self {
-        Self { center, semi_axes: [DVec3::ZERO; 2] }
+    pub(super) fn point(vertex: u32, center: DVec3) -> Self {
+        Self { center, semi_axes: [DVec3::ZERO; 2], vertex }
     }
 
-    /// The ellipse with the mean and the moments of corners, across an axis.
-    fn around(axes: [DVec3; 2], corners: impl Iterator<Item = DVec3> + Clone) -> Self {
+    /// The ellipse with the mean and the moments of corners, across an axis; and whether it is near all of them.
+    fn around(
+        vertex: u32,
+        axes: [DVec3; 2],
+        corners: impl Iterator<Item = DVec3> + Clone,
+    ) -> (Self, bool) {
         let count = corners.clone().count() as f64;
         let center = corners.clone().sum::<DVec3>() / count;
         let [mut xx, mut xy, mut yy] = [0.0; 3];
-        for corner in corners {
+        for corner in corners.clone() {
             let [x, y] = axes.map(|axis| axis.dot(corner - center));
             (xx, xy, yy) = (xx + x * x, xy + x * y, yy + y * y);
         }
@@ -81,7 +92,20 @@ impl Rim {
         let first = xx.sqrt();
         let slant = if first > 0.0 { xy / first } else { 0.0 };
         let second = (yy - slant * slant).max(0.0).sqrt();
-        Self { center, semi_axes: [axes[0] * first + axes[1] * slant, axes[1] * second] }
+        let axis = axes[0].cross(axes[1]);
+        let is_near = |corner: DVec3| {
+            let off = corner - center;
+            let [x, y] = axes.map(|axis| axis.dot(off));
+            let along = x / first;
+            let across = (y - along * slant) / second;
+            let square = along * along + across * across;
+            (square - 1.0).abs() < NEARLY && axis.dot(off).abs() < NEARLY * second
+        };
+        let semi_axes = [axes[0] * first + axes[1] * slant, axes[1] * second];
+        (
+            Self { center, semi_axes, vertex },
+            corners.map(is_near).fold(true, |all, near| all & near),
+        )
     }
 }
 
@@ -103,27 +127,37 @@ impl Ring {
     fn around(vertices: &[DVec3], topology: &Topology, cycle: Cycle, count: u32) -> Self {
         let corners = (0..count).map(|k| vertices[cycle.corner(topology, k) as usize]);
         let axis = polygon_normal(corners.clone());
-        Self::new(cycle, axis, corners.clone(), corners)
+        Self::new((cycle, cycle.corner(topology, 0)), axis, corners.clone(), (corners, 0.0)).0
     }
 
-    /// A ring, counter-clockwise about an axis, any length, with the polygon that it is seen as.
+    /// A ring, counter-clockwise about an axis, any length, with the polygon that it is seen as and how far off its corners
+    /// may be, as a share of its size; and whether this is convex whatever that does.
     pub(super) fn new(
-        cycle: Cycle,
+        (cycle, vertex): (Cycle, u32),
         axis: DVec3,
         corners: impl Iterator<Item = DVec3> + Clone,
-        seen: impl Iterator<Item = DVec3>,
-    ) -> Self {
+        (seen, rounding): (impl Iterator<Item = DVec3>, f64),
+    ) -> (Self, bool) {
         let axis = axis.try_normalize().unwrap_or(DVec3::Z);
         let x = axis.any_orthonormal_vector();
         let axes = [x, axis.cross(x)];
-        let rim = Rim::around(axes, corners);
+        let (rim, is_round) = Rim::around(vertex, axes, corners);
         let polygon: Vec<DVec2> = seen.map(|p| DVec2::from(axes.map(|a| a.dot(p)))).collect();
         let next = polygon.iter().cycle().skip(1);
         let angles: Vec<f64> =
             polygon.iter().zip(next).map(|(p, q)| turn(-(q - p).perp())).collect();
         let count = angles.len();
+        let length = |k: usize| polygon[(k + 1) % count].distance(polygon[k]);
         let least = |best: usize, k: usize| if angles[k] < angles[best] { k } else { best };
         let first = (0..count).fold(0, least);
+        // How far off the angle of an edge may be: both of its ends are rounded, and itself.
+        let size = polygon.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+        let doubt = |k: usize| 4.0 * rounding * size / length(k) + 8.0 * f64::EPSILON;
+        let is_convex = (1..=count).all(|k| {
+            let [from, to] = [first + k - 1, first + k].map(|k| k % count);
+            let round = if k == count { 4.0 } else { 0.0 };
+            angles[to] + round - angles[from] > doubt(from) + doubt(to)
+        });
         let mut before = 0;
         let mut cells: Vec<u32> = (0..count)
             .map(|cell| {
@@ -135,12 +169,17 @@ impl Ring {
             })
             .collect();
         cells.push(count as u32);
-        Self { cycle, rim, axes, first: first as u32, cells }
+        (Self { cycle, rim, is_round, axes, first: first as u32, cells }, is_convex)
     }
 
     /// The ellipse that the corners lie on, nearly.
     pub(super) fn rim(&self) -> &Rim {
         &self.rim
+    }
+
+    /// Whether they do, all of them.
+    pub(super) fn is_round(&self) -> bool {
+        self.is_round
     }
 
     /// The number of corners.

@@ -49,6 +49,9 @@ pub(super) const FAN: usize = 32;
 /// Steps after which a climb looks whether it goes along a ring.
 const STRIDE: usize = 3;
 
+/// Rims and points that a body may be taken to be the hull of.
+pub(crate) const MOST_RIMS: usize = 8;
+
 /// No ring.
 const NO_RING: u16 = u16::MAX;
 
@@ -69,6 +72,8 @@ pub(crate) struct SupportIndex {
     rings: Vec<Ring>,
     /// For each vertex its ring: a number in `rings`, or beyond these in `fans`. Empty without any.
     ring_of: Vec<u16>,
+    /// The rims and points that the body is nearly the hull of, if these are few.
+    outline: Vec<Rim>,
 }
 
 impl SupportIndex {
@@ -81,8 +86,10 @@ impl SupportIndex {
             fans: fans(vertices, topology),
             rings: rings(vertices, topology),
             ring_of: Vec::new(),
+            outline: Vec::new(),
         };
         index.ring_of = index.rings_of_vertices(topology);
+        index.outline = index.outline_of(vertices).unwrap_or_default();
         if vertices.len() <= SCAN_LIMIT {
             index.groups = groups(vertices);
         } else {
@@ -238,13 +245,17 @@ impl SupportIndex {
         direction: DVec3,
         at: u32,
     ) -> u32 {
-        let Some(&number) = self.ring_of.get(at as usize) else { return at };
-        if number == NO_RING {
-            return at;
-        }
-        let there = self.ring(number).vertex(vertices, topology, direction);
+        let Some(ring) = self.ring_at(at) else { return at };
+        let there = ring.vertex(vertices, topology, direction);
         let way = vertices[there as usize] - vertices[at as usize];
         if direction.dot(way) > noise::GAIN * direction.abs().dot(way.abs()) { there } else { at }
+    }
+
+    /// The ring that a vertex is on, if it is on one.
+    #[inline]
+    fn ring_at(&self, vertex: u32) -> Option<&Ring> {
+        let number = self.ring_of.get(vertex as usize).filter(|&&number| number != NO_RING)?;
+        Some(self.ring(*number))
     }
 
     fn ring(&self, number: u16) -> &Ring {
@@ -258,27 +269,42 @@ impl SupportIndex {
         !self.ring_of.is_empty()
     }
 
-    /// The number of a vertex's ring beyond those of vertices, or its own, if the body has few or it has many
-    /// neighbours.
+    /// The rims and points that the body is nearly the hull of, if it has rims and these are few.
     #[inline]
-    pub(super) fn rim_of(&self, topology: &Topology, vertex: u32) -> Option<u32> {
-        match self.ring_of.get(vertex as usize) {
-            Some(&number) if number != NO_RING => {
-                Some(topology.vertex_count() as u32 + u32::from(number))
-            }
-            _ if topology.vertex_count() <= FAN || topology.neighbours(vertex).len() > FAN => {
-                Some(vertex)
-            }
-            _ => None,
-        }
+    pub(super) fn outline(&self) -> &[Rim] {
+        &self.outline
     }
 
-    /// The rim of a vertex's ring; a point of one that is on none.
-    pub(super) fn rim(&self, vertices: &[DVec3], vertex: u32) -> Rim {
-        match self.ring_of.get(vertex as usize) {
-            Some(&number) if number != NO_RING => *self.ring(number).rim(),
-            _ => Rim::point(vertices[vertex as usize]),
+    /// The same, measured.
+    fn outline_of(&self, vertices: &[DVec3]) -> Option<Vec<Rim>> {
+        let mut outline = Vec::new();
+        let mut is_known = vec![false; self.rings.len() + self.fans.len()];
+        for (vertex, &number) in self.ring_of.iter().enumerate() {
+            if number == NO_RING {
+                outline.push(Rim::point(vertex as u32, vertices[vertex]));
+            } else if !std::mem::replace(&mut is_known[usize::from(number)], true) {
+                let ring = self.ring(number);
+                outline.push(*ring.rim());
+                if !ring.is_round() {
+                    return None;
+                }
+            }
+            if outline.len() > MOST_RIMS {
+                return None;
+            }
         }
+        Some(outline)
+    }
+
+    /// The farthest vertex of the ring that a vertex is on, or that vertex.
+    pub(super) fn farthest_on_ring(
+        &self,
+        vertices: &[DVec3],
+        topology: &Topology,
+        direction: DVec3,
+        at: u32,
+    ) -> u32 {
+        self.ring_at(at).map_or(at, |ring| ring.vertex(vertices, topology, direction))
     }
 
     /// For each vertex the number of its ring, the one with the most corners.
@@ -328,6 +354,7 @@ impl SupportIndex {
         self.cells.capacity() * size_of::<u32>()
             + self.groups.capacity() * size_of::<Group>()
             + self.ring_of.capacity() * size_of::<u16>()
+            + self.outline.capacity() * size_of::<Rim>()
             + self.fans.capacity() * size_of::<Fan>()
             + self.fans.iter().map(Fan::heap_bytes).sum::<usize>()
             + self.rings.capacity() * size_of::<Ring>()

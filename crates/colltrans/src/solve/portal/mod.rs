@@ -6,20 +6,21 @@
 //! f`; a tangent is a cutting plane of `f`, a portal three of them that bound it.
 //!
 //! The way: [`mod@facing`] answers for parts that stand on each other; else [`mod@start`] guesses a
-//! slope, [`mod@follow`] goes face by face from there to the line, or [`mod@enclose`] finds a first portal or a separating
-//! direction, [`mod@rims`] takes rims for ellipses and goes on from where these are met, [`mod@refine`] exchanges one point of the portal after another until its plane
-//! supports `M`, [`mod@graze`] measures how far the shadows overlap. Section 1 of the paper for the
+//! slope, and [`mod@outline`] a better one of bodies with rims, [`mod@follow`] goes face by face from there to the line,
+//! or [`mod@enclose`] finds a first portal or a separating direction, [`mod@refine`] exchanges one point of the portal
+//! after another until its plane supports `M`, [`mod@graze`] measures how far the shadows overlap. Section 1 of the paper for the
 //! bounds; the exchange is the dual of the simplex method with two variables.
 
+mod ascent;
 mod edge;
 mod enclose;
 mod facing;
 mod flat;
 mod follow;
 mod graze;
+mod outline;
 mod plane;
 mod refine;
-mod rims;
 mod start;
 mod tied;
 mod wrap;
@@ -32,9 +33,9 @@ pub(crate) use enclose::{Enclosure, SeparatingLine, around, enclose, widest_marg
 pub(crate) use facing::facing;
 pub(crate) use follow::{ContactPortal, Followed, OF_ELLIPSOIDS, approach, follow};
 pub(crate) use graze::{Overlap, overlap};
+pub(crate) use outline::between_outlines;
 pub(crate) use plane::{Face, Plane};
 pub(crate) use refine::{MAX_PORTALS, Optimum, Refined, face, proven, refine};
-pub(crate) use rims::along_rims;
 pub(crate) use start::FirstNormal;
 
 /// Three points of `M` whose shadows, counter-clockwise, contain the line.

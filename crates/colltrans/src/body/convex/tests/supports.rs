@@ -6,6 +6,7 @@ use glam::DVec3;
 
 use super::bodies::{Random, cone, prism};
 use crate::body::ConvexPolyhedron;
+use crate::body::convex::fan::Above;
 
 /// A frustum over a polygon with its corners anywhere on an ellipse, most of them close together.
 fn crowded_frustum(around: usize, random: &mut Random) -> ConvexPolyhedron {
@@ -58,4 +59,61 @@ fn no_vertex_is_farther_than_the_support_point() {
             }
         }
     }
+}
+
+/// No neighbour of an apex that a proof asks for is passed over, be the cone round, flat, tall or of rounded corners; and
+/// of many few are looked at.
+#[test]
+fn all_neighbours_above_are_seen() {
+    let mut random = Random(43);
+    let (mut asked, mut looks, mut many) = (0, 0, 0);
+    for around in [40, 300, 3_000] {
+        for height in [1e-6, 1e-2, 1.0, 50.0] {
+            for rounding in [0.0, 1e-15, 1e-7, 1e-4] {
+                let rim = |k: usize| {
+                    let angle = k as f64 / around as f64 * TAU;
+                    let radius = 1.0 - rounding * random.within(0.0, 1.0);
+                    DVec3::new(1.3 * radius * angle.cos(), radius * angle.sin(), 0.0)
+                };
+                let mut points: Vec<DVec3> = (0..around).map(rim).collect();
+                points.push(DVec3::new(0.1, 0.2, height));
+                let body = ConvexPolyhedron::from_points(&points).unwrap();
+                let apex = body.support(DVec3::Z).0;
+                let neighbours = body.neighbours(apex);
+                if neighbours.len() <= super::super::support::FAN {
+                    continue;
+                }
+                let here = body.vertices()[apex as usize];
+                for k in 0..60 {
+                    // Planes through two neighbours, or only beside one.
+                    let edge = |w: u32| body.vertices()[w as usize] - here;
+                    let at = random.index(neighbours.len());
+                    let [a, b] = [at, at + 1].map(|k| edge(neighbours[k % neighbours.len()]));
+                    let tilt = random.unit() * 10_f64.powf(random.within(-17.0, -3.0));
+                    let normal = (b.cross(a).normalize() + tilt * f64::from(k % 3)).normalize();
+                    let least = -[0.0, 1e-15, 1e-9, 1e-3][random.index(4)];
+                    let above = Above { normal, length: 1.0, here, least, reach: 60.0 };
+                    let mut seen = Vec::new();
+                    let fan = body.support.fan(apex);
+                    let mut look = |w: u32| {
+                        seen.push(w);
+                        true
+                    };
+                    assert!(fan.look_above(&body.vertices, &body.topology, &above, &mut look));
+                    let is_above = |w: &&u32| normal.dot(edge(**w)) > least;
+                    for w in neighbours.iter().filter(is_above) {
+                        assert!(seen.contains(w), "{around}, {height}, {rounding}: {w}");
+                        asked += 1;
+                    }
+                    if height >= 1.0 && rounding == 0.0 && least > -1e-9 {
+                        looks += seen.len();
+                        many += 1;
+                    }
+                    assert!(seen.len() <= neighbours.len() + 1, "{} looks", seen.len());
+                }
+            }
+        }
+    }
+    assert!(asked > 1_000, "{asked} neighbours were asked for");
+    assert!(looks < 16 * many, "{looks} looks for {many} planes");
 }

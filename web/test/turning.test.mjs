@@ -142,6 +142,10 @@ test("a bolt is screwed out of its plate, and not by an axis that is askew; gaps
   await example("shaft", "contact");
   await example("hinge", "contact");
   await page.waitForTimeout(400); // The last answer, a contact too, stays until there is another one.
+  await page.waitForFunction(() => {
+    const { asking, answer } = window.colltrans.probe().turning;
+    return !asking && answer?.record.time?.lower;
+  });
   const before = (await probe()).answer.record.time.lower;
   await page.fill('[aria-label="Gap to be kept"]', "1");
   await page.waitForFunction((before) => window.colltrans.probe().turning.answer?.record.time?.lower < before, before);

@@ -33,6 +33,7 @@ pub use verify::SolidProof;
 
 /// Default tolerance, in multiples of the rounding error of a coordinate.
 const NOISES: f64 = 8.0;
+
 /// What an overlap at the start means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 #[cfg_attr(
@@ -159,6 +160,14 @@ impl Body for Solid {
     type Near = SolidNear;
     type Gap = SolidGap;
     type Steps = SolidSteps;
+}
+
+/// What is told of a clearance before any search.
+enum AtOnce {
+    Answer(Clearance<Solid>),
+    /// The bodies overlap there.
+    Overlapping(Overlap),
+    Nothing,
 }
 
 impl Solid {
@@ -321,45 +330,25 @@ impl<'a> Cast<'a, Solid> {
     /// # Errors
     /// As [`Self::clearance`].
     pub fn clearance_in(&self, workspace: &mut Workspace) -> Result<Clearance<Solid>, QueryError> {
-        let mut steps = SolidSteps::default();
-        let by_boxes = self.told_by_boxes();
-        if let boxes::Told::Passing(answer) = by_boxes {
-            return Ok(answer);
-        }
-        // Where boxes touch, the bodies' exact places are asked before their hulls; where hulls overlap by little, facets.
-        let touching = matches!(by_boxes, boxes::Told::Touching);
-        let hulls = if touching { None } else { Hulls::of(self) };
-        let in_doubt = touching || hulls.as_ref().is_some_and(Hulls::are_sunk);
-        if !in_doubt && let Some(answer) = hulls.as_ref().and_then(|hulls| hulls.certain(self)) {
-            return Ok(answer);
-        }
-        let scene = self.asked_of_something()?;
-        if touching && overlap::pass(&scene, self.limit(&scene)) {
-            steps.nodes += 1;
-            return Ok(self.answer(&scene, None, steps));
-        }
-        let hulls = if touching { Hulls::of(self) } else { hulls };
-        let place = self.sunk(hulls.as_ref(), &scene, &mut steps);
-        if place.is_none()
-            && let Some(answer) = hulls.and_then(|hulls| {
-                let certain = if in_doubt { hulls.certain(self) } else { None };
-                certain.or_else(|| self.guessed_by_hulls(&hulls, &scene))
-            })
-        {
-            return Ok(answer);
-        }
+        let (mut scene, mut steps) = (None, SolidSteps::default());
+        let place = match self.told_at_once(&mut scene, &mut steps)? {
+            AtOnce::Answer(answer) => return Ok(answer),
+            AtOnce::Overlapping(place) => Some(place),
+            AtOnce::Nothing => None,
+        };
+        let scene = self.scene_once(&mut scene)?;
         let ignored = self.options.start_overlap == StartOverlap::Ignore;
         let aim = match self.options.overlapping {
             Some(false) => Aim::Stop,
             Some(true) if ignored => Aim::LaterStop,
-            _ => match place.or_else(|| overlap::find(&scene, &mut steps)) {
+            _ => match place.or_else(|| overlap::find(scene, &mut steps)) {
                 Some(_) if ignored => Aim::LaterStop,
                 Some(place) => return Ok(Clearance::Overlapping(self.overlap_at(place, steps))),
                 None => Aim::Stop,
             },
         };
-        let found = first(&scene, aim, self.limit(&scene), workspace, &mut steps);
-        Ok(self.answer(&scene, found.as_ref(), steps))
+        let found = first(scene, aim, self.limit(scene), workspace, &mut steps);
+        Ok(self.answer(scene, found.as_ref(), steps))
     }
 
     /// At which translation do the bodies, as they are, first meet, if they do? Over all translations,
@@ -463,13 +452,49 @@ impl<'a> Cast<'a, Solid> {
         self.options.before.map_or(f64::INFINITY, |t| t * scene.setting.length)
     }
 
-    /// What is told of the clearance before any search; the same whether a proof is wanted or not.
-    fn told_at_once(&self, scene: &Scene) -> Option<Clearance<Solid>> {
-        if let boxes::Told::Passing(answer) = self.told_by_boxes() {
-            return Some(answer);
+    /// What is told of the clearance before any search, the same whether a proof is wanted or not: by boxes, then by
+    /// hulls, then by the facets around the contact of those. The scene is made when it is asked for.
+    fn told_at_once(
+        &self,
+        scene: &mut Option<Scene<'a>>,
+        steps: &mut SolidSteps,
+    ) -> Result<AtOnce, QueryError> {
+        let by_boxes = self.told_by_boxes();
+        if let boxes::Told::Passing(answer) = by_boxes {
+            return Ok(AtOnce::Answer(answer));
         }
-        let hulls = Hulls::of(self)?;
-        hulls.certain(self).or_else(|| self.guessed_by_hulls(&hulls, scene))
+        // Where boxes touch, the bodies' exact places are asked before their hulls; where hulls overlap by little, facets.
+        let touching = matches!(by_boxes, boxes::Told::Touching);
+        let hulls = if touching { None } else { Hulls::of(self) };
+        let in_doubt = touching || hulls.as_ref().is_some_and(Hulls::are_sunk);
+        if !in_doubt && let Some(answer) = hulls.as_ref().and_then(|hulls| hulls.certain(self)) {
+            return Ok(AtOnce::Answer(answer));
+        }
+        let scene = self.scene_once(scene)?;
+        if touching && overlap::pass(scene, self.limit(scene)) {
+            steps.nodes += 1;
+            return Ok(AtOnce::Answer(self.answer(scene, None, *steps)));
+        }
+        let hulls = if touching { Hulls::of(self) } else { hulls };
+        if let Some(place) = self.sunk(hulls.as_ref(), scene, steps) {
+            return Ok(AtOnce::Overlapping(place));
+        }
+        let told = hulls.and_then(|hulls| {
+            let certain = if in_doubt { hulls.certain(self) } else { None };
+            certain.or_else(|| self.guessed_by_hulls(&hulls, scene))
+        });
+        Ok(told.map_or(AtOnce::Nothing, AtOnce::Answer))
+    }
+
+    /// The bodies shrunk by half the tolerance, which leaves something of them, made once.
+    fn scene_once<'s>(
+        &self,
+        scene: &'s mut Option<Scene<'a>>,
+    ) -> Result<&'s Scene<'a>, QueryError> {
+        Ok(match scene {
+            Some(scene) => scene,
+            None => scene.insert(self.asked_of_something()?),
+        })
     }
 
     /// Where the bodies overlap, if they do by little, by what is around a contact of their hulls.

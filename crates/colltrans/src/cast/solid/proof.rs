@@ -12,7 +12,7 @@
 use std::collections::HashMap;
 
 use super::hulls::Hulls;
-use super::{SolidOptions, StartOverlap};
+use super::{AtOnce, SolidOptions, StartOverlap};
 use crate::answer::{Clearance, SolidSteps};
 use crate::body::solid::Solid;
 use crate::cast::Cast;
@@ -208,10 +208,11 @@ impl Cast<'_, Solid> {
     /// # Errors
     /// As [`Self::clearance`].
     pub fn certified_clearance(&self) -> Result<(Clearance<Solid>, SolidCertificate), QueryError> {
-        let scene = self.asked_of_something()?;
+        let (mut scene, mut steps) = (None, SolidSteps::default());
+        let told = self.told_at_once(&mut scene, &mut SolidSteps::default())?;
+        let scene = self.scene_once(&mut scene)?;
         let bodies = [self.moving(), self.fixed()];
-        let mut steps = SolidSteps::default();
-        let start = self.prove_start(&scene, &mut steps);
+        let start = self.prove_start(scene, &mut steps);
         let mut certificate = SolidCertificate {
             tolerance: self.tolerance(),
             start,
@@ -227,22 +228,24 @@ impl Cast<'_, Solid> {
             (aim, _) => aim.unwrap_or(Aim::Stop),
         };
         let mut cuts = HashMap::new();
-        let limit = self.limit(&scene);
+        let limit = self.limit(scene);
         let cut = |nodes, reason| {
             cuts.insert(nodes, reason);
         };
-        let mut search = Search::new(&scene, aim, limit, cut);
+        let mut search = Search::new(scene, aim, limit, cut);
         let found = search.run(&mut Workspace::default());
         let end = search.limit;
         steps += search.steps;
         certificate.cover = Cover::new(bodies, &cuts);
-        let told = self.told_at_once(&scene);
-        let answer = told.unwrap_or_else(|| self.answer(&scene, found.as_ref(), steps));
+        let answer = match told {
+            AtOnce::Answer(answer) => answer,
+            _ => self.answer(scene, found.as_ref(), steps),
+        };
         if let Clearance::Blocked { contact, .. } = &answer {
             let shrunk_distance = contact.shrunk_distance.value;
             certificate.stop = Some(StopProof { shrunk_distance, triangles: contact.triangles });
         }
-        certificate.lower = proven(&scene, aim, end, &certificate.cover) / scene.setting.length;
+        certificate.lower = proven(scene, aim, end, &certificate.cover) / scene.setting.length;
         if certificate.lower <= 0.0 {
             // Nothing contributes less than 0.
             certificate.lower = 0.0;

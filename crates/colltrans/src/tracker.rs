@@ -230,10 +230,13 @@ impl<'a> Tracker<'a> {
         which: usize,
         observer: &mut O,
     ) -> Result<Outcome, QueryError> {
+        let own = Focus::of(cast.options.solver);
+        if self.focus.is_none() && own.features && self.paces[which].rests() {
+            return self.run_alone(cast, which, observer);
+        }
         let next = &mut self.warm_starts[which];
         let last = *next;
         let pace = &mut self.paces[which];
-        let own = Focus::of(cast.options.solver);
         let follows = !matches!(last, WarmStart::Nothing);
         let focus = match self.focus {
             Some(chosen) => chosen,
@@ -244,6 +247,22 @@ impl<'a> Tracker<'a> {
         let outcome = search(&cast.setting, &cast.options, &focus, &last, next, observer);
         if let Ok(outcome) = &outcome {
             pace.note(focus.features && follows, &outcome.steps());
+            self.steps += outcome.steps();
+        }
+        outcome
+    }
+
+    /// The same where neither this cast nor the next one follows: as without a tracker.
+    #[inline(never)]
+    fn run_alone<O: Observer>(
+        &mut self,
+        cast: &Cast<'a>,
+        which: usize,
+        observer: &mut O,
+    ) -> Result<Outcome, QueryError> {
+        let outcome = cast.first_contact_observed(observer);
+        if let Ok(outcome) = &outcome {
+            self.paces[which].note(false, &outcome.steps());
             self.steps += outcome.steps();
         }
         outcome

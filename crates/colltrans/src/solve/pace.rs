@@ -9,7 +9,7 @@
 //! success shortens it. So a sequence without coherence costs one failed attempt in `LONGEST`, and one that becomes
 //! coherent is followed after `LONGEST` casts at most.
 
-use crate::answer::Steps;
+use crate::answer::{StartedFrom, Steps};
 
 /// Whether the next cast should follow the last answer.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,10 +38,11 @@ const WEIGHT: f32 = 0.125;
 /// been seen, and one cast with more does not end it.
 const EXPECTED: f32 = 0.75;
 
-/// A support takes as long as this many portals, and the guess that a cast from scratch begins with as long as
-/// one (measured on bodies of 2,000 to 200,000 vertices).
+/// A support takes as long as this many portals; the guess that a cast from scratch begins with, and an attempt to follow
+/// that is lost, as long as one (measured on bodies of 2,000 to 200,000 vertices).
 const SUPPORT: f32 = 3.0;
 const GUESS: f32 = 1.0;
+const ATTEMPT: f32 = 1.0;
 
 impl Pace {
     /// Whether the next cast follows the last answer.
@@ -50,7 +51,14 @@ impl Pace {
         self.left == 0
     }
 
-    /// Takes the work of a cast into account, that followed or did not.
+    /// Whether the one after it does not either: what this one leaves is of no use.
+    #[inline]
+    pub(crate) fn rests(&self) -> bool {
+        self.left > 1
+    }
+
+    /// Takes the work of a cast into account, that followed or did not. One that began from scratch after all has
+    /// gained nothing, and cost the attempt.
     #[inline]
     pub(crate) fn note(&mut self, follows: bool, steps: &Steps) {
         #[expect(clippy::cast_precision_loss, reason = "a running average of counts")]
@@ -67,6 +75,8 @@ impl Pace {
                 self.followed = *scratch;
             }
             Some(scratch) => {
+                let lost = steps.started_from == StartedFrom::Scratch;
+                let work = if lost { work.max(*scratch) + ATTEMPT } else { work };
                 self.followed += WEIGHT * (work - self.followed);
                 if self.followed > *scratch {
                     self.pause = (2 * self.pause).min(LONGEST);
@@ -76,5 +86,29 @@ impl Pace {
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Attempts that are lost cost no count, but the sequence has no coherence: hardly one cast in `LONGEST` is one.
+    #[test]
+    fn attempts_that_are_lost_are_failures() {
+        let mut pace = Pace::default();
+        let mut attempts = 0;
+        for k in 0..1_000 {
+            let steps = Steps {
+                supports: 2,
+                pivots: 1 + k % 3,
+                started_from: StartedFrom::Scratch,
+                ..Steps::default()
+            };
+            let follows = k > 0 && pace.follows();
+            attempts += u32::from(follows);
+            pace.note(follows, &steps);
+        }
+        assert!((1_000 / 20..=1_000 / 14).contains(&attempts), "{attempts} attempts");
     }
 }

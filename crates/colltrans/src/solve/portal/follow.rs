@@ -41,6 +41,9 @@ pub(crate) enum Followed {
 /// Faces of `M` crossed before wide portals are the shorter way (measured).
 const CROSSINGS: usize = 20;
 
+/// The same of an earlier portal, beside which a cast from scratch is the shorter way (measured).
+const FOLLOWED: usize = 8;
+
 /// A line this many widths of the triangle beyond an edge is not reached face by face (measured).
 const FAR: f64 = 1.2;
 
@@ -89,7 +92,7 @@ pub(crate) fn follow<O: Observer>(context: &mut Context<O>, last: &ContactPortal
             Line::Inside(known) => return Followed::Portal(portal, known),
         }
     }
-    walk(context, edge, CROSSINGS)
+    walk(context, edge, FOLLOWED)
 }
 
 /// From a face of `M` to the one that the line pierces, over one edge after another, of which the

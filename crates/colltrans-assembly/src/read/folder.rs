@@ -26,7 +26,9 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     }
     // Folders list their files in any order.
     files.sort_by_key(|file| natural(&stem(file)));
-    read_files(source, &files, &others.told())
+    let notes = others.unread();
+    let assembly = read_files(source, &files, &others.told())?;
+    Ok(notes.into_iter().fold(assembly, Assembly::with_note))
 }
 
 pub(super) fn read_file(source: Source) -> Result<Assembly, ReadError> {
@@ -78,6 +80,8 @@ impl Units {
 struct Others {
     folders: usize,
     by_kind: BTreeMap<String, usize>,
+    /// Names of what may say where parts are: not JSON, which is anything, answers of this crate among it.
+    manifests: Vec<String>,
 }
 
 impl Others {
@@ -87,7 +91,23 @@ impl Others {
             return;
         }
         let kind = file.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
-        *self.by_kind.entry(kind.unwrap_or_default()).or_default() += 1;
+        let kind = kind.unwrap_or_default();
+        if ["toml", "urdf"].contains(&&*kind) {
+            self.manifests.extend(file.file_name().map(|name| name.to_string_lossy().into()));
+        }
+        *self.by_kind.entry(kind).or_default() += 1;
+    }
+
+    /// What is not read though there are meshes.
+    fn unread(&self) -> Option<String> {
+        let mut names = self.manifests.clone();
+        names.sort();
+        (!names.is_empty()).then(|| {
+            format!(
+                "not read: {}; parts are where their files have them, unless it is given itself",
+                names.join(", ")
+            )
+        })
     }
 
     /// What was found, and what to do.

@@ -48,6 +48,17 @@ fn a_folder_is_read_in_natural_order() {
 }
 
 #[test]
+fn a_manifest_beside_the_meshes_of_a_folder_is_said_not_to_be_read() {
+    let toml = "[[part]]\nfile = 'p.off'\ntranslation = [5, 0, 0]\n";
+    let folder = folder(&[("p.off", CUBE), ("assembly.toml", toml), ("answer.json", "{}")]);
+    let assembly = open(folder.path()).unwrap();
+    near(bounds(&assembly, "p"), [0.0; 3], [1.0; 3]);
+    let [note] = assembly.notes() else { panic!("{:?}", assembly.notes()) };
+    assert!(note.starts_with("not read: assembly.toml; "), "{note}");
+    assert!(open(folder.path().join("assembly.toml")).unwrap().notes().is_empty());
+}
+
+#[test]
 fn manifests_place_parts_in_toml_and_json() {
     let toml = "unit = 'mm'\nignore = [['a', 'b']]\nignore_always = [['c', 'b']]\n\
         [[part]]\nfile = 'c.off'\nname = 'a'\n\

@@ -138,6 +138,10 @@ def test_a_press_fit_has_a_tolerance_of_its_own() -> None:
         assert "tolerance" in step.passed[0].words
     with pytest.raises(InputError):
         parts.with_pair("block", "pin", role="welded")
+    # Of another assembly's plan: the parts that are stuck there are none of these.
+    (stuck,) = Assembly({"a": block, "b": pin}).plan(samples=0).stuck
+    with pytest.raises(AssemblyError, match="no part is named a"):
+        parts.suggestions(stuck=[stuck])
     with pytest.raises(AssemblyError):
         parts.with_pair("block", "pin", role="snap")
 

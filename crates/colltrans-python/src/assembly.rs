@@ -335,8 +335,10 @@ impl Assembly {
         &self,
         py: Python<'_>,
         tolerance: Option<f64>,
-        stuck: Vec<Vec<usize>>,
+        stuck: Vec<Vec<String>>,
     ) -> PyResult<Vec<PassedRow>> {
+        let stuck: Vec<Vec<usize>> =
+            stuck.into_iter().map(|names| self.group(names)).collect::<PyResult<_>>()?;
         let found = self.ask(py, Choices::new(tolerance, false), |bodies, watch| {
             let mut all = suggestions(bodies, &Start::new(bodies, watch)?);
             for parts in &stuck {

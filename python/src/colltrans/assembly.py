@@ -612,11 +612,7 @@ class Assembly:
         --------
         ``parts.with_suggestions(parts.suggestions()).plan()`` takes them for granted.
         """
-        number = {name: k for k, name in enumerate(self.parts)}
-        for part in (part for group in stuck for part in group.parts):
-            if part not in number:
-                raise InputError(f"stuck: there is no part called {part!r}")
-        held = [[number[part] for part in group.parts] for group in stuck]
+        held = [list(group.parts) for group in stuck]
         return [self._fit(*pair) for pair in self._assembly.suggestions(tolerance, held)]
 
     def with_suggestions(self, fits: Sequence[PairFit]) -> "Assembly":

@@ -136,15 +136,22 @@ fn assembly(parts: &[NamedPart], placed: DAffine3) -> Result<Assembly, Box<dyn E
     Ok(Assembly::new(parts)?.with_unit("mm"))
 }
 
-/// Each part as a file; those of several bodies are left out.
+/// Each body as a file, and a manifest of all parts.
 fn written(folder: &Path, parts: &[NamedPart]) -> Result<(), Box<dyn Error>> {
     std::fs::create_dir_all(folder)?;
+    let mut entries = Vec::new();
     for (name, bodies) in parts {
-        let [mesh] = &bodies[..] else { continue };
-        let mesh = Mesh::new(mesh.vertices.clone(), mesh.faces.clone());
-        colltrans_mesh::write(&mesh, folder.join(format!("{name}.off")))?;
+        let mut files = Vec::new();
+        for (k, mesh) in bodies.iter().enumerate() {
+            let file = format!("{name}.{k}.off");
+            let mesh = Mesh::new(mesh.vertices.clone(), mesh.faces.clone());
+            colltrans_mesh::write(&mesh, folder.join(&file))?;
+            files.push(file);
+        }
+        entries.push(json!({ "name": name, "file": files }));
     }
-    Ok(())
+    let manifest = json!({ "unit": "mm", "parts": entries });
+    Ok(std::fs::write(folder.join("assembly.json"), manifest.to_string())?)
 }
 
 /// A plan without options, and if it is not whole another one with what is suggested.

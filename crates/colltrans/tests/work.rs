@@ -72,7 +72,7 @@ fn rims_are_met_in_a_few_steps() {
         ] {
             let mean = supports(&body);
             println!("{what}, {count}: {mean} support points");
-            assert!(mean < 2.6, "{what}, {count}: {mean} support points");
+            assert!(mean < 2.4, "{what}, {count}: {mean} support points");
         }
     }
 }

@@ -157,7 +157,7 @@ impl Fan {
 ///
 /// Between samples with a common distance, the maximum is at most that distance from the greatest
 /// sample.
-pub(crate) fn greatest_on_cycle(count: usize, value: impl Fn(usize) -> f64) -> usize {
+fn greatest_on_cycle(count: usize, value: impl Fn(usize) -> f64) -> usize {
     let mut stride = (count / 8).max(1).next_power_of_two();
     let (mut best, mut greatest) = (0, f64::NEG_INFINITY);
     let mut look = |i: usize, best: &mut usize| {
@@ -176,4 +176,21 @@ pub(crate) fn greatest_on_cycle(count: usize, value: impl Fn(usize) -> f64) -> u
         look((center + count - stride) % count, &mut best);
     }
     best
+}
+
+/// The same from near the maximum, with strides that grow as long as they lead up.
+pub(crate) fn greatest_near(count: usize, near: usize, value: impl Fn(usize) -> f64) -> usize {
+    let (mut best, mut greatest, mut stride) = (near, value(near), 1);
+    loop {
+        let beside = [best + stride, best + count - stride].map(|i| i % count);
+        let higher = beside.into_iter().map(|i| (i, value(i))).find(|&(_, v)| v > greatest);
+        if let Some(found) = higher {
+            (best, greatest) = found;
+            stride = (2 * stride).min(count / 2);
+        } else if stride == 1 {
+            return best;
+        } else {
+            stride /= 2;
+        }
+    }
 }

@@ -3,13 +3,14 @@
 //! Seen along the axis of the turn, the edges that leave a vertex are rays on one side of the plane, and
 //! the plane meets them in the order of their angles. In cyclic order of the edges the angle has one
 //! maximum and one minimum, because what the body's cone is seen as is a wedge; so around a vertex with
-//! many neighbours the first is found in `O(log n)`.
+//! many neighbours the first is found in `O(log n)`, mostly at once: near the one that rises least, as most planes that
+//! turn support the body.
 
 use std::hint::select_unpredictable;
 
 use glam::{DVec2, DVec3};
 
-use crate::body::{ConvexPolyhedron, greatest_on_cycle};
+use crate::body::{ConvexPolyhedron, greatest_near};
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
 
@@ -78,7 +79,7 @@ impl Turn {
         let here = body.vertices()[vertex as usize];
         let neighbours = body.neighbours(vertex);
         if neighbours.len() > FEW {
-            return self.first_of_many(body, here, neighbours);
+            return self.first_of_many(body, vertex, neighbours);
         }
         let mut first = First { vertex: NOBODY, rise: f64::INFINITY, run: 1.0 };
         for &w in neighbours {
@@ -95,17 +96,20 @@ impl Turn {
     /// The same, by a search.
     #[cold]
     #[inline(never)]
-    fn first_of_many(&self, body: &ConvexPolyhedron, here: DVec3, neighbours: &[u32]) -> First {
+    fn first_of_many(&self, body: &ConvexPolyhedron, vertex: u32, neighbours: &[u32]) -> First {
+        let here = body.vertices()[vertex as usize];
         let ahead = |i: usize| {
             let edge = body.vertices()[neighbours[i] as usize] - here;
             (self.up.dot(edge), self.out.dot(edge))
         };
-        // Falls as the angle grows.
+        // Falls as the angle grows; on the axis there is none.
         let soon = |i: usize| {
             let (rise, run) = ahead(i);
-            run / (run.abs() + rise.abs())
+            let size = run.abs() + rise.abs();
+            if run > self.least { -rise / size } else { (rise.abs() / size - 2.0).max(-2.0) }
         };
-        let i = greatest_on_cycle(neighbours.len(), soon);
+        let (before, _) = body.plane_candidates(vertex, -self.up);
+        let i = greatest_near(neighbours.len(), (before + 1) % neighbours.len(), soon);
         let (rise, run) = ahead(i);
         if run > self.least {
             First { vertex: neighbours[i], rise, run }

@@ -1,12 +1,13 @@
 //! Support points where faces have many corners, against a look at every vertex.
 
+use std::cell::Cell;
 use std::f64::consts::TAU;
 
 use glam::DVec3;
 
 use super::bodies::{Random, cone, prism};
 use crate::body::ConvexPolyhedron;
-use crate::body::convex::fan::Above;
+use crate::body::convex::fan::{Above, greatest_near};
 
 /// A frustum over a polygon with its corners anywhere on an ellipse, most of them close together.
 fn crowded_frustum(around: usize, random: &mut Random) -> ConvexPolyhedron {
@@ -116,4 +117,26 @@ fn all_neighbours_above_are_seen() {
     }
     assert!(asked > 1_000, "{asked} neighbours were asked for");
     assert!(looks < 16 * many, "{looks} looks for {many} planes");
+}
+
+/// From everywhere on a cycle with one maximum, in strides.
+#[test]
+fn the_greatest_on_a_cycle_is_reached() {
+    let mut random = Random(44);
+    for count in [33, 34, 100, 4_097] {
+        for _ in 0..200 {
+            let [top, near] = [0, 1].map(|_| random.index(count));
+            let bent = random.within(0.2, 5.0);
+            let looks = Cell::new(0);
+            let away = |i: usize| i.abs_diff(top).min(count - i.abs_diff(top));
+            let value = |i: usize| {
+                looks.set(looks.get() + 1);
+                -(away(i) as f64 / count as f64).powf(bent)
+            };
+            assert_eq!(greatest_near(count, near, value), top, "of {count} from {near}");
+            let looks = looks.get();
+            let most = 3 + 8 * (away(near) as f64 + 1.0).log2() as usize;
+            assert!(looks <= most, "{looks} looks from {} away", away(near));
+        }
+    }
 }

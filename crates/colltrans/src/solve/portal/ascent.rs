@@ -38,9 +38,16 @@ struct Active {
     count: usize,
 }
 
-/// The slope at which both outlines together are highest, from one near, and a rim of each that meet there; `None` if
-/// Newton's method does not end.
-pub(super) fn highest(outlines: &[Outline; 2], near: DVec2) -> Option<(DVec2, [usize; 2])> {
+/// Where two outlines are highest together, with a rim of each.
+pub(super) enum Highest {
+    /// At a slope.
+    At(DVec2, [usize; 2]),
+    /// Nowhere: all of both lies on one side of the line, along this in the shadow.
+    Beyond(DVec2, [usize; 2]),
+}
+
+/// Where both outlines together are highest, from a slope near; `None` if Newton's method does not end.
+pub(super) fn highest(outlines: &[Outline; 2], near: DVec2) -> Option<Highest> {
     let (mut slope, mut greatest) = (near, f64::NEG_INFINITY);
     let (mut longest, mut damping) = (LONGEST, 0.0);
     let mut active = [Active::default(); 2];
@@ -69,10 +76,22 @@ pub(super) fn highest(outlines: &[Outline; 2], near: DVec2) -> Option<(DVec2, [u
         }
         slope = best + tried;
         if square <= LAST * LAST * size {
-            return Some((slope, active.map(|body| body.rims[0])));
+            return Some(Highest::At(slope, active.map(|body| body.rims[0])));
+        }
+        if square > most
+            && let Some(rims) = beyond(outlines, slope)
+        {
+            return Some(Highest::Beyond(slope, rims));
         }
     }
     None
+}
+
+/// The lowest rims along a direction in the shadow, if all that the outlines make together lies ahead: no slope that way is
+/// the highest.
+fn beyond(outlines: &[Outline; 2], ahead: DVec2) -> Option<[usize; 2]> {
+    let lowest = outlines.each_ref().map(|outline| outline.lowest(ahead.extend(0.0)));
+    (lowest[0].1 + lowest[1].1 > 0.0).then(|| lowest.map(|(rim, _)| rim))
 }
 
 impl Active {

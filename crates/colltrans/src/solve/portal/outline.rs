@@ -12,7 +12,7 @@
 
 use glam::{DMat2, DVec2, DVec3};
 
-use super::ascent::highest;
+use super::ascent::{Highest, highest};
 use super::follow::{Followed, OF_RIMS, approach};
 use super::{Context, FirstNormal, Known, Portal, normal_of};
 use crate::body::{MOST_RIMS, Rim};
@@ -39,10 +39,19 @@ pub(crate) fn between_outlines<O: Observer>(
     if let Some(portal) = cap(difference, &outlines) {
         return Some((Followed::Portal(portal, Known::FaceByFace), *start));
     }
-    let (slope, rims) = highest(&outlines, start.normal.truncate())?;
-    let [moving, fixed] = [0, 1].map(|body| outlines[body].rims[rims[body]].vertex);
-    let near = Some(VertexPair::of(moving, fixed));
-    Some(approach(context, &FirstNormal { normal: normal_of(slope), near }, &OF_RIMS))
+    let near = |rims: [usize; 2]| {
+        let [moving, fixed] = [0, 1].map(|body| outlines[body].rims[rims[body]].vertex);
+        VertexPair::of(moving, fixed)
+    };
+    Some(match highest(&outlines, start.normal.truncate())? {
+        Highest::At(slope, rims) => {
+            let guess = FirstNormal { normal: normal_of(slope), near: Some(near(rims)) };
+            approach(context, &guess, &OF_RIMS)
+        }
+        Highest::Beyond(ahead, rims) => {
+            (Followed::Rim { outward: -ahead, near: near(rims) }, *start)
+        }
+    })
 }
 
 /// A rim of `M` where the other body is one point, in the shadow frame.

@@ -3,8 +3,8 @@
 //! Cut by a plane, the edges of such a vertex are the corners of a convex polygon, a [`Ring`], over which the
 //! slope along a direction, a linear function, has one maximum and one minimum.
 //!
-//! A proof has to know all neighbours above some level. Where the polygon is seen to be convex whatever rounding
-//! does, these are next to each other, and nothing has to be known of the others.
+//! A proof has to know all neighbours above some level. Of a convex polygon these are next to each other, and nothing has
+//! to be known of the others; as corners are rounded, up to the polygon's *dent*.
 
 use glam::DVec3;
 
@@ -14,8 +14,8 @@ use crate::body::topology::Topology;
 use crate::number::noise;
 use crate::work;
 
-/// By how much slopes that are compared may be off together, in `GAIN` times what edges reach over their length
-/// inwards, and that squared.
+/// By how much slopes that are compared may be off together, in `GAIN` times the square of what edges are longer than
+/// inwards; and what is gained over the least length inwards, in `GAIN reach` over that.
 const DOUBT: f64 = 8.0;
 
 #[derive(Debug, Clone)]
@@ -25,9 +25,11 @@ pub(super) struct Fan {
     inward: DVec3,
     /// The least of these.
     least: f64,
+    /// The length of the longest edge.
+    longest: f64,
     ring: Ring,
-    /// Whether the polygon is convex whatever rounding does.
-    is_convex: bool,
+    /// How far from convex the polygon may be: by so much slopes may rise once they fall, times the normal's length.
+    dent: f64,
     /// The faces with many corners around the vertex.
     wide: Vec<u32>,
 }
@@ -52,17 +54,14 @@ impl Fan {
         let inward = consecutive.map(|(a, b)| a.cross(b).normalize_or_zero()).sum::<DVec3>();
         let inward = inward.normalize_or_zero();
         let least = edges().map(|edge| inward.dot(edge)).fold(f64::INFINITY, f64::min);
+        let longest = edges().map(DVec3::length).fold(0.0, f64::max);
         let cut = edges().map(|edge| edge / inward.dot(edge));
         let corners = neighbours.iter().map(|&w| vertices[w as usize]);
-        let longest = edges().map(DVec3::length).fold(0.0, f64::max);
-        let rounding = 8.0 * f64::EPSILON * (1.0 + longest / least);
-        let seen = (cut, rounding);
-        let (ring, is_convex) =
-            Ring::new((Cycle::Fan(vertex), neighbours[0]), inward, corners, seen);
-        let is_convex = is_convex && least > 0.0;
+        let (ring, dent) = Ring::new((Cycle::Fan(vertex), neighbours[0]), inward, corners, cut);
+        let dent = if least > 0.0 { dent } else { f64::INFINITY };
         let faces = topology.outgoing(vertex).iter().map(|&h| topology.half_edge(h).face);
         let wide = faces.filter(|&face| topology.face(face).len() > MANY).collect();
-        Self { vertex, inward, least, ring, is_convex, wide }
+        Self { vertex, inward, least, longest, ring, dent, wide }
     }
 
     pub(super) fn ring(&self) -> &Ring {
@@ -104,7 +103,7 @@ impl Fan {
     /// Looks at all neighbours that are asked for, and at some others, until a look says `false`.
     ///
     /// From the steepest edge on to either side, until one is less steep than that and than any asked for: those
-    /// beyond are less steep still.
+    /// beyond are less steep still, up to what is in doubt.
     pub(super) fn look_above(
         &self,
         vertices: &[DVec3],
@@ -113,16 +112,13 @@ impl Fan {
         look: &mut impl FnMut(u32) -> bool,
     ) -> bool {
         let neighbours = topology.neighbours(self.vertex);
-        if !self.is_convex {
-            work::count(neighbours.len());
-            return neighbours.iter().all(|&w| look(w));
-        }
         let slope = |k: usize| self.slope(vertices, topology, above.normal, k);
         let steepest = self.steepest(vertices, topology, above.normal);
         let asked = above.least - above.normal.dot(vertices[self.vertex as usize] - above.here);
         // Lengths inwards are rounded, too.
-        let over = above.reach / self.least;
-        let doubt = DOUBT * noise::GAIN * above.length * (over + over * over);
+        let over = self.longest / self.least;
+        let rounding = DOUBT * noise::GAIN * (above.reach / self.least + over * over);
+        let doubt = above.length * (rounding + self.dent);
         let enough = slope(steepest).min(asked.min(0.0) / self.least) - doubt;
         let count = neighbours.len();
         let (mut ahead, mut behind) = (0, 1);

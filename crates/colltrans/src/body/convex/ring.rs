@@ -127,17 +127,16 @@ impl Ring {
     fn around(vertices: &[DVec3], topology: &Topology, cycle: Cycle, count: u32) -> Self {
         let corners = (0..count).map(|k| vertices[cycle.corner(topology, k) as usize]);
         let axis = polygon_normal(corners.clone());
-        Self::new((cycle, cycle.corner(topology, 0)), axis, corners.clone(), (corners, 0.0)).0
+        Self::new((cycle, cycle.corner(topology, 0)), axis, corners.clone(), corners).0
     }
 
-    /// A ring, counter-clockwise about an axis, any length, with the polygon that it is seen as and how far off its corners
-    /// may be, as a share of its size; and whether this is convex whatever that does.
+    /// A ring, counter-clockwise about an axis, any length, with the polygon that it is seen as; and the [`dent`] of this.
     pub(super) fn new(
         (cycle, vertex): (Cycle, u32),
         axis: DVec3,
         corners: impl Iterator<Item = DVec3> + Clone,
-        (seen, rounding): (impl Iterator<Item = DVec3>, f64),
-    ) -> (Self, bool) {
+        seen: impl Iterator<Item = DVec3>,
+    ) -> (Self, f64) {
         let axis = axis.try_normalize().unwrap_or(DVec3::Z);
         let x = axis.any_orthonormal_vector();
         let axes = [x, axis.cross(x)];
@@ -147,17 +146,8 @@ impl Ring {
         let angles: Vec<f64> =
             polygon.iter().zip(next).map(|(p, q)| turn(-(q - p).perp())).collect();
         let count = angles.len();
-        let length = |k: usize| polygon[(k + 1) % count].distance(polygon[k]);
         let least = |best: usize, k: usize| if angles[k] < angles[best] { k } else { best };
         let first = (0..count).fold(0, least);
-        // How far off the angle of an edge may be: both of its ends are rounded, and itself.
-        let size = polygon.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
-        let doubt = |k: usize| 4.0 * rounding * size / length(k) + 8.0 * f64::EPSILON;
-        let is_convex = (1..=count).all(|k| {
-            let [from, to] = [first + k - 1, first + k].map(|k| k % count);
-            let round = if k == count { 4.0 } else { 0.0 };
-            angles[to] + round - angles[from] > doubt(from) + doubt(to)
-        });
         let mut before = 0;
         let mut cells: Vec<u32> = (0..count)
             .map(|cell| {
@@ -169,7 +159,8 @@ impl Ring {
             })
             .collect();
         cells.push(count as u32);
-        (Self { cycle, rim, is_round, axes, first: first as u32, cells }, is_convex)
+        let dent = dent(&polygon, &angles);
+        (Self { cycle, rim, is_round, axes, first: first as u32, cells }, dent)
     }
 
     /// The ellipse that the corners lie on, nearly.
@@ -235,6 +226,27 @@ impl Ring {
     pub(super) fn heap_bytes(&self) -> usize {
         self.cells.capacity() * size_of::<u32>()
     }
+}
+
+/// By how much a linear function of slope 1 may rise along a polygon on its way down from the greatest value to the least,
+/// or fall on the way up: nothing, up to rounding, if the polygon is convex. `angles` are those of its edges.
+///
+/// If edges pointed no less far round than those before them, it would not. By as much as one does, times its length, it
+/// may.
+fn dent(polygon: &[DVec2], angles: &[f64]) -> f64 {
+    let count = angles.len();
+    let (mut turned, mut most, mut turns, mut dent) = (0.0_f64, 0.0_f64, 0.0, 0.0);
+    for k in 0..count {
+        let next = (k + 1) % count;
+        most = most.max(turned).min(4.0);
+        // Twice, as a radian is at least half of what `turn` counts.
+        let off = 2.0 * (most - turned).abs() + 32.0 * f64::EPSILON;
+        dent += off * polygon[next].distance(polygon[k]);
+        let step = angles[next] - angles[k];
+        turns += f64::from(u8::from(step < -2.0)) - f64::from(u8::from(step > 2.0));
+        turned = angles[next] - angles[0] + 4.0 * turns;
+    }
+    if turns == 1.0 { dent } else { f64::INFINITY }
 }
 
 /// How far round a vector points, from 0 along `x` to 4: alike on every machine, and rising with the angle.

@@ -228,11 +228,10 @@ impl<O: Observer> Run<'_, '_, '_, O> {
     fn follow(&mut self, last: &WarmStart) -> Option<Enclosure> {
         match last {
             WarmStart::Nothing | WarmStart::Kept { .. } => None,
-            WarmStart::Contact(portal) => match portal::follow(&mut self.context, portal) {
-                Followed::Portal(portal, known) => Some(Enclosure::Portal(portal, known)),
-                Followed::Rim { outward, near } => self.beside(-outward, near),
-                Followed::Lost => None,
-            },
+            WarmStart::Contact(portal) => {
+                let followed = portal::follow(&mut self.context, portal);
+                self.followed_to(followed)
+            }
             WarmStart::Apart { normals, pair } => {
                 let [p, q] = self.context.difference.shadow_from_bodies(*normals)?;
                 self.beside((p + q).truncate(), *pair)
@@ -270,25 +269,39 @@ impl<O: Observer> Run<'_, '_, '_, O> {
         self.context.watch.ended(Phase::Setup);
         let mut nearest = start;
         if start.normal.z > 0.0 {
-            let by_outlines = if self.has_rims() {
-                portal::between_outlines(&mut self.context, &start)
-            } else {
-                None
-            };
-            let (followed, reached) = by_outlines.unwrap_or_else(|| {
-                portal::approach(&mut self.context, &start, &portal::OF_ELLIPSOIDS)
-            });
+            if self.has_rims()
+                && let Some(found) = self.by_outlines(&start)
+            {
+                return found;
+            }
+            let (followed, reached) =
+                portal::approach(&mut self.context, &start, &portal::OF_ELLIPSOIDS);
             nearest = reached;
-            let found = match followed {
-                Followed::Portal(portal, known) => Some(Enclosure::Portal(portal, known)),
-                Followed::Rim { outward, near } => self.beside(-outward, near),
-                Followed::Lost => None,
-            };
+            let found = self.followed_to(followed);
             if found.is_some() {
                 return found;
             }
         }
         portal::enclose(&mut self.context, &nearest)
+    }
+
+    /// The same from where outlines meet, if they are seen to.
+    #[inline(never)]
+    fn by_outlines(&mut self, start: &FirstNormal) -> Option<Option<Enclosure>> {
+        let (followed, reached) = portal::between_outlines(&mut self.context, start)?;
+        let found = self.followed_to(followed);
+        Some(found.or_else(|| portal::enclose(&mut self.context, &reached)))
+    }
+
+    /// What became of a portal that was followed.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "passed through memory a portal stalls its reader")]
+    fn followed_to(&mut self, followed: Followed) -> Option<Enclosure> {
+        match followed {
+            Followed::Portal(portal, known) => Some(Enclosure::Portal(portal, known)),
+            Followed::Rim { outward, near } => self.beside(-outward, near),
+            Followed::Lost => None,
+        }
     }
 
     #[inline]

@@ -269,10 +269,8 @@ impl<O: Observer> Run<'_, '_, '_, O> {
         self.context.watch.ended(Phase::Setup);
         let mut nearest = start;
         if start.normal.z > 0.0 {
-            if self.has_rims()
-                && let Some(found) = self.by_outlines(&start)
-            {
-                return found;
+            if self.has_rims() {
+                return self.by_outlines(&start);
             }
             let (followed, reached) =
                 portal::approach(&mut self.context, &start, &portal::OF_ELLIPSOIDS);
@@ -285,12 +283,14 @@ impl<O: Observer> Run<'_, '_, '_, O> {
         portal::enclose(&mut self.context, &nearest)
     }
 
-    /// The same from where outlines meet, if they are seen to.
+    /// The same of bodies with rims: from where their outlines meet, if they are seen to.
     #[inline(never)]
-    fn by_outlines(&mut self, start: &FirstNormal) -> Option<Option<Enclosure>> {
-        let (followed, reached) = portal::between_outlines(&mut self.context, start)?;
+    fn by_outlines(&mut self, start: &FirstNormal) -> Option<Enclosure> {
+        let by_outlines = portal::between_outlines(&mut self.context, start);
+        let (followed, reached) = by_outlines
+            .unwrap_or_else(|| portal::approach(&mut self.context, start, &portal::OF_ELLIPSOIDS));
         let found = self.followed_to(followed);
-        Some(found.or_else(|| portal::enclose(&mut self.context, &reached)))
+        found.or_else(|| portal::enclose(&mut self.context, &reached))
     }
 
     /// What became of a portal that was followed.

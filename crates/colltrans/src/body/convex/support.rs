@@ -245,8 +245,10 @@ impl SupportIndex {
         direction: DVec3,
         at: u32,
     ) -> u32 {
-        let Some(ring) = self.ring_at(at) else { return at };
-        let there = ring.vertex(vertices, topology, direction);
+        let there = self.farthest_on_ring(vertices, topology, direction, at);
+        if there == at {
+            return at;
+        }
         let way = vertices[there as usize] - vertices[at as usize];
         if direction.dot(way) > noise::GAIN * direction.abs().dot(way.abs()) { there } else { at }
     }
@@ -297,6 +299,7 @@ impl SupportIndex {
     }
 
     /// The farthest vertex of the ring that a vertex is on, or that vertex.
+    #[inline]
     pub(super) fn farthest_on_ring(
         &self,
         vertices: &[DVec3],

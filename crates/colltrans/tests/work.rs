@@ -4,7 +4,7 @@
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, Solid};
 use colltrans_testkit::random::Random;
-use colltrans_testkit::shapes::{Mesh, ring, ring_sphere};
+use colltrans_testkit::shapes::{Mesh, cuboid, ring, ring_sphere};
 use colltrans_testkit::solids::{bumpy_ball, slab};
 
 const CASTS: u32 = 400;
@@ -53,6 +53,43 @@ fn ellipsoids_are_met_at_once() {
         let [mean, _] = supports(&ellipsoid(axes));
         assert!(mean < 2.4, "{axes}: {mean} support points");
     }
+}
+
+/// Boxes that stand on each other, however they are placed: their faces tell the answer, and one look at the vertices
+/// proves it. Ridges one over the other take one more, to be found.
+#[test]
+fn parts_that_stand_on_each_other_take_one_look() {
+    let mut random = Random::new(11);
+    let solid_box =
+        |half: DVec3| ConvexPolyhedron::from_points(&cuboid(half).vertices).expect("a box");
+    let roof = |up: f64| {
+        let mut points = cuboid(DVec3::ONE).vertices;
+        points.retain(|p| p.z * up < 0.0);
+        points.extend([-DVec3::X, DVec3::X]);
+        ConvexPolyhedron::from_points(&points).expect("a roof")
+    };
+    let roofs = [roof(-1.0), roof(1.0)];
+    let mut most = |boxes: bool| {
+        let cast = |_| {
+            let mut half = || DVec3::from_array([0; 3].map(|_| random.range(0.3, 1.0)));
+            let sides = [half(), half()];
+            let bodies = if boxes { sides.map(solid_box) } else { roofs.clone() };
+            let reach = sides[0] + sides[1];
+            let mut within = |reach: f64| random.range(-0.9, 0.9) * reach;
+            let [x, y] =
+                if boxes { [within(reach.x), within(reach.y)] } else { [within(1.0), 0.0] };
+            let turn = random.rotation();
+            let at = |place: DVec3| Pose::new(turn, turn * place).expect("a pose");
+            let start = bodies[0].at(at(DVec3::new(x, y, 4.0)));
+            let cast = Cast::new(start, bodies[1].at(at(DVec3::ZERO)), turn * DVec3::NEG_Z);
+            let outcome = cast.and_then(|cast| cast.first_contact()).expect("an answer");
+            assert!(matches!(outcome, Outcome::Contact(_)), "{outcome:?}");
+            outcome.steps().supports
+        };
+        (0..CASTS).map(cast).max().unwrap_or_default()
+    };
+    assert_eq!(most(true), 1, "boxes");
+    assert_eq!(most(false), 2, "ridges");
 }
 
 /// Rims are taken for ellipses: two support points lead to where they are met and prove it, and three corners of a cap do,

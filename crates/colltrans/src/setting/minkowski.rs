@@ -230,6 +230,35 @@ impl<'a> MinkowskiDifference<'a> {
         rest > 0.0 && self.center().truncate().length_squared() < rest * rest
     }
 
+    /// The same by an edge of `M` as well, which the line passes nearby.
+    ///
+    /// The shadow contains the edge and the points of the disc farthest across it on either side. If these
+    /// are at least `R` beyond the edge, the triangles between them and the edge contain all that is
+    /// nearer to a place on it than `R e / s`, for either end at `e` from the place and `s`, at most,
+    /// from these points.
+    #[inline]
+    pub(crate) fn is_deep_on(&self, edge: [&Point; 2], margin: f64) -> bool {
+        let [from, to] = edge.map(Point::shadow);
+        let center = self.center().truncate();
+        let length = (to - from).length();
+        let radius = self.inner_radius();
+        let around = self.around([from, to], length, center);
+        let along = -from.dot(to - from) / length;
+        let apart = from.perp_dot(to).abs() / length;
+        let least = margin + apart + self.noise.point();
+        let reaches =
+            |end: DVec2, inside: f64| inside * around > least * ((end - center).length() + radius);
+        around > 0.0 && reaches(from, along) && reaches(to, length - along)
+    }
+
+    /// How far beyond an edge of this length a disc around the centre, inside the shadow, reaches on
+    /// either side.
+    #[inline]
+    fn around(&self, [from, to]: [DVec2; 2], length: f64, center: DVec2) -> f64 {
+        let away = (to - from).perp_dot(center - from).abs() / length;
+        self.inner_radius() - (away + self.noise.point())
+    }
+
     /// Radius of a ball around the centre of `M` that it contains.
     #[inline]
     fn inner_radius(&self) -> f64 {
@@ -269,8 +298,7 @@ impl<'a> MinkowskiDifference<'a> {
         let length = (to - from).length();
         let center = self.center();
         let radius = self.inner_radius();
-        let around =
-            radius - ((to - from).perp_dot(center.truncate() - from).abs() / length + noise);
+        let around = self.around([from, to], length, center.truncate());
         let rise = (normal.dot(center - point) + radius * normal.truncate().length())
             / normal.length()
             + noise;

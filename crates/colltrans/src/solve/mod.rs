@@ -441,7 +441,6 @@ impl<O: Observer> Run<'_, '_, '_, O> {
     fn known_face(&mut self, portal: &Portal, known: Known) -> Option<Face> {
         match known {
             Known::Lowest(face) => Some(face),
-            Known::Optimum(optimum) => portal::proven(&self.context.difference, portal, &optimum),
             Known::FaceByFace => portal::face(&mut self.context, portal),
             Known::Around => None,
         }

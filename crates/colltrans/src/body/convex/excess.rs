@@ -61,10 +61,11 @@ struct Summit {
     excess: f64,
 }
 
-/// A face with many corners.
+/// A face with many corners, or one of few polygons.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LargeFace {
     face: u32,
+    corner_count: u32,
     /// Three that span it.
     pub(crate) corners: [u32; 3],
     /// The half-edges that leave these along the face.
@@ -75,6 +76,14 @@ pub(crate) struct LargeFace {
     height: f64,
     /// The least slope, downwards, of the edges that leave the face.
     descent: f64,
+}
+
+impl LargeFace {
+    /// Whether it counts as large only because there are few others.
+    #[inline]
+    pub(crate) fn has_few_corners(&self) -> bool {
+        self.corner_count <= MANY as u32
+    }
 }
 
 /// The vertices of a plateau, as far as they were found.
@@ -316,13 +325,13 @@ impl ConvexPolyhedron {
             .then_some(WEIGHTS * reached + 8.0 * self.flatness)
     }
 
-    /// Whether there are faces with many corners, but few.
+    /// Whether there are large faces, but few.
     #[inline]
     pub(crate) fn has_large_faces(&self) -> bool {
         (1..=MOST_LARGE).contains(&self.large_faces.len())
     }
 
-    /// Of the faces with many corners, the one most nearly across a direction (body frame, any
+    /// Of the large faces, the one most nearly across a direction (body frame, any
     /// length), outwards.
     #[inline]
     pub(crate) fn large_face_toward(&self, direction: DVec3) -> Option<&LargeFace> {
@@ -332,21 +341,26 @@ impl ConvexPolyhedron {
         Some(others.iter().fold(first, farther))
     }
 
-    /// Measures how flat the polygons are, and those with many corners.
+    /// Measures how flat the polygons are, and those that are large.
+    ///
+    /// All polygons count as large, triangles apart, where they are few on a body that is looked at vertex by
+    /// vertex, as those of boxes are: parts stand on them.
     pub(super) fn measure_faces(&mut self) {
-        for face in 0..self.face_count() as u32 {
-            let count = self.face_vertices(face).len();
-            if count > 3 {
-                let at = |v: u32| self.vertices[v as usize];
-                let corners = self.face_vertices(face).map(at);
-                let normal = polygon_normal(corners.clone());
-                // From the plane through one corner: another parallel one is at most as far from all.
-                let first = corners.clone().next().unwrap_or_default();
-                let off = corners.map(|p| normal.dot(p - first).abs()).fold(0.0, f64::max);
-                self.flatness = self.flatness.max(off + noise::GAIN * self.inertia.reach);
-                if count > MANY {
-                    self.large_faces.push(self.large_face(face, normal));
-                }
+        let polygons: Vec<u32> = (0..self.face_count() as u32)
+            .filter(|&face| self.face_vertices(face).len() > 3)
+            .collect();
+        let all = self.support.is_scanned() && polygons.len() <= MOST_LARGE;
+        for face in polygons {
+            let at = |v: u32| self.vertices[v as usize];
+            let corners = self.face_vertices(face).map(at);
+            let normal = polygon_normal(corners.clone());
+            // From the plane through one corner: another parallel one is at most as far from all.
+            let first = corners.clone().next().unwrap_or_default();
+            let is_large = all || corners.len() > MANY;
+            let off = corners.map(|p| normal.dot(p - first).abs()).fold(0.0, f64::max);
+            self.flatness = self.flatness.max(off + noise::GAIN * self.inertia.reach);
+            if is_large {
+                self.large_faces.push(self.large_face(face, normal));
             }
         }
     }
@@ -376,6 +390,7 @@ impl ConvexPolyhedron {
         });
         LargeFace {
             face,
+            corner_count: corners.len() as u32,
             corners: [a, b, c],
             half_edges: [a, b, c].map(along),
             normal,

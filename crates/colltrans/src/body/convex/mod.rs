@@ -48,7 +48,7 @@ pub struct ConvexPolyhedron {
     hull_error: f64,
     /// The largest distance of a corner from its polygon's plane.
     flatness: f64,
-    /// Faces with many corners, ascending.
+    /// Faces with many corners, or all polygons where they are few, ascending.
     large_faces: Vec<LargeFace>,
     topology: Topology,
     inertia: Inertia,

@@ -1,7 +1,7 @@
 //! Large faces that face each other, as those of parts that stand on each other do.
 //!
-//! Notation. `f` and `g` are faces with many corners of `P` and of `Q`, those most nearly across the
-//! direction. Where one plane supports both bodies in them, `g - f` is a face of `M`. Its boundary is
+//! Notation. `f` and `g` are large faces of `P` and of `Q`, those most nearly across the
+//! direction; of those with few corners, exactly so. Where one plane supports both bodies in them, `g - f` is a face of `M`. Its boundary is
 //! gone round by going round those of both; a quarter of the way at a time this leads to four points
 //! of `g - f`, wide apart if one begins at corners opposite each other. If the line meets `g - f`
 //! between them, that is the answer, without a search.
@@ -12,7 +12,7 @@ use super::plane::{Face, Plane};
 use super::refine::{is_wide, weights};
 use super::tied::met_share;
 use super::{Context, Portal};
-use crate::body::ConvexPolyhedron;
+use crate::body::{ConvexPolyhedron, LargeFace};
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
 use crate::solve::observe::{Observer, Support};
@@ -29,7 +29,12 @@ pub(crate) fn facing<O: Observer>(context: &mut Context<O>) -> Option<(Portal, F
     if !setting.moving.has_large_faces() || !setting.fixed.has_large_faces() {
         return None;
     }
-    let (portal, face) = between(&context.difference)?;
+    let down = context.difference.in_moving(DVec3::Z);
+    let f = setting.moving.large_face_toward(down)?;
+    if f.has_few_corners() && f.normal.dot(down) < PARALLEL {
+        return None;
+    }
+    let (portal, face) = between(&context.difference, f)?;
     let plane = &face.plane;
     context.watch.portal(|| portal.map(|p| p.at));
     let normal = || context.difference.setting_from_shadow.transpose() * plane.normal;
@@ -37,27 +42,37 @@ pub(crate) fn facing<O: Observer>(context: &mut Context<O>) -> Option<(Portal, F
     Some((portal, face))
 }
 
+/// The same between a face of the moving body and one of the fixed body.
 #[inline(never)]
-fn between(difference: &MinkowskiDifference) -> Option<(Portal, Face)> {
+fn between(difference: &MinkowskiDifference, f: &LargeFace) -> Option<(Portal, Face)> {
     let setting = difference.setting;
-    let f = setting.moving.large_face_toward(difference.in_moving(DVec3::Z))?;
     let g = setting.fixed.large_face_toward(-difference.in_fixed(DVec3::Z))?;
     let normal = difference.shadow_of_moving(f.normal);
     let parallel = normal.dot(difference.shadow_of_fixed(g.normal)) < -PARALLEL;
     if !parallel || normal.z <= 0.0 {
         return None;
     }
+    let origin = |body: &ConvexPolyhedron, h: u32| body.topology().origin(h);
     let corner = |moving: u32, fixed: u32| {
-        let origin = |body: &ConvexPolyhedron, h: u32| body.topology().origin(h);
         let (moving, fixed) = (origin(setting.moving, moving), origin(setting.fixed, fixed));
         difference.vertex(VertexPair::of(moving, fixed))
     };
-    // The farther of two that are opposite each other, seen from the middle.
-    let ([p, ..], [q, opposite, _]) = (f.half_edges, g.half_edges);
-    let (lowest, other) = (corner(p, q), corner(p, opposite));
-    let middle = difference.center().truncate();
-    let away = |point: &Point| (point.shadow() - middle).length_squared();
-    let (a, q) = if away(&lowest) > away(&other) { (lowest, q) } else { (other, opposite) };
+    // Of corners of `g` a quarter of the way apart, the one opposite a corner of `f`, seen from the middles.
+    let ([p, ..], [first, ..]) = (f.half_edges, g.half_edges);
+    let place = |body: &ConvexPolyhedron, h: u32| {
+        body.vertices()[origin(body, h) as usize] - body.inertia().center
+    };
+    let here = difference.in_fixed(difference.shadow_of_moving(place(setting.moving, p)));
+    let mut opposite = (f64::NEG_INFINITY, first);
+    for quarters in 0..4 {
+        let q = quarters_round(setting.fixed, first, quarters);
+        let away = here.distance_squared(place(setting.fixed, q));
+        if away > opposite.0 {
+            opposite = (away, q);
+        }
+    }
+    let q = opposite.1;
+    let a = corner(p, q);
     let after = |quarters: u32| {
         let moving = quarters_round(setting.moving, p, quarters);
         corner(moving, quarters_round(setting.fixed, q, 4 - quarters))
@@ -73,20 +88,26 @@ fn between(difference: &MinkowskiDifference) -> Option<(Portal, Face)> {
         let share = met_share(difference, [&a, &c], normal)?;
         ([a, after(1), c], [1.0 - share, 0.0, share])
     };
-    let is_level = |p: &Point| normal.dot(p.at - lowest.at).abs() <= difference.noise.point();
+    let is_level = |p: &Point| normal.dot(p.at - a.at).abs() <= difference.noise.point();
     let [from, to, third] = portal.each_ref().map(Point::shadow);
     let area = (to - from).perp_dot(third - from);
     if !portal.iter().all(is_level) || !is_wide(difference, &portal, area) {
         return None;
     }
-    let plane = Plane::of_faces(difference, normal, f, g)?;
+    // Of faces with few corners, a look at all vertices proves more.
+    let plane = if f.has_few_corners() && g.has_few_corners() {
+        Plane::at(difference, normal, a.pair)?
+    } else {
+        Plane::of_faces(difference, normal, f, g)?
+    };
     Some((portal, Face { plane, weights }))
 }
 
-/// The half-edge along a face that begins some quarters of the way round after another.
+/// The half-edge along a face that begins some quarters of the way round, at most four, after another.
 fn quarters_round(body: &ConvexPolyhedron, h: u32, quarters: u32) -> u32 {
     let topology = body.topology();
     let range = topology.face(topology.half_edge(h).face);
     let count = range.end - range.start;
-    range.start + (h - range.start + quarters * count / 4) % count
+    let ahead = h + quarters * count / 4;
+    if ahead < range.end { ahead } else { ahead - count }
 }

@@ -82,7 +82,7 @@ pub(crate) fn follow<O: Observer>(context: &mut Context<O>, last: &ContactPortal
         let slope = continued(&context.difference, shift, slopes);
         match jump(context, slope, last.pairs[0]) {
             Some(Beside::Edge(there, found)) => {
-                return Followed::Portal(there, Known::Optimum(found));
+                return Followed::Portal(there, Known::Lowest(found));
             }
             Some(Beside::Face(there)) => portal = there,
             None => return Followed::Lost,
@@ -163,9 +163,7 @@ pub(crate) fn approach<O: Observer>(
         let touching = context.difference.touching();
         if is_support && shadow.length_squared() <= touching * touching {
             match pointed(context, &vertex, slope) {
-                Pointed::Lowest(portal, found) => {
-                    return reached(portal, Known::Optimum(found));
-                }
+                Pointed::Lowest(portal, known) => return reached(portal, known),
                 Pointed::Toward(line) => toward_line = line,
                 Pointed::Unknown => {}
             }
@@ -173,7 +171,7 @@ pub(crate) fn approach<O: Observer>(
         let portal = match beside(context, &vertex, slope, toward_line) {
             Some(Beside::Face(portal)) => portal,
             Some(Beside::Edge(portal, found)) => {
-                return reached(portal, Known::Optimum(found));
+                return reached(portal, Known::Lowest(found));
             }
             None => break,
         };

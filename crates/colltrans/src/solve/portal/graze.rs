@@ -3,7 +3,8 @@
 //!
 //! Invariant: a polygon of shadows of points of `M` contains the line, so the distance to its
 //! nearest edge is a lower bound of the overlap; the support point beyond that edge gives an upper
-//! bound, and becomes a corner. The polygon is the convex hull of its points.
+//! bound, and becomes a corner. The polygon is the convex hull of its points. Where balls inside the bodies
+//! tell enough, there is no polygon.
 
 use glam::DVec2;
 
@@ -40,14 +41,29 @@ pub(crate) fn overlap<O: Observer>(
     portal: &[Point; 3],
     tolerance: f64,
 ) -> Overlap {
-    if is_ample(portal, tolerance) || context.difference.is_deep(tolerance) {
+    let Some(edge) = edge_within(portal, tolerance) else { return Overlap::Ample };
+    if context.difference.is_deep(tolerance) {
+        return Overlap::Ample;
+    }
+    beyond_edge(context, portal, edge, tolerance)
+}
+
+/// The same where the line passes an edge of the portal.
+#[cold]
+#[inline(never)]
+fn beyond_edge<O: Observer>(
+    context: &mut Context<O>,
+    portal: &[Point; 3],
+    edge: [&Point; 2],
+    tolerance: f64,
+) -> Overlap {
+    if context.difference.is_deep_on(edge, tolerance) {
         return Overlap::Ample;
     }
     search(context, portal, tolerance)
 }
 
 /// The polygon, grown until it decides.
-#[cold]
 #[inline(never)]
 fn search<O: Observer>(context: &mut Context<O>, portal: &[Point; 3], tolerance: f64) -> Overlap {
     let mut corners = [portal[0]; MAX_CORNERS];
@@ -136,14 +152,19 @@ fn insert(corners: &mut [Point; MAX_CORNERS], count: usize, edge: usize, new: Po
     count + 1
 }
 
-/// Whether all edges of the portal are farther from the line than `tolerance`.
+/// The first edge of the portal that is not farther from the line than `tolerance`.
 #[inline]
-fn is_ample(portal: &[Point; 3], tolerance: f64) -> bool {
-    [(0, 1), (1, 2), (2, 0)].into_iter().all(|(i, j)| {
+fn edge_within(portal: &[Point; 3], tolerance: f64) -> Option<[&Point; 2]> {
+    let is_within = |i: usize, j: usize| {
         let (a, b) = (portal[i].shadow(), portal[j].shadow());
         let area = a.perp_dot(b);
-        area > 0.0 && area * area > tolerance * tolerance * (b - a).length_squared()
-    })
+        let is_farther =
+            area > 0.0 && area * area > tolerance * tolerance * (b - a).length_squared();
+        !is_farther
+    };
+    [(0, 1), (1, 2), (2, 0)]
+        .into_iter()
+        .find_map(|(i, j)| is_within(i, j).then(|| [&portal[i], &portal[j]]))
 }
 
 /// The edge of a counter-clockwise polygon nearest to the line: its index, outward unit normal and

@@ -35,7 +35,7 @@ pub(crate) use follow::{ContactPortal, Followed, OF_ELLIPSOIDS, approach, follow
 pub(crate) use graze::{Overlap, overlap};
 pub(crate) use outline::between_outlines;
 pub(crate) use plane::{Face, Plane};
-pub(crate) use refine::{MAX_PORTALS, Optimum, Refined, face, proven, refine};
+pub(crate) use refine::{MAX_PORTALS, Refined, face, refine};
 pub(crate) use start::FirstNormal;
 
 /// Three points of `M` whose shadows, counter-clockwise, contain the line.
@@ -54,9 +54,7 @@ pub(crate) enum Known {
     Around,
     /// It was reached face by face, so that it probably is the lowest.
     FaceByFace,
-    /// A plane through it supports `M`, up to the climb that has seen so.
-    Optimum(Optimum),
-    /// It is proven to be the lowest.
+    /// A plane that supports `M` is proven to be the lowest where the line passes it.
     Lowest(Face),
 }
 

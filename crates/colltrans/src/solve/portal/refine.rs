@@ -18,23 +18,12 @@ use glam::DVec3;
 use super::enclose::{SeparatingLine, nearest_share};
 use super::graze::{Overlap, overlap};
 use super::plane::{Face, Plane};
-use super::{Context, Portal};
+use super::{Context, Known, Portal};
 use crate::number::determinant::accurate_det;
 use crate::number::plane::triangle_normal;
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
 use crate::solve::observe::{Observer, Support};
-
-/// The lowest face on the line.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Optimum {
-    /// Normal of its plane (shadow frame; height component > 0, any length).
-    pub(crate) normal: DVec3,
-    /// A pair that is lowest along `normal`.
-    pub(crate) lowest: VertexPair,
-    /// Barycentric weights of the line in the portal that was reached.
-    pub(crate) weights: [f64; 3],
-}
 
 /// More portals than any body needs: then ties within rounding error keep following each other, and
 /// points below the plane by less than what counts as touching are taken to lie on it.
@@ -140,17 +129,21 @@ fn settled(
     if is_below(portal, normal, &point, rounding) { Err(point) } else { Ok(plane) }
 }
 
-/// The face of an optimum that is not the portal's own, if nothing lies below it.
+/// What is known of a portal through which the line passes with these weights, and of a plane across
+/// `normal` at a support point: that it is lowest, if nothing lies below it.
 #[inline]
-pub(crate) fn proven(
+pub(super) fn known_at(
     difference: &MinkowskiDifference,
     portal: &Portal,
-    optimum: &Optimum,
-) -> Option<Face> {
-    let Optimum { normal, lowest, weights } = *optimum;
+    normal: DVec3,
+    found: VertexPair,
+    weights: [f64; 3],
+) -> Known {
     let rounding = difference.noise.plane(false);
-    let plane = settled(difference, portal, normal, lowest, rounding).ok()?;
-    Some(Face { plane, weights })
+    match settled(difference, portal, normal, found, rounding) {
+        Ok(plane) => Known::Lowest(Face { plane, weights }),
+        Err(_) => Known::Around,
+    }
 }
 
 /// Whether a point lies below a portal by more than rounding.

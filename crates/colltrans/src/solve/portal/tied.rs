@@ -9,9 +9,9 @@
 use glam::{DVec2, DVec3};
 
 use super::enclose::nearest_share;
-use super::refine::{Optimum, largest, plane_normal, weights};
+use super::refine::{known_at, largest, plane_normal, weights};
 use super::wrap::{Tilt, first_met};
-use super::{Context, Known, Line, Plane, Portal, normal_of};
+use super::{Context, Face, Known, Line, Plane, Portal, normal_of};
 use crate::body::VertexId;
 use crate::number::determinant::accurate_det;
 use crate::setting::VertexPair;
@@ -20,9 +20,9 @@ use crate::solve::observe::{Observer, Support};
 
 /// What a support point within rounding error of the line says.
 pub(super) enum Pointed {
-    /// The line meets `M` here: the support point's plane is the lower bound, the portal's point on
-    /// the line the upper one.
-    Lowest(Portal, Optimum),
+    /// The line meets `M` here: the support point's plane is the lower bound, if it is proven to be one,
+    /// the portal's point on the line the upper one.
+    Lowest(Portal, Known),
     /// The direction, any length, in which the line is.
     Toward(DVec2),
     /// Nothing, because it is too close to be told.
@@ -44,7 +44,6 @@ pub(super) fn pointed<O: Observer>(
     slope: DVec2,
 ) -> Pointed {
     let normal = normal_of(slope);
-    let optimum = |weights| Optimum { normal, lowest: vertex.pair, weights };
     let at_corner = || {
         let portal =
             context.difference.setting.fixed.neighbours(vertex.pair.fixed.0).first().and_then(
@@ -57,7 +56,8 @@ pub(super) fn pointed<O: Observer>(
         match portal {
             Some(portal) => {
                 let weights = weights_of(&portal, vertex, 0.0);
-                Pointed::Lowest(portal, optimum(weights))
+                let known = known_at(&context.difference, &portal, normal, vertex.pair, weights);
+                Pointed::Lowest(portal, known)
             }
             None => Pointed::Unknown,
         }
@@ -99,7 +99,8 @@ pub(super) fn pointed<O: Observer>(
     }
     let mut weights = [0.0; 3];
     (weights[here], weights[i], weights[j]) = (1.0 - sum, parts[0], parts[1]);
-    Pointed::Lowest(portal, optimum(weights))
+    let known = known_at(&context.difference, &portal, normal, vertex.pair, weights);
+    Pointed::Lowest(portal, known)
 }
 
 /// The weights of a place on the first edge of a portal, given as a share of the way from one of the
@@ -139,8 +140,8 @@ pub(super) fn crossed_or_tied<O: Observer>(context: &mut Context<O>, portal: &Po
     if let Some(from) = clear {
         return Line::Beyond(from);
     }
-    if let Some(optimum) = lowest_face(context, portal) {
-        return Line::Inside(Known::Optimum(optimum));
+    if let Some(face) = lowest_face(context, portal) {
+        return Line::Inside(Known::Lowest(face));
     }
     match edges.iter().position(|[i, j]| !context.difference.is_left(i, j)) {
         Some(from) => Line::Beyond(from),
@@ -148,7 +149,7 @@ pub(super) fn crossed_or_tied<O: Observer>(context: &mut Context<O>, portal: &Po
     }
 }
 
-/// The optimum on an edge of `M` that the line meets up to rounding, if the plane through it supports
+/// The lowest plane at an edge of `M` that the line meets up to rounding, if the plane through it supports
 /// `M` and the line is so deep inside the shadow of `M` that rounding does not matter.
 #[cold]
 #[inline(never)]
@@ -156,13 +157,13 @@ pub(super) fn lowest_edge<O: Observer>(
     context: &mut Context<O>,
     [from, to]: &[Point; 2],
     normal: DVec3,
-) -> Option<(Portal, Optimum)> {
+) -> Option<(Portal, Face)> {
     let share = met_share(&context.difference, [from, to], normal)?;
     let portal = corner(&context.difference, from, to)?;
     let plane = Plane::at(&context.difference, normal, from.pair)?;
     context.watch.support(|| Support::of(normal, &context.difference.vertex(plane.lowest)));
     let weights = weights_of(&portal, from, share);
-    Some((portal, Optimum { normal, lowest: plane.lowest, weights }))
+    Some((portal, Face { plane, weights }))
 }
 
 /// Where on an edge the line meets it up to rounding, from 0 at its start to 1 at its end, if the line
@@ -180,9 +181,9 @@ pub(super) fn met_share(
     is_met.then_some(share)
 }
 
-/// The optimum in a portal that contains the line up to rounding, if its plane supports `M` and the
+/// The lowest face in a portal that contains the line up to rounding, if its plane supports `M` and the
 /// line is so deep inside the shadow of `M` that rounding does not matter.
-fn lowest_face<O: Observer>(context: &mut Context<O>, portal: &Portal) -> Option<Optimum> {
+fn lowest_face<O: Observer>(context: &mut Context<O>, portal: &Portal) -> Option<Face> {
     let normal = plane_normal(&context.difference, portal)?;
     let weights = weights(portal);
     let contact = portal.iter().zip(weights).map(|(corner, w)| corner.at * w).sum::<DVec3>();
@@ -196,7 +197,7 @@ fn lowest_face<O: Observer>(context: &mut Context<O>, portal: &Portal) -> Option
     }
     let plane = Plane::at(&context.difference, normal, portal[2].pair)?;
     context.watch.support(|| Support::of(normal, &context.difference.vertex(plane.lowest)));
-    Some(Optimum { normal, lowest: plane.lowest, weights })
+    Some(Face { plane, weights })
 }
 
 /// What of `M` is beside a support point.
@@ -204,7 +205,7 @@ pub(super) enum Beside {
     /// A face with the line on the left of its first edge.
     Face(Portal),
     /// An edge under the line, which is as low as can be told.
-    Edge(Portal, Optimum),
+    Edge(Portal, Face),
 }
 
 /// The face, or the edge, of `M` at the support point `vertex` along a slope, in the direction of the

@@ -521,17 +521,22 @@ fn groups(vertices: &[DVec3]) -> Vec<Group> {
 
 /// Looks at every vertex. Of equals, one is chosen by position alone, so the answer does not depend
 /// on where a search starts.
-#[inline(always)]
-#[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
+///
+/// In one place for all, so that a query meets it in the cache; what it takes fits into registers.
+#[inline]
 fn scan(groups: &[Group], direction: DVec3) -> u32 {
+    scan_along(groups, direction.x, direction.y, direction.z)
+}
+
+#[inline(never)]
+fn scan_along(groups: &[Group], x: f64, y: f64, z: f64) -> u32 {
     let mut reach = [f64::NEG_INFINITY; LANES];
     // Group numbers as f64, so that number and reach are selected by the same mask.
     let mut best = [0.0; LANES];
     let mut number = 0.0;
     for group in groups {
         for k in 0..LANES {
-            let along =
-                direction.x * group.x[k] + direction.y * group.y[k] + direction.z * group.z[k];
+            let along = x * group.x[k] + y * group.y[k] + z * group.z[k];
             let farther = along > reach[k];
             best[k] = if farther { number } else { best[k] };
             reach[k] = if farther { along } else { reach[k] };

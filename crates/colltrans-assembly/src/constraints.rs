@@ -76,6 +76,11 @@ impl Constraints {
         [first, second]: [&[usize]; 2],
         name: impl Fn(usize) -> &'a str,
     ) -> Result<(), AssemblyError> {
+        if let ([a], [b]) = (first, second)
+            && a == b
+        {
+            return Err(AssemblyError::Order { names: vec![name(*a).to_owned()] });
+        }
         let pairs = first.iter().flat_map(|&a| second.iter().map(move |&b| [a, b]));
         self.before.extend(pairs.filter(|[a, b]| a != b));
         self.before.sort_unstable();
@@ -287,6 +292,10 @@ mod tests {
         assert!(matches!(refused, AssemblyError::Order { names } if names == ["a", "b", "c"]));
         let refused = order.clone().add_unit(unit_of(&[0, 1], false), name).unwrap_err();
         assert!(matches!(refused, AssemblyError::Order { .. }));
+        let refused = order.clone().add_before([&[3], &[3]], name).unwrap_err();
+        assert!(matches!(refused, AssemblyError::Order { names } if names == ["d"]));
+        // Of all whose names begin so each is before all others, not before itself.
+        order.clone().add_before([&[0, 3], &[3]], name).unwrap();
         // A subassembly is taken apart later, in that order.
         order.add_unit(unit_of(&[0, 1], true), name).unwrap();
         assert!(order.add_never(3, DVec3::ZERO, 10.0).is_err());

@@ -110,11 +110,11 @@ pub enum AssemblyError {
         /// The name.
         name: String,
     },
-    /// A part has no name.
-    #[error("a part has no name")]
+    /// A part or a subassembly has no name.
+    #[error("a part or a subassembly has no name")]
     NoName,
-    /// A pair to be ignored is one part.
-    #[error("{name} and {name} are no pair to be ignored: a part does not block itself")]
+    /// A pair is one part.
+    #[error("{name} and {name} are no pair: a part does not block itself")]
     SamePart {
         /// The part's name.
         name: String,
@@ -154,6 +154,18 @@ pub enum AssemblyError {
         count: usize,
         /// Of how many.
         of: usize,
+    },
+    /// A part that is never moved is to be taken out.
+    #[error("{name} is to be taken out, and is fixed")]
+    Fixed {
+        /// Its name.
+        name: String,
+    },
+    /// Nothing is said of a pair.
+    #[error("{} and {} are a pair: give a role or a tolerance", names[0], names[1])]
+    NoFit {
+        /// The parts.
+        names: [String; 2],
     },
     /// A snap of which nobody says how far it bends.
     #[error("{} and {} snap: say by how much, as a tolerance", names[0], names[1])]

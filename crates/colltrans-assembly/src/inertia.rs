@@ -19,6 +19,39 @@ pub fn axes(solid: &Solid) -> Vec<DVec3> {
     (0..3).filter(|&i| largest > 0.0 && well(i)).map(|i| vectors.col(i).normalize()).collect()
 }
 
+/// Third moments are clear from this share of the deviation on, and second moments of a solid with a hand are apart by it:
+/// single precision rounds far less.
+const CLEAR: f64 = 0.03;
+
+/// Whether the principal axes of a solid, in the order of their moments and each turned to where the solid is drawn out
+/// farther, are right-handed: of mirror images one has right-handed axes and one left-handed ones. `None` where axes or
+/// sides are not clear, as of all that has a plane of symmetry.
+pub fn is_right_handed(solid: &Solid) -> Option<bool> {
+    let (center, _) = center(solid)?;
+    let (values, vectors) = eigen(second_moments(solid));
+    let mut order = [0, 1, 2];
+    order.sort_by(|&i, &j| values[i].total_cmp(&values[j]));
+    let [small, middle, large] = order.map(|i| values[i]);
+    let apart = small > 0.0 && middle - small > CLEAR * large && large - middle > CLEAR * large;
+    let axes = order.map(|i| vectors.col(i).normalize());
+    let corner = |v: u32| solid.vertices()[v as usize] - center;
+    let (mut volume, mut third) = (0.0, DVec3::ZERO);
+    for t in solid.triangles() {
+        let [a, b, c] = t.map(corner);
+        let v = a.dot(b.cross(c)) / 6.0;
+        volume += v;
+        let [x, y, z] = [a, b, c].map(|p| DVec3::from_array(axes.map(|axis| p.dot(axis))));
+        // The integral of the cube of a linear form over a tetrahedron with a corner where it is zero.
+        let cubes = x * x * (x + y + z) + y * y * (x + y + z) + z * z * (x + y + z) + x * y * z;
+        third += cubes * (v / 20.0);
+    }
+    let cubed = |variance: f64| variance * variance.sqrt();
+    let skew = third / volume / DVec3::new(cubed(small), cubed(middle), cubed(large));
+    let clear = apart && skew.abs().min_element() > CLEAR;
+    let [x, y, z] = axes;
+    clear.then(|| skew.element_product() * x.cross(y).dot(z) > 0.0)
+}
+
 /// The principal second moments of the volume about its centre, in increasing order.
 pub fn moments(solid: &Solid) -> DVec3 {
     let mut values = eigen(second_moments(solid)).0.to_array();
@@ -123,6 +156,7 @@ mod tests {
             }
         }
         let cube = cuboid(DVec3::ONE);
+        assert_eq!(is_right_handed(&Solid::from_mesh(&cube.vertices, &cube.faces).unwrap()), None);
         assert!(axes(&Solid::from_mesh(&cube.vertices, &cube.faces).unwrap()).is_empty());
     }
 }

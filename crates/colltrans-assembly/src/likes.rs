@@ -1,10 +1,11 @@
 //! Parts that are alike: one shape in several places, as screws and nuts are.
 //!
 //! Compared are numbers that do not depend on where a part stands: how many vertices and facets it has, its volume, its
-//! area, and its principal moments, each within what single precision may have rounded. So two parts that are mirror
-//! images of each other are alike. It decides how a plan is ordered and told, never what is free.
+//! area, and its principal moments, each within what single precision may have rounded; and of a part without symmetry
+//! which of two mirror images it is. So mirror images of each other are alike if each is turned into itself, as a left-hand
+//! screw and a right-hand one, or nearly mirrors itself. It decides how a plan is ordered and told, never what is free.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 use colltrans::Solid;
 use glam::DVec3;
@@ -47,12 +48,32 @@ pub fn common_name(names: &[&str]) -> Option<String> {
     (!name.is_empty()).then(|| name.to_owned())
 }
 
+/// Pairs of parts of the same shapes and with the same key, as one: what is said of the first of them, and the parts of
+/// either side, increasing.
+pub(crate) fn pairs_alike<K: Ord, T>(
+    likes: &[usize],
+    all: impl Iterator<Item = ([usize; 2], K, T)>,
+) -> Vec<(T, [Vec<usize>; 2])> {
+    let like = |part: usize| likes.get(part).copied().unwrap_or(part);
+    let mut groups = BTreeMap::<([usize; 2], K), (T, [Vec<usize>; 2])>::new();
+    for (parts, key, said) in all {
+        let (_, sides) = groups.entry((parts.map(like), key)).or_insert((said, Default::default()));
+        for (side, part) in sides.iter_mut().zip(parts) {
+            if let Err(at) = side.binary_search(&part) {
+                side.insert(at, part);
+            }
+        }
+    }
+    groups.into_values().collect()
+}
+
 /// What a part is compared by.
 struct Shape {
     counts: [usize; 2],
     volume: f64,
     area: f64,
     moments: DVec3,
+    right_handed: Option<bool>,
 }
 
 impl Shape {
@@ -67,6 +88,7 @@ impl Shape {
             volume: solid.volume(),
             area: solid.triangles().iter().map(area).sum(),
             moments: inertia::moments(solid),
+            right_handed: inertia::is_right_handed(solid),
         }
     }
 
@@ -74,7 +96,8 @@ impl Shape {
         let equal = |a: f64, b: f64| (a - b).abs() <= EQUAL * a.abs().max(b.abs());
         let largest = self.moments.abs().max_element();
         let near = (self.moments - other.moments).abs().max_element() <= EQUAL * largest;
-        equal(self.volume, other.volume) && equal(self.area, other.area) && near
+        let mirrored = self.right_handed.zip(other.right_handed).is_some_and(|(a, b)| a != b);
+        equal(self.volume, other.volume) && equal(self.area, other.area) && near && !mirrored
     }
 }
 
@@ -110,6 +133,32 @@ mod tests {
         }
         let found = likes(&Assembly::new(parts).unwrap());
         assert_eq!(found, (0..12).map(|k| k % 4).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn mirror_images_are_alike_only_where_they_are_one_shape() {
+        let mut random = Random::new(5);
+        let corners =
+            [DVec3::ZERO, DVec3::X * 4.0, DVec3::new(1.0, 2.5, 0.0), DVec3::new(0.5, 0.4, 1.2)];
+        let faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]].map(|f| f.to_vec()).to_vec();
+        let wedge = |corners: [DVec3; 4]| Mesh::new(corners.to_vec(), faces.clone());
+        let block = cuboid(DVec3::new(1.0, 2.0, 3.0));
+        let mut parts = Vec::new();
+        for k in 0..24 {
+            let at = DVec3::new(random.unit(), random.unit(), random.unit()) * 100.0;
+            let mirror = DVec3::new(if k % 2 == 0 { 1.0 } else { -1.0 }, 1.0, 1.0);
+            let turn = DAffine3::from_rotation_translation(random.rotation(), at);
+            let place = turn * DAffine3::from_scale(mirror);
+            let mesh = if k % 4 < 2 {
+                wedge(corners)
+            } else {
+                Mesh::new(block.vertices.clone(), block.faces.clone())
+            };
+            let piece = Piece { mesh, world_from_piece: place };
+            parts.push(Part::new(format!("part {k}"), &[piece]).unwrap());
+        }
+        let found = likes(&Assembly::new(parts).unwrap());
+        assert_eq!(found, (0..24).map(|k| [0, 1, 2, 2][k % 4]).collect::<Vec<_>>());
     }
 
     #[test]

@@ -217,8 +217,8 @@ impl Assembly {
     /// [`group`](Self::group).
     ///
     /// # Errors
-    /// A name that no part has; a part paired with itself alone; a tolerance that is none; a snap without one; what is
-    /// glued would leave before itself.
+    /// A name that no part has; a part paired with itself alone; neither a role nor a tolerance; a tolerance that is none;
+    /// a snap without one; what is glued would leave before itself.
     pub fn with_pair<S: AsRef<str>>(
         mut self,
         [first, second]: [&[S]; 2],
@@ -233,9 +233,12 @@ impl Assembly {
         if let Some(value) = fit.tolerance.filter(|x| !(0.0..=MAX_MAGNITUDE).contains(x)) {
             return Err(AssemblyError::Length { what: "tolerance", value });
         }
+        let names = || [first[0], second[0]].map(|part| self.parts[part].name.clone());
+        if fit == PairFit::default() {
+            return Err(AssemblyError::NoFit { names: names() });
+        }
         if fit.role == Some(Role::Snap) && fit.tolerance.is_none() {
-            let names = [first[0], second[0]].map(|part| self.parts[part].name.clone());
-            return Err(AssemblyError::NoTolerance { names });
+            return Err(AssemblyError::NoTolerance { names: names() });
         }
         for [a, b] in first.iter().flat_map(|&a| second.iter().map(move |&b| [a, b])) {
             if a == b {
@@ -252,14 +255,13 @@ impl Assembly {
         Ok(self)
     }
 
-    /// The same, with parts (by name) that are never moved.
+    /// The same, with parts that are never moved. Names are as of [`group`](Self::group).
     ///
     /// # Errors
     /// A name that no part has.
     pub fn with_fixed<S: AsRef<str>>(mut self, names: &[S]) -> Result<Self, AssemblyError> {
-        for name in names {
-            let index = self.index(name.as_ref())?;
-            self.parts[index].fixed = true;
+        for part in self.group(names)? {
+            self.parts[part].fixed = true;
         }
         Ok(self)
     }
@@ -291,13 +293,17 @@ impl Assembly {
     /// The same with a subassembly: its parts leave as one, and are taken apart by themselves.
     ///
     /// # Errors
-    /// As [`Self::with_together`]; it shares parts with another one, and neither holds the other.
+    /// As [`Self::with_together`]; it has no name; it shares parts with another one, and neither holds the other.
     pub fn with_subassembly<S: AsRef<str>>(
         self,
         name: impl Into<String>,
         parts: &[S],
     ) -> Result<Self, AssemblyError> {
-        self.with_unit_of(Some(name.into()), parts, true)
+        let name = name.into();
+        if name.trim().is_empty() {
+            return Err(AssemblyError::NoName);
+        }
+        self.with_unit_of(Some(name), parts, true)
     }
 
     fn with_unit_of<S: AsRef<str>>(

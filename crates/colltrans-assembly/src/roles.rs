@@ -12,6 +12,8 @@
 //!   count;
 //! - *glued*: the two leave as one, and are not taken apart.
 
+use crate::digits::short;
+
 /// What two parts are to each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Deserialize)]
 #[serde(rename_all = "snake_case")]
@@ -82,7 +84,7 @@ impl Tolerated {
             (Self::Within(length), Some(_)) => format!("{name}, tolerance {length}"),
             (Self::Within(length), None) => format!("tolerance {length}"),
             (Self::Core(radius), _) => {
-                format!("thread, the screw taken as its core of radius {radius}")
+                format!("thread, the screw taken as its core of radius {}", short(*radius))
             }
             (Self::Bent(length), _) => format!("snap, contacts within {length} let pass"),
             (Self::Crossing, _) => format!("{name}, what crosses at the start let pass"),

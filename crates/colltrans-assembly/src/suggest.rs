@@ -123,7 +123,10 @@ fn suggestion(bodies: &Bodies, overlap: &Overlap) -> Option<Suggestion> {
     if let Some(soft) = soft {
         return said(Some(Role::Soft), tolerance, format!("{} is called so", soft.name()));
     }
-    if let Some((thread, pitch)) = helix(solids) {
+    let thread = helix(solids);
+    if let Some((thread, pitch)) =
+        thread.filter(|(thread, _)| thread.is_surrounded(solids[1 - thread.screw]))
+    {
         return said(Some(Role::Thread), None, helix_words(&thread, pitch));
     }
     let tolerance = Some(tolerance?);

@@ -364,6 +364,16 @@ mod tests {
     }
 
     #[test]
+    fn what_climbs_more_than_it_goes_around_is_no_thread() {
+        let around = std::f64::consts::TAU * 5.6;
+        for (pitch, found) in [(0.5 * around, true), (1.5 * around, false)] {
+            let screw = helical(None, |phase| 5.0 + 0.6 * wave(phase), pitch, 2);
+            let nut = helical(Some(9.0), |phase| 5.1 + 0.6 * wave(phase), pitch, 2);
+            assert_eq!(Thread::of([&screw, &nut]).unwrap().pitch.is_some(), found, "{pitch}");
+        }
+    }
+
+    #[test]
     fn pins_and_boxes_are_no_threads() {
         let pin = helical(None, |_| 5.0, 1.0, 3);
         let ring = helical(Some(9.0), |_| 4.95, 1.0, 2);

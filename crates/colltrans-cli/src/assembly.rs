@@ -250,6 +250,8 @@ impl From<AssemblyError> for Failure {
             | AssemblyError::Subassemblies { .. }
             | AssemblyError::TooFew { .. }
             | AssemblyError::NoTolerance { .. }
+            | AssemblyError::NoFit { .. }
+            | AssemblyError::Fixed { .. }
             | AssemblyError::Removal { .. }
             | AssemblyError::Angle { .. } => Code::Usage,
             AssemblyError::Replay { .. } | AssemblyError::Cancelled => Code::Query,

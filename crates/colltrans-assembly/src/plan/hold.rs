@@ -174,7 +174,7 @@ impl Stuck {
             ),
         };
         format!(
-            "Parts that overlap move as one, unless a tolerance or a role is given for them{open}."
+            "Parts that overlap move as one, unless a role or a tolerance lets them pass{open}."
         )
     }
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use glam::DVec3;
 
 use super::{Leg, Passed, Plan, Step};
-use crate::likes::common_name;
+use crate::likes::{common_name, pairs_alike};
 use crate::part::Assembly;
 
 /// Screws that are told as one take the same turns, to this.
@@ -118,6 +118,24 @@ impl Plan {
     /// What the steps of a stage let pass of pairs with a fit of their own.
     pub fn passed(&self, stage: &Range<usize>) -> Vec<Passed> {
         self.steps[stage.clone()].iter().flat_map(|step| step.passed.iter().copied()).collect()
+    }
+
+    /// The same in words, of parts that are alike together: "4 x bolt and plate: thread, ...".
+    pub fn passed_words(&self, assembly: &Assembly, stage: &Range<usize>) -> Vec<String> {
+        let all = self.passed(stage);
+        let said = |passed: &Passed| passed.tolerated.words(passed.role);
+        let all = all.iter().map(|passed| (passed.parts, said(passed), said(passed)));
+        let told = |(said, sides): (String, [Vec<usize>; 2])| {
+            let [a, b] = sides.map(|side| {
+                let names = assembly.names(&side);
+                match common_name(&names) {
+                    Some(name) if names.len() > 1 => format!("{} x {name}", names.len()),
+                    _ => names.join(", "),
+                }
+            });
+            format!("{a} and {b}: {said}")
+        };
+        pairs_alike(&self.likes, all).into_iter().map(told).collect()
     }
 
     fn joins(&self, stage: &Range<usize>, step: &Step) -> bool {

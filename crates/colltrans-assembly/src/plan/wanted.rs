@@ -31,7 +31,7 @@ pub struct Wanted {
 /// whatever a plan of all takes away before them and they need.
 ///
 /// # Errors
-/// As [`disassemble`](super::disassemble); no parts, or all of them.
+/// As [`disassemble`](super::disassemble); no parts, or all of them; one that is fixed.
 pub fn remove(
     bodies: &Bodies,
     matrix: &Matrix,
@@ -45,6 +45,10 @@ pub fn remove(
     parts.dedup();
     if parts.is_empty() || parts.len() >= bodies.len() {
         return Err(AssemblyError::Removal { count: parts.len(), of: bodies.len() });
+    }
+    let all = bodies.assembly().parts();
+    if let Some(&fixed) = parts.iter().find(|&&part| all[part].fixed()) {
+        return Err(AssemblyError::Fixed { name: all[fixed].name().to_owned() });
     }
     let likes = likes(bodies.assembly());
     let mut planner = Planner::new(bodies, finer, &likes, options, watch)?;
@@ -107,7 +111,9 @@ impl Wanted {
         let names = |parts: &[usize]| assembly.names(parts).join(", ");
         let wanted = names(&self.parts);
         if !self.out {
-            return format!("{wanted}: no way out was found");
+            return format!(
+                "{wanted}: no way out was found, though all that comes off is taken away"
+            );
         }
         let others = match self.others.len() {
             0 => return format!("{wanted}: nothing else has to go"),

@@ -6,7 +6,8 @@ use std::path::Path;
 use std::sync::Arc;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
-use serde::Deserialize;
+use serde::de::Error;
+use serde::{Deserialize, Deserializer};
 
 use super::files::Source;
 use super::{
@@ -25,15 +26,15 @@ struct Manifest {
     #[serde(default, alias = "part")]
     parts: Vec<Entry>,
     #[serde(default)]
-    ignore: Vec<[String; 2]>,
+    ignore: Vec<Exactly<String, 2>>,
     #[serde(default)]
-    ignore_always: Vec<[String; 2]>,
+    ignore_always: Vec<Exactly<String, 2>>,
     #[serde(default, alias = "pair")]
     pairs: Vec<Contact>,
     #[serde(default)]
-    before: Vec<[String; 2]>,
+    before: Vec<Exactly<String, 2>>,
     #[serde(default)]
-    after: Vec<[String; 2]>,
+    after: Vec<Exactly<String, 2>>,
     #[serde(default)]
     together: Vec<Vec<String>>,
     #[serde(default, alias = "subassembly")]
@@ -46,7 +47,7 @@ struct Manifest {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object that says what two parts are to each other")]
 struct Contact {
-    parts: [String; 2],
+    parts: Exactly<String, 2>,
     role: Option<Role>,
     tolerance: Option<f64>,
 }
@@ -64,7 +65,7 @@ struct Subassembly {
 #[serde(deny_unknown_fields, expecting = "an object that says where parts never go")]
 struct Kept {
     parts: Vec<String>,
-    along: [f64; 3],
+    along: Exactly<f64, 3>,
     #[serde(default = "within_degrees")]
     within_degrees: f64,
 }
@@ -78,8 +79,7 @@ const fn within_degrees() -> f64 {
 struct Entry {
     file: OneOrMany,
     name: Option<String>,
-    #[serde(default)]
-    translation: [f64; 3],
+    translation: Option<Exactly<f64, 3>>,
     rotation: Option<Rotation>,
     scale: Option<Scale>,
     #[serde(default)]
@@ -122,6 +122,19 @@ enum NamedRotation {
     Matrix([[f64; 3]; 3]),
 }
 
+/// A list of just so many: the reader of TOML drops what is beyond the length of an array.
+#[derive(Clone)]
+struct Exactly<T, const N: usize>([T; N]);
+
+impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Exactly<T, N> {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let all = Vec::deserialize(from)?;
+        let count = all.len();
+        let refused = |_| D::Error::invalid_length(count, &&*format!("a list of {N}"));
+        all.try_into().map(Self).map_err(refused)
+    }
+}
+
 /// How far a rotation's numbers may be from one.
 const ROUNDED: f64 = 1e-3;
 
@@ -152,8 +165,10 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     let mut assembly = assembled(source, drafts, &holds)?;
     let (manifest, dropped) = manifest.without(&left_out, &assembly);
     let Manifest { ignore, ignore_always: always, .. } = &manifest;
-    assembly = assembly.with_ignored(ignore, Ignored::Overlap).map_err(in_file(path))?;
-    assembly = assembly.with_ignored(always, Ignored::Always).map_err(in_file(path))?;
+    for (pairs, ignored) in [(ignore, Ignored::Overlap), (always, Ignored::Always)] {
+        let pairs: Vec<[&String; 2]> = pairs.iter().map(|pair| pair.0.each_ref()).collect();
+        assembly = assembly.with_ignored(&pairs, ignored).map_err(in_file(path))?;
+    }
     assembly = manifest.constrained(assembly).map_err(in_file(path))?;
     for said in dropped {
         assembly = assembly.with_note(format!("{said}, as parts of it are left out"));
@@ -188,14 +203,14 @@ impl Manifest {
             }
             kept
         };
-        let mut pairs = |what: &str, all: &mut Vec<[String; 2]>| {
-            all.retain(|pair| keep(what, &mut pair.to_vec(), 2));
+        let mut pairs = |what: &str, all: &mut Vec<Exactly<String, 2>>| {
+            all.retain(|pair| keep(what, &mut pair.0.to_vec(), 2));
         };
         pairs("ignore", &mut self.ignore);
         pairs("ignore_always", &mut self.ignore_always);
         pairs("before", &mut self.before);
         pairs("after", &mut self.after);
-        self.pairs.retain(|contact| keep("pair", &mut contact.parts.to_vec(), 2));
+        self.pairs.retain(|contact| keep("pair", &mut contact.parts.0.to_vec(), 2));
         self.together.retain_mut(|parts| keep("together", parts, 2));
         self.subassemblies
             .retain_mut(|of| keep(&format!("subassembly {}", of.name), &mut of.parts, 2));
@@ -205,12 +220,12 @@ impl Manifest {
 
     /// The assembly with what is asked of its plans.
     fn constrained(&self, mut assembly: Assembly) -> Result<Assembly, AssemblyError> {
-        for Contact { parts: [a, b], role, tolerance } in &self.pairs {
+        for Contact { parts: Exactly([a, b]), role, tolerance } in &self.pairs {
             let fit = PairFit { role: *role, tolerance: *tolerance };
             assembly = assembly.with_pair([&[a], &[b]], fit)?;
         }
-        let turned = self.after.iter().map(|[later, first]| [first, later]);
-        for [first, later] in self.before.iter().map(|[a, b]| [a, b]).chain(turned) {
+        let turned = self.after.iter().map(|Exactly([later, first])| [first, later]);
+        for [first, later] in self.before.iter().map(|Exactly([a, b])| [a, b]).chain(turned) {
             assembly = assembly.with_before(&[first], &[later])?;
         }
         for parts in &self.together {
@@ -220,7 +235,7 @@ impl Manifest {
             assembly = assembly.with_subassembly(name, parts)?;
         }
         for Kept { parts, along, within_degrees } in &self.never {
-            assembly = assembly.with_never(parts, DVec3::from_array(*along), *within_degrees)?;
+            assembly = assembly.with_never(parts, DVec3::from_array(along.0), *within_degrees)?;
         }
         Ok(assembly)
     }
@@ -303,12 +318,12 @@ impl Entry {
             Some(Scale::Same(s)) => DVec3::splat(s),
             Some(Scale::Each(s)) => DVec3::from_array(s),
         };
-        let translation = DVec3::from_array(self.translation);
+        let translation = self.translation.as_ref().map_or(DVec3::ZERO, |by| by.0.into());
         if !scale.is_finite() || scale.element_product() == 0.0 {
             return Err(format!("scale {:?} is zero or not finite", scale.to_array()));
         }
         if !translation.is_finite() {
-            return Err(format!("translation {:?} is not finite", self.translation));
+            return Err(format!("translation {:?} is not finite", translation.to_array()));
         }
         let matrix = rotation * DMat3::from_diagonal(scale);
         Ok(DAffine3::from_mat3_translation(matrix, translation))

@@ -81,7 +81,9 @@ pub(super) struct Viewpoint {
 
 const MARGIN: f64 = 14.0;
 /// The room for numbers at either side.
-const MARGIN_OF_NUMBERS: f64 = 52.0;
+const MARGIN_OF_NUMBERS: f64 = 60.0;
+/// How far from its side of the page a number stands.
+const FROM_SIDE: f64 = 19.0;
 const SHADES: usize = 6;
 /// Depths, in pixels, may be off by this much.
 const SLACK: f64 = 1.5;
@@ -301,12 +303,14 @@ impl<'a> Studio<'a> {
         for a in &scene.arrows {
             let [from, to] = [a.from, a.to].map(|p| eye.see(p).truncate());
             page.arrow(ARROW, 2.5, [from, to]);
-            if !a.label.is_empty() {
-                page.label(beyond([from, to], &a.label, scene.size), LABEL, &a.label);
-            }
+        }
+        for a in scene.arrows.iter().filter(|a| !a.label.is_empty()) {
+            let ends = [a.from, a.to].map(|p| eye.see(p).truncate());
+            page.label(beyond(ends, &a.label, scene.size), LABEL, &a.label);
         }
         balloons(&mut page, scene, &raster);
-        triad(&mut page, &eye.view, scene.size);
+        let aside = if scene.numbers.is_empty() { 0.0 } else { 2.0 * FROM_SIDE };
+        triad(&mut page, &eye.view, DVec2::new(36.0 + aside, scene.size.y - 36.0));
         page.inline(scene.size, &scene.label)
     }
 
@@ -368,10 +372,10 @@ impl<'a> Studio<'a> {
 }
 
 const LABEL: &str =
-    r##"font-family="system-ui,sans-serif" font-size="15" font-weight="600" fill="#a01515""##;
+    r##"font-family="system-ui,sans-serif" font-size="18" font-weight="600" fill="#a01515""##;
 
 /// How wide a letter of it is, in pixels.
-const LETTER: f64 = 9.0;
+const LETTER: f64 = 10.8;
 
 /// How many samples are seen of each part.
 fn count(raster: &Raster) -> BTreeMap<usize, usize> {
@@ -385,13 +389,12 @@ fn count(raster: &Raster) -> BTreeMap<usize, usize> {
 /// Where the label of an arrow stands: beyond its tip, on the page.
 fn beyond([from, to]: [DVec2; 2], label: &str, size: DVec2) -> DVec2 {
     let along = (to - from).normalize_or(DVec2::NEG_Y);
-    let room = DVec2::new(LETTER * label.chars().count() as f64 / 2.0 + 4.0, 12.0);
+    let room = DVec2::new(LETTER * label.chars().count() as f64 / 2.0 + 4.0, 14.0);
     (to + along * (4.0 + (along * room).abs().element_sum())).clamp(room, size - room)
 }
 
-/// The axes of the world, in a corner.
-fn triad(page: &mut Page, view: &View, size: DVec2) {
-    let origin = DVec2::new(36.0, size.y - 36.0);
+/// The axes of the world, around a point of the page.
+fn triad(page: &mut Page, view: &View, origin: DVec2) {
     for (axis, name) in DVec3::AXES.into_iter().zip(["x", "y", "z"]) {
         let along = view.project(axis) * DVec2::new(1.0, -1.0);
         page.lines(r##"stroke="#6b7785" stroke-width="1.2""##, [[origin, origin + along * 20.0]]);
@@ -431,7 +434,7 @@ fn balloons(page: &mut Page, scene: &Scene, raster: &Raster) {
     let mut all: Vec<(usize, DVec2)> = anchored.collect();
     all.sort_by(|a, b| a.1.x.total_cmp(&b.1.x));
     let right = all.split_off(all.len() / 2);
-    for (column, x) in [(all, 16.0), (right, scene.size.x - 16.0)] {
+    for (column, x) in [(all, FROM_SIDE), (right, scene.size.x - FROM_SIDE)] {
         column_of(page, column, x, scene.size.y);
     }
 }
@@ -439,8 +442,8 @@ fn balloons(page: &mut Page, scene: &Scene, raster: &Raster) {
 /// Balloons one below the other, as near to the heights of what they are of as they have room.
 fn column_of(page: &mut Page, mut column: Vec<(usize, DVec2)>, x: f64, height: f64) {
     column.sort_by(|a, b| a.1.y.total_cmp(&b.1.y));
-    let pitch = (height / column.len().max(1) as f64).min(30.0);
-    let radius = (0.46 * pitch).min(11.0);
+    let pitch = (height / column.len().max(1) as f64).min(40.0);
+    let radius = (0.46 * pitch).min(15.0);
     let mut y = f64::NEG_INFINITY;
     for (k, (number, anchor)) in column.iter().enumerate() {
         let below = (column.len() - k) as f64 * pitch;

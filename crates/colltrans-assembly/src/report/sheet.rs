@@ -1,6 +1,6 @@
 //! A page for each step, or for steps that are one for whoever does them.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::ops::Range;
 
 use colltrans::Aabb;
@@ -12,6 +12,7 @@ use super::scene::{Arrow, Look, Scene, Shown, Viewpoint};
 use super::there;
 use super::words::{numbers, time};
 use crate::Fit;
+use crate::likes::pairs_alike;
 use crate::plan::Passed;
 use crate::plan::{Leg, Step};
 
@@ -270,10 +271,15 @@ fn warnings(r: &Report, steps: &[Step]) -> Markup {
     let tips: Vec<usize> = steps.iter().flat_map(|step| step.off_balance.iter().copied()).collect();
     html! {
         @if !falls.is_empty() {
-            p.warn { b { "Hold " (r.words.names(&falls)) ":" } " then nothing that is left carries it." }
+            @let them = if falls.len() == 1 { "it" } else { "them" };
+            p.warn { b { "Hold " (r.words.names(&falls)) ":" } " then nothing that is left carries " (them) "." }
         }
         @if !tips.is_empty() {
-            p.warn { b { "Steady " (r.words.names(&tips)) ":" } " then its weight is beside what carries it, and it may tip over." }
+            @let [their, them, they] = if tips.len() == 1 { ["its", "it", "it"] } else { ["their", "them", "they"] };
+            p.warn {
+                b { "Steady " (r.words.names(&tips)) ":" }
+                " then " (their) " weight is beside what carries " (them) ", and " (they) " may tip over."
+            }
         }
     }
 }
@@ -369,23 +375,11 @@ pub(super) fn alike<K: Ord>(
     r: &Report,
     all: impl Iterator<Item = ([usize; 2], K, String)>,
 ) -> Vec<String> {
-    let like = |part: usize| r.f.plan.likes.get(part).copied().unwrap_or(part);
-    let mut groups = BTreeMap::<([usize; 2], K), (String, [Vec<usize>; 2])>::new();
-    for (parts, key, said) in all {
-        let (_, sides) = groups.entry((parts.map(like), key)).or_insert((said, Default::default()));
-        for (side, part) in sides.iter_mut().zip(parts) {
-            side.push(part);
-        }
-    }
     let told = |(said, sides): (String, [Vec<usize>; 2])| {
-        let [a, b] = sides.map(|mut side| {
-            side.sort_unstable();
-            side.dedup();
-            r.words.count(&side)
-        });
+        let [a, b] = sides.map(|side| r.words.count(&side));
         format!("{a} and {b}: {said}")
     };
-    groups.into_values().map(told).collect()
+    pairs_alike(&r.f.plan.likes, all).into_iter().map(told).collect()
 }
 
 /// Pairs in words, of many the first ones.

@@ -19,6 +19,8 @@ const MOST_OF_GROUP: usize = 4;
 const MOST_STEMS: usize = 3;
 /// Runs of numbers are all told up to so many.
 const MOST_RUNS: usize = 5;
+/// Sides that are less than this share of the longest one are those of a sheet.
+const FLAT: f64 = 1e-6;
 /// Directions that differ by less than this angle in radians are told as one.
 const EQUAL: f64 = 1e-6;
 
@@ -53,9 +55,11 @@ impl<'a> Words<'a> {
         self.with_unit(self.sides(size))
     }
 
-    /// The same without the unit.
+    /// The same without the unit; what rounding leaves of a sheet's thickness is none.
     pub(super) fn sides(&self, size: DVec3) -> String {
-        size.to_array().map(|x| digits(x * self.factor, 3)).join(" × ")
+        let least = FLAT * size.max_element();
+        let side = |x: f64| if x < least { 0.0 } else { x * self.factor };
+        size.to_array().map(|x| digits(side(x), 3)).join(" × ")
     }
 
     /// What lengths are measured in; nothing, if that is not known.
@@ -229,6 +233,14 @@ mod tests {
         let told = ["taken as suggested: soft of a,b", "bolt.stl: open.", "leg_1 is open", ""];
         let known = ["Taken as suggested: soft of a,b.", "bolt.stl: open.", "leg_1 is open.", "."];
         assert_eq!(told.map(sentence), known);
+    }
+
+    #[test]
+    fn sheets_have_no_thickness() {
+        let assembly = Assembly::default();
+        let words = Words { assembly: &assembly, up: DVec3::Z, factor: 1e3, unit: "mm" };
+        assert_eq!(words.extent(DVec3::new(2.4e-12, 0.0254, 0.054)), "0 × 25.4 × 54 mm");
+        assert_eq!(words.sides(DVec3::new(2.4e-6, 0.0254, 0.054)), "0.0024 × 25.4 × 54");
     }
 
     #[test]

@@ -19,6 +19,8 @@ const STARTS: i32 = 4;
 const LEAST: f64 = 0.35;
 /// ... and so many times as strong as that with rings and splines.
 const BEYOND: f64 = 1.5;
+/// In a turn a crest climbs by no more than this share of its way around: what is steeper is a spline rather than a thread.
+const STEEPEST: f64 = 1.0;
 /// A thread's crests are no nearer than this many depths of it; of usual ones 1.6.
 const NEAREST: f64 = 0.8;
 /// Frequencies are tried so close: shares of the inverse length.
@@ -86,8 +88,10 @@ pub(super) fn pitch(screw: &Solid, about: &About, radii: [f64; 2]) -> Option<f64
     let frequency = peak(f64::from(k) * step, step, |f| strength(&whole_crests, f));
     let found = strength(&own, frequency);
     let others = strength(&waves(0), frequency).max(strength(&own, 0.0));
-    let sound = k > 0 && found >= LEAST && found >= BEYOND * others;
-    sound.then(|| f64::from(starts) / frequency)
+    let climb = f64::from(starts) / frequency;
+    let steep = climb.abs() > STEEPEST * TAU * radii[1];
+    let sound = k > 0 && found >= LEAST && found >= BEYOND * others && !steep;
+    sound.then_some(climb)
 }
 
 /// The waves that are nearly as high as most, and nothing elsewhere.

@@ -289,10 +289,15 @@ fn the_least_is_that_of_all_sets() {
             0 => vec![1, bodies.len() - 1],
             _ => vec![random.index(bodies.len())],
         };
-        let plan =
-            remove(&bodies, &matrix(&bodies), &[], &wanted, options(), Watch::default()).unwrap();
-        let found = plan.wanted.as_ref().unwrap();
+        let plan = remove(&bodies, &matrix(&bodies), &[], &wanted, options(), Watch::default());
         let least = judge.least(bits(&wanted));
+        if wanted.iter().any(|&part| assembly.parts()[part].fixed()) {
+            assert!(matches!(plan, Err(AssemblyError::Fixed { .. })) && least.is_none());
+            held += 1;
+            continue;
+        }
+        let plan = plan.unwrap();
+        let found = plan.wanted.as_ref().unwrap();
         assert_eq!(found.out, least.is_some(), "round {round}: {found:?}");
         if let Some(least) = least {
             let count = found.parts.len() + found.others.len();
@@ -352,6 +357,13 @@ fn a_core_comes_out_without_what_is_not_in_its_way() {
         let none = remove(&bodies, &matrix(&bodies), &[], &parts, options(), Watch::default());
         assert!(matches!(none, Err(AssemblyError::Removal { of: 5, .. })));
     }
+    let fixed = remove(&bodies, &matrix(&bodies), &[], &[0, 1], options(), Watch::default());
+    assert!(matches!(fixed, Err(AssemblyError::Fixed { name }) if name == "box"));
+    let held = closed().with_fixed(&["c*", "box"]).unwrap();
+    assert_eq!(held.parts().iter().filter(|part| part.fixed()).count(), 3);
+    let core = closed().with_fixed(&["box"]).unwrap().with_never(&["core"], DVec3::Z, 179.0);
+    let words = taken(&core.unwrap(), &["core"]).1.wanted.unwrap().words(&assembly);
+    assert!(words.ends_with("no way out was found, though all that comes off is taken away"));
 }
 
 #[test]

@@ -97,6 +97,20 @@ fn faults_of_manifests_are_named_with_their_place() {
         ("[[part]]\nfile = 'gone.off'\n", "gone.off"),
         ("ignore = [['c', 'd']]\n[[part]]\nfile = 'c.off'\n", "no part is named d"),
         ("[[part]]\nfile = 'c.off'\n[[part]]\nfile = 'c.off'\n", "two parts are named c"),
+        ("before = [['c', 'c']]\n[[part]]\nfile = 'c.off'\n", "nothing can leave before itself"),
+        ("subassembly = [{ name = ' ', parts = ['c'] }]\n[[part]]\nfile = 'c.off'\n", "no name"),
+        ("pair = [{ parts = ['c', 'c'], role = 'press' }]\n[[part]]\nfile = 'c.off'\n", "no pair"),
+        (
+            "pair = [{ parts = ['c', 'd'] }]\n[[part]]\nfile = 'c.off'\n[[part]]\nfile = 'c.off'\n\
+             name = 'd'\n",
+            "give a role or a tolerance",
+        ),
+        // What is beyond a list of so many is not dropped.
+        ("before = [['c', 'd', 'e']]\n", "found a list of 3, expected a list of 2"),
+        ("ignore = [['c']]\n", "found a list of 1, expected a list of 2"),
+        ("pair = [{ parts = ['c', 'd', 'e'], role = 'press' }]\n", "expected a list of 2"),
+        ("never = [{ parts = ['c'], along = [0, 0, 1, 1] }]\n", "expected a list of 3"),
+        ("[[part]]\nfile = 'c.off'\ntranslation = [1, 2, 3, 4]\n", "expected a list of 3"),
     ];
     for (text, wanted) in cases {
         let folder = folder(&[("c.off", CUBE), ("m.toml", text)]);

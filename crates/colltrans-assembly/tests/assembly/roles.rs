@@ -9,7 +9,7 @@ use colltrans_assembly::suggest::{applied, suggestions, told};
 use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Part, Piece, Room, Watch};
 use colltrans_mesh::Mesh;
 use colltrans_testkit::random::Random;
-use colltrans_testkit::shapes::prism;
+use colltrans_testkit::shapes::{self as testkit, helical, prism};
 use glam::{DAffine3, DVec3};
 
 use crate::common::{cuboid, part, scattered, well};
@@ -194,6 +194,10 @@ fn what_snaps_passes_what_it_meets_at_once_and_nothing_later() {
     let snap = PairFit { role: Some(Role::Snap), tolerance: None };
     let none = Assembly::new(parts).unwrap().with_pair([&["a"], &["b"]], snap);
     assert!(matches!(none, Err(AssemblyError::NoTolerance { .. })));
+    let parts =
+        vec![part("a", &[cuboid([0.0; 3], [1.0; 3])]), part("b", &[cuboid([2.0; 3], [3.0; 3])])];
+    let none = Assembly::new(parts).unwrap().with_pair([&["a"], &["b"]], PairFit::default());
+    assert!(matches!(none, Err(AssemblyError::NoFit { .. })));
 }
 
 #[test]
@@ -225,6 +229,27 @@ fn what_is_glued_leaves_as_one_and_an_overlap_without_end_lets_what_crosses_pass
     assert!(
         plan.steps[0].passed[0].words(&assembly).contains("what crosses at the start let pass")
     );
+}
+
+#[test]
+fn a_thread_is_suggested_where_a_nut_is_all_around_its_screw() {
+    let wave = |phase: f64| 5.0 + 0.6 * (1.0 - (2.0 * phase - 1.0).abs());
+    let screw = helical(None, wave, 1.25, 8);
+    let nut = helical(Some(9.0), |phase| wave(phase) - 0.1, 1.25, 4);
+    let part_of = |name: &str, mesh: &testkit::Mesh| {
+        let mesh = Mesh::new(mesh.vertices.clone(), mesh.faces.clone());
+        Part::new(name, &[Piece { mesh, world_from_piece: DAffine3::IDENTITY }]).unwrap()
+    };
+    let beside = cuboid([4.9, -4.0, 0.0], [9.0, 4.0, 5.0]);
+    for (other, threaded) in [(part_of("nut", &nut), true), (part("beside", &[beside]), false)] {
+        let assembly = Assembly::new(vec![part_of("screw", &screw), other]).unwrap();
+        let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+        let start = Start::new(&bodies, Watch::default()).unwrap();
+        assert_eq!(start.overlaps.len(), 1);
+        let found = suggestions(&bodies, &start);
+        let threads = found.iter().filter(|said| said.fit.role == Some(Role::Thread));
+        assert_eq!(threads.count(), usize::from(threaded), "{found:?}");
+    }
 }
 
 fn round(name: &str, sides: usize, radius: f64, low: f64, high: f64) -> Part {

@@ -161,7 +161,13 @@ fn summary(f: &Findings) -> String {
         let _ = writeln!(text, "what remains\n  {}", names(&f.plan.last));
     }
     if !f.plan.left.is_empty() {
-        let _ = writeln!(text, "left\n  {}", names(&f.plan.left));
+        let fixed = f.plan.left.iter().all(|&part| assembly.parts()[part].fixed());
+        let why = match (fixed, f.plan.left.len()) {
+            (false, _) => "",
+            (true, 1) => ", as it is fixed",
+            (true, _) => ", as they are fixed",
+        };
+        let _ = writeln!(text, "left{why}\n  {}", names(&f.plan.left));
     }
     for stuck in &f.plan.stuck {
         let (reason, details) = (stuck.reason(f.bodies), stuck.details(f.bodies));
@@ -261,8 +267,8 @@ fn tell(text: &mut String, f: &Findings, stage: &Range<usize>) {
     for said in steps.iter().flat_map(|step| step.unsettled(assembly)) {
         let _ = writeln!(text, "     {}", shown(said));
     }
-    for passed in f.plan.passed(stage) {
-        let _ = writeln!(text, "     {}", shown(passed.words(assembly)));
+    for passed in f.plan.passed_words(assembly, stage) {
+        let _ = writeln!(text, "     {}", shown(passed));
     }
     for step in steps {
         if let Some(turn) = step.turn() {

@@ -87,7 +87,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
 fn machines() -> Vec<(String, Vec<NamedPart>)> {
     let mut all: Vec<_> =
-        [8, 16, 32, 64].map(|bolts| (format!("flange_{bolts}"), flange(bolts, 32))).into();
+        [8, 16, 32, 64, 256].map(|bolts| (format!("flange_{bolts}"), flange(bolts, 32))).into();
     all.extend(
         [5, 7, 9].map(|cylinders| (format!("engine_{cylinders}"), radial_engine(cylinders))),
     );

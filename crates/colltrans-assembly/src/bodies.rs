@@ -661,13 +661,13 @@ impl<'a> Bodies<'a> {
     /// A product `p . d` is off by `3 u` of its terms' absolute sum `s`, so a difference of two by `4 u` of both
     /// sums; in multiples of a direction whose length is 1 up to `4 u`, it is off by `8 u` of itself more.
     pub fn past(&self, a: usize, b: usize, d: DVec3) -> Bounded {
-        self.past_displaced(a, DVec3::ZERO, b, d)
+        self.seen(a, d).past(&self.seen(b, d))
     }
 
     /// The same from where the first one is displaced by `by`.
     pub(crate) fn past_displaced(&self, a: usize, by: DVec3, b: usize, d: DVec3) -> Bounded {
         // A displaced vertex is rounded once more.
-        let sums = if by == DVec3::ZERO { 9.0 } else { 10.0 };
+        let sums = if by == DVec3::ZERO { SUMS } else { SUMS + 1.0 };
         self.past_moved((a, |p| p + by), b, d, sums)
     }
 
@@ -680,29 +680,25 @@ impl<'a> Bodies<'a> {
         d: DVec3,
         sums: f64,
     ) -> Bounded {
-        const U: f64 = f64::EPSILON / 2.0;
+        Seen { sums, ..self.seen_moved(a, moved, d) }.past(&self.seen(b, d))
+    }
+
+    /// A part as seen along a unit direction.
+    pub(crate) fn seen(&self, part: usize, d: DVec3) -> Seen {
+        self.seen_moved(part, |p| p, d)
+    }
+
+    fn seen_moved(&self, part: usize, moved: impl Fn(DVec3) -> DVec3, d: DVec3) -> Seen {
         let (u, v) = d.any_orthonormal_pair();
         let (mut terms, mut reach) = (0.0_f64, 0.0_f64);
-        let mut around = |part: usize, moved: &dyn Fn(DVec3) -> DVec3| {
-            let vertices = self.assembly.parts()[part].solid().vertices().iter();
-            Aabb::of_points(vertices.map(|p| {
-                let p = moved(*p);
-                terms = terms.max(p.abs().dot(d.abs()));
-                reach = reach.max(p.abs().max_element());
-                DVec3::new(p.dot(u), p.dot(v), p.dot(d))
-            }))
-        };
-        let (moving, fixed) = (around(a, &moved), around(b, &|p| p));
-        // Three terms of at most this each, and axes that are rounded.
-        let flush = 32.0 * U * reach;
-        let apart = |k: usize| (fixed.low[k] - moving.high[k]).max(moving.low[k] - fixed.high[k]);
-        if (0..2).any(|k| apart(k) > flush) {
-            return Bounded { value: 0.0, lower: 0.0, upper: 0.0 };
-        }
-        let way = fixed.high.z - moving.low.z;
-        let error = U * (sums * terms + 9.0 * way.abs());
-        let [value, lower, upper] = [way, way - error, way + error].map(|x| x.max(0.0));
-        Bounded { value, lower, upper }
+        let vertices = self.assembly.parts()[part].solid().vertices().iter();
+        let around = Aabb::of_points(vertices.map(|p| {
+            let p = moved(*p);
+            terms = terms.max(p.abs().dot(d.abs()));
+            reach = reach.max(p.abs().max_element());
+            DVec3::new(p.dot(u), p.dot(v), p.dot(d))
+        }));
+        Seen { around, terms, reach, sums: SUMS }
     }
 
     /// Whether part `a`, displaced by `by`, and part `b` overlap, or are nearer than the length to keep, by more
@@ -716,6 +712,37 @@ impl<'a> Bodies<'a> {
             SolidOptions::default().with_tolerance(0.0).with_keep(self.fit_of([a, b]).keep());
         let cast = Cast::new(moving.at(pose), fixed.at(Pose::IDENTITY), DVec3::Z);
         cast.and_then(|c| c.with_options(options)).is_ok_and(|cast| cast.overlaps())
+    }
+}
+
+/// Roundings of the difference of two products with a direction.
+const SUMS: f64 = 9.0;
+
+/// A part as seen along a direction, which is the third axis, and what rounding takes of that.
+#[derive(Clone, Copy)]
+pub(crate) struct Seen {
+    around: Aabb,
+    /// The largest absolute sum of the terms of a product with the direction, and the largest coordinate.
+    terms: f64,
+    reach: f64,
+    sums: f64,
+}
+
+impl Seen {
+    /// How far this part must go until it lies wholly beyond another one, as [`Bodies::past`] says.
+    pub(crate) fn past(&self, fixed: &Self) -> Bounded {
+        const U: f64 = f64::EPSILON / 2.0;
+        let (own, other) = (&self.around, &fixed.around);
+        // Three terms of at most this each, and axes that are rounded.
+        let flush = 32.0 * U * self.reach.max(fixed.reach);
+        let apart = |k: usize| (other.low[k] - own.high[k]).max(own.low[k] - other.high[k]);
+        if (0..2).any(|k| apart(k) > flush) {
+            return Bounded { value: 0.0, lower: 0.0, upper: 0.0 };
+        }
+        let way = other.high.z - own.low.z;
+        let error = U * (self.sums * self.terms.max(fixed.terms) + 9.0 * way.abs());
+        let [value, lower, upper] = [way, way - error, way + error].map(|x| x.max(0.0));
+        Bounded { value, lower, upper }
     }
 }
 

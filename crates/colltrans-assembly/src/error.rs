@@ -180,7 +180,7 @@ pub enum AssemblyError {
         degrees: f64,
     },
     /// A length that is negative or not finite.
-    #[error("{what} {value} is not a length: it must be finite and not negative")]
+    #[error("{what} {value:?} is not a length: it must be finite, not negative and below 1.6e60")]
     Length {
         /// What it is for.
         what: &'static str,

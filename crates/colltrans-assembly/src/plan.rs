@@ -60,6 +60,7 @@ pub use options::PlanOptions;
 use order::{Choice, Order};
 pub use passed::Passed;
 pub use precedence::and_or;
+use replay::Replay;
 use several::Aside;
 pub use several::Moves;
 use single::Single;
@@ -146,6 +147,7 @@ struct Planner<'a> {
     tally: Tally<'a>,
     plan: Plan,
     known: loose::Known,
+    replay: Replay,
     /// Parts that are to come out, and nothing else if it need not.
     wanted: &'a [usize],
     /// Which parts may move for that, if not all.
@@ -217,7 +219,21 @@ impl<'a> Planner<'a> {
         let up = unit(options.up.unwrap_or(bodies.assembly().up()))?;
         let (plan, known) = (Plan::default(), loose::Known::default());
         let (wanted, movable) = (&[][..], None);
-        Ok(Self { bodies, finer, options, up, likes, watch, tally, plan, known, wanted, movable })
+        let replay = Replay::default();
+        Ok(Self {
+            bodies,
+            finer,
+            options,
+            up,
+            likes,
+            watch,
+            tally,
+            plan,
+            known,
+            replay,
+            wanted,
+            movable,
+        })
     }
 
     /// Takes all parts apart, or the wanted ones out.
@@ -313,7 +329,7 @@ impl<'a> Planner<'a> {
     ) -> Result<(), AssemblyError> {
         let mut travel = match &way.bayonet {
             Some((_, travel)) => *travel,
-            None => replay::checked(self.bodies, &way, left, self.options.start)?,
+            None => self.replay.checked(self.bodies, &way, left, self.options.start)?,
         };
         let at = self.plan.steps.len();
         let Way { parts, direction, aside, bayonet } = way;

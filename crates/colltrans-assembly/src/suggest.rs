@@ -58,7 +58,9 @@ pub fn suggestions(bodies: &Bodies, start: &Start) -> Vec<Suggestion> {
         snaps(bodies).into_iter().filter(|snap| is_unsaid(snap.parts)).collect();
     let unsaid = start
         .remaining()
-        .filter(|o| is_unsaid(o.parts) && !snaps.iter().any(|snap| snap.parts == o.parts));
+        .filter(|o| is_unsaid(o.parts) && !snaps.iter().any(|snap| snap.parts == o.parts))
+        // What is no more than nearer than the length to keep does not overlap.
+        .filter(|o| o.depth != Some(0.0));
     unsaid.filter_map(|overlap| suggestion(bodies, overlap)).chain(snaps.clone()).collect()
 }
 

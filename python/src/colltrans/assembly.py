@@ -533,7 +533,7 @@ class Assembly:
         return self._assembly.notes
 
     def with_fixed(self, *names: str) -> "Assembly":
-        """The same with these parts never moved."""
+        """The same with these parts never moved; ``PART*`` is all whose names begin so."""
         return self._of(self._assembly.with_fixed(list(names)))
 
     def with_ignored(self, *pairs: tuple[str, str], always: bool = False) -> "Assembly":

@@ -4,7 +4,8 @@ use glam::DVec3;
 
 use super::{Moves, Stuck};
 use crate::blocking::Blocking;
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, Fit};
+use crate::digits::short;
 use crate::matrix::Matrix;
 
 /// Least sets are listed up to this many for a part.
@@ -79,19 +80,10 @@ fn keep_least(sets: &mut Vec<(Vec<usize>, DVec3)>, set: Vec<usize>, d: DVec3) {
 impl Stuck {
     /// Why, in one sentence.
     pub fn reason(&self, bodies: &Bodies) -> String {
-        let name = |k: usize| bodies.assembly().parts()[k].name();
-        if let [[a, b], rest @ ..] = &self.overlapping[..] {
-            let more = match rest.len() {
-                0 => String::new(),
-                1 => ", and so does one more pair".into(),
-                more => format!(", and so do {more} more pairs"),
-            };
-            return format!(
-                "As they are drawn, {} and {} run into each other{more}, and such parts cannot be parted.",
-                name(*a),
-                name(*b)
-            );
+        if let Some(near) = self.near(bodies) {
+            return near;
         }
+        let name = |k: usize| bodies.assembly().parts()[k].name();
         let count = self.parts.len();
         let pulled = if count == 2 { "it is pulled" } else { "they are pulled" };
         let way = match (self.proven, self.directions) {
@@ -112,6 +104,31 @@ impl Stuck {
             ),
             None => format!("{way}, none of these {count} parts leaves the others{asked}."),
         }
+    }
+
+    /// Which parts overlap with this fit, or are nearer than the length to keep, if any do.
+    fn near(&self, bodies: &Bodies) -> Option<String> {
+        let [first, rest @ ..] = &self.overlapping[..] else { return None };
+        let names = bodies.assembly().names(first).join(" and ");
+        let (one, several) = match bodies.fit() {
+            Fit::Apart(_) => ("is", "are"),
+            _ => ("does", "do"),
+        };
+        let more = match rest.len() {
+            0 => String::new(),
+            1 => format!(", and so {one} one more pair"),
+            more => format!(", and so {several} {more} more pairs"),
+        };
+        Some(match bodies.fit() {
+            Fit::Apart(length) => format!(
+                "Where they stand, {names} are nearer to each other than the {} to keep{more}, and such parts are not \
+                 moved apart.",
+                short(length)
+            ),
+            _ => format!(
+                "As they are drawn, {names} run into each other{more}, and such parts cannot be parted."
+            ),
+        })
     }
 
     /// Why, in words: the [reason](Self::reason), and how that is known.
@@ -173,9 +190,11 @@ impl Stuck {
                 self.parts.len()
             ),
         };
-        format!(
-            "Parts that overlap move as one, unless a role or a tolerance lets them pass{open}."
-        )
+        let near = match bodies.fit() {
+            Fit::Apart(_) => "are too near to each other",
+            _ => "overlap",
+        };
+        format!("Parts that {near} move as one, unless a role or a tolerance lets them pass{open}.")
     }
 
     /// The part that the fewest others hold, and those.

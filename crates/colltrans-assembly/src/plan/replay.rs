@@ -6,25 +6,47 @@ use glam::DVec3;
 
 use super::Way;
 use super::several::Aside;
-use crate::bodies::Bodies;
+use crate::bodies::{Bodies, Seen};
 use crate::error::AssemblyError;
+use crate::matrix::bits;
 
 /// Places on the way, as shares of the travel.
 const PLACES: [f64; 6] = [0.01, 0.1, 0.3, 0.55, 0.8, 1.0];
 
-/// How far the group must go until it never meets the others again.
-///
-/// # Errors
-/// Something is in the way after all.
-pub(super) fn checked(
-    bodies: &Bodies,
-    way: &Way,
-    others: &[usize],
-    start: StartOverlap,
-) -> Result<Bounded, AssemblyError> {
-    match &way.aside {
-        None => straight(bodies, way, others, start),
-        Some(aside) => several(bodies, aside, others),
+/// Checks one step after the other.
+#[derive(Default)]
+pub(super) struct Replay {
+    /// The direction of the last step, and parts as seen along it.
+    along: Option<([u64; 3], Vec<Option<Seen>>)>,
+}
+
+impl Replay {
+    /// How far the group must go until it never meets the others again.
+    ///
+    /// # Errors
+    /// Something is in the way after all.
+    pub(super) fn checked(
+        &mut self,
+        bodies: &Bodies,
+        way: &Way,
+        others: &[usize],
+        start: StartOverlap,
+    ) -> Result<Bounded, AssemblyError> {
+        match &way.aside {
+            None => straight(bodies, way, others, start, self.travel(bodies, way, others)),
+            Some(aside) => several(bodies, aside, others),
+        }
+    }
+
+    /// How far a group goes until it is beyond all others.
+    fn travel(&mut self, bodies: &Bodies, way: &Way, others: &[usize]) -> Bounded {
+        let d = way.direction;
+        let known = self.along.take().filter(|(direction, _)| *direction == bits(d));
+        let (_, seen) = self.along.insert(known.unwrap_or((bits(d), vec![None; bodies.len()])));
+        let mut seen = |&part: &usize| *seen[part].get_or_insert_with(|| bodies.seen(part, d));
+        let moving: Vec<Seen> = way.parts.iter().map(&mut seen).collect();
+        let past = |fixed: Seen| moving.iter().map(|own| own.past(&fixed)).fold(NOTHING, larger);
+        others.iter().map(seen).map(past).fold(NOTHING, larger)
     }
 }
 
@@ -34,19 +56,14 @@ fn straight(
     way: &Way,
     others: &[usize],
     start: StartOverlap,
+    travel: Bounded,
 ) -> Result<Bounded, AssemblyError> {
     let d = way.direction;
     let mut workspace = Workspace::default();
-    let mut travel = NOTHING;
     let ahead = bodies.pairs_ahead(&way.parts, d, &bodies.mask(others));
     let mut all = ahead.iter();
     if let Some(&pair) = all.find(|pair| bodies.meets(**pair, d, start, &mut workspace)) {
         return Err(refused(bodies, pair, d, 0.0));
-    }
-    for &a in &way.parts {
-        for &b in others {
-            travel = larger(travel, bodies.past(a, b, d));
-        }
     }
     for &[a, b] in &ahead {
         let overlapping = bodies.lets_pass(a, b, start);

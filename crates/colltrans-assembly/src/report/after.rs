@@ -8,6 +8,7 @@ use super::html::{Report, picture};
 use super::sheet::{self, far, step_words, takes, ways};
 use super::words::{numbers, time};
 use super::{arrow, short};
+use crate::Fit;
 use crate::map;
 use crate::plan::Passed;
 use crate::roles::{PairFit, Role};
@@ -175,11 +176,17 @@ fn overlaps(r: &Report) -> Markup {
     let remaining = f.start.remaining().count();
     html! {
         @if remaining > 0 {
-            h3 { "Parts that run into each other" }
+            @let apart = matches!(f.bodies.fit(), Fit::Apart(_));
+            h3 { @if apart { "Parts that are too near to each other" } @else { "Parts that run into each other" } }
             p {
-                (remaining) @if remaining == 1 { " pair overlaps" } @else { " pairs overlap" }
-                " with this tolerance, and count as one body where they meet; a table of them is at the end of the file."
-                @if let Some(tolerance) = f.start.suggested {
+                (remaining) @if remaining == 1 { " pair " } @else { " pairs " }
+                @if apart {
+                    @if remaining == 1 { "is" } @else { "are" } " nearer than the length to keep"
+                } @else {
+                    "overlap" @if remaining == 1 { "s" } " with this tolerance"
+                }
+                ", and count as one body where they meet; a table of them is at the end of the file."
+                @if let Some(tolerance) = f.start.suggested.filter(|_| !apart) {
                     " Try a tolerance of " (short(tolerance)) " or, for curved fits, the chord errors of both parts together."
                 }
             }

@@ -92,9 +92,14 @@ fn result(r: &Report) -> Markup {
         @let remaining = r.f.start.remaining().count();
         @if remaining > 0 {
             p.warn {
-                @if remaining == 1 { "One pair of parts runs" } @else { (remaining) " pairs of parts run" }
-                " into each other as they are drawn, and are moved as one; which, and what may help, is said after the \
-                 steps."
+                @let apart = matches!(r.f.bodies.fit(), Fit::Apart(_));
+                @match (apart, remaining) {
+                    (true, 1) => { "One pair of parts is nearer to each other than what is to be kept" }
+                    (true, pairs) => { (pairs) " pairs of parts are nearer to each other than what is to be kept" }
+                    (false, 1) => { "One pair of parts runs into each other as they are drawn" }
+                    (false, pairs) => { (pairs) " pairs of parts run into each other as they are drawn" }
+                }
+                ", and are moved as one; which, and what may help, is said after the steps."
             }
         }
     }

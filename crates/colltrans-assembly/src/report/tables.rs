@@ -5,6 +5,7 @@ use maud::{Markup, html};
 use super::html::picture;
 use super::{Findings, arrow, graph, short};
 use crate::blocking::Blocking;
+use crate::bodies::Fit;
 use crate::part::Part;
 use crate::rooms::PartRoom;
 
@@ -15,7 +16,7 @@ const MOST_GRAPHS: usize = 6;
 pub(super) fn all(f: &Findings) -> Markup {
     let contents = [
         ("All parts", parts(f)),
-        ("Parts that run into each other as they are drawn", overlaps(f)),
+        ("Parts that run into each other as they are drawn, or with this fit", overlaps(f)),
         ("How far each part goes with all others in place", rooms(f)),
         ("Who meets whom, by direction", graphs(f)),
         ("Contacts", contacts(f)),
@@ -35,12 +36,12 @@ fn overlaps(f: &Findings) -> Markup {
         } @else {
             div.wide {
                 table {
-                    tr { th { "parts" } th { "depth" } th { "with this tolerance" } }
+                    tr { th { "parts" } th { "depth" } th { "with this fit" } }
                     @for o in f.start.overlaps.iter().take(MOST_ROWS) {
                         tr {
                             td { (name(o.parts[0])) ", " (name(o.parts[1])) }
                             td.n { (o.depth.map_or("more than their size".into(), short)) }
-                            td { (if o.remains { "overlap" } else { "do not" }) }
+                            td { (match (o.remains, f.bodies.fit()) { (false, _) => "do not", (_, Fit::Apart(_)) => "too near", _ => "overlap" }) }
                         }
                     }
                 }

@@ -16,10 +16,13 @@ use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
 use colltrans_assembly::plan::{Plan, PlanOptions, disassemble};
 use colltrans_assembly::read::{ReadOptions, read};
+use colltrans_assembly::report::html;
 use colltrans_assembly::rooms::{PartRoom, room_of, rooms};
 use colltrans_assembly::sphere::angle;
 use colltrans_assembly::start::Start;
-use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Ignored, Part, Piece, Room, Watch};
+use colltrans_assembly::{
+    Assembly, AssemblyError, Bodies, Fit, Ignored, Part, Piece, Question, Room, Watch,
+};
 use colltrans_testkit::random::Random;
 use glam::{DAffine3, DVec3};
 
@@ -341,6 +344,21 @@ fn a_margin_is_kept_or_not() {
         let refused = Bodies::new(&assembly, Fit::Apart(length));
         assert!(matches!(refused, Err(AssemblyError::Length { .. })), "{length}");
     }
+    // What is too near does not run into each other, nor is a tolerance suggested that would let it pass.
+    let bodies = Bodies::new(&assembly, Fit::Apart(0.6)).unwrap();
+    let found = Question::default().ask(&bodies, Watch::default()).unwrap();
+    let reason = found.plan.stuck[0].reason(&bodies);
+    let wanted =
+        "peg and block are nearer to each other than the 0.6 to keep, and such parts are not";
+    assert!(reason.contains(wanted), "{reason}");
+    assert!(found.suggestions.is_empty(), "{:?}", found.suggestions);
+    let page = html::page(&found, "peg");
+    assert!(
+        page.contains("One pair of parts is nearer to each other than what is to be kept, and")
+    );
+    assert!(
+        !page.contains("run into each other, and") && !page.contains("runs into each other as")
+    );
 }
 
 /// Parts that were grown by half of the length each would meet at their corners.

@@ -286,12 +286,20 @@ fn tell(text: &mut String, f: &Findings, stage: &Range<usize>) {
 fn overlaps(text: &mut String, f: &Findings) {
     let remaining: Vec<_> = f.start.remaining().collect();
     if !remaining.is_empty() {
-        text.push_str("overlapping with this tolerance\n");
+        text.push_str(match f.bodies.fit() {
+            Fit::Apart(_) => "nearer than that where they stand\n",
+            _ => "overlapping with this tolerance\n",
+        });
     }
     for o in &remaining {
         let [a, b] = o.parts.map(|k| shown(f.bodies.assembly().parts()[k].name()));
-        let depth = o.depth.map_or("by more than their size".into(), |d| format!("by {d}"));
-        let _ = writeln!(text, "  {a}, {b} {depth}");
+        let depth = match (o.depth, f.bodies.fit()) {
+            (None, _) => " by more than their size".into(),
+            (Some(0.0), Fit::Apart(_)) => String::new(),
+            (Some(depth), Fit::Apart(_)) => format!(", which overlap by {depth}"),
+            (Some(depth), _) => format!(" by {depth}"),
+        };
+        let _ = writeln!(text, "  {a}, {b}{depth}");
     }
     if remaining.is_empty() && !f.suggestions.is_empty() {
         text.push_str("what may hold\n");
@@ -300,7 +308,8 @@ fn overlaps(text: &mut String, f: &Findings) {
         let _ =
             writeln!(text, "  perhaps on purpose, which --auto takes for granted: {}", shown(said));
     }
-    if let Some(tolerance) = f.start.suggested.filter(|_| !remaining.is_empty()) {
+    let apart = matches!(f.bodies.fit(), Fit::Apart(_));
+    if let Some(tolerance) = f.start.suggested.filter(|_| !remaining.is_empty() && !apart) {
         let _ = writeln!(
             text,
             "  try --tolerance {tolerance} or, for curved fits, the chord errors of both parts together"

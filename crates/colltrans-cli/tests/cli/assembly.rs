@@ -234,7 +234,7 @@ fn sources_that_are_wrong_are_named() {
     write("bad.toml", "[[part]]\nfile = 'cube.off'\nrotation = { matrix = [[1, 0], [0, 1]] }\n");
     refused(place, &["bad.toml"], 3, &["bad.toml: line 3", "three rows of three numbers"]);
     write("bad.toml", "[[part]]\nfile = 'cube.off'\nname = ' '\n");
-    refused(place, &["bad.toml"], 3, &["bad.toml: a part has no name"]);
+    refused(place, &["bad.toml"], 3, &["bad.toml: a part or a subassembly has no name"]);
     write("bad.toml", "ignore = [['a', 'a']]\n[[part]]\nfile = 'cube.off'\nname = 'a'\n");
     refused(place, &["bad.toml"], 3, &["bad.toml: a and a are no pair"]);
     write("bad.json", "{\"parts\": [\n{\"file\": \"cube.off\", \"turned\": 3}]}");

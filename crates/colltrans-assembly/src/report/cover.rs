@@ -99,7 +99,8 @@ fn result(r: &Report) -> Markup {
                     (false, 1) => { "One pair of parts runs into each other as they are drawn" }
                     (false, pairs) => { (pairs) " pairs of parts run into each other as they are drawn" }
                 }
-                ", and are moved as one; which, and what may help, is said after the steps."
+                @if remaining == 1 { ", and is" } @else { ", and are" }
+                " moved as one; which, and what may help, is said after the steps."
             }
         }
     }

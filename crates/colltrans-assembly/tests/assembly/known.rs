@@ -354,7 +354,7 @@ fn a_margin_is_kept_or_not() {
     assert!(found.suggestions.is_empty(), "{:?}", found.suggestions);
     let page = html::page(&found, "peg");
     assert!(
-        page.contains("One pair of parts is nearer to each other than what is to be kept, and")
+        page.contains("One pair of parts is nearer to each other than what is to be kept, and is")
     );
     assert!(
         !page.contains("run into each other, and") && !page.contains("runs into each other as")

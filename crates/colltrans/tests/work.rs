@@ -92,6 +92,30 @@ fn parts_that_stand_on_each_other_take_one_look() {
     assert_eq!(most(false), 2, "ridges");
 }
 
+/// Boxes that slide along each other within rounding, or hardly apart: their faces tell the edge of the shadow that the
+/// line passes, and a look along it or two settle it (15 within rounding and 6 hardly apart, before they were asked).
+#[test]
+fn boxes_that_slide_take_a_few_looks() {
+    let mut random = Random::new(12);
+    let cube = ConvexPolyhedron::from_points(&cuboid(DVec3::splat(0.5)).vertices).expect("a cube");
+    for gap in [0.0, 1e-15, 1e-14, 1e-13, 1e-12] {
+        let mut looks = |_| {
+            let turn = random.rotation();
+            let at = |place: DVec3| Pose::new(turn, turn * place).expect("a pose");
+            let start = DVec3::new(-3.0, random.range(-0.9, 0.9), 1.0 + gap);
+            let (start, target) = (cube.at(at(start)), cube.at(at(DVec3::ZERO)));
+            let cast = Cast::new(start, target, turn * DVec3::X).expect("a query");
+            let outcome = cast.first_contact().expect("an answer");
+            assert!(!matches!(outcome, Outcome::Contact(_)), "{outcome:?}");
+            outcome.steps().supports
+        };
+        let sum: u32 = (0..CASTS).map(&mut looks).sum();
+        let mean = f64::from(sum) / f64::from(CASTS);
+        println!("gap {gap}: {mean} support points");
+        assert!(mean < 5.0, "gap {gap}: {mean} support points");
+    }
+}
+
 /// Rims are taken for ellipses: two support points lead to where they are met and prove it, and three corners of a cap do,
 /// however many corners they have, an apex with all others for neighbours included (17 and 22 of 2,000 and 20,000 by
 /// portals alone).

@@ -234,7 +234,7 @@ impl<O: Observer> Run<'_, '_, '_, O> {
             }
             WarmStart::Apart { normals, pair } => {
                 let [p, q] = self.context.difference.shadow_from_bodies(*normals)?;
-                self.beside((p + q).truncate(), *pair)
+                self.beside((p + q).truncate(), [*pair; 2])
             }
         }
     }
@@ -246,8 +246,10 @@ impl<O: Observer> Run<'_, '_, '_, O> {
         if self.solver == Solver::Cta && solid {
             return self.narrowed(region, last);
         }
-        if let Some((portal, face)) = portal::facing(&mut self.context) {
-            return Some(Enclosure::Portal(portal, Known::Lowest(face)));
+        let facing = portal::facing(&mut self.context);
+        let found = self.followed_to(facing);
+        if found.is_some() {
+            return found;
         }
         self.approach(FirstNormal::new(&self.context.difference))
     }
@@ -299,7 +301,7 @@ impl<O: Observer> Run<'_, '_, '_, O> {
     fn followed_to(&mut self, followed: Followed) -> Option<Enclosure> {
         match followed {
             Followed::Portal(portal, known) => Some(Enclosure::Portal(portal, known)),
-            Followed::Rim { outward, near } => self.beside(-outward, near),
+            Followed::Rim { outward, edge } => self.beside(-outward, edge),
             Followed::Lost => None,
         }
     }
@@ -310,8 +312,9 @@ impl<O: Observer> Run<'_, '_, '_, O> {
         setting.moving.has_rims() || setting.fixed.has_rims()
     }
 
-    /// Whether all of `M` lies beyond a lateral direction.
-    fn beside(&mut self, lateral: DVec2, near: VertexPair) -> Option<Enclosure> {
+    /// Whether all of `M` lies beyond a lateral direction, as an edge of it seems to say.
+    fn beside(&mut self, lateral: DVec2, edge: [VertexPair; 2]) -> Option<Enclosure> {
+        let [near, other] = edge;
         // Of a length fit to be normalised: shorter ones lose digits.
         if lateral.length_squared() <= f64::MIN_POSITIVE {
             return None;
@@ -324,7 +327,9 @@ impl<O: Observer> Run<'_, '_, '_, O> {
         let point = self.context.difference.support_from(normal.extend(0.0), near);
         self.context.watch.support(|| Support::of(normal.extend(0.0), &point));
         let margin = normal.dot(point.shadow());
-        (margin >= least).then_some(Enclosure::Beside(SeparatingLine { normal, margin, point }))
+        let end = if point.pair == other { near } else { other };
+        let line = SeparatingLine { normal, margin, point, end };
+        (margin >= least).then_some(Enclosure::Beside(line))
     }
 
     /// The first guess of the contact normal, or more than a guess.
@@ -461,22 +466,29 @@ impl<O: Observer> Run<'_, '_, '_, O> {
     #[cold]
     fn touching(&mut self, rim: &SeparatingLine) -> Result<Grazing, QueryError> {
         self.context.difference = self.context.difference.widened(rim.margin);
-        let start = FirstNormal::from_ellipsoids(&self.context.difference);
-        let Some(Enclosure::Portal(mut portal, _)) = portal::enclose(&mut self.context, &start)
-        else {
-            return Err(stalled(Stalled::NoPortal));
-        };
-        let Some(Refined::Lowest(Face { plane, weights })) =
-            portal::refine(&mut self.context, &mut portal, portal::MAX_PORTALS)
-        else {
-            return Err(stalled(Stalled::Cycle));
-        };
+        let (portal, Face { plane, weights }) = self.widened_face()?;
         let proven = Proven::new(&self.context.difference, &portal, &plane, weights)?;
         let contact = proven.contact(self.solver, self.context.watch.steps);
         let grazing = proof::grazing(&self.context.difference, rim.normal, -rim.margin, contact);
         let plane = Plane::of(&self.context.difference, rim.normal.extend(0.0), rim.point.pair);
         *self.next = proof::separation(&self.context.difference, &plane, rim.margin).1;
         Ok(grazing)
+    }
+
+    /// The lowest face of the widened bodies on the line.
+    fn widened_face(&mut self) -> Result<(Portal, Face), QueryError> {
+        if let Followed::Portal(portal, Known::Lowest(face)) = portal::facing(&mut self.context) {
+            return Ok((portal, face));
+        }
+        let start = FirstNormal::from_ellipsoids(&self.context.difference);
+        let Some(Enclosure::Portal(mut portal, _)) = portal::enclose(&mut self.context, &start)
+        else {
+            return Err(stalled(Stalled::NoPortal));
+        };
+        match portal::refine(&mut self.context, &mut portal, portal::MAX_PORTALS) {
+            Some(Refined::Lowest(face)) => Ok((portal, face)),
+            _ => Err(stalled(Stalled::Cycle)),
+        }
     }
 
     /// The separation that a line proves; `None` if rounding may have made it.

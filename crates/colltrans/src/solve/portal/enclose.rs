@@ -36,6 +36,8 @@ pub(crate) struct SeparatingLine {
     pub(crate) margin: f64,
     /// The support point that gives it.
     pub(crate) point: Point,
+    /// Another end of an edge of the shadow, if one is known that the line may pass; else the same.
+    pub(crate) end: VertexPair,
 }
 
 /// A point of `M` and the slope along which it was found lowest.
@@ -93,7 +95,7 @@ fn first<O: Observer>(
     let lateral = normal.truncate().normalize_or_zero();
     let margin = lateral.dot(point.shadow());
     if margin > 0.0 {
-        return Err(SeparatingLine { normal: lateral, margin, point });
+        return Err(SeparatingLine { normal: lateral, margin, point, end: point.pair });
     }
     Ok(Tangent { point, slope: steep(lateral) })
 }
@@ -214,7 +216,10 @@ pub(crate) fn widest_margin<O: Observer>(
     found: SeparatingLine,
 ) -> SeparatingLine {
     let mut best = settled(&context.difference, found.normal, found.point);
-    let mut segment = [best.point; 2];
+    let mut segment = [best.point, context.difference.point(found.end, found.normal.extend(0.0))];
+    if is_along(&segment, &best, context.difference.noise.point()) {
+        return best;
+    }
     let (mut nearest, mut stalls) = (f64::INFINITY, 0);
     for _ in 0..MAX_POINTS {
         let Some((normal, distance)) = from_segment(&segment) else { break };
@@ -240,10 +245,19 @@ pub(crate) fn widest_margin<O: Observer>(
     best
 }
 
+/// Whether a segment lies in a separating line, up to rounding, and is passed between its ends: then no
+/// normal separates more.
+fn is_along(segment: &[Point; 2], found: &SeparatingLine, rounding: f64) -> bool {
+    let [a, b] = segment.map(|p| p.shadow());
+    let along = b - a;
+    let is_between = a.dot(along) < 0.0 && b.dot(along) > 0.0;
+    is_between && [a, b].iter().all(|end| found.normal.dot(*end) - found.margin <= rounding)
+}
+
 /// What a lateral unit normal separates, from where a climb to its support point has ended.
 fn settled(difference: &MinkowskiDifference, normal: DVec2, climbed: Point) -> SeparatingLine {
     let point = Plane::settled(difference, normal.extend(0.0), climbed);
-    SeparatingLine { normal, margin: normal.dot(point.shadow()), point }
+    SeparatingLine { normal, margin: normal.dot(point.shadow()), point, end: point.pair }
 }
 
 /// Unit normal from the line towards a segment of shadows, and the distance; without cancellation,

@@ -6,12 +6,12 @@
 //! of `g - f`, wide apart if one begins at corners opposite each other. If the line meets `g - f`
 //! between them, that is the answer, without a search.
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 use super::plane::{Face, Plane};
 use super::refine::{is_wide, weights};
 use super::tied::met_share;
-use super::{Context, Portal};
+use super::{Context, Followed, Known};
 use crate::body::{ConvexPolyhedron, LargeFace};
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
@@ -22,71 +22,68 @@ use crate::solve::observe::{Observer, Support};
 const PARALLEL: f64 = 1.0 - 1e-12;
 
 /// The lowest face and a portal in it, if it is the difference of two large faces and the line passes
-/// well inside.
+/// well inside; of rectangles also the edge that the line does not clearly pass on the inside.
 #[inline]
-pub(crate) fn facing<O: Observer>(context: &mut Context<O>) -> Option<(Portal, Face)> {
+pub(crate) fn facing<O: Observer>(context: &mut Context<O>) -> Followed {
     let setting = context.difference.setting;
     if !setting.moving.has_large_faces() || !setting.fixed.has_large_faces() {
-        return None;
+        return Followed::Lost;
     }
     let down = context.difference.in_moving(DVec3::Z);
-    let f = setting.moving.large_face_toward(down)?;
+    let Some(f) = setting.moving.large_face_toward(down) else { return Followed::Lost };
     if f.has_few_corners() && f.normal.dot(down) < PARALLEL {
-        return None;
+        return Followed::Lost;
     }
-    let (portal, face) = between(&context.difference, f)?;
-    let plane = &face.plane;
-    context.watch.portal(|| portal.map(|p| p.at));
-    let normal = || context.difference.setting_from_shadow.transpose() * plane.normal;
-    context.watch.support(|| Support::of(normal(), &context.difference.vertex(plane.lowest)));
-    Some((portal, face))
+    let found = between(&context.difference, f).unwrap_or(Followed::Lost);
+    if let Followed::Portal(portal, Known::Lowest(Face { plane, .. })) = &found {
+        context.watch.portal(|| portal.map(|p| p.at));
+        let normal = || context.difference.setting_from_shadow.transpose() * plane.normal;
+        context.watch.support(|| Support::of(normal(), &context.difference.vertex(plane.lowest)));
+    }
+    found
 }
 
 /// The same between a face of the moving body and one of the fixed body.
 #[inline(never)]
-fn between(difference: &MinkowskiDifference, f: &LargeFace) -> Option<(Portal, Face)> {
+fn between(difference: &MinkowskiDifference, f: &LargeFace) -> Option<Followed> {
     let setting = difference.setting;
     let g = setting.fixed.large_face_toward(-difference.in_fixed(DVec3::Z))?;
+    let are_few = f.has_few_corners() && g.has_few_corners();
     let normal = difference.shadow_of_moving(f.normal);
     let parallel = normal.dot(difference.shadow_of_fixed(g.normal)) < -PARALLEL;
     if !parallel || normal.z <= 0.0 {
         return None;
     }
-    let origin = |body: &ConvexPolyhedron, h: u32| body.topology().origin(h);
+    let middle = difference.center();
+    // Of bodies that are widened, the corner on this side of the middle.
     let corner = |moving: u32, fixed: u32| {
         let (moving, fixed) = (origin(setting.moving, moving), origin(setting.fixed, fixed));
-        difference.vertex(VertexPair::of(moving, fixed))
-    };
-    // Of corners of `g` a quarter of the way apart, the one opposite a corner of `f`, seen from the middles.
-    let ([p, ..], [first, ..]) = (f.half_edges, g.half_edges);
-    let place = |body: &ConvexPolyhedron, h: u32| {
-        body.vertices()[origin(body, h) as usize] - body.inertia().center
-    };
-    let here = difference.in_fixed(difference.shadow_of_moving(place(setting.moving, p)));
-    let mut opposite = (f64::NEG_INFINITY, first);
-    for quarters in 0..4 {
-        let q = quarters_round(setting.fixed, first, quarters);
-        let away = here.distance_squared(place(setting.fixed, q));
-        if away > opposite.0 {
-            opposite = (away, q);
+        let point = difference.vertex(VertexPair::of(moving, fixed));
+        if difference.widening == 0.0 {
+            return point;
         }
-    }
-    let q = opposite.1;
+        difference.point(point.pair, middle - point.at)
+    };
+    let [p, q] = opposite(difference, f, g);
     let a = corner(p, q);
     let after = |quarters: u32| {
         let moving = quarters_round(setting.moving, p, quarters);
         corner(moving, quarters_round(setting.fixed, q, 4 - quarters))
     };
     let c = after(2);
-    let (portal, weights) = if let Some(left) = difference.is_left_rounded(&a, &c) {
-        let portal = if left { [a, c, after(3)] } else { [c, a, after(1)] };
-        let [from, to, third] = &portal;
-        let inside = difference.is_left_rounded(to, third) == Some(true)
-            && difference.is_left_rounded(third, from) == Some(true);
-        inside.then(|| (portal, weights(&portal)))?
-    } else {
-        let share = met_share(difference, [&a, &c], normal)?;
+    let left = difference.is_left_rounded(&a, &c);
+    let share = if left.is_none() { met_share(difference, [&a, &c], normal) } else { None };
+    let (portal, weights) = if let Some(share) = share {
         ([a, after(1), c], [1.0 - share, 0.0, share])
+    } else {
+        let portal = if left == Some(false) { [c, a, after(1)] } else { [a, c, after(3)] };
+        let [from, to, third] = &portal;
+        let edges = [[to, third], [third, from]];
+        if let Some([from, to]) = edges.into_iter().find(|&edge| !is_inside(difference, edge)) {
+            let edge = [from.pair, to.pair];
+            return are_few.then_some(Followed::Rim { outward: outward([from, to]), edge });
+        }
+        left.map(|_| (portal, weights(&portal)))?
     };
     let is_level = |p: &Point| normal.dot(p.at - a.at).abs() <= difference.noise.point();
     let [from, to, third] = portal.each_ref().map(Point::shadow);
@@ -95,12 +92,50 @@ fn between(difference: &MinkowskiDifference, f: &LargeFace) -> Option<(Portal, F
         return None;
     }
     // Of faces with few corners, a look at all vertices proves more.
-    let plane = if f.has_few_corners() && g.has_few_corners() {
+    let plane = if are_few {
         Plane::at(difference, normal, a.pair)?
     } else {
         Plane::of_faces(difference, normal, f, g)?
     };
-    Some((portal, Face { plane, weights }))
+    Some(Followed::Portal(portal, Known::Lowest(Face { plane, weights })))
+}
+
+/// Half-edges that leave a corner of `f` and, of corners of `g` a quarter of the way apart, the one opposite
+/// it, seen from the middles of the bodies.
+#[inline]
+fn opposite(difference: &MinkowskiDifference, f: &LargeFace, g: &LargeFace) -> [u32; 2] {
+    let (moving, fixed) = (difference.setting.moving, difference.setting.fixed);
+    let place = |body: &ConvexPolyhedron, h: u32| {
+        body.vertices()[origin(body, h) as usize] - body.inertia().center
+    };
+    let ([p, ..], [first, ..]) = (f.half_edges, g.half_edges);
+    let here = difference.in_fixed(difference.shadow_of_moving(place(moving, p)));
+    let mut farthest = (f64::NEG_INFINITY, first);
+    for quarters in 0..4 {
+        let q = quarters_round(fixed, first, quarters);
+        let away = here.distance_squared(place(fixed, q));
+        if away > farthest.0 {
+            farthest = (away, q);
+        }
+    }
+    [p, farthest.1]
+}
+
+fn origin(body: &ConvexPolyhedron, h: u32) -> u32 {
+    body.topology().origin(h)
+}
+
+/// Whether the line is on the left of an edge, by more than counts as touching if rounding does not tell.
+fn is_inside(difference: &MinkowskiDifference, [from, to]: [&Point; 2]) -> bool {
+    difference.is_left_rounded(from, to).unwrap_or_else(|| {
+        let outward = outward([from, to]);
+        outward.dot(from.shadow()) > difference.touching() * outward.length()
+            && difference.is_left(from, to)
+    })
+}
+
+fn outward([from, to]: [&Point; 2]) -> DVec2 {
+    -(to.shadow() - from.shadow()).perp()
 }
 
 /// The half-edge along a face that begins some quarters of the way round, at most four, after another.

@@ -32,8 +32,8 @@ pub(crate) enum Followed {
     /// A portal around the line.
     Portal(Portal, Known),
     /// Nothing of `M` seems to lie beyond an edge: its outward normal in the shadow plane (any
-    /// length), and a pair of vertices there.
-    Rim { outward: DVec2, near: VertexPair },
+    /// length), and its ends, or twice a pair of vertices there.
+    Rim { outward: DVec2, edge: [VertexPair; 2] },
     /// The line is too far away.
     Lost,
 }
@@ -103,10 +103,11 @@ fn walk<O: Observer>(context: &mut Context<O>, mut edge: Edge, most: usize) -> F
         context.watch.portal(|| [edge.from.at, edge.to.at, edge.third.at]);
         let Some(tilt) = edge.tilt() else { return Followed::Lost };
         // The edge that was crossed has the line on its left now.
-        let portal = match first_met(&context.difference, &edge.from, &tilt) {
-            Some(point) => [edge.to, edge.from, point],
-            None => return Followed::Rim { outward: tilt.outward, near: edge.from.pair },
+        let Some(point) = first_met(&context.difference, &edge.from, &tilt) else {
+            let ends = [edge.from.pair, edge.to.pair];
+            return Followed::Rim { outward: tilt.outward, edge: ends };
         };
+        let portal = [edge.to, edge.from, point];
         match left_behind(context, &portal) {
             Line::Beyond(from) => edge = Edge::of(&portal, from),
             Line::Inside(known) => return Followed::Portal(portal, known),

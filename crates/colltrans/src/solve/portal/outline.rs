@@ -49,7 +49,7 @@ pub(crate) fn between_outlines<O: Observer>(
             approach(context, &guess, &OF_RIMS)
         }
         Highest::Beyond(ahead, rims) => {
-            (Followed::Rim { outward: -ahead, near: near(rims) }, *start)
+            (Followed::Rim { outward: -ahead, edge: [near(rims); 2] }, *start)
         }
     })
 }

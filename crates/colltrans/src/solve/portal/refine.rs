@@ -156,7 +156,7 @@ pub(super) fn is_below(portal: &Portal, normal: DVec3, point: &Point, rounding: 
 fn rim<O: Observer>(context: &mut Context<O>, portal: &Portal) -> Option<SeparatingLine> {
     match overlap(context, portal, context.difference.touching()) {
         Overlap::Slight { inward, depth, point } => {
-            Some(SeparatingLine { normal: inward, margin: -depth, point })
+            Some(SeparatingLine { normal: inward, margin: -depth, point, end: point.pair })
         }
         Overlap::Ample => None,
     }

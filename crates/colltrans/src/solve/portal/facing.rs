@@ -1,10 +1,11 @@
 //! Large faces that face each other, as those of parts that stand on each other do.
 //!
-//! Notation. `f` and `g` are large faces of `P` and of `Q`, those most nearly across the
-//! direction; of those with few corners, exactly so. Where one plane supports both bodies in them, `g - f` is a face of `M`. Its boundary is
-//! gone round by going round those of both; a quarter of the way at a time this leads to four points
-//! of `g - f`, wide apart if one begins at corners opposite each other. If the line meets `g - f`
-//! between them, that is the answer, without a search.
+//! Notation. `f` and `g` are large faces of `P` and of `Q`, those most nearly across the direction; of
+//! those with few corners, exactly so. Where one plane supports both bodies in them, `g - f` is a face of
+//! `M`. Its boundary is gone round by going round those of both; a quarter of the way at a time this leads
+//! to four points of `g - f`, wide apart if one begins at corners opposite each other. If the line meets `g - f`
+//! between them, that is the answer, without a search. If it does not, and the faces are those of boxes, the
+//! shadow of `M` may end at the edge that it passes.
 
 use glam::{DVec2, DVec3};
 

@@ -80,24 +80,25 @@ impl Fan {
         topology: &Topology,
         direction: DVec3,
     ) -> usize {
-        let count = topology.neighbours(self.vertex).len();
-        let slope = |k: usize| self.slope(vertices, topology, direction, k);
-        let rises = |from: u32, to: u32| slope(to as usize) > slope(from as usize);
-        let found = self.ring.farthest(direction, rises) as usize;
-        let beside = [found + 1, found + count - 1].map(|k| slope(k % count));
-        if beside.into_iter().all(|other| other <= slope(found)) {
-            found
-        } else {
-            greatest_on_cycle(count, slope)
-        }
+        let slope = self.slopes(vertices, topology, direction);
+        let near = self.ring.near(direction) as usize;
+        greatest_near(topology.neighbours(self.vertex).len(), near, slope)
     }
 
-    /// How steep an edge is along a direction: what it rises over its length inwards.
+    /// How steep edges are along a direction: what they rise over their lengths inwards.
     #[inline]
-    fn slope(&self, vertices: &[DVec3], topology: &Topology, direction: DVec3, k: usize) -> f64 {
-        let neighbour = topology.neighbours(self.vertex)[k];
-        let edge = vertices[neighbour as usize] - vertices[self.vertex as usize];
-        direction.dot(edge) / self.inward.dot(edge)
+    fn slopes<'a>(
+        &'a self,
+        vertices: &'a [DVec3],
+        topology: &'a Topology,
+        direction: DVec3,
+    ) -> impl Fn(usize) -> f64 + 'a {
+        let neighbours = topology.neighbours(self.vertex);
+        let here = vertices[self.vertex as usize];
+        move |k| {
+            let edge = vertices[neighbours[k] as usize] - here;
+            direction.dot(edge) / self.inward.dot(edge)
+        }
     }
 
     /// Looks at all neighbours that are asked for, and at some others, until a look says `false`.
@@ -112,7 +113,7 @@ impl Fan {
         look: &mut impl FnMut(u32) -> bool,
     ) -> bool {
         let neighbours = topology.neighbours(self.vertex);
-        let slope = |k: usize| self.slope(vertices, topology, above.normal, k);
+        let slope = self.slopes(vertices, topology, above.normal);
         let steepest = self.steepest(vertices, topology, above.normal);
         let asked = above.least - above.normal.dot(vertices[self.vertex as usize] - above.here);
         // Lengths inwards are rounded, too.
@@ -121,25 +122,19 @@ impl Fan {
         let doubt = above.length * (rounding + self.dent);
         let enough = slope(steepest).min(asked.min(0.0) / self.least) - doubt;
         let count = neighbours.len();
-        let (mut ahead, mut behind) = (0, 1);
-        let mut is_seen = look(neighbours[steepest]);
-        while is_seen && ahead + behind < count {
-            ahead += 1;
-            let k = (steepest + ahead) % count;
-            is_seen = look(neighbours[k]);
-            if slope(k) < enough {
-                break;
+        let (mut is_seen, mut looks) = (look(neighbours[steepest]), 1);
+        for way in [1, count - 1] {
+            let mut k = steepest;
+            while is_seen && looks < count {
+                k = wrapped(k + way, count);
+                is_seen = look(neighbours[k]);
+                looks += 1;
+                if slope(k) < enough {
+                    break;
+                }
             }
         }
-        while is_seen && ahead + behind < count {
-            let k = (steepest + count - behind) % count;
-            is_seen = look(neighbours[k]);
-            if slope(k) < enough {
-                break;
-            }
-            behind += 1;
-        }
-        work::count(ahead + behind);
+        work::count(looks);
         is_seen
     }
 
@@ -149,44 +144,38 @@ impl Fan {
     }
 }
 
-/// Where a function on a cycle with one maximum and one minimum is greatest.
+/// Where a function on a cycle with one maximum and one minimum is greatest, from near there.
 ///
-/// Between samples with a common distance, the maximum is at most that distance from the greatest
-/// sample.
-fn greatest_on_cycle(count: usize, value: impl Fn(usize) -> f64) -> usize {
-    let mut stride = (count / 8).max(1).next_power_of_two();
-    let (mut best, mut greatest) = (0, f64::NEG_INFINITY);
-    let mut look = |i: usize, best: &mut usize| {
-        let v = value(i);
-        if v > greatest {
-            (*best, greatest) = (i, v);
+/// On to the side that leads up, with strides that grow as long as they do; then between the two that are lower.
+#[inline]
+pub(crate) fn greatest_near(count: usize, near: usize, value: impl Fn(usize) -> f64) -> usize {
+    let mut best = (near, value(near));
+    let mut rises = |way: usize| {
+        let there = wrapped(best.0 + way, count);
+        let value = value(there);
+        let higher = value > best.1;
+        if higher {
+            best = (there, value);
         }
+        higher
     };
-    for i in (0..count).step_by(stride) {
-        look(i, &mut best);
+    let ahead = rises(1);
+    if ahead || rises(count - 1) {
+        let way = |stride: usize| if ahead { stride } else { count - stride };
+        let mut stride = 1;
+        while rises(way(stride)) {
+            stride *= if 4 * stride <= count { 2 } else { 1 };
+        }
+        while stride > 1 {
+            stride /= 2;
+            let _ = rises(way(stride)) || rises(count - way(stride));
+        }
     }
-    while stride > 1 {
-        stride /= 2;
-        let center = best;
-        look((center + stride) % count, &mut best);
-        look((center + count - stride) % count, &mut best);
-    }
-    best
+    best.0
 }
 
-/// The same from near the maximum, with strides that grow as long as they lead up.
-pub(crate) fn greatest_near(count: usize, near: usize, value: impl Fn(usize) -> f64) -> usize {
-    let (mut best, mut greatest, mut stride) = (near, value(near), 1);
-    loop {
-        let beside = [best + stride, best + count - stride].map(|i| i % count);
-        let higher = beside.into_iter().map(|i| (i, value(i))).find(|&(_, v)| v > greatest);
-        if let Some(found) = higher {
-            (best, greatest) = found;
-            stride = (2 * stride).min(count / 2);
-        } else if stride == 1 {
-            return best;
-        } else {
-            stride /= 2;
-        }
-    }
+/// A place on a cycle, counted on over its end at most once.
+#[inline]
+fn wrapped(i: usize, count: usize) -> usize {
+    if i >= count { i - count } else { i }
 }

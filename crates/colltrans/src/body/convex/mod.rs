@@ -230,6 +230,11 @@ impl ConvexPolyhedron {
         self.support.farthest_on_ring(&self.vertices, &self.topology, direction, vertex)
     }
 
+    /// Position among the neighbours of a vertex, which has many, of the steepest edge along `direction`.
+    pub(crate) fn steepest_edge(&self, vertex: u32, direction: DVec3) -> usize {
+        self.support.fan(vertex).steepest(&self.vertices, &self.topology, direction)
+    }
+
     /// Positions among the neighbours of `vertex` that may lie in its supporting plane along
     /// `direction`: the first and how many.
     pub(crate) fn plane_candidates(&self, vertex: u32, direction: DVec3) -> (usize, usize) {

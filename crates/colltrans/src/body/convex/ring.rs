@@ -39,6 +39,8 @@ pub(crate) struct Rim {
     pub(crate) semi_axes: [DVec3; 2],
     /// One of the corners.
     pub(crate) vertex: u32,
+    /// Whether the body ends at its plane, towards the product of the semi-diameters and away from it.
+    pub(crate) ends: [bool; 2],
 }
 
 #[derive(Debug, Clone)]
@@ -71,7 +73,25 @@ impl Cycle {
 
 impl Rim {
     pub(super) fn point(vertex: u32, center: DVec3) -> Self {
-        Self { center, semi_axes: [DVec3::ZERO; 2], vertex }
+        Self { center, semi_axes: [DVec3::ZERO; 2], vertex, ends: [false; 2] }
+    }
+
+    pub(crate) fn is_point(&self) -> bool {
+        self.semi_axes == [DVec3::ZERO; 2]
+    }
+
+    /// How far it reaches along a direction, times the direction's length.
+    fn reach(&self, direction: DVec3) -> f64 {
+        let [u, v] = self.semi_axes.map(|axis| axis.dot(direction));
+        self.center.dot(direction) + (u * u + v * v).sqrt()
+    }
+
+    /// The same rim, knowing where the hull of it and others ends.
+    pub(super) fn among(self, others: &[Self]) -> Self {
+        let [u, v] = self.semi_axes;
+        let ends = |out: DVec3| others.iter().all(|rim| rim.reach(out) <= self.reach(out));
+        let axis = u.cross(v);
+        Self { ends: [axis, -axis].map(|out| !self.is_point() && ends(out)), ..self }
     }
 
     /// The ellipse with the mean and the moments of corners, across an axis; and whether it is near all of them.
@@ -103,7 +123,7 @@ impl Rim {
         };
         let semi_axes = [axes[0] * first + axes[1] * slant, axes[1] * second];
         (
-            Self { center, semi_axes, vertex },
+            Self { center, semi_axes, vertex, ends: [false; 2] },
             corners.map(is_near).fold(true, |all, near| all & near),
         )
     }
@@ -186,29 +206,42 @@ impl Ring {
     /// The corner farthest along a direction, any length, if the edge from one corner to the next is told to rise
     /// along it or not.
     #[inline]
-    pub(super) fn farthest(&self, direction: DVec3, rises: impl Fn(u32, u32) -> bool) -> u32 {
-        let count = self.count();
-        let along = DVec2::from(self.axes.map(|axis| axis.dot(direction)));
-        // Casts saturate, so that along the axis, where it is not a number, it is cell 0.
-        let cell = (turn(along) * (0.25 * f64::from(count))) as usize;
-        let cell = cell.min(count as usize - 1);
-        let (mut low, mut high) = (self.cells[cell], self.cells[cell + 1]);
-        let corner = |k: u32| {
-            let k = self.first + k;
-            // Counted from one that is not the first of all, over the end at most once.
-            if k >= count { k - count } else { k }
-        };
+    fn farthest(&self, direction: DVec3, rises: impl Fn(u32, u32) -> bool) -> u32 {
+        let (mut low, mut high) = self.cell(direction);
         while low < high {
             work::count(1);
             let middle = u32::midpoint(low, high);
-            let next = corner(if middle + 1 == count { 0 } else { middle + 1 });
-            if rises(corner(middle), next) {
+            if rises(self.counted(middle), self.counted(middle + 1)) {
                 low = middle + 1;
             } else {
                 high = middle;
             }
         }
-        corner(if low == count { 0 } else { low })
+        self.counted(low)
+    }
+
+    /// A corner near that one: none before it in its cell.
+    #[inline]
+    pub(super) fn near(&self, direction: DVec3) -> u32 {
+        self.counted(self.cell(direction).0)
+    }
+
+    /// The first and the last corner that a direction, any length, may ask for.
+    #[inline]
+    fn cell(&self, direction: DVec3) -> (u32, u32) {
+        let count = self.count();
+        let along = DVec2::from(self.axes.map(|axis| axis.dot(direction)));
+        // Casts saturate, so that along the axis, where it is not a number, it is cell 0.
+        let cell = (turn(along) * (0.25 * f64::from(count))) as usize;
+        let cell = cell.min(count as usize - 1);
+        (self.cells[cell], self.cells[cell + 1])
+    }
+
+    /// The corner that is counted so, from the first one on and once over the end at most.
+    #[inline]
+    fn counted(&self, k: u32) -> u32 {
+        let (k, count) = (self.first + k, self.count());
+        if k >= count { k - count } else { k }
     }
 
     /// The vertex farthest along a direction, any length.

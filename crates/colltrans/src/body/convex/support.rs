@@ -295,7 +295,7 @@ impl SupportIndex {
                 return None;
             }
         }
-        Some(outline)
+        Some(outline.iter().map(|rim| rim.among(&outline)).collect())
     }
 
     /// The farthest vertex of the ring that a vertex is on, or that vertex.

@@ -35,7 +35,9 @@ pub(crate) fn between_outlines<O: Observer>(
     if setting.moving.outline().len() == 0 || setting.fixed.outline().len() == 0 {
         return None;
     }
-    let outlines = [Outline::of_moving(difference)?, Outline::of_fixed(difference)?];
+    let mut outlines = [Outline::NONE; 2];
+    outlines[0].see_moving(difference);
+    outlines[1].see_fixed(difference);
     if let Some(portal) = cap(difference, &outlines) {
         return Some((Followed::Portal(portal, Known::FaceByFace), *start));
     }
@@ -60,6 +62,9 @@ pub(super) struct Seen {
     center: DVec3,
     semi_axes: [DVec3; 2],
     vertex: u32,
+    is_point: bool,
+    /// Whether the body's part of `M` ends at its plane: to the side that [`Self::axis`] points to, and to the other.
+    ends: [bool; 2],
 }
 
 /// That of one body, by which `M` has it: of P turned over.
@@ -77,33 +82,31 @@ pub(super) struct Local {
 }
 
 impl Outline {
-    fn of_moving(difference: &MinkowskiDifference) -> Option<Self> {
-        Self::of(difference.setting.moving.outline(), |rim| Seen {
-            center: -difference.shadow_of_moving(rim.center),
-            semi_axes: rim.semi_axes.map(|axis| difference.shadow_of_moving(axis)),
-            vertex: rim.vertex,
-        })
+    const NONE: Self = Self { rims: [Seen::POINT; MOST_RIMS], count: 0 };
+
+    fn see_moving(&mut self, difference: &MinkowskiDifference) {
+        self.see(difference.setting.moving.outline(), |rim| {
+            let [to, away] = rim.ends;
+            Seen {
+                center: -difference.shadow_of_moving(rim.center),
+                ends: [away, to],
+                ..Seen::of(rim, |axis| difference.shadow_of_moving(axis))
+            }
+        });
     }
 
-    fn of_fixed(difference: &MinkowskiDifference) -> Option<Self> {
-        Self::of(difference.setting.fixed.outline(), |rim| Seen {
+    fn see_fixed(&mut self, difference: &MinkowskiDifference) {
+        self.see(difference.setting.fixed.outline(), |rim| Seen {
             center: difference.difference(DVec3::ZERO, rim.center),
-            semi_axes: rim.semi_axes.map(|axis| difference.shadow_of_fixed(axis)),
-            vertex: rim.vertex,
-        })
+            ..Seen::of(rim, |axis| difference.shadow_of_fixed(axis))
+        });
     }
 
-    fn of(
-        mut rims: impl ExactSizeIterator<Item = Rim>,
-        seen: impl Fn(Rim) -> Seen,
-    ) -> Option<Self> {
-        let first = seen(rims.next()?);
-        let mut outline = Self { rims: [first; MOST_RIMS], count: 1 };
-        for rim in rims {
-            outline.rims[outline.count] = seen(rim);
-            outline.count += 1;
+    fn see(&mut self, rims: impl ExactSizeIterator<Item = Rim>, seen: impl Fn(&Rim) -> Seen) {
+        self.count = rims.len();
+        for (place, rim) in self.rims.iter_mut().zip(rims) {
+            *place = seen(&rim);
         }
-        Some(outline)
     }
 
     /// The rim that is lowest along a normal, and its height.
@@ -120,6 +123,24 @@ impl Outline {
 }
 
 impl Seen {
+    const POINT: Self = Self {
+        center: DVec3::ZERO,
+        semi_axes: [DVec3::ZERO; 2],
+        vertex: 0,
+        is_point: true,
+        ends: [false; 2],
+    };
+
+    /// A body's, but for its centre.
+    fn of(rim: &Rim, seen: impl Fn(DVec3) -> DVec3) -> Self {
+        let point = Self { vertex: rim.vertex, ..Self::POINT };
+        if rim.is_point() {
+            return point;
+        }
+        let semi_axes = rim.semi_axes.map(seen);
+        Self { semi_axes, is_point: false, ends: rim.ends, ..point }
+    }
+
     /// Across it, any length.
     fn axis(&self) -> DVec3 {
         self.semi_axes[0].cross(self.semi_axes[1])
@@ -148,8 +169,12 @@ impl Seen {
 
     /// The height of its lowest point along a normal.
     fn height(&self, normal: DVec3) -> f64 {
+        let height = self.center.dot(normal);
+        if self.is_point {
+            return height;
+        }
         let [u, v] = self.semi_axes.map(|axis| axis.dot(normal));
-        self.center.dot(normal) - (u * u + v * v).sqrt()
+        height - (u * u + v * v).sqrt()
     }
 
     /// Its lowest point along a normal.
@@ -159,6 +184,9 @@ impl Seen {
             gradient: self.center.truncate(),
             curvature: DMat2::ZERO,
         };
+        if self.is_point {
+            return local;
+        }
         let [u, v] = self.semi_axes;
         let (along_u, along_v) = (u.dot(normal), v.dot(normal));
         let reach = (along_u * along_u + along_v * along_v).sqrt();
@@ -180,14 +208,15 @@ fn cap(difference: &MinkowskiDifference, outlines: &[Outline; 2]) -> Option<Port
     let numbers = |of: usize| (0..outlines[of].count).map(move |k| (of, k));
     numbers(0).chain(numbers(1)).find_map(|(of, k)| {
         let rim = &outlines[of].rims[k];
+        if rim.ends == [false; 2] {
+            return None;
+        }
         let axis = rim.axis();
-        if axis.z.abs() <= UPRIGHT * axis.length() {
+        let is_lowest = rim.ends[usize::from(axis.z > 0.0)];
+        if !is_lowest || axis.z.abs() <= UPRIGHT * axis.length() {
             return None;
         }
         let normal = normal_of(axis.truncate() / axis.z);
-        if outlines[of].lowest(normal).0 != k {
-            return None;
-        }
         let other = &outlines[1 - of];
         let opposite = &other.rims[other.lowest(normal).0];
         let places = rim.around(-opposite.at(normal).gradient)?;

@@ -108,8 +108,8 @@ impl Turn {
             let size = run.abs() + rise.abs();
             if run > self.least { -rise / size } else { (rise.abs() / size - 2.0).max(-2.0) }
         };
-        let (before, _) = body.plane_candidates(vertex, -self.up);
-        let i = greatest_near(neighbours.len(), (before + 1) % neighbours.len(), soon);
+        let near = body.steepest_edge(vertex, -self.up);
+        let i = greatest_near(neighbours.len(), near, soon);
         let (rise, run) = ahead(i);
         if run > self.least {
             First { vertex: neighbours[i], rise, run }

@@ -128,7 +128,8 @@ mod tests {
         }
     }
 
-    /// Neither a climb along a rim nor the proof at an apex looks at each of its corners.
+    /// Neither a climb along a rim nor what is asked around an apex, for a climb, a turn or a proof, looks at each of its
+    /// corners.
     #[test]
     fn casts_of_bodies_with_rims() {
         type Turned = (&'static str, &'static [[f64; 2]], &'static [f64]);
@@ -156,7 +157,7 @@ mod tests {
                 }) / 200
             });
             println!("{what}: {few} looks a cast at 2,000 corners, {many} at 20,000");
-            assert!(many < 2 * few && many < 50, "{what}: {few} and {many} looks");
+            assert!(many < 2 * few && many < 60, "{what}: {few} and {many} looks");
         }
     }
 

@@ -269,11 +269,11 @@ impl<O: Observer> Run<'_, '_, '_, O> {
     #[expect(clippy::inline_always, reason = "passed through memory the guess stalls its reader")]
     fn approach(&mut self, start: FirstNormal) -> Option<Enclosure> {
         self.context.watch.ended(Phase::Setup);
+        if self.has_rims() {
+            return self.by_outlines(&start);
+        }
         let mut nearest = start;
         if start.normal.z > 0.0 {
-            if self.has_rims() {
-                return self.by_outlines(&start);
-            }
             let (followed, reached) =
                 portal::approach(&mut self.context, &start, &portal::OF_ELLIPSOIDS);
             nearest = reached;
@@ -285,9 +285,19 @@ impl<O: Observer> Run<'_, '_, '_, O> {
         portal::enclose(&mut self.context, &nearest)
     }
 
-    /// The same of bodies with rims: from where their outlines meet, if they are seen to.
+    /// The same of bodies with rims: from where their outlines meet, if they are seen to, whatever the guess says.
     #[inline(never)]
     fn by_outlines(&mut self, start: &FirstNormal) -> Option<Enclosure> {
+        let upward;
+        let start = if start.normal.z > 0.0 {
+            start
+        } else {
+            upward = match portal::upward(&mut self.context, start) {
+                Ok(upward) => upward,
+                Err(line) => return Some(Enclosure::Beside(line)),
+            };
+            &upward
+        };
         let by_outlines = portal::between_outlines(&mut self.context, start);
         let (followed, reached) = by_outlines
             .unwrap_or_else(|| portal::approach(&mut self.context, start, &portal::OF_ELLIPSOIDS));

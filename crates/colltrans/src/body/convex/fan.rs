@@ -150,7 +150,9 @@ impl Fan {
 #[inline]
 pub(crate) fn greatest_near(count: usize, near: usize, value: impl Fn(usize) -> f64) -> usize {
     let mut best = (near, value(near));
+    work::count(1);
     let mut rises = |way: usize| {
+        work::count(1);
         let there = wrapped(best.0 + way, count);
         let value = value(there);
         let higher = value > best.1;

@@ -19,9 +19,10 @@ const STEPS: usize = 24;
 const LONGEST: f64 = 0.5;
 const LAST: f64 = 1e-4;
 
-/// What is added to the curvature after a step that led down, as a share of it; and what is left of that after one that
-/// did not.
+/// What is added to the curvature after a step that led down, as a share of it; how many times as much after another one;
+/// and what is left of that after one that did not (measured).
 const DAMPED: f64 = 0.1;
+const AGAIN: f64 = 2.0;
 const RELAXED: f64 = 0.2;
 
 /// Rims of both bodies that the maximum may be between.
@@ -46,7 +47,8 @@ pub(super) enum Highest {
     Beyond(DVec2, [usize; 2]),
 }
 
-/// Where both outlines together are highest, from a slope near; `None` if Newton's method does not end.
+/// Where both outlines together are highest, from a slope near, or the highest that was come to; `None` if that is out of
+/// range.
 pub(super) fn highest(outlines: &[Outline; 2], near: DVec2) -> Option<Highest> {
     let (mut slope, mut greatest) = (near, f64::NEG_INFINITY);
     let (mut longest, mut damping) = (LONGEST, 0.0);
@@ -62,7 +64,7 @@ pub(super) fn highest(outlines: &[Outline; 2], near: DVec2) -> Option<Highest> {
             (longest, damping) = ((2.0 * longest).min(LONGEST), RELAXED * damping);
         } else {
             longest = 0.5 * (tried.length_squared() / normal_of(best).length_squared()).sqrt();
-            damping = (damping / RELAXED).max(DAMPED);
+            damping = (AGAIN * damping).max(DAMPED);
         }
         let normal = normal_of(best);
         tried = step(outlines, &mut active, normal, damping);
@@ -84,7 +86,7 @@ pub(super) fn highest(outlines: &[Outline; 2], near: DVec2) -> Option<Highest> {
             return Some(Highest::Beyond(slope, rims));
         }
     }
-    None
+    Some(Highest::At(best, active.map(|body| body.rims[0])))
 }
 
 /// The lowest rims along a direction in the shadow, if all that the outlines make together lies ahead: no slope that way is

@@ -79,6 +79,8 @@ pub(crate) fn enclose<O: Observer>(
 }
 
 /// The support point along the guess; if the guess is lateral, it may already separate.
+#[inline(always)]
+#[expect(clippy::inline_always, reason = "passed through memory a tangent stalls its reader")]
 fn first<O: Observer>(
     context: &mut Context<O>,
     start: &FirstNormal,
@@ -98,6 +100,15 @@ fn first<O: Observer>(
         return Err(SeparatingLine { normal: lateral, margin, point, end: point.pair });
     }
     Ok(Tangent { point, slope: steep(lateral) })
+}
+
+/// In place of a guess that is lateral, if it does not separate, the steepest one on that side.
+pub(crate) fn upward<O: Observer>(
+    context: &mut Context<O>,
+    start: &FirstNormal,
+) -> Result<FirstNormal, SeparatingLine> {
+    let Tangent { point, slope } = first(context, start)?;
+    Ok(FirstNormal { normal: normal_of(slope), near: Some(point.pair) })
 }
 
 struct Enclosing<'c, 'a, 'o, O> {

@@ -29,7 +29,7 @@ use glam::{DVec2, DVec3};
 
 use crate::setting::minkowski::{MinkowskiDifference, Point};
 use crate::solve::observe::Watch;
-pub(crate) use enclose::{Enclosure, SeparatingLine, around, enclose, widest_margin};
+pub(crate) use enclose::{Enclosure, SeparatingLine, around, enclose, upward, widest_margin};
 pub(crate) use facing::facing;
 pub(crate) use follow::{ContactPortal, Followed, OF_ELLIPSOIDS, approach, follow};
 pub(crate) use graze::{Overlap, overlap};

@@ -15,7 +15,7 @@ use colltrans::solid::{StartOverlap, Workspace};
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::bodies::{Bodies, Room, two_digits_up};
+use crate::bodies::{Bodies, Fit, Room, two_digits_up};
 use crate::boxes::span;
 use crate::digits::short;
 use crate::error::AssemblyError;
@@ -60,7 +60,7 @@ pub fn suggestions(bodies: &Bodies, start: &Start) -> Vec<Suggestion> {
         .remaining()
         .filter(|o| is_unsaid(o.parts) && !snaps.iter().any(|snap| snap.parts == o.parts))
         // What is no more than nearer than the length to keep does not overlap.
-        .filter(|o| o.depth != Some(0.0));
+        .filter(|o| !matches!(bodies.fit(), Fit::Apart(_)) || o.depth != Some(0.0));
     unsaid.filter_map(|overlap| suggestion(bodies, overlap)).chain(snaps.clone()).collect()
 }
 

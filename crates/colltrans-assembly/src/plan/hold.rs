@@ -125,6 +125,10 @@ impl Stuck {
                  moved apart.",
                 short(length)
             ),
+            _ if bodies.overlap_as_given(first[0], first[1]).is_none() => format!(
+                "Shrunk by half of the tolerance each, {names} run into each other{more}, which they do not as they \
+                 are drawn: a smaller tolerance may part them."
+            ),
             _ => format!(
                 "As they are drawn, {names} run into each other{more}, and such parts cannot be parted."
             ),

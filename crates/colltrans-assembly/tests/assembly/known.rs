@@ -20,6 +20,7 @@ use colltrans_assembly::report::html;
 use colltrans_assembly::rooms::{PartRoom, room_of, rooms};
 use colltrans_assembly::sphere::angle;
 use colltrans_assembly::start::Start;
+use colltrans_assembly::suggest::applied;
 use colltrans_assembly::{
     Assembly, AssemblyError, Bodies, Fit, Ignored, Part, Piece, Question, Room, Watch,
 };
@@ -326,6 +327,21 @@ fn parts_thinner_than_the_tolerance_are_told_of() {
     let [_, cube] = remarks(Fit::Tolerance(5.0));
     assert!(cube.unwrap().contains("nothing of it is left"));
     assert_eq!(remarks(Fit::Apart(0.3)), [None, None]);
+    // What that makes run into each other is not said to do so as it is drawn, and without a tolerance it is parted.
+    let plate = part("plate", &[cuboid([0.0; 3], [9.0, 9.0, 1.0])]);
+    let cube = part("cube", &[cuboid([4.0, 4.0, 1.0], [5.0, 5.0, 2.0])]);
+    let assembly = Assembly::new(vec![plate, cube]).unwrap();
+    let fit = Fit::Tolerance(2.5);
+    let bodies = Bodies::new(&assembly, fit).unwrap();
+    let found = Question::default().ask(&bodies, Watch::default()).unwrap();
+    let reason = found.plan.stuck[0].reason(&bodies);
+    let wanted =
+        "plate and cube run into each other, which they do not as they are drawn: a smaller";
+    assert!(reason.contains(wanted), "{reason}");
+    let assembly = applied(assembly.clone(), &found.suggestions).unwrap();
+    let bodies = Bodies::new(&assembly, fit).unwrap();
+    let found = Question::default().ask(&bodies, Watch::default()).unwrap();
+    assert_eq!((found.plan.steps.len(), found.plan.stuck.len()), (1, 0));
 }
 
 #[test]

@@ -137,8 +137,8 @@ fn pierced<S: Seen>(seen: &S, sides: &[S::Side]) -> ([usize; 3], [f64; 3], f64) 
     ];
     let per = 1.0 / (parts[0] + parts[1] + parts[2]);
     let weights = parts.map(|part| part * per);
-    let [u, v, w] = weights;
-    ([0, last - 1, last], weights, a.z * u + b.z * v + c.z * w)
+    let [_, v, w] = weights;
+    ([0, last - 1, last], weights, a.z + (b.z - a.z) * v + (c.z - a.z) * w)
 }
 
 /// A plane along a direction that touches `M0` where two faces meet.

@@ -40,9 +40,10 @@ impl<'a> Proven<'a> {
         let &Plane { normal, ref normals, lowest, beyond } = plane;
         let steepness = normal.dot(setting.direction);
         let along = Along::new(setting, noise, normal, normals, lowest, beyond);
-        let [u, v, w] = weights;
+        let [_, v, w] = weights;
         let [a, b, c] = portal.each_ref().map(Point::height);
-        let estimate = (a * u + b * v + c * w) / setting.length;
+        // Of corners at one height it is theirs, whatever the weights were rounded to.
+        let estimate = (a + (b - a) * v + (c - a) * w) / setting.length;
         let most = gap_rounding(setting, normal, noise, difference.widening);
         let lower = along.distance / steepness;
         let gap = estimate - lower;

@@ -366,7 +366,7 @@ class Columns(Table[Answer_co]):
                 name, translation = "contact", contact.translation
         told = self.translation[i]
         # Rows of one pair are asked together, a row alone by a cast: both are right, each within its rounding.
-        same = np.isnan(told) and np.isnan(translation)
+        same = np.array_equal(told, translation, equal_nan=True)
         same = same or abs(told - translation) <= 2 * self.rounding[i]
         return bool(same) and self.outcome[i] == name
 

@@ -256,13 +256,17 @@ pub(crate) fn widest_margin<O: Observer>(
     best
 }
 
-/// Whether a segment lies in a separating line, up to rounding, and is passed between its ends: then no
-/// normal separates more.
+/// Whether a segment lies in a separating line, up to rounding, and is passed between its ends no farther than
+/// that says: then no normal separates more.
 fn is_along(segment: &[Point; 2], found: &SeparatingLine, rounding: f64) -> bool {
     let [a, b] = segment.map(|p| p.shadow());
     let along = b - a;
     let is_between = a.dot(along) < 0.0 && b.dot(along) > 0.0;
-    is_between && [a, b].iter().all(|end| found.normal.dot(*end) - found.margin <= rounding)
+    let is_near =
+        || from_segment(segment).is_none_or(|(_, away)| away - found.margin.abs() <= rounding);
+    is_between
+        && [a, b].iter().all(|end| found.normal.dot(*end) - found.margin <= rounding)
+        && is_near()
 }
 
 /// What a lateral unit normal separates, from where a climb to its support point has ended.

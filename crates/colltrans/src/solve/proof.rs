@@ -103,7 +103,8 @@ pub(crate) fn grazing(
     contact: Contact,
 ) -> Grazing {
     let separating_direction = (difference.setting_from_shadow * inward.extend(0.0)).normalize();
-    Grazing { separating_direction, overlap, contact }
+    // Of a margin of 0 the overlap is not -0.
+    Grazing { separating_direction, overlap: overlap + 0.0, contact }
 }
 
 /// What a plane parallel to the direction proves: the margin along it, less what rounding and bodies

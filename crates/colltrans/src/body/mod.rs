@@ -16,7 +16,7 @@ pub(crate) mod topology;
 
 pub use aabb::Aabb;
 pub use convex::{ConvexPolyhedron, ConvexityDefect, OffsetReport, convexity_defect};
-pub(crate) use convex::{LargeFace, MOST_RIMS, Rim, greatest_near};
+pub(crate) use convex::{FAN, LargeFace, MOST_RIMS, Rim, greatest_near};
 pub(crate) use feature::feature;
 pub use feature::{Feature, Features};
 pub(crate) use hull::Hull;

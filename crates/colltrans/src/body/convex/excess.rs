@@ -25,8 +25,7 @@
 use glam::DVec3;
 
 use super::ConvexPolyhedron;
-use super::fan::Above;
-use super::support::FAN;
+use super::fan::{Above, FAN, MANY};
 use crate::number::noise;
 use crate::number::plane::polygon_normal;
 use crate::work;
@@ -36,9 +35,6 @@ const VISITED: usize = 16;
 
 /// Of a body with up to this many vertices each is looked at then.
 const SMALL: usize = 48;
-
-/// A face with more corners is measured at three.
-pub(super) const MANY: usize = 8;
 
 /// What may be hidden by measuring at three corners, in `GAIN reach`: an exactly flat face hides half of it.
 const ENOUGH: f64 = 32.0;

@@ -8,11 +8,16 @@
 
 use glam::DVec3;
 
-use super::excess::MANY;
 use super::ring::{Cycle, Ring};
 use crate::body::topology::Topology;
 use crate::number::noise;
 use crate::work;
+
+/// A vertex with more neighbours than this is searched, not scanned; a face with more corners has a ring.
+pub(crate) const FAN: usize = 32;
+
+/// A face with more corners is measured at three.
+pub(super) const MANY: usize = 8;
 
 /// By how much slopes that are compared may be off together, in `GAIN` times the square of what edges are longer than
 /// inwards; and what is gained over the least length inwards, in `GAIN reach` over that.

@@ -25,7 +25,7 @@ use crate::body::{Inertia, InputVertex, VertexId};
 use crate::number::plane::polygon_normal;
 pub use build::{ConvexityDefect, OffsetReport, convexity_defect};
 pub(crate) use excess::LargeFace;
-pub(crate) use fan::greatest_near;
+pub(crate) use fan::{FAN, greatest_near};
 pub(crate) use ring::Rim;
 use sections::SectionIndex;
 pub(crate) use support::MOST_RIMS;

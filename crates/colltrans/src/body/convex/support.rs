@@ -20,7 +20,7 @@ use std::hint::select_unpredictable;
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::fan::Fan;
+use super::fan::{FAN, Fan};
 use super::ring::{Rim, Ring};
 use crate::body::Inertia;
 use crate::body::topology::Topology;
@@ -42,9 +42,6 @@ const PATIENCE: usize = 2;
 /// Divisions of one cell of the cube map: `2^-20` of its side is below any spread that
 /// single-precision models have.
 const MAX_DEPTH: u32 = 20;
-
-/// A vertex with more neighbours than this is searched, not scanned; a face with more corners has a ring.
-pub(super) const FAN: usize = 32;
 
 /// Steps after which a climb looks whether it goes along a ring.
 const STRIDE: usize = 3;

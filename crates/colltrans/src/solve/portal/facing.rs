@@ -7,12 +7,13 @@
 //! between them, that is the answer, without a search. If it does not, and the faces are those of boxes, the
 //! shadow of `M` may end at the edge that it passes.
 
-use glam::{DVec2, DVec3};
+use glam::DVec3;
 
+use super::edge::Edge;
 use super::plane::{Face, Plane};
 use super::refine::{is_wide, weights};
 use super::tied::met_share;
-use super::{Context, Followed, Known};
+use super::{Context, Followed, Known, Portal};
 use crate::body::{ConvexPolyhedron, LargeFace};
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
@@ -78,11 +79,10 @@ fn between(difference: &MinkowskiDifference, f: &LargeFace) -> Option<Followed> 
         ([a, after(1), c], [1.0 - share, 0.0, share])
     } else {
         let portal = if left == Some(false) { [c, a, after(1)] } else { [a, c, after(3)] };
-        let [from, to, third] = &portal;
-        let edges = [[to, third], [third, from]];
-        if let Some([from, to]) = edges.into_iter().find(|&edge| !is_inside(difference, edge)) {
-            let edge = [from.pair, to.pair];
-            return are_few.then_some(Followed::Rim { outward: outward([from, to]), edge });
+        if let Some(from) = [1, 2].into_iter().find(|&from| !is_inside(difference, &portal, from)) {
+            let edge = Edge::of(&portal, from);
+            let ends = [edge.from.pair, edge.to.pair];
+            return are_few.then_some(Followed::Rim { outward: edge.outward(), edge: ends });
         }
         left.map(|_| (portal, weights(&portal)))?
     };
@@ -126,17 +126,15 @@ fn origin(body: &ConvexPolyhedron, h: u32) -> u32 {
     body.topology().origin(h)
 }
 
-/// Whether the line is on the left of an edge, by more than counts as touching if rounding does not tell.
-fn is_inside(difference: &MinkowskiDifference, [from, to]: [&Point; 2]) -> bool {
-    difference.is_left_rounded(from, to).unwrap_or_else(|| {
-        let outward = outward([from, to]);
-        outward.dot(from.shadow()) > difference.touching() * outward.length()
-            && difference.is_left(from, to)
+/// Whether the line is on the left of the edge that begins at a corner, by more than counts as touching if
+/// rounding does not tell.
+fn is_inside(difference: &MinkowskiDifference, portal: &Portal, from: usize) -> bool {
+    let (start, end) = (&portal[from], &portal[(from + 1) % 3]);
+    difference.is_left_rounded(start, end).unwrap_or_else(|| {
+        let edge = Edge::of(portal, from);
+        -edge.distance() > difference.touching() * edge.outward().length()
+            && difference.is_left(start, end)
     })
-}
-
-fn outward([from, to]: [&Point; 2]) -> DVec2 {
-    -(to.shadow() - from.shadow()).perp()
 }
 
 /// The half-edge along a face that begins some quarters of the way round, at most four, after another.

@@ -10,12 +10,9 @@ use std::hint::select_unpredictable;
 
 use glam::{DVec2, DVec3};
 
-use crate::body::{ConvexPolyhedron, greatest_near};
+use crate::body::{ConvexPolyhedron, FAN, greatest_near};
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
-
-/// Neighbours of a vertex that are looked at one by one; among more the first is searched.
-const FEW: usize = 32;
 
 /// A plane that turns downwards on one side.
 pub(super) struct Tilt {
@@ -78,7 +75,7 @@ impl Turn {
     fn first(&self, body: &ConvexPolyhedron, vertex: u32) -> First {
         let here = body.vertices()[vertex as usize];
         let neighbours = body.neighbours(vertex);
-        if neighbours.len() > FEW {
+        if neighbours.len() > FAN {
             return self.first_of_many(body, vertex, neighbours);
         }
         let mut first = First { vertex: NOBODY, rise: f64::INFINITY, run: 1.0 };

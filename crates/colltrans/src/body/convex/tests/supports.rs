@@ -85,7 +85,7 @@ fn all_neighbours_above_are_seen() {
                 let body = ConvexPolyhedron::from_points(&points).unwrap();
                 let apex = body.support(DVec3::Z).0;
                 let neighbours = body.neighbours(apex);
-                if neighbours.len() <= super::super::support::FAN {
+                if neighbours.len() <= super::super::fan::FAN {
                     continue;
                 }
                 let here = body.vertices()[apex as usize];

@@ -861,8 +861,11 @@ fn stays_whole(solid: &Solid, tolerance: f64) -> bool {
     })
 }
 
-/// The next number of two decimal digits that is not smaller.
+/// The next number of two decimal digits that is not smaller: 0 for 0.
 pub(crate) fn two_digits_up(x: f64) -> f64 {
+    if !x.is_normal() {
+        return x;
+    }
     let exponent = 1 - x.log10().floor() as i32;
     // Powers of ten as text: 0.06, not 0.060000000000000005.
     let digits = (x * 10_f64.powi(exponent)).ceil();

@@ -102,5 +102,6 @@ mod tests {
         assert_eq!(two_digits_up(1.21e-7), 1.3e-7);
         assert_eq!(two_digits_up(99.5), 100.0);
         assert_eq!(two_digits_up(123.0), 130.0);
+        assert_eq!(two_digits_up(0.0), 0.0);
     }
 }

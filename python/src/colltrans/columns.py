@@ -365,7 +365,8 @@ class Columns(Table[Answer_co]):
             case (Contact() as contact) | ContactRange(first=Contact() as contact):
                 name, translation = "contact", contact.translation
         told = self.translation[i]
-        # Rows of one pair are asked together, a row alone by a cast: both are right, each within its rounding.
+        # Rows of one pair are asked together, a row alone by a cast: both are right, each within
+        # its rounding.
         same = np.array_equal(told, translation, equal_nan=True)
         same = same or abs(told - translation) <= 2 * self.rounding[i]
         return bool(same) and self.outcome[i] == name

@@ -19,7 +19,7 @@ use crate::setting::error::QueryError;
 use crate::solve::nearest::NearestPairs;
 use crate::solve::observe::{NoObserver, Observer};
 use crate::solve::options::{Focus, Region};
-use crate::solve::{Pace, WarmStart, search};
+use crate::solve::{Left, Pace, WarmStart, search};
 
 /// Queries that follow each other closely, each starting from the answer of the one before.
 ///
@@ -30,7 +30,7 @@ use crate::solve::{Pace, WarmStart, search};
 /// widened by rounding. Poses and direction may jump, the bodies may meet now and pass each other
 /// then, or be other bodies: a poor beginning costs time, never the answer.
 ///
-/// A tracker is small (less than 500 bytes), allocates nothing and may be
+/// A tracker is small (less than 600 bytes), allocates nothing and may be
 /// cloned, to follow several motions from one place. [`Focus`] says what it makes of its last
 /// answer: with [`Solver::Cta`](crate::Solver::Cta) its region, as the paper, else its features. Where these take
 /// more work than casts from scratch (as steps count it), a tracker without a focus of its own casts from scratch
@@ -64,13 +64,29 @@ pub struct Tracker<'a> {
     focus: Option<Focus>,
     /// The direction of the last query.
     direction: DVec3,
-    /// What the last casts left: along the direction, against it, and between the centres.
-    warm_starts: [WarmStart; 3],
-    /// Whether it pays to start from them.
-    paces: [Pace; 3],
+    /// Of casts along the direction and against it, or the other way round where it is `turned`, and between the
+    /// centres.
+    sides: [Side; 3],
+    turned: bool,
     /// The pairs of vertices that the last distance ended with.
     nearest: NearestPairs,
+    /// The work of the last query but for the last cast of each side.
     steps: Steps,
+}
+
+/// The casts of one side.
+///
+/// The last one is taken into account when the next begins, from what it has left: an answer that is looked at here
+/// is moved through memory, which costs a tenth of a coherent query.
+#[derive(Debug, Clone, Copy, Default)]
+struct Side {
+    left: Left,
+    /// Whether it pays to start from there.
+    pace: Pace,
+    /// Whether the last cast did.
+    followed: bool,
+    /// Whether it is of the last query.
+    is_of_query: bool,
 }
 
 /// The warm start of casts between the centres.
@@ -97,15 +113,18 @@ impl<'a> Tracker<'a> {
 
     /// Forgets the last answer: the next query starts from scratch.
     pub fn reset(&mut self) {
-        self.warm_starts = [WarmStart::Nothing; 3];
-        self.paces = [Pace::default(); 3];
+        self.sides = [Side::default(); 3];
         self.nearest = NearestPairs::default();
     }
 
     /// The work of the last query: of all its casts together, and of their starts the one with most
     /// work.
     pub fn steps(&self) -> Steps {
-        self.steps
+        let mut steps = self.steps;
+        for side in self.sides.iter().filter(|side| side.is_of_query) {
+            steps += side.left.steps.unwrap_or_default();
+        }
+        steps
     }
 
     /// [`Cast::first_contact`], starting from the last answer.
@@ -126,7 +145,7 @@ impl<'a> Tracker<'a> {
         observer: &mut O,
     ) -> Result<Outcome, QueryError> {
         self.begin(cast);
-        self.run(cast, 0, observer)
+        self.run(cast, usize::from(self.turned), observer)
     }
 
     /// [`Cast::contact_range`], starting from the last answer.
@@ -186,15 +205,18 @@ impl<'a> Tracker<'a> {
     /// ```
     pub fn distance(&mut self, pair: &Pair<'a>) -> Result<Distance, QueryError> {
         self.follow([pair.moving(), pair.fixed()]);
-        self.steps = Steps::default();
         let distance = distance_from(pair, &mut self.nearest)?;
         self.steps = distance.steps;
         Ok(distance)
     }
 
-    /// Forgets what was found of other bodies.
+    /// A query begins: what was found of other bodies is of no use.
     #[inline]
     fn follow(&mut self, bodies: [&'a ConvexPolyhedron; 2]) {
+        self.steps = Steps { started_from: StartedFrom::Features, ..Steps::default() };
+        for side in &mut self.sides {
+            side.is_of_query = false;
+        }
         let same = |last: [&ConvexPolyhedron; 2]| {
             std::ptr::eq(last[0], bodies[0]) && std::ptr::eq(last[1], bodies[1])
         };
@@ -204,22 +226,20 @@ impl<'a> Tracker<'a> {
         }
     }
 
-    /// A query begins: the warm starts change places if it looks the other way, and are of no use
-    /// for other bodies.
+    /// A query of casts begins: sides are exchanged if it looks the other way.
     #[inline]
     fn begin(&mut self, cast: &Cast<'a>) {
-        self.steps = Steps { started_from: StartedFrom::Features, ..Steps::default() };
         self.follow([cast.moving(), cast.fixed()]);
         if cast.direction().dot(self.direction) < 0.0 {
-            self.warm_starts.swap(0, 1);
-            self.paces.swap(0, 1);
+            self.turned = !self.turned;
         }
         self.direction = cast.direction();
     }
 
     /// A cast along the direction of the query, or against it.
     fn run_either_way(&mut self, cast: &Cast<'a>) -> Result<Outcome, QueryError> {
-        self.run(cast, usize::from(cast.direction().dot(self.direction) < 0.0), &mut NoObserver)
+        let against = cast.direction().dot(self.direction) < 0.0;
+        self.run(cast, usize::from(against != self.turned), &mut NoObserver)
     }
 
     /// One cast of a query.
@@ -231,40 +251,19 @@ impl<'a> Tracker<'a> {
         observer: &mut O,
     ) -> Result<Outcome, QueryError> {
         let own = Focus::of(cast.options.solver);
-        if self.focus.is_none() && own.features && self.paces[which].rests() {
-            return self.run_alone(cast, which, observer);
+        let paced = self.focus.is_none() && own.features;
+        let Side { left, pace, followed, is_of_query } = &mut self.sides[which];
+        if let Some(steps) = left.steps {
+            pace.note(*followed, &steps);
+            if *is_of_query {
+                self.steps += steps;
+            }
         }
-        let next = &mut self.warm_starts[which];
-        let last = *next;
-        let pace = &mut self.paces[which];
-        let follows = !matches!(last, WarmStart::Nothing);
-        let focus = match self.focus {
-            Some(chosen) => chosen,
-            None if own.features && !pace.follows() => own.with_features(false),
-            None => own,
-        };
-        // Matched in place: an outcome is large, and moving it costs a tenth of a coherent query.
-        let outcome = search(&cast.setting, &cast.options, &focus, &last, next, observer);
-        if let Ok(outcome) = &outcome {
-            pace.note(focus.features && follows, &outcome.steps());
-            self.steps += outcome.steps();
-        }
-        outcome
-    }
-
-    /// The same where neither this cast nor the next one follows: as without a tracker.
-    #[inline(never)]
-    fn run_alone<O: Observer>(
-        &mut self,
-        cast: &Cast<'a>,
-        which: usize,
-        observer: &mut O,
-    ) -> Result<Outcome, QueryError> {
-        let outcome = cast.first_contact_observed(observer);
-        if let Ok(outcome) = &outcome {
-            self.paces[which].note(false, &outcome.steps());
-            self.steps += outcome.steps();
-        }
-        outcome
+        let rests = paced && !pace.follows();
+        let focus = self.focus.unwrap_or(own.with_features(own.features && !rests));
+        let last = if rests { WarmStart::Nothing } else { left.start };
+        *followed = focus.features && !matches!(last, WarmStart::Nothing);
+        *is_of_query = true;
+        search(&cast.setting, &cast.options, &focus, &last, left, observer)
     }
 }

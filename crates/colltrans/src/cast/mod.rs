@@ -25,7 +25,7 @@ use crate::setting::Setting;
 use crate::setting::error::QueryError;
 use crate::solve::observe::{NoObserver, Observer};
 use crate::solve::options::{Focus, Options};
-use crate::solve::{WarmStart, search};
+use crate::solve::{Left, WarmStart, search};
 pub use contact::WitnessPoints;
 pub(crate) use derive::{clearance_of, common_end, depth_of, intersection_of, range_of};
 #[cfg(feature = "json")]
@@ -243,7 +243,7 @@ impl Cast<'_> {
         &self,
         observer: &mut O,
     ) -> Result<Outcome, QueryError> {
-        let (last, mut next) = (WarmStart::Nothing, WarmStart::Nothing);
+        let (last, mut next) = (WarmStart::Nothing, Left::default());
         search(&self.setting, &self.options, &Focus::NONE, &last, &mut next, observer)
     }
 

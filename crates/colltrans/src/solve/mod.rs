@@ -23,7 +23,7 @@ mod warm_start;
 
 use glam::DVec2;
 
-use crate::answer::{Grazing, Outcome, Separated, Separation, Solver, StartedFrom};
+use crate::answer::{Outcome, Separated, Separation, Solver, StartedFrom};
 use crate::number::noise::Noise;
 use crate::setting::error::{QueryError, Stalled};
 use crate::setting::minkowski::MinkowskiDifference;
@@ -37,28 +37,27 @@ use portal::{
     SeparatingLine,
 };
 use proof::Proven;
-pub(crate) use warm_start::WarmStart;
+pub(crate) use warm_start::{Left, WarmStart};
 
-/// Casts, starting from the `last` cast as far as `focus` allows, and leaves in `next` where the next
-/// one may start: nothing, unless there is an answer.
+/// Casts, starting from the `last` cast as far as `focus` allows, and leaves in `next` what there is to be left.
 #[inline]
 pub(crate) fn search<O: Observer>(
     setting: &Setting,
     options: &Options,
     focus: &Focus,
     last: &WarmStart,
-    next: &mut WarmStart,
+    next: &mut Left,
     observer: &mut O,
 ) -> Result<Outcome, QueryError> {
     let solver = match options.solver {
         Solver::Auto => Solver::Portal,
         solver => solver,
     };
-    *next = WarmStart::Nothing;
+    *next = Left::default();
     if cfg!(feature = "keep") && options.keep != 0.0 {
         return kept(setting, options, focus, last, next, observer);
     }
-    let mut first = Run {
+    let mut run = Run {
         context: Context {
             difference: MinkowskiDifference::new(setting),
             watch: Watch::new(observer),
@@ -66,19 +65,10 @@ pub(crate) fn search<O: Observer>(
         graze_tolerance: options.graze_tolerance,
         solver,
         narrowing: options.narrowing,
+        turn: 0,
         next,
     };
-    let mut answer = first.run(focus, last);
-    first.context.watch.ended(Phase::Answer);
-    if let Err(QueryError::NotConverged { .. }) = answer {
-        let turns: &[DVec2] = if first.context.watch.steps.started_from == StartedFrom::Scratch {
-            &TURNS[1..]
-        } else {
-            &TURNS
-        };
-        answer = again(&mut first, turns);
-    }
-    answer
+    run.run(focus, last)
 }
 
 /// The same of bodies that are to keep a gap.
@@ -88,7 +78,7 @@ fn kept<O: Observer>(
     options: &Options,
     focus: &Focus,
     last: &WarmStart,
-    next: &mut WarmStart,
+    next: &mut Left,
     observer: &mut O,
 ) -> Result<Outcome, QueryError> {
     if Noise::of(setting.scale() + options.keep).is_slight(options.keep) {
@@ -100,25 +90,6 @@ fn kept<O: Observer>(
     }
     let last = if focus.features { *last } else { WarmStart::Nothing };
     keep::convex::search(setting, options, &last, next, observer)
-}
-
-/// Tries turns of the lateral axes from scratch until there is an answer.
-#[cold]
-fn again<O: Observer>(
-    run: &mut Run<'_, '_, '_, O>,
-    turns: &[DVec2],
-) -> Result<Outcome, QueryError> {
-    run.context.watch.steps.started_from = StartedFrom::Scratch;
-    let mut answer = Err(stalled(Stalled::Cycle));
-    for &turn in turns {
-        run.context.difference =
-            MinkowskiDifference::turned_by(run.context.difference.setting, turn);
-        answer = run.run(&Focus::NONE, &WarmStart::Nothing);
-        if !matches!(answer, Err(QueryError::NotConverged { .. })) {
-            break;
-        }
-    }
-    answer
 }
 
 /// Turns of the lateral axes, by 0, 0.7 and 2.1: ties that follow each other in a circle in one
@@ -147,8 +118,10 @@ struct Run<'a, 'o, 'n, O> {
     graze_tolerance: f64,
     solver: Solver,
     narrowing: Narrowing,
-    /// Where the next cast may start: written with the answer.
-    next: &'n mut WarmStart,
+    /// Which of the `TURNS` an attempt from scratch has.
+    turn: usize,
+    /// Written with the answer.
+    next: &'n mut Left,
 }
 
 /// Whether a line that seemed to pass `M` was found not to, after which the search has begun again.
@@ -158,6 +131,8 @@ enum Attempt {
     Second,
 }
 
+/// An answer is made where it is to stay, by the last call of each way there: one that is kept and handed on is
+/// moved through memory, and who moves it waits for what was just written.
 impl<O: Observer> Run<'_, '_, '_, O> {
     fn run(&mut self, focus: &Focus, last: &WarmStart) -> Result<Outcome, QueryError> {
         self.context.watch.begun(|| ShadowFrame {
@@ -165,9 +140,9 @@ impl<O: Observer> Run<'_, '_, '_, O> {
             noise: self.context.difference.noise.point(),
         });
         if focus.features
-            && let Some(separated) = self.still_apart(last)
+            && let Some(certificate) = self.still_apart(last)
         {
-            return Ok(Outcome::Separated(separated));
+            return Ok(Outcome::Separated(self.apart(certificate)));
         }
         let followed = if focus.features { self.follow(last) } else { None };
         let enclosure = if followed.is_some() {
@@ -189,7 +164,7 @@ impl<O: Observer> Run<'_, '_, '_, O> {
         attempt: Attempt,
     ) -> Result<Outcome, QueryError> {
         match enclosure {
-            None => Err(stalled(Stalled::NoPortal)),
+            None => self.again(Stalled::NoPortal),
             Some(Enclosure::Portal(mut portal, known)) => {
                 self.contact_or_grazing(&mut portal, known, attempt)
             }
@@ -197,22 +172,50 @@ impl<O: Observer> Run<'_, '_, '_, O> {
         }
     }
 
+    /// Nothing was found: tries from scratch, by turns of the lateral axes, until there is an answer.
+    #[cold]
+    fn again(&mut self, reason: Stalled) -> Result<Outcome, QueryError> {
+        let steps = &mut self.context.watch.steps;
+        self.turn += usize::from(steps.started_from == StartedFrom::Scratch);
+        steps.started_from = StartedFrom::Scratch;
+        let Some(&turn) = TURNS.get(self.turn) else {
+            return Err(QueryError::NotConverged { reason });
+        };
+        let setting = self.context.difference.setting;
+        self.context.difference = MinkowskiDifference::turned_by(setting, turn);
+        self.run(&Focus::NONE, &WarmStart::Nothing)
+    }
+
     /// The line passes `M`, or its rim: separated if that can be told, else grazing.
     fn passed(&mut self, found: SeparatingLine, attempt: Attempt) -> Result<Outcome, QueryError> {
-        if let Some(separated) = self.separated(&found) {
-            return Ok(Outcome::Separated(separated));
+        if let Some(certificate) = self.separated(&found) {
+            return Ok(Outcome::Separated(self.apart(certificate)));
         }
         let widest = portal::widest_margin(&mut self.context, found);
         if widest.margin < -self.context.difference.touching() {
             return match attempt {
                 Attempt::First => self.enclosed_after_all(&widest),
-                Attempt::Second => Err(stalled(Stalled::NoPortal)),
+                Attempt::Second => self.again(Stalled::NoPortal),
             };
         }
-        if let Some(separated) = self.separated(&widest) {
-            return Ok(Outcome::Separated(separated));
+        if let Some(certificate) = self.separated(&widest) {
+            return Ok(Outcome::Separated(self.apart(certificate)));
         }
-        self.touching(&widest).map(Outcome::Grazing)
+        self.touching(&widest)
+    }
+
+    /// There is an answer, which is only to be written.
+    #[inline]
+    fn answered(&mut self) {
+        self.next.steps = Some(self.context.watch.steps);
+        self.context.watch.ended(Phase::Answer);
+    }
+
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "built where it is to stay")]
+    fn apart(&mut self, certificate: Separation) -> Separated {
+        self.answered();
+        Separated { certificate, solver: self.solver, steps: self.context.watch.steps }
     }
 
     /// The line does not pass `M`: a climb had stuck. Begins again where it should have ended.
@@ -430,14 +433,18 @@ impl<O: Observer> Run<'_, '_, '_, O> {
             match self.refine(portal) {
                 Some(Refined::Lowest(face)) => face,
                 Some(Refined::Rim(rim)) => return self.passed(rim, attempt),
-                None => return Err(stalled(Stalled::Cycle)),
+                None => return self.again(Stalled::Cycle),
             }
         };
         let tolerance = self.graze_tolerance.max(self.context.difference.touching());
         let overlap = portal::overlap(&mut self.context, portal, tolerance);
         self.context.watch.ended(Phase::Finish);
-        let proven = Proven::new(&self.context.difference, portal, &plane, weights)?;
-        *self.next = WarmStart::Contact(proven.contact_portal());
+        let proven = match Proven::new(&self.context.difference, portal, &plane, weights) {
+            Ok(proven) => proven,
+            Err(reason) => return self.again(reason),
+        };
+        self.next.start = WarmStart::Contact(proven.contact_portal());
+        self.answered();
         match overlap {
             Overlap::Ample => {
                 Ok(Outcome::Contact(proven.contact(self.solver, self.context.watch.steps)))
@@ -474,36 +481,43 @@ impl<O: Observer> Run<'_, '_, '_, O> {
     /// The shadow of `M` ends at the line, or misses it by less than rounding can tell: the contact
     /// of the bodies widened sideways by a little more than that.
     #[cold]
-    fn touching(&mut self, rim: &SeparatingLine) -> Result<Grazing, QueryError> {
+    fn touching(&mut self, rim: &SeparatingLine) -> Result<Outcome, QueryError> {
         self.context.difference = self.context.difference.widened(rim.margin);
-        let (portal, Face { plane, weights }) = self.widened_face()?;
-        let proven = Proven::new(&self.context.difference, &portal, &plane, weights)?;
+        let (portal, Face { plane, weights }) = match self.widened_face() {
+            Ok(found) => found,
+            Err(reason) => return self.again(reason),
+        };
+        let proven = match Proven::new(&self.context.difference, &portal, &plane, weights) {
+            Ok(proven) => proven,
+            Err(reason) => return self.again(reason),
+        };
+        let plane = Plane::of(&self.context.difference, rim.normal.extend(0.0), rim.point.pair);
+        self.next.start = proof::separation(&self.context.difference, &plane, rim.margin).1;
+        self.answered();
         let contact = proven.contact(self.solver, self.context.watch.steps);
         let grazing = proof::grazing(&self.context.difference, rim.normal, -rim.margin, contact);
-        let plane = Plane::of(&self.context.difference, rim.normal.extend(0.0), rim.point.pair);
-        *self.next = proof::separation(&self.context.difference, &plane, rim.margin).1;
-        Ok(grazing)
+        Ok(Outcome::Grazing(grazing))
     }
 
     /// The lowest face of the widened bodies on the line.
-    fn widened_face(&mut self) -> Result<(Portal, Face), QueryError> {
+    fn widened_face(&mut self) -> Result<(Portal, Face), Stalled> {
         if let Followed::Portal(portal, Known::Lowest(face)) = portal::facing(&mut self.context) {
             return Ok((portal, face));
         }
         let start = FirstNormal::from_ellipsoids(&self.context.difference);
         let Some(Enclosure::Portal(mut portal, _)) = portal::enclose(&mut self.context, &start)
         else {
-            return Err(stalled(Stalled::NoPortal));
+            return Err(Stalled::NoPortal);
         };
         match portal::refine(&mut self.context, &mut portal, portal::MAX_PORTALS) {
             Some(Refined::Lowest(face)) => Ok((portal, face)),
-            _ => Err(stalled(Stalled::Cycle)),
+            _ => Err(Stalled::Cycle),
         }
     }
 
     /// The separation that a line proves; `None` if rounding may have made it.
     #[inline]
-    fn separated(&mut self, found: &SeparatingLine) -> Option<Separated> {
+    fn separated(&mut self, found: &SeparatingLine) -> Option<Separation> {
         if found.margin <= self.context.difference.noise.lowered() {
             return None;
         }
@@ -514,19 +528,19 @@ impl<O: Observer> Run<'_, '_, '_, O> {
 
     /// The separation that a plane parallel to the direction proves.
     #[inline]
-    fn separated_by(&mut self, plane: &Plane, margin: f64) -> Option<Separated> {
+    fn separated_by(&mut self, plane: &Plane, margin: f64) -> Option<Separation> {
         let (certificate, start) = proof::separation(&self.context.difference, plane, margin);
         if certificate.margin <= 0.0 || !self.others_agree(&certificate) {
             return None;
         }
-        *self.next = start;
-        Some(Separated { certificate, solver: self.solver, steps: self.context.watch.steps })
+        self.next.start = start;
+        Some(certificate)
     }
 
     /// The separation that the plane between the bodies of the last answer proves, turned with them,
     /// if its pair is still the nearest.
     #[inline]
-    fn still_apart(&mut self, last: &WarmStart) -> Option<Separated> {
+    fn still_apart(&mut self, last: &WarmStart) -> Option<Separation> {
         let WarmStart::Apart { normals, pair } = last else { return None };
         let [p, q] = self.context.difference.shadow_from_bodies(*normals)?;
         let lateral = (p + q).truncate();
@@ -555,8 +569,4 @@ impl<O: Observer> Run<'_, '_, '_, O> {
         certificate.margin > 2.0 * self.context.difference.noise.touching()
             || certificate.verify(self.context.difference.setting, 0.0).is_ok()
     }
-}
-
-fn stalled(reason: Stalled) -> QueryError {
-    QueryError::NotConverged { reason }
 }

@@ -5,9 +5,9 @@
 //! of casts from scratch.
 //!
 //! Invariant. As long as `followed` is no more than `scratch`, every cast follows. Else the next `pause` casts
-//! start from scratch, and the one after them tries again; every failure doubles the pause, every clear
-//! success shortens it. So a sequence without coherence costs one failed attempt in `LONGEST`, and one that becomes
-//! coherent is followed after `LONGEST` casts at most.
+//! start from scratch, of which the last is measured, and the one after them tries again; every failure doubles
+//! the pause, every clear success halves it. So a sequence without coherence costs one failed attempt in
+//! `LONGEST`, and one that becomes coherent is followed after `LONGEST` casts at most.
 
 use crate::answer::{StartedFrom, Steps};
 
@@ -29,10 +29,11 @@ impl Default for Pace {
 }
 
 /// The longest pause.
-const LONGEST: u8 = 16;
+const LONGEST: u8 = 32;
 
-/// Of the newest cast in a running average.
+/// Of the newest cast in a running average, and of an attempt that was lost.
 const WEIGHT: f32 = 0.125;
+const WEIGHT_LOST: f32 = 0.25;
 
 /// The share of the work from scratch that is a clear success; so much following is thought to take until it has
 /// been seen, and one cast with more does not end it.
@@ -51,16 +52,14 @@ impl Pace {
         self.left == 0
     }
 
-    /// Whether the one after it does not either: what this one leaves is of no use.
-    #[inline]
-    pub(crate) fn rests(&self) -> bool {
-        self.left > 1
-    }
-
     /// Takes the work of a cast into account, that followed or did not. One that began from scratch after all has
     /// gained nothing, and cost the attempt.
     #[inline]
     pub(crate) fn note(&mut self, follows: bool, steps: &Steps) {
+        if self.left > 1 {
+            self.left -= 1;
+            return;
+        }
         #[expect(clippy::cast_precision_loss, reason = "a running average of counts")]
         let work = SUPPORT * steps.supports as f32 + steps.pivots as f32;
         match &mut self.scratch {
@@ -70,19 +69,20 @@ impl Pace {
             }
             Some(scratch) if !follows => {
                 *scratch += WEIGHT * (work + GUESS - *scratch);
-                self.left = self.left.saturating_sub(1);
+                self.left = 0;
                 // What the next attempt is held against.
                 self.followed = *scratch;
             }
             Some(scratch) => {
                 let lost = steps.started_from == StartedFrom::Scratch;
-                let work = if lost { work.max(*scratch) + ATTEMPT } else { work };
-                self.followed += WEIGHT * (work - self.followed);
+                let (work, weight) =
+                    if lost { (work.max(*scratch) + ATTEMPT, WEIGHT_LOST) } else { (work, WEIGHT) };
+                self.followed += weight * (work - self.followed);
                 if self.followed > *scratch {
                     self.pause = (2 * self.pause).min(LONGEST);
                     self.left = self.pause;
                 } else if self.followed < EXPECTED * *scratch {
-                    self.pause = (self.pause - 1).max(1);
+                    self.pause = (self.pause / 2).max(1);
                 }
             }
         }
@@ -98,7 +98,7 @@ mod tests {
     fn attempts_that_are_lost_are_failures() {
         let mut pace = Pace::default();
         let mut attempts = 0;
-        for k in 0..1_000 {
+        for k in 0..10_000 {
             let steps = Steps {
                 supports: 2,
                 pivots: 1 + k % 3,
@@ -109,6 +109,6 @@ mod tests {
             attempts += u32::from(follows);
             pace.note(follows, &steps);
         }
-        assert!((1_000 / 20..=1_000 / 14).contains(&attempts), "{attempts} attempts");
+        assert!((10_000 / 36..=10_000 / 30).contains(&attempts), "{attempts} attempts");
     }
 }

@@ -6,7 +6,7 @@ use crate::answer::{
     Along, Certificate, Contact, Grazing, Separation, Solver, Steps, gap_rounding,
 };
 use crate::number::noise::UNIT_VECTOR;
-use crate::setting::error::{QueryError, Stalled};
+use crate::setting::error::Stalled;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
 use crate::solve::WarmStart;
 use crate::solve::portal::{ContactPortal, Plane, Portal};
@@ -34,7 +34,7 @@ impl<'a> Proven<'a> {
         portal: &'a Portal,
         plane: &'a Plane,
         weights: [f64; 3],
-    ) -> Result<Self, QueryError> {
+    ) -> Result<Self, Stalled> {
         let setting = difference.setting;
         let noise = difference.noise;
         let &Plane { normal, ref normals, lowest, beyond } = plane;
@@ -50,8 +50,7 @@ impl<'a> Proven<'a> {
         // A plane along the direction bounds nothing.
         let is_upward = steepness > UNIT_VECTOR * setting.length;
         if !is_upward || gap.is_nan() || gap > most {
-            let reason = Stalled::Gap { lower, upper: estimate, tolerance: most };
-            return Err(QueryError::NotConverged { reason });
+            return Err(Stalled::Gap { lower, upper: estimate, tolerance: most });
         }
         let lower = along.lower(steepness);
         // Of widened bodies nothing is known from above.

@@ -439,7 +439,7 @@ fn a_tracker_is_small() {
     let size = size_of::<Tracker>();
     println!("a tracker takes {size} bytes");
     // As its documentation says.
-    assert!(size < 500, "{size}");
+    assert!(size < 600, "{size}");
 }
 
 #[test]
@@ -483,7 +483,7 @@ fn a_tracker_gives_up_where_it_does_not_pay() {
     let shapes::Mesh { vertices, .. } = shapes::ring_sphere(200, 100);
     let ball = ConvexPolyhedron::from_points(&vertices).unwrap();
     let mut rng = Random::new(29);
-    for (degrees, most, follows) in [(0.1_f64, 0.75, 0.9), (5.0, 1.03, 0.0), (40.0, 1.03, 0.0)] {
+    for (degrees, most, follows) in [(0.1_f64, 0.75, 0.85), (5.0, 1.03, 0.0), (40.0, 1.03, 0.0)] {
         let mut trackers = [Tracker::new(), Tracker::new().with_focus(Focus::default()).unwrap()];
         let mut works = [0.0; 3];
         let (mut followed, mut queries) = (0, 0);

@@ -17,10 +17,10 @@ use crate::number::noise::Noise;
 use crate::setting::error::{QueryError, Stalled};
 use crate::setting::minkowski::MinkowskiDifference;
 use crate::setting::{Setting, TwoBodies, VertexPair};
-use crate::solve::WarmStart;
 use crate::solve::nearest::{Difference, NearestPairs, nearest};
 use crate::solve::observe::{NoObserver, Observer, Phase, ShadowFrame, Support};
 use crate::solve::options::{Focus, Options};
+use crate::solve::{Left, WarmStart};
 
 /// How far apart, in noises over `n.d`, the bounds of an answer may be.
 const WIDEST: f64 = 15.0;
@@ -128,7 +128,7 @@ pub(crate) fn search<O: Observer>(
     setting: &Setting,
     options: &Options,
     last: &WarmStart,
-    next: &mut WarmStart,
+    next: &mut Left,
     observer: &mut O,
 ) -> Result<Outcome, QueryError> {
     let size = setting.scale();
@@ -142,8 +142,9 @@ pub(crate) fn search<O: Observer>(
     let found = travel(&mut kept.bodies, &line, start, f64::INFINITY);
     kept.bodies.observer.ended(Phase::Finish);
     kept.steps.pivots = found.looks;
-    *next = WarmStart::Kept { normal: found.plane.normal, pairs: kept.bodies.pairs };
+    next.start = WarmStart::Kept { normal: found.plane.normal, pairs: kept.bodies.pairs };
     let outcome = kept.outcome(&found);
+    next.steps = outcome.as_ref().ok().map(Outcome::steps);
     kept.bodies.observer.ended(Phase::Answer);
     outcome
 }
@@ -220,7 +221,7 @@ impl<'s, 'a, 'o, O: Observer> Kept<'s, 'a, 'o, O> {
             return None;
         }
         let plain = Options { keep: 0.0, graze_tolerance: tolerance - keep, ..*self.options };
-        let (last, mut next) = (WarmStart::Nothing, WarmStart::Nothing);
+        let (last, mut next) = (WarmStart::Nothing, Left::default());
         let setting = self.bodies.setting;
         let outcome =
             crate::solve::search(setting, &plain, &Focus::NONE, &last, &mut next, &mut NoObserver);

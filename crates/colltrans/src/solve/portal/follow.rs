@@ -47,6 +47,10 @@ const FOLLOWED: usize = 8;
 /// A line this many widths of the triangle beyond an edge is not reached face by face (measured).
 const FAR: f64 = 1.2;
 
+/// From farther than this, in the same widths, the tables of both bodies are asked for the vertex there, which is
+/// sooner than to climb to it (measured).
+const TOO_FAR_TO_CLIMB: f64 = 4.0;
+
 /// Where the line met `M` in an earlier query.
 ///
 /// In this order in memory: behind the tag of an enum, fields of eight bytes are written once if they
@@ -80,7 +84,8 @@ pub(crate) fn follow<O: Observer>(context: &mut Context<O>, last: &ContactPortal
     let Some(slopes) = slopes(&context.difference, last, shift) else { return Followed::Lost };
     if edge.distance() > FAR * edge.width() {
         let slope = continued(&context.difference, shift, slopes);
-        match jump(context, slope, last.pairs[0]) {
+        let climbs = edge.distance() <= TOO_FAR_TO_CLIMB * edge.width();
+        match jump(context, slope, climbs.then_some(last.pairs[0])) {
             Some(Beside::Edge(there, found)) => {
                 return Followed::Portal(there, Known::Lowest(found));
             }
@@ -231,12 +236,20 @@ fn slopes(
     near.then(|| [p, q].map(|n| n.truncate() / n.z))
 }
 
-/// The face of `M` at the support point along a slope, on the side of the line.
-fn jump<O: Observer>(context: &mut Context<O>, slope: DVec2, near: VertexPair) -> Option<Beside> {
+/// The face of `M` at the support point along a slope, on the side of the line; that point may be known to be near a
+/// pair.
+fn jump<O: Observer>(
+    context: &mut Context<O>,
+    slope: DVec2,
+    near: Option<VertexPair>,
+) -> Option<Beside> {
     if !slope.is_finite() {
         return None;
     }
-    let vertex = context.difference.support_from(normal_of(slope), near);
+    let vertex = match near {
+        Some(near) => context.difference.support_from(normal_of(slope), near),
+        None => context.difference.support(normal_of(slope)),
+    };
     context.watch.support(|| Support::of(normal_of(slope), &vertex));
     beside(context, &vertex, slope, -vertex.shadow())
 }

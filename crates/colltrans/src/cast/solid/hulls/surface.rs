@@ -72,7 +72,8 @@ impl<'a> Surface<'a> {
         })
     }
 
-    /// The facet at a place: from one at a corner of its face on, a few steps towards it, then from where the tree leads.
+    /// The facet at a place: from one at a corner of its face on, a few steps towards it, then from where the tree leads;
+    /// at once where it is farther from that one than these steps lead, each as wide as the facet.
     pub(super) fn facet_at(&self, corner: u32, spot: &Spot, slack: f64) -> Option<u32> {
         let mut triangle = self.around(corner).map(|(t, _)| t).find(|&t| self.looks(t, spot))?;
         for step in 0..MOST_STEPS {
@@ -81,13 +82,21 @@ impl<'a> Surface<'a> {
             if sides[worst] > 0.0 {
                 return self.looks(triangle, spot).then_some(triangle);
             }
-            triangle = if step == FEW_STEPS {
+            let is_far =
+                || step == 0 && -sides[worst] > FEW_STEPS as f64 * self.area(triangle, spot);
+            triangle = if step == FEW_STEPS || is_far() {
                 self.found(spot, slack)?
             } else {
                 self.solid.neighbours()[triangle as usize][worst]
             };
         }
         None
+    }
+
+    /// Twice the area of a triangle, seen against the normal of a place.
+    fn area(&self, triangle: u32, spot: &Spot) -> f64 {
+        let [a, b, c] = self.corners(triangle);
+        (b - a).cross(c - a).dot(spot.outward)
     }
 
     /// Whether a triangle looks along the normal of a place.

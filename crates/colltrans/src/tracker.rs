@@ -1,8 +1,8 @@
 //! Coherence: a query that starts from the last one's answer (the paper, section III-D).
 //!
 //! Notation. A *warm start* is what a cast leaves behind: the portal it ended with, or the separating
-//! direction. There is one for casts along the
-//! direction, one for casts against it, and one for those between the centres.
+//! direction. The casts of a tracker have three *sides*, each with a warm start of its own: along the direction,
+//! against it, and between the centres.
 //!
 //! Invariant. A warm start only proposes where to begin; every answer is proven by its own certificate,
 //! from the poses and the direction of its own query.
@@ -74,10 +74,7 @@ pub struct Tracker<'a> {
     steps: Steps,
 }
 
-/// The casts of one side.
-///
-/// The last one is taken into account when the next begins, from what it has left: an answer that is looked at here
-/// is moved through memory, which costs a tenth of a coherent query.
+/// The casts of one side. The last one is taken into account when the next begins, from what it has left.
 #[derive(Debug, Clone, Copy, Default)]
 struct Side {
     left: Left,
@@ -89,7 +86,7 @@ struct Side {
     is_of_query: bool,
 }
 
-/// The warm start of casts between the centres.
+/// The side of casts between the centres.
 const BETWEEN_CENTERS: usize = 2;
 
 impl<'a> Tracker<'a> {
@@ -113,6 +110,7 @@ impl<'a> Tracker<'a> {
 
     /// Forgets the last answer: the next query starts from scratch.
     pub fn reset(&mut self) {
+        self.steps = self.steps();
         self.sides = [Side::default(); 3];
         self.nearest = NearestPairs::default();
     }
@@ -121,8 +119,9 @@ impl<'a> Tracker<'a> {
     /// work.
     pub fn steps(&self) -> Steps {
         let mut steps = self.steps;
-        for side in self.sides.iter().filter(|side| side.is_of_query) {
-            steps += side.left.steps.unwrap_or_default();
+        let of_query = self.sides.iter().filter(|side| side.is_of_query);
+        for of_cast in of_query.filter_map(|side| side.left.steps) {
+            steps += of_cast;
         }
         steps
     }
@@ -205,6 +204,7 @@ impl<'a> Tracker<'a> {
     /// ```
     pub fn distance(&mut self, pair: &Pair<'a>) -> Result<Distance, QueryError> {
         self.follow([pair.moving(), pair.fixed()]);
+        self.steps = Steps::default();
         let distance = distance_from(pair, &mut self.nearest)?;
         self.steps = distance.steps;
         Ok(distance)

@@ -39,7 +39,8 @@ use portal::{
 use proof::Proven;
 pub(crate) use warm_start::{Left, WarmStart};
 
-/// Casts, starting from the `last` cast as far as `focus` allows, and leaves in `next` what there is to be left.
+/// Casts, starting from the `last` cast as far as `focus` allows, and leaves in `next` where the next one may start
+/// and the work that was done, if there is an answer.
 #[inline]
 pub(crate) fn search<O: Observer>(
     setting: &Setting,
@@ -124,7 +125,7 @@ struct Run<'a, 'o, 'n, O> {
     next: &'n mut Left,
 }
 
-/// Whether a line that seemed to pass `M` was found not to, after which the search has begun again.
+/// Whether a line that seemed to pass `M` was found not to, after which its portal is looked for once more.
 #[derive(Clone, Copy, PartialEq)]
 enum Attempt {
     First,
@@ -172,13 +173,16 @@ impl<O: Observer> Run<'_, '_, '_, O> {
         }
     }
 
-    /// Nothing was found: tries from scratch, by turns of the lateral axes, until there is an answer.
+    /// No answer could be proven: tries from scratch, by one turn of the lateral axes after another, until one is, or
+    /// tells why the last was none.
     #[cold]
     fn again(&mut self, reason: Stalled) -> Result<Outcome, QueryError> {
+        self.context.watch.ended(Phase::Finish);
         let steps = &mut self.context.watch.steps;
         self.turn += usize::from(steps.started_from == StartedFrom::Scratch);
         steps.started_from = StartedFrom::Scratch;
         let Some(&turn) = TURNS.get(self.turn) else {
+            self.context.watch.ended(Phase::Answer);
             return Err(QueryError::NotConverged { reason });
         };
         let setting = self.context.difference.setting;

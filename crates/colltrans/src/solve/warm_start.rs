@@ -7,11 +7,11 @@ use crate::setting::VertexPair;
 use crate::solve::nearest::NearestPairs;
 use crate::solve::portal::ContactPortal;
 
-/// What a cast leaves besides its answer: a tracker reads none of that, since what is read is moved through
-/// memory, which costs a tenth of a coherent query.
+/// What a cast leaves besides its answer: all that a tracker reads. An answer that is read before it is handed on is
+/// moved through memory, which costs a tenth of a coherent query.
 #[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Left {
-    /// Where the next cast may start: nowhere, unless there is an answer.
+    /// Where the next cast may start.
     pub(crate) start: WarmStart,
     /// The work of the answer, if there is one.
     pub(crate) steps: Option<Steps>,

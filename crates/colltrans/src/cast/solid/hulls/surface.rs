@@ -73,7 +73,7 @@ impl<'a> Surface<'a> {
     }
 
     /// The facet at a place: from one at a corner of its face on, a few steps towards it, then from where the tree leads;
-    /// at once where it is farther from that one than these steps lead, each as wide as the facet.
+    /// at once where it is beyond that one by more of its heights than these steps.
     pub(super) fn facet_at(&self, corner: u32, spot: &Spot, slack: f64) -> Option<u32> {
         let mut triangle = self.around(corner).map(|(t, _)| t).find(|&t| self.looks(t, spot))?;
         for step in 0..MOST_STEPS {
@@ -82,12 +82,12 @@ impl<'a> Surface<'a> {
             if sides[worst] > 0.0 {
                 return self.looks(triangle, spot).then_some(triangle);
             }
-            let is_far =
-                || step == 0 && -sides[worst] > FEW_STEPS as f64 * self.area(triangle, spot);
-            triangle = if step == FEW_STEPS || is_far() {
-                self.found(spot, slack)?
-            } else {
-                self.solid.neighbours()[triangle as usize][worst]
+            let is_far = || -sides[worst] > FEW_STEPS as f64 * self.area(triangle, spot);
+            let next = self.solid.neighbours()[triangle as usize][worst];
+            triangle = match step {
+                0 if is_far() => self.found(spot, slack).unwrap_or(next),
+                FEW_STEPS => self.found(spot, slack)?,
+                _ => next,
             };
         }
         None

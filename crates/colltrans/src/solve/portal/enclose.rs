@@ -86,11 +86,7 @@ fn first<O: Observer>(
     start: &FirstNormal,
 ) -> Result<Tangent, SeparatingLine> {
     let normal = start.normal;
-    let point = match start.near {
-        Some(near) => context.difference.support_from(normal, near),
-        None => context.difference.support(normal),
-    };
-    context.watch.support(|| Support::of(normal, &point));
+    let point = context.support(normal, start.near);
     if normal.z != 0.0 {
         return Ok(Tangent { point, slope: normal.truncate() });
     }

@@ -24,7 +24,7 @@ use super::wrap::first_met;
 use super::{Context, FirstNormal, Known, Line, Portal, normal_of};
 use crate::setting::VertexPair;
 use crate::setting::minkowski::MinkowskiDifference;
-use crate::solve::observe::{Observer, Support};
+use crate::solve::observe::Observer;
 
 /// What became of an old portal.
 #[derive(Debug, Clone, Copy)]
@@ -155,11 +155,7 @@ pub(crate) fn approach<O: Observer>(
 ) -> (Followed, FirstNormal) {
     let reached = |portal, known| (Followed::Portal(portal, known), *start);
     let mut slope = start.normal.truncate();
-    let mut vertex = match start.near {
-        Some(near) => context.difference.support_from(normal_of(slope), near),
-        None => context.difference.support(normal_of(slope)),
-    };
-    context.watch.support(|| Support::of(normal_of(slope), &vertex));
+    let mut vertex = context.support(normal_of(slope), start.near);
     let mut within_reach = None;
     // A corner that is farthest in what seems to be a face need not be one, and proves nothing.
     let mut is_support = true;
@@ -208,8 +204,7 @@ pub(crate) fn approach<O: Observer>(
         if !corrected.is_finite() {
             break;
         }
-        let next = context.difference.support_from(normal_of(corrected), vertex.pair);
-        context.watch.support(|| Support::of(normal_of(corrected), &next));
+        let next = context.support(normal_of(corrected), Some(vertex.pair));
         let [before, after] = [shadow, next.shadow()].map(DVec2::length_squared);
         if after <= before {
             (slope, vertex, is_support) = (corrected, next, true);
@@ -246,10 +241,6 @@ fn jump<O: Observer>(
     if !slope.is_finite() {
         return None;
     }
-    let vertex = match near {
-        Some(near) => context.difference.support_from(normal_of(slope), near),
-        None => context.difference.support(normal_of(slope)),
-    };
-    context.watch.support(|| Support::of(normal_of(slope), &vertex));
+    let vertex = context.support(normal_of(slope), near);
     beside(context, &vertex, slope, -vertex.shadow())
 }

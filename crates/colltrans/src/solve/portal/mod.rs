@@ -27,8 +27,9 @@ mod wrap;
 
 use glam::{DVec2, DVec3};
 
+use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
-use crate::solve::observe::Watch;
+use crate::solve::observe::{Observer, Support, Watch};
 pub(crate) use enclose::{Enclosure, SeparatingLine, around, enclose, upward, widest_margin};
 pub(crate) use facing::facing;
 pub(crate) use follow::{ContactPortal, Followed, OF_ELLIPSOIDS, approach, follow};
@@ -45,6 +46,20 @@ pub(crate) type Portal = [Point; 3];
 pub(crate) struct Context<'a, 'o, O> {
     pub(crate) difference: MinkowskiDifference<'a>,
     pub(crate) watch: Watch<'o, O>,
+}
+
+impl<O: Observer> Context<'_, '_, O> {
+    /// The support point along a normal, which may be known to be near a pair.
+    #[inline(always)]
+    #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
+    fn support(&mut self, normal: DVec3, near: Option<VertexPair>) -> Point {
+        let point = match near {
+            Some(near) => self.difference.support_from(normal, near),
+            None => self.difference.support(normal),
+        };
+        self.watch.support(|| Support::of(normal, &point));
+        point
+    }
 }
 
 /// What a stage knows of the portal that it hands on.

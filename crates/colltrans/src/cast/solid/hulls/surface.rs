@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::Body;
 use crate::body::solid::Solid;
+use crate::number::plane::triangle_normal;
 use crate::solve::solid::search::children;
 
 /// Steps from facet to facet around a corner, or towards a place: after the first few the tree is asked.
@@ -82,7 +83,8 @@ impl<'a> Surface<'a> {
             if sides[worst] > 0.0 {
                 return self.looks(triangle, spot).then_some(triangle);
             }
-            let is_far = || -sides[worst] > FEW_STEPS as f64 * self.area(triangle, spot);
+            let area = || triangle_normal(self.corners(triangle)).dot(spot.outward);
+            let is_far = || -sides[worst] > FEW_STEPS as f64 * area();
             let next = self.solid.neighbours()[triangle as usize][worst];
             triangle = match step {
                 0 if is_far() => self.found(spot, slack).unwrap_or(next),
@@ -91,12 +93,6 @@ impl<'a> Surface<'a> {
             };
         }
         None
-    }
-
-    /// Twice the area of a triangle, seen against the normal of a place.
-    fn area(&self, triangle: u32, spot: &Spot) -> f64 {
-        let [a, b, c] = self.corners(triangle);
-        (b - a).cross(c - a).dot(spot.outward)
     }
 
     /// Whether a triangle looks along the normal of a place.

@@ -23,7 +23,7 @@ from typing import Any
 
 import links
 import nbformat
-from nbclient import NotebookClient
+import outputs
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
@@ -161,11 +161,14 @@ def gallery(source: Path, program: Path) -> None:
 
 
 def notebooks(source: Path) -> None:
-    """Runs every notebook, at the root of the checkout; a cell that fails ends the build."""
+    """Runs every notebook. A cell that fails, or whose text is not the kept one, ends the build."""
+    wrong = []
     for file in sorted((source / "notebooks").glob("*.ipynb")):
-        book = nbformat.read(file, as_version=4)
-        NotebookClient(book, timeout=300, resources={"metadata": {"path": str(ROOT)}}).execute()
+        book = outputs.executed(file)
+        wrong += outputs.differences(file.stem, book)
         nbformat.write(book, file)
+    if wrong:
+        raise SystemExit("\n".join([*wrong, "python site/outputs.py --keep writes new outputs"]))
 
 
 def described(program: str) -> list[str]:

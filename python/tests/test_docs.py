@@ -92,3 +92,15 @@ def test_links_between_files_become_links_between_pages(build: ModuleType) -> No
     )
     told = build.relinked(text, PurePosixPath("docs/a.md"), places)
     assert told == "[b](../python/t/b.md#x) ![p](p.svg) code [w](https://w.org) [h](#h)"
+
+
+def test_notebooks_print_what_is_kept(build: ModuleType) -> None:
+    outputs = importlib.import_module("outputs")
+    notebooks = sorted((SITE / "notebooks").glob("*.ipynb"))
+    assert len(notebooks) == 3
+    wrong = [
+        line
+        for file in notebooks
+        for line in outputs.differences(file.stem, outputs.executed(file))
+    ]
+    assert not wrong, "\n".join(wrong)

@@ -10,7 +10,7 @@ from colltrans import ConvexPolyhedron, Motion, distance_many, first_contact
 
 blade = ConvexPolyhedron.cuboid([0, -0.01, -0.2], [2, 0.01, 0.2])
 post = ConvexPolyhedron.cuboid([-0.02, 1.5, -1], [0.02, 1.54, 1])
-swing = Motion.turn([0, 0, 0], [0, 0, 1], np.radians(170))
+swing = Motion.turn([0, 0, 0], [0, 0, 1], degrees=170)
 
 
 def apart(times):

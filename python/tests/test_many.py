@@ -220,3 +220,17 @@ def test_one_call_is_the_row_of_many() -> None:
     (row,) = cast_many(CUBE, PLATE, [0, 0, -1], moving_pose=[0, 0, 5])
     assert repr(one) == repr(row)
     assert colltrans.__all__ == sorted(colltrans.__all__)
+
+
+def test_rows_beside_many_of_one_pair_keep_outcome_and_proof_but_not_the_margin() -> None:
+    box = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+    starts = np.random.default_rng(5).uniform(-3, 3, (600, 3))
+    together = cast_many(box, box, [0, 0, -1], moving_pose=starts)
+    for row in range(0, 600, 7):
+        alone = cast_many(box, box, [0, 0, -1], moving_pose=starts[row])
+        assert alone.outcomes[0] == together.outcomes[row]
+        together[row].verify()
+    apart = together.where("separated")
+    few = cast_many(box, box, [0, 0, -1], moving_pose=starts[apart][:9])
+    first = cast(box, box, [0, 0, -1], moving_pose=starts[apart][0])
+    assert few.margin[0] == first.margin

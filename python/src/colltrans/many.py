@@ -5,11 +5,7 @@ together as arrays of numpy do (``columns.stacked`` has them again); bodies are 
 list with an index for each. Rows are answered on all cores, without the interpreter's lock. A row
 without an answer has the outcome ``"error"`` and a message.
 
-Each row has the bits of the query asked alone, but for one case: where 564 rows or more (of boxes;
-more of larger bodies) ask about the same two convex bodies, turned in the same way, the faces of
-their Minkowski difference are made once and answer these rows. Outcomes and their proofs are as
-good; the last digits may differ, and between separated bodies the normal, and the margin along it,
-is another of many. Which rows these are depends on neither their order nor the threads.
+See the notes of :func:`cast_many` for what a row's answer may depend on.
 """
 
 from typing import overload
@@ -81,6 +77,20 @@ def cast_many(
     ------
     InputError
         Arrays whose shapes do not go together. Wrong numbers in a row are errors of that row.
+
+    Notes
+    -----
+    A row has the bits of :func:`cast` of the same arguments, unless many rows share both bodies and
+    both rotations: 564 rows of two boxes, 500 and the product of the numbers of vertices in
+    general. Such rows are answered from the faces of their Minkowski difference, which are built
+    once, for at most 256 such groups of rows. If all rows of a group also share the direction, a
+    map of the faces along it is used. Then a row's outcome and the kind of its proof stay the same,
+    but a translation, a bound or a contact point may differ in its last digits. Between separated
+    bodies the normal is another separating one, so that ``margin`` may differ by any factor: it is
+    a proven distance along that normal, not the largest one. The answers depend on the set of rows,
+    not on their order or on ``threads``. Rows of flat bodies, of bodies with more than 16,384 pairs
+    of vertices, with ``solver="cta"`` or with a gap to ``keep`` always have the bits of
+    :func:`cast`.
 
     Examples
     --------

@@ -324,7 +324,9 @@ def test_how_far_along_motions(tmp_path: Path, bodies: Path) -> None:
     told = answer_table(table_of(columns), known, Options("motion_clearance"))
     cube, cloud = known.get(["cube", "cloud"])
     motions: dict[str, dict[str, Any]]
-    motions = {"screw": {"point": [0, 0, 0], "axis": [0, 0, 1], "angle": np.arange(4.0), "rise": 0}}
+    motions = {
+        "screw": {"point": [0, 0, 0], "axis": [0, 0, 1], "radians": np.arange(4.0), "rise": 0}
+    }
     alone = motion_clearance_many(
         cube,  # type: ignore[arg-type]
         cloud,  # type: ignore[arg-type]

@@ -169,8 +169,8 @@ def test_the_last_contact_is_in_the_direction_asked() -> None:
 
 def things() -> list[Any]:
     solid = Solid.read(ROOT / "data" / "plate.off")
-    turn = Motion.turn([0, 0, 0], [0, 0, 1], 1.0)
-    moves = MotionCast(CUBE, CUBE, moving_motion=turn, fixed_motion=[5, 0, 0])
+    turn = Motion.turn([0, 0, 0], [0, 0, 1], radians=1.0)
+    moves = MotionCast(CUBE, CUBE, moving_motion=turn, fixed_motion=Motion.still([5, 0, 0]))
     over = SolidCast(CUBE, solid, [0, 0, -1], moving_pose=[0, 0, 9])
     query = Cast(CUBE, CUBE, AHEAD, moving_pose=[-3, 0.5, 0])
     flat = ConvexPolyhedron([[0, 0, 0], [1, 0, 0]])

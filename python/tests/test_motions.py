@@ -23,6 +23,7 @@ from colltrans import (
     Motion,
     MotionCast,
     MotionClearance,
+    Pose,
     QueryError,
     Solid,
     check,
@@ -46,7 +47,7 @@ def screws(seed: int, n: int) -> dict[str, Any]:
     return {
         "point": random.normal(size=(n, 3)) * 2,
         "axis": axis,
-        "angle": random.uniform(-6, 6, n),
+        "radians": random.uniform(-6, 6, n),
         "rise": random.normal(size=n) * 2,
     }
 
@@ -93,17 +94,19 @@ def test_rows_have_the_bits_of_the_command_line(batch: Batch, keep: float) -> No
 
 
 def answers() -> list[FirstContact]:
-    turn = Motion.turn([0, 0, 0], [0, 0, 1], 3, pose=[2, 0, 0])
+    turn = Motion.turn([0, 0, 0], [0, 0, 1], radians=3, pose=[2, 0, 0])
     found = [
-        first_contact(CUBE, CUBE, turn, [-1.5, 1.5, 0.25]),
-        first_contact(CUBE, CUBE, turn, [-1.5, 1.5, 0.25], keep=0.25),
+        first_contact(CUBE, CUBE, turn, Pose([-1.5, 1.5, 0.25])),
+        first_contact(CUBE, CUBE, turn, Pose([-1.5, 1.5, 0.25]), keep=0.25),
         first_contact(CUBE, CUBE, turn, Motion.slide([0, 0, 5], pose=[-1.5, 1.5, 0.25])),
         first_contact(CUBE, CUBE, Motion.slide([1, 0, 0])),
-        first_contact(CUBE, CUBE, Motion.turn([0.5, 0.5, 0], [0, 0, 1], 2), [0, 0, -1]),
+        first_contact(
+            CUBE, CUBE, Motion.turn([0.5, 0.5, 0], [0, 0, 1], radians=2), Pose([0, 0, -1])
+        ),
     ]
-    rest = Motion.turn([0.5, 0.5, 0], [0, 0, 1], 2)
-    found.append(first_contact(CUBE, CUBE, rest, [0, 0, -1], tolerance=1e-9))
-    down = Motion.screw([0, 0, 0], [0, 0, 1], 1, -20, pose=[0, 0, 9])
+    rest = Motion.turn([0.5, 0.5, 0], [0, 0, 1], radians=2)
+    found.append(first_contact(CUBE, CUBE, rest, Pose([0, 0, -1]), tolerance=1e-9))
+    down = Motion.screw([0, 0, 0], [0, 0, 1], radians=1, rise=-20, pose=[0, 0, 9])
     found.append(first_contact(BOLT, PLATE, down))
     found.append(first_contact(CUBE, PLATE, Motion.slide([0, 0, 9], pose=[0, 0, 30])))
     return found
@@ -176,13 +179,13 @@ def test_random_proofs_hold_in_fractions() -> None:
         point, axis, way = random.normal(size=(3, 3))
         angle = float(random.uniform(-6, 6) * (1 if k % 7 else 30))
         motion = [
-            Motion.screw(point, axis, angle, 2.0, pose=pose),
+            Motion.screw(point, axis, radians=angle, rise=2.0, pose=pose),
             Motion.thrown(pose[:3], way - pose[:3], axis * angle, pose=pose),
-            Motion.about(point, axis, angle, way, pose=pose),
+            Motion.about(point, axis, way, radians=angle, pose=pose),
             Motion.between(pose, [0, 0, 0]),
             Motion.through([pose, random.normal(size=3) * 4, pose]),
         ][k % 5]
-        other = Motion.turn(point * 3, way, angle / 3) if k % 3 == 0 else None
+        other = Motion.turn(point * 3, way, radians=angle / 3) if k % 3 == 0 else None
         keep = [0.0, 0.0, 1e-9, 0.25][k % 4]
         found = first_contact(bodies[0], bodies[1], motion, other, keep=keep)
         report = check.check(found.proof_json())
@@ -193,14 +196,14 @@ def test_random_proofs_hold_in_fractions() -> None:
 
 def test_motions() -> None:
     pose = [1, 2, 3]
-    quarter = Motion.turn([0, 0, 0], [0, 0, 2], math.pi / 2, pose=pose)
+    quarter = Motion.turn([0, 0, 0], [0, 0, 2], degrees=90, pose=pose)
     assert np.allclose(quarter.at(1).translation, [-2, 1, 3])
     assert np.allclose(quarter.at(0.5).rotation[0], [0.5**0.5, -(0.5**0.5), 0])
     assert Motion.still(pose).at(0.3).translation.tolist() == pose
     assert Motion.slide([1, 0, 0], pose=pose).at(0.5).translation.tolist() == [1.5, 2, 3]
-    screw = Motion.screw([1, 2, 0], [0, 0, 1], 7, 2, pose=pose)
+    screw = Motion.screw([1, 2, 0], [0, 0, 1], radians=7, rise=2, pose=pose)
     assert np.allclose(screw.at(1).translation, [1, 2, 5])
-    same = Motion.about([0, 0, 0], [0, 0, 1], 7, [0, 0, 2], pose=pose)
+    same = Motion.about([0, 0, 0], [0, 0, 1], [0, 0, 2], radians=7, pose=pose)
     assert np.allclose(same.at(1).as_matrix(), screw.at(1).as_matrix())
     thrown = Motion.thrown(pose, [5, 0, 0], [0, 3, 0], pose=pose)
     assert np.allclose(thrown.at(1).translation, [6, 2, 3])
@@ -211,7 +214,9 @@ def test_motions() -> None:
         again = pickle.loads(pickle.dumps(motion))
         assert again == motion and again.start == motion.start and motion != Motion.still()
         assert again.at(0.7) == motion.at(0.7)
-    assert repr(quarter) == "Motion(from [1.0, 2.0, 3.0])"
+    pose = "pose=[1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0]"
+    turn = "Motion.turn([0.0, 0.0, 0.0], [0.0, 0.0, 1.0], radians=1.5707963267948966"
+    assert repr(quarter) == f"{turn}, {pose})"
 
 
 def test_a_query_is_saved_and_replayed(cli: Path, tmp_path: Path) -> None:
@@ -231,9 +236,9 @@ def test_a_query_is_saved_and_replayed(cli: Path, tmp_path: Path) -> None:
 
 def test_arguments_that_are_wrong() -> None:
     with pytest.raises(QueryError, match="axis"):
-        Motion.turn([0, 0, 0], [0, 0, 0], 1)
+        Motion.turn([0, 0, 0], [0, 0, 0], radians=1)
     with pytest.raises(QueryError, match="1e5"):
-        Motion.turn([0, 0, 0], [0, 0, 1], 1e6)
+        Motion.turn([0, 0, 0], [0, 0, 1], radians=1e6)
     with pytest.raises(QueryError, match="at least one pose"):
         Motion.through([])
     with pytest.raises(QueryError, match="time"):
@@ -247,14 +252,14 @@ def test_arguments_that_are_wrong() -> None:
         first_contact(CUBE, CUBE, slide, keep=-1)
     with pytest.raises(TypeError, match="neither a ConvexPolyhedron nor a Solid"):
         first_contact("cube", CUBE, slide)  # type: ignore[arg-type]
-    turn: dict[str, Any] = {"point": [0, 0, 0], "axis": [0, 0, 1], "angle": [1, 2]}
-    with pytest.raises(InputError, match="'turn' has point, axis, angle"):
+    turn: dict[str, Any] = {"point": [0, 0, 0], "axis": [0, 0, 1], "radians": [1, 2]}
+    with pytest.raises(InputError, match="'turn' has point, axis, radians"):
         motion_many(CUBE, CUBE, {"turn": {**turn, "rise": 1}})
     with pytest.raises(InputError, match="one of slide, turn, screw, thrown, not twist"):
         motion_many(CUBE, CUBE, {"twist": turn})
     with pytest.raises(InputError, match=r"axis: an array of shape \(2,\)"):
         motion_many(CUBE, CUBE, {"turn": {**turn, "axis": [0, 1]}})
-    with pytest.raises(InputError, match="axis has 3 rows, moving_motion.angle has 2 rows"):
+    with pytest.raises(InputError, match="axis has 3 rows, moving_motion.radians has 2 rows"):
         motion_many(CUBE, CUBE, {"turn": {**turn, "axis": np.eye(3)}})
     with pytest.raises(InputError, match="different lengths"):
         motion_many(CUBE, CUBE, {"turn": turn}, keep=[1, 2, 3])
@@ -272,7 +277,7 @@ def test_rows_of_many_kinds() -> None:
     }
     thrown = motion_many(CUBE, CUBE, {"thrown": numbers}, fixed_pose=[4, 0.25, 0.25])
     alone = Motion.thrown([0.5, 0.5, 0.5], [8, 0, 0], [1, 2, 3])
-    assert thrown.lower[0] == first_contact(CUBE, CUBE, alone, [4, 0.25, 0.25]).lower
+    assert thrown.lower[0] == first_contact(CUBE, CUBE, alone, Pose([4, 0.25, 0.25])).lower
     listed = motion_many(CUBE, CUBE, [alone, Motion.still()], fixed_pose=[4, 0.25, 0.25])
     assert listed.lower[0] == thrown.lower[0] and listed.counts() == {"contact": 1, "free": 1}
     slide: dict[str, Any] = {"slide": {"by": [[8, 0, 0], [8, np.nan, 0]]}}
@@ -280,7 +285,7 @@ def test_rows_of_many_kinds() -> None:
     assert both.counts() == {"contact": 1, "error": 1} and "moving_motion" in both.errors[1]
     assert isinstance(both[1], Failed) and abs(both.lower[0] - 3 / 16) < 1e-12
     turn: dict[str, Any]
-    turn = {"turn": {"point": [0, 0, 0], "axis": [0, 0, 1], "angle": [1, 2]}}
+    turn = {"turn": {"point": [0, 0, 0], "axis": [0, 0, 1], "radians": [1, 2]}}
     more = motion_many(CUBE, CUBE, turn, fixed_pose=[0, 0, -1], tolerance=[1e-9, 1e-6])
     assert more.counts() == {"free": 2}
     wrong = motion_many(CUBE, CUBE, turn, fixed_pose=[0, 0, -1], tolerance=[1e-9, 1e-6], keep=1)
@@ -303,7 +308,7 @@ def test_shards_ask_motions(batch: Batch, tmp_path: Path) -> None:
     ]
     for line in asked:
         del line["query"]
-    asked[0]["moving_motion"] = {"turn": {"point": [0, 0, 0], "axis": [0, 0, 1], "angle": 1}}
+    asked[0]["moving_motion"] = {"turn": {"point": [0, 0, 0], "axis": [0, 0, 1], "radians": 1}}
     asked[1]["moving_motion"] = {"slide": {"by": [1, 0, 0]}}
     asked[2]["fixed_motion"] = asked[2].pop("moving_motion")
     (tmp_path / "queries.jsonl").write_text("".join(json.dumps(line) + "\n" for line in asked))
@@ -319,7 +324,9 @@ def test_shards_ask_motions(batch: Batch, tmp_path: Path) -> None:
             assert outcome == told[i]["outcome"]
             lower = told[i].get("time", {}).get("lower", math.nan)
             assert np.array_equal(table["lower"][i].as_py(), lower, equal_nan=True)
-    screw = np.column_stack([numbers["point"], numbers["axis"], numbers["angle"], numbers["rise"]])
+    screw = np.column_stack(
+        [numbers["point"], numbers["axis"], numbers["radians"], numbers["rise"]]
+    )
     flat = pa.FixedSizeListArray.from_arrays(pa.array(screw.ravel()), 8)
     place = pa.FixedSizeListArray.from_arrays(pa.array(places.ravel()), 3)
     columns = {"moving": ["cube"] * n, "fixed": ["cloud"] * n, "moving_pose": place}
@@ -344,10 +351,10 @@ TABLE = ConvexPolyhedron.cuboid([-4, -4, -1], [4, 4, 0])
 
 
 def cleared() -> list[MotionClearance]:
-    out = Motion.turn([-1, 0, 0], [0, -1, 0], 1, pose=[0, 0, -0.125])
+    out = Motion.turn([-1, 0, 0], [0, -1, 0], radians=1, pose=[0, 0, -0.125])
     solid = Solid.from_pieces([TABLE])
     return [
-        motion_clearance(CUBE, TABLE, Motion.turn([0.5, 0.5, 0], [0, 0, 1], 2)),
+        motion_clearance(CUBE, TABLE, Motion.turn([0.5, 0.5, 0], [0, 0, 1], radians=2)),
         motion_clearance(CUBE, TABLE, Motion.slide([0, 0, -2])),
         motion_clearance(CUBE, TABLE, Motion.slide([0, 0, -2], pose=[0, 0, 1]), tolerance=0.01),
         motion_clearance(CUBE, TABLE, Motion.slide([0, 0, -2], pose=[0, 0, 1]), keep=0.25),

@@ -75,6 +75,13 @@ pub enum Error {
     },
 }
 
+impl Error {
+    /// Checks whether the file does not exist.
+    pub fn is_missing_file(&self) -> bool {
+        matches!(self, Self::Read { source, .. } if source.kind() == std::io::ErrorKind::NotFound)
+    }
+}
+
 /// A place in a mesh file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]

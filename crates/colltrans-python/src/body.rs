@@ -5,8 +5,9 @@ use std::path::PathBuf;
 use colltrans::glam::DVec3;
 use colltrans_mesh::body::{BodyOptions, load_convex};
 use numpy::{IntoPyArray, PyArray1, PyArray2};
-use pyo3::exceptions::PyIndexError;
+use pyo3::exceptions::{PyIndexError, PyTypeError};
 use pyo3::prelude::*;
+use pyo3::types::PySequence;
 
 use crate::arrays::{self, faces, ids, points, read_only, row, table, vector};
 use crate::errors::{OrRaise, error};
@@ -49,6 +50,47 @@ impl From<colltrans::ConvexPolyhedron> for ConvexPolyhedron {
     }
 }
 
+/// An argument that has to be a convex body. The error names the functions that take what was given.
+pub(crate) struct ConvexArgument<'py>(pub(crate) Bound<'py, ConvexPolyhedron>);
+
+impl<'py> FromPyObject<'_, 'py> for ConvexArgument<'py> {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        if let Ok(body) = given.cast::<ConvexPolyhedron>() {
+            return Ok(Self((*body).clone()));
+        }
+        let message = if given.is_instance_of::<crate::solid::Solid>() {
+            "Solid is not a ConvexPolyhedron; clearance(moving, fixed, direction) and \
+             distance(moving, fixed) take solids"
+                .into()
+        } else {
+            format!("{} is not a ConvexPolyhedron; {}", given.get_type().name()?, maker(&given)?)
+        };
+        Err(PyTypeError::new_err(message))
+    }
+}
+
+/// Returns the call that makes a body of an argument which is not one.
+pub(crate) fn maker(given: &Bound<'_, PyAny>) -> PyResult<&'static str> {
+    Ok(if given.hasattr("vertices")? && given.hasattr("faces")? {
+        "ConvexPolyhedron.from_trimesh(mesh) or Solid.from_trimesh(mesh) makes a body of a mesh"
+    } else if given.hasattr("__array__")? || given.is_instance_of::<PySequence>() {
+        "ConvexPolyhedron(points) makes the convex hull of points"
+    } else {
+        "ConvexPolyhedron(points) makes a body, read(path) and Solid.read(path) read one"
+    })
+}
+
+/// Refuses a mesh object where an array of points is expected.
+pub(crate) fn refuse_mesh_object(given: &Bound<'_, PyAny>, name: &str, call: &str) -> PyResult<()> {
+    if !given.hasattr("vertices")? || !given.hasattr("faces")? {
+        return Ok(());
+    }
+    let kind = given.get_type().name()?;
+    Err(crate::errors::input(name, format_args!("{kind} is a mesh, not an array: call {call}")))
+}
+
 /// A body as JSON, and its notes.
 type Read = (String, Vec<String>);
 
@@ -56,6 +98,9 @@ type Read = (String, Vec<String>);
 impl ConvexPolyhedron {
     #[new]
     fn new(py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let call =
+            "ConvexPolyhedron.from_trimesh(mesh), or ConvexPolyhedron(mesh.vertices) for its hull";
+        refuse_mesh_object(points, "points", call)?;
         let points = self::points(points, "points")?;
         py.detach(|| colltrans::ConvexPolyhedron::from_points(&points)).or_raise().map(Self::from)
     }
@@ -304,8 +349,25 @@ impl ConvexPolyhedron {
         Ok((body.into(), report.into()))
     }
 
+    /// Builds the planar sections on which ``solver="cta"`` works, unless they are there.
+    ///
+    /// The first cast with that solver builds them otherwise, and takes as much longer. Other solvers
+    /// need nothing of the kind.
+    ///
+    /// Examples
+    /// --------
+    /// >>> from colltrans import ConvexPolyhedron
+    /// >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+    /// >>> before = cube.nbytes
+    /// >>> cube.prepare()
+    /// >>> cube.nbytes > before
+    /// True
+    fn prepare(&self, py: Python<'_>) {
+        py.detach(|| self.0.prepare_sections());
+    }
+
     /// int: Bytes of memory that the body occupies now; the sections that ``solver="cta"`` needs count
-    /// once they are made.
+    /// once they are built (:meth:`prepare`).
     #[getter]
     fn nbytes(&self) -> usize {
         self.0.memory_bytes()

@@ -9,7 +9,7 @@ use colltrans::motion::MotionError;
 use colltrans::solid::SolidError;
 use colltrans::{BuildError, CaseError, CertificateError, PoseError, QueryError};
 use colltrans_assembly::{AssemblyError, ReadError};
-use colltrans_mesh::body::{LoadError, Refused};
+use colltrans_mesh::body::{LoadError, Refused, Take};
 use pyo3::prelude::*;
 use pyo3::types::PyType;
 
@@ -79,8 +79,33 @@ impl<T, E: Raised> OrRaise<T> for Result<T, E> {
 impl<T> OrRaise<T> for Result<T, LoadError> {
     fn or_raise(self) -> PyResult<T> {
         self.map_err(|what| match what {
+            LoadError::Mesh(what) if what.is_missing_file() => error("MissingFileError", what),
             LoadError::Mesh(what) => error("MeshError", what),
-            LoadError::Body { .. } => error("BuildError", what),
+            LoadError::Body { ref source, .. } => match calls_instead(source) {
+                Some(calls) => error("BuildError", format_args!("{what}; {calls}")),
+                None => error("BuildError", what),
+            },
         })
     }
+}
+
+/// Returns the calls that would take a file whose mesh was refused.
+fn calls_instead(refused: &Refused) -> Option<String> {
+    let calls = refused.instead().iter().map(|take| match take {
+        Take::Convex => "read(path) reads a convex body",
+        Take::Solid => "Solid.read(path) reads it as it is",
+        Take::Hull => "read(path, hull=True) reads its convex hull",
+        Take::Open => "Solid.read(path, open=True) reads an open surface",
+    });
+    Some(calls.collect::<Vec<_>>().join(", ")).filter(|calls| !calls.is_empty())
+}
+
+/// Warns that a rotation of few digits was replaced by the nearest one.
+pub(crate) fn warn_of_rounded_pose(py: Python<'_>, name: &str, defect: f64) -> PyResult<()> {
+    let message = format!(
+        "{name}: the rotation is off one by {defect:.1e}; the nearest rotation is used, and a \
+         direction may be off by as much"
+    );
+    let class = class_called(py, "RoundedPoseWarning")?;
+    PyErr::warn(py, &class, &std::ffi::CString::new(message)?, 1)
 }

@@ -1,5 +1,6 @@
 //! What a body does, and when two such bodies first meet.
 
+use colltrans::glam::DVec3;
 use colltrans::motion::{self, MotionCase, MotionOutcome, MotionProofFile, SolidMotionProofFile};
 use colltrans::record::Record;
 use colltrans::solid::StartOverlap;
@@ -7,13 +8,13 @@ use colltrans::{ConvexPolyhedron, QueryError, Solid};
 use colltrans_mesh::body::between_motions;
 use numpy::PyArray1;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyTuple};
 use serde::{Deserialize, Serialize};
 
 use crate::answer::{Answer, answer, object};
-use crate::arrays::{row, vector};
+use crate::arrays::{Numbers, Shape, coordinates, numbers, row, vector};
 use crate::body;
-use crate::errors::{OrRaise, error, query_error};
+use crate::errors::{OrRaise, error, input, query_error};
 use crate::features::{Feature, Features};
 use crate::frozen::{Options, Shown, html, pickled, show};
 use crate::pair::Of;
@@ -25,16 +26,17 @@ use crate::solid_cast::patiently;
 /// through poses.
 ///
 /// Made by :meth:`still`, :meth:`slide`, :meth:`turn`, :meth:`screw`, :meth:`thrown`, :meth:`between`,
-/// :meth:`through` and :meth:`about`. Angles are in radians. Answers hold of the motion as the real
-/// function of its numbers.
+/// :meth:`through` and :meth:`about`. Angles are keywords, ``degrees=`` or ``radians=``. Answers hold of the
+/// motion as the real function of its numbers.
 ///
 /// Examples
 /// --------
-/// >>> import math
 /// >>> from colltrans import Motion
-/// >>> door = Motion.turn([0, 0, 0], [0, 0, 1], math.pi / 2)
+/// >>> door = Motion.turn([0, 0, 0], [0, 0, 1], degrees=90)
 /// >>> door.at(1).rotation.round(12)[0]
 /// array([ 0., -1.,  0.])
+/// >>> door
+/// Motion.turn([0.0, 0.0, 0.0], [0.0, 0.0, 1.0], radians=1.5707963267948966)
 #[pyclass(frozen, eq, module = "colltrans")]
 #[derive(Clone, PartialEq, Serialize, Deserialize)]
 #[serde(transparent)]
@@ -65,32 +67,56 @@ impl Motion {
             .map(Self)
     }
 
-    /// A turn about an axis through a point of the world, counter-clockwise as seen against the axis.
+    /// Turns about an axis through a point of the world, counter-clockwise as seen against the axis.
+    ///
+    /// Parameters
+    /// ----------
+    /// point, axis : array_like of shape (3,)
+    ///     A point of the axis, and its direction, of any length above 0.
+    /// degrees, radians : float
+    ///     The angle: one of the two, by its name.
+    /// pose : array_like, Pose or object with ``as_matrix()``, optional
+    ///     Where the body is at time 0.
+    ///
+    /// Raises
+    /// ------
+    /// InputError
+    ///     An angle without its unit, with both units, or none.
     #[staticmethod]
-    #[pyo3(signature = (point, axis, angle, *, pose=None))]
+    #[pyo3(signature = (point, axis, *angle, degrees=None, radians=None, pose=None))]
     fn turn(
         point: &Bound<'_, PyAny>,
         axis: &Bound<'_, PyAny>,
-        angle: f64,
+        angle: &Bound<'_, PyTuple>,
+        degrees: Option<f64>,
+        radians: Option<f64>,
         pose: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        Self::screw(point, axis, angle, 0.0, pose)
+        let angle = angle_in_radians("turn(point, axis", angle, degrees, radians)?;
+        Self::of_screw(point, axis, angle, 0.0, pose)
     }
 
-    /// A turn about an axis, which itself moves along its own direction by ``rise``.
+    /// Turns about an axis, which itself moves along its own direction by ``rise``, a length.
+    ///
+    /// Parameters
+    /// ----------
+    /// point, axis, degrees, radians, pose
+    ///     As for :meth:`turn`.
+    /// rise : float
+    ///     By how much the axis moves along its direction.
     #[staticmethod]
-    #[pyo3(signature = (point, axis, angle, rise, *, pose=None))]
+    #[pyo3(signature = (point, axis, *angle, rise, degrees=None, radians=None, pose=None))]
     fn screw(
         point: &Bound<'_, PyAny>,
         axis: &Bound<'_, PyAny>,
-        angle: f64,
+        angle: &Bound<'_, PyTuple>,
         rise: f64,
+        degrees: Option<f64>,
+        radians: Option<f64>,
         pose: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
-        let (point, axis) = (vector(point, "point")?, vector(axis, "axis")?);
-        motion::Motion::screw(crate::pose::pose(pose, "pose")?, point, axis, angle, rise)
-            .or_raise()
-            .map(Self)
+        let angle = angle_in_radians("screw(point, axis, rise=...", angle, degrees, radians)?;
+        Self::of_screw(point, axis, angle, rise, pose)
     }
 
     /// A point of the body, given in the world, goes straight by ``velocity``, and the body turns about it
@@ -131,17 +157,20 @@ impl Motion {
         motion::Motion::through(&poses).or_raise().map(Self)
     }
 
-    /// By the numbers that define it: the way from a point of the axis to the origin of the body's frame,
-    /// the axis, the angle, and the way of the axis.
+    /// Makes a motion from the numbers that define it: the vector from a point of the axis to the origin of
+    /// the body's frame, the axis, the angle, and the translation of the axis.
     #[staticmethod]
-    #[pyo3(signature = (arm, axis, angle, way, *, pose=None))]
+    #[pyo3(signature = (arm, axis, way, *angle, degrees=None, radians=None, pose=None))]
     fn about(
         arm: &Bound<'_, PyAny>,
         axis: &Bound<'_, PyAny>,
-        angle: f64,
         way: &Bound<'_, PyAny>,
+        angle: &Bound<'_, PyTuple>,
+        degrees: Option<f64>,
+        radians: Option<f64>,
         pose: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
+        let angle = angle_in_radians("about(arm, axis, way", angle, degrees, radians)?;
         let start = crate::pose::pose(pose, "pose")?;
         let (arm, axis, way) = (vector(arm, "arm")?, vector(axis, "axis")?, vector(way, "way")?);
         motion::Motion::about(start, arm, axis, angle, way).or_raise().map(Self)
@@ -158,18 +187,99 @@ impl Motion {
         Pose(self.0.start())
     }
 
+    /// Writes a call that makes the motion again, to rounding: its kind, axis, angle and the pose at time 0.
     fn __repr__(&self) -> String {
-        let t = self.0.start().translation().to_array().map(|c| c + 0.0);
-        format!("Motion(from {t:?})")
+        let start = Pose(self.0.start()).text();
+        let [piece] = self.0.pieces() else {
+            return format!("Motion.through({} screws, from {start})", self.0.pieces().len());
+        };
+        let pose = if self.0.start() == colltrans::Pose::IDENTITY {
+            String::new()
+        } else {
+            format!("pose={start}")
+        };
+        let point = piece.start.translation() - piece.arm;
+        let [point, axis, arm, way] =
+            [point, piece.axis, piece.arm, piece.velocity].map(coordinates);
+        let rise = piece.velocity.dot(piece.axis);
+        let (kind, mut arguments) = if piece.rate == 0.0 && piece.velocity == DVec3::ZERO {
+            ("still", Vec::new())
+        } else if piece.rate == 0.0 {
+            ("slide", vec![format!("{way:?}")])
+        } else if piece.velocity == DVec3::ZERO {
+            ("turn", vec![format!("{point:?}"), format!("{axis:?}")])
+        } else if piece.velocity == piece.axis * rise {
+            ("screw", vec![format!("{point:?}"), format!("{axis:?}"), format!("rise={rise:?}")])
+        } else {
+            ("about", vec![format!("{arm:?}"), format!("{axis:?}"), format!("{way:?}")])
+        };
+        if piece.rate != 0.0 {
+            arguments.push(format!("radians={:?}", piece.rate));
+        }
+        arguments.extend((!pose.is_empty()).then_some(pose));
+        format!("Motion.{kind}({})", arguments.join(", "))
     }
 }
 
-/// What an argument says about what a body does: a motion, or a pose at which it rests.
-fn motion_of(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<motion::Motion> {
-    match of.map(Bound::cast::<Motion>) {
-        Some(Ok(motion)) => Ok(motion.get().0.clone()),
-        _ => Ok(motion::Motion::still(pose(of, name)?)),
+impl Motion {
+    fn of_screw(
+        point: &Bound<'_, PyAny>,
+        axis: &Bound<'_, PyAny>,
+        angle: f64,
+        rise: f64,
+        pose: Option<&Bound<'_, PyAny>>,
+    ) -> PyResult<Self> {
+        let (point, axis) = (vector(point, "point")?, vector(axis, "axis")?);
+        motion::Motion::screw(crate::pose::pose(pose, "pose")?, point, axis, angle, rise)
+            .or_raise()
+            .map(Self)
     }
+}
+
+/// Returns the angle of `Motion.{call}, ...)` in radians. Refuses one that does not name its unit.
+fn angle_in_radians(
+    call: &str,
+    positional: &Bound<'_, PyTuple>,
+    degrees: Option<f64>,
+    radians: Option<f64>,
+) -> PyResult<f64> {
+    let named = match (degrees, radians) {
+        (Some(degrees), None) => Some(degrees.to_radians()),
+        (None, radians) => radians,
+        (Some(_), Some(_)) => None,
+    };
+    named.filter(|_| positional.is_empty()).ok_or_else(|| {
+        let given = positional.iter().next().map_or_else(|| "90".into(), |angle| angle.to_string());
+        let wrong = match (degrees, radians) {
+            (Some(_), Some(_)) => "has two units",
+            (None, None) if positional.is_empty() => "is missing",
+            _ => "has no unit",
+        };
+        let calls = ["degrees", "radians"].map(|unit| format!("Motion.{call}, {unit}={given})"));
+        input("angle", format_args!("it {wrong}: call {} or {}", calls[0], calls[1]))
+    })
+}
+
+/// Returns the motion that an argument gives: a motion, or a pose at which the body rests. Refuses three
+/// numbers, since they could be a displacement as well as a place.
+fn motion_of(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<motion::Motion> {
+    let Some(given) = of else { return Ok(motion::Motion::still(colltrans::Pose::IDENTITY)) };
+    if let Ok(motion) = given.cast::<Motion>() {
+        return Ok(motion.get().0.clone());
+    }
+    let is_pose = given.is_instance_of::<Pose>() || given.getattr_opt("as_matrix")?.is_some();
+    let bare = if is_pose { None } else { Some(numbers(given, name)?) };
+    if let Some(Numbers { values: [x, y, z, ..], shape: Shape::Row(3) }) = bare {
+        let vector = [x, y, z].map(|c| c + 0.0);
+        return Err(input(
+            name,
+            format_args!(
+                "{vector:?} could be a displacement or a place: Motion.slide({vector:?}) moves the \
+                 body by it, Motion.still({vector:?}) lets the body rest there"
+            ),
+        ));
+    }
+    Ok(motion::Motion::still(pose(of, name)?))
 }
 
 /// Two bodies and what they do, as a value: asked when they first meet, saved and replayed.
@@ -178,8 +288,10 @@ fn motion_of(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<motion::Moti
 /// ----------
 /// moving, fixed : ConvexPolyhedron or Solid
 ///     If one of them is a solid, both are asked as solids.
-/// moving_motion, fixed_motion : Motion, array_like or Pose, optional
-///     What they do; a pose stands for rest.
+/// moving_motion, fixed_motion : Motion, Pose or array_like, optional
+///     What they do. A :class:`Pose`, or seven numbers or a matrix that give one, stands for rest. Three
+///     numbers are refused, because they could be a displacement (:meth:`Motion.slide`) or a place
+///     (:meth:`Motion.still`).
 /// keep : float
 ///     A gap to be kept, a length: asked is when the bodies are first as near as that.
 /// tolerance : float, optional
@@ -197,11 +309,10 @@ fn motion_of(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<motion::Moti
 ///
 /// Examples
 /// --------
-/// >>> import math
 /// >>> from colltrans import ConvexPolyhedron, Motion, MotionCast
 /// >>> door = ConvexPolyhedron.cuboid([0, -0.02, 0], [1, 0.02, 2])
 /// >>> post = ConvexPolyhedron.cuboid([0.55, 0.55, 0], [0.65, 0.65, 2])
-/// >>> swing = Motion.turn([0, 0, 0], [0, 0, 1], math.pi / 2)
+/// >>> swing = Motion.turn([0, 0, 0], [0, 0, 1], degrees=90)
 /// >>> found = MotionCast(door, post, moving_motion=swing).first_contact()
 /// >>> found.outcome, round(found.lower, 9), found.upper - found.lower < 1e-11
 /// ('contact', 0.432115832, True)
@@ -873,9 +984,9 @@ pub(crate) fn first_contact(
 /// >>> from colltrans import ConvexPolyhedron, Motion, motion_clearance
 /// >>> block = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
 /// >>> table = ConvexPolyhedron.cuboid([-4, -4, -1], [4, 4, 0])
-/// >>> motion_clearance(block, table, Motion.turn([0.5, 0.5, 0], [0, 0, 1], 2))
+/// >>> motion_clearance(block, table, Motion.turn([0.5, 0.5, 0], [0, 0, 1], radians=2))
 /// MotionClearance("free", time=1.0)
-/// >>> motion_clearance(block, table, Motion.turn([0.5, 0.5, 0], [1, 0, 0], 2))
+/// >>> motion_clearance(block, table, Motion.turn([0.5, 0.5, 0], [1, 0, 0], radians=2))
 /// MotionClearance("blocked", time=0.0)
 #[pyfunction]
 #[pyo3(signature = (moving, fixed, moving_motion, fixed_motion=None, *, keep=0.0, tolerance=None,

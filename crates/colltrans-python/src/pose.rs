@@ -3,9 +3,10 @@
 use colltrans::glam::{DMat3, DQuat, DVec3};
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
+use pyo3::types::PySequence;
 
 use crate::arrays::{Numbers, Shape, numbers, plain_numbers, row, table};
-use crate::errors::{OrRaise, input};
+use crate::errors::{OrRaise, input, warn_of_rounded_pose};
 
 /// A rigid placement of a body in the world: ``x_world = R @ x_body + t``.
 ///
@@ -14,12 +15,14 @@ use crate::errors::{OrRaise, input};
 /// source : array_like, Pose or object with ``as_matrix()``, optional
 ///     A translation ``(3,)``; a translation and a unit quaternion ``(7,)``: x, y, z, then
 ///     qx, qy, qz, qw; a matrix ``(3, 4)`` or ``(4, 4)``, whose entries are taken as they are; or
-///     something that has one (``scipy.spatial.transform``). The identity without.
+///     something that has one (``scipy.spatial.transform``). The identity without. A rotation of few
+///     digits, off one by more than 1e-6 and at most 0.02, becomes the nearest rotation, with a
+///     ``RoundedPoseWarning``.
 ///
 /// Raises
 /// ------
 /// PoseError
-///     A rotation that is off one by more than 1e-6, a translation that is not finite or out of range.
+///     A rotation that is off one by more than 0.02, a translation that is not finite or out of range.
 /// InputError
 ///     Another shape.
 ///
@@ -84,9 +87,16 @@ impl Pose {
     }
 
     fn __repr__(&self) -> String {
+        format!("Pose({})", self.text())
+    }
+}
+
+impl Pose {
+    /// Returns the numbers that make the pose again, to rounding: three if it does not turn, else seven.
+    pub(crate) fn text(&self) -> String {
         let (t, q) = (self.0.translation(), self.0.rotation());
         let numbers = [t.x, t.y, t.z, q.x, q.y, q.z, q.w].map(|c| c + 0.0);
-        format!("Pose({numbers:?})")
+        format!("{numbers:?}")
     }
 }
 
@@ -98,9 +108,11 @@ pub(crate) fn pose(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<colltr
     }
     let found = if let Some(found) = plain_numbers(of) {
         found
+    } else if let Err(refused) = refuse_list_of_poses(of, name) {
+        return Err(refused);
     } else if let Some(as_matrix) = of.getattr_opt("as_matrix")? {
         let found = numbers(&as_matrix.call0()?, name)?;
-        return of_matrix(&found, true, name);
+        return of_matrix(of.py(), &found, true, name);
     } else {
         numbers(of, name)?
     };
@@ -110,14 +122,21 @@ pub(crate) fn pose(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<colltr
         Shape::Row(3) => colltrans::Pose::from_translation(translation).or_raise(),
         Shape::Row(7) => {
             let [_, _, _, x, y, z, w, ..] = found.values;
-            colltrans::Pose::new(DQuat::from_xyzw(x, y, z, w), translation).or_raise()
+            let rotation = DQuat::from_xyzw(x, y, z, w);
+            let rounded = colltrans::Pose::from_rounded(rotation, translation).or_raise()?;
+            reported(of.py(), rounded, name)
         }
-        _ => of_matrix(&found, false, name),
+        _ => of_matrix(of.py(), &found, false, name),
     }
 }
 
 /// From a matrix with or without a fourth row; a rotation alone where the argument is known to be one.
-fn of_matrix(found: &Numbers, rotation_alone: bool, name: &str) -> PyResult<colltrans::Pose> {
+fn of_matrix(
+    py: Python<'_>,
+    found: &Numbers,
+    rotation_alone: bool,
+    name: &str,
+) -> PyResult<colltrans::Pose> {
     let v = &found.values;
     let (columns, translation) = match found.shape {
         Shape::Table(3, 4) => (4, DVec3::new(v[3], v[7], v[11])),
@@ -137,5 +156,32 @@ fn of_matrix(found: &Numbers, rotation_alone: bool, name: &str) -> PyResult<coll
     };
     let column = |j: usize| DVec3::new(v[j], v[columns + j], v[2 * columns + j]);
     let matrix = DMat3::from_cols(column(0), column(1), column(2));
-    colltrans::Pose::from_matrix(matrix, translation).or_raise()
+    let rounded = colltrans::Pose::from_rounded_matrix(matrix, translation).or_raise()?;
+    reported(py, rounded, name)
+}
+
+/// Returns the pose, with a warning if its rotation was replaced by the nearest one.
+fn reported(
+    py: Python<'_>,
+    (pose, defect): (colltrans::Pose, Option<f64>),
+    name: &str,
+) -> PyResult<colltrans::Pose> {
+    defect.map_or(Ok(()), |defect| warn_of_rounded_pose(py, name, defect))?;
+    Ok(pose)
+}
+
+/// Refuses a list of poses where one pose is expected.
+fn refuse_list_of_poses(given: &Bound<'_, PyAny>, name: &str) -> PyResult<()> {
+    let Ok(list) = given.cast::<PySequence>() else { return Ok(()) };
+    if list.len()? == 0 || !list.get_item(0)?.is_instance_of::<Pose>() {
+        return Ok(());
+    }
+    let count = list.len()?;
+    Err(input(
+        name,
+        format_args!(
+            "a list of {count} poses, where one is expected; functions in bulk (cast_many, \
+             distance_many, ...) take a list, one for each row"
+        ),
+    ))
 }

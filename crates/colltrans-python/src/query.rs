@@ -10,7 +10,7 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::arrays::{row, vector};
-use crate::body::ConvexPolyhedron;
+use crate::body::{ConvexArgument, ConvexPolyhedron};
 use crate::errors::{OrRaise, error, query_error};
 use crate::frozen::{Options as Shows, Shown, html, show};
 use crate::pose::{Pose, pose};
@@ -135,8 +135,8 @@ impl Cast {
         *, moving_pose=None, fixed_pose=None, graze_tolerance=0.0, keep=0.0, solver='auto')")]
     #[expect(clippy::too_many_arguments, reason = "they are keywords")]
     fn new(
-        moving: &Bound<'_, ConvexPolyhedron>,
-        fixed: &Bound<'_, ConvexPolyhedron>,
+        moving: ConvexArgument<'_>,
+        fixed: ConvexArgument<'_>,
         direction: &Bound<'_, PyAny>,
         moving_pose: Option<&Bound<'_, PyAny>>,
         fixed_pose: Option<&Bound<'_, PyAny>>,
@@ -145,6 +145,7 @@ impl Cast {
         solver: Option<&Bound<'_, PyAny>>,
     ) -> PyResult<Self> {
         let poses = [moving_pose, fixed_pose];
+        let (moving, fixed) = (&moving.0, &fixed.0);
         let query =
             Self::of(Arguments { moving, fixed, direction, poses, graze_tolerance, keep, solver })?;
         query.with(|_| ())?;

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBool;
 
 use crate::answer::Answer;
-use crate::body::ConvexPolyhedron;
+use crate::body::ConvexArgument;
 use crate::certificate::{Certificate, Separation, SolidCertificate};
 use crate::distance::{depth_of, distance_of, within_of};
 use crate::errors::{OrRaise, error};
@@ -202,8 +202,8 @@ macro_rules! question {
         #[expect(clippy::too_many_arguments, reason = "they are keywords")]
         pub(crate) fn $name<'py>(
             py: Python<'py>,
-            moving: &Bound<'py, ConvexPolyhedron>,
-            fixed: &Bound<'py, ConvexPolyhedron>,
+            moving: ConvexArgument<'py>,
+            fixed: ConvexArgument<'py>,
             direction: &Bound<'py, PyAny>,
             moving_pose: Option<&Bound<'py, PyAny>>,
             fixed_pose: Option<&Bound<'py, PyAny>>,
@@ -212,6 +212,7 @@ macro_rules! question {
             solver: Option<&Bound<'py, PyAny>>,
         ) -> PyResult<Bound<'py, PyAny>> {
             let poses = [moving_pose, fixed_pose];
+            let (moving, fixed) = (&moving.0, &fixed.0);
             let asked =
                 Arguments { moving, fixed, direction, poses, graze_tolerance, keep, solver };
             answered(&Bound::new(py, Cast::of(asked)?)?, |cast| cast.$ask())

@@ -17,8 +17,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use crate::arrays::{self, faces, ids, points, read_only, table};
-use crate::body::ConvexPolyhedron;
-use crate::errors::OrRaise;
+use crate::body::{ConvexPolyhedron, maker, refuse_mesh_object};
+use crate::errors::{OrRaise, input};
 use crate::frozen::{Options, Shown, html, show};
 use crate::offset::ShrinkReport;
 
@@ -46,7 +46,10 @@ impl Piece {
             return Ok(Self::Solid(solid.clone().unbind()));
         }
         let what = thing.get_type().name()?;
-        let message = format!("{name}: neither a ConvexPolyhedron nor a Solid, but {what}");
+        let message = format!(
+            "{name}: neither a ConvexPolyhedron nor a Solid, but {what}; {}",
+            maker(thing)?
+        );
         Err(PyTypeError::new_err(message))
     }
 
@@ -168,13 +171,18 @@ impl Solid {
 #[pymethods]
 impl Solid {
     #[new]
-    #[pyo3(signature = (vertices, faces, *, open=false))]
+    #[pyo3(signature = (vertices, faces=None, *, open=false))]
     fn new(
         py: Python<'_>,
         vertices: &Bound<'_, PyAny>,
-        faces: &Bound<'_, PyAny>,
+        faces: Option<&Bound<'_, PyAny>>,
         open: bool,
     ) -> PyResult<Self> {
+        refuse_mesh_object(vertices, "vertices", "Solid.from_trimesh(mesh)")?;
+        let Some(faces) = faces else {
+            let what = "they are missing; ConvexPolyhedron(points) makes the hull of points alone";
+            return Err(input("faces", what));
+        };
         let (vertices, faces) = (points(vertices, "vertices")?, self::faces(faces)?);
         let options = BodyOptions::default().with_open(open);
         py.detach(|| Self::of_mesh(Mesh::new(vertices, faces), options)).or_raise()
@@ -221,7 +229,7 @@ impl Solid {
     #[staticmethod]
     fn from_trimesh(py: Python<'_>, mesh: &Bound<'_, PyAny>) -> PyResult<Self> {
         let [vertices, faces] = arrays::mesh(mesh)?;
-        Self::new(py, &vertices, &faces, false)
+        Self::new(py, &vertices, Some(&faces), false)
     }
 
     /// Reads a part from a mesh file: STL, OBJ, PLY, OFF or COLLADA.
@@ -257,7 +265,7 @@ impl Solid {
         merge_tolerance: Option<f64>,
     ) -> PyResult<Self> {
         if !scale.is_finite() || scale <= 0.0 {
-            return Err(crate::errors::input("scale", format_args!("{scale} is not positive")));
+            return Err(input("scale", format_args!("{scale} is not positive")));
         }
         let options = BodyOptions::default()
             .with_scale(scale)

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use self_cell::self_cell;
 
 use crate::answer::Answer;
-use crate::body::ConvexPolyhedron;
+use crate::body::{ConvexArgument, ConvexPolyhedron};
 use crate::errors::error;
 use crate::features::Steps;
 use crate::query::{Arguments, Cast};
@@ -153,8 +153,8 @@ macro_rules! questions {
                 fn $name<'py>(
                     &mut self,
                     py: Python<'py>,
-                    moving: &Bound<'py, ConvexPolyhedron>,
-                    fixed: &Bound<'py, ConvexPolyhedron>,
+                    moving: ConvexArgument<'py>,
+                    fixed: ConvexArgument<'py>,
                     direction: &Bound<'py, PyAny>,
                     moving_pose: Option<&Bound<'py, PyAny>>,
                     fixed_pose: Option<&Bound<'py, PyAny>>,
@@ -164,8 +164,8 @@ macro_rules! questions {
                 ) -> PyResult<Bound<'py, PyAny>> {
                     let poses = [moving_pose, fixed_pose];
                     let arguments = Arguments {
-                        moving,
-                        fixed,
+                        moving: &moving.0,
+                        fixed: &fixed.0,
                         direction,
                         poses,
                         graze_tolerance,

@@ -105,9 +105,11 @@ from colltrans.errors import (
     ColltransError,
     InputError,
     MeshError,
+    MissingFileError,
     NotConvergedError,
     PoseError,
     QueryError,
+    RoundedPoseWarning,
 )
 from colltrans.many import cast_many, clearance_many, contact_range_many
 from colltrans.motions import (
@@ -167,6 +169,7 @@ __all__ = [
     "Intersection",
     "LastContact",
     "MeshError",
+    "MissingFileError",
     "Motion",
     "MotionCast",
     "MotionClearance",
@@ -195,6 +198,7 @@ __all__ = [
     "RemovalMap",
     "Robot",
     "Rooms",
+    "RoundedPoseWarning",
     "Separated",
     "Separation",
     "ShrinkReport",

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from os import PathLike
-from typing import Any, Final, Literal, Protocol, TypeAlias, final, overload, type_check_only
+from typing import Any, Final, Literal, Never, Protocol, TypeAlias, final, overload, type_check_only
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -355,6 +355,7 @@ class ConvexPolyhedron:
         """
     def show(self, **options: Any) -> Any:
         """A picture of it: see :func:`colltrans.show`."""
+    def prepare(self) -> None: ...
     @property
     def nbytes(self) -> int:
         """int: Bytes of memory that the body occupies now; the sections that ``solver="cta"`` needs count
@@ -1018,7 +1019,9 @@ class Solid:
     Solid(4 vertices, 4 triangles)
     """
 
-    def __new__(cls, vertices: ArrayLike, faces: _Faces, *, open: bool = False) -> Solid: ...
+    def __new__(
+        cls, vertices: ArrayLike, faces: _Faces | None = None, *, open: bool = False
+    ) -> Solid: ...
     @staticmethod
     def from_pieces(pieces: Sequence[Solid | ConvexPolyhedron]) -> Solid:
         """The union of several bodies, which may overlap.
@@ -1535,11 +1538,24 @@ class Motion:
             A vector that is not finite or out of range; so do all others.
         """
     @staticmethod
-    def turn(point: ArrayLike, axis: ArrayLike, angle: float, *, pose: _Pose = None) -> Motion:
+    def turn(
+        point: ArrayLike,
+        axis: ArrayLike,
+        *angle: Never,
+        degrees: float | None = None,
+        radians: float | None = None,
+        pose: _Pose = None,
+    ) -> Motion:
         """A turn about an axis through a point of the world, counter-clockwise as seen against the axis."""
     @staticmethod
     def screw(
-        point: ArrayLike, axis: ArrayLike, angle: float, rise: float, *, pose: _Pose = None
+        point: ArrayLike,
+        axis: ArrayLike,
+        *angle: Never,
+        rise: float,
+        degrees: float | None = None,
+        radians: float | None = None,
+        pose: _Pose = None,
     ) -> Motion:
         """A turn about an axis, which itself moves along its own direction by ``rise``."""
     @staticmethod
@@ -1563,7 +1579,13 @@ class Motion:
         """
     @staticmethod
     def about(
-        arm: ArrayLike, axis: ArrayLike, angle: float, way: ArrayLike, *, pose: _Pose = None
+        arm: ArrayLike,
+        axis: ArrayLike,
+        way: ArrayLike,
+        *angle: Never,
+        degrees: float | None = None,
+        radians: float | None = None,
+        pose: _Pose = None,
     ) -> Motion:
         """By the numbers that define it: the way from a point of the axis to the origin of the body's frame,
         the axis, the angle, and the way of the axis.

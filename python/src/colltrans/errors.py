@@ -48,5 +48,13 @@ class MeshError(ColltransError, ValueError):
     """A mesh file that cannot be read, or holds something else than its name says."""
 
 
+class MissingFileError(MeshError, FileNotFoundError):
+    """A mesh file that does not exist."""
+
+
+class RoundedPoseWarning(UserWarning):
+    """A rotation that was written with few digits and replaced by the nearest rotation."""
+
+
 class AssemblyError(ColltransError, ValueError):
     """An assembly that cannot be read, a part that is none, or a name that no part has."""

@@ -33,8 +33,8 @@ Motions: TypeAlias = Motion | Sequence[Motion] | Mapping[str, Mapping[str, Array
 #: The kinds that have arrays, and how many numbers each of theirs has.
 KINDS: dict[str, dict[str, int]] = {
     "slide": {"by": 3},
-    "turn": {"point": 3, "axis": 3, "angle": 1},
-    "screw": {"point": 3, "axis": 3, "angle": 1, "rise": 1},
+    "turn": {"point": 3, "axis": 3, "radians": 1},
+    "screw": {"point": 3, "axis": 3, "radians": 1, "rise": 1},
     "thrown": {"center": 3, "velocity": 3, "angular_velocity": 3},
 }
 
@@ -93,7 +93,8 @@ def one_of(motions: list[Motion] | Floats, poses: Floats, i: int) -> Motion:
     if len(row) == 3:
         return Motion.slide(row, pose=pose)
     if len(row) == 8:
-        return Motion.screw(row[:3], row[3:6], float(row[6]), float(row[7]), pose=pose)
+        angle, rise = float(row[6]), float(row[7])
+        return Motion.screw(row[:3], row[3:6], radians=angle, rise=rise, pose=pose)
     return Motion.thrown(row[:3], row[3:6], row[6:], pose=pose)
 
 
@@ -165,9 +166,9 @@ def motion_many(
         As for :func:`distance_many`.
     moving_motion, fixed_motion : Motion, sequence of them, or dict
         What the bodies do: one motion for all rows, one for each, or ``{"screw": {"point", "axis",
-        "angle", "rise"}}``, ``{"turn": {"point", "axis", "angle"}}``, ``{"slide": {"by"}}`` or
+        "radians", "rise"}}``, ``{"turn": {"point", "axis", "radians"}}``, ``{"slide": {"by"}}`` or
         ``{"thrown": {"center", "velocity", "angular_velocity"}}`` with arrays of one row for all,
-        or one for each. None stands for rest.
+        or one for each. ``"degrees"`` may replace ``"radians"``. None stands for rest.
     moving_pose, fixed_pose : array_like, Pose or object with ``as_matrix()``, optional
         Where such a motion begins, or where a body rests, as for :func:`cast_many`. Motions that
         are objects have their own.
@@ -190,7 +191,8 @@ def motion_many(
     >>> import numpy as np
     >>> from colltrans import ConvexPolyhedron, motion_many
     >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
-    >>> turn = {"turn": {"point": [0, 0, 0], "axis": [0, 0, 1], "angle": np.array([1, 2, 3, 4e5])}}
+    >>> angles = np.array([1, 2, 3, 4e5])
+    >>> turn = {"turn": {"point": [0, 0, 0], "axis": [0, 0, 1], "radians": angles}}
     >>> columns = motion_many(cube, cube, turn, moving_pose=[2, 0, 0], fixed_pose=[-1, 2, 0])
     >>> columns
     MotionColumns(4 rows: 2 contact, 1 free, 1 error)
@@ -327,6 +329,9 @@ def numbers_of(motions: Mapping[str, Mapping[str, ArrayLike]], name: str) -> Sta
         raise InputError(f"{name}: one of {', '.join(KINDS)}, not {', '.join(map(str, motions))}")
     ((kind, given),) = motions.items()
     known = KINDS[kind]
+    if "radians" in known and "degrees" in given and "radians" not in given:
+        radians = np.radians(_arrays.floats(given["degrees"], f"{name}.degrees"))
+        given = {**{part: given[part] for part in given if part != "degrees"}, "radians": radians}
     if given.keys() != known.keys():
         raise InputError(f"{name}: {kind!r} has {', '.join(known)}, not {', '.join(given)}")
     parts: dict[str, Stack | None] = {}

@@ -5,6 +5,7 @@ are the queries, those along the last axis one after the other.
 """
 
 import os
+import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeAlias
@@ -14,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from colltrans import _arrays, _colltrans
 from colltrans._colltrans import ConvexPolyhedron, Cta, Pose, Solid
-from colltrans.errors import ColltransError, InputError
+from colltrans.errors import ColltransError, InputError, RoundedPoseWarning
 
 if TYPE_CHECKING:
     from colltrans._colltrans import HasMatrix
@@ -27,7 +28,7 @@ Bodies: TypeAlias = "ConvexPolyhedron | Sequence[ConvexPolyhedron | ColltransErr
 AnyBodies: TypeAlias = (
     "ConvexPolyhedron | Solid | Sequence[ConvexPolyhedron | Solid | ColltransError]"
 )
-Poses: TypeAlias = "ArrayLike | Pose | HasMatrix | None"
+Poses: TypeAlias = "ArrayLike | Pose | Sequence[Pose] | HasMatrix | None"
 Solver: TypeAlias = Literal["auto", "cta", "portal"] | Cta
 Question: TypeAlias = Literal["contact", "range", "clearance"]
 
@@ -228,22 +229,65 @@ def column(values: ArrayLike, name: str) -> Stack:
 def pose_table(values: Poses, name: str) -> Stack:
     if values is None:
         return Stack(np.zeros((1, 3)), ())
+    if isinstance(values, Sequence) and values and all(isinstance(v, Pose) for v in values):
+        values = np.array([pose.as_matrix() for pose in values])
     matrices = hasattr(values, "as_matrix")
     array = _arrays.floats(values.as_matrix() if matrices else values, name)  # type: ignore[union-attr]
     if matrices and array.shape[-2:] == (3, 3):
         array = np.concatenate([array, np.zeros((*array.shape[:-1], 1))], axis=-1)
     shape = array.shape
     if shape[-2:] in ((3, 4), (4, 4)):
-        return Stack(array.reshape(-1, 4 * shape[-2]), shape[:-2])
+        table = array.reshape(-1, 4 * shape[-2])
+        return Stack(nearest_rotations(table, name), shape[:-2])
     if shape[-2:] == (3, 3) and len(shape) > 2:
         told = "rotations are given as (N, 3, 4), and stacks of three translations with quaternions"
         raise InputError(f"{name}: an array of shape {shape}, which may be either: {told}")
     if shape and shape[-1] in (3, 7):
-        return Stack(array.reshape(-1, shape[-1]), shape[:-1])
+        return Stack(nearest_rotations(array.reshape(-1, shape[-1]), name), shape[:-1])
     raise InputError(
         f"{name}: an array of shape {shape}, not (3,), (7,), (3, 4) or (4, 4), "
         "nor a row of that for each query"
     )
+
+
+#: Largest defect of a rotation that is taken as one of few digits, and the least.
+FEW_DIGITS, UNIT_LENGTH = 0.02, 1e-6
+
+
+def nearest_rotations(table: Floats, name: str) -> Floats:
+    """Replaces rotations of few digits by the nearest ones, with one warning for all rows.
+
+    ``table`` has rows of 7, 12 or 16 numbers. Rows that are off by more are left to be refused.
+    """
+    if table.shape[1] == 7:
+        rotations = table[:, 3:]
+        defects = np.abs(np.linalg.norm(rotations, axis=1) - 1)
+    elif table.shape[1] > 7:
+        rotations = table.reshape(len(table), -1, 4)[:, :3, :3]
+        gram = np.einsum("nki,nkj->nij", rotations, rotations)
+        defects = np.abs(gram - np.eye(3)).max(axis=(1, 2))
+        defects[np.linalg.det(np.nan_to_num(rotations)) < 0] = 2
+    else:
+        return table
+    rounded = (defects > UNIT_LENGTH) & (defects <= FEW_DIGITS)
+    if not rounded.any():
+        return table
+    table = table.copy()
+    if table.shape[1] == 7:
+        table[rounded, 3:] /= np.linalg.norm(table[rounded, 3:], axis=1, keepdims=True)
+    else:
+        left, _, right = np.linalg.svd(rotations[rounded])
+        wide = table[rounded].reshape(int(rounded.sum()), -1, 4)
+        wide[:, :3, :3] = left @ right
+        table[rounded] = wide.reshape(len(wide), -1)
+    warnings.warn(
+        f"{name}: {int(rounded.sum())} of {len(table)} rotations are off one by up to "
+        f"{defects[rounded].max():.1e}; the nearest rotations are used, and directions may be off "
+        "by as much",
+        RoundedPoseWarning,
+        stacklevel=2,
+    )
+    return table
 
 
 def cores() -> int:

@@ -319,8 +319,8 @@ pub(super) const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON ob
   "motion" is `colltrans motion`, of bodies of any kind, of which one or both move.
   POSE = {"translation": [x,y,z], "rotation": [qx,qy,qz,qw]}, either may be missing
   MOTION = {"slide": {"by": [x,y,z]}}
-       or {"turn": {"point": [x,y,z], "axis": [x,y,z], "angle": RADIANS}}
-       or {"screw": {"point": [x,y,z], "axis": [x,y,z], "angle": RADIANS, "rise": L}}
+       or {"turn": {"point": [x,y,z], "axis": [x,y,z], "radians": ANGLE}}
+       or {"screw": {"point": [x,y,z], "axis": [x,y,z], "radians": ANGLE, "rise": L}}
        or {"thrown": {"center": [x,y,z], "velocity": [x,y,z], "angular_velocity": [x,y,z]}}
        or {"between": {"from": POSE, "to": POSE}} or {"through": {"poses": [POSE,...]}}
        or {"still": {}}, from the pose of the body on, unless it has its own

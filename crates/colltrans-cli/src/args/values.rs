@@ -7,11 +7,6 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use colltrans::glam::{DMat3, DQuat, DVec3};
 use colltrans::{NarrowFrom, Pose, Solver};
 
-/// How far the length of a quaternion may be from 1 without a remark.
-const UNIT_LENGTH: f64 = 1e-6;
-/// How far it may be from 1 at all: what two digits make of it.
-const FEW_DIGITS: f64 = 0.02;
-
 /// Moves that one step may have.
 const MOST_LEGS: usize = 1_000;
 
@@ -91,12 +86,12 @@ pub(crate) fn place(text: &str) -> Result<Place, String> {
             return Err(format!("{count} numbers, not 3 (x,y,z) or 7 (x,y,z,qx,qy,qz,qw)"));
         }
     };
-    let length = written.map_or(1.0, DQuat::length);
-    let is_rounded = (length - 1.0).abs() > UNIT_LENGTH && (length - 1.0).abs() <= FEW_DIGITS;
-    let rotation = written.map(|q| if is_rounded { q.normalize() } else { q });
-    // Whatever is wrong with either is said now.
-    Pose::new(rotation.unwrap_or_default(), translation).map_err(|e| e.to_string())?;
-    Ok(Place { translation, rotation, rounded: is_rounded.then_some(length) })
+    // Errors of either are reported here.
+    let (_, defect) =
+        Pose::from_rounded(written.unwrap_or_default(), translation).map_err(|e| e.to_string())?;
+    let rotation = written.map(|q| if defect.is_some() { q.normalize() } else { q });
+    let rounded = defect.and(written).map(DQuat::length);
+    Ok(Place { translation, rotation, rounded })
 }
 
 impl Place {

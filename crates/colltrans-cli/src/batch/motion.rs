@@ -20,14 +20,14 @@ pub(super) struct MotionSource {
     other: Option<String>,
 }
 
-/// One kind of motion; angles are in radians.
+/// One kind of motion. Angles name their unit: `radians` or `degrees`, one of the two.
 #[derive(Debug, serde::Deserialize)]
 #[serde(rename_all = "snake_case", rename_all_fields = "snake_case", deny_unknown_fields)]
 enum Kind {
     Still {},
     Slide { by: [f64; 3] },
-    Turn { point: [f64; 3], axis: [f64; 3], angle: f64 },
-    Screw { point: [f64; 3], axis: [f64; 3], angle: f64, rise: f64 },
+    Turn { point: [f64; 3], axis: [f64; 3], radians: Option<f64>, degrees: Option<f64> },
+    Screw { point: [f64; 3], axis: [f64; 3], radians: Option<f64>, degrees: Option<f64>, rise: f64 },
     Thrown { center: [f64; 3], velocity: [f64; 3], angular_velocity: [f64; 3] },
     Between { from: PoseSource, to: PoseSource },
     Through { poses: Vec<PoseSource> },
@@ -78,9 +78,12 @@ impl Kind {
         let motion = match self {
             Self::Still {} => Ok(Motion::still(start)),
             Self::Slide { by } => Motion::slide(start, v(*by)),
-            Self::Turn { point, axis, angle } => Motion::turn(start, v(*point), v(*axis), *angle),
-            Self::Screw { point, axis, angle, rise } => {
-                Motion::screw(start, v(*point), v(*axis), *angle, *rise)
+            Self::Turn { point, axis, radians, degrees } => {
+                Motion::turn(start, v(*point), v(*axis), angle_in_radians(*radians, *degrees)?)
+            }
+            Self::Screw { point, axis, radians, degrees, rise } => {
+                let angle = angle_in_radians(*radians, *degrees)?;
+                Motion::screw(start, v(*point), v(*axis), angle, *rise)
             }
             Self::Thrown { center, velocity, angular_velocity } => {
                 Motion::thrown(start, v(*center), v(*velocity), v(*angular_velocity))
@@ -95,6 +98,15 @@ impl Kind {
             }
         };
         motion.map_err(|error| error.to_string())
+    }
+}
+
+/// Returns an angle in radians from the one of two fields that is there.
+fn angle_in_radians(radians: Option<f64>, degrees: Option<f64>) -> Result<f64, String> {
+    match (radians, degrees) {
+        (Some(radians), None) => Ok(radians),
+        (None, Some(degrees)) => Ok(degrees.to_radians()),
+        _ => Err("an angle has one of the fields `radians` and `degrees`".into()),
     }
 }
 

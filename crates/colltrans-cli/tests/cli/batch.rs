@@ -391,10 +391,10 @@ fn motions_are_asked_in_lines() {
     };
     let asked = |more: &str| line(BOX, more);
     let there = r#""fixed_pose":{"translation":[3,0.1,0.1]}"#;
-    let turn = r#"{"turn":{"point":[0,0,0],"axis":[0,0,1],"angle":6}}"#;
+    let turn = r#"{"turn":{"point":[0,0,0],"axis":[0,0,1],"radians":6}}"#;
     let good = [
         (r#"{"slide":{"by":[4,0,0]}}"#, "contact"),
-        (r#"{"screw":{"point":[1.5,0,0],"axis":[0,0,1],"angle":3.5,"rise":0.5}}"#, "contact"),
+        (r#"{"screw":{"point":[1.5,0,0],"axis":[0,0,1],"radians":3.5,"rise":0.5}}"#, "contact"),
         (turn, "free"),
         (
             r#"{"thrown":{"center":[0,0,0],"velocity":[4,0,0],"angular_velocity":[1,2,3]}}"#,

@@ -49,20 +49,21 @@ pub struct Motion {
     pieces: Vec<Piece>,
 }
 
-/// What a body does from one time on.
+/// A piece of a [`Motion`]: an even turn about an axis that moves evenly, from one time on.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Piece {
-    pub(crate) since: f64,
-    /// Where it is then.
-    pub(crate) start: Pose,
-    /// From a point of the axis to the origin of the body's frame.
-    pub(crate) arm: DVec3,
-    /// Unit vector, to rounding.
-    pub(crate) axis: DVec3,
-    /// Radians in a unit of time.
-    pub(crate) rate: f64,
-    /// The way of the axis in a unit of time.
-    pub(crate) velocity: DVec3,
+pub struct Piece {
+    /// The time at which the piece begins.
+    pub since: f64,
+    /// The pose at that time.
+    pub start: Pose,
+    /// The vector from a point of the axis to the origin of the body's frame, in world units.
+    pub arm: DVec3,
+    /// The direction of the axis: a unit vector, to rounding.
+    pub axis: DVec3,
+    /// The angular velocity about the axis, in radians in a unit of time.
+    pub rate: f64,
+    /// The velocity of the axis, in world units in a unit of time.
+    pub velocity: DVec3,
 }
 
 /// Where a piece has brought its body: the rotation, and how far the frame has moved.
@@ -206,7 +207,8 @@ impl Motion {
         self.pieces[0].start
     }
 
-    pub(crate) fn pieces(&self) -> &[Piece] {
+    /// Returns the pieces that define the motion, in the order of time; the first begins at time 0.
+    pub fn pieces(&self) -> &[Piece] {
         &self.pieces
     }
 }

@@ -15,6 +15,14 @@ use crate::number::range::{MIN_MAGNITUDE, in_exact_range};
 /// identity: single precision passes.
 const TOLERANCE: f64 = 1e-6;
 
+/// How far the length of a quaternion, or an entry of `R^T R`, may be off for
+/// [`Pose::from_rounded`] and [`Pose::from_rounded_matrix`]: two written digits pass.
+const FEW_DIGITS: f64 = 0.02;
+
+/// Largest number of Newton steps towards the nearest rotation. Each squares the defect, so that
+/// two percent become rounding error in four.
+const MOST_POLAR_STEPS: usize = 8;
+
 /// A rigid placement of a body in the world: `x_world = R x_body + t`.
 ///
 /// ```
@@ -80,21 +88,55 @@ impl Pose {
     /// # Ok::<(), colltrans::PoseError>(())
     /// ```
     pub fn from_matrix(matrix: DMat3, translation: DVec3) -> Result<Self, PoseError> {
-        let off = off_rotation(matrix).into_iter();
-        let defect = off.map(f64::abs).fold(0.0, f64::max);
-        let defect = if !matrix.is_finite() {
-            f64::INFINITY
-        } else if matrix.determinant() < 0.0 {
-            2.0_f64.max(defect)
-        } else {
-            defect
-        };
+        let defect = largest_defect(matrix);
         if defect > TOLERANCE {
             let columns = matrix.to_cols_array_2d();
             return Err(PoseError::NotARotationMatrix { columns, defect, tolerance: TOLERANCE });
         }
         check_translation(translation)?;
         Ok(Self { matrix: flush_tiny(matrix), translation })
+    }
+
+    /// Builds a pose from a quaternion that was written with few digits: one whose length is off 1 by more than
+    /// 1e-6 and at most 0.02 is normalised. Returns its defect, `|length - 1|`, in that case.
+    ///
+    /// # Errors
+    /// As [`Self::new`], for a quaternion that is off by more.
+    ///
+    /// ```
+    /// use colltrans::Pose;
+    /// use colltrans::glam::{DQuat, DVec3};
+    ///
+    /// let quarter = DQuat::from_xyzw(0.0, 0.0, 0.707, 0.707);
+    /// assert!(Pose::new(quarter, DVec3::ZERO).is_err());
+    /// let (pose, defect) = Pose::from_rounded(quarter, DVec3::ZERO)?;
+    /// assert!(defect.is_some_and(|defect| (1e-4..2e-4).contains(&defect)));
+    /// assert!(pose.transform_point(DVec3::X).distance(DVec3::Y) < 1e-15);
+    /// # Ok::<(), colltrans::PoseError>(())
+    /// ```
+    pub fn from_rounded(
+        rotation: DQuat,
+        translation: DVec3,
+    ) -> Result<(Self, Option<f64>), PoseError> {
+        let defect = (rotation.length() - 1.0).abs();
+        let is_rounded = defect > TOLERANCE && defect <= FEW_DIGITS;
+        let rotation = if is_rounded { rotation.normalize() } else { rotation };
+        Ok((Self::new(rotation, translation)?, is_rounded.then_some(defect)))
+    }
+
+    /// Builds a pose from a matrix that was written with few digits: one that is off a rotation by more than 1e-6
+    /// and at most 0.02 becomes the nearest rotation, its polar factor. Returns its defect in that case.
+    ///
+    /// # Errors
+    /// As [`Self::from_matrix`], for a matrix that is off by more.
+    pub fn from_rounded_matrix(
+        matrix: DMat3,
+        translation: DVec3,
+    ) -> Result<(Self, Option<f64>), PoseError> {
+        let defect = largest_defect(matrix);
+        let is_rounded = defect > TOLERANCE && defect <= FEW_DIGITS;
+        let matrix = if is_rounded { nearest_rotation(matrix) } else { matrix };
+        Ok((Self::from_matrix(matrix, translation)?, is_rounded.then_some(defect)))
     }
 
     /// A translation alone.
@@ -220,6 +262,34 @@ fn matrix_of(rotation: DQuat) -> DMat3 {
         DVec3::new(off(x * y, -w * z), diagonal(x, z), off(y * z, w * x)),
         DVec3::new(off(x * z, w * y), off(y * z, -w * x), diagonal(x, y)),
     )
+}
+
+/// Returns the largest entry of `R^T R - I` by magnitude: at least 2 for a reflection, infinite if an entry is not
+/// finite.
+fn largest_defect(matrix: DMat3) -> f64 {
+    let defect = off_rotation(matrix).into_iter().map(f64::abs).fold(0.0, f64::max);
+    if !matrix.is_finite() {
+        f64::INFINITY
+    } else if matrix.determinant() < 0.0 {
+        2.0_f64.max(defect)
+    } else {
+        defect
+    }
+}
+
+/// Returns the rotation nearest to a matrix that is close to one, by Newton's iteration for the polar factor,
+/// `R <- (R + R^-T) / 2` (Higham, "Computing the polar decomposition", 1986).
+fn nearest_rotation(matrix: DMat3) -> DMat3 {
+    let mut rotation = matrix;
+    for _ in 0..MOST_POLAR_STEPS {
+        let next = (rotation + rotation.inverse().transpose()) * 0.5;
+        let step = (next - rotation).to_cols_array().map(f64::abs).into_iter().fold(0.0, f64::max);
+        rotation = next;
+        if step <= f64::EPSILON {
+            break;
+        }
+    }
+    rotation
 }
 
 /// The nine entries of `R^T R - 1`, which are 0 for a rotation.

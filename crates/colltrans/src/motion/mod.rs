@@ -76,7 +76,7 @@ pub use self::solid::{FacetsMeeting, FacetsMet, MotionCover, SolidMotionProof, S
 use self::span::{Span, spans};
 pub use self::verify::MotionProofError;
 pub use crate::body::error::MotionError;
-pub use crate::body::motion::{Motion, Moving};
+pub use crate::body::motion::{Motion, Moving, Piece as MotionPiece};
 use crate::body::{ConvexPolyhedron, Hull};
 use crate::number::noise::Noise;
 use crate::number::range::MAX_MAGNITUDE;

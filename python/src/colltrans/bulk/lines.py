@@ -4,6 +4,7 @@ A line that is no query is a row all the same, with the reason in the column :da
 """
 
 import json
+import math
 from collections.abc import Iterator
 from itertools import islice
 from pathlib import Path
@@ -84,10 +85,14 @@ def _plain(value: Any, name: str) -> Any:
     if kind not in ("screw", "turn") or not isinstance(value[kind], dict):
         raise ValueError(f'{name}: no {{"screw": ...}} and no {{"turn": ...}}')
     fields = {"rise": 0.0, **value[kind]} if kind == "turn" else value[kind]
-    if fields.keys() != {"point", "axis", "angle", "rise"}:
+    if "degrees" in fields and "radians" not in fields:
+        (degrees,) = _numbers([fields["degrees"]], f"{name}.degrees")
+        fields = {**fields, "radians": math.radians(degrees)}
+        del fields["degrees"]
+    if fields.keys() != {"point", "axis", "radians", "rise"}:
         raise ValueError(f"{name}: {kind!r} has other fields")
     point, axis = (_numbers(fields[part], f"{name}.{part}") for part in ("point", "axis"))
-    rest = _numbers([fields["angle"], fields["rise"]], f"{name}.angle")
+    rest = _numbers([fields["radians"], fields["rise"]], f"{name}.radians")
     if (len(point), len(axis)) != (3, 3):
         raise ValueError(f"{name}: a point and an axis have three numbers each")
     return [*point, *axis, *rest]

@@ -175,7 +175,7 @@ def _motion(queries: Any) -> dict[str, Any]:
     for name in screws:
         table = _vectors(queries, name, (8,))
         numbers = {"point": table[:, :3], "axis": table[:, 3:6]}
-        numbers |= {"angle": table[:, 6], "rise": table[:, 7]}
+        numbers |= {"radians": table[:, 6], "rise": table[:, 7]}
         found[name.replace("screw", "motion")] = {"screw": numbers}
     for name, missing in {"keep": 0.0, "tolerance": np.nan}.items():
         if name in names:

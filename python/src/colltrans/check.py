@@ -10,16 +10,18 @@ With the moving body ``P``, the fixed one ``Q``, the direction ``d``, all points
 
 - *Lower bound.* ``(min_Q n.q - max_P n.p) / n.d`` over all vertices, for ``n.d > 0``: no earlier
   translation makes the bodies meet. The one claimed must not be larger.
-- *Upper bound.* Where the line ``t d`` meets the triangle of the three differences ``q - p`` of the
-  certificate, the bodies meet. The bound claimed must not be smaller. Where rounding makes the line
-  miss that triangle (a contact at a vertex, an edge or a rim), the weighted mean of the pairs has
-  to come as near to the line as rounding explains; that is said.
-- *Slides.* ``max_P n.p - min_Q n.q`` over all vertices, for ``n`` across the direction: so much do
-  the bodies overlap seen along it, at most. The one claimed must not be smaller.
+- *Upper bound.* The weighted mean of the three differences ``q - p`` of the certificate comes as near
+  to the line ``t d`` as rounding explains. The bound claimed must not be smaller than where it does,
+  by what rounding makes of it. Where the line meets the triangle of the differences by then, the
+  bodies do meet; that is said.
+- *Slides.* ``(max_P n'.p - min_Q n'.q) / |n'|`` over all vertices, for what of ``n`` is across the
+  direction, ``n' = n (d.d) - d (n.d)``: so much do the bodies overlap seen along it, at most. The
+  one claimed must not be smaller.
 - *Bodies.* The faces of a convex body, if it has any, close up around all vertices, and none of
   their neighbours is above them by more than ``hull_error`` and rounding. No proof leans on them.
-- *Separation.* ``n' = n (d.d) - d (n.d)`` is orthogonal to ``d``; ``min_Q n'.q > max_P n'.p``
-  proves that the bodies never meet. The margin is checked along ``n``.
+- *Separation.* ``n'`` is orthogonal to ``d``; ``min_Q n'.q > max_P n'.p`` proves that the bodies never
+  meet, and ``(min_Q n'.q - max_P n'.p) / |n'|`` that their shadows are so far apart. The margin claimed
+  must not be larger.
 - *A gap to be kept*, ``g``: where bodies are said to meet, they are as near as that. ``g |n|`` is
   taken from what planes prove, and at the upper bound the weighted mean of the pairs is as near. Of
   solids it is not checked where two facets are.
@@ -28,7 +30,7 @@ With the moving body ``P``, the fixed one ``Q``, the direction ``d``, all points
   the pairs enclose the origin.
 - *Depth.* A translation of ``max_Q d.q - min_P d.p`` along the direction ``d`` parts the bodies. A
   closed surface of triangles between differences ``q - p`` winds around the origin, seen along a
-  ray that meets none of its edges, and none of its triangles is nearer than is claimed.
+  ray that meets none of its edges; none of its triangles is nearer than is claimed, or turned away.
 - *Solids.* A plane between them as above, and where the two facets that stop the body meet. What is
   said of all other facets (the covers) is not checked here: ``colltrans verify`` does that. Of a
   distance of solids the two points are checked, not that no others are nearer.
@@ -78,14 +80,23 @@ Triangle: TypeAlias = tuple[Vector, Vector, Vector]
 
 #: Rounding of one operation.
 _U = Fraction(1, 2**53)
-#: How far the length of a unit vector may be from 1, as the library has it.
-_UNIT_VECTOR = 32 * _U
+#: How far the length of a unit vector may be from 1: as the library has it, and an eighth more, as it rounds lengths.
+_UNIT_VECTOR = 36 * _U
 #: Rounding of a coordinate, in sizes of the configuration: the library's noise.
 _NOISE = 32 * _U
 #: What rounding makes of the difference of two bounds at most, in noises, of widened bodies too.
 _MOST_ROUNDING = 256
-#: A gap of so many noises or less is slight: points that are as near for certain may not be found.
-_SLIGHT = 9
+#: A gap of so many noises or less is slight: points that are as near for certain may not be found. As the library has
+#: it, and a little more, as it rounds noises; so are the next ones.
+_SLIGHT = 8 + Fraction(1, 64)
+#: So many noises witness points may miss each other by, and so many an upper bound is above them, over ``n.d``.
+_MISS, _RAISE = Fraction(13, 4), Fraction(11, 4)
+#: So many where no upper bound is claimed.
+_MISS_WIDENED = 46
+#: The largest ``rounding`` of a contact in noises, and what is added for a normal across the direction.
+_MOST_STATED = (63, 175)
+#: Magnitudes of coordinates that are not 0.
+_RANGE = (Fraction(1, 2**200), Fraction(2**200))
 #: No gap is to be kept.
 _NO_GAP = Fraction()
 #: How far a face may be from its plane, in sizes of the body, beyond its ``hull_error``.
@@ -125,6 +136,33 @@ def number(value: Any) -> Fraction:
     return Fraction(float(value))
 
 
+def coordinate(value: Any) -> Fraction:
+    """A number of the range that coordinates have."""
+    found = number(value)
+    if found and not _RANGE[0] <= abs(found) <= _RANGE[1]:
+        raise NoProofError(f"{value!r} is neither 0 nor a magnitude from 2^-200 to 2^200")
+    return found
+
+
+def fields(value: Any, needed: str, optional: str = "") -> dict[str, Any]:
+    """An object with these fields and no others; None for an optional one that is not there."""
+    if not isinstance(value, dict):
+        raise NoProofError(f"there has to be an object with {needed or optional}, not {value!r:.40}")
+    names = needed.split()
+    missing = [name for name in names if name not in value]
+    unknown = [name for name in value if name not in (*names, *optional.split())]
+    if missing or unknown:
+        raise NoProofError(f"fields are missing, {missing}, or are none of a proof, {unknown}")
+    return {name: None for name in optional.split()} | value
+
+
+def listed(value: Any, count: int | None = None) -> list[Any]:
+    """A list, of so many entries."""
+    if not isinstance(value, list) or (count is not None and len(value) != count):
+        raise NoProofError(f"{value!r:.40} is not a list" + (f" of {count}" if count else ""))
+    return value
+
+
 def whole(value: Any, end: int) -> int:
     """An index below ``end``."""
     if isinstance(value, bool) or not isinstance(value, int):
@@ -135,8 +173,14 @@ def whole(value: Any, end: int) -> int:
 
 
 def vector(values: Any) -> Vector:
-    x, y, z = values
+    x, y, z = listed(values, 3)
     return number(x), number(y), number(z)
+
+
+def place(values: Any) -> Vector:
+    """A vector whose coordinates are in their range."""
+    x, y, z = listed(values, 3)
+    return coordinate(x), coordinate(y), coordinate(z)
 
 
 def dot(a: Vector, b: Vector) -> Fraction:
@@ -182,13 +226,18 @@ class Body:
         points, facets = [], []
         ((kind, content),) = shape.items()
         if kind == "convex":
-            points = [vector(v) for v in content["vertices"]]
+            content = fields(content, "vertices faces input_indices hull_error")
+            points = [place(v) for v in listed(content["vertices"])]
             described(points, content)
         elif kind == "pieces":
-            for piece in content:
+            for each in listed(content):
+                piece = fields(each, "vertices triangles", "open")
+                if not isinstance(each.get("open", False), bool):
+                    raise NoProofError("a piece is open or it is not")
                 base = len(points)
-                points += [vector(v) for v in piece["vertices"]]
-                for a, b, c in piece["triangles"]:
+                points += [place(v) for v in listed(piece["vertices"])]
+                for triangle in listed(piece["triangles"]):
+                    a, b, c = listed(triangle, 3)
                     corners = [base + whole(k, len(points) - base) for k in (a, b, c)]
                     facets.append((corners[0], corners[1], corners[2]))
         else:
@@ -199,9 +248,9 @@ class Body:
 
     @classmethod
     def placed(cls, points: list[Vector], facets: list[tuple[int, int, int]], pose: Any) -> Body:
-        columns = [number(x) for x in pose["matrix"]]
-        if len(columns) != 9:
-            raise NoProofError("a pose has nine entries")
+        pose = fields(pose, "matrix translation")
+        entries = [number(x) for x in listed(pose["matrix"], 9)]
+        columns = [x if abs(x) >= _RANGE[0] else Fraction() for x in entries]
         x, y, z = (tuple(columns[k::3]) for k in range(3))
         rows: Matrix = ((x[0], x[1], x[2]), (y[0], y[1], y[2]), (z[0], z[1], z[2]))
         for i, j in product(range(3), repeat=2):
@@ -210,7 +259,7 @@ class Body:
                 raise NoProofError("a pose is not a rotation")
         if dot(rows[0], cross(rows[1], rows[2])) < 0:
             raise NoProofError("a pose is a reflection")
-        return cls(points, rows, vector(pose["translation"]), facets)
+        return cls(points, rows, place(pose["translation"]), facets)
 
     def at(self, k: int) -> Vector:
         """A point in the world."""
@@ -249,14 +298,14 @@ class Body:
 
 def described(points: list[Vector], content: Any) -> None:
     """Whether what a file says of a convex body beside its vertices fits them."""
-    inputs = [whole(k, 2**32) for k in content["input_indices"]]
+    inputs = [whole(k, 2**32) for k in listed(content["input_indices"])]
     # Of a body made larger or smaller, several vertices may come from one.
     if len(inputs) != len(points):
         raise RefusedError("the input indices are not one for each vertex")
     error = number(content["hull_error"])
-    if error < 0:
-        raise RefusedError(f"a hull error of {float(error)!r} is negative")
-    faces = [[whole(k, len(points)) for k in face] for face in content["faces"]]
+    if not 0 <= error <= _RANGE[1]:
+        raise RefusedError(f"a hull error of {float(error)!r} is negative, or larger than any body")
+    faces = [[whole(k, len(points)) for k in listed(face)] for face in listed(content["faces"])]
     if any(len(set(face)) != len(face) or len(face) < 3 for face in faces):
         raise RefusedError("a face has fewer than three corners, or one of them twice")
     sides = {side: face for face in faces for side in zip(face, face[1:] + face[:1], strict=True)}
@@ -337,6 +386,7 @@ def contact(
     keep: Fraction = _NO_GAP,
 ) -> None:
     """Both bounds of a certificate between convex bodies."""
+    proof = fields(proof, "normal lower pairs weights upper rounding")
     normal = vector(proof["normal"])
     unit(normal)
     along = dot(normal, d)
@@ -350,62 +400,61 @@ def contact(
     meet = f"are nearer than {float(keep)!r}" if keep else "meet"
     report.holds.append(f"{which}: the bodies {meet} at no translation below {float(lower)!r}")
 
-    weights: list[Fraction] = [number(w) for w in proof["weights"]]
-    total = sum(weights, Fraction())
-    if len(weights) != 3 or min(weights) < 0 or abs(total - 1) > _UNIT_VECTOR:
-        raise RefusedError(f"{which}: the weights are not those of a mean")
-    ends = [
-        (whole(pair["moving"], len(moving.points)), whole(pair["fixed"], len(fixed.points)))
-        for pair in proof["pairs"]
-    ]
-    if len(ends) != 3:
-        raise NoProofError("a certificate has three pairs")
+    noise = _NOISE * (size(moving, fixed) + keep)
+    stated(d, proof, noise, keep)
+    weights = listed(proof["weights"], 3)
+    ends = ends_of(moving, fixed, listed(proof["pairs"], 3))
+    corners = [minus(q, p) for p, q in ends]
+    point = mean(corners, weights)
+    estimate = dot(point, d) / dot(d, d)
+    off = minus(point, scaled(d, estimate))
+    miss = dot(off, off)
     if proof["upper"] is None:
+        if not keep and miss > (_MISS_WIDENED * noise) ** 2:
+            raise RefusedError(f"{which}: the witness points miss each other")
         report.unchecked.append(f"{which}: no upper bound is claimed")
         return
     upper = number(proof["upper"])
     if upper < lower:
         raise RefusedError(f"{which}: the bounds are in the wrong order")
-    corners = [minus(fixed.at(q), moving.at(p)) for p, q in ends]
-    noise = _NOISE * (Fraction(size(moving, fixed)) + keep)
-    mean = (Fraction(), Fraction(), Fraction())
-    for corner, weight in zip(corners, weights, strict=True):
-        mean = plus(mean, scaled(corner, weight / total))
-    between = minus(mean, scaled(d, upper))
+    between = minus(point, scaled(d, upper))
     if keep and above(keep, dot(between, between)):
         report.holds.append(f"{which}: the bodies are as near at one of at most {float(upper)!r}")
         return
     if keep > _SLIGHT * noise:
         raise RefusedError(f"{which}: the witness points are not as near as {float(keep)!r}")
     # Of so slight a gap it may be all that is proven that the bodies meet.
-    estimate = dot(mean, d) / dot(d, d)
-    off = minus(mean, scaled(d, estimate))
-    if dot(off, off) > (3 * noise) ** 2:
+    if miss > (_MISS * noise) ** 2:
         raise RefusedError(f"{which}: the witness points miss each other")
+    if upper < estimate + _RAISE * noise / along:
+        raise RefusedError(f"{which}: the pairs do not prove an upper bound of {float(upper)!r}")
     met = entry(corners, d)
-    if met is not None:
-        if met[0] > upper:
-            raise RefusedError(f"{which}: they meet at {float(met[0])!r}, not by {float(upper)!r}")
+    if met is not None and met[0] <= upper:
         report.holds.append(f"{which}: the bodies do meet at one of at most {float(upper)!r}")
-    elif upper >= estimate + Fraction(299, 100) * noise / along:
+    else:
         report.holds.append(
             f"{which}: the bodies meet at one of at most {float(upper)!r}, as far as rounding can "
-            f"tell (the witness points come within {math.sqrt(float(dot(off, off))):.1e})"
+            f"tell (the witness points come within {math.sqrt(float(miss)):.1e})"
         )
-    else:
-        raise RefusedError(f"{which}: the pairs do not prove an upper bound of {float(upper)!r}")
 
 
-def size(moving: Body, fixed: Body) -> float:
+def stated(d: Vector, proof: Any, noise: Fraction, keep: Fraction) -> None:
+    """Whether what a certificate says of rounding, which proves nothing, is within its limits."""
+    normal, rounding = vector(proof["normal"]), number(proof["rounding"])
+    sideways = cross(normal, d)
+    share = root_above(dot(sideways, sideways) / dot(d, d))
+    most, across = _MOST_STATED
+    slight = 2 * keep if keep <= _SLIGHT * noise else Fraction()
+    limit = (most + across * share) * noise + slight
+    if not 0 <= rounding * dot(normal, d) <= limit:
+        raise RefusedError(f"rounding does not explain {float(rounding)!r}")
+
+
+def size(moving: Body, fixed: Body) -> Fraction:
     """No two points are farther apart."""
     between = minus(fixed.offset, moving.offset)
-    return moving.reach() + fixed.reach() + math.sqrt(float(dot(between, between)))
-
-
-def gaps(moving: Body, fixed: Body, d: Vector, normal: Vector) -> tuple[Fraction, Fraction]:
-    """Between the bodies along a normal, and along what of it is orthogonal to the direction."""
-    along = [min(fixed.heights(n)) - max(moving.heights(n)) for n in (normal, across(d, normal))]
-    return along[0], along[1]
+    reach = moving.reach() + fixed.reach() + math.sqrt(float(dot(between, between)))
+    return max(Fraction(reach), _RANGE[0])
 
 
 def across(d: Vector, normal: Vector) -> Vector:
@@ -413,12 +462,28 @@ def across(d: Vector, normal: Vector) -> Vector:
     return minus(scaled(normal, dot(d, d)), scaled(d, dot(normal, d)))
 
 
-def sideways(moving: Body, fixed: Body, d: Vector, normal: Vector, keep: Fraction) -> Fraction:
-    """How much of the bodies, with a gap, is in each other's way along a normal across."""
+def are_shadows_apart(
+    moving: Body, fixed: Body, d: Vector, normal: Vector, by: Fraction
+) -> bool:
+    """Whether what of a normal is orthogonal to the direction proves that the shadows are a length apart.
+
+    A negative length is how far they overlap at most.
+    """
     unit(normal)
     if dot(normal, d) ** 2 > _UNIT_VECTOR**2 * dot(d, d):
-        raise RefusedError("the normal of the slide is not across the direction")
-    return keep - gaps(moving, fixed, d, normal)[0]
+        raise RefusedError("the normal is not across the direction")
+    level = across(d, normal)
+    gap, square = min(fixed.heights(level)) - max(moving.heights(level)), dot(level, level)
+    if by > 0:
+        return above(gap, by * by * square)
+    return gap >= 0 or gap * gap <= by * by * square
+
+
+def shadows_apart(moving: Body, fixed: Body, d: Vector, normal: Vector) -> float:
+    """How far the shadows are apart along what of a normal is orthogonal to the direction, nearly."""
+    level = across(d, normal)
+    gap = min(fixed.heights(level)) - max(moving.heights(level))
+    return float(gap) / math.sqrt(float(dot(level, level)))
 
 
 def never_near(keep: Fraction) -> str:
@@ -430,36 +495,26 @@ def slide(
     moving: Body, fixed: Body, d: Vector, claim: Any, report: Report, keep: Fraction = _NO_GAP
 ) -> None:
     """How much of the bodies, with a gap, is in each other's way, seen along the direction."""
+    claim = fields(claim, "normal overlap")
     normal, overlap = vector(claim["normal"]), number(claim["overlap"])
-    proven = sideways(moving, fixed, d, normal, keep)
-    if overlap < proven:
-        raise RefusedError(f"the bodies overlap by {float(proven)!r} there, not {float(overlap)!r}")
+    if not are_shadows_apart(moving, fixed, d, normal, keep - overlap):
+        proven = float(keep) - shadows_apart(moving, fixed, d, normal)
+        raise RefusedError(f"the bodies overlap by {proven!r} there, not {float(overlap)!r}")
     report.holds.append(
         "the bodies slide along each other: seen along the direction they overlap by at most "
         f"{float(overlap)!r}" + (f", with the gap of {float(keep)!r}" if keep else "")
     )
 
 
-def parted(
-    moving: Body, fixed: Body, d: Vector, normal: Vector, keep: Fraction
-) -> tuple[Fraction, bool]:
-    """The gap along a normal; whether a plane parallel to the direction keeps more than a gap."""
-    proven, level = gaps(moving, fixed, d, normal)
-    of = across(d, normal)
-    return proven, level > 0 and level * level > keep * keep * dot(of, of)
-
-
 def separation(
     moving: Body, fixed: Body, d: Vector, proof: Any, report: Report, keep: Fraction = _NO_GAP
 ) -> None:
     """A plane between convex bodies."""
+    proof = fields(proof, "normal margin")
     normal, margin = vector(proof["normal"]), number(proof["margin"])
-    unit(normal)
-    proven, is_beyond = parted(moving, fixed, d, normal, keep)
-    if not is_beyond:
-        raise RefusedError("no plane parallel to the direction keeps the bodies apart")
-    if not keep < margin <= proven:
-        raise RefusedError(f"the plane proves a margin of {float(proven)!r}, not {float(margin)!r}")
+    if margin <= keep or not are_shadows_apart(moving, fixed, d, normal, margin):
+        proven = shadows_apart(moving, fixed, d, normal)
+        raise RefusedError(f"the plane proves a margin of {proven!r}, not {float(margin)!r}")
     report.holds.append(
         f"the bodies {never_near(keep)}: a gap of {float(margin)!r} is between them"
     )
@@ -469,28 +524,33 @@ def clearance(
     moving: Body, fixed: Body, d: Vector, claim: Any, report: Report, keep: Fraction = _NO_GAP
 ) -> None:
     """What can be checked of solids without their trees."""
-    certificate = claim["certificate"]
+    claim = fields(claim, "start_overlap certificate", "stop separation")
+    certificate = fields(claim["certificate"], "tolerance start lower cover", "stop")
+    if claim["start_overlap"] not in ("refuse", "ignore"):
+        raise NoProofError(f"an overlap is refused or ignored, not {claim['start_overlap']!r}")
     tolerance = number(certificate["tolerance"])
-    plane, stop = claim.get("separation"), claim.get("stop")
+    plane, stop = claim["separation"], claim["stop"]
     if plane is not None:
+        plane = fields(plane, "normal margin")
         normal, margin = vector(plane["normal"]), number(plane["margin"])
-        unit(normal)
-        proven, is_beyond = parted(moving, fixed, d, normal, keep)
-        if margin <= keep or (tolerance == 0 and (not is_beyond or margin > proven)):
-            raise RefusedError(
-                f"the plane proves a margin of {float(proven)!r}, not {float(margin)!r}"
+        is_apart = are_shadows_apart(moving, fixed, d, normal, margin)
+        proven = shadows_apart(moving, fixed, d, normal)
+        if margin <= keep or (tolerance == 0 and not is_apart):
+            raise RefusedError(f"the plane proves a margin of {proven!r}, not {float(margin)!r}")
+        # Of the bodies as they are, where those that are shrunk are farther apart.
+        gap = margin if is_apart else Fraction(proven) * (1 - 8 * _U)
+        if gap > keep and are_shadows_apart(moving, fixed, d, normal, gap):
+            report.holds.append(
+                f"the bodies {never_near(keep)}: a gap of {float(gap)!r} is between them"
             )
-        if is_beyond:
-            gap = float(min(margin, proven))
-            report.holds.append(f"the bodies {never_near(keep)}: a gap of {gap!r} is between them")
-        if margin > proven:
+        if not is_apart:
             report.unchecked.append(f"the margin of the shrunk bodies, {float(margin)!r}")
     if (stop is None) != (certificate["stop"] is None):
         raise RefusedError("the certificate and the claim do not agree about what stops the body")
+    stop = None if stop is None else fields(stop, "facets translation")
     if stop is not None and keep:
-        at = [
-            whole(k, len(of.facets)) for k, of in zip(stop["facets"], (moving, fixed), strict=True)
-        ]
+        named = listed(stop["facets"], 2)
+        at = [whole(k, len(of.facets)) for k, of in zip(named, (moving, fixed), strict=True)]
         report.unchecked.append(f"where facets {at[0]} and {at[1]} are {float(keep)!r} apart")
     elif stop is not None:
         facets(moving, fixed, d, stop, tolerance, report)
@@ -511,10 +571,9 @@ def facets(
     moving: Body, fixed: Body, d: Vector, stop: Any, tolerance: Fraction, report: Report
 ) -> None:
     """Where the two facets that stop a solid meet as they are."""
-    f, g = (
-        whole(k, len(body.facets)) for k, body in zip(stop["facets"], (moving, fixed), strict=True)
-    )
-    ends = stop["translation"]
+    named = listed(stop["facets"], 2)
+    f, g = (whole(k, len(body.facets)) for k, body in zip(named, (moving, fixed), strict=True))
+    ends = fields(stop["translation"], "value lower upper")
     value = number(ends["value"])
     # A bound that is not there claims nothing.
     lower, upper = (None if ends[k] is None else number(ends[k]) for k in ("lower", "upper"))
@@ -546,7 +605,7 @@ def above(length: Fraction, square: Fraction) -> bool:
 
 def mean(points: Sequence[Vector], weights: Sequence[Any]) -> Vector:
     """The weighted mean."""
-    shares = [number(w) for w in weights]
+    shares = [w if isinstance(w, Fraction) else number(w) for w in listed(weights)]
     total = sum(shares, Fraction())
     if len(shares) != len(points) or min(shares) < 0 or abs(total - 1) > _UNIT_VECTOR:
         raise RefusedError("the weights are not those of a mean")
@@ -558,12 +617,13 @@ def mean(points: Sequence[Vector], weights: Sequence[Any]) -> Vector:
 
 def ends_of(moving: Body, fixed: Body, pairs: Any) -> list[tuple[Vector, Vector]]:
     """The points that pairs of vertices name."""
+    named = [fields(pair, "moving fixed") for pair in listed(pairs)]
     return [
         (
             moving.at(whole(pair["moving"], len(moving.points))),
             fixed.at(whole(pair["fixed"], len(fixed.points))),
         )
-        for pair in pairs
+        for pair in named
     ]
 
 
@@ -577,27 +637,29 @@ def encloses(corners: Sequence[Vector]) -> bool:
 
 def distance(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
     """How far convex bodies are apart, at least and at most."""
-    gap, near = claim.get("gap"), claim.get("near")
+    claim = fields(claim, "", "gap near")
+    gap, near = claim["gap"], claim["near"]
     if gap is None and near is None:
         raise NoProofError("no distance is claimed")
     if gap is not None:
+        gap = fields(gap, "normal gap")
         normal, lower = vector(gap["normal"]), number(gap["gap"])
         unit(normal)
         proven = min(fixed.heights(normal)) - max(moving.heights(normal))
-        if proven < 0 or not 0 <= lower * lower * dot(normal, normal) <= proven * proven:
+        if lower < 0 or not above(proven, lower * lower * dot(normal, normal)):
             raise RefusedError(f"the plane proves a gap of {float(proven)!r}, not {float(lower)!r}")
         report.holds.append(f"the bodies are at least {float(lower)!r} apart")
     if near is None:
         return
-    upper, ends = number(near["distance"]), ends_of(moving, fixed, near["pairs"])
-    if len(ends) != 4:
-        raise NoProofError("there are four pairs")
+    near = fields(near, "pairs weights distance")
+    upper, ends = number(near["distance"]), ends_of(moving, fixed, listed(near["pairs"], 4))
+    shares = [number(weight) for weight in listed(near["weights"], 4)]
     if upper == 0:
         if not encloses([minus(q, p) for p, q in ends]):
             raise RefusedError("the pairs do not enclose the origin")
         report.holds.append("the bodies have a point in common")
         return
-    p, q = (mean([end[k] for end in ends], near["weights"]) for k in (0, 1))
+    p, q = (mean([end[k] for end in ends], shares) for k in (0, 1))
     apart(p, q, upper, report)
 
 
@@ -612,13 +674,17 @@ def apart(p: Vector, q: Vector, upper: Fraction, report: Report) -> None:
 
 def solid_distance(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
     """What can be checked of the distance of solids without their trees."""
+    claim = fields(claim, "lower near cover")
+    if len(claim["near"]) != 1 or not {"points", "meeting"} >= set(claim["near"]):
+        raise NoProofError("there are two points, or the bodies meet")
     if "points" in claim["near"]:
-        near = claim["near"]["points"]
+        near = fields(claim["near"]["points"], "triangles weights distance")
+        named = listed(near["triangles"], 2)
         corners = [
             body.facet(whole(k, len(body.facets)))
-            for body, k in zip((moving, fixed), near["triangles"], strict=True)
+            for body, k in zip((moving, fixed), named, strict=True)
         ]
-        p, q = (mean(c, w) for c, w in zip(corners, near["weights"], strict=True))
+        p, q = (mean(c, w) for c, w in zip(corners, listed(near["weights"], 2), strict=True))
         apart(p, q, number(near["distance"]), report)
     else:
         report.partly = True
@@ -632,6 +698,8 @@ def solid_distance(moving: Body, fixed: Body, claim: Any, report: Report) -> Non
 
 def depth(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
     """The shortest translation that parts convex bodies, at least and at most."""
+    # What work it was may be there, and is not read.
+    claim = fields(claim, "lower upper direction enclosure", "steps")
     d, lower, upper = vector(claim["direction"]), number(claim["lower"]), number(claim["upper"])
     unit(d)
     reach = -(min(moving.heights(d)) - max(fixed.heights(d)))
@@ -640,10 +708,16 @@ def depth(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
     if upper < 0 or not 0 <= lower <= upper:
         raise RefusedError("the bounds are in the wrong order")
     report.holds.append(f"a translation by {float(upper)!r} along the direction parts the bodies")
-    if lower > 0:
-        surface = claim["enclosure"]
+    surface = fields(claim["enclosure"], "pairs triangles normals")
+    if lower > 0 or any(listed(part) for part in surface.values()):
         corners = [minus(q, p) for p, q in ends_of(moving, fixed, surface["pairs"])]
+        triangles = [listed(t, 3) for t in listed(surface["triangles"])]
+        for normal in listed(surface["normals"], len(triangles)):
+            unit(vector(normal), "the normal of a triangle")
         enclosure(corners, surface, lower)
+        for a, b, c in triangles:
+            if dot(corners[a], cross(corners[b], corners[c])) < 0:
+                raise RefusedError("a triangle is turned away, as seen from the origin")
         report.holds.append(f"no translation below {float(lower)!r} parts them")
 
 
@@ -782,7 +856,7 @@ class Scene:
         def solid(body: Body, near: Any, report: Report) -> Fraction:
             upper = number(near["points"]["distance"]) if "points" in near else Fraction()
             if self.moving.facets and body.facets:
-                solid_distance(self.moving, body, {"near": near, "lower": 0.0}, report)
+                solid_distance(self.moving, body, {"near": near, "lower": 0.0, "cover": ""}, report)
             else:
                 # Facets of a convex body have no numbers in the file.
                 report.partly = True
@@ -920,17 +994,16 @@ class Scene:
 
     def rounding(self, body: Body, d: Vector, proof: Any) -> None:
         """That no more is said of rounding than it explains."""
-        noise = _NOISE * (Fraction(size(self.moving, body)) + self.keep)
+        noise = _NOISE * (size(self.moving, body) + self.keep)
         most = _MOST_ROUNDING * noise + 2 * self.keep
         if not 0 <= number(proof["rounding"]) * dot(vector(proof["normal"]), d) <= most:
             raise RefusedError("more is said of rounding than it explains")
 
     def slides(self, body: Body, d: Vector, normal: Vector) -> None:
         """That bodies overlap sideways by no more than is tolerated, to within rounding."""
-        overlap = sideways(self.moving, body, d, normal, self.keep)
-        noise = _NOISE * (Fraction(size(self.moving, body)) + self.keep)
+        noise = _NOISE * (size(self.moving, body) + self.keep)
         most = max(number(self.choices.get("graze_tolerance", 0.0)), 8 * noise) + 3 * noise
-        if overlap > most:
+        if not are_shadows_apart(self.moving, body, d, normal, self.keep - most):
             raise RefusedError("the bodies overlap sideways by more than is tolerated")
 
 
@@ -2839,24 +2912,33 @@ def check(text: str) -> Report:
         Something that it claims does not hold.
     """
     try:
-        file = json.loads(text.removeprefix("\ufeff"), object_pairs_hook=_once)
+        file = json.loads(
+            text.removeprefix("\ufeff"),
+            object_pairs_hook=_once,
+            parse_int=_integer,
+            parse_constant=_no_number,
+        )
         if file["format"] == SCENE_FORMAT:
             return Scene(file).check()
         if file["format"] in MOTIONS:
             return MOTIONS[file["format"]](file)
         if file["format"] != FORMAT:
             raise NoProofError(f"the format is {file['format']!r}, not {FORMAT!r}")
-        keep = gap_to_keep(file)
+        file = fields(
+            file, "format moving moving_pose fixed fixed_pose statement", "direction keep"
+        )
+        keep = gap_to_keep({} if file["keep"] is None else file)
         moving = Body.read(file["moving"], file["moving_pose"])
         fixed = Body.read(file["fixed"], file["fixed_pose"])
         if bool(moving.facets) != bool(fixed.facets):
             raise NoProofError("one body is convex, the other is made of pieces")
         direction = file.get("direction")
-        d = None if direction is None else vector(direction)
+        d = None if direction is None else place(direction)
         if d is not None and not any(d):
             raise NoProofError("the direction is zero")
         report = Report()
-        claims = {kind: claim for kind, claim in file["statement"].items() if claim is not None}
+        said = fields(file["statement"], "", " ".join((*PLACED, *ALONG)))
+        claims = {kind: claim for kind, claim in said.items() if claim is not None}
         if len(claims) != 1:
             raise NoProofError(f"it has to say one thing, not {len(claims)}")
         ((kind, claim),) = claims.items()
@@ -2902,11 +2984,24 @@ PLACED = {
 }
 
 
+#: What is claimed of bodies along a direction.
+ALONG = ("contacts", "separation", "clearance")
+
+
+def _integer(text: str) -> int | float:
+    """An integer; -0 is a number that is none."""
+    return -0.0 if text == "-0" else int(text)
+
+
+def _no_number(text: str) -> Any:
+    raise NoProofError(f"{text} is not a number")
+
+
 def gap_to_keep(of: Any) -> Fraction:
     """The gap that the bodies are to keep, 0 for none."""
     keep = number(of.get("keep", 0.0))
-    if keep < 0:
-        raise NoProofError(f"the gap to be kept, {float(keep)!r}, is negative")
+    if not 0 <= keep <= _RANGE[1]:
+        raise NoProofError(f"the gap to be kept, {float(keep)!r}, is negative, or larger than any body")
     return keep
 
 
@@ -2918,8 +3013,9 @@ def _claim(
     if is_solid != (kind == "clearance"):
         raise NoProofError(f"{kind!r} is not claimed of such bodies")
     if kind == "contacts":
+        claim = fields(claim, "", "slide first last")
         claim = {name: part for name, part in claim.items() if part is not None}
-        if not set(claim) <= {"slide", "first", "last"} or not {"first", "last"} & set(claim):
+        if not {"first", "last"} & set(claim):
             raise NoProofError("no contact is claimed")
         if "slide" in claim:
             slide(moving, fixed, d, claim["slide"], report, keep)

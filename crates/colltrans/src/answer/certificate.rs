@@ -22,6 +22,12 @@ use crate::number::noise::{self, Noise};
 use crate::setting::error::QueryError;
 use crate::setting::{Setting, VertexPair};
 
+/// Factor that is more than a few roundings.
+const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
+
+/// Factor by which a pose may stretch a body, and more.
+const STRETCHED: f64 = 1.0 + 4e-6;
+
 /// Both bounds of a collision translation with their proofs (section 1 of the paper).
 ///
 /// With `P` the moving body, `Q` the fixed one and `d` the direction:
@@ -34,7 +40,7 @@ use crate::setting::{Setting, VertexPair};
 /// their [`vertices`](crate::ConvexPolyhedron::vertices), in poses as their nine entries and their
 /// translations. Both are rounded outwards by what their computation can be off.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Certificate {
     /// Unit normal of the supporting plane that proves the lower bound, in the world;
     /// `normal . d > 0`.
@@ -62,14 +68,13 @@ pub struct Certificate {
 /// The proof that two bodies never meet along the direction: a plane parallel to it lies between
 /// them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
 pub struct Separation {
     /// Unit normal in the world, orthogonal to the direction, from the moving body to the fixed
     /// one.
     pub normal: DVec3,
-    /// At most `min_Q n.q - max_P n.p`, and positive: the gap between the shadows along this one
-    /// normal, in world units, rounded down. A lower bound of the distance of the shadows, not the
-    /// distance itself.
+    /// Lower bound of the distance of the shadows, in world units, and positive: at most `min_Q n'.q - max_P n'.p` over
+    /// `|n'|`, where `n'` is what of the normal `n` is orthogonal to the direction.
     pub margin: f64,
 }
 
@@ -316,7 +321,7 @@ impl Certificate {
         let lower = proven_lower(setting, normal, keep)?;
         // Of a slight gap the bounds are those of the bodies as they are, apart by the gap more.
         let slight = if noise.is_slight(keep) { 2.0 * keep / steepness } else { 0.0 };
-        let derived = derived_rounding(setting, normal, noise) + slight;
+        let derived = most_rounding(setting, normal, noise) + slight;
         if self.lower.is_nan() || self.lower > lower {
             return Err(CertificateError::Bound { proven: lower, claimed: self.lower });
         }
@@ -403,34 +408,49 @@ fn left_of(height: f64, normal: DVec3, keep: f64) -> f64 {
     (height - (keep * square.sqrt().next_up()).next_up()).next_down()
 }
 
-/// The largest rounding that a certificate may state: what it says of it proves nothing, so it is
-/// derived anew, from other support points, which may let the bodies reach twice as far beyond.
-fn derived_rounding(setting: &Setting, normal: DVec3, noise: Noise) -> f64 {
-    let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
-    let found = VertexPair {
-        moving: setting.moving.support(normals[0]),
-        fixed: setting.fixed.support(-normals[1]),
-    };
-    let (support, beyond) = setting.settled(&normals, found);
-    let along = Along::new(setting, noise, normal, &normals, support, beyond);
-    let rounding = (noise.raised() + along.error) / normal.dot(setting.direction);
+/// Returns the largest rounding that a certificate may state, which proves nothing: twice what a search states, of
+/// bodies that reach beyond their support points by no more than vertices may be off the planes of their faces.
+fn most_rounding(setting: &Setting, normal: DVec3, noise: Noise) -> f64 {
+    let rounding = (noise.raised() + noise.lowered() + noise.beyond())
+        / normal.dot(setting.direction);
     2.0 * (gap_rounding(setting, normal, noise, noise.widest()) + rounding)
+}
+
+/// Checks that a normal is a unit vector, and orthogonal to the direction, to within rounding.
+pub(crate) fn check_across(setting: &Setting, normal: DVec3) -> Result<(), CertificateError> {
+    let is_unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
+    if is_unit && normal.dot(setting.unit).abs() <= noise::UNIT_VECTOR {
+        Ok(())
+    } else {
+        Err(CertificateError::Normal { normal })
+    }
+}
+
+/// Returns at most the distance of the bodies' shadows, as what of a normal is orthogonal to the direction proves it;
+/// negative if they may overlap, then by no more along that normal.
+///
+/// What of the normal is along the direction is worth at most its share of the size.
+pub(crate) fn shadow_gap(setting: &Setting, normal: DVec3) -> f64 {
+    let [low, high] = extent::dot(normal, setting.direction);
+    let along = low.abs().max(high.abs()) / setting.length * ROUNDED_UP;
+    let closing = along * (setting.scale() * STRETCHED) * ROUNDED_UP;
+    let gap = (setting.distance_along(normal) - closing).next_down();
+    let [least, most] = extent::dot(normal, normal);
+    let across = if gap > 0.0 {
+        most.sqrt().next_up()
+    } else {
+        (least - along * along).next_down().sqrt().next_down()
+    };
+    (gap / across).next_down()
 }
 
 impl Separation {
     /// The checks of [`Cast::verify`](crate::Cast::verify) of bodies that are to keep a gap, or none, and the margin
     /// proven.
     pub(crate) fn verify(&self, setting: &Setting, keep: f64) -> Result<f64, CertificateError> {
-        let normal = self.normal;
-        let is_unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
-        if !is_unit || normal.dot(setting.unit).abs() > noise::UNIT_VECTOR {
-            return Err(CertificateError::Normal { normal });
-        }
-        // A normal that is not quite orthogonal lets the gap close as far away as the bodies reach.
-        let closing = normal.dot(setting.unit).abs() * (setting.scale() + keep);
-        let (proven, claimed) = (setting.distance_along(normal), self.margin);
-        let is_beyond = |margin| left_of(margin, normal, keep) > 0.0;
-        if is_beyond(claimed) && claimed <= proven && left_of(proven, normal, keep) > closing {
+        check_across(setting, self.normal)?;
+        let (proven, claimed) = (shadow_gap(setting, self.normal), self.margin);
+        if claimed > keep && claimed <= proven {
             Ok(proven)
         } else {
             Err(CertificateError::Bound { proven, claimed })

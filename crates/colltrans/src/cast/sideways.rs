@@ -3,24 +3,21 @@
 use glam::DVec3;
 
 use super::Cast;
-use crate::answer::CertificateError;
-use crate::number::noise;
+use crate::answer::{CertificateError, check_across, shadow_gap};
 
-/// At least how far two bodies overlap along a normal, with the gap that they are to keep. One that is not quite orthogonal to the direction
-/// lets them overlap more, as far away as the bodies reach.
+/// Returns at least how far the shadows of two bodies overlap along a normal, with the gap that they are to keep.
 pub(crate) fn proven_overlap(normal: DVec3, cast: &Cast<'_>) -> f64 {
-    let setting = &cast.setting;
-    let gap = setting.distance_along(normal);
+    let gap = shadow_gap(&cast.setting, normal);
     let keep = cast.options().keep;
-    let overlap = (normal.dot(setting.unit).abs() * (setting.scale() + keep) - gap).next_up();
-    if keep > 0.0 { (overlap + keep).next_up() } else { overlap }
+    // Without a gap nothing is rounded.
+    if keep > 0.0 { (keep - gap).next_up() } else { 0.0 - gap }
 }
 
-/// The same along a normal that is claimed to be a unit vector, orthogonal to the direction.
+/// Returns [`proven_overlap`] along a normal that is claimed to be a unit vector, orthogonal to the direction.
+///
+/// # Errors
+/// The normal is not.
 pub(crate) fn verified_overlap(normal: DVec3, cast: &Cast<'_>) -> Result<f64, CertificateError> {
-    let is_unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
-    if !is_unit || normal.dot(cast.setting.unit).abs() > noise::UNIT_VECTOR {
-        return Err(CertificateError::Normal { normal });
-    }
+    check_across(&cast.setting, normal)?;
     Ok(proven_overlap(normal, cast))
 }

@@ -104,6 +104,9 @@ const WIDENING_CORNER: f64 = 1.3;
 /// The noises that the two bounds of an optimum cost.
 const BOUNDS: f64 = 2.0;
 
+/// How many noises bodies reach beyond support points at most.
+const BEYOND: f64 = 8.0 * COPLANAR / (POINT * ROUNDING);
+
 /// By how many noises an upper bound is raised.
 const RAISED: f64 = 4.0;
 
@@ -174,6 +177,11 @@ impl Noise {
     #[inline]
     pub(crate) fn touching(self) -> f64 {
         TOUCHING * self.0
+    }
+
+    /// Bound on how far both bodies reach beyond support points: twice four tolerances of [`COPLANAR`] of their size.
+    pub(crate) fn beyond(self) -> f64 {
+        BEYOND * self.0
     }
 
     /// How deep below a plane a point may be that counts as lying on it; `late` if many portals

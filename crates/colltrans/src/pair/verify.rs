@@ -50,7 +50,7 @@ pub(super) fn depth(bodies: &TwoBodies, depth: &Depth) -> Result<f64, Certificat
     if depth.upper.is_nan() || depth.upper < upper {
         return Err(CertificateError::Bound { proven: upper, claimed: depth.upper });
     }
-    let claims_none = depth.enclosure.triangles.is_empty();
+    let claims_none = depth.enclosure == Enclosure::default();
     let proven = if claims_none { 0.0 } else { enclosed(bodies, &depth.enclosure)? };
     if depth.lower >= 0.0 && depth.lower <= proven {
         Ok(proven)

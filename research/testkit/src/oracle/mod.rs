@@ -8,7 +8,7 @@
 //! judged by [`distance`], answers of the library about distance and depth by [`nearest`], about one
 //! body among many by [`among`], casts that keep a gap by [`keep`], bodies that
 //! turn by [`motion`], such that do not, asked in bulk, by [`still`], bodies that joints carry by [`path`], burrs by
-//! [`cubes`].
+//! [`cubes`]. Saved proofs, forged ones too, are judged by [`proofs`].
 
 pub mod among;
 pub mod check;
@@ -21,6 +21,7 @@ pub mod keep;
 pub mod motion;
 pub mod nearest;
 pub mod path;
+pub mod proofs;
 pub mod scene;
 pub mod sequences;
 pub mod settings;

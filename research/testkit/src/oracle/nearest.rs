@@ -137,62 +137,14 @@ impl<'a> Judge<'a> {
     /// # Errors
     /// As [`Self::check`].
     pub fn compare_depth(&self, answer: &Depth) -> Result<(), Objection> {
-        let truth = if self.truth.intersects() { self.depth() } else { Ratio::from_f64(0.0) };
+        let truth = if self.truth.intersects() {
+            depth(&self.moving, &self.fixed, self.noise)
+        } else { Ratio::from_f64(0.0) };
         let [lower, upper] = answer.bounds();
         let rounded = truth.sqrt_to_f64();
         require!(square(lower) <= truth, "lower bound {lower:e} of a depth of {rounded:e}");
         require!(square(upper) >= truth, "upper bound {upper:e} of a depth of {rounded:e}");
         Ok(())
-    }
-
-    /// The square of the depth of bodies that meet.
-    fn depth(&self) -> Ratio {
-        let edges = |points: &[Vector]| -> Vec<Vector> {
-            let from = |i: usize| (0..i).map(move |j| points[i].minus(&points[j]));
-            (0..points.len()).flat_map(from).collect()
-        };
-        let (p, q) = (edges(&self.moving), edges(&self.fixed));
-        let all: Vec<&Vector> = p.iter().chain(&q).collect();
-        let [moving, fixed] = [&self.moving, &self.fixed]
-            .map(|body| body.iter().map(|x| x.minus(&self.moving[0]).to_f64()).collect::<Vec<_>>());
-        // What rounding leaves far above the least need not be looked at exactly.
-        let reach = |n: DVec3| {
-            let far = fixed.iter().map(|x| n.dot(*x)).fold(f64::NEG_INFINITY, f64::max);
-            let near = moving.iter().map(|x| n.dot(*x)).fold(f64::INFINITY, f64::min);
-            far - near
-        };
-        let mut candidates = Vec::new();
-        for i in 0..all.len() {
-            for j in 0..i {
-                let n = all[i].cross(all[j]).to_f64();
-                for sign in [1.0, -1.0] {
-                    candidates.push((reach(n * sign) / n.length(), i, j, sign));
-                }
-            }
-        }
-        let sound = |value: f64| if value.is_nan() { f64::INFINITY } else { value };
-        let least = candidates.iter().map(|c| sound(c.0)).fold(f64::INFINITY, f64::min);
-        let margin = 1e5 * self.noise;
-        let mut depth: Option<Ratio> = None;
-        for (value, i, j, sign) in candidates {
-            if value <= least + margin || value.is_nan() {
-                let n = all[i].cross(all[j]).times(&Dyadic::new(sign));
-                depth = self.least(depth, &n);
-            }
-        }
-        depth.unwrap_or_else(|| Ratio::from_f64(0.0))
-    }
-
-    /// The lesser of a depth and that along a normal.
-    fn least(&self, depth: Option<Ratio>, n: &Vector) -> Option<Ratio> {
-        let square = n.dot(n);
-        if square.is_zero() {
-            return depth;
-        }
-        let reach = -self.along(&n.times(&Dyadic::new(-1.0)));
-        let here = if reach.is_positive() { &reach * &reach } else { Dyadic::ZERO };
-        let here = Ratio::new(here, square);
-        Some(depth.map_or(here.clone(), |depth| depth.min(here)))
     }
 
     fn check_plane(&self, plane: &PlaneGap) -> Result<(), Objection> {
@@ -213,9 +165,7 @@ impl<'a> Judge<'a> {
 
     /// `min_Q n.q - max_P n.p`.
     fn along(&self, n: &Vector) -> Dyadic {
-        let nearest = self.fixed.iter().map(|q| n.dot(q)).min();
-        let farthest = self.moving.iter().map(|p| n.dot(p)).max();
-        &nearest.expect("a body has a point") - &farthest.expect("a body has a point")
+        along([&self.moving, &self.fixed], n)
     }
 
     fn check_points(&self, near: &NearPoints) -> Result<(), Objection> {
@@ -246,6 +196,67 @@ impl<'a> Judge<'a> {
     fn difference(&self, pair: VertexPair) -> Vector {
         self.fixed[pair.fixed.index()].minus(&self.moving[pair.moving.index()])
     }
+}
+
+/// Returns the square of the depth of bodies that meet, by all products of two differences of vertices; `noise` is one of
+/// their rounding errors.
+///
+/// # Panics
+/// If a body has no points.
+pub fn depth(moving: &[Vector], fixed: &[Vector], noise: f64) -> Ratio {
+    let edges = |points: &[Vector]| -> Vec<Vector> {
+        let from = |i: usize| (0..i).map(move |j| points[i].minus(&points[j]));
+        (0..points.len()).flat_map(from).collect()
+    };
+    let (p, q) = (edges(moving), edges(fixed));
+    let all: Vec<&Vector> = p.iter().chain(&q).collect();
+    let [near_by, far_off] = [moving, fixed]
+        .map(|body| body.iter().map(|x| x.minus(&moving[0]).to_f64()).collect::<Vec<_>>());
+    // What rounding leaves far above the least need not be looked at exactly.
+    let reach = |n: DVec3| {
+        let far = far_off.iter().map(|x| n.dot(*x)).fold(f64::NEG_INFINITY, f64::max);
+        let near = near_by.iter().map(|x| n.dot(*x)).fold(f64::INFINITY, f64::min);
+        far - near
+    };
+    let mut candidates = Vec::new();
+    for i in 0..all.len() {
+        for j in 0..i {
+            let n = all[i].cross(all[j]).to_f64();
+            for sign in [1.0, -1.0] {
+                candidates.push((reach(n * sign) / n.length(), i, j, sign));
+            }
+        }
+    }
+    let sound = |value: f64| if value.is_nan() { f64::INFINITY } else { value };
+    let least = candidates.iter().map(|c| sound(c.0)).fold(f64::INFINITY, f64::min);
+    let margin = 1e5 * noise;
+    let mut depth: Option<Ratio> = None;
+    for (value, i, j, sign) in candidates {
+        if value <= least + margin || value.is_nan() {
+            let n = all[i].cross(all[j]).times(&Dyadic::new(sign));
+            depth = least_along([moving, fixed], depth, &n);
+        }
+    }
+    depth.unwrap_or_else(|| Ratio::from_f64(0.0))
+}
+
+/// The lesser of a depth and that along a normal.
+fn least_along(bodies: [&[Vector]; 2], depth: Option<Ratio>, n: &Vector) -> Option<Ratio> {
+    let square = n.dot(n);
+    if square.is_zero() {
+        return depth;
+    }
+    let reach = -along(bodies, &n.times(&Dyadic::new(-1.0)));
+    let here = if reach.is_positive() { &reach * &reach } else { Dyadic::ZERO };
+    let here = Ratio::new(here, square);
+    Some(depth.map_or(here.clone(), |depth| depth.min(here)))
+}
+
+/// `min_Q n.q - max_P n.p`.
+fn along([moving, fixed]: [&[Vector]; 2], n: &Vector) -> Dyadic {
+    let nearest = fixed.iter().map(|q| n.dot(q)).min();
+    let farthest = moving.iter().map(|p| n.dot(p)).max();
+    &nearest.expect("a body has a point") - &farthest.expect("a body has a point")
 }
 
 /// Whether a tetrahedron that is not flat contains the origin.

@@ -4,7 +4,7 @@
 //! compared with those of one-off queries. Or bodies alone, nearly flat ones, each with a cast onto it.
 //! Or distances of settings as they are, near contact and overlapping. Or scenes, one body among many. Or casts
 //! that keep a gap. Or casts of bodies that do not turn, in bulk. Or motions that turn, of convex bodies or of solids.
-//! Or arms on paths. Or ways out in several moves. Or all free directions of solids, each held against casts along
+//! Or arms on paths. Or forged proofs, which neither checker may accept. Or ways out in several moves. Or all free directions of solids, each held against casts along
 //! some of them.
 //! In all of them bodies are held against the points that they were made of, in exact arithmetic, so
 //! that answers are judged for the input.
@@ -19,6 +19,7 @@ mod free;
 mod keeping;
 mod motions;
 mod paths;
+mod proofs;
 mod scenes;
 mod sequences;
 mod solids;
@@ -29,6 +30,7 @@ use std::str::FromStr;
 use std::time::Instant;
 
 use colltrans_testkit::oracle::among;
+use colltrans_testkit::oracle::proofs::KINDS;
 use colltrans_testkit::oracle::settings::{FAMILIES, NEARLY_FLAT};
 use colltrans_testkit::oracle::still::CASTS;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -52,6 +54,7 @@ campaign --motions N [--seed S] [--only FAMILY]
 campaign --solid-motions N [--seed S] [--only FAMILY]
 campaign --paths N [--seed S] [--only FAMILY]
 campaign --ways N [--seed S] [--only FAMILY]
+campaign --proofs MUTANTS [--seed S] [--only KIND]
 campaign --bulk CASTS [--seed S] [--only FAMILY]
 campaign --case FAMILY:SEED | FAMILY:SEED:STEP
 campaign --free 1 --case FAMILY:SEED
@@ -69,6 +72,7 @@ struct Arguments {
     motions: Option<u64>,
     paths: Option<u64>,
     ways: Option<u64>,
+    proofs: Option<u64>,
     bulk: Option<u64>,
     bodies: Option<u64>,
     distances: Option<u64>,
@@ -138,6 +142,9 @@ fn main() -> ExitCode {
         run(&arguments, &paths::FAMILIES, count, paths::examine)
     } else if let Some(count) = arguments.ways {
         run(&arguments, &ways::FAMILIES, count, ways::examine)
+    } else if let Some(count) = arguments.proofs {
+        let kinds: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
+        run(&arguments, &kinds, count.div_ceil(proofs::MUTANTS), proofs::examine)
     } else if let Some(count) = arguments.bulk {
         run(&arguments, &families, count.div_ceil(CASTS as u64), bulk::examine)
     } else if let Some(count) = arguments.scenes {
@@ -173,6 +180,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
         motions: None,
         paths: None,
         ways: None,
+        proofs: None,
         bulk: None,
         bodies: None,
         distances: None,
@@ -196,6 +204,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
             "--motions" => arguments.motions = Some(number(&value)?),
             "--paths" => arguments.paths = Some(number(&value)?),
             "--ways" => arguments.ways = Some(number(&value)?),
+            "--proofs" => arguments.proofs = Some(number(&value)?),
             "--bulk" => arguments.bulk = Some(number(&value)?),
             "--free" => arguments.free = Some(number(&value)?),
             "--solid-distances" => arguments.solid_distances = Some(number(&value)?),

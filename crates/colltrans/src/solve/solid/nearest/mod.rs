@@ -25,7 +25,7 @@ use triangle::Nearest;
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
+    serde(rename_all = "snake_case", deny_unknown_fields)
 )]
 pub enum SolidNear {
     /// A point of each body.

@@ -1,0 +1,372 @@
+//! Proofs of contacts, slides and separations of convex bodies, with and without a gap to be kept.
+
+use colltrans::{Cast, ContactRange, Pose, ProofFile};
+use glam::DVec3;
+use serde_json::Value;
+
+use super::file::{Bodies, differences, is_at_limit, numbers, scene, square, vector};
+use super::mutants::{number, with};
+use super::{Claim, Kind, Who, checkers};
+use crate::oracle::exact::Ratio;
+use crate::oracle::settings::{Bodies as Convex, FAMILIES, Setting, near_contact, setting};
+use crate::oracle::shadow::SignedDistance;
+use crate::random::Random;
+
+/// Casts of bodies that may touch.
+pub const CASTS: Kind = Kind {
+    name: "casts",
+    focus: "/statement",
+    base: |seed| cast(seed, false),
+    claims,
+    worst,
+    falsehood,
+    is_marginal,
+    verify: checkers::verify,
+};
+
+/// Casts of bodies that keep a gap.
+pub const WITH_GAP: Kind = Kind { name: "casts-with-gap", base: |seed| cast(seed, true), ..CASTS };
+
+/// Vertices of both bodies, at most.
+const MOST_VERTICES: usize = 40;
+
+/// Larger than all that is claimed of a body.
+pub(super) const HUGE: f64 = 1e300;
+
+/// How many noises the library may refuse of what holds.
+pub(super) const BAND: f64 = 8.0;
+
+/// A setting of few vertices, and its bodies: as it is drawn, or with the moving body far behind, beside the fixed one,
+/// or near contact.
+pub(super) fn drawn(seed: u64) -> Option<(Setting, Convex)> {
+    let count = FAMILIES.len() as u64;
+    let family = FAMILIES[(seed % count) as usize].0;
+    let mut setting = setting(family, seed / count);
+    let bodies = setting.bodies().ok()?;
+    let vertices = bodies.moving.vertices().len() + bodies.fixed.vertices().len();
+    if vertices > MOST_VERTICES {
+        return None;
+    }
+    let random = &mut Random::stream(seed, &[0xd0a1]);
+    let size = setting.judge(&bodies).scene.size;
+    let unit = setting.direction.normalize();
+    let across = unit.any_orthonormal_vector();
+    let by = match random.index(6) {
+        0 => unit * -size * 10.0_f64.powf(random.range(0.0, 9.0)),
+        1 => across * size * random.range(0.2, 1.0),
+        2 => across * size + unit * -size * 10.0_f64.powf(random.range(0.0, 9.0)),
+        3 => {
+            if let Some(near) = near_contact(&setting, &bodies, random) {
+                setting.moving_pose = near;
+            }
+            DVec3::ZERO
+        }
+        _ => DVec3::ZERO,
+    };
+    setting.moving_pose = setting.moving_pose.translated(by).ok()?;
+    if random.one_in(4) {
+        beside(&mut setting, &bodies, random);
+    }
+    Some((setting, bodies))
+}
+
+/// Moves the moving body across the direction until the shadows are nearly a small distance apart.
+fn beside(setting: &mut Setting, bodies: &Convex, random: &mut Random) -> Option<()> {
+    let overlap = setting.judge(bodies).scene;
+    let overlap = crate::oracle::shadow::sideways_overlap(&overlap).to_f64();
+    let unit = setting.direction.normalize();
+    let across = random.direction().reject_from(unit).try_normalize()?;
+    let little = 10.0_f64.powf(-random.range(0.0, 16.0)) * overlap.abs();
+    let cast = setting.query(bodies).ok()?;
+    let ContactRange::Separated(separated) = cast.contact_range().ok()? else {
+        setting.moving_pose = setting.moving_pose.translated(across * overlap).ok()?;
+        return Some(());
+    };
+    let toward = separated.certificate.normal * (separated.certificate.margin - little);
+    setting.moving_pose = setting.moving_pose.translated(toward).ok()?;
+    Some(())
+}
+
+fn cast(seed: u64, with_gap: bool) -> Option<String> {
+    let (setting, bodies) = drawn(seed)?;
+    let mut cast = setting.query(&bodies).ok()?;
+    if with_gap {
+        cast = cast.keeping(gap(&cast, &mut Random::stream(seed, &[0x6a9]))).ok()?;
+    }
+    if seed.is_multiple_of(5) && !with_gap {
+        let clearance = cast.clearance().ok()?;
+        return Some(ProofFile::of_clearance(&cast, &clearance).to_json());
+    }
+    Some(ProofFile::of_range(&cast, &cast.contact_range().ok()?).to_json())
+}
+
+/// A gap of some noises, or of any size beside that of the bodies.
+fn gap(cast: &Cast, random: &mut Random) -> f64 {
+    let [p, q] = [cast.moving_pose(), cast.fixed_pose()].map(|pose: Pose| pose.translation());
+    let reach = |points: &[DVec3]| points.iter().map(|v| v.length()).fold(0.0, f64::max);
+    let size = reach(cast.moving().vertices()) + reach(cast.fixed().vertices()) + (q - p).length();
+    if random.one_in(3) {
+        16.0 * f64::EPSILON * size * random.range(0.0, 20.0)
+    } else {
+        size * 10.0_f64.powf(random.range(-12.0, 1.0))
+    }
+}
+
+/// What a cast says, and where.
+enum Part {
+    Contact { at: String, reversed: bool },
+    Slide(String),
+    Separation(String),
+}
+
+fn parts(file: &Value) -> Vec<Part> {
+    let mut found = Vec::new();
+    for (name, reversed) in [("first", false), ("last", true)] {
+        let at = format!("/statement/contacts/{name}");
+        if file.pointer(&at).is_some_and(Value::is_object) {
+            found.push(Part::Contact { at, reversed });
+        }
+    }
+    let slide = "/statement/contacts/slide".to_owned();
+    if file.pointer(&slide).is_some_and(Value::is_object) {
+        found.push(Part::Slide(slide));
+    }
+    let separation = "/statement/separation".to_owned();
+    if file.pointer(&separation).is_some_and(Value::is_object) {
+        found.push(Part::Separation(separation));
+    }
+    found
+}
+
+fn claims(file: &Value) -> Vec<Claim> {
+    let Some(bodies) = Bodies::read(file) else { return Vec::new() };
+    let Some(d) = bodies.direction else { return Vec::new() };
+    let band = BAND * bodies.noise();
+    let mut claims = Vec::new();
+    let mut claim = |pointer: String, weakest: f64, strongest: f64, band: f64| {
+        claims.push(Claim { pointer, weakest, strongest, band });
+    };
+    for part in parts(file) {
+        match part {
+            Part::Contact { at, reversed } => {
+                let normal = file.pointer(&format!("{at}/normal")).and_then(vector);
+                let along = normal.unwrap_or(DVec3::ZERO).dot(if reversed { -d } else { d });
+                let band = band / along.abs().max(f64::MIN_POSITIVE);
+                claim(format!("{at}/lower"), -HUGE, HUGE, band);
+                if file.pointer(&format!("{at}/upper")).is_some_and(Value::is_number) {
+                    claim(format!("{at}/upper"), HUGE, -HUGE, band);
+                }
+                claim(format!("{at}/rounding"), 0.0, HUGE, band);
+            }
+            Part::Slide(at) => claim(format!("{at}/overlap"), HUGE, -HUGE, band),
+            Part::Separation(at) => {
+                claim(format!("{at}/margin"), bodies.keep.next_up(), HUGE, band);
+            }
+        }
+    }
+    claims
+}
+
+/// A length that is small beside 1, or not.
+pub(super) fn some_little(random: &mut Random) -> f64 {
+    let sign = if random.one_in(2) { 1.0 } else { -1.0 };
+    match random.index(3) {
+        0 => sign * 0.5 * f64::EPSILON * random.range(0.0, 40.0),
+        1 => sign * 0.5 * f64::EPSILON * random.pick(&[31.0, 32.0, 33.0, 35.0, 36.0, 37.0]),
+        _ => sign * 10.0_f64.powf(-random.range(0.0, 17.0)),
+    }
+}
+
+/// Another normal: tilted, along or across the direction, longer or shorter.
+pub(super) fn other_normal(n: DVec3, d: DVec3, random: &mut Random) -> DVec3 {
+    let unit = d.normalize_or(DVec3::X);
+    let little = some_little(random);
+    match random.index(6) {
+        0 => n + unit * little,
+        1 => (n + unit * little).normalize_or(n),
+        2 => (n + random.direction() * little).normalize_or(n),
+        3 => n * (1.0 + little),
+        4 => (n - unit * n.dot(unit)).normalize_or(n) + unit * little.abs(),
+        _ => random.direction(),
+    }
+}
+
+/// Other weights of a mean.
+pub(super) fn other_weights(count: usize, random: &mut Random) -> Value {
+    let mut weights: Vec<f64> = (0..count).map(|_| random.range(0.0, 1.0)).collect();
+    let sum: f64 = weights.iter().sum();
+    weights.iter_mut().for_each(|w| *w /= sum);
+    if random.one_in(2) {
+        weights = vec![0.0; count];
+        weights[random.index(count)] = 1.0;
+    }
+    let k = random.index(count);
+    match random.index(4) {
+        0 => weights[k] += some_little(random),
+        1 => weights[k] = -f64::from_bits(1),
+        _ => {}
+    }
+    Value::from(weights)
+}
+
+/// Another pair of vertices in place of one of a list.
+pub(super) fn other_pair(file: &mut Value, at: &str, random: &mut Random) {
+    let Some(bodies) = Bodies::read(file) else { return };
+    let count = file.pointer(at).and_then(Value::as_array).map_or(0, Vec::len);
+    if count == 0 {
+        return;
+    }
+    let end = if random.one_in(2) { "moving" } else { "fixed" };
+    let most = bodies.points[usize::from(end == "fixed")].len();
+    let at = format!("{at}/{}/{end}", random.index(count));
+    *file = with(file, &at, Some(Value::from(random.index(most))));
+}
+
+fn worst(file: &mut Value, random: &mut Random) {
+    let Some(d) = file.get("direction").and_then(vector) else { return };
+    let parts = parts(file);
+    if parts.is_empty() {
+        return;
+    }
+    let (at, is_contact) = match &parts[random.index(parts.len())] {
+        Part::Contact { at, .. } => (at.clone(), true),
+        Part::Slide(at) | Part::Separation(at) => (at.clone(), false),
+    };
+    match random.index(if is_contact { 5 } else { 3 }) {
+        3 => {
+            *file = with(file, &format!("{at}/weights"), Some(other_weights(3, random)));
+        }
+        4 => other_pair(file, &format!("{at}/pairs"), random),
+        _ => {
+            let at = format!("{at}/normal");
+            let Some(normal) = file.pointer(&at).and_then(vector) else { return };
+            let other = other_normal(normal, d, random).to_array();
+            *file = with(file, &at, Some(Value::from(other.to_vec())));
+        }
+    }
+}
+
+fn falsehood(file: &Value, who: Who) -> Option<String> {
+    let Some(bodies) = Bodies::read(file) else { return Some("bodies that cannot be read".into()) };
+    let Some(d) = bodies.direction else { return Some("there is no direction".into()) };
+    let parts = parts(file);
+    if parts.is_empty() {
+        return Some("nothing is said".into());
+    }
+    parts.iter().find_map(|part| match part {
+        Part::Contact { at, reversed } => {
+            let d = if *reversed { -d } else { d };
+            false_contact(&bodies, d, file.pointer(at)?).map(|why| format!("{at}: {why}"))
+        }
+        Part::Slide(at) => {
+            let overlap = file.pointer(&format!("{at}/overlap"))?.as_f64()?;
+            false_gap(&bodies, d, bodies.keep, overlap)
+        }
+        Part::Separation(at) => {
+            let margin = file.pointer(&format!("{at}/margin"))?.as_f64()?;
+            let is_less = margin <= bodies.keep;
+            let less = || is_less.then(|| format!("a margin of {margin:e}"));
+            let _ = who;
+            false_gap(&bodies, d, margin, 0.0).or_else(less)
+        }
+    })
+}
+
+/// Why shadows are not so far apart as `gap - overlap`.
+pub(super) fn false_gap(bodies: &Bodies, d: DVec3, gap: f64, overlap: f64) -> Option<String> {
+    let truth = bodies.overlap_of_shadows(d);
+    // Rounded up, away from a reproach.
+    let most = if gap == 0.0 {
+        overlap
+    } else if overlap == 0.0 {
+        -gap
+    } else {
+        (overlap - gap).next_up()
+    };
+    truth.exceeds(most).then(|| {
+        let SignedDistance { .. } = truth;
+        format!("shadows that overlap by {:e}, not {most:e}", truth.to_f64())
+    })
+}
+
+fn false_contact(bodies: &Bodies, d: DVec3, claim: &Value) -> Option<String> {
+    let lower = claim.get("lower")?.as_f64()?;
+    let keep = bodies.keep;
+    if keep == 0.0 {
+        if let Some(first) = bodies.first(d)
+            && first < Ratio::from_f64(lower)
+        {
+            return Some(format!("they meet at {:e}, before {lower:e}", first.to_f64()));
+        }
+    } else if bodies.least_distance_until(d, lower) < square(keep) {
+        return Some(format!("they are nearer than {keep:e} before {lower:e}"));
+    }
+    let near = |count: f64| keep.max(bodies.noises(count));
+    match claim.get("upper")?.as_f64() {
+        None if keep == 0.0 => {
+            let overlap = bodies.overlap_of_shadows(d);
+            let apart = overlap.to_f64();
+            (apart < -bodies.noises(46.0)).then(|| format!("shadows that are {apart:e} apart"))
+        }
+        None => None,
+        Some(upper) if keep > 8.02 * bodies.noise() => {
+            let found = bodies.distance_at(d, upper);
+            let far = found > square(keep);
+            far.then(|| format!("they are {:e} apart at {upper:e}", found.sqrt_to_f64()))
+        }
+        Some(upper) => {
+            let found = bodies.least_distance_until(d, upper);
+            let far = found > square(near(3.25));
+            far.then(|| format!("they are {:e} apart until {upper:e}", found.sqrt_to_f64()))
+        }
+    }
+}
+
+fn is_marginal(file: &Value) -> bool {
+    marginal(file).unwrap_or(false)
+}
+
+fn marginal(file: &Value) -> Option<bool> {
+    let bodies = Bodies::read(file)?;
+    let (d, noise) = (bodies.direction?, bodies.noise());
+    let unit = d.normalize_or(DVec3::X);
+    let gap = bodies.keep / noise;
+    let mut near = (7.9..8.1).contains(&gap);
+    for part in parts(file) {
+        let (at, across) = match &part {
+            Part::Contact { at, .. } => (at, false),
+            Part::Slide(at) | Part::Separation(at) => (at, true),
+        };
+        let normal = vector(file.pointer(&format!("{at}/normal"))?)?;
+        near |= is_at_limit(normal.length() - 1.0);
+        near |= across && is_at_limit(normal.dot(unit));
+        if across {
+            continue;
+        }
+        near |= normal.dot(unit).abs() < 1e-200;
+        let weights = numbers(file.pointer(&format!("{at}/weights"))?)?;
+        let sum: f64 = weights.iter().sum();
+        near |= is_at_limit(sum - 1.0);
+        let corners = differences(&bodies, file.pointer(&format!("{at}/pairs"))?)?;
+        let mean: DVec3 = corners.iter().zip(&weights).map(|(m, w)| *m * (*w / sum)).sum();
+        let off = mean.reject_from(unit).length() / noise;
+        near |= (2.5..3.75).contains(&off) || (43.0..47.0).contains(&off);
+        if let Some(upper) = file.pointer(&format!("{at}/upper"))?.as_f64() {
+            near |= ((mean - d * upper).length() - bodies.keep).abs() <= noise;
+        }
+    }
+    Some(near)
+}
+
+/// The first translation at which two facets meet.
+pub(super) fn first_of(
+    facets: [&[crate::oracle::exact::Vector]; 2],
+    d: DVec3,
+) -> Option<Ratio> {
+    crate::oracle::simplex::collision_translation(&scene(facets, d))
+}
+
+/// A number in place of another one.
+pub(super) fn put(file: &mut Value, at: &str, x: f64) {
+    *file = with(file, at, Some(number(x)));
+}

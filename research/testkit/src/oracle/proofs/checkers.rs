@@ -1,0 +1,90 @@
+//! The two checkers of saved proofs: the library, and `check.py` in a process of its own.
+
+use std::io::{BufRead, BufReader, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+
+use colltrans::ProofFile;
+
+/// What a checker makes of a proof.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Verdict {
+    /// All of it holds.
+    Holds,
+    /// What was checked of it holds (`check.py`, exit code 7 or 1).
+    HoldsPartly,
+    /// It does not hold, or is not a proof.
+    Refused(String),
+    /// The checker itself failed.
+    Failed(String),
+}
+
+impl Verdict {
+    /// Checks whether the proof was accepted, as far as it was checked.
+    pub fn accepts(&self) -> bool {
+        matches!(self, Self::Holds | Self::HoldsPartly)
+    }
+}
+
+/// Returns the verdict of the library about a proof of the format `"colltrans proof 1"`.
+pub fn verify(text: &str) -> Verdict {
+    let checked = ProofFile::from_json(text).map_err(|error| error.to_string());
+    let checked = checked.and_then(|proof| proof.check().map_err(|error| error.to_string()));
+    checked.map_or_else(Verdict::Refused, |()| Verdict::Holds)
+}
+
+/// `check.py` as a process that checks one proof after the other.
+#[derive(Debug)]
+pub struct Fractions {
+    child: Child,
+    to: ChildStdin,
+    from: BufReader<ChildStdout>,
+}
+
+impl Fractions {
+    /// Starts the checker of this repository with `COLLTRANS_PYTHON`, or `python3`.
+    ///
+    /// # Errors
+    /// There is no such program.
+    pub fn start() -> std::io::Result<Self> {
+        let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let check: PathBuf = here.join("../../python/src/colltrans/check.py");
+        let python = std::env::var_os("COLLTRANS_PYTHON").unwrap_or_else(|| "python3".into());
+        let mut child = Command::new(python)
+            .arg(here.join("check_lines.py"))
+            .arg(check)
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()?;
+        let (to, from) = (child.stdin.take(), child.stdout.take());
+        let missing = || std::io::Error::other("a pipe is missing");
+        let (to, from) = (to.ok_or_else(missing)?, from.ok_or_else(missing)?);
+        Ok(Self { child, to, from: BufReader::new(from) })
+    }
+
+    /// Returns the verdict about a proof, which has to be one line.
+    pub fn check(&mut self, text: &str) -> Verdict {
+        let mut answer = String::new();
+        let asked = writeln!(self.to, "{text}").and_then(|()| self.to.flush());
+        match asked.and_then(|()| self.from.read_line(&mut answer)) {
+            Ok(0) => return Verdict::Failed("it has ended".into()),
+            Err(error) => return Verdict::Failed(error.to_string()),
+            Ok(_) => {}
+        }
+        let (code, why) = answer.trim_end().split_once('\t').unwrap_or((answer.trim_end(), ""));
+        match code {
+            "0" => Verdict::Holds,
+            "7" | "1" => Verdict::HoldsPartly,
+            "3" | "6" => Verdict::Refused(why.to_owned()),
+            _ => Verdict::Failed(why.to_owned()),
+        }
+    }
+}
+
+impl Drop for Fractions {
+    fn drop(&mut self) {
+        // It ends by itself as its input does; a process that is gone already is no fault.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

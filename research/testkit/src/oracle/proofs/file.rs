@@ -1,0 +1,183 @@
+//! What a proof of the format `"colltrans proof 1"` is about, in exact coordinates.
+
+use colltrans::MIN_MAGNITUDE;
+use glam::{DMat3, DVec3};
+use serde_json::Value;
+
+use crate::oracle::distance::distance;
+use crate::oracle::exact::{Dyadic, Ratio, Vector, place};
+use crate::oracle::scene::Scene;
+use crate::oracle::shadow::{SignedDistance, sideways_overlap};
+use crate::oracle::simplex::collision_translation;
+
+/// Factor by which a rounded noise is made one for certain.
+const CERTAIN: f64 = 1.0 + 1e-6;
+
+/// Two bodies as a file has them.
+#[derive(Debug, Clone)]
+pub struct Bodies {
+    /// The vertices of the moving and of the fixed body in the world.
+    pub points: [Vec<Vector>; 2],
+    /// The facets of solids, pieces run through.
+    pub facets: [Vec<[usize; 3]>; 2],
+    /// The direction, if there is one.
+    pub direction: Option<DVec3>,
+    /// The gap to be kept.
+    pub keep: f64,
+    /// The size `S`.
+    pub size: f64,
+}
+
+impl Bodies {
+    /// Reads them; `None` if the file has none.
+    pub fn read(file: &Value) -> Option<Self> {
+        let (mut points, mut facets) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
+        let (mut size, mut origins) = (0.0, [DVec3::ZERO; 2]);
+        for (k, which) in ["moving", "fixed"].into_iter().enumerate() {
+            let body = file.get(which)?;
+            let mut vertices = Vec::new();
+            if let Some(convex) = body.get("convex") {
+                vertices = vectors(convex.get("vertices")?)?;
+            } else {
+                for piece in body.get("pieces")?.as_array()? {
+                    let base = vertices.len();
+                    vertices.append(&mut vectors(piece.get("vertices")?)?);
+                    for triangle in piece.get("triangles")?.as_array()? {
+                        let [a, b, c] = indices(triangle)?[..] else { return None };
+                        facets[k].push([a, b, c].map(|v| v + base));
+                    }
+                }
+            }
+            let pose = file.get(format!("{which}_pose"))?;
+            let entries = numbers(pose.get("matrix")?)?;
+            let entries: Vec<f64> =
+                entries.iter().map(|x| if x.abs() < MIN_MAGNITUDE { 0.0 } else { *x }).collect();
+            let matrix = DMat3::from_cols_array(&entries.try_into().ok()?);
+            origins[k] = vector(pose.get("translation")?)?;
+            size += vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
+            points[k] = place(matrix, origins[k], &vertices);
+        }
+        let direction = file.get("direction").filter(|d| !d.is_null());
+        let direction = direction.map(vector).map_or(Some(None), |d| d.map(Some))?;
+        let keep = file.get("keep").map_or(Some(0.0), Value::as_f64)?;
+        let size = (size + (origins[1] - origins[0]).length()).max(MIN_MAGNITUDE);
+        Some(Self { points, facets, direction, keep, size })
+    }
+
+    /// One noise, `32 u (S + g)`.
+    pub fn noise(&self) -> f64 {
+        16.0 * f64::EPSILON * (self.size + self.keep)
+    }
+
+    /// So many noises, certainly.
+    pub fn noises(&self, count: f64) -> f64 {
+        count * self.noise() * CERTAIN
+    }
+
+    /// The bodies and a direction.
+    pub fn scene(&self, direction: DVec3) -> Scene {
+        scene([&self.points[0], &self.points[1]], direction)
+    }
+
+    /// The first translation at which the bodies meet.
+    pub fn first(&self, direction: DVec3) -> Option<Ratio> {
+        collision_translation(&self.scene(direction))
+    }
+
+    /// How far the shadows overlap, if that is positive.
+    pub fn overlap_of_shadows(&self, direction: DVec3) -> SignedDistance {
+        sideways_overlap(&self.scene(direction))
+    }
+
+    /// The square of the distance.
+    pub fn distance(&self) -> Ratio {
+        distance(&self.points[0], &self.points[1]).square
+    }
+
+    /// The square of the distance after a translation.
+    pub fn distance_at(&self, direction: DVec3, t: f64) -> Ratio {
+        distance(&moved(&self.points[0], direction, t), &self.points[1]).square
+    }
+
+    /// The square of the least distance over all translations up to `end`: the body that the moving one sweeps over
+    /// is the hull of it at both ends. Where it is farther away than all that matters nothing is less.
+    pub fn least_distance_until(&self, direction: DVec3, end: f64) -> Ratio {
+        let far = 4.0 * self.size / direction.length();
+        let end = end.min(far);
+        let mut swept = moved(&self.points[0], direction, end);
+        if end > -far {
+            swept.extend(moved(&self.points[0], direction, -far));
+        }
+        distance(&swept, &self.points[1]).square
+    }
+
+    /// A facet's corners in the world.
+    pub fn facet(&self, body: usize, facet: usize) -> Option<[Vector; 3]> {
+        let corners = self.facets[body].get(facet)?;
+        let of = |k: usize| self.points[body].get(corners[k]).cloned();
+        Some([of(0)?, of(1)?, of(2)?])
+    }
+
+    /// `min_Q n.q - max_P n.p`.
+    pub fn along(&self, n: &Vector) -> Dyadic {
+        let nearest = self.points[1].iter().map(|q| n.dot(q)).min();
+        let farthest = self.points[0].iter().map(|p| n.dot(p)).max();
+        &nearest.unwrap_or(Dyadic::ZERO) - &farthest.unwrap_or(Dyadic::ZERO)
+    }
+}
+
+/// Points in the world and a direction; their noises are not asked for.
+pub fn scene([moving, fixed]: [&[Vector]; 2], direction: DVec3) -> Scene {
+    let mut scene = Scene::new(
+        (&[], &colltrans::Pose::IDENTITY),
+        (&[], &colltrans::Pose::IDENTITY),
+        direction,
+    );
+    (scene.moving, scene.fixed) = (moving.to_vec(), fixed.to_vec());
+    scene
+}
+
+fn moved(points: &[Vector], direction: DVec3, t: f64) -> Vec<Vector> {
+    let by = Vector::new(direction).times(&Dyadic::new(t));
+    points.iter().map(|p| p.plus(&by)).collect()
+}
+
+/// Three numbers.
+pub fn vector(value: &Value) -> Option<DVec3> {
+    Some(DVec3::from_array(numbers(value)?.try_into().ok()?))
+}
+
+/// A list of vectors.
+pub fn vectors(value: &Value) -> Option<Vec<DVec3>> {
+    value.as_array()?.iter().map(vector).collect()
+}
+
+/// A list of numbers.
+pub fn numbers(value: &Value) -> Option<Vec<f64>> {
+    value.as_array()?.iter().map(Value::as_f64).collect()
+}
+
+/// A list of whole numbers.
+pub fn indices(value: &Value) -> Option<Vec<usize>> {
+    value.as_array()?.iter().map(|k| Some(k.as_u64()? as usize)).collect()
+}
+
+/// `x^2`, exactly.
+pub fn square(x: f64) -> Ratio {
+    Ratio::from_f64(x).times(&Ratio::from_f64(x))
+}
+
+/// The differences `q - p` of pairs of vertices, rounded.
+pub fn differences(bodies: &Bodies, pairs: &Value) -> Option<Vec<DVec3>> {
+    let of = |pair: &Value| {
+        let p = bodies.points[0].get(pair.get("moving")?.as_u64()? as usize)?;
+        let q = bodies.points[1].get(pair.get("fixed")?.as_u64()? as usize)?;
+        Some(q.minus(p).to_f64())
+    };
+    pairs.as_array()?.iter().map(of).collect()
+}
+
+/// Checks whether a number that 1 is admitted for is at the limit of `32 u`.
+pub fn is_at_limit(off: f64) -> bool {
+    (30.0..38.0).contains(&(off.abs() / (0.5 * f64::EPSILON)))
+}

@@ -1,0 +1,324 @@
+//! Adversarial proofs: files that exhaust what both checkers admit, whose accepted claims are held against the truth.
+//!
+//! A [`Kind`] makes proofs, names their claims, knows the worst that a certificate can be, and says what of an accepted
+//! file is false by the bodies in it alone, exactly ([docs/proofs.md](../../../../../docs/proofs.md) is the
+//! specification). [`Campaign::examine`] takes one proof through
+//!
+//! - [`mutants`]: any number, name or list of the file is changed;
+//! - mutants of its kind, normals tilted as far as is admitted say, of which each claim is pushed as far as a checker
+//!   goes, from the weakest claim there is.
+//!
+//! Both [`checkers`] have to agree: what the library accepts `check.py` accepts. The other way round the library may
+//! refuse what is within the specified rounding of a limit, and what `check.py` says that it has not checked.
+
+pub mod casts;
+pub mod checkers;
+pub mod file;
+pub mod mutants;
+pub mod pairs;
+pub mod solids;
+
+use serde_json::Value;
+
+use crate::random::Random;
+use checkers::{Fractions, Verdict};
+use mutants::{number, with};
+
+/// Mutants of each proof that know nothing of what it says.
+const BLIND: usize = 30;
+
+/// Mutants of each proof whose claims are pushed.
+const PUSHED: usize = 4;
+
+/// One in so many claims is pushed as far as `check.py` goes, too.
+const TO_THE_END: u64 = 3;
+
+/// A number of a proof that claims something.
+#[derive(Debug, Clone)]
+pub struct Claim {
+    /// Where it is.
+    pub pointer: String,
+    /// The value that claims least of those admitted.
+    pub weakest: f64,
+    /// A value that claims more than can be true.
+    pub strongest: f64,
+    /// What the library may refuse of a claim that holds: how far it has to be from the limit to be accepted.
+    pub band: f64,
+}
+
+/// Who has accepted a claim.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Who {
+    /// The library, which checks all.
+    Library,
+    /// `check.py`, which leaves some of it out.
+    Fractions,
+}
+
+/// A kind of proofs.
+#[derive(Debug, Clone, Copy)]
+pub struct Kind {
+    /// What the campaign calls it.
+    pub name: &'static str,
+    /// The part of the file that most blind mutants change, as a JSON pointer.
+    pub focus: &'static str,
+    /// Returns the proof of an answer of the library; `None` if this seed gives none.
+    pub base: fn(u64) -> Option<String>,
+    /// Returns the claims of a proof.
+    pub claims: fn(&Value) -> Vec<Claim>,
+    /// Makes a certificate as bad as is admitted, or worse, in one of the ways of this kind.
+    pub worst: fn(&mut Value, &mut Random),
+    /// Returns a claim that is false, by the bodies alone and exactly, of those that somebody checks.
+    pub falsehood: fn(&Value, Who) -> Option<String>,
+    /// Checks whether a number is so near the limit of what is admitted that the library may refuse it.
+    pub is_marginal: fn(&Value) -> bool,
+    /// The verdict of the library.
+    pub verify: fn(&str) -> Verdict,
+}
+
+/// All kinds.
+pub const KINDS: [Kind; 6] = [
+    casts::CASTS,
+    casts::WITH_GAP,
+    pairs::DISTANCES,
+    pairs::DEPTHS,
+    solids::CLEARANCES,
+    solids::DISTANCES,
+];
+
+/// What became of proofs.
+#[derive(Debug, Clone, Default)]
+pub struct Tally {
+    /// Proofs of the library.
+    pub proofs: u64,
+    /// Files that both checkers have judged.
+    pub mutants: u64,
+    /// Files that the library alone has judged, on the way to the end of a claim.
+    pub steps: u64,
+    /// Of the mutants, those that both accept.
+    pub accepted: u64,
+    /// Those that the library refuses within the specified rounding.
+    pub rounded: u64,
+    /// Those that `check.py` has checked in part, and the library refuses.
+    pub partly: u64,
+    /// Claims pushed to the end of a checker.
+    pub ends: u64,
+    /// False claims that were accepted.
+    pub false_claims: Vec<String>,
+    /// Files of which one checker says what the other does not.
+    pub disagreements: Vec<String>,
+}
+
+/// One thread's share of a campaign.
+#[derive(Debug)]
+pub struct Campaign<'a> {
+    kind: &'a Kind,
+    /// `check.py`; without it the library alone is judged.
+    fractions: Option<&'a mut Fractions>,
+    tally: &'a mut Tally,
+    name: String,
+}
+
+impl<'a> Campaign<'a> {
+    /// Takes one proof of a kind through all mutants.
+    pub fn examine(
+        kind: &'a Kind,
+        seed: u64,
+        fractions: Option<&'a mut Fractions>,
+        tally: &'a mut Tally,
+    ) {
+        let Some(text) = (kind.base)(seed) else { return };
+        let name = format!("{}:{seed}", kind.name);
+        let mut campaign = Self { kind, fractions, tally, name };
+        campaign.tally.proofs += 1;
+        let random = &mut Random::stream(seed, &[0xf0_26ed]);
+        if !campaign.judge(&text, "as written") {
+            campaign.tally.disagreements.push(format!("{}: a proof is refused: {text}", campaign.name));
+            return;
+        }
+        let Ok(file) = serde_json::from_str::<Value>(&text) else { return };
+        for _ in 0..BLIND {
+            let mutant = mutants::random(&file, kind.focus, random);
+            campaign.judge(&mutant, "blind");
+        }
+        campaign.push_one(&file, random);
+        for _ in 0..PUSHED {
+            let mut worst = file.clone();
+            (kind.worst)(&mut worst, random);
+            if random.one_in(3) {
+                (kind.worst)(&mut worst, random);
+            }
+            campaign.judge(&worst.to_string(), "worst");
+            campaign.push_one(&worst, random);
+        }
+    }
+
+    /// Pushes one claim of a file, the others being the weakest there are.
+    fn push_one(&mut self, file: &Value, random: &mut Random) {
+        let claims = (self.kind.claims)(file);
+        if claims.is_empty() {
+            return;
+        }
+        let pushed = &claims[random.index(claims.len())];
+        let mut file = file.clone();
+        if random.one_in(2) {
+            for claim in &claims {
+                file = with(&file, &claim.pointer, Some(number(claim.weakest)));
+            }
+        }
+        let at = |x: f64| with(&file, &pushed.pointer, Some(number(x))).to_string();
+        if !self.judge(&at(pushed.weakest), "weakest") {
+            return;
+        }
+        let verify = self.kind.verify;
+        let mut steps = 0;
+        let end = limit(pushed.weakest, pushed.strongest, |x| {
+            steps += 1;
+            verify(&at(x)).accepts()
+        });
+        self.tally.steps += steps;
+        self.tally.ends += 1;
+        let Some(end) = end else { return };
+        self.judge(&at(end), "pushed");
+        self.judge(&at(toward(end, pushed.strongest)), "pushed over");
+        if random.one_in(TO_THE_END) && self.fractions.is_some() {
+            let last = limit_near(end, pushed.strongest, |x| self.judge(&at(x), "pushed on"));
+            self.tally.ends += 1;
+            self.judge(&at(last), "pushed to the end");
+        }
+    }
+
+    /// Has both checkers judge a file, and what they accept judged by the truth. Returns whether one accepts it.
+    fn judge(&mut self, text: &str, what: &str) -> bool {
+        self.tally.mutants += 1;
+        let library = (self.kind.verify)(text);
+        let fractions = match &mut self.fractions {
+            Some(fractions) => fractions.check(text),
+            None => library.clone(),
+        };
+        let file = serde_json::from_str::<Value>(text).ok();
+        let failed = |verdict| matches!(verdict, &Verdict::Failed(_));
+        let reason = match (library.accepts(), fractions.accepts()) {
+            _ if failed(&library) || failed(&fractions) => Some("a checker fails"),
+            (true, true) => {
+                self.tally.accepted += 1;
+                None
+            }
+            (true, false) => Some("check.py alone refuses"),
+            (false, true) if fractions == Verdict::HoldsPartly => {
+                self.tally.partly += 1;
+                None
+            }
+            (false, true) if file.as_ref().is_some_and(|file| self.is_rounded(file)) => {
+                self.tally.rounded += 1;
+                None
+            }
+            (false, true) => Some("the library alone refuses"),
+            (false, false) => None,
+        };
+        let name = &self.name;
+        if let Some(reason) = reason {
+            let line = format!("{name}, {what}: {reason}: {library:?}, {fractions:?}: {text}");
+            self.tally.disagreements.push(line);
+        }
+        for (verdict, who) in [(&library, Who::Library), (&fractions, Who::Fractions)] {
+            if verdict.accepts() {
+                let unreadable = || Some("it is no JSON".to_owned());
+                let found = file.as_ref().map_or_else(unreadable, |f| (self.kind.falsehood)(f, who));
+                if let Some(why) = found {
+                    let line = format!("{name}, {what}: {who:?} accepts: {why}: {text}");
+                    self.tally.false_claims.push(line);
+                }
+            }
+        }
+        library.accepts() || fractions.accepts()
+    }
+
+    /// Checks whether the library accepts a file once its claims are weaker by what is specified, or may refuse it
+    /// for a number at the limit of what is admitted.
+    fn is_rounded(&self, file: &Value) -> bool {
+        let mut weaker = file.clone();
+        for claim in (self.kind.claims)(file) {
+            let Some(old) = file.pointer(&claim.pointer).and_then(Value::as_f64) else { continue };
+            let sign = if claim.weakest < claim.strongest { -1.0 } else { 1.0 };
+            let eased = old + sign * claim.band;
+            let eased =
+                if sign < 0.0 { eased.max(claim.weakest) } else { eased.min(claim.weakest) };
+            weaker = with(&weaker, &claim.pointer, Some(number(eased)));
+        }
+        (self.kind.verify)(&weaker.to_string()).accepts() || (self.kind.is_marginal)(file)
+    }
+}
+
+/// Numbers in their order, as whole ones.
+fn order(x: f64) -> i64 {
+    let bits = x.to_bits() as i64;
+    if bits >= 0 { bits } else { i64::MIN.wrapping_sub(bits) }
+}
+
+fn of_order(order: i64) -> f64 {
+    let bits = if order >= 0 { order } else { i64::MIN.wrapping_sub(order) };
+    f64::from_bits(bits as u64)
+}
+
+/// Returns the next number towards another one.
+fn toward(x: f64, end: f64) -> f64 {
+    of_order(order(x) + (order(end) - order(x)).signum())
+}
+
+/// Returns the number nearest to `strongest` that is accepted, by halving; `None` if `weakest` is not.
+fn limit(weakest: f64, strongest: f64, mut accepts: impl FnMut(f64) -> bool) -> Option<f64> {
+    if !accepts(weakest) {
+        return None;
+    }
+    let (mut low, mut high) = (i128::from(order(weakest)), i128::from(order(strongest)));
+    if accepts(strongest) {
+        return Some(strongest);
+    }
+    while (high - low).abs() > 1 {
+        let middle = low + (high - low) / 2;
+        if accepts(of_order(middle as i64)) {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    Some(of_order(low as i64))
+}
+
+/// Returns [`limit`] from an accepted number, by steps that grow before they are halved.
+fn limit_near(from: f64, strongest: f64, mut accepts: impl FnMut(f64) -> bool) -> f64 {
+    let (start, end) = (i128::from(order(from)), i128::from(order(strongest)));
+    let (mut low, mut step) = (start, (end - start).signum());
+    if step == 0 {
+        return from;
+    }
+    let high = loop {
+        let next = low + step;
+        if (next - end) * step.signum() >= 0 {
+            break end;
+        }
+        if !accepts(of_order(next as i64)) {
+            break next;
+        }
+        (low, step) = (next, step * 4);
+    };
+    limit(of_order(low as i64), of_order(high as i64), |x| x == of_order(low as i64) || accepts(x))
+        .unwrap_or(from)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_are_found_to_the_last_bit() {
+        for most in [3.0_f64, -0.25, 1e-300, 0.0] {
+            assert_eq!(limit(-1e300, 1e300, |x| x <= most), Some(most));
+            assert_eq!(limit(1e300, -1e300, |x| x >= most), Some(most));
+        }
+        assert_eq!(limit(1.0, 2.0, |_| false), None);
+        assert_eq!(limit_near(2.0, 1e300, |x| x <= 2.5), 2.5);
+        assert_eq!(limit_near(2.0, -1e300, |x| x >= -2.5), -2.5);
+    }
+}

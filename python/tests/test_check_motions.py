@@ -145,6 +145,59 @@ def test_what_is_no_proof_is_refused() -> None:
     assert check.check(json.dumps({**file, "proof": {"spans": [], "meeting": None}})).holds == []
 
 
+def test_a_piece_that_begins_when_the_motion_ends_is_refused() -> None:
+    # It would put the body elsewhere at the time 1, which no plane is of.
+    file = proof("motion_free")
+    last = {**file["moving_motion"][-1], "since": 1.0}
+    assert refused({**file, "moving_motion": [*file["moving_motion"], last]})
+
+
+def test_how_deep_and_how_near_is_said_holds_to_rounding() -> None:
+    for name in ("contact", "sinking"):
+        file = proof(f"motion_{name}")
+        way: tuple[Any, ...] = ("proof", "meeting", "met", "deep")
+        assert check.check(json.dumps(file)).unchecked == []
+        for field, by in (
+            ("lower", lambda x: x + 1e-9),
+            ("lower", lambda x: -1e-9),
+            ("upper", lambda x: x - 1e-9),
+            ("direction", lambda d: [1.01 * x for x in d]),
+        ):
+            assert refused(changed(file, (*way, field), by)), (name, field)
+    file = proof("motion_kept")
+    way = ("proof", "meeting", "met", "near")
+    assert refused(changed(file, (*way, "distance"), lambda x: x - 1e-9))
+    assert refused(changed(file, (*way, "distance"), lambda x: -x))
+    assert refused(changed(file, (*way, "pairs"), lambda pairs: pairs[:3]))
+
+
+def test_fields_that_are_missing_or_unknown_are_refused() -> None:
+    file = proof("motion_contact")
+    met: tuple[Any, ...] = ("proof", "meeting", "met", "deep")
+    for under in ((), ("proof",), ("proof", "spans", 0, 0), ("proof", "meeting"), met):
+        at = file
+        for key in under:
+            at = at[key]
+        more = changed({"of": file}, ("of", *under), lambda of: {**of, "more": 0})["of"]
+        assert refused(more)
+        for name in set(at) - {"steps"}:
+            rest = changed(
+                {"of": file},
+                ("of", *under),
+                lambda of, name=name: {k: v for k, v in of.items() if k != name},
+            )["of"]
+            assert refused(rest), name
+
+
+def test_several_pairs_are_asked_one_question() -> None:
+    files = [proof("motion_contact"), proof("motion_free")]
+    several = {"format": "colltrans motions proof 1", "proofs": files}
+    assert len(check.check(json.dumps(several)).holds) == 3
+    assert refused({**several, "proofs": []})
+    # What is said of all of them would be said of two gaps.
+    assert refused({**several, "proofs": [*files, proof("motion_kept")]})
+
+
 def test_sine_and_cosine_are_enclosed() -> None:
     drawn = random.Random(5)
     for scale in (1e-9, 0.8, 6.0, 1e5):

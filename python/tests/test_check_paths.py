@@ -21,22 +21,22 @@ ALL = ["contact", "free", "kept", "solid"]
         (
             "contact",
             [
-                "no two bodies of those asked about meet up to the time 0.60356132767",
+                "of 6 pairs of bodies none meet up to the time 0.60356132767",
                 "'tool' and 'wire' meet by the time",
             ],
         ),
-        ("free", ["no two bodies of those asked about meet up to the time 2.0"]),
+        ("free", ["of 3 pairs of bodies none meet up to the time 2.0"]),
         (
             "kept",
             [
-                "no two bodies of those asked about are as near as 0.01 up to",
+                "of 6 pairs of bodies none are as near as 0.01 up to",
                 "are as near as 0.01 by the time",
             ],
         ),
         (
             "solid",
             [
-                "no two bodies of those asked about meet up to the time 0.5581803",
+                "of 6 pairs of bodies none meet up to the time 0.5581803",
                 "'tool' and 'frame' meet by the time",
             ],
         ),
@@ -94,7 +94,7 @@ def test_planes_that_are_needed_may_not_be_dropped(name: str) -> None:
     without = json.loads(json.dumps(file))
     del without["proof"]["covers"][0]
     assert refused(without)
-    without["pairs"] = without["pairs"][1:]
+    without["statement"]["pairs"] = without["statement"]["pairs"][1:]
     assert name != "free" or not refused(without)
 
 
@@ -104,28 +104,46 @@ def test_the_time_of_contact_may_not_be_moved() -> None:
         way: tuple[Any, ...] = ("proof", "meeting", "place", "share")
         assert refused(changed(file, way, lambda t: 0.5 * t))
         assert refused(changed(file, way, lambda t: 1.5))
-        assert refused(changed(file, ("said", "upper"), lambda t: t - 1e-9))
-        assert refused(changed(file, ("said", "lower"), lambda t: t + 1e-9))
+        assert refused(changed(file, ("statement", "upper"), lambda t: t - 1e-9))
+        assert refused(changed(file, ("statement", "lower"), lambda t: t + 1e-9))
         assert refused(changed(file, ("proof", "meeting", "pair"), lambda k: k - 1))
         assert refused(changed(file, ("proof", "meeting"), lambda of: None))
 
 
 def test_a_later_time_is_a_bound_and_none_is_no_claim() -> None:
     file = proof("path_contact")
-    for upper, told in ((file["said"]["upper"] + 1.0, "by the time"), (None, "on the path")):
-        report = check.check(json.dumps({**file, "said": {**file["said"], "upper": upper}}))
-        (meeting,) = (line for line in report.holds if " and " in line)
+    of = file["statement"]
+    for upper, told in ((of["upper"] + 1.0, "by the time"), (None, "on the path")):
+        report = check.check(json.dumps({**file, "statement": {**of, "upper": upper}}))
+        meeting = report.holds[-1]
         assert f"meet {told}" in meeting
 
 
 def test_pairs_that_were_left_out_are_named() -> None:
     file = proof("path_free")
-    (first, *others), covers = file["pairs"], file["proof"]["covers"]
-    less = {**file, "pairs": others, "proof": {**file["proof"], "covers": covers[1:]}}
-    report = check.check(json.dumps(less))
-    a, b = (repr(file["bodies"][k]["name"]) for k in first)
+    of, covers = file["statement"], file["proof"]["covers"]
+    first, *others = of["pairs"]
+    proof_ = {**file["proof"], "covers": covers[1:]}
+    report = check.check(
+        json.dumps({**file, "statement": {**of, "pairs": others}, "proof": proof_})
+    )
+    a, b = map(repr, first)
     assert any(f"{a} and {b}" in line or f"{b} and {a}" in line for line in report.unchecked)
-    assert any("of those asked about" in line for line in report.holds)
+    (line,) = report.holds
+    assert f"{a} and {b}" not in line and all(f"{c!r} and {d!r}" in line for c, d in others)
+
+
+def test_the_pairs_of_a_statement_are_those_of_the_covers() -> None:
+    file = proof("path_free")
+    pairs: tuple[Any, ...] = ("statement", "pairs")
+    assert refused(changed(file, pairs, lambda all_: all_[1:]))
+    assert refused(changed(file, pairs, lambda all_: [*all_, all_[0]]))
+    assert refused(changed(file, (*pairs, 0), lambda pair: [pair[0], pair[0]]))
+    assert refused(changed(file, (*pairs, 0, 1), lambda name: name + " of another robot"))
+    # The names say which bodies: two of one name say nothing.
+    name = file["bodies"][0]["name"]
+    assert refused(changed(file, ("bodies", 1, "name"), lambda _: name))
+    assert refused(changed(file, ("bodies", 1, "name"), lambda _: ""))
 
 
 @pytest.mark.parametrize(
@@ -171,11 +189,55 @@ def test_parts_of_a_solid_may_not_be_left_out() -> None:
     met: tuple[Any, ...] = ("proof", "meeting", "how", "pieces", "pieces")
     assert refused(changed(file, (*met, 1), lambda k: k - 7))
     assert refused(changed(file, (*met, 1), lambda k: 0))
-    # Without them it says what it does not check.
     without = json.loads(json.dumps(file))
-    del without["bodies"][at]["parts"]
-    report = check.check(json.dumps(without))
-    assert report.partly and any("solids" in line for line in report.unchecked)
+    parts_of = without["bodies"][at].pop("parts")
+    assert refused(without)
+    assert refused(changed(file, ("bodies", 1 - at), lambda of: {**of, "parts": parts_of}))
+
+
+def test_no_place_is_beyond_the_way_to_the_next_row() -> None:
+    file = proof("path_solid")
+    steps = [
+        ("proof", "covers", c, "steps", s, "parts", "until", "share")
+        for c, cover in enumerate(file["proof"]["covers"])
+        for s, step in enumerate(cover["steps"])
+        if "parts" in step
+    ]
+    assert steps
+    for way in steps:
+        # Seven times the way would be the time of a row that no plane is of.
+        for share in (7.0, -1.0):
+            assert refused(changed(file, way, lambda _, share=share: share))
+
+
+def test_a_path_of_one_row_is_free_by_planes_alone() -> None:
+    file = proof("path_free")
+    one = json.loads(json.dumps(file))
+    one["path"] = {"times": [2.0], "rows": file["path"]["rows"][:1]}
+    for cover in one["proof"]["covers"]:
+        (step,) = cover["steps"]
+        (first, *_) = step["planes"]
+        step["planes"] = [{**first, "planes": first["planes"][:1]}]
+    (line,) = check.check(json.dumps(one)).holds
+    assert "of 3 pairs of bodies none meet up to the time 2.0" in line
+    one["proof"]["covers"][1]["steps"] = []
+    assert check.check(json.dumps(one)).holds == []
+
+
+def test_fields_that_are_missing_or_unknown_are_refused() -> None:
+    file = proof("path_contact")
+    for under in ((), ("proof",), ("statement",), ("proof", "meeting"), ("bodies", 0)):
+        assert refused(changed({"of": file}, ("of", *under), lambda of: {**of, "more": 0})["of"])
+        at = file
+        for key in under:
+            at = at[key]
+        for name in at:
+            rest = changed(
+                {"of": file},
+                ("of", *under),
+                lambda of, name=name: {k: v for k, v in of.items() if k != name},
+            )["of"]
+            assert refused(rest), name
 
 
 def test_what_is_inside_where_a_path_begins_is_seen() -> None:

@@ -67,12 +67,22 @@ def test_no_entry_of_a_cover_may_be_another(name: str) -> None:
         (("parts", 0, "tree", 0), lambda k: 0),
         (("parts", 0, "tree"), lambda tree: tree[:-1]),
         (("parts", 1, "corners"), lambda of: of[:-1]),
+        (("proof", "meeting", "met", "crossing", "moving"), lambda of: int(of)),
+        (("proof", "meeting", "met", "crossing", "edge"), lambda k: k + 3),
+        (("proof", "start"), lambda of: "assumed"),
+        (("proof", "start"), lambda of: "apart"),
+        (("proof", "start"), lambda of: {"facets": [0, 0]}),
+        (("proof", "tolerance"), lambda x: -x),
+        (("proof", "tolerance"), lambda x: 0.0),
+        (("tolerance",), lambda x: 0.25),
+        (("proof", "spans", 0, "cover"), list),
+        (("proof", "spans", 0, "cover"), lambda of: [of[:1] + of[1:]]),
         (("keep",), lambda x: 0.5),
         (("keep",), lambda x: -0.5),
     ],
 )
 def test_every_number_counts(part: tuple[Any, ...], by: Callable[[Any], Any]) -> None:
-    file = {"keep": 0.0, **proof("solids_contact")}
+    file = {"keep": 0.0, "tolerance": None, **proof("solids_contact")}
     assert refused(changed(file, part, by))
 
 
@@ -83,6 +93,22 @@ def test_how_far_facets_were_moved_is_said() -> None:
     assert any("moved by at most 0.125" in line for line in report.holds)
     # How the tolerance moves them is not checked: what is said holds in part.
     assert report.partly and any("as the tolerance says" in line for line in report.unchecked)
+
+
+def test_fields_that_are_missing_or_unknown_are_refused() -> None:
+    file = proof("solids_contact")
+    for under in ((), ("proof",), ("proof", "spans", 0), ("proof", "meeting"), ("parts", 0)):
+        at = file
+        for key in under:
+            at = at[key]
+        assert refused(changed({"of": file}, ("of", *under), lambda of: {**of, "more": 0})["of"])
+        for name in set(at) - {"tolerance", "keep"} | ({"tolerance"} if under else set()):
+            rest = changed(
+                {"of": file},
+                ("of", *under),
+                lambda of, name=name: {k: v for k, v in of.items() if k != name},
+            )["of"]
+            assert name not in at or refused(rest), name
 
 
 def test_what_is_inside_is_refused() -> None:

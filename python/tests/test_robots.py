@@ -64,7 +64,7 @@ def test_a_wire_in_the_way_is_met_as_on_the_command_line(cli: Path, tmp_path: Pa
     verified = subprocess.run(
         [cli, "verify", tmp_path / "proof.json"], capture_output=True, text=True, check=True
     )
-    assert "tool and wire are the first to meet" in verified.stdout
+    assert "and tool and wire meet by the time" in verified.stdout
     assert copy.copy(found) is found and copy.deepcopy(found) is found
     match found:
         case PathContact("contact", lower):

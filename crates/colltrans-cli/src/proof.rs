@@ -141,7 +141,9 @@ impl Saved {
                 told_of_time(&proof.to_string(), proof.check().unwrap_or_default())
             }
             Self::Path(proof) => {
-                told_of_time(&proof.to_string(), proof.check().unwrap_or_default())
+                let mut told = told_of_time(&proof.to_string(), proof.check().unwrap_or_default());
+                told["pairs"] = json!(proof.statement().pairs);
+                told
             }
         }
     }

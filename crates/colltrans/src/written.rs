@@ -124,6 +124,16 @@ pub(crate) fn is_none(count: &u64) -> bool {
     *count == 0
 }
 
+/// A value that may be `null`, but has to be there: a field that is missing counts as `null` otherwise.
+#[cfg(feature = "serde")]
+pub(crate) fn given<'de, T, D>(from: D) -> Result<Option<T>, D::Error>
+where
+    T: serde::Deserialize<'de>,
+    D: serde::Deserializer<'de>,
+{
+    serde::Deserialize::deserialize(from)
+}
+
 /// The same of a lower bound.
 #[cfg(feature = "serde")]
 pub(crate) mod or_minus_infinite {

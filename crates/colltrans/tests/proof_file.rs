@@ -215,6 +215,36 @@ fn a_number_of_a_scene_that_is_changed_is_noticed() {
         other["statement"] = json!({"nearest": {}, "within": {}});
         assert!(refused(&other));
     }
+    // Of an obstacle one thing is said, of a length that is one, and whatever is said is looked at.
+    let false_gap = json!({"convex": {"normal": [1.0, 0.0, 0.0], "gap": 1e9}});
+    let mut twice = within.clone();
+    let close = within["statement"]["within"]["closer"][0][0].clone();
+    twice["statement"]["within"]["apart"] = json!([[close, false_gap]]);
+    assert!(refused(&twice));
+    let mut open = within.clone();
+    open["statement"]["within"]["undecided"] = json!([close]);
+    assert!(refused(&open));
+    let mut none_closer = within.clone();
+    none_closer["statement"]["within"]["closer"] = json!([]);
+    none_closer["statement"]["within"]["length"] = json!(-1.0);
+    assert!(refused(&none_closer));
+    let mut unclaimed = nearest.clone();
+    unclaimed["statement"]["nearest"]["lower"] = json!(0.0);
+    unclaimed["statement"]["nearest"]["apart"] = json!([[0, false_gap]]);
+    assert!(refused(&unclaimed));
+    // A bound that is weaker is not where the obstacle stops the moving body, nor what is nearest.
+    let said =
+        |file: &Value| SceneProof::from_json(&file.to_string()).expect("a proof").to_string();
+    let mut weak = stop.clone();
+    weak["statement"]["clearance"]["lower"] = json!(0.0);
+    assert!(!refused(&weak) && !said(&weak).contains("overlaps"), "{}", said(&weak));
+    assert!(said(&stop).contains("obstacle 2 does by 2."), "{}", said(&stop));
+    let mut missing = stop.clone();
+    missing["statement"]["clearance"].as_object_mut().expect("a claim").remove("stop");
+    assert!(refused(&missing));
+    let mut far = nearest.clone();
+    far["statement"]["nearest"]["lower"] = json!(0.5);
+    assert!(said(&far).ends_with("none is nearer than 0.5"), "{}", said(&far));
     let mut none = nearest;
     none["obstacles"][0]["body"] = json!(7);
     let error = SceneProof::from_json(&none.to_string()).expect_err("there is no such body");

@@ -103,6 +103,8 @@ _NO_GAP = Fraction()
 _PLANE = 256 * _U
 #: How far a pose may be from a rotation.
 _TURN = Fraction(1, 10**6)
+#: The largest coordinate, displacement or gap.
+MOST = 2**200
 
 
 #: What reading a file that is no proof ends in; the first, numbers out of all range.
@@ -147,7 +149,9 @@ def coordinate(value: Any) -> Fraction:
 def fields(value: Any, needed: str, optional: str = "") -> dict[str, Any]:
     """An object with these fields and no others; None for an optional one that is not there."""
     if not isinstance(value, dict):
-        raise NoProofError(f"there has to be an object with {needed or optional}, not {value!r:.40}")
+        raise NoProofError(
+            f"there has to be an object with {needed or optional}, not {value!r:.40}"
+        )
     names = needed.split()
     missing = [name for name in names if name not in value]
     unknown = [name for name in value if name not in (*names, *optional.split())]
@@ -181,6 +185,34 @@ def place(values: Any) -> Vector:
     """A vector whose coordinates are in their range."""
     x, y, z = listed(values, 3)
     return coordinate(x), coordinate(y), coordinate(z)
+
+
+def one_of(of: Any, *kinds: str) -> tuple[str, Any]:
+    """Returns the name and the content of the only field of an object, one of these kinds."""
+    if not isinstance(of, dict) or len(of) != 1 or next(iter(of)) not in kinds:
+        raise NoProofError(f"there has to be one of {', '.join(kinds)}")
+    ((kind, content),) = of.items()
+    return kind, content
+
+
+def truth(value: Any) -> bool:
+    """Returns a value that is true or false."""
+    if not isinstance(value, bool):
+        raise NoProofError(f"{value!r} is not true or false")
+    return value
+
+
+def bounded(value: Fraction, most: int | Fraction, what: str) -> Fraction:
+    """Returns a number whose magnitude is at most this."""
+    if abs(value) > most:
+        raise NoProofError(f"{what}, {float(value)!r}, is out of range")
+    return value
+
+
+def bounded_vector(values: Any, what: str) -> Vector:
+    """Returns a vector whose components are at most 2^200."""
+    x, y, z = vector(values)
+    return bounded(x, MOST, what), bounded(y, MOST, what), bounded(z, MOST, what)
 
 
 def dot(a: Vector, b: Vector) -> Fraction:
@@ -462,9 +494,7 @@ def across(d: Vector, normal: Vector) -> Vector:
     return minus(scaled(normal, dot(d, d)), scaled(d, dot(normal, d)))
 
 
-def are_shadows_apart(
-    moving: Body, fixed: Body, d: Vector, normal: Vector, by: Fraction
-) -> bool:
+def are_shadows_apart(moving: Body, fixed: Body, d: Vector, normal: Vector, by: Fraction) -> bool:
     """Whether what of a normal is orthogonal to the direction proves that the shadows are a length apart.
 
     A negative length is how far they overlap at most.
@@ -796,29 +826,39 @@ def beyond(bound: Fraction | None, lower: Fraction | None) -> bool:
     return bound is None or (lower is not None and bound >= lower)
 
 
+def refuses(start_overlap: Any) -> bool:
+    """Whether bodies that overlap where they are are stopped there, or that is ignored."""
+    if start_overlap not in ("refuse", "ignore"):
+        raise NoProofError(f"an overlap means 'refuse' or 'ignore', not {start_overlap!r}")
+    return bool(start_overlap == "refuse")
+
+
 class Scene:
     """A proof about one body among many."""
 
     def __init__(self, file: Any) -> None:
+        fields(file, "format bodies moving obstacles choices statement")
         shapes = [Body.shape(shape) for shape in file["bodies"]]
 
         def placed(place: Any) -> Body:
+            fields(place, "body pose")
             return Body.placed(*shapes[whole(place["body"], len(shapes))], place["pose"])
 
         self.moving = placed(file["moving"])
         self.obstacles = [placed(place) for place in file["obstacles"]]
         self.choices, self.statement = file["choices"], file["statement"]
-        self.keep = gap_to_keep(self.choices)
+        fields(self.choices, "", "keep graze_tolerance tolerance start_overlap")
+        self.keep = bounded(gap_to_keep(self.choices), MOST, "the gap to be kept")
+        self.graze = number(self.choices.get("graze_tolerance", 0.0))
+        if self.graze < 0 or (self.choices.get("tolerance") or 0.0) < 0:
+            raise NoProofError("a tolerance is negative")
+        self.refuses = refuses(self.choices.get("start_overlap", "refuse"))
         self.box = box(self.moving)
         self.report = Report()
 
     def check(self) -> Report:
-        if len(self.statement) != 1:
-            raise NoProofError(f"it has to say one thing, not {len(self.statement)}")
-        ((kind, claim),) = self.statement.items()
         kinds = {"nearest": self.nearest, "within": self.within, "clearance": self.clearance}
-        if kind not in kinds:
-            raise NoProofError(f"{kind!r} is nothing that is claimed of many")
+        kind, claim = one_of(self.statement, *kinds)
         kinds[kind](claim)
         return self.report
 
@@ -885,22 +925,28 @@ class Scene:
         return bool(proven > least if strictly else proven >= least)
 
     def nearest(self, claim: Any) -> None:
-        lower = number(claim["lower"])
+        lower = number(fields(claim, "lower obstacle near apart")["lower"])
         nearest = whole(claim["obstacle"], len(self.obstacles))
         upper, claims = self.near(nearest, claim["near"]), self.named(claim["apart"])
         if not 0 <= lower <= upper:
             raise RefusedError("the bounds are in the wrong order")
         self.report.holds.append(f"obstacle {nearest} is at most {float(upper)!r} away")
+        for k in range(len(self.obstacles)) if lower > 0 else claims:
+            if not self.is_apart(k, claims.get(k), lower, strictly=False):
+                raise RefusedError(f"obstacle {k} is not proven to be so far away")
         if lower > 0:
-            for k in range(len(self.obstacles)):
-                if not self.is_apart(k, claims.get(k), lower, strictly=False):
-                    raise RefusedError(f"obstacle {k} is not proven to be so far away")
             all_of = f"none of {len(self.obstacles)} obstacles"
             self.report.holds.append(f"{all_of} is nearer than {float(lower)!r}")
 
     def within(self, claim: Any) -> None:
+        fields(claim, "length closer undecided apart")
         length, closer = claim["length"], self.named(claim["closer"])
-        open_ones, claims = set(claim["undecided"]), self.named(claim["apart"])
+        open_ones = self.named([(k, None) for k in claim["undecided"]])
+        claims = self.named(claim["apart"])
+        if length is not None and number(length) < 0:
+            raise RefusedError(f"a length of {length!r} is negative")
+        if len({*closer, *open_ones, *claims}) < len(closer) + len(open_ones) + len(claims):
+            raise RefusedError("of an obstacle two things are said")
         for k, near in closer.items():
             if self.near(k, near) > (number(length) if length is not None else math.inf):
                 raise RefusedError(f"obstacle {k} is not proven to be so near")
@@ -914,15 +960,16 @@ class Scene:
             self.report.unchecked.append(f"{len(open_ones)} obstacles, of which nothing is claimed")
 
     def clearance(self, claim: Any) -> None:
-        d = vector(claim["direction"])
+        d = vector(fields(claim, "direction lower stop passed")["direction"])
+        if any(x and not Fraction(1, MOST) <= abs(x) <= MOST for x in d):
+            raise NoProofError("the direction is out of range")
         lower = None if claim["lower"] is None else number(claim["lower"])
         if not any(d) or (lower is not None and lower < 0):
             raise RefusedError("there is no direction, or a bound is negative")
         claims, stop = self.named(claim["passed"]), claim["stop"]
-        graze = number(self.choices.get("graze_tolerance", 0.0))
-        if graze > 0:
+        if self.graze > 0:
             self.report.holds.append(
-                f"who overlaps sideways by no more than {float(graze)!r} counts as passed"
+                f"who overlaps sideways by no more than {float(self.graze)!r} counts as passed"
             )
         bounds = {k: self.passed(k, of, d) for k, of in claims.items()}
         if stop is not None:
@@ -948,7 +995,7 @@ class Scene:
             report.unchecked.append("when it stops the moving body")
             stop, start = proof["stop"], proof["start"]
             overlaps = start != "assumed" and "apart" not in start
-            if stop is None and overlaps and self.choices["start_overlap"] == "refuse":
+            if stop is None and overlaps and self.refuses:
                 return Fraction(), -math.inf
             lower = None if proof["lower"] is None else number(proof["lower"])
             return lower, None if stop is None else number(stop["distance"])
@@ -1002,7 +1049,7 @@ class Scene:
     def slides(self, body: Body, d: Vector, normal: Vector) -> None:
         """That bodies overlap sideways by no more than is tolerated, to within rounding."""
         noise = _NOISE * (size(self.moving, body) + self.keep)
-        most = max(number(self.choices.get("graze_tolerance", 0.0)), 8 * noise) + 3 * noise
+        most = max(self.graze, 8 * noise) + 3 * noise
         if not are_shadows_apart(self.moving, body, d, normal, self.keep - most):
             raise RefusedError("the bodies overlap sideways by more than is tolerated")
 
@@ -1201,10 +1248,12 @@ class Cell:
 
 def free_directions(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
     """Which directions are free: cell by cell, in whole numbers."""
+    fields(claim, "tolerance start_overlap cells", "shrunk boxes")
+    refuses_overlap = refuses(claim["start_overlap"])
     sphere = whole_bodies(moving, fixed, claim, report)
     stack = [Cell(side, 0, (0, 0)) for side in range(5, -1, -1)]
     count = {"blocked": 0, "inner": 0, "open": 0, "undecided": 0}
-    if any(sphere.inner) and claim["start_overlap"] != "refuse":
+    if any(sphere.inner) and not refuses_overlap:
         raise RefusedError("boxes inside say nothing where an overlap is ignored")
     for k in range(2):
         for at, box_ in enumerate(sphere.inner[k]):
@@ -1220,9 +1269,7 @@ def free_directions(moving: Body, fixed: Body, claim: Any, report: Report) -> No
                 raise RefusedError("a cell is cut too often")
             stack += reversed(cell.quarters())
             continue
-        ((kind, content),) = said.items()
-        if kind not in count:
-            raise NoProofError(f"a cell is not {kind!r}")
+        kind, content = one_of(said, *count)
         count[kind] += 1
         if kind == "inner":
             a, b = content
@@ -1255,7 +1302,7 @@ def free_directions(moving: Body, fixed: Body, claim: Any, report: Report) -> No
         raise RefusedError("the cells do not cover the sphere")
     summary(report, count, [free, undecided], skipped)
     report.partly = True
-    if claim["start_overlap"] == "refuse":
+    if refuses_overlap:
         report.unchecked.append("that the bodies do not overlap where they are")
 
 
@@ -1302,7 +1349,7 @@ def whole_bodies(moving: Body, fixed: Body, claim: Any, report: Report) -> Spher
     placed = [[body.at(k) for k in range(len(body.points))] for body in bodies]
     origin, inner = moving.offset, []
     for said in claim.get("boxes", [[], []]):
-        ends = [(vector(one["low"]), vector(one["high"])) for one in said]
+        ends = [(vector(fields(of, "low high")["low"]), vector(of["high"])) for of in said]
         inner.append([(plus(low, origin), plus(high, origin)) for low, high in ends])
     if len(inner) != 2:
         raise NoProofError("there are boxes of two bodies, or of none")
@@ -1582,9 +1629,10 @@ class Spin:
 
     @classmethod
     def read(cls, points: list[Vector], piece: Any) -> Spin:
+        piece = fields(piece, "since start arm axis rate velocity")
         body = Body.placed(points, [], piece["start"])
-        arm, axis = vector(piece["arm"]), vector(piece["axis"])
-        rate, way = number(piece["rate"]), vector(piece["velocity"])
+        arm, axis = bounded_vector(piece["arm"], "an arm"), vector(piece["axis"])
+        rate, way = number(piece["rate"]), bounded_vector(piece["velocity"], "a velocity")
         unit(axis)
         if abs(rate) > _MOST_TURN:
             raise NoProofError(f"a turn by {float(rate)!r}")
@@ -1716,9 +1764,9 @@ class Plane:
 
     @classmethod
     def read(cls, of: Any) -> Plane:
-        if not isinstance(of["alone"], bool):
-            raise NoProofError("a plane proves alone or not")
-        return cls(number(of["time"]), vector(of["normal"]), number(of["gap"]), of["alone"])
+        fields(of, "time normal gap alone")
+        alone = truth(of["alone"])
+        return cls(number(of["time"]), vector(of["normal"]), number(of["gap"]), alone)
 
 
 @dataclass
@@ -1814,29 +1862,101 @@ class Span:
                 p.at(whole(pair["moving"], len(p.body.points)), time),
                 q.at(whole(pair["fixed"], len(q.body.points)), time),
             )
-            for pair in pairs
+            for pair in (fields(each, "moving fixed") for each in listed(pairs))
         ]
 
     def meets(self, met: Any, time: Fraction) -> None:
         """That the bodies overlap deeper than is tolerated, or are as near as is to be kept."""
         off = sum((spin.off(_ONES) for spin in (self.moving, self.fixed)), Fraction())
-        ((kind, claim),) = met.items()
+        kind, claim = one_of(met, "deep", "near")
         if kind == "deep" and self.keep <= 0:
-            surface = claim["enclosure"]
+            surface = deep_claim(claim)["enclosure"]
             corners = [minus(q, p) for p, q in self.ends(surface["pairs"], time)]
-            # Points that are moved by less than they are away go round the origin as before.
-            enclosure(corners, surface, off - self.keep)
+
+            def least(n: Vector) -> Fraction:
+                return self.gap(n, time) - off
+
+            is_deep(claim, corners, least, (off, self.rounded()), -self.keep)
         elif kind == "near" and self.keep > 0:
-            ends = self.ends(claim["pairs"], time)
-            p, q = (mean([end[k] for end in ends], claim["weights"]) for k in (0, 1))
-            between = minus(q, p)
-            if not above(self.keep - off, dot(between, between)):
-                raise RefusedError(f"the points are not as near as {float(self.keep)!r}")
+            is_near(
+                claim, self.ends(near_claim(claim)["pairs"], time), (off, self.rounded()), self.keep
+            )
         else:
             raise RefusedError(f"{kind!r} does not say that the bodies meet")
 
+    def rounded(self) -> Fraction:
+        """How far points may be off in the poses of which depths and distances are told."""
+        spins = (self.moving, self.fixed)
+        sizes = (s.reach + 2 * root_above(dot(s.arm, s.arm)) for s in spins)
+        ways = (root_above(dot(s.way, s.way)) for s in spins)
+        between = minus(self.fixed.body.offset, self.moving.body.offset)
+        whole_ = sum(sizes, sum(ways, root_above(dot(between, between))))
+        return _POSE * whole_
+
 
 _ONES: Vector = (Fraction(1), Fraction(1), Fraction(1))
+#: What a computed place may be off, in parts of the size: what is told of depths is of such places.
+_POSE = 256 * _U
+
+
+def deep_claim(claim: Any) -> Any:
+    """Returns the claim that bodies overlap, which has all of its fields."""
+    fields(claim, "lower upper direction enclosure", "steps")
+    fields(claim["enclosure"], "pairs triangles normals")
+    return claim
+
+
+def near_claim(claim: Any) -> Any:
+    """Returns the claim that two points are near each other, which has all of its fields."""
+    return fields(claim, "pairs weights distance")
+
+
+def is_deep(
+    claim: Any,
+    corners: list[Vector],
+    gap: Callable[[Vector], Fraction],
+    off: tuple[Fraction, Fraction],
+    tolerated: Fraction,
+) -> None:
+    """That bodies overlap by more than is tolerated; the depth that is told holds to rounding.
+
+    ``gap`` is the least one along a normal, and ``off`` how far corners may be off here, and in the
+    poses of which the depth is told.
+    """
+    lower, upper, d = number(claim["lower"]), number(claim["upper"]), vector(claim["direction"])
+    unit(d, "the direction of the depth")
+    for normal in claim["enclosure"]["normals"]:
+        unit(vector(normal))
+    if not 0 <= lower <= upper:
+        raise RefusedError("the bounds of the depth are in the wrong order")
+    # Points that are moved by less than they are away go round the origin as before.
+    more = off[0] + tolerated * (1 + _TINY)
+    enclosure(corners, claim["enclosure"], max(more, lower - off[1]))
+    # The translation along the direction leaves no more than that.
+    reach = -gap((-d[0], -d[1], -d[2]))
+    if reach > upper + off[1]:
+        raise RefusedError(f"it takes {float(reach)!r} to part the bodies, not {float(upper)!r}")
+
+
+def is_near(
+    claim: Any,
+    ends: list[tuple[Vector, Vector]],
+    off: tuple[Fraction, Fraction],
+    keep: Fraction,
+) -> None:
+    """That points of both bodies are as near as a gap; the distance told holds to rounding."""
+    told = number(claim["distance"])
+    if len(ends) != 4:
+        raise NoProofError("there are four pairs")
+    if told == 0 and keep >= off[0] and encloses([minus(q, p) for p, q in ends]):
+        return
+    p, q = (mean([end[k] for end in ends], claim["weights"]) for k in (0, 1))
+    between = minus(q, p)
+    square = dot(between, between)
+    if not above(keep - off[0], square):
+        raise RefusedError(f"the points are not as near as {float(keep)!r}")
+    if told < 0 or not above(told + off[1], square):
+        raise RefusedError(f"the points are not as near as {float(told)!r}")
 
 
 def stays(a: Fraction, b: Fraction, c: Fraction) -> bool:
@@ -1857,10 +1977,10 @@ def spans(file: Any, described_bodies: bool = True) -> list[Span]:
             described(points, file[side])
         spins = [Spin.read(points, piece) for piece in file[f"{side}_motion"]]
         times = [spin.since for spin in spins]
-        if not times or times[0] != 0 or times[-1] > 1 or sorted(set(times)) != times:
-            raise NoProofError("the pieces of a motion are not in the order of their times")
+        if not times or times[0] != 0 or times[-1] >= 1 or sorted(set(times)) != times:
+            raise NoProofError("the pieces of a motion do not begin one after the other, before 1")
         sides.append(spins)
-    keep = number(file.get("keep", 0.0))
+    keep = bounded(number(file.get("keep", 0.0)), MOST, "the gap to be kept")
     borders = [*sorted({spin.since for side in sides for spin in side}), Fraction(1)]
     found = []
     for begin, end in pairwise(borders):
@@ -1871,7 +1991,9 @@ def spans(file: Any, described_bodies: bool = True) -> list[Span]:
 
 def motion(file: Any) -> Report:
     """When two convex bodies that move first meet."""
-    all_spans, proof, report = spans(file), file["proof"], Report()
+    names = "format moving moving_motion fixed fixed_motion proof"
+    fields(file, names, "keep")
+    all_spans, proof, report = spans(file), fields(file["proof"], "spans meeting"), Report()
     claimed = proof["spans"]
     if len(claimed) > len(all_spans):
         raise RefusedError("there are more spans than the motions have")
@@ -1890,13 +2012,11 @@ def motion(file: Any) -> Report:
         report.holds.append(f"the bodies never {meet} {told}")
     meeting = proof["meeting"]
     if meeting is not None:
-        time = number(meeting["time"])
+        time = number(fields(meeting, "time met")["time"])
         if not claimed or not reached <= time <= all_spans[len(claimed) - 1].end:
             raise RefusedError(f"that the bodies {meet} is said of another time")
         all_spans[len(claimed) - 1].meets(meeting["met"], time)
         report.holds.append(f"the bodies {meet} at the time {float(time)!r}")
-        if "deep" in meeting["met"]:
-            report.unchecked.append("how deep they are then, which is of poses that are rounded")
     return report
 
 
@@ -1945,12 +2065,21 @@ class Parts:
     bounds: list[tuple[Vector, Vector]]
     #: How far a corner was moved, at most.
     moved: Fraction
+    #: The facets that are not part of an open surface: those that something can be inside of.
+    closed: list[Triangle]
     known: dict[tuple[int, Fraction], Spin] = field(default_factory=dict)
 
     @classmethod
-    def read(cls, points: list[Vector], facets: list[tuple[int, int, int]], of: Any) -> Parts:
+    def read(
+        cls,
+        points: list[Vector],
+        facets: list[tuple[int, int, int]],
+        of: Any,
+        is_open: Sequence[bool] = (),
+    ) -> Parts:
         corners: list[Triangle] = []
         square = Fraction()
+        fields(of, "numbers corners tree")
         numbers = [whole(k, len(facets)) for k in of["numbers"]]
         if sorted(numbers) != list(range(len(facets))):
             raise RefusedError("the facets are not those of the body, each once")
@@ -1989,7 +2118,8 @@ class Parts:
         if open_ != [0]:
             raise RefusedError("the parts of the body are no tree")
         bounds = [boxes[k] for k in range(len(facet))]
-        return cls(corners, facet, second, bounds, root_above(square))
+        closed = [c for k, c in zip(numbers, corners, strict=True) if not (is_open and is_open[k])]
+        return cls(corners, facet, second, bounds, root_above(square), closed)
 
     def points(self, node: int) -> list[Vector]:
         """The corners of a facet, or of the box around several."""
@@ -2025,6 +2155,8 @@ class Cover:
 
     def check(self, letters: str, lists: list[Any], until: Fraction) -> None:
         """Every entry, and that they are all of them."""
+        if not isinstance(letters, str):
+            raise NoProofError("a cover is a text of letters")
         stack = [((0, 0), self.span.begin, until)]
         rest = iter(lists)
         for number_, letter in enumerate(letters):
@@ -2129,7 +2261,7 @@ def pierces(p: Vector, q: Vector, triangle: Triangle, off: Fraction) -> bool:
 
 def solids_meet(span: Span, parts: tuple[Parts, Parts], meeting: Any) -> None:
     """That two facets do at a time."""
-    time = number(meeting["time"])
+    time = number(fields(meeting, "time triangles met")["time"])
     numbers = [
         whole(k, len(side.corners)) for k, side in zip(meeting["triangles"], parts, strict=True)
     ]
@@ -2140,25 +2272,29 @@ def solids_meet(span: Span, parts: tuple[Parts, Parts], meeting: Any) -> None:
     f, g = (tuple(spin.at(k, time) for k in range(3)) for spin in spins)
     size = max(abs(x) for v in (*f, *g) for x in v) + spins[0].reach + spins[1].reach
     off = size * _SURE
-    ((kind, claim),) = meeting["met"].items()
+    kind, claim = one_of(meeting["met"], "crossing", "near", "inside")
     if kind == "crossing" and span.keep == 0:
-        own, other = (f, g) if claim["moving"] is True else (g, f)
+        fields(claim, "moving edge")
+        own, other = (f, g) if truth(claim["moving"]) else (g, f)
         k = whole(claim["edge"], 3)
         if not pierces(own[k], own[(k + 1) % 3], (other[0], other[1], other[2]), off):
             raise RefusedError("the edge does not pass through the facet")
     elif kind == "near" and span.keep > 0:
+        fields(claim, "weights")
         p, q = (mean(side, weights) for side, weights in zip((f, g), claim["weights"], strict=True))
         between = minus(q, p)
         if not above(span.keep - 4 * off, dot(between, between)):
             raise RefusedError(f"the points are not as near as {float(span.keep)!r}")
     elif kind == "inside" and span.keep == 0:
-        at = vector(claim["point"])
-        moving = span.moving.of([v for triangle in parts[0].corners for v in triangle])
+        at = bounded_vector(fields(claim, "point")["point"], "the point")
+        if not (parts[0].closed and parts[1].closed):
+            raise RefusedError("nothing is inside of open surfaces")
+        moving = span.moving.of([v for triangle in parts[0].closed for v in triangle])
         there = span.fixed.of([at]).at(0, time)
-        corners = iter([moving.at(k, time) for k in range(3 * len(parts[0].corners))])
+        corners = iter([moving.at(k, time) for k in range(3 * len(parts[0].closed))])
         if not is_around(list(zip(corners, corners, corners, strict=True)), there, 4 * off):
             raise RefusedError("the point is not inside the moving solid")
-        if not is_around(parts[1].corners, at, Fraction()):
+        if not is_around(parts[1].closed, at, Fraction()):
             raise RefusedError("the point is not inside the fixed solid")
     else:
         raise RefusedError(f"{kind!r} does not say that the solids meet")
@@ -2240,24 +2376,32 @@ def shells(facets: list[Triangle]) -> list[Vector]:
     return [v for v in leads if root(v) == v]
 
 
+def open_facets(shape: Any) -> list[bool]:
+    """Returns for each facet of a body whether it is part of a surface that is open."""
+    pieces = shape.get("pieces", [])
+    return [truth(of.get("open", False)) for of in pieces for _ in of["triangles"]]
+
+
 def has_open(shape: Any) -> bool:
     """Whether a body has a surface that is open."""
-    return any(piece.get("open", False) for piece in shape.get("pieces", []))
+    return any(open_facets(shape))
 
 
 def solid_motion(file: Any) -> Report:
     """When two solids that move first meet, as they are moved inwards in the file."""
-    proof, report = file["proof"], Report()
-    if "parts" not in file:
-        raise NoProofError("the file does not say how the solids are split")
+    names = "format moving moving_motion fixed fixed_motion parts proof"
+    fields(file, names, "keep tolerance")
+    proof, report = fields(file["proof"], "tolerance start spans meeting"), Report()
     shapes = [Body.shape(file[side]) for side in ("moving", "fixed")]
     if any(not facets for _, facets in shapes):
         raise NoProofError("the bodies are not made of facets")
+    opens = [open_facets(file[side]) for side in ("moving", "fixed")]
     p, q = (
-        Parts.read(points, facets, of)
-        for (points, facets), of in zip(shapes, file["parts"], strict=True)
+        Parts.read(points, facets, of, is_open)
+        for (points, facets), of, is_open in zip(shapes, file["parts"], opens, strict=True)
     )
     parts = (p, q)
+    check_tolerance(file.get("tolerance"), number(proof["tolerance"]), parts)
     plain = {
         **{side: {"vertices": [[0.0, 0.0, 0.0]]} for side in ("moving", "fixed")},
         **{name: file[name] for name in ("moving_motion", "fixed_motion")},
@@ -2271,7 +2415,12 @@ def solid_motion(file: Any) -> Report:
     moved = float(max(side.moved for side in parts))
     of = f"the facets, moved by at most {moved:.3g}," if moved else "the facets"
     claimed = proof["spans"]
-    if "apart" not in proof["start"]:
+    if proof["start"] == "assumed":
+        raise RefusedError("whether the solids overlap when the motion begins is not proven")
+    begin, _ = one_of(proof["start"], "apart", "facets", "moving_inside", "fixed_inside")
+    if begin != "apart":
+        if claimed or proof["meeting"] is not None:
+            raise RefusedError("of solids that overlap when the motion begins nothing else is said")
         report.unchecked.append("that they overlap when the motion begins")
         report.partly = True
         return report
@@ -2279,7 +2428,7 @@ def solid_motion(file: Any) -> Report:
         raise RefusedError("there are more spans than the motions have")
     reached = Fraction()
     for span, claim in zip(all_spans, claimed, strict=False):
-        until = number(claim["until"])
+        until = number(fields(claim, "until cover lists")["until"])
         if reached != span.begin or not span.begin <= until <= span.end:
             raise RefusedError("a span does not begin where the one before it ended")
         if until > span.begin:
@@ -2287,8 +2436,11 @@ def solid_motion(file: Any) -> Report:
         elif claim["cover"] or claim["lists"]:
             raise RefusedError("a span without a time has entries")
         reached = until
-    open_ = any(has_open(file[k]) for k in ("moving", "fixed"))
-    if reached > 0:
+    open_ = any(any(of) for of in opens)
+    if reached == 0:
+        report.unchecked.append("that they do not overlap when the motion begins")
+        report.partly = True
+    else:
         told = "throughout the motion" if reached == 1 else f"up to the time {float(reached)!r}"
         report.holds.append(f"{of} never {meet} {told}")
         if open_:
@@ -2302,8 +2454,6 @@ def solid_motion(file: Any) -> Report:
         time = number(meeting["time"])
         if not claimed or not reached <= time <= all_spans[len(claimed) - 1].end:
             raise RefusedError(f"that they {meet} is said of another time")
-        if open_ and "inside" in meeting["met"]:
-            raise RefusedError("nothing is inside of open surfaces")
         solids_meet(all_spans[len(claimed) - 1], parts, meeting)
         report.holds.append(f"{of} {meet} at the time {float(time)!r}")
     if moved:
@@ -2312,9 +2462,23 @@ def solid_motion(file: Any) -> Report:
     return report
 
 
+def check_tolerance(asked: Any, told: Fraction, parts: tuple[Parts, Parts]) -> None:
+    """The tolerance of a proof is the one that was asked for; without one no facet is moved."""
+    if bounded(told, MOST, "the tolerance") < 0:
+        raise NoProofError(f"a tolerance of {float(told)!r} is negative")
+    if asked is not None and number(asked) != told:
+        raise RefusedError(f"the proof is of another tolerance than {float(number(asked))!r}")
+    if told == 0 and any(side.moved for side in parts):
+        raise RefusedError("facets are moved, and the tolerance is 0")
+
+
 def motions(file: Any) -> Report:
     """Which two of several pairs of convex bodies first meet."""
     report = Report()
+    if not fields(file, "format proofs")["proofs"]:
+        raise NoProofError("there is no pair of bodies")
+    if len({number(proof.get("keep", 0.0)) for proof in file["proofs"]}) > 1:
+        raise NoProofError("the proofs are of several gaps to be kept")
     for number_, proof in enumerate(file["proofs"]):
         if proof["format"] != MOTION_FORMAT:
             raise NoProofError(f"the format of a proof is {proof['format']!r}")
@@ -2327,6 +2491,8 @@ def motions(file: Any) -> Report:
     return report
 
 
+#: So many pairs of bodies are named in a line.
+NAMED = 12
 #: Binary digits that rotations are kept with; what that leaves out is nothing beside `_SURE`.
 _KEPT = 256
 
@@ -2383,12 +2549,19 @@ class Pieces:
     below: list[list[int]]
     #: Of a solid.
     facets: list[Triangle] = field(default_factory=list)
-    is_open: bool = False
+    #: The facets that are not part of an open surface: those that something can be inside of.
+    closed: list[Triangle] = field(default_factory=list)
+
+    @property
+    def is_open(self) -> bool:
+        """Whether it has a surface that is open."""
+        return len(self.closed) < len(self.facets)
 
     @classmethod
-    def read(cls, body: Body, of: Any, is_open: bool) -> Pieces:
+    def read(cls, body: Body, of: Any, is_open: Sequence[bool]) -> Pieces:
         if body.is_convex:
             return cls([body.points], [[]])
+        fields(of, "numbers tree")
         numbers = [whole(k, len(body.facets)) for k in of["numbers"]]
         if sorted(numbers) != list(range(len(body.facets))):
             raise RefusedError("the facets are not those of the body, each once")
@@ -2421,7 +2594,7 @@ class Pieces:
             boxes + [list(corners) for corners in facets],
             below + [[] for _ in facets],
             facets,
-            is_open,
+            [facet for k, facet in zip(numbers, facets, strict=True) if not is_open[k]],
         )
 
 
@@ -2458,6 +2631,11 @@ class Carried:
             whole_ += slides + root_above(dot(stage.origin.offset, stage.origin.offset))
         self.levers.reverse()
         self.size = whole_ + 1
+
+    def rounded(self) -> Fraction:
+        """How far points may be off in the places of which depths and distances are told."""
+        values = [abs(row[s.column]) for row in self.rows for s in self.stages if s.kind != "fixed"]
+        return _POSE * self.size * (1 + len(self.stages)) * (1 + max(values, default=Fraction()))
 
     def rate(self, row: int, stage: Stage) -> Fraction:
         """How much a joint's value grows from a row to the next one."""
@@ -2552,6 +2730,10 @@ class Couple:
         """How far heights may be off for what sines, roots and rotations leave out."""
         return (self.moving.size + self.fixed.size) * 64 * _SURE
 
+    def rounded(self) -> Fraction:
+        """How far points may be off in the places of which depths and distances are told."""
+        return self.moving.rounded() + self.fixed.rounded()
+
     def gap(self, n: Vector, row: int, share: Fraction) -> Fraction:
         p, q = (of.at(row, share) for of in (self.moving, self.fixed))
         high = max(dot(n, p.place(v)) for v in self.own)
@@ -2611,7 +2793,7 @@ class Couple:
                 p.place(own[whole(pair["moving"], len(own))]),
                 q.place(other[whole(pair["fixed"], len(other))]),
             )
-            for pair in pairs
+            for pair in (fields(each, "moving fixed") for each in listed(pairs))
         ]
 
 
@@ -2645,21 +2827,20 @@ class Walk:
         """Up to where a cover proves that two pieces do not meet, and at most so far."""
         couple = self.of(numbers)
         for step in steps:
-            ((kind, claim),) = step.items()
+            kind, claim = one_of(step, "planes", "parts")
             if kind == "planes":
                 here = planes_of_path(couple, claim, here, self.last)
                 continue
-            if kind != "parts":
-                raise NoProofError(f"a step has planes or parts, not {kind!r}")
-            which, end = whole(claim["which"], 2), claim["until"]
-            place = settled(whole(end["row"], self.last + 1), number(end["share"]))
+            which = whole(fields(claim, "which until covers")["which"], 2)
+            place = settled(*place_of(claim["until"], self.last))
             below, covers = self.pieces[which].below[numbers[which]], claim["covers"]
             if not below or len(below) != len(covers) or place < here:
                 raise RefusedError("what is taken apart has not all its parts")
             reached = place
             for part, cover in zip(below, covers, strict=True):
                 pair = (part, numbers[1]) if which == 0 else (numbers[0], part)
-                reached = min(reached, self.cover(cover["steps"], pair, here, place))
+                steps_ = fields(cover, "steps")["steps"]
+                reached = min(reached, self.cover(steps_, pair, here, place))
             if reached < place:
                 return reached
             here = place
@@ -2682,13 +2863,33 @@ class Walk:
         return False
 
 
+def place_of(of: Any, last: int) -> tuple[int, Fraction]:
+    """Returns a place on a path: a row, and a share from 0 to 1 of the way to the next one."""
+    fields(of, "row share")
+    row, share = whole(of["row"], last + 1), number(of["share"])
+    if not 0 <= share <= 1 or (row == last and share):
+        raise RefusedError(f"{float(share)!r} of the way from row {row} on is not on the path")
+    return row, share
+
+
+def has_planes(steps: Any) -> bool:
+    """Whether a cover that holds proves that two pieces do not meet where it begins."""
+    kinds = [one_of(step, "planes", "parts") for step in steps]
+    return any(
+        bool(claim)
+        if kind == "planes"
+        else all(has_planes(cover["steps"]) for cover in claim["covers"])
+        for kind, claim in kinds
+    )
+
+
 def planes_of_path(
     couple: Couple, stretches: Any, here: tuple[int, Fraction], last: int
 ) -> tuple[int, Fraction]:
     """Up to where planes between two pieces prove that they do not meet, from some place on."""
     before = None
     for stretch in stretches:
-        row = whole(stretch["row"], last + 1)
+        row = whole(fields(stretch, "row planes")["row"], last + 1)
         planes = [Plane.read(plane) for plane in stretch["planes"]]
         if not planes or any(plane.alone for plane in planes):
             raise RefusedError(f"the planes of row {row} are not in order")
@@ -2703,7 +2904,7 @@ def planes_of_path(
         else:
             (place, gap), next_ = before, (row, times[0])
             far = place <= next_ and couple.between(place, next_) < gap + planes[0].gap
-            if settled(*place) != settled(*next_) and not far:
+            if place > next_ or (settled(*place) != settled(*next_) and not far):
                 raise RefusedError(f"what is before row {row} is not proven")
         for k, plane in enumerate(planes):
             if not couple.has(plane, row):
@@ -2719,16 +2920,15 @@ def planes_of_path(
 
 def pieces_meet(walk: Walk, how: Any, row: int, share: Fraction) -> None:
     """That two pieces of bodies do at a place: whole bodies, or facets."""
-    ((kind, claim),) = how.items()
-    if kind not in ("pieces", "point"):
-        raise RefusedError(f"{kind!r} does not say that bodies meet")
+    kind, claim = one_of(how, "pieces", "point")
+    fields(claim, "pieces met" if kind == "pieces" else "pieces point")
     i, j = (
         whole(k, len(side.points)) for k, side in zip(claim["pieces"], walk.pieces, strict=True)
     )
     if walk.pieces[0].below[i] or walk.pieces[1].below[j]:
         raise RefusedError("what holds other pieces is none of a body's own")
     if kind == "point":
-        is_in_both(walk, vector(claim["point"]), row, share)
+        is_in_both(walk, bounded_vector(claim["point"], "the point"), row, share)
         return
     couple, refused = walk.of((i, j)), RefusedError("the pieces have no points")
     # Which corner of a facet is the first one is not told.
@@ -2746,31 +2946,28 @@ def pieces_meet(walk: Walk, how: Any, row: int, share: Fraction) -> None:
 def is_in_both(walk: Walk, point: Vector, row: int, share: Fraction) -> None:
     """That a point in the second one's frame is inside both solids at a place."""
     own, other = walk.pieces
-    if walk.keep or own.is_open or other.is_open or not (own.facets and other.facets):
+    if walk.keep or not (own.closed and other.closed):
         raise RefusedError(
             "a point says nothing of open surfaces, convex bodies, or a gap to be kept"
         )
     p, q = (of.at(row, share) for of in (walk.moving, walk.fixed))
-    placed = [(p.place(a), p.place(b), p.place(c)) for a, b, c in own.facets]
+    placed = [(p.place(a), p.place(b), p.place(c)) for a, b, c in own.closed]
     if not is_around(placed, q.place(point), 4 * walk.of((0, 0)).off()):
         raise RefusedError("the point is not inside the first solid")
-    if not is_around(other.facets, point, Fraction()):
+    if not is_around(other.closed, point, Fraction()):
         raise RefusedError("the point is not inside the second solid")
 
 
 def do_meet(couple: Couple, met: Any, row: int, share: Fraction) -> None:
     """That two convex pieces overlap at a place, or are as near as the gap to be kept."""
-    ((kind, claim),) = met.items()
-    keep = couple.keep
+    kind, claim = one_of(met, "deep", "near")
+    keep, off = couple.keep, (couple.off(), couple.rounded())
     if kind == "deep" and keep == 0:
-        corners = [minus(q, p) for p, q in couple.ends(claim["enclosure"]["pairs"], row, share)]
-        enclosure(corners, claim["enclosure"], couple.off())
+        pairs = deep_claim(claim)["enclosure"]["pairs"]
+        corners = [minus(q, p) for p, q in couple.ends(pairs, row, share)]
+        is_deep(claim, corners, lambda n: couple.gap(n, row, share), off, Fraction())
     elif kind == "near" and keep > 0:
-        ends = couple.ends(claim["pairs"], row, share)
-        near, far = (mean([end[k] for end in ends], claim["weights"]) for k in (0, 1))
-        way = minus(far, near)
-        if not above(keep - couple.off(), dot(way, way)):
-            raise RefusedError(f"the points are not as near as {float(keep)!r}")
+        is_near(claim, couple.ends(near_claim(claim)["pairs"], row, share), off, keep)
     else:
         raise RefusedError(f"{kind!r} does not say that the bodies meet")
 
@@ -2780,124 +2977,159 @@ def begun(points: Sequence[Vector], side: Pieces) -> list[Sequence[Vector]]:
     return [[*points[k:], *points[:k]] for k in range(3)] if side.facets else [points]
 
 
-def path(file: Any) -> Report:
-    """Which two bodies that joints carry first meet."""
-    report, keep = Report(), gap_to_keep(file)
-    rows = [[number(x) for x in row] for row in file["path"]["rows"]]
-    times = [number(x) for x in file["path"]["times"]]
-    if not rows or len(times) != len(rows) or any(b <= a for a, b in pairwise(times)):
-        raise NoProofError("the times of the rows do not grow")
-    frames: list[Stage] = []
-    parents: list[int | None] = []
-    column = 0
-    for k, frame in enumerate(file["frames"]):
-        parent, joint = frame["parent"], frame["joint"]
-        parents.append(None if parent is None else whole(parent, k))
-        origin = Body.placed([_ZERO], [], frame["origin"])
-        if joint == "fixed":
-            frames.append(Stage(origin, "fixed", _UNITS[0], 0))
-            continue
-        ((kind, axis),) = joint.items()
-        if kind not in ("turning", "sliding"):
-            raise NoProofError(f"a joint is turning or sliding, not {kind!r}")
-        unit(vector(axis), f"the axis of joint {column}")
-        frames.append(Stage(origin, kind, vector(axis), column))
-        column += 1
-    if any(len(row) != column for row in rows):
-        raise NoProofError("a row does not have a value for each joint")
+@dataclass
+class Robot:
+    """Frames in frames, the bodies that they carry, and which pairs of these a proof is about."""
 
-    def above_of(frame: Any) -> list[int]:
-        found = [] if frame is None else [whole(frame, len(frames))]
-        while found and (parent := parents[found[-1]]) is not None:
-            found.append(parent)
-        return found[::-1]
+    frames: list[Stage]
+    parents: list[int | None]
+    rows: list[list[Fraction]]
+    times: list[Fraction]
+    #: Of each body the frames that carry it, and where it is in the last one.
+    bodies: list[tuple[list[int], Body]]
+    pieces: list[Pieces]
+    names: list[str]
+    pairs: list[tuple[int, int]]
 
-    bodies = [
-        (above_of(of["frame"]), Body.read(of["body"], of["pose"]), of) for of in file["bodies"]
-    ]
-    split = [
-        Pieces.read(body, of.get("parts"), has_open(of["body"]))
-        if body.is_convex or "parts" in of
-        else None
-        for _, body, of in bodies
-    ]
-    proof, last = file["proof"], len(rows) - 1
-    covers = proof["covers"]
-    if len(covers) != len(file["pairs"]):
-        raise RefusedError("there is not a cover for each pair")
-    walks: list[Walk | None] = []
-    begin, reached, skipped, open_ = (0, Fraction()), (last, Fraction()), 0, 0
-    for (i, j), cover in zip(file["pairs"], covers, strict=True):
-        (way_p, p, _), (way_q, q, _) = (bodies[whole(k, len(bodies))] for k in (i, j))
-        pieces_p, pieces_q = split[i], split[j]
-        if pieces_p is None or pieces_q is None:
-            walks.append(None)
-            skipped += 1
-            continue
+    @classmethod
+    def read(cls, file: Any) -> Robot:
+        fields(file["path"], "times rows")
+        rows = [[number(x) for x in row] for row in file["path"]["rows"]]
+        times = [bounded(number(x), MOST, "a time") for x in file["path"]["times"]]
+        if not rows or len(times) != len(rows) or any(b <= a for a, b in pairwise(times)):
+            raise NoProofError("the times of the rows do not grow")
+        frames: list[Stage] = []
+        parents: list[int | None] = []
+        column = 0
+        for k, frame in enumerate(file["frames"]):
+            fields(frame, "parent origin joint")
+            parent, joint = frame["parent"], frame["joint"]
+            parents.append(None if parent is None else whole(parent, k))
+            origin = Body.placed([_ZERO], [], frame["origin"])
+            if joint == "fixed":
+                frames.append(Stage(origin, "fixed", _UNITS[0], 0))
+                continue
+            kind, axis = one_of(joint, "turning", "sliding")
+            unit(vector(axis), f"the axis of joint {column}")
+            frames.append(Stage(origin, kind, vector(axis), column))
+            column += 1
+        if any(len(row) != column for row in rows):
+            raise NoProofError("a row does not have a value for each joint")
+        for stage in frames:
+            if stage.kind != "fixed":
+                most = _MOST_TURN if stage.kind == "turning" else MOST
+                for row in rows:
+                    bounded(row[stage.column], most, "the value of a joint")
+        robot = cls(frames, parents, rows, times, [], [], [], [])
+        for of in file["bodies"]:
+            robot.add(of)
+        numbers = {name: k for k, name in enumerate(robot.names)}
+        for a, b in file["statement"]["pairs"]:
+            if a not in numbers or b not in numbers or a == b:
+                raise NoProofError(f"{a!r} and {b!r} are not the names of two bodies")
+            robot.pairs.append((numbers[a], numbers[b]))
+        return robot
+
+    def add(self, of: Any) -> None:
+        """Adds a body of the file."""
+        fields(of, "name frame pose body", "parts")
+        name, body = of["name"], Body.read(of["body"], of["pose"])
+        if not isinstance(name, str) or not name or name in self.names:
+            raise NoProofError(f"{name!r} is not a name, or the name of several bodies")
+        if body.is_convex == (of.get("parts") is not None):
+            raise NoProofError(f"{name!r}: a solid has parts, a convex body has none")
+        way = [] if of["frame"] is None else [whole(of["frame"], len(self.frames))]
+        while way and (parent := self.parents[way[-1]]) is not None:
+            way.append(parent)
+        self.names.append(name)
+        self.bodies.append((way[::-1], body))
+        self.pieces.append(Pieces.read(body, of.get("parts"), open_facets(of["body"])))
+
+    def walk(self, pair: tuple[int, int], keep: Fraction) -> Walk:
+        """Two bodies, seen from the frame that both stand in."""
+        (way_p, p), (way_q, q) = (self.bodies[k] for k in pair)
         while way_p and way_q and way_p[0] == way_q[0]:
             way_p, way_q = way_p[1:], way_q[1:]
         own, other = (
-            Carried([frames[k] for k in way], of, rows) for way, of in ((way_p, p), (way_q, q))
+            Carried([self.frames[k] for k in way], of, self.rows)
+            for way, of in ((way_p, p), (way_q, q))
         )
-        walk = Walk(own, other, keep, (pieces_p, pieces_q), last)
-        walks.append(walk)
-        up_to = walk.cover(cover["steps"], (0, 0), begin, reached)
-        if up_to > begin:
-            if pieces_p.is_open or pieces_q.is_open:
+        pieces = self.pieces[pair[0]], self.pieces[pair[1]]
+        return Walk(own, other, keep, pieces, len(self.rows) - 1)
+
+    def time(self, row: int, share: Fraction) -> Fraction:
+        times = self.times
+        return times[row] + (share * (times[row + 1] - times[row]) if share else 0)
+
+    def told(self, pair: tuple[int, int]) -> str:
+        """The names of two bodies."""
+        return " and ".join(repr(self.names[k]) for k in pair)
+
+    def left_out(self) -> list[str]:
+        """Two bodies each that no pair is about, though joints may move one against the other."""
+        pairs = {frozenset(pair) for pair in self.pairs}
+        moved_by = [[k for k in way if self.frames[k].kind != "fixed"] for way, _ in self.bodies]
+        return [
+            self.told((i, j))
+            for i, j in combinations(range(len(self.bodies)), 2)
+            if moved_by[i] != moved_by[j] and frozenset((i, j)) not in pairs
+        ]
+
+
+def path(file: Any) -> Report:
+    """Which two bodies that joints carry first meet, of the pairs that are named."""
+    report, keep = Report(), bounded(gap_to_keep(file), MOST, "the gap to be kept")
+    names = "format frames path bodies proof statement"
+    fields(file, names, "keep")
+    statement = fields(file["statement"], "pairs lower upper")
+    proof, robot = fields(file["proof"], "covers meeting"), Robot.read(file)
+    covers, pairs, last = proof["covers"], robot.pairs, len(robot.rows) - 1
+    if len(covers) != len(pairs):
+        raise RefusedError("there is not a cover for each pair")
+    begin, reached, open_, begins = (0, Fraction()), (last, Fraction()), 0, True
+    for pair, cover in zip(pairs, covers, strict=True):
+        walk, steps = robot.walk(pair, keep), fields(cover, "steps")["steps"]
+        up_to = walk.cover(steps, (0, 0), begin, reached)
+        if has_planes(steps):
+            if walk.pieces[0].is_open or walk.pieces[1].is_open:
                 open_ += 1
             elif walk.is_nested():
                 raise RefusedError("one of two bodies is inside the other where the path begins")
+        else:
+            begins = False
         reached = min(reached, up_to)
-
-    def time(row: int, share: Fraction) -> Fraction:
-        return times[row] + (share * (times[row + 1] - times[row]) if share else 0)
-
     meet = "meet" if keep == 0 else f"are as near as {float(keep)!r}"
-    lower, meeting = number(file["said"]["lower"]), proof["meeting"]
-    if lower > time(*reached):
+    lower, meeting = number(statement["lower"]), proof["meeting"]
+    if lower > robot.time(*reached):
         raise RefusedError(f"up to {float(lower)!r} it is not proven")
-    asked = {frozenset(pair) for pair in file["pairs"]}
-    moved_by = [[k for k in way if frames[k].kind != "fixed"] for way, _, _ in bodies]
-    left_out = [
-        f"{bodies[i][2]['name']!r} and {bodies[j][2]['name']!r}"
-        for i, j in combinations(range(len(bodies)), 2)
-        if moved_by[i] != moved_by[j] and frozenset((i, j)) not in asked
-    ]
-    if left_out:
+    if left_out := robot.left_out():
         report.unchecked.append(f"what is left out of the question: {', '.join(left_out)}")
-    if skipped < len(walks) and lower > times[0]:
-        of = "no two bodies" if not skipped else "no two convex bodies"
-        of += " of those asked about" if left_out else ""
-        report.holds.append(f"{of} {meet} up to the time {float(lower)!r}")
-    if skipped:
-        report.unchecked.append(f"what solids do, in {skipped} of {len(walks)} pairs")
-        report.partly = True
+    # Of a path of one row it is its only place that planes are at.
+    if lower > robot.times[0] or (lower == robot.times[-1] and begins):
+        told = ", ".join(map(robot.told, pairs[:NAMED])) + (", ..." if len(pairs) > NAMED else "")
+        report.holds.append(
+            f"of {len(pairs)} pairs of bodies none {meet} up to the time {float(lower)!r}: {told}"
+        )
     if open_:
         report.unchecked.append(f"what open surfaces are inside of at first, in {open_} pairs")
         report.partly = True
+    upper = None if statement["upper"] is None else number(statement["upper"])
     if meeting is None:
-        if file["said"]["upper"] is not None:
+        if upper is not None:
             raise RefusedError("that two bodies meet is said, and not proven")
         return report
-    which, place = whole(meeting["pair"], len(walks)), meeting["place"]
-    row, share = whole(place["row"], last + 1), number(place["share"])
-    upper = None if (said := file["said"]["upper"]) is None else number(said)
-    late = upper is not None and time(row, share) > upper
-    if not 0 <= share <= 1 or (row == last and share) or late:
+    which = whole(fields(meeting, "pair place how")["pair"], len(pairs))
+    place = place_of(meeting["place"], last)
+    if place < reached or (upper is not None and robot.time(*place) > upper):
         raise RefusedError(f"that two bodies {meet} is said of another time")
-    found = walks[which]
-    names = " and ".join(repr(bodies[k][2]["name"]) for k in file["pairs"][which])
-    if found is None:
-        report.unchecked.append(f"that {names}, one of which is a solid, {meet} then")
-        return report
-    how = meeting["how"]
+    found, how = robot.walk(pairs[which], keep), meeting["how"]
     if how == "inside":
-        if (row, share) != begin or not found.is_nested():
+        if place != begin or not found.is_nested():
             raise RefusedError("neither body is inside the other where the path begins")
     else:
-        pieces_meet(found, how, row, share)
-    told = f"by the time {float(upper)!r}" if upper is not None else "on the path"
-    report.holds.append(f"{names} {meet} {told}")
+        pieces_meet(found, how, *place)
+    by = f"by the time {float(upper)!r}" if upper is not None else "on the path"
+    report.holds.append(f"{robot.told(pairs[which])} {meet} {by}")
     return report
 
 
@@ -2946,6 +3178,8 @@ def check(text: str) -> Report:
             of_solids = kind in ("solid_distance", "free_directions")
             if d is not None or keep or bool(moving.facets) != of_solids:
                 raise NoProofError(f"{kind!r} is not claimed of such bodies, or of a direction")
+            if kind == "free_directions" and any(map(has_open, (file["moving"], file["fixed"]))):
+                raise NoProofError("of open surfaces free directions are not claimed")
             PLACED[kind](moving, fixed, claim, report)
         elif d is None:
             raise NoProofError("there is no direction")
@@ -2963,7 +3197,7 @@ MOTIONS: dict[str, Callable[[Any], Report]] = {
     MOTION_FORMAT: motion,
     "colltrans motions proof 1": motions,
     "colltrans motion of solids proof 1": solid_motion,
-    "colltrans path proof 1": path,
+    "colltrans path proof 2": path,
 }
 
 
@@ -3001,7 +3235,9 @@ def gap_to_keep(of: Any) -> Fraction:
     """The gap that the bodies are to keep, 0 for none."""
     keep = number(of.get("keep", 0.0))
     if not 0 <= keep <= _RANGE[1]:
-        raise NoProofError(f"the gap to be kept, {float(keep)!r}, is negative, or larger than any body")
+        raise NoProofError(
+            f"the gap to be kept, {float(keep)!r}, is negative, or larger than any body"
+        )
     return keep
 
 

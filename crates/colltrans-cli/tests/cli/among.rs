@@ -94,14 +94,14 @@ fn proofs_hold_here_and_in_fractions() {
     scene(folder);
     let near_dent = ["cube.off", "--among", "scene.jsonl", "--moving-pose", "0.1,40,5"];
     for (command, bodies, more, said, code) in [
-        ("distance", &ABOVE, &[][..], "of 22 obstacles, obstacle 12 is between 2.99", 0),
+        ("distance", &ABOVE, &[][..], "of 22 obstacles, obstacle 12 is at most 3.0", 0),
         ("within", &ABOVE, &["--length", "3.2"], "2 (12, 13) are at most 3.2 away", 0),
         ("within", &ABOVE, &["--length", "1"], "none is at most 1.0 away, all others", 0),
-        ("clearance", &ABOVE, &["--direction", "-z"], "obstacle 12 does then", 0),
+        ("clearance", &ABOVE, &["--direction", "-z"], "obstacle 12 does by 3.0", 0),
         ("clearance", &ABOVE, &["--direction", "z"], "none ever stops the moving body", 0),
         ("clearance", &ABOVE, &["--direction", "x"], "none ever stops the moving body", 0),
-        ("distance", &near_dent, &[], "obstacle 20 is between 3.99", 7),
-        ("clearance", &near_dent, &["--direction", "-z"], "obstacle 20 does then", 7),
+        ("distance", &near_dent, &[], "obstacle 20 is at most 4.0", 7),
+        ("clearance", &near_dent, &["--direction", "-z"], "obstacle 20 does by ", 7),
     ] {
         let file = saved(folder, &[&[command], &bodies[..], more].concat());
         assert_eq!(file["obstacles"].as_array().unwrap().len(), 22);

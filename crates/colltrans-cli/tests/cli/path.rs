@@ -110,11 +110,13 @@ fn a_proof_is_checked_elsewhere() {
     let file = folder.path().join("proof.json");
     answered(folder.path(), &["path", &arm, &rows, &wire, "--save-proof", "proof.json"]);
     let text = answered(folder.path(), &["verify", "proof.json"]);
-    let said =
-        "holds: of 6 pairs, tool and wire are the first to meet, at a time between 0.60356030";
+    let said = "holds: of 6 pairs (base and fore, base and tool, upper and tool, upper and wire, fore and wire, \
+                tool and wire) none meet before the time 0.60356030";
     assert!(text.starts_with(said), "{text}");
+    assert!(text.contains(", and tool and wire meet by the time 0.60356030"), "{text}");
     let told = read(&answered(folder.path(), &["verify", "proof.json", "--json"]));
     assert!(told["time"]["upper"].as_f64().unwrap() < 0.6036, "{told}");
+    assert_eq!(told["pairs"].as_array().unwrap().len(), 6, "{told}");
     let proof: Value = serde_json::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
     let changed = |change: &dyn Fn(&mut Value)| {
         let mut proof = proof.clone();
@@ -124,13 +126,15 @@ fn a_proof_is_checked_elsewhere() {
         assert_eq!(output.status.code(), Some(6), "{}", stderr(&output));
     };
     changed(&|proof| proof["path"]["rows"][1][0] = json!(0.95));
-    changed(&|proof| proof["pairs"] = json!([[1, 3]]));
-    changed(&|proof| proof["said"]["lower"] = json!(0.7));
+    changed(&|proof| proof["statement"]["pairs"] = json!([["upper", "tool"]]));
+    changed(&|proof| proof["statement"]["lower"] = json!(0.7));
     changed(&|proof| proof["frames"][1]["origin"]["translation"] = json!([0.6, 0.0, 0.0]));
     answered(folder.path(), &["path", &arm, &rows, "--save-proof", "proof.json"]);
     let text = answered(folder.path(), &["verify", "proof.json"]);
     assert!(
-        text.starts_with("holds: of 3 pairs, none meet on the whole path, up to the time 2"),
+        text.starts_with(
+            "holds: of 3 pairs (base and fore, base and tool, upper and tool) none meet on the"
+        ),
         "{text}"
     );
 }

@@ -31,7 +31,11 @@ pub type PassedProof = ByKind<Clearance, SolidCertificate>;
 
 /// The proof of [`Among::nearest`].
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct NearestProof {
     /// No obstacle is nearer, in world units.
     pub lower: f64,
@@ -45,7 +49,11 @@ pub struct NearestProof {
 
 /// The proof of [`Among::within`].
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct NearbyProof {
     /// The length.
     #[cfg_attr(feature = "serde", serde(with = "crate::written::or_infinite"))]
@@ -60,7 +68,11 @@ pub struct NearbyProof {
 
 /// The proof of [`Among::clearance`].
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct ClearanceProof {
     /// The direction.
     pub direction: DVec3,
@@ -68,10 +80,25 @@ pub struct ClearanceProof {
     #[cfg_attr(feature = "serde", serde(with = "crate::written::or_infinite"))]
     pub lower: f64,
     /// The one that stops it, or overlaps it.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::written::given"))]
     pub stop: Option<ObstacleId>,
     /// What obstacles do whose boxes do not tell, the one that stops it among them, in the order in which
     /// they came.
     pub passed: Vec<(ObstacleId, PassedProof)>,
+}
+
+impl ClearanceProof {
+    /// The translation by which an obstacle is claimed to stop the moving body, at most: 0 if they overlap, infinite if
+    /// none is.
+    pub(crate) fn upper(&self) -> f64 {
+        let claim = self.stop.and_then(|stop| self.passed.iter().find(|(id, _)| *id == stop));
+        match claim.map(|(_, claim)| claim) {
+            None | Some(ByKind::Convex(Clearance::Free(_))) => f64::INFINITY,
+            Some(ByKind::Convex(Clearance::Blocked { contact, .. })) => contact.certificate.upper,
+            Some(ByKind::Convex(Clearance::Overlapping(_))) => 0.0,
+            Some(ByKind::Solid(proof)) => proof.stop.map_or(0.0, |stop| stop.shrunk_distance),
+        }
+    }
 }
 
 /// A proof to check about one body among many.
@@ -262,7 +289,7 @@ impl Among<'_> {
         if lower.is_nan() || *lower < 0.0 || *lower > upper {
             return Err(CertificateError::Order { lower: *lower, upper });
         }
-        for one in self.asked().filter(|_| *lower > 0.0) {
+        for one in self.asked().filter(|one| *lower > 0.0 || claims.contains_key(&one.id)) {
             let proven = self.verify_apart(one, claims.get(&one.id).copied())?;
             require(proven >= *lower, one.id)?;
         }
@@ -271,9 +298,18 @@ impl Among<'_> {
 
     fn verify_nearby(&self, proof: &NearbyProof) -> Result<f64, CertificateError> {
         let NearbyProof { length, closer, undecided, apart } = proof;
+        check_length(*length)?;
         let claims = self.named(apart)?;
         let open: Vec<(ObstacleId, ())> = undecided.iter().map(|id| (*id, ())).collect();
         let (open, close) = (self.named(&open)?, self.named(closer)?);
+        // Of each obstacle one thing is claimed.
+        let twice = |id: &&ObstacleId| {
+            usize::from(open.contains_key(*id)) + usize::from(claims.contains_key(*id)) > 1
+                || close.contains_key(*id) && (open.contains_key(*id) || claims.contains_key(*id))
+        };
+        if let Some(id) = open.keys().chain(claims.keys()).find(twice) {
+            return Err(CertificateError::UnknownObstacle { obstacle: *id });
+        }
         for (id, near) in closer {
             let proven = self.verify_near(*id, near)?;
             require(proven <= *length, *id)?;
@@ -290,14 +326,15 @@ impl Among<'_> {
     fn verify_clearance(&self, proof: &ClearanceProof) -> Result<f64, CertificateError> {
         let ClearanceProof { direction, lower, stop, passed } = proof;
         check_direction(*direction)?;
-        let claims = self.named(passed)?;
-        let stop = stop.map(|id| (id, claims.get(&id).copied()));
+        let mut bounds = HashMap::with_capacity(passed.len());
+        for (id, claim) in self.named(passed)? {
+            let proven = self.verify_passed(self.known(id)?, claim, *direction);
+            bounds.insert(id, proven.map_err(|e| e.of_obstacle(id))?);
+        }
         let mut upper = f64::INFINITY;
-        if let Some((id, claim)) = stop {
-            let one = self.known(id)?;
-            let claim = claim.ok_or(CertificateError::Unproven { obstacle: id })?;
-            let bounds = self.verify_passed(one, claim, *direction);
-            upper = bounds.map_err(|e| e.of_obstacle(id))?[1];
+        if let Some(id) = *stop {
+            self.known(id)?;
+            upper = bounds.get(&id).ok_or(CertificateError::Unproven { obstacle: id })?[1];
         }
         if upper == f64::NEG_INFINITY && *lower == 0.0 {
             return Ok(0.0);
@@ -309,14 +346,10 @@ impl Among<'_> {
         }
         let sweep = Sweep::new(self.swept(), *direction);
         for one in self.asked() {
-            let proven = match claims.get(&one.id) {
-                Some(claim) => self
-                    .verify_passed(one, claim, *direction)
-                    .map_err(|e| e.of_obstacle(one.id))?[0],
-                None => sweep.entry(&one.placed().bounds()),
-            };
+            let named = bounds.get(&one.id).map(|[lower, _]| *lower);
+            let proven = named.unwrap_or_else(|| sweep.entry(&one.placed().bounds()));
             // Who is met at 0 has to be named: what a box says there is nothing.
-            require(proven >= *lower && (proven > 0.0 || claims.contains_key(&one.id)), one.id)?;
+            require(proven >= *lower && (proven > 0.0 || named.is_some()), one.id)?;
         }
         Ok(if is_stopped { (upper - lower).max(0.0) } else { 0.0 })
     }

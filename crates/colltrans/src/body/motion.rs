@@ -386,7 +386,8 @@ impl TryFrom<Vec<PieceRecord>> for Motion {
             let after = pieces.last().map_or(0.0, |last| last.since);
             let follows =
                 if pieces.is_empty() { record.since == 0.0 } else { record.since > after };
-            if !follows || record.since > 1.0 {
+            // A piece from the time 1 on would be one of no time that places the body elsewhere then.
+            if !follows || record.since >= 1.0 {
                 return Err(MotionError::Time { time: record.since });
             }
             let piece = Piece {

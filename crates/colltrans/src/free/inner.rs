@@ -19,7 +19,11 @@ const MOVES: u32 = 64;
 
 /// A box inside a body, along the axes of the world, from the moving body's translation.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct InnerBox {
     /// Its least coordinates.
     pub low: DVec3,

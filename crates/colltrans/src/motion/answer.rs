@@ -89,18 +89,27 @@ impl std::ops::AddAssign for MotionSteps {
 
 /// What proves an answer: planes, and that the bodies meet.
 #[derive(Debug, Clone, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct MotionProof {
     /// For each span of time in which both bodies spin evenly, up to that in which they meet: planes in the
     /// order of their times, each joined to the next one. None, if they meet when it begins.
     pub spans: Vec<Vec<PlaneAt>>,
     /// That the bodies meet at a time.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::written::given"))]
     pub meeting: Option<Meeting>,
 }
 
 /// A plane between the bodies at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct PlaneAt {
     /// When.
     pub time: f64,
@@ -129,7 +138,11 @@ pub enum Met {
 
 /// That the bodies meet at a time, or are not farther apart than the gap to be kept.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct Meeting {
     /// When.
     pub time: f64,

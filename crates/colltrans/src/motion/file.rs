@@ -185,7 +185,8 @@ impl fmt::Display for MotionProofFile {
         let reached = self.proof.spans.iter().flatten().last().map(|plane| plane.time);
         let meet = self.case.meet();
         match (reached, meeting) {
-            (None, Some(_)) => write!(f, "the bodies {meet} when the motion begins"),
+            (None, Some(0.0)) => write!(f, "the bodies {meet} when the motion begins"),
+            (None, Some(upper)) => write!(f, "the bodies {meet} by the time {upper}"),
             (Some(lower), Some(upper)) => {
                 write!(f, "the bodies first {meet} at a time between {lower} and {upper}")
             }
@@ -258,9 +259,16 @@ impl MotionProofFiles {
     pub fn from_json(text: &str) -> Result<Self, CaseError> {
         let text = said(text, PROOFS)?;
         let file: Several = serde_json::from_str(text).map_err(CaseError::Proof)?;
+        let wrong = |what: String| Err(CaseError::Proof(serde_json::Error::custom(what)));
+        let [first, ..] = &file.proofs[..] else {
+            return wrong("there are no proofs; there has to be one of each pair of bodies".into());
+        };
         if let Some(other) = file.proofs.iter().find(|proof| proof.format != PROOF) {
-            let what = format!("proofs of motions, not {:?}", other.format);
-            return Err(CaseError::Proof(serde_json::Error::custom(what)));
+            return wrong(format!("proofs of motions, not {:?}", other.format));
+        }
+        if let Some(other) = file.proofs.iter().find(|proof| proof.keep != first.keep) {
+            let keeps = [first.keep, other.keep];
+            return wrong(format!("proofs of one question keep one gap, not {keeps:?}"));
         }
         file.proofs.into_iter().map(MotionProofFile::read).collect::<Result<_, _>>().map(Self)
     }

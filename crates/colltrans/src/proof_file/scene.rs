@@ -46,7 +46,7 @@ const NAMED: usize = 12;
 /// let saved = SceneProof::of_nearest(&asked)?.expect("there are some").to_json();
 /// let proof = SceneProof::from_json(&saved)?;
 /// proof.check()?;
-/// assert!(proof.to_string().starts_with("of 2 obstacles, obstacle 1 is between 2.999"));
+/// assert!(proof.to_string().starts_with("of 2 obstacles, obstacle 1 is at most 3.0"));
 /// assert!(SceneProof::from_json(&saved.replace("[0.0,4.0,0.0]", "[0.0,4.5,0.0]"))?.check().is_err());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -334,7 +334,7 @@ impl fmt::Display for SceneStatement {
                 let upper = near.distance();
                 write!(
                     f,
-                    "obstacle {obstacle} is between {lower:?} and {upper:?} away, none is nearer"
+                    "obstacle {obstacle} is at most {upper:?} away, none is nearer than {lower:?}"
                 )
             }
             Self::Within(NearbyProof { length, closer, undecided, .. }) => {
@@ -348,16 +348,24 @@ impl fmt::Display for SceneStatement {
             Self::Clearance(ClearanceProof { stop: None, lower, .. }) if lower.is_infinite() => {
                 f.write_str("none ever stops the moving body")
             }
-            Self::Clearance(ClearanceProof { lower, stop, .. }) => match stop {
-                None => write!(f, "none stops the moving body before a translation of {lower:?}"),
-                Some(stop) if *lower == 0.0 => {
-                    write!(f, "obstacle {stop} overlaps the moving body, or stops it at once")
+            Self::Clearance(of) => {
+                let ClearanceProof { lower, stop, .. } = of;
+                let Some(stop) = stop else {
+                    return write!(
+                        f,
+                        "none stops the moving body before a translation of {lower:?}"
+                    );
+                };
+                match of.upper() {
+                    upper if upper <= 0.0 => {
+                        write!(f, "obstacle {stop} overlaps the moving body, or stops it at once")
+                    }
+                    upper => write!(
+                        f,
+                        "none stops the moving body before a translation of {lower:?}, obstacle {stop} does by {upper:?}"
+                    ),
                 }
-                Some(stop) => write!(
-                    f,
-                    "none stops the moving body before a translation of {lower:?}, obstacle {stop} does then"
-                ),
-            },
+            }
         }
     }
 }

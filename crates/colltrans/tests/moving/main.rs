@@ -4,5 +4,6 @@ mod motion;
 mod motion_clearance;
 mod motion_properties;
 mod path;
+mod proof_claims;
 mod published_motions;
 mod solids_motion;

@@ -68,17 +68,26 @@ pub struct PathFree {
 
 /// What proves an answer: planes between the bodies of each pair, and that two meet.
 #[derive(Debug, Clone, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct PathProof {
     /// For each pair, in the order in which they are asked about.
     pub covers: Vec<Cover>,
     /// That two bodies meet.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::written::given"))]
     pub meeting: Option<PathMeeting>,
 }
 
 /// What proves that two pieces do not meet up to some place: steps, each from where the last one ends.
 #[derive(Debug, Clone, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct Cover {
     /// One after the other.
     pub steps: Vec<Step>,
@@ -89,7 +98,7 @@ pub struct Cover {
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
+    serde(rename_all = "snake_case", deny_unknown_fields)
 )]
 pub enum Step {
     /// Planes between both pieces: within a row each is joined to the next; the last one of a stretch and the first one
@@ -109,7 +118,11 @@ pub enum Step {
 /// Planes on the way from a row to the next one. Their times are shares of that way; normals are in the frame that
 /// both bodies share.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct Stretch {
     /// The row.
     pub row: usize,
@@ -119,7 +132,11 @@ pub struct Stretch {
 
 /// That two bodies meet.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct PathMeeting {
     /// The number of the pair among those that are asked about.
     pub pair: usize,
@@ -134,7 +151,7 @@ pub struct PathMeeting {
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
+    serde(rename_all = "snake_case", deny_unknown_fields)
 )]
 pub enum How {
     /// Pieces of them do.
@@ -178,9 +195,22 @@ impl PathProof {
     pub fn planes(&self) -> usize {
         self.covers.iter().map(Cover::planes).sum()
     }
+
+    /// Whether it proves of all pairs, if it holds, that the bodies do not meet where the path begins.
+    pub(super) fn is_of_the_beginning(&self) -> bool {
+        self.covers.iter().all(Cover::is_of_the_beginning)
+    }
 }
 
 impl Cover {
+    /// Whether it proves, if it holds, that two pieces do not meet where it begins.
+    pub(super) fn is_of_the_beginning(&self) -> bool {
+        self.steps.iter().any(|step| match step {
+            Step::Planes(stretches) => !stretches.is_empty(),
+            Step::Parts { covers, .. } => covers.iter().all(Self::is_of_the_beginning),
+        })
+    }
+
     fn planes(&self) -> usize {
         let of = |step: &Step| match step {
             Step::Planes(stretches) => stretches.iter().map(|stretch| stretch.planes.len()).sum(),

@@ -1,5 +1,6 @@
 //! A proof about a path with all that it is about, as one file.
 
+use std::collections::HashMap;
 use std::fmt;
 
 use glam::DVec3;
@@ -17,7 +18,10 @@ use crate::number::noise;
 use crate::proof_file::{BodyFile, Written, kept, said};
 
 /// What a file of this version calls itself.
-const FORMAT: &str = "colltrans path proof 1";
+const FORMAT: &str = "colltrans path proof 2";
+
+/// So many pairs are named in words.
+const NAMED: usize = 12;
 
 /// A proof that owns its mechanism, bodies and path: whoever has the file can check what it says, without a search.
 ///
@@ -44,19 +48,25 @@ pub struct PathProofFile {
     mechanism: Mechanism,
     path: JointPath,
     bodies: Vec<Carried>,
+    /// Of the statement, by the numbers of the bodies.
     pairs: Vec<[usize; 2]>,
     keep: f64,
     proof: PathProof,
-    said: Said,
+    statement: PathStatement,
 }
 
-/// Up to which time no two bodies meet, and when two do.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+/// What a [`PathProofFile`] claims: of these pairs of bodies none meet before a time, and when some do.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct Said {
-    lower: f64,
+#[non_exhaustive]
+pub struct PathStatement {
+    /// The names of both bodies of each pair.
+    pub pairs: Vec<[String; 2]>,
+    /// No two bodies of a pair meet before this time; also not at it, if it is the end of the path and no contact is claimed.
+    pub lower: f64,
+    /// The pair of [`PathProof::meeting`] meets at this time or before; infinite where that is not claimed.
     #[serde(with = "crate::written::or_infinite")]
-    upper: f64,
+    pub upper: f64,
 }
 
 /// A body and who carries it.
@@ -78,6 +88,14 @@ pub enum PathFileError {
     /// What is asked has no answer.
     #[error(transparent)]
     Path(#[from] PathError),
+    /// A name that none of the bodies has, or several.
+    #[error(
+        "{name:?} is not the name of one of the bodies, or of several; each has one of its own"
+    )]
+    Name {
+        /// That name.
+        name: String,
+    },
     /// An axis has another length than 1: frames would be elsewhere by what rounding makes of it.
     #[error("the axis {:?} of frame {frame} is not a unit vector", .axis.to_array())]
     Axis {
@@ -89,16 +107,17 @@ pub enum PathFileError {
 }
 
 impl PathProofFile {
-    /// Asks, of the bodies as they are read back from the file, and keeps the proof. Names are those of the bodies, for
-    /// people; those that there is none for have none.
+    /// Asks, of the bodies as they are read back from the file, and keeps the proof. The statement names bodies: those that
+    /// have no name of their own get one by their number.
     ///
     /// # Errors
     /// As [`PathCast::first_contact`], and a solid that its own facets do not make once more.
     pub fn answer(cast: &PathCast, names: &[String]) -> Result<(PathOutcome, Self), PathFileError> {
+        let names = names_of(cast.shapes.len(), names);
         let carried =
-            cast.shapes.iter().zip(&cast.frames).enumerate().map(|(k, (shape, frame))| {
+            cast.shapes.iter().zip(&cast.frames).zip(&names).map(|((shape, frame), name)| {
                 let written = Written::again(&kept(shape.placed), "one")?;
-                let name = names.get(k).cloned().unwrap_or_default();
+                let name = name.clone();
                 Ok(Carried { name, frame: *frame, pose: shape.pose(), written })
             });
         let mut file = Self {
@@ -108,7 +127,7 @@ impl PathProofFile {
             pairs: cast.pairs.clone(),
             keep: cast.keep,
             proof: PathProof::default(),
-            said: Said::default(),
+            statement: PathStatement::default(),
         };
         let outcome = file.cast()?.first_contact()?;
         let [from, to] = file.path.ends();
@@ -117,7 +136,8 @@ impl PathProofFile {
             PathOutcome::Overlapping(_) => [from; 2],
             PathOutcome::Free(_) => [to, f64::INFINITY],
         };
-        file.said = Said { lower, upper };
+        let pairs = cast.pairs.iter().map(|pair| pair.map(|k| names[k].clone())).collect();
+        file.statement = PathStatement { pairs, lower, upper };
         file.proof = outcome.proof().clone();
         Ok((outcome, file))
     }
@@ -128,7 +148,7 @@ impl PathProofFile {
     /// What is not proven.
     pub fn check(&self) -> Result<[f64; 2], PathCheckError> {
         let proven = self.cast()?.verify(&self.proof)?;
-        let Said { lower, upper } = self.said;
+        let PathStatement { lower, upper, .. } = self.statement;
         if lower <= proven[0] && proven[1] <= upper {
             return Ok(proven);
         }
@@ -138,6 +158,11 @@ impl PathProofFile {
     /// The names of its bodies.
     pub fn names(&self) -> Vec<String> {
         self.bodies.iter().map(|of| of.name.clone()).collect()
+    }
+
+    /// What it claims; true if [`Self::check`] does not object.
+    pub const fn statement(&self) -> &PathStatement {
+        &self.statement
     }
 
     /// Its proof, checked or not.
@@ -175,10 +200,9 @@ impl PathProofFile {
             frames: self.mechanism.frames().to_vec(),
             path: self.path.clone(),
             bodies: self.bodies.iter().map(body).collect(),
-            pairs: self.pairs.clone(),
             keep: self.keep,
             proof: self.proof.clone(),
-            said: self.said,
+            statement: self.statement.clone(),
         };
         serde_json::to_string(&file).expect("numbers and names")
     }
@@ -193,7 +217,7 @@ impl PathProofFile {
         let body = |of: BodyRecord| {
             let written = Written::of(of.body)?;
             // They are there for whoever has no such trees; they have to be those of these bodies.
-            if of.parts.is_some() && of.parts != Parts::of(&written.body) {
+            if of.parts != Parts::of(&written.body) {
                 return Err(CaseError::Changed { which: "one" });
             }
             Ok(Carried { name: of.name, frame: of.frame, pose: of.pose, written })
@@ -204,23 +228,54 @@ impl PathProofFile {
                 return Err(PathFileError::Axis { frame, axis });
             }
         }
-        Ok(Self {
+        let bodies: Vec<Carried> =
+            file.bodies.into_iter().map(body).collect::<Result<_, CaseError>>()?;
+        let pairs = numbers_of(&file.statement.pairs, &bodies)?;
+        let file = Self {
             mechanism: Mechanism::new(file.frames)?,
             path: file.path,
-            bodies: file.bodies.into_iter().map(body).collect::<Result<_, CaseError>>()?,
-            pairs: file.pairs,
+            bodies,
+            pairs,
             keep: file.keep,
             proof: file.proof,
-            said: file.said,
-        })
+            statement: file.statement,
+        };
+        file.cast()?;
+        Ok(file)
     }
+}
 
-    fn name(&self, body: usize) -> String {
-        match self.bodies.get(body).map(|of| of.name.as_str()) {
-            Some("") | None => format!("body {body}"),
-            Some(name) => name.into(),
+/// A name for each body, no two of them the same: its own one, or else its number.
+fn names_of(count: usize, own: &[String]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::with_capacity(count);
+    for k in 0..count {
+        let mut name = own.get(k).cloned().unwrap_or_default();
+        if name.is_empty() {
+            name = format!("body {k}");
+        }
+        while names.contains(&name) {
+            name += &format!(" ({k})");
+        }
+        names.push(name);
+    }
+    names
+}
+
+/// The pairs of a statement by the numbers of their bodies, each of which has a name of its own.
+fn numbers_of(pairs: &[[String; 2]], bodies: &[Carried]) -> Result<Vec<[usize; 2]>, PathFileError> {
+    let mut numbers = HashMap::new();
+    for (k, Carried { name, .. }) in bodies.iter().enumerate() {
+        if name.is_empty() || numbers.insert(name.as_str(), k).is_some() {
+            return Err(PathFileError::Name { name: name.clone() });
         }
     }
+    let number = |name: &String| {
+        numbers
+            .get(name.as_str())
+            .copied()
+            .ok_or_else(|| PathFileError::Name { name: name.clone() })
+    };
+    pairs.iter().map(|[a, b]| Ok([number(a)?, number(b)?])).collect()
 }
 
 /// Why a file does not prove what it says.
@@ -250,21 +305,26 @@ impl fmt::Display for PathProofFile {
             keep if keep > 0.0 => format!("come as near as {keep}"),
             _ => "meet".into(),
         };
-        let (pairs, Said { lower, upper }) = (self.pairs.len(), self.said);
-        let pair = self.proof.meeting.as_ref().and_then(|meeting| self.pairs.get(meeting.pair));
-        match pair {
-            Some([a, b]) => {
-                let (a, b) = (self.name(*a), self.name(*b));
-                write!(
-                    f,
-                    "of {pairs} pairs, {a} and {b} are the first to {meet}, at a time between {lower} \
-                     and {upper}"
-                )
+        let PathStatement { pairs, lower, upper } = &self.statement;
+        let named = |[a, b]: &[String; 2]| format!("{a} and {b}");
+        let first: Vec<String> = pairs.iter().take(NAMED).map(named).collect();
+        let more = if pairs.len() > NAMED { ", ..." } else { "" };
+        write!(f, "of {} pairs ({}{more}) ", pairs.len(), first.join(", "))?;
+        let [from, to] = self.path.ends();
+        let meeting = self.proof.meeting.as_ref().and_then(|meeting| pairs.get(meeting.pair));
+        let is_whole = *lower == to && self.proof.is_of_the_beginning();
+        match meeting {
+            None if is_whole => write!(f, "none {meet} on the whole path, up to the time {lower}"),
+            None if from == to => f.write_str("nothing is said"),
+            None => write!(f, "none {meet} before the time {lower}"),
+            Some(pair) => {
+                write!(f, "none {meet} before the time {lower}, and {} {meet} ", named(pair))?;
+                if upper.is_finite() {
+                    write!(f, "by the time {upper}")
+                } else {
+                    f.write_str("on the path")
+                }
             }
-            None if lower == self.path.ends()[1] => {
-                write!(f, "of {pairs} pairs, none {meet} on the whole path, up to the time {lower}")
-            }
-            None => write!(f, "of {pairs} pairs, none {meet} up to the time {lower}"),
         }
     }
 }
@@ -276,17 +336,17 @@ struct File {
     frames: Vec<Frame>,
     path: JointPath,
     bodies: Vec<BodyRecord>,
-    pairs: Vec<[usize; 2]>,
     #[serde(default, skip_serializing_if = "crate::written::is_zero")]
     keep: f64,
     proof: PathProof,
-    said: Said,
+    statement: PathStatement,
 }
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct BodyRecord {
     name: String,
+    #[serde(deserialize_with = "crate::written::given")]
     frame: Option<usize>,
     pose: Pose,
     #[serde(default, skip_serializing_if = "Option::is_none")]

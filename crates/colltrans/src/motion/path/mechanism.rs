@@ -12,7 +12,7 @@ use crate::body::Pose;
 use crate::body::error::PoseError;
 use crate::number::angle;
 use crate::number::noise;
-use crate::number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE, in_exact_range};
+use crate::number::range::{MAX_MAGNITUDE, in_exact_range, without_traces};
 use crate::setting::error::QueryError;
 
 /// A place that a joint carries.
@@ -24,6 +24,7 @@ use crate::setting::error::QueryError;
 )]
 pub struct Frame {
     /// The frame it stands in, one with a smaller number; none is the world.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::written::given"))]
     pub parent: Option<usize>,
     /// Where its joint is in that frame.
     pub origin: Pose,
@@ -89,15 +90,13 @@ impl Mechanism {
             }
             if let Joint::Turning(axis) | Joint::Sliding(axis) = &mut frame.joint {
                 let length = axis.length();
-                if !(in_exact_range(*axis) && length > 0.0) {
+                if !(in_exact_range(without_traces(*axis)) && length > 0.0) {
                     return Err(PathError::Axis { frame: k, axis: *axis });
                 }
                 if (length - 1.0).abs() > noise::UNIT_VECTOR {
                     *axis /= length;
                 }
-                for k in 0..3 {
-                    axis[k] = if axis[k].abs() < MIN_MAGNITUDE { 0.0 } else { axis[k] };
-                }
+                *axis = without_traces(*axis);
             }
         }
         Ok(Self { frames })
@@ -188,6 +187,11 @@ impl JointPath {
     /// The first and the last time.
     pub fn ends(&self) -> [f64; 2] {
         [self.times[0], self.times[self.times.len() - 1]]
+    }
+
+    /// Whether a place is on it.
+    pub(super) fn has(&self, Place { row, share }: Place) -> bool {
+        row < self.last() && (0.0..=1.0).contains(&share) || row == self.last() && share == 0.0
     }
 
     /// The last row, or how many rows have a way to the next one.

@@ -81,7 +81,7 @@ use self::chain::Chain;
 use self::couple::Couple;
 use self::cover::{Search, Stop};
 #[cfg(feature = "json")]
-pub use self::file::{PathCheckError, PathFileError, PathProofFile};
+pub use self::file::{PathCheckError, PathFileError, PathProofFile, PathStatement};
 pub use self::mechanism::{Frame, Joint, JointPath, Mechanism, PathError, Place};
 use self::shape::Shape;
 pub use self::verify::PathProofError;

@@ -90,7 +90,7 @@ pub(super) fn verify(cast: &PathCast, proof: &PathProof) -> Result<[f64; 2], Pat
         let shapes = cast.shapes_of(pair);
         let walk = Walk { couple: &couple, shapes, pair };
         let up_to = walk.cover(cover, [0, 0], Place::START, end)?;
-        if up_to > Place::START && nested(cast, pair).unwrap_or(true) {
+        if cover.is_of_the_beginning() && nested(cast, pair).unwrap_or(true) {
             return Err(PathProofError::Inside { pair });
         }
         reached = reached.min_of(up_to);
@@ -101,8 +101,7 @@ pub(super) fn verify(cast: &PathCast, proof: &PathProof) -> Result<[f64; 2], Pat
     };
     let PathMeeting { pair, place, .. } = *meeting;
     let fails = |reason| PathProofError::Meeting { pair, row: place.row, reason };
-    let is_place = (0.0..=1.0).contains(&place.share) && place.settled() <= end;
-    if pair >= pairs || !is_place || place < reached {
+    if pair >= pairs || !cast.path.has(place) || place < reached {
         return Err(fails(None));
     }
     meets(cast, meeting)?;
@@ -163,7 +162,7 @@ impl Walk<'_> {
                     }
                 }
                 Step::Parts { which, until, covers } => {
-                    let is_pair = *which < 2 && *until >= here;
+                    let is_pair = *which < 2 && self.couple.path.has(*until) && *until >= here;
                     let parts = if is_pair {
                         self.shapes[*which].parts(pieces[*which])
                     } else {

@@ -23,7 +23,7 @@ use crate::solve::solid::nearest::triangle::{self, Corners, GAP, LENGTH};
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
+    serde(rename_all = "snake_case", deny_unknown_fields)
 )]
 pub enum FacetsMet {
     /// An edge of one passes through the other, by more than computed places may be off.
@@ -109,8 +109,8 @@ pub(super) fn holds<'a, C: Course<'a, Body = Facet>>(
     match met {
         FacetsMet::Crossing { moving, edge } => {
             let (own, other) = if moving { (f, g) } else { (g, f) };
-            let k = edge as usize % 3;
-            course.keep() == 0.0 && pierces(own[k], own[(k + 1) % 3], other, noise + course.error())
+            let (k, off) = (edge as usize, noise + course.error());
+            k < 3 && course.keep() == 0.0 && pierces(own[k], own[(k + 1) % 3], other, off)
         }
         FacetsMet::Near { weights } => {
             let length = triangle::length(&f, &g, weights.map(DVec3::from_array));

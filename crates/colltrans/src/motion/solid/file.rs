@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 use std::fmt;
 
+use serde::de::Error as _;
 use serde::{Deserialize, Serialize};
 
 use super::super::verify::MotionProofError;
@@ -115,14 +116,12 @@ impl SolidMotionProofFile {
         let motions = [moving_motion, fixed_motion];
         let cast = asked(&bodies, &motions, keep, tolerance)?;
         // They are there for whoever has no such trees; they have to be those of these bodies.
-        if let Some(parts) = parts {
-            let trees = cast.trees(cast.tolerance());
-            for (which, (tree, told)) in
-                ["moving", "fixed"].into_iter().zip(trees.iter().zip(parts))
-            {
-                if Parts::of(tree) != told {
-                    return Err(CaseError::Changed { which });
-                }
+        let missing = || CaseError::Proof(serde_json::Error::missing_field("parts"));
+        let trees = cast.trees(cast.tolerance());
+        let told = trees.iter().zip(parts.ok_or_else(missing)?);
+        for (which, (tree, told)) in ["moving", "fixed"].into_iter().zip(told) {
+            if Parts::of(tree) != told {
+                return Err(CaseError::Changed { which });
             }
         }
         Ok(Self { bodies, motions, keep, tolerance, proof })

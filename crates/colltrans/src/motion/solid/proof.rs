@@ -11,7 +11,11 @@ use crate::cast::solid::StartProof;
 
 /// What proves an answer about solids that turn.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct SolidMotionProof {
     /// The tolerance: both bodies are shrunk by half of it.
     pub tolerance: f64,
@@ -20,12 +24,17 @@ pub struct SolidMotionProof {
     /// For each span of time in which both bodies spin evenly, up to that in which they meet.
     pub spans: Vec<SpanProof>,
     /// That they meet at a time.
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::written::given"))]
     pub meeting: Option<FacetsMeeting>,
 }
 
 /// Why no facets meet from the beginning of a span up to a time.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct SpanProof {
     /// That time.
     pub until: f64,
@@ -37,7 +46,11 @@ pub struct SpanProof {
 
 /// That two facets meet at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct FacetsMeeting {
     /// When.
     pub time: f64,

@@ -3,7 +3,11 @@
 /// A number and what is proven of it: `lower <= value <= upper`, and the true one lies between the
 /// same bounds. An infinite bound claims nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct Bounded {
     /// The best estimate.
     pub value: f64,

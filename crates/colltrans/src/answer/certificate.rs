@@ -40,7 +40,11 @@ const STRETCHED: f64 = 1.0 + 4e-6;
 /// their [`vertices`](crate::ConvexPolyhedron::vertices), in poses as their nine entries and their
 /// translations. Both are rounded outwards by what their computation can be off.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct Certificate {
     /// Unit normal of the supporting plane that proves the lower bound, in the world;
     /// `normal . d > 0`.
@@ -68,7 +72,11 @@ pub struct Certificate {
 /// The proof that two bodies never meet along the direction: a plane parallel to it lies between
 /// them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct Separation {
     /// Unit normal in the world, orthogonal to the direction, from the moving body to the fixed
     /// one.
@@ -411,8 +419,8 @@ fn left_of(height: f64, normal: DVec3, keep: f64) -> f64 {
 /// Returns the largest rounding that a certificate may state, which proves nothing: twice what a search states, of
 /// bodies that reach beyond their support points by no more than vertices may be off the planes of their faces.
 fn most_rounding(setting: &Setting, normal: DVec3, noise: Noise) -> f64 {
-    let rounding = (noise.raised() + noise.lowered() + noise.beyond())
-        / normal.dot(setting.direction);
+    let rounding =
+        (noise.raised() + noise.lowered() + noise.beyond()) / normal.dot(setting.direction);
     2.0 * (gap_rounding(setting, normal, noise, noise.widest()) + rounding)
 }
 

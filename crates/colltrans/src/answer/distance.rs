@@ -76,7 +76,11 @@ pub enum Within<B: Body = ConvexPolyhedron> {
 
 /// The proof that two convex bodies are not nearer to each other than a number: a plane between them.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct PlaneGap {
     /// Unit normal in the world, from the moving body to the fixed one.
     pub normal: DVec3,
@@ -86,7 +90,11 @@ pub struct PlaneGap {
 
 /// The proof that two convex bodies are not farther from each other than a number: a point of each.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct NearPoints {
     /// Pairs of vertices.
     pub pairs: [VertexPair; 4],
@@ -102,7 +110,11 @@ pub struct NearPoints {
 ///
 /// `lower <= true depth <= upper`, exactly, for the bodies as given; both are 0 if they are apart.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 #[non_exhaustive]
 pub struct Depth {
     /// The bodies overlap after every shorter translation of the moving body; rounded down.
@@ -132,7 +144,11 @@ impl Depth {
 
 /// A closed surface of triangles around the origin, between points `q - p`; nothing if no depth is claimed.
 #[derive(Debug, Clone, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct Enclosure {
     /// The pairs of vertices whose differences are its corners.
     pub pairs: Vec<VertexPair>,

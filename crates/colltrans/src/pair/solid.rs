@@ -29,7 +29,11 @@ use crate::solve::solid::scene::Scene;
 /// A proof of the distance of two solids, checked by [`Pair::verify`] without a search: every pair of facets lies
 /// under one entry of a cover, and every entry is looked at by itself.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct DistanceCertificate {
     /// No two points of the bodies are nearer, in world units: the least that an entry of the cover proves. 0 where
     /// nothing is proven.

@@ -17,7 +17,11 @@ pub(crate) use two_bodies::TwoBodies;
 
 /// One vertex of each body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct VertexPair {
     /// Of the moving body.
     pub moving: VertexId,

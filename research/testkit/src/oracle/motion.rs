@@ -19,7 +19,7 @@ use dashu_int::IBig;
 use glam::DVec3;
 
 use crate::oracle::check::Objection;
-use crate::oracle::exact::Dyadic;
+use crate::oracle::exact::{self, Dyadic};
 
 /// Fractional bits.
 const BITS: usize = 480;
@@ -171,11 +171,16 @@ pub struct Spin {
 }
 
 /// How a body turns a vector in a span of time.
-fn turned_by(spin: &Spin, span: &Fixed) -> impl Fn(&Vector) -> Vector {
-    let axis = vector(spin.axis);
+fn turned_by(spin: &Spin, span: &Fixed) -> impl Fn(&Vector) -> Vector + use<> {
+    turn_about(spin.axis, &(&Fixed::new(spin.angle) * span))
+}
+
+/// The rotation about an axis, of any length near 1, by an angle.
+fn turn_about(axis: DVec3, angle: &Fixed) -> impl Fn(&Vector) -> Vector + use<> {
+    let axis = vector(axis);
     let length = dot(&axis, &axis).sqrt();
     let axis = axis.map(|x| x.over(&length));
-    let [sin, cos] = sin_cos(&(&Fixed::new(spin.angle) * span));
+    let [sin, cos] = sin_cos(angle);
     move |z| {
         let side = cross(&axis, z);
         let along = times(&axis, &(&dot(&axis, z) * &(Fixed::whole(1) - cos.clone())));
@@ -185,17 +190,81 @@ fn turned_by(spin: &Spin, span: &Fixed) -> impl Fn(&Vector) -> Vector {
 
 /// The vertices of a body where the real motion has them.
 fn placed(body: &ConvexPolyhedron, spin: &Spin, time: f64) -> Vec<Vector> {
-    let t = Fixed::new(time);
-    let turned = turned_by(spin, &t);
+    moved(body.vertices(), spin, &Fixed::new(time))
+}
+
+/// Points of a body where the real motion has them, so long after it has begun.
+fn moved(points: &[DVec3], spin: &Spin, t: &Fixed) -> Vec<Vector> {
+    let turned = turned_by(spin, t);
     let arm = vector(spin.arm);
-    let base = minus(&plus(&vector(spin.start.translation()), &times(&vector(spin.way), &t)), &arm);
+    let base = minus(&plus(&vector(spin.start.translation()), &times(&vector(spin.way), t)), &arm);
     let columns = [0, 1, 2].map(|k| vector(spin.start.matrix().col(k)));
     let place = |y: &DVec3| {
         let y = vector(*y);
         let z = (0..3).fold(arm.clone(), |z, k| plus(&z, &times(&columns[k], &y[k])));
         plus(&base, &turned(&z))
     };
-    body.vertices().iter().map(place).collect()
+    points.iter().map(place).collect()
+}
+
+/// Fractional bits of points that others calculate with.
+const CUT: usize = 200;
+
+/// Numbers without their last bits, for arithmetic that is exact and not longer than it has to be.
+fn cut(points: Vec<Vector>) -> Vec<exact::Vector> {
+    let short = |x: Fixed| Dyadic::from_units(x.0 >> (BITS - CUT), -(CUT as i32));
+    points.into_iter().map(|p| exact::Vector(p.map(short))).collect()
+}
+
+/// Returns points of a body where the real motion has them at a time, which has begun at another one: to `2^-200`.
+pub fn points_at(points: &[DVec3], spin: &Spin, since: f64, time: f64) -> Vec<exact::Vector> {
+    cut(moved(points, spin, &(Fixed::new(time) - Fixed::new(since))))
+}
+
+/// A joint on the way to a body.
+#[derive(Debug, Clone)]
+pub struct Stage {
+    /// Where it is in what it stands on.
+    pub origin: Pose,
+    /// Its axis, and whether it turns: none if it is fixed.
+    pub axis: Option<(DVec3, bool)>,
+    /// Its value at a row and at the next one.
+    pub values: [f64; 2],
+}
+
+/// Returns points of a body that joints carry, the last of which it has a pose on, at a share of the way from a row to
+/// the next one: to `2^-200`.
+pub fn points_carried(
+    points: &[DVec3],
+    pose: &Pose,
+    stages: &[Stage],
+    share: f64,
+) -> Vec<exact::Vector> {
+    let put = |pose: &Pose, points: Vec<Vector>| -> Vec<Vector> {
+        let columns = [0, 1, 2].map(|k| vector(pose.matrix().col(k)));
+        let place = |p: Vector| {
+            (0..3).fold(vector(pose.translation()), |z, k| plus(&z, &times(&columns[k], &p[k])))
+        };
+        points.into_iter().map(place).collect()
+    };
+    let mut all = put(pose, points.iter().map(|p| vector(*p)).collect());
+    for Stage { origin, axis, values } in stages.iter().rev() {
+        if let Some((axis, turns)) = axis {
+            let [from, to] = values.map(Fixed::new);
+            let value = from.clone() + &Fixed::new(share) * &(to - from);
+            if *turns {
+                let turned = turn_about(*axis, &value);
+                all = all.iter().map(turned).collect();
+            } else {
+                let unit = vector(*axis);
+                let length = dot(&unit, &unit).sqrt();
+                let way = times(&unit.map(|x| x.over(&length)), &value);
+                all = all.iter().map(|p| plus(p, &way)).collect();
+            }
+        }
+        all = put(origin, all);
+    }
+    cut(all)
 }
 
 /// Two bodies and what they do.

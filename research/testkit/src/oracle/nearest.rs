@@ -139,7 +139,9 @@ impl<'a> Judge<'a> {
     pub fn compare_depth(&self, answer: &Depth) -> Result<(), Objection> {
         let truth = if self.truth.intersects() {
             depth(&self.moving, &self.fixed, self.noise)
-        } else { Ratio::from_f64(0.0) };
+        } else {
+            Ratio::from_f64(0.0)
+        };
         let [lower, upper] = answer.bounds();
         let rounded = truth.sqrt_to_f64();
         require!(square(lower) <= truth, "lower bound {lower:e} of a depth of {rounded:e}");

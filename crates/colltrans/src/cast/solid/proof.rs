@@ -30,7 +30,11 @@ use crate::solve::solid::separating_axes::SeparatingAxes;
 /// search: every pair of facets lies under one entry of a cover, and every entry is looked at by
 /// itself.
 #[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct SolidCertificate {
     /// The tolerance: both bodies are shrunk by half of it.
     pub tolerance: f64,
@@ -64,7 +68,11 @@ pub enum StartProof {
 
 /// The pair of facets that stops the moving body.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(deny_unknown_fields))]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(deny_unknown_fields)
+)]
 pub struct StopProof {
     /// Their least gap, of the shrunk bodies, in multiples of the direction, or 0: the value of
     /// [`SolidContact::shrunk_distance`](crate::solid::SolidContact::shrunk_distance).

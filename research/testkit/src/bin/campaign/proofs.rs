@@ -26,7 +26,15 @@ impl crate::Tally for Tally {
     fn header() -> String {
         format!(
             "{:>8} {:>9} {:>10} {:>9} {:>8} {:>8} {:>8} {:>6} {:>9}",
-            "proofs", "mutants", "steps", "accepted", "rounded", "partly", "ends", "false", "disagree"
+            "proofs",
+            "mutants",
+            "steps",
+            "accepted",
+            "rounded",
+            "partly",
+            "ends",
+            "false",
+            "disagree"
         )
     }
 

@@ -359,10 +359,7 @@ fn marginal(file: &Value) -> Option<bool> {
 }
 
 /// The first translation at which two facets meet.
-pub(super) fn first_of(
-    facets: [&[crate::oracle::exact::Vector]; 2],
-    d: DVec3,
-) -> Option<Ratio> {
+pub(super) fn first_of(facets: [&[crate::oracle::exact::Vector]; 2], d: DVec3) -> Option<Ratio> {
     crate::oracle::simplex::collision_translation(&scene(facets, d))
 }
 

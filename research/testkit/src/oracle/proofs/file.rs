@@ -128,11 +128,8 @@ impl Bodies {
 
 /// Points in the world and a direction; their noises are not asked for.
 pub fn scene([moving, fixed]: [&[Vector]; 2], direction: DVec3) -> Scene {
-    let mut scene = Scene::new(
-        (&[], &colltrans::Pose::IDENTITY),
-        (&[], &colltrans::Pose::IDENTITY),
-        direction,
-    );
+    let mut scene =
+        Scene::new((&[], &colltrans::Pose::IDENTITY), (&[], &colltrans::Pose::IDENTITY), direction);
     (scene.moving, scene.fixed) = (moving.to_vec(), fixed.to_vec());
     scene
 }

@@ -14,8 +14,11 @@
 pub mod casts;
 pub mod checkers;
 pub mod file;
+pub mod motions;
 pub mod mutants;
 pub mod pairs;
+pub mod paths;
+pub mod scenes;
 pub mod solids;
 
 use serde_json::Value;
@@ -77,13 +80,17 @@ pub struct Kind {
 }
 
 /// All kinds.
-pub const KINDS: [Kind; 6] = [
+pub const KINDS: [Kind; 10] = [
     casts::CASTS,
     casts::WITH_GAP,
     pairs::DISTANCES,
     pairs::DEPTHS,
     solids::CLEARANCES,
     solids::DISTANCES,
+    motions::CONVEX,
+    motions::SOLIDS,
+    paths::PATHS,
+    scenes::SCENES,
 ];
 
 /// What became of proofs.
@@ -133,7 +140,10 @@ impl<'a> Campaign<'a> {
         campaign.tally.proofs += 1;
         let random = &mut Random::stream(seed, &[0xf0_26ed]);
         if !campaign.judge(&text, "as written") {
-            campaign.tally.disagreements.push(format!("{}: a proof is refused: {text}", campaign.name));
+            campaign
+                .tally
+                .disagreements
+                .push(format!("{}: a proof is refused: {text}", campaign.name));
             return;
         }
         let Ok(file) = serde_json::from_str::<Value>(&text) else { return };
@@ -224,7 +234,8 @@ impl<'a> Campaign<'a> {
         for (verdict, who) in [(&library, Who::Library), (&fractions, Who::Fractions)] {
             if verdict.accepts() {
                 let unreadable = || Some("it is no JSON".to_owned());
-                let found = file.as_ref().map_or_else(unreadable, |f| (self.kind.falsehood)(f, who));
+                let found =
+                    file.as_ref().map_or_else(unreadable, |f| (self.kind.falsehood)(f, who));
                 if let Some(why) = found {
                     let line = format!("{name}, {what}: {who:?} accepts: {why}: {text}");
                     self.tally.false_claims.push(line);

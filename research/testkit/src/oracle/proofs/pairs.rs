@@ -93,8 +93,11 @@ fn claims(file: &Value) -> Vec<Claim> {
     ];
     let there = all.into_iter().filter(|(at, ..)| has(file, at));
     there
-        .map(|(at, name, weakest, strongest)| {
-            Claim { pointer: format!("{at}/{name}"), weakest, strongest, band }
+        .map(|(at, name, weakest, strongest)| Claim {
+            pointer: format!("{at}/{name}"),
+            weakest,
+            strongest,
+            band,
         })
         .collect()
 }
@@ -179,7 +182,8 @@ fn falsehood(file: &Value, _: Who) -> Option<String> {
     } else {
         return None;
     };
-    let say = |what: &str, x: f64| Some(format!("a depth {what} {x:e} of {:e}", deep.sqrt_to_f64()));
+    let say =
+        |what: &str, x: f64| Some(format!("a depth {what} {x:e} of {:e}", deep.sqrt_to_f64()));
     if lower < 0.0 || square(lower) > deep {
         return say("of at least", lower);
     }

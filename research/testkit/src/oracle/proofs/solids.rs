@@ -98,8 +98,7 @@ fn claims(file: &Value) -> Vec<Claim> {
         (format!("{DISTANCE}/lower"), 0.0, HUGE, band),
         (format!("{POINTS}/distance"), HUGE, 0.0, band),
     ];
-    let there =
-        all.into_iter().filter(|(at, ..)| file.pointer(at).is_some_and(Value::is_number));
+    let there = all.into_iter().filter(|(at, ..)| file.pointer(at).is_some_and(Value::is_number));
     there
         .map(|(pointer, weakest, strongest, band)| Claim { pointer, weakest, strongest, band })
         .collect()

@@ -274,7 +274,7 @@ fn of_order(order: i64) -> f64 {
 
 /// Returns the next number towards another one.
 fn toward(x: f64, end: f64) -> f64 {
-    of_order(order(x) + (order(end) - order(x)).signum())
+    of_order(order(x) + order(end).cmp(&order(x)) as i64)
 }
 
 /// Returns the number nearest to `strongest` that is accepted, by halving; `None` if `weakest` is not.

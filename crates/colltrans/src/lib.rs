@@ -100,8 +100,9 @@
 //! A contact's bounds enclose the true collision translation of the bodies as given, exactly:
 //! [`Certificate::lower`] `<= coll <=` [`Certificate::upper`], where a body is the convex hull of
 //! its [`vertices`](ConvexPolyhedron::vertices), placed by the nine entries of its pose's matrix and
-//! its translation. ([`ConvexPolyhedron::hull_error`] says how far from that hull the points are at most
-//! that it was made from, and what that makes of the bounds.) [`Contact::translation`] is the best estimate between them.
+//! its translation. They enclose that of the points that the bodies were made from, too: what a hull leaves
+//! outside ([`ConvexPolyhedron::hull_error`]) is taken off lower bounds. [`Contact::translation`] is the best
+//! estimate between them.
 //!
 //! Let `S` be the size of the configuration: the largest distance of a vertex from the origin of
 //! its body frame, for each body, plus the distance `|t_Q - t_P|` of the two frames. The *noise*

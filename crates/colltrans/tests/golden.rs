@@ -42,7 +42,7 @@ const CASTS: &[(&str, u64)] = &[
     ("thin", 0xd9b3_778f_aea5_5955),
     ("cylinders", 0x314c_ed2e_56ac_f165),
     ("magnitude", 0x26b5_df2c_4a10_afa6),
-    ("narrow-rings", 0x63b5_65e0_63e0_c549),
+    ("narrow-rings", 0xba3c_fd5e_9e3e_bbe9),
 ];
 
 /// Families of solids.

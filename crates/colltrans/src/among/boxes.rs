@@ -31,10 +31,11 @@ const FEW: usize = 32;
 /// So many boxes of a solid's tree.
 const PARTS: usize = 16;
 
-/// A box that holds a convex body.
+/// A box that holds a convex body, and the points that it was made from.
 pub(super) fn of_convex(body: &ConvexPolyhedron, pose: &Pose) -> Aabb {
+    let excess = body.input_excess();
     if body.vertices().len() <= FEW {
-        return of_points(body.vertices(), pose);
+        return of_points(body.vertices(), pose, excess);
     }
     let rows = pose.matrix().transpose();
     let mut bounds = Aabb::EMPTY;
@@ -47,13 +48,13 @@ pub(super) fn of_convex(body: &ConvexPolyhedron, pose: &Pose) -> Aabb {
         (bounds.low[axis], bounds.high[axis]) = (-reach(-row), reach(row));
     }
     let size = DVec3::splat(3.0 * body.inertia().reach);
-    outwards(bounds, size, pose.translation())
+    outwards(bounds, size, pose.translation(), excess)
 }
 
 /// A box that holds a solid.
 pub(super) fn of_solid(solid: &Solid, pose: &Pose) -> Aabb {
     if solid.vertices().len() <= FEW {
-        return of_points(solid.vertices(), pose);
+        return of_points(solid.vertices(), pose, 0.0);
     }
     let nodes = solid.nodes();
     let mut parts = [0_u32; PARTS];
@@ -74,17 +75,17 @@ pub(super) fn of_solid(solid: &Solid, pose: &Pose) -> Aabb {
     }
     let Aabb { low, high } = solid.bounds();
     let size = DVec3::splat(3.0 * low.abs().max(high.abs()).max_element());
-    outwards(bounds, size, pose.translation())
+    outwards(bounds, size, pose.translation(), 0.0)
 }
 
-fn of_points(points: &[DVec3], pose: &Pose) -> Aabb {
+fn of_points(points: &[DVec3], pose: &Pose, excess: f64) -> Aabb {
     let matrix = pose.matrix();
     let (mut bounds, mut size) = (Aabb::EMPTY, DVec3::ZERO);
     for &v in points {
         bounds.add(matrix * v);
         size = size.max(v.abs());
     }
-    outwards(bounds, DVec3::splat(3.0 * size.max_element()), pose.translation())
+    outwards(bounds, DVec3::splat(3.0 * size.max_element()), pose.translation(), excess)
 }
 
 /// The box of a turned box, rounded.
@@ -97,9 +98,10 @@ fn turned(bounds: &Aabb, matrix: &DMat3) -> Aabb {
     Aabb { low, high }
 }
 
-/// A box of coordinates of so much size at most, moved by a translation and grown by what rounding does.
-fn outwards(bounds: Aabb, size: DVec3, translation: DVec3) -> Aabb {
-    let error = (size + translation.abs()) * BOX;
+/// A box of coordinates of so much size at most, moved by a translation and grown by what rounding does, and
+/// by what points of the input may lie outside the body; poses may stretch that by a millionth.
+fn outwards(bounds: Aabb, size: DVec3, translation: DVec3, excess: f64) -> Aabb {
+    let error = (size + translation.abs()) * BOX + 1.001 * excess;
     Aabb { low: bounds.low + translation - error, high: bounds.high + translation + error }
 }
 

@@ -19,7 +19,7 @@ use crate::setting::VertexPair;
 
 /// The answer of [`Pair::distance`](crate::Pair::distance): how far apart the bodies are, and where.
 ///
-/// `lower <= true distance <= upper`, exactly, for the bodies as given.
+/// `lower <= true distance <= upper`, exactly, for the bodies as given, and for the points that they were made from.
 #[derive(Debug)]
 #[derive_where(Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]

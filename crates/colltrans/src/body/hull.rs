@@ -12,6 +12,12 @@ pub(crate) trait Hull {
 
     /// The largest distance of a corner from the origin of that frame, or more.
     fn reach(&self) -> f64;
+
+    /// How far a point of the input may lie outside the hull of the corners.
+    #[inline]
+    fn input_excess(&self) -> f64 {
+        0.0
+    }
 }
 
 impl Hull for ConvexPolyhedron {
@@ -23,6 +29,11 @@ impl Hull for ConvexPolyhedron {
     #[inline]
     fn reach(&self) -> f64 {
         self.inertia().reach
+    }
+
+    #[inline]
+    fn input_excess(&self) -> f64 {
+        Self::input_excess(self)
     }
 }
 

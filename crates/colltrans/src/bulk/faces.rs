@@ -38,6 +38,8 @@ pub(super) struct Faces {
     /// Face by face, clockwise from outside: counter-clockwise to who looks along a direction that enters it.
     sides: Vec<Side>,
     pub(super) points: Vec<DVec3>,
+    /// How much nearer to each other points of both inputs may be than the bodies are.
+    pub(super) input_excess: f64,
     pairs: Vec<VertexPair>,
     /// Where to begin.
     pub(super) star: Star,
@@ -76,7 +78,8 @@ impl Faces {
             planes.push(Plane { normal, least, thick, lowest: pairs[lowest as usize] });
         }
         let star = Star::new(&hull, &planes);
-        Some(Self { planes, starts, sides, points: hull.vertices().to_vec(), pairs, star })
+        let (points, input_excess) = (hull.vertices().to_vec(), bodies.input_excess());
+        Some(Self { planes, starts, sides, points, input_excess, pairs, star })
     }
 
     #[inline]

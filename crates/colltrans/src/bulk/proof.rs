@@ -98,7 +98,8 @@ pub(super) fn contact<S: Seen>(
     if !is_tight {
         return None;
     }
-    let lower = ((distance - noise.lowered()) / steepness).next_down();
+    let lowered = noise.lowered() + faces.input_excess;
+    let lower = ((distance - lowered) / steepness).next_down();
     let upper = (estimate + noise.raised() / steepness).next_up();
     Some(Contact {
         translation: estimate.max(lower),
@@ -110,7 +111,7 @@ pub(super) fn contact<S: Seen>(
             pairs: corners.map(|side| faces.pair(of, side)),
             weights,
             upper,
-            rounding: gap + (noise.raised() + noise.lowered()) * per,
+            rounding: gap + (noise.raised() + lowered) * per,
         },
         solver: Solver::Portal,
         steps,
@@ -170,7 +171,8 @@ impl Rim {
 #[inline]
 pub(super) fn separated(rim: &Rim, line: &Line, steps: Steps) -> Option<Separated> {
     let noise = line.noise;
-    let margin = (rim.least + rim.normal.dot(line.setting.offset)) - noise.lowered();
+    let lowered = noise.lowered() + line.setting.input_excess();
+    let margin = (rim.least + rim.normal.dot(line.setting.offset)) - lowered;
     let certificate = Separation { normal: rim.normal, margin };
     let certain = margin > 2.0 * noise.touching();
     certain.then_some(Separated { certificate, solver: Solver::Portal, steps })

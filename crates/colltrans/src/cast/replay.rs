@@ -234,6 +234,14 @@ pub(crate) struct BodyRecord {
     faces: Vec<Vec<u32>>,
     input_indices: Vec<InputVertex>,
     hull_error: f64,
+    /// Missing in files of versions whose bounds did not count it.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    input_excess: f64,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
+fn is_zero(number: &f64) -> bool {
+    *number == 0.0
 }
 
 impl BodyRecord {
@@ -243,6 +251,7 @@ impl BodyRecord {
             faces: (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect(),
             input_indices: body.input_indices().to_vec(),
             hull_error: body.hull_error(),
+            input_excess: body.input_excess(),
         }
     }
 
@@ -252,7 +261,7 @@ impl BodyRecord {
             &vertices,
             &self.faces,
             &self.input_indices,
-            self.hull_error,
+            [self.hull_error, self.input_excess],
         )
     }
 }

@@ -84,6 +84,11 @@ pub(super) trait Course<'a> {
         at.bodies.proven_gap(normal) - self.keep() - self.error()
     }
 
+    /// What a search claims of that gap: the one between the points that the bodies were made from.
+    fn claimed_gap(&self, at: &Instant<'a, Self::Moved, Self::Body>, normal: DVec3) -> f64 {
+        at.bodies.input_gap(normal) - self.keep() - self.error()
+    }
+
     /// Whether two planes prove the time between them.
     fn joins(
         &self,

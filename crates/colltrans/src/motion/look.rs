@@ -97,7 +97,7 @@ impl Looker<ConvexPolyhedron> for ConvexLooker {
             _ if keep < 0.0 => self.least_overlap(&difference),
             _ => (None, found.points()),
         };
-        let floor = 4.0 * difference.noise.point() + error;
+        let floor = 4.0 * difference.noise.point() + error + difference.bodies.input_excess();
         let (normal, gap) =
             plane.map_or((DVec3::X, f64::NEG_INFINITY), |plane| (plane.normal, plane.gap));
         let gap = gap - keep - error;

@@ -217,7 +217,7 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
         let left = self.left;
         let turned = |look: &Look<'a, C::Moved, C::Body>, normal: DVec3| Look {
             normal,
-            gap: self.course.proven_gap(&look.at, normal),
+            gap: self.course.claimed_gap(&look.at, normal),
             ..*look
         };
         let (last, first) = (turned(next, left.normal), turned(&left, next.normal));
@@ -383,12 +383,12 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
             if course.lost([&left.at, &at], look.normal) >= SPENT * look.gap {
                 return None;
             }
-            let gap = course.proven_gap(&at, look.normal);
+            let gap = course.claimed_gap(&at, look.normal);
             (gap > 0.0).then_some((look, gap))
         };
         let aside = || {
             let normal = course.aside(&left.at, left.points)?;
-            let gap = course.proven_gap(&left.at, normal);
+            let gap = course.claimed_gap(&left.at, normal);
             (gap > 0.0).then_some(Look { normal, gap, ..left })
         };
         let Some((first, gap)) = ends_with(left).or_else(|| ends_with(aside()?)) else {
@@ -406,7 +406,7 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
     fn swing_to(&mut self, time: f64) -> bool {
         let next = self.looker.look(self.course, time);
         let normal = self.left.normal;
-        let gap = self.course.proven_gap(&next.at, normal);
+        let gap = self.course.claimed_gap(&next.at, normal);
         if !(gap > 0.0 && next.is_apart()) {
             return false;
         }

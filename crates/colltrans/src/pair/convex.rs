@@ -20,7 +20,7 @@ impl Pair<'_> {
     ///
     /// The bounds hold exactly. They are at most four noises apart (`128 u S`, see
     /// [the crate's introduction](crate#accuracy)), however near the bodies are to each other; of thin and
-    /// uneven ones, rarely, up to 64, and what uneven faces hide. Of bodies that overlap the lower one is 0.
+    /// uneven ones, rarely, up to 64, and what uneven faces hide; and by what hulls leave outside. Of bodies that overlap the lower one is 0.
     /// Of bodies that are less than a few noises apart it is, if one shows it, that of a plane whose gap is computed
     /// nearly without rounding, from all vertices: boxes along the axes that are `1e-60` apart mostly are so for
     /// certain; where their corners are lined up too, the bounds are 0 and some noises.

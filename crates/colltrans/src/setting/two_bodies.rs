@@ -15,6 +15,9 @@ use crate::number::orientation::Terms;
 use crate::number::range::MIN_MAGNITUDE;
 use crate::setting::VertexPair;
 
+/// At least by how much a pose stretches a length: its nine entries may be off a rotation by a millionth.
+const STRETCHED: f64 = 1.000_004;
+
 /// Two placed bodies.
 #[derive(Debug)]
 #[derive_where(Clone, Copy)]
@@ -133,6 +136,18 @@ impl<B: Hull> TwoBodies<'_, B> {
         let [_, square] = extent::dot(normal, normal);
         (self.distance_along(normal) / square.sqrt().next_up()).next_down()
     }
+
+    /// The gap that a plane proves between the points that the bodies were made from: what a search claims.
+    pub(crate) fn input_gap(&self, normal: DVec3) -> f64 {
+        let (gap, excess) = (self.proven_gap(normal), self.input_excess());
+        if excess == 0.0 { gap } else { (gap - excess).next_down() }
+    }
+
+    /// How much nearer to each other points of both inputs may be than the bodies are, in the world.
+    #[inline]
+    pub(crate) fn input_excess(&self) -> f64 {
+        (self.moving.input_excess() + self.fixed.input_excess()) * STRETCHED
+    }
 }
 
 impl TwoBodies<'_> {
@@ -185,12 +200,13 @@ impl TwoBodies<'_> {
     }
 
     /// A pair of support points along a unit normal, given in both bodies' frames, from one that climbs
-    /// have found; and how far the bodies may reach towards each other beyond it.
+    /// have found; and how far the bodies, and the points that they were made from, may reach towards each
+    /// other beyond it.
     #[inline]
     pub(crate) fn settled(&self, normals: &[DVec3; 2], found: VertexPair) -> (VertexPair, f64) {
         let (moving, p) = self.moving.settled(normals[0], found.moving.0);
         let (fixed, q) = self.fixed.settled(-normals[1], found.fixed.0);
-        (VertexPair::of(moving, fixed), p + q)
+        (VertexPair::of(moving, fixed), p + q + self.input_excess())
     }
 
     /// `q - p` for a pair of vertices, as the sum of products that defines it.

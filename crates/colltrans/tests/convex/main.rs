@@ -10,6 +10,7 @@ mod degenerate;
 mod distance;
 mod fuzz_corpus;
 mod hull;
+mod input;
 mod keep;
 mod offset;
 mod paper;

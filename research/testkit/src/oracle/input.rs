@@ -16,11 +16,10 @@
 //! <= M_K + B(h)`. So:
 //!
 //! - *Upper bound.* A point of `M_K` on the line is one of `M_I`: it holds for the input exactly.
-//! - *Lower bound.* A plane `n.m >= L n.d` below `M_K`, `|n| = 1`, is at most `h` above `M_I`: for the input
-//!   `coll >= L - h / n.d`.
+//! - *Lower bound.* A plane `n.m >= L n.d` below `M_K`, `|n| = 1`, is at most `h` above `M_I`. Answers state
+//!   `L - h / n.d`, so their lower bounds hold for the input exactly.
 //! - *Separation.* Shadows of `M_K` that are a margin away from the line are at least `margin - h` away
-//!   for `M_I`: with a margin of more than `h` the input is separated, with less it overlaps by `h -
-//!   margin` at most.
+//!   for `M_I`. Answers state that, and call a positive one separated.
 //! - *Grazing.* The sideways overlap of the input is that of `K`, or up to `h` more.
 //!
 //! (a), (b) and the exact judgement of `K` are therefore a complete judgement of the input. For a sample

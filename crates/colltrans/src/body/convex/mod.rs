@@ -46,6 +46,8 @@ pub struct ConvexPolyhedron {
     input_index: Vec<InputVertex>,
     dimension: u8,
     hull_error: f64,
+    /// Bound on the distance of an input point from the body: the hull error without uneven faces.
+    input_excess: f64,
     /// The largest distance of a corner from its polygon's plane.
     flatness: f64,
     /// Faces with many corners, or all polygons where they are few, ascending.
@@ -153,11 +155,23 @@ impl ConvexPolyhedron {
     /// vertex outside a face plane: the hull's own error, in the unit of the input.
     ///
     /// It has the size of rounding, whatever the shape: the most seen is `1024 u`, `1.2e-13`, of the
-    /// largest coordinate. The input's own collision translation is at most an answer's upper bound, and at least
-    /// its lower bound less the errors of both bodies, divided by `n . d`; separated bodies are
-    /// so as input too if their margin is more than both errors.
+    /// largest coordinate. Bounds of answers count how far input points are outside, so they hold for the
+    /// convex hull of the input as well: lower bounds of distances, translations and gaps are lowered by that
+    /// distance of both bodies (over `n . d` along a direction), and the upper bound of a depth is raised by it.
+    /// Certificates are checked against the vertices alone.
     pub fn hull_error(&self) -> f64 {
         self.hull_error
+    }
+
+    /// Bound on the distance of an input point from the body; 0 if none is outside.
+    #[inline]
+    pub(crate) fn input_excess(&self) -> f64 {
+        self.input_excess
+    }
+
+    /// The body as the hull of its vertices alone, for a caller that counts itself what those lack.
+    pub(crate) fn without_input_excess(self) -> Self {
+        Self { input_excess: 0.0, ..self }
     }
 
     /// The volume, in the cube of the input's unit; 0 for a body of lower dimension.

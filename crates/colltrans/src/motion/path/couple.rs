@@ -139,6 +139,11 @@ impl<'p> Course<'p> for RowCourse<'p> {
         self.keep
     }
 
+    /// Its error counts already what the inputs may reach beyond the pieces.
+    fn claimed_gap(&self, at: &Instant<'p, [Rates; 2]>, normal: DVec3) -> f64 {
+        self.proven_gap(at, normal)
+    }
+
     fn instant(&self, time: f64) -> Instant<'p, [Rates; 2]> {
         let [p, q] = self.chains.each_ref().map(|chain| chain.at(self.path, self.row, time));
         let [moving, fixed] = self.pieces;

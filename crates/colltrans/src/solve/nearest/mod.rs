@@ -364,7 +364,7 @@ pub(crate) struct Plane {
     pub(crate) gap: PlaneGap,
     /// A pair of support points along it.
     pub(crate) lowest: VertexPair,
-    /// How far the bodies may reach beyond these.
+    /// How far the bodies, and the points that they were made from, may reach beyond these.
     pub(crate) beyond: f64,
 }
 
@@ -386,7 +386,8 @@ impl Found {
         if is_open && is_near { self.sharp_plane(difference).or(plane) } else { plane }
     }
 
-    /// A plane across the simplex, or from its only point, with the gap that a check finds.
+    /// A plane across the simplex, or from its only point, with the gap that a check finds, less what the
+    /// inputs may reach beyond the bodies.
     #[cold]
     #[inline(never)]
     fn sharp_plane(&self, difference: &Difference) -> Option<Plane> {
@@ -395,7 +396,7 @@ impl Found {
         let planes = [across, -across, self.normal]
             .into_iter()
             .filter_map(unit)
-            .map(|normal| PlaneGap { normal, gap: difference.bodies.proven_gap(normal) });
+            .map(|normal| PlaneGap { normal, gap: difference.bodies.input_gap(normal) });
         let gap = planes.max_by(|a, b| a.gap.total_cmp(&b.gap)).filter(|plane| plane.gap > 0.0)?;
         let lowest = difference.lowest(gap.normal, self.lowest).pair;
         Some(Plane { gap, lowest, beyond: 0.0 })

@@ -23,7 +23,7 @@ pub(crate) struct Plane {
     pub(crate) normals: [DVec3; 2],
     /// A pair that is lowest along it.
     pub(crate) lowest: VertexPair,
-    /// How far the bodies may reach beyond that.
+    /// How far the bodies, and the points that they were made from, may reach beyond that.
     pub(crate) beyond: f64,
 }
 
@@ -69,7 +69,7 @@ impl Plane {
             normal: normal * to_unit,
             normals: normals.map(|n| n * to_unit),
             lowest: VertexPair::of(moving, fixed),
-            beyond: p + q,
+            beyond: p + q + setting.input_excess(),
         })
     }
 
@@ -90,8 +90,10 @@ impl Plane {
         let most = 0.5 * noise;
         let beyond = setting.moving.excess_of_face(f, normals[0], 1.0, lowest.moving.0, most)?
             + setting.fixed.excess_of_face(g, -normals[1], 1.0, lowest.fixed.0, most)?;
-        let plane = Self { normal, normals, lowest, beyond };
-        (beyond <= MOST_BEYOND * noise).then_some(plane)
+        (beyond <= MOST_BEYOND * noise).then(|| {
+            let beyond = beyond + setting.input_excess();
+            Self { normal, normals, lowest, beyond }
+        })
     }
 
     /// The point of `M` lowest along a normal, from where a climb has ended: among edges as short as

@@ -276,7 +276,7 @@ impl Judge<'_> {
         require!(
             claimed > 0.0
                 && claimed <= margin
-                && margin - claimed <= MARGIN_ROUNDINGS * self.scene.noise,
+                && margin - claimed <= MARGIN_ROUNDINGS * self.scene.noise + self.hull_errors(),
             "margin {claimed:e} claimed, {margin:e} proven"
         );
         Ok(Proof { exact: true, ..Proof::default() })

@@ -6,7 +6,7 @@ use std::cmp::Ordering;
 use colltrans::{Certificate, Contact, Outcome};
 
 use super::{Judge, Objection, TWO_ROUNDINGS};
-use crate::oracle::exact::{Dyadic, Ratio, Vector};
+use crate::oracle::exact::Ratio;
 use crate::oracle::scene::Scene;
 use crate::oracle::shadow::{SignedDistance, sideways_overlap};
 use crate::oracle::simplex::collision_translation;
@@ -30,8 +30,8 @@ impl Judge<'_> {
     }
 
     /// Compares an answer with the linear programme and the exact sideways overlap, of the vertices:
-    /// outcome exactly, value within the stated bound; and of the input points: within what the
-    /// bodies' hull errors allow ([`input`](crate::oracle::input)).
+    /// outcome exactly, value within the stated bound; and of the input points: their value is within the
+    /// stated bounds, too ([`input`](crate::oracle::input)).
     ///
     /// # Errors
     /// How they disagree.
@@ -48,17 +48,17 @@ impl Judge<'_> {
         let off = self.hull_errors();
         match outcome {
             Outcome::Separated(separated) => {
-                let allowed = off - separated.certificate.margin;
+                let margin = separated.certificate.margin;
                 require!(
-                    if allowed < 0.0 { truth.is_none() } else { !overlap.exceeds(allowed) },
-                    "separated, but the shadows overlap by {:e}",
+                    truth.is_none() && !overlap.exceeds(-margin),
+                    "separated by {margin:e}, but the shadows overlap by {:e}",
                     overlap.to_f64()
                 );
                 Ok(())
             }
             Outcome::Contact(contact) => {
                 require!(truth.is_some(), "contact, but they never meet");
-                self.encloses(contact, truth.as_ref(), off)
+                Self::encloses(contact, truth.as_ref())
             }
             Outcome::Grazing(grazing) => {
                 let allowed = grazing.overlap + off + TWO_ROUNDINGS * self.scene.noise;
@@ -67,34 +67,27 @@ impl Judge<'_> {
                     "grazing, but the shadows overlap by {:e}",
                     overlap.to_f64()
                 );
-                self.encloses(&grazing.contact, truth.as_ref(), off)
+                Self::encloses(&grazing.contact, truth.as_ref())
             }
         }
     }
 
-    /// The bounds enclose the true value of bodies that reach up to `off` beyond these.
-    fn encloses(
-        &self,
-        contact: &Contact,
-        truth: Option<&Ratio>,
-        off: f64,
-    ) -> Result<(), Objection> {
+    /// The bounds enclose the true value.
+    fn encloses(contact: &Contact, truth: Option<&Ratio>) -> Result<(), Objection> {
         let Some(truth) = truth else { return Ok(()) };
-        let Certificate { normal, lower, upper, .. } = contact.certificate;
-        let along = Vector::new(normal).dot(&self.scene.direction);
-        let lower = Ratio::from_f64(lower).minus(&Ratio::new(Dyadic::new(off), along));
+        let Certificate { lower, upper, .. } = contact.certificate;
         require!(
-            lower <= *truth && (upper == f64::INFINITY || *truth <= Ratio::from_f64(upper)),
-            "the true value {:e} is not between {:e} and {upper:e}",
-            truth.to_f64(),
-            lower.to_f64()
+            Ratio::from_f64(lower) <= *truth
+                && (upper == f64::INFINITY || *truth <= Ratio::from_f64(upper)),
+            "the true value {:e} is not between {lower:e} and {upper:e}",
+            truth.to_f64()
         );
         Ok(())
     }
 
     /// The hull errors of both bodies together, in the world: poses may stretch lengths by a
     /// millionth, and normals are unit vectors up to rounding.
-    fn hull_errors(&self) -> f64 {
+    pub(super) fn hull_errors(&self) -> f64 {
         (self.cast.moving().hull_error() + self.cast.fixed().hull_error()) * (1.0 + 4e-6)
     }
 
@@ -122,7 +115,8 @@ impl Judge<'_> {
             }
             Outcome::Grazing(grazing) => {
                 require!(
-                    !overlap.exceeds(border + slack) && overlap.exceeds(-slack),
+                    !overlap.exceeds(border + slack)
+                        && overlap.exceeds(-slack - self.hull_errors()),
                     "grazing, but the shadows overlap by {is:e} (grazing up to {border:e})"
                 );
                 match truth {

@@ -105,7 +105,7 @@ impl ConvexPolyhedron {
     }
 
     /// A body from what another one was: its vertices, its faces in their order, the indices of its
-    /// input and its hull error, checked to be convex.
+    /// input, its hull error and how far its input reaches beyond it, checked to be convex.
     ///
     /// # Errors
     /// As [`Self::from_mesh`]; [`BuildError::NotABody`] if there are no faces and not one or two
@@ -115,10 +115,11 @@ impl ConvexPolyhedron {
         vertices: &[DVec3],
         faces: &[Vec<u32>],
         input_indices: &[InputVertex],
-        hull_error: f64,
+        [hull_error, input_excess]: [f64; 2],
     ) -> Result<Self, BuildError> {
         hull::check_points(vertices)?;
-        let sound_error = (0.0..=crate::MAX_MAGNITUDE).contains(&hull_error);
+        let sound_error = (0.0..=crate::MAX_MAGNITUDE).contains(&hull_error)
+            && (0.0..=hull_error).contains(&input_excess);
         let vertex_count = vertices.len();
         let dimension = match faces.len() {
             0 => vertex_count.min(2) as u8 - 1,
@@ -142,14 +143,15 @@ impl ConvexPolyhedron {
             mesh::own_faces(vertices, faces)?
         };
         let in_order = (0..vertex_count as u32).collect();
-        let hull = Hull { dimension, vertices: in_order, topology, violation: hull_error };
+        let hull =
+            Hull { dimension, vertices: in_order, topology, violation: hull_error, input_excess };
         let mut body = Self::from_hull(vertices, hull);
         body.input_index = input_indices.to_vec();
         Ok(body)
     }
 
     fn from_hull(points: &[DVec3], hull: Hull) -> Self {
-        let Hull { dimension, vertices: input, topology, violation } = hull;
+        let Hull { dimension, vertices: input, topology, violation, input_excess } = hull;
         let vertices: Vec<DVec3> = input.iter().map(|&i| points[i as usize]).collect();
         let inertia = Inertia::new(&vertices, &topology, dimension);
         let support = SupportIndex::build(&vertices, &topology, &inertia);
@@ -158,6 +160,7 @@ impl ConvexPolyhedron {
             input_index: input.into_iter().map(InputVertex).collect(),
             dimension,
             hull_error: violation,
+            input_excess,
             flatness: 0.0,
             large_faces: Vec::new(),
             topology,
@@ -185,7 +188,13 @@ impl ConvexPolyhedron {
         }
         let topology = Topology::sphere(vertices.len(), face_start, face_vertices).unwrap();
         let vertices_in_order = (0..vertices.len() as u32).collect();
-        let hull = Hull { dimension: 3, vertices: vertices_in_order, topology, violation: 0.0 };
+        let hull = Hull {
+            dimension: 3,
+            vertices: vertices_in_order,
+            topology,
+            violation: 0.0,
+            input_excess: 0.0,
+        };
         Self::from_hull(vertices, hull)
     }
 }

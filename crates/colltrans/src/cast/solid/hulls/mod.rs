@@ -114,7 +114,7 @@ impl Body {
     }
 
     fn new(solid: &Solid) -> Option<Self> {
-        let hull = ConvexPolyhedron::from_points(solid.vertices()).ok()?;
+        let hull = ConvexPolyhedron::from_points(solid.vertices()).ok()?.without_input_excess();
         if hull.dimension() < 3 {
             return None;
         }

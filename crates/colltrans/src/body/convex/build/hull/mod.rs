@@ -43,6 +43,8 @@ pub(crate) struct Hull {
     pub(crate) topology: Topology,
     /// Bound on the distance of an input point from the body, and of a vertex outside a face plane.
     pub(crate) violation: f64,
+    /// Bound on the distance of an input point from the body.
+    pub(crate) input_excess: f64,
 }
 
 /// Rounds of dropping vertices that are no corners; each is a hull of fewer points.
@@ -181,7 +183,8 @@ fn finish(
     });
     // A corner of triangles that have become one polygon may be none of its corners.
     let others = near.iter().copied().chain(simplicial.vertices());
-    measured(points, Hull { dimension: 3, vertices, topology, violation: 0.0 }, others, tolerance)
+    let hull = Hull { dimension: 3, vertices, topology, violation: 0.0, input_excess: 0.0 };
+    measured(points, hull, others, tolerance)
 }
 
 /// A hull with faces and its violation, and those of the `others` that are too far away, ascending.
@@ -206,8 +209,8 @@ fn measured(
     }
     beyond.sort_unstable();
     beyond.dedup();
-    let violation = gauge.violation;
-    (Hull { violation, ..hull }, beyond)
+    let Gauge { violation, input_excess, .. } = gauge;
+    (Hull { violation, input_excess, ..hull }, beyond)
 }
 
 /// The rounding error of a witness, for points of which this is the tolerance.

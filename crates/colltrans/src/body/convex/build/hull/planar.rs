@@ -1,6 +1,6 @@
 //! Hulls without volume: a point, a segment, a flat polygon.
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3Swizzles};
 
 use super::quickhull::Flat;
 use super::violation::{Projection, to_segment};
@@ -27,12 +27,21 @@ fn without_faces(points: &[DVec3], kept: &[u32], vertices: &[u32], tolerance: f6
         p if p == a || p == b => 0.0,
         p => to_segment(p, a, b) + rounding(tolerance),
     };
+    let is_beside = |i: &&u32| !is_on_segment(at(**i), a, b);
     Hull {
         dimension: vertices.len() as u8 - 1,
         topology: Topology::without_faces(vertices.len()),
         violation: kept.iter().map(away).fold(0.0, f64::max),
+        input_excess: kept.iter().filter(is_beside).map(away).fold(0.0, f64::max),
         vertices,
     }
+}
+
+/// Whether a point lies on a segment, exactly.
+fn is_on_segment(p: DVec3, a: DVec3, b: DVec3) -> bool {
+    let is_between = p.cmpge(a.min(b)).all() && p.cmple(a.max(b)).all();
+    let in_line = |q: &dyn Fn(DVec3) -> DVec2| turn(q(a), q(b), q(p)) == 0.0;
+    is_between && in_line(&|v| v.xy()) && in_line(&|v| v.yz()) && in_line(&|v| v.zx())
 }
 
 /// A polygon without corners that are within the tolerance of an edge, unless that leaves some far away.
@@ -72,7 +81,7 @@ impl Plane<'_> {
         let count = corners.len() as u32;
         let topology = Topology::sphere(vertices.len(), vec![0, count, 2 * count], face_vertices)
             .expect("the front and the back of a polygon are a closed surface");
-        let hull = Hull { dimension: 2, vertices, topology, violation: 0.0 };
+        let hull = Hull { dimension: 2, vertices, topology, violation: 0.0, input_excess: 0.0 };
         measured(self.points, hull, kept.iter().copied(), tolerance).0
     }
 

@@ -135,6 +135,9 @@ fn unevenness(locator: &Locator, vertices: &[DVec3], topology: &Topology) -> f64
 /// Triangles looked at one by one, in multiples of the number of edges and points.
 const LOOKS: usize = 128;
 
+/// Triangles looked at to see that points are inside, at most.
+const MOST_LOOKS_INSIDE: usize = 1 << 16;
+
 /// How far points are from a body, bounded from above.
 pub(super) struct Gauge<'a> {
     locator: Locator,
@@ -146,8 +149,12 @@ pub(super) struct Gauge<'a> {
     center_off: Option<f64>,
     /// The largest bound so far, at first the unevenness of the faces.
     pub(super) violation: f64,
+    /// The largest bound so far on the distance of a point that is not seen to be inside.
+    pub(super) input_excess: f64,
     /// Triangles that may still be looked at for points of which the walk does not tell enough.
     looks: usize,
+    /// Triangles that may still be looked at to see that a point is inside.
+    looks_inside: usize,
 }
 
 impl<'a> Gauge<'a> {
@@ -161,12 +168,14 @@ impl<'a> Gauge<'a> {
         let locator = Locator::of_faces(vertices, topology);
         Self {
             violation: unevenness(&locator, vertices, topology),
+            input_excess: 0.0,
             locator,
             vertices,
             topology,
             rounding,
             center_off: None,
             looks: LOOKS * (topology.edge_count() + points),
+            looks_inside: (LOOKS * (topology.edge_count() + points)).min(MOST_LOOKS_INSIDE),
         }
     }
 
@@ -176,7 +185,21 @@ impl<'a> Gauge<'a> {
     pub(super) fn distance(&mut self, p: DVec3, enough: f64, near: &mut usize) -> f64 {
         let away = self.bound(p, enough, near);
         self.violation = self.violation.max(away);
+        if away > self.input_excess && !self.is_inside(p) {
+            self.input_excess = away;
+        }
         away
+    }
+
+    /// Whether a point is seen to be inside the body, as far as there are looks left for that.
+    fn is_inside(&mut self, p: DVec3) -> bool {
+        let count = 2 * self.topology.edge_count();
+        let may_look = self.looks_inside >= count && self.topology.face_count() > 2;
+        if may_look {
+            self.looks_inside -= count;
+            work::count(count);
+        }
+        may_look && self.contains(p)
     }
 
     fn bound(&mut self, p: DVec3, enough: f64, near: &mut usize) -> f64 {
@@ -258,7 +281,7 @@ impl<'a> Gauge<'a> {
         let away = |k: usize| {
             let triangle = [first, corner(k), corner(k + 1)];
             let away = to_triangle(p, triangle, foot, projection) + self.rounding;
-            let may_be_on = away > self.violation && away <= 2.0 * self.rounding;
+            let may_be_on = away > self.input_excess && away <= 2.0 * self.rounding;
             if may_be_on && is_in_triangle(p, triangle, projection) { 0.0 } else { away }
         };
         if let Search::All = search {

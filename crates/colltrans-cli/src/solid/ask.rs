@@ -8,7 +8,6 @@ use colltrans_mesh::body::between;
 
 use super::{Body, Piece};
 use crate::failure::{Code, Failure};
-use crate::numbers::counted;
 
 /// What rounding alone can do to a length, as a part of the scene's size.
 const ROUNDING: f64 = 1e-14;
@@ -172,25 +171,10 @@ impl Piece {
     }
 
     fn unshrunk(&self, amount: f64) -> Option<String> {
-        let report = self.solid.shrink_report(amount);
-        let mut text = Vec::new();
-        if let Some(first) = report.stuck.first() {
-            let (one, many) = ("vertex stays where it is", "vertices stay where they are");
-            let vertices = counted(report.stuck.len(), one, many);
-            text.push(format!("{vertices}, as in a saddle (vertex {first})"));
-        }
-        if let Some(first) = report.inverted.first() {
-            let one = "face turns inside out or passes through another";
-            let many = "faces turn inside out or pass through others";
-            let faces = counted(report.inverted.len(), one, many);
-            text.push(format!(
-                "{faces}, because the part is thinner than the tolerance (face {first})"
-            ));
-        }
+        let text = self.reports.of(&self.solid, amount)?;
         // A convex body of a batch has no file.
         let is_file = !self.file.as_os_str().is_empty();
         let name = if is_file { self.file.display().to_string() } else { "the convex body".into() };
-        (!text.is_empty())
-            .then(|| format!("{name}: not all of it can be shrunk: {}", text.join("; ")))
+        Some(format!("{name}: not all of it can be shrunk: {text}"))
     }
 }

@@ -9,6 +9,7 @@ mod ask;
 mod free;
 mod motion;
 mod pair;
+mod shrinkable;
 
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -25,6 +26,7 @@ pub(crate) use ask::{Answer, PartsQuery};
 pub(crate) use free::{FreeAnswer, PartsFree};
 pub(crate) use motion::PartsMotion;
 pub(crate) use pair::PartsPair;
+use shrinkable::Reports;
 
 /// A body of one piece or several.
 #[derive(Debug)]
@@ -42,6 +44,14 @@ struct Piece {
     solid: Solid,
     /// In the unit of the body.
     precision: f64,
+    /// What of it cannot be shrunk.
+    reports: Reports,
+}
+
+impl Piece {
+    fn new(file: PathBuf, solid: Solid, precision: f64) -> Self {
+        Self { file, solid, precision, reports: Reports::default() }
+    }
 }
 
 impl Body {
@@ -58,7 +68,7 @@ impl Body {
             let Loaded { body: solid, precision, notes: mended } =
                 load_solid(file, options).map_err(|error| refusal(&error))?;
             notes.extend(mended.iter().map(|note| of_file(file, note)));
-            pieces.push(Piece { file: file.clone(), solid, precision });
+            pieces.push(Piece::new(file.clone(), solid, precision));
             done();
         }
         Self::of_pieces(pieces, notes)
@@ -70,7 +80,7 @@ impl Body {
             SolidError::Empty => "without an area, which bodies asked against solids need".into(),
             other => Refused::Solid(other).to_string(),
         })?;
-        let piece = Piece { file: PathBuf::new(), solid, precision: 0.0 };
+        let piece = Piece::new(PathBuf::new(), solid, 0.0);
         Self::of_pieces(vec![piece], Vec::new())
     }
 

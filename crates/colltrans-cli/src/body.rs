@@ -13,6 +13,8 @@ pub(crate) struct Part {
     /// What its hull has more than the mesh, where the hull was asked for and there is a
     /// difference.
     pub(crate) excess: Option<Excess>,
+    /// How deep the surface of its mesh lies below it, where that is more than its file rounds.
+    pub(crate) dent: Option<f64>,
     /// How far its file rounds coordinates, in the unit of the body.
     pub(crate) precision: f64,
     /// What was mended when it was read.
@@ -22,24 +24,28 @@ pub(crate) struct Part {
 impl Part {
     /// A body that is not of a file.
     pub(crate) const fn of(body: ConvexPolyhedron) -> Self {
-        Self { body, excess: None, precision: 0.0, notes: Vec::new() }
+        Self { body, excess: None, dent: None, precision: 0.0, notes: Vec::new() }
     }
 }
 
 /// Reads a mesh file as a convex body.
 pub(crate) fn load(path: &Path, options: &BodyOptions) -> Result<Part, LoadError> {
     let Loaded { body, notes, precision } = colltrans_mesh::body::load_convex(path, options)?;
-    let mut excess = None;
+    let (mut excess, mut dent) = (None, None);
     let others = notes.iter().filter(|note| match note {
         // Said with the answer, because the answer means something else then.
         Note::Exceeds(found) => {
             excess = Some(*found);
             false
         }
+        Note::Dented(depth) => {
+            dent = Some(*depth);
+            true
+        }
         _ => true,
     });
     let notes = others.map(|note| of_file(path, note)).collect();
-    Ok(Part { body, excess, precision, notes })
+    Ok(Part { body, excess, dent, precision, notes })
 }
 
 /// A note with the name of its file.

@@ -131,8 +131,7 @@ fn ask(
     parts: [&Part; 2],
 ) -> Result<(Answer, Line), QueryError> {
     let answer = question.ask(cast)?;
-    let hull = Hulls::of(parts);
-    Ok((answer, Line { hull, ..answer.record(cast).into() }))
+    Ok((answer, Line::of_parts(answer.record(cast), parts)))
 }
 
 fn answer_one(

@@ -20,7 +20,7 @@ use crate::numbers::{counted, known, known_vector, number, unit_vector};
 use crate::outputs;
 use crate::picture::{Moved, draw_motion};
 use crate::proof::{self, refuse_proof};
-use crate::record::{Hulls, Line};
+use crate::record::Line;
 use crate::replay;
 use crate::report::{feature, hulls, kept, line, meet};
 use crate::solid::{PartsMotion, surface_of};
@@ -165,7 +165,7 @@ fn first_of_all(
                 }
                 Record::of_motion(&outcome, &cast)
             };
-            let told = Line { hull: Hulls::of([moving, fixed]), ..record.into() };
+            let told = Line::of_parts(record, [moving, fixed]);
             let found = Found { told, pair: [i, j] };
             let upper = found.told.record.time.and_then(|time| time.upper);
             if let Some(upper) = upper.filter(|upper| meets.is_none_or(|least| *upper < least.0)) {

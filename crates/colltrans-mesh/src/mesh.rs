@@ -71,24 +71,40 @@ impl Mesh {
         Self { vertices, faces, ..Self::default() }
     }
 
-    /// The smallest and the largest coordinates of all vertices; `None` without vertices.
+    /// The smallest and the largest coordinates of the [vertices in use](Self::vertices_in_use); `None`
+    /// without vertices.
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
-        let first = *self.vertices.first()?;
-        Some(self.vertices.iter().fold([first, first], |[low, high], &v| [low.min(v), high.max(v)]))
+        let mut used = self.vertices_in_use();
+        let first = used.next()?;
+        Some(used.fold([first, first], |[low, high], v| [low.min(v), high.max(v)]))
     }
 
-    /// The largest side of the box that the vertices span; 0 without vertices.
+    /// The largest side of the box that the [vertices in use](Self::vertices_in_use) span; 0 without vertices.
     pub fn extent(&self) -> f64 {
         self.bounds().map_or(0.0, |[low, high]| (high - low).max_element())
     }
 
+    /// Returns each vertex that a face uses, once; all vertices of a mesh without faces.
+    ///
+    /// Default tolerances depend on these alone, because a vertex that no face uses is no part of the body.
+    pub fn vertices_in_use(&self) -> impl Iterator<Item = DVec3> + '_ {
+        let is_used = self.is_used();
+        let all = self.faces.is_empty();
+        self.vertices.iter().zip(is_used).filter(move |(_, used)| all || *used).map(|(v, _)| *v)
+    }
+
     /// How many vertices no face uses.
     pub fn unused_vertices(&self) -> usize {
+        self.is_used().iter().filter(|used| !**used).count()
+    }
+
+    /// For each vertex, whether a face uses it.
+    fn is_used(&self) -> Vec<bool> {
         let mut is_used = vec![false; self.vertices.len()];
         for &v in self.faces.iter().flatten() {
             is_used[v as usize] = true;
         }
-        is_used.iter().filter(|used| !**used).count()
+        is_used
     }
 
     /// The signed volume that a closed surface encloses: positive if the faces run
@@ -123,6 +139,7 @@ mod tests {
         let mut more = mesh.clone();
         more.vertices.push(DVec3::NAN);
         assert_eq!((more.signed_volume(), more.unused_vertices()), (mesh.signed_volume(), 1));
+        assert_eq!(more.bounds(), mesh.bounds());
         assert_eq!(Mesh::default().bounds(), None);
     }
 }

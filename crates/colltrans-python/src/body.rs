@@ -253,6 +253,15 @@ impl ConvexPolyhedron {
         self.0.hull_error()
     }
 
+    /// float: How deep the surface of the mesh that the body was made of lies below the body.
+    ///
+    /// 0 for a mesh that is convex to rounding error, and for a body that is not made of a mesh. Otherwise
+    /// the mesh is convex only to within the tolerance, and answers are about the hull of its vertices.
+    #[getter]
+    fn dent(&self) -> f64 {
+        self.0.dent()
+    }
+
     /// float: The volume, in the cube of the unit of length.
     #[getter]
     fn volume(&self) -> f64 {

@@ -269,6 +269,13 @@ class ConvexPolyhedron:
     def hull_error(self) -> float:
         """float: How far from the body an input point lies at most, a length of the size of rounding."""
     @property
+    def dent(self) -> float:
+        """float: How deep the surface of the mesh that the body was made of lies below the body.
+
+        0 for a mesh that is convex to rounding error, and for a body that is not made of a mesh. Otherwise
+        the mesh is convex only to within the tolerance, and answers are about the hull of its vertices.
+        """
+    @property
     def volume(self) -> float:
         """float: The volume, in the cube of the unit of length."""
     def support(self, direction: ArrayLike) -> int:

@@ -371,6 +371,8 @@ Each result is one JSON object with those of these fields that apply:
                convex. EXCESS = {"hull_volume", "part_volume" (of a closed mesh), "depth"}: the
                largest depth of the mesh's surface below the hull's. Then "separated" holds for the
                parts too, and a translation is a lower bound: they meet no earlier, if at all.
+  dents        {"moving": DEPTH, "fixed": DEPTH} where a mesh is convex only to within the tolerance: how
+               deep its surface lies below its hull, which stands for it
   solver steps of convex bodies: what narrowed the search for a contact, how much work it was
   message      what is wrong; grazing: along which direction the shadows overlap
   notes        what was merged or mended when the meshes were read

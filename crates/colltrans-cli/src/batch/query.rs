@@ -22,7 +22,7 @@ use super::source::{Asked, BodySource, PoseSource, Query};
 use crate::args::BodyArguments;
 use crate::body::{self, Part};
 use crate::inputs::Watched;
-use crate::record::{Hulls, Line as AnswerLine};
+use crate::record::Line as AnswerLine;
 use crate::replay;
 use crate::solid::{self, PartsMotion, PartsPair, PartsQuery};
 
@@ -392,8 +392,7 @@ fn of_bodies(record: Record, bodies: [&solid::Body; 2]) -> AnswerLine {
 /// The line of an answer about convex bodies.
 fn of_parts(record: Record, parts: [&Part; 2]) -> AnswerLine {
     let notes = parts.into_iter().flat_map(|part| part.notes.clone()).collect();
-    let hull = Hulls::of(parts);
-    AnswerLine { hull, notes, ..record.into() }
+    AnswerLine { notes, ..AnswerLine::of_parts(record, parts) }
 }
 
 /// Without the names of files: a body is one.

@@ -19,7 +19,7 @@ use crate::inputs::refuse_picture;
 use crate::outputs;
 use crate::picture::{Shown, draw_pair};
 use crate::proof::{self, refuse_proof};
-use crate::record::{Hulls, Line};
+use crate::record::Line;
 use crate::solid::{PartsPair, surface_of};
 pub(crate) use words::answer;
 
@@ -52,8 +52,7 @@ fn convex(
     let [moving, fixed] = [0, 1].map(|k| parts[k].body.at(poses[k]));
     let pair = Pair::new(moving, fixed)?;
     let answer = question.ask(&pair)?;
-    let hull = Hulls::of(parts.each_ref());
-    let told = Line { hull, ..answer.record(&pair).into() };
+    let told = Line::of_parts(answer.record(&pair), parts.each_ref());
     say(arguments, question, &told, 0.0)?;
     if let (Some(path), Some(proof)) = (&arguments.save_proof, answer.proof(&pair)) {
         proof::save(path, &proof)?;

@@ -434,3 +434,55 @@ fn info_does_not_call_a_closed_mesh_open() {
     assert!(!text.contains("not closed"), "{text}");
     assert!(text.contains("the part's is unknown (its faces are oriented inwards)"), "{text}");
 }
+
+/// An L of 40 in a place of the UTM grid as OBJ, after another text.
+fn angle(before: &str) -> String {
+    let outline = [[0, 0], [40, 0], [40, 10], [10, 10], [10, 40], [0, 40]];
+    let mut text = before.to_owned();
+    for z in [0, 10] {
+        for [x, y] in outline {
+            text += &format!("v {} {} {z}\n", 500_000 + x, 4_649_776 + y);
+        }
+    }
+    text += "f -7 -8 -9 -10 -11 -12\nf -6 -5 -4 -3 -2 -1\n";
+    for i in 0..6 {
+        let [a, b] = [i, (i + 1) % 6].map(|k| k - 12);
+        text += &format!("f {a} {b} {} {}\n", b + 6, a + 6);
+    }
+    text
+}
+
+#[test]
+fn a_vertex_that_no_face_uses_makes_no_part_convex() {
+    let folder = folder();
+    let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).unwrap();
+    write("angle.obj", angle(""));
+    write("stray.obj", angle("v 0 0 0\n"));
+    for angle in ["angle.obj", "stray.obj"] {
+        // Down through the notch, which the hull of the L fills.
+        let pose = ["--moving-pose", "500012,4649788,20", "--direction", "-z"];
+        let asked =
+            |query, json: &'static [&str]| [&[query, "cube.off", angle], &pose[..], json].concat();
+        refused(folder.path(), &asked("cast", &[]), 3, &[angle, "not convex"]);
+        let answer = json(&answered(folder.path(), &asked("clearance", &["--json"])));
+        assert_eq!(answer["outcome"], "free", "{angle}: {answer}");
+        let told = stdout(&run(folder.path(), &["info", angle]));
+        assert!(told.contains("40 x 40 x 10") && told.contains("no; `clearance` takes"), "{told}");
+    }
+}
+
+#[test]
+fn a_mesh_that_is_convex_by_tolerance_says_how_deep_its_dent_is() {
+    let folder = folder();
+    let cube = std::fs::read_to_string(folder.path().join("dent.off")).unwrap();
+    let flat = cube.replace("0.5 0.5 0.75", "0.5 0.5 0.999995");
+    std::fs::write(folder.path().join("flat.off"), flat).unwrap();
+    let words = ["cast", "cube.off", "flat.off", "--direction", "z", "--moving-pose", "0,0,-3"];
+    let output = run(folder.path(), &words);
+    assert!(stderr(&output).contains("note: flat.off: convex only to within the tolerance"));
+    let answer = json(&answered(folder.path(), &[&words[..], &["--json"]].concat()));
+    let depth = answer["dents"]["fixed"].as_f64().unwrap();
+    assert!((depth - 5e-6).abs() < 1e-12 && answer["dents"]["moving"].is_null(), "{answer}");
+    let exact = json(&answered(folder.path(), &[&CAST[..], &["--json"]].concat()));
+    assert!(exact["dents"].is_null(), "{exact}");
+}

@@ -25,7 +25,7 @@ pub use note::{Left, Note, report_notes};
 use crate::words::counted;
 use crate::{Error, Mesh, ReadOptions, read_with};
 
-/// How deep a face may lie below the hull by default, as a part of the mesh's extent: a hundred
+/// How deep a face may lie below the hull by default, as a part of the extent of what faces use: a hundred
 /// times what single precision makes of it, and what six printed digits make of it.
 const CONVEX_TOLERANCE: f64 = 1e-5;
 /// Default tolerance between solids, in multiples of the precisions of both together: both ends of a
@@ -40,7 +40,7 @@ pub struct BodyOptions {
     pub scale: f64,
     /// As [`ReadOptions::merge_tolerance`], where a file is read.
     pub merge_tolerance: Option<f64>,
-    /// How deep a face of a convex body may lie below the hull; `None` is 1e-5 of the mesh's extent.
+    /// How deep a face of a convex body may lie below the hull; `None` is 1e-5 of [`Mesh::extent`].
     pub convex_tolerance: Option<f64>,
     /// Of a convex body: the convex hull of all vertices is taken, whatever the faces are.
     pub hull: bool,
@@ -215,6 +215,9 @@ pub fn convex(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<ConvexPolyhed
     let mesh = options.scaled(mesh);
     if !options.hull {
         let body = ConvexPolyhedron::from_mesh(&mesh.vertices, &mesh.faces, tolerance)?;
+        if body.dent() > precision {
+            notes.push(Note::Dented(body.dent()));
+        }
         return Ok(Loaded { body, precision, notes });
     }
     let body = ConvexPolyhedron::from_points(&mesh.vertices)?;

@@ -42,6 +42,9 @@ pub enum Note {
     },
     /// The hull has what its part has not.
     Exceeds(Excess),
+    /// The mesh is convex only to within the tolerance: its surface lies up to this depth below its hull, which
+    /// is more than the precision of the file explains.
+    Dented(f64),
 }
 
 /// Faces that were left out.
@@ -109,6 +112,14 @@ impl fmt::Display for Note {
         let (count, one, many) = match self {
             Self::Merged(merged) => return merged.fmt(f),
             Self::Exceeds(excess) => return excess.fmt(f),
+            Self::Dented(depth) => {
+                let deep = six_digits(*depth);
+                return write!(
+                    f,
+                    "convex only to within the tolerance: the surface lies up to {deep} below its hull, \
+                     which stands for it"
+                );
+            }
             Self::Surface { open_edges, first, what } => {
                 return surface(f, *open_edges, *first, what);
             }

@@ -48,6 +48,8 @@ pub struct ConvexPolyhedron {
     hull_error: f64,
     /// Bound on the distance of an input point from the body: the hull error without uneven faces.
     input_excess: f64,
+    /// How deep the mesh that the body was made of lies below it, where that is more than rounding.
+    dent: f64,
     /// The largest distance of a corner from its polygon's plane.
     flatness: f64,
     /// Faces with many corners, or all polygons where they are few, ascending.
@@ -161,6 +163,31 @@ impl ConvexPolyhedron {
     /// Certificates are checked against the vertices alone.
     pub fn hull_error(&self) -> f64 {
         self.hull_error
+    }
+
+    /// How deep the surface of the mesh that the body was made of lies below the body: its largest dent, in
+    /// the unit of the input.
+    ///
+    /// 0 for a mesh that is convex to rounding error, and for a body that is not made of a mesh. With a larger
+    /// dent the mesh is convex only to within the tolerance of [`Self::from_mesh`], and answers are about the hull
+    /// of its vertices.
+    ///
+    /// ```
+    /// use colltrans::ConvexPolyhedron;
+    /// use colltrans::glam::DVec3;
+    ///
+    /// // An octahedron whose top is pushed in by a thousandth below the square of the other corners.
+    /// let rim = [DVec3::X, DVec3::Y, DVec3::NEG_X, DVec3::NEG_Y];
+    /// let vertices = [rim[0], rim[1], rim[2], rim[3], DVec3::NEG_Z, DVec3::Z * -1e-3];
+    /// let faces: Vec<[u32; 3]> =
+    ///     (0..4).flat_map(|i| [[i, (i + 1) % 4, 5], [(i + 1) % 4, i, 4]]).collect();
+    /// assert!(ConvexPolyhedron::from_mesh(&vertices, &faces, 1e-4).is_err());
+    /// let body = ConvexPolyhedron::from_mesh(&vertices, &faces, 1e-2)?;
+    /// assert!((body.dent() - 1e-3).abs() < 1e-15);
+    /// # Ok::<(), colltrans::BuildError>(())
+    /// ```
+    pub fn dent(&self) -> f64 {
+        self.dent
     }
 
     /// Bound on the distance of an input point from the body; 0 if none is outside.

@@ -64,11 +64,13 @@ pub(super) fn from_mesh<F: AsRef<[u32]>>(
     }
     let hull = surface.hull();
     let ConvexityDefect { face, depth } = surface.defect(&hull);
-    let tolerance = hull::tolerance(&surface.points).max(tolerance);
+    let rounding = hull::tolerance(&surface.points);
+    let tolerance = rounding.max(tolerance);
     if depth > tolerance {
         return Err(BuildError::NotConvex { face, depth, tolerance });
     }
-    Ok(surface.body(hull))
+    let dent = if depth > rounding { depth } else { 0.0 };
+    Ok(ConvexPolyhedron { dent, ..surface.body(hull) })
 }
 
 /// The topology of a body's own faces, checked to be convex.

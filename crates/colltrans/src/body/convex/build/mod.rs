@@ -161,6 +161,7 @@ impl ConvexPolyhedron {
             dimension,
             hull_error: violation,
             input_excess,
+            dent: 0.0,
             flatness: 0.0,
             large_faces: Vec::new(),
             topology,

@@ -53,10 +53,13 @@ pub enum Fit {
 
 /// The default tolerance: a few last digits of single precision, in which most files are written.
 const SINGLE_DIGITS: f64 = 1.0 / (1 << 21) as f64;
+/// The default tolerance, in multiples of the largest precision of a text: as between two files of it.
+const TEXT_PRECISIONS: f64 = 4.0;
 
 impl Fit {
     /// What is used where nobody says anything: the chord errors of the parts, where their source says them, and
-    /// `2^-21` of the assembly's size, four times the rounding of a coordinate in single precision.
+    /// `2^-21` of the assembly's size, four times the rounding of a coordinate in single precision, or more if files
+    /// are text of fewer digits.
     pub fn default_for(assembly: &Assembly) -> Self {
         let base = Self::digits(assembly);
         let errors = assembly.parts().iter().filter_map(Part::chord_error);
@@ -68,7 +71,8 @@ impl Fit {
 
     /// What is for the last digits of coordinates.
     pub(crate) fn digits(assembly: &Assembly) -> f64 {
-        assembly.size() * SINGLE_DIGITS
+        let texts = assembly.parts().iter().map(Part::text_precision).fold(0.0, f64::max);
+        (assembly.size() * SINGLE_DIGITS).max(TEXT_PRECISIONS * texts)
     }
 
     /// By how much a part is shrunk.

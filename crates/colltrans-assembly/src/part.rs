@@ -5,8 +5,8 @@ use std::path::PathBuf;
 
 use colltrans::solid::SolidError;
 use colltrans::{Aabb, MAX_MAGNITUDE, Solid};
-use colltrans_mesh::Mesh;
 use colltrans_mesh::body::{self, BodyOptions, Loaded, Refused};
+use colltrans_mesh::{Mesh, NumberFormat};
 use glam::{DAffine3, DVec3};
 
 use crate::constraints::{Constraints, Unit};
@@ -32,6 +32,7 @@ pub struct Part {
     defects: Vec<String>,
     chord_error: Option<f64>,
     colour: Option<[f64; 3]>,
+    text_precision: f64,
 }
 
 impl Part {
@@ -73,7 +74,9 @@ impl Part {
             [_] => solids.remove(0),
             _ => Solid::from_pieces(&solids).map_err(|e| refused(e.into()))?,
         };
-        Ok(Self { name, solid, facets, fixed: false, defects, chord_error: None, colour: None })
+        let text_precision = pieces.iter().map(text_precision).fold(0.0, f64::max);
+        let (fixed, chord_error, colour) = (false, None, None);
+        Ok(Self { name, solid, facets, fixed, defects, chord_error, colour, text_precision })
     }
 
     /// The same part, which is never moved if `fixed`.
@@ -120,6 +123,12 @@ impl Part {
         self.chord_error
     }
 
+    /// How far apart its file may write vertices that were meant to be one, in the world, where it prints fewer
+    /// digits than numbers have; else 0.
+    pub(crate) const fn text_precision(&self) -> f64 {
+        self.text_precision
+    }
+
     /// Its colour, if its source has one.
     pub const fn colour(&self) -> Option<[f64; 3]> {
         self.colour
@@ -137,6 +146,16 @@ impl Part {
 
     pub(crate) fn bounds(&self) -> Aabb {
         self.solid.bounds()
+    }
+}
+
+/// [`Mesh::precision`] of a text with few digits, in the world; else 0.
+fn text_precision(piece: &Piece) -> f64 {
+    let columns = piece.world_from_piece.matrix3.to_cols_array_2d().map(DVec3::from_array);
+    let stretch = columns.map(DVec3::length).into_iter().fold(0.0, f64::max);
+    match piece.mesh.format {
+        NumberFormat::Decimals(_) | NumberFormat::Digits(_) => piece.mesh.precision * stretch,
+        NumberFormat::Double | NumberFormat::Single => 0.0,
     }
 }
 

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use colltrans::{BuildError, ConvexPolyhedron};
 use colltrans_mesh::body::{self, BodyOptions, Excess, Note};
-use colltrans_mesh::{Mesh, ReadOptions};
+use colltrans_mesh::{Mesh, NumberFormat, ReadOptions};
 
 use crate::args::InfoArguments;
 use crate::failure::{Code, Failure, print};
@@ -46,6 +46,10 @@ fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
         let [x, y, z] = (high - low).to_array().map(|c| known(c, 1e-14 * mesh.extent()));
         line(&mut text, "extent", &format!("{x} x {y} x {z}"));
         line(&mut text, "", &format!("from {} to {}", vector(low), vector(high)));
+    }
+    if mesh.format != NumberFormat::Double {
+        let what = format!("{}, known to within {}", mesh.format, about(mesh.precision));
+        line(&mut text, "coordinates", &what);
     }
     if let Some(merged) = Note::merged(mesh) {
         line(&mut text, "merged", &merged.to_string());

@@ -12,6 +12,7 @@ use std::collections::HashMap;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
+use crate::digits::NumberFormat;
 use crate::error::{Fault, Place};
 use crate::mesh::Mesh;
 use crate::text::{quoted, without_mark};
@@ -89,6 +90,9 @@ fn asset(root: &Element) -> Result<(Option<f64>, Option<DVec3>), Fault> {
 struct Shape {
     vertices: Vec<DVec3>,
     faces: Vec<Vec<u32>>,
+    /// How its coordinates are written, which transforms hide, and how precise that is.
+    format: NumberFormat,
+    precision: f64,
 }
 
 struct Reader<'a> {
@@ -188,7 +192,7 @@ impl<'a> Reader<'a> {
             };
             self.shapes.insert(key, shape);
         }
-        let Shape { vertices, faces } = &self.shapes[&key];
+        let Shape { vertices, faces, format, precision } = &self.shapes[&key];
         let count = faces.len().max(vertices.len());
         let too_many =
             || at(asked, format!("more than {MOST_REPEATED} faces or vertices are repeated"));
@@ -197,6 +201,11 @@ impl<'a> Reader<'a> {
             .ok()
             .and_then(|base| base.checked_add(u32::try_from(vertices.len()).ok()?).map(|_| base));
         let base = base.ok_or_else(|| at(asked, "more than 4,294,967,295 vertices"))?;
+        let columns = [world.x_axis, world.y_axis, world.z_axis].map(DVec3::length);
+        let precision = precision * columns.into_iter().fold(0.0, f64::max);
+        if precision > mesh.precision {
+            (mesh.format, mesh.precision) = (*format, precision);
+        }
         mesh.vertices.extend(vertices.iter().map(|&v| world.transform_point3(v)));
         let mirrored = world.matrix3.determinant() < 0.0;
         mesh.faces.extend(faces.iter().map(|face| {
@@ -210,7 +219,7 @@ impl<'a> Reader<'a> {
     }
 
     fn shape(&self, mesh: &'a Element) -> Result<Shape, Fault> {
-        let mut shape = Shape { vertices: Vec::new(), faces: Vec::new() };
+        let mut shape = Mesh::default();
         let mut bases: HashMap<*const Element, u32> = HashMap::new();
         for of in &mesh.children {
             let kind = of.name.as_str();
@@ -239,7 +248,10 @@ impl<'a> Reader<'a> {
                 shape.faces.push(corners.iter().map(|v| v + base).collect());
             }
         }
-        Ok(shape)
+        let used: Vec<DVec3> = shape.vertices_in_use().collect();
+        let format = NumberFormat::of_text(&used, false);
+        let precision = format.precision_of(&used);
+        Ok(Shape { vertices: shape.vertices, faces: shape.faces, format, precision })
     }
 
     /// The source of the positions of an input of vertices.

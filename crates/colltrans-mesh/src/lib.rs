@@ -13,6 +13,7 @@
 pub mod body;
 #[cfg(feature = "dae")]
 mod dae;
+mod digits;
 mod edges;
 mod error;
 pub mod file;
@@ -39,6 +40,7 @@ use error::Fault;
 use merge::{Places, Precision};
 use sniff::{Content, sniff};
 
+pub use digits::NumberFormat;
 pub use edges::sides;
 pub use error::{Error, Place};
 pub use mesh::{Groups, Merged, Mesh};
@@ -132,8 +134,8 @@ pub struct ReadOptions {
     /// Up to which distance vertices on open edges are merged, in the file's unit.
     ///
     /// 0 merges equal ones only. `None` is a few units in the last place of the largest
-    /// coordinate: `2^-22` times its magnitude where coordinates are in single precision (binary
-    /// STL, PLY with `float`), else `2^-48` times.
+    /// coordinate ([`NumberFormat`]): `2^-22` times its magnitude where coordinates are in single precision
+    /// (binary STL, PLY with `float`), two units in the last place that a text prints, else `2^-48` times.
     pub merge_tolerance: Option<f64>,
 }
 
@@ -218,11 +220,11 @@ pub fn parse_with(
     }
     let parsed = match format {
         Format::Stl => stl::parse(bytes),
-        Format::Obj => obj::parse(&bytes).map(|mesh| (mesh, Precision::Double)),
+        Format::Obj => obj::parse(&bytes).map(|mesh| (mesh, Precision::TEXT)),
         Format::Ply => ply::parse(&bytes),
-        Format::Off => off::parse(&bytes).map(|mesh| (mesh, Precision::Double)),
+        Format::Off => off::parse(&bytes).map(|mesh| (mesh, Precision::TEXT)),
         #[cfg(feature = "dae")]
-        Format::Dae => dae::parse(&bytes).map(|mesh| (mesh, Precision::Double)),
+        Format::Dae => dae::parse(&bytes).map(|mesh| (mesh, Precision::DOUBLE)),
     };
     let (mut mesh, precision) = parsed.map_err(|fault| fault.in_file(path))?;
     let places = if format == Format::Stl { Places::Closed } else { Places::Kept };

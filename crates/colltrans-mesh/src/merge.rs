@@ -17,33 +17,43 @@
 //! Default tolerance. Twins written in single precision differ by at most one unit in the last
 //! place per coordinate, `2^-23 m` with `m` the largest coordinate in magnitude, so by `sqrt(3)`
 //! times that: `2^-22 m` covers it. What was computed in double precision carries the errors of
-//! a few dozen roundings of `2^-53 m`: `2^-48 m` covers it.
+//! a few dozen roundings of `2^-53 m`: `2^-48 m` covers it. Of a text that prints fewer digits ([`digits`](crate::digits))
+//! two units in the last printed place are what `2^-22 m` is of single precision.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 
 use glam::DVec3;
 
+use crate::digits::{NumberFormat, largest_magnitude};
 use crate::edges::sides;
 use crate::mesh::Mesh;
 
-/// The precision of the numbers in a file.
+/// The kind of the numbers in a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Precision {
-    /// Binary STL, and PLY with `float` coordinates.
-    Single,
-    /// All else. Text may hold any number of digits.
-    Double,
+pub(crate) struct Precision {
+    /// Whether coordinates are in single precision: binary STL, and PLY with `float` coordinates.
+    pub(crate) single: bool,
+    /// Whether they are written as text, of any number of digits.
+    pub(crate) text: bool,
 }
 
 impl Precision {
-    /// The default tolerance for vertices of this precision.
-    fn tolerance(self, vertices: &[DVec3]) -> f64 {
-        let share = match self {
-            Self::Single => 1.0 / (1_u64 << 22) as f64,
-            Self::Double => 1.0 / (1_u64 << 48) as f64,
-        };
-        largest_magnitude(vertices) * share
+    /// Single precision, binary.
+    pub(crate) const SINGLE: Self = Self { single: true, text: false };
+    /// Double precision, binary or of a reader that has moved vertices.
+    #[cfg(any(test, feature = "dae"))]
+    pub(crate) const DOUBLE: Self = Self { single: false, text: false };
+    /// Text that is read in double precision.
+    pub(crate) const TEXT: Self = Self { single: false, text: true };
+
+    /// How these coordinates are written.
+    fn format_of(self, coordinates: &[DVec3]) -> NumberFormat {
+        match self {
+            Self { text: true, single } => NumberFormat::of_text(coordinates, single),
+            Self { single: true, .. } => NumberFormat::Single,
+            Self { single: false, .. } => NumberFormat::Double,
+        }
     }
 }
 
@@ -93,7 +103,13 @@ impl Mesh {
 
     /// Merges twins along open edges. `None` is the default tolerance.
     pub(crate) fn close(&mut self, asked: Option<f64>, precision: Precision, places: Places) {
-        self.precision = precision.tolerance(&self.vertices);
+        let used: Vec<DVec3> = self.vertices_in_use().collect();
+        let format = precision.format_of(&used);
+        let precision = format.precision_of(&used);
+        // A reader that has moved vertices knows how they were written.
+        if self.precision <= precision {
+            (self.format, self.precision) = (format, precision);
+        }
         self.merged.tolerance = asked.unwrap_or(self.precision);
         let mut on_border: Vec<u32> = self.open_edges().into_iter().flatten().collect();
         if !on_border.is_empty() {
@@ -320,12 +336,6 @@ impl Grid {
     }
 }
 
-/// The largest magnitude of a finite coordinate.
-fn largest_magnitude(vertices: &[DVec3]) -> f64 {
-    let magnitudes = vertices.iter().flat_map(DVec3::to_array).map(f64::abs);
-    magnitudes.filter(|m| m.is_finite()).fold(0.0, f64::max)
-}
-
 #[cfg(test)]
 mod tests {
     use colltrans_testkit::random::Random;
@@ -380,21 +390,21 @@ mod tests {
     #[test]
     fn a_chain_is_cut_not_swallowed() {
         let mut mesh = chain(10, 0.0625);
-        mesh.close(Some(0.1), Precision::Double, Places::Kept);
+        mesh.close(Some(0.1), Precision::DOUBLE, Places::Kept);
         let ends: Vec<u32> = mesh.faces.iter().map(|face| face[0]).collect();
         assert_eq!(ends, [0, 0, 6, 6, 12, 12, 18, 18, 24, 24]);
         assert_eq!(mesh.merged.vertices, 5);
         assert_eq!(mesh.merged.largest_distance, 0.0625);
         assert_eq!(mesh.merged.ambiguous, 0);
         let mut closed = chain(10, 0.0625);
-        closed.close(Some(0.1), Precision::Double, Places::Closed);
+        closed.close(Some(0.1), Precision::DOUBLE, Places::Closed);
         assert_eq!(closed.vertices.len(), 25);
         for (a, b) in closed.faces.iter().flatten().zip(mesh.faces.iter().flatten()) {
             assert_eq!(closed.vertices[*a as usize], mesh.vertices[*b as usize]);
         }
         let mut mesh = chain(3, 0.0625);
         mesh.vertices.swap(3, 6);
-        mesh.close(Some(0.1), Precision::Double, Places::Kept);
+        mesh.close(Some(0.1), Precision::DOUBLE, Places::Kept);
         assert_eq!(mesh.merged.ambiguous, 1, "the one in the middle came last");
     }
 
@@ -404,12 +414,12 @@ mod tests {
         let faces = vec![vec![0, 2, 1], vec![0, 1, 3], vec![1, 2, 3], vec![0, 3, 2]];
         let sliver = Mesh::new(vec![a, b, c, d], faces);
         let mut closed = sliver.clone();
-        closed.close(Some(0.01), Precision::Double, Places::Kept);
+        closed.close(Some(0.01), Precision::DOUBLE, Places::Kept);
         assert_eq!(closed.faces, sliver.faces);
         let mut open = sliver;
         open.faces.pop();
         assert_eq!(open.open_edges(), [[0, 2], [3, 0], [2, 3]]);
-        open.close(Some(0.01), Precision::Double, Places::Kept);
+        open.close(Some(0.01), Precision::DOUBLE, Places::Kept);
         assert_eq!(open.merged.vertices, 0, "1 is on no open edge");
     }
 
@@ -443,12 +453,12 @@ mod tests {
     fn tolerances_of_no_size_merge_equal_vertices_only() {
         let mut mesh = chain(4, 1e-300);
         mesh.vertices[9] = mesh.vertices[0];
-        mesh.close(Some(0.0), Precision::Single, Places::Kept);
+        mesh.close(Some(0.0), Precision::SINGLE, Places::Kept);
         assert_eq!(mesh.faces[3][0], 0);
         assert_eq!((mesh.faces[1][0], mesh.merged.vertices), (3, 0));
         mesh.vertices[3] = DVec3::NAN;
         mesh.vertices[6] = DVec3::splat(f64::INFINITY);
-        mesh.close(None, Precision::Single, Places::Kept);
+        mesh.close(None, Precision::SINGLE, Places::Kept);
         assert_eq!(mesh.faces[1][0], 3);
         assert!(mesh.merged.tolerance.is_finite());
     }

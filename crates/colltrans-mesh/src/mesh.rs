@@ -2,6 +2,8 @@
 
 use glam::DVec3;
 
+use crate::digits::NumberFormat;
+
 /// Vertices and polygons over them, as a file lists them.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
@@ -22,6 +24,8 @@ pub struct Mesh {
     /// default ([`ReadOptions::merge_tolerance`](crate::ReadOptions::merge_tolerance)); 0 for a mesh that
     /// comes from elsewhere.
     pub precision: f64,
+    /// How the file writes its coordinates, which [`Self::precision`] follows from.
+    pub format: NumberFormat,
 }
 
 /// What a file tells apart: objects or groups of OBJ, solids of STL, nodes of DAE.

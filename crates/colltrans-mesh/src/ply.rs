@@ -29,7 +29,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<(Mesh, Precision), Fault> {
     let header = header.map_err(|e| why::header(&bytes).unwrap_or_else(|| fault(&e, true)))?;
     let text = header.encoding == Encoding::Ascii;
     check_counts(&header, reader.get_ref().len())?;
-    let precision = check_properties(&header)?;
+    let precision = check_properties(&header, text)?;
     let mut mesh = Mesh::default();
     let mut faces = Vec::new();
     for (name, element) in &header.elements {
@@ -143,18 +143,18 @@ fn smallest_size(property: &PropertyType) -> usize {
 }
 
 /// What is read must be there; returns the precision of the coordinates.
-fn check_properties(header: &Header) -> Result<Precision, Fault> {
+fn check_properties(header: &Header, text: bool) -> Result<Precision, Fault> {
     let fault = |what: String| Fault::new(Place::Header, what);
     let element = |name: &str| header.elements.iter().find(|(n, _)| n.as_str() == name);
     let (_, vertex) =
         element("vertex").ok_or_else(|| fault("there is no element `vertex`".into()))?;
-    let mut precision = Precision::Double;
+    let mut single = false;
     for coordinate in ["x", "y", "z"] {
         let property = vertex.properties.get(coordinate);
         let property = property
             .ok_or_else(|| fault(format!("the element `vertex` has no property `{coordinate}`")))?;
         match property.data_type {
-            PropertyType::Scalar(ScalarType::Float) => precision = Precision::Single,
+            PropertyType::Scalar(ScalarType::Float) => single = true,
             PropertyType::Scalar(_) => {}
             PropertyType::List(..) => {
                 return Err(fault(format!("the property `{coordinate}` of `vertex` is a list")));
@@ -176,7 +176,7 @@ fn check_properties(header: &Header) -> Result<Precision, Fault> {
     if element("tristrips").is_some() {
         return Err(fault("triangle strips are not supported".into()));
     }
-    Ok(precision)
+    Ok(Precision { single, text })
 }
 
 fn is_list_of_integers(property: &PropertyType) -> bool {

@@ -76,7 +76,13 @@ impl Mesh {
             let renamed = |k: usize| self.faces[k].iter().map(|&v| names[v as usize]).collect();
             let vertices = used.iter().map(|&v| self.vertices[v as usize]).collect();
             let mesh = Self::new(vertices, faces.into_iter().map(renamed).collect());
-            Self { precision: self.precision, unit: self.unit, up: self.up, ..mesh }
+            Self {
+                precision: self.precision,
+                format: self.format,
+                unit: self.unit,
+                up: self.up,
+                ..mesh
+            }
         };
         faces.into_iter().map(&mut pick).collect()
     }

@@ -26,14 +26,14 @@ pub(crate) fn parse(bytes: Vec<u8>) -> Result<(Mesh, Precision), Fault> {
     }
     if !is_exactly_binary(&bytes) && is_text(&bytes) {
         let text = String::from_utf8_lossy(without_mark(&bytes)?);
-        return Ok((parse_text(&text)?.weld(), Precision::Double));
+        return Ok((parse_text(&text)?.weld(), Precision::TEXT));
     }
     if !is_exactly_binary(&bytes) {
         // A mark of UTF-16 is the likelier reason.
         without_mark(&bytes)?;
         check_size(&bytes)?;
     }
-    Ok((parse_binary(bytes)?.weld(), Precision::Single))
+    Ok((parse_binary(bytes)?.weld(), Precision::SINGLE))
 }
 
 /// Whether the size is the one that the triangle count of a binary file implies.

@@ -2,4 +2,5 @@
 
 mod collection;
 mod formats;
+mod precision;
 mod validation;

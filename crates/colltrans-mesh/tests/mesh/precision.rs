@@ -1,0 +1,277 @@
+//! Default tolerances: what they depend on, and that they follow the digits that a text prints.
+
+use std::fmt::Write as _;
+use std::path::Path;
+
+use colltrans::Pose;
+use colltrans::glam::{DQuat, DVec3};
+use colltrans::solid::StartOverlap;
+use colltrans_mesh::body::{BodyOptions, Note, between, convex, solid};
+use colltrans_mesh::{Format, Mesh, NumberFormat, parse};
+use colltrans_testkit::random::Random;
+
+/// The prism over a polygon in the xy plane, counter-clockwise, from one height to another.
+fn prism(outline: &[[f64; 2]], [low, high]: [f64; 2]) -> Mesh {
+    let n = outline.len() as u32;
+    let at = |z: f64| outline.iter().map(move |[x, y]| DVec3::new(*x, *y, z));
+    let mut faces = vec![(0..n).rev().collect(), (n..2 * n).collect()];
+    faces.extend((0..n).map(|i| vec![i, (i + 1) % n, (i + 1) % n + n, i + n]));
+    Mesh::new(at(low).chain(at(high)).collect(), faces)
+}
+
+/// The same with the outline as a hole, in a frame that is twice as wide.
+fn frame(outline: &[[f64; 2]], [low, high]: [f64; 2]) -> Mesh {
+    let n = outline.len() as u32;
+    let ring = |z: f64, by: f64| outline.iter().map(move |[x, y]| DVec3::new(x * by, y * by, z));
+    let rings = [(low, 1.0), (high, 1.0), (low, 2.0), (high, 2.0)];
+    let vertices = rings.into_iter().flat_map(|(z, by)| ring(z, by)).collect();
+    let mut faces = Vec::new();
+    for i in 0..n {
+        let j = (i + 1) % n;
+        let [inner, top, outer, above] = [0, n, 2 * n, 3 * n].map(|ring| [ring + i, ring + j]);
+        for [a, b] in [[top, inner], [above, top], [outer, above], [inner, outer]] {
+            faces.push(vec![a[0], a[1], b[1], b[0]]);
+        }
+    }
+    let mut mesh = Mesh::new(vertices, faces);
+    if mesh.signed_volume() < 0.0 {
+        mesh.faces.iter_mut().for_each(|face| face.reverse());
+    }
+    mesh
+}
+
+fn moved(mut mesh: Mesh, by: impl Fn(DVec3) -> DVec3) -> Mesh {
+    mesh.vertices.iter_mut().for_each(|v| *v = by(*v));
+    mesh
+}
+
+/// A mesh as a file of a format, its coordinates as `print` writes them.
+fn written(mesh: &Mesh, format: Format, print: &dyn Fn(f64) -> String) -> Mesh {
+    let row = |v: DVec3| v.to_array().map(print).join(" ");
+    let mut text = String::new();
+    match format {
+        Format::Obj => {
+            mesh.vertices.iter().for_each(|v| writeln!(text, "v {}", row(*v)).unwrap());
+            for face in &mesh.faces {
+                let corners: Vec<String> = face.iter().map(|v| (v + 1).to_string()).collect();
+                writeln!(text, "f {}", corners.join(" ")).unwrap();
+            }
+        }
+        Format::Off | Format::Ply => {
+            let (vertices, faces) = (mesh.vertices.len(), mesh.faces.len());
+            text = match format {
+                Format::Off => format!("OFF\n{vertices} {faces} 0\n"),
+                _ => format!(
+                    "ply\nformat ascii 1.0\nelement vertex {vertices}\nproperty double x\n\
+                     property double y\nproperty double z\nelement face {faces}\n\
+                     property list uchar int vertex_indices\nend_header\n"
+                ),
+            };
+            mesh.vertices.iter().for_each(|v| writeln!(text, "{}", row(*v)).unwrap());
+            for face in &mesh.faces {
+                let corners: Vec<String> = face.iter().map(u32::to_string).collect();
+                writeln!(text, "{} {}", face.len(), corners.join(" ")).unwrap();
+            }
+        }
+        _ => {
+            text.push_str("solid part\n");
+            for face in &mesh.faces {
+                for k in 1..face.len() - 1 {
+                    text.push_str("facet normal 0 0 0\nouter loop\n");
+                    for v in [face[0], face[k], face[k + 1]] {
+                        writeln!(text, "vertex {}", row(mesh.vertices[v as usize])).unwrap();
+                    }
+                    text.push_str("endloop\nendfacet\n");
+                }
+            }
+            text.push_str("endsolid part\n");
+        }
+    }
+    parse(format, text.into_bytes(), Path::new("part")).unwrap()
+}
+
+/// A mesh of triangles as a binary STL file.
+fn binary(mesh: &Mesh) -> Mesh {
+    let triangles: Vec<[u32; 3]> = (mesh.faces.iter())
+        .flat_map(|face| (1..face.len() - 1).map(move |k| [face[0], face[k], face[k + 1]]))
+        .collect();
+    let mut bytes = vec![0; 80];
+    bytes.extend((triangles.len() as u32).to_le_bytes());
+    for corners in triangles {
+        bytes.extend([0; 12]);
+        for v in corners {
+            let at = mesh.vertices[v as usize].to_array();
+            bytes.extend(at.iter().flat_map(|c| (*c as f32).to_le_bytes()));
+        }
+        bytes.extend([0; 2]);
+    }
+    parse(Format::Stl, bytes, Path::new("part.stl")).unwrap()
+}
+
+/// As `%.6g` prints.
+fn six_digits(x: f64) -> String {
+    format!("{x:.5e}").parse::<f64>().unwrap().to_string()
+}
+
+fn six_decimals(x: f64) -> String {
+    format!("{x:.6}")
+}
+
+/// Whether a moving part goes all the way along a direction, with the default tolerance of the files.
+fn goes_through(parts: &[Mesh; 2], direction: DVec3) -> bool {
+    let loaded = parts.each_ref().map(|mesh| solid(mesh, &BodyOptions::default()).unwrap());
+    let [moving, fixed] = loaded.each_ref().map(|part| part.body.at(Pose::IDENTITY));
+    let precisions = [loaded[0].precision, loaded[1].precision];
+    let refuse = StartOverlap::Refuse;
+    let cast = between(moving, fixed, direction, precisions, None, refuse).unwrap();
+    cast.clearance().unwrap().is_free()
+}
+
+/// A peg with the outline of its hole, above it, in any place: files that round it make the two overlap.
+#[test]
+fn a_peg_that_fills_its_hole_comes_through_as_text_of_six_digits() {
+    let mut random = Random::new(11);
+    let mut stuck = 0;
+    for _ in 0..12 {
+        // Six corners of a convex outline; caps of triangles are flat in a file of any precision.
+        let outline: Vec<[f64; 2]> = (0..6)
+            .map(|k| {
+                let (sin, cos) = (f64::from(k) * std::f64::consts::FRAC_PI_3).sin_cos();
+                let radius = random.range(7.0, 7.5);
+                [radius * cos, radius * sin]
+            })
+            .collect();
+        let (turn, at) = (random.rotation(), random.vector() * 20.0);
+        let placed = |mesh| moved(mesh, |v| turn * v + at);
+        let parts = [placed(prism(&outline, [3.0, 9.0])), placed(frame(&outline, [0.0, 2.0]))];
+        let through = |parts: [Mesh; 2]| goes_through(&parts, turn * DVec3::NEG_Z);
+        assert!(through(parts.each_ref().map(binary)), "binary STL");
+        for format in [Format::Stl, Format::Obj, Format::Ply, Format::Off] {
+            let text = |print: &dyn Fn(f64) -> String| {
+                parts.each_ref().map(|mesh| written(mesh, format, print))
+            };
+            assert!(through(text(&six_decimals)), "{format} with six decimals");
+            assert!(through(text(&six_digits)), "{format} with six digits");
+            // Without a tolerance the rounding of the same files is in the way.
+            let exact = text(&six_digits).map(|mut mesh| {
+                mesh.precision = 0.0;
+                mesh
+            });
+            stuck += u32::from(!through(exact));
+        }
+    }
+    assert!(stuck > 24, "{stuck}");
+}
+
+#[test]
+fn the_format_of_numbers_is_told() {
+    let box_of = |size: DVec3| {
+        let DVec3 { x, y, z } = size;
+        prism(&[[0.0, 0.0], [x, 0.0], [x, y], [0.0, y]], [0.0, z])
+    };
+    let turn = DQuat::from_euler(colltrans::glam::EulerRot::XYZ, 0.3, 0.7, 0.1);
+    let turned = moved(box_of(DVec3::new(20.0, 30.0, 40.0)), |v| turn * v);
+    let all = |x: f64| x.to_string();
+    for format in [Format::Stl, Format::Obj, Format::Ply, Format::Off] {
+        let is = |mesh: &Mesh, print: &dyn Fn(f64) -> String| {
+            let mesh = written(mesh, format, print);
+            (mesh.format, mesh.precision)
+        };
+        assert_eq!(is(&turned, &six_decimals), (NumberFormat::Decimals(6), 2e-6), "{format}");
+        assert_eq!(is(&turned, &six_digits), (NumberFormat::Digits(6), 2e-4), "{format}");
+        assert_eq!(is(&turned, &all).0, NumberFormat::Double, "{format}");
+        let single = |x: f64| (x as f32).to_string();
+        assert_eq!(is(&turned, &single).0, NumberFormat::Single, "{format}");
+        // A drawing's numbers are exact, however they are padded.
+        for size in [DVec3::new(12.5, 7.25, 1000.0), DVec3::new(104.775, 25.4, 0.1)] {
+            let drawn = box_of(size);
+            let doubles = (NumberFormat::Double, size.max_element() / (1_u64 << 48) as f64);
+            assert_eq!(is(&drawn, &all), doubles, "{format}");
+            assert_eq!(is(&drawn, &six_decimals), doubles, "{format}");
+        }
+    }
+    assert_eq!(binary(&turned).format, NumberFormat::Single);
+}
+
+/// Nodes of COLLADA move and scale what they show: its digits are no more those of the file.
+#[test]
+fn nodes_of_collada_keep_the_precision_of_their_text() {
+    let turn = DQuat::from_euler(colltrans::glam::EulerRot::XYZ, 0.3, 0.7, 0.1);
+    let outline = [[0.0, 0.0], [20.0, 0.0], [20.0, 30.0], [0.0, 30.0]];
+    let mesh = moved(prism(&outline, [0.0, 40.0]), |v| turn * v);
+    let numbers: Vec<String> =
+        mesh.vertices.iter().flat_map(DVec3::to_array).map(six_decimals).collect();
+    let list =
+        |of: &mut dyn Iterator<Item = u32>| of.map(|k| k.to_string()).collect::<Vec<_>>().join(" ");
+    let counts = list(&mut mesh.faces.iter().map(|face| face.len() as u32));
+    let corners = list(&mut mesh.faces.iter().flatten().copied());
+    let text = format!(
+        "<?xml version=\"1.0\"?><COLLADA><library_geometries><geometry id=\"g\"><mesh>\
+         <source id=\"p\"><float_array id=\"a\" count=\"24\">{}</float_array><technique_common>\
+         <accessor source=\"#a\" count=\"8\" stride=\"3\"><param name=\"X\" type=\"float\"/>\
+         <param name=\"Y\" type=\"float\"/><param name=\"Z\" type=\"float\"/></accessor></technique_common>\
+         </source><vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices>\
+         <polylist count=\"6\"><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/>\
+         <vcount>{counts}</vcount><p>{corners}</p></polylist></mesh></geometry></library_geometries>\
+         <library_visual_scenes><visual_scene id=\"s\"><node><rotate>0 0 1 30</rotate><scale>10 10 10</scale>\
+         <instance_geometry url=\"#g\"/></node></visual_scene></library_visual_scenes>\
+         <scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>",
+        numbers.join(" ")
+    );
+    let read = parse(Format::Dae, text.into_bytes(), Path::new("part.dae")).unwrap();
+    assert_eq!(read.format, NumberFormat::Decimals(6));
+    assert!((read.precision - 2e-5).abs() < 1e-18, "{}", read.precision);
+}
+
+/// An L of 40 in a place of the UTM grid.
+fn angle() -> Mesh {
+    let outline = [[0.0, 0.0], [40.0, 0.0], [40.0, 10.0], [10.0, 10.0], [10.0, 40.0], [0.0, 40.0]];
+    moved(prism(&outline, [0.0, 10.0]), |v| v + DVec3::new(500_000.0, 4_649_776.0, 0.0))
+}
+
+/// The same mesh with a vertex that no face uses.
+fn with_stray(mesh: &Mesh, at: DVec3) -> Mesh {
+    let mut mesh = mesh.clone();
+    mesh.vertices.insert(0, at);
+    mesh.faces.iter_mut().flatten().for_each(|v| *v += 1);
+    mesh
+}
+
+#[test]
+fn a_vertex_that_no_face_uses_changes_no_tolerance() {
+    let angle = angle();
+    let refused = convex(&angle, &BodyOptions::default()).unwrap_err();
+    for stray in [DVec3::ZERO, DVec3::splat(1e12)] {
+        let stray = with_stray(&angle, stray);
+        let same = convex(&stray, &BodyOptions::default()).unwrap_err();
+        assert_eq!(same.to_string(), refused.to_string(), "not convex");
+        assert_eq!((stray.extent(), stray.bounds()), (40.0, angle.bounds()));
+        for format in [Format::Obj, Format::Ply, Format::Off] {
+            let [with, without] =
+                [&stray, &angle].map(|mesh| written(mesh, format, &|x| x.to_string()));
+            assert_eq!(with.precision, without.precision, "{format}");
+            assert_eq!(with.merged.tolerance, without.merged.tolerance, "{format}");
+        }
+    }
+}
+
+#[test]
+fn a_body_that_is_convex_by_tolerance_tells_its_dent() {
+    let outline = [[0.0, 0.0], [40.0, 0.0], [40.0, 40.0], [20.0, 39.9999], [0.0, 40.0]];
+    let dented = prism(&outline, [0.0, 10.0]);
+    let loaded = convex(&dented, &BodyOptions::default()).unwrap();
+    assert!((loaded.body.dent() - 1e-4).abs() < 1e-9, "{}", loaded.body.dent());
+    assert_eq!(loaded.notes, [Note::Dented(loaded.body.dent())]);
+    let said = loaded.notes[0].to_string();
+    assert!(
+        said.contains("convex only to within the tolerance") && said.contains("0.0001"),
+        "{said}"
+    );
+    // What the digits of the file explain is no dent.
+    let mut coarse = dented.clone();
+    coarse.precision = 1e-3;
+    assert!(convex(&coarse, &BodyOptions::default()).unwrap().notes.is_empty());
+    let straight = prism(&[[0.0, 0.0], [40.0, 0.0], [40.0, 40.0], [0.0, 40.0]], [0.0, 10.0]);
+    let loaded = convex(&straight, &BodyOptions::default()).unwrap();
+    assert!(loaded.body.dent() == 0.0 && loaded.notes.is_empty());
+}

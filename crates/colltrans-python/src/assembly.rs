@@ -36,6 +36,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{faces, points, table};
 use crate::errors::{OrRaise, error};
+use crate::pool;
 
 /// Time between two looks for signals.
 const PATIENCE: Duration = Duration::from_millis(50);
@@ -170,7 +171,7 @@ fn interruptible<T: Send>(
             let worker = scope.spawn(move || {
                 // Dropped when the work is done, however it ends.
                 let _done = done;
-                work(watch)
+                pool::run(|| work(watch))
             });
             let mut raised = Ok(());
             let waiting = || wait.recv_timeout(PATIENCE) == Err::<(), _>(RecvTimeoutError::Timeout);
@@ -185,7 +186,12 @@ fn interruptible<T: Send>(
     });
     raised?;
     let internal = |_| error("AssemblyError", "internal error; please report it");
-    answer.map_err(internal)?.or_raise()
+    without_threads(answer.map_err(internal)?)?.or_raise()
+}
+
+/// Returns what was computed, or the error that there are no threads for it.
+fn without_threads<T>(answer: Result<T, rayon::ThreadPoolBuildError>) -> PyResult<T> {
+    answer.map_err(|what| error("AssemblyError", format_args!("no threads: {what}")))
 }
 
 /// Unit vectors of directions.
@@ -285,7 +291,7 @@ impl Assembly {
             Some(bytes) => read::glb_with(&path, bytes, &options),
             None => read::read(&path, &options),
         };
-        let assembly = py.detach(read).or_raise()?;
+        let assembly = without_threads(py.detach(|| pool::run(read)))?.or_raise()?;
         Ok(Self(Arc::new(assembly)))
     }
 

@@ -32,6 +32,7 @@ mod obstacles;
 mod offset;
 mod outcome;
 mod pair;
+mod pool;
 mod pose;
 mod query;
 mod questions;

@@ -58,3 +58,16 @@ class RoundedPoseWarning(UserWarning):
 
 class AssemblyError(ColltransError, ValueError):
     """An assembly that cannot be read, a part that is none, or a name that no part has."""
+
+
+def as_error(error: BaseException, place: str) -> ColltransError:
+    """Returns whatever went wrong at a place as an error of this package, unless it ends the process.
+
+    A panic of the extension is a ``BaseException``. Ctrl-C and the exit of the interpreter are raised
+    again.
+    """
+    if isinstance(error, (KeyboardInterrupt, SystemExit, GeneratorExit)):
+        raise error
+    if isinstance(error, ColltransError):
+        return error
+    return ColltransError(f"{place}: {type(error).__name__}: {error}")

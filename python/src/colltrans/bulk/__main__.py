@@ -19,7 +19,7 @@ from colltrans.bulk import engines, files
 from colltrans.bulk.bodies import Bodies
 from colltrans.bulk.shard import Job, Report, check_shard
 from colltrans.bulk.table import QUESTIONS, Options
-from colltrans.errors import ColltransError, InputError
+from colltrans.errors import ColltransError, InputError, as_error
 from colltrans.queries import cores
 
 SUFFIXES = (".parquet", ".jsonl")
@@ -171,12 +171,15 @@ def main(words: Sequence[str] | None = None) -> int:
     asked = arguments(words)
     try:
         return run(asked)
-    except (ColltransError, ModuleNotFoundError, OSError) as error:
-        print(f"error: {error}", file=sys.stderr)
-        return 2
     except KeyboardInterrupt:
         print("interrupted; the same words go on from here", file=sys.stderr)
         return 130
+    except (ColltransError, ModuleNotFoundError, OSError) as error:
+        print(f"error: {error}", file=sys.stderr)
+        return 2
+    except BaseException as error:
+        print(f"error: {as_error(error, asked.queries)}", file=sys.stderr)
+        return 2
 
 
 def run(asked: argparse.Namespace) -> int:

@@ -12,12 +12,21 @@ import numpy as np
 from colltrans import ConvexPolyhedron, Solid, read
 from colltrans._arrays import Runs
 from colltrans.bulk import files
-from colltrans.errors import ColltransError, InputError
+from colltrans.errors import ColltransError, InputError, as_error
 from colltrans.queries import cores
 
 Body: TypeAlias = ConvexPolyhedron | Solid | ColltransError
+
+
+@dataclass(frozen=True)
+class Doubled:
+    """The row of a key that a table has twice, so that no body is meant."""
+
+    table: str
+
+
 #: A row of a table: where it is, and its number there; None when its body is built.
-Row: TypeAlias = tuple[Any, int] | None
+Row: TypeAlias = tuple[Any, int] | Doubled | None
 #: Bytes of a table that are let go of together, when all bodies in them are built: about.
 PIECE = 1 << 22
 
@@ -80,7 +89,7 @@ class Bodies:
     def _make(self, key: Any, rows: dict[str, Row]) -> int:
         """Builds a body, and lets go of its row; how many bytes of numbers that had, about."""
         body = self._built[key] = self._build(key, rows)
-        if rows.get(key) is None:
+        if rows.get(key) is None or isinstance(rows[key], Doubled):
             return 0
         rows[key] = None
         return 0 if isinstance(body, ColltransError) else body.nbytes // 4
@@ -134,14 +143,14 @@ class Bodies:
                 return self._of_row(rows.get(key), key)
             with files.local(files.join(self.folder, key)) as file:
                 return Solid.read(file) if self.solids else read(file, hull=self.hull)
-        except ColltransError as error:
-            return error
-        except OSError as error:
-            return InputError(f"{key}: {error}")
+        except BaseException as error:
+            return as_error(error, str(key))
 
     def _of_row(self, found: Row, key: str) -> Body:
         if found is None:
             raise InputError(f"{self.table} has no body {key!r}")
+        if isinstance(found, Doubled):
+            raise InputError(f"{found.table} has the body {key!r} twice")
         batch, row = found
         vertices = _vertices(batch.column("vertices"), row)
         faces = _faces(batch.column("faces"), row) if "faces" in batch.schema.names else None
@@ -152,6 +161,29 @@ class Bodies:
         if faces is None or self.hull:
             return ConvexPolyhedron(vertices)
         return ConvexPolyhedron.from_mesh(vertices, faces)
+
+
+def doubled_name(names: list[str]) -> str | None:
+    """Returns a name that is there more than once."""
+    return next((name for name in names if names.count(name) > 1), None)
+
+
+def texts_of(column: Any) -> list[str | None]:
+    """Returns the texts of a column, None for a null and for bytes that are not UTF-8."""
+    import pyarrow as pa
+
+    try:
+        found: list[str | None] = column.to_pylist()
+        return found
+    except UnicodeDecodeError:
+        return [_decoded(text) for text in column.cast(pa.large_binary()).to_pylist()]
+
+
+def _decoded(text: bytes | None) -> str | None:
+    try:
+        return None if text is None else text.decode()
+    except UnicodeDecodeError:
+        return None
 
 
 def _release() -> None:
@@ -169,10 +201,10 @@ def rows_of(table: str) -> dict[str, Row]:
     try:
         with files.local(table) as file:
             for batch in _batches(file, table):
-                for row, key in enumerate(batch.column("key").to_pylist()):
-                    if key in found:
-                        raise InputError(f"{table} has the body {key!r} twice")
-                    found[key] = batch, row
+                for row, key in enumerate(texts_of(batch.column("key"))):
+                    if key is None:
+                        continue  # No query can name it.
+                    found[key] = Doubled(table) if key in found else (batch, row)
     except pa.ArrowException as error:
         raise ColltransError(f"{table}: {error}") from error
     return found
@@ -186,6 +218,8 @@ def _batches(file: Any, table: str) -> Iterator[Any]:
         for name in ("key", "vertices"):
             if name not in names:
                 raise InputError(f"{table} has no column {name!r}")
+        if (doubled := doubled_name(names)) is not None:
+            raise InputError(f"{table} has the column {doubled!r} twice")
         columns = [name for name in ("key", "vertices", "faces") if name in names]
         for number in range(parquet.num_row_groups):
             group = parquet.metadata.row_group(number)
@@ -199,6 +233,8 @@ def _lists(column: Any, row: int, name: str) -> Any:
 
     if pa.types.is_null(column.type) or not column[row].is_valid:
         return None
+    if not pa.types.is_nested(column.type):
+        raise InputError(f"{name}: no lists of numbers, but {column.type}")
     lists = column[row].values
     if not any(
         of(lists.type)

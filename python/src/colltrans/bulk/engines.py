@@ -11,7 +11,7 @@ from typing import Any
 
 from colltrans.bulk.bodies import Bodies
 from colltrans.bulk.shard import Job, Report, answer_shard
-from colltrans.errors import ColltransError
+from colltrans.errors import ColltransError, as_error
 
 Answer = Callable[..., Report]
 #: Bodies of this process, by the object that they came with.
@@ -19,11 +19,11 @@ _CACHE: dict[str, Bodies] = {}
 
 
 def attempt(answer: Answer, job: Job, *rest: Any) -> Report:
-    """The report of a shard, whatever becomes of it."""
+    """Returns the report of a shard. Whatever is raised, a panic included, is its failure."""
     try:
         return answer(job, *rest)
-    except ColltransError as error:
-        return Report(job, failure=str(error))
+    except BaseException as error:
+        return Report(job, failure=str(as_error(error, job.queries)))
 
 
 def local(

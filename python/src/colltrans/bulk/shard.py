@@ -20,7 +20,7 @@ import pyarrow as pa
 import pyarrow.parquet as pq
 
 from colltrans.bulk import files, lines
-from colltrans.bulk.bodies import Bodies
+from colltrans.bulk.bodies import Bodies, texts_of
 from colltrans.bulk.reads import SIDES
 from colltrans.bulk.table import Options, answer_table, column_of
 from colltrans.errors import ColltransError
@@ -268,7 +268,7 @@ def _keys(queries: Path, job: Job, bodies: Bodies) -> set[str]:
     keys: set[str] = set()
     for batch in _batches(queries, job, bodies, list(SIDES)):
         for side in SIDES:
-            keys.update(filter(None, column_of(batch, side).unique().to_pylist()))
+            keys.update(filter(None, texts_of(column_of(batch, side).unique())))
     return keys
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pyarrow as pa
 import pyarrow.compute as pc
 
-from colltrans.bulk.bodies import Bodies
+from colltrans.bulk.bodies import Bodies, doubled_name, texts_of
 from colltrans.bulk.lines import REFUSED
 from colltrans.bulk.reads import EVERYTHING, OF_CONVEX, OF_SOLIDS, SCREWS, SIDES, Reads
 from colltrans.columns import Table
@@ -116,6 +116,8 @@ def answer_table(queries: Any, bodies: Bodies, options: Options = Options()) -> 
         A column that is missing, or of another kind, or that nobody reads or keeps.
     """
     reads = options.reads(bodies.solids)
+    if (doubled := doubled_name(queries.schema.names)) is not None:
+        raise InputError(f"the queries have the column {doubled!r} twice")
     names = [name for name in queries.schema.names if name != REFUSED]
     if (stray := reads.stray(names)) is not None:
         raise InputError(stray)
@@ -142,7 +144,7 @@ def _answers(queries: Any, bodies: Bodies, options: Options) -> Table[Any]:
         if isinstance(keys, pa.ChunkedArray):
             keys = keys.combine_chunks()
         index = keys.indices.fill_null(-1).to_numpy(zero_copy_only=False)
-        sides.append(bodies.get(keys.dictionary.to_pylist()))
+        sides.append(bodies.get(texts_of(keys.dictionary)))
         arguments[f"{side}_index"] = index.astype(np.int64)
         if f"{side}_pose" in names:
             arguments[f"{side}_pose"] = _vectors(queries, f"{side}_pose", (7, 3))

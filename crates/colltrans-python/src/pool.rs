@@ -1,0 +1,40 @@
+//! A pool of threads that belongs to the process.
+//!
+//! A child made by `fork` has the memory of its parent and none of its threads. Work that the child
+//! hands to rayon's global pool would therefore never end. Invariant: a pool is used only by the
+//! process that built it.
+
+use std::sync::{Mutex, PoisonError};
+
+use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder};
+
+/// The pool and the process that built it. The lock is held only to read or write these two.
+static POOL: Mutex<Option<(u32, &'static ThreadPool)>> = Mutex::new(None);
+
+/// Runs work whose parallel parts use the pool of this process.
+///
+/// # Errors
+/// The system refuses the threads of a pool.
+pub(crate) fn run<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, ThreadPoolBuildError> {
+    Ok(pool_of_process()?.install(work))
+}
+
+/// Returns the pool of this process, which is built once and lives as long as the process.
+fn pool_of_process() -> Result<&'static ThreadPool, ThreadPoolBuildError> {
+    let process = std::process::id();
+    let known = || {
+        let known = *POOL.lock().unwrap_or_else(PoisonError::into_inner);
+        known.filter(|(owner, _)| *owner == process).map(|(_, pool)| pool)
+    };
+    if let Some(pool) = known() {
+        return Ok(pool);
+    }
+    let built = Box::new(ThreadPoolBuilder::new().build()?);
+    // Another thread may have built one meanwhile; this one is dropped then.
+    if let Some(pool) = known() {
+        return Ok(pool);
+    }
+    let pool: &'static ThreadPool = Box::leak(built);
+    *POOL.lock().unwrap_or_else(PoisonError::into_inner) = Some((process, pool));
+    Ok(pool)
+}

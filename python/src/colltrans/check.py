@@ -10,18 +10,18 @@ With the moving body ``P``, the fixed one ``Q``, the direction ``d``, all points
 
 - *Lower bound.* ``(min_Q n.q - max_P n.p) / n.d`` over all vertices, for ``n.d > 0``: no earlier
   translation makes the bodies meet. The one claimed must not be larger.
-- *Upper bound.* The weighted mean of the three differences ``q - p`` of the certificate comes as near
-  to the line ``t d`` as rounding explains. The bound claimed must not be smaller than where it does,
-  by what rounding makes of it. Where the line meets the triangle of the differences by then, the
-  bodies do meet; that is said.
+- *Upper bound.* The weighted mean of the three differences ``q - p`` of the certificate comes as
+  near to the line ``t d`` as rounding explains. The bound claimed must not be smaller than where it
+  does, with what rounding makes of it. Where the line meets the triangle of the differences by
+  then, the bodies do meet; that is said.
 - *Slides.* ``(max_P n'.p - min_Q n'.q) / |n'|`` over all vertices, for what of ``n`` is across the
   direction, ``n' = n (d.d) - d (n.d)``: so much do the bodies overlap seen along it, at most. The
   one claimed must not be smaller.
 - *Bodies.* The faces of a convex body, if it has any, close up around all vertices, and none of
   their neighbours is above them by more than ``hull_error`` and rounding. No proof leans on them.
-- *Separation.* ``n'`` is orthogonal to ``d``; ``min_Q n'.q > max_P n'.p`` proves that the bodies never
-  meet, and ``(min_Q n'.q - max_P n'.p) / |n'|`` that their shadows are so far apart. The margin claimed
-  must not be larger.
+- *Separation.* ``n'`` is orthogonal to ``d``; ``min_Q n'.q > max_P n'.p`` proves that the bodies
+  never meet, and ``(min_Q n'.q - max_P n'.p) / |n'|`` that their shadows are so far apart. The
+  margin claimed must not be larger.
 - *A gap to be kept*, ``g``: where bodies are said to meet, they are as near as that. ``g |n|`` is
   taken from what planes prove, and at the upper bound the weighted mean of the pairs is as near. Of
   solids it is not checked where two facets are.
@@ -80,27 +80,31 @@ Triangle: TypeAlias = tuple[Vector, Vector, Vector]
 
 #: Rounding of one operation.
 _U = Fraction(1, 2**53)
-#: How far the length of a unit vector may be from 1: as the library has it, and an eighth more, as it rounds lengths.
+#: How far the length of a unit vector may be from 1: as the library has it, and an eighth more,
+#: as it rounds lengths.
 _UNIT_VECTOR = 36 * _U
 #: Rounding of a coordinate, in sizes of the configuration: the library's noise.
 _NOISE = 32 * _U
 #: What rounding makes of the difference of two bounds at most, in noises, of widened bodies too.
 _MOST_ROUNDING = 256
-#: A gap of so many noises or less is slight: points that are as near for certain may not be found. As the library has
-#: it, and a little more, as it rounds noises; so are the next ones.
+#: A gap of so many noises or less is slight: points that are as near for certain may not be found.
+#: As the library has it, and a little more, as it rounds noises; so are the next ones.
 _SLIGHT = 8 + Fraction(1, 64)
-#: So many noises witness points may miss each other by, and so many an upper bound is above them, over ``n.d``.
+#: So many noises witness points may miss each other by, and so many an upper bound is above them,
+#: over ``n.d``.
 _MISS, _RAISE = Fraction(13, 4), Fraction(11, 4)
 #: So many where no upper bound is claimed.
 _MISS_WIDENED = 46
-#: The largest ``rounding`` of a contact in noises, and what is added for a normal across the direction.
+#: The largest ``rounding`` of a contact in noises, and what is added for a normal across the
+#: direction.
 _MOST_STATED = (63, 175)
 #: Magnitudes of coordinates that are not 0.
 _RANGE = (Fraction(1, 2**200), Fraction(2**200))
 #: No gap is to be kept.
 _NO_GAP = Fraction()
-#: How far a face may be from its plane, in sizes of the body, beyond its ``hull_error``.
-_PLANE = 256 * _U
+#: How far a face may be from its plane, in sizes of the body, beyond its ``hull_error``; see
+#: :func:`are_own_faces`.
+_PLANE = Fraction(1, 2**20)
 #: How far a pose may be from a rotation.
 _TURN = Fraction(1, 10**6)
 #: The largest coordinate, displacement or gap.
@@ -157,7 +161,7 @@ def fields(value: Any, needed: str, optional: str = "") -> dict[str, Any]:
     unknown = [name for name in value if name not in (*names, *optional.split())]
     if missing or unknown:
         raise NoProofError(f"fields are missing, {missing}, or are none of a proof, {unknown}")
-    return {name: None for name in optional.split()} | value
+    return dict.fromkeys(optional.split()) | value
 
 
 def listed(value: Any, count: int | None = None) -> list[Any]:
@@ -359,13 +363,13 @@ def described(points: list[Vector], content: Any) -> None:
                 raise RefusedError(f"vertex {k} is not where the faces around it are")
 
 
-#: How far from the plane of a face its vertices are of bodies that the library certainly takes for those of a file,
-#: and how far vertices at least are beyond their neighbours, in largest coordinates.
+#: How far vertices are from the plane of their face, and how far they are beyond their neighbours at
+#: least, in largest coordinates, of bodies whose faces the library certainly takes for its own.
 _OWN_PLANE, _OWN_CORNER = 96 * 2.0**-53, 1024 * 2.0**-53
 
 
 def are_own_faces(points: list[Vector], content: Any) -> bool:
-    """Whether the faces of a body are clearly those of the hull of its vertices, and all of these corners of it.
+    """Whether the faces of a body are clearly those of the hull of its vertices, all corners.
 
     Rounded numbers tell, as no claim hangs on it: the library refuses a body whose faces are not.
     """
@@ -374,30 +378,47 @@ def are_own_faces(points: list[Vector], content: Any) -> bool:
     most = max(abs(x) for v in at for x in v)
     if len(faces) < 2:
         return not faces and len(set(points)) == len(points)
-    outward = [(0.0, 0.0, 0.0)] * len(at)
+    normals = []
     for face in faces:
         x, y, z = _rounded_area([at[k] for k in face])
         length = math.hypot(x, y, z)
         if length == 0:
             return False
-        normal = (x / length, y / length, z / length)
-        for k in face:
-            if abs(_along(normal, at[face[0]], at[k])) > _OWN_PLANE * most:
-                return False
-            outward[k] = tuple(map(sum, zip(outward[k], normal, strict=True)))  # type: ignore[assignment]
-    sides = [side for face in faces for side in zip(face, face[1:] + face[:1], strict=True)]
+        normals.append((x / length, y / length, z / length))
+    sides = {
+        side: k
+        for k, face in enumerate(faces)
+        for side in zip(face, face[1:] + face[:1], strict=True)
+    }
+    outward = [[0.0, 0.0, 0.0] for _ in at]
+    for (a, b), k in sides.items():
+        other = sides[b, a]
+        heights = [_along(normals[k], at[a], at[v]) for v in (*faces[k], *faces[other])]
+        if max(heights) > _OWN_PLANE * most or min(heights[: len(faces[k])]) < -_OWN_PLANE * most:
+            return False
+        # Beyond a face, or, of a flat body, beyond both neighbours in its plane.
+        way = normals[k] if len(faces) > 2 else _unit_way(at[b], at[a])
+        outward[a] = [p + q for p, q in zip(outward[a], way, strict=True)]
     if len(faces) == 2:
-        # Away from both neighbours, in the plane.
-        outward = [(0.0, 0.0, 0.0)] * len(at)
-        for a, b in sides:
-            way = [p - q for p, q in zip(at[a], at[b], strict=True)]
-            length = math.hypot(*way) or math.inf
-            outward[a] = tuple(p + q / length for p, q in zip(outward[a], way, strict=True))  # type: ignore[assignment]
+        corners = faces[0] + faces[0][:2]
+        turns = [
+            _along(_rounded_area([at[a], at[b], at[c]]), (0.0, 0.0, 0.0), normals[0])
+            for a, b, c in zip(corners, corners[1:], corners[2:], strict=False)
+        ]
+        if min(turns) <= 0:
+            return False
     lengths = [math.hypot(*normal) for normal in outward]
     return all(
         _along(outward[a], at[b], at[a]) > _OWN_CORNER * most * max(lengths[a], 1e-6)
         for a, b in sides
     )
+
+
+def _unit_way(p: Sequence[float], q: Sequence[float]) -> list[float]:
+    """The direction from one point to another, rounded."""
+    way = [b - a for a, b in zip(p, q, strict=True)]
+    length = math.hypot(*way) or math.inf
+    return [x / length for x in way]
 
 
 def _rounded_area(corners: list[tuple[float, float, float]]) -> tuple[float, float, float]:
@@ -566,7 +587,7 @@ def are_shadows_apart(moving: Body, fixed: Body, d: Vector, normal: Vector, by: 
 
 
 def shadows_apart(moving: Body, fixed: Body, d: Vector, normal: Vector) -> float:
-    """How far the shadows are apart along what of a normal is orthogonal to the direction, nearly."""
+    """How far the shadows are apart along what of a normal is across the direction, nearly."""
     level = across(d, normal)
     gap = min(fixed.heights(level)) - max(moving.heights(level))
     return float(gap) / math.sqrt(float(dot(level, level)))
@@ -3232,7 +3253,9 @@ def check(text: str) -> Report:
             content = file[which].get("convex")
             if content is not None and not are_own_faces(body.points, content):
                 report.partly = True
-                report.unchecked.append(f"the faces of the {which} body: it is the hull of its vertices")
+                report.unchecked.append(
+                    f"the faces of the {which} body: it is the hull of its vertices"
+                )
         said = fields(file["statement"], "", " ".join((*PLACED, *ALONG)))
         claims = {kind: claim for kind, claim in said.items() if claim is not None}
         if len(claims) != 1:

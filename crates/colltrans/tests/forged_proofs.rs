@@ -1,0 +1,163 @@
+//! Forged proofs: what both checkers accept of them is true (`campaign --proofs` does this at length).
+#![cfg(feature = "json")]
+
+use colltrans::{Cast, CertificateError, ConvexPolyhedron, Pair, Pose, ProofFile, Separation};
+use colltrans_testkit::oracle::proofs::checkers::{Fractions, Verdict, verify};
+use colltrans_testkit::oracle::proofs::{Campaign, KINDS, Tally};
+use glam::DVec3;
+use serde_json::{Value, json};
+
+/// Rounding of one operation.
+const U: f64 = 0.5 * f64::EPSILON;
+
+fn cube() -> ConvexPolyhedron {
+    ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube")
+}
+
+fn pose(x: f64, y: f64, z: f64) -> Pose {
+    Pose::from_translation(DVec3::new(x, y, z)).expect("a pose")
+}
+
+/// `check.py`, where there is a Python.
+fn fractions() -> Option<Fractions> {
+    Fractions::start().ok()
+}
+
+/// The verdicts of the library and, where there is one, of `check.py`.
+fn verdicts(file: &Value, fractions: &mut Option<Fractions>) -> Vec<Verdict> {
+    let text = file.to_string();
+    let of_fractions = fractions.as_mut().map(|fractions| fractions.check(&text));
+    [verify(&text)].into_iter().chain(of_fractions).collect()
+}
+
+fn assert_refused(file: &Value, fractions: &mut Option<Fractions>) {
+    for verdict in verdicts(file, fractions) {
+        assert!(matches!(verdict, Verdict::Refused(_)), "{verdict:?}: {file}");
+    }
+}
+
+fn assert_holds(file: &Value, fractions: &mut Option<Fractions>) {
+    for verdict in verdicts(file, fractions) {
+        assert_eq!(verdict, Verdict::Holds, "{file}");
+    }
+}
+
+/// A file about two unit cubes, the moving one far behind the fixed one, whose shadows are half a unit apart.
+fn separation_from_afar(far: f64) -> Value {
+    let (p, q) = (cube(), cube());
+    let cast = Cast::new(p.at(pose(0.0, 0.0, -far)), q.at(pose(1.5, 0.0, 0.0)), DVec3::Z);
+    let cast = cast.expect("a query");
+    let outcome = cast.first_contact().expect("an answer");
+    serde_json::from_str(&ProofFile::of_outcome(&cast, &outcome).to_json()).expect("JSON")
+}
+
+#[test]
+fn a_margin_along_a_tilted_normal_is_refused_beyond_the_distance_of_the_shadows() {
+    let mut fractions = fractions();
+    for far in [1e3, 1e6, 1e9] {
+        let mut file = separation_from_afar(far);
+        assert_holds(&file, &mut fractions);
+        // As far as a normal may be from one that is orthogonal to the direction: the gap along it is larger.
+        for tilt in [30.0 * U, 31.9 * U] {
+            file["statement"]["separation"] = json!({"normal": [1.0, 0.0, tilt], "margin": 0.499});
+            assert_holds(&file, &mut fractions);
+            for excess in [1e-15, 0.1 * tilt * far, 0.9 * tilt * far] {
+                file["statement"]["separation"]["margin"] = json!(0.5 + excess);
+                assert_refused(&file, &mut fractions);
+            }
+        }
+        let tilted = json!({"normal": [0.01, 0.0, 0.999_95], "margin": 0.99 * far});
+        file["statement"]["separation"] = tilted;
+        assert_refused(&file, &mut fractions);
+    }
+}
+
+#[test]
+fn verify_takes_what_a_tilt_is_worth_from_the_margin() {
+    let (p, q) = (cube(), cube());
+    let cast = Cast::new(p.at(pose(0.0, 0.0, -1e9)), q.at(pose(1.5, 0.0, 0.0)), DVec3::Z);
+    let cast = cast.expect("a query");
+    let normal = DVec3::new(1.0, 0.0, 30.0 * U);
+    let refused = cast.verify(&Separation { normal, margin: 0.5 + 1e-6 }).unwrap_err();
+    assert!(
+        matches!(refused, CertificateError::Bound { proven, .. } if proven <= 0.5),
+        "{refused}"
+    );
+}
+
+#[test]
+fn an_overlap_of_a_slide_that_a_tilt_hides_is_refused() {
+    let (p, q) = (cube(), cube());
+    let cast = Cast::new(p.at(pose(-1e9, 0.0, 1.0)), q.at(pose(0.0, 0.0, 0.0)), DVec3::X);
+    let cast = cast.expect("a query").with_graze_tolerance(1e-3).expect("a tolerance");
+    let outcome = cast.first_contact().expect("an answer");
+    let mut file: Value =
+        serde_json::from_str(&ProofFile::of_outcome(&cast, &outcome).to_json()).expect("JSON");
+    let mut fractions = fractions();
+    assert_holds(&file, &mut fractions);
+    // The shadows overlap by 1e-6, and along the tilted normal the bodies are apart.
+    file["moving_pose"]["translation"][2] = json!(1.0 - 1e-6);
+    file["statement"]["contacts"]["slide"] = json!({"normal": [3e-15, 0.0, -1.0], "overlap": 0.0});
+    assert_refused(&file, &mut fractions);
+    file["statement"]["contacts"]["slide"]["normal"] = json!([-3e-15, 0.0, -1.0]);
+    assert_refused(&file, &mut fractions);
+}
+
+#[test]
+fn both_checkers_refuse_what_the_specification_does_not_admit() {
+    let mut fractions = fractions();
+    let (p, q) = (cube(), cube());
+    let apart = [p.at(pose(0.0, 0.0, 0.0)), q.at(pose(3.0, 0.25, 0.5))];
+    let over = [p.at(pose(0.0, 0.0, 0.0)), q.at(pose(0.7, 0.25, 0.5))];
+    let pair = Pair::new(apart[0], apart[1]).expect("a pair");
+    let json =
+        |proof: ProofFile| -> Value { serde_json::from_str(&proof.to_json()).expect("JSON") };
+    let distance = json(ProofFile::of_distance(&pair, &pair.distance().expect("an answer")));
+    let pair = Pair::new(over[0], over[1]).expect("a pair");
+    let depth = json(ProofFile::of_depth(&pair, &pair.depth().expect("an answer")));
+    let cast = Cast::new(apart[0], apart[1], DVec3::new(1.0, 0.125, 0.0)).expect("a query");
+    let contacts = cast.contact_range().expect("an answer");
+    let contacts = json(ProofFile::of_range(&cast, &contacts));
+    for file in [&distance, &depth, &contacts] {
+        assert_holds(file, &mut fractions);
+    }
+    let mut changed = |file: &Value, at: &str, value: Value| {
+        let mut file = file.clone();
+        *file.pointer_mut(at).expect("a place") = value;
+        assert_refused(&file, &mut fractions);
+    };
+    changed(&distance, "/statement/distance/gap/gap", json!(-1.0));
+    changed(&distance, "/statement/distance/near/weights", json!(["a", 0.0, 0.0, 1.0]));
+    changed(&distance, "/moving/convex/vertices/0/0", json!(5e-324));
+    changed(&distance, "/moving/convex/hull_error", json!(-1e-300));
+    changed(&depth, "/statement/depth/enclosure/normals/0", json!([1e-3, 0.0, 0.0]));
+    changed(&depth, "/statement/depth/enclosure", Value::Null);
+    changed(&depth, "/statement/depth/lower", json!(-1e-300));
+    for rounding in [-1e-300, 1.0, 1e300] {
+        changed(&contacts, "/statement/contacts/first/rounding", json!(rounding));
+    }
+    changed(&contacts, "/statement/contacts/first/weights", json!([1.0, 0.0, 0.0, 0.0]));
+    let mut file = contacts.clone();
+    file["statement"]["contacts"]["first"]["unknown"] = json!(1);
+    assert_refused(&file, &mut fractions);
+    file = contacts.clone();
+    file["statement"]["contacts"]["first"].as_object_mut().expect("fields").remove("rounding");
+    assert_refused(&file, &mut fractions);
+    file = contacts;
+    file["keep"] = json!(-1.0);
+    assert_refused(&file, &mut fractions);
+}
+
+#[test]
+fn no_checker_accepts_a_false_claim_of_a_forged_proof() {
+    let mut fractions = fractions();
+    for kind in KINDS {
+        let mut tally = Tally::default();
+        for seed in 0..2 {
+            Campaign::examine(&kind, seed, fractions.as_mut(), &mut tally);
+        }
+        assert_eq!(tally.false_claims, [""; 0], "{}", kind.name);
+        assert_eq!(tally.disagreements, [""; 0], "{}", kind.name);
+        assert!(tally.mutants > 30 && tally.accepted > 0, "{}: {}", kind.name, tally.mutants);
+    }
+}

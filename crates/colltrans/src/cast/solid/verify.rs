@@ -24,6 +24,9 @@ pub enum SolidProof<'a> {
 
 checked_as!(SolidProof { Clearance(SolidCertificate), Separation(Separation) });
 
+/// No proof of a length is as small: far below the rounding of any body's coordinates.
+const LEAST_LENGTH: f64 = f64::MIN_POSITIVE / f64::EPSILON;
+
 impl Cast<'_, Solid> {
     /// Checks a [`SolidCertificate`] or a [`Separation`] against the two bodies, and returns how far
     /// the two bounds of the distance are apart, in multiples of the direction (0 where nothing stops
@@ -124,7 +127,9 @@ fn verify_cover(
     cover: &Cover,
     lower: f64,
 ) -> Result<(), CertificateError> {
-    if lower.is_nan() || lower < 0.0 {
+    // A length that is lost in the underflow of this product would be none.
+    let lost = lower > 0.0 && lower * scene.setting.length < LEAST_LENGTH;
+    if lower.is_nan() || lower < 0.0 || lost {
         return Err(CertificateError::Cover { entry: 0 });
     }
     let bodies = [scene.moving.solid, scene.fixed.solid];

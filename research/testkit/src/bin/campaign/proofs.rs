@@ -6,7 +6,7 @@ use colltrans_testkit::oracle::proofs::checkers::Fractions;
 use colltrans_testkit::oracle::proofs::{self, Campaign, KINDS};
 
 /// Mutants of a proof, about: to go by their number.
-pub(crate) const MUTANTS: u64 = 100;
+pub(crate) const MUTANTS: u64 = 50;
 
 thread_local! {
     /// The process of this thread that runs `check.py`.

@@ -340,6 +340,9 @@ fn marginal(file: &Value) -> Option<bool> {
         let normal = vector(file.pointer(&format!("{at}/normal"))?)?;
         near |= is_at_limit(normal.length() - 1.0);
         near |= across && is_at_limit(normal.dot(unit));
+        // What is claimed has to be more than the gap, and may be less than the library refuses.
+        let margin = file.pointer(&format!("{at}/margin")).and_then(Value::as_f64);
+        near |= margin.is_some_and(|margin| margin - bodies.keep <= BAND * noise);
         if across {
             continue;
         }

@@ -245,19 +245,30 @@ impl<'a> Campaign<'a> {
         library.accepts() || fractions.accepts()
     }
 
-    /// Checks whether the library accepts a file once its claims are weaker by what is specified, or may refuse it
-    /// for a number at the limit of what is admitted.
+    /// Checks whether the library accepts a file once its claims are weaker by what is specified, all or one of them, or
+    /// may refuse it for a number at the limit of what is admitted.
     fn is_rounded(&self, file: &Value) -> bool {
-        let mut weaker = file.clone();
-        for claim in (self.kind.claims)(file) {
-            let Some(old) = file.pointer(&claim.pointer).and_then(Value::as_f64) else { continue };
-            let sign = if claim.weakest < claim.strongest { -1.0 } else { 1.0 };
-            let eased = old + sign * claim.band;
-            let eased =
-                if sign < 0.0 { eased.max(claim.weakest) } else { eased.min(claim.weakest) };
-            weaker = with(&weaker, &claim.pointer, Some(number(eased)));
-        }
-        (self.kind.verify)(&weaker.to_string()).accepts() || (self.kind.is_marginal)(file)
+        let claims = (self.kind.claims)(file);
+        let accepts = |claims: &[Claim]| {
+            let weaker = claims.iter().fold(file.clone(), |file, claim| claim.eased(file));
+            (self.kind.verify)(&weaker.to_string()).accepts()
+        };
+        (self.kind.is_marginal)(file)
+            || accepts(&claims)
+            || claims.iter().any(|claim| accepts(std::slice::from_ref(claim)))
+    }
+}
+
+impl Claim {
+    /// Returns a file in which this claim is weaker by what the library may refuse.
+    fn eased(&self, file: Value) -> Value {
+        let Some(old) = file.pointer(&self.pointer).and_then(Value::as_f64) else { return file };
+        let eased = if self.weakest < self.strongest {
+            (old - self.band).max(self.weakest)
+        } else {
+            (old + self.band).min(self.weakest)
+        };
+        with(&file, &self.pointer, Some(number(eased)))
     }
 }
 

@@ -210,6 +210,8 @@ fn marginal(file: &Value) -> Option<bool> {
             near |= is_at_limit(normal.length() - 1.0);
         }
     }
+    let gap = file.pointer(&format!("{GAP}/gap")).and_then(Value::as_f64);
+    near |= gap.is_some_and(|gap| gap <= BAND * bodies.noise());
     if let Some(weights) = file.pointer(&format!("{NEAR}/weights")).and_then(numbers) {
         near |= is_at_limit(weights.iter().sum::<f64>() - 1.0);
     }

@@ -85,8 +85,6 @@ _U = Fraction(1, 2**53)
 _UNIT_VECTOR = 36 * _U
 #: Rounding of a coordinate, in sizes of the configuration: the library's noise.
 _NOISE = 32 * _U
-#: What rounding makes of the difference of two bounds at most, in noises, of widened bodies too.
-_MOST_ROUNDING = 256
 #: A gap of so many noises or less is slight: points that are as near for certain may not be found.
 #: As the library has it, and a little more, as it rounds noises; so are the next ones.
 _SLIGHT = 8 + Fraction(1, 64)
@@ -1109,7 +1107,6 @@ class Scene:
         elif why == "behind":
             proof = free["certificate"]
             contact(self.moving, body, back, proof, report, "against the direction", self.keep)
-            self.rounding(body, back, proof)
             if number(proof["lower"]) < -number(proof["rounding"]):
                 raise RefusedError("the bodies are not proven to meet behind only")
         elif why == "slides":
@@ -1117,13 +1114,6 @@ class Scene:
         else:
             raise NoProofError(f"{why!r} is no reason")
         return never
-
-    def rounding(self, body: Body, d: Vector, proof: Any) -> None:
-        """That no more is said of rounding than it explains."""
-        noise = _NOISE * (size(self.moving, body) + self.keep)
-        most = _MOST_ROUNDING * noise + 2 * self.keep
-        if not 0 <= number(proof["rounding"]) * dot(vector(proof["normal"]), d) <= most:
-            raise RefusedError("more is said of rounding than it explains")
 
     def slides(self, body: Body, d: Vector, normal: Vector) -> None:
         """That bodies overlap sideways by no more than is tolerated, to within rounding."""

@@ -1,0 +1,99 @@
+"""The checker in fractions, on forged proofs about one body among many."""
+
+import json
+from typing import Any
+
+import pytest
+from test_check import check, refused
+
+
+def placed(x: float) -> dict[str, Any]:
+    return {"body": 0, "pose": {"matrix": [1, 0, 0, 0, 1, 0, 0, 0, 1], "translation": [x, 0, 0]}}
+
+
+def scene(statement: Any, *places: float, **choices: Any) -> dict[str, Any]:
+    """A unit cube at 0 among others along x."""
+    corners = [[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)]
+    faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    cube = {"vertices": corners, "faces": faces, "input_indices": list(range(8)), "hull_error": 0.0}
+    return {
+        "format": "colltrans scene proof 1",
+        "bodies": [{"convex": cube}],
+        "moving": placed(0.0),
+        "obstacles": [placed(x) for x in places],
+        "choices": choices,
+        "statement": statement,
+    }
+
+
+def near(distance: float) -> dict[str, Any]:
+    pair = {"moving": 4, "fixed": 0}
+    weights = [1.0, 0.0, 0.0, 0.0]
+    return {"convex": {"pairs": [pair] * 4, "weights": weights, "distance": distance}}
+
+
+def apart(gap: float) -> dict[str, Any]:
+    return {"convex": {"normal": [1.0, 0.0, 0.0], "gap": gap}}
+
+
+def within(length: Any, **lists: Any) -> dict[str, Any]:
+    return {"within": {"length": length, "closer": [], "undecided": [], "apart": [], **lists}}
+
+
+def holds(file: Any) -> bool:
+    return bool(check.check(json.dumps(file)).holds)
+
+
+def test_what_is_within_a_length_is_said_once() -> None:
+    assert holds(scene(within(2.0, closer=[[0, near(2.0)]], apart=[[1, apart(3.0)]]), 3.0, 4.0))
+    assert holds(scene(within(2.0, closer=[[0, near(2.0)]]), 3.0, 4.0))
+    for lists in (
+        {"closer": [[0, near(2.0)]], "apart": [[0, apart(1e9)]]},
+        {"closer": [[0, near(2.0)]], "undecided": [0]},
+        {"undecided": [0], "apart": [[0, apart(1e9)]]},
+        {"undecided": [0, 0]},
+        {"undecided": [0, 7]},
+        {"undecided": [0.0]},
+    ):
+        assert refused(scene(within(2.0, **lists), 3.0, 4.0)), lists
+
+
+@pytest.mark.parametrize("length", [-0.5, -1e300, float("nan")])
+def test_a_length_is_one(length: float) -> None:
+    # The square of the boxes' distance is more than that of the length.
+    assert refused(scene(within(length), 3.0, 4.0))
+
+
+def test_claims_that_are_not_needed_are_checked() -> None:
+    claim = {"lower": 0.0, "obstacle": 0, "near": near(2.0), "apart": []}
+    assert holds(scene({"nearest": claim}, 3.0, 4.0))
+    assert refused(scene({"nearest": {**claim, "apart": [[1, apart(1e9)]]}}, 3.0, 4.0))
+
+
+def test_choices_are_those_that_there_are() -> None:
+    statement = within(2.0, closer=[[0, near(2.0)]])
+    assert holds(scene(statement, 3.0, start_overlap="ignore", tolerance=None, graze_tolerance=0.5))
+    for choices in (
+        {"start_overlap": "allow"},
+        {"graze_tolerance": -1.0},
+        {"tolerance": -1.0},
+        {"keep": -1.0},
+        {"more": 1.0},
+    ):
+        assert refused(scene(statement, 3.0, **choices)), choices
+
+
+def test_an_obstacle_ahead_is_not_behind() -> None:
+    # Half a unit ahead and nearer than the gap: twice the gap was taken for what rounding explains.
+    pair = {"moving": 0, "fixed": 4}
+    certificate = {
+        "normal": [-1.0, 0.0, 0.0],
+        "lower": -12.5,
+        "pairs": [pair] * 3,
+        "weights": [1.0, 0.0, 0.0],
+        "upper": None,
+        "rounding": 12.5,
+    }
+    passed = [[0, {"convex": {"free": {"behind": {"certificate": certificate}}}}]]
+    claim = {"direction": [1.0, 0.0, 0.0], "lower": None, "stop": None, "passed": passed}
+    assert refused(scene({"clearance": claim}, 1.5, keep=10.0))

@@ -251,6 +251,41 @@ def test_what_is_inside_where_a_path_begins_is_seen() -> None:
     assert refused(changed(file, later, lambda t: 0.5))
 
 
+def test_a_solid_inside_a_convex_body_is_seen() -> None:
+    here = {"matrix": [1, 0, 0, 0, 1, 0, 0, 0, 1], "translation": [0, 0, 0]}
+    corners = [[x, y, z] for x in (-5.0, 5.0) for y in (-5.0, 5.0) for z in (-5.0, 5.0)]
+    faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
+    block = {
+        "vertices": corners,
+        "faces": faces,
+        "input_indices": list(range(8)),
+        "hull_error": 0.0,
+    }
+    small = {
+        "vertices": [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        "triangles": [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
+    }
+    parts = {"numbers": [0, 1, 2, 3], "tree": [4]}
+    slide = {"parent": None, "origin": here, "joint": {"sliding": [1.0, 0.0, 0.0]}}
+    bodies = [
+        {"name": "small", "frame": 0, "pose": here, "parts": parts, "body": {"pieces": [small]}},
+        {"name": "block", "frame": None, "pose": here, "body": {"convex": block}},
+    ]
+    meeting = {"pair": 0, "place": {"row": 0, "share": 0.0}, "how": "inside"}
+    file = {
+        "format": "colltrans path proof 2",
+        "frames": [slide],
+        "path": {"times": [0.0, 1.0], "rows": [[0.0], [1.0]]},
+        "bodies": bodies,
+        "proof": {"covers": [{"steps": []}], "meeting": meeting},
+        "statement": {"pairs": [["small", "block"]], "lower": 0.0, "upper": 0.0},
+    }
+    (line,) = check.check(json.dumps(file)).holds
+    assert line == "'small' and 'block' meet by the time 0.0"
+    beside: tuple[Any, ...] = ("bodies", 1, "pose", "translation", 0)
+    assert refused(changed(file, beside, lambda x: x + 5.5))
+
+
 def test_solids_that_meet_face_to_face_do_by_a_point_inside_both(tmp_path: Path) -> None:
     outline = [[0, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2]]
     n = len(outline)

@@ -1996,8 +1996,10 @@ def is_deep(
     unit(d, "the direction of the depth")
     for normal in claim["enclosure"]["normals"]:
         unit(vector(normal))
-    if not 0 <= lower <= upper:
-        raise RefusedError("the bounds of the depth are in the wrong order")
+    if not tolerated < lower <= upper:
+        raise RefusedError(
+            "the bounds of the depth are in the wrong order, or no depth that counts"
+        )
     # Points that are moved by less than they are away go round the origin as before.
     more = off[0] + tolerated * (1 + _TINY)
     enclosure(corners, claim["enclosure"], max(more, lower - off[1]))
@@ -2017,6 +2019,8 @@ def is_near(
     told = number(claim["distance"])
     if len(ends) != 4:
         raise NoProofError("there are four pairs")
+    if not 0 <= told <= keep:
+        raise RefusedError(f"{float(told)!r} is not as near as {float(keep)!r}")
     if told == 0 and keep >= off[0] and encloses([minus(q, p) for p, q in ends]):
         return
     p, q = (mean([end[k] for end in ends], claim["weights"]) for k in (0, 1))
@@ -2024,7 +2028,7 @@ def is_near(
     square = dot(between, between)
     if not above(keep - off[0], square):
         raise RefusedError(f"the points are not as near as {float(keep)!r}")
-    if told < 0 or not above(told + off[1], square):
+    if not above(told + off[1], square):
         raise RefusedError(f"the points are not as near as {float(told)!r}")
 
 
@@ -2620,6 +2624,8 @@ class Pieces:
     facets: list[Triangle] = field(default_factory=list)
     #: The facets that are not part of an open surface: those that something can be inside of.
     closed: list[Triangle] = field(default_factory=list)
+    #: Of a convex body: corners that are ones of a tetrahedron with its first point each.
+    fans: list[tuple[int, int, int]] = field(default_factory=list)
 
     @property
     def is_open(self) -> bool:
@@ -2627,9 +2633,13 @@ class Pieces:
         return len(self.closed) < len(self.facets)
 
     @classmethod
-    def read(cls, body: Body, of: Any, is_open: Sequence[bool]) -> Pieces:
+    def read(cls, body: Body, of: Any, shape: Any) -> Pieces:
         if body.is_convex:
-            return cls([body.points], [[]])
+            # Any corners would do: what is inside of a tetrahedron of them is inside of the body.
+            faces = shape["convex"]["faces"]
+            fans = [(face[0], a, b) for face in faces for a, b in pairwise(face[1:])]
+            return cls([body.points], [[]], fans=fans)
+        is_open = open_facets(shape)
         fields(of, "numbers tree")
         numbers = [whole(k, len(body.facets)) for k in of["numbers"]]
         if sorted(numbers) != list(range(len(body.facets))):
@@ -2917,19 +2927,31 @@ class Walk:
 
     def is_nested(self) -> bool:
         """Whether one is inside the other where the path begins, where no surfaces meet."""
-        placed = []
-        for of, side in zip((self.moving, self.fixed), self.pieces, strict=True):
-            at = of.at(0, Fraction())
-            placed.append(
-                [(at.place(a), at.place(b), at.place(c)) for a, b, c in side.facets]
-                or at.place(side.points[0][0])
-            )
-        for own, other in (placed, placed[::-1]):
-            points = shells(own) if isinstance(own, list) else [own]
-            # Planes are beside a convex one with all that it holds.
-            if isinstance(other, list) and any(winds(v, other) > 0 for v in points):
+        fields_ = [of.at(0, Fraction()) for of in (self.moving, self.fixed)]
+
+        def placed(k: int, facets: list[Triangle]) -> list[Triangle]:
+            at = fields_[k]
+            return [(at.place(a), at.place(b), at.place(c)) for a, b, c in facets]
+
+        for own, other in ((0, 1), (1, 0)):
+            mine, there = self.pieces[own], self.pieces[other]
+            first = fields_[own].place(mine.points[0][0])
+            points = shells(placed(own, mine.facets)) if mine.facets else [first]
+            if there.facets:
+                around = placed(other, there.closed)
+                inside = any(winds(v, around) > 0 for v in points)
+            else:
+                corners = [fields_[other].place(v) for v in there.points[0]]
+                inside = any(is_within(v, corners, there.fans) for v in points if mine.facets)
+            if inside:
                 return True
         return False
+
+
+def is_within(at: Vector, corners: list[Vector], fans: list[tuple[int, int, int]]) -> bool:
+    """Whether a point is inside of a tetrahedron of the first corner and three others."""
+    ways = [minus(corner, at) for corner in corners]
+    return any(encloses([ways[0], ways[a], ways[b], ways[c]]) for a, b, c in fans)
 
 
 def place_of(of: Any, last: int) -> tuple[int, Fraction]:
@@ -3112,7 +3134,7 @@ class Robot:
             way.append(parent)
         self.names.append(name)
         self.bodies.append((way[::-1], body))
-        self.pieces.append(Pieces.read(body, of.get("parts"), open_facets(of["body"])))
+        self.pieces.append(Pieces.read(body, of.get("parts"), of["body"]))
 
     def walk(self, pair: tuple[int, int], keep: Fraction) -> Walk:
         """Two bodies, seen from the frame that both stand in."""

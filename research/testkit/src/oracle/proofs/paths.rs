@@ -10,7 +10,9 @@ use serde_json::Value;
 
 use super::checkers::Verdict;
 use super::file::{numbers, vector, vectors};
-use super::motions::{body, depth_is_false, is_marginal, meets, met, pose};
+use super::motions::{
+    body, depth_is_false, is_at_the_limit, meets, met, pose, refused_for_rounding,
+};
 use super::mutants::{number, pointers, with};
 use super::{Claim, Kind, Who};
 use crate::oracle::exact::Vector;
@@ -76,7 +78,12 @@ fn base(seed: u64) -> Option<String> {
     let cast = if random.one_in(3) { cast.keeping(keep) } else { Ok(cast) }.ok()?;
     let (_, file) = PathProofFile::answer(&cast, &[]).ok()?;
     let text = file.to_json();
-    (text.len() < 40_000).then_some(text)
+    (text.len() < 20_000).then_some(text)
+}
+
+/// Whether the library refuses a file for what it takes off for rounding.
+fn is_marginal(file: &Value) -> bool {
+    is_at_the_limit(file) || refused_for_rounding(&verify(&file.to_string()))
 }
 
 fn claims(file: &Value) -> Vec<Claim> {

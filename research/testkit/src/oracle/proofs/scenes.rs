@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::casts::{other_normal, other_weights};
 use super::checkers::Verdict;
 use super::file::{Bodies, numbers, vector, vectors};
-use super::motions::{body, is_marginal, pose};
+use super::motions::{body, is_at_the_limit, pose, refused_for_rounding};
 use super::mutants::{number, pointers, with};
 use super::{Claim, Kind, Who};
 use crate::oracle::exact::{Ratio, place};
@@ -58,6 +58,19 @@ fn base(seed: u64) -> Option<String> {
         _ => SceneProof::of_clearance(&asked, random.direction()).ok()?,
     };
     Some(file.to_json())
+}
+
+/// Whether the library refuses a file for what it takes off for rounding.
+fn is_marginal(file: &Value) -> bool {
+    let verdict = |file: &Value| verify(&file.to_string());
+    let length = "/statement/within/length";
+    let moved = |by: f64| {
+        let old = file.pointer(length).and_then(Value::as_f64)?;
+        Some(verdict(&with(file, length, Some(number(old + by)))).accepts())
+    };
+    is_at_the_limit(file)
+        || refused_for_rounding(&verdict(file))
+        || [1e-9, -1e-9].into_iter().any(|by| moved(by) == Some(true))
 }
 
 fn claims(file: &Value) -> Vec<Claim> {

@@ -9,16 +9,12 @@ use colltrans::ConvexPolyhedron;
 use glam::DVec3;
 
 use crate::Mesh;
-use crate::edges::sides;
 
 /// Whether depths are looked at; volumes are in any case.
 const DEEP: bool = cfg!(feature = "depth");
 
-/// Planes that are compared before the search for the deepest point is given up: some seconds.
-const MOST_COMPARISONS: u64 = 4_000_000_000;
-
-/// Faces that were nearest to points before, which are tried first.
-const RECENT: usize = 8;
+/// Planes and nodes that are looked at before the search for the deepest point is given up: some seconds.
+const MOST_LOOKS: u64 = 1_000_000_000;
 
 /// What a hull has and its part has not.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,110 +59,127 @@ impl Excess {
 
 /// Depth of the deepest point of the faces of a mesh below a hull.
 fn depth(mesh: &Mesh, hull: &ConvexPolyhedron) -> Option<f64> {
+    let mut looks = 0;
+    depth_counted(mesh, hull, &mut looks)
+}
+
+/// [`depth`], and how many planes and nodes were looked at.
+fn depth_counted(mesh: &Mesh, hull: &ConvexPolyhedron, looks: &mut u64) -> Option<f64> {
     if hull.dimension() < 3 {
         return Some(0.0);
     }
-    let faces = Faces::of(hull);
+    let planes = Planes::of(hull);
     // Less than this is rounding.
     let noise = 1e-13 * mesh.extent();
     let mut deepest = noise;
-    // Points in the order of the mesh are near each other, and so are the faces they are below.
-    let mut passed = 0;
-    let mut recent = [0; RECENT];
-    let mut comparisons = 0;
+    // Points in the order of the mesh are near each other, and mostly below the same face.
+    let mut near = 0;
     for p in mesh.faces.iter().flat_map(|face| samples(mesh, face)) {
-        // Most points are seen to be no deeper by one face or by those around them.
-        if recent.iter().any(|&face| faces.below(face, p) <= deepest)
-            || faces.bound(p, &mut passed) <= deepest
-        {
-            continue;
-        }
-        let mut least = (f64::INFINITY, 0);
-        for face in 0..faces.planes.len() {
-            let depth = faces.below(face, p);
-            if depth < least.0 {
-                least = (depth, face);
-            }
-            comparisons += 1;
-            if least.0 <= deepest {
-                break;
-            }
-        }
-        deepest = deepest.max(least.0);
-        recent.rotate_right(1);
-        recent[0] = least.1;
-        if comparisons > MOST_COMPARISONS {
+        deepest = deepest.max(planes.least_depth(p, deepest, &mut near, looks));
+        if *looks > MOST_LOOKS {
             return None;
         }
     }
     Some(if deepest == noise { 0.0 } else { deepest })
 }
 
-/// The faces of a hull, to walk along.
-struct Faces {
+/// Planes of a leaf.
+const LEAF: usize = 8;
+
+/// The face planes of a hull in a tree of boxes of their normals and offsets, as the depth of a point below the
+/// nearest of them is the least value of a function that is linear in both.
+struct Planes {
     /// A point inside.
     centre: DVec3,
-    /// Unit normal and distance from the centre of each face's plane.
+    /// Unit normal and distance from the centre of each plane, leaf by leaf.
     planes: Vec<(DVec3, f64)>,
-    /// For each face where its neighbours begin, and one entry past the end.
-    start: Vec<u32>,
-    neighbours: Vec<u32>,
+    /// Each node before its children, the first child right behind it.
+    nodes: Vec<Node>,
 }
 
-impl Faces {
+/// Planes that follow each other, and bounds of their numbers.
+struct Node {
+    low: DVec3,
+    high: DVec3,
+    least_offset: f64,
+    range: std::ops::Range<usize>,
+    /// The second child; none for a leaf.
+    second: Option<usize>,
+}
+
+impl Planes {
     fn of(hull: &ConvexPolyhedron) -> Self {
         let vertices = hull.vertices();
         let centre = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
-        let faces = (0..hull.face_count() as u32).map(|face| hull.face_vertices(face).collect());
-        let faces: Vec<Vec<u32>> = faces.collect();
-        let (mut planes, mut start, mut owner) = (Vec::new(), vec![0], Vec::new());
-        for (face, corners) in faces.iter().enumerate() {
-            let normal = hull.face_normal(face as u32);
-            let heights = corners.iter().map(|v| normal.dot(vertices[*v as usize] - centre));
-            planes.push((normal, heights.fold(f64::NEG_INFINITY, f64::max)));
-            owner.resize(owner.len() + corners.len(), face as u32);
-            start.push(owner.len() as u32);
-        }
-        let mut neighbours = vec![0; owner.len()];
-        for edge in sides(&faces).chunk_by(|(a, _), (b, _)| a == b) {
-            if let [(_, x), (_, y)] = *edge {
-                let [x, y] = [x, y].map(|side| (side >> 1) as usize);
-                (neighbours[x], neighbours[y]) = (owner[y], owner[x]);
-            }
-        }
-        Self { centre, planes, start, neighbours }
+        let plane = |face: u32| {
+            let normal = hull.face_normal(face);
+            let corners = hull.face_vertices(face).map(|v| vertices[v as usize]);
+            let heights = corners.map(|corner| normal.dot(corner - centre));
+            (normal, heights.fold(f64::NEG_INFINITY, f64::max))
+        };
+        let planes = (0..hull.face_count() as u32).map(plane).collect();
+        let mut tree = Self { centre, planes, nodes: Vec::new() };
+        tree.build(0..tree.planes.len());
+        tree
     }
 
-    /// How far a point is below a face.
-    fn below(&self, face: usize, p: DVec3) -> f64 {
-        let (normal, offset) = self.planes[face];
-        offset - normal.dot(p - self.centre)
+    fn build(&mut self, range: std::ops::Range<usize>) {
+        let part = &mut self.planes[range.clone()];
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let mut least_offset = f64::INFINITY;
+        for (normal, offset) in part.iter() {
+            (low, high) = (low.min(*normal), high.max(*normal));
+            least_offset = least_offset.min(*offset);
+        }
+        let number = self.nodes.len();
+        self.nodes.push(Node { low, high, least_offset, range: range.clone(), second: None });
+        if range.len() <= LEAF {
+            return;
+        }
+        let axis = (high - low).max_position();
+        let half = range.len() / 2;
+        part.select_nth_unstable_by(half, |a, b| a.0[axis].total_cmp(&b.0[axis]));
+        let middle = range.start + half;
+        self.build(range.start..middle);
+        self.nodes[number].second = Some(self.nodes.len());
+        self.build(middle..range.end);
     }
 
-    /// An upper bound of the depth of a point, from the face that the ray from the centre to it
-    /// passes, found by a walk from `near`, and from the faces around.
-    fn bound(&self, p: DVec3, near: &mut usize) -> f64 {
+    /// How far a point is below the plane that it is nearest to, or some plane that it is not deeper below than
+    /// `enough`. `near` is the plane to begin with, and the one that was found.
+    fn least_depth(&self, p: DVec3, enough: f64, near: &mut usize, looks: &mut u64) -> f64 {
         let ray = p - self.centre;
-        let passing = |face: usize| {
-            let (normal, offset) = self.planes[face];
-            normal.dot(ray) / offset.max(f64::MIN_POSITIVE)
+        let below = |plane: usize| self.planes[plane].1 - self.planes[plane].0.dot(ray);
+        // What rounding can make of a bound.
+        let slack = 1e-14 * ray.abs().element_sum();
+        let bound = |node: &Node| {
+            let most = (node.low * ray).max(node.high * ray).element_sum();
+            node.least_offset - most - 1e-14 * node.least_offset.abs() - slack
         };
-        let around = |face: usize| {
-            let range = self.start[face] as usize..self.start[face + 1] as usize;
-            self.neighbours[range].iter().map(|&f| f as usize)
-        };
-        let mut value = passing(*near);
-        // Every step goes up; the bound is for rounding.
-        for _ in 0..self.planes.len() {
-            let best = around(*near)
-                .map(|f| (passing(f), f))
-                .fold((value, *near), |a, b| if b.0 > a.0 { b } else { a });
-            if best.1 == *near {
-                break;
+        let mut least = below(*near);
+        let mut stack = vec![0];
+        *looks += 1;
+        while let Some(number) = stack.pop().filter(|_| least > enough) {
+            let node = &self.nodes[number];
+            *looks += 1;
+            if bound(node) >= least {
+                continue;
             }
-            (value, *near) = best;
+            let Some(second) = node.second else {
+                for plane in node.range.clone() {
+                    *looks += 1;
+                    let depth = below(plane);
+                    if depth < least {
+                        (least, *near) = (depth, plane);
+                    }
+                }
+                continue;
+            };
+            let children = [number + 1, second];
+            let [first, last] = children.map(|child| bound(&self.nodes[child]));
+            stack.extend(if first < last { [second, number + 1] } else { children });
         }
-        around(*near).map(|f| self.below(f, p)).fold(self.below(*near, p), f64::min)
+        least
     }
 }
 
@@ -222,6 +235,37 @@ mod tests {
         assert_eq!(Excess::of(&mesh, &hull).part_volume, None, "open");
         mesh.faces.clear();
         assert_eq!(Excess::of(&mesh, &hull).depth, None, "points have no surface");
+    }
+
+    /// The prism over a regular polygon, which is its own hull, and a ring of teeth within such a polygon.
+    fn wheel(corners: u32, teeth: f64) -> Mesh {
+        let outline = |z: f64| {
+            (0..corners).map(move |k| {
+                let angle = f64::from(k) / f64::from(corners) * std::f64::consts::TAU;
+                let radius = if k % 2 == 0 { 1.0 } else { 1.0 - teeth };
+                DVec3::new(radius * angle.cos(), radius * angle.sin(), z)
+            })
+        };
+        let n = corners;
+        let mut faces = vec![(0..n).rev().collect(), (n..2 * n).collect()];
+        faces.extend((0..n).map(|i| vec![i, (i + 1) % n, (i + 1) % n + n, i + n]));
+        Mesh::new(outline(0.0).chain(outline(1.0)).collect(), faces)
+    }
+
+    /// Faces with many corners have as many neighbours, and none of their points looks at all of them.
+    #[test]
+    fn planes_looked_at_grow_little_faster_than_the_mesh() {
+        for teeth in [0.0, 1e-3, 0.1] {
+            let looks = [1_000, 8_000].map(|corners| {
+                let mesh = wheel(corners, teeth);
+                let hull = ConvexPolyhedron::from_points(&mesh.vertices).unwrap();
+                let mut looks = 0;
+                let deep = depth_counted(&mesh, &hull, &mut looks).unwrap();
+                assert!((deep > 0.0) == (teeth > 0.0), "{teeth}: {deep}");
+                looks
+            });
+            assert!(looks[1] < 12 * looks[0] && looks[0] < 500_000, "{teeth}: {looks:?}");
+        }
     }
 
     /// Against all planes for all points.

@@ -196,7 +196,7 @@ export class Turning {
     const { time } = this.state!.motion;
     const marks: Times["marks"] = [{ t: 0, text: "start", kind: "low" }];
     const { time: met, outcome } = this.answer?.record ?? {};
-    if (met) marks.push({ t: met.lower, text: outcome === "grazing" ? "touches" : "first contact", kind: "stop" });
+    if (met) marks.push({ t: met.lower, text: outcome === "grazing" ? "touches" : outcome === "undecided" ? "proven free" : "first contact", kind: "stop" });
     marks.push({ t: 1, text: "end", kind: "low" });
     const { screw } = this;
     return { range: [0, 1], at: time, text: screw ? gone(screw.angle ? { ...screw, rise: 0 } : screw, time) : "", marks };

@@ -3,12 +3,12 @@
 
 use std::path::PathBuf;
 
-use colltrans::Pose;
 use colltrans::glam::DVec3;
 use colltrans::motion::{
-    Motion, MotionCast, MotionProofFile, MotionProofFiles, SolidMotionProofFile,
+    Motion, MotionCast, MotionOutcome, MotionProofFile, MotionProofFiles, SolidMotionProofFile,
 };
 use colltrans::record::{Ending, FeaturesRecord, Record, TimeRecord};
+use colltrans::{Pose, QueryError, Stalled};
 use colltrans_mesh::body::LoadError;
 
 use crate::args::{MotionArguments, Sides, Taken};
@@ -59,7 +59,7 @@ fn convex(
     }
     tell(arguments, parts.iter().flatten().flat_map(|part| &part.notes));
     let (found, proofs) = first_of_all(arguments, files, [&parts[0], &parts[1]], motions)?;
-    let Found { mut told, pair } = found;
+    let Found { mut told, pair, undecided } = found;
     let name =
         |k: usize| Some(files[k][pair[k]].display().to_string()).filter(|_| files[k].len() > 1);
     (told.record.moving, told.record.fixed) = (name(0), name(1));
@@ -73,7 +73,8 @@ fn convex(
     }
     let surface = |k: usize, pose: &Pose, origin| surface_of(&parts[k][pair[k]].body, pose, origin);
     let (record, motions) = (&told.record, motions.each_ref());
-    draw(arguments, Moved { record, motions, surface: &surface })
+    draw(arguments, Moved { record, motions, surface: &surface })?;
+    undecided.map_or(Ok(()), Err)
 }
 
 /// Asked of parts that need not be convex.
@@ -107,7 +108,16 @@ fn parts(
     }
     let surface = |k: usize, pose: &Pose, origin| bodies[k].surface(pose, origin);
     let (record, motions) = (&told.record, motions.each_ref());
-    draw(arguments, Moved { record, motions, surface: &surface })
+    draw(arguments, Moved { record, motions, surface: &surface })?;
+    match (record.outcome, record.time) {
+        (Ending::Undecided, Some(TimeRecord { lower, .. })) => Err(stalled(lower).into()),
+        _ => Ok(()),
+    }
+}
+
+/// The error of a search that took its maximum number of steps.
+pub(crate) fn stalled(free_until: f64) -> QueryError {
+    QueryError::NotConverged { reason: Stalled::Motion { free_until } }
 }
 
 fn draw(arguments: &MotionArguments, moved: Moved<'_>) -> Result<(), Failure> {
@@ -128,6 +138,8 @@ struct Found {
     told: Line,
     /// Which ones.
     pair: [usize; 2],
+    /// Why the answer proves less than was asked.
+    undecided: Option<Failure>,
 }
 
 /// What comes first of all pairs: an overlap when the motion begins, else the least time, else nothing; and the proofs of
@@ -150,6 +162,7 @@ fn first_of_all(
                 None => cast.keeping(arguments.keep)?,
             };
             let failed = |error| replay::motion_failure(error, &cast);
+            let mut undecided = None;
             let record = if arguments.clearance {
                 let mut record =
                     Record::of_motion_clearance(&cast.clearance().map_err(failed)?, &cast);
@@ -160,13 +173,16 @@ fn first_of_all(
                 record
             } else {
                 let outcome = cast.first_contact().map_err(failed)?;
+                if let MotionOutcome::Undecided(open) = &outcome {
+                    undecided = Some(failed(stalled(open.lower)));
+                }
                 if arguments.save_proof.is_some() {
                     proofs.push(MotionProofFile::of(&cast, &outcome));
                 }
                 Record::of_motion(&outcome, &cast)
             };
             let told = Line::of_parts(record, [moving, fixed]);
-            let found = Found { told, pair: [i, j] };
+            let found = Found { told, pair: [i, j], undecided };
             let upper = found.told.record.time.and_then(|time| time.upper);
             if let Some(upper) = upper.filter(|upper| meets.is_none_or(|least| *upper < least.0)) {
                 meets = Some((upper, [i, j]));
@@ -178,7 +194,8 @@ fn first_of_all(
     }
     // The command line has asked for at least one on each side.
     let mut first = first.ok_or_else(|| Failure::new(Code::Usage, "no meshes"))?;
-    if let (Ending::Grazing, Some((upper, [i, j]))) = (first.told.record.outcome, meets) {
+    let is_open = matches!(first.told.record.outcome, Ending::Grazing | Ending::Undecided);
+    if let (true, Some((upper, [i, j]))) = (is_open, meets) {
         // Two that come near each other hide none that meet later.
         let [moving, fixed] = [&files[0][i], &files[1][j]].map(|file| file.display());
         note(&format!("{moving} and {fixed} are proven to meet by {}", number(upper)));
@@ -207,6 +224,7 @@ pub(crate) fn words(told: &Line, motions: [&Motion; 2]) -> String {
         Ending::Blocked => "blocked: it can go so far\n".into(),
         Ending::Grazing => "grazing: the bodies come nearer than rounding can tell\n".into(),
         Ending::Overlapping => "overlapping: the bodies overlap when the motion begins\n".into(),
+        Ending::Undecided => "undecided: the search took its maximum number of steps\n".into(),
         _ => format!("free: {} throughout the motion\n", never(record)),
     };
     for (name, file) in [("moving mesh", &record.moving), ("fixed mesh", &record.fixed)] {
@@ -216,7 +234,12 @@ pub(crate) fn words(told: &Line, motions: [&Motion; 2]) -> String {
     }
     if let Some(time) = record.time {
         match time {
-            TimeRecord { lower, upper: Some(upper) } if record.outcome == Ending::Grazing => {
+            TimeRecord { lower, upper: None } if record.outcome == Ending::Undecided => {
+                line(&mut text, "free until", &number(lower));
+            }
+            TimeRecord { lower, upper: Some(upper) }
+                if matches!(record.outcome, Ending::Grazing | Ending::Undecided) =>
+            {
                 line(&mut text, "no earlier", &number(lower));
                 line(&mut text, "no later", &format!("{}, when others meet", number(upper)));
             }

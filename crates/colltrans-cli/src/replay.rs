@@ -3,7 +3,7 @@
 use std::io::ErrorKind;
 use std::path::PathBuf;
 
-use colltrans::motion::{MotionCase, MotionCast};
+use colltrans::motion::{MotionCase, MotionCast, MotionOutcome};
 use colltrans::record::{Question, Record};
 use colltrans::{Case, CaseError, Cast, QueryError};
 
@@ -40,7 +40,12 @@ fn of_motion(case: &MotionCase, as_json: bool) -> Result<String, Failure> {
     let cast = case.cast();
     let found = cast.first_contact()?;
     let told = Line::from(Record::of_motion(&found, &cast));
-    Ok(if as_json { told.json() } else { motion::words(&told, cast.motions()) })
+    let told = if as_json { told.json() } else { motion::words(&told, cast.motions()) };
+    if let MotionOutcome::Undecided(open) = &found {
+        print(&told)?;
+        return Err(motion::stalled(open.lower).into());
+    }
+    Ok(told)
 }
 
 /// What to say about a query that has no answer: one that did not converge is saved as a file.

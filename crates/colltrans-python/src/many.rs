@@ -188,7 +188,7 @@ impl Question {
             Self::Distance => &["apart", "meeting", "error"],
             Self::Depth => &["overlapping", "touching", "apart", "error"],
             Self::Within => &["closer", "farther", "undecided", "error"],
-            Self::Motion => &["contact", "grazing", "free", "overlapping", "error"],
+            Self::Motion => &["contact", "grazing", "free", "overlapping", "undecided", "error"],
             Self::MotionClearance => &["blocked", "free", "overlapping", "error"],
         }
     }

@@ -573,7 +573,9 @@ type Found = Of<MotionOutcome, MotionOutcome<()>>;
 /// ``outcome`` is ``"contact"``: they do not meet before ``lower``, and at ``upper`` they do;
 /// ``"grazing"``: they come nearer than rounding can tell, not before ``lower``, and nothing is said
 /// after it; ``"free"``: they never meet throughout the motion (never come as near as the gap to be kept, or
-/// never overlap by more than the tolerance); ``"overlapping"``: they overlap when it begins.
+/// never overlap by more than the tolerance); ``"overlapping"``: they overlap when it begins;
+/// ``"undecided"``: the search took its maximum number of steps, they do not meet before ``lower``, and whether
+/// they do later is open.
 #[pyclass(frozen, module = "colltrans")]
 pub(crate) struct FirstContact {
     found: Found,
@@ -586,12 +588,16 @@ answer!(FirstContact("outcome", "lower", "upper") of Found, MotionCast, |it| it.
 macro_rules! contact {
     ($of:expr, $contact:ident => $value:expr) => {
         match &$of {
-            Of::Convex(MotionOutcome::Contact($contact) | MotionOutcome::Grazing($contact)) => {
-                Some($value)
-            }
-            Of::Solids(MotionOutcome::Contact($contact) | MotionOutcome::Grazing($contact)) => {
-                Some($value)
-            }
+            Of::Convex(
+                MotionOutcome::Contact($contact)
+                | MotionOutcome::Grazing($contact)
+                | MotionOutcome::Undecided($contact),
+            ) => Some($value),
+            Of::Solids(
+                MotionOutcome::Contact($contact)
+                | MotionOutcome::Grazing($contact)
+                | MotionOutcome::Undecided($contact),
+            ) => Some($value),
             _ => None,
         }
     };
@@ -605,7 +611,7 @@ impl FirstContact {
 
 #[pymethods]
 impl FirstContact {
-    /// str: ``"contact"``, ``"grazing"``, ``"free"`` or ``"overlapping"``.
+    /// str: ``"contact"``, ``"grazing"``, ``"free"``, ``"overlapping"`` or ``"undecided"``.
     #[getter]
     fn outcome(&self, py: Python<'_>) -> PyResult<&'static str> {
         Ok(self.told(py)?.outcome.name())

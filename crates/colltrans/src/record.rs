@@ -187,7 +187,8 @@ pub enum Ending {
     Closer,
     /// They are farther apart than the length.
     Farther,
-    /// The length lies between the bounds of their distance.
+    /// The length lies between the bounds of their distance. Of a motion or a path: the search took its maximum number of
+    /// steps.
     Undecided,
     /// There is no answer.
     #[default]

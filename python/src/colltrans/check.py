@@ -315,6 +315,13 @@ class Body:
         x, y, z = (dot(row, v) for row in self.rows)
         return x, y, z
 
+    def skew(self) -> Fraction:
+        """By how much products of its axes are off those of a rotation, and a rounding."""
+        products = (
+            abs(dot(self.rows[i], self.rows[j]) - (i == j)) for i, j in product(range(3), repeat=2)
+        )
+        return max(products) + _TINY
+
     def heights(self, normal: Vector) -> Iterator[Fraction]:
         """Of all points along a normal of the world."""
         columns = [
@@ -1905,10 +1912,11 @@ class Span:
     def carried(self, a: Plane, until: Fraction) -> Fraction:
         """The same of a plane that the moving body carries along: little, where both spin as one.
 
-        Its normal is ``E n`` then. The way between points of both axes, of which only what is
-        across the axis is seen differently, turns by no more than the angle; the axes drift;
-        and with another angular velocity the fixed body's points are elsewhere by the difference
-        times their distance from the point of the axis.
+        Its normal is ``E n`` then. In the frame that turns by ``E`` the moving body rests, and the
+        fixed one only translates: the way between points of both axes and their drift turn by
+        ``E'``, which leaves their parts along the axis as they are, and sees those across it along
+        the part of ``n`` across it. With another angular velocity the fixed body's points are
+        elsewhere by the difference times their distance from the point of the axis.
         """
         p, q = self.moving, self.fixed
         h = until - a.time
@@ -1916,12 +1924,16 @@ class Span:
         beside = p.across(minus(feet[1], feet[0]))
         swung = root_above(dot(beside, beside)) * min(abs(p.rate) * h, Fraction(2))
         drift = minus(q.way, p.way)
-        lost = swung + root_above(dot(drift, drift)) * h
+        sideways, n = p.across(drift), p.across(a.normal)
+        lost = (swung + root_above(dot(sideways, sideways)) * h) * root_above(dot(n, n))
+        along = dot(a.normal, p.axis) * dot(drift, p.axis) / p.square * h
+        lost -= min(along, Fraction())
         if (p.axis, p.rate) != (q.axis, q.rate):
             spins = minus(scaled(q.axis, q.rate * q.inverse), scaled(p.axis, p.rate * p.inverse))
             room = 8 * _TINY * (abs(p.rate) + abs(q.rate))
-            lost += (root_above(dot(spins, spins)) + room) * h * q.reach
-        return lost * root_above(dot(a.normal, a.normal)) + 8 * p.off(a.normal)
+            elsewhere = (root_above(dot(spins, spins)) + room) * h * q.reach
+            lost += elsewhere * root_above(dot(a.normal, a.normal))
+        return lost + 8 * p.off(a.normal)
 
     def ends(self, pairs: Any, time: Fraction) -> list[tuple[Vector, Vector]]:
         """The points that pairs of vertices name, at a time."""
@@ -2795,6 +2807,48 @@ class Carried:
         return first, second, third
 
 
+    def third_along(self, row: int, normals: Sequence[Vector]) -> Fraction:
+        """At least the third derivative of all points along normals between two, within a row.
+
+        Each of its terms begins with the angular velocity of its first joint, so along ``n`` it has
+        the part of ``n`` across that axis as a factor. Two turning joints one after the other keep
+        the angle between their axes, and the sine of a sum of angles is at most the sum of sines.
+        """
+        if not self.stages:
+            return Fraction()
+        off = 16 * (len(self.stages) + 1) * max(of.origin.skew() for of in self.stages)
+        longest = root_above(max(dot(n, n) for n in normals))
+        axis: Vector | None = None
+        between: list[Body] = []
+        along, third = Fraction(), Fraction()
+        turning: list[tuple[Fraction, Fraction]] = []
+        for stage, lever in zip(self.stages, self.levers, strict=True):
+            between.append(stage.origin)
+            if stage.kind == "fixed":
+                continue
+            rate, later = abs(self.rate(row, stage)), Fraction()
+            for first, share in reversed(turning):
+                if stage.kind == "sliding":
+                    third += 3 * share * rate * first * (2 * later + first)
+                else:
+                    third += 3 * share * first * rate * (2 * later + first + rate) * lever
+                later += first
+            if stage.kind == "sliding":
+                continue
+            there = stage.axis
+            for origin in reversed(between):
+                there = origin.turn(there)
+            before = normals if axis is None else [scaled(axis, longest)]
+            square = dot(there, there) * (1 if axis is None else dot(axis, axis))
+            aside = max(dot(v, v) for v in (cross(n, there) for n in before))
+            along += root_above(aside / square) + off * longest
+            share = min(along, longest)
+            third += share * rate**3 * lever
+            turning.append((rate, share))
+            axis, between = stage.axis, []
+        return third * (1 + off)
+
+
 @dataclass
 class Couple:
     """Two convex pieces of bodies that joints carry, from row to row."""
@@ -2831,7 +2885,7 @@ class Couple:
         """Whether two planes of a row prove all between them.
 
         Along ``n(x)`` a point's height has the second derivative ``h^2 n . p'' + 2 h dn . p'``.
-        Its own one is at most ``h^3`` times the third one of ``p``, and ``3 h^2 |dn| |p''|``.
+        Its own one is at most ``h^3`` times the third one of ``n . p``, and ``3 h^2 |dn| |p''|``.
         So it is nowhere more than the mean of what it is at both ends and half of that.
         """
         h = b.time - a.time
@@ -2843,13 +2897,14 @@ class Couple:
         c = Fraction()
         for of, points, sign in ((self.moving, self.own, -1), (self.fixed, self.other, 1)):
             first, second, third = of.most(row)
+            third = min(longest * third, of.third_along(row, (a.normal, b.normal)))
             loose = h * h * longest * second + 2 * h * beside * first
             ends = []
             for plane in (a, b):
                 found = of.at(row, plane.time)
                 n, along = scaled(plane.normal, sign * h * h), scaled(dn, sign * h)
                 ends.append(max(found.bends(found.place(v), n, along) for v in points))
-            changes = h * h * (h * longest * third + 3 * beside * second)
+            changes = h * h * (h * third + 3 * beside * second)
             room = 64 * _SURE * of.size * (1 + sum(of.most(row)))
             c += min(loose, (ends[0] + ends[1] + changes) / 2 + room)
         return stays(a.gap, b.gap, c)

@@ -39,6 +39,11 @@ export function say({ record }: PageMotion, screw: Screw, keep: number): Said {
         kind: "care", headline: `They graze at ${gone(screw, time!.lower)}`,
         sentence: `They come nearer than rounding can tell. They do not ${near} before; whether they do then, and what comes later, is not said. A tolerance lets them go on.`, rows,
       };
+    case "undecided":
+      return {
+        kind: "care", headline: `Free until ${gone(screw, time!.lower)}, then open`,
+        sentence: `The search took its maximum number of steps. Proven: they do not ${near} before. Whether they do later is open.`, rows,
+      };
     case "overlapping":
       return { kind: "care", headline: "They overlap where they begin", sentence: keep ? "Or they are nearer than the gap to be kept." : "Nothing is said of later times.", rows };
     default:

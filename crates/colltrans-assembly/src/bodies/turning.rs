@@ -55,7 +55,9 @@ impl Bodies<'_> {
                 let found = cast.start_overlap()?;
                 return Ok(Turned::Overlapping(found.and_then(|found| found.least_tolerance)));
             }
-            MotionOutcome::Contact(met) | MotionOutcome::Grazing(met) => {
+            MotionOutcome::Contact(met)
+            | MotionOutcome::Grazing(met)
+            | MotionOutcome::Undecided(met) => {
                 return Ok(Turned::Blocked(met.lower));
             }
             MotionOutcome::Free(free) => free.steps.nodes,
@@ -79,9 +81,9 @@ impl Bodies<'_> {
         let cast = MotionCast::new(moving.along(motion), fixed.at(Pose::IDENTITY)).ok()?;
         match cast.first_contact().ok()? {
             MotionOutcome::Free(free) => Some((1.0, free.steps.nodes)),
-            MotionOutcome::Contact(met) | MotionOutcome::Grazing(met) => {
-                Some((met.lower, met.steps.nodes))
-            }
+            MotionOutcome::Contact(met)
+            | MotionOutcome::Grazing(met)
+            | MotionOutcome::Undecided(met) => Some((met.lower, met.steps.nodes)),
             _ => None,
         }
     }

@@ -117,6 +117,9 @@ fn headline(record: &Record) -> String {
         (Ending::Grazing, Some(time)) => {
             format!("Grazing: perhaps a contact at {} of the motion", short(time.lower))
         }
+        (Ending::Undecided, Some(time)) => {
+            format!("Undecided: free until {} of the motion", short(time.lower))
+        }
         (Ending::Overlapping, _) => "Overlapping: the bodies overlap when it begins".into(),
         _ => format!("Free: {} throughout the motion", never(record)),
     }

@@ -180,7 +180,10 @@ fn told<P, B: Body>(
     outcome: &MotionOutcome<P>,
     bodies: [&B; 2],
 ) -> MotionAnswer {
-    let (MotionOutcome::Contact(at) | MotionOutcome::Grazing(at)) = outcome else {
+    let (MotionOutcome::Contact(at)
+    | MotionOutcome::Grazing(at)
+    | MotionOutcome::Undecided(at)) = outcome
+    else {
         return MotionAnswer { kind, record, pose: None, lit: None };
     };
     let MotionContact { poses, features, .. } = at;
@@ -203,7 +206,7 @@ fn prove(query: &Query<'_>) -> Result<Answer, String> {
         Query::Convex(cast) => {
             let outcome = cast.first_contact().map_err(said)?;
             let proof = outcome.proof();
-            (cast.verify(proof), proof.spans.iter().map(Vec::len).sum())
+            (cast.verify(proof), proof.planes())
         }
         Query::Solid(cast) => {
             let outcome = cast.certified_first_contact().map_err(said)?;

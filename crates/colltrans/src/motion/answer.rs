@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::solid::SolidMotionProof;
 use crate::answer::{Depth, NearPoints};
 use crate::body::{Features, Pose};
 
@@ -23,6 +24,9 @@ pub enum MotionOutcome<P = MotionProof> {
     Free(MotionFree<P>),
     /// They overlap at time 0.
     Overlapping(MotionContact<P>),
+    /// The search took its maximum number of steps. Proven is that they do not meet before [`MotionContact::lower`];
+    /// whether they do later is open.
+    Undecided(MotionContact<P>),
 }
 
 /// A first contact, or what may be one.
@@ -101,6 +105,10 @@ pub struct MotionProof {
     /// That the bodies meet at a time.
     #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::written::given"))]
     pub meeting: Option<Meeting>,
+    /// Proof of the same question about the bodies as solids, in the place of planes. `None` unless the search between
+    /// convex bodies took its maximum number of steps.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Option::is_none"))]
+    pub solids: Option<Box<SolidMotionProof>>,
 }
 
 /// A plane between the bodies at a time.
@@ -150,11 +158,29 @@ pub struct Meeting {
     pub met: Met,
 }
 
+impl MotionProof {
+    /// How many planes it has; of solids, entries of the cover.
+    pub fn planes(&self) -> usize {
+        let entries = |solids: &SolidMotionProof| -> usize {
+            solids.spans.iter().map(|span| span.cover.len()).sum()
+        };
+        let planes: usize = self.spans.iter().map(Vec::len).sum();
+        planes + self.solids.as_deref().map_or(0, entries)
+    }
+
+    /// Up to which time its planes reach; 0 if there are none.
+    pub(super) fn reached(&self) -> f64 {
+        self.spans.iter().flatten().last().map_or(0.0, |plane| plane.time)
+    }
+}
+
 impl<P> MotionOutcome<P> {
     /// What proves it.
     pub const fn proof(&self) -> &P {
         match self {
-            Self::Contact(of) | Self::Grazing(of) | Self::Overlapping(of) => &of.proof,
+            Self::Contact(of) | Self::Grazing(of) | Self::Overlapping(of) | Self::Undecided(of) => {
+                &of.proof
+            }
             Self::Free(of) => &of.proof,
         }
     }
@@ -162,7 +188,9 @@ impl<P> MotionOutcome<P> {
     /// How much work it was.
     pub const fn steps(&self) -> MotionSteps {
         match self {
-            Self::Contact(of) | Self::Grazing(of) | Self::Overlapping(of) => of.steps,
+            Self::Contact(of) | Self::Grazing(of) | Self::Overlapping(of) | Self::Undecided(of) => {
+                of.steps
+            }
             Self::Free(of) => of.steps,
         }
     }

@@ -5,10 +5,12 @@
 //! w)`. The axes drift apart evenly. The least gap over an interval is at least that of both extremes apart:
 //! of the fixed body's lowest point at any time, the moving one's highest, and the axes'.
 //!
-//! *Carried* along by the moving body a plane has the normal `E n`, and stays where it is for that one. Where the fixed
-//! body turned by the same `E`, so it would for that one, but for the way `c` between points of both axes, of which `E n`
-//! sees what is across the axis turned round, and what the axes drift apart. With another angular velocity its points
-//! are elsewhere by at most the difference, times their distances from the axis' point.
+//! *Carried* along by the moving body, a plane has the normal `E n`. In the frame that turns by `E`, the moving body
+//! rests. If the fixed body also turns by `E`, it only translates in that frame: by `E' (c + v t) - c`, where `c` is the
+//! vector between points of both axes and `v` the velocity of one relative to the other. Along `n`, the part of `v` along
+//! the axis counts exactly. The parts of `c` and `v` across the axis turn, so they count with the part of `n` across the
+//! axis. If the angular velocities differ, points of the fixed body are elsewhere by at most the difference, times
+//! their distances from the point of the axis.
 
 use glam::DVec3;
 
@@ -74,8 +76,8 @@ fn rise<B: Hull>(
     highest - before
 }
 
-/// The same of a plane that is carried along by the moving body; `offset` is from the moving body's axis to the fixed one's
-/// when it begins, `h` how long.
+/// Returns how much of its gap a plane loses at most while the moving body carries it along for a time `h`; `offset` is
+/// the vector from the moving body's axis to the fixed one's when that begins.
 pub(super) fn carried<B: Hull>(span: &Span<B>, offset: DVec3, h: f64, normal: DVec3) -> f64 {
     let [p, q] = [span.piece(0), span.piece(1)];
     if p.rate == 0.0 || q.rate == 0.0 {
@@ -87,17 +89,17 @@ pub(super) fn carried<B: Hull>(span: &Span<B>, offset: DVec3, h: f64, normal: DV
     let swung = (p.rate.abs() * h).min(2.0) * normal.length();
     let spins = q.axis * q.rate - p.axis * p.rate;
     let other = if spins == DVec3::ZERO { 0.0 } else { spins.length() + ROUNDED * p.rate.abs() };
-    let elsewhere = other * (arm(q) + span.body(1).reach());
-    let drift = span.drift().length();
-    (beside * swung + (elsewhere + drift) * h * normal.length()) * (1.0 + 1e-12)
+    let elsewhere = other * (arm(q) + span.body(1).reach()) * normal.length();
+    let drift = span.drift();
+    let sinking = (-normal.dot(p.axis) * drift.dot(p.axis)).max(0.0);
+    let sideways = across(drift, p.axis).length() * across(normal, p.axis).length();
+    let rounded = ROUNDED * drift.length() * normal.length();
+    (beside * swung + (elsewhere + sinking + sideways + rounded) * h) * (1.0 + 1e-12)
 }
 
-/// Whether both bodies spin as one, to rounding, so that halving time leads no further.
+/// Checks whether both bodies have one angular velocity, to rounding.
 pub(super) fn is_one_spin<B: Hull>(span: &Span<B>) -> bool {
     let [p, q] = [span.piece(0), span.piece(1)];
     let spins = q.axis * q.rate - p.axis * p.rate;
-    let size = span.body(0).reach() + span.body(1).reach();
-    p.rate != 0.0
-        && spins.length() <= AS_ONE * p.rate.abs()
-        && span.drift().length() <= AS_ONE * size
+    p.rate != 0.0 && spins.length() <= AS_ONE * p.rate.abs()
 }

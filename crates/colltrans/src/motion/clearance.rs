@@ -8,7 +8,7 @@ use super::answer::{MotionContact, MotionFree, MotionOutcome, MotionProof};
 use super::look::{ConvexLooker, Look, Looker};
 use super::search::{Advanced, End, advance};
 use super::span::{Span, spans};
-use super::{MotionCast, check_fine, usual_tolerance};
+use super::{MotionCast, check_fine, stalled, usual_tolerance};
 use crate::answer::Bounded;
 use crate::body::Hull;
 use crate::pair::Pair;
@@ -133,6 +133,7 @@ impl MotionCast<'_> {
                 return Ok(MotionClearance::Overlapping(self.overlap_at_start()));
             }
             MotionOutcome::Contact(shrunk) | MotionOutcome::Grazing(shrunk) => shrunk,
+            MotionOutcome::Undecided(undecided) => return Err(stalled(&undecided)),
         };
         let bounds = [shrunk.lower, shrunk.upper];
         let closing = spans(bodies, motions, cleared.keep);

@@ -12,6 +12,9 @@ use super::span::{Instant, Span};
 use crate::body::Hull;
 use crate::body::motion::Moved;
 
+/// Axes whose cross product is shorter are parallel.
+const PARALLEL: f64 = 1e-9;
+
 /// Two bodies during a span of time.
 pub(super) trait Course<'a> {
     /// What the bodies are.
@@ -66,6 +69,18 @@ pub(super) trait Course<'a> {
     ) -> Option<DVec3> {
         let _ = (at, points);
         None
+    }
+
+    /// The normal of a plane across the shortest way from the moving body's axis to the fixed one's, if both turn: of two
+    /// round bodies it parts all that their turns sweep.
+    fn between_axes(&self, at: &Instant<'a, Self::Moved, Self::Body>) -> Option<DVec3> {
+        let _ = at;
+        None
+    }
+
+    /// Sum of the bodies' angular velocities, in radians in a unit of time.
+    fn turning(&self) -> f64 {
+        0.0
     }
 
     /// The same, if the plane is carried along by the moving body: little, where both spin as one.
@@ -171,6 +186,22 @@ impl<'a, B: Hull> Course<'a> for Span<'a, B> {
             across(to, self.piece(0).axis)
         };
         across.try_normalize()
+    }
+
+    fn between_axes(&self, at: &Instant<'a, [Moved; 2], B>) -> Option<DVec3> {
+        let [p, q] = [self.piece(0), self.piece(1)];
+        if p.rate == 0.0 || q.rate == 0.0 {
+            return None;
+        }
+        let way = at.bodies.offset - (at.moved[1].arm - at.moved[0].arm);
+        let normal = p.axis.cross(q.axis);
+        let are_parallel = normal.length() < PARALLEL;
+        let normal = if are_parallel { across(way, p.axis) } else { normal };
+        normal.try_normalize().map(|n| if n.dot(way) < 0.0 { -n } else { n })
+    }
+
+    fn turning(&self) -> f64 {
+        self.piece(0).rate.abs() + self.piece(1).rate.abs()
     }
 
     fn carried(&self, from: &Instant<'a, [Moved; 2], B>, until: f64, normal: DVec3) -> f64 {

@@ -7,7 +7,8 @@ use serde::de::Error as _;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Motion, MotionCast, MotionOutcome, MotionProof, MotionProofError, Moving, check_tolerated,
+    Motion, MotionCast, MotionOutcome, MotionProof, MotionProofError, Moving, SolidMotionProofFile,
+    check_tolerated,
 };
 use crate::body::ConvexPolyhedron;
 use crate::cast::CaseError;
@@ -150,11 +151,17 @@ impl MotionProofFile {
         self.case.cast().verify(&self.proof)
     }
 
-    /// As a file: numbers that read back as the same bits.
+    /// As a file: numbers that read back as the same bits. A proof about the same bodies [as
+    /// solids](MotionProof::solids) is written as a [`SolidMotionProofFile`].
     ///
     /// # Panics
     /// Never: all numbers can be written.
     pub fn to_json(&self) -> String {
+        let cast = self.case.cast();
+        let solids = self.proof.solids.as_ref().and_then(|_| cast.between_solids().ok());
+        if let Some((_, file)) = solids.and_then(|cast| SolidMotionProofFile::answer(&cast).ok()) {
+            return file.to_json();
+        }
         serde_json::to_string(&self.written()).expect("numbers and names")
     }
 

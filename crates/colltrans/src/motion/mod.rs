@@ -60,6 +60,8 @@ mod soon;
 mod span;
 mod verify;
 
+use std::borrow::Cow;
+
 use derive_where::derive_where;
 
 pub use self::answer::{
@@ -77,6 +79,7 @@ use self::span::{Span, spans};
 pub use self::verify::MotionProofError;
 pub use crate::body::error::MotionError;
 pub use crate::body::motion::{Motion, Moving, Piece as MotionPiece};
+use crate::body::solid::Solid;
 use crate::body::{ConvexPolyhedron, Hull};
 use crate::number::noise::Noise;
 use crate::number::range::MAX_MAGNITUDE;
@@ -167,10 +170,53 @@ impl MotionCast<'_> {
 
     /// When do the bodies first meet?
     ///
+    /// If the search between convex bodies takes its maximum number of steps, the question is asked of the same bodies as
+    /// solids. If that search has no answer either, or a depth is tolerated, the answer is [`MotionOutcome::Undecided`].
+    ///
     /// # Errors
-    /// A search that does not end: seen of bodies that are nearly straight lines, two in a million settings. Where the bodies
-    /// may meet in a motion whose places are off by more than they are large.
+    /// Where the bodies may meet in a motion whose places are off by more than they are large.
     pub fn first_contact(&self) -> Result<MotionOutcome, QueryError> {
+        let found = self.first_contact_of_convex()?;
+        let MotionOutcome::Undecided(undecided) = &found else { return Ok(found) };
+        Ok(self.as_solids(undecided).unwrap_or(found))
+    }
+
+    /// The question about the same bodies as solids, as they are.
+    fn between_solids(&self) -> Result<MotionCast<'_, Solid>, QueryError> {
+        let moving = Moving { body: self.moving.body, motion: Cow::Borrowed(&*self.moving.motion) };
+        let fixed = Moving { body: self.fixed.body, motion: Cow::Borrowed(&*self.fixed.motion) };
+        MotionCast::between(moving, fixed)?.tolerating(0.0)?.keeping(self.keep)
+    }
+
+    /// Returns the answer of the search between solids; `None` if it proves no more than what is undecided.
+    fn as_solids(&self, undecided: &MotionContact) -> Option<MotionOutcome> {
+        let outcome = self.between_solids().ok()?.certified_first_contact().ok()?;
+        let mut steps = undecided.steps;
+        steps += outcome.steps();
+        let solids = Some(Box::new(outcome.proof().clone()));
+        let proof = MotionProof { solids, ..MotionProof::default() };
+        let touching = |bounds: [f64; 2], proof| {
+            let all = spans(self.bodies(), self.motions(), self.keep);
+            let span = all.iter().rev().find(|span| span.from <= bounds[0])?;
+            Some(contact(span, &mut ConvexLooker::default(), bounds, proof, steps))
+        };
+        match &outcome {
+            MotionOutcome::Free(_) => Some(MotionOutcome::Free(MotionFree { proof, steps })),
+            MotionOutcome::Contact(of) => {
+                touching([of.lower, of.upper], proof).map(MotionOutcome::Contact)
+            }
+            MotionOutcome::Grazing(of) => {
+                touching([of.lower, of.upper], proof).map(MotionOutcome::Grazing)
+            }
+            MotionOutcome::Undecided(of) if of.lower > undecided.lower => {
+                touching([of.lower, of.upper], proof).map(MotionOutcome::Undecided)
+            }
+            MotionOutcome::Undecided(_) | MotionOutcome::Overlapping(_) => None,
+        }
+    }
+
+    fn first_contact_of_convex(&self) -> Result<MotionOutcome, QueryError> {
+        use MotionOutcome::{Contact, Free, Grazing, Overlapping, Undecided};
         let (mut proof, mut steps) = (MotionProof::default(), MotionSteps::default());
         for span in spans(self.bodies(), self.motions(), self.keep) {
             let mut looker = ConvexLooker::default();
@@ -180,17 +226,24 @@ impl MotionCast<'_> {
             match end {
                 End::Free => {}
                 End::Met(time, met) => {
+                    let bounds = [proof.reached(), time];
                     proof.meeting = Some(Meeting { time, met });
-                    return Ok(contact(&span, &mut looker, proof, steps));
+                    let contact = contact(&span, &mut looker, bounds, proof, steps);
+                    let of = if time == 0.0 { Overlapping } else { Contact };
+                    return Ok(of(contact));
                 }
-                End::Blurred => {
-                    check_fine(self.bodies(), span.error)?;
-                    return Ok(contact(&span, &mut looker, proof, steps));
+                End::Blurred | End::Stalled => {
+                    if end == End::Blurred {
+                        check_fine(self.bodies(), span.error)?;
+                    }
+                    let bounds = [proof.reached(), f64::INFINITY];
+                    let contact = contact(&span, &mut looker, bounds, proof, steps);
+                    let of = if end == End::Blurred { Grazing } else { Undecided };
+                    return Ok(of(contact));
                 }
-                End::Stalled => return Err(QueryError::NotConverged { reason: Stalled::Motion }),
             }
         }
-        Ok(MotionOutcome::Free(MotionFree { proof, steps }))
+        Ok(Free(MotionFree { proof, steps }))
     }
 
     /// Checks a proof without a search: all vertices are looked at. Returns up to which time the bodies are
@@ -215,30 +268,26 @@ fn check_fine<B: Hull>(bodies: [&B; 2], off: f64) -> Result<(), QueryError> {
     if off > size { Err(QueryError::Coarse { off, size }) } else { Ok(()) }
 }
 
-/// What is to be said where the bodies meet, or may.
+/// Returns what is reported where the bodies meet, or may, between two times of a span.
 fn contact(
     span: &Span,
     looker: &mut ConvexLooker,
+    [lower, upper]: [f64; 2],
     proof: MotionProof,
     steps: MotionSteps,
-) -> MotionOutcome {
-    let lower = proof.spans.iter().flatten().last().map_or(0.0, |plane| plane.time);
-    let upper = proof.meeting.as_ref().map_or(f64::INFINITY, |meeting| meeting.time);
+) -> MotionContact {
     let bodies = span.instant(lower).bodies;
     let poses = [bodies.moving_placed().pose, bodies.fixed_placed().pose];
     // What is proven does not hang on it.
     let near = looker.distance(bodies);
     let points = near.map(|near| [near.on_moving, near.on_fixed]);
     let (normal, features) = near.map_or((None, None), |near| (near.normal, near.features));
-    let starts = upper == 0.0;
-    let contact = MotionContact { lower, upper, poses, points, normal, features, proof, steps };
-    if starts {
-        MotionOutcome::Overlapping(contact)
-    } else if upper.is_finite() {
-        MotionOutcome::Contact(contact)
-    } else {
-        MotionOutcome::Grazing(contact)
-    }
+    MotionContact { lower, upper, poses, points, normal, features, proof, steps }
+}
+
+/// Returns the error of a search that took its maximum number of steps, where an answer cannot carry that.
+fn stalled(undecided: &MotionContact<impl Sized>) -> QueryError {
+    QueryError::NotConverged { reason: Stalled::Motion { free_until: undecided.lower } }
 }
 
 /// What rounding can do to a fit, of bodies as they are.

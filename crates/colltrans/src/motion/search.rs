@@ -20,8 +20,12 @@ use super::bend::{SPARE, most_bend};
 use super::course::Course;
 use super::look::{Look, Looker};
 
-/// More steps than an answer has taken.
+/// Maximum number of steps of a search, and how many more for each radian by which the bodies turn.
 const MOST: usize = 20_000;
+const MOST_A_RADIAN: f64 = 200.0;
+
+/// Number of planes from which on a search is long.
+const PATIENCE: usize = 500;
 
 /// Which share of the step that the bound allows is taken.
 const STEP: f64 = 0.95;
@@ -51,6 +55,9 @@ const SHORT: f64 = 64.0;
 /// lead on, or at the end of a span.
 const SWING: f64 = 4.0;
 const KEPT: f64 = 0.75;
+
+/// Share of its gap that a plane may lose while both bodies carry it along to the next sample.
+const CARRIED: f64 = 0.7;
 const SPENT: f64 = 0.999;
 
 /// How often a time after a blur is doubled to find bodies that meet.
@@ -141,7 +148,9 @@ pub(super) fn advance<'a, C: Course<'a>, L: Looker<C::Body>>(
 
 impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
     fn run(&mut self) -> End<L::Met> {
-        for _ in 0..MOST {
+        let [from, to] = self.course.times();
+        let turned = self.course.turning() * (to - from);
+        for _ in 0..MOST + (MOST_A_RADIAN * turned) as usize {
             if let Some(next) = self.stack.last().copied() {
                 if self.joins(&{ self.left }, &next) {
                     self.stack.pop();
@@ -200,10 +209,13 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
     ) -> bool {
         let enough = most_bend([left.gap, next.gap], 2.0 * SPARE);
         let normals = [left.normal, next.normal];
-        let found = self.course.bend([&left.at, &next.at], normals, enough, &L::SUPPORTS);
+        // A loose bound costs less. A long search gains more by steps as long as the tight one allows.
+        let is_long = self.planes.len() > PATIENCE;
+        let (asked, least) = if is_long { (f64::NEG_INFINITY, 1e-9) } else { (enough, 1e-3) };
+        let found = self.course.bend([&left.at, &next.at], normals, asked, &L::SUPPORTS);
         let h = next.time() - left.time();
         if h > 0.0 {
-            self.curvature = (found.max(0.0) / h / h).max(1e-3 * self.usual);
+            self.curvature = (found.max(0.0) / h / h).max(least * self.usual);
         }
         h == 0.0 || found <= enough || self.is_carried(left, next.time())
     }
@@ -280,7 +292,7 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
         if self.ahead == Ahead::Nothing && self.is_carried(&self.left, end) {
             return end;
         }
-        let time = from + if self.is_at_floor() { self.beyond() } else { self.step() };
+        let time = from + if self.is_at_floor() { self.beyond() } else { self.far_step() };
         let between = |time: f64| time > from && time < end;
         match self.ahead {
             Ahead::Nothing if time >= end || time.is_nan() => end,
@@ -296,6 +308,16 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
         let off = DOUBT * self.curvature.max(-self.slowing) * rest * rest / self.left.rate;
         let half = 0.5 * rest;
         if self.missed || off.is_nan() || off <= 0.0 { half } else { off.max(self.pad()).min(half) }
+    }
+
+    /// Returns the step of [`Self::step`], or a longer one up to which both bodies carry the plane along.
+    fn far_step(&self) -> f64 {
+        let (step, from) = (self.step(), self.left.time());
+        let lost = self.course.carried(&self.left.at, from + step, self.left.normal);
+        // Little more is lost in proportion to the time.
+        let carried = CARRIED * step * self.left.gap / lost;
+        let is_longer = carried > SWING * step && self.is_carried(&self.left, from + carried);
+        if is_longer { carried } else { step }
     }
 
     /// As far as the bound reaches, but to a little before the gap closes.
@@ -379,19 +401,24 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
     fn swings_to_end(&mut self) -> bool {
         let (left, course) = (self.left, self.course);
         let at = course.instant(self.end);
-        let ends_with = |look: Look<'a, C::Moved, C::Body>| {
-            if course.lost([&left.at, &at], look.normal) >= SPENT * look.gap {
+        let ends_with = |look: Look<'a, C::Moved, C::Body>, most: f64| {
+            if course.lost([&left.at, &at], look.normal) >= most {
                 return None;
             }
             let gap = course.claimed_gap(&at, look.normal);
             (gap > 0.0).then_some((look, gap))
         };
-        let aside = || {
-            let normal = course.aside(&left.at, left.points)?;
+        let along = |normal: DVec3| {
             let gap = course.claimed_gap(&left.at, normal);
             (gap > 0.0).then_some(Look { normal, gap, ..left })
         };
-        let Some((first, gap)) = ends_with(left).or_else(|| ends_with(aside()?)) else {
+        let plain = |look: Look<'a, C::Moved, C::Body>| ends_with(look, SPENT * look.gap);
+        let aside = || plain(along(course.aside(&left.at, left.points)?)?);
+        let between = || {
+            let look = along(course.between_axes(&left.at)?)?;
+            ends_with(look, look.gap - look.floor)
+        };
+        let Some((first, gap)) = plain(left).or_else(aside).or_else(between) else {
             return false;
         };
         if first.normal != left.normal {

@@ -84,6 +84,11 @@ fn because(reason: Option<&CertificateError>) -> String {
 }
 
 pub(super) fn verify(cast: &MotionCast, proof: &MotionProof) -> Result<[f64; 2], MotionProofError> {
+    if let Some(solids) = &proof.solids {
+        let plain = proof.spans.is_empty() && proof.meeting.is_none();
+        let asked = cast.between_solids().ok().filter(|_| plain && cast.keep >= 0.0);
+        return asked.ok_or(MotionProofError::Start)?.verify(solids);
+    }
     let mut reached = 0.0;
     let mut last = None;
     let spans = spans(cast.bodies(), cast.motions(), cast.keep);

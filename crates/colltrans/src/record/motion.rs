@@ -20,7 +20,7 @@ pub struct TimeRecord {
 impl Record {
     /// Of [`MotionCast::first_contact`] of convex bodies; `cast` is the one that was asked.
     pub fn of_motion(outcome: &MotionOutcome, cast: &MotionCast<'_>) -> Self {
-        let planes = outcome.proof().spans.iter().map(Vec::len).sum();
+        let planes = outcome.proof().planes();
         let tolerance = Some(cast.tolerance()).filter(|depth| *depth > 0.0);
         Self { planes: Some(planes), tolerance, ..Self::of_motions(outcome, cast) }
     }
@@ -76,6 +76,7 @@ impl Record {
         match outcome {
             MotionOutcome::Contact(contact) => record.touching(Ending::Contact, contact, cast),
             MotionOutcome::Grazing(contact) => record.touching(Ending::Grazing, contact, cast),
+            MotionOutcome::Undecided(contact) => record.touching(Ending::Undecided, contact, cast),
             MotionOutcome::Free(_) => Self { outcome: Ending::Free, ..record },
             MotionOutcome::Overlapping(_) => Self { outcome: Ending::Overlapping, ..record },
         }

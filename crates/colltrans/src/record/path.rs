@@ -11,7 +11,8 @@ use crate::motion::path::{PathCast, PathContact, PathOutcome, Place};
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 #[non_exhaustive]
 pub struct PathRecord {
-    /// `contact`; `grazing`: nearer than rounding can tell; `free` throughout; `overlapping` where the path begins.
+    /// `contact`; `grazing`: nearer than rounding can tell; `free` throughout; `overlapping` where the path begins;
+    /// `undecided`: the search took its maximum number of steps, and `time.lower` is up to when none meet.
     pub outcome: Ending,
     /// Of a contact, in the times of the path; of a grazing one the upper bound is missing.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -36,6 +37,12 @@ pub struct PathRecord {
     /// The names of those that were not, though a joint may move one against the other: nothing is said of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<[String; 2]>,
+    /// Where the path begins with overlaps: the names of all pairs that overlap there.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub overlaps: Vec<[String; 2]>,
+    /// For people: in what the answer is about less than the input.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
     /// How often two bodies were looked at.
     pub looks: u32,
     /// Planes in the proof.
@@ -50,16 +57,32 @@ impl PathRecord {
             PathOutcome::Grazing(_) => Ending::Grazing,
             PathOutcome::Free(_) => Ending::Free,
             PathOutcome::Overlapping(_) => Ending::Overlapping,
+            PathOutcome::Undecided(_) => Ending::Undecided,
         };
         let (looks, planes) = (outcome.steps().looks, outcome.proof().planes());
         let pairs = cast.pairs().len();
         let keep = Some(cast.keep()).filter(|gap| *gap > 0.0);
         let left_out = left_out(cast, names);
-        let record =
-            Self { outcome: ending, keep, pairs, left_out, looks, planes, ..Self::default() };
+        let overlaps = match outcome {
+            PathOutcome::Overlapping(of) => overlaps(cast, of.pair, names),
+            _ => Vec::new(),
+        };
+        let record = Self {
+            outcome: ending,
+            keep,
+            pairs,
+            left_out,
+            overlaps,
+            looks,
+            planes,
+            ..Self::default()
+        };
         let name = |body: usize| names.get(body).cloned().unwrap_or_default();
         match outcome {
-            PathOutcome::Contact(of) | PathOutcome::Grazing(of) | PathOutcome::Overlapping(of) => {
+            PathOutcome::Contact(of)
+            | PathOutcome::Grazing(of)
+            | PathOutcome::Overlapping(of)
+            | PathOutcome::Undecided(of) => {
                 let PathContact { lower, upper, place, pair, points, normal, .. } = of;
                 let upper = upper.is_finite().then_some(*upper);
                 Self {
@@ -74,6 +97,19 @@ impl PathRecord {
             PathOutcome::Free(_) => record,
         }
     }
+}
+
+/// The names of all pairs that overlap where the path begins, each once; at least those of one that is known.
+fn overlaps(cast: &PathCast<'_>, known: [usize; 2], names: &[String]) -> Vec<[String; 2]> {
+    let found = cast.start_overlaps().unwrap_or_else(|_| vec![known]);
+    let mut told: Vec<[String; 2]> = Vec::new();
+    for pair in found {
+        let pair = pair.map(|body| names.get(body).cloned().unwrap_or_default());
+        if !told.contains(&pair) {
+            told.push(pair);
+        }
+    }
+    told
 }
 
 /// The names of bodies none of whose parts were asked about, each two once.

@@ -123,9 +123,15 @@ pub enum Stalled {
     /// direction that separates.
     #[error("no portal was found")]
     NoPortal,
-    /// A motion was looked at more often than was ever seen to be needed.
-    #[error("the motion was looked at too often")]
-    Motion,
+    /// The search along a motion took its maximum number of steps.
+    #[error(
+        "the search along the motion took its maximum number of steps; the bodies are proven not to meet before \
+         {free_until}, what comes later is open"
+    )]
+    Motion {
+        /// The bodies do not meet before this time.
+        free_until: f64,
+    },
     /// Portals followed each other without an end.
     #[error("portals followed each other in a circle")]
     Cycle,

@@ -7,7 +7,8 @@
 //! ([`simplex`]) and the exact sideways overlap ([`shadow`]). Algorithms that compute distances are
 //! judged by [`distance`], answers of the library about distance and depth by [`nearest`], about one
 //! body among many by [`among`], casts that keep a gap by [`keep`], bodies that
-//! turn by [`motion`], such that do not, asked in bulk, by [`still`], bodies that joints carry by [`path`], burrs by
+//! turn by [`motion`], such that do not, asked in bulk, by [`still`], bodies that joints carry by [`path`], with little play by
+//! [`play`], burrs by
 //! [`cubes`]. Saved proofs, forged ones too, are judged by [`proofs`].
 
 pub mod among;
@@ -21,6 +22,7 @@ pub mod keep;
 pub mod motion;
 pub mod nearest;
 pub mod path;
+pub mod play;
 pub mod proofs;
 pub mod scene;
 pub mod sequences;

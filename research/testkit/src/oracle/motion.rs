@@ -314,7 +314,9 @@ impl Judge<'_> {
         }
         let reached = proof.spans.iter().flatten().last().map(|plane| plane.time);
         let claimed = match outcome {
-            MotionOutcome::Contact(of) | MotionOutcome::Grazing(of) => of.lower,
+            MotionOutcome::Contact(of)
+            | MotionOutcome::Grazing(of)
+            | MotionOutcome::Undecided(of) => of.lower,
             MotionOutcome::Overlapping(_) => return self.meets(proof.meeting.as_ref()),
             _ => 1.0,
         };

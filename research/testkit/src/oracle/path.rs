@@ -194,6 +194,7 @@ impl Arm {
         let said = match &outcome {
             PathOutcome::Contact(of) => [of.lower, of.upper],
             PathOutcome::Grazing(of) => [of.lower, f64::INFINITY],
+            PathOutcome::Undecided(of) => [of.lower, of.upper],
             PathOutcome::Overlapping(_) => [0.0; 2],
             _ => [last, f64::INFINITY],
         };

@@ -24,6 +24,10 @@ pub enum PathOutcome {
     Free(PathFree),
     /// Two of them overlap where the path begins.
     Overlapping(PathContact),
+    /// The search between the two bodies of [`PathContact::pair`] took its maximum number of steps. Proven is that no two
+    /// bodies of all pairs meet before [`PathContact::lower`]; whether these two do later is open. A finite
+    /// [`PathContact::upper`] is when the two bodies of [`PathProof::meeting`] are proven to meet.
+    Undecided(PathContact),
 }
 
 /// A first contact, or what may be one.
@@ -79,6 +83,10 @@ pub struct PathProof {
     /// That two bodies meet.
     #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::written::given"))]
     pub meeting: Option<PathMeeting>,
+    /// Numbers of the convex bodies that the proof takes as solids: those of a pair whose search as convex bodies took its
+    /// maximum number of steps.
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Vec::is_empty"))]
+    pub solids: Vec<usize>,
 }
 
 /// What proves that two pieces do not meet up to some place: steps, each from where the last one ends.
@@ -176,7 +184,9 @@ impl PathOutcome {
     /// What proves it.
     pub const fn proof(&self) -> &PathProof {
         match self {
-            Self::Contact(of) | Self::Grazing(of) | Self::Overlapping(of) => &of.proof,
+            Self::Contact(of) | Self::Grazing(of) | Self::Overlapping(of) | Self::Undecided(of) => {
+                &of.proof
+            }
             Self::Free(of) => &of.proof,
         }
     }
@@ -184,8 +194,21 @@ impl PathOutcome {
     /// How much work it was.
     pub const fn steps(&self) -> MotionSteps {
         match self {
-            Self::Contact(of) | Self::Grazing(of) | Self::Overlapping(of) => of.steps,
+            Self::Contact(of) | Self::Grazing(of) | Self::Overlapping(of) | Self::Undecided(of) => {
+                of.steps
+            }
             Self::Free(of) => of.steps,
+        }
+    }
+}
+
+impl PathOutcome {
+    pub(super) fn parts_mut(&mut self) -> (&mut PathProof, &mut MotionSteps) {
+        match self {
+            Self::Contact(of) | Self::Grazing(of) | Self::Overlapping(of) | Self::Undecided(of) => {
+                (&mut of.proof, &mut of.steps)
+            }
+            Self::Free(of) => (&mut of.proof, &mut of.steps),
         }
     }
 }

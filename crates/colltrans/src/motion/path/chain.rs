@@ -17,6 +17,11 @@
 //!
 //! `|p^(n)| <= sum (W_j^n - W_{j-1}^n) R_j + n W_{j-1}^{n-1} |v_j|`.
 //!
+//! *Along a normal.* Such a term begins with `w_i x`, where `i` is its first joint, so along `n` it is at most `|n x k_i|`
+//! times the rest. Two consecutive turning joints keep the angle between their axes, because one axis is fixed in the
+//! frame that the other one turns. The sine of a sum of angles is at most the sum of sines, therefore `|n x k_i|` is at
+//! most `|n x k_1|` and the sum of these sines up to joint `i`: nothing for a link that slides over a plane.
+//!
 //! *Distances.* `R_j` is at most what is across the axis of the way to the next frame, and then the sum of all ways
 //! and of the farthest point of the body, wherever the joints are.
 //!
@@ -44,6 +49,9 @@ const VALUE: f64 = 8.0 * f64::EPSILON;
 /// rounding only.
 pub(super) const RAISED: f64 = 1.0 + 1e-9;
 
+/// How far computed sines may be off.
+const ROUNDED: f64 = 1e-14;
+
 /// A joint on the way to a body, or an origin without one.
 #[derive(Debug, Clone, Copy)]
 struct Stage {
@@ -52,6 +60,8 @@ struct Stage {
     column: usize,
     /// At least the distance of the body's points from its axis.
     lever: f64,
+    /// Of a turning joint, at least the sine of the angle between its axis and that of the turning joint before.
+    sine: f64,
 }
 
 /// All stages on the way to a body.
@@ -66,6 +76,8 @@ pub(super) struct Chain {
     pub(super) size: f64,
     /// By how much a computed rotation may be off.
     tilt: f64,
+    /// The axis of the first turning joint, where the chain begins.
+    first_axis: DVec3,
 }
 
 /// Velocity and acceleration of a body's points at a time: `p' = v + w x p`, `p'' = a + A p`.
@@ -104,7 +116,7 @@ impl Chain {
         let stage = |k: &usize| {
             let frame = &mechanism.frames()[*k];
             let column = columns[*k].unwrap_or(0);
-            Stage { origin: frame.origin, joint: frame.joint, column, lever: 0.0 }
+            Stage { origin: frame.origin, joint: frame.joint, column, lever: 0.0, sine: 0.0 }
         };
         let mut chain = Self {
             stages: frames.iter().map(stage).collect(),
@@ -112,10 +124,26 @@ impl Chain {
             error: 0.0,
             size: 0.0,
             tilt: 0.0,
+            first_axis: DVec3::ZERO,
         };
+        chain.set_sines();
         chain.set_levers(path, corners);
         chain.set_error(path, corners);
         chain
+    }
+
+    fn set_sines(&mut self) {
+        let (mut turned, mut last) = (DMat3::IDENTITY, None);
+        for stage in &mut self.stages {
+            turned *= stage.origin.matrix();
+            let Joint::Turning(axis) = stage.joint else { continue };
+            let axis_there = turned * axis;
+            match last {
+                None => self.first_axis = axis_there,
+                Some(before) => stage.sine = axis_there.cross(before).length() + ROUNDED,
+            }
+            (turned, last) = (DMat3::IDENTITY, Some(axis));
+        }
     }
 
     fn set_levers(&mut self, path: &JointPath, corners: &[DVec3]) {
@@ -234,6 +262,40 @@ impl Chain {
         let first = 2.0 * sum * self.size + slides;
         let off = [share * first, share * 2.0 * sum * first];
         Most { derivatives: derivatives.map(|x| x * RAISED), off }
+    }
+
+    /// Returns at least the third derivative of the body's points along normals between two, from a row to the next one.
+    pub(super) fn third_along(&self, path: &JointPath, row: usize, normals: [DVec3; 2]) -> f64 {
+        let longest = normals[0].length().max(normals[1].length());
+        let aside = normals.map(|n| n.cross(self.first_axis).length());
+        let mut along = aside[0].max(aside[1]) + ROUNDED * longest;
+        // Of each turning joint its rate, and how much of what it moves is along the normals.
+        let mut turning: Vec<[f64; 2]> = Vec::with_capacity(self.stages.len());
+        let mut third = 0.0;
+        for stage in &self.stages {
+            let rate = match stage.joint {
+                Joint::Fixed => continue,
+                _ => path.value(row, stage.column)[1].abs(),
+            };
+            // The sum of the rates of the turning joints after one, and before this one.
+            let mut between = 0.0;
+            let slides = matches!(stage.joint, Joint::Sliding(_));
+            for [first, share] in turning.iter().rev() {
+                third += if slides {
+                    3.0 * share * rate * first * (2.0 * between + first)
+                } else {
+                    3.0 * share * first * rate * (2.0 * between + first + rate) * stage.lever
+                };
+                between += first;
+            }
+            if !slides {
+                along += stage.sine * longest;
+                let share = along.min(longest);
+                third += share * rate * rate * rate * stage.lever;
+                turning.push([rate, share]);
+            }
+        }
+        third * RAISED
     }
 
     /// How far points of the body can move from a row to the next one.

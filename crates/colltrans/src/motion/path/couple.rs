@@ -8,7 +8,7 @@
 //!
 //! - *Loose.* `C_P = h^2 max |p''| + 2 h |dn| max |p'|`.
 //! - *Tight.* `g''` is affine in the point, so its largest at either end is a support point away; and in between it
-//!   is at most the mean of both and half of what it may change by, `h^3 max |p'''| + 3 h^2 |dn| max |p''|`.
+//!   is at most the mean of both and half of what it may change by, `h^3 max |n.p'''| + 3 h^2 |dn| max |p''|`.
 //!
 //! - *Far.* A distance changes by no more than points move: two gaps prove all times between them, over any number
 //!   of rows, if the bodies' ways together are less than their sum.
@@ -23,6 +23,9 @@ use super::mechanism::{JointPath, Place};
 use crate::body::solid::Solid;
 use crate::body::{ConvexPolyhedron, Placed};
 use crate::setting::TwoBodies;
+
+/// Points move along a normal by less than this share of how they move where they slide over a plane, nearly.
+const FLAT: f64 = 1e-2;
 
 /// Two bodies and the joints that carry them.
 #[derive(Debug)]
@@ -175,6 +178,9 @@ impl<'p> Course<'p> for RowCourse<'p> {
             let bends = [0, 1].map(|end| bend_at(ends[end], which, h, normals, end, supports));
             let (most, across) = (&self.most[which], (normals[1] - normals[0]).length());
             let [_, second, third] = most.derivatives;
+            let along = self.chains[which].third_along(self.path, self.row, normals);
+            // A bound that is hardly better is not worth other steps.
+            let third = if along < FLAT * third { along } else { third };
             let changes = h * h * (h * third + 3.0 * across * second);
             let off = h * (h * most.off[1] + 2.0 * across * most.off[0]);
             (0.5 * (bends[0] + bends[1] + changes) + off).min(loose(which))

@@ -130,9 +130,15 @@ impl PathProofFile {
             statement: PathStatement::default(),
         };
         let outcome = file.cast()?.first_contact()?;
+        if !outcome.proof().solids.is_empty() {
+            // The file has those bodies as the solids that the proof takes them as.
+            return Self::answer(&cast.with_solids(&outcome.proof().solids), names);
+        }
         let [from, to] = file.path.ends();
         let [lower, upper] = match &outcome {
-            PathOutcome::Contact(of) | PathOutcome::Grazing(of) => [of.lower, of.upper],
+            PathOutcome::Contact(of) | PathOutcome::Grazing(of) | PathOutcome::Undecided(of) => {
+                [of.lower, of.upper]
+            }
             PathOutcome::Overlapping(_) => [from; 2],
             PathOutcome::Free(_) => [to, f64::INFINITY],
         };

@@ -71,7 +71,7 @@ use crate::body::{Placed, Pose};
 use crate::number::range::MAX_MAGNITUDE;
 use crate::pair::Pair;
 use crate::setting::check_keep;
-use crate::setting::error::{QueryError, Stalled};
+use crate::setting::error::QueryError;
 use crate::solid::AsSolid;
 
 pub use self::answer::{
@@ -212,42 +212,117 @@ impl<'a> PathCast<'a> {
 
     /// Which two bodies of a pair first meet, and when?
     ///
+    /// If the search between two bodies takes its maximum number of steps, those of them that are convex are taken as
+    /// solids, and the question is asked again. If that has no answer for the pair either, the others are still asked,
+    /// and the answer is [`PathOutcome::Undecided`] unless another pair meets before.
+    ///
     /// # Errors
-    /// A search that does not end.
+    /// A body that is no solid where a solid may enclose it.
     pub fn first_contact(&self) -> Result<PathOutcome, PathError> {
+        let (mut solids, mut before) = (Vec::new(), MotionSteps::default());
+        loop {
+            let cast = self.with_solids(&solids);
+            let Searched { mut outcome, stalled } = cast.searched()?;
+            let more: Vec<usize> = stalled.into_iter().filter(|k| cast.can_be_solid(*k)).collect();
+            if more.is_empty() {
+                let (proof, steps) = outcome.parts_mut();
+                proof.solids = solids;
+                *steps += before;
+                return Ok(outcome);
+            }
+            before += outcome.steps();
+            solids.extend(more);
+            solids.sort_unstable();
+            solids.dedup();
+        }
+    }
+
+    /// All pairs of bodies that overlap where the path begins, or are no farther apart than the gap to be kept.
+    ///
+    /// # Errors
+    /// A body that is no solid where a solid may enclose it.
+    pub fn start_overlaps(&self) -> Result<Vec<[usize; 2]>, PathError> {
+        let mut found = Vec::new();
+        for (k, pair) in self.pairs.iter().enumerate() {
+            let query =
+                |reason: QueryError| PathError::Query { pair: *pair, reason: reason.into() };
+            let couple = self.couple(k);
+            let mut search = Search::new(&couple, self.shapes_of(k), Place::START);
+            search.cover([0, 0], Place::START, Place::START);
+            let meets = matches!(search.stop, Some((_, Stop::Met(..))));
+            if meets || nested(self, k).map_err(query)? {
+                found.push(*pair);
+            }
+        }
+        Ok(found)
+    }
+
+    /// The same question with these convex bodies taken as solids.
+    fn with_solids(&self, solids: &[usize]) -> Self {
+        let shape = |(k, shape): (usize, &Shape<'a>)| {
+            let placed = shape.placed;
+            Shape::new(if solids.contains(&k) {
+                as_solid(placed).unwrap_or(placed)
+            } else {
+                placed
+            })
+        };
+        Self {
+            shapes: self.shapes.iter().enumerate().map(shape).collect(),
+            frames: self.frames.clone(),
+            pairs: self.pairs.clone(),
+            ..*self
+        }
+    }
+
+    /// Checks whether a body is convex and has a surface.
+    fn can_be_solid(&self, body: usize) -> bool {
+        let placed = self.shapes[body].placed;
+        matches!(placed, ByKind::Convex(_)) && as_solid(placed).is_some()
+    }
+
+    fn searched(&self) -> Result<Searched, PathError> {
         let (mut proof, mut steps) = (PathProof::default(), MotionSteps::default());
         let mut until = Place::at_row(self.path.last());
         let mut reached = until;
         let mut stopped: Option<(usize, Stop)> = None;
+        // Pairs whose search took its maximum number of steps, and up to where each is apart.
+        let mut open: Vec<(usize, Place)> = Vec::new();
         for (k, pair) in self.pairs.iter().enumerate() {
             let couple = self.couple(k);
             let query =
                 |reason: QueryError| PathError::Query { pair: *pair, reason: reason.into() };
             if nested(self, k).map_err(query)? {
                 let meeting = PathMeeting { pair: k, place: Place::START, how: How::Inside };
-                return Ok(self.overlapping(meeting, proof, steps));
+                let outcome = self.overlapping(meeting, proof, steps);
+                return Ok(Searched { outcome, stalled: Vec::new() });
             }
             let mut search = Search::new(&couple, self.shapes_of(k), until);
             proof.covers.push(search.cover([0, 0], Place::START, until));
-            if search.stop.is_some() {
+            let is_open = matches!(search.stop, Some((_, Stop::Stalled)));
+            if is_open {
+                open.push((k, search.reached));
+            } else if search.stop.is_some() {
                 reached = reached.min_of(search.reached);
             }
             let found = search.confirmed();
             steps += search.looker.steps;
-            match found {
-                None => {}
-                Some((_, Stop::Stalled)) => {
-                    return Err(query(QueryError::NotConverged { reason: Stalled::Motion }));
-                }
-                Some((place, stop)) => {
-                    until = place;
-                    if stopped.as_ref().is_none_or(|(_, before)| stop.tells_more(before)) {
-                        stopped = Some((k, stop));
-                    }
+            if let Some((place, stop)) = found.filter(|_| !is_open) {
+                until = place;
+                if stopped.as_ref().is_none_or(|(_, before)| stop.tells_more(before)) {
+                    stopped = Some((k, stop));
                 }
             }
         }
-        Ok(self.outcome(stopped, reached, proof, steps))
+        // What is open later than two bodies meet does not matter.
+        open.retain(|(_, place)| stopped.is_none() || *place < reached);
+        let stalled = open.iter().flat_map(|(k, _)| self.pairs[*k]).collect();
+        let first = open.into_iter().reduce(|a, b| if b.1 < a.1 { b } else { a });
+        let outcome = match first {
+            None => self.outcome(stopped, reached, proof, steps),
+            Some((pair, place)) => self.undecided(pair, place, stopped, proof, steps),
+        };
+        Ok(Searched { outcome, stalled })
     }
 
     /// Checks a proof without a search: all vertices are looked at. Returns up to which time no two bodies are proven
@@ -256,7 +331,11 @@ impl<'a> PathCast<'a> {
     /// # Errors
     /// What is not proven.
     pub fn verify(&self, proof: &PathProof) -> Result<[f64; 2], PathProofError> {
-        verify::verify(self, proof)
+        let is_body = |k: &usize| *k < self.shapes.len();
+        if !proof.solids.iter().all(is_body) {
+            return Err(PathProofError::Solids);
+        }
+        verify::verify(&self.with_solids(&proof.solids), proof)
     }
 
     fn chain(&self, body: usize, frames: &[usize]) -> Chain {
@@ -307,6 +386,23 @@ impl<'a> PathCast<'a> {
         }
     }
 
+    /// What is reported of a pair that is open from a place on; two other bodies may meet later.
+    fn undecided(
+        &self,
+        pair: usize,
+        place: Place,
+        stopped: Option<(usize, Stop)>,
+        mut proof: PathProof,
+        steps: MotionSteps,
+    ) -> PathOutcome {
+        let mut upper = f64::INFINITY;
+        if let Some((pair, Stop::Met(place, how))) = stopped {
+            upper = self.path.time(place)[1];
+            proof.meeting = Some(PathMeeting { pair, place, how });
+        }
+        PathOutcome::Undecided(self.contact(pair, place, upper, proof, steps))
+    }
+
     /// Where the path begins with two bodies that overlap: nothing is said of the others.
     fn overlapping(
         &self,
@@ -333,7 +429,8 @@ impl<'a> PathCast<'a> {
         let bodies = self.pairs[pair];
         let chain = Chain::new(self.mechanism, &shared, self.path, Pose::IDENTITY, &[]);
         let (world, _) = chain.at(self.path, place.row, place.share);
-        let near = self.near(pair, place, proof.meeting.as_ref());
+        let meeting = proof.meeting.as_ref().filter(|meeting| meeting.pair == pair);
+        let near = self.near(pair, place, meeting);
         let lower = self.path.time(place)[0];
         let poses = bodies.map(|body| self.pose(body, place));
         let points = near.map(|near| near.0.map(|point| world.transform_point(point)));
@@ -368,6 +465,23 @@ impl<'a> PathCast<'a> {
         let convex = shapes.iter().all(|shape| shape.count() == 1);
         let features = near.features.filter(|_| convex);
         Some(([near.on_moving, near.on_fixed], near.normal, features))
+    }
+}
+
+/// What a search over all pairs has found.
+struct Searched {
+    outcome: PathOutcome,
+    /// The bodies of pairs whose search took its maximum number of steps.
+    stalled: Vec<usize>,
+}
+
+/// A convex body as a solid; `None` for a point or a segment.
+fn as_solid(placed: AnyPlaced<'_>) -> Option<AnyPlaced<'_>> {
+    match placed {
+        ByKind::Convex(Placed { body, pose }) => {
+            Some(AsSolid::as_solid(body).ok()?.at(pose).into())
+        }
+        ByKind::Solid(_) => Some(placed),
     }
 }
 

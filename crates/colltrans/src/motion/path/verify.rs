@@ -29,6 +29,9 @@ pub enum PathProofError {
         /// How many there have to be.
         pairs: usize,
     },
+    /// A body that is taken as a solid does not exist.
+    #[error("the proof takes a body as a solid that does not exist")]
+    Solids,
     /// A cover is not in order.
     #[error(
         "the cover of pair {pair} is not in order near row {row}: steps follow each other, planes \

@@ -3,10 +3,10 @@
 //! With [`StartOverlap::Ignore`] two facets that cross count from the first time on at which they are seen apart; then
 //! as all others, but only for contacts at which they look at each other: what is inside may come out.
 
-use super::super::MotionCast;
 use super::super::answer::{MotionFree, MotionOutcome, MotionSteps};
 use super::super::clearance::{MotionClearance, MotionOverlap, at, true_time};
 use super::super::span::{Span, spans};
+use super::super::{MotionCast, stalled};
 use super::facets::{self, FacetLooker};
 use super::search::Found;
 use super::tree::{Facet, Tree};
@@ -72,12 +72,13 @@ impl MotionCast<'_, Solid> {
                 found = Self::confirmed(&span, found, &mut steps);
             }
             let time = self.true_time(&span, &found);
-            let (MotionOutcome::Contact(shrunk) | MotionOutcome::Grazing(shrunk)) =
-                self.contact(&span, &found, steps, |_| ())
-            else {
-                continue;
+            return match self.contact(&span, &found, steps, |_| ()) {
+                MotionOutcome::Contact(shrunk) | MotionOutcome::Grazing(shrunk) => {
+                    Ok(MotionClearance::blocked(time, tolerance, shrunk))
+                }
+                MotionOutcome::Undecided(undecided) => Err(stalled(&undecided)),
+                MotionOutcome::Free(_) | MotionOutcome::Overlapping(_) => continue,
             };
-            return Ok(MotionClearance::blocked(time, tolerance, shrunk));
         }
         Ok(MotionClearance::Free(MotionFree { proof: (), steps }))
     }

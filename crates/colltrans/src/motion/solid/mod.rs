@@ -249,6 +249,8 @@ impl<'a> MotionCast<'a, Solid> {
         let contact = MotionContact { lower, upper, poses, points, normal, features, proof, steps };
         if upper.is_finite() {
             MotionOutcome::Contact(contact)
+        } else if found.is_open {
+            MotionOutcome::Undecided(contact)
         } else {
             MotionOutcome::Grazing(contact)
         }

@@ -52,6 +52,8 @@ pub(super) struct Found {
     pub(super) lower: f64,
     /// Those that are not from then on.
     pub(super) triangles: [u32; 2],
+    /// Whether it is there that the search of two facets took its maximum number of steps.
+    pub(super) is_open: bool,
     /// When some are seen to meet, and why.
     pub(super) met: Option<(f64, [u32; 2], FacetsMet)>,
 }
@@ -186,7 +188,8 @@ impl<'s, 'a> Search<'s, 'a> {
         if self.ignores {
             let sided = [0, 1].map(|k| !self.trees[k].solid.is_open(triangles[k] as usize));
             if let Some(Later { lower, met }) = later(&span, sided, &mut looker) {
-                self.take(lower, triangles, met.map(|(time, met)| (time, triangles, met)));
+                let met = met.map(|(time, met)| (time, triangles, met));
+                self.take(Found { lower, triangles, is_open: false, met });
             }
             self.steps += looker.steps;
             return;
@@ -201,23 +204,28 @@ impl<'s, 'a> Search<'s, 'a> {
                     written.lists.push(planes);
                 }
             }
-            End::Met(time, met) => self.take(lower, triangles, Some((time, triangles, met))),
-            End::Blurred | End::Stalled => self.take(lower, triangles, None),
+            End::Met(time, met) => {
+                let met = Some((time, triangles, met));
+                self.take(Found { lower, triangles, is_open: false, met });
+            }
+            End::Blurred => self.take(Found { lower, triangles, is_open: false, met: None }),
+            End::Stalled => self.take(Found { lower, triangles, is_open: true, met: None }),
         }
     }
 
-    fn take(&mut self, lower: f64, triangles: [u32; 2], met: Option<(f64, [u32; 2], FacetsMet)>) {
+    fn take(&mut self, new: Found) {
         let Some(before) = &mut self.found else {
-            self.found = Some(Found { lower, triangles, met });
+            self.found = Some(new);
             return;
         };
-        if lower < before.lower {
-            (before.lower, before.triangles) = (lower, triangles);
+        let met = match (before.met, new.met) {
+            (Some(old), Some(new)) if new.0 < old.0 => Some(new),
+            (old, new) => old.or(new),
+        };
+        if new.lower < before.lower {
+            *before = new;
         }
-        let is_earlier = |new: f64| before.met.is_none_or(|(time, ..)| new < time);
-        if met.is_some_and(|(time, ..)| is_earlier(time)) {
-            before.met = met;
-        }
+        before.met = met;
     }
 }
 

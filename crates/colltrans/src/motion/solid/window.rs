@@ -26,6 +26,9 @@ use crate::number::noise::Noise;
 /// Arcs that are longer are none any more.
 const ARC: f64 = 2.0;
 
+/// Axes that are no farther apart than this share of the bodies' size are one.
+const BESIDE: f64 = 1e-6;
+
 /// By which heights are lowered, in noises.
 const LOWERED: f64 = 2.0;
 
@@ -53,7 +56,7 @@ pub(super) struct Frame<'s, 'a> {
     pub(super) span: &'s Span<'a, Tree<'a>>,
     /// What heights along a unit normal are lowered by.
     lowered: f64,
-    /// Whether both bodies spin as one.
+    /// Whether both bodies spin as one about one axis, so that one only moves along it as seen from the other.
     is_one: bool,
 }
 
@@ -164,7 +167,11 @@ impl<'s, 'a> Frame<'s, 'a> {
             span.body(which).reach() + swung + piece.velocity.length() * h
         };
         let noise = Noise::of(start.offset.length() + far(0) + far(1));
-        let (lowered, is_one) = (LOWERED * noise.point() + span.error, arc::is_one_spin(span));
+        let lowered = LOWERED * noise.point() + span.error;
+        let arms = [0, 1].map(|which| span.piece(which).arm);
+        let beside = across(start.offset - (arms[1] - arms[0]), span.piece(0).axis).length();
+        let size = span.body(0).reach() + span.body(1).reach();
+        let is_one = arc::is_one_spin(span) && beside <= BESIDE * size;
         Self { span, lowered, is_one }
     }
 
@@ -218,17 +225,17 @@ impl Window<'_, '_, '_> {
         self.angle(0).max(self.angle(1))
     }
 
-    /// How far the middles of both parts move together, at most; nowhere, if both bodies spin as one.
+    /// How far the middles of both parts move together, at most; if both bodies spin as one, one as seen from the other.
     pub(super) fn way(&self) -> f64 {
+        let drift = self.frame.span.drift().length() * (self.ends[1].time - self.ends[0].time);
         if self.frame.is_one {
-            return 0.0;
+            return drift;
         }
         let of = |which: usize| {
             let (piece, place) = (self.frame.piece(which), &self.ends[0].places[which]);
             let from_axis = across(place.arm + self.seen[which][0].middle(), piece.axis);
             from_axis.length() * self.angle(which)
         };
-        let drift = self.frame.span.drift().length() * (self.ends[1].time - self.ends[0].time);
         of(0) + of(1) + drift
     }
 

@@ -4,7 +4,8 @@
 //! compared with those of one-off queries. Or bodies alone, nearly flat ones, each with a cast onto it.
 //! Or distances of settings as they are, near contact and overlapping. Or scenes, one body among many. Or casts
 //! that keep a gap. Or casts of bodies that do not turn, in bulk. Or motions that turn, of convex bodies or of solids.
-//! Or arms on paths. Or forged proofs, which neither checker may accept. Or ways out in several moves. Or all free directions of solids, each held against casts along
+//! Or arms on paths. Or bodies that turn with little play. Or forged proofs, which neither checker may accept. Or
+//! ways out in several moves. Or all free directions of solids, each held against casts along
 //! some of them.
 //! In all of them bodies are held against the points that they were made of, in exact arithmetic, so
 //! that answers are judged for the input.
@@ -19,6 +20,7 @@ mod free;
 mod keeping;
 mod motions;
 mod paths;
+mod play;
 mod proofs;
 mod scenes;
 mod sequences;
@@ -53,6 +55,7 @@ campaign --solid-keeping N [--seed S] [--only FAMILY]
 campaign --motions N [--seed S] [--only FAMILY]
 campaign --solid-motions N [--seed S] [--only FAMILY]
 campaign --paths N [--seed S] [--only FAMILY]
+campaign --play N [--seed S] [--only FAMILY]
 campaign --ways N [--seed S] [--only FAMILY]
 campaign --proofs MUTANTS [--seed S] [--only KIND]
 campaign --bulk CASTS [--seed S] [--only FAMILY]
@@ -71,6 +74,7 @@ struct Arguments {
     free: Option<u64>,
     motions: Option<u64>,
     paths: Option<u64>,
+    play: Option<u64>,
     ways: Option<u64>,
     proofs: Option<u64>,
     bulk: Option<u64>,
@@ -140,6 +144,8 @@ fn main() -> ExitCode {
         run(&arguments, &families, count, motions::examine)
     } else if let Some(count) = arguments.paths {
         run(&arguments, &paths::FAMILIES, count, paths::examine)
+    } else if let Some(count) = arguments.play {
+        run(&arguments, &play::families(), count, play::examine)
     } else if let Some(count) = arguments.ways {
         run(&arguments, &ways::FAMILIES, count, ways::examine)
     } else if let Some(count) = arguments.proofs {
@@ -179,6 +185,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
         free: None,
         motions: None,
         paths: None,
+        play: None,
         ways: None,
         proofs: None,
         bulk: None,
@@ -203,6 +210,7 @@ fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
             "--solid-motions" => arguments.solid_motions = Some(number(&value)?),
             "--motions" => arguments.motions = Some(number(&value)?),
             "--paths" => arguments.paths = Some(number(&value)?),
+            "--play" => arguments.play = Some(number(&value)?),
             "--ways" => arguments.ways = Some(number(&value)?),
             "--proofs" => arguments.proofs = Some(number(&value)?),
             "--bulk" => arguments.bulk = Some(number(&value)?),

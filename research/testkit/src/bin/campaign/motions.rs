@@ -150,11 +150,6 @@ fn examined(judge: &Judge, in_whole_numbers: bool, tally: &mut Tally) -> Result<
     let cast = kept.map_err(|e| Objection(e.to_string()))?;
     let outcome = match cast.first_contact() {
         Ok(outcome) => outcome,
-        Err(QueryError::NotConverged { reason }) => {
-            tally.open += 1;
-            eprintln!("no answer: {reason}");
-            return Ok(());
-        }
         Err(e) => return Err(Objection(e.to_string())),
     };
     cast.verify(outcome.proof()).map_err(|e| Objection(e.to_string()))?;
@@ -165,11 +160,12 @@ fn examined(judge: &Judge, in_whole_numbers: bool, tally: &mut Tally) -> Result<
         MotionOutcome::Contact(_) => tally.contacts += 1,
         MotionOutcome::Grazing(_) => tally.grazing += 1,
         MotionOutcome::Overlapping(_) => tally.overlapping += 1,
+        MotionOutcome::Undecided(_) => tally.open += 1,
         _ => tally.free += 1,
     }
     let planes: usize = outcome.proof().spans.iter().map(Vec::len).sum();
     let judged = in_whole_numbers && judge.bodies.iter().all(|b| b.vertices().len() < 60);
-    if judged && planes < 60 {
+    if judged && planes < 60 && outcome.proof().solids.is_none() {
         tally.judged += 1;
         judge.check(&outcome)?;
     }
@@ -237,7 +233,8 @@ fn apart_until(first: &MotionOutcome) -> f64 {
     match first {
         MotionOutcome::Contact(of)
         | MotionOutcome::Grazing(of)
-        | MotionOutcome::Overlapping(of) => of.lower,
+        | MotionOutcome::Overlapping(of)
+        | MotionOutcome::Undecided(of) => of.lower,
         _ => 1.0,
     }
 }

@@ -19,6 +19,8 @@ pub(crate) struct Tally {
     grazing: u64,
     free: u64,
     overlapping: u64,
+    /// Without an answer.
+    open: u64,
     looks: u64,
     most_looks: u32,
     widest: f64,
@@ -29,17 +31,17 @@ impl crate::Tally for Tally {
     const CHUNK: u64 = 16;
 
     fn header() -> String {
-        let heads =
-            ["settings", "contacts", "grazing", "free", "overlap", "looks", "most", "widest"];
-        let heads = heads.iter().chain(&["wrong"]);
+        let heads = ["settings", "contacts", "grazing", "free", "overlap", "open", "looks"];
+        let heads = heads.iter().chain(&["most", "widest", "wrong"]);
         heads.map(|head| format!("{head:>9} ")).collect::<Vec<_>>().concat()
     }
 
     fn line(&self) -> String {
         let looks = self.looks as f64 / self.settings.max(1) as f64;
-        let counts = [self.settings, self.contacts, self.grazing, self.free, self.overlapping]
-            .map(|count| format!("{count:>9} "))
-            .concat();
+        let counts =
+            [self.settings, self.contacts, self.grazing, self.free, self.overlapping, self.open]
+                .map(|count| format!("{count:>9} "))
+                .concat();
         let Self { most_looks, widest, .. } = self;
         let wrong = self.disagreements.len();
         format!("{counts}{looks:>9.2} {most_looks:>9} {widest:>9.1e} {wrong:>9} ")
@@ -51,6 +53,7 @@ impl crate::Tally for Tally {
         self.grazing += other.grazing;
         self.free += other.free;
         self.overlapping += other.overlapping;
+        self.open += other.open;
         self.looks += other.looks;
         self.most_looks = self.most_looks.max(other.most_looks);
         self.widest = self.widest.max(other.widest);
@@ -80,6 +83,7 @@ pub(crate) fn examine(family: &str, seed: u64, tally: &mut Tally) {
                 }
                 PathOutcome::Grazing(_) => tally.grazing += 1,
                 PathOutcome::Overlapping(_) => tally.overlapping += 1,
+                PathOutcome::Undecided(_) => tally.open += 1,
                 _ => tally.free += 1,
             }
         }

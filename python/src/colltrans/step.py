@@ -1,16 +1,19 @@
-"""STEP files to GLB, with the chord error of every part measured.
+"""Converts STEP files to GLB, with the chord error of every part measured.
 
-``python -m colltrans.step FILE -o OUT.glb`` needs ``pip install 'colltrans[step]'`` (cascadio,
-which carries OpenCASCADE). It writes what ``colltrans assembly`` reads and what any viewer shows,
-and prints one JSON object: of every part its name and its *chord error*, how far facets are from
-the surface they stand for.
+``python -m colltrans.step FILE -o OUT.glb`` needs ``pip install 'colltrans[step]'``
+(cadquery-ocp-novtk, which carries OpenCASCADE). It writes a GLB file that ``colltrans assembly``
+reads and that any viewer shows. It prints one JSON object: the name of every part, its number of
+solids and its *chord error*, the distance of its facets from the surface that they stand for.
 
-What was asked (``--chord``) is what OpenCASCADE aims at and does not always keep, so the error is
-measured, in the numbers of the file that was written:
+The product tree comes from OpenCASCADE's document (XCAF), external files included. A part is a leaf
+of the product tree. Curves and points are left out; a note names the parts that hold nothing else.
+
+OpenCASCADE aims at the chord error of ``--chord`` and does not always keep it. So the error is
+measured, in the numbers of the file that is written:
 
 - on planes, cylinders and spheres exactly, up to rounding: the farthest point of each facet;
 - on cones and tori as the largest of the exact distances of 45 points of each facet (``sampled``);
-- on all other surfaces beside a tessellation that is four times as fine: the largest distance of
+- on all other surfaces by a tessellation that is four times as fine: the largest distance of
   its vertices from the facets of the same face, and a sixteenth more (``compared``).
 
 The first is the error; the others are measures that a point between the samples may exceed.
@@ -22,7 +25,6 @@ calls it.
 import argparse
 import json
 import os
-import re
 import struct
 import sys
 import time
@@ -107,22 +109,6 @@ class Glb:
         )
         return rows.copy()
 
-    def faces(self, mesh: int) -> Iterator[tuple[tuple[int, int], dict[str, Any] | None, Points]]:
-        """The faces of a mesh: their numbers, their surfaces if known, and their facets."""
-        for number, primitive in enumerate(self.document["meshes"][mesh]["primitives"]):
-            points = self.numbers(primitive["attributes"]["POSITION"]).astype(np.float64)
-            facets = points[self.numbers(primitive["indices"]).reshape(-1, 3)]
-            brep = primitive.get("extensions", {}).get("TM_brep_faces")
-            if brep is None:
-                yield (number, -1), None, facets
-                continue
-            of = self.numbers(brep["faceIndices"]).ravel()
-            surfaces = {s["face_index"]: s for s in brep["faces"] if s and s.get("type")}
-            order = np.argsort(of, kind="stable")
-            for rows in np.split(order, np.flatnonzero(np.diff(of[order])) + 1):
-                index = int(of[rows[0]])
-                yield (number, index), surfaces.get(index), facets[rows]
-
 
 def _across(points: Points, origin: Any, axis: Any) -> tuple[Points, Points]:
     """Points in the plane across an axis, and their heights along it."""
@@ -167,7 +153,7 @@ def on_surface(surface: dict[str, Any], facets: Points) -> tuple[float, str]:
     Parameters
     ----------
     surface : dict
-        A face of ``TM_brep_faces``.
+        Its ``type``, and its lengths and directions by name.
     facets : array of shape (n, 3, 3)
 
     Returns
@@ -230,109 +216,470 @@ def beside(fine: Points, facets: Points) -> float:
     return worst
 
 
-def measure(glb: Glb, finer: Glb | None) -> list[Measured]:
-    """The chord error of every mesh; says from time to time how many are measured."""
-    found = []
-    count = len(glb.document.get("meshes", []))
-    said = time.monotonic()
-    for mesh in range(count):
-        if time.monotonic() - said > _SAID_EVERY:
-            said = time.monotonic()
-            _say(f"measuring chord errors: {mesh} of {count} shapes")
-        measured = Measured()
-        fine = {number: facets for number, _, facets in finer.faces(mesh)} if finer else {}
-        for number, surface, facets in glb.faces(mesh):
-            if surface is not None:
-                measured.take(*on_surface(surface, facets))
-            elif number in fine:
-                measured.take(beside(fine[number], facets) * (1 + FINER**-2), "compared")
-        found.append(measured)
-    return found
+@dataclass
+class Face:
+    """A tessellated face, in millimetres: facets name points by their numbers."""
+
+    shape: Any = field(repr=False)
+    surface: dict[str, Any] | None
+    points: Points
+    facets: NDArray[np.int64]
+
+    def corners(self) -> Points:
+        """Returns the corners of the facets as the file will have them, in single precision."""
+        written = (self.points / PER_METRE).astype(np.float32).astype(np.float64) * PER_METRE
+        return np.asarray(written[self.facets])
 
 
-def has_other_surfaces(glb: Glb) -> bool:
-    """Whether there are faces whose surface is not known."""
-    meshes = range(len(glb.document.get("meshes", [])))
-    return any(surface is None for mesh in meshes for _, surface, _ in glb.faces(mesh))
+def measure(faces: list[Face], chord: float, angle: float) -> Measured:
+    """Measures the chord error of the faces of one shape, in millimetres."""
+    measured = Measured()
+    others = [face for face in faces if face.surface is None]
+    finer = _tessellated([face.shape for face in others], chord / FINER, angle / FINER)
+    for face in faces:
+        if face.surface is not None:
+            measured.take(*on_surface(face.surface, face.corners()))
+    for face, fine in zip(others, finer, strict=True):
+        error = beside(fine.points[fine.facets], face.corners())
+        measured.take(error * (1 + FINER**-2), "compared")
+    return measured
 
 
-def assemblies(text: str) -> set[str]:
-    """The names of products that other products are placed in, and of their occurrences."""
-    entity = re.compile(r"#(\d+)\s*=\s*(\w+)\s*\((.*?)\)\s*;", re.S)
-    kinds = "NEXT_ASSEMBLY_USAGE_OCCURRENCE|PRODUCT_DEFINITION_FORMATION|PRODUCT_DEFINITION|PRODUCT"
-    known: dict[str, dict[str, str]] = {}
-    for number, kind, rest in entity.findall(text):
-        if re.fullmatch(kinds + "|PRODUCT_DEFINITION_FORMATION_WITH_SPECIFIED_SOURCE", kind):
-            known.setdefault(kind.removesuffix("_WITH_SPECIFIED_SOURCE"), {})[number] = rest
-    formations = known.get("PRODUCT_DEFINITION_FORMATION", {})
-    products = known.get("PRODUCT", {})
-
-    def last(rest: str, place: int = -1) -> str:
-        return str(re.findall(r"#(\d+)", rest)[place])
-
-    def product_of(definition: str) -> str:
-        rest = known["PRODUCT_DEFINITION"][definition]
-        name = products[last(formations[last(rest, 0)], 0)]
-        return re.match(r"\s*'((?:[^']|'')*)'", name)[1]  # type: ignore[index]
-
-    names, placed = set(), []
-    for rest in known.get("NEXT_ASSEMBLY_USAGE_OCCURRENCE", {}).values():
-        relating, related = re.findall(r"#(\d+)", rest)[:2]
-        strings = re.findall(r"'((?:[^']|'')*)'", rest)
-        try:
-            names.add(product_of(relating))
-            placed.append((strings[1] if len(strings) > 1 else "", product_of(related)))
-        except (KeyError, IndexError, TypeError):
-            continue
-    return names | {occurrence for occurrence, product in placed if product in names}
+def _xyz(triple: Any) -> list[float]:
+    return [triple.X(), triple.Y(), triple.Z()]
 
 
-def mark(glb: Glb, measured: list[Measured], holding: set[str]) -> list[dict[str, Any]]:
-    """Writes the chord errors into the nodes.
+def _surface(face: Any) -> dict[str, Any] | None:
+    """Returns the surface of a face if distances from it are known, in the form of `on_surface`."""
+    from OCP.BRep import BRep_Tool
+    from OCP.BRepAdaptor import BRepAdaptor_Surface
+    from OCP.GeomAbs import GeomAbs_SurfaceType as Kind
 
-    Leaves below a product that holds no other are one part.
-    """
-    nodes = glb.document["nodes"]
-    parts: list[dict[str, Any]] = []
+    if BRep_Tool.Surface_s(face) is None:
+        return None
+    adaptor = BRepAdaptor_Surface(face, False)
+    kind = adaptor.GetType()
+    if kind == Kind.GeomAbs_Plane:
+        axis = adaptor.Plane().Axis()
+        return {
+            "type": "plane",
+            "origin": _xyz(axis.Location()),
+            "normal": _xyz(axis.Direction()),
+        }
+    if kind == Kind.GeomAbs_Sphere:
+        sphere = adaptor.Sphere()
+        return {"type": "sphere", "center": _xyz(sphere.Location()), "radius": sphere.Radius()}
+    if kind == Kind.GeomAbs_Cylinder:
+        cylinder = adaptor.Cylinder()
+        axis = cylinder.Axis()
+        origin, along = _xyz(axis.Location()), _xyz(axis.Direction())
+        return {"type": "cylinder", "origin": origin, "axis": along, "radius": cylinder.Radius()}
+    if kind == Kind.GeomAbs_Cone:
+        cone = adaptor.Cone()
+        along = _xyz(cone.Axis().Direction())
+        angle = cone.SemiAngle()
+        return {"type": "cone", "apex": _xyz(cone.Apex()), "axis": along, "semi_angle": angle}
+    if kind == Kind.GeomAbs_Torus:
+        torus = adaptor.Torus()
+        return {
+            "type": "torus",
+            "center": _xyz(torus.Location()),
+            "axis": _xyz(torus.Axis().Direction()),
+            "major_radius": torus.MajorRadius(),
+            "minor_radius": torus.MinorRadius(),
+        }
+    return None
 
-    def below(index: int) -> list[int]:
-        node = nodes[index]
-        here = [node["mesh"]] if "mesh" in node else []
-        return here + [mesh for child in node.get("children", []) for mesh in below(child)]
 
-    def visit(index: int, is_root: bool) -> None:
-        node = nodes[index]
-        children, meshes = node.get("children", []), below(index)
-        leaves = all("children" not in nodes[child] for child in children)
-        name = node.get("name", "")
-        whole = (
-            bool(holding) and not is_root and len(children) > 1 and leaves and name not in holding
+def _explored(shape: Any, kind: Any) -> Iterator[Any]:
+    """Yields the shapes of a kind that a shape is made of."""
+    from OCP.TopExp import TopExp_Explorer
+
+    explorer = TopExp_Explorer(shape, kind)
+    while explorer.More():
+        yield explorer.Current()
+        explorer.Next()
+
+
+def _tessellated(shapes: list[Any], chord: float, angle: float) -> list[Face]:
+    """Tessellates the faces of shapes together, so that neighbours share their corners."""
+    from OCP.BRep import BRep_Builder, BRep_Tool
+    from OCP.BRepMesh import BRepMesh_IncrementalMesh
+    from OCP.BRepTools import BRepTools
+    from OCP.TopAbs import TopAbs_Orientation, TopAbs_ShapeEnum
+    from OCP.TopLoc import TopLoc_Location
+    from OCP.TopoDS import TopoDS, TopoDS_Compound
+
+    if not shapes:
+        return []
+    whole, builder = TopoDS_Compound(), BRep_Builder()
+    builder.MakeCompound(whole)
+    for shape in shapes:
+        builder.Add(whole, shape)
+    BRepTools.Clean_s(whole)
+    BRepMesh_IncrementalMesh(whole, chord, False, angle, False)
+    faces = []
+    for shape in _explored(whole, TopAbs_ShapeEnum.TopAbs_FACE):
+        face, location = TopoDS.Face(shape), TopLoc_Location()
+        mesh = BRep_Tool.Triangulation_s(face, location)
+        if mesh is None:
+            raise StepError("OpenCASCADE cannot tessellate one of its faces; repair the file")
+        place = np.array(_matrix(location))
+        points = np.array([mesh.Node(k + 1).Coord() for k in range(mesh.NbNodes())])
+        points = points @ place[:3, :3].T + place[:3, 3]
+        facets = np.array([mesh.Triangle(k + 1).Get() for k in range(mesh.NbTriangles())]) - 1
+        reverse = face.Orientation() == TopAbs_Orientation.TopAbs_REVERSED
+        if reverse != (np.linalg.det(place[:3, :3]) < 0):
+            facets = facets[:, ::-1]
+        faces.append(Face(face, _surface(face), points, facets))
+    return faces
+
+
+def _matrix(location: Any) -> list[list[float]]:
+    """Returns a location as the rows of a 4 x 4 matrix, in millimetres."""
+    move = location.Transformation()
+    rows = [[move.Value(row, column) for column in range(1, 5)] for row in range(1, 4)]
+    return [*rows, [0.0, 0.0, 0.0, 1.0]]
+
+
+@dataclass
+class Node:
+    """A node of the product tree: an assembly with children, or a leaf with a shape."""
+
+    name: str
+    matrix: list[list[float]]
+    label: Any = field(repr=False)
+    colour: tuple[float, ...] | None = None
+    is_part: bool = False
+    is_leaf: bool = False
+    children: list["Node"] = field(default_factory=list)
+
+    def leaves(self) -> "Iterator[Node]":
+        """Yields the leaves below, or itself."""
+        if self.is_leaf:
+            yield self
+        for child in self.children:
+            yield from child.leaves()
+
+
+def _entry(label: Any) -> str:
+    """Returns the place of a label in its document, which identifies it."""
+    from OCP.TCollection import TCollection_AsciiString
+    from OCP.TDF import TDF_Tool
+
+    entry = TCollection_AsciiString()
+    TDF_Tool.Entry_s(label, entry)
+    return str(entry.ToCString())
+
+
+class Product:
+    """The product tree of a STEP file, as OpenCASCADE's document (XCAF) has it."""
+
+    def __init__(self, path: Path) -> None:
+        """Reads a file, and the external files that it names."""
+        from OCP.IFSelect import IFSelect_ReturnStatus
+        from OCP.Interface import Interface_Static
+        from OCP.STEPCAFControl import STEPCAFControl_Reader
+        from OCP.TCollection import TCollection_ExtendedString
+        from OCP.TDocStd import TDocStd_Document
+        from OCP.XCAFDoc import XCAFDoc_DocumentTool
+
+        _quieten()
+        self.path = path
+        self.document = TDocStd_Document(TCollection_ExtendedString("MDTV-XCAF"))
+        reader = STEPCAFControl_Reader()
+        reader.SetNameMode(True)
+        reader.SetColorMode(True)
+        Interface_Static.SetCVal_s("xstep.cascade.unit", "MM")
+        # Part 21 allows ASCII and escapes alone. Some programs write UTF-8, others their code page.
+        Interface_Static.SetCVal_s("read.step.codepage", _encoding(path.read_bytes()))
+        done = IFSelect_ReturnStatus.IFSelect_RetDone
+        # External files are found by the absolute path alone.
+        if reader.ReadFile(str(path.resolve())) != done:
+            raise StepError(
+                f"{path}: OpenCASCADE cannot read it; export it once more as STEP AP214"
+            )
+        _say(f"{path}: building its product tree")
+        if not reader.Transfer(self.document):
+            raise StepError(f"{path}: OpenCASCADE finds no shape in it")
+        self.shapes = XCAFDoc_DocumentTool.ShapeTool_s(self.document.Main())
+        self.colours = XCAFDoc_DocumentTool.ColorTool_s(self.document.Main())
+        sessions = [reader.Reader().WS()]
+        for file in reader.ExternFiles():
+            name = file.GetName().ToCString()
+            if not _lies_beside(name):
+                raise StepError(
+                    f"{path}: the external file {name} must lie in the folder of the source"
+                )
+            if file.GetLoadStatus() != done:
+                raise StepError(
+                    f"{path}: cannot read its external file {name}; put it beside the source"
+                )
+            sessions.append(file.GetWS())
+        self.assemblies = {
+            entry for session in sessions for entry in self._assemblies(session, reader)
+        }
+
+    def _assemblies(self, session: Any, reader: Any) -> Iterator[str]:
+        """Yields the entries of products in which other products are placed."""
+        from OCP.STEPConstruct import STEPConstruct_Tool
+        from OCP.StepRepr import StepRepr_NextAssemblyUsageOccurrence
+
+        tool, known = STEPConstruct_Tool(session), reader.GetShapeLabelMap()
+        model = session.Model()
+        for number in range(1, model.NbEntities() + 1):
+            entity = model.Value(number)
+            if isinstance(entity, StepRepr_NextAssemblyUsageOccurrence):
+                placed = reader.FindInstance_s(entity, self.shapes, tool, known)
+                if placed is not None and not placed.IsNull():
+                    yield _entry(placed.Father())
+
+    def roots(self) -> list[Node]:
+        """Returns the nodes that no other one holds."""
+        from OCP.collections import Sequence_TDF_Label
+
+        free = Sequence_TDF_Label()
+        self.shapes.GetFreeShapes(free)
+        return [self._node(label, False) for label in free]
+
+    def _node(self, label: Any, is_within: bool) -> Node:
+        """Returns a node and all nodes below it; ``is_within`` a part, or not."""
+        from OCP.collections import Sequence_TDF_Label
+        from OCP.TDF import TDF_Label
+        from OCP.TopLoc import TopLoc_Location
+        from OCP.XCAFDoc import XCAFDoc_ShapeTool
+
+        of = TDF_Label()
+        is_placed = XCAFDoc_ShapeTool.GetReferredShape_s(label, of)
+        of = of if is_placed else label
+        place = XCAFDoc_ShapeTool.GetLocation_s(label) if is_placed else TopLoc_Location()
+        # Programs number occurrences ("1", "*DIT33", "=>[0:1:1:3]"): the product's name is better.
+        names = [_name(label), _name(of)]
+        told = [name for name in names if name and name[0] not in "*=" and not name.isdigit()]
+        name = next(iter(told + names[::-1]))
+        node = Node(name, _matrix(place), of, self._colour(label) or self._colour(of))
+        node.is_leaf = not XCAFDoc_ShapeTool.IsAssembly_s(of)
+        # OpenCASCADE expands a product of several bodies too, though it holds no other product.
+        expanded = bool(self.assemblies) and _entry(of) not in self.assemblies
+        node.is_part = not is_within and (node.is_leaf or expanded)
+        if not node.is_leaf:
+            components = Sequence_TDF_Label()
+            XCAFDoc_ShapeTool.GetComponents_s(of, components)
+            within = is_within or node.is_part
+            node.children = [self._node(component, within) for component in components]
+        return node
+
+    def _colour(self, label: Any) -> tuple[float, ...] | None:
+        """Returns the colour of a label, linear as glTF has it."""
+        from OCP.Quantity import Quantity_Color
+        from OCP.XCAFDoc import XCAFDoc_ColorTool, XCAFDoc_ColorType
+
+        colour = Quantity_Color()
+        for kind in (XCAFDoc_ColorType.XCAFDoc_ColorSurf, XCAFDoc_ColorType.XCAFDoc_ColorGen):
+            if XCAFDoc_ColorTool.GetColor_s(label, kind, colour):
+                return (colour.Red(), colour.Green(), colour.Blue())
+        return None
+
+    def colours_within(self, label: Any) -> list[tuple[Any, tuple[float, ...]]]:
+        """Returns the shapes of a leaf that have colours of their own, larger ones first."""
+        from OCP.collections import Sequence_TDF_Label
+        from OCP.XCAFDoc import XCAFDoc_ShapeTool
+
+        within = Sequence_TDF_Label()
+        XCAFDoc_ShapeTool.GetSubShapes_s(label, within)
+        found = [(XCAFDoc_ShapeTool.GetShape_s(each), self._colour(each)) for each in within]
+        coloured = [(shape, colour) for shape, colour in found if colour is not None]
+        return sorted(coloured, key=lambda each: int(each[0].ShapeType()))
+
+
+def _name(label: Any) -> str:
+    """Returns the name of a label, empty if it has none."""
+    from OCP.TDataStd import TDataStd_Name
+
+    name = TDataStd_Name()
+    return str(name.Get().ToExtString()) if label.FindAttribute(name.GetID_s(), name) else ""
+
+
+def _encoding(data: bytes) -> str:
+    """Returns the name that OpenCASCADE has for the encoding of a text."""
+    try:
+        data.decode()
+    except UnicodeDecodeError:
+        return "CP1252"
+    return "UTF8"
+
+
+def _lies_beside(name: str) -> bool:
+    """Checks whether a file name leads nowhere out of its folder, on any system."""
+    parts = name.replace("\\", "/").split("/")
+    return ".." not in parts and parts[0] != "" and ":" not in name
+
+
+def _quieten() -> None:
+    """Keeps OpenCASCADE's messages from standard output."""
+    from OCP.Message import Message
+
+    for printer in list(Message.DefaultMessenger_s().Printers()):
+        Message.DefaultMessenger_s().RemovePrinter(printer)
+
+
+@dataclass
+class Writer:
+    """A GLB file under construction, with one mesh for each leaf and colour."""
+
+    product: Product
+    chord: float
+    angle: float
+    document: dict[str, Any] = field(default_factory=dict)
+    binary: bytearray = field(default_factory=bytearray)
+    shapes: dict[str, tuple[list[Face], Measured, int]] = field(default_factory=dict)
+    meshes: dict[tuple[str, Any], int] = field(default_factory=dict)
+    parts: list[dict[str, Any]] = field(default_factory=list)
+    left_out: list[str] = field(default_factory=list)
+
+    def shape_of(self, node: Node) -> tuple[list[Face], Measured, int]:
+        """Returns the faces of a leaf, their chord error and its number of solids; keeps them."""
+        from OCP.TopAbs import TopAbs_ShapeEnum
+        from OCP.XCAFDoc import XCAFDoc_ShapeTool
+
+        entry = _entry(node.label)
+        if entry not in self.shapes:
+            shape = XCAFDoc_ShapeTool.GetShape_s(node.label)
+            solids = sum(1 for _ in _explored(shape, TopAbs_ShapeEnum.TopAbs_SOLID))
+            try:
+                faces = _tessellated([shape], self.chord, self.angle)
+            except StepError as error:
+                raise StepError(f"{self.product.path}: part {node.name!r}: {error}") from error
+            self.shapes[entry] = faces, measure(faces, self.chord, self.angle), solids
+        return self.shapes[entry]
+
+    def write(self, roots: list[Node]) -> None:
+        """Writes all nodes; says from time to time how many of their shapes are done."""
+        leaves = {_entry(leaf.label): leaf for root in roots for leaf in root.leaves()}
+        said = time.monotonic()
+        for done, leaf in enumerate(leaves.values()):
+            if time.monotonic() - said > _SAID_EVERY:
+                said = time.monotonic()
+                _say(f"tessellating and measuring: {done} of {len(leaves)} shapes")
+            self.shape_of(leaf)
+        extras: dict[str, Any] = {"unit": "mm", "per_metre": PER_METRE, "up": "z"}
+        self.document = {
+            "asset": {"version": "2.0", "extras": {"colltrans": extras}},
+            **{name: [] for name in ("nodes", "meshes", "materials", "accessors", "bufferViews")},
+        }
+        nodes = [self._node(root) for root in roots]
+        self.document["scenes"] = [{"nodes": [node for node in nodes if node is not None]}]
+        self.document["scene"] = 0
+        if self.left_out:
+            extras["notes"] = [self.note()]
+        self.document["buffers"] = [{"byteLength": len(self.binary)}]
+        for name in ("materials", "meshes"):
+            if not self.document[name]:
+                del self.document[name]
+
+    def note(self) -> str:
+        """Returns a sentence about the parts that are left out."""
+        names = ", ".join(repr(name) for name in self.left_out[:5])
+        more = ", ..." if len(self.left_out) > 5 else ""
+        return (
+            f"left out, as they hold curves or points alone ({len(self.left_out)}): {names}{more}"
         )
-        if "mesh" in node or whole:
-            of = [measured[mesh] for mesh in meshes]
-            error = max(each.chord_error for each in of)
-            node["extras"] = {"colltrans": {"chord_error": error, "part": True}}
-            told = {"name": name, "chord_error": error * PER_METRE}
-            for how in ("exact", "sampled", "compared"):
-                told[how] = sum(getattr(each, how) for each in of)
-            parts.append(told)
-            return
-        for child in children:
-            visit(child, False)
 
-    for root in glb.document["scenes"][glb.document.get("scene", 0)]["nodes"]:
-        visit(root, True)
-    return parts
+    def _node(self, node: Node) -> int | None:
+        """Writes a node with all below it; returns its number, ``None`` if it has no face."""
+        written: dict[str, Any] = {"name": node.name}
+        if node.is_part and not any(self.shape_of(leaf)[0] for leaf in node.leaves()):
+            self.left_out.append(node.name)
+            return None
+        if node.is_part:
+            self._part(node, written)
+        if node.is_leaf:
+            mesh = self._mesh(node)
+            if mesh is None:
+                return None
+            written["mesh"] = mesh
+        else:
+            children = [self._node(child) for child in node.children]
+            written["children"] = [child for child in children if child is not None]
+            if not written["children"]:
+                return None
+        matrix = np.array(node.matrix)
+        if not np.array_equal(matrix, np.eye(4)):
+            matrix[:3, 3] /= PER_METRE
+            written["matrix"] = matrix.T.ravel().tolist()
+        self.document["nodes"].append(written)
+        return len(self.document["nodes"]) - 1
 
+    def _part(self, node: Node, written: dict[str, Any]) -> None:
+        """Adds a part to the report, and its chord error to its node."""
+        found = [self.shape_of(leaf) for leaf in node.leaves()]
+        error = max(measured.chord_error for _, measured, _ in found)
+        written["extras"] = {"colltrans": {"chord_error": error / PER_METRE, "part": True}}
+        told = {"name": node.name, "chord_error": error, "solids": sum(n for _, _, n in found)}
+        for how in ("exact", "sampled", "compared"):
+            told[how] = sum(getattr(measured, how) for _, measured, _ in found)
+        self.parts.append(told)
 
-def strip(glb: Glb) -> None:
-    """Leaves out the surfaces, which nobody asks for any more."""
-    for mesh in glb.document.get("meshes", []):
-        for primitive in mesh["primitives"]:
-            primitive.get("extensions", {}).pop("TM_brep_faces", None)
-    glb.document.pop("extensionsUsed", None)
-    extras = {"colltrans": {"unit": "mm", "per_metre": PER_METRE, "up": "z"}}
-    glb.document["asset"]["extras"] = extras
+    def _mesh(self, node: Node) -> int | None:
+        """Writes the mesh of a leaf once for each colour; returns its number."""
+        faces = self.shape_of(node)[0]
+        key = _entry(node.label), node.colour
+        if faces and key not in self.meshes:
+            by_colour: dict[Any, list[Face]] = {}
+            for face, colour in zip(faces, self._face_colours(node, faces), strict=True):
+                by_colour.setdefault(colour, []).append(face)
+            primitives = [self._primitive(some, colour) for colour, some in by_colour.items()]
+            self.meshes[key] = len(self.document["meshes"])
+            self.document["meshes"].append({"primitives": primitives})
+        return self.meshes.get(key)
+
+    def _face_colours(self, node: Node, faces: list[Face]) -> list[Any]:
+        """Returns the colour of each face: its own, its solid's or its part's."""
+        from OCP.collections import IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher
+        from OCP.TopAbs import TopAbs_ShapeEnum
+
+        known = IndexedMap_TopoDS_Shape_TopTools_ShapeMapHasher()
+        numbers = [known.Add(face.shape) for face in faces]
+        own: dict[int, Any] = {}
+        for shape, colour in self.product.colours_within(node.label):
+            for face in _explored(shape, TopAbs_ShapeEnum.TopAbs_FACE):
+                own[known.FindIndex(face)] = colour
+        return [own.get(number, node.colour) for number in numbers]
+
+    def _primitive(self, faces: list[Face], colour: Any) -> dict[str, Any]:
+        """Writes faces of one colour."""
+        first = np.cumsum([0, *(len(face.points) for face in faces)])
+        points = np.concatenate([face.points for face in faces]) / PER_METRE
+        facets = np.concatenate([face.facets + n for face, n in zip(faces, first, strict=False)])
+        primitive: dict[str, Any] = {
+            "attributes": {"POSITION": self._accessor(points.astype("<f4"), 5126, "VEC3")},
+            "indices": self._accessor(facets.ravel().astype("<u4"), 5125, "SCALAR"),
+        }
+        if colour is not None:
+            look = {"baseColorFactor": [*colour, 1.0], "metallicFactor": 0.0}
+            material = {"pbrMetallicRoughness": look}
+            if material not in self.document["materials"]:
+                self.document["materials"].append(material)
+            primitive["material"] = self.document["materials"].index(material)
+        return primitive
+
+    def _accessor(self, numbers: NDArray[Any], kind: int, width: str) -> int:
+        """Writes numbers; returns the number of their accessor."""
+        data = numbers.tobytes()
+        views, accessors = self.document["bufferViews"], self.document["accessors"]
+        views.append({"buffer": 0, "byteOffset": len(self.binary), "byteLength": len(data)})
+        self.binary += data
+        accessor = {
+            "bufferView": len(views) - 1,
+            "componentType": kind,
+            "count": len(numbers),
+            "type": width,
+        }
+        if width == "VEC3":
+            accessor["min"] = numbers.min(axis=0).tolist()
+            accessor["max"] = numbers.max(axis=0).tolist()
+        accessors.append(accessor)
+        return len(accessors) - 1
 
 
 def convert(
@@ -352,40 +699,34 @@ def convert(
     -------
     glb : bytes
     report : dict
-        The chord error of each part, in millimetres, and of how many faces it was found in
-        which way.
+        The name of each part, its number of solids, its chord error in millimetres, and the number
+        of faces for which the error was found in each way; ``left_out``, the names of the parts
+        that have no face.
     """
     try:
-        import cascadio
+        import OCP.STEPCAFControl  # noqa: F401
     except ImportError as error:
-        raise StepError("STEP files need cascadio: pip install 'colltrans[step]'") from error
-    data = Path(path).read_bytes()
-    if not data.lstrip().startswith(b"ISO-10303-21"):
-        raise StepError(f"{path}: is no STEP file: it does not begin with ISO-10303-21")
-
-    def tessellated(factor: float) -> Glb:
-        made = cascadio.load(
-            data,
-            file_type="step",
-            tol_linear=chord / factor,
-            tol_angular=angle / factor,
-            include_brep=True,
+        raise StepError(
+            "STEP files need cadquery-ocp-novtk: pip install 'colltrans[step]'"
+        ) from error
+    path = Path(path)
+    with path.open("rb") as file:
+        if not file.read(1024).lstrip().startswith(b"ISO-10303-21"):
+            raise StepError(f"{path}: is no STEP file: it does not begin with ISO-10303-21")
+    _say(f"{path}: reading")
+    product = Product(path)
+    writer = Writer(product, chord, angle)
+    writer.write(product.roots())
+    if not writer.parts:
+        raise StepError(
+            f"{path}: none of its {len(writer.left_out)} parts has a face; "
+            "export solids, not curves or points"
         )
-        if not made:
-            raise StepError(f"{path}: OpenCASCADE finds no shape in it")
-        return Glb.parse(made)
-
-    _say(f"{path}: tessellating")
-    glb = tessellated(1.0)
-    finer = None
-    if has_other_surfaces(glb):
-        _say("tessellating once more, finer")
-        finer = tessellated(FINER)
-    _say("measuring chord errors")
-    measured = measure(glb, finer)
-    parts = mark(glb, measured, assemblies(data.decode("latin-1")))
-    strip(glb)
-    return glb.to_bytes(), {"unit": "mm", "chord": chord, "angle": angle, "parts": parts}
+    if writer.left_out:
+        _say(f"{path}: {writer.note()}")
+    report: dict[str, Any] = {"unit": "mm", "chord": chord, "angle": angle, "parts": writer.parts}
+    report["left_out"] = writer.left_out
+    return Glb(writer.document, bytes(writer.binary)).to_bytes(), report
 
 
 def _say(text: str) -> None:
@@ -402,16 +743,20 @@ def main() -> int:
     arguments = parser.parse_args()
     if not (0 < arguments.chord < float("inf") and 0 < arguments.angle < float("inf")):
         parser.error("--chord and --angle are lengths and angles above 0")
+    # Whatever a library writes to standard output must not mix with the GLB file or the report.
+    output = os.fdopen(os.dup(1), "wb")
+    os.dup2(2, 1)
     try:
         glb, report = convert(arguments.file, arguments.chord, arguments.angle)
-        if arguments.output == "-":
-            sys.stdout.buffer.write(glb)
-            return 0
-        Path(arguments.output).write_bytes(glb)
+        told = glb
+        if arguments.output != "-":
+            Path(arguments.output).write_bytes(glb)
+            told = json.dumps(report).encode() + b"\n"
+        with output:
+            output.write(told)
     except (StepError, OSError) as error:
         _say(str(error))
         return 3
-    print(json.dumps(report))
     return 0
 
 

@@ -76,6 +76,21 @@ export function launch(args = COMPUTED) {
 /** Without graphics. */
 export const launchPlain = () => launch(["--disable-gpu", "--disable-3d-apis"]);
 
+/** An OFF file of boxes, each by its lowest and its highest corner. */
+export function boxes(...all) {
+  const corners = all.flatMap((ends) => [...Array(8).keys()].map((k) => [0, 1, 2].map((axis) => ends[(k >> axis) & 1][axis]).join(" ")));
+  const sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+  const faces = all.flatMap((_, k) => sides.map((side) => `4 ${side.map((v) => v + 8 * k).join(" ")}`));
+  return ["OFF", `${corners.length} ${faces.length} 0`, ...corners, ...faces, ""].join("\n");
+}
+
+/** Files, by name and text, that are dropped on an element. */
+export const drop = (page, selector, files) => page.evaluate(([selector, files]) => {
+  const dataTransfer = new DataTransfer();
+  for (const [name, text] of Object.entries(files)) dataTransfer.items.add(new File([text], name));
+  document.querySelector(selector).dispatchEvent(new DragEvent("drop", { dataTransfer, bubbles: true, cancelable: true }));
+}, [selector, files]);
+
 /** What a page complains about, and what it reads. Waits end with a failure late: graphics are computed here, and
  * pages of several tests at once. */
 export function watch(page) {

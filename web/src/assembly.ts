@@ -24,6 +24,8 @@ const GEARBOX = [
   "bolt_2", "bolt_3", "cover", "gear", "housing", "rear_bush", "shaft", "spacer",
 ].map((name) => `gearbox_small/${name}.off`);
 const EXAMPLE = "gearbox_small";
+/** Directions to begin with, of equal ones the first. */
+const AXES: Vec[] = [[0, 0, 1], [0, 0, -1], [1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0]];
 /** What is planned without being asked to. */
 const SOON = 40;
 
@@ -60,6 +62,8 @@ export class AssemblyTab {
   private busy = "";
   /** Whether what may take long is done without being asked for. */
   private patient = true;
+  /** Whether the direction that frees most is looked for: of files that somebody gave. */
+  private seeking = false;
   private asking = false;
   private again = false;
   /** Counts assemblies and fits: what comes for an older one is of no use. */
@@ -128,7 +132,7 @@ export class AssemblyTab {
       card("Parts", this.list,
         h("div", { class: "row" },
           h("button", { class: "small", onclick: () => this.choose() }, "Choose files…"),
-          h("button", { class: "small", onclick: () => void this.example() }, "Small gearbox")),
+          h("button", { class: "small", onclick: () => { this.seeking = true; void this.example(); } }, "Small gearbox")),
         h("small", {}, `${names("and")} files, one part each, or GLB; or drop them here. Up to 120 parts and 400,000 triangles: beyond that, the command line.`)),
       card("Direction",
         h("div", { class: "fields" }, h("span", {}, "d"), ...this.fields),
@@ -173,6 +177,7 @@ export class AssemblyTab {
     this.patient = true;
     this.asked.tolerance = null;
     this.asked.part = null;
+    this.seeking = true;
     try {
       const sorted = files.sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
       const read = await Promise.all(sorted.map(async (file) => ({ name: file.name, bytes: await bytesOf(file) })));
@@ -241,6 +246,8 @@ export class AssemblyTab {
       const { facts } = await this.engine.ask({ do: "fit", tolerance, ignore_overlaps: ignore });
       if (turn !== this.turn) return;
       this.fit = facts;
+      if (this.seeking) await this.seek(turn);
+      if (turn !== this.turn) return;
       this.wait("");
       await this.ask();
       if (turn !== this.turn || !this.patient) return;
@@ -249,6 +256,20 @@ export class AssemblyTab {
     } catch (error) {
       if (turn === this.turn) this.refuse(error);
     }
+  }
+
+  /** Turns the arrow to the axis along which most parts, or else most groups, come out; of equal ones to the first. */
+  private async seek(turn: number) {
+    this.seeking = false;
+    this.wait("Looking for the direction that frees most");
+    let most: [number, number] = [-1, -1];
+    for (const direction of AXES) {
+      const { facts } = await this.engine.ask({ do: "along", direction });
+      if (turn !== this.turn || !this.facts) return;
+      const [free, groups] = [freeParts(facts).length, properGroups(facts, this.facts).length];
+      if (free > most[0] || free === most[0] && groups > most[1]) [most, this.asked.direction] = [[free, groups], direction];
+    }
+    this.remember();
   }
 
   /** Who stops whom along the arrow. One question is on its way at a time. */
@@ -404,7 +425,7 @@ export class AssemblyTab {
   }
 
   private showHead() {
-    const { along, error, busy, facts } = this;
+    const { along, error, busy, facts, fit } = this;
     const wait = busy && h("p", { class: "took busy", role: "status" }, `${busy} `, h("button", { class: "small", onclick: () => void this.giveUp() }, "Stop"));
     if (error) {
       this.head.className = "said care";
@@ -416,11 +437,13 @@ export class AssemblyTab {
       refill(this.head, h("h2", {}, "…"), ...(wait ? [wait] : []));
       return;
     }
-    const free = along.rooms.filter(({ outcome }) => outcome === "free");
-    const groups = along.removable.filter((group) => group.length > 1);
-    this.head.className = `said ${free.length || groups.length ? "free" : "stop"}`;
+    const free = freeParts(along);
+    const groups = properGroups(along, facts);
+    const { pairs, count } = overlapping(fit);
+    this.head.className = `said ${count ? "care" : free.length || groups.length ? "free" : "stop"}`;
     refill(this.head,
       h("h2", { id: "assembly-headline" }, free.length ? `${free.length} of ${facts.parts.length} parts come out along d` : "No part comes out alone along d"),
+      ...(count ? [h("p", { id: "assembly-overlaps" }, `${count} ${count > 1 ? "pairs overlap" : "pair overlaps"} with this tolerance, and ${count > 1 ? "each moves" : "moves"} as one: ${pairs}. The tolerance is set under Fit.`)] : []),
       h("p", {}, free.length
         ? `${free.map(({ part }) => part).join(", ")}.`
         : groups.length ? `As they are, these can leave together: ${groups.slice(0, 3).map((group) => group.join(", ")).join("; ")}.` : "Everything is in the way of something."),
@@ -449,12 +472,11 @@ export class AssemblyTab {
     const { fit } = this;
     if (this.tolerance !== document.activeElement) this.tolerance.value = this.asked.tolerance === null ? "" : String(this.asked.tolerance);
     this.ignore.checked = this.asked.ignore;
-    const remaining = fit?.overlaps.filter(({ remains }) => remains) ?? [];
-    const pairs = remaining.slice(0, 6).map(({ parts, least_tolerance: depth }) => `${parts.join(" and ")}${depth === null ? "" : ` (${short(depth, 3)})`}`);
+    const { pairs, count } = overlapping(fit);
     refill(this.fitCard,
       ...this.fitFields,
-      h("small", {}, !fit ? "" : `${fit.liaisons.length} pairs touch, ${fit.overlaps.length} overlap as the files have them, ${remaining.length} with a tolerance of ${short(fit.tolerance, 3)}.`),
-      ...(pairs.length ? [h("small", {}, `Overlapping, and so moving as one: ${pairs.join("; ")}${remaining.length > 6 ? "; …" : ""}.`)] : []),
+      h("small", {}, !fit ? "" : `${fit.liaisons.length} pairs touch, ${fit.overlaps.length} overlap as the files have them, ${count} with a tolerance of ${short(fit.tolerance, 3)}.`),
+      ...(count ? [h("small", {}, `Overlapping, and so moving as one: ${pairs}.`)] : []),
       ...(fit?.suggested_tolerance && fit.suggested_tolerance > fit.tolerance
         ? [h("div", { class: "row" }, h("button", { class: "small main", onclick: () => { this.asked.tolerance = fit.suggested_tolerance; void this.refit(); } }, `Use ${fit.suggested_tolerance}`), h("small", {}, "no pair overlaps with it"))]
         : []),
@@ -540,6 +562,19 @@ export class AssemblyTab {
     const tip = this.seen && onPage(this.seen.renderer.domElement, this.seen.camera, this.tip());
     return { facts, fit, along, map, plan, engine, busy, error, tip, t: this.player.t };
   }
+}
+
+/** The parts that come out alone. */
+const freeParts = (along: PageAlong) => along.rooms.filter(({ outcome }) => outcome === "free");
+
+/** The groups that come out as one, without single parts and without the whole: all parts together always can. */
+const properGroups = (along: PageAlong, { parts }: PageParts) => along.removable.filter(({ length }) => length > 1 && length < parts.length);
+
+/** The pairs that overlap with the tolerance, the deepest six in words, and how many there are. */
+function overlapping(fit: PageFit | undefined): { pairs: string; count: number } {
+  const remaining = fit?.overlaps.filter(({ remains }) => remains) ?? [];
+  const pairs = remaining.slice(0, 6).map(({ parts, least_tolerance: depth }) => `${parts.join(" and ")}${depth === null ? "" : ` (${short(depth, 3)})`}`);
+  return { pairs: `${pairs.join("; ")}${remaining.length > 6 ? "; …" : ""}`, count: remaining.length };
 }
 
 const said = (error: unknown) => (error instanceof Error ? error.message : String(error));

@@ -17,11 +17,11 @@ import type { Near, Nearness } from "./near";
 import { AnswerPanel, type Picture, type Refusal, type Shown } from "./panel";
 import type { Source } from "./placing";
 import { Shadow } from "./shadow";
-import { type State, TABS, type Tab, fromExample, fromHash, toHash } from "./state";
+import { IN_FILE, type State, TABS, type Tab, fromExample, fromHash, toHash } from "./state";
 import { Timeline, times } from "./time";
 import type { Turning } from "./turning";
 import { View } from "./view";
-import { type Bodies, drawn, forget } from "./view/body";
+import { type Bodies, type Drawn, drawn, forget } from "./view/body";
 import { drawable } from "./view/framing";
 import type { Tool } from "./view/handles";
 
@@ -79,6 +79,12 @@ class Page {
   private loading = 0;
   /** Counts what is asked for as a body: what comes for an older one is of no use. */
   private readonly turns: Record<Slot, number> = { moving: 0, fixed: 0 };
+  /** Counts changes of the bodies: an answer about other ones is dropped. */
+  private pairs = 0;
+  /** Slots whose next body stands where its file has it, not where the state has the one before. */
+  private readonly asInFile: Record<Slot, boolean> = { moving: false, fixed: false };
+  /** The body before one that was refused: shown again if the refused file is left. */
+  private readonly previous: Partial<Record<Slot, { drawn: Drawn; source: Source | undefined }>> = {};
   private tool: Tool = "look";
   private held: Slot = "moving";
 
@@ -88,10 +94,7 @@ class Page {
       change: (change) => this.change(change),
       choose: (slot) => this.choose(slot),
       take: (slot, take) => void this.take(slot, take),
-      dismiss: (slot) => {
-        delete this.refusals[slot];
-        this.show();
-      },
+      dismiss: (slot) => this.restore(slot),
       verify: () => void this.verify(),
       copy: (text, what) => void this.copy(text, what),
       save: (how) => void this.save(how),
@@ -214,25 +217,22 @@ class Page {
       return;
     }
     if (!this.bodies.moving || !this.bodies.fixed) {
-      [this.answer, this.error] = [undefined, undefined];
+      this.clearAnswer();
       this.show();
       this.found?.changed();
       return;
     }
     this.asking = true;
+    const { pairs } = this;
     try {
       const pair = structuredClone(this.pair());
       const { answer, took } = await this.engine.cast(pair);
-      // Meanwhile a body may have gone, for a file that is not there.
-      if (!this.bodies.moving || !this.bodies.fixed) this.again = true;
-      if (JSON.stringify(pair) !== JSON.stringify(this.last)) [this.before, this.last] = [this.last, pair];
-      this.firstAnswer ??= performance.now();
-      [this.answer, this.took, this.error] = [answer, took, undefined];
+      if (pairs === this.pairs) this.answered(pair, answer, took);
     } catch (error) {
-      [this.answer, this.error] = [undefined, String(error instanceof Error ? error.message : error)];
+      if (pairs === this.pairs) [this.answer, this.error] = [undefined, String(error instanceof Error ? error.message : error)];
     }
     this.asking = false;
-    if (this.again) {
+    if (this.again || pairs !== this.pairs) {
       this.again = false;
       void this.ask();
     }
@@ -240,6 +240,24 @@ class Page {
     this.found?.changed();
     this.proveSoon();
     void this.askNear();
+  }
+
+  private answered(pair: Pair, answer: PageCast, took: number) {
+    if (JSON.stringify(pair) !== JSON.stringify(this.last)) [this.before, this.last] = [this.last, pair];
+    this.firstAnswer ??= performance.now();
+    [this.answer, this.took, this.error] = [answer, took, undefined];
+  }
+
+  /** No answer outlives the bodies that it is about. */
+  private clearAnswer() {
+    clearTimeout(this.proving);
+    [this.answer, this.error, this.verdict, this.solidProof, this.near] = [undefined, undefined, undefined, undefined, undefined];
+  }
+
+  /** The bodies are other ones from now on. */
+  private changedPair() {
+    this.pairs++;
+    this.clearAnswer();
   }
 
   /** As with casts: of those that come meanwhile only the last is asked. */
@@ -257,15 +275,17 @@ class Page {
       return;
     }
     this.nearing = true;
+    const { pairs } = this;
     try {
       this.nearness ??= new (await import("./near")).Near();
-      this.near = await this.nearness.ask({ moving, fixed }, structuredClone(this.pair()));
+      const near = await this.nearness.ask({ moving, fixed }, structuredClone(this.pair()));
+      if (pairs === this.pairs) this.near = near;
     } catch (error) {
       this.near = undefined;
       toast(`No distance: ${error instanceof Error ? error.message : String(error)}`);
     }
     this.nearing = false;
-    if (this.nearAgain || !this.state.near) {
+    if (this.nearAgain || !this.state.near || pairs !== this.pairs) {
       this.nearAgain = false;
       void this.askNear();
     }
@@ -326,6 +346,7 @@ class Page {
   private async loadExample(slot: Slot) {
     const turn = ++this.turns[slot];
     const { file, take } = this.state.parts[slot];
+    this.asInFile[slot] = false;
     try {
       const url = new URL(`data/${file}`, document.baseURI);
       const known = Object.values(EXAMPLES).some((e) => e.moving.file === file || e.fixed.file === file);
@@ -349,10 +370,15 @@ class Page {
     this.waiting(+1);
     try {
       const body = await this.engine.load(slot, name, take, file);
-      forget(this.bodies[slot]);
+      this.remove(slot);
       [this.last, this.before] = [undefined, undefined];
       this.bodies[slot] = drawn(body);
       this.state.parts[slot] = { file: name, take };
+      if (this.asInFile[slot]) {
+        this.asInFile[slot] = false;
+        this.state.poses[slot] = [...IN_FILE];
+        this.state.motion.screw = null;
+      }
       this.made[slot] = { file: name, take };
       const bytes = this.given[slot];
       if (bytes) this.sources[slot] = { name, take, bytes };
@@ -363,37 +389,65 @@ class Page {
   }
 
   private remove(slot: Slot) {
-    forget(this.bodies[slot]);
+    for (const body of [this.bodies[slot], this.previous[slot]?.drawn]) forget(body);
     delete this.bodies[slot];
+    delete this.previous[slot];
+    this.changedPair();
+  }
+
+  /** The body before a refused file is asked about again. */
+  private restore(slot: Slot) {
+    delete this.refusals[slot];
+    const before = this.previous[slot];
+    if (before) {
+      delete this.previous[slot];
+      this.bodies[slot] = before.drawn;
+      if (before.source) this.sources[slot] = before.source;
+      this.asInFile[slot] = false;
+      this.changedPair();
+      void this.ask();
+    }
+    this.show();
   }
 
   private refuse(slot: Slot, name: string, error: unknown) {
+    const { [slot]: drawn } = this.bodies;
     // A large one makes room for the file that is read.
-    if (error instanceof Refused && error.gone && this.bodies[slot]) {
-      this.remove(slot);
-      void this.ask();
+    if (error instanceof Refused && error.gone) this.remove(slot);
+    else if (drawn) {
+      // It is not what is asked about, but may be again.
+      this.previous[slot] = { drawn, source: this.sources[slot] };
+      delete this.bodies[slot];
+      this.changedPair();
     }
+    delete this.sources[slot];
     const instead = error instanceof Refused ? error.instead : [];
-    this.refusals[slot] = { name, message: error instanceof Error ? error.message : String(error), instead };
+    const before = this.previous[slot] && this.state.parts[slot].file;
+    this.refusals[slot] = { name, message: error instanceof Error ? error.message : String(error), instead, before };
+    void this.ask();
     this.show();
-    // It may be far below what was dropped on. Where a body is missing, that is said in the answer's place.
-    if (this.bodies[slot]) requestAnimationFrame(() => document.querySelector(".refused")?.scrollIntoView({ block: "nearest" }));
+    // It may be far below what was dropped on.
+    requestAnimationFrame(() => document.querySelector(".refused")?.scrollIntoView({ block: "nearest" }));
   }
 
-  /** A file that somebody chose or dropped. */
-  private async open(slot: Slot, file: File) {
-    const turn = ++this.turns[slot];
-    const { file: name, take } = this.state.parts[slot];
-    try {
-      const bytes = await bytesOf(file);
-      if (turn !== this.turns[slot]) return;
-      this.given[slot] = () => bytesOf(file);
-      // A link to a file that had to be given says how it is taken.
-      await this.load(slot, file.name, !this.bodies[slot] && file.name === name ? take : "convex", bytes);
-      await this.changedBody();
-    } catch (error) {
-      if (turn === this.turns[slot]) this.refuse(slot, file.name, error);
+  /** Files that somebody chose or dropped stand where they have themselves, and are asked about together. */
+  private async open(files: [Slot, File][]) {
+    for (const [slot, file] of files) {
+      const turn = ++this.turns[slot];
+      const { file: name, take } = this.state.parts[slot];
+      // A link to a file that had to be given says how it is taken, and where it is.
+      const linked = !this.bodies[slot] && !this.previous[slot] && file.name === name;
+      try {
+        const bytes = await bytesOf(file);
+        if (turn !== this.turns[slot]) continue;
+        this.given[slot] = () => bytesOf(file);
+        this.asInFile[slot] = !linked;
+        await this.load(slot, file.name, linked ? take : "convex", bytes);
+      } catch (error) {
+        if (turn === this.turns[slot]) this.refuse(slot, file.name, error);
+      }
     }
+    await this.changedBody();
   }
 
   /** The file that was refused, or is there, in another way. */
@@ -419,7 +473,7 @@ class Page {
     const input = h("input", { type: "file", accept: ACCEPTED });
     input.addEventListener("change", () => {
       const file = input.files?.[0];
-      if (file) void this.open(slot, file);
+      if (file) void this.open([[slot, file]]);
     });
     input.click();
   }
@@ -616,10 +670,8 @@ class Page {
       }
       const first: Slot = (over(event.target)?.dataset.slot as Slot | undefined) ?? "moving";
       const second: Slot = first === "moving" ? "fixed" : "moving";
-      void (async () => {
-        if (files[0]) await this.open(first, files[0]);
-        if (files[1]) await this.open(second, files[1]);
-      })();
+      const given = ([[first, files[0]], [second, files[1]]] as const).filter((one): one is [Slot, File] => !!one[1]);
+      if (given.length) void this.open(given);
     });
   }
 

@@ -8,7 +8,7 @@ import { names } from "./formats";
 import { type Vec, length, short } from "./math";
 import type { Nearness } from "./near";
 import { asCommand } from "./share";
-import type { Solver, State } from "./state";
+import { IN_FILE, type Solver, type State } from "./state";
 import type { Drawn } from "./view/body";
 import { say } from "./words";
 
@@ -20,6 +20,8 @@ export interface Refusal {
   name: string;
   message: string;
   instead: Take[];
+  /** The file of the body that was there before, if that can be shown again. */
+  before: string | undefined;
 }
 
 export interface Shown {
@@ -161,7 +163,9 @@ export class AnswerPanel {
           const l = length(s.direction);
           if (l > 0) s.direction = s.direction.map((x) => x / l) as Vec;
         }) }, "length 1")),
-      ...pose("moving"), ...pose("fixed"), this.graze, this.narrowing, this.solid,
+      ...pose("moving"), ...pose("fixed"),
+      h("div", { class: "row" }, h("button", { class: "small", title: "Both bodies in the coordinates of their files, not moved and not turned", onclick: () => this.act.change((s) => (s.poses = { moving: [...IN_FILE], fixed: [...IN_FILE] })) }, "as in the files")),
+      this.graze, this.narrowing, this.solid,
       h("small", { style: "color: var(--soft)" }, "Lengths are in the unit of the files; t counts in multiples of d. In a field the keys ↑ and ↓ change the number, with Shift by ten times as much."),
     );
   }
@@ -254,19 +258,19 @@ export class AnswerPanel {
       const facts = bodies[slot]?.body.facts;
       const refusal = refusals[slot];
       const { file, take } = state.parts[slot];
+      const named = facts ? file : refusal?.name ?? file;
       const count = facts &&
         `${facts.vertices.toLocaleString("en")} vertices, ${(facts.kind === "solid" ? facts.triangles : facts.faces).toLocaleString("en")} ${facts.kind === "solid" ? "triangles" : "faces"}, taken ${TAKEN[take]}`;
       return h("div", { class: "body" },
         h("span", { class: `swatch ${slot}` }),
-        h("strong", { title: file }, file.split("/").at(-1)!),
+        h("strong", { title: named }, named.split("/").at(-1)!),
         h("button", { class: "small", onclick: () => this.act.choose(slot), "aria-label": `Choose a file for the ${slot} body` }, "Choose…"),
         h("small", {}, `${slot === mover ? "moves" : "stays"}${count ? `; ${count}` : ""}`),
         ...(facts?.notes ?? []).map((note) => h("small", {}, note)),
         refusal && h("div", { class: "refused", role: "alert" }, refusal.message,
           h("div", { class: "row" },
             ...refusal.instead.map((how) => h("button", { class: "small main", onclick: () => this.act.take(slot, how) }, OFFER[how])),
-            // What was there before is there still.
-            facts && h("button", { class: "small", onclick: () => this.act.dismiss(slot) }, "Leave it"))),
+            refusal.before && h("button", { class: "small", title: `Back to ${refusal.before}`, onclick: () => this.act.dismiss(slot) }, "Leave it"))),
       );
     });
     refill(this.parts, ...rows, h("small", { style: "color: var(--soft)" }, `${names("or")}, up to ${MOST_MIB} MiB; or drop files on the view.`));

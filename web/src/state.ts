@@ -54,6 +54,9 @@ export interface State {
   };
 }
 
+/** Where a body stands as its file has it. */
+export const IN_FILE: Readonly<Pose> = [0, 0, 0, 0, 0, 0, 1];
+
 export const otherOf = (slot: Slot): Slot => (slot === "moving" ? "fixed" : "moving");
 
 export function fromExample(name: string): State {

@@ -4,7 +4,7 @@ import assert from "node:assert/strict";
 import { readFile } from "node:fs/promises";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { answers, data, isCut, launchPlain, site, watch } from "../browser.mjs";
+import { answers, boxes, data, drop, isCut, launchPlain, site, watch } from "../browser.mjs";
 
 const gearbox = join(data, "gearbox_small");
 
@@ -133,6 +133,30 @@ test("dragging the arrow, picking a part, clicking into its map", async () => {
   await again.waitForFunction((along) => JSON.stringify(window.colltrans.probe().assembly.along) === along, JSON.stringify((await probe(page)).along));
   assert.deepEqual([...page.complaints, ...again.complaints], []);
   await again.context().close();
+});
+
+test("d starts along what frees most; the whole is no group; what overlaps comes first", async () => {
+  const page = await opened();
+  // A box that is open along y, and a cube in it.
+  const tray = boxes([[0, 0, 0], [6, 6, 1]], [[0, 0, 5], [6, 6, 6]], [[0, 0, 1], [1, 6, 5]], [[5, 0, 1], [6, 6, 5]], [[1, 0, 1], [5, 1, 5]]);
+  await drop(page, ".assembly-stage", { "tray.off": tray, "cube.off": boxes([[2, 2, 2], [4, 4, 4]]) });
+  await page.waitForFunction(() => window.colltrans.probe().assembly.facts?.parts.length === 2 && window.colltrans.probe().assembly.along);
+  assert.deepEqual(await page.evaluate(() => window.colltrans.probe().state.assembly.direction), [0, 1, 0]);
+  assert.equal(await page.textContent("#assembly-headline"), "1 of 2 parts come out along d");
+  assert.equal(await page.locator("#assembly-overlaps").count(), 0);
+  assert.equal(await page.locator(".assembly-panel .said.free").count(), 1);
+  // Up they hold each other: the two together are all there is.
+  await page.click(".assembly-panel button:text-is('+z') >> nth=-1");
+  await page.waitForSelector("#assembly-headline:text-is('No part comes out alone along d')");
+  assert.match(await page.textContent(".assembly-panel .said"), /Everything is in the way of something/);
+  assert.equal(await page.locator(".assembly-panel .said.stop").count(), 1);
+  // Drawn into each other: that comes first, and is not good news.
+  await drop(page, ".assembly-stage", { "tray.off": tray, "cube.off": boxes([[2, 2, 0.75], [4, 4, 4]]) });
+  await page.waitForSelector("#assembly-overlaps");
+  assert.match(await page.textContent("#assembly-overlaps"), /^1 pair overlaps with this tolerance, and moves as one: cube and tray/);
+  assert.equal(await page.locator(".assembly-panel .said.care").count(), 1);
+  assert.deepEqual(page.complaints, []);
+  await page.context().close();
 });
 
 test("on a phone, and without WebGL", async () => {

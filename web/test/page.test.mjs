@@ -5,7 +5,7 @@ import { mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { after, before, test } from "node:test";
-import { data, launchPlain, site, watch } from "../browser.mjs";
+import { boxes, data, drop, launchPlain, site, watch } from "../browser.mjs";
 
 let at, page, folder;
 before(async () => {
@@ -56,11 +56,16 @@ test("a bad file gives its message, one that is not convex two ways on", async (
   await page.waitForSelector(".refused");
   assert.match(await page.textContent(".refused"), /^bad\.off: line 5: /);
   await page.waitForFunction(() => document.querySelector(".refused").getBoundingClientRect().bottom <= innerHeight);
-  // What was there is still answered, and goes on being so.
-  assert.equal(await headline(page), "Contact at t = 4.31674");
+  // What was there is not what is asked about, until one goes back to it.
+  await page.waitForSelector(".said h2:text-is('No answer')");
+  assert.match(await page.textContent(".said"), /bad\.off: line 5/);
+  assert.equal(await answered(page), undefined);
   await page.fill('[aria-label="moving position z"]', "12.5");
-  await page.waitForFunction(() => window.colltrans.probe().answer?.record.translation > 7);
+  await page.waitForFunction(() => window.colltrans.probe().state.poses.moving[2] === 12.5);
+  assert.equal(await answered(page), undefined);
   await page.click("text=Leave it");
+  await page.waitForFunction(() => window.colltrans.probe().answer?.record.translation > 7);
+  assert.match(await page.textContent(".bodies"), /dodecahedron\.off/);
   await page.fill('[aria-label="moving position z"]', "9");
   await page.waitForFunction(() => document.querySelector("#headline")?.textContent === "Contact at t = 4.31674");
   await choose({ name: "bracket.off", mimeType: "", buffer: Buffer.alloc(0) });
@@ -71,6 +76,48 @@ test("a bad file gives its message, one that is not convex two ways on", async (
   assert.match(await page.textContent(".refused"), /not convex|topolog|sphere|genus|hole/i);
   await page.click("text=As a solid");
   await page.waitForFunction(() => window.colltrans.probe().answer?.kind === "solid");
+  assert.deepEqual(page.complaints, []);
+});
+
+test("dropped files stand where they have themselves, and are answered together or not at all", async () => {
+  await at.ask(page);
+  const cube = (z) => boxes([[0, 0, z], [1, 1, z + 1]]);
+  const state = () => page.evaluate(() => window.colltrans.probe().state);
+  await page.evaluate(() => {
+    const { view } = window.colltrans.probe();
+    window.shown = [];
+    const look = () => {
+      const { answer, state } = window.colltrans.probe();
+      if (answer) window.shown.push(`${state.parts.moving.file} ${state.parts.fixed.file} ${answer.record.translation}`);
+      window.looking = requestAnimationFrame(look);
+    };
+    look();
+    return !!view;
+  });
+  await page.click(".card button:text-is('−z') >> nth=0");
+  await drop(page, "[data-slot=moving]", { "upper.off": cube(5), "lower.off": cube(1) });
+  await page.waitForFunction(() => window.colltrans.probe().state.parts.fixed.file === "lower.off" && window.colltrans.probe().answer);
+  const given = await state();
+  assert.deepEqual([given.poses.moving, given.poses.fixed], [[0, 0, 0, 0, 0, 0, 1], [0, 0, 0, 0, 0, 0, 1]]);
+  assert.equal(await headline(page), "Contact at t = 3");
+  // No answer is about bodies that nobody gave together.
+  const shown = await page.evaluate(() => (cancelAnimationFrame(window.looking), window.shown));
+  assert.ok(shown.every((said) => !/^(upper|lower)/.test(said.split(" ")[0]) || said === "upper.off lower.off 3"), [...new Set(shown)].join("; "));
+  assert.ok(shown.every((said) => !said.includes("lower.off") || said.startsWith("upper.off")), [...new Set(shown)].join("; "));
+  // Moved and turned, and back as in the files.
+  await page.fill('[aria-label="moving position x"]', "30");
+  await page.waitForSelector("#headline:text-is('They never meet')");
+  await page.click("button:text-is('as in the files')");
+  await page.waitForSelector("#headline:text-is('Contact at t = 3')");
+  // A file that is refused takes the answer with it, and one that takes its place stands where it has itself.
+  await page.fill('[aria-label="moving position x"]', "0.25");
+  await drop(page, "[data-slot=moving]", { "no.off": "OFF\n" });
+  await page.waitForSelector(".said h2:text-is('No answer')");
+  assert.equal(await answered(page), undefined);
+  await drop(page, "[data-slot=moving]", { "higher.off": cube(7) });
+  await page.waitForSelector("#headline:text-is('Contact at t = 5')");
+  assert.equal((await state()).poses.moving[0], 0);
+  assert.equal(await page.locator(".refused").count(), 0);
   assert.deepEqual(page.complaints, []);
 });
 

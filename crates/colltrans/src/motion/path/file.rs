@@ -132,7 +132,7 @@ impl PathProofFile {
         let outcome = file.cast()?.first_contact()?;
         if !outcome.proof().solids.is_empty() {
             // The file has those bodies as the solids that the proof takes them as.
-            return Self::answer(&cast.with_solids(&outcome.proof().solids), names);
+            return Self::answer(&cast.with_solids(&outcome.proof().solids), &names);
         }
         let [from, to] = file.path.ends();
         let [lower, upper] = match &outcome {

@@ -320,3 +320,68 @@ def test_it_runs_alone() -> None:
     claim = proof("contacts")
     claim["statement"]["contacts"] = {}
     assert refused(claim), "it claims nothing"
+
+
+def test_a_margin_is_that_of_the_shadows_not_along_a_tilted_normal() -> None:
+    file = proof("slide")
+    file["moving_pose"]["translation"] = [-100.0, 1.1, 0.25]
+    separation = {"normal": [0.0, -1.0, 0.0], "margin": 0.09}
+    file["statement"] = {"separation": separation}
+    assert not refused(file)
+    # The shadows are 0.1 apart, the bodies 98.9 along a normal that is tilted to the direction.
+    for normal, margin in [([0.99995, -0.01, 0.0], 98.9), ([3e-15, -1.0, 0.0], 0.1 + 2e-13)]:
+        file["statement"] = {"separation": {"normal": normal, "margin": margin}}
+        assert refused(file)
+
+
+def test_an_overlap_of_a_slide_is_that_of_the_shadows() -> None:
+    file = proof("slide")
+    file["moving_pose"]["translation"] = [-1e9, 1.0 - 1e-6, 0.25]
+    slide = {"normal": [0.0, -1.0, 0.0], "overlap": 1.1e-6}
+    file["statement"]["contacts"] = {
+        "slide": slide,
+        "first": file["statement"]["contacts"]["first"] | {"lower": -1e30},
+    }
+    check.check(json.dumps(file))
+    for normal in ([3e-15, -1.0, 0.0], [-3e-15, -1.0, 0.0]):
+        slide |= {"normal": normal, "overlap": 0.0}
+        assert refused(file)
+
+
+@pytest.mark.parametrize(
+    ("name", "way", "value"),
+    [
+        ("contacts", ("statement", "contacts", "first", "rounding"), -1e-300),
+        ("contacts", ("statement", "contacts", "first", "rounding"), 1.0),
+        ("contacts", ("statement", "contacts", "first", "weights"), {}),
+        ("contacts", ("moving", "convex", "hull_error"), 1e200),
+        ("contacts", ("moving_pose", "translation", 0), 5e-324),
+        ("contacts", ("direction", 1), 1e-300),
+        ("separation", ("statement", "separation", "unknown"), 1.0),
+        ("separation", ("keep",), -1.0),
+        ("separation", ("keep",), None),
+    ],
+)
+def test_what_the_specification_does_not_admit_is_refused(
+    name: str, way: tuple[Any, ...], value: Any
+) -> None:
+    file = proof(name)
+    at = file
+    for key in way[:-1]:
+        at = at[key]
+    at[way[-1]] = value
+    assert refused(file)
+
+
+def test_faces_that_may_not_be_those_of_the_hull_are_left_unchecked() -> None:
+    file = proof("contacts")
+    assert not check.check(json.dumps(file)).partly
+    corner = file["moving"]["convex"]["vertices"][0]
+    corner[0] += 1e-12 * max(abs(x) for v in file["moving"]["convex"]["vertices"] for x in v)
+    lower, upper = (file["statement"]["contacts"][end] for end in ("first", "last"))
+    for end in (lower, upper):
+        end |= {"lower": end["lower"] - 1e-9, "upper": None}
+    report = check.check(json.dumps(file))
+    assert report.partly and any(
+        "the faces of the moving body" in line for line in report.unchecked
+    )

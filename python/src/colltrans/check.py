@@ -18,7 +18,8 @@ With the moving body ``P``, the fixed one ``Q``, the direction ``d``, all points
   direction, ``n' = n (d.d) - d (n.d)``: so much do the bodies overlap seen along it, at most. The
   one claimed must not be smaller.
 - *Bodies.* The faces of a convex body, if it has any, close up around all vertices, and none of
-  their neighbours is above them by more than ``hull_error`` and rounding. No proof leans on them.
+  their neighbours is far above them. No proof leans on them. Where they may not be those of the
+  hull of the vertices, that is said to be unchecked: ``colltrans verify`` refuses such a body.
 - *Separation.* ``n'`` is orthogonal to ``d``; ``min_Q n'.q > max_P n'.p`` proves that the bodies
   never meet, and ``(min_Q n'.q - max_P n'.p) / |n'|`` that their shadows are so far apart. The
   margin claimed must not be larger.
@@ -368,8 +369,8 @@ def described(points: list[Vector], content: Any) -> None:
                 raise RefusedError(f"vertex {k} is not where the faces around it are")
 
 
-#: How far vertices are from the plane of their face, and how far they are beyond their neighbours at
-#: least, in largest coordinates, of bodies whose faces the library certainly takes for its own.
+#: How far vertices are from the plane of their face, and how far they are beyond their neighbours
+#: at least, in largest coordinates, of bodies whose faces the library certainly takes for its own.
 _OWN_PLANE, _OWN_CORNER = 96 * 2.0**-53, 1024 * 2.0**-53
 
 
@@ -3303,10 +3304,10 @@ def check(text: str) -> Report:
             return MOTIONS[file["format"]](file)
         if file["format"] != FORMAT:
             raise NoProofError(f"the format is {file['format']!r}, not {FORMAT!r}")
+        keep = gap_to_keep(file)
         file = fields(
             file, "format moving moving_pose fixed fixed_pose statement", "direction keep"
         )
-        keep = gap_to_keep({} if file["keep"] is None else file)
         moving = Body.read(file["moving"], file["moving_pose"])
         fixed = Body.read(file["fixed"], file["fixed_pose"])
         if bool(moving.facets) != bool(fixed.facets):

@@ -365,13 +365,24 @@ def described(points: list[Vector], content: Any) -> None:
         around = [v for a, b in zip(face, face[1:] + face[:1], strict=True) for v in sides[b, a]]
         for k in (*face, *around):
             above = dot(normal, minus(points[k], points[face[0]]))
-            if (above > 0 or k in face) and above * above > room * room * square:
+            is_off = (above > 0 or k in face) and above * above > room * room * square
+            if is_off and not is_thin(points, faces):
                 raise RefusedError(f"vertex {k} is not where the faces around it are")
 
 
 #: How far vertices are from the plane of their face, and how far they are beyond their neighbours
 #: at least, in largest coordinates, of bodies whose faces the library certainly takes for its own.
 _OWN_PLANE, _OWN_CORNER = 96 * 2.0**-53, 1024 * 2.0**-53
+
+
+def is_thin(points: list[Vector], faces: list[list[int]]) -> bool:
+    """Whether a body is so thin that rounding hides which faces it has."""
+    room = 512 * _U * Fraction(math.sqrt(max(float(dot(v, v)) for v in points)))
+    for normal in (area(points, face) for face in faces):
+        heights = [dot(normal, v) for v in points]
+        if (max(heights) - min(heights)) ** 2 <= room * room * dot(normal, normal):
+            return True
+    return False
 
 
 def are_own_faces(points: list[Vector], content: Any) -> bool:

@@ -934,7 +934,8 @@ class Scene:
 
     def __init__(self, file: Any) -> None:
         fields(file, "format bodies moving obstacles choices statement")
-        shapes = [Body.shape(shape) for shape in file["bodies"]]
+        self.shapes = file["bodies"]
+        shapes = [Body.shape(shape) for shape in self.shapes]
 
         def placed(place: Any) -> Body:
             fields(place, "body pose")
@@ -953,6 +954,8 @@ class Scene:
         self.report = Report()
 
     def check(self) -> Report:
+        for k, shape in enumerate(self.shapes):
+            check_faces(self.report, f"{k}.", shape.get("convex"))
         kinds = {"nearest": self.nearest, "within": self.within, "clearance": self.clearance}
         kind, claim = one_of(self.statement, *kinds)
         kinds[kind](claim)
@@ -2069,9 +2072,9 @@ def spans(file: Any, described_bodies: bool = True) -> list[Span]:
     """The times in which both bodies spin evenly, one after the other."""
     sides = []
     for side in ("moving", "fixed"):
-        points = [vector(v) for v in file[side]["vertices"]]
+        points = [_ZERO]
         if described_bodies:
-            described(points, file[side])
+            points, _ = Body.shape({"convex": file[side]})
         spins = [Spin.read(points, piece) for piece in file[f"{side}_motion"]]
         times = [spin.since for spin in spins]
         if not times or times[0] != 0 or times[-1] >= 1 or sorted(set(times)) != times:
@@ -2091,6 +2094,8 @@ def motion(file: Any) -> Report:
     names = "format moving moving_motion fixed fixed_motion proof"
     fields(file, names, "keep")
     all_spans, proof, report = spans(file), fields(file["proof"], "spans meeting"), Report()
+    for which in ("moving", "fixed"):
+        check_faces(report, which, file[which])
     claimed = proof["spans"]
     if len(claimed) > len(all_spans):
         raise RefusedError("there are more spans than the motions have")
@@ -2500,7 +2505,6 @@ def solid_motion(file: Any) -> Report:
     parts = (p, q)
     check_tolerance(file.get("tolerance"), number(proof["tolerance"]), parts)
     plain = {
-        **{side: {"vertices": [[0.0, 0.0, 0.0]]} for side in ("moving", "fixed")},
         **{name: file[name] for name in ("moving_motion", "fixed_motion")},
         "keep": file.get("keep", 0.0),
     }
@@ -2582,6 +2586,7 @@ def motions(file: Any) -> Report:
         found = motion(proof)
         report.holds += [f"pair {number_}: {line}" for line in found.holds]
         report.unchecked += [f"pair {number_}: {line}" for line in found.unchecked]
+        report.partly = report.partly or found.partly
         if not found.holds:
             report.unchecked.append(f"pair {number_}: nothing is proven of it")
             report.partly = True
@@ -3241,6 +3246,8 @@ def path(file: Any) -> Report:
     fields(file, names, "keep")
     statement = fields(file["statement"], "pairs lower upper")
     proof, robot = fields(file["proof"], "covers meeting"), Robot.read(file)
+    for of in file["bodies"]:
+        check_faces(report, of["name"], of["body"].get("convex"))
     covers, pairs, last = proof["covers"], robot.pairs, len(robot.rows) - 1
     if len(covers) != len(pairs):
         raise RefusedError("there is not a cover for each pair")
@@ -3328,13 +3335,8 @@ def check(text: str) -> Report:
         if d is not None and not any(d):
             raise NoProofError("the direction is zero")
         report = Report()
-        for which, body in (("moving", moving), ("fixed", fixed)):
-            content = file[which].get("convex")
-            if content is not None and not are_own_faces(body.points, content):
-                report.partly = True
-                report.unchecked.append(
-                    f"the faces of the {which} body: it is the hull of its vertices"
-                )
+        for which in ("moving", "fixed"):
+            check_faces(report, which, file[which].get("convex"))
         said = fields(file["statement"], "", " ".join((*PLACED, *ALONG)))
         claims = {kind: claim for kind, claim in said.items() if claim is not None}
         if len(claims) != 1:
@@ -3356,6 +3358,14 @@ def check(text: str) -> Report:
             raise
         raise NoProofError(f"{type(error).__name__}: {error}") from error
     return report
+
+
+def check_faces(report: Report, which: str, content: Any) -> None:
+    """Says that faces of a convex body are not checked, if they are not clearly those of its hull."""
+    if content is None or are_own_faces([vector(v) for v in content["vertices"]], content):
+        return
+    report.partly = True
+    report.unchecked.append(f"the faces of the {which} body: it is the hull of its vertices")
 
 
 #: What is claimed of motions, by its format.

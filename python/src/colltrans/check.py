@@ -2481,7 +2481,23 @@ def shells(facets: list[Triangle]) -> list[Vector]:
 def open_facets(shape: Any) -> list[bool]:
     """Returns for each facet of a body whether it is part of a surface that is open."""
     pieces = shape.get("pieces", [])
-    return [truth(of.get("open", False)) for of in pieces for _ in of["triangles"]]
+    for piece in pieces:
+        if not truth(piece.get("open", False)):
+            check_closed(piece)
+    return [piece.get("open", False) for piece in pieces for _ in piece["triangles"]]
+
+
+def check_closed(piece: Any) -> None:
+    """As many facets are on one side of each edge as on the other: something can be inside."""
+    points = [vector(v) for v in piece["vertices"]]
+    sides: dict[tuple[Vector, Vector], int] = {}
+    for triangle in piece["triangles"]:
+        for k in range(3):
+            a, b = points[triangle[k - 1]], points[triangle[k]]
+            sides[a, b] = sides.get((a, b), 0) + 1
+            sides[b, a] = sides.get((b, a), 0) - 1
+    if any(sides.values()):
+        raise RefusedError("a surface that is not said to be open has an edge with one facet")
 
 
 def has_open(shape: Any) -> bool:
@@ -3361,7 +3377,7 @@ def check(text: str) -> Report:
 
 
 def check_faces(report: Report, which: str, content: Any) -> None:
-    """Says that faces of a convex body are not checked, if they are not clearly those of its hull."""
+    """Says that faces of a body are not checked, if they are not clearly those of its hull."""
     if content is None or are_own_faces([vector(v) for v in content["vertices"]], content):
         return
     report.partly = True

@@ -368,11 +368,16 @@ fn times(named: Vec<f64>, until: f64) -> Vec<f64> {
 }
 
 fn falsehood(file: &Value, who: Who) -> Option<String> {
-    found(file, who).unwrap_or_else(|| Some("a file that cannot be read".into()))
+    first(found(file, who))
+}
+
+/// The first of all that is false; of a file that cannot be read, that it cannot.
+pub(super) fn first(found: Option<Vec<String>>) -> Option<String> {
+    found.map_or_else(|| Some("a file that cannot be read".into()), |all| all.into_iter().next())
 }
 
 /// What is false; `None` if the file cannot be read.
-fn found(file: &Value, _: Who) -> Option<Option<String>> {
+fn found(file: &Value, _: Who) -> Option<Vec<String>> {
     let keep = file.get("keep").map_or(Some(0.0), Value::as_f64)?;
     let body = |which: &str| vectors(file.get(which)?.get("vertices")?);
     let bodies = [body("moving")?, body("fixed")?];
@@ -390,12 +395,12 @@ fn found(file: &Value, _: Who) -> Option<Option<String>> {
     for (time, ends) in all {
         let at = points(time, ends);
         if meets([&at[0], &at[1]], keep, 1.0) {
-            return Some(Some(format!("they meet at {time}, before {reached}")));
+            return Some(vec![format!("they meet at {time}, before {reached}")]);
         }
     }
     let meeting = file.pointer("/proof/meeting")?;
     if meeting.is_null() {
-        return Some(None);
+        return Some(Vec::new());
     }
     let time = meeting.get("time")?.as_f64()?;
     // A meeting is one of the last span.
@@ -404,7 +409,7 @@ fn found(file: &Value, _: Who) -> Option<Option<String>> {
         (meets([&at[0], &at[1]], keep, -1.0), at)
     });
     let Some((_, at)) = ends.iter().find(|(meets, _)| *meets) else {
-        return Some(Some(format!("they do not meet at {time}")));
+        return Some(vec![format!("they do not meet at {time}")]);
     };
     let size = bodies.iter().flatten().map(|v| v.length()).fold(1.0, f64::max);
     let far = moves
@@ -412,7 +417,7 @@ fn found(file: &Value, _: Who) -> Option<Option<String>> {
         .flat_map(|of| &of.0)
         .map(|(_, spin)| spin.arm.length() + spin.way.length() + spin.start.translation().length());
     let room = 2e-13 * (size + far.fold(0.0, f64::max));
-    Some(depth_is_false(meeting.get("met")?, [&at[0], &at[1]], room))
+    Some(depth_is_false(meeting.get("met")?, [&at[0], &at[1]], room).into_iter().collect())
 }
 
 /// What is told of a depth or a distance, to rounding, and is not so.
@@ -431,11 +436,11 @@ pub(super) fn depth_is_false(met: &Value, at: [&[Vector]; 2], room: f64) -> Opti
 }
 
 fn solid_falsehood(file: &Value, who: Who) -> Option<String> {
-    found_of_solids(file, who).unwrap_or_else(|| Some("a file that cannot be read".into()))
+    first(found_of_solids(file, who))
 }
 
 /// What is false of the facets that a file has: they are those of the shrunk solids for the library.
-fn found_of_solids(file: &Value, who: Who) -> Option<Option<String>> {
+fn found_of_solids(file: &Value, who: Who) -> Option<Vec<String>> {
     let keep = file.get("keep").map_or(Some(0.0), Value::as_f64)?;
     let facets = |k: usize| -> Option<Vec<Vec<DVec3>>> {
         file.pointer(&format!("/parts/{k}/corners"))?.as_array()?.iter().map(vectors).collect()
@@ -458,7 +463,8 @@ fn found_of_solids(file: &Value, who: Who) -> Option<Option<String>> {
         // Of solids that overlap at once check.py says nothing.
         let said =
             who == Who::Library && !crosses(0.0, false, 1.0) && start.get("facets").is_some();
-        return Some(said.then(|| "facets do not cross at the beginning".into()));
+        let what = said.then(|| "facets do not cross at the beginning".to_owned());
+        return Some(what.into_iter().collect());
     }
     let mut all: Vec<(f64, bool)> =
         times(Vec::new(), reached).into_iter().map(|t| (t, false)).collect();
@@ -466,11 +472,11 @@ fn found_of_solids(file: &Value, who: Who) -> Option<Option<String>> {
         all.push((1.0, true));
     }
     if let Some((time, _)) = all.into_iter().find(|(time, ends)| crosses(*time, *ends, 1.0)) {
-        return Some(Some(format!("facets meet at {time}, before {reached}")));
+        return Some(vec![format!("facets meet at {time}, before {reached}")]);
     }
     let meeting = file.pointer("/proof/meeting")?;
     if meeting.is_null() || meeting.pointer("/met/inside").is_some() {
-        return Some(None);
+        return Some(Vec::new());
     }
     let time = meeting.get("time")?.as_f64()?;
     let [f, g] = indices(meeting.get("triangles")?)?[..] else { return None };
@@ -479,7 +485,8 @@ fn found_of_solids(file: &Value, who: Who) -> Option<Option<String>> {
         let at = [0, 1].map(|k| moves[k].at(pair[k], time, ends));
         meets([&at[0], &at[1]], keep, -1.0)
     });
-    Some((!is_met).then(|| format!("the facets do not meet at {time}")))
+    let what = (!is_met).then(|| format!("the facets do not meet at {time}"));
+    Some(what.into_iter().collect())
 }
 
 /// Whether facets may be as near as a gap, by their boxes.
@@ -498,7 +505,16 @@ const ROUNDED: f64 = 1e-9;
 
 /// Whether the library refuses a file of convex bodies for what it takes off for rounding.
 fn is_marginal(file: &Value) -> bool {
-    is_at_the_limit(file) || refused_for_rounding(&verify(&file.to_string()))
+    is_at_the_limit(file)
+        || refused_for_rounding(&verify(&file.to_string()))
+        || verify(&without_steps(file).to_string()).accepts()
+}
+
+/// A file without what work depths were, which claims nothing and which `check.py` does not read.
+pub(super) fn without_steps(file: &Value) -> Value {
+    let all = super::mutants::pointers(file);
+    let steps = all.iter().filter(|at| at.ends_with("/deep/steps"));
+    steps.fold(file.clone(), |file, at| with(&file, at, None))
 }
 
 fn is_marginal_of_solids(file: &Value) -> bool {

@@ -260,7 +260,7 @@ fn names_of(count: usize, own: &[String]) -> Vec<String> {
             name = format!("body {k}");
         }
         while names.contains(&name) {
-            name += &format!(" ({k})");
+            name = format!("{name} ({k})");
         }
         names.push(name);
     }

@@ -330,7 +330,7 @@ impl Moves {
         let begun = |since: &f64| if ends { *since < time } else { *since <= time };
         let all = self.0.iter().rev();
         let (since, spin) =
-            all.clone().find(|(since, _)| begun(since)).or(all.last()).expect("pieces");
+            all.clone().find(|(since, _)| begun(since)).or(self.0.first()).expect("pieces");
         points_at(points, spin, *since, time)
     }
 }
@@ -358,7 +358,7 @@ fn squared(x: f64) -> Ratio {
 }
 
 /// Times to look at from the beginning to before another one, those that a proof names among them.
-fn times(named: Vec<f64>, until: f64) -> Vec<f64> {
+fn times(named: &[f64], until: f64) -> Vec<f64> {
     let evenly = (0..TIMES).map(|k| until * (k as f64 + 0.37) / TIMES as f64);
     let mut between: Vec<f64> = named.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
     let stride = between.len().div_ceil(MOST_TIMES).max(1);
@@ -388,7 +388,8 @@ fn found(file: &Value, _: Who) -> Option<Vec<String>> {
         .map(|at| file.pointer(&format!("{at}/time")).and_then(Value::as_f64))
         .collect::<Option<_>>()?;
     let reached = named.last().copied().unwrap_or(0.0);
-    let mut all: Vec<(f64, bool)> = times(named, reached).into_iter().map(|t| (t, false)).collect();
+    let mut all: Vec<(f64, bool)> =
+        times(&named, reached).into_iter().map(|t| (t, false)).collect();
     if reached == 1.0 {
         all.push((1.0, true));
     }
@@ -466,8 +467,7 @@ fn found_of_solids(file: &Value, who: Who) -> Option<Vec<String>> {
         let what = said.then(|| "facets do not cross at the beginning".to_owned());
         return Some(what.into_iter().collect());
     }
-    let mut all: Vec<(f64, bool)> =
-        times(Vec::new(), reached).into_iter().map(|t| (t, false)).collect();
+    let mut all: Vec<(f64, bool)> = times(&[], reached).into_iter().map(|t| (t, false)).collect();
     if reached == 1.0 {
         all.push((1.0, true));
     }

@@ -55,7 +55,9 @@ fn base(seed: u64) -> Option<String> {
     let mut all = Vec::new();
     for _ in 0..rows {
         all.push(row.clone());
-        row.iter_mut().for_each(|value| *value += random.range(-most, most));
+        for value in &mut row {
+            *value += random.range(-most, most);
+        }
     }
     let path = JointPath::evenly(all).ok()?;
     let solid = random.one_in(4).then(|| Solid::from_convex(&body(random))).transpose().ok()?;
@@ -166,11 +168,14 @@ fn worst(file: &mut Value, random: &mut Random) {
     }
 }
 
+/// A frame: its parent, its origin, its axis and whether it turns, the column of its value.
+type Framed = (Option<usize>, Pose, Option<(DVec3, bool)>, usize);
+
 /// A path as a file has it.
 struct Path {
     times: Vec<f64>,
     rows: Vec<Vec<f64>>,
-    frames: Vec<(Option<usize>, Pose, Option<(DVec3, bool)>, usize)>,
+    frames: Vec<Framed>,
     bodies: Vec<(String, Option<usize>, Pose, Vec<DVec3>)>,
     keep: f64,
 }

@@ -39,7 +39,7 @@ fn base(seed: u64) -> Option<String> {
     let random = &mut Random::stream(seed, &[0x5ce_4e5]);
     let bodies: Vec<ConvexPolyhedron> = (0..2).map(|_| body(random)).collect();
     let mut room = Obstacles::new();
-    for _ in 0..1 + random.index(4) {
+    for _ in 0..=random.index(4) {
         let turn = if random.one_in(2) { glam::DQuat::IDENTITY } else { random.rotation() };
         let at = if random.one_in(2) { random.grid(-2, 2) } else { random.vector() * 2.5 };
         room.insert(bodies[random.index(2)].clone(), Pose::new(turn, at).ok()?);

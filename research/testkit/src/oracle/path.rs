@@ -22,6 +22,7 @@ const OFF: f64 = 1e-12;
 
 /// A body of either kind.
 #[derive(Debug, Clone)]
+#[expect(clippy::large_enum_variant, reason = "a mechanism has a few of them")]
 pub enum Body {
     /// A convex one.
     Convex(ConvexPolyhedron),

@@ -1,5 +1,6 @@
 //! What newcomers do: outputs on top of inputs, parts that are not convex, poses by hand, scans.
 
+use std::fmt::Write as _;
 use std::path::Path;
 
 use crate::support::{CAST, answered, colltrans, folder, json, refused, run, stderr, stdout};
@@ -441,13 +442,13 @@ fn angle(before: &str) -> String {
     let mut text = before.to_owned();
     for z in [0, 10] {
         for [x, y] in outline {
-            text += &format!("v {} {} {z}\n", 500_000 + x, 4_649_776 + y);
+            writeln!(text, "v {} {} {z}", 500_000 + x, 4_649_776 + y).unwrap();
         }
     }
     text += "f -7 -8 -9 -10 -11 -12\nf -6 -5 -4 -3 -2 -1\n";
     for i in 0..6 {
         let [a, b] = [i, (i + 1) % 6].map(|k| k - 12);
-        text += &format!("f {a} {b} {} {}\n", b + 6, a + 6);
+        writeln!(text, "f {a} {b} {} {}", b + 6, a + 6).unwrap();
     }
     text
 }

@@ -21,6 +21,8 @@ pub(crate) enum Code {
     Output = 5,
     /// A proof does not hold.
     Refused = 6,
+    /// With --strict, the answer is about less than the input.
+    Partial = 7,
 }
 
 /// Says something on standard error that does not end the command.

@@ -9,7 +9,8 @@ use colltrans::motion::path::{
 };
 use colltrans::record::{Ending, PathRecord, TimeRecord};
 use colltrans_assembly::read::{self, ReadOptions};
-use colltrans_assembly::robot::{Cell, Table, body_of};
+use colltrans_assembly::robot::{Cell, Robot, RobotError, Table, body_of};
+use colltrans_assembly::{AssemblyError, ReadError};
 use colltrans_mesh::body::BodyOptions;
 
 use crate::args::PathArguments;
@@ -24,7 +25,7 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<(), Failure> {
     let inputs: Vec<&Path> =
         [robot, rows].into_iter().chain(scene).chain(srdf).map(PathBuf::as_path).collect();
     refuse_proof(arguments.save_proof.as_deref(), None, &inputs)?;
-    let Asked { cell, path } = Asked::read(arguments)?;
+    let Asked { cell, path, partial } = Asked::read(arguments)?;
     let query = |e: PathError| Failure::new(Code::Query, cell.words(&e));
     let cast = cell.along(&path, arguments.keep).map_err(|e| match e {
         PathError::Query { .. } => query(e),
@@ -42,19 +43,45 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<(), Failure> {
             outcome
         }
     };
-    let record = PathRecord::of(&outcome, &cast, cell.names());
+    let mut record = PathRecord::of(&outcome, &cast, cell.names());
+    record.notes.clone_from(&partial);
     if arguments.json {
         let written = serde_json::to_string(&record);
         let written = written.map_err(|e| Failure::output("standard output", &e.into()))?;
-        return print_json(&format!("{written}\n"));
+        print_json(&format!("{written}\n"))?;
+    } else {
+        print(&words(&record, &outcome, cell.robot()))?;
     }
-    print(&words(&record, &outcome))
+    if let Some(why) = undecided(&record) {
+        return Err(why);
+    }
+    match &partial[..] {
+        [] => Ok(()),
+        _ if !arguments.strict => Ok(()),
+        _ => Err(Failure::several(Code::Partial, partial)),
+    }
+}
+
+/// Why an answer proves less than was asked.
+fn undecided(record: &PathRecord) -> Option<Failure> {
+    let (Ending::Undecided, Some([a, b]), Some(time)) = (record.outcome, &record.pair, record.time)
+    else {
+        return None;
+    };
+    let why = format!(
+        "the search between {a} and {b} took its maximum number of steps: no two bodies meet before {}, whether these \
+         two do later is open; leave the pair out with --ignore {a},{b}, or ask with --keep",
+        number(time.lower)
+    );
+    Some(Failure::new(Code::Query, why))
 }
 
 /// A robot among its scene, and its path.
 struct Asked {
     cell: Cell,
     path: JointPath,
+    /// In what the answer is about less than the input.
+    partial: Vec<String>,
 }
 
 impl Asked {
@@ -65,8 +92,9 @@ impl Asked {
         let options = ReadOptions::default()
             .with_packages(arguments.package.clone())
             .with_skip_missing(arguments.skip_missing)
+            .with_hulls(arguments.hull.clone())
             .with_allow_outside(arguments.allow_outside);
-        let robot = read::robot(&arguments.robot, &options).map_err(|e| input(&e))?;
+        let robot = read::robot(&arguments.robot, &options).map_err(|e| unread(&e))?;
         robot.notes().iter().for_each(|text| note(text));
         let place = arguments.rows.display();
         let table =
@@ -97,12 +125,33 @@ impl Asked {
         }
         let listed = arguments.srdf.as_deref().map(read::disabled).transpose();
         let listed = listed.map_err(|e| input(&e))?;
-        let cell = Cell::new(robot, scene, listed.as_deref()).map_err(|e| input(&e))?;
+        let cell =
+            Cell::new(robot, scene, listed.as_deref()).map_err(|e| match &arguments.srdf {
+                Some(file) if matches!(e, RobotError::Unknown { .. }) => {
+                    input(&format!("{}: {e}", file.display()))
+                }
+                _ => input(&e),
+            })?;
         let cell = cell.ignoring(&ignored);
         let cell = cell.map_err(|e| Failure::new(Code::Usage, format!("--ignore: {e}")))?;
         cell.notes().iter().for_each(|text| note(text));
-        Ok(Self { cell, path })
+        let partial: Vec<String> =
+            table.straight().into_iter().chain(cell.nothing_held()).collect();
+        // Those of the table are among the notes of the path.
+        cell.nothing_held().iter().for_each(|text| note(text));
+        Ok(Self { cell, path, partial })
     }
+}
+
+/// A robot that cannot be read, and what to do about a mesh that is no surface of a body.
+fn unread(error: &ReadError) -> Failure {
+    let hint = match error {
+        ReadError::Assembly { source: AssemblyError::Part { part, .. }, .. } => {
+            format!("; --hull {part} takes the convex hull of its meshes")
+        }
+        _ => String::new(),
+    };
+    Failure::new(Code::Input, format!("{error}{hint}"))
 }
 
 /// The pairs of --ignore.
@@ -143,22 +192,51 @@ fn text(file: &Path) -> Result<String, Failure> {
     Ok(text)
 }
 
+/// All pairs that overlap, and how they are left out: those of two links as SRDF has them.
+fn overlapping(text: &mut String, pairs: &[[String; 2]], robot: &Robot) {
+    for [a, b] in pairs {
+        line(text, "overlap", &format!("{a}, {b}"));
+    }
+    if pairs.is_empty() {
+        return;
+    }
+    let ignore: Vec<String> = pairs.iter().map(|[a, b]| format!("--ignore {a},{b}")).collect();
+    line(text, "leave out", &ignore.join(" "));
+    let are_links = |pair: &&[String; 2]| pair.iter().all(|name| robot.link(name).is_ok());
+    for [a, b] in pairs.iter().filter(are_links) {
+        let element =
+            format!("<disable_collisions link1=\"{a}\" link2=\"{b}\" reason=\"Default\"/>");
+        line(text, "in SRDF", &element);
+    }
+}
+
 /// The readable answer.
-fn words(record: &PathRecord, outcome: &PathOutcome) -> String {
+fn words(record: &PathRecord, outcome: &PathOutcome, robot: &Robot) -> String {
     let asked = if record.left_out.is_empty() { "" } else { " of those asked about" };
     let mut text = match record.outcome {
         Ending::Contact => "contact\n".into(),
+        Ending::Undecided => "undecided: the search took its maximum number of steps\n".into(),
         Ending::Grazing => "grazing: two bodies come nearer than rounding can tell\n".into(),
-        Ending::Overlapping => "overlapping: two bodies overlap where the path begins\n".into(),
+        Ending::Overlapping => {
+            let pairs = counted(record.overlaps.len(), "pair overlaps", "pairs overlap");
+            format!("overlapping: {pairs} where the path begins\n")
+        }
+        _ if record.pairs == 0 => "free: no pair of bodies is held against each other\n".into(),
         _ => format!("free: no two bodies{asked} {} on the whole path\n", meet(record.keep)),
     };
-    if let Some([a, b]) = &record.pair {
+    if let Some([a, b]) = record.pair.as_ref().filter(|_| record.overlaps.is_empty()) {
         line(&mut text, "bodies", &format!("{a}, {b}"));
     }
+    overlapping(&mut text, &record.overlaps, robot);
     if let Some(TimeRecord { lower, upper }) = record.time
         && record.outcome != Ending::Overlapping
     {
-        if let Some(upper) = upper {
+        if record.outcome == Ending::Undecided {
+            line(&mut text, "free until", &number(lower));
+            if let Some(upper) = upper {
+                line(&mut text, "no later", &format!("{}, when others meet", number(upper)));
+            }
+        } else if let Some(upper) = upper {
             line(&mut text, "time", &known(lower + 0.5 * (upper - lower), upper - lower));
             line(&mut text, "bounds", &format!("{} to {}", number(lower), number(upper)));
         } else {
@@ -185,6 +263,9 @@ fn words(record: &PathRecord, outcome: &PathOutcome) -> String {
         line(&mut text, "left out", &pairs.join("; "));
     }
     kept(&mut text, record.keep);
+    for text_of in &record.notes {
+        line(&mut text, "only", text_of);
+    }
     let looks = counted(outcome.steps().looks as usize, "look", "looks");
     let planes = counted(record.planes, "plane", "planes");
     line(&mut text, "proof", &format!("{planes}, found in {looks}"));

@@ -24,7 +24,7 @@ use crate::frozen::{Options, Reduced, Shown, match_args, plain, read, reduced, s
 use crate::obstacles::wait;
 use crate::solid::Piece;
 
-const OUTCOMES: [&str; 5] = ["contact", "grazing", "free", "overlapping", "error"];
+const OUTCOMES: [&str; 6] = ["contact", "grazing", "free", "overlapping", "undecided", "error"];
 
 /// A robot of URDF: links with what they collide with, and the joints between them.
 ///
@@ -44,6 +44,8 @@ struct Asked {
 
 /// A path, as somebody gives it.
 struct Rows {
+    /// Of a file its name, with a colon.
+    place: String,
     table: Table,
     rest: BTreeMap<String, f64>,
 }
@@ -81,7 +83,8 @@ impl Robot {
 
 impl Asked {
     fn path(&self, rows: &Rows) -> Result<(JointPath, Vec<String>), String> {
-        self.cell.robot().path(&rows.table, &rows.rest).map_err(|what| what.to_string())
+        let path = self.cell.robot().path(&rows.table, &rows.rest);
+        path.map_err(|what| format!("{}{what}", rows.place))
     }
 
     fn cast<'a>(&'a self, path: &'a JointPath) -> Result<PathCast<'a>, String> {
@@ -106,7 +109,8 @@ impl Rows {
     ) -> PyResult<Self> {
         let is_file = path.is_instance_of::<PyString>() || path.hasattr("__fspath__")?;
         if !is_file {
-            return Ok(Self { table: table_of(path, columns, times)?, rest });
+            let (place, table) = (String::new(), table_of(path, columns, times)?);
+            return Ok(Self { place, table, rest });
         }
         if columns.is_some() || times.is_some() {
             return Err(input("path", "a file has its own columns and times"));
@@ -117,7 +121,7 @@ impl Rows {
             .map_err(|what| input("path", format_args!("{place}: cannot be read: {what}")))?;
         let table =
             Table::parse(&text).map_err(|what| input("path", format_args!("{place}: {what}")))?;
-        Ok(Self { table, rest })
+        Ok(Self { place: format!("{place}: "), table, rest })
     }
 }
 
@@ -148,7 +152,7 @@ fn table_of(
             Ok::<_, PyErr>(array.as_array().to_vec())
         })
         .transpose()?;
-    Ok(Table { names, times, rows })
+    Ok(Table { names, times, rows, ..Table::default() })
 }
 
 #[pymethods]
@@ -170,6 +174,9 @@ impl Robot {
     ///     Leave out meshes that cannot be found, with a note.
     /// allow_outside : bool
     ///     Read files that the robot's file names and that lie outside of its folder and all packages.
+    /// hulls : list of str
+    ///     Links whose meshes are taken as their convex hulls, for meshes that are no surface of a body;
+    ///     ``"*"`` is all links.
     ///
     /// Returns
     /// -------
@@ -181,7 +188,7 @@ impl Robot {
     ///     What is wrong with a file, and where.
     #[staticmethod]
     #[pyo3(signature = (path, *, srdf=None, packages=Vec::new(), skip_missing=false,
-        allow_outside=false))]
+        allow_outside=false, hulls=Vec::new()))]
     fn read(
         py: Python<'_>,
         path: PathBuf,
@@ -189,16 +196,21 @@ impl Robot {
         packages: Vec<PathBuf>,
         skip_missing: bool,
         allow_outside: bool,
+        hulls: Vec<String>,
     ) -> PyResult<Self> {
         let options = ReadOptions::default()
+            .with_hulls(hulls)
             .with_packages(packages)
             .with_skip_missing(skip_missing)
             .with_allow_outside(allow_outside);
         py.detach(|| {
             let arm = read::robot(&path, &options).or_raise()?;
-            let listed = srdf.map(|file| read::disabled(&file)).transpose().or_raise()?;
+            let listed = srdf.as_deref().map(read::disabled).transpose().or_raise()?;
             // What it names are links of this robot.
-            arm.pairs(listed.as_deref()).map_err(|what| input("srdf", what))?;
+            arm.pairs(listed.as_deref()).map_err(|what| match &srdf {
+                Some(file) => input("srdf", format_args!("{}: {what}", file.display())),
+                None => input("srdf", what),
+            })?;
             Ok(Self { arm, listed })
         })
     }
@@ -286,9 +298,11 @@ impl Robot {
         let asked = Arc::new(self.asked(scene, &ignore, keep)?);
         let rows = Rows::of(path, columns, times, joints)?;
         let (path, said) = asked.path(&rows).map_err(|what| input("path", what))?;
-        let notes = [asked.cell.notes(), &said].concat();
+        let nothing: Vec<String> = asked.cell.nothing_held().into_iter().collect();
+        let notes = [asked.cell.notes(), &said, &nothing].concat();
         let found = answered(py, || asked.first_contact(&path))?;
-        let (found, record) = found.map_err(|what| error("QueryError", what))?;
+        let (found, mut record) = found.map_err(|what| error("QueryError", what))?;
+        record.notes = rows.table.straight().into_iter().chain(nothing).collect();
         let (end, question) = (end_of(&path), Question::Asked(asked, path));
         Ok(PathAnswer { question, end, found, record, notes })
     }
@@ -319,7 +333,9 @@ fn answered<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResul
 ///
 /// ``outcome`` is ``"contact"``: no two meet before ``lower``, and at ``upper`` these two do;
 /// ``"grazing"``: they come nearer than rounding can tell, not before ``lower``, and nothing is said
-/// after it; ``"free"``: no two meet on the whole path; ``"overlapping"``: two overlap where it begins.
+/// after it; ``"free"``: no two meet on the whole path; ``"overlapping"``: two overlap where it begins;
+/// ``"undecided"``: the search between the two of ``pair`` took its maximum number of steps, no two meet before
+/// ``lower``, and whether these two do later is open.
 #[pyclass(frozen, module = "colltrans", name = "PathContact")]
 pub(crate) struct PathAnswer {
     question: Question,
@@ -352,9 +368,10 @@ impl Question {
 /// Where the proof of an answer is.
 fn proof_of(found: &mut PathOutcome) -> Option<&mut PathProof> {
     match found {
-        PathOutcome::Contact(of) | PathOutcome::Grazing(of) | PathOutcome::Overlapping(of) => {
-            Some(&mut of.proof)
-        }
+        PathOutcome::Contact(of)
+        | PathOutcome::Grazing(of)
+        | PathOutcome::Overlapping(of)
+        | PathOutcome::Undecided(of) => Some(&mut of.proof),
         PathOutcome::Free(of) => Some(&mut of.proof),
         _ => None,
     }
@@ -388,9 +405,10 @@ match_args!(PathAnswer("outcome", "lower", "upper"));
 impl PathAnswer {
     fn contact(&self) -> Option<&PathContact> {
         match &self.found {
-            PathOutcome::Contact(of) | PathOutcome::Grazing(of) | PathOutcome::Overlapping(of) => {
-                Some(of)
-            }
+            PathOutcome::Contact(of)
+            | PathOutcome::Grazing(of)
+            | PathOutcome::Overlapping(of)
+            | PathOutcome::Undecided(of) => Some(of),
             _ => None,
         }
     }
@@ -408,7 +426,7 @@ impl PathAnswer {
 
 #[pymethods]
 impl PathAnswer {
-    /// str: ``"contact"``, ``"grazing"``, ``"free"`` or ``"overlapping"``.
+    /// str: ``"contact"``, ``"grazing"``, ``"free"``, ``"overlapping"`` or ``"undecided"``.
     #[getter]
     fn outcome(&self) -> &'static str {
         self.record.outcome.name()
@@ -617,7 +635,7 @@ impl PathAnswer {
 }
 
 /// Columns, names of outcomes, names of bodies, messages.
-type Answered<'py> = (Bound<'py, PyDict>, [&'static str; 5], Vec<String>, BTreeMap<usize, String>);
+type Answered<'py> = (Bound<'py, PyDict>, [&'static str; 6], Vec<String>, BTreeMap<usize, String>);
 
 /// One row of an answer.
 struct Told {
@@ -645,6 +663,7 @@ impl Told {
             PathOutcome::Contact(of) => (0, of),
             PathOutcome::Grazing(of) => (1, of),
             PathOutcome::Overlapping(of) => (3, of),
+            PathOutcome::Undecided(of) => (4, of),
             _ => return Self::nothing(2),
         };
         let upper = if of.upper.is_finite() { of.upper } else { f64::NAN };

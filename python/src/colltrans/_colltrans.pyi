@@ -1703,7 +1703,9 @@ class FirstContact(_Answer):
     ``outcome`` is ``"contact"``: they do not meet before ``lower``, and at ``upper`` they do;
     ``"grazing"``: they come nearer than rounding can tell, not before ``lower``, and nothing is said
     after it; ``"free"``: they never meet throughout the motion (never come as near as the gap to be kept, or
-    never overlap by more than the tolerance); ``"overlapping"``: they overlap when it begins.
+    never overlap by more than the tolerance); ``"overlapping"``: they overlap when it begins;
+    ``"undecided"``: the search took its maximum number of steps, they do not meet before ``lower``, and whether
+    they do later is open.
     """
 
     __match_args__: Final = ("outcome", "lower", "upper")
@@ -1711,8 +1713,8 @@ class FirstContact(_Answer):
     def query(self) -> MotionCast:
         """Cast or SolidCast or Pair: The query; of a last contact the one turned round."""
     @property
-    def outcome(self) -> Literal["contact", "grazing", "free", "overlapping"]:
-        """str: ``"contact"``, ``"grazing"``, ``"free"`` or ``"overlapping"``."""
+    def outcome(self) -> Literal["contact", "grazing", "free", "overlapping", "undecided"]:
+        """str: ``"contact"``, ``"grazing"``, ``"free"``, ``"overlapping"`` or ``"undecided"``."""
     @property
     def lower(self) -> float:
         """float: The bodies do not meet before: 1 if they never do, 0 if they overlap when the motion begins."""
@@ -1865,6 +1867,7 @@ class Robot:
         packages: Sequence[str | PathLike[str]] = ...,
         skip_missing: bool = False,
         allow_outside: bool = False,
+        hulls: Sequence[str] = ...,
     ) -> Robot:
         """A robot of a URDF file, in metres and radians.
 
@@ -1883,6 +1886,9 @@ class Robot:
             Leave out meshes that cannot be found, with a note.
         allow_outside : bool
             Read files that the robot's file names and that lie outside of its folder and all packages.
+        hulls : list of str
+            Links whose meshes are taken as their convex hulls, for meshes that are no surface of a body;
+            ``"*"`` is all links.
 
         Returns
         -------
@@ -1960,13 +1966,15 @@ class PathContact:
 
     ``outcome`` is ``"contact"``: no two meet before ``lower``, and at ``upper`` these two do;
     ``"grazing"``: they come nearer than rounding can tell, not before ``lower``, and nothing is said
-    after it; ``"free"``: no two meet on the whole path; ``"overlapping"``: two overlap where it begins.
+    after it; ``"free"``: no two meet on the whole path; ``"overlapping"``: two overlap where it begins;
+    ``"undecided"``: the search between the two of ``pair`` took its maximum number of steps, no two meet before
+    ``lower``, and whether these two do later is open.
     """
 
     __match_args__: Final = ("outcome", "lower", "upper")
     @property
-    def outcome(self) -> Literal["contact", "grazing", "free", "overlapping"]:
-        """str: ``"contact"``, ``"grazing"``, ``"free"`` or ``"overlapping"``."""
+    def outcome(self) -> Literal["contact", "grazing", "free", "overlapping", "undecided"]:
+        """str: ``"contact"``, ``"grazing"``, ``"free"``, ``"overlapping"`` or ``"undecided"``."""
     @property
     def lower(self) -> float:
         """float: No two meet before: the end of the path if none do, its beginning if two overlap there."""

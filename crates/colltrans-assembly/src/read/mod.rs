@@ -74,9 +74,22 @@ pub struct ReadOptions {
     /// Factors of parts whose files are in another unit, about the origin, by name; `bolt*` is all whose names begin with
     /// `bolt`.
     pub scales: BTreeMap<String, f64>,
+    /// Links of a robot whose meshes are taken as their convex hulls, by name; `*` is all links.
+    pub hulls: Vec<String>,
 }
 
 impl ReadOptions {
+    /// The same with other [`hulls`](Self::hulls).
+    #[must_use]
+    pub fn with_hulls(self, hulls: Vec<String>) -> Self {
+        Self { hulls, ..self }
+    }
+
+    /// Checks whether the meshes of a link are taken as their convex hulls.
+    fn takes_hull(&self, link: &str) -> bool {
+        self.hulls.iter().any(|name| name == link || name == "*")
+    }
+
     /// The same with other [`scales`](Self::scales).
     #[must_use]
     pub fn with_scales(self, scales: BTreeMap<String, f64>) -> Self {

@@ -46,6 +46,12 @@ pub(super) fn read(source: Source) -> Result<Robot, ReadError> {
     let mechanism =
         Mechanism::new(made.frames).map_err(|e| contents(source.path, "joints", e.to_string()))?;
     let joints = mimics(&source, made.joints, &joints)?;
+    let hulls = source.options.hulls.iter().filter(|name| *name != "*");
+    if let Some(name) = hulls.into_iter().find(|name| !names.contains(&name.as_str())) {
+        let reason =
+            format!("there is no link {name} to take the hull of; links: {}", names.join(", "));
+        return Err(contents(source.path, "links", reason));
+    }
     let mut gathered = Gathered::new(&source, bytes, Round::Around);
     let mut links = Vec::new();
     let mut notes = Vec::new();
@@ -54,7 +60,8 @@ pub(super) fn read(source: Source) -> Result<Robot, ReadError> {
         let pieces = gathered.pieces(link, name, DAffine3::IDENTITY)?;
         let mut bodies = Vec::new();
         for piece in &pieces {
-            let (body, said) = any_body(piece, &source.options.body()).map_err(|refused| {
+            let options = source.options.body().with_hull(source.options.takes_hull(name));
+            let (body, said) = any_body(piece, &options).map_err(|refused| {
                 in_file(source.path)(AssemblyError::Part { part: name.into(), source: refused })
             })?;
             notes.extend(said.into_iter().map(|said| format!("link {name}: {said}")));

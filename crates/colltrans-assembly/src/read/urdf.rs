@@ -329,7 +329,8 @@ fn position(source: &Source, joints: &Joints, name: &str, depth: usize) -> Resul
 /// A mesh by the name that the robot gives it.
 fn find(source: &Source, name: &str) -> Result<Option<(PathBuf, Vec<u8>)>, ReadError> {
     if let Some(rest) = name.strip_prefix("package://") {
-        return in_packages(source, rest);
+        // Some files have an empty package, `package:///meshes/a.stl`.
+        return in_packages(source, rest.trim_start_matches('/'));
     }
     let name = name.strip_prefix("file://").unwrap_or(name);
     match source.named(name)? {

@@ -17,7 +17,7 @@ enum From {
 
 impl Robot {
     /// The path of all joints, of a table and of joints that rest, by name; and what is to be said of it: values beyond
-    /// the limits, which are taken as they are.
+    /// the limits, which are taken as they are, and velocities, which are not used.
     ///
     /// # Errors
     /// A joint without values, a column that is of none, rows of a wrong length, times that do not grow.
@@ -33,7 +33,8 @@ impl Robot {
             None => JointPath::evenly(rows)?,
         };
         let beyond = self.joints.iter().enumerate();
-        let notes = beyond.filter_map(|(k, joint)| exceeded(joint, k, &path)).collect();
+        let beyond = beyond.filter_map(|(k, joint)| exceeded(joint, k, &path));
+        let notes = table.straight().into_iter().chain(beyond).collect();
         Ok((path, notes))
     }
 

@@ -2,7 +2,9 @@
 //!
 //! CSV: numbers with commas between them, a row a line; a first line that has none names the columns, of which one may
 //! be `time`. Empty lines and what follows a `#` count for nothing. JSON: a list of rows, or what ROS calls a
-//! trajectory, `{"joint_names": [..], "points": [{"positions": [..], "time_from_start": ..}]}`.
+//! trajectory, `{"joint_names": [..], "points": [{"positions": [..], "time_from_start": ..}]}`, or what `MoveIt` puts
+//! around it, `{"joint_trajectory": {..}}`. Velocities and accelerations of points are not used; [`Table::unused`] names
+//! those that a file has.
 
 use serde::Deserialize;
 use thiserror::Error;
@@ -16,6 +18,20 @@ pub struct Table {
     pub times: Option<Vec<f64>>,
     /// The rows.
     pub rows: Vec<Vec<f64>>,
+    /// What a trajectory has besides positions and times, and nothing uses: velocities, accelerations, efforts.
+    pub unused: Vec<&'static str>,
+}
+
+impl Table {
+    /// What is reported of a path whose rows are joined by straight segments although the file has more than rows.
+    pub fn straight(&self) -> Option<String> {
+        let (last, before) = self.unused.split_last()?;
+        let names = match before {
+            [] => (*last).to_owned(),
+            before => format!("{} and {last}", before.join(", ")),
+        };
+        Some(format!("along straight segments between the rows; the file's {names} were not used"))
+    }
 }
 
 /// What is wrong with a file of rows.
@@ -107,10 +123,22 @@ impl Table {
         };
         let at = |e: &serde_json::Error| wrong(place(e), crate::plain::plain(e));
         let read: Json = serde_json::from_str(text).map_err(|e| at(&e))?;
-        let (names, points) = match read {
+        let Trajectory { joint_names: names, points } = match read {
             Json::Rows(rows) => return Self { rows, ..Self::default() }.even(),
-            Json::Trajectory { joint_names, points } => (joint_names, points),
+            Json::Trajectory(trajectory) | Json::Wrapped { joint_trajectory: trajectory } => {
+                trajectory
+            }
         };
+        let has = |of: fn(&Point) -> &Option<Vec<f64>>| {
+            points.iter().any(|point| of(point).as_ref().is_some_and(|values| !values.is_empty()))
+        };
+        let fields: [(&'static str, bool); 3] = [
+            ("velocities", has(|point| &point.velocities)),
+            ("accelerations", has(|point| &point.accelerations)),
+            ("efforts", has(|point| &point.effort)),
+        ];
+        let unused = fields.into_iter().filter(|(_, is_there)| *is_there);
+        let unused = unused.map(|(name, _)| name).collect();
         let timed = points.iter().filter(|point| point.time_from_start.is_some()).count();
         if timed != 0 && timed != points.len() {
             return Err(wrong("points", "some have a time_from_start, and some have none"));
@@ -118,7 +146,7 @@ impl Table {
         let times: Vec<f64> =
             points.iter().filter_map(|point| Some(point.time_from_start?.seconds())).collect();
         let rows = points.into_iter().map(|point| point.positions).collect();
-        Self { names: Some(names), times: (timed > 0).then_some(times), rows }.even()
+        Self { names: Some(names), times: (timed > 0).then_some(times), rows, unused }.even()
     }
 
     fn even(self) -> Result<Self, TableError> {
@@ -136,16 +164,27 @@ impl Table {
 #[derive(Deserialize)]
 #[serde(
     untagged,
-    expecting = "it is neither a list of rows nor {\"joint_names\": [..], \"points\": [..]}"
+    expecting = "it is neither a list of rows nor {\"joint_names\": [..], \"points\": [..]}, nor that as \
+                 \"joint_trajectory\" of an object"
 )]
 enum Json {
     Rows(Vec<Vec<f64>>),
-    Trajectory { joint_names: Vec<String>, points: Vec<Point> },
+    Trajectory(Trajectory),
+    Wrapped { joint_trajectory: Trajectory },
+}
+
+#[derive(Deserialize)]
+struct Trajectory {
+    joint_names: Vec<String>,
+    points: Vec<Point>,
 }
 
 #[derive(Deserialize)]
 struct Point {
     positions: Vec<f64>,
+    velocities: Option<Vec<f64>>,
+    accelerations: Option<Vec<f64>>,
+    effort: Option<Vec<f64>>,
     time_from_start: Option<Duration>,
 }
 
@@ -189,6 +228,19 @@ mod tests {
             {"positions": [2], "time_from_start": 2}]}"#;
         let ros = Table::parse(ros).unwrap();
         assert_eq!((ros.times, ros.rows), (Some(vec![1.5, 2.0]), vec![vec![1.0], vec![2.0]]));
+    }
+
+    #[test]
+    fn velocities_of_a_trajectory_are_named_as_unused() {
+        let ros = r#"{"joint_trajectory": {"header": {}, "joint_names": ["a"], "points": [
+            {"positions": [1], "velocities": [3], "accelerations": [0], "effort": []},
+            {"positions": [2], "velocities": []}]}, "multi_dof_joint_trajectory": {"points": []}}"#;
+        let table = Table::parse(ros).unwrap();
+        assert_eq!(table.rows, [[1.0], [2.0]]);
+        assert_eq!(table.unused, ["velocities", "accelerations"]);
+        let said = "along straight segments between the rows; the file's velocities and accelerations were not used";
+        assert_eq!(table.straight().as_deref(), Some(said));
+        assert_eq!(Table::parse("0,1\n").unwrap().straight(), None);
     }
 
     #[test]

@@ -98,9 +98,11 @@ Exit codes:
   2  the command line is wrong
   3  an input file cannot be read, a body is not what it should be, or an output would overwrite an
      input
-  4  the query has no certified answer (please report the case)
+  4  the query has no certified answer (please report the case); of a motion or a path that is
+     undecided the answer says up to which time it is proven free
   5  the output cannot be written
-  6  verify: the proof does not hold";
+  6  verify: the proof does not hold
+  7  path --strict: the answer is about less than the input";
 
 /// Which mesh files are read, and how their numbers are meant.
 pub(super) fn formats() -> String {
@@ -237,7 +239,8 @@ Rows of a path:
             without names there is a value for each joint that moves by itself, in the order of the
             robot's file. What follows a # counts for nothing
   JSON      a list of rows, or what ROS has: {\"joint_names\": [...], \"points\": [{\"positions\": [...],
-            \"time_from_start\": ...}]}
+            \"time_from_start\": ...}]}, or that as \"joint_trajectory\" of an object. Velocities and
+            accelerations are not used, and the answer says so
   Joints that follow others (mimic) have no values of their own. One row is a place, not a path.
 
 Answers:
@@ -245,7 +248,8 @@ Answers:
                the path, the point and the normal
   grazing      two come nearer than rounding can tell; none meet before, and nothing is said after it
   free         none meet on the whole path
-  overlapping  two overlap where it begins
+  overlapping  some overlap where it begins: all of them are named, as --ignore and SRDF take them
+  undecided    the search between two took its maximum number of steps; none meet before (exit code 4)
 
 With --json one object:
   outcome   one of these
@@ -254,6 +258,8 @@ With --json one object:
   place     {\"row\", \"share\"}: which share of the way from that row to the next one is done at lower
   pair      the names of the two: links, or meshes of the scene
   point normal   where the first is nearest to the second then, and the direction to it, in the world
+  overlaps  where it begins: the names of all pairs that overlap there
+  notes     in what the answer is about less than the input
   pairs looks planes   how many pairs of bodies were asked about, how often two were looked at, and planes
             in the proof
 

@@ -28,6 +28,15 @@ pub(crate) struct PathArguments {
     /// A mesh is named by its file, without folder and extension.
     #[arg(long, value_name = "A,B")]
     pub(crate) ignore: Vec<String>,
+    /// A link whose meshes are taken as their convex hulls, whatever their faces are; * is all links
+    ///
+    /// For meshes that are no surface of a body. By how much a hull exceeds its mesh is said; `free` holds for the mesh
+    /// too, a contact of a hull is only a bound. Meshes that are open are taken as they are.
+    #[arg(long, value_name = "LINK")]
+    pub(crate) hull: Vec<String>,
+    /// Fail with exit code 7 where the answer is about less than the input: velocities that are not used, or no pair
+    #[arg(long)]
+    pub(crate) strict: bool,
     /// The value of a joint that rests, in radians or metres, instead of a column
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
     pub(crate) joint: Vec<String>,

@@ -169,3 +169,124 @@ fn bodies_of_one_name_are_told_apart() {
     let same = stderr(&run(folder.path(), &["path", &arm, &rows, "tool.obj", "tool.obj"]));
     assert!(same.contains("two links or bodies around are called tool.obj"), "{same}");
 }
+
+/// A robot of boxes on joints, whose rows are in `rows.csv`.
+fn boxes(folder: &std::path::Path, links: &[&str], joints: &str) {
+    let link = |name: &&str| {
+        format!(
+            "<link name=\"{name}\"><collision><geometry><box size=\"1 1 1\"/></geometry></collision></link>"
+        )
+    };
+    let links: String = links.iter().map(link).collect();
+    fs::write(folder.join("boxes.urdf"), format!("<robot name=\"r\">{links}{joints}</robot>"))
+        .unwrap();
+}
+
+fn slide(name: &str, parent: &str, child: &str, x: f64) -> String {
+    format!(
+        "<joint name=\"{name}\" type=\"prismatic\"><parent link=\"{parent}\"/><child link=\"{child}\"/>\
+         <origin xyz=\"{x} 0 0\"/><axis xyz=\"1 0 0\"/></joint>"
+    )
+}
+
+#[test]
+fn all_pairs_that_overlap_at_the_start_are_named_as_options_take_them() {
+    let folder = folder();
+    // Four boxes of size 1, each 0.4 on from the one before: all pairs but the first and the last overlap.
+    let joints =
+        slide("p", "a", "b", 0.4) + &slide("q", "b", "c", 0.4) + &slide("r", "c", "d", 0.4);
+    boxes(folder.path(), &["a", "b", "c", "d"], &joints);
+    fs::write(folder.path().join("rows.csv"), "p,q,r\n0,0,0\n0.1,0.1,0.1\n").unwrap();
+    let text = answered(folder.path(), &["path", "boxes.urdf", "rows.csv"]);
+    assert!(text.starts_with("overlapping: 2 pairs overlap where the path begins\n"), "{text}");
+    assert!(text.contains("--ignore a,c --ignore b,d"), "{text}");
+    let element = "<disable_collisions link1=\"b\" link2=\"d\" reason=\"Default\"/>";
+    assert!(text.contains(element), "{text}");
+    let told = read(&answered(folder.path(), &["path", "boxes.urdf", "rows.csv", "--json"]));
+    assert_eq!(told["overlaps"], json!([["a", "c"], ["b", "d"]]));
+    // What is said is taken: nothing overlaps any more.
+    let rest = ["path", "boxes.urdf", "rows.csv", "--ignore", "a,c", "--ignore", "b,d", "--json"];
+    assert_eq!(read(&answered(folder.path(), &rest))["outcome"], "free");
+    let srdf = "<robot name=\"r\"><disable_collisions link1=\"a\" link2=\"c\" reason=\"Default\"/></robot>";
+    fs::write(folder.path().join("some.srdf"), srdf).unwrap();
+    let some = ["path", "boxes.urdf", "rows.csv", "--srdf", "some.srdf", "--json"];
+    let told = read(&answered(folder.path(), &some));
+    assert_eq!(told["overlaps"], json!([["a", "b"], ["b", "c"], ["b", "d"], ["c", "d"]]));
+}
+
+#[test]
+fn velocities_that_are_not_used_are_said_and_fail_where_that_is_strict() {
+    let folder = folder();
+    boxes(folder.path(), &["a", "b"], &slide("s", "a", "b", 3.0));
+    fs::write(folder.path().join("none.srdf"), "<robot name=\"r\"/>").unwrap();
+    // From 0 to 0 with velocities that lead beyond, in MoveIt's form.
+    let rows = r#"{"joint_trajectory": {"joint_names": ["s"], "points": [
+        {"positions": [0], "velocities": [3], "time_from_start": {"sec": 0, "nanosec": 0}},
+        {"positions": [0.3], "velocities": [-3], "time_from_start": {"sec": 1, "nanosec": 0}}]}}"#;
+    fs::write(folder.path().join("rows.json"), rows).unwrap();
+    let asked = ["path", "boxes.urdf", "rows.json", "--srdf", "none.srdf"];
+    let said = "along straight segments between the rows; the file's velocities were not used";
+    let text = answered(folder.path(), &asked);
+    assert!(text.starts_with("free: ") && text.contains(said), "{text}");
+    let told = read(&answered(folder.path(), &[&asked[..], &["--json"]].concat()));
+    assert_eq!((&told["outcome"], &told["notes"]), (&json!("free"), &json!([said])));
+    let strict = run(folder.path(), &[&asked[..], &["--strict"]].concat());
+    assert_eq!(strict.status.code(), Some(7));
+    assert!(stderr(&strict).contains(said));
+    // Rows without velocities are all that there is.
+    fs::write(folder.path().join("rows.csv"), "s\n0\n0.3\n").unwrap();
+    let plain = ["path", "boxes.urdf", "rows.csv", "--srdf", "none.srdf", "--strict", "--json"];
+    assert!(read(&answered(folder.path(), &plain)).get("notes").is_none());
+}
+
+#[test]
+fn a_path_without_any_pair_says_that_nothing_is_checked() {
+    let folder = folder();
+    boxes(folder.path(), &["a", "b"], &slide("s", "a", "b", 3.0));
+    fs::write(folder.path().join("rows.csv"), "s\n0\n0.3\n").unwrap();
+    let asked = ["path", "boxes.urdf", "rows.csv"];
+    let text = answered(folder.path(), &asked);
+    assert!(text.starts_with("free: no pair of bodies is held against each other\n"), "{text}");
+    assert!(stderr(&run(folder.path(), &asked)).contains("nothing is checked"));
+    let told = read(&answered(folder.path(), &[&asked[..], &["--json"]].concat()));
+    assert_eq!(told["pairs"], 0);
+    assert!(told["notes"][0].as_str().unwrap().contains("nothing is checked"), "{told}");
+    let strict = run(folder.path(), &[&asked[..], &["--strict"]].concat());
+    assert_eq!(strict.status.code(), Some(7));
+}
+
+#[test]
+fn bad_meshes_are_taken_as_hulls_and_files_are_named() {
+    let folder = folder();
+    // Its first face crosses itself.
+    let fan = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\nv 0.5 0.5 1\nf 1 4 2 3\nf 1 2 5\nf 2 3 5\n";
+    fs::create_dir(folder.path().join("meshes")).unwrap();
+    fs::write(folder.path().join("meshes/fan.obj"), fan).unwrap();
+    let mesh = "<link name=\"b\"><collision><geometry><mesh filename=\"package:///meshes/fan.obj\"/></geometry>\
+                </collision></link>";
+    let box_ =
+        "<link name=\"a\"><collision><geometry><box size=\"1 1 1\"/></geometry></collision></link>";
+    let robot = format!("<robot name=\"r\">{box_}{mesh}{}</robot>", slide("s", "a", "b", 3.0));
+    fs::write(folder.path().join("fan.urdf"), robot).unwrap();
+    fs::write(folder.path().join("rows.csv"), "s\n0\n0.3\n").unwrap();
+    fs::write(folder.path().join("none.srdf"), "<robot name=\"r\"/>").unwrap();
+    let asked = ["path", "fan.urdf", "rows.csv", "--package", ".", "--srdf", "none.srdf"];
+    let refused = run(folder.path(), &asked);
+    assert_eq!(refused.status.code(), Some(3));
+    assert!(stderr(&refused).contains("--hull b takes the convex hull"), "{}", stderr(&refused));
+    for hull in ["b", "*"] {
+        let told = answered(folder.path(), &[&asked[..], &["--hull", hull, "--json"]].concat());
+        assert_eq!(read(&told)["outcome"], "free");
+    }
+    let unknown = run(folder.path(), &[&asked[..], &["--hull", "c"]].concat());
+    assert!(stderr(&unknown).contains("no link c"), "{}", stderr(&unknown));
+    let srdf = "<robot><disable_collisions link1=\"a\" link2=\"hand\" reason=\"Never\"/></robot>";
+    fs::write(folder.path().join("other.srdf"), srdf).unwrap();
+    let other =
+        ["path", "fan.urdf", "rows.csv", "--package", ".", "--hull", "b", "--srdf", "other.srdf"];
+    let said = stderr(&run(folder.path(), &other));
+    assert!(said.contains("other.srdf: ") && said.contains("hand"), "{said}");
+    fs::write(folder.path().join("rows.csv"), "q\n0\n").unwrap();
+    let said = stderr(&run(folder.path(), &[&asked[..], &["--hull", "b"]].concat()));
+    assert!(said.contains("rows.csv: column q"), "{said}");
+}

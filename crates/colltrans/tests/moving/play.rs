@@ -50,8 +50,7 @@ fn a_plane_is_carried_along_while_one_body_slides_along_the_axis() {
     assert!(matches!(outcome, MotionOutcome::Free(_)), "{outcome:?}");
 }
 
-/// Bodies of more vertices than are looked at on arcs, whose search goes from time to time: what that leaves open is
-/// asked of them as solids, and the answer has the proof of these.
+/// A proof about the bodies as solids counts for the same question alone: not with a gap, a depth, or planes beside it.
 #[test]
 fn a_changed_proof_of_solids_is_refused() {
     let cube = ConvexPolyhedron::cuboid(DVec3::splat(-0.5), DVec3::splat(0.5)).unwrap();

@@ -1,12 +1,20 @@
-//! Fuzz targets for the readers of assemblies: arbitrary bytes as sources, from memory. Whatever they
-//! hold, the answer is an assembly or an error. Their corpora run as ordinary tests too
+//! Fuzz targets for the readers of meshes, robots, tables and assemblies: arbitrary bytes as sources, from
+//! memory. Whatever they hold, the answer is a mesh, an assembly or an error. Inputs of the targets of one
+//! format begin with a byte: if it is even the rest is the file, else [`written`] generates the file from the
+//! rest. The corpora run as ordinary tests too
 //! (`crates/colltrans-assembly/tests/assembly/fuzz_corpus.rs`).
 
 use std::collections::BTreeMap;
 use std::io::{Cursor, Write};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use colltrans_assembly::read::{ReadOptions, read_from};
+use arbitrary::Unstructured;
+use colltrans_assembly::read::{ReadOptions, disabled, read_from};
+use colltrans_assembly::robot::Table;
+use colltrans_mesh::Format;
+
+#[path = "written.rs"]
+mod written;
 
 /// A cube, as a mesh file that sources may name.
 const CUBE: &str = "OFF\n8 6 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n\
@@ -55,4 +63,66 @@ pub(crate) fn threemf(bytes: &[u8]) {
         zip.write_all(model.as_bytes()).expect("memory");
     }
     open("a.3mf", &zip.finish().expect("memory").into_inner());
+}
+
+/// The bytes of a file: those after the first byte, or what `generate` writes from them.
+fn file_of(
+    bytes: &[u8],
+    generate: impl FnOnce(&mut Unstructured<'_>) -> arbitrary::Result<Vec<u8>>,
+) -> Option<Vec<u8>> {
+    let (&first, rest) = bytes.split_first()?;
+    if first % 2 == 0 { Some(rest.to_vec()) } else { generate(&mut Unstructured::new(rest)).ok() }
+}
+
+/// Reads a mesh, and checks what the library promises of every mesh that it reads.
+fn mesh(format: Format, file: Option<Vec<u8>>) {
+    let Some(file) = file else { return };
+    match colltrans_mesh::parse(format, file, Path::new("a.mesh")) {
+        Ok(mesh) => {
+            let count = mesh.vertices.len();
+            assert!(mesh.faces.iter().all(|face| face.len() >= 3));
+            assert!(mesh.faces.iter().flatten().all(|&vertex| (vertex as usize) < count));
+        }
+        Err(error) => assert!(error.to_string().contains("a.mesh")),
+    }
+}
+
+pub(crate) fn stl(bytes: &[u8]) {
+    mesh(Format::Stl, file_of(bytes, written::stl));
+}
+
+pub(crate) fn obj(bytes: &[u8]) {
+    mesh(Format::Obj, file_of(bytes, written::obj));
+}
+
+pub(crate) fn ply(bytes: &[u8]) {
+    mesh(Format::Ply, file_of(bytes, written::ply));
+}
+
+pub(crate) fn off(bytes: &[u8]) {
+    mesh(Format::Off, file_of(bytes, written::off));
+}
+
+pub(crate) fn dae(bytes: &[u8]) {
+    mesh(Format::Dae, file_of(bytes, written::dae));
+}
+
+/// Pairs of links that an SRDF file disables; the file is one of the temporary folder.
+pub(crate) fn srdf(bytes: &[u8]) {
+    let Some(file) = file_of(bytes, written::srdf) else { return };
+    let path = std::env::temp_dir().join(format!("colltrans-fuzz-{}.srdf", std::process::id()));
+    std::fs::write(&path, file).expect("a temporary file");
+    if let Err(error) = disabled(&path) {
+        assert!(!error.to_string().is_empty());
+    }
+    std::fs::remove_file(&path).expect("the temporary file");
+}
+
+/// A table of joint values, CSV or JSON.
+pub(crate) fn csv(bytes: &[u8]) {
+    let Some(file) = file_of(bytes, written::csv) else { return };
+    match Table::parse(&String::from_utf8_lossy(&file)) {
+        Ok(table) => assert!(!table.rows.is_empty()),
+        Err(error) => assert!(!error.to_string().is_empty()),
+    }
 }

@@ -1,0 +1,40 @@
+//! The sources of the command line that read lines of a batch, and a check of one way against the other.
+
+#[path = "../../crates/colltrans-cli/src/batch/fast_path.rs"]
+pub(crate) mod fast_path;
+#[path = "../../crates/colltrans-cli/src/batch/source.rs"]
+pub(crate) mod source;
+
+pub(crate) mod motion {
+    /// Any value: motions are not on the fast path.
+    #[derive(serde::Deserialize)]
+    pub(crate) struct MotionSource(serde::de::IgnoredAny);
+}
+
+use serde_json::value::RawValue;
+
+use source::Query;
+
+/// Checks that the fast path reads a line as `serde_json` reads it.
+pub(crate) fn check(text: &str) {
+    let Some(fast) = fast_path::read(text) else {
+        let _ = serde_json::from_str::<Query<'_, source::BodySource>>(text);
+        return;
+    };
+    let slow: Query<'_, &RawValue> = serde_json::from_str(text).expect("a line of the usual form");
+    assert_eq!(fast.id.map(RawValue::get), slow.id.map(RawValue::get));
+    assert_eq!(fast.moving, slow.moving.get());
+    assert_eq!(fast.fixed, slow.fixed.get());
+    let poses = [[fast.moving_pose, slow.moving_pose], [fast.fixed_pose, slow.fixed_pose]];
+    for [a, b] in poses.map(|pose| pose.map(|pose| pose.map(|pose| format!("{pose:?}")))) {
+        assert_eq!(a, b);
+    }
+    let bits = |values: Option<[f64; 3]>| values.map(|values| values.map(f64::to_bits));
+    assert_eq!(bits(fast.direction), bits(slow.direction));
+    let numbers =
+        |a: Option<f64>, b: Option<f64>| assert_eq!(a.map(f64::to_bits), b.map(f64::to_bits));
+    numbers(fast.length, slow.length);
+    numbers(fast.graze_tolerance, slow.graze_tolerance);
+    numbers(fast.keep, slow.keep);
+    assert_eq!(fast.question, slow.question);
+}

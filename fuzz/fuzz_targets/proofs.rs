@@ -1,0 +1,8 @@
+#![no_main]
+//! See `documents::proofs`.
+
+#[path = "../documents.rs"]
+#[allow(dead_code, reason = "each target is one of its functions")]
+mod documents;
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| documents::proofs(bytes));

@@ -23,7 +23,7 @@ use crate::proof::{self, refuse_proof};
 use crate::record::Line;
 use crate::replay;
 use crate::report::{feature, hulls, kept, line, meet};
-use crate::solid::{PartsMotion, surface_of};
+use crate::solid::{self, PartsMotion, surface_of};
 
 pub(crate) fn run(arguments: &MotionArguments) -> Result<(), Failure> {
     let Sides { files, taken } = arguments.sides()?;
@@ -99,7 +99,8 @@ fn parts(
         ignore_start_overlaps,
         keep,
     };
-    let told = Line::from(asked.ask()?);
+    let told = asked.ask().map_err(|error| solid::refused(error, bodies_asked, tolerance))?;
+    let told = Line::from(told);
     print(&if arguments.json { told.json() } else { words(&told, motions.each_ref()) })?;
     if let Some(path) = &arguments.save_proof {
         let proof = SolidMotionProofFile::answer(&asked.cast()?);

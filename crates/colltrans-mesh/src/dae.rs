@@ -280,13 +280,11 @@ impl<'a> Reader<'a> {
         let [x, y, z] = places[..] else {
             return Err(at(accessor, "positions do not have three coordinates"));
         };
-        let last = count
-            .checked_sub(1)
-            .and_then(|last| last.checked_mul(stride)?.checked_add(offset)?.checked_add(z));
-        if x.max(y).max(z) >= stride
-            || last.is_some_and(|last| last >= numbers.len())
-            || count > numbers.len()
-        {
+        // A place that overflows lies beyond any array.
+        let last =
+            |count: usize| (count - 1).checked_mul(stride)?.checked_add(offset)?.checked_add(z);
+        let fits = count == 0 || last(count).is_some_and(|last| last < numbers.len());
+        if x.max(y).max(z) >= stride || !fits {
             return Err(at(
                 accessor,
                 format!(

@@ -24,6 +24,7 @@ use crate::text::{quoted, without_mark};
 /// The mesh, and the precision of its coordinates.
 pub(crate) fn parse(bytes: &[u8]) -> Result<(Mesh, Precision), Fault> {
     let bytes = with_line_feeds(without_mark(bytes)?);
+    let bytes = with_readable_comments(bytes);
     let mut reader = Reader::new(&*bytes);
     let header = Parser::<Row>::new().read_header(&mut reader);
     let header = header.map_err(|e| why::header(&bytes).unwrap_or_else(|| fault(&e, true)))?;
@@ -77,6 +78,26 @@ fn with_line_feeds(bytes: &[u8]) -> Cow<'_, [u8]> {
     let text_end = if is_text { bytes.len() } else { header_end };
     for byte in bytes[..text_end].iter_mut().filter(|b| **b == b'\r') {
         *byte = b'\n';
+    }
+    Cow::Owned(bytes)
+}
+
+/// Replaces the bytes beyond ASCII in comments of a header that is not UTF-8, which the parser refuses. Many
+/// programs write names of files and people there in the code page of their system.
+fn with_readable_comments(bytes: Cow<'_, [u8]>) -> Cow<'_, [u8]> {
+    const END: &[u8] = b"end_header";
+    let end = bytes.windows(END.len()).position(|window| window == END);
+    let end = end.unwrap_or(bytes.len());
+    if std::str::from_utf8(&bytes[..end]).is_ok() {
+        return bytes;
+    }
+    let mut bytes = bytes.into_owned();
+    for line in bytes[..end].split_mut(|byte| *byte == b'\n') {
+        if line.starts_with(b"comment") || line.starts_with(b"obj_info") {
+            for byte in line.iter_mut().filter(|byte| !byte.is_ascii()) {
+                *byte = b'?';
+            }
+        }
     }
     Cow::Owned(bytes)
 }

@@ -2,8 +2,9 @@
 //!
 //! A binary file is 80 bytes of header, a count `n` and `50 n` bytes of triangles; many begin with
 //! the word `solid` as text files do, so the first word does not decide. A file of exactly
-//! the size that its count implies is binary; of the others those are text that begin with `solid`
-//! and hold no control characters, which binary numbers do. Text is read here, because it may hold
+//! the size that its count implies is binary; of the others those are text that begin with `solid`, perhaps
+//! after comments (`;`, `#`, `//`), and that hold no control characters, as binary numbers do, or whose second
+//! line is one of text STL. NUL and Ctrl-Z at the end are padding. Text is read here, because it may hold
 //! several solids and more digits than single precision, and because its errors should name a
 //! line. Either way equal vertices are merged.
 
@@ -25,7 +26,7 @@ pub(crate) fn parse(bytes: Vec<u8>) -> Result<(Mesh, Precision), Fault> {
         return Err(Fault::new(Place::End, "the file is empty"));
     }
     if !is_exactly_binary(&bytes) && is_text(&bytes) {
-        let text = String::from_utf8_lossy(without_mark(&bytes)?);
+        let text = String::from_utf8_lossy(without_padding(without_mark(&bytes)?));
         return Ok((parse_text(&text)?.weld(), Precision::TEXT));
     }
     if !is_exactly_binary(&bytes) {
@@ -43,8 +44,28 @@ pub(crate) fn is_exactly_binary(bytes: &[u8]) -> bool {
 
 /// Whether the file begins as a text STL does and is text.
 pub(crate) fn is_text(bytes: &[u8]) -> bool {
-    let Ok(start) = without_mark(bytes).map(<[u8]>::trim_ascii_start) else { return false };
-    start.get(..5).is_some_and(|s| s.eq_ignore_ascii_case(b"solid")) && !has_control(start)
+    let Ok(text) = without_mark(bytes) else { return false };
+    let mut lines = text.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
+    let mut lines = lines.by_ref().filter(|line| !line.is_empty() && !is_comment(line));
+    let begins = |line: Option<&[u8]>, word: &[u8]| {
+        line.and_then(|line| line.get(..word.len())).is_some_and(|s| s.eq_ignore_ascii_case(word))
+    };
+    if !begins(lines.next(), b"solid") {
+        return false;
+    }
+    let second = lines.next();
+    !has_control(text) || begins(second, b"facet") || begins(second, b"endsolid")
+}
+
+/// Checks whether a line outside of all solids is a comment.
+fn is_comment(line: &[u8]) -> bool {
+    line.starts_with(b";") || line.starts_with(b"#") || line.starts_with(b"//")
+}
+
+/// Returns text without what some programs put behind its end: NUL and Ctrl-Z.
+fn without_padding(text: &[u8]) -> &[u8] {
+    let is_text = |byte: &u8| !matches!(byte, 0 | 0x1a) && !byte.is_ascii_whitespace();
+    &text[..text.iter().rposition(is_text).map_or(0, |last| last + 1)]
 }
 
 /// Characters that no text holds, but numbers in binary do.
@@ -152,6 +173,9 @@ fn parse_text(text: &str) -> Result<Mesh, Fault> {
     let mut name = String::new();
     for (number, line) in lines(text).enumerate() {
         let at = |what: String| Fault::new(Place::Line(number + 1), what);
+        if inside == Inside::Nothing && is_comment(line.trim_start().as_bytes()) {
+            continue;
+        }
         let mut words = line.split_whitespace();
         let Some(word) = words.next() else { continue };
         let keyword = word.to_ascii_lowercase();

@@ -24,9 +24,9 @@ use crate::part::Assembly;
 
 /// Nodes nested deeper than this are a ring.
 const DEEPEST: usize = 256;
-/// Extensions that say nothing of shapes, by how their names begin; the last one lets positions be
-/// whole numbers.
-const HARMLESS: [&str; 7] = [
+/// Extensions that say nothing of shapes, by how their names begin; and those that are read: positions
+/// in whole numbers, hidden nodes.
+const HARMLESS: [&str; 8] = [
     "KHR_materials_",
     "KHR_texture_",
     "EXT_texture_",
@@ -34,7 +34,10 @@ const HARMLESS: [&str; 7] = [
     "KHR_xmp",
     "KHR_animation_",
     "KHR_mesh_quantization",
+    VISIBILITY,
 ];
+/// The extension that hides nodes, and all below them.
+const VISIBILITY: &str = "KHR_node_visibility";
 
 pub(super) fn read(source: Source, bytes: &[u8]) -> Result<Assembly, ReadError> {
     let path = source.path;
@@ -48,18 +51,24 @@ pub(super) fn read(source: Source, bytes: &[u8]) -> Result<Assembly, ReadError> 
     let scene = scene.ok_or_else(|| contents(path, "scenes", "there is no scene"))?;
     let budget = Budget::of(size);
     let frame = document.asset.extras.frame();
-    let shown = Vec::new();
-    let mut reader = Reader { path, document: &document, buffers, budget, shown };
+    let (shown, left_out) = (Vec::new(), Vec::new());
+    let mut reader = Reader { path, document: &document, buffers, budget, shown, left_out };
     for &node in &scene.nodes {
         reader.node(node, frame.world, 0, None)?;
     }
-    let drafts = reader.drafts(frame.per_metre)?;
+    let (drafts, left_out) = reader.drafts(frame.per_metre)?;
     let holds = format!(
         "none of its {} nodes places a mesh of triangles; it has {} meshes",
         document.nodes.len(),
         document.meshes.len()
     );
-    let assembly = assembled(source, drafts, &holds)?.with_unit(frame.unit).with_up(frame.up);
+    let mut assembly = assembled(source, drafts, &holds)?.with_unit(frame.unit).with_up(frame.up);
+    for note in document.asset.extras.notes() {
+        assembly = assembly.with_note(note);
+    }
+    if !left_out.is_empty() {
+        assembly = assembly.with_note(format!("left out: {}", listed(&left_out)));
+    }
     let shaped = document.meshes.iter().flat_map(|mesh| &mesh.primitives);
     let at_rest = shaped.filter(|shape| !shape.targets.is_empty()).count()
         + document.nodes.iter().filter(|node| node.skin.is_some()).count();
@@ -170,6 +179,12 @@ impl Extras {
         };
         let world = DAffine3::from_scale(DVec3::splat(per_metre));
         Frame { world, per_metre, unit: unit.to_owned(), up }
+    }
+
+    /// Returns what the converter says about the file that it read.
+    fn notes(&self) -> impl Iterator<Item = &str> {
+        let notes = self.0.get("notes").and_then(Value::as_array);
+        notes.into_iter().flatten().filter_map(Value::as_str)
     }
 
     /// Whether all that is below a node is one part.
@@ -344,6 +359,17 @@ struct Reader<'a> {
     buffers: Vec<Vec<u8>>,
     budget: Budget,
     shown: Vec<Shown<'a>>,
+    /// Nodes that are no parts, each with the reason.
+    left_out: Vec<String>,
+}
+
+/// Returns the first few of some names, and how many more there are.
+fn listed(names: &[String]) -> String {
+    const MOST_NAMED: usize = 4;
+    match names.len().saturating_sub(MOST_NAMED) {
+        0 => names.join(", "),
+        more => format!("{} and {more} more", names[..MOST_NAMED].join(", ")),
+    }
 }
 
 impl Document {
@@ -391,6 +417,10 @@ impl Reader<'_> {
             return Err(refused("nodes are nested too deep, or in a ring".into()));
         }
         self.budget.place().map_err(refused)?;
+        if node.is_hidden() {
+            self.left_out.push(format!("{} (hidden)", node.shown_name(index)));
+            return Ok(());
+        }
         let world = above * node.transform().map_err(refused)?;
         if whole.is_none() && node.extras.is_part() {
             whole = Some(self.shown.len());
@@ -417,7 +447,7 @@ impl Reader<'_> {
 
     /// A part for each that is shown; every mesh is read once, and all are counted before the
     /// first part is built.
-    fn drafts(mut self, per_metre: f64) -> Result<Vec<Draft>, ReadError> {
+    fn drafts(mut self, per_metre: f64) -> Result<(Vec<Draft>, Vec<String>), ReadError> {
         let mut budget = std::mem::take(&mut self.budget);
         let mut meshes: HashMap<usize, Arc<Mesh>> = HashMap::new();
         let placed = self.shown.iter().flat_map(|s| s.meshes.iter().map(|(m, _)| (s.node, *m)));
@@ -433,22 +463,24 @@ impl Reader<'_> {
             }
         }
         let (mut drafts, mut names) = (Vec::new(), Names::default());
-        for Shown { node, name, meshes: shown } in self.shown {
+        for Shown { node, name, meshes: shown } in std::mem::take(&mut self.shown) {
             let colour = self.document.colour(shown.iter().map(|(mesh, _)| *mesh));
             let placed = |(mesh, world)| Placed { mesh: Arc::clone(&meshes[&mesh]), world };
             let pieces: Vec<Placed> = shown.into_iter().map(placed).collect();
             let pieces: Vec<Placed> =
                 pieces.into_iter().filter(|placed| !placed.mesh.faces.is_empty()).collect();
+            let name = name.map_or(format!("node {node}"), str::to_owned);
             if pieces.is_empty() {
+                self.left_out.push(format!("{name} (no triangles)"));
                 continue;
             }
-            let name = names.unique(&name.map_or(format!("node {node}"), str::to_owned));
+            let name = names.unique(&name);
             let extras = &self.document.nodes[node].extras;
             let chord_error = extras.chord_error().map(|error| error * per_metre);
             let draft = Draft { chord_error, colour, ..Draft::new(name, pieces) };
             drafts.push(if extras.is_part() { draft.told() } else { draft });
         }
-        Ok(drafts)
+        Ok((drafts, self.left_out))
     }
 
     /// The triangles of all primitives of a mesh.
@@ -567,6 +599,17 @@ fn is_name(name: &str) -> bool {
 impl Node {
     fn name(&self) -> Option<&str> {
         self.name.as_deref().filter(|name| is_name(name))
+    }
+
+    /// Returns the name of the node, or its number.
+    fn shown_name(&self, index: usize) -> String {
+        self.name().map_or(format!("node {index}"), str::to_owned)
+    }
+
+    /// Checks whether the file hides the node.
+    fn is_hidden(&self) -> bool {
+        let visibility = self.extensions.get(VISIBILITY);
+        visibility.and_then(|it| it.get("visible")).and_then(Value::as_bool) == Some(false)
     }
 
     fn transform(&self) -> Result<DAffine3, String> {

@@ -135,8 +135,12 @@ impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Exactly<T, N
     }
 }
 
-/// How far a rotation's numbers may be from one.
-const ROUNDED: f64 = 1e-3;
+/// Largest difference of a rotation's numbers from a rotation that is rounding: the same as of poses.
+const UNIT_LENGTH: f64 = 1e-6;
+/// Largest difference of a quaternion's length from 1 that few digits explain: the same as on the command line.
+const FEW_DIGITS: f64 = 0.02;
+/// Largest defect of a matrix that few digits explain.
+const FEW_DIGITS_OF_MATRIX: f64 = 1e-3;
 
 pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     let path = source.path;
@@ -154,7 +158,7 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     for (k, entry) in manifest.parts.iter().enumerate() {
         gathered.part(&source, k, entry)?;
     }
-    let Gathered { drafts, missing, left_out, .. } = gathered;
+    let Gathered { drafts, missing, left_out, notes, .. } = gathered;
     if !missing.is_empty() && !source.options.skip_missing {
         return Err(ReadError::Missing { path: path.into(), missing });
     }
@@ -170,6 +174,9 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
         assembly = assembly.with_ignored(&pairs, ignored).map_err(in_file(path))?;
     }
     assembly = manifest.constrained(assembly).map_err(in_file(path))?;
+    for note in notes {
+        assembly = assembly.with_note(note);
+    }
     for said in dropped {
         assembly = assembly.with_note(format!("{said}, as parts of it are left out"));
     }
@@ -251,6 +258,7 @@ struct Gathered {
     missing: Vec<String>,
     /// Names of parts of which files are missing.
     left_out: Vec<String>,
+    notes: Vec<String>,
 }
 
 impl Gathered {
@@ -262,9 +270,15 @@ impl Gathered {
         let refused = |reason: String| contents(source.path, place(k), reason);
         let first = files.first().ok_or_else(|| refused("no file is given".into()))?;
         let name = entry.name.clone().unwrap_or_else(|| stem(Path::new(first)));
-        let world = entry
+        let (world, normalised) = entry
             .world_from_mesh()
             .map_err(|reason| contents(source.path, format!("{} ({name})", place(k)), reason))?;
+        if let Some(off) = normalised {
+            self.notes.push(format!(
+                "the rotation of {name} is {off:.0e} off a rotation; it was normalised, and a direction may be \
+                 off by that much"
+            ));
+        }
         let (mut pieces, missing) = (Vec::new(), self.missing.len());
         for file in files {
             let Some((path, bytes)) = source.named(file)? else {
@@ -311,8 +325,10 @@ fn toml_place(text: &str, error: &toml::de::Error) -> String {
 }
 
 impl Entry {
-    fn world_from_mesh(&self) -> Result<DAffine3, String> {
-        let rotation = self.rotation.as_ref().map_or(Ok(DMat3::IDENTITY), Rotation::matrix)?;
+    /// Returns the place of the part, and how far its rotation was from one if it was normalised.
+    fn world_from_mesh(&self) -> Result<(DAffine3, Option<f64>), String> {
+        let exact = Ok((DMat3::IDENTITY, None));
+        let (rotation, normalised) = self.rotation.as_ref().map_or(exact, Rotation::matrix)?;
         let scale = match self.scale {
             None => DVec3::ONE,
             Some(Scale::Same(s)) => DVec3::splat(s),
@@ -326,42 +342,49 @@ impl Entry {
             return Err(format!("translation {:?} is not finite", translation.to_array()));
         }
         let matrix = rotation * DMat3::from_diagonal(scale);
-        Ok(DAffine3::from_mat3_translation(matrix, translation))
+        Ok((DAffine3::from_mat3_translation(matrix, translation), normalised))
     }
 }
 
 impl Rotation {
-    fn matrix(&self) -> Result<DMat3, String> {
+    /// Returns the rotation, and how far it was from one if it was normalised.
+    fn matrix(&self) -> Result<(DMat3, Option<f64>), String> {
         match self {
             Self::Quaternion(q) | Self::Named(NamedRotation::Quaternion(q)) => quaternion(*q),
             Self::Named(NamedRotation::RpyDegrees(rpy)) if rpy.iter().any(|a| !a.is_finite()) => {
                 Err(format!("rpy_degrees {rpy:?} is not finite"))
             }
-            Self::Named(NamedRotation::RpyDegrees(rpy)) => Ok(rpy_matrix(rpy.map(f64::to_radians))),
+            Self::Named(NamedRotation::RpyDegrees(rpy)) => {
+                Ok((rpy_matrix(rpy.map(f64::to_radians)), None))
+            }
             Self::Matrix(rows) | Self::Named(NamedRotation::Matrix(rows)) => matrix(rows),
         }
     }
 }
 
-fn quaternion(q: [f64; 4]) -> Result<DMat3, String> {
+fn quaternion(q: [f64; 4]) -> Result<(DMat3, Option<f64>), String> {
     let rotation = DQuat::from_array(q);
-    if (rotation.length() - 1.0).abs() > ROUNDED || !rotation.is_finite() {
+    let off = (rotation.length() - 1.0).abs();
+    if off > FEW_DIGITS || !rotation.is_finite() {
         return Err(format!(
             "quaternion {q:?} (x, y, z, w) has length {}, not 1",
             rotation.length()
         ));
     }
-    Ok(DMat3::from_quat(rotation.normalize()))
+    Ok((DMat3::from_quat(rotation.normalize()), (off > UNIT_LENGTH).then_some(off)))
 }
 
-fn matrix(rows: &[[f64; 3]; 3]) -> Result<DMat3, String> {
+fn matrix(rows: &[[f64; 3]; 3]) -> Result<(DMat3, Option<f64>), String> {
     let matrix = DMat3::from_cols_array_2d(rows).transpose();
     let off = matrix * matrix.transpose() - DMat3::IDENTITY;
     let worst = off.to_cols_array().iter().fold(0.0_f64, |w, x| w.max(x.abs()));
-    if !(worst <= ROUNDED && matrix.determinant() > 0.0) {
+    if !(worst <= FEW_DIGITS_OF_MATRIX && matrix.determinant() > 0.0) {
         return Err(format!("matrix {rows:?} is not a rotation; lengths belong into scale"));
     }
-    Ok(matrix)
+    if worst <= UNIT_LENGTH {
+        return Ok((matrix, None));
+    }
+    Ok((DMat3::from_quat(DQuat::from_mat3(&matrix).normalize()), Some(worst)))
 }
 
 /// About x by the first, then about y, then about z, in radians; quarter turns are exact.

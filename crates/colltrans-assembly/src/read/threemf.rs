@@ -78,6 +78,9 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
             }
             budget.facets(object.mesh.faces.len().max(object.mesh.vertices.len()))?;
             if object.mesh.faces.is_empty() {
+                if object.has_mesh {
+                    left_out.push(format!("{name} (no triangles)"));
+                }
                 return Ok(true);
             }
             for (own, mesh) in bodies(name, object, told, &mut left_out) {

@@ -318,3 +318,84 @@ fn gltf_files_whose_numbers_do_not_fit_are_refused() {
     refused(3, 1_000_000, "indices lie beyond");
     refused(3, 8, "8 corners do not make triangles");
 }
+
+#[test]
+fn hidden_and_empty_gltf_nodes_are_left_out_with_a_note() {
+    let cube = |x: f64| [cuboid([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0])];
+    let parts = [("seen", 0.0), ("hidden", 2.0), ("lines", 4.0)];
+    let parts = parts.map(|(name, x)| part(name, &cube(x)));
+    let assembly = Assembly::new(parts.into()).unwrap().with_unit("m");
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.gltf");
+    let glb = animation(&assembly, &Plan::default());
+    let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
+    let mut document: serde_json::Value = serde_json::from_slice(&glb[20..20 + length]).unwrap();
+    let data = base64::engine::general_purpose::STANDARD.encode(&glb[28 + length..]);
+    document["buffers"][0]["uri"] = format!("data:;base64,{data}").into();
+    let nodes = document["nodes"].as_array_mut().unwrap();
+    let named = |name: &str, nodes: &[serde_json::Value]| {
+        nodes.iter().position(|node| node["name"] == name).unwrap()
+    };
+    let hidden = named("hidden", nodes);
+    nodes[hidden]["extensions"] = serde_json::json!({"KHR_node_visibility": {"visible": false}});
+    let lines = named("lines", nodes);
+    let mesh = usize::try_from(nodes[lines]["mesh"].as_u64().unwrap()).unwrap();
+    let own = document["meshes"].as_array().unwrap().len();
+    let mut points = document["meshes"][mesh].clone();
+    points["primitives"][0]["mode"] = 0.into();
+    document["meshes"].as_array_mut().unwrap().push(points);
+    document["nodes"][lines]["mesh"] = own.into();
+    document["extensionsRequired"] = serde_json::json!(["KHR_node_visibility"]);
+    std::fs::write(&path, document.to_string()).unwrap();
+    let assembly = open(&path).unwrap();
+    assert_eq!(assembly.names(&[0]), ["seen"]);
+    assert_eq!(assembly.parts().len(), 1);
+    assert_eq!(assembly.notes(), ["left out: hidden (hidden), lines (no triangles)"]);
+}
+
+#[test]
+fn objects_of_3mf_without_triangles_are_left_out_with_a_note() {
+    let cube = mesh_of_3mf([1.0; 3]);
+    let model = format!(
+        "<model unit=\"inch\"><resources><object id=\"1\" name=\"cube\">{cube}</object><object id=\"2\" \
+         name=\"bare\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/></vertices><triangles/></mesh></object>\
+         </resources><build><item objectid=\"1\"/><item objectid=\"2\"/></build></model>"
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.3mf");
+    std::fs::write(&file, package(&[("3D/3dmodel.model", &model)])).unwrap();
+    let assembly = open(&file).unwrap();
+    assert_eq!(assembly.parts().len(), 1);
+    let [note] = assembly.notes() else { panic!("{:?}", assembly.notes()) };
+    assert!(note.contains("left out") && note.contains("bare (no triangles)"), "{note}");
+}
+
+#[test]
+fn rotations_of_few_digits_are_normalised_with_a_note_and_shears_are_refused() {
+    let manifest = |rotation: &str| {
+        let toml = format!("[[part]]\nfile = 'c.off'\nrotation = {rotation}\n");
+        let folder = folder(&[("c.off", CUBE), ("m.toml", &toml)]);
+        open(folder.path().join("m.toml"))
+    };
+    for exact in ["[0, 0, 0, 1]", "[0, 0, 0.6, 0.8]", "[[0, -1, 0], [1, 0, 0], [0, 0, 1]]"] {
+        assert!(manifest(exact).unwrap().notes().is_empty());
+    }
+    for few in [
+        "[[1, 0.0009, 0], [0, 1, 0], [0, 0, 1]]",
+        "[[0.866, -0.5, 0], [0.5, 0.866, 0], [0, 0, 1]]",
+        "[0, 0, 0.38, 0.92]",
+    ] {
+        let assembly = manifest(few).unwrap();
+        let [note] = assembly.notes() else { panic!("{:?}", assembly.notes()) };
+        assert!(note.starts_with("the rotation of c is ") && note.contains("normalised"), "{note}");
+        // A shear keeps the volume but not the lengths of the sides.
+        let solid = assembly.parts()[0].solid();
+        let corner = |k: usize| solid.vertices()[k];
+        for (a, b) in [(0, 1), (0, 2), (0, 4)] {
+            assert!((corner(a).distance(corner(b)) - 1.0).abs() < 1e-12);
+        }
+    }
+    for sheared in ["[[1, 0.002, 0], [0, 1, 0], [0, 0, 1]]", "[0, 0, 0.3, 0.9]"] {
+        assert!(manifest(sheared).is_err());
+    }
+}

@@ -18,7 +18,7 @@ use crate::picture::draw_solids;
 use crate::progress;
 use crate::proof;
 use crate::record::Line;
-use crate::solid::{Body, PartsQuery};
+use crate::solid::{self, Body, PartsQuery};
 pub(crate) use words::overlaps;
 
 pub(crate) fn run(arguments: &ClearanceArguments) -> Result<(), Failure> {
@@ -67,7 +67,8 @@ fn answer_one(arguments: &PairArguments, question: &PartsQuery<'_>) -> Result<()
     let bar = progress::steps(question.pairs(), "looking");
     let answer = question.ask(|| bar.inc(1));
     bar.finish_and_clear();
-    let answer = answer?;
+    let bodies = [question.moving, question.fixed];
+    let answer = answer.map_err(|error| solid::refused(error, bodies, question.tolerance))?;
     answer.notes.iter().for_each(|text| note(text));
     let is_default = question.tolerance.is_none();
     let text = if arguments.json {

@@ -5,7 +5,7 @@ use colltrans::glam::DVec3;
 use colltrans::record::FreeRecord;
 use colltrans::{Pose, ProofFile, Solid};
 
-use super::{Body, PartsQuery};
+use super::{Body, PartsQuery, refused};
 use crate::failure::{Code, Failure};
 
 /// Two bodies where they are.
@@ -30,7 +30,7 @@ pub(crate) struct FreeAnswer {
 impl PartsFree<'_> {
     pub(crate) fn ask(&self, with_proof: bool) -> Result<FreeAnswer, Failure> {
         let query = self.query();
-        let cast = query.of_bodies()?;
+        let cast = query.of_bodies().map_err(|e| refused(e, self.bodies, self.tolerance))?;
         let tolerance = cast.tolerance();
         let notes = query.unshrunk(tolerance);
         let options =

@@ -16,11 +16,12 @@ use std::path::PathBuf;
 
 use colltrans::glam::DVec3;
 use colltrans::solid::{SolidError, SolidReport};
-use colltrans::{ConvexPolyhedron, Pose, Solid};
+use colltrans::{ConvexPolyhedron, Pose, QueryError, Solid};
 use colltrans_mesh::Mesh;
 use colltrans_mesh::body::{self, BodyOptions, Loaded, Note, Refused, load_solid};
 
 use crate::body::{hint, of_file, refusal};
+use crate::failure::{Code, Failure};
 use crate::numbers::counted;
 pub(crate) use ask::{Answer, PartsQuery};
 pub(crate) use free::{FreeAnswer, PartsFree};
@@ -121,6 +122,25 @@ impl Body {
         let placed = solid.vertices().iter().map(|&v| pose.matrix() * v + offset).collect();
         (placed, solid.triangles().to_vec())
     }
+}
+
+/// Returns why a query about two bodies has no answer. If nobody chose the tolerance, a tolerance that leaves
+/// nothing of a body is a fault of the file with the largest coordinates, because these ask for it.
+pub(crate) fn refused(error: QueryError, bodies: [&Body; 2], tolerance: Option<f64>) -> Failure {
+    let (QueryError::NothingLeft { .. }, None) = (&error, tolerance) else { return error.into() };
+    let largest = |piece: &Piece| {
+        let bounds = piece.solid.bounds();
+        bounds.low.abs().max(bounds.high.abs()).max_element()
+    };
+    let pieces = bodies.into_iter().flat_map(|body| &body.pieces);
+    let sized = pieces.map(|piece| (largest(piece), &piece.file));
+    let Some((size, file)) = sized.max_by(|a, b| a.0.total_cmp(&b.0)) else { return error.into() };
+    let text = format!(
+        "{}: its coordinates reach {size:e}, and the default tolerance follows from their rounding; {error}. \
+         Check the unit of the file, or give --tolerance",
+        file.display()
+    );
+    Failure::new(Code::Input, text)
 }
 
 /// The vertices of a convex body where it is placed, relative to a point, and triangles of its faces.

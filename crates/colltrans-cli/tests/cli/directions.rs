@@ -108,3 +108,19 @@ fn what_is_stuck_is_proven_or_says_what_was_asked() {
     let text = answered(&data(), &["assembly", "gearbox_small", "--no-proofs"]);
     assert!(text.contains("stuck along the directions asked\n"), "{text}");
 }
+
+#[test]
+fn coordinates_too_large_for_the_other_body_are_a_fault_of_their_file() {
+    let folder = folder();
+    let folder = folder.path();
+    for (size, words) in [("1e300", "outside the exact range"), ("1e50", "coordinates reach 1e50")]
+    {
+        let vertices = format!("0 0 0\n{size} 0 0\n0 {size} 0\n0 0 {size}\n");
+        let wild = format!("OFF\n4 4 0\n{vertices}3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n");
+        fs::write(folder.join("wild.off"), wild).unwrap();
+        refused(folder, &["directions", "wild.off", "cube.off"], 3, &["wild.off", words]);
+    }
+    // A tolerance that somebody chose is a fault of the command line.
+    let chosen = ["directions", "cube.off", "cube.off", "--tolerance", "1e40"];
+    refused(folder, &chosen, 2, &["leaves nothing"]);
+}

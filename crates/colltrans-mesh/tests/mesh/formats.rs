@@ -92,6 +92,28 @@ fn text_stl_keeps_digits_and_all_solids() {
 }
 
 #[test]
+fn text_stl_with_padding_comments_and_strange_bytes_is_read_as_text() {
+    let text = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0.1 0 0\nvertex 0 1 0\n\
+        endloop\nendfacet\nendsolid a\n";
+    let plain = read(Format::Stl, text).unwrap();
+    let inputs: [Vec<u8>; 6] = [
+        [text.as_bytes(), b"\x1a"].concat(),
+        [text.as_bytes(), b"\0\0\0"].concat(),
+        [text.as_bytes(), b"\x1a\0\r\n"].concat(),
+        [b"; made by foo\n", text.as_bytes()].concat(),
+        [b"# Geh\xe4use\r\n\r\n// x\r\n", text.as_bytes()].concat(),
+        text.replacen("solid a", "solid \0a", 1).into_bytes(),
+    ];
+    for input in inputs {
+        assert_eq!(read(Format::Stl, &input).unwrap().vertices, plain.vertices, "{input:?}");
+    }
+    let inside = text.replacen("0.1", "0\0.1", 1);
+    assert_eq!(place(Format::Stl, inside), Place::Line(5));
+    // A comment inside of a solid is no keyword.
+    assert_eq!(place(Format::Stl, text.replacen("outer", "; outer", 1)), Place::Line(3));
+}
+
+#[test]
 fn text_stl_errors_name_the_line() {
     let broken = |from: &str, to: &str| {
         place(Format::Stl, format!("solid x\n{FACET}endsolid").replace(from, to))
@@ -198,6 +220,23 @@ fn ply_in_all_three_encodings() {
         assert_eq!(mesh.vertices[0], DVec3::new(0.1, 0.0, 0.0));
         assert_eq!(mesh.vertices[2], DVec3::new(0.0, 1e-17, 0.0));
         assert_eq!(mesh.faces, [[0, 1, 2]]);
+    }
+}
+
+#[test]
+fn ply_comments_may_be_in_any_encoding() {
+    for bytes in [PLY.as_bytes().to_vec(), binary_ply(true), binary_ply(false)] {
+        let plain = read(Format::Ply, &bytes).unwrap();
+        for line in [
+            &b"comment Geh\xe4use\n"[..],
+            b"obj_info \xff\xfe\x80\n",
+            "comment Gehäuse\n".as_bytes(),
+        ] {
+            let at = bytes.windows(7).position(|window| window == b"element").unwrap();
+            let told = [&bytes[..at], line, &bytes[at..]].concat();
+            let mesh = read(Format::Ply, told).unwrap();
+            assert_eq!((mesh.vertices, mesh.faces), (plain.vertices.clone(), plain.faces.clone()));
+        }
     }
 }
 
@@ -499,5 +538,31 @@ fn faults_of_collada_name_their_line() {
         if let Ok(mesh) = read(Format::Dae, &whole[..end]) {
             assert_eq!(mesh.faces.len(), 5, "{end}");
         }
+    }
+}
+
+#[test]
+#[cfg(feature = "dae")]
+fn strides_and_counts_of_collada_that_overflow_are_refused() {
+    let nodes = "<node><instance_geometry url=\"#g\"/></node>";
+    let file = dae("", &pyramid(), nodes);
+    assert!(read(Format::Dae, &file).is_ok());
+    let largest = usize::MAX.to_string();
+    let accessor = &file[file.find("<accessor").unwrap()..];
+    let accessor = &accessor[..=accessor.find('>').unwrap()];
+    let source = accessor.split('"').find(|word| word.starts_with('#')).unwrap();
+    for (count, stride, offset) in [
+        ("3", &*largest, "0"),
+        ("3", "9223372036854775808", "0"),
+        ("2", "3", &*largest),
+        (&*largest, "3", "0"),
+        (&*largest, &*largest, &*largest),
+        ("1", "3", "18446744073709551614"),
+    ] {
+        let wild = format!(
+            "<accessor source=\"{source}\" count=\"{count}\" stride=\"{stride}\" offset=\"{offset}\">"
+        );
+        let error = read(Format::Dae, file.replacen(accessor, &wild, 1)).unwrap_err().to_string();
+        assert!(error.contains("lie beyond"), "{error}");
     }
 }

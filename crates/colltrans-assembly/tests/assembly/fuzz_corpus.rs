@@ -3,6 +3,7 @@
 use colltrans_testkit::oracle::fuzz::corpus;
 
 #[path = "../../../../fuzz/readers.rs"]
+#[allow(dead_code, reason = "documents in JSON are those of other targets")]
 mod readers;
 
 /// Numbers that are too large, too small, none.
@@ -45,10 +46,12 @@ fn corpora_of_readers() {
     replay("manifest", readers::manifest, 3);
 }
 
+type Target = fn(&[u8]);
+
 /// Files that each generator writes from arbitrary bytes, and those that once broke a reader.
 #[test]
 fn generated_files_of_each_format_are_read_or_refused() {
-    let targets: [(&str, fn(&[u8])); 7] = [
+    let targets: [(&str, Target); 7] = [
         ("stl", readers::stl),
         ("obj", readers::obj),
         ("ply", readers::ply),

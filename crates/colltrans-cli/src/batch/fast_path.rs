@@ -267,8 +267,8 @@ mod tests {
             .chain(*length)
             .chain(*keep);
         let bits: Vec<u64> = numbers.map(f64::to_bits).collect();
-        let id = query.id.map_or("null", RawValue::get);
-        format!("{id} {bits:?} {:?} {:?}", query.question, query.solver)
+        let id = query.id.map(RawValue::get);
+        format!("{id:?} {bits:?} {:?} {:?}", query.question, query.solver)
     }
 
     /// Whether the line has the usual form; if so, that `serde_json` reads the same.

@@ -18,7 +18,7 @@ use super::fast_path;
 use super::motion;
 use super::pipeline::Line;
 use super::recent::Recent;
-use super::source::{Asked, BodySource, PoseSource, Query};
+use super::source::{Asked, BodySource, PoseSource, Query, as_written};
 use crate::args::BodyArguments;
 use crate::body::{self, Part};
 use crate::inputs::Watched;
@@ -41,7 +41,7 @@ pub(crate) struct Batch {
 /// Reads the id of a query that is otherwise wrong.
 #[derive(Deserialize)]
 struct IdOnly<'a> {
-    #[serde(borrow)]
+    #[serde(borrow, default, deserialize_with = "as_written")]
     id: Option<&'a RawValue>,
 }
 

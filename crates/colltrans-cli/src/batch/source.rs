@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use colltrans::{NarrowFrom, Solver, Until};
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer};
 use serde_json::value::RawValue;
 
 use super::motion::MotionSource;
@@ -12,7 +12,7 @@ use super::motion::MotionSource;
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object that holds a query")]
 pub(super) struct Query<'a, Body> {
-    #[serde(borrow)]
+    #[serde(borrow, default, deserialize_with = "as_written")]
     pub(super) id: Option<&'a RawValue>,
     pub(super) moving: Body,
     pub(super) fixed: Body,
@@ -34,6 +34,13 @@ pub(super) struct Query<'a, Body> {
     pub(super) tolerance: Option<f64>,
     pub(super) ignore_start_overlaps: Option<bool>,
     pub(super) keep: Option<f64>,
+}
+
+/// Reads a value as it is written. `null` is a value, too, which a result repeats.
+pub(super) fn as_written<'de, D: Deserializer<'de>>(
+    from: D,
+) -> Result<Option<&'de RawValue>, D::Error> {
+    <&RawValue>::deserialize(from).map(Some)
 }
 
 /// What is asked, by its name.

@@ -68,8 +68,9 @@ pub use step::{Leg, Step, Turn, TurnProof};
 pub use times::Times;
 pub use wanted::{Wanted, remove};
 
-/// Parts of which no group leaves along any direction at all, where that is [proven](Self::proven), or else along any
-/// of those asked; of several moves none were found, or looked for.
+/// Parts of which no group, moved as one by a translation, leaves the others: along any direction at all, where that is
+/// [proven](Self::proven), or else along any of those asked. Of several moves one after another none were found, or
+/// looked for. Parts that move at once, each its own way, may come apart all the same.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Stuck {
@@ -77,8 +78,8 @@ pub struct Stuck {
     pub parts: Vec<usize>,
     /// How many different directions were asked of them.
     pub directions: usize,
-    /// If it is proven that no direction at all takes any group of them from the others: the cells of the sphere that
-    /// prove it. Else nothing is said of directions that were not asked.
+    /// The number of cells of the sphere in which it is proven that no translation of a group as one, in any direction,
+    /// takes it from the others. `None` where that is not proven; then nothing is known of directions not asked.
     pub proven: Option<usize>,
     /// What is known of several moves.
     pub moves: Moves,
@@ -112,8 +113,9 @@ pub struct Plan {
 }
 
 /// Takes everything apart along the directions of a matrix of all parts, and, for what those do not
-/// move, finer ones. Of what is stuck it is proven, if there is a proof ([`Stuck::proven`]), that no direction takes it
-/// apart; parts that are open, ignored or kept apart, or very many, are not proven to be stuck.
+/// move, finer ones. Of what is stuck it is proven, if there is a proof ([`Stuck::proven`]), that no translation of a
+/// group as one takes it from the others; parts that are open, ignored or kept apart, or very many, are not proven to be
+/// stuck.
 ///
 /// # Errors
 /// Cancelled; a direction upwards that is none; or a step does not pass its own check.

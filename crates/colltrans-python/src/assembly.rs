@@ -82,7 +82,7 @@ type PlanRows = (
 );
 /// Parts that are to come out, what else goes, whether that is the least, and whether they come out.
 type WantedRow = (Vec<usize>, Vec<usize>, bool, bool);
-/// Parts, how many directions were asked, in how many cells it is proven that none helps, why they are stuck, and for
+/// Parts, how many directions were asked, in how many cells it is proven that no group leaves as one, the reason, and for
 /// each of some parts the sets that hold it.
 type StuckRow = (Vec<usize>, usize, Option<usize>, String, Vec<(usize, Vec<Vec<usize>>)>);
 

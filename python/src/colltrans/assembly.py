@@ -187,11 +187,11 @@ class Step:
 
 @dataclass(frozen=True)
 class Stuck:
-    """Parts that no straight motion takes apart, nor several moves that were found.
+    """Parts of which no group, moved as one in a straight line, leaves the others.
 
-    No motion along any direction, if that is ``proven``; else none along the directions asked, and
-    along others they may come apart. In more moves they may in both cases, unless ``because`` says
-    that there are none.
+    No group along any direction, if that is ``proven``; else none along the directions asked, and
+    along others one may. Several moves, one after another, were searched as ``because`` says.
+    Parts that move at once, each its own way, may come apart in all cases: that is not tried.
 
     Attributes
     ----------
@@ -199,8 +199,8 @@ class Stuck:
     directions : int
         How many different directions were asked.
     proven : int or None
-        The cells of the sphere of directions in which it is proven that no direction takes any of
-        them from the others; ``None`` where that is not proven.
+        The number of cells of the sphere in which it is proven that no translation of a group as
+        one, in any direction, takes it from the others; ``None`` where that is not proven.
     because : str
         Why, in words: also what was searched for several moves.
     holds : dict of str to list of list of str
@@ -713,7 +713,8 @@ class Assembly:
             How many moves, one after another, may take out what no single one does; parts may make
             room and go back. 1 for none.
         proofs : bool
-            Whether to prove of what is stuck that no direction takes it apart.
+            Whether to prove of what is stuck that no translation of a group as one, in any
+            direction, takes it from the others.
         tolerance, ignore_overlaps
             As for :meth:`rooms`.
         gravity : array_like of shape (3,), optional

@@ -1,4 +1,5 @@
-//! That nothing comes apart along *any* direction: a proof over the whole sphere.
+//! A proof over the whole sphere that no group, moved as one by a translation, leaves the others along *any* direction.
+//! Parts that move at once, each its own way, are not covered.
 //!
 //! The sphere is cut into cells. In a cell, one part blocks another all over it if one pair of their facets, or of boxes
 //! inside them, blocks the whole cell, which is decided exactly. If such arcs make one component, no group leaves along

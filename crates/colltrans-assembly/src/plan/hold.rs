@@ -1,4 +1,6 @@
-//! What holds parts that do not come apart, and how that is said.
+//! What holds parts that do not come apart, and the words for it: one table ([`Claim`]) for all texts.
+//!
+//! A proof covers translations of a *group as one*. It does not cover parts that move at once, each its own way, nor turns.
 
 use glam::DVec3;
 
@@ -77,33 +79,74 @@ fn keep_least(sets: &mut Vec<(Vec<usize>, DVec3)>, set: Vec<usize>, d: DVec3) {
     }
 }
 
+/// What is established about a stuck group, in words. Every text about such a group is made of these.
+struct Claim {
+    /// A line above the group.
+    heading: &'static str,
+    /// Which motions lead nowhere, without the full stop.
+    sentence: String,
+    /// How that is known, a sentence.
+    evidence: String,
+}
+
 impl Stuck {
-    /// Why, in one sentence.
+    /// Returns the reason in one sentence.
     pub fn reason(&self, bodies: &Bodies) -> String {
         if let Some(near) = self.near(bodies) {
             return near;
         }
-        let name = |k: usize| bodies.assembly().parts()[k].name();
-        let count = self.parts.len();
-        let pulled = if count == 2 { "it is pulled" } else { "they are pulled" };
-        let way = match (self.proven, self.directions) {
-            (Some(_), _) => format!("Whichever way {pulled}"),
-            (None, 1) => "In the direction that was asked".into(),
-            (None, directions) => format!("In all {directions} directions that were tried"),
+        let sentence = self.claim(bodies).sentence;
+        match self.easiest().filter(|_| self.parts.len() > 2) {
+            Some((part, by)) => format!(
+                "{sentence}; along the directions asked, {} is held by the fewest: {}.",
+                bodies.assembly().parts()[part].name(),
+                listed(bodies, by)
+            ),
+            None => format!("{sentence}."),
+        }
+    }
+
+    /// Returns the line that stands above the group in a list.
+    pub fn heading(&self, bodies: &Bodies) -> &'static str {
+        self.claim(bodies).heading
+    }
+
+    /// Returns what is established. Only translations of a group as one are covered: parts that each move their own way
+    /// at the same time may come apart although no group leaves.
+    fn claim(&self, bodies: &Bodies) -> Claim {
+        let along = match (self.proven, self.directions) {
+            (Some(_), _) => "in any direction".into(),
+            (None, 1) => "along the direction asked".into(),
+            (None, count) => format!("along the {count} directions asked"),
+        };
+        let nothing = match self.parts[..] {
+            [a, b] => {
+                let [a, b] = [a, b].map(|part| bodies.assembly().parts()[part].name());
+                format!("No straight motion {along} takes {a} from {b}")
+            }
+            _ => format!(
+                "No group of these {} parts leaves the others as one in a straight motion {along}",
+                self.parts.len()
+            ),
         };
         let asked =
             if self.constrained { ", as the order and directions are asked for" } else { "" };
-        match self.easiest() {
-            Some((part, by)) if count == 2 => {
-                format!("{way}, {} is held by {}{asked}.", name(part), listed(bodies, by))
-            }
-            Some((part, by)) => format!(
-                "{way}, these {count} parts hold each other{asked}, and {} is held by the fewest, {}.",
-                name(part),
-                listed(bodies, by)
+        let sentence = format!("{nothing}{asked}");
+        let (heading, evidence) = match self.proven {
+            Some(cells) => (
+                if self.overlapping.is_empty() {
+                    "stuck: no group leaves along any direction, proven"
+                } else {
+                    "stuck: no group leaves along any direction, proven with what overlaps as one"
+                },
+                format!("This is proven in {cells} cells of the sphere of directions."),
             ),
-            None => format!("{way}, none of these {count} parts leaves the others{asked}."),
-        }
+            None => (
+                "stuck: no group leaves along the directions asked",
+                "Other directions were not tried.".into(),
+            ),
+        };
+        Claim { heading, sentence, evidence }
     }
 
     /// Which parts overlap with this fit, or are nearer than the length to keep, if any do.
@@ -130,25 +173,30 @@ impl Stuck {
                  are drawn: a smaller tolerance may part them."
             ),
             _ => format!(
-                "As they are drawn, {names} run into each other{more}, and such parts cannot be parted."
+                "As they are drawn, {names} run into each other{more}, and such parts are not moved apart."
             ),
         })
     }
 
-    /// Why, in words: the [reason](Self::reason), and how that is known.
+    /// Returns the [reason](Self::reason) and the [details](Self::details).
     pub fn because(&self, bodies: &Bodies) -> String {
         format!("{} {}", self.reason(bodies), self.details(bodies))
     }
 
-    /// How that is known, and what may help, in sentences.
+    /// Returns how the reason is known, what it does not cover and what may help, in sentences.
     pub fn details(&self, bodies: &Bodies) -> String {
         let overlaps = !self.overlapping.is_empty();
+        let Claim { sentence, evidence, .. } = self.claim(bodies);
         let mut said = Vec::new();
         if overlaps {
             said.push(self.as_one(bodies));
+            said.push(format!("{sentence}."));
         }
-        said.push(self.single());
+        said.push(evidence);
         said.push(self.moves.words());
+        if self.parts.len() > 2 {
+            said.push("Motions of several parts at once, each its own way, were not tried.".into());
+        }
         if self.constrained {
             said.push("What is asked of their order and directions counts.".into());
         }
@@ -157,30 +205,11 @@ impl Stuck {
         if let Some((part, by)) = held {
             let names = bodies.assembly().names(by).join(", ");
             let part = bodies.assembly().parts()[part].name();
-            said.push(format!("The least that holds a part: {part} is held by {names}."));
+            said.push(format!(
+                "The least that holds a part along the directions asked: {part} is held by {names}."
+            ));
         }
         said.join(" ")
-    }
-
-    /// What is known of single moves.
-    fn single(&self) -> String {
-        let apart = if self.fixed {
-            "takes any of them from what is fixed or from each other"
-        } else {
-            "takes them apart"
-        };
-        let single = "No single straight motion";
-        match (self.proven, self.directions) {
-            (Some(cells), _) => format!(
-                "{single} in any direction {apart}, which is proven in {cells} cells of the sphere."
-            ),
-            (None, 1) => {
-                format!("{single} along the direction asked {apart}; of others it is not known.")
-            }
-            (None, count) => format!(
-                "{single} along the {count} directions asked {apart}; of others it is not known."
-            ),
-        }
     }
 
     /// What becomes of parts that overlap.
@@ -235,7 +264,7 @@ impl Moves {
                     .into()
             }
             Self::Proven { cells } => format!(
-                "Nor do several moves, one after another, which is proven in {cells} cells of displacements."
+                "Nor do several straight moves, one after another, which is proven in {cells} cells of displacements."
             ),
             Self::NotFound { legs, searched } => {
                 let places = match searched.places {

@@ -13,7 +13,7 @@ pub struct PlanOptions {
     pub samples: usize,
     /// How many moves, one after another, may take out what no single one does; 1 for none.
     pub legs: usize,
-    /// Whether to prove of what is stuck that nothing takes it apart.
+    /// Whether to prove of what is stuck that no translation of a group as one takes it from the others.
     pub prove: bool,
     /// Work for those of what is stuck together, each time: a fortieth of so many pairs of nodes, as of
     /// [`WayOptions`](colltrans::ways::WayOptions), and 500 casts, for each of `legs`.

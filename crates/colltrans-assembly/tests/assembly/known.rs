@@ -16,6 +16,7 @@ use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
 use colltrans_assembly::plan::{Plan, PlanOptions, disassemble};
 use colltrans_assembly::read::{ReadOptions, read};
+use colltrans_assembly::record;
 use colltrans_assembly::report::html;
 use colltrans_assembly::rooms::{PartRoom, room_of, rooms};
 use colltrans_assembly::sphere::angle;
@@ -74,6 +75,71 @@ fn that_linked_rings_are_stuck_is_proven_in_few_cells() {
     let asked = planned_with(&assembly, PlanOptions::default().with_proofs(false));
     assert_eq!((asked.stuck[0].proven, &asked.left), (None, &plan.left));
     assert!(asked.stuck[0].because(&bodies).contains("directions asked"));
+}
+
+/// Three parts in a ring: a rod of each slides out of a well of another, along x, y and the diagonal of both. So
+/// relative to the first one they come apart at velocities x and x + y, both at once, and in no other way.
+fn ring_of_three() -> [Part; 3] {
+    let diagonal = DAffine3::from_rotation_z(std::f64::consts::FRAC_PI_4);
+    let turn = |pieces: Vec<Piece>, by: DAffine3| -> Vec<Piece> {
+        pieces
+            .into_iter()
+            .map(|p| Piece { world_from_piece: by * p.world_from_piece, ..p })
+            .collect()
+    };
+    // Along z at first: a rod of 1 in a well as wide, and then laid along a direction at a height.
+    let along = |yaw: DAffine3, height: f64| {
+        let laid = DAffine3::from_translation(DVec3::Z * height)
+            * yaw
+            * DAffine3::from_rotation_y(std::f64::consts::FRAC_PI_2);
+        let rod = turn(vec![cuboid([-0.9, -0.9, 0.1], [0.9, 0.9, 6.0])], laid);
+        (rod, turn(well([-1.0, -1.0, 0.0], [1.0, 1.0, 5.0], 1.0), laid))
+    };
+    let (rod_x, well_x) = along(DAffine3::IDENTITY, 0.0);
+    let (rod_y, well_y) = along(DAffine3::from_rotation_z(std::f64::consts::FRAC_PI_2), 30.0);
+    let (rod_d, well_d) = along(diagonal, 60.0);
+    [
+        part("a", &[well_x, well_d].concat()),
+        part("b", &[rod_x, well_y].concat()),
+        part("c", &[rod_y, rod_d].concat()),
+    ]
+}
+
+#[test]
+fn parts_that_come_apart_only_all_at_once_are_not_said_to_hold_each_other() {
+    let parts = ring_of_three();
+    // The oracle: along their relative velocities no pair meets, so all at once they leave.
+    let diagonal = DVec3::new(1.0, 1.0, 0.0).normalize();
+    for (moving, fixed, d) in [(1, 0, DVec3::X), (2, 1, DVec3::Y), (2, 0, diagonal)] {
+        let [a, b] = [moving, fixed].map(|k: usize| parts[k].solid().at(colltrans::Pose::IDENTITY));
+        let clearance = colltrans::Cast::new(a, b, d).unwrap().clearance().unwrap();
+        assert!(matches!(clearance, colltrans::Clearance::Free(_)), "{moving} {fixed}");
+    }
+    let assembly = Assembly::new(parts.to_vec()).unwrap();
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    let found = Question::default().ask(&bodies, Watch::default()).unwrap();
+    let [stuck] = &found.plan.stuck[..] else { panic!("one group: {:?}", found.plan) };
+    let cells = stuck.proven.expect("no group leaves as one, which is provable");
+    let reason = stuck.reason(&bodies);
+    let claim =
+        "No group of these 3 parts leaves the others as one in a straight motion in any direction";
+    assert!(reason.starts_with(claim), "{reason}");
+    let details = stuck.details(&bodies);
+    assert!(details.starts_with(&format!("This is proven in {cells} cells")), "{details}");
+    let limit = "Motions of several parts at once, each its own way, were not tried.";
+    assert!(details.contains(limit), "{details}");
+    // All texts are made of these: none says more.
+    let texts = [
+        stuck.because(&bodies),
+        html::page(&found, "ring"),
+        record::plan(&bodies, &found.plan).to_string(),
+    ];
+    for text in texts {
+        for more in ["hichever way", "hold each other", "takes them apart", "cannot be parted"] {
+            assert!(!text.contains(more), "{more}: {text}");
+        }
+        assert!(text.contains(limit), "{text}");
+    }
 }
 
 #[test]
@@ -484,10 +550,9 @@ fn what_is_stuck_is_said_of_the_directions_asked() {
     let options = PlanOptions::default().with_samples(0).with_proofs(false);
     let plan = disassemble(&bodies, &matrix, &finer, options, Watch::default()).unwrap();
     assert_eq!(plan.stuck[0].directions, 4);
-    let reason = "In all 4 directions that were tried, a is held by b.";
+    let reason = "No straight motion along the 4 directions asked takes a from b.";
     assert_eq!(plan.stuck[0].reason(&bodies), reason);
-    let details =
-        "No single straight motion along the 4 directions asked takes them apart; of others ";
+    let details = "Other directions were not tried. ";
     let because = plan.stuck[0].because(&bodies);
     assert!(because.starts_with(&format!("{reason} {details}")), "{because}");
 }

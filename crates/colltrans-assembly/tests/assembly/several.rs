@@ -158,7 +158,9 @@ fn a_lid_makes_room_and_goes_back() {
     assert_eq!(step.back[0].travel, step.path[0].travel);
     // The lid is kept by its stop: that is proven, or told with what was searched.
     let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
-    for (proofs, words) in [(true, "Nor do several moves"), (false, "Up to 2 moves, one after")] {
+    for (proofs, words) in
+        [(true, "Nor do several straight moves"), (false, "Up to 2 moves, one after")]
+    {
         let plan = planned(&assembly, PlanOptions::default().with_proofs(proofs));
         let stuck = &plan.stuck[0];
         assert_eq!(assembly.names(&stuck.parts), ["lid", "tray"]);

@@ -50,7 +50,8 @@ pub(crate) struct AssemblyArguments {
     pub(crate) free: Vec<String>,
     #[command(flatten)]
     pub(crate) work: WorkArguments,
-    /// Do not try to prove of what is stuck that no motion takes it apart, whatever the direction; nor with --only
+    /// Do not try to prove of what is stuck that no straight motion of a group as one, in any direction, takes it from
+    /// the others; nor with --only
     #[arg(long)]
     pub(crate) no_proofs: bool,
     /// How many moves, one after another, may take out what no single one does; parts may make room and go back

@@ -172,11 +172,7 @@ fn summary(f: &Findings) -> String {
     for stuck in &f.plan.stuck {
         let (reason, details) = (stuck.reason(f.bodies), stuck.details(f.bodies));
         let (reason, details) = (shown(reason), shown(details));
-        let head = match (stuck.proven, &stuck.overlapping[..]) {
-            (Some(_), []) => "stuck along all directions, proven",
-            (Some(_), _) => "stuck along all directions, proven of what overlaps as one",
-            (None, _) => "stuck along the directions asked",
-        };
+        let head = stuck.heading(f.bodies);
         let _ = writeln!(text, "{head}\n  {}: {reason}\n    {details}", names(&stuck.parts));
     }
     for (name, map) in &f.maps {

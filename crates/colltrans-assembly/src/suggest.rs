@@ -1,5 +1,8 @@
 //! What overlaps may be on purpose: candidates for [roles](crate::roles), found and said, never applied silently.
 //!
+//! A pair has one role at most. A ring that snaps into a groove is no thread of any part, whatever helix its gap looks like:
+//! a snap is known by its name and its groove, a helix only by its shape. All others are tried in the order that follows.
+//!
 //! Two parts that overlap are, in this order: *soft*, if one of them is called so; a *thread*, if there is a helix; round,
 //! if one lies in the other about an axis all along their common length, and then it is a *press* fit if the vertices of
 //! the one lie farther out than those of the other, else chord errors of two tessellations; else no more than an overlap,
@@ -8,7 +11,7 @@
 //! proven by any of this. What overlaps deeper, as balls in rings that are drawn too tight, moves as one: with a tolerance that
 //! lets them pass they would slip through what holds them.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use colltrans::Solid;
 use colltrans::solid::{StartOverlap, Workspace};
@@ -54,18 +57,20 @@ pub struct Suggestion {
 /// groove, of which nothing is said.
 pub fn suggestions(bodies: &Bodies, start: &Start) -> Vec<Suggestion> {
     let is_unsaid = |[a, b]: [usize; 2]| bodies.assembly().pair(a, b).is_none();
-    let snaps: Vec<Suggestion> =
-        snaps(bodies).into_iter().filter(|snap| is_unsaid(snap.parts)).collect();
+    let snaps = snaps(bodies);
+    let rings: BTreeSet<usize> = snaps.iter().map(|(ring, _)| *ring).collect();
+    let snaps = snaps.into_iter().map(|(_, snap)| snap);
+    let snaps: Vec<Suggestion> = snaps.filter(|snap| is_unsaid(snap.parts)).collect();
     let unsaid = start
         .remaining()
         .filter(|o| is_unsaid(o.parts) && !snaps.iter().any(|snap| snap.parts == o.parts))
         // What is no more than nearer than the length to keep does not overlap.
         .filter(|o| !matches!(bodies.fit(), Fit::Apart(_)) || o.depth != Some(0.0));
-    unsaid.filter_map(|overlap| suggestion(bodies, overlap)).chain(snaps.clone()).collect()
+    unsaid.filter_map(|overlap| suggestion(bodies, &rings, overlap)).chain(snaps.clone()).collect()
 }
 
-/// Rings by their names, each with the part in whose groove it is: that stops it either way along its axis at once.
-fn snaps(bodies: &Bodies) -> Vec<Suggestion> {
+/// Finds rings by their names, each with the part in whose groove it is: that stops it either way along its axis at once.
+fn snaps(bodies: &Bodies) -> Vec<(usize, Suggestion)> {
     let parts = bodies.assembly().parts();
     let mut found = Vec::new();
     for ring in (0..parts.len()).filter(|&k| is_called(&parts[k], &SNAPS)) {
@@ -102,7 +107,8 @@ fn snaps(bodies: &Bodies) -> Vec<Suggestion> {
                     short(length),
                     parts[other].name()
                 );
-                found.push(Suggestion { parts: [ring.min(other), ring.max(other)], fit, why });
+                let parts = [ring.min(other), ring.max(other)];
+                found.push((ring, Suggestion { parts, fit, why }));
             }
         }
     }
@@ -114,7 +120,7 @@ fn is_called(part: &Part, words: &[&str]) -> bool {
     words.iter().any(|word| name.contains(word))
 }
 
-fn suggestion(bodies: &Bodies, overlap: &Overlap) -> Option<Suggestion> {
+fn suggestion(bodies: &Bodies, rings: &BTreeSet<usize>, overlap: &Overlap) -> Option<Suggestion> {
     let parts = overlap.parts;
     let of = parts.map(|k| &bodies.assembly().parts()[k]);
     let solids = of.map(Part::solid);
@@ -125,7 +131,8 @@ fn suggestion(bodies: &Bodies, overlap: &Overlap) -> Option<Suggestion> {
     if let Some(soft) = soft {
         return said(Some(Role::Soft), tolerance, format!("{} is called so", soft.name()));
     }
-    let thread = helix(solids);
+    let screwed = !parts.iter().any(|part| rings.contains(part));
+    let thread = screwed.then(|| helix(solids)).flatten();
     if let Some((thread, pitch)) =
         thread.filter(|(thread, _)| thread.is_surrounded(solids[1 - thread.screw]))
     {
@@ -158,15 +165,19 @@ fn helix_words(thread: &Thread, pitch: f64) -> String {
 }
 
 /// Threads with play among parts that do not come apart: of pairs that do not overlap, and of which nothing is said. One is all
-/// around the helix of the other, and stops it either way along its axis within a turn.
+/// around the helix of the other, and stops it either way along its axis within a turn. Rings that snap into a groove are
+/// left out.
 ///
 /// # Errors
 /// Too many parts lie within each other's boxes.
 pub fn loose_threads(bodies: &Bodies, stuck: &[usize]) -> Result<Vec<Suggestion>, AssemblyError> {
     let among = bodies.mask(stuck);
     let mut pairs = bodies.neighbours(0.0)?;
+    let rings: BTreeSet<usize> = snaps(bodies).into_iter().map(|(ring, _)| ring).collect();
     pairs.retain(|&[a, b]| {
-        among[a] && among[b] && bodies.assembly().pair(a, b).is_none() && !bodies.overlaps(a, b)
+        let stuck = among[a] && among[b] && !bodies.overlaps(a, b);
+        let said = bodies.assembly().pair(a, b).is_some();
+        stuck && !said && !rings.contains(&a) && !rings.contains(&b)
     });
     let found = pairs.into_par_iter().filter_map(|parts| {
         let solids = parts.map(|k| bodies.assembly().parts()[k].solid());

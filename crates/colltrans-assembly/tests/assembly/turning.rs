@@ -241,3 +241,17 @@ fn a_bayonet_is_turned_and_then_pulled() {
     let plan = planned(&Bodies::new(&assembly, FIT).unwrap());
     assert!(plan.steps.is_empty(), "{plan:?}");
 }
+
+/// One pair that looks like both: what it is called decides, and it has one role.
+#[test]
+fn a_ring_that_snaps_into_a_groove_is_no_thread() {
+    let roles = |name: &str| {
+        let nut = part("nut", &[piece(nut(2.0, 0.05), DAffine3::IDENTITY)]);
+        let ring = part(name, &[piece(screw(2.0), through(2.0))]);
+        let assembly = Assembly::new(vec![nut, ring]).unwrap();
+        let found = crate::common::suggested(&Bodies::new(&assembly, FIT).unwrap());
+        found.into_iter().map(|s| (s.parts, s.fit.role)).collect::<Vec<_>>()
+    };
+    assert_eq!(roles("screw"), [([0, 1], Some(Role::Thread))]);
+    assert_eq!(roles("Circlip DIN 472"), [([0, 1], Some(Role::Snap))]);
+}

@@ -287,7 +287,7 @@ impl<'a> Planner<'a> {
             }
             let mut moves = None;
             if way.is_none() {
-                (way, moves) = self.several(&left, matrix)?;
+                (way, moves) = self.several(&order, &left, matrix)?;
             }
             if way.is_none() {
                 let found = bayonet::search(bodies, &order, &left, self.options, self.watch)?;
@@ -615,13 +615,16 @@ impl<'a> Planner<'a> {
     /// A way in several moves, or what is known of them.
     fn several(
         &self,
+        order: &Order,
         left: &[usize],
         matrix: &Matrix,
     ) -> Result<(Option<Way>, Option<Moves>), AssemblyError> {
         if left.iter().all(|&k| self.fixed(k)) {
             return Ok((None, None));
         }
-        Ok(match several::search(self.bodies, left, matrix, self.options, self.watch)? {
+        let stays = |part: usize| order.stays(part);
+        let among = (left, matrix);
+        Ok(match several::search(self.bodies, among, stays, self.options, self.watch)? {
             Ok(aside) => {
                 let (parts, direction) = (aside.parts.clone(), aside.direction);
                 (Some(Way { aside: Some(aside), ..Way::straight(parts, direction) }), None)

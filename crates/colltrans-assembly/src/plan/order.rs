@@ -195,7 +195,7 @@ impl<'a> Order<'a> {
     pub(super) fn remove(&mut self, parts: &[usize], direction: DVec3) {
         for &part in parts {
             self.there[part] = false;
-            // Of several moves the base may leave, which is not counted.
+            // Parts that stay are not counted. They leave only where some of them are moved against others.
             let count = &mut self.counts[self.likes[part]];
             *count = count.saturating_sub(1);
         }

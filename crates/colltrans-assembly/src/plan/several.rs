@@ -5,6 +5,9 @@
 //! same places as along it, so the same proofs hold: of what is still there and, by itself, of what has left. So all
 //! parts stand where they stood, and one matrix answers for every state of a plan. Nothing is lost by that: whatever
 //! the parts that are left can do with others there, they can do without them.
+//!
+//! The search moves any group against the others. If that group has the base in it, the plan moves the *complement*
+//! instead, all other parts, the opposite way: pairs of parts take the same relative ways, so the proofs hold.
 
 use colltrans::ways::{self, Searched, WayOptions, WayOut, WaysOut, of_large_facets};
 use colltrans::{Placed, Pose, Solid, free::FreeError, solid::StartOverlap};
@@ -66,12 +69,12 @@ pub(super) struct Aside {
     pub(super) direction: DVec3,
 }
 
-/// Moves that take some of the parts that are left out, or what is known of them; of two parts, unless not wanted, a proof
-/// that there are none.
+/// Finds moves that take some of the parts that are left out, or what is known of them; of two parts, unless not wanted, a
+/// proof that there are none. No part for which `stays` holds moves, unless such parts are moved against each other.
 pub(super) fn search(
     bodies: &Bodies,
-    left: &[usize],
-    matrix: &Matrix,
+    (left, matrix): (&[usize], &Matrix),
+    stays: impl Fn(usize) -> bool,
     options: PlanOptions,
     watch: Watch,
 ) -> Result<Result<Aside, Moves>, AssemblyError> {
@@ -112,7 +115,7 @@ pub(super) fn search(
             }
             Err(error) => return Err(refused(error)),
         };
-        let found = aside(bodies.len(), left, &way);
+        let found = aside(bodies.len(), left, &stays, &way);
         let against = found.against(constraints, &bodies.mask(left));
         if against.is_empty() {
             way.verify(&placed).map_err(refused)?;
@@ -207,29 +210,40 @@ fn anything_moves(bodies: &Bodies, left: &[usize], matrix: &Matrix) -> bool {
     })
 }
 
-/// The moves with the numbers of all parts, and how what made room goes back.
-fn aside(count: usize, left: &[usize], way: &WayOut) -> Aside {
-    let parts = |leg: &ways::Leg| leg.bodies.iter().map(|&k| left[k]).collect::<Vec<_>>();
+/// Returns the parts that a leg moves and the sign of their motion: those of the leg, or all others the opposite way if
+/// something that stays is among the former only.
+fn moved(leg: &ways::Leg, left: &[usize], stays: &impl Fn(usize) -> bool) -> (Vec<usize>, f64) {
+    let group: Vec<usize> = leg.bodies.iter().map(|&k| left[k]).collect();
+    let others: Vec<usize> = left.iter().copied().filter(|k| !group.contains(k)).collect();
+    let holds = |parts: &[usize]| parts.iter().any(|&part| stays(part));
+    if holds(&group) && !holds(&others) { (others, -1.0) } else { (group, 1.0) }
+}
+
+/// Returns the moves with the numbers of all parts, and how what made room goes back.
+fn aside(count: usize, left: &[usize], stays: &impl Fn(usize) -> bool, way: &WayOut) -> Aside {
+    let turned = |v: DVec3, sign: f64| if sign < 0.0 { DVec3::ZERO - v } else { v };
     let (last, before) = way.legs.split_last().expect("a way has a leg");
     let (mut at, mut legs, mut back) = (vec![DVec3::ZERO; count], Vec::new(), Vec::new());
+    let mut motions = Vec::new();
     for leg in before {
-        let parts = parts(leg);
+        let (parts, sign) = moved(leg, left, stays);
+        let motion = turned(leg.motion, sign);
         for &part in &parts {
-            at[part] += leg.motion;
+            at[part] += motion;
         }
-        legs.push(Leg::straight(parts, leg.direction, leg.travel));
+        legs.push(Leg::straight(parts, turned(leg.direction, sign), leg.travel));
+        motions.push(motion);
     }
-    let gone = parts(last);
+    let (gone, sign) = moved(last, left, stays);
     // What left as it stood need not go back.
     let as_it_stood = gone.iter().all(|&part| at[part] == at[gone[0]]);
     for leg in legs.iter().rev() {
-        let mut moved = leg.parts.clone();
-        moved.retain(|part| !(as_it_stood && gone.contains(part)));
-        if !moved.is_empty() {
+        let mut parts = leg.parts.clone();
+        parts.retain(|part| !(as_it_stood && gone.contains(part)));
+        if !parts.is_empty() {
             let direction = DVec3::ZERO - leg.direction;
-            back.push(Leg::straight(moved, direction, leg.travel));
+            back.push(Leg::straight(parts, direction, leg.travel));
         }
     }
-    let motions = before.iter().map(|leg| leg.motion).collect();
-    Aside { legs, motions, back, parts: gone, direction: last.direction }
+    Aside { legs, motions, back, parts: gone, direction: turned(last.direction, sign) }
 }

@@ -178,6 +178,29 @@ fn of_cubes(cubes: &Cubes) -> Assembly {
     Assembly::new(cubes.pieces.iter().enumerate().map(part).collect()).unwrap()
 }
 
+/// The largest of some parts, by box and volume, of equal ones the lowest and then the first.
+fn base_of(assembly: &Assembly, parts: &[usize]) -> usize {
+    let key = |part: usize| {
+        let solid = assembly.parts()[part].solid();
+        let (size, height) = (solid.bounds().size(), solid.bounds().center().z);
+        let area = size.x * size.y + size.y * size.z + size.z * size.x;
+        [size.element_product(), area, solid.volume(), -height].map(|x| x as f32)
+    };
+    let larger = |a: usize, b: usize| if key(b) > key(a) { b } else { a };
+    parts.iter().copied().reduce(larger).expect("parts")
+}
+
+/// Checks that no move of any step moves the base of the parts that the step is taken from.
+fn base_rests(assembly: &Assembly, plan: &Plan) {
+    let all: Vec<usize> = (0..assembly.parts().len()).collect();
+    for (k, step) in plan.steps.iter().enumerate() {
+        let base = base_of(assembly, step.within.map_or(&all, |w| &plan.steps[w].parts));
+        let mut legs = step.path.iter().chain(&step.back);
+        assert!(!step.parts.contains(&base), "step {k} takes the base {base}: {plan:?}");
+        assert!(legs.all(|leg| !leg.parts.contains(&base)), "step {k} moves {base}: {plan:?}");
+    }
+}
+
 #[test]
 fn random_puzzles_come_apart_as_all_moves_of_cubes_say() {
     let mut random = Random::new(29);
@@ -189,6 +212,7 @@ fn random_puzzles_come_apart_as_all_moves_of_cubes_say() {
         let plan = planned(&assembly, PlanOptions::default().with_legs(12).with_samples(0));
         let (expected, level) = (cubes.comes_apart(), cubes.level());
         assert_eq!(plan.stuck.is_empty(), expected, "case {case}: {cubes:?} {plan:?}");
+        base_rests(&assembly, &plan);
         if let Some(level) = level {
             let first = plan.steps[0].path.len();
             assert_eq!(first, level.moves, "case {case}: {cubes:?} {plan:?}");
@@ -210,6 +234,7 @@ fn a_burr_of_level_six_comes_apart_whole() {
     let Some(assembly) = collected("burr_p3_19") else { return };
     let plan = planned(&assembly, PlanOptions::default().with_legs(12).with_samples(0));
     assert!(plan.left.is_empty() && plan.stuck.is_empty());
+    base_rests(&assembly, &plan);
     assert_eq!(plan.steps[0].path.len(), 6);
     let taken: usize = plan.steps.iter().filter(|s| s.parts.len() == 1).count();
     assert!(taken + plan.last.len() >= 5, "every piece gets out: {:?}", plan.steps);

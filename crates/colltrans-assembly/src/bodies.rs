@@ -19,7 +19,7 @@ use colltrans::{Bounded, Cast, Clearance, MAX_MAGNITUDE, Pose, QueryError, Solid
 use glam::DVec3;
 use rayon::prelude::*;
 
-use crate::boxes::BoxTree;
+use crate::boxes::{BoxTree, Living};
 use crate::error::AssemblyError;
 use crate::part::{Assembly, Ignored, Part};
 use crate::roles::{Role, Tolerated};
@@ -377,6 +377,35 @@ impl<'a> Bodies<'a> {
             found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
         }
         found
+    }
+
+    /// Returns the parts that are `true`, as [`first_ahead`](Self::first_ahead) takes them.
+    pub(crate) fn living(&self, there: &[bool]) -> Living {
+        self.tree.living(there)
+    }
+
+    /// Takes a part away from those that are left.
+    pub(crate) fn remove(&self, living: &mut Living, part: usize) {
+        self.tree.remove(living, part);
+    }
+
+    /// Calls with the parts that are left and that a part's box meets along a unit direction, and with a lower bound of
+    /// where, nearest first, until a call returns `true`; returns that part.
+    pub(crate) fn first_ahead(
+        &self,
+        part: usize,
+        d: DVec3,
+        living: &Living,
+        mut call: impl FnMut(f64, usize) -> bool,
+    ) -> Option<usize> {
+        let passes = |other: usize| {
+            let slabs = self.slabs.get();
+            slabs.is_some_and(|slabs| slabs.entry([part, other], d).is_none())
+        };
+        self.tree.first_ahead(living, &self.boxes[part], d, |bound, other| {
+            let aside = other == part || self.always_ignored(part, other) || passes(other);
+            !aside && call(bound, other)
+        })
     }
 
     /// From now on it is known how far parts reach along these unit directions, where such were not told before: what is

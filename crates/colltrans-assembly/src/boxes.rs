@@ -4,6 +4,9 @@
 //! `B - A` (Minkowski difference): one slab test. Faces that only touch count, and the test allows
 //! for its own rounding, so that it never loses a pair.
 
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
 use colltrans::Aabb;
 use glam::DVec3;
 
@@ -54,17 +57,108 @@ pub(crate) struct BoxTree {
     nodes: Vec<Node>,
     /// Boxes and their numbers, in the order of the leaves.
     items: Vec<(Aabb, usize)>,
+    /// By number, the position among the items.
+    place: Vec<usize>,
+}
+
+/// Some of the boxes of a tree, which become fewer.
+pub(crate) struct Living {
+    /// By node of the tree, how many of its boxes are left.
+    under: Vec<usize>,
+    /// By number of a box.
+    there: Vec<bool>,
+}
+
+impl Living {
+    /// Checks whether a box is left.
+    pub(crate) fn has(&self, number: usize) -> bool {
+        self.there[number]
+    }
 }
 
 impl BoxTree {
     pub(crate) fn new(boxes: impl IntoIterator<Item = Aabb>) -> Self {
         let items = boxes.into_iter().enumerate().map(|(k, b)| (b, k)).collect();
-        let mut tree = Self { nodes: Vec::new(), items };
+        let mut tree = Self { nodes: Vec::new(), items, place: Vec::new() };
         let count = tree.items.len();
         if count > 0 {
             tree.grow(0, count);
         }
+        tree.place = vec![0; count];
+        for (at, item) in tree.items.iter().enumerate() {
+            tree.place[item.1] = at;
+        }
         tree
+    }
+
+    /// Returns the boxes that are `true`.
+    pub(crate) fn living(&self, there: &[bool]) -> Living {
+        let count = |node: &Node| {
+            let items = &self.items[node.first..node.first + node.count];
+            items.iter().filter(|item| there[item.1]).count()
+        };
+        Living { under: self.nodes.iter().map(count).collect(), there: there.to_vec() }
+    }
+
+    /// Takes a box away from those that are left.
+    pub(crate) fn remove(&self, living: &mut Living, number: usize) {
+        if !std::mem::take(&mut living.there[number]) {
+            return;
+        }
+        let mut at = 0;
+        loop {
+            living.under[at] -= 1;
+            let skip = self.nodes[at].skip;
+            if skip == 0 {
+                return;
+            }
+            let second = self.place[number] >= self.nodes[at + skip].first;
+            at += if second { skip } else { 1 };
+        }
+    }
+
+    /// Calls with the boxes that are left and that `moving` meets along `d`, and with a lower bound of where, nearest first
+    /// and of equal ones by number, until a call returns `true`; returns the number of that box.
+    ///
+    /// Best first over the tree: what is not called with costs a look at the nodes beside the way to what is.
+    pub(crate) fn first_ahead(
+        &self,
+        living: &Living,
+        moving: &Aabb,
+        d: DVec3,
+        mut call: impl FnMut(f64, usize) -> bool,
+    ) -> Option<usize> {
+        // Bounds are not negative, so they are in the order of their bits; nodes come before boxes.
+        let mut open = BinaryHeap::new();
+        let key = |bound: f64| bound.abs().to_bits();
+        let add = |open: &mut BinaryHeap<_>, at: usize| {
+            let bound = entry(moving, &self.nodes[at].bounds, d);
+            if let Some(bound) = bound.filter(|_| living.under[at] > 0) {
+                open.push(Reverse((key(bound), false, at)));
+            }
+        };
+        if !self.nodes.is_empty() {
+            add(&mut open, 0);
+        }
+        while let Some(Reverse((bound, is_box, at))) = open.pop() {
+            if is_box {
+                if call(f64::from_bits(bound), at) {
+                    return Some(at);
+                }
+                continue;
+            }
+            let node = &self.nodes[at];
+            if node.skip > 0 {
+                add(&mut open, at + 1);
+                add(&mut open, at + node.skip);
+                continue;
+            }
+            for (bounds, number) in &self.items[node.first..node.first + node.count] {
+                let bound = entry(moving, bounds, d).filter(|_| living.has(*number));
+                open.extend(bound.map(|bound| Reverse((key(bound), true, *number))));
+            }
+        }
+        None
     }
 
     fn grow(&mut self, first: usize, count: usize) {
@@ -161,6 +255,22 @@ mod tests {
             let swept: Vec<usize> =
                 (0..round).filter(|&k| entry(&query, &boxes[k], d).is_some()).collect();
             assert_eq!(ahead, swept);
+            // And nearest first of those that are left, as they become fewer.
+            let mut there: Vec<bool> = (0..round).map(|_| random.unit() < 0.7).collect();
+            let mut living = tree.living(&there);
+            loop {
+                let mut called = Vec::new();
+                tree.first_ahead(&living, &query, d, |bound, k| {
+                    called.push((bound, k));
+                    false
+                });
+                let mut expected = tree.ahead(&query, d);
+                expected.retain(|x| there[x.1]);
+                assert_eq!(called, expected);
+                let Some(gone) = (0..round).find(|&k| there[k]) else { break };
+                there[gone] = false;
+                tree.remove(&mut living, gone);
+            }
         }
     }
 

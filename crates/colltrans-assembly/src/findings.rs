@@ -14,6 +14,9 @@ use crate::start::Start;
 use crate::suggest::{Suggestion, loose_threads, suggestions};
 use crate::watch::Watch;
 
+/// Of so many parts every pair is asked at once; of more, pairs are asked as they are needed.
+const MOST_AT_ONCE: usize = 256;
+
 /// What is asked of an assembly.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
@@ -41,8 +44,8 @@ pub struct Findings<'a> {
     pub liaisons: Vec<Liaison>,
     /// The directions asked, and why.
     pub candidates: Candidates,
-    /// Who meets whom along the main ones.
-    pub matrix: Matrix,
+    /// Who meets whom along the main ones: of few parts all of it, else as it is asked for.
+    pub matrix: Matrix<'a>,
     /// Rooms of all parts in more directions, by direction.
     pub more: Vec<(DVec3, Vec<PartRoom>)>,
     /// How it comes apart.
@@ -125,7 +128,10 @@ impl Question {
         candidates.finer.splice(0..0, self.finer.iter().map(finer));
         let (all, overlap) = (vec![true; bodies.len()], self.options.start);
         bodies.measure_along(&candidates.directions());
-        let matrix = Matrix::new(bodies, &candidates.directions(), &all, overlap, watch)?;
+        let matrix = Matrix::on_demand(bodies, &candidates.directions(), &all, overlap);
+        if bodies.len() <= MOST_AT_ONCE {
+            matrix.complete(watch)?;
+        }
         Ok(Findings {
             suggestions: suggestions(bodies, &start),
             up: self.options.up.map_or(bodies.assembly().up(), DVec3::normalize),

@@ -49,6 +49,7 @@ use crate::free::Removal;
 use crate::likes::likes;
 use crate::map::{MapOptions, way_out};
 use crate::matrix::{Matrix, bits};
+use crate::part::Part;
 use crate::sphere::{Sphere, unit};
 use crate::watch::{Stage, Tally, Watch};
 use crate::witness::Memory;
@@ -119,9 +120,9 @@ pub struct Plan {
 ///
 /// # Errors
 /// Cancelled; a direction upwards that is none; or a step does not pass its own check.
-pub fn disassemble(
-    bodies: &Bodies,
-    matrix: &Matrix,
+pub fn disassemble<'a>(
+    bodies: &'a Bodies<'a>,
+    matrix: &Matrix<'a>,
     finer: &[Finer],
     options: PlanOptions,
     watch: Watch,
@@ -149,6 +150,8 @@ struct Planner<'a> {
     tally: Tally<'a>,
     plan: Plan,
     known: loose::Known,
+    /// Who meets whom, of all parts of which none could leave alone, once that was asked for.
+    whole: Option<Matrix<'a>>,
     replay: Replay,
     /// Parts that are to come out, and nothing else if it need not.
     wanted: &'a [usize],
@@ -200,7 +203,7 @@ fn smallest(order: &mut Order, matrix: &Matrix, left: &[usize]) -> Option<Choice
     }
     let least = groups.keys().map(Vec::len).min()?;
     groups.retain(|parts, _| parts.len() == least);
-    order.best(groups)
+    order.best(groups.iter().map(|(parts, ways)| (&parts[..], &ways[..])))
 }
 
 #[cfg(test)]
@@ -221,7 +224,7 @@ impl<'a> Planner<'a> {
         let up = unit(options.up.unwrap_or(bodies.assembly().up()))?;
         let (plan, known) = (Plan::default(), loose::Known::default());
         let (wanted, movable) = (&[][..], None);
-        let replay = Replay::default();
+        let (whole, replay) = (None, Replay::default());
         Ok(Self {
             bodies,
             finer,
@@ -232,6 +235,7 @@ impl<'a> Planner<'a> {
             tally,
             plan,
             known,
+            whole,
             replay,
             wanted,
             movable,
@@ -239,17 +243,30 @@ impl<'a> Planner<'a> {
     }
 
     /// Takes all parts apart, or the wanted ones out.
-    fn whole(&mut self, matrix: &Matrix) -> Result<(), AssemblyError> {
+    fn whole(&mut self, matrix: &Matrix<'a>) -> Result<(), AssemblyError> {
         let all: Vec<usize> = (0..self.bodies.len()).collect();
         self.plan.left = self.take_apart(&all, matrix, None)?;
         Ok(())
+    }
+
+    /// Returns who meets whom of the parts that are left, at least.
+    fn whole_of(
+        &mut self,
+        matrix: &Matrix<'a>,
+        left: &[usize],
+    ) -> Result<Matrix<'a>, AssemblyError> {
+        match self.whole.take().filter(|known| known.has(left)) {
+            Some(known) => self.whole = Some(known),
+            None => self.whole = Some(matrix.of(&self.bodies.mask(left), self.watch)?),
+        }
+        Ok(self.whole.clone().unwrap_or_else(|| matrix.clone()))
     }
 
     /// Takes a group apart; what of it is left, nothing if it comes apart wholly.
     fn take_apart(
         &mut self,
         group: &[usize],
-        matrix: &Matrix,
+        matrix: &Matrix<'a>,
         within: Option<usize>,
     ) -> Result<Vec<usize>, AssemblyError> {
         let alive = self.bodies.mask(group);
@@ -260,9 +277,15 @@ impl<'a> Planner<'a> {
         let mut order = Order::new(bodies, matrix, likes, &alive, self.up, movable, wanted)
             .with_shortcuts(samples, start);
         let constraints = self.bodies.assembly().constraints();
-        let alone =
-            |order: &Order| Single::new(matrix, &order.arcs(), order.there(), |k| !order.stays(k));
-        let mut single = alone(&order);
+        let watch = self.watch;
+        let alone = |order: &Order| {
+            let (arcs, there) = (order.arcs(), order.there());
+            let movable = |k: usize, part: usize| {
+                !order.stays(part) && constraints.allows(&[part], matrix.directions()[k])
+            };
+            Single::new(bodies, matrix, &arcs, there, movable, watch)
+        };
+        let mut single = alone(&order)?;
         while !left.is_empty() {
             self.watch.check()?;
             let one = left.len() == 1 || constraints.keeps_together(&left);
@@ -275,11 +298,16 @@ impl<'a> Planner<'a> {
             }
             let mut asked: HashSet<[u64; 3]> =
                 matrix.directions().iter().copied().map(bits).collect();
-            let choice = order.alone(&single).or_else(|| smallest(&mut order, matrix, &left));
+            let (mut choice, mut whole) = (order.alone(&single), None);
+            if choice.is_none() {
+                let whole = &*whole.insert(self.whole_of(matrix, &left)?);
+                choice = smallest(&mut order, whole, &left);
+            }
+            let among = whole.as_ref().unwrap_or(matrix);
             let mut way = choice.map(Way::from);
             let mut proven = None;
             if way.is_none() {
-                let mut found = self.search_finer(&order, &left, matrix, &mut asked)?;
+                let mut found = self.search_finer(&order, &left, among, &mut asked)?;
                 if found.is_none() {
                     (found, proven) = self.prove(&order, &left, &mut asked)?;
                 }
@@ -287,7 +315,7 @@ impl<'a> Planner<'a> {
             }
             let mut moves = None;
             if way.is_none() {
-                (way, moves) = self.several(&order, &left, matrix)?;
+                (way, moves) = self.several(&order, &left, among)?;
             }
             if way.is_none() {
                 let found = bayonet::search(bodies, &order, &left, self.options, self.watch)?;
@@ -297,7 +325,7 @@ impl<'a> Planner<'a> {
                 });
             }
             let Some(way) = way else {
-                self.explain(&left, matrix, (asked.len(), proven, moves));
+                self.explain(&left, among, (asked.len(), proven, moves));
                 let alone = within.is_none() && !self.plan.steps.is_empty();
                 if alone && !left.iter().any(|&k| self.fixed(k)) {
                     // All others are gone: what is left remains, as one.
@@ -311,7 +339,7 @@ impl<'a> Planner<'a> {
             let unsettled = order.unsettled(&way.parts);
             order.remove(&way.parts, way.direction);
             if constraints.released(order.there()) > released {
-                single = alone(&order);
+                single = alone(&order)?;
             } else {
                 way.parts.iter().for_each(|&part| single.remove(part));
             }
@@ -326,7 +354,7 @@ impl<'a> Planner<'a> {
         way: Way,
         left: &[usize],
         [falls, off_balance]: [Vec<usize>; 2],
-        matrix: &Matrix,
+        matrix: &Matrix<'a>,
         within: Option<usize>,
     ) -> Result<(), AssemblyError> {
         let mut travel = match &way.bayonet {
@@ -417,7 +445,7 @@ impl<'a> Planner<'a> {
         after.extend(gone.iter().filter(|x| constraints.waits(group, *x.0)).map(|x| *x.1));
         if several {
             after.extend(gone.values());
-        } else if let Some(k) = matrix.position(direction) {
+        } else if let Some(k) = matrix.position(direction).filter(|_| matrix.is_complete()) {
             let met = group.iter().flat_map(|&part| matrix.of_part(k, part));
             after.extend(met.filter_map(|m| went(m.fixed)));
         } else {
@@ -440,10 +468,14 @@ impl<'a> Planner<'a> {
     /// The surfaces of a group, and of what is left where the boxes of the group pass.
     fn surfaces(&self, group: &[usize], left: &[usize], direction: DVec3) -> Vec<usize> {
         let passed = |&part: &usize| self.bodies.ahead(part, direction).into_iter().map(|x| x.1);
+        let parts = self.bodies.assembly().parts();
+        if !parts.iter().any(Part::is_surface) {
+            return Vec::new();
+        }
         let mut found: Vec<usize> = group.iter().flat_map(passed).collect();
         found.retain(|part| left.contains(part));
         found.extend(group);
-        found.retain(|&part| self.bodies.assembly().parts()[part].is_surface());
+        found.retain(|&part| parts[part].is_surface());
         found.sort_unstable();
         found.dedup();
         found
@@ -587,8 +619,9 @@ impl<'a> Planner<'a> {
             constraints.allows(&parts, d)
                 && memory.is_free(self.bodies, &parts, &there, d, self.options.start)
         });
-        let ways = directions.into_iter().map(|d| order.position(d)).collect();
-        Ok(order.best([(parts, ways)]).map_or(way, Way::from))
+        let ways: Vec<usize> = directions.into_iter().map(|d| order.position(d)).collect();
+        let group = (&parts[..], &ways[..]);
+        Ok(order.best(std::iter::once(group)).map_or(way, Way::from))
     }
 
     /// The middle of the free region that a direction lies in, where there is a proof of it.
@@ -658,12 +691,15 @@ impl<'a> Planner<'a> {
 mod tests {
     use colltrans::solid::StartOverlap;
     use colltrans_mesh::Mesh;
+    use colltrans_testkit::random::Random;
     use colltrans_testkit::shapes::block;
     use glam::DAffine3;
 
+    use std::sync::atomic::Ordering::Relaxed;
+
     use super::*;
     use crate::bodies::Fit;
-    use crate::part::{Assembly, Part, Piece};
+    use crate::part::{Assembly, Piece};
 
     fn cube(name: usize, at: DVec3) -> Part {
         let cube = block(DVec3::ZERO, DVec3::ONE);
@@ -685,5 +721,39 @@ mod tests {
         assert_eq!(plan.last.len(), 1);
         assert!(plan.steps.iter().all(|step| step.parts.len() == 1));
         assert_eq!(GRAPHS.with(std::cell::Cell::get), 0, "of 40 steps along 2 directions");
+    }
+
+    #[test]
+    fn of_parts_in_a_row_each_watches_one_and_few_pairs_are_asked() {
+        let mut random = Random::new(5);
+        let (start, watch) = (StartOverlap::Refuse, Watch::default());
+        for count in [100, 200, 400] {
+            let parts = (0..count).map(|k| cube(k, DVec3::X * 2.0 * k as f64)).collect();
+            let assembly = Assembly::new(parts).unwrap();
+            let bodies = Bodies::new(&assembly, Fit::Tolerance(1e-6)).unwrap();
+            let all = vec![true; count];
+            let matrix = Matrix::on_demand(&bodies, &[DVec3::X, DVec3::NEG_X], &all, start);
+            bodies.asked.store(0, Relaxed);
+            let mut single = Single::new(&bodies, &matrix, &[], &all, |_, _| true, watch).unwrap();
+            assert_eq!(single.entries(), 2 * count);
+            // Taken away in any order each watches about as many as there are records in it, log n.
+            let mut left: Vec<usize> = (0..count).collect();
+            while !left.is_empty() {
+                let gone = left.swap_remove(random.index(left.len()));
+                single.remove(gone);
+                let free: Vec<(usize, Vec<usize>)> =
+                    single.ways().map(|(parts, ways)| (parts[0], ways.to_vec())).collect();
+                let expected = match (left.iter().min(), left.iter().max()) {
+                    (Some(low), Some(high)) if low < high => {
+                        vec![(*low, vec![1]), (*high, vec![0])]
+                    }
+                    (Some(last), _) => vec![(*last, vec![0, 1])],
+                    _ => Vec::new(),
+                };
+                assert_eq!(free, expected);
+            }
+            let (asked, n) = (bodies.asked.load(Relaxed) as f64, count as f64);
+            assert!(asked <= 2.0 * n * (2.0 + n.ln()), "{asked} of {n} parts");
+        }
     }
 }

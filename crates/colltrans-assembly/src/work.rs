@@ -8,6 +8,7 @@ use colltrans::solid::StartOverlap;
 use glam::DVec3;
 
 use crate::bodies::{Bodies, Fit};
+use crate::findings::Question;
 use crate::liaisons::liaisons;
 use crate::matrix::Matrix;
 use crate::part::Assembly;
@@ -22,12 +23,17 @@ const GRID: [usize; 3] = [20, 15, 10];
 const CUBE: &str = "OFF\n8 6 0\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n0 0 1\n1 0 1\n0 1 1\n1 1 1\n\
     4 0 2 3 1\n4 4 5 7 6\n4 0 1 5 4\n4 2 6 7 3\n4 0 4 6 2\n4 1 3 7 5\n";
 
-/// 3,000 cubes two apart, in one manifest.
+/// 3,000 cubes two apart.
 fn grid() -> Assembly {
+    let at = |k: usize| [k % GRID[0], k / GRID[0] % GRID[1], k / GRID[0] / GRID[1]];
+    cubes((0..GRID.iter().product()).map(|k| at(k).map(|x| 2 * x)))
+}
+
+/// Cubes in one manifest.
+fn cubes(places: impl Iterator<Item = [usize; 3]>) -> Assembly {
     let mut manifest = String::new();
-    for k in 0..GRID.iter().product() {
-        let [i, j, l] = [k % GRID[0], k / GRID[0] % GRID[1], k / GRID[0] / GRID[1]];
-        let place = format!("[{}, {}, {}]", 2 * i, 2 * j, 2 * l);
+    for (k, [x, y, z]) in places.enumerate() {
+        let place = format!("[{x}, {y}, {z}]");
         let part = format!("[[part]]\nfile = 'c.off'\nname = 'p{k}'\ntranslation = {place}\n");
         manifest.push_str(&part);
     }
@@ -35,6 +41,22 @@ fn grid() -> Assembly {
     let files: BTreeMap<PathBuf, Vec<u8>> =
         files.map(|(name, text)| (name.into(), text.into())).into();
     read_from("m.toml", &files, &ReadOptions::default()).unwrap()
+}
+
+#[test]
+fn parts_in_a_row_are_planned_by_a_few_pairs_each() {
+    for count in [300, 600, 1_200] {
+        let assembly = cubes((0..count).map(|k| [2 * k, 0, 0]));
+        let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+        let asked = || bodies.asked.swap(0, Relaxed);
+        asked();
+        let found = Question::default().ask(&bodies, Watch::default()).unwrap();
+        assert_eq!((found.plan.steps.len(), found.plan.last.len()), (count - 1, 1));
+        // Either way along the row one each; all leave upwards.
+        let asked = asked();
+        assert!(asked <= 4 * count, "{asked} pairs of {count} parts");
+        assert!(!found.matrix.is_complete());
+    }
 }
 
 /// Ordered pairs of boxes of which the first meets the second along a direction, one by one.

@@ -77,6 +77,10 @@ fn inside(arguments: &AssemblyArguments) -> Result<(), Failure> {
     let bodies = found.bodies;
     found.more = more_rooms(bodies, &given, overlap(arguments), watch)?;
     found.maps = maps(bodies, &groups, &found.candidates, overlap(arguments), watch)?;
+    if arguments.output.is_some() {
+        // The table of all pairs is one of the files.
+        found.matrix.complete(watch)?;
+    }
     found.times = times;
     let with_proofs = arguments.output.is_some();
     let free = free::all(bodies, leaving, arguments.work.options(), with_proofs)?;

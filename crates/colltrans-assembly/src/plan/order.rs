@@ -207,66 +207,58 @@ impl<'a> Order<'a> {
 
     /// The best of the parts that can leave alone.
     pub(super) fn alone(&mut self, single: &Single) -> Option<Choice> {
-        let mut ways: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
-        for (k, part) in single.all() {
-            if self.constraints().allows(&[part], self.shadows[k].direction) {
-                ways.entry(part).or_default().push(k);
-            }
-        }
-        let groups = ways.into_iter().map(|(part, ways)| (vec![part], ways));
-        self.best(groups)
+        self.best(single.ways())
     }
 
     /// The best of some groups, each with positions of directions along which it can leave.
-    pub(super) fn best(
+    pub(super) fn best<'g>(
         &mut self,
-        groups: impl IntoIterator<Item = (Vec<usize>, Vec<usize>)>,
+        groups: impl Iterator<Item = (&'g [usize], &'g [usize])> + Clone,
     ) -> Option<Choice> {
-        let mut groups: Vec<_> = groups.into_iter().collect();
         let mut ready: BTreeMap<usize, usize> = BTreeMap::new();
-        for (parts, ways) in &mut groups {
+        for (parts, _) in groups.clone() {
             *ready.entry(self.likes[parts[0]]).or_default() += 1;
-            ways.extend(self.shortcuts.found.get(parts).into_iter().flatten());
         }
         loop {
-            let (at, k) = self.cheapest(&groups, &ready)?;
-            let (parts, ways) = &mut groups[at];
+            let (parts, k) = self.cheapest(groups.clone(), &ready)?;
             let Some(shortcut) = self.shortcut(parts, k) else {
-                let (parts, direction) = (groups.swap_remove(at).0, self.shadows[k].direction);
+                let (parts, direction) = (parts.to_vec(), self.shadows[k].direction);
                 return Some(Choice { parts, direction });
             };
-            ways.push(shortcut);
-            self.shortcuts.found.entry(parts.clone()).or_default().push(shortcut);
+            self.shortcuts.found.entry(parts.to_vec()).or_default().push(shortcut);
         }
     }
 
-    /// The position of the group of least cost, and of its direction; `ready` is by shape how many groups can leave.
-    fn cheapest(
+    /// The group of least cost, and the position of its direction; `ready` is by shape how many groups can leave.
+    fn cheapest<'g>(
         &mut self,
-        groups: &[(Vec<usize>, Vec<usize>)],
+        groups: impl Iterator<Item = (&'g [usize], &'g [usize])>,
         ready: &BTreeMap<usize, usize>,
-    ) -> Option<(usize, usize)> {
-        let mut best: Option<(f64, usize, usize)> = None;
-        for (at, (parts, ways)) in groups.iter().enumerate() {
+    ) -> Option<(&'g [usize], usize)> {
+        let mut best: Option<(f64, &[usize], usize)> = None;
+        for (parts, ways) in groups {
             let shape = self.likes[parts[0]];
             let all = parts.len() == 1 && ready[&shape] >= self.counts[shape];
-            let travels: Vec<f64> =
-                ways.iter().map(|&k| self.shadows[k].travel(parts, &self.there)).collect();
-            let least = travels.iter().copied().fold(f64::INFINITY, f64::min);
+            let more = self.shortcuts.found.get(parts).map_or(&[][..], |found| found);
+            let ways = || ways.iter().chain(more).copied();
+            let (shadows, there) = (&mut self.shadows, &self.there);
+            let travels = ways().map(|k| shadows[k].travel(parts, there));
+            let least = travels.fold(f64::INFINITY, f64::min);
             let unsettled = self.unsettled(parts).map(|parts| parts.len() as f64);
             let falls = FALL * unsettled[0] + TIP * unsettled[1];
-            for (&k, travel) in ways.iter().zip(travels) {
+            for k in ways() {
+                let travel = self.shadows[k].travel(parts, &self.there);
                 if travel > LONGER * least + self.bodies.noise() {
                     continue;
                 }
                 let cost = self.cost(parts, (falls, all), self.shadows[k].direction, travel);
                 // Noise of the sum is far below what any choice differs by.
                 if best.is_none_or(|b| cost < b.0 - 1e-9) {
-                    best = Some((cost, at, k));
+                    best = Some((cost, parts, k));
                 }
             }
         }
-        best.map(|(_, at, k)| (at, k))
+        best.map(|(_, parts, k)| (parts, k))
     }
 
     /// The position of the direction of the shortest way of a group, if that along `k` is [`MUCH_LONGER`].
@@ -326,6 +318,9 @@ impl<'a> Order<'a> {
     /// Of the parts that are left once these have gone: which then rest on nothing, and which are then off balance, if they
     /// stood before.
     pub(super) fn unsettled(&self, parts: &[usize]) -> [Vec<usize>; 2] {
+        if parts.iter().all(|&part| self.carried[part].is_empty()) {
+            return [Vec::new(), Vec::new()];
+        }
         let mut above: Vec<usize> =
             parts.iter().flat_map(|&part| self.carried[part].iter().copied()).collect();
         above.sort_unstable();
@@ -402,12 +397,20 @@ fn supports(
         (0..count).map(|k| (!held(k)).then(Vec::new)).collect();
     let mut carried = vec![Vec::new(); count];
     let down = matrix.directions().iter().position(|d| d.dot(-up) >= SAME);
-    for met in down.map_or(&[][..], |k| matrix.meetings(k)) {
-        let rests = met.displaced_distance() <= near && there[met.fixed];
-        if let Some(below) = below[met.moving].as_mut().filter(|_| rests) {
-            below.push(met.fixed);
-            carried[met.fixed].push(met.moving);
+    let living = bodies.living(there);
+    let found: Vec<Vec<usize>> = below
+        .par_iter()
+        .enumerate()
+        .map(|(part, below)| match (below, down) {
+            (Some(_), Some(k)) => matrix.within(k, part, near, &living),
+            _ => Vec::new(),
+        })
+        .collect();
+    for (part, found) in found.into_iter().enumerate() {
+        for &below in &found {
+            carried[below].push(part);
         }
+        below[part] = below[part].take().map(|_| found);
     }
     let base = |(part, on): (usize, &Option<Vec<usize>>)| {
         on.as_ref().map(|on| Base::new(bodies, part, on, up))

@@ -1,70 +1,110 @@
 //! Parts that can be taken out alone: most of every plan, without a graph for each step.
 //!
-//! Invariant: of every part that is there it is known, by direction, how many of the parts that are
-//! there it meets; those that meet none are `free`. All steps together look at each meeting once.
+//! Invariant: of every part that is there, and by direction, one part that is there and that it meets is known, its
+//! *watched* one; those that meet none are `free`. Only when a watched part goes another one is looked for. So of `n` parts
+//! in a row there are `n` entries along a direction, not `n^2`.
 
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
+use colltrans::solid::Workspace;
+use rayon::prelude::*;
+
+use crate::bodies::Bodies;
+use crate::boxes::Living;
+use crate::error::AssemblyError;
 use crate::matrix::Matrix;
+use crate::watch::{Stage, Watch};
 
 /// Which parts of a group meet nothing else of it.
-pub(super) struct Single {
-    /// By direction and part.
-    met: Vec<Vec<u32>>,
-    /// By direction: who is met by whom, sorted.
-    met_by: Vec<Vec<[u32; 2]>>,
-    /// Directions and parts.
-    free: BTreeSet<(usize, usize)>,
-    wanted: Vec<bool>,
+pub(super) struct Single<'a> {
+    bodies: &'a Bodies<'a>,
+    matrix: Matrix<'a>,
+    living: Living,
+    /// By part, how many of those that are there have to leave before it.
+    waits: Vec<usize>,
+    /// By part, which ones wait for it.
+    awaited: Vec<Vec<usize>>,
+    /// By direction and part, those that watch it.
+    watched: Vec<Vec<Vec<u32>>>,
+    /// By part, the directions along which it meets nothing, increasing.
+    free: BTreeMap<usize, Vec<usize>>,
+    workspace: Workspace,
 }
 
-impl Single {
-    /// Of the parts that are `alive`, with the arcs of an order; of those, `movable` ones are looked for.
+impl<'a> Single<'a> {
+    /// Looks at the parts that are `alive`, with the arcs of an order; of those, along each direction, `movable` ones are
+    /// looked for.
     pub(super) fn new(
-        matrix: &Matrix,
+        bodies: &'a Bodies<'a>,
+        matrix: &Matrix<'a>,
         order: &[(usize, usize)],
         alive: &[bool],
-        movable: impl Fn(usize) -> bool,
-    ) -> Self {
-        let wanted: Vec<bool> = (0..alive.len()).map(|k| alive[k] && movable(k)).collect();
-        let (mut met, mut met_by, mut free) = (Vec::new(), Vec::new(), BTreeSet::new());
-        for k in 0..matrix.directions().len() {
-            let mut counts = vec![0; alive.len()];
-            let mut by = Vec::new();
-            let arcs = matrix.meetings(k).iter().map(|m| (m.moving, m.fixed));
-            let arcs = arcs.chain(order.iter().copied());
-            for (moving, fixed) in arcs.filter(|(a, b)| alive[*a] && alive[*b]) {
-                counts[moving] += 1;
-                by.push([fixed as u32, moving as u32]);
-            }
-            by.sort_unstable();
-            let alone = |part: &usize| wanted[*part] && counts[*part] == 0;
-            free.extend((0..alive.len()).filter(alone).map(|part| (k, part)));
-            met.push(counts);
-            met_by.push(by);
+        movable: impl Fn(usize, usize) -> bool,
+        watch: Watch,
+    ) -> Result<Self, AssemblyError> {
+        let (count, directions) = (alive.len(), matrix.directions().len());
+        let (mut waits, mut awaited) = (vec![0; count], vec![Vec::new(); count]);
+        for &(waiting, before) in order.iter().filter(|(a, b)| alive[*a] && alive[*b]) {
+            waits[waiting] += 1;
+            awaited[before].push(waiting);
         }
-        Self { met, met_by, free, wanted }
+        let living = bodies.living(alive);
+        let parts = (0..count).filter(|&part| alive[part]);
+        let jobs = parts.flat_map(|part| (0..directions).map(move |k| (k, part)));
+        let jobs: Vec<(usize, usize)> = jobs.filter(|&(k, part)| movable(k, part)).collect();
+        let tally = watch.stage(Stage::Rooms, jobs.len());
+        let look = |workspace: &mut Workspace, &(k, part): &(usize, usize)| {
+            let by = matrix.blocker(k, part, &living, workspace);
+            tally.step().map(|()| by)
+        };
+        let found: Result<Vec<Option<usize>>, AssemblyError> =
+            jobs.par_iter().map_init(Workspace::default, look).collect();
+        let mut watched = vec![vec![Vec::new(); count]; directions];
+        let mut free = BTreeMap::<usize, Vec<usize>>::new();
+        for ((k, part), by) in jobs.into_iter().zip(found?) {
+            match by {
+                Some(by) => watched[k][by].push(part as u32),
+                None => free.entry(part).or_default().push(k),
+            }
+        }
+        let (matrix, workspace) = (matrix.clone(), Workspace::default());
+        Ok(Self { bodies, matrix, living, waits, awaited, watched, free, workspace })
     }
 
-    /// Directions and the parts that are free along them.
-    pub(super) fn all(&self) -> impl Iterator<Item = (usize, usize)> {
-        self.free.iter().copied()
+    /// Returns the parts that are free, each with the directions along which it is.
+    pub(super) fn ways(&self) -> impl Iterator<Item = (&[usize], &[usize])> + Clone {
+        let ready = self.free.iter().filter(|(part, _)| self.waits[**part] == 0);
+        ready.map(|(part, ways)| (std::slice::from_ref(part), &ways[..]))
     }
 
-    /// A part is there no longer.
+    /// Takes a part away.
     pub(super) fn remove(&mut self, part: usize) {
-        self.wanted[part] = false;
-        for (k, by) in self.met_by.iter().enumerate() {
-            self.free.remove(&(k, part));
-            let from = by.partition_point(|m| (m[0] as usize) < part);
-            for &[_, moving] in by[from..].iter().take_while(|m| m[0] as usize == part) {
-                let moving = moving as usize;
-                let count = &mut self.met[k][moving];
-                *count -= 1;
-                if *count == 0 && self.wanted[moving] {
-                    self.free.insert((k, moving));
+        self.free.remove(&part);
+        self.bodies.remove(&mut self.living, part);
+        for waiting in std::mem::take(&mut self.awaited[part]) {
+            self.waits[waiting] -= 1;
+        }
+        for k in 0..self.watched.len() {
+            for watching in std::mem::take(&mut self.watched[k][part]) {
+                let moving = watching as usize;
+                if !self.living.has(moving) {
+                    continue;
+                }
+                match self.matrix.blocker(k, moving, &self.living, &mut self.workspace) {
+                    Some(by) => self.watched[k][by].push(watching),
+                    None => {
+                        let ways = self.free.entry(moving).or_default();
+                        ways.insert(ways.partition_point(|&known| known < k), k);
+                    }
                 }
             }
         }
+    }
+
+    /// How many entries are kept.
+    #[cfg(test)]
+    pub(super) fn entries(&self) -> usize {
+        self.free.values().map(Vec::len).sum::<usize>()
+            + self.watched.iter().flatten().map(Vec::len).sum::<usize>()
     }
 }

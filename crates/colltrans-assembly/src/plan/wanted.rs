@@ -32,9 +32,9 @@ pub struct Wanted {
 ///
 /// # Errors
 /// As [`disassemble`](super::disassemble); no parts, or all of them; one that is fixed.
-pub fn remove(
-    bodies: &Bodies,
-    matrix: &Matrix,
+pub fn remove<'a>(
+    bodies: &'a Bodies<'a>,
+    matrix: &Matrix<'a>,
     finer: &[Finer],
     parts: &[usize],
     options: PlanOptions,
@@ -50,6 +50,7 @@ pub fn remove(
     if let Some(&fixed) = parts.iter().find(|&&part| all[part].fixed()) {
         return Err(AssemblyError::Fixed { name: all[fixed].name().to_owned() });
     }
+    matrix.complete(watch)?;
     let likes = likes(bodies.assembly());
     let mut planner = Planner::new(bodies, finer, &likes, options, watch)?;
     planner.wanted = &parts;

@@ -16,7 +16,7 @@ fn options() -> PlanOptions {
     PlanOptions::default().with_samples(0).with_legs(1).with_proofs(false)
 }
 
-fn matrix(bodies: &Bodies) -> Matrix {
+fn matrix<'a>(bodies: &'a Bodies<'a>) -> Matrix<'a> {
     let all = vec![true; bodies.len()];
     Matrix::new(bodies, &AXES, &all, StartOverlap::Refuse, Watch::default()).unwrap()
 }

@@ -214,7 +214,7 @@ fn the_other_way_up_parts_are_lifted_the_other_way() {
     }
     let none = PlanOptions::default().with_up(DVec3::ZERO);
     let watch = Watch::default();
-    let matrix = Matrix::default();
+    let matrix = Matrix::on_demand(&bodies, &[], &[true; 3], StartOverlap::Refuse);
     assert!(disassemble(&bodies, &matrix, &[], none, watch).is_err());
 }
 

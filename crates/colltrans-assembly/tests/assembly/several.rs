@@ -5,7 +5,7 @@ use std::path::Path;
 use crate::common::*;
 use colltrans_assembly::plan::{Leg, Moves, Plan, PlanOptions};
 use colltrans_assembly::read::{ReadOptions, read};
-use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, record};
+use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Question, Watch, record};
 use colltrans_testkit::oracle::cubes::Cubes;
 use colltrans_testkit::random::Random;
 use glam::DVec3;
@@ -199,6 +199,28 @@ fn base_rests(assembly: &Assembly, plan: &Plan) {
         assert!(!step.parts.contains(&base), "step {k} takes the base {base}: {plan:?}");
         assert!(legs.all(|leg| !leg.parts.contains(&base)), "step {k} moves {base}: {plan:?}");
     }
+}
+
+/// The search of several moves takes the largest body for what rests; of parts that are wanted the plan does not.
+#[test]
+fn a_wanted_key_that_is_larger_than_its_plate_moves_and_the_plate_rests() {
+    let key = blocks(
+        "key",
+        &[
+            [[0.5, -1.5, 0.2], [2.5, 1.5, 0.8]],
+            [[0.5, -0.5, 0.5], [2.5, 0.5, 3.0]],
+            [[-30.0, -30.0, 3.0], [30.0, 30.0, 4.0]],
+        ],
+    );
+    let assembly = Assembly::new(vec![key, slot().parts()[1].clone()]).unwrap();
+    let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+    let question = Question::default().with_wanted(vec![0]);
+    let plan = question.ask(&bodies, Watch::default()).unwrap().plan;
+    let [step] = &plan.steps[..] else { panic!("one step: {plan:?}") };
+    assert_eq!((&step.parts[..], &plan.last[..], step.path.len()), (&[0][..], &[1][..], 2));
+    assert!(step.path.iter().all(|leg| leg.parts == [0]), "{plan:?}");
+    assert_eq!((step.path[0].direction, step.direction), (DVec3::X, DVec3::Z));
+    assert!(plan.wanted.as_ref().is_some_and(|wanted| wanted.out && wanted.others.is_empty()));
 }
 
 #[test]

@@ -203,7 +203,7 @@ fn smallest(order: &mut Order, matrix: &Matrix, left: &[usize]) -> Option<Choice
     }
     let least = groups.keys().map(Vec::len).min()?;
     groups.retain(|parts, _| parts.len() == least);
-    order.best(groups.iter().map(|(parts, ways)| (&parts[..], &ways[..])))
+    order.best(&groups.iter().map(|(parts, ways)| (&parts[..], &ways[..])))
 }
 
 #[cfg(test)]
@@ -621,7 +621,7 @@ impl<'a> Planner<'a> {
         });
         let ways: Vec<usize> = directions.into_iter().map(|d| order.position(d)).collect();
         let group = (&parts[..], &ways[..]);
-        Ok(order.best(std::iter::once(group)).map_or(way, Way::from))
+        Ok(order.best(&std::iter::once(group)).map_or(way, Way::from))
     }
 
     /// The middle of the free region that a direction lies in, where there is a proof of it.

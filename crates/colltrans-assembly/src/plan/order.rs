@@ -207,13 +207,13 @@ impl<'a> Order<'a> {
 
     /// The best of the parts that can leave alone.
     pub(super) fn alone(&mut self, single: &Single) -> Option<Choice> {
-        self.best(single.ways())
+        self.best(&single.ways())
     }
 
     /// The best of some groups, each with positions of directions along which it can leave.
     pub(super) fn best<'g>(
         &mut self,
-        groups: impl Iterator<Item = (&'g [usize], &'g [usize])> + Clone,
+        groups: &(impl Iterator<Item = (&'g [usize], &'g [usize])> + Clone),
     ) -> Option<Choice> {
         let mut ready: BTreeMap<usize, usize> = BTreeMap::new();
         for (parts, _) in groups.clone() {

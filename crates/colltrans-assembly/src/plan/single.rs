@@ -90,12 +90,12 @@ impl<'a> Single<'a> {
                 if !self.living.has(moving) {
                     continue;
                 }
-                match self.matrix.blocker(k, moving, &self.living, &mut self.workspace) {
-                    Some(by) => self.watched[k][by].push(watching),
-                    None => {
-                        let ways = self.free.entry(moving).or_default();
-                        ways.insert(ways.partition_point(|&known| known < k), k);
-                    }
+                let by = self.matrix.blocker(k, moving, &self.living, &mut self.workspace);
+                if let Some(by) = by {
+                    self.watched[k][by].push(watching);
+                } else {
+                    let ways = self.free.entry(moving).or_default();
+                    ways.insert(ways.partition_point(|&known| known < k), k);
                 }
             }
         }

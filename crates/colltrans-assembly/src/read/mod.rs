@@ -86,6 +86,7 @@ impl ReadOptions {
     }
 
     /// Checks whether the meshes of a link are taken as their convex hulls.
+    #[cfg(feature = "files")]
     fn takes_hull(&self, link: &str) -> bool {
         self.hulls.iter().any(|name| name == link || name == "*")
     }

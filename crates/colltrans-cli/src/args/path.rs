@@ -7,6 +7,7 @@ use clap::Args;
 use super::{factor, length, proof};
 
 #[derive(Debug, Args)]
+#[expect(clippy::struct_excessive_bools, reason = "they are flags of the command line")]
 pub(crate) struct PathArguments {
     /// The robot: a URDF file (.urdf)
     pub(crate) robot: PathBuf,

@@ -24,6 +24,7 @@ pub(crate) enum Slot {
 pub(crate) struct Places([Option<Part>; 2]);
 
 #[derive(Debug)]
+#[expect(clippy::large_enum_variant, reason = "there are two of them")]
 pub(crate) enum Part {
     Convex(Loaded<ConvexPolyhedron>),
     Solid(Loaded<Solid>),

@@ -180,9 +180,8 @@ fn told<P, B: Body>(
     outcome: &MotionOutcome<P>,
     bodies: [&B; 2],
 ) -> MotionAnswer {
-    let (MotionOutcome::Contact(at)
-    | MotionOutcome::Grazing(at)
-    | MotionOutcome::Undecided(at)) = outcome
+    let (MotionOutcome::Contact(at) | MotionOutcome::Grazing(at) | MotionOutcome::Undecided(at)) =
+        outcome
     else {
         return MotionAnswer { kind, record, pose: None, lit: None };
     };

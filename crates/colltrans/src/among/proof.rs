@@ -87,6 +87,7 @@ pub struct ClearanceProof {
     pub passed: Vec<(ObstacleId, PassedProof)>,
 }
 
+#[cfg(feature = "json")]
 impl ClearanceProof {
     /// The translation by which an obstacle is claimed to stop the moving body, at most: 0 if they overlap, infinite if
     /// none is.

@@ -193,9 +193,8 @@ impl Arm {
         let checked = cast.verify(outcome.proof()).map_err(|e| object(&e))?;
         let last = self.rows.len() as f64 - 1.0;
         let said = match &outcome {
-            PathOutcome::Contact(of) => [of.lower, of.upper],
+            PathOutcome::Contact(of) | PathOutcome::Undecided(of) => [of.lower, of.upper],
             PathOutcome::Grazing(of) => [of.lower, f64::INFINITY],
-            PathOutcome::Undecided(of) => [of.lower, of.upper],
             PathOutcome::Overlapping(_) => [0.0; 2],
             _ => [last, f64::INFINITY],
         };

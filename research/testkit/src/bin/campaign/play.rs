@@ -37,8 +37,19 @@ impl crate::Tally for Tally {
     const CHUNK: u64 = 4;
 
     fn header() -> String {
-        let heads = ["settings", "contacts", "grazing", "free", "overlap", "undecided", "solids"];
-        heads.iter().chain(&["most", "wrong"]).map(|head| format!("{head:>9} ")).collect()
+        [
+            "settings",
+            "contacts",
+            "grazing",
+            "free",
+            "overlap",
+            "undecided",
+            "solids",
+            "most",
+            "wrong",
+        ]
+        .map(|head| format!("{head:>9} "))
+        .concat()
     }
 
     fn line(&self) -> String {

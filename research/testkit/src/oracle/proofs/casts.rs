@@ -195,7 +195,9 @@ pub(super) fn other_normal(n: DVec3, d: DVec3, random: &mut Random) -> DVec3 {
 pub(super) fn other_weights(count: usize, random: &mut Random) -> Value {
     let mut weights: Vec<f64> = (0..count).map(|_| random.range(0.0, 1.0)).collect();
     let sum: f64 = weights.iter().sum();
-    weights.iter_mut().for_each(|w| *w /= sum);
+    for w in &mut weights {
+        *w /= sum;
+    }
     if random.one_in(2) {
         weights = vec![0.0; count];
         weights[random.index(count)] = 1.0;

@@ -70,12 +70,11 @@ fn clearance(seed: u64) -> Option<String> {
 fn distance(seed: u64) -> Option<String> {
     let families = ["thin", "hollow", "mixed", "balls"];
     let drawn = nearest::Setting::draw(families[(seed % 4) as usize], seed / 4);
-    let (solids, poses) = match drawn {
-        Ok(Some(setting)) => (setting.solids, setting.poses),
-        _ => {
-            let (solids, poses, _) = of_cubes(seed)?;
-            (solids, poses)
-        }
+    let (solids, poses) = if let Ok(Some(setting)) = drawn {
+        (setting.solids, setting.poses)
+    } else {
+        let (solids, poses, _) = of_cubes(seed)?;
+        (solids, poses)
     };
     let [a, b] = &solids;
     if a.triangles().len() + b.triangles().len() > MOST_FACETS {

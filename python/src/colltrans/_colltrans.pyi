@@ -100,12 +100,14 @@ class Pose:
     source : array_like, Pose or object with ``as_matrix()``, optional
         A translation ``(3,)``; a translation and a unit quaternion ``(7,)``: x, y, z, then
         qx, qy, qz, qw; a matrix ``(3, 4)`` or ``(4, 4)``, whose entries are taken as they are; or
-        something that has one (``scipy.spatial.transform``). The identity without.
+        something that has one (``scipy.spatial.transform``). The identity without. A rotation of few
+        digits, off one by more than 1e-6 and at most 0.02, becomes the nearest rotation, with a
+        ``RoundedPoseWarning``.
 
     Raises
     ------
     PoseError
-        A rotation that is off one by more than 1e-6, a translation that is not finite or out of range.
+        A rotation that is off one by more than 0.02, a translation that is not finite or out of range.
     InputError
         Another shape.
 
@@ -362,11 +364,25 @@ class ConvexPolyhedron:
         """
     def show(self, **options: Any) -> Any:
         """A picture of it: see :func:`colltrans.show`."""
-    def prepare(self) -> None: ...
+    def prepare(self) -> None:
+        """Builds the planar sections on which ``solver="cta"`` works, unless they are there.
+
+        The first cast with that solver builds them otherwise, and takes as much longer. Other solvers
+        need nothing of the kind.
+
+        Examples
+        --------
+        >>> from colltrans import ConvexPolyhedron
+        >>> cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+        >>> before = cube.nbytes
+        >>> cube.prepare()
+        >>> cube.nbytes > before
+        True
+        """
     @property
     def nbytes(self) -> int:
         """int: Bytes of memory that the body occupies now; the sections that ``solver="cta"`` needs count
-        once they are made.
+        once they are built (:meth:`prepare`).
         """
     @property
     def notes(self) -> list[str]:
@@ -1520,16 +1536,17 @@ class Motion:
     through poses.
 
     Made by :meth:`still`, :meth:`slide`, :meth:`turn`, :meth:`screw`, :meth:`thrown`, :meth:`between`,
-    :meth:`through` and :meth:`about`. Angles are in radians. Answers hold of the motion as the real
-    function of its numbers.
+    :meth:`through` and :meth:`about`. Angles are keywords, ``degrees=`` or ``radians=``. Answers hold of the
+    motion as the real function of its numbers.
 
     Examples
     --------
-    >>> import math
     >>> from colltrans import Motion
-    >>> door = Motion.turn([0, 0, 0], [0, 0, 1], math.pi / 2)
+    >>> door = Motion.turn([0, 0, 0], [0, 0, 1], degrees=90)
     >>> door.at(1).rotation.round(12)[0]
     array([ 0., -1.,  0.])
+    >>> door
+    Motion.turn([0.0, 0.0, 0.0], [0.0, 0.0, 1.0], radians=1.5707963267948966)
     """
 
     @staticmethod
@@ -1553,7 +1570,22 @@ class Motion:
         radians: float | None = None,
         pose: _Pose = None,
     ) -> Motion:
-        """A turn about an axis through a point of the world, counter-clockwise as seen against the axis."""
+        """Turns about an axis through a point of the world, counter-clockwise as seen against the axis.
+
+        Parameters
+        ----------
+        point, axis : array_like of shape (3,)
+            A point of the axis, and its direction, of any length above 0.
+        degrees, radians : float
+            The angle: one of the two, by its name.
+        pose : array_like, Pose or object with ``as_matrix()``, optional
+            Where the body is at time 0.
+
+        Raises
+        ------
+        InputError
+            An angle without its unit, with both units, or none.
+        """
     @staticmethod
     def screw(
         point: ArrayLike,
@@ -1564,7 +1596,15 @@ class Motion:
         radians: float | None = None,
         pose: _Pose = None,
     ) -> Motion:
-        """A turn about an axis, which itself moves along its own direction by ``rise``."""
+        """Turns about an axis, which itself moves along its own direction by ``rise``, a length.
+
+        Parameters
+        ----------
+        point, axis, degrees, radians, pose
+            As for :meth:`turn`.
+        rise : float
+            By how much the axis moves along its direction.
+        """
     @staticmethod
     def thrown(
         center: ArrayLike, velocity: ArrayLike, angular_velocity: ArrayLike, *, pose: _Pose = None
@@ -1594,8 +1634,8 @@ class Motion:
         radians: float | None = None,
         pose: _Pose = None,
     ) -> Motion:
-        """By the numbers that define it: the way from a point of the axis to the origin of the body's frame,
-        the axis, the angle, and the way of the axis.
+        """Makes a motion from the numbers that define it: the vector from a point of the axis to the origin of
+        the body's frame, the axis, the angle, and the translation of the axis.
         """
     def at(self, time: float) -> Pose:
         """Where the body is at a time from 0 to 1, to rounding."""
@@ -1618,8 +1658,10 @@ class MotionCast:
     ----------
     moving, fixed : ConvexPolyhedron or Solid
         If one of them is a solid, both are asked as solids.
-    moving_motion, fixed_motion : Motion, array_like or Pose, optional
-        What they do; a pose stands for rest.
+    moving_motion, fixed_motion : Motion, Pose or array_like, optional
+        What they do. A :class:`Pose`, or seven numbers or a matrix that give one, stands for rest. Three
+        numbers are refused, because they could be a displacement (:meth:`Motion.slide`) or a place
+        (:meth:`Motion.still`).
     keep : float
         A gap to be kept, a length: asked is when the bodies are first as near as that.
     tolerance : float, optional
@@ -1637,11 +1679,10 @@ class MotionCast:
 
     Examples
     --------
-    >>> import math
     >>> from colltrans import ConvexPolyhedron, Motion, MotionCast
     >>> door = ConvexPolyhedron.cuboid([0, -0.02, 0], [1, 0.02, 2])
     >>> post = ConvexPolyhedron.cuboid([0.55, 0.55, 0], [0.65, 0.65, 2])
-    >>> swing = Motion.turn([0, 0, 0], [0, 0, 1], math.pi / 2)
+    >>> swing = Motion.turn([0, 0, 0], [0, 0, 1], degrees=90)
     >>> found = MotionCast(door, post, moving_motion=swing).first_contact()
     >>> found.outcome, round(found.lower, 9), found.upper - found.lower < 1e-11
     ('contact', 0.432115832, True)
@@ -1846,9 +1887,9 @@ def motion_clearance(
     >>> from colltrans import ConvexPolyhedron, Motion, motion_clearance
     >>> block = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
     >>> table = ConvexPolyhedron.cuboid([-4, -4, -1], [4, 4, 0])
-    >>> motion_clearance(block, table, Motion.turn([0.5, 0.5, 0], [0, 0, 1], 2))
+    >>> motion_clearance(block, table, Motion.turn([0.5, 0.5, 0], [0, 0, 1], radians=2))
     MotionClearance("free", time=1.0)
-    >>> motion_clearance(block, table, Motion.turn([0.5, 0.5, 0], [1, 0, 0], 2))
+    >>> motion_clearance(block, table, Motion.turn([0.5, 0.5, 0], [1, 0, 0], radians=2))
     MotionClearance("blocked", time=0.0)
     """
 

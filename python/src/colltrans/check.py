@@ -589,7 +589,7 @@ def across(d: Vector, normal: Vector) -> Vector:
 
 
 def are_shadows_apart(moving: Body, fixed: Body, d: Vector, normal: Vector, by: Fraction) -> bool:
-    """Whether what of a normal is orthogonal to the direction proves that the shadows are a length apart.
+    """Checks whether the part of a normal across the direction proves shadows a length apart.
 
     A negative length is how far they overlap at most.
     """
@@ -2838,7 +2838,6 @@ class Carried:
         # Rotations are that to rounding: poses are checked to be off by less.
         first, second, third = (x * (1 + 4 * len(self.stages) * _TURN) for x in most)
         return first, second, third
-
 
     def third_along(self, row: int, normals: Sequence[Vector]) -> Fraction:
         """At least the third derivative of all points along normals between two, within a row.

@@ -61,10 +61,10 @@ class AssemblyError(ColltransError, ValueError):
 
 
 def as_error(error: BaseException, place: str) -> ColltransError:
-    """Returns whatever went wrong at a place as an error of this package, unless it ends the process.
+    """Returns what went wrong at a place as an error of this package, unless it ends the process.
 
-    A panic of the extension is a ``BaseException``. Ctrl-C and the exit of the interpreter are raised
-    again.
+    A panic of the extension is a ``BaseException``. Ctrl-C and the exit of the interpreter are
+    raised again.
     """
     if isinstance(error, (KeyboardInterrupt, SystemExit, GeneratorExit)):
         raise error

@@ -220,8 +220,9 @@ impl<'a> PathCast<'a> {
     /// A body that is no solid where a solid may enclose it.
     pub fn first_contact(&self) -> Result<PathOutcome, PathError> {
         let (mut solids, mut before) = (Vec::new(), MotionSteps::default());
+        let mut with_solids: Option<Self> = None;
         loop {
-            let cast = self.with_solids(&solids);
+            let cast = with_solids.as_ref().unwrap_or(self);
             let Searched { mut outcome, stalled } = cast.searched()?;
             let more: Vec<usize> = stalled.into_iter().filter(|k| cast.can_be_solid(*k)).collect();
             if more.is_empty() {
@@ -234,6 +235,7 @@ impl<'a> PathCast<'a> {
             solids.extend(more);
             solids.sort_unstable();
             solids.dedup();
+            with_solids = Some(self.with_solids(&solids));
         }
     }
 
@@ -257,7 +259,8 @@ impl<'a> PathCast<'a> {
         Ok(found)
     }
 
-    /// The same question with these convex bodies taken as solids.
+    /// Returns the same question with these convex bodies taken as solids. Pieces of shapes that this cast has made are
+    /// made anew.
     fn with_solids(&self, solids: &[usize]) -> Self {
         let shape = |(k, shape): (usize, &Shape<'a>)| {
             let placed = shape.placed;
@@ -334,6 +337,9 @@ impl<'a> PathCast<'a> {
         let is_body = |k: &usize| *k < self.shapes.len();
         if !proof.solids.iter().all(is_body) {
             return Err(PathProofError::Solids);
+        }
+        if proof.solids.is_empty() {
+            return verify::verify(self, proof);
         }
         verify::verify(&self.with_solids(&proof.solids), proof)
     }

@@ -16,6 +16,7 @@
 use glam::DVec3;
 use thiserror::Error;
 
+use crate::body::pose::STRETCHED;
 use crate::body::{InputFacet, ObstacleId};
 use crate::number::extent;
 use crate::number::noise::{self, Noise};
@@ -24,9 +25,6 @@ use crate::setting::{Setting, VertexPair};
 
 /// Factor that is more than a few roundings.
 const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
-
-/// Factor by which a pose may stretch a body, and more.
-const STRETCHED: f64 = 1.0 + 4e-6;
 
 /// Both bounds of a collision translation with their proofs (section 1 of the paper).
 ///

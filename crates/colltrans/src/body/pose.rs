@@ -15,6 +15,9 @@ use crate::number::range::{MIN_MAGNITUDE, in_exact_range};
 /// identity: single precision passes.
 const TOLERANCE: f64 = 1e-6;
 
+/// Factor by which a pose stretches a length at most: its nine entries may be off a rotation by [`TOLERANCE`].
+pub(crate) const STRETCHED: f64 = 1.0 + 4.0 * TOLERANCE;
+
 /// How far the length of a quaternion, or an entry of `R^T R`, may be off for
 /// [`Pose::from_rounded`] and [`Pose::from_rounded_matrix`]: two written digits pass.
 const FEW_DIGITS: f64 = 0.02;

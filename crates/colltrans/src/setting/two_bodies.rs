@@ -7,6 +7,7 @@
 use derive_where::derive_where;
 use glam::{DMat3, DVec3};
 
+use crate::body::pose::STRETCHED;
 use crate::body::{ConvexPolyhedron, Hull, Placed, Pose};
 use crate::number::error_free::{difference_error, sum_error};
 use crate::number::extent;
@@ -14,9 +15,6 @@ use crate::number::noise::Noise;
 use crate::number::orientation::Terms;
 use crate::number::range::MIN_MAGNITUDE;
 use crate::setting::VertexPair;
-
-/// At least by how much a pose stretches a length: its nine entries may be off a rotation by a millionth.
-const STRETCHED: f64 = 1.000_004;
 
 /// Two placed bodies.
 #[derive(Debug)]

@@ -71,8 +71,8 @@ pub(crate) fn start() -> impl TypedValueParser<Value = NarrowFrom> {
 /// A translation, and perhaps a rotation before it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Place {
-    translation: DVec3,
-    rotation: Option<DQuat>,
+    pose: Pose,
+    has_rotation: bool,
     /// The length of the quaternion as it was written, where it was not 1.
     rounded: Option<f64>,
 }
@@ -86,27 +86,23 @@ pub(crate) fn place(text: &str) -> Result<Place, String> {
             return Err(format!("{count} numbers, not 3 (x,y,z) or 7 (x,y,z,qx,qy,qz,qw)"));
         }
     };
-    // Errors of either are reported here.
-    let (_, defect) =
+    let (pose, defect) =
         Pose::from_rounded(written.unwrap_or_default(), translation).map_err(|e| e.to_string())?;
-    let rotation = written.map(|q| if defect.is_some() { q.normalize() } else { q });
     let rounded = defect.and(written).map(DQuat::length);
-    Ok(Place { translation, rotation, rounded })
+    Ok(Place { pose, has_rotation: written.is_some(), rounded })
 }
 
 impl Place {
     /// The pose, with a rotation given by angles instead, if it is.
     pub(crate) fn pose(&self, angles: Option<Angles>, option: &str) -> Result<Pose, String> {
-        match (self.rotation, angles) {
-            (Some(_), Some(_)) => {
-                return Err(format!(
-                    "{option}-pose has a rotation and so has {option}-rpy; give one of them"
-                ));
-            }
-            (rotation, None) => Pose::new(rotation.unwrap_or_default(), self.translation),
-            (None, Some(angles)) => Pose::from_matrix(angles.matrix(), self.translation),
+        match angles {
+            None => Ok(self.pose),
+            Some(_) if self.has_rotation => Err(format!(
+                "{option}-pose has a rotation and so has {option}-rpy; give one of them"
+            )),
+            Some(angles) => Pose::from_matrix(angles.matrix(), self.pose.translation())
+                .map_err(|e| e.to_string()),
         }
-        .map_err(|e| e.to_string())
     }
 
     /// What should be said about the quaternion.

@@ -7,6 +7,7 @@
 //!   one is in millimetres and the other in metres.
 
 use colltrans::{Aabb, Solid};
+use colltrans_mesh::words::first_named;
 use glam::DVec3;
 
 use crate::bodies::Bodies;
@@ -83,7 +84,7 @@ fn identical(assembly: &Assembly, likes: &[usize]) -> Vec<Hint> {
         let names = assembly.names(&parts);
         let words = match common_name(&names) {
             Some(name) => format!("{} x {name} are identical", parts.len()),
-            None => format!("{} are identical", listed(&names)),
+            None => format!("{} are identical", first_named(&names, MOST_NAMED)),
         };
         Hint { kind: HintKind::Identical, parts, words }
     };
@@ -105,7 +106,7 @@ fn frames(bodies: &Bodies, start: &Start, likes: &[usize]) -> Option<Hint> {
         let first = (0..twin).find(|a| same(a, &twin)).unwrap_or(twin);
         let mut group = vec![first];
         group.extend(twins.into_iter().filter(|k| same(&first, k)));
-        let names = listed(&assembly.names(&group));
+        let names = first_named(&assembly.names(&group), MOST_NAMED);
         let words = format!(
             "{names} are one body in one place: parts seem to stand in frames of their own; {advice}"
         );
@@ -136,7 +137,7 @@ fn units(assembly: &Assembly, likes: &[usize]) -> Option<Hint> {
         let names = assembly.names(&small);
         let words = format!(
             "{} may be in another unit, {factor} times too small: {why}; --scale {}={factor} corrects it",
-            listed(&names),
+            first_named(&names, MOST_NAMED),
             names[0]
         );
         Hint { kind: HintKind::Units, parts: small, words }
@@ -179,13 +180,5 @@ fn is_scaled(small: &Solid, large: &Solid, factor: f64) -> bool {
     counts(small) == counts(large) && {
         let (a, b) = (sizes(small) * factor, sizes(large));
         (a - b).abs().max_element() <= EQUAL * b.max_element()
-    }
-}
-
-fn listed(names: &[&str]) -> String {
-    let shown = names.iter().take(MOST_NAMED).copied().collect::<Vec<_>>().join(", ");
-    match names.len().saturating_sub(MOST_NAMED) {
-        0 => shown,
-        more => format!("{shown} and {more} more"),
     }
 }

@@ -29,6 +29,15 @@ pub fn known(value: f64, error: f64) -> String {
     number(rounded)
 }
 
+/// Returns the first of some names, and how many more there are than `most`.
+pub fn first_named<T: AsRef<str>>(names: &[T], most: usize) -> String {
+    let first: Vec<&str> = names.iter().take(most).map(AsRef::as_ref).collect();
+    match names.len().saturating_sub(most) {
+        0 => first.join(", "),
+        more => format!("{} and {more} more", first.join(", ")),
+    }
+}
+
 /// Six digits, for what is measured and not proven.
 pub fn six_digits(value: f64) -> String {
     known(value, value.abs() * 1e-5)
@@ -64,6 +73,14 @@ pub fn counted(count: usize, one: &str, many: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn the_first_names_are_listed_with_the_number_of_the_others() {
+        let listed = |names: &[&str]| first_named(names, 2);
+        assert_eq!(listed(&[]), "");
+        assert_eq!(listed(&["a", "b"]), "a, b");
+        assert_eq!(listed(&["a", "b", "c", "d"]), "a, b and 2 more");
+    }
 
     #[test]
     fn an_error_is_never_shown_smaller() {

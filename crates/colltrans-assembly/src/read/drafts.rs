@@ -7,6 +7,7 @@ use std::sync::Arc;
 use colltrans::solid::ShellKind;
 use colltrans_mesh::Mesh;
 use colltrans_mesh::body::{self, Apart};
+use colltrans_mesh::words::first_named;
 use glam::{DAffine3, DVec3};
 
 use super::files::Source;
@@ -15,7 +16,7 @@ use crate::error::{AssemblyError, ReadError};
 use crate::part::{Assembly, Part, Piece};
 
 /// Names that a note lists.
-const MOST_NAMED: usize = 4;
+pub(super) const MOST_NAMED: usize = 4;
 
 /// Which parts are made of what a source places.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
@@ -253,15 +254,11 @@ impl Made {
     /// What is said of parts that consist of several bodies.
     fn kept(&self) -> Option<String> {
         let told = |(name, bodies): &(String, usize)| format!("{name} ({bodies})");
-        let named: Vec<String> = self.kept.iter().take(MOST_NAMED).map(told).collect();
-        let more = match self.kept.len().saturating_sub(MOST_NAMED) {
-            0 => String::new(),
-            more => format!(" and {more} more"),
-        };
+        let named: Vec<String> = self.kept.iter().map(told).collect();
         (!named.is_empty()).then(|| {
             format!(
-                "several bodies are one part: {}{more}; with `split bodies` each is a part",
-                named.join(", ")
+                "several bodies are one part: {}; with `split bodies` each is a part",
+                first_named(&named, MOST_NAMED)
             )
         })
     }

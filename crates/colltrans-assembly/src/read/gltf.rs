@@ -11,13 +11,14 @@ use std::sync::Arc;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use colltrans_mesh::Mesh;
+use colltrans_mesh::words::first_named;
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
 use serde_json::Value;
 
 use super::files::{Source, percent_decoded, unescaped};
-use super::{Budget, Draft, Names, Placed, assembled, contents, plain};
+use super::{Budget, Draft, Names, Placed, assembled, contents, drafts, plain};
 use crate::colour::on_screen;
 use crate::error::ReadError;
 use crate::part::Assembly;
@@ -67,7 +68,8 @@ pub(super) fn read(source: Source, bytes: &[u8]) -> Result<Assembly, ReadError> 
         assembly = assembly.with_note(note);
     }
     if !left_out.is_empty() {
-        assembly = assembly.with_note(format!("left out: {}", listed(&left_out)));
+        assembly =
+            assembly.with_note(format!("left out: {}", first_named(&left_out, drafts::MOST_NAMED)));
     }
     let shaped = document.meshes.iter().flat_map(|mesh| &mesh.primitives);
     let at_rest = shaped.filter(|shape| !shape.targets.is_empty()).count()
@@ -361,15 +363,6 @@ struct Reader<'a> {
     shown: Vec<Shown<'a>>,
     /// Nodes that are no parts, each with the reason.
     left_out: Vec<String>,
-}
-
-/// Returns the first few of some names, and how many more there are.
-fn listed(names: &[String]) -> String {
-    const MOST_NAMED: usize = 4;
-    match names.len().saturating_sub(MOST_NAMED) {
-        0 => names.join(", "),
-        more => format!("{} and {more} more", names[..MOST_NAMED].join(", ")),
-    }
 }
 
 impl Document {

@@ -16,6 +16,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use colltrans_mesh::Mesh;
+use colltrans_mesh::words::first_named;
 use glam::{DAffine3, DMat3, DVec3};
 use quick_xml::NsReader;
 use quick_xml::events::{BytesStart, Event};
@@ -144,19 +145,12 @@ fn bodies(
     found
 }
 
-/// Names that a note lists.
-const MOST_NAMED: usize = 4;
-
 /// What was left out, and what is not to be printed.
 fn notes(items: &[Placed], left_out: &[String]) -> Vec<String> {
     let mut notes = Vec::new();
     if !left_out.is_empty() {
-        let named = left_out[..left_out.len().min(MOST_NAMED)].join(", ");
-        let more = match left_out.len().saturating_sub(MOST_NAMED) {
-            0 => String::new(),
-            more => format!(" and {more} more"),
-        };
-        notes.push(format!("left out, as they are no parts of the model: {named}{more}"));
+        let named = first_named(left_out, drafts::MOST_NAMED);
+        notes.push(format!("left out, as they are no parts of the model: {named}"));
     }
     let printed = |item: &(usize, &Placed)| item.1.unprinted;
     let unprinted: Vec<String> =

@@ -97,8 +97,10 @@ _MISS_WIDENED = 46
 #: The largest ``rounding`` of a contact in noises, and what is added for a normal across the
 #: direction.
 _MOST_STATED = (63, 175)
+#: The largest coordinate, displacement or gap.
+MOST = 2**200
 #: Magnitudes of coordinates that are not 0.
-_RANGE = (Fraction(1, 2**200), Fraction(2**200))
+_RANGE = (Fraction(1, MOST), Fraction(MOST))
 #: No gap is to be kept.
 _NO_GAP = Fraction()
 #: How far a face may be from its plane, in sizes of the body, beyond its ``hull_error``; see
@@ -106,8 +108,6 @@ _NO_GAP = Fraction()
 _PLANE = Fraction(1, 2**20)
 #: How far a pose may be from a rotation.
 _TURN = Fraction(1, 10**6)
-#: The largest coordinate, displacement or gap.
-MOST = 2**200
 
 
 #: What reading a file that is no proof ends in; the first, numbers out of all range.
@@ -1060,7 +1060,7 @@ class Scene:
 
     def clearance(self, claim: Any) -> None:
         d = vector(fields(claim, "direction lower stop passed")["direction"])
-        if any(x and not Fraction(1, MOST) <= abs(x) <= MOST for x in d):
+        if any(x and not _RANGE[0] <= abs(x) <= _RANGE[1] for x in d):
             raise NoProofError("the direction is out of range")
         lower = None if claim["lower"] is None else number(claim["lower"])
         if not any(d) or (lower is not None and lower < 0):

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 use colltrans::glam::DVec3;
 use colltrans_mesh::body::{BodyOptions, load_convex};
 use numpy::{IntoPyArray, PyArray1, PyArray2};
-use pyo3::exceptions::{PyIndexError, PyTypeError};
+use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
-use pyo3::types::PySequence;
 
+use crate::arguments::refuse_mesh_object;
 use crate::arrays::{self, faces, ids, points, read_only, row, table, vector};
 use crate::errors::{OrRaise, error};
 use crate::frozen::{Options, Shown, html, show};
@@ -48,47 +48,6 @@ impl From<colltrans::ConvexPolyhedron> for ConvexPolyhedron {
     fn from(body: colltrans::ConvexPolyhedron) -> Self {
         Self(body, Vec::new())
     }
-}
-
-/// An argument that has to be a convex body. The error names the functions that take what was given.
-pub(crate) struct ConvexArgument<'py>(pub(crate) Bound<'py, ConvexPolyhedron>);
-
-impl<'py> FromPyObject<'_, 'py> for ConvexArgument<'py> {
-    type Error = PyErr;
-
-    fn extract(given: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
-        if let Ok(body) = given.cast::<ConvexPolyhedron>() {
-            return Ok(Self((*body).clone()));
-        }
-        let message = if given.is_instance_of::<crate::solid::Solid>() {
-            "Solid is not a ConvexPolyhedron; clearance(moving, fixed, direction) and \
-             distance(moving, fixed) take solids"
-                .into()
-        } else {
-            format!("{} is not a ConvexPolyhedron; {}", given.get_type().name()?, maker(&given)?)
-        };
-        Err(PyTypeError::new_err(message))
-    }
-}
-
-/// Returns the call that makes a body of an argument which is not one.
-pub(crate) fn maker(given: &Bound<'_, PyAny>) -> PyResult<&'static str> {
-    Ok(if given.hasattr("vertices")? && given.hasattr("faces")? {
-        "ConvexPolyhedron.from_trimesh(mesh) or Solid.from_trimesh(mesh) makes a body of a mesh"
-    } else if given.hasattr("__array__")? || given.is_instance_of::<PySequence>() {
-        "ConvexPolyhedron(points) makes the convex hull of points"
-    } else {
-        "ConvexPolyhedron(points) makes a body, read(path) and Solid.read(path) read one"
-    })
-}
-
-/// Refuses a mesh object where an array of points is expected.
-pub(crate) fn refuse_mesh_object(given: &Bound<'_, PyAny>, name: &str, call: &str) -> PyResult<()> {
-    if !given.hasattr("vertices")? || !given.hasattr("faces")? {
-        return Ok(());
-    }
-    let kind = given.get_type().name()?;
-    Err(crate::errors::input(name, format_args!("{kind} is a mesh, not an array: call {call}")))
 }
 
 /// A body as JSON, and its notes.

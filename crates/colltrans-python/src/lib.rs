@@ -16,6 +16,7 @@
 //! The package itself is in `python/`; its stub `_colltrans.pyi` has the types.
 
 mod answer;
+mod arguments;
 mod arrays;
 mod assembly;
 mod body;

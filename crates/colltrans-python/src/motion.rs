@@ -12,13 +12,13 @@ use pyo3::types::{PyDict, PyTuple};
 use serde::{Deserialize, Serialize};
 
 use crate::answer::{Answer, answer, object};
-use crate::arrays::{Numbers, Shape, coordinates, numbers, row, vector};
+use crate::arrays::{Numbers, Shape, coordinates, row, vector};
 use crate::body;
 use crate::errors::{OrRaise, error, input, query_error};
 use crate::features::{Feature, Features};
 use crate::frozen::{Options, Shown, html, pickled, show};
 use crate::pair::Of;
-use crate::pose::{Pose, pose};
+use crate::pose::{Bare, Pose, bare_numbers, of_bare, pose};
 use crate::solid::Piece;
 use crate::solid_cast::patiently;
 
@@ -193,11 +193,8 @@ impl Motion {
         let [piece] = self.0.pieces() else {
             return format!("Motion.through({} screws, from {start})", self.0.pieces().len());
         };
-        let pose = if self.0.start() == colltrans::Pose::IDENTITY {
-            String::new()
-        } else {
-            format!("pose={start}")
-        };
+        let is_elsewhere = self.0.start() != colltrans::Pose::IDENTITY;
+        let pose = is_elsewhere.then(|| format!("pose={start}"));
         let point = piece.start.translation() - piece.arm;
         let [point, axis, arm, way] =
             [point, piece.axis, piece.arm, piece.velocity].map(coordinates);
@@ -216,7 +213,7 @@ impl Motion {
         if piece.rate != 0.0 {
             arguments.push(format!("radians={:?}", piece.rate));
         }
-        arguments.extend((!pose.is_empty()).then_some(pose));
+        arguments.extend(pose);
         format!("Motion.{kind}({})", arguments.join(", "))
     }
 }
@@ -267,9 +264,11 @@ fn motion_of(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<motion::Moti
     if let Ok(motion) = given.cast::<Motion>() {
         return Ok(motion.get().0.clone());
     }
-    let is_pose = given.is_instance_of::<Pose>() || given.getattr_opt("as_matrix")?.is_some();
-    let bare = if is_pose { None } else { Some(numbers(given, name)?) };
-    if let Some(Numbers { values: [x, y, z, ..], shape: Shape::Row(3) }) = bare {
+    if given.is_instance_of::<Pose>() {
+        return Ok(motion::Motion::still(pose(of, name)?));
+    }
+    let bare = bare_numbers(given, name)?;
+    if let Bare::Numbers(Numbers { values: [x, y, z, ..], shape: Shape::Row(3) }) = bare {
         let vector = [x, y, z].map(|c| c + 0.0);
         return Err(input(
             name,
@@ -279,7 +278,7 @@ fn motion_of(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<motion::Moti
             ),
         ));
     }
-    Ok(motion::Motion::still(pose(of, name)?))
+    Ok(motion::Motion::still(of_bare(given.py(), &bare, name)?))
 }
 
 /// Two bodies and what they do, as a value: asked when they first meet, saved and replayed.

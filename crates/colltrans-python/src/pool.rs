@@ -22,19 +22,15 @@ pub(crate) fn run<T: Send>(work: impl FnOnce() -> T + Send) -> Result<T, ThreadP
 /// Returns the pool of this process, which is built once and lives as long as the process.
 fn pool_of_process() -> Result<&'static ThreadPool, ThreadPoolBuildError> {
     let process = std::process::id();
-    let known = || {
-        let known = *POOL.lock().unwrap_or_else(PoisonError::into_inner);
-        known.filter(|(owner, _)| *owner == process).map(|(_, pool)| pool)
-    };
-    if let Some(pool) = known() {
+    let kept = || POOL.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, pool)) = kept().filter(|(owner, _)| *owner == process) {
         return Ok(pool);
     }
     let built = Box::new(ThreadPoolBuilder::new().build()?);
-    // Another thread may have built one meanwhile; this one is dropped then.
-    if let Some(pool) = known() {
-        return Ok(pool);
+    // If another thread has built one meanwhile, this one is dropped.
+    let mut kept = kept();
+    match *kept {
+        Some((owner, pool)) if owner == process => Ok(pool),
+        _ => Ok(kept.insert((process, Box::leak(built))).1),
     }
-    let pool: &'static ThreadPool = Box::leak(built);
-    *POOL.lock().unwrap_or_else(PoisonError::into_inner) = Some((process, pool));
-    Ok(pool)
 }

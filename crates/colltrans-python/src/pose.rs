@@ -92,7 +92,7 @@ impl Pose {
 }
 
 impl Pose {
-    /// Returns the numbers that make the pose again, to rounding: three if it does not turn, else seven.
+    /// Returns the seven numbers that make the pose again, to rounding.
     pub(crate) fn text(&self) -> String {
         let (t, q) = (self.0.translation(), self.0.rotation());
         let numbers = [t.x, t.y, t.z, q.x, q.y, q.z, q.w].map(|c| c + 0.0);
@@ -106,15 +106,34 @@ pub(crate) fn pose(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<colltr
     if let Ok(pose) = of.cast::<Pose>() {
         return Ok(pose.get().0);
     }
-    let found = if let Some(found) = plain_numbers(of) {
-        found
-    } else if let Err(refused) = refuse_list_of_poses(of, name) {
-        return Err(refused);
-    } else if let Some(as_matrix) = of.getattr_opt("as_matrix")? {
-        let found = numbers(&as_matrix.call0()?, name)?;
-        return of_matrix(of.py(), &found, true, name);
-    } else {
-        numbers(of, name)?
+    of_bare(of.py(), &bare_numbers(of, name)?, name)
+}
+
+/// The numbers of an argument that is not a [`Pose`].
+pub(crate) enum Bare {
+    /// As they are given.
+    Numbers(Numbers),
+    /// Those of its method `as_matrix`.
+    Matrix(Numbers),
+}
+
+/// Returns the numbers of an argument that gives a pose and is not a [`Pose`].
+pub(crate) fn bare_numbers(of: &Bound<'_, PyAny>, name: &str) -> PyResult<Bare> {
+    if let Some(found) = plain_numbers(of) {
+        return Ok(Bare::Numbers(found));
+    }
+    refuse_list_of_poses(of, name)?;
+    match of.getattr_opt("as_matrix")? {
+        Some(as_matrix) => numbers(&as_matrix.call0()?, name).map(Bare::Matrix),
+        None => numbers(of, name).map(Bare::Numbers),
+    }
+}
+
+/// Returns the pose that three or seven numbers or a matrix give.
+pub(crate) fn of_bare(py: Python<'_>, bare: &Bare, name: &str) -> PyResult<colltrans::Pose> {
+    let found = match bare {
+        Bare::Numbers(found) => found,
+        Bare::Matrix(found) => return of_matrix(py, found, true, name),
     };
     let [x, y, z, ..] = found.values;
     let translation = DVec3::new(x, y, z);
@@ -124,9 +143,9 @@ pub(crate) fn pose(of: Option<&Bound<'_, PyAny>>, name: &str) -> PyResult<colltr
             let [_, _, _, x, y, z, w, ..] = found.values;
             let rotation = DQuat::from_xyzw(x, y, z, w);
             let rounded = colltrans::Pose::from_rounded(rotation, translation).or_raise()?;
-            reported(of.py(), rounded, name)
+            reported(py, rounded, name)
         }
-        _ => of_matrix(of.py(), &found, false, name),
+        _ => of_matrix(py, found, false, name),
     }
 }
 

@@ -10,10 +10,11 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::arrays::{row, vector};
-use crate::body::{ConvexArgument, ConvexPolyhedron};
+use crate::body::ConvexPolyhedron;
 use crate::errors::{OrRaise, error, query_error};
 use crate::frozen::{Options as Shows, Shown, html, show};
 use crate::pose::{Pose, pose};
+use crate::solid::ConvexArgument;
 use crate::solver::options_of;
 
 /// The arguments that all queries share.

@@ -5,12 +5,12 @@ use pyo3::prelude::*;
 use pyo3::types::PyBool;
 
 use crate::answer::Answer;
-use crate::body::ConvexArgument;
 use crate::certificate::{Certificate, Separation, SolidCertificate};
 use crate::distance::{depth_of, distance_of, within_of};
 use crate::errors::{OrRaise, error};
 use crate::pair::Pair;
 use crate::query::{Arguments, Cast};
+use crate::solid::ConvexArgument;
 use crate::solid_answer::SolidOverlapping;
 use crate::solid_cast::SolidCast;
 use crate::solver::options_of;

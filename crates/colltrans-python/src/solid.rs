@@ -16,8 +16,9 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
+use crate::arguments::{maker, refuse_mesh_object};
 use crate::arrays::{self, faces, ids, points, read_only, table};
-use crate::body::{ConvexPolyhedron, maker, refuse_mesh_object};
+use crate::body::ConvexPolyhedron;
 use crate::errors::{OrRaise, input};
 use crate::frozen::{Options, Shown, html, show};
 use crate::offset::ShrinkReport;
@@ -109,6 +110,27 @@ impl Piece {
             Self::Convex(body) => Self::Convex(body.clone_ref(py)),
             Self::Solid(solid) => Self::Solid(solid.clone_ref(py)),
         }
+    }
+}
+
+/// An argument that has to be a convex body. The error names the functions that take what was given.
+pub(crate) struct ConvexArgument<'py>(pub(crate) Bound<'py, ConvexPolyhedron>);
+
+impl<'py> FromPyObject<'_, 'py> for ConvexArgument<'py> {
+    type Error = PyErr;
+
+    fn extract(given: Borrowed<'_, 'py, PyAny>) -> PyResult<Self> {
+        if let Ok(body) = given.cast::<ConvexPolyhedron>() {
+            return Ok(Self((*body).clone()));
+        }
+        let message = if given.is_instance_of::<Solid>() {
+            "Solid is not a ConvexPolyhedron; clearance(moving, fixed, direction) and \
+             distance(moving, fixed) take solids"
+                .into()
+        } else {
+            format!("{} is not a ConvexPolyhedron; {}", given.get_type().name()?, maker(&given)?)
+        };
+        Err(PyTypeError::new_err(message))
     }
 }
 

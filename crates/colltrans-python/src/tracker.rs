@@ -8,10 +8,11 @@ use pyo3::prelude::*;
 use self_cell::self_cell;
 
 use crate::answer::Answer;
-use crate::body::{ConvexArgument, ConvexPolyhedron};
+use crate::body::ConvexPolyhedron;
 use crate::errors::error;
 use crate::features::Steps;
 use crate::query::{Arguments, Cast};
+use crate::solid::ConvexArgument;
 
 type Bodies = [Py<ConvexPolyhedron>; 2];
 type Borrowing<'a> = colltrans::Tracker<'a>;

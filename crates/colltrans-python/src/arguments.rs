@@ -1,0 +1,28 @@
+//! Arguments that are easily confused: which call takes what was given.
+//!
+//! Invariant: no class is known here, so that each class can use this.
+
+use pyo3::prelude::*;
+use pyo3::types::PySequence;
+
+use crate::errors::input;
+
+/// Returns the call that makes a body of an argument which is not one.
+pub(crate) fn maker(given: &Bound<'_, PyAny>) -> PyResult<&'static str> {
+    Ok(if given.hasattr("vertices")? && given.hasattr("faces")? {
+        "ConvexPolyhedron.from_trimesh(mesh) or Solid.from_trimesh(mesh) makes a body of a mesh"
+    } else if given.hasattr("__array__")? || given.is_instance_of::<PySequence>() {
+        "ConvexPolyhedron(points) makes the convex hull of points"
+    } else {
+        "ConvexPolyhedron(points) makes a body, read(path) and Solid.read(path) read one"
+    })
+}
+
+/// Refuses a mesh object where an array of points is expected.
+pub(crate) fn refuse_mesh_object(given: &Bound<'_, PyAny>, name: &str, call: &str) -> PyResult<()> {
+    if !given.hasattr("vertices")? || !given.hasattr("faces")? {
+        return Ok(());
+    }
+    let kind = given.get_type().name()?;
+    Err(input(name, format_args!("{kind} is a mesh, not an array: call {call}")))
+}

@@ -14,6 +14,7 @@
 pub mod casts;
 pub mod checkers;
 pub mod file;
+pub mod free;
 pub mod motions;
 pub mod mutants;
 pub mod pairs;
@@ -80,7 +81,7 @@ pub struct Kind {
 }
 
 /// All kinds.
-pub const KINDS: [Kind; 10] = [
+pub const KINDS: [Kind; 11] = [
     casts::CASTS,
     casts::WITH_GAP,
     pairs::DISTANCES,
@@ -91,6 +92,7 @@ pub const KINDS: [Kind; 10] = [
     motions::SOLIDS,
     paths::PATHS,
     scenes::SCENES,
+    free::FREE,
 ];
 
 /// What became of proofs.

@@ -37,7 +37,7 @@ const POINTS: &str = "/statement/solid_distance/near/points";
 /// Facets of both bodies, at most.
 const MOST_FACETS: usize = 160;
 
-fn of_cubes(seed: u64) -> Option<([Solid; 2], [colltrans::Pose; 2], DVec3)> {
+pub(super) fn of_cubes(seed: u64) -> Option<([Solid; 2], [colltrans::Pose; 2], DVec3)> {
     let families = ["grid", "halves", "sheared", "quarter", "rotated", "mould"];
     let family = families[(seed % 6) as usize];
     let setting = settings::Setting::draw(family, seed / 6)?;
@@ -140,7 +140,7 @@ fn falsehood(file: &Value, who: Who) -> Option<String> {
     false_clearance(&bodies, file, who)
 }
 
-fn surface(bodies: &Bodies, body: usize) -> Vec<[Vector; 3]> {
+pub(super) fn surface(bodies: &Bodies, body: usize) -> Vec<[Vector; 3]> {
     (0..bodies.facets[body].len()).filter_map(|k| bodies.facet(body, k)).collect()
 }
 

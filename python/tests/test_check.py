@@ -254,6 +254,17 @@ def test_what_is_said_of_a_body_counts() -> None:
         assert refused(other), name
 
 
+def test_a_body_may_be_kept_without_some_of_its_input() -> None:
+    file = proof("contacts")
+    content = file["moving"]["convex"]
+    content["hull_error"] = 1e-12
+    for excess, holds in [(None, True), (0.0, True), (1e-12, True), (2e-12, False), (-1e-15, False)]:
+        content["input_excess"] = excess
+        assert refused(file) != holds, excess
+    content["input_excess"] = ""
+    assert refused(file)
+
+
 def test_a_slide_is_one() -> None:
     file = proof("slide")
     report = check.check(json.dumps(file))

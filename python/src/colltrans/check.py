@@ -48,7 +48,8 @@ With the moving body ``P``, the fixed one ``Q``, the direction ``d``, all points
   how the tolerance moves facets: how far they were moved is said.
 - *Paths of joints.* Of convex bodies, at each plane's place, the gap that it leaves over all
   vertices, the joints one after the other; between two of a row how far heights bend; over rows how
-  far points can move. Of solids nothing.
+  far points can move. Of solids the same for pairs of boxes and facets; that no body is inside
+  another one at the start, along a ray.
 - *All directions.* Two facets ``f`` and ``g`` block an open cone: ``n_f.d > 0``, ``n_g.d < 0``, and
   ``d`` inside the cone of the nine differences ``g - f``. A cell that they block has its four
   corners in it. What cones leave of any other cell is convex pieces, whose corners are vector
@@ -261,7 +262,7 @@ class Body:
         points, facets = [], []
         ((kind, content),) = shape.items()
         if kind == "convex":
-            content = fields(content, "vertices faces input_indices hull_error")
+            content = fields(content, "vertices faces input_indices hull_error", "input_excess")
             points = [place(v) for v in listed(content["vertices"])]
             described(points, content)
         elif kind == "pieces":
@@ -347,6 +348,10 @@ def described(points: list[Vector], content: Any) -> None:
     error = number(content["hull_error"])
     if not 0 <= error <= _RANGE[1]:
         raise RefusedError(f"a hull error of {float(error)!r} is negative, or larger than any body")
+    said = content["input_excess"]
+    excess = number(0.0 if said is None else said)
+    if not 0 <= excess <= error:
+        raise RefusedError(f"an input excess of {float(excess)!r} is negative, or over the hull error")
     faces = [[whole(k, len(points)) for k in listed(face)] for face in listed(content["faces"])]
     if any(len(set(face)) != len(face) or len(face) < 3 for face in faces):
         raise RefusedError("a face has fewer than three corners, or one of them twice")

@@ -234,14 +234,9 @@ pub(crate) struct BodyRecord {
     faces: Vec<Vec<u32>>,
     input_indices: Vec<InputVertex>,
     hull_error: f64,
-    /// Missing in files of versions whose bounds did not count it.
-    #[serde(default, skip_serializing_if = "is_zero")]
-    input_excess: f64,
-}
-
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
-fn is_zero(number: &f64) -> bool {
-    *number == 0.0
+    /// Missing if it is 0, and in files of versions whose bounds did not count it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    input_excess: Option<f64>,
 }
 
 impl BodyRecord {
@@ -251,7 +246,7 @@ impl BodyRecord {
             faces: (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect(),
             input_indices: body.input_indices().to_vec(),
             hull_error: body.hull_error(),
-            input_excess: body.input_excess(),
+            input_excess: Some(body.input_excess()).filter(|excess| *excess > 0.0),
         }
     }
 
@@ -261,7 +256,7 @@ impl BodyRecord {
             &vertices,
             &self.faces,
             &self.input_indices,
-            [self.hull_error, self.input_excess],
+            [self.hull_error, self.input_excess.unwrap_or(0.0)],
         )
     }
 }

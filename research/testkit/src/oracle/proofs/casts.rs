@@ -1,6 +1,6 @@
 //! Proofs of contacts, slides and separations of convex bodies, with and without a gap to be kept.
 
-use colltrans::{Cast, ContactRange, Pose, ProofFile};
+use colltrans::{Cast, ContactRange, ConvexPolyhedron, Pose, ProofFile};
 use glam::DVec3;
 use serde_json::Value;
 
@@ -42,12 +42,16 @@ pub(super) fn drawn(seed: u64) -> Option<(Setting, Convex)> {
     let count = FAMILIES.len() as u64;
     let family = FAMILIES[(seed % count) as usize].0;
     let mut setting = setting(family, seed / count);
-    let bodies = setting.bodies().ok()?;
+    let mut bodies = setting.bodies().ok()?;
+    let random = &mut Random::stream(seed, &[0xd0a1]);
+    if random.one_in(3) {
+        setting.moving = rounded_cloud(&bodies.moving, random);
+        bodies = setting.bodies().ok()?;
+    }
     let vertices = bodies.moving.vertices().len() + bodies.fixed.vertices().len();
     if vertices > MOST_VERTICES {
         return None;
     }
-    let random = &mut Random::stream(seed, &[0xd0a1]);
     let size = setting.judge(&bodies).scene.size;
     let unit = setting.direction.normalize();
     let across = unit.any_orthonormal_vector();
@@ -68,6 +72,22 @@ pub(super) fn drawn(seed: u64) -> Option<(Setting, Convex)> {
         beside(&mut setting, &bodies, random);
     }
     Some((setting, bodies))
+}
+
+/// Returns the vertices of a body, turned, and points of its faces: rounded, some are beyond the hull that is kept.
+fn rounded_cloud(body: &ConvexPolyhedron, random: &mut Random) -> Vec<DVec3> {
+    let turn = random.rotation();
+    let vertices = body.vertices();
+    let mut points = vertices.to_vec();
+    for face in 0..body.face_count() as u32 {
+        let corners: Vec<DVec3> = body.face_vertices(face).map(|v| vertices[v as usize]).collect();
+        for _ in 0..4 {
+            let weights: Vec<f64> = corners.iter().map(|_| random.range(0.0, 1.0)).collect();
+            let sum: f64 = weights.iter().sum();
+            points.push(corners.iter().zip(&weights).map(|(v, w)| *v * (w / sum)).sum());
+        }
+    }
+    points.iter().map(|v| turn * *v).collect()
 }
 
 /// Moves the moving body across the direction until the shadows are nearly a small distance apart.

@@ -25,6 +25,16 @@ pub(crate) fn saved(folder: &Path, arguments: &[&str]) -> Value {
     read(&fs::read_to_string(folder.join("proof.json")).unwrap())
 }
 
+/// The proofs on which the tests of `check.py` stand.
+#[test]
+fn the_proofs_of_the_other_verifier_hold() {
+    let saved = fs::read_dir(data().join("../python/tests/proofs")).unwrap();
+    for file in saved.map(|file| file.unwrap().path()) {
+        let output = run(Path::new("."), &["verify", file.to_str().unwrap()]);
+        assert_eq!(output.status.code(), Some(0), "{}: {}", file.display(), stderr(&output));
+    }
+}
+
 #[test]
 fn a_saved_proof_holds_and_is_told_in_one_line() {
     let folder = folder();

@@ -122,7 +122,7 @@ pub enum CertificateError {
         tolerance: f64,
     },
     /// A bound or a margin says more than is proven.
-    #[error("{proven} is proven, not {claimed}")]
+    #[error("{proven:?} is proven, not {claimed:?}")]
     Bound {
         /// The bound, or margin, that is proven.
         proven: f64,
@@ -130,7 +130,7 @@ pub enum CertificateError {
         claimed: f64,
     },
     /// The lower bound is above the upper one.
-    #[error("the lower bound {lower} is above the upper bound {upper}")]
+    #[error("the lower bound {lower:?} is above the upper bound {upper:?}")]
     Order {
         /// The lower bound.
         lower: f64,
@@ -156,7 +156,7 @@ pub enum CertificateError {
         derived: f64,
     },
     /// It is about bodies shrunk by another tolerance.
-    #[error("the proof is for a tolerance of {claimed}, not {asked}")]
+    #[error("the proof is for a tolerance of {claimed:?}, not {asked:?}")]
     OtherTolerance {
         /// The one of the proof.
         claimed: f64,

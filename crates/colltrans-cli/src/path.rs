@@ -135,11 +135,8 @@ impl Asked {
         let cell = cell.ignoring(&ignored);
         let cell = cell.map_err(|e| Failure::new(Code::Usage, format!("--ignore: {e}")))?;
         cell.notes().iter().for_each(|text| note(text));
-        let partial: Vec<String> =
-            table.straight().into_iter().chain(cell.nothing_held()).collect();
-        // Those of the table are among the notes of the path.
-        cell.nothing_held().iter().for_each(|text| note(text));
-        Ok(Self { cell, path, partial })
+        let cell = cell.with_a_pair().map_err(|e| input(&e))?;
+        Ok(Self { cell, path, partial: table.straight().into_iter().collect() })
     }
 }
 
@@ -192,10 +189,12 @@ fn text(file: &Path) -> Result<String, Failure> {
     Ok(text)
 }
 
-/// All pairs that overlap, and how they are left out: those of two links as SRDF has them.
-fn overlapping(text: &mut String, pairs: &[[String; 2]], robot: &Robot) {
+/// All pairs that meet at the start, and how they are left out: those of two links as SRDF has them.
+fn overlapping(text: &mut String, record: &PathRecord, robot: &Robot) {
+    let pairs = &record.overlaps;
     for [a, b] in pairs {
-        line(text, "overlap", &format!("{a}, {b}"));
+        let head = if record.keep.is_none() { "overlap" } else { "too near" };
+        line(text, head, &format!("{a}, {b}"));
     }
     if pairs.is_empty() {
         return;
@@ -218,16 +217,22 @@ fn words(record: &PathRecord, outcome: &PathOutcome, robot: &Robot) -> String {
         Ending::Undecided => "undecided: the search took its maximum number of steps\n".into(),
         Ending::Grazing => "grazing: two bodies come nearer than rounding can tell\n".into(),
         Ending::Overlapping => {
-            let pairs = counted(record.overlaps.len(), "pair overlaps", "pairs overlap");
+            let count = record.overlaps.len();
+            let pairs = match record.keep {
+                None => counted(count, "pair overlaps", "pairs overlap"),
+                Some(gap) => {
+                    let pairs = counted(count, "pair overlaps or is", "pairs overlap or are");
+                    format!("{pairs} as near as {}", number(gap))
+                }
+            };
             format!("overlapping: {pairs} where the path begins\n")
         }
-        _ if record.pairs == 0 => "free: no pair of bodies is held against each other\n".into(),
         _ => format!("free: no two bodies{asked} {} on the whole path\n", meet(record.keep)),
     };
     if let Some([a, b]) = record.pair.as_ref().filter(|_| record.overlaps.is_empty()) {
         line(&mut text, "bodies", &format!("{a}, {b}"));
     }
-    overlapping(&mut text, &record.overlaps, robot);
+    overlapping(&mut text, record, robot);
     if let Some(TimeRecord { lower, upper }) = record.time
         && record.outcome != Ending::Overlapping
     {

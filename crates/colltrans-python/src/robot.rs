@@ -24,6 +24,7 @@ use crate::frozen::{Options, Reduced, Shown, match_args, plain, read, reduced, s
 use crate::obstacles::wait;
 use crate::solid::Piece;
 
+/// The names of the outcomes, by their numbers; the last is that of a row without an answer.
 const OUTCOMES: [&str; 6] = ["contact", "grazing", "free", "overlapping", "undecided", "error"];
 
 /// A robot of URDF: links with what they collide with, and the joints between them.
@@ -77,6 +78,7 @@ impl Robot {
         let cell = Cell::new(self.arm.clone(), bodies, self.listed.as_deref());
         let cell = cell.map_err(|what| input("srdf", what))?;
         let cell = cell.ignoring(ignore).map_err(|what| input("ignore", what))?;
+        let cell = cell.with_a_pair().map_err(|what| input("scene", what))?;
         Ok(Asked { cell, keep })
     }
 }
@@ -298,11 +300,10 @@ impl Robot {
         let asked = Arc::new(self.asked(scene, &ignore, keep)?);
         let rows = Rows::of(path, columns, times, joints)?;
         let (path, said) = asked.path(&rows).map_err(|what| input("path", what))?;
-        let nothing: Vec<String> = asked.cell.nothing_held().into_iter().collect();
-        let notes = [asked.cell.notes(), &said, &nothing].concat();
+        let notes = [asked.cell.notes(), &said].concat();
         let found = answered(py, || asked.first_contact(&path))?;
         let (found, mut record) = found.map_err(|what| error("QueryError", what))?;
-        record.notes = rows.table.straight().into_iter().chain(nothing).collect();
+        record.notes = rows.table.straight().into_iter().collect();
         let (end, question) = (end_of(&path), Question::Asked(asked, path));
         Ok(PathAnswer { question, end, found, record, notes })
     }
@@ -732,7 +733,7 @@ pub(crate) fn ask_paths<'py>(
         .map(|(k, found)| {
             found.unwrap_or_else(|message| {
                 messages.insert(k, message);
-                Told::nothing(4)
+                Told::nothing(OUTCOMES.len() as u8 - 1)
             })
         })
         .collect();

@@ -99,14 +99,12 @@ impl Cell {
         &self.notes
     }
 
-    /// What is reported if no pair is held against each other, so that no answer says anything.
-    pub fn nothing_held(&self) -> Option<String> {
-        self.pairs.is_empty().then(|| {
-            "no pair of bodies is held against each other: nothing is checked; links need geometry to collide with, \
-             neighbours are held against each other by an SRDF file that does not list them, and meshes of the scene \
-             are held against links that move"
-                .into()
-        })
+    /// Returns the same cell if it has a pair of bodies to be held against each other.
+    ///
+    /// # Errors
+    /// [`RobotError::NoPair`]: every path would be free.
+    pub fn with_a_pair(self) -> Result<Self, RobotError> {
+        if self.pairs.is_empty() { Err(RobotError::NoPair) } else { Ok(self) }
     }
 
     /// The question about a path.

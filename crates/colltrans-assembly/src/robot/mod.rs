@@ -120,6 +120,13 @@ pub enum RobotError {
         /// All that there are.
         joints: String,
     },
+    /// No pair of bodies is held against each other.
+    #[error(
+        "no pair of bodies is held against each other, so nothing can be checked: links need geometry to collide \
+         with, neighbours are held against each other by an SRDF file that does not list them, and meshes of the \
+         scene are held against links that move"
+    )]
+    NoPair,
     /// Two things have one name.
     #[error("two links or bodies around are called {name}")]
     Twice {

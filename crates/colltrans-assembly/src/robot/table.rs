@@ -125,8 +125,14 @@ impl Table {
         let read: Json = serde_json::from_str(text).map_err(|e| at(&e))?;
         let Trajectory { joint_names: names, points } = match read {
             Json::Rows(rows) => return Self { rows, ..Self::default() }.even(),
-            Json::Trajectory(trajectory) | Json::Wrapped { joint_trajectory: trajectory } => {
-                trajectory
+            Json::Trajectory(trajectory) => trajectory,
+            Json::Wrapped { joint_trajectory, multi_dof_joint_trajectory: several } => {
+                if several.is_some_and(|several| !several.points.is_empty()) {
+                    let reason = "joints of several degrees of freedom cannot be followed: only a trajectory \
+                                  without points here is accepted";
+                    return Err(wrong("multi_dof_joint_trajectory", reason));
+                }
+                joint_trajectory
             }
         };
         let has = |of: fn(&Point) -> &Option<Vec<f64>>| {
@@ -170,7 +176,13 @@ impl Table {
 enum Json {
     Rows(Vec<Vec<f64>>),
     Trajectory(Trajectory),
-    Wrapped { joint_trajectory: Trajectory },
+    Wrapped { joint_trajectory: Trajectory, multi_dof_joint_trajectory: Option<MultiDof> },
+}
+
+/// A trajectory of joints with several degrees of freedom, such as a floating base.
+#[derive(Deserialize)]
+struct MultiDof {
+    points: Vec<serde::de::IgnoredAny>,
 }
 
 #[derive(Deserialize)]
@@ -253,6 +265,11 @@ mod tests {
         assert_eq!(told("[[1, 2], [1]]"), "row 1: it has 1 values, not 2");
         assert!(told("{\"points\": []}").contains("it is neither a list of rows nor"));
         assert!(told("[[1, 2").contains("line 1"));
+        let floating = r#"{"joint_trajectory": {"joint_names": ["a"], "points": [{"positions": [1]}]},
+            "multi_dof_joint_trajectory": {"joint_names": ["base"], "points": [{"transforms": [{}]}]}}"#;
+        assert!(
+            told(floating).starts_with("multi_dof_joint_trajectory: joints of several degrees")
+        );
         let mixed = r#"{"joint_names": ["a"], "points": [
             {"positions": [1], "time_from_start": 1}, {"positions": [2]}]}"#;
         assert!(told(mixed).contains("some have none"));

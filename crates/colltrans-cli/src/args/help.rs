@@ -258,7 +258,7 @@ With --json one object:
   place     {\"row\", \"share\"}: which share of the way from that row to the next one is done at lower
   pair      the names of the two: links, or meshes of the scene
   point normal   where the first is nearest to the second then, and the direction to it, in the world
-  overlaps  where it begins: the names of all pairs that overlap there
+  overlaps  where it begins: the names of all pairs that overlap there, or are as near as keep
   notes     in what the answer is about less than the input
   pairs looks planes   how many pairs of bodies were asked about, how often two were looked at, and planes
             in the proof

@@ -35,7 +35,7 @@ pub(crate) struct PathArguments {
     /// too, a contact of a hull is only a bound. Meshes that are open are taken as they are.
     #[arg(long, value_name = "LINK")]
     pub(crate) hull: Vec<String>,
-    /// Fail with exit code 7 where the answer is about less than the input: velocities that are not used, or no pair
+    /// Fail with exit code 7 where the answer is about less than the input: velocities that are not used
     #[arg(long)]
     pub(crate) strict: bool,
     /// The value of a joint that rests, in radians or metres, instead of a column

@@ -4,7 +4,7 @@ use std::fs;
 
 use serde_json::{Value, json};
 
-use crate::support::{answered, data, folder, json as read, run, stderr};
+use crate::support::{answered, data, folder, json as read, refused, run, stderr};
 
 /// The files of the arm, its path and a wire in its way.
 fn files() -> [String; 3] {
@@ -240,19 +240,24 @@ fn velocities_that_are_not_used_are_said_and_fail_where_that_is_strict() {
 }
 
 #[test]
-fn a_path_without_any_pair_says_that_nothing_is_checked() {
+fn a_path_without_any_pair_is_refused() {
     let folder = folder();
     boxes(folder.path(), &["a", "b"], &slide("s", "a", "b", 3.0));
     fs::write(folder.path().join("rows.csv"), "s\n0\n0.3\n").unwrap();
     let asked = ["path", "boxes.urdf", "rows.csv"];
+    refused(folder.path(), &asked, 3, &["no pair of bodies", "nothing can be checked", "SRDF"]);
+}
+
+#[test]
+fn pairs_nearer_than_a_gap_at_the_start_are_not_said_to_overlap() {
+    let folder = folder();
+    boxes(folder.path(), &["a", "b"], &slide("s", "a", "b", 3.0));
+    fs::write(folder.path().join("rows.csv"), "s\n0\n0.3\n").unwrap();
+    fs::write(folder.path().join("none.srdf"), "<robot name=\"r\"/>").unwrap();
+    let asked = ["path", "boxes.urdf", "rows.csv", "--srdf", "none.srdf", "--keep", "2.5"];
     let text = answered(folder.path(), &asked);
-    assert!(text.starts_with("free: no pair of bodies is held against each other\n"), "{text}");
-    assert!(stderr(&run(folder.path(), &asked)).contains("nothing is checked"));
-    let told = read(&answered(folder.path(), &[&asked[..], &["--json"]].concat()));
-    assert_eq!(told["pairs"], 0);
-    assert!(told["notes"][0].as_str().unwrap().contains("nothing is checked"), "{told}");
-    let strict = run(folder.path(), &[&asked[..], &["--strict"]].concat());
-    assert_eq!(strict.status.code(), Some(7));
+    assert!(text.starts_with("overlapping: 1 pair overlaps or is as near as 2.5 where"), "{text}");
+    assert!(text.contains("too near"), "{text}");
 }
 
 #[test]

@@ -37,7 +37,7 @@ pub struct PathRecord {
     /// The names of those that were not, though a joint may move one against the other: nothing is said of them.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub left_out: Vec<[String; 2]>,
-    /// Where the path begins with overlaps: the names of all pairs that overlap there.
+    /// Where the path begins with overlaps: the names of all pairs that overlap there, or are as near as `keep`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub overlaps: Vec<[String; 2]>,
     /// For people: in what the answer is about less than the input.

@@ -36,7 +36,7 @@ def test_the_gallery_has_twelve_programs_and_the_site_three_notebooks() -> None:
         title, words = program.read_text().splitlines()[:2]
         assert title.startswith("# ") and words.startswith("# "), program
         assert ('"$1"' if program.suffix == ".sh" else "sys.argv[1]") in program.read_text()
-    notebooks = sorted((SITE / "notebooks").iterdir())
+    notebooks = sorted((SITE / "notebooks").glob("*.ipynb"))
     assert len(notebooks) == 3
     for notebook in notebooks:
         cells = json.loads(notebook.read_text())["cells"]

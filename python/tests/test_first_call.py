@@ -10,6 +10,7 @@ import pytest
 
 import colltrans
 from colltrans import (
+    Assembly,
     BuildError,
     ConvexPolyhedron,
     InputError,
@@ -17,6 +18,7 @@ from colltrans import (
     MotionCast,
     Pose,
     PoseError,
+    Robot,
     RoundedPoseWarning,
     Solid,
     cast,
@@ -185,6 +187,15 @@ def test_a_missing_file_is_a_file_not_found_error(tmp_path: Path) -> None:
             read(tmp_path / "missing.stl")
         with pytest.raises(colltrans.MeshError):
             read(tmp_path / "missing.stl")
+    for name in ("missing.toml", "missing.glb", "missing.urdf", "missing.step", "missing"):
+        with pytest.raises(FileNotFoundError, match=name):
+            Assembly.read(tmp_path / name)
+    robot = tmp_path / "arm.urdf"
+    with pytest.raises(FileNotFoundError, match=r"arm.urdf"):
+        Robot.read(robot)
+    robot.write_text('<robot name="a"><link name="a"/></robot>')
+    with pytest.raises(FileNotFoundError, match=r"missing.srdf"):
+        Robot.read(robot, srdf=tmp_path / "missing.srdf")
 
 
 def test_a_file_that_is_not_convex_names_the_calls_that_take_it(tmp_path: Path) -> None:

@@ -67,7 +67,7 @@ def test_answers_save_their_proofs(cli: Path, tmp_path: Path) -> None:
     ball = obstacles.add(Solid.from_pieces([CUBE]), [40, 0, 0])
     where = [10, 10, 30]
     answers: dict[str, Any] = {
-        "is between": obstacles.nearest(CUBE, where),
+        "none is nearer": obstacles.nearest(CUBE, where),
         "farther": obstacles.within(CUBE, 20, where),
         "none stops": obstacles.clearance(CUBE, DOWN, where),
         "0.25 away or nearer": obstacles.clearance(CUBE, DOWN, where, keep=0.25),

@@ -26,7 +26,7 @@ NUDGE = 1e-9
 #: What is not part of this repository is looked at where it is.
 COLLECTION = ROOT.parent / "shared" / "data" / "assemblies"
 NAMES = ["burr_p3_19", "key", "key_tight_turned", "keyhole_L", "maze_2", "maze_8"]
-NAMES += ["two_step_pocket", "captive_bar", "dovetail", "flange8", "pillow_block"]
+NAMES += ["two_step_pocket", "dovetail", "flange8", "pillow_block"]
 #: Folders of parts that are judged as well, as `plans --parts` of the benchmarks writes them.
 MACHINES = os.environ.get("COLLTRANS_MACHINES")
 

@@ -92,6 +92,13 @@ pub enum ReadError {
     },
 }
 
+impl ReadError {
+    /// Checks whether the file does not exist.
+    pub fn is_missing_file(&self) -> bool {
+        matches!(self, Self::Io { source, .. } if source.kind() == std::io::ErrorKind::NotFound)
+    }
+}
+
 /// Why something about an assembly cannot be answered.
 #[derive(Debug, Error)]
 #[non_exhaustive]

@@ -42,16 +42,18 @@ pub(crate) fn query_error(what: &QueryError, case: impl FnOnce() -> String) -> P
     })
 }
 
-/// Errors that become the exception of one class.
+/// Errors that become an exception.
 pub(crate) trait Raised: Display {
-    /// Its name.
-    const CLASS: &'static str;
+    /// Returns the name of its class.
+    fn class(&self) -> &'static str;
 }
 
 macro_rules! raised {
     ($($class:ident: $($error:ty),+;)+) => {$($(
         impl Raised for $error {
-            const CLASS: &'static str = stringify!($class);
+            fn class(&self) -> &'static str {
+                stringify!($class)
+            }
         }
     )+)+};
 }
@@ -62,7 +64,13 @@ raised! {
     CertificateError: CertificateError;
     CaseError: CaseError;
     QueryError: QueryError, MotionError;
-    AssemblyError: AssemblyError, ReadError;
+    AssemblyError: AssemblyError;
+}
+
+impl Raised for ReadError {
+    fn class(&self) -> &'static str {
+        if self.is_missing_file() { "MissingFileError" } else { "AssemblyError" }
+    }
 }
 
 /// What was computed, or an exception.
@@ -72,7 +80,7 @@ pub(crate) trait OrRaise<T> {
 
 impl<T, E: Raised> OrRaise<T> for Result<T, E> {
     fn or_raise(self) -> PyResult<T> {
-        self.map_err(|what| error(E::CLASS, what))
+        self.map_err(|what| error(what.class(), what))
     }
 }
 

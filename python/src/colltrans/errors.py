@@ -48,16 +48,16 @@ class MeshError(ColltransError, ValueError):
     """A mesh file that cannot be read, or holds something else than its name says."""
 
 
-class MissingFileError(MeshError, FileNotFoundError):
-    """A mesh file that does not exist."""
-
-
 class RoundedPoseWarning(UserWarning):
     """A rotation that was written with few digits and replaced by the nearest rotation."""
 
 
 class AssemblyError(ColltransError, ValueError):
     """An assembly that cannot be read, a part that is none, or a name that no part has."""
+
+
+class MissingFileError(MeshError, AssemblyError, FileNotFoundError):
+    """A file of a mesh, an assembly or a robot that does not exist."""
 
 
 def as_error(error: BaseException, place: str) -> ColltransError:

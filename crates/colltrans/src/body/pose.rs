@@ -131,7 +131,7 @@ impl Pose {
     /// and at most 0.02 becomes the nearest rotation, its polar factor. Returns its defect in that case.
     ///
     /// # Errors
-    /// As [`Self::from_matrix`], for a matrix that is off by more.
+    /// As [`Self::from_matrix`], for a matrix that is off by more than 0.02.
     pub fn from_rounded_matrix(
         matrix: DMat3,
         translation: DVec3,
@@ -139,7 +139,13 @@ impl Pose {
         let defect = largest_defect(matrix);
         let is_rounded = defect > TOLERANCE && defect <= FEW_DIGITS;
         let matrix = if is_rounded { nearest_rotation(matrix) } else { matrix };
-        Ok((Self::from_matrix(matrix, translation)?, is_rounded.then_some(defect)))
+        let pose = Self::from_matrix(matrix, translation).map_err(|error| match error {
+            PoseError::NotARotationMatrix { columns, defect, .. } => {
+                PoseError::NotARotationMatrix { columns, defect, tolerance: FEW_DIGITS }
+            }
+            other => other,
+        })?;
+        Ok((pose, is_rounded.then_some(defect)))
     }
 
     /// A translation alone.

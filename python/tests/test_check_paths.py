@@ -224,6 +224,17 @@ def test_a_path_of_one_row_is_free_by_planes_alone() -> None:
     assert check.check(json.dumps(one)).holds == []
 
 
+def test_planes_leave_what_the_hulls_leave_out() -> None:
+    file = proof("path_free")
+    names = {name for pair in file["statement"]["pairs"] for name in pair}
+    for body in file["bodies"]:
+        if body["name"] in names:
+            body["body"]["convex"]["hull_error"] = 1e-15
+    assert not refused(file)
+    body["body"]["convex"]["hull_error"] = 10.0
+    assert refused(file)
+
+
 def test_fields_that_are_missing_or_unknown_are_refused() -> None:
     file = proof("path_contact")
     for under in ((), ("proof",), ("statement",), ("proof", "meeting"), ("bodies", 0)):

@@ -2895,6 +2895,8 @@ class Couple:
     keep: Fraction
     own: Sequence[Vector]
     other: Sequence[Vector]
+    #: How far the input of both bodies may be beyond their vertices.
+    left_out: Fraction
 
     def off(self) -> Fraction:
         """How far heights may be off for what sines, roots and rotations leave out."""
@@ -2908,7 +2910,7 @@ class Couple:
         p, q = (of.at(row, share) for of in (self.moving, self.fixed))
         high = max(dot(n, p.place(v)) for v in self.own)
         low = min(dot(n, q.place(v)) for v in self.other)
-        return low - high - self.off()
+        return low - high - self.off() - self.left_out
 
     def has(self, plane: Plane, row: int) -> bool:
         unit(plane.normal)
@@ -2981,12 +2983,14 @@ class Walk:
     fixed: Carried
     keep: Fraction
     pieces: tuple[Pieces, Pieces]
+    #: How far the input of both bodies may be beyond their vertices.
+    left_out: Fraction
     #: The last row.
     last: int
 
     def of(self, numbers: tuple[int, int]) -> Couple:
         own, other = (side.points[k] for side, k in zip(self.pieces, numbers, strict=True))
-        return Couple(self.moving, self.fixed, self.keep, own, other)
+        return Couple(self.moving, self.fixed, self.keep, own, other, self.left_out)
 
     def cover(
         self,
@@ -3171,6 +3175,8 @@ class Robot:
     #: Of each body the frames that carry it, and where it is in the last one.
     bodies: list[tuple[list[int], Body]]
     pieces: list[Pieces]
+    #: How far the input of each body may be beyond its vertices.
+    left_out_of: list[Fraction]
     names: list[str]
     pairs: list[tuple[int, int]]
 
@@ -3203,7 +3209,7 @@ class Robot:
                 most = _MOST_TURN if stage.kind == "turning" else MOST
                 for row in rows:
                     bounded(row[stage.column], most, "the value of a joint")
-        robot = cls(frames, parents, rows, times, [], [], [], [])
+        robot = cls(frames, parents, rows, times, [], [], [], [], [])
         for of in file["bodies"]:
             robot.add(of)
         numbers = {name: k for k, name in enumerate(robot.names)}
@@ -3227,6 +3233,8 @@ class Robot:
         self.names.append(name)
         self.bodies.append((way[::-1], body))
         self.pieces.append(Pieces.read(body, of.get("parts"), of["body"]))
+        error = of["body"]["convex"]["hull_error"] if body.is_convex else 0
+        self.left_out_of.append(number(error))
 
     def walk(self, pair: tuple[int, int], keep: Fraction) -> Walk:
         """Two bodies, seen from the frame that both stand in."""
@@ -3238,7 +3246,8 @@ class Robot:
             for way, of in ((way_p, p), (way_q, q))
         )
         pieces = self.pieces[pair[0]], self.pieces[pair[1]]
-        return Walk(own, other, keep, pieces, len(self.rows) - 1)
+        left_out = sum((self.left_out_of[k] for k in pair), Fraction())
+        return Walk(own, other, keep, pieces, left_out, len(self.rows) - 1)
 
     def time(self, row: int, share: Fraction) -> Fraction:
         times = self.times

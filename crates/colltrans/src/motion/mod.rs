@@ -79,6 +79,7 @@ use self::span::{Span, spans};
 pub use self::verify::MotionProofError;
 pub use crate::body::error::MotionError;
 pub use crate::body::motion::{Motion, Moving, Piece as MotionPiece};
+use crate::body::pose::STRETCHED;
 use crate::body::solid::Solid;
 use crate::body::{ConvexPolyhedron, Hull};
 use crate::number::noise::Noise;
@@ -181,11 +182,24 @@ impl MotionCast<'_> {
         Ok(self.as_solids(undecided).unwrap_or(found))
     }
 
-    /// The question about the same bodies as solids, as they are.
+    /// The question about the same bodies as solids, as they are. A gap is added by which the points that a body was
+    /// made of may be beyond its faces.
     fn between_solids(&self) -> Result<MotionCast<'_, Solid>, QueryError> {
         let moving = Moving { body: self.moving.body, motion: Cow::Borrowed(&*self.moving.motion) };
         let fixed = Moving { body: self.fixed.body, motion: Cow::Borrowed(&*self.fixed.motion) };
-        MotionCast::between(moving, fixed)?.tolerating(0.0)?.keeping(self.keep)
+        MotionCast::between(moving, fixed)?.tolerating(0.0)?.keeping(self.keep + self.left_out())
+    }
+
+    /// Returns how far the points that both bodies were made of may be beyond their faces; 0 if they are not.
+    fn left_out(&self) -> f64 {
+        let beyond = |body: &ConvexPolyhedron| body.hull_error() + body.input_excess();
+        (beyond(self.moving.body) + beyond(self.fixed.body)) * STRETCHED
+    }
+
+    /// Returns when the bodies certainly meet, if they do as solids from this time on: never for certain, if what the
+    /// solids come as near as need not be a contact.
+    fn meeting_of_solids(&self, time: f64) -> f64 {
+        if self.left_out() == 0.0 { time } else { f64::INFINITY }
     }
 
     /// Returns the answer of the search between solids; `None` if it proves no more than what is undecided.
@@ -202,14 +216,16 @@ impl MotionCast<'_> {
         };
         match &outcome {
             MotionOutcome::Free(_) => Some(MotionOutcome::Free(MotionFree { proof, steps })),
-            MotionOutcome::Contact(of) => {
+            MotionOutcome::Contact(of) if self.left_out() == 0.0 => {
                 touching([of.lower, of.upper], proof).map(MotionOutcome::Contact)
             }
-            MotionOutcome::Grazing(of) => {
-                touching([of.lower, of.upper], proof).map(MotionOutcome::Grazing)
+            MotionOutcome::Contact(of) | MotionOutcome::Grazing(of) => {
+                let upper = self.meeting_of_solids(of.upper);
+                touching([of.lower, upper], proof).map(MotionOutcome::Grazing)
             }
             MotionOutcome::Undecided(of) if of.lower > undecided.lower => {
-                touching([of.lower, of.upper], proof).map(MotionOutcome::Undecided)
+                let upper = self.meeting_of_solids(of.upper);
+                touching([of.lower, upper], proof).map(MotionOutcome::Undecided)
             }
             MotionOutcome::Undecided(_) | MotionOutcome::Overlapping(_) => None,
         }

@@ -87,7 +87,8 @@ pub(super) fn verify(cast: &MotionCast, proof: &MotionProof) -> Result<[f64; 2],
     if let Some(solids) = &proof.solids {
         let plain = proof.spans.is_empty() && proof.meeting.is_none();
         let asked = cast.between_solids().ok().filter(|_| plain && cast.keep >= 0.0);
-        return asked.ok_or(MotionProofError::Start)?.verify(solids);
+        let [reached, meeting] = asked.ok_or(MotionProofError::Start)?.verify(solids)?;
+        return Ok([reached, cast.meeting_of_solids(meeting)]);
     }
     let mut reached = 0.0;
     let mut last = None;

@@ -2474,6 +2474,8 @@ def shells(facets: list[Triangle]) -> list[Vector]:
 
     def root(v: Vector) -> Vector:
         while leads.setdefault(v, v) != v:
+            # Every other one on the way is led on, so that ways stay short.
+            leads[v] = leads[leads[v]]
             v = leads[v]
         return v
 

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::DVec3;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 use super::statement::{Contacts, DistanceStatement, FreeStatement, SolidStatement, Statement};
@@ -141,8 +142,45 @@ pub(crate) fn said<'a>(text: &'a str, known: &'static str) -> Result<&'a str, Ca
         format: String,
     }
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let Named { format: found } = serde_json::from_str(text).map_err(CaseError::Proof)?;
+    let Named { format: found } = nested(text)?;
     if found == known { Ok(text) } else { Err(CaseError::Format { found, known }) }
+}
+
+/// Lists and objects within each other in a file of proof, at most: the cover of two bodies of a million facets takes
+/// 250 of them.
+const MOST_NESTED: usize = 400;
+
+/// Reads a file whose covers are nested as trees of parts are: deeper than `serde_json` reads by itself.
+pub(crate) fn nested<T: DeserializeOwned>(text: &str) -> Result<T, CaseError> {
+    if depth_of(text) > MOST_NESTED {
+        let reason = format!("lists and objects are nested more than {MOST_NESTED} deep");
+        return Err(CaseError::Proof(serde::de::Error::custom(reason)));
+    }
+    let mut reader = serde_json::Deserializer::from_str(text);
+    reader.disable_recursion_limit();
+    let read = T::deserialize(&mut reader).map_err(CaseError::Proof)?;
+    reader.end().map_err(CaseError::Proof)?;
+    Ok(read)
+}
+
+/// Returns how deep lists and objects of JSON are nested, at least.
+fn depth_of(text: &str) -> usize {
+    let (mut depth, mut deepest) = (0_usize, 0);
+    let (mut in_text, mut escaped) = (false, false);
+    for byte in text.bytes() {
+        match byte {
+            _ if escaped => escaped = false,
+            b'\\' if in_text => escaped = true,
+            b'"' => in_text = !in_text,
+            b'[' | b'{' if !in_text => {
+                depth += 1;
+                deepest = deepest.max(depth);
+            }
+            b']' | b'}' if !in_text => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+    }
+    deepest
 }
 
 pub(crate) fn convex_body(

@@ -25,7 +25,7 @@ use crate::free::{FreeDirections, FreeError};
 use crate::pair::Pair;
 use crate::pair::solid::Unproven;
 use crate::setting::error::QueryError;
-pub(crate) use file::{BodyFile, convex_body, said};
+pub(crate) use file::{BodyFile, convex_body, nested, said};
 use file::{Pieces, again};
 pub use scene::{SceneProof, SceneStatement};
 pub(crate) use scene::{Written, kept};

@@ -8,7 +8,9 @@ use colltrans::motion::{
     Motion, MotionCast, MotionProofFile, MotionProofFiles, SolidMotionProofFile,
 };
 use colltrans::{ConvexPolyhedron, Pose, Solid};
-use glam::DVec3;
+use colltrans_testkit::shapes::Mesh;
+use colltrans_testkit::solids::turned;
+use glam::{DMat3, DQuat, DVec3};
 use serde_json::{Value, json};
 
 fn cube() -> ConvexPolyhedron {
@@ -230,4 +232,31 @@ fn traces_in_axes_are_no_reason_to_refuse() {
     let file = cart(&[0.0, 8.0]);
     let traced = with(&file, "/frames/0/joint/sliding", json!([1.0, 1e-310, 0.0]));
     says_of_path(&traced).expect("it holds");
+}
+
+/// Two rings of 14,400 facets that hang in each other: their cover is nested deeper than JSON is read by default.
+#[test]
+fn a_path_of_bodies_with_many_facets_is_read_back() {
+    let profile: Vec<[f64; 2]> = (0..60)
+        .map(|k| f64::from(k) * std::f64::consts::TAU / 60.0)
+        .map(|a| [0.5 + 0.09 * a.cos(), 0.09 * a.sin()])
+        .collect();
+    let Mesh { vertices, faces } = turned(&profile, 120);
+    let ring = Solid::from_mesh(&vertices, &faces).expect("a ring");
+    let frame = Frame { parent: None, origin: Pose::IDENTITY, joint: Joint::Turning(DVec3::Z) };
+    let hinge = Mechanism::new(vec![frame]).expect("a mechanism");
+    let path = JointPath::evenly(vec![vec![0.0], vec![0.05], vec![0.1]]).expect("a path");
+    let upright = DQuat::from_mat3(&DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X));
+    let through = Pose::new(upright, DVec3::X * 0.5).expect("a pose");
+    let bodies =
+        vec![PathBody::carried(0, ring.at(Pose::IDENTITY)), PathBody::standing(ring.at(through))];
+    let cast = PathCast::new(&hinge, &path, bodies, vec![[0, 1]]).expect("a cast");
+    let (_, file) = PathProofFile::answer(&cast, &[]).expect("an answer");
+    let text = file.to_json();
+    assert!(serde_json::from_str::<Value>(&text).is_err(), "it is not nested that deep");
+    let read = PathProofFile::from_json(&text).expect("a proof");
+    assert_eq!(read.check().expect("it holds"), [2.0, f64::INFINITY]);
+    let deeper = text.replacen("\"covers\":[", &format!("\"covers\":{}", "[".repeat(500)), 1);
+    let refused = PathProofFile::from_json(&deeper).unwrap_err().to_string();
+    assert!(refused.contains("nested more than 400 deep"), "{refused}");
 }

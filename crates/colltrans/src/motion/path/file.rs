@@ -15,7 +15,7 @@ use crate::among::{AnyBody, ByKind};
 use crate::body::{InputFacet, Pose};
 use crate::cast::CaseError;
 use crate::number::noise;
-use crate::proof_file::{BodyFile, Written, kept, said};
+use crate::proof_file::{BodyFile, Written, kept, nested, said};
 
 /// What a file of this version calls itself.
 const FORMAT: &str = "colltrans path proof 2";
@@ -219,7 +219,7 @@ impl PathProofFile {
     /// What is wrong with it.
     pub fn from_json(text: &str) -> Result<Self, PathFileError> {
         let text = said(text, FORMAT)?;
-        let file: File = serde_json::from_str(text).map_err(CaseError::Proof)?;
+        let file: File = nested(text)?;
         let body = |of: BodyRecord| {
             let written = Written::of(of.body)?;
             // They are there for whoever has no such trees; they have to be those of these bodies.

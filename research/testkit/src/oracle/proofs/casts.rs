@@ -75,7 +75,7 @@ pub(super) fn drawn(seed: u64) -> Option<(Setting, Convex)> {
 }
 
 /// Returns the vertices of a body, turned, and points of its faces: rounded, some are beyond the hull that is kept.
-fn rounded_cloud(body: &ConvexPolyhedron, random: &mut Random) -> Vec<DVec3> {
+pub(super) fn rounded_cloud(body: &ConvexPolyhedron, random: &mut Random) -> Vec<DVec3> {
     let turn = random.rotation();
     let vertices = body.vertices();
     let mut points = vertices.to_vec();

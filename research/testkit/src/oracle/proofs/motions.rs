@@ -8,7 +8,7 @@ use colltrans::{ConvexPolyhedron, Pose, Solid};
 use glam::{DMat3, DVec3};
 use serde_json::Value;
 
-use super::casts::{other_normal, other_pair, other_weights};
+use super::casts::{other_normal, other_pair, other_weights, rounded_cloud};
 use super::checkers::Verdict;
 use super::file::{indices, is_at_limit, numbers, vector, vectors};
 use super::mutants::{number, with};
@@ -57,8 +57,17 @@ fn verify_solids(text: &str) -> Verdict {
     checked.map_or_else(Verdict::Refused, |_| Verdict::Holds)
 }
 
-/// A body of a few vertices.
+/// A body of a few vertices; one in three leaves out some of the points that it is made of.
 pub(super) fn body(random: &mut Random) -> ConvexPolyhedron {
+    let body = plain_body(random);
+    if random.one_in(3) {
+        let cloud = rounded_cloud(&body, random);
+        return ConvexPolyhedron::from_points(&cloud).expect("a body");
+    }
+    body
+}
+
+fn plain_body(random: &mut Random) -> ConvexPolyhedron {
     let size = random.pick(&[0.3, 1.0, 1.0]);
     let points = if random.one_in(2) {
         let half = DVec3::new(1.0, random.range(0.1, 1.0), random.range(0.1, 1.0)) * (0.5 * size);

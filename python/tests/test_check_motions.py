@@ -11,7 +11,7 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from test_check import changed, check, proof, refused
+from test_check import changed, check, proof, refused, without_field
 
 ALL = ["contact", "free", "kept", "through", "alone", "sinking"]
 
@@ -181,11 +181,7 @@ def test_fields_that_are_missing_or_unknown_are_refused() -> None:
         more = changed({"of": file}, ("of", *under), lambda of: {**of, "more": 0})["of"]
         assert refused(more)
         for name in set(at) - {"steps"}:
-            rest = changed(
-                {"of": file},
-                ("of", *under),
-                lambda of, name=name: {k: v for k, v in of.items() if k != name},
-            )["of"]
+            rest = changed({"of": file}, ("of", *under), without_field(name))["of"]
             assert refused(rest), name
 
 

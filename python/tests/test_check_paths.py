@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from test_check import changed, check, proof, refused
+from test_check import always, changed, check, proof, refused, without_field
 from test_schema import conform
 
 from colltrans import Robot, Solid
@@ -207,7 +207,7 @@ def test_no_place_is_beyond_the_way_to_the_next_row() -> None:
     for way in steps:
         # Seven times the way would be the time of a row that no plane is of.
         for share in (7.0, -1.0):
-            assert refused(changed(file, way, lambda _, share=share: share))
+            assert refused(changed(file, way, always(share)))
 
 
 def test_a_path_of_one_row_is_free_by_planes_alone() -> None:
@@ -243,11 +243,7 @@ def test_fields_that_are_missing_or_unknown_are_refused() -> None:
         for key in under:
             at = at[key]
         for name in at:
-            rest = changed(
-                {"of": file},
-                ("of", *under),
-                lambda of, name=name: {k: v for k, v in of.items() if k != name},
-            )["of"]
+            rest = changed({"of": file}, ("of", *under), without_field(name))["of"]
             assert refused(rest), name
 
 

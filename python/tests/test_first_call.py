@@ -149,7 +149,7 @@ def test_a_body_of_another_kind_is_refused_with_the_call_that_takes_it() -> None
     with pytest.raises(TypeError, match=r"ConvexPolyhedron\(points\) makes the convex hull"):
         ask(CUBE, np.zeros((4, 3)), [0, 0, 1])
     with pytest.raises(TypeError, match=r"ConvexPolyhedron\(points\) makes the convex hull"):
-        clearance(CUBE, [[0, 0, 0]], [0, 0, 1])  # type: ignore[arg-type]
+        clearance(CUBE, [[0, 0, 0]], [0, 0, 1])  # type: ignore[call-overload]
 
 
 def test_a_list_of_poses_is_refused_for_one_question_and_taken_in_bulk() -> None:

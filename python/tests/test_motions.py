@@ -214,9 +214,9 @@ def test_motions() -> None:
         again = pickle.loads(pickle.dumps(motion))
         assert again == motion and again.start == motion.start and motion != Motion.still()
         assert again.at(0.7) == motion.at(0.7)
-    pose = "pose=[1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0]"
+    placed = "pose=[1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 1.0]"
     turn = "Motion.turn([0.0, 0.0, 0.0], [0.0, 0.0, 1.0], radians=1.5707963267948966"
-    assert repr(quarter) == f"{turn}, {pose})"
+    assert repr(quarter) == f"{turn}, {placed})"
 
 
 def test_a_query_is_saved_and_replayed(cli: Path, tmp_path: Path) -> None:

@@ -44,6 +44,7 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<(), Failure> {
         }
     };
     let mut record = PathRecord::of(&outcome, &cast, cell.names());
+    record.hulls = cell.hulls();
     record.notes.clone_from(&partial);
     if arguments.json {
         let written = serde_json::to_string(&record);
@@ -199,14 +200,33 @@ fn overlapping(text: &mut String, record: &PathRecord, robot: &Robot) {
     if pairs.is_empty() {
         return;
     }
-    let ignore: Vec<String> = pairs.iter().map(|[a, b]| format!("--ignore {a},{b}")).collect();
+    let ignore: Vec<String> =
+        pairs.iter().map(|[a, b]| format!("--ignore {}", quoted(&format!("{a},{b}")))).collect();
     line(text, "leave out", &ignore.join(" "));
     let are_links = |pair: &&[String; 2]| pair.iter().all(|name| robot.link(name).is_ok());
     for [a, b] in pairs.iter().filter(are_links) {
-        let element =
-            format!("<disable_collisions link1=\"{a}\" link2=\"{b}\" reason=\"Default\"/>");
+        let element = format!(
+            "<disable_collisions link1=\"{}\" link2=\"{}\" reason=\"Default\"/>",
+            escaped(a),
+            escaped(b)
+        );
         line(text, "in SRDF", &element);
     }
+}
+
+/// Returns a word as a shell takes it.
+fn quoted(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "_-.,/:+".contains(c);
+    if word.chars().all(is_plain) {
+        word.into()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
+/// Returns a value of an attribute of XML.
+fn escaped(value: &str) -> String {
+    value.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
 
 /// The readable answer.
@@ -268,6 +288,10 @@ fn words(record: &PathRecord, outcome: &PathOutcome, robot: &Robot) -> String {
         line(&mut text, "left out", &pairs.join("; "));
     }
     kept(&mut text, record.keep);
+    if !record.hulls.is_empty() {
+        let names = record.hulls.join(", ");
+        line(&mut text, "hulls", &format!("{names}: a contact of one is that of its convex hull"));
+    }
     for text_of in &record.notes {
         line(&mut text, "only", text_of);
     }

@@ -303,6 +303,7 @@ impl Robot {
         let notes = [asked.cell.notes(), &said].concat();
         let found = answered(py, || asked.first_contact(&path))?;
         let (found, mut record) = found.map_err(|what| error("QueryError", what))?;
+        record.hulls = asked.cell.hulls();
         record.notes = rows.table.straight().into_iter().collect();
         let (end, question) = (end_of(&path), Question::Asked(asked, path));
         Ok(PathAnswer { question, end, found, record, notes })
@@ -470,6 +471,19 @@ impl PathAnswer {
         self.contact()?.normal.map(|normal| row(py, normal))
     }
 
+    /// list of tuple of (str, str): Where the path begins with overlaps, all pairs that overlap there, or are as
+    /// near as ``keep``.
+    #[getter]
+    fn overlaps(&self) -> Vec<(String, String)> {
+        self.record.overlaps.iter().cloned().map(Into::into).collect()
+    }
+
+    /// list of str: Links for whose meshes their convex hulls stand; a contact of one is that of its hull.
+    #[getter]
+    fn hulls(&self) -> Vec<String> {
+        self.record.hulls.clone()
+    }
+
     /// int: How many pairs of bodies were asked about.
     #[getter]
     fn pairs(&self) -> usize {
@@ -631,7 +645,9 @@ impl PathAnswer {
     fn __repr__(&self) -> String {
         let upper = self.upper().map_or_else(|| "None".into(), |upper| format!("{upper:?}"));
         let pair = self.pair().map(|(a, b)| format!(", {a:?} and {b:?}")).unwrap_or_default();
-        format!("PathContact({:?}, lower={:?}, upper={upper}{pair})", self.outcome(), self.lower())
+        let only: String = self.record.notes.iter().map(|note| format!(", only {note}")).collect();
+        let (outcome, lower) = (self.outcome(), self.lower());
+        format!("PathContact({outcome:?}, lower={lower:?}, upper={upper}{pair}{only})")
     }
 }
 

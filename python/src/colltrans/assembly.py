@@ -495,7 +495,7 @@ class Assembly:
         """
         folders = [Path(package) for package in packages]
         glb = None
-        if Path(path).suffix.lower() in (".step", ".stp"):
+        if Path(path).suffix.lower() in (".step", ".stp") and Path(path).exists():
             from .step import convert
 
             glb, _ = convert(path, chord)

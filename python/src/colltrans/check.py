@@ -351,7 +351,9 @@ def described(points: list[Vector], content: Any) -> None:
     said = content["input_excess"]
     excess = number(0.0 if said is None else said)
     if not 0 <= excess <= error:
-        raise RefusedError(f"an input excess of {float(excess)!r} is negative, or over the hull error")
+        raise RefusedError(
+            f"an input excess of {float(excess)!r} is negative, or over the hull error"
+        )
     faces = [[whole(k, len(points)) for k in listed(face)] for face in listed(content["faces"])]
     if any(len(set(face)) != len(face) or len(face) < 3 for face in faces):
         raise RefusedError("a face has fewer than three corners, or one of them twice")

@@ -229,10 +229,11 @@ def column(values: ArrayLike, name: str) -> Stack:
 def pose_table(values: Poses, name: str) -> Stack:
     if values is None:
         return Stack(np.zeros((1, 3)), ())
-    if isinstance(values, Sequence) and values and all(isinstance(v, Pose) for v in values):
-        values = np.array([pose.as_matrix() for pose in values])
-    matrices = hasattr(values, "as_matrix")
-    array = _arrays.floats(values.as_matrix() if matrices else values, name)  # type: ignore[union-attr]
+    given: Any = values
+    if isinstance(given, Sequence) and given and all(isinstance(v, Pose) for v in given):
+        given = np.array([pose.as_matrix() for pose in given])
+    matrices = hasattr(given, "as_matrix")
+    array = _arrays.floats(given.as_matrix() if matrices else given, name)
     if matrices and array.shape[-2:] == (3, 3):
         array = np.concatenate([array, np.zeros((*array.shape[:-1], 1))], axis=-1)
     shape = array.shape

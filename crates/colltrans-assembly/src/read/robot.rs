@@ -59,16 +59,20 @@ pub(super) fn read(source: Source) -> Result<Robot, ReadError> {
         let name = urdf::named(&source, link)?;
         let pieces = gathered.pieces(link, name, DAffine3::IDENTITY)?;
         let mut bodies = Vec::new();
+        let (takes_hull, mut is_hull) = (source.options.takes_hull(name), false);
         for piece in &pieces {
-            let options = source.options.body().with_hull(source.options.takes_hull(name));
+            let options = source.options.body().with_hull(takes_hull);
             let (body, said) = any_body(piece, &options).map_err(|refused| {
                 in_file(source.path)(AssemblyError::Part { part: name.into(), source: refused })
             })?;
-            notes.extend(said.into_iter().map(|said| format!("link {name}: {said}")));
+            // A hull that is its mesh needs no note.
+            is_hull |= takes_hull && !said.is_empty();
+            let whose = if takes_hull { " as its convex hull" } else { "" };
+            notes.extend(said.into_iter().map(|said| format!("link {name}{whose}: {said}")));
             bodies.push(body);
         }
         notes.extend(round(link).map(|said| format!("link {name}: {said}")));
-        links.push(Link { name: name.into(), frame: made.of_link[name], bodies });
+        links.push(Link { name: name.into(), frame: made.of_link[name], bodies, is_hull });
     }
     let Gathered { missing, notes: left_out, .. } = gathered;
     if let Some(capsule) = left_out.first() {

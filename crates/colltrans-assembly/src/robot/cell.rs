@@ -94,6 +94,13 @@ impl Cell {
         &self.pairs
     }
 
+    /// Returns the names of the links for whose meshes their convex hulls stand.
+    pub fn hulls(&self) -> Vec<String> {
+        let links =
+            self.robot.links().iter().filter(|link| link.is_hull && !link.bodies.is_empty());
+        links.map(|link| link.name.clone()).collect()
+    }
+
     /// What is not held against each other, as far as nobody asked for it.
     pub fn notes(&self) -> &[String] {
         &self.notes

@@ -39,6 +39,8 @@ pub struct Link {
     pub frame: Option<usize>,
     /// What it collides with, in that frame.
     pub bodies: Vec<AnyBody>,
+    /// Whether convex hulls stand for its meshes.
+    pub is_hull: bool,
 }
 
 /// A joint that moves.

@@ -249,6 +249,21 @@ fn a_path_without_any_pair_is_refused() {
 }
 
 #[test]
+fn names_of_overlapping_pairs_are_written_for_a_shell_and_for_xml() {
+    let (folder, [arm, rows, _]) = (folder(), files());
+    let wall = folder.path().join("a <b> & c.off");
+    fs::copy(data().join("cube.off"), &wall).unwrap();
+    let text = answered(folder.path(), &["path", &arm, &rows, wall.to_str().unwrap()]);
+    assert!(text.contains(",a <b> & c'"), "{text}");
+    boxes(folder.path(), &["a&amp;b", "c"], &slide("s", "a&amp;b", "c", 0.3));
+    fs::write(folder.path().join("rows.csv"), "s\n0\n0.1\n").unwrap();
+    fs::write(folder.path().join("none.srdf"), "<robot name=\"r\"/>").unwrap();
+    let asked = ["path", "boxes.urdf", "rows.csv", "--srdf", "none.srdf"];
+    let text = answered(folder.path(), &asked);
+    assert!(text.contains("link1=\"a&amp;b\" link2=\"c\""), "{text}");
+}
+
+#[test]
 fn pairs_nearer_than_a_gap_at_the_start_are_not_said_to_overlap() {
     let folder = folder();
     boxes(folder.path(), &["a", "b"], &slide("s", "a", "b", 3.0));
@@ -281,8 +296,11 @@ fn bad_meshes_are_taken_as_hulls_and_files_are_named() {
     assert!(stderr(&refused).contains("--hull b takes the convex hull"), "{}", stderr(&refused));
     for hull in ["b", "*"] {
         let told = answered(folder.path(), &[&asked[..], &["--hull", hull, "--json"]].concat());
-        assert_eq!(read(&told)["outcome"], "free");
+        let told = read(&told);
+        assert_eq!((&told["outcome"], &told["hulls"]), (&json!("free"), &json!(["b"])));
     }
+    let text = answered(folder.path(), &[&asked[..], &["--hull", "b"]].concat());
+    assert!(text.contains("  hulls        b: a contact of one"), "{text}");
     let unknown = run(folder.path(), &[&asked[..], &["--hull", "c"]].concat());
     assert!(stderr(&unknown).contains("no link c"), "{}", stderr(&unknown));
     let srdf = "<robot><disable_collisions link1=\"a\" link2=\"hand\" reason=\"Never\"/></robot>";

@@ -40,6 +40,9 @@ pub struct PathRecord {
     /// Where the path begins with overlaps: the names of all pairs that overlap there, or are as near as `keep`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub overlaps: Vec<[String; 2]>,
+    /// Links for whose meshes their convex hulls stand: a contact of one is that of its hull.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub hulls: Vec<String>,
     /// For people: in what the answer is about less than the input.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,

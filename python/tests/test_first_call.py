@@ -193,7 +193,8 @@ def test_a_missing_file_is_a_file_not_found_error(tmp_path: Path) -> None:
     robot = tmp_path / "arm.urdf"
     with pytest.raises(FileNotFoundError, match=r"arm.urdf"):
         Robot.read(robot)
-    robot.write_text('<robot name="a"><link name="a"/></robot>')
+    box = '<collision><geometry><box size="1 1 1"/></geometry></collision>'
+    robot.write_text(f'<robot name="a"><link name="a">{box}</link></robot>')
     with pytest.raises(FileNotFoundError, match=r"missing.srdf"):
         Robot.read(robot, srdf=tmp_path / "missing.srdf")
 

@@ -237,6 +237,28 @@ def test_row_groups_are_tasks(tmp_path: Path, bodies: Path, capsys: Any) -> None
     assert "(4 were done before)" in capsys.readouterr().out
 
 
+@pytest.mark.parametrize(
+    "torn",
+    [b"", b"PAR1 half a file", b"PAR1" + bytes(64) + b"PAR1"],
+    ids=["empty", "half", "no footer"],
+)
+def test_a_torn_file_among_row_groups_fails_alone(
+    tmp_path: Path, bodies: Path, capsys: Any, torn: bytes
+) -> None:
+    asked, out = tmp_path / "in", tmp_path / "out"
+    write(asked / "large.parquet", queries(0, 500), row_group_size=100)
+    (asked / "torn.parquet").write_bytes(torn)
+    whole = write(asked / "whole.parquet", queries(1, 500), row_group_size=100).read_bytes()
+    (asked / "half.parquet").write_bytes(whole[: len(whole) // 2])
+    words = [str(asked), str(out), "--bodies", str(bodies), "--rows-per-task", "250"]
+    assert main(words) == 2
+    told = capsys.readouterr()
+    assert told.out.startswith("1,000 rows in 4 shards") and "2 shards FAILED" in told.out
+    for name in ("half.parquet", "torn.parquet"):
+        assert told.err.count(f"error: {asked / name}: ") == 1
+    assert ids(out) == all_ids(2, 500)
+
+
 def test_bodies_of_every_kind_of_list(tmp_path: Path) -> None:
     faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]]
     corners = [[x, y, z] for x in (0.0, 1) for y in (0.0, 1) for z in (0.0, 1)]

@@ -94,20 +94,20 @@ def shards_of(queries: str, out: str) -> list[tuple[str, str]]:
 
 
 def parts_of(job: Job, rows: int) -> Iterator[Job]:
-    """Runs of row groups of so many rows or more, each with a file of answers of its own."""
+    """Yields runs of row groups of `rows` rows or more, each with a file of answers of its own.
+
+    A file that cannot be read stays one shard, because the report of that shard says why.
+    """
     if rows < 1:
         raise InputError("--rows-per-task: at least one")
-    begins, count, total = [0], 0, 0
-    if job.queries.endswith(".parquet"):
-        with files.local(job.queries) as file:
-            metadata = metadata_of(job.queries, file)
-            total = metadata.num_row_groups
-            for number in range(total):
-                count += metadata.row_group(number).num_rows
-                if count >= rows:
-                    begins.append(number + 1)
-                    count = 0
-    ends = sorted({*begins, total})
+    begins, count = [0], 0
+    counts = row_counts(job) if job.queries.endswith(".parquet") else []
+    for number, group in enumerate(counts):
+        count += group
+        if count >= rows:
+            begins.append(number + 1)
+            count = 0
+    ends = sorted({*begins, len(counts)})
     if len(ends) < 3:
         yield job
         return
@@ -115,6 +115,16 @@ def parts_of(job: Job, rows: int) -> Iterator[Job]:
     for part, groups in enumerate(pairwise(ends)):
         answers = f"{stem}-{part:05}-of-{len(ends) - 1:05}.parquet"
         yield Job(job.queries, answers, job.options, groups)
+
+
+def row_counts(job: Job) -> list[int]:
+    """Returns the number of rows of each row group, none of a Parquet file that cannot be read."""
+    try:
+        with files.local(job.queries) as file:
+            metadata = metadata_of(job.queries, file)
+    except (ColltransError, OSError):
+        return []
+    return [metadata.row_group(number).num_rows for number in range(metadata.num_row_groups)]
 
 
 def metadata_of(name: str, file: object) -> pq.FileMetaData:

@@ -18,7 +18,7 @@ mod tests {
 
     use colltrans_testkit::random::Random;
     use colltrans_testkit::shapes::{Mesh, even_rings, extruded, random_hull, ring, ring_points};
-    use colltrans_testkit::solids::{slab, washer};
+    use colltrans_testkit::solids::{comb, comb_outline, slab, washer};
     use glam::{DQuat, DVec3};
 
     use crate::{Cast, ConvexPolyhedron, Pose, Solid};
@@ -224,6 +224,24 @@ mod tests {
             let ring = Solid::from_mesh(&vertices, &faces).expect("a washer");
             assert!(ring.shrink_report(1e-4).inverted.is_empty());
         });
+    }
+
+    /// Boxes of the long triangles of a comb's caps overlap those of the walls of all its teeth.
+    #[test]
+    fn long_triangles_beside_many_walls() {
+        let by_ears = |teeth| extruded(&comb_outline(teeth), [0.0, 1.0]);
+        let shrink_looks = |Mesh { vertices, faces }: Mesh| {
+            let solid = Solid::from_mesh(&vertices, &faces).expect("a comb");
+            looks(|| assert!(solid.shrink_report(1e-4).inverted.is_empty()))
+        };
+        for (what, counts) in [
+            ("fans", [400, 2_000].map(|teeth| shrink_looks(comb(teeth)))),
+            ("ears", [200, 1_000].map(|teeth| shrink_looks(by_ears(teeth)))),
+        ] {
+            let growth = counts[1] as f64 / counts[0] as f64;
+            println!("comb of {what}: {counts:?} looks, {growth:.1} times as many");
+            assert!(growth < 8.0, "comb of {what}: {growth:.1} times as many looks");
+        }
     }
 
     #[test]

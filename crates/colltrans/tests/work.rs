@@ -5,7 +5,7 @@ use colltrans::glam::{DQuat, DVec3};
 use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, Solid};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{Mesh, cuboid, ring, ring_sphere};
-use colltrans_testkit::solids::{bumpy_ball, slab};
+use colltrans_testkit::solids::{bumpy_ball, comb, slab};
 
 const CASTS: u32 = 400;
 
@@ -215,6 +215,33 @@ fn flat_faces_part_at_once() {
         assert!(lifted.is_free() && nodes(&lifted) <= 2, "{lifted:?}");
         let pressed = cast(rotation.transform_vector(DVec3::NEG_Z)).clearance().expect("an answer");
         assert_eq!(pressed.distance(), Some(0.0));
+    }
+}
+
+/// Combs whose teeth are between those of each other are asked along them, across them and out of their plane.
+#[test]
+fn combs_between_each_other_take_pairs_of_nodes_for_each_tooth() {
+    let pairs = |teeth: usize| {
+        let Mesh { vertices, faces } = comb(teeth);
+        let comb = Solid::from_mesh(&vertices, &faces).expect("a comb");
+        let half_turn = DQuat::from_xyzw(0.0, 0.0, 1.0, 0.0);
+        let width = 2.0 * teeth as f64 - 1.0;
+        let mut counts = Vec::new();
+        for shift in [0.0, 0.25] {
+            // Teeth as wide as the gaps touch on both sides; shifted along z they touch, too.
+            let at = DVec3::new(width + 1.0, 8.0, shift);
+            let above = comb.at(Pose::new(half_turn, at).expect("a pose"));
+            for way in [DVec3::X, DVec3::Y, DVec3::NEG_Y, DVec3::Z, DVec3::new(0.0, 0.3, 0.7)] {
+                let cast = Cast::new(above, comb.at(Pose::IDENTITY), way).expect("a query");
+                counts.push(nodes(&cast.clearance().expect("an answer")));
+            }
+        }
+        counts
+    };
+    let [few, many] = [200, 1_000].map(pairs);
+    println!("{few:?} pairs of nodes of 200 teeth, {many:?} of 1,000");
+    for (few, many) in few.into_iter().zip(many) {
+        assert!(many < 15 * few.max(200), "{few} pairs of nodes, {many} of 5 times as many teeth");
     }
 }
 

@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 
 use glam::DVec3;
 
-use crate::shapes::Mesh;
+use crate::shapes::{Mesh, extruded};
 
 /// A solid of revolution about `z`, with so many sides, from a closed profile of `[radius, height]`
 /// that runs counter-clockwise with radii to the right and heights upwards. Points at radius 0 are on
@@ -153,6 +153,33 @@ pub fn bumpy_ball(triangles: usize) -> Mesh {
         p * (1.0 + 0.2 * waves + 0.02 * (31.0 * p.x).sin() * (29.0 * p.z).cos())
     };
     cube.mapped(bump).triangulated()
+}
+
+/// The outline of a comb in `x, y`: teeth of width 1 and length 4, 1 apart, on a bar of height 1.
+pub fn comb_outline(teeth: usize) -> Vec<DVec3> {
+    let tooth = |x: f64| [[x + 1.0, 1.0], [x + 1.0, 5.0], [x, 5.0], [x, 1.0]];
+    let bar = [[0.0, 0.0], [2.0 * teeth as f64 - 1.0, 0.0]];
+    let corners = bar.into_iter().chain((0..teeth).rev().flat_map(|k| tooth(2.0 * k as f64)));
+    corners.map(|[x, y]| DVec3::new(x, y, 0.0)).collect()
+}
+
+/// A comb of height 1. Each cap is a fan of long triangles from one corner of the bar, and two triangles for each tooth.
+pub fn comb(teeth: usize) -> Mesh {
+    let mut comb = extruded(&comb_outline(teeth), [0.0, 1.0]);
+    let walls = comb.faces.split_off(2);
+    let tooth = |k: u32| [2, 3, 4, 5].map(|corner| 4 * k + corner);
+    let teeth = 0..teeth as u32;
+    let roots = teeth.clone().map(tooth).flat_map(|[a, .., d]| [a, d]);
+    let roots: Vec<u32> = [1].into_iter().chain(roots).collect();
+    let fan = roots.windows(2).map(|pair| [0, pair[0], pair[1]]);
+    let above = comb.vertices.len() as u32 / 2;
+    let cap = fan.chain(teeth.map(tooth).flat_map(|[a, b, c, d]| [[a, b, c], [a, c, d]]));
+    comb.faces = cap
+        .flat_map(|[a, b, c]| [[c, b, a], [a, b, c].map(|v| v + above)])
+        .map(Vec::from)
+        .collect();
+    comb.faces.extend(walls);
+    comb
 }
 
 /// A plate in `x, y` with a row of round holes, in long thin faces as CAD programs make them: every

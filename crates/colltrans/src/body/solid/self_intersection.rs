@@ -10,7 +10,10 @@
 //!
 //! The sides of a wall face away from each other, so facets of one plane that look the same way are no
 //! wall's, whatever rounding does to them. Nodes of such facets are dismissed together: thin triangles
-//! of a large face have boxes that overlap by the thousand.
+//! of a large face have boxes that overlap by the thousand. The box of a thin triangle also overlaps
+//! those of the walls beside it, for example of all teeth of a comb. Therefore the longer of two nodes is
+//! opened first, and the triangles themselves are compared with the boxes of much shorter nodes. Nodes
+//! whose facets all have a vertex in common, as in a fan, are dismissed, because such facets only fold.
 
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
@@ -18,15 +21,13 @@ use std::collections::BTreeSet;
 use glam::DVec3;
 
 use super::exact::side;
-use super::tree::{self, Node};
 use super::{Solid, shells};
 use crate::body::Aabb;
 use crate::work;
 
-/// Facets within so many roundings of the largest coordinate of a plane lie in it.
-const FLAT: f64 = 64.0 * f64::EPSILON;
-/// Facets whose normals differ by more than this sine lie in no plane: a first look.
-const TURNED: f32 = 0.5;
+mod fences;
+
+use fences::Fences;
 
 /// The facets, as positions in the triangles, that pass through others when vertices go from where
 /// they are to `moved`, in increasing order. `shell_of` and `volumes` tell the shells as they are.
@@ -140,115 +141,18 @@ struct Placing<'a> {
     vertices: &'a [DVec3],
 }
 
-/// What tells of pairs of nodes that no facets of theirs pass through each other.
-struct Fences {
-    /// Around the facets of each node.
-    boxes: Vec<Aabb>,
-    /// Of nodes whose facets lie in a plane and look the same way.
-    flats: Vec<Option<Flat>>,
-}
-
-/// A plane, and the farthest vertices of the facets in it along the axes.
-struct Flat {
-    normal: DVec3,
-    on: DVec3,
-    rim: [DVec3; 6],
-    /// How far rounding may put points off the plane, and how far more for each unit of distance, by
-    /// tilting it.
-    tolerance: f64,
-    tilt: f64,
-}
-
-impl Flat {
-    fn new(placing: &Placing, node: &Node, tolerance: f64) -> Option<Self> {
-        if node.spread > TURNED {
-            return None;
-        }
-        let corners = || node.facets().flat_map(|t| placing.corners(t));
-        let first = corners().next()?;
-        let mut rim = [first; 6];
-        for p in corners() {
-            for k in 0..3 {
-                if p[k] < rim[k][k] {
-                    rim[k] = p;
-                }
-                if p[k] > rim[k + 3][k] {
-                    rim[k + 3] = p;
-                }
-            }
-        }
-        let (mut area, mut longest) = (DVec3::ZERO, 0.0_f64);
-        for i in 1..6 {
-            for j in 0..i {
-                let [u, v] = [rim[i] - rim[0], rim[j] - rim[0]];
-                let product = u.cross(v);
-                longest = longest.max(u.length()).max(v.length());
-                if product.length_squared() > area.length_squared() {
-                    area = product;
-                }
-            }
-        }
-        let facing = node.facets().map(|t| tree::normal(placing.corners(t)).0).sum::<DVec3>();
-        let normal = (area * area.dot(facing).signum()).try_normalize()?;
-        let tilt = tolerance * longest / area.length();
-        let flat = Self { normal, on: rim[0], rim, tolerance, tilt };
-        let alike = |t: usize| tree::normal(placing.corners(t)).0.dot(normal) > 0.0;
-        let lies = corners().all(|p| flat.holds(p)) && node.facets().all(alike);
-        lies.then_some(flat)
-    }
-
-    fn holds(&self, point: DVec3) -> bool {
-        let away = point - self.on;
-        self.normal.dot(away).abs() <= self.tolerance + self.tilt * away.length()
-    }
-
-    /// Whether both lie in one plane and look the same way.
-    fn is_one_with(&self, other: &Self) -> bool {
-        let holds = |f: &Self, g: &Self| g.rim.iter().all(|p| f.holds(*p));
-        self.normal.dot(other.normal) > 0.0 && (holds(self, other) || holds(other, self))
-    }
-}
-
-impl Fences {
-    fn new(placing: &Placing) -> Self {
-        let nodes = &placing.solid.nodes;
-        let mut boxes = vec![Aabb::EMPTY; nodes.len()];
-        // Children come after their node.
-        for (k, node) in nodes.iter().enumerate().rev() {
-            boxes[k] = if node.is_leaf() {
-                Aabb::of_points(node.facets().flat_map(|t| placing.corners(t)))
-            } else {
-                let [a, b] = [0, 1].map(|n| boxes[k + node.skip as usize + n]);
-                a.join(&b)
-            };
-        }
-        let tolerance = FLAT * placing.solid.reach;
-        let flats = nodes.iter().map(|node| Flat::new(placing, node, tolerance)).collect();
-        Self { boxes, flats }
-    }
-
-    fn part(&self, a: usize, b: usize) -> bool {
-        let touch = self.boxes[a].meets(&self.boxes[b]);
-        let one_plane = match (&self.flats[a], &self.flats[b]) {
-            (Some(f), Some(g)) => a == b || f.is_one_with(g),
-            _ => false,
-        };
-        !touch || one_plane
-    }
-}
-
 impl Placing<'_> {
     fn corners(&self, triangle: usize) -> [DVec3; 3] {
         self.solid.triangles[triangle].map(|v| self.vertices[v as usize])
     }
 
-    /// All pairs of facets whose leaves' boxes touch and do not lie in one plane.
+    /// Visits all pairs of facets, except those whose nodes [`Fences`] separate.
     fn each_pair(&self, visit: &mut impl FnMut([usize; 2])) {
         let fences = Fences::new(self);
         let mut stack = vec![[0, 0]];
         while let Some([a, b]) = stack.pop() {
             work::count(1);
-            if fences.part(a, b) {
+            if fences.separate(a, b) {
                 continue;
             }
             let [m, n] = [a, b].map(|k| &self.solid.nodes[k]);
@@ -261,7 +165,7 @@ impl Placing<'_> {
             } else if a == b {
                 let [x, y] = halves(a);
                 stack.extend([[x, x], [y, y], [x, y]]);
-            } else if n.is_leaf() || (!m.is_leaf() && m.count >= n.count) {
+            } else if n.is_leaf() || (!m.is_leaf() && fences.length(a) >= fences.length(b)) {
                 stack.extend(halves(a).map(|x| [x, b]));
             } else {
                 stack.extend(halves(b).map(|y| [a, y]));
@@ -338,4 +242,81 @@ fn are_apart(f: &[DVec3; 3], g: &[DVec3; 3]) -> bool {
             low - most > slack || least - high > slack
         })
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use colltrans_testkit::random::Random;
+    use colltrans_testkit::shapes::{Mesh, cone, extruded, ring};
+    use colltrans_testkit::solids::{bumpy_ball, comb, perforated_plate, slab, washer};
+
+    use super::*;
+
+    /// Solids of thin triangles, of facets that touch without a common vertex, and of none of these.
+    fn solids(random: &mut Random) -> Vec<Mesh> {
+        let phase = random.range(0.0, 6.0);
+        let star = |k: usize, p: DVec3| p * [1.0, 0.3][k % 2];
+        let star: Vec<DVec3> = ring(40, 1.0, 0.0).enumerate().map(|(k, p)| star(k, p)).collect();
+        let cube = |low: f64, high: f64| slab(DVec3::splat(low), DVec3::splat(high), [2; 3]);
+        vec![
+            comb(12),
+            washer([1.0, 2.0], [0.0, 0.1], 40),
+            cone(60, [0.0, 3.0]),
+            extruded(&star, [0.0, 0.05]),
+            perforated_plate([2, 2], 0.1, 12),
+            cube(-1.0, 1.0).joined(&cube(-0.9, 0.9).reversed()),
+            // Shells that touch, and that overlap.
+            cube(0.0, 1.0).joined(&cube(1.0, 2.0)).joined(&cube(0.5, 1.5)),
+            bumpy_ball(300).mapped(|p| p * (1.0 + 0.2 * (40.0 * p.x + phase).sin())),
+        ]
+    }
+
+    #[test]
+    fn pairs_that_touch_are_those_of_all_pairs() {
+        let mut random = Random::new(21);
+        let mut found = 0;
+        for _ in 0..3 {
+            let turn = random.rotation();
+            for mesh in solids(&mut random) {
+                for mesh in [mesh.clone(), mesh.mapped(|p| turn * p)] {
+                    let solid = Solid::from_mesh(&mesh.vertices, &mesh.faces).expect("a solid");
+                    for by in [0.0, 0.02, 0.06, 0.2, -0.1] {
+                        found += assert_all_pairs(&solid, by);
+                    }
+                }
+            }
+        }
+        assert!(found > 2_000, "{found} pairs");
+    }
+
+    /// Compares the pairs that touch among those visited with those among all, and returns their number.
+    fn assert_all_pairs(solid: &Solid, by: f64) -> usize {
+        let field = &solid.shrinking().field;
+        let vertices: Vec<DVec3> =
+            solid.vertices.iter().zip(field).map(|(v, x)| *v + *x * by).collect();
+        let placing = Placing { solid, vertices: &vertices };
+        let mut visited = BTreeSet::new();
+        placing.each_pair(&mut |[s, t]| {
+            assert!(visited.insert([s.min(t), s.max(t)]), "{s} and {t} are visited twice");
+        });
+        let mut touching = 0;
+        for t in 0..solid.triangles.len() {
+            for s in (0..t).filter(|&s| placing.touch([s, t])) {
+                let known = visited.contains(&[s, t]);
+                assert!(known || is_one_plane(&placing, [s, t]), "{s} and {t}, moved by {by}");
+                touching += usize::from(known);
+            }
+        }
+        touching
+    }
+
+    /// Checks whether two facets lie in one plane to rounding and look the same way. Rounding may let them touch.
+    fn is_one_plane(placing: &Placing, pair: [usize; 2]) -> bool {
+        let [f, g] = pair.map(|t| placing.corners(t));
+        let [m, n] = [f, g].map(|[a, b, c]| (b - a).cross(c - a));
+        let near =
+            |n: DVec3, p: DVec3, q: DVec3| n.dot(q - p).abs() <= 1e-12 * n.length().max(1e-3);
+        m.dot(n) > 0.0
+            && (g.iter().all(|q| near(m, f[0], *q)) || f.iter().all(|q| near(n, g[0], *q)))
+    }
 }

@@ -1,0 +1,173 @@
+//! Tests that dismiss pairs of nodes whose facets cannot pass through each other.
+
+use glam::DVec3;
+
+use super::Placing;
+use crate::body::Aabb;
+use crate::body::solid::edges::NONE;
+use crate::body::solid::tree::{self, Node};
+use crate::work;
+
+/// Facets within so many roundings of the largest coordinate of a plane lie in it.
+const FLAT: f64 = 64.0 * f64::EPSILON;
+/// Facets whose normals differ by more than this sine lie in no plane: a first look.
+const TURNED: f32 = 0.5;
+/// Facets of a leaf are compared with the box of another node if the leaf is longer than it by this factor.
+const LONG: f64 = 4.0;
+
+/// Bounds of the facets of each node. They show that facets of two nodes do not touch, or need not be compared.
+pub(super) struct Fences<'a> {
+    placing: &'a Placing<'a>,
+    /// Maximum rounding error of the product of a vertex with a vector, as a multiple of the sum norm of that vector.
+    rounding: f64,
+    boxes: Vec<Aabb>,
+    /// For nodes whose facets lie in a plane and look the same way.
+    flats: Vec<Option<Flat>>,
+    /// Vertices that all facets of a node have in common, then [`NONE`].
+    tips: Vec<[u32; 3]>,
+}
+
+/// A plane, and the farthest vertices of the facets in it along the axes.
+struct Flat {
+    normal: DVec3,
+    on: DVec3,
+    rim: [DVec3; 6],
+    /// How far rounding may put points off the plane, and how far more for each unit of distance, by
+    /// tilting it.
+    tolerance: f64,
+    tilt: f64,
+}
+
+impl Flat {
+    fn new(placing: &Placing, node: &Node, tolerance: f64) -> Option<Self> {
+        if node.spread > TURNED {
+            return None;
+        }
+        let corners = || node.facets().flat_map(|t| placing.corners(t));
+        let first = corners().next()?;
+        let mut rim = [first; 6];
+        for p in corners() {
+            for k in 0..3 {
+                if p[k] < rim[k][k] {
+                    rim[k] = p;
+                }
+                if p[k] > rim[k + 3][k] {
+                    rim[k + 3] = p;
+                }
+            }
+        }
+        let (mut area, mut longest) = (DVec3::ZERO, 0.0_f64);
+        for i in 1..6 {
+            for j in 0..i {
+                let [u, v] = [rim[i] - rim[0], rim[j] - rim[0]];
+                let product = u.cross(v);
+                longest = longest.max(u.length()).max(v.length());
+                if product.length_squared() > area.length_squared() {
+                    area = product;
+                }
+            }
+        }
+        let facing = node.facets().map(|t| tree::normal(placing.corners(t)).0).sum::<DVec3>();
+        let normal = (area * area.dot(facing).signum()).try_normalize()?;
+        let tilt = tolerance * longest / area.length();
+        let flat = Self { normal, on: rim[0], rim, tolerance, tilt };
+        let alike = |t: usize| tree::normal(placing.corners(t)).0.dot(normal) > 0.0;
+        let lies = corners().all(|p| flat.holds(p)) && node.facets().all(alike);
+        lies.then_some(flat)
+    }
+
+    fn holds(&self, point: DVec3) -> bool {
+        let away = point - self.on;
+        self.normal.dot(away).abs() <= self.tolerance + self.tilt * away.length()
+    }
+
+    /// Whether both lie in one plane and look the same way.
+    fn is_one_with(&self, other: &Self) -> bool {
+        let holds = |f: &Self, g: &Self| g.rim.iter().all(|p| f.holds(*p));
+        self.normal.dot(other.normal) > 0.0 && (holds(self, other) || holds(other, self))
+    }
+}
+
+impl<'a> Fences<'a> {
+    pub(super) fn new(placing: &'a Placing) -> Self {
+        let nodes = &placing.solid.nodes;
+        let tolerance = FLAT * placing.solid.reach;
+        let farthest = placing.vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
+        let mut fences = Self {
+            placing,
+            rounding: 16.0 * f64::EPSILON * farthest,
+            boxes: vec![Aabb::EMPTY; nodes.len()],
+            flats: nodes.iter().map(|node| Flat::new(placing, node, tolerance)).collect(),
+            tips: vec![[NONE; 3]; nodes.len()],
+        };
+        // Children come after their node.
+        for (k, node) in nodes.iter().enumerate().rev() {
+            (fences.boxes[k], fences.tips[k]) = if node.is_leaf() {
+                let triangles = node.facets().map(|t| placing.solid.triangles[t]);
+                let points = node.facets().flat_map(|t| placing.corners(t));
+                (Aabb::of_points(points), triangles.reduce(common).unwrap_or([NONE; 3]))
+            } else {
+                let [m, n] = [0, 1].map(|n| k + node.skip as usize + n);
+                (fences.boxes[m].join(&fences.boxes[n]), common(fences.tips[m], fences.tips[n]))
+            };
+        }
+        fences
+    }
+
+    /// Checks whether the facets of two nodes cannot touch, lie in one plane, or all have a vertex in common, as those of
+    /// a fan do.
+    pub(super) fn separate(&self, a: usize, b: usize) -> bool {
+        let one_plane = || match (&self.flats[a], &self.flats[b]) {
+            (Some(f), Some(g)) => a == b || f.is_one_with(g),
+            _ => false,
+        };
+        !self.boxes[a].meets(&self.boxes[b])
+            || one_plane()
+            || common(self.tips[a], self.tips[b])[0] != NONE
+            || self.leaf_avoids(a, b)
+            || self.leaf_avoids(b, a)
+    }
+
+    /// Returns the longest side of the box of a node.
+    pub(super) fn length(&self, node: usize) -> f64 {
+        self.boxes[node].size().max_element()
+    }
+
+    /// Checks whether the first node is a leaf, longer than the second node by [`LONG`], whose facets avoid the box of
+    /// that node.
+    ///
+    /// This dismisses long triangles, because their boxes contain large parts of the solid.
+    fn leaf_avoids(&self, leaf: usize, node: usize) -> bool {
+        let leaf_node = &self.placing.solid.nodes[leaf];
+        leaf_node.is_leaf()
+            && self.length(leaf) > LONG * self.length(node)
+            && leaf_node.facets().all(|t| self.avoids(t, &self.boxes[node]))
+    }
+
+    /// Checks whether a plane separates a facet from a box for certain: one that is parallel to a side of the box, to
+    /// the facet, or to an edge of each.
+    fn avoids(&self, triangle: usize, bounds: &Aabb) -> bool {
+        let corners = self.placing.corners(triangle);
+        if !Aabb::of_triangle(corners).meets(bounds) {
+            return true;
+        }
+        work::count(1);
+        let (center, half) = (bounds.center(), bounds.size() * 0.5);
+        let separates = |axis: DVec3| {
+            let [a, b, c] = corners.map(|p| axis.dot(p - center));
+            let reach = axis.abs().dot(half) + axis.abs().element_sum() * self.rounding;
+            a.min(b).min(c) > reach || a.max(b).max(c) < -reach
+        };
+        let [a, b, c] = corners;
+        let edges = [b - a, c - b, a - c];
+        separates(edges[0].cross(edges[1]))
+            || edges.iter().any(|edge| DVec3::AXES.iter().any(|e| separates(e.cross(*edge))))
+    }
+}
+
+/// Returns the numbers that are in both lists, then [`NONE`].
+fn common(a: [u32; 3], b: [u32; 3]) -> [u32; 3] {
+    let mut both = a.map(|v| if b.contains(&v) { v } else { NONE });
+    both.sort_unstable();
+    both
+}

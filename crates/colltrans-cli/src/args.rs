@@ -28,7 +28,7 @@ use help::{
 pub(crate) use motion::MotionArguments;
 pub(crate) use path::PathArguments;
 pub(crate) use placed::{PlacedArguments, WithinArguments};
-pub(crate) use values::{Angles, Place, direction};
+pub(crate) use values::{Angles, Place, direction, normalised, normalised_poses};
 use values::{angles, bytes, factor, length, picture, place, proof, solver, start, threads};
 
 /// How far can one body move along a direction before it touches another?
@@ -398,7 +398,7 @@ impl PlaceArguments {
 
     /// What was changed about them.
     pub(crate) fn notes(&self) -> [Option<String>; 2] {
-        [self.moving_pose.note("--moving"), self.fixed_pose.note("--fixed")]
+        [self.moving_pose.note("--moving-pose"), self.fixed_pose.note("--fixed-pose")]
     }
 }
 

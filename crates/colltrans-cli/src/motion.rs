@@ -31,7 +31,8 @@ pub(crate) fn run(arguments: &MotionArguments) -> Result<(), Failure> {
     let picture = arguments.picture.as_deref();
     refuse_picture(picture, &inputs)?;
     refuse_proof(arguments.save_proof.as_deref(), picture, &inputs)?;
-    let motions = arguments.motions()?;
+    let (motions, rounded) = arguments.motions()?;
+    rounded.iter().for_each(|text| note(text));
     if taken != Taken::Parts {
         let options = arguments.body_options();
         let load = |k: usize| -> Result<Vec<Part>, LoadError> {

@@ -68,7 +68,7 @@ impl Scene {
         let (mut placed, mut names, mut precisions) = (Vec::new(), Vec::new(), Vec::new());
         for file in files {
             let found = if is_list(file) {
-                ways.list(file)?
+                ways.list(file, &mut notes)?
             } else {
                 let known = ways.mesh(file, 1, &mut notes)?;
                 vec![(known, Pose::IDENTITY, file.display().to_string())]
@@ -133,8 +133,12 @@ impl Ways {
         Ok(Known { body: part.solid().clone().into(), precision: part.precision() })
     }
 
-    /// A file of obstacles; bodies that occur again are kept once.
-    fn list(&self, file: &Path) -> Result<Vec<(Known, Pose, String)>, Failure> {
+    /// Reads a file of obstacles. Bodies that occur again are kept once.
+    fn list(
+        &self,
+        file: &Path,
+        notes: &mut Vec<String>,
+    ) -> Result<Vec<(Known, Pose, String)>, Failure> {
         let input = |what: String| Failure::new(Code::Input, format!("{}: {what}", file.display()));
         let text = colltrans_mesh::file::text(file)
             .map_err(|error| input(format!("cannot be read: {error}")))?;
@@ -154,6 +158,7 @@ impl Ways {
                 .map_err(|e| input(syntax_message(number as u64 + 1, &e)))?;
             let shape = bodies.body(&body).map_err(wrong)?;
             let place = pose.pose().map_err(|what| wrong(format!("pose: {what}")))?;
+            notes.extend(pose.note(&format!("{}: line {}: pose", file.display(), number + 1)));
             let one = known.entry(Arc::as_ptr(&shape)).or_insert_with(|| Known::of(&shape));
             let named = || body.file().map(|path| path.display().to_string());
             let name = name.or_else(named).unwrap_or_else(|| format!("line {}", number + 1));

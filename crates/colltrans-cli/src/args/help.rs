@@ -324,7 +324,8 @@ pub(super) const BATCH_FORMAT: &str = r#"Each line of the queries is one JSON ob
   not asked for "contact"; "clearance" is the default there. "distance", "depth" and "within" are those
   of the commands, of bodies of any kind where they are.
   "motion" is `colltrans motion`, of bodies of any kind, of which one or both move.
-  POSE = {"translation": [x,y,z], "rotation": [qx,qy,qz,qw]}, either may be missing
+  POSE = {"translation": [x,y,z], "rotation": [qx,qy,qz,qw]}, either may be missing. A quaternion of few
+         digits is normalised, as of --moving-pose; the notes of the result name it
   MOTION = {"slide": {"by": [x,y,z]}}
        or {"turn": {"point": [x,y,z], "axis": [x,y,z], "radians": ANGLE}}
        or {"screw": {"point": [x,y,z], "axis": [x,y,z], "radians": ANGLE, "rise": L}}
@@ -382,7 +383,7 @@ Each result is one JSON object with those of these fields that apply:
                deep its surface lies below its hull, which stands for it
   solver steps of convex bodies: what narrowed the search for a contact, how much work it was
   message      what is wrong; grazing: along which direction the shadows overlap
-  notes        what was merged or mended when the meshes were read
+  notes        what was merged or mended when the meshes were read; quaternions that were normalised
 
 Translations, the distance of a clearance, their bounds and rounding are in multiples of the
 direction, other lengths in the unit of the meshes. Bodies that occur again are built once while they fit (--cache-bytes). A file of results

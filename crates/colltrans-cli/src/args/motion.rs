@@ -8,7 +8,7 @@ use colltrans::glam::DVec3;
 use colltrans::motion::{Motion, MotionError};
 use colltrans_mesh::body::BodyOptions;
 
-use super::values::{Place, picture, place, vector};
+use super::values::{Place, normalised_poses, picture, place, vector};
 use super::{
     BodyArguments, HullArguments, PlaceArguments, Sides, Taken, UNCLEAN, direction, length, proof,
 };
@@ -154,8 +154,8 @@ impl MotionArguments {
         self.hulls.body_options(self.body, &self.places)
     }
 
-    /// What both sides do.
-    pub(crate) fn motions(&self) -> Result<[Motion; 2], Failure> {
+    /// Returns what both sides do, and notes about quaternions of `--to` and `--through` that were normalised.
+    pub(crate) fn motions(&self) -> Result<([Motion; 2], Vec<String>), Failure> {
         let [start, there] = self.places.poses()?;
         let kinds = [self.motion.kind(), self.fixed_motion.kind()];
         if let [Kind::Still, Kind::Still] = kinds {
@@ -163,7 +163,10 @@ impl MotionArguments {
                        the fixed mesh does";
             return Err(Failure::new(Code::Usage, why));
         }
-        Ok([kinds[0].motion("--", start)?, kinds[1].motion("--fixed-", there)?])
+        let mut notes = Vec::new();
+        let moving = kinds[0].motion("--", start, &mut notes)?;
+        let fixed = kinds[1].motion("--fixed-", there, &mut notes)?;
+        Ok(([moving, fixed], notes))
     }
 }
 
@@ -197,7 +200,7 @@ impl<'a> Kind<'a> {
     }
 
     /// The motion from a pose on, of options that begin in this way.
-    fn motion(&self, option: &str, pose: Pose) -> Result<Motion, Failure> {
+    fn motion(&self, option: &str, pose: Pose, notes: &mut Vec<String>) -> Result<Motion, Failure> {
         let named = |name: &str| format!("{option}{name}");
         Ok(match *self {
             Self::Still => Motion::still(pose),
@@ -217,8 +220,11 @@ impl<'a> Kind<'a> {
                 let [center, way, spin] = words.map(|text| at(&named("thrown"), vector(text)));
                 Motion::thrown(pose, center?, way?, spin?.map(f64::to_radians))?
             }
-            Self::To(place) => Motion::between(pose, at(&named("to"), place.pose(None, "--to"))?)?,
-            Self::Through(path) => Motion::through(&poses(path)?)?,
+            Self::To(place) => {
+                notes.extend(place.note(&named("to")));
+                Motion::between(pose, at(&named("to"), place.pose(None, "--to"))?)?
+            }
+            Self::Through(path) => Motion::through(&poses(path, notes)?)?,
         })
     }
 }
@@ -249,17 +255,20 @@ fn radians(option: &str, text: &str) -> Result<f64, Failure> {
     Ok(at(option, degrees)?.to_radians())
 }
 
-/// The poses of a file.
-fn poses(path: &Path) -> Result<Vec<Pose>, Failure> {
+/// Reads the poses of a file.
+fn poses(path: &Path, notes: &mut Vec<String>) -> Result<Vec<Pose>, Failure> {
     let input = |what: String| Failure::new(Code::Input, format!("{}: {what}", path.display()));
     let text =
         colltrans_mesh::file::text(path).map_err(|e| input(format!("cannot be read: {e}")))?;
     let rows: Vec<Vec<f64>> = serde_json::from_str(&text)
         .map_err(|e| input(format!("no poses [[x,y,z,qx,qy,qz,qw], ...]: {e}")))?;
-    let pose = |(k, row): (usize, &Vec<f64>)| {
+    let read = |(k, row): (usize, &Vec<f64>)| {
         let written: Vec<String> = row.iter().map(f64::to_string).collect();
-        let pose = place(&written.join(",")).and_then(|place| place.pose(None, "--through"));
-        pose.map_err(|what| input(format!("pose {k}: {what}")))
+        place(&written.join(",")).map_err(|what| input(format!("pose {k}: {what}")))
     };
-    rows.iter().enumerate().map(pose).collect()
+    let places = rows.iter().enumerate().map(read).collect::<Result<Vec<Place>, Failure>>()?;
+    let lengths: Vec<_> = places.iter().map(Place::rounded).collect();
+    notes.extend(normalised_poses(&path.display().to_string(), &lengths));
+    let pose = |place: &Place| place.pose(None, "--through").map_err(input);
+    places.iter().map(pose).collect()
 }

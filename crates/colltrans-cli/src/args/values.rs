@@ -105,15 +105,37 @@ impl Place {
         }
     }
 
-    /// What should be said about the quaternion.
+    /// Returns a note about the quaternion if it was normalised.
     pub(crate) fn note(&self, option: &str) -> Option<String> {
-        let length = self.rounded?;
-        Some(format!(
-            "{option}-pose: the quaternion has length {length:.6}, not 1; it was normalised, and \
-             a direction may be off by {:.0e}",
-            (length - 1.0).abs()
-        ))
+        self.rounded.map(|length| normalised(option, length))
     }
+
+    /// Returns the length of the quaternion as it was written, if it was normalised.
+    pub(crate) fn rounded(&self) -> Option<f64> {
+        self.rounded
+    }
+}
+
+/// Returns a note if quaternions of some poses were normalised: about the pose whose length is farthest from 1.
+/// `lengths` has the lengths of those that were.
+pub(crate) fn normalised_poses(place: &str, lengths: &[Option<f64>]) -> Option<String> {
+    let rounded = lengths.iter().enumerate().filter_map(|(k, length)| Some((k, (*length)?)));
+    let off = |length: f64| (length - 1.0).abs();
+    let (k, length) = rounded.clone().max_by(|a, b| off(a.1).total_cmp(&off(b.1)))?;
+    let note = normalised(&format!("{place}: pose {k}"), length);
+    Some(match rounded.count() {
+        1 => note,
+        count => format!("{note}; {count} poses were normalised"),
+    })
+}
+
+/// Returns the note that a quaternion of this length was normalised.
+pub(crate) fn normalised(place: &str, length: f64) -> String {
+    let off = (length - 1.0).abs();
+    format!(
+        "{place}: the quaternion has length {length:.6}, not 1; it was normalised, and a direction may be \
+         off by {off:.0e}"
+    )
 }
 
 /// Roll, pitch and yaw in degrees.

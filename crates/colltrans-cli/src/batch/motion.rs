@@ -1,5 +1,6 @@
 //! What a body does, as a line of a batch says it, and when two such bodies first meet.
 
+use std::borrow::Cow;
 use std::fmt;
 
 use colltrans::glam::DVec3;
@@ -9,6 +10,7 @@ use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserialize, Deserializer, IgnoredAny, MapAccess, Visitor};
 
 use super::source::{PoseSource, Query};
+use crate::args::normalised_poses;
 use crate::body::Part;
 use crate::replay;
 
@@ -58,6 +60,12 @@ impl<'de> Visitor<'de> for Kinds {
 }
 
 impl MotionSource {
+    /// Returns a note if quaternions of the motion's own poses were normalised.
+    pub(super) fn note(&self, place: &str) -> Option<String> {
+        let lengths: Vec<_> = self.kind.poses().iter().map(PoseSource::rounded_length).collect();
+        normalised_poses(place, &lengths)
+    }
+
     /// The motion, from a pose on unless it has its own.
     fn motion(&self, pose: Option<&PoseSource>) -> Result<Motion, String> {
         match &self.other {
@@ -68,6 +76,15 @@ impl MotionSource {
 }
 
 impl Kind {
+    /// Returns the poses that the motion itself has.
+    fn poses(&self) -> Cow<'_, [PoseSource]> {
+        match self {
+            Self::Between { from, to } => vec![*from, *to].into(),
+            Self::Through { poses } => poses.into(),
+            _ => Cow::default(),
+        }
+    }
+
     fn motion(&self, pose: Option<&PoseSource>) -> Result<Motion, String> {
         let v = DVec3::from_array;
         let has_own = matches!(self, Self::Between { .. } | Self::Through { .. });

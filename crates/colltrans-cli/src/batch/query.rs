@@ -7,7 +7,7 @@ use std::sync::Arc;
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::motion::Motion;
 use colltrans::record::{PairQuestion, Question, Record};
-use colltrans::{Cast, ConvexPolyhedron, Narrowing, Options, Pair, Pose, Solver};
+use colltrans::{Cast, ConvexPolyhedron, Narrowing, Options, Pair, Pose, PoseError, Solver};
 use colltrans_assembly::read::plain;
 use colltrans_mesh::body::{LoadError, Take};
 use serde::Deserialize;
@@ -15,11 +15,11 @@ use serde_json::value::RawValue;
 
 use super::cache::{Built, Cache, Key, Shape};
 use super::fast_path;
-use super::motion;
+use super::motion::{self, MotionSource};
 use super::pipeline::Line;
 use super::recent::Recent;
 use super::source::{Asked, BodySource, PoseSource, Query, as_written};
-use crate::args::BodyArguments;
+use crate::args::{BodyArguments, normalised};
 use crate::body::{self, Part};
 use crate::inputs::Watched;
 use crate::record::Line as AnswerLine;
@@ -197,7 +197,14 @@ fn guarded<T>(number: u64, answer: impl FnOnce() -> Result<T, String>) -> Result
     Err(format!("line {number}: {what}"))
 }
 
-fn solve<B>(query: &Query<'_, B>, [moving, fixed]: [Built; 2]) -> Result<AnswerLine, String> {
+/// Answers a query, with notes about quaternions that were normalised.
+fn solve<B>(query: &Query<'_, B>, bodies: [Built; 2]) -> Result<AnswerLine, String> {
+    let mut answer = answer(query, bodies)?;
+    answer.notes.extend(query.pose_notes());
+    Ok(answer)
+}
+
+fn answer<B>(query: &Query<'_, B>, [moving, fixed]: [Built; 2]) -> Result<AnswerLine, String> {
     let moving = moving.map_err(|e| format!("moving: {e}"))?;
     let fixed = fixed.map_err(|e| format!("fixed: {e}"))?;
     let pose = |pose: Option<PoseSource>, name| {
@@ -254,6 +261,21 @@ impl<B> Query<'_, B> {
             self.refuse(&["length"])?;
         }
         Ok(Ask::Pair(question))
+    }
+
+    /// Returns notes about quaternions that were normalised, at most one for each field.
+    fn pose_notes(&self) -> impl Iterator<Item = String> {
+        let pose = |pose: &Option<PoseSource>, place| pose.as_ref().and_then(|p| p.note(place));
+        let motion =
+            |motion: &Option<MotionSource>, place| motion.as_ref().and_then(|m| m.note(place));
+        [
+            pose(&self.moving_pose, "moving_pose"),
+            pose(&self.fixed_pose, "fixed_pose"),
+            motion(&self.moving_motion, "moving_motion"),
+            motion(&self.fixed_motion, "fixed_motion"),
+        ]
+        .into_iter()
+        .flatten()
     }
 
     /// An error for the first of these fields that is there.
@@ -432,10 +454,27 @@ impl AsSolid<'_> {
 }
 
 impl PoseSource {
+    /// Returns the pose. A quaternion of few digits is normalised, which [`Self::note`] says.
     pub(crate) fn pose(&self) -> Result<Pose, String> {
-        let [x, y, z, w] = self.rotation;
-        Pose::new(DQuat::from_xyzw(x, y, z, w), DVec3::from_array(self.translation))
-            .map_err(|e| e.to_string())
+        self.rounded().map(|(pose, _)| pose).map_err(|e| e.to_string())
+    }
+
+    /// Returns the length of the quaternion as it was written, if it was normalised.
+    pub(super) fn rounded_length(&self) -> Option<f64> {
+        self.rounded().ok()?.1.map(|_| self.quaternion().length())
+    }
+
+    /// Returns a note about the quaternion if it was normalised.
+    pub(crate) fn note(&self, place: &str) -> Option<String> {
+        self.rounded_length().map(|length| normalised(place, length))
+    }
+
+    fn rounded(&self) -> Result<(Pose, Option<f64>), PoseError> {
+        Pose::from_rounded(self.quaternion(), DVec3::from_array(self.translation))
+    }
+
+    fn quaternion(&self) -> DQuat {
+        DQuat::from_array(self.rotation)
     }
 }
 

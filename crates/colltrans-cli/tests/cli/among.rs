@@ -168,6 +168,18 @@ fn what_is_wrong_is_said() {
 }
 
 #[test]
+fn a_pose_of_few_digits_in_a_scene_is_normalised_with_a_note() {
+    let folder = folder();
+    let folder = folder.path();
+    let line = r#"{"body":{"mesh":"cube.off"},"pose":{"translation":[4,0,0],"rotation":[0,0,0.707,0.707]}}"#;
+    std::fs::write(folder.join("scene.jsonl"), format!("\n{line}\n")).unwrap();
+    let output = run(folder, &["distance", "cube.off", "--among", "scene.jsonl"]);
+    assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+    let note = "note: scene.jsonl: line 2: pose: the quaternion has length 0.999849, not 1; it was normalised";
+    assert!(stderr(&output).starts_with(note), "{}", stderr(&output));
+}
+
+#[test]
 fn options_of_other_commands_are_told() {
     let folder = folder();
     let folder = folder.path();

@@ -475,3 +475,48 @@ fn motions_are_asked_in_lines() {
         assert!(message.starts_with(&format!("line {}", k + 1)), "{message}");
     }
 }
+
+/// As of `--moving-pose`: one rule for quaternions of few digits, and a note for each field.
+#[test]
+fn quaternions_of_few_digits_are_normalised_and_the_line_says_so() {
+    let line = |body: &str, fields: &str| format!(r#"{{"moving":{body},"fixed":{BOX},{fields}}}"#);
+    let rounded = r#""moving_pose":{"translation":[-3,0.25,0.5],"rotation":[0,0,0.707,0.707]}"#;
+    let exact = rounded.replace("0.707", "0.7071067811865476");
+    let poses = r#""moving_motion":{"through":{"poses":[{"rotation":[0,0,0.7071,0.7071]},
+        {"translation":[0,5,0]},{"translation":[8,5,0],"rotation":[0,0.71,0,0.71]}]}}"#;
+    let solid = r#"{"solid":"cube.off"}"#;
+    let text = [
+        line(BOX, &format!(r#"{rounded},"direction":[1,0,0]"#)),
+        line(BOX, &format!(r#"{exact},"direction":[1,0,0]"#)),
+        line(solid, &format!(r#"{rounded},"direction":[1,0,0]"#)),
+        line(BOX, &format!(r#"{},"query":"distance""#, rounded.replace("moving_", "fixed_"))),
+        line(
+            BOX,
+            &format!(r#"{rounded},"query":"motion","moving_motion":{{"slide":{{"by":[1,0,0]}}}}"#),
+        ),
+        line(BOX, &format!(r#""query":"motion",{}"#, poses.replace('\n', ""))),
+        line(BOX, &format!(r#"{},"direction":[1,0,0]"#, rounded.replace("0.707", "0.68"))),
+    ];
+    let (output, results) = run(&text.join("\n"), &[]);
+    assert_eq!(output.status.code(), Some(1), "{}", stdout(&output));
+    let note = |k: usize| match results[k]["notes"].as_array() {
+        Some(notes) => notes.iter().map(|note| note.as_str().unwrap()).collect::<Vec<_>>(),
+        None => Vec::new(),
+    };
+    let said = "the quaternion has length 0.999849, not 1; it was normalised, and a direction may be off by 2e-4";
+    let of_moving = [format!("moving_pose: {said}")];
+    assert_eq!(note(0), of_moving);
+    assert_eq!(results[0]["translation"], results[1]["translation"]);
+    assert_eq!(note(1), [""; 0]);
+    assert_eq!(note(2), of_moving);
+    assert_eq!(note(3), [format!("fixed_pose: {said}")]);
+    assert_eq!(note(4), of_moving);
+    let [through] = note(5)[..] else { panic!("{}", results[5]) };
+    assert!(
+        through.starts_with("moving_motion: pose 2: the quaternion has length 1.004092"),
+        "{through}"
+    );
+    assert!(through.ends_with("; 2 poses were normalised"), "{through}");
+    assert_eq!(results[6]["outcome"], "error");
+    assert!(results[6]["message"].as_str().unwrap().contains("moving_pose: "), "{}", results[6]);
+}

@@ -119,6 +119,24 @@ fn poses_are_gone_through() {
 }
 
 #[test]
+fn quaternions_of_few_digits_in_motions_are_normalised_with_a_note() {
+    let folder = folder();
+    fs::write(folder.path().join("poses.json"), "[[-4,0,0], [-4,3,0,0,0,0.707,0.707]]").unwrap();
+    for (motion, place) in [
+        (["--to", "4,0,0,0,0,0.707,0.707"], "--to"),
+        (["--fixed-to", "4,0,0,0,0,0.707,0.707"], "--fixed-to"),
+        (["--through", "poses.json"], "poses.json: pose 1"),
+    ] {
+        let output =
+            run(folder.path(), &[&["motion", "cube.off", "cube.off"], &motion[..]].concat());
+        assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
+        let note =
+            format!("note: {place}: the quaternion has length 0.999849, not 1; it was normalised");
+        assert!(stderr(&output).starts_with(&note), "{}", stderr(&output));
+    }
+}
+
+#[test]
 fn both_may_move() {
     let apart = ["--fixed-pose=4,0.2,0.1", "--slide", "2,0,0"];
     assert_eq!(told(&apart)["outcome"], "free");

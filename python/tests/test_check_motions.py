@@ -189,6 +189,15 @@ def test_several_pairs_are_asked_one_question() -> None:
     files = [proof("motion_contact"), proof("motion_free")]
     several = {"format": "colltrans motions proof 1", "proofs": files}
     assert len(check.check(json.dumps(several)).holds) == 3
+    # A pair of which planes alone prove nothing is one of solids.
+    solids = {**several, "proofs": [*files, proof("solids_contact")]}
+    found = check.check(json.dumps(solids))
+    alone = check.check(json.dumps(proof("solids_contact")))
+    assert found.holds[3:] == [f"pair 2: {line}" for line in alone.holds]
+    assert found.unchecked == [f"pair 2: {line}" for line in alone.unchecked]
+    entry: tuple[Any, ...] = ("proofs", 2, "proof", "meeting", "time")
+    assert refused(changed(solids, entry, lambda time: time / 2))
+    assert refused({**several, "proofs": [proof("path_free")]})
     assert refused({**several, "proofs": []})
     # What is said of all of them would be said of two gaps.
     assert refused({**several, "proofs": [*files, proof("motion_kept")]})

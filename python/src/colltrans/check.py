@@ -76,6 +76,7 @@ from typing import Any, TypeAlias
 FORMAT = "colltrans proof 1"
 SCENE_FORMAT = "colltrans scene proof 1"
 MOTION_FORMAT = "colltrans motion proof 1"
+SOLID_MOTION_FORMAT = "colltrans motion of solids proof 1"
 Vector: TypeAlias = tuple[Fraction, Fraction, Fraction]
 Matrix: TypeAlias = tuple[Vector, Vector, Vector]
 Triangle: TypeAlias = tuple[Vector, Vector, Vector]
@@ -2599,16 +2600,18 @@ def check_tolerance(asked: Any, told: Fraction, parts: tuple[Parts, Parts]) -> N
 
 
 def motions(file: Any) -> Report:
-    """Which two of several pairs of convex bodies first meet."""
+    """Checks which two of several pairs of bodies, convex or as solids, first meet."""
     report = Report()
+    kinds: dict[str, Callable[[Any], Report]]
+    kinds = {MOTION_FORMAT: motion, SOLID_MOTION_FORMAT: solid_motion}
     if not fields(file, "format proofs")["proofs"]:
         raise NoProofError("there is no pair of bodies")
     if len({number(proof.get("keep", 0.0)) for proof in file["proofs"]}) > 1:
         raise NoProofError("the proofs are of several gaps to be kept")
     for number_, proof in enumerate(file["proofs"]):
-        if proof["format"] != MOTION_FORMAT:
+        if proof["format"] not in kinds:
             raise NoProofError(f"the format of a proof is {proof['format']!r}")
-        found = motion(proof)
+        found = kinds[proof["format"]](proof)
         report.holds += [f"pair {number_}: {line}" for line in found.holds]
         report.unchecked += [f"pair {number_}: {line}" for line in found.unchecked]
         report.partly = report.partly or found.partly
@@ -3405,7 +3408,7 @@ def check_faces(report: Report, which: str, content: Any) -> None:
 MOTIONS: dict[str, Callable[[Any], Report]] = {
     MOTION_FORMAT: motion,
     "colltrans motions proof 1": motions,
-    "colltrans motion of solids proof 1": solid_motion,
+    SOLID_MOTION_FORMAT: solid_motion,
     "colltrans path proof 2": path,
 }
 

@@ -5,7 +5,9 @@ use std::fmt;
 
 use serde::de::Error as _;
 use serde::{Deserialize, Serialize};
+use serde_json::value::RawValue;
 
+use super::solid::SOLIDS_PROOF;
 use super::{
     Motion, MotionCast, MotionOutcome, MotionProof, MotionProofError, Moving, SolidMotionProofFile,
     check_tolerated,
@@ -84,15 +86,6 @@ impl MotionCase {
         }
     }
 
-    /// What the bodies do, in words.
-    fn meet(&self) -> String {
-        match self.keep {
-            keep if keep > 0.0 => format!("come as near as {keep}"),
-            keep if keep < 0.0 => format!("overlap by more than {}", -keep),
-            _ => "meet".into(),
-        }
-    }
-
     fn read(asked: Asked) -> Result<Self, CaseError> {
         let Asked { moving, moving_motion, fixed, fixed_motion, keep, .. } = asked;
         if keep < 0.0 {
@@ -157,16 +150,20 @@ impl MotionProofFile {
     /// # Panics
     /// Never: all numbers can be written.
     pub fn to_json(&self) -> String {
-        let cast = self.case.cast();
-        let solids = self.proof.solids.as_ref().and_then(|_| cast.between_solids().ok());
-        if let Some((_, file)) = solids.and_then(|cast| SolidMotionProofFile::answer(&cast).ok()) {
-            return file.to_json();
-        }
-        serde_json::to_string(&self.written()).expect("numbers and names")
+        self.as_solids().map_or_else(|| self.written(), |file| file.to_json())
     }
 
-    fn written(&self) -> Asked {
-        Asked { proof: Some(self.proof.clone()), ..Asked::of(&self.case.cast(), PROOF) }
+    /// Returns the proof about the same bodies [as solids](MotionProof::solids), if this is one.
+    fn as_solids(&self) -> Option<SolidMotionProofFile> {
+        self.proof.solids.as_ref()?;
+        let cast = self.case.cast();
+        SolidMotionProofFile::answer(&cast.between_solids().ok()?).ok().map(|(_, file)| file)
+    }
+
+    fn written(&self) -> String {
+        let asked = Asked::of(&self.case.cast(), PROOF);
+        let file = Asked { proof: Some(self.proof.clone()), ..asked };
+        serde_json::to_string(&file).expect("numbers and names")
     }
 
     /// From what [`Self::to_json`] has written. It is read, not believed: see [`Self::check`].
@@ -175,10 +172,7 @@ impl MotionProofFile {
     /// What is wrong with it.
     pub fn from_json(text: &str) -> Result<Self, CaseError> {
         let text = said(text, PROOF)?;
-        Self::read(serde_json::from_str(text).map_err(CaseError::Proof)?)
-    }
-
-    fn read(mut file: Asked) -> Result<Self, CaseError> {
+        let mut file: Asked = serde_json::from_str(text).map_err(CaseError::Proof)?;
         let missing = || CaseError::Proof(serde_json::Error::missing_field("proof"));
         let proof = file.proof.take().ok_or_else(missing)?;
         Ok(Self { case: MotionCase::read(file)?, proof })
@@ -190,7 +184,7 @@ impl fmt::Display for MotionProofFile {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let meeting = self.proof.meeting.as_ref().map(|meeting| meeting.time);
         let reached = self.proof.spans.iter().flatten().last().map(|plane| plane.time);
-        let meet = self.case.meet();
+        let meet = meet(self.case.keep);
         match (reached, meeting) {
             (None, Some(0.0)) => write!(f, "the bodies {meet} when the motion begins"),
             (None, Some(upper)) => write!(f, "the bodies {meet} by the time {upper}"),
@@ -224,12 +218,73 @@ impl fmt::Display for MotionProofFile {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
-pub struct MotionProofFiles(Vec<MotionProofFile>);
+pub struct MotionProofFiles(Vec<PairFile>);
+
+/// The proof of one pair, about convex bodies or about the same bodies as solids.
+#[derive(Debug, Clone)]
+enum PairFile {
+    Convex(MotionProofFile),
+    Solids(SolidMotionProofFile),
+}
+
+impl PairFile {
+    fn of(proof: MotionProofFile) -> Self {
+        proof.as_solids().map_or(Self::Convex(proof), Self::Solids)
+    }
+
+    fn check(&self) -> Result<[f64; 2], MotionProofError> {
+        match self {
+            Self::Convex(file) => file.check(),
+            Self::Solids(file) => file.check(),
+        }
+    }
+
+    /// Returns the time up to which the bodies do not meet, and the one at which they do, infinity if that is not
+    /// claimed.
+    fn claims(&self) -> [f64; 2] {
+        let (reached, meeting) = match self {
+            Self::Convex(file) => {
+                let MotionProof { spans, meeting, .. } = &file.proof;
+                let last = spans.iter().flatten().last().map(|plane| plane.time);
+                (last, meeting.as_ref().map(|meeting| meeting.time))
+            }
+            Self::Solids(file) => file.claims(),
+        };
+        [reached.unwrap_or(0.0), meeting.unwrap_or(f64::INFINITY)]
+    }
+
+    fn keep(&self) -> f64 {
+        match self {
+            Self::Convex(file) => file.case.keep,
+            Self::Solids(file) => file.keep(),
+        }
+    }
+
+    fn to_json(&self) -> String {
+        match self {
+            Self::Convex(file) => file.written(),
+            Self::Solids(file) => file.to_json(),
+        }
+    }
+
+    fn from_json(text: &str) -> Result<Self, CaseError> {
+        let Format { format } = serde_json::from_str(text).map_err(CaseError::Proof)?;
+        match &*format {
+            PROOF => MotionProofFile::from_json(text).map(Self::Convex),
+            SOLIDS_PROOF => SolidMotionProofFile::from_json(text).map(Self::Solids),
+            other => {
+                let what = format!("proofs of motions, not {other:?}");
+                Err(CaseError::Proof(serde_json::Error::custom(what)))
+            }
+        }
+    }
+}
 
 impl MotionProofFiles {
-    /// Of the proofs of all pairs.
+    /// Of the proofs of all pairs. Proofs about the same bodies [as solids](MotionProof::solids) are those of a
+    /// [`SolidMotionProofFile`].
     pub fn of(proofs: Vec<MotionProofFile>) -> Self {
-        Self(proofs)
+        Self(proofs.into_iter().map(PairFile::of).collect())
     }
 
     /// How many pairs there are.
@@ -254,8 +309,8 @@ impl MotionProofFiles {
     /// # Panics
     /// Never: all numbers can be written.
     pub fn to_json(&self) -> String {
-        let proofs = self.0.iter().map(MotionProofFile::written).collect();
-        let file = Several { format: PROOFS.into(), proofs };
+        let raw = |proof: &PairFile| RawValue::from_string(proof.to_json()).expect("JSON");
+        let file = Several { format: PROOFS.into(), proofs: self.0.iter().map(raw).collect() };
         serde_json::to_string(&file).expect("numbers and names")
     }
 
@@ -267,17 +322,16 @@ impl MotionProofFiles {
         let text = said(text, PROOFS)?;
         let file: Several = serde_json::from_str(text).map_err(CaseError::Proof)?;
         let wrong = |what: String| Err(CaseError::Proof(serde_json::Error::custom(what)));
-        let [first, ..] = &file.proofs[..] else {
+        let read = file.proofs.iter().map(|proof| PairFile::from_json(proof.get()));
+        let proofs: Vec<PairFile> = read.collect::<Result<_, _>>()?;
+        let [first, ..] = &proofs[..] else {
             return wrong("there are no proofs; there has to be one of each pair of bodies".into());
         };
-        if let Some(other) = file.proofs.iter().find(|proof| proof.format != PROOF) {
-            return wrong(format!("proofs of motions, not {:?}", other.format));
-        }
-        if let Some(other) = file.proofs.iter().find(|proof| proof.keep != first.keep) {
-            let keeps = [first.keep, other.keep];
+        if let Some(other) = proofs.iter().find(|proof| proof.keep() != first.keep()) {
+            let keeps = [first.keep(), other.keep()];
             return wrong(format!("proofs of one question keep one gap, not {keeps:?}"));
         }
-        file.proofs.into_iter().map(MotionProofFile::read).collect::<Result<_, _>>().map(Self)
+        Ok(Self(proofs))
     }
 }
 
@@ -285,13 +339,11 @@ impl fmt::Display for MotionProofFiles {
     /// What is said, in words.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let count = self.pairs();
-        let proofs = || self.0.iter().map(|proof| &proof.proof);
-        let meeting = proofs().filter_map(|proof| Some(proof.meeting.as_ref()?.time));
-        let upper = meeting.fold(f64::INFINITY, f64::min);
-        let reached =
-            |proof: &MotionProof| proof.spans.iter().flatten().last().map_or(0.0, |p| p.time);
-        let lower = proofs().map(reached).fold(1.0, f64::min);
-        let meet = self.0.first().map_or_else(|| "meet".into(), |proof| proof.case.meet());
+        let claims = self.0.iter().map(PairFile::claims);
+        let [lower, upper] = claims.fold([1.0, f64::INFINITY], |[l, u], [lower, upper]| {
+            [f64::min(l, lower), f64::min(u, upper)]
+        });
+        let meet = meet(self.0.first().map_or(0.0, PairFile::keep));
         if upper.is_finite() {
             write!(
                 f,
@@ -305,12 +357,27 @@ impl fmt::Display for MotionProofFiles {
     }
 }
 
+/// Returns what bodies do that meet, in words, with the gap that is kept.
+fn meet(keep: f64) -> String {
+    match keep {
+        keep if keep > 0.0 => format!("come as near as {keep}"),
+        keep if keep < 0.0 => format!("overlap by more than {}", -keep),
+        _ => "meet".into(),
+    }
+}
+
 /// What a file of several proofs holds.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Several {
     format: String,
-    proofs: Vec<Asked>,
+    proofs: Vec<Box<RawValue>>,
+}
+
+/// The format of a file.
+#[derive(Deserialize)]
+struct Format {
+    format: String,
 }
 
 /// What is asked, and of a proof what is claimed.

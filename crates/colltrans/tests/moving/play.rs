@@ -3,7 +3,9 @@
 use std::f64::consts::TAU;
 
 use colltrans::motion::path::PathOutcome;
-use colltrans::motion::{Motion, MotionCase, MotionCast, MotionOutcome};
+use colltrans::motion::{
+    Motion, MotionCase, MotionCast, MotionOutcome, MotionProofFile, MotionProofFiles,
+};
 use colltrans::{ConvexPolyhedron, Pose};
 use colltrans_testkit::oracle::play::{KINDS, Screw, chain, slider};
 use glam::DVec3;
@@ -48,6 +50,38 @@ fn a_plane_is_carried_along_while_one_body_slides_along_the_axis() {
     let solids = MotionCast::between(cube.along(&moving), cube.along(&fixed)).unwrap();
     let outcome = solids.tolerating(0.0).unwrap().first_contact().unwrap();
     assert!(matches!(outcome, MotionOutcome::Free(_)), "{outcome:?}");
+}
+
+/// In a file of several pairs, a proof about the bodies as solids is written as one of solids, which `check.py` can read.
+#[test]
+fn a_file_of_several_pairs_has_proofs_of_solids() {
+    let cube = ConvexPolyhedron::cuboid(DVec3::splat(-0.5), DVec3::splat(0.5)).unwrap();
+    let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 0.5).unwrap();
+    let rest = Motion::still(Pose::from_translation(DVec3::X * 1.5).unwrap());
+    let cast = MotionCast::new(cube.along(&turn), cube.along(&rest)).unwrap();
+    let solids = MotionCast::between(cube.along(&turn), cube.along(&rest)).unwrap();
+    let solids = solids.tolerating(0.0).unwrap().certified_first_contact().unwrap();
+    let convex = cast.first_contact().unwrap();
+    let MotionOutcome::Free(mut free) = convex.clone() else { panic!("{convex:?}") };
+    // As of a pair whose planes run out.
+    free.proof.spans.clear();
+    free.proof.solids = Some(Box::new(solids.proof().clone()));
+    let files = [MotionOutcome::Free(free), convex].map(|of| MotionProofFile::of(&cast, &of));
+    let bounds = files.iter().map(|file| file.check().unwrap());
+    let bounds = bounds.fold([1.0, f64::INFINITY], |all, [lower, upper]| {
+        [f64::min(all[0], lower), f64::min(all[1], upper)]
+    });
+    let saved = MotionProofFiles::of(files.to_vec()).to_json();
+    let formats = ["colltrans motion of solids proof 1", "colltrans motion proof 1"];
+    for format in formats {
+        assert_eq!(saved.matches(&format!("\"format\":\"{format}\"")).count(), 1, "{format}");
+    }
+    let read = MotionProofFiles::from_json(&saved).unwrap();
+    assert_eq!(read.check().unwrap(), bounds);
+    assert_eq!(read.to_json(), saved);
+    assert!(read.to_string().starts_with("of 2 pairs of bodies "), "{read}");
+    let other = saved.replace(formats[0], "colltrans path proof 2");
+    assert!(MotionProofFiles::from_json(&other).is_err());
 }
 
 /// A proof about the bodies as solids counts for the same question alone: not with a gap, a depth, or planes beside it.

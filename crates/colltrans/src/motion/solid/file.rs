@@ -18,7 +18,7 @@ use crate::cast::solid::StartProof;
 use crate::proof_file::{BodyFile, Written, kept, said};
 
 /// What a file of this version calls itself.
-const FORMAT: &str = "colltrans motion of solids proof 1";
+pub(in crate::motion) const FORMAT: &str = "colltrans motion of solids proof 1";
 
 /// A proof that owns its solids and their motions: whoever has the file can check what it says, without a search.
 ///
@@ -75,6 +75,17 @@ impl SolidMotionProofFile {
         let cast =
             asked(bodies, motions, *keep, *tolerance).map_err(|_| MotionProofError::Start)?;
         cast.verify(proof)
+    }
+
+    /// Returns the gap that is kept.
+    pub(in crate::motion) fn keep(&self) -> f64 {
+        self.keep
+    }
+
+    /// Returns the time up to which the solids do not meet, and the one at which they do, if these are claimed.
+    pub(in crate::motion) fn claims(&self) -> (Option<f64>, Option<f64>) {
+        let SolidMotionProof { spans, meeting, .. } = &self.proof;
+        (spans.last().map(|span| span.until), meeting.as_ref().map(|meeting| meeting.time))
     }
 
     /// As a file: numbers that read back as the same bits.

@@ -27,6 +27,8 @@ use glam::DVec3;
 use self::facets::FacetLooker;
 pub use self::facets::FacetsMet;
 #[cfg(feature = "json")]
+pub(super) use self::file::FORMAT as SOLIDS_PROOF;
+#[cfg(feature = "json")]
 pub use self::file::SolidMotionProofFile;
 use self::meeting::seen;
 use self::proof::Written;

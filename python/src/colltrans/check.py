@@ -2606,7 +2606,10 @@ def motions(file: Any) -> Report:
     kinds = {MOTION_FORMAT: motion, SOLID_MOTION_FORMAT: solid_motion}
     if not fields(file, "format proofs")["proofs"]:
         raise NoProofError("there is no pair of bodies")
-    if len({number(proof.get("keep", 0.0)) for proof in file["proofs"]}) > 1:
+    keeps = [(proof["format"], number(proof.get("keep", 0.0))) for proof in file["proofs"]]
+    least = min(keep for _, keep in keeps)
+    # What is apart by a larger gap is apart by this one, too.
+    if any(keep != least and kind != SOLID_MOTION_FORMAT for kind, keep in keeps):
         raise NoProofError("the proofs are of several gaps to be kept")
     for number_, proof in enumerate(file["proofs"]):
         if proof["format"] not in kinds:

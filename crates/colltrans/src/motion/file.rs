@@ -298,9 +298,21 @@ impl MotionProofFiles {
     /// # Errors
     /// What is not proven of one of them.
     pub fn check(&self) -> Result<[f64; 2], MotionProofError> {
-        self.0.iter().try_fold([1.0, f64::INFINITY], |[lower, upper], proof| {
-            let [l, u] = proof.check()?;
-            Ok([f64::min(lower, l), f64::min(upper, u)])
+        let checked = self.0.iter().map(PairFile::check);
+        Ok(self.first_of(&checked.collect::<Result<Vec<_>, _>>()?))
+    }
+
+    /// The gap that is kept: the smallest one, because what is proven apart by a larger one is apart by that, too.
+    fn keep(&self) -> f64 {
+        self.0.iter().map(PairFile::keep).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Returns the smallest times of all pairs. A pair that comes as near as a larger gap does not come as near as this one.
+    fn first_of(&self, times: &[[f64; 2]]) -> [f64; 2] {
+        let pairs = self.0.iter().zip(times);
+        pairs.fold([1.0, f64::INFINITY], |[lower, upper], (proof, [l, u])| {
+            let u = if proof.keep() == self.keep() { *u } else { f64::INFINITY };
+            [f64::min(lower, *l), f64::min(upper, u)]
         })
     }
 
@@ -324,14 +336,17 @@ impl MotionProofFiles {
         let wrong = |what: String| Err(CaseError::Proof(serde_json::Error::custom(what)));
         let read = file.proofs.iter().map(|proof| PairFile::from_json(proof.get()));
         let proofs: Vec<PairFile> = read.collect::<Result<_, _>>()?;
-        let [first, ..] = &proofs[..] else {
+        if proofs.is_empty() {
             return wrong("there are no proofs; there has to be one of each pair of bodies".into());
-        };
-        if let Some(other) = proofs.iter().find(|proof| proof.keep() != first.keep()) {
-            let keeps = [first.keep(), other.keep()];
+        }
+        let all = Self(proofs);
+        let is_other =
+            |proof: &&PairFile| matches!(proof, PairFile::Convex(_)) && proof.keep() != all.keep();
+        if let Some(other) = all.0.iter().find(is_other) {
+            let keeps = [all.keep(), other.keep()];
             return wrong(format!("proofs of one question keep one gap, not {keeps:?}"));
         }
-        Ok(Self(proofs))
+        Ok(all)
     }
 }
 
@@ -339,11 +354,9 @@ impl fmt::Display for MotionProofFiles {
     /// What is said, in words.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let count = self.pairs();
-        let claims = self.0.iter().map(PairFile::claims);
-        let [lower, upper] = claims.fold([1.0, f64::INFINITY], |[l, u], [lower, upper]| {
-            [f64::min(l, lower), f64::min(u, upper)]
-        });
-        let meet = meet(self.0.first().map_or(0.0, PairFile::keep));
+        let claims: Vec<[f64; 2]> = self.0.iter().map(PairFile::claims).collect();
+        let [lower, upper] = self.first_of(&claims);
+        let meet = meet(self.keep());
         if upper.is_finite() {
             write!(
                 f,

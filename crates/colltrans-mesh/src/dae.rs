@@ -12,7 +12,7 @@ use std::collections::HashMap;
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
-use crate::digits::NumberFormat;
+use crate::digits::{NumberFormat, Printed, largest_magnitude};
 use crate::error::{Fault, Place};
 use crate::mesh::Mesh;
 use crate::text::{quoted, without_mark};
@@ -236,7 +236,9 @@ impl<'a> Reader<'a> {
                 base
             } else {
                 let base = shape.vertices.len() as u32;
-                shape.vertices.extend(self.vectors(source)?);
+                let (vectors, printed) = self.vectors(source)?;
+                shape.vertices.extend(vectors);
+                shape.printed.extend(printed);
                 bases.insert(key, base);
                 base
             };
@@ -248,9 +250,8 @@ impl<'a> Reader<'a> {
                 shape.faces.push(corners.iter().map(|v| v + base).collect());
             }
         }
-        let used: Vec<DVec3> = shape.vertices_in_use().collect();
-        let format = NumberFormat::of_text(&used, false);
-        let precision = format.precision_of(&used);
+        let format = NumberFormat::of_text(&shape, false);
+        let precision = format.precision(largest_magnitude(shape.vertices_in_use()));
         Ok(Shape { vertices: shape.vertices, faces: shape.faces, format, precision })
     }
 
@@ -261,8 +262,8 @@ impl<'a> Reader<'a> {
         self.named(position.ok_or_else(|| at(vertices, "its vertices have no positions"))?)
     }
 
-    /// The vectors of a source.
-    fn vectors(&self, source: &Element) -> Result<Vec<DVec3>, Fault> {
+    /// Returns the vectors of a source, and how they are printed.
+    fn vectors(&self, source: &Element) -> Result<(Vec<DVec3>, Vec<[Printed; 3]>), Fault> {
         let accessor = source.first("technique_common").and_then(|t| t.first("accessor"));
         let accessor = accessor.ok_or_else(|| at(source, "a source without an accessor"))?;
         let array = self.named(accessor)?;
@@ -270,6 +271,7 @@ impl<'a> Reader<'a> {
             return Err(at(array, format!("positions are {}, not numbers", quoted(&array.name))));
         }
         let numbers: Vec<f64> = words(array)?;
+        let printed: Vec<Printed> = array.text.split_whitespace().map(Printed::of).collect();
         let [count, stride, offset] = ["count", "stride", "offset"].map(|key| whole(accessor, key));
         let (count, stride, offset) =
             (count?.unwrap_or(0), stride?.unwrap_or(1), offset?.unwrap_or(0));
@@ -294,10 +296,11 @@ impl<'a> Reader<'a> {
             ));
         }
         let vector = |k: usize| {
-            let number = |place: usize| numbers[offset + k * stride + place];
-            DVec3::new(number(x), number(y), number(z))
+            let [x, y, z] = [x, y, z].map(|place| offset + k * stride + place);
+            let vector = DVec3::new(numbers[x], numbers[y], numbers[z]);
+            (vector, [printed[x], printed[y], printed[z]])
         };
-        Ok((0..count).map(vector).collect())
+        Ok((0..count).map(vector).unzip())
     }
 }
 

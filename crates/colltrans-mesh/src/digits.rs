@@ -2,23 +2,30 @@
 //!
 //! A writer prints a number of decimals (`%.6f`) or of significant digits (`%g`), so each coordinate that it
 //! had to round ends in the last place that it prints. Numbers that end sooner are exact: those of a drawing
-//! (`12.5`), or whole binary fractions (`0.0625`). The writer's format is therefore read from the numbers that
-//! are no binary fractions, trailing zeros apart:
+//! (`12.5`), or binary fractions (`0.0625`). The writer's format is therefore read from the numbers that
+//! can be rounded, without trailing zeros. These are all but binary fractions. A whole number with an exponent
+//! (`1.54245e+07`) belongs to them, because its last digit need not be a unit.
 //!
 //! - Many different ones ([`MANY`]), more than half of all, end in the same place: *decimals*.
 //! - Or they have the same number of significant digits: *digits*. Of seven digits one may be missing, of
 //!   more two, because the shortest text of a number in single precision has six to nine.
-//! - Neither, or up to [`EXACT`] digits at most: the numbers are exact decimals, as far as doubles are.
+//! - Neither, or at most [`EXACT`] digits: the numbers are exact decimals, as far as doubles are. The text of
+//!   few digits is rounded nevertheless if zeros fill up each number to the same place ([`fixed_places`]).
 //! - More than [`ALL`] digits: doubles with all their digits.
 //!
+//! Up to one number in [`OUTLIERS`] may have more digits than the format has: somebody edited it.
+//!
 //! Digits are those of the shortest decimal that reads as the same double. Up to 15 significant digits that is
-//! the text of the file.
+//! the text of the file. Exponents and trailing zeros are no part of a double, so readers record these
+//! ([`Printed`]). The library that reads PLY hides the text, so such files are judged by their doubles alone.
 
-use std::collections::HashSet;
+use std::collections::HashMap;
 use std::fmt;
 use std::fmt::Write as _;
 
 use glam::DVec3;
+
+use crate::mesh::Mesh;
 
 /// How a file writes its coordinates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -51,26 +58,101 @@ const EXACT: u32 = 4;
 const ALL: u32 = 15;
 /// Minimum number of different coordinates that show how a writer rounds.
 const MANY: usize = 4;
+/// One number in this many may be printed in another way than the others.
+const OUTLIERS: usize = 16;
 /// Maximum number of coordinates that are looked at; of more, some at even distances.
 const LOOKED_AT: usize = 1 << 16;
 
+/// The printed form of a number, as far as its value does not show it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Printed {
+    /// Number of digits between the point and the exponent or the end; at most 255.
+    places: u8,
+    /// Whether the last of these digits is 0.
+    is_padded: bool,
+    has_exponent: bool,
+}
+
+impl Printed {
+    /// Returns the form of a number's text.
+    pub(crate) fn of(text: &str) -> Self {
+        let text = text.as_bytes();
+        let end = text.iter().position(|byte| matches!(byte, b'e' | b'E'));
+        let mantissa = &text[..end.unwrap_or(text.len())];
+        let point = mantissa.iter().position(|byte| *byte == b'.');
+        let decimals = point.map_or(&[][..], |point| &mantissa[point + 1..]);
+        Self {
+            places: decimals.len().min(255) as u8,
+            is_padded: decimals.last() == Some(&b'0'),
+            has_exponent: end.is_some(),
+        }
+    }
+}
+
+/// The fixed number of places that a writer prints for each number, zeros included.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum FixedPlaces {
+    /// As `%.3f` prints.
+    Decimals(i32),
+    /// As `%.3e` prints: significant digits, one of them before the point.
+    Digits(i32),
+}
+
+/// Returns the places that nearly all numbers have in common, if these are two decimals or more and some of the
+/// numbers end in zeros. A single decimal shows nothing, because `1.0` is also the shortest text of a number.
+fn fixed_places<'a>(numbers: impl Iterator<Item = &'a Printed>) -> Option<FixedPlaces> {
+    let mut counts: HashMap<(u8, bool), [usize; 2]> = HashMap::new();
+    for number in numbers {
+        let count = counts.entry((number.places, number.has_exponent)).or_default();
+        count[usize::from(number.is_padded)] += 1;
+    }
+    let total = counts.values().flatten().sum();
+    let is_fixed = |[full, padded]: [usize; 2]| padded > 0 && is_nearly_all(full + padded, total);
+    let fixed = counts.into_iter().find(|((places, _), count)| *places > 1 && is_fixed(*count));
+    fixed.map(|((places, has_exponent), _)| match has_exponent {
+        true => FixedPlaces::Digits(i32::from(places) + 1),
+        false => FixedPlaces::Decimals(i32::from(places)),
+    })
+}
+
+/// Checks whether the things counted are all of them, except for one in [`OUTLIERS`].
+const fn is_nearly_all(count: usize, total: usize) -> bool {
+    total - count <= total / OUTLIERS
+}
+
 impl NumberFormat {
-    /// The format of these coordinates of a text; `single` if they were read in single precision.
-    pub(crate) fn of_text(coordinates: &[DVec3], single: bool) -> Self {
+    /// Returns the format of the coordinates of a text, of vertices in use; `single` if they were read in single
+    /// precision.
+    pub(crate) fn of_text(mesh: &Mesh, single: bool) -> Self {
         let read_as = if single { Self::Single } else { Self::Double };
-        let step = coordinates.len().div_ceil(LOOKED_AT / 3).max(1);
-        let looked_at = coordinates.iter().step_by(step).flat_map(DVec3::to_array);
-        let different: HashSet<u64> = looked_at.map(|x| x.abs().to_bits()).collect();
+        let used: Vec<usize> = mesh.indices_in_use().collect();
+        let step = used.len().div_ceil(LOOKED_AT / 3).max(1);
+        let looked_at = used.into_iter().step_by(step).flat_map(|v| {
+            let printed = mesh.printed.get(v).copied().unwrap_or_default();
+            mesh.vertices[v].to_array().into_iter().zip(printed)
+        });
+        let different: HashMap<u64, Printed> =
+            looked_at.map(|(x, printed)| (x.abs().to_bits(), printed)).collect();
         let mut text = String::new();
         let mut decimal = |bits: u64| Decimal::of(f64::from_bits(bits), single, &mut text);
         let rounded: Vec<Decimal> = different
-            .into_iter()
-            .filter_map(&mut decimal)
-            .filter(|decimal| !decimal.is_binary_fraction())
+            .iter()
+            .filter_map(|(bits, printed)| Some((decimal(*bits)?, printed)))
+            .filter(|(decimal, printed)| decimal.may_be_rounded(**printed))
+            .map(|(decimal, _)| decimal)
             .collect();
-        let most = |of: fn(&Decimal) -> i32| rounded.iter().map(of).max().unwrap_or(0);
+        let most = |of: fn(&Decimal) -> i32| {
+            let mut counts: Vec<i32> = rounded.iter().map(of).collect();
+            counts.sort_unstable_by_key(|count| std::cmp::Reverse(*count));
+            counts.get(counts.len() / OUTLIERS).copied().unwrap_or(0)
+        };
         let (digits, decimals) = (most(|x| x.digits), most(|x| x.decimals));
-        if digits <= EXACT as i32 || digits > ALL as i32 && !single {
+        let is_fixed = || match fixed_places(different.values()) {
+            Some(FixedPlaces::Decimals(fixed)) => fixed == decimals,
+            Some(FixedPlaces::Digits(fixed)) => fixed == digits,
+            None => false,
+        };
+        if digits <= EXACT as i32 && !is_fixed() || digits > ALL as i32 && !single {
             return read_as;
         }
         let missing = (digits - 6).clamp(0, 2);
@@ -85,19 +167,14 @@ impl NumberFormat {
         } else {
             return read_as;
         };
-        // All of them may be numbers in single precision, which knows less than eight or nine digits say.
-        let is_single = digits > 7 && rounded.iter().all(|x| x.is_single);
-        let largest = largest_magnitude(coordinates);
+        // They may be numbers in single precision, which is coarser than eight or nine digits.
+        let is_single = digits > 7 && is_nearly_all(count(&|x| x.is_single), rounded.len());
+        let largest = largest_magnitude(mesh.vertices_in_use());
         if is_single && Self::Single.precision(largest) > found.precision(largest) {
             Self::Single
         } else {
             found
         }
-    }
-
-    /// [`Self::precision`] of these coordinates.
-    pub(crate) fn precision_of(self, coordinates: &[DVec3]) -> f64 {
-        self.precision(largest_magnitude(coordinates))
     }
 
     /// How far apart two vertices may be written that were meant to be one, where the largest coordinate has this
@@ -124,8 +201,8 @@ fn power_of_ten(exponent: i32) -> f64 {
 }
 
 /// The largest magnitude of a coordinate that is finite; 0 if none is.
-pub(crate) fn largest_magnitude(vertices: &[DVec3]) -> f64 {
-    let magnitudes = vertices.iter().flat_map(DVec3::to_array).map(f64::abs);
+pub(crate) fn largest_magnitude(vertices: impl Iterator<Item = DVec3>) -> f64 {
+    let magnitudes = vertices.flat_map(|v| v.to_array()).map(f64::abs);
     magnitudes.filter(|m| m.is_finite()).fold(0.0, f64::max)
 }
 
@@ -163,6 +240,12 @@ impl Decimal {
         Some(Self { mantissa, digits, decimals, is_single: in_single == found })
     }
 
+    /// Checks whether a writer may have rounded the number: it is no binary fraction, or it is a whole number that
+    /// an exponent cuts off before its last digit, or right there.
+    fn may_be_rounded(&self, printed: Printed) -> bool {
+        if self.decimals > 0 { !self.is_binary_fraction() } else { printed.has_exponent }
+    }
+
     /// Whether it is a whole number over a power of 2, which binary numbers hold exactly.
     fn is_binary_fraction(&self) -> bool {
         let five = u32::try_from(self.decimals).map_or(Some(1), |places| 5_u64.checked_pow(places));
@@ -173,6 +256,7 @@ impl Decimal {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::text::number;
     use colltrans_testkit::random::Random;
 
     /// The format of numbers, each as a writer prints it.
@@ -180,9 +264,30 @@ mod tests {
         numbers: impl Iterator<Item = f64>,
         print: impl Fn(f64) -> String,
     ) -> NumberFormat {
-        let numbers: Vec<f64> = numbers.map(|x| print(x).parse().unwrap()).collect();
-        let points: Vec<DVec3> = numbers.chunks_exact(3).map(DVec3::from_slice).collect();
-        NumberFormat::of_text(&points, false)
+        format_of_words(&numbers.map(print).collect::<Vec<_>>())
+    }
+
+    fn format_of_words(words: &[String]) -> NumberFormat {
+        let mut mesh = Mesh::default();
+        for [x, y, z] in words.as_chunks().0 {
+            let numbers = [x, y, z].map(|word| number(word).unwrap());
+            mesh.vertices.push(numbers.map(|(x, _)| x).into());
+            mesh.printed.push(numbers.map(|(_, printed)| printed));
+        }
+        NumberFormat::of_text(&mesh, false)
+    }
+
+    /// As `%.{digits}g` prints.
+    fn general(x: f64, digits: usize) -> String {
+        let scientific = format!("{x:.*e}", digits - 1);
+        let (mantissa, exponent) = scientific.split_once('e').unwrap();
+        let exponent: i32 = exponent.parse().unwrap();
+        if (-4..digits as i32).contains(&exponent) {
+            return scientific.parse::<f64>().unwrap().to_string();
+        }
+        let mantissa = mantissa.trim_end_matches('0').trim_end_matches('.');
+        let sign = if exponent < 0 { '-' } else { '+' };
+        format!("{mantissa}e{sign}{:02}", exponent.abs())
     }
 
     /// As `%.{digits}g` prints.
@@ -209,6 +314,59 @@ mod tests {
         assert_eq!(all, NumberFormat::Double);
         let single = format_of(random(-300.0, 300.0), |x| (x as f32).to_string());
         assert_eq!(single, NumberFormat::Single);
+    }
+
+    #[test]
+    fn whole_numbers_with_exponents_are_rounded() {
+        for (low, high) in [(5e5, 2e7), (4.2e6, 4.3e6), (1e50, 9e50)] {
+            for digits in 5..=6 {
+                let printed = format_of(random(low, high), |x| general(x, digits));
+                assert_eq!(printed, NumberFormat::Digits(digits as u32), "{low} to {high}");
+            }
+        }
+        let printed = format_of(random(-5e6, 5e6), |x| significant(x, 7));
+        assert_eq!(printed, NumberFormat::Digits(7));
+        assert_eq!(NumberFormat::Digits(7).precision(5e6), 2.0);
+        assert_eq!(NumberFormat::Digits(6).precision(1.54245e7), 200.0);
+        // Whole numbers without an exponent, and drawings with one.
+        let whole = format_of(random(-5e6, 5e6), |x| format!("{x:.0}"));
+        assert_eq!(whole, NumberFormat::Double);
+        let drawing = [12.5, 1000.0, 7.25, 104.775, 0.5, 25.4, 3.175, 12.7, 0.0];
+        assert_eq!(format_of(drawing.into_iter(), |x| significant(x, 7)), NumberFormat::Double);
+    }
+
+    #[test]
+    fn few_digits_are_rounded_where_zeros_fill_them_up() {
+        for (places, size) in [(2, 9.0), (2, 90.0), (3, 1.0), (3, 9.0), (4, 0.9)] {
+            let printed = format_of(random(-size, size), |x| format!("{x:.places$}"));
+            assert_eq!(printed, NumberFormat::Decimals(places as u32), "{places}");
+            // The same numbers without these zeros, as drawings have them.
+            let short = |x: f64| format!("{x:.places$}").parse::<f64>().unwrap().to_string();
+            assert_eq!(format_of(random(-size, size), short), NumberFormat::Double, "{places}");
+        }
+        let printed = format_of(random(-5.0, 5.0), |x| significant(x, 4));
+        assert_eq!(printed, NumberFormat::Digits(4));
+        // A drawing that is filled up to more places than it has, and numbers like `1.0`.
+        let drawing = [0.5, 1.2, 3.4, 0.1, 2.6, 7.7, 0.0, 1.0, 9.3];
+        let padded = |places: usize| format_of(drawing.into_iter(), |x| format!("{x:.places$}"));
+        assert_eq!([1, 2, 3, 6].map(padded), [NumberFormat::Double; 4]);
+    }
+
+    #[test]
+    fn one_number_with_more_digits_changes_nothing() {
+        let exact = 0.123_456_789_012_345_67;
+        for digits in [7, 9, 12, 17] {
+            let mut words: Vec<String> = random(-9.0, 9.0).map(|x| general(x, 6)).collect();
+            words[0] = general(exact, digits);
+            assert_eq!(format_of_words(&words), NumberFormat::Digits(6), "{digits}");
+            let mut words: Vec<String> = random(-9.0, 9.0).map(|x| format!("{x:.3}")).collect();
+            words[0] = general(exact, digits);
+            assert_eq!(format_of_words(&words), NumberFormat::Decimals(3), "{digits}");
+            let mut words: Vec<String> =
+                random(-9.0, 9.0).map(|x| (x as f32).to_string()).collect();
+            words[0] = general(exact, digits);
+            assert_eq!(format_of_words(&words), NumberFormat::Single, "{digits}");
+        }
     }
 
     #[test]

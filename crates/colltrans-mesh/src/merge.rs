@@ -47,10 +47,10 @@ impl Precision {
     /// Text that is read in double precision.
     pub(crate) const TEXT: Self = Self { single: false, text: true };
 
-    /// How these coordinates are written.
-    fn format_of(self, coordinates: &[DVec3]) -> NumberFormat {
+    /// Returns how the coordinates of a mesh are written.
+    fn format_of(self, mesh: &Mesh) -> NumberFormat {
         match self {
-            Self { text: true, single } => NumberFormat::of_text(coordinates, single),
+            Self { text: true, single } => NumberFormat::of_text(mesh, single),
             Self { single: true, .. } => NumberFormat::Single,
             Self { single: false, .. } => NumberFormat::Double,
         }
@@ -74,38 +74,47 @@ impl Mesh {
     /// face has no area, and the edges it joined become neighbours.
     #[must_use]
     pub fn weld(&self) -> Self {
-        let (vertices, faces) = self.welded();
-        let mut mesh = Self { vertices, faces, groups: self.groups.clone(), ..*self };
+        let (kept, faces) = self.first_of_equal();
+        let vertices = kept.iter().map(|&v| self.vertices[v as usize]).collect();
+        let printed = kept.iter().filter_map(|&v| self.printed.get(v as usize).copied()).collect();
+        let mut mesh = Self { vertices, faces, printed, groups: self.groups.clone(), ..*self };
         mesh.drop_flat_faces();
         mesh
     }
 
     /// The different vertices, and all faces over them.
     pub(crate) fn welded(&self) -> (Vec<DVec3>, Vec<Vec<u32>>) {
+        let (kept, faces) = self.first_of_equal();
+        (kept.into_iter().map(|v| self.vertices[v as usize]).collect(), faces)
+    }
+
+    /// Returns the index of the first of equal vertices, for each that differs, and all faces over these.
+    fn first_of_equal(&self) -> (Vec<u32>, Vec<Vec<u32>>) {
         let mut index_of = HashMap::with_capacity(self.vertices.len() / 4);
-        let mut vertices = Vec::new();
+        let mut kept = Vec::new();
         let welded: Vec<u32> = self
             .vertices
             .iter()
-            .map(|&vertex| match index_of.entry(key(vertex)) {
+            .enumerate()
+            .map(|(v, &vertex)| match index_of.entry(key(vertex)) {
                 Entry::Occupied(known) => *known.get(),
                 Entry::Vacant(new) => {
-                    let index = vertices.len() as u32;
-                    vertices.push(vertex);
+                    let index = kept.len() as u32;
+                    kept.push(v as u32);
                     *new.insert(index)
                 }
             })
             .collect();
         let renamed = |face: &Vec<u32>| face.iter().map(|&v| welded[v as usize]).collect();
         let faces = self.faces.iter().map(renamed).collect();
-        (vertices, faces)
+        (kept, faces)
     }
 
     /// Merges twins along open edges. `None` is the default tolerance.
     pub(crate) fn close(&mut self, asked: Option<f64>, precision: Precision, places: Places) {
-        let used: Vec<DVec3> = self.vertices_in_use().collect();
-        let format = precision.format_of(&used);
-        let precision = format.precision_of(&used);
+        let format = precision.format_of(self);
+        let precision = format.precision(largest_magnitude(self.vertices_in_use()));
+        self.printed = Vec::new();
         // A reader that has moved vertices knows how they were written.
         if self.precision <= precision {
             (self.format, self.precision) = (format, precision);
@@ -281,7 +290,8 @@ fn length(v: DVec3) -> f64 {
 impl Grid {
     fn new(tolerance: f64, vertices: &[DVec3]) -> Self {
         // The numbers of cells must fit in 64 bits.
-        let smallest = largest_magnitude(vertices) * f64::from_bits((1023 - 60) << 52);
+        let smallest =
+            largest_magnitude(vertices.iter().copied()) * f64::from_bits((1023 - 60) << 52);
         let cell = (CELL * tolerance).max(smallest).max(f64::MIN_POSITIVE);
         Self { cell, tolerance, last: HashMap::new(), before: vec![NONE; vertices.len()] }
     }

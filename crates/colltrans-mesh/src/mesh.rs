@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::digits::NumberFormat;
+use crate::digits::{NumberFormat, Printed};
 
 /// Vertices and polygons over them, as a file lists them.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -26,6 +26,8 @@ pub struct Mesh {
     pub precision: f64,
     /// How the file writes its coordinates, which [`Self::precision`] follows from.
     pub format: NumberFormat,
+    /// The printed forms of the coordinates of each vertex, while a text is read; else nothing.
+    pub(crate) printed: Vec<[Printed; 3]>,
 }
 
 /// What a file tells apart: objects or groups of OBJ, solids of STL, nodes of DAE.
@@ -92,9 +94,14 @@ impl Mesh {
     ///
     /// Default tolerances depend on these alone, because a vertex that no face uses is no part of the body.
     pub fn vertices_in_use(&self) -> impl Iterator<Item = DVec3> + '_ {
-        let is_used = self.is_used();
+        self.indices_in_use().map(|v| self.vertices[v])
+    }
+
+    /// Returns the index of each of the [vertices in use](Self::vertices_in_use).
+    pub fn indices_in_use(&self) -> impl Iterator<Item = usize> + use<> {
         let all = self.faces.is_empty();
-        self.vertices.iter().zip(is_used).filter(move |(_, used)| all || *used).map(|(v, _)| *v)
+        let is_used = self.is_used().into_iter().enumerate();
+        is_used.filter(move |(_, used)| all || *used).map(|(v, _)| v)
     }
 
     /// How many vertices no face uses.

@@ -14,6 +14,7 @@ use std::io::{self, BufRead, Read};
 use glam::DVec3;
 use tobj::{LoadError, LoadOptions};
 
+use crate::digits::Printed;
 use crate::error::{Fault, Place};
 use crate::mesh::{Groups, Mesh};
 use crate::text::{self, quoted, without_mark};
@@ -45,6 +46,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
             }
         }
     }
+    mesh.printed = lines.printed;
     mesh.groups = lines.names.groups(mesh.faces.len());
     Ok(mesh)
 }
@@ -94,6 +96,8 @@ struct Lines<'a> {
     /// A keyword that cannot be skipped; nothing is read after it.
     refused: Option<Fault>,
     names: Named,
+    /// How each position that was passed on is printed.
+    printed: Vec<[Printed; 3]>,
     /// Faces that were passed on.
     faces: usize,
 }
@@ -139,6 +143,7 @@ impl<'a> Lines<'a> {
             original: String::new(),
             refused: None,
             names: Named::default(),
+            printed: Vec::new(),
             faces: 0,
         }
     }
@@ -190,6 +195,8 @@ impl<'a> Lines<'a> {
     /// A position keeps its coordinates and weight, but not its colour.
     fn pass_position(&mut self, words: &[&str]) {
         let kept = if words.len() == 4 { 4 } else { words.len().min(3) };
+        let form = |k: usize| words.get(k).map(|word| Printed::of(word)).unwrap_or_default();
+        self.printed.push([form(0), form(1), form(2)]);
         self.pending.push(b'v');
         for word in &words[..kept] {
             self.pending.push(b' ');

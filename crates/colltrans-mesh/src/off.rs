@@ -8,9 +8,10 @@
 
 use glam::DVec3;
 
+use crate::digits::Printed;
 use crate::error::{Fault, Place};
 use crate::mesh::Mesh;
-use crate::text::{lines, quoted, without_mark};
+use crate::text::{lines, number, quoted, without_mark};
 
 pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
     let text = String::from_utf8_lossy(without_mark(bytes)?);
@@ -37,7 +38,10 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<Mesh, Fault> {
 
     let mut mesh = Mesh::default();
     for index in 0..vertex_count {
-        mesh.vertices.push(parse_vertex(&next(&format!("vertex {index} of {vertex_count}"))?)?);
+        let line = next(&format!("vertex {index} of {vertex_count}"))?;
+        let (vertex, printed) = parse_vertex(&line)?;
+        mesh.vertices.push(vertex);
+        mesh.printed.push(printed);
     }
     for index in 0..face_count {
         let line = next(&format!("face {index} of {face_count}"))?;
@@ -91,14 +95,16 @@ fn parse_counts(line: &Line<'_>) -> Result<(usize, usize), Fault> {
     Ok((count("vertices")?, count("faces")?))
 }
 
-fn parse_vertex(line: &Line<'_>) -> Result<DVec3, Fault> {
+fn parse_vertex(line: &Line<'_>) -> Result<(DVec3, [Printed; 3]), Fault> {
     let mut xyz = [0.0; 3];
+    let mut printed = [Printed::default(); 3];
     let mut words = line.content.split_whitespace();
-    for c in &mut xyz {
+    for (c, form) in xyz.iter_mut().zip(&mut printed) {
         let word = words.next().ok_or_else(|| line.fault("a vertex needs 3 coordinates"))?;
-        *c = word.parse().map_err(|_| line.fault(format!("{} is not a number", quoted(word))))?;
+        let refused = || line.fault(format!("{} is not a number", quoted(word)));
+        (*c, *form) = number(word).ok_or_else(refused)?;
     }
-    Ok(DVec3::from_array(xyz))
+    Ok((DVec3::from_array(xyz), printed))
 }
 
 fn parse_face(line: &Line<'_>, vertex_count: usize) -> Result<Vec<u32>, Fault> {

@@ -12,10 +12,11 @@ use std::io::Cursor;
 
 use glam::DVec3;
 
+use crate::digits::Printed;
 use crate::error::{Fault, Place};
 use crate::merge::Precision;
 use crate::mesh::Mesh;
-use crate::text::{lines, quoted, without_mark};
+use crate::text::{lines, number, quoted, without_mark};
 
 const HEADER: usize = 80;
 const TRIANGLE: usize = 50;
@@ -170,6 +171,7 @@ fn parse_text(text: &str) -> Result<Mesh, Fault> {
     let mut mesh = Mesh::default();
     let mut inside = Inside::Nothing;
     let mut corners: Vec<DVec3> = Vec::new();
+    let mut printed: Vec<[Printed; 3]> = Vec::new();
     let mut name = String::new();
     for (number, line) in lines(text).enumerate() {
         let at = |what: String| Fault::new(Place::Line(number + 1), what);
@@ -190,12 +192,22 @@ fn parse_text(text: &str) -> Result<Mesh, Fault> {
             return Err(at(what));
         };
         match keyword.as_str() {
-            "outer" => corners.clear(),
-            "vertex" => corners.push(vertex(words).map_err(at)?),
+            "outer" => {
+                corners.clear();
+                printed.clear();
+            }
+            "vertex" => {
+                let (corner, form) = vertex(words).map_err(at)?;
+                corners.push(corner);
+                printed.push(form);
+            }
             "endloop" if corners.len() < 3 => {
                 return Err(at(format!("a loop of {} vertices; 3 are needed", corners.len())));
             }
-            "endloop" => push_face(&mut mesh, &corners)?,
+            "endloop" => {
+                push_face(&mut mesh, &corners)?;
+                mesh.printed.extend_from_slice(&printed);
+            }
             "solid" => line.trim_start()[keyword.len()..].trim().clone_into(&mut name),
             "endsolid" => mesh.groups.end(&name, mesh.faces.len()),
             _ => {}
@@ -210,15 +222,19 @@ fn parse_text(text: &str) -> Result<Mesh, Fault> {
     Ok(mesh)
 }
 
-fn vertex<'a>(words: impl Iterator<Item = &'a str>) -> Result<DVec3, String> {
+fn vertex<'a>(words: impl Iterator<Item = &'a str>) -> Result<(DVec3, [Printed; 3]), String> {
     let mut xyz = [0.0; 3];
+    let mut printed = [Printed::default(); 3];
     let mut found = 0;
     for word in words {
-        let value = word.parse().map_err(|_| format!("{} is not a number", quoted(word)))?;
-        if let Some(place) = xyz.get_mut(found) {
-            *place = value;
+        let value = number(word).ok_or_else(|| format!("{} is not a number", quoted(word)))?;
+        if found < 3 {
+            (xyz[found], printed[found]) = value;
         }
         found += 1;
     }
-    if found == 3 { Ok(DVec3::from_array(xyz)) } else { Err(format!("{found} coordinates, not 3")) }
+    if found != 3 {
+        return Err(format!("{found} coordinates, not 3"));
+    }
+    Ok((DVec3::from_array(xyz), printed))
 }

@@ -1,5 +1,6 @@
 //! Text as files hold it: byte-order marks, three kinds of line ends, words in messages.
 
+use crate::digits::Printed;
 use crate::error::{Fault, Place};
 
 const UTF8_MARK: &[u8] = b"\xef\xbb\xbf";
@@ -45,6 +46,11 @@ impl<'a> Iterator for Lines<'a> {
         self.rest = &rest[after..];
         Some(line)
     }
+}
+
+/// Returns the number that a word is, and how it is printed; `None` if it is not a number.
+pub(crate) fn number(word: &str) -> Option<(f64, Printed)> {
+    Some((word.parse().ok()?, Printed::of(word)))
 }
 
 /// A word of the file, cut to a length that fits a message.

@@ -193,14 +193,60 @@ fn the_format_of_numbers_is_told() {
     assert_eq!(binary(&turned).format, NumberFormat::Single);
 }
 
+/// As `%.6g` prints numbers of a million and more.
+fn six_digits_with_exponent(x: f64) -> String {
+    format!("{x:.5e}").replace('e', "e+0")
+}
+
+/// Numbers whose value alone does not show that they are rounded: `4.23511e+07`, `0.300`.
+#[test]
+fn a_peg_fits_where_exponents_and_zeros_show_the_rounding() {
+    let mut random = Random::new(5);
+    for _ in 0..6 {
+        let turn = random.rotation();
+        let parts = |size: f64| {
+            let corner = |k: i32| (f64::from(k) * std::f64::consts::TAU / 24.0).sin_cos();
+            let outline: Vec<[f64; 2]> =
+                (0..24).map(corner).map(|(sin, cos)| [size * cos, size * sin]).collect();
+            let placed = |mesh| moved(mesh, |v| turn * v);
+            let hole = placed(frame(&outline, [0.0, 2.0 * size]));
+            [placed(prism(&outline, [0.0, 2.0 * size])), hole]
+        };
+        let goes_through = |parts: &[Mesh; 2]| goes_through(parts, turn * DVec3::Z);
+        for format in [Format::Stl, Format::Obj, Format::Off] {
+            let read = |size: f64, print: &dyn Fn(f64) -> String| {
+                parts(size).each_ref().map(|mesh| written(mesh, format, print))
+            };
+            let large = read(5e7, &six_digits_with_exponent);
+            assert_eq!(large[0].format, NumberFormat::Digits(6), "{format}");
+            assert!(goes_through(&large), "{format} with exponents");
+            let small = read(3.0, &|x| format!("{x:.3}"));
+            assert_eq!(small[0].format, NumberFormat::Decimals(3), "{format}");
+            assert!(goes_through(&small), "{format} with three decimals");
+        }
+    }
+}
+
 /// Nodes of COLLADA move and scale what they show: its digits are no more those of the file.
 #[test]
 fn nodes_of_collada_keep_the_precision_of_their_text() {
     let turn = DQuat::from_euler(colltrans::glam::EulerRot::XYZ, 0.3, 0.7, 0.1);
     let outline = [[0.0, 0.0], [20.0, 0.0], [20.0, 30.0], [0.0, 30.0]];
     let mesh = moved(prism(&outline, [0.0, 40.0]), |v| turn * v);
-    let numbers: Vec<String> =
-        mesh.vertices.iter().flat_map(DVec3::to_array).map(six_decimals).collect();
+    for (print, found, precision) in [
+        (&six_decimals as &dyn Fn(f64) -> String, NumberFormat::Decimals(6), 2e-5),
+        (&|x| format!("{:.3}", 0.1 * x), NumberFormat::Decimals(3), 2e-2),
+        (&|x| six_digits_with_exponent(1e6 * x), NumberFormat::Digits(6), 2e3),
+    ] {
+        let read = collada(&mesh, print);
+        assert_eq!(read.format, found);
+        assert!((read.precision / precision - 1.0).abs() < 1e-12, "{}", read.precision);
+    }
+}
+
+/// A mesh as a COLLADA file whose only node enlarges it tenfold.
+fn collada(mesh: &Mesh, print: &dyn Fn(f64) -> String) -> Mesh {
+    let numbers: Vec<String> = mesh.vertices.iter().flat_map(DVec3::to_array).map(print).collect();
     let list =
         |of: &mut dyn Iterator<Item = u32>| of.map(|k| k.to_string()).collect::<Vec<_>>().join(" ");
     let counts = list(&mut mesh.faces.iter().map(|face| face.len() as u32));
@@ -218,9 +264,7 @@ fn nodes_of_collada_keep_the_precision_of_their_text() {
          <scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>",
         numbers.join(" ")
     );
-    let read = parse(Format::Dae, text.into_bytes(), Path::new("part.dae")).unwrap();
-    assert_eq!(read.format, NumberFormat::Decimals(6));
-    assert!((read.precision - 2e-5).abs() < 1e-18, "{}", read.precision);
+    parse(Format::Dae, text.into_bytes(), Path::new("part.dae")).unwrap()
 }
 
 /// An L of 40 in a place of the UTM grid.

@@ -406,7 +406,7 @@ impl PlaceArguments {
 #[derive(Debug, Clone, Copy, Args)]
 #[command(next_help_heading = UNCLEAN)]
 pub(crate) struct HullArguments {
-    /// Take the convex hull of all vertices of both meshes, whatever their faces are
+    /// Take the convex hull of the vertices that faces use, of both meshes
     ///
     /// By how much a hull exceeds its part is said with the answer. `separated` is then a proof for
     /// the parts too; a contact of hulls is only a bound: the parts meet no earlier.
@@ -511,7 +511,7 @@ pub(crate) struct BatchArguments {
     /// each other take up to 64 MiB more.
     #[arg(long, value_name = "BYTES", value_parser = bytes, default_value = "256MiB")]
     pub(crate) cache_bytes: usize,
-    /// Take the convex hull of all vertices of every mesh, whatever its faces are
+    /// Take the convex hull of the vertices that faces use, of every mesh
     #[arg(long)]
     pub(crate) hull: bool,
     #[command(flatten)]

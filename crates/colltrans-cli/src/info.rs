@@ -79,10 +79,9 @@ fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
         }
         Err(error) => line(&mut text, "convex", &format!("no: {error}")),
     }
-    match ConvexPolyhedron::from_points(&mesh.vertices) {
+    match body::hull(mesh) {
         Ok(hull) => {
-            let all = if unused(mesh) > 0 { " (of all vertices, as --hull takes it)" } else { "" };
-            line(&mut text, "hull", &format!("{}{all}", counts(&hull)));
+            line(&mut text, "hull", &counts(&hull));
             line(&mut text, "hull volume", &computed(hull.volume()));
             let excess = Excess::of(mesh, &hull);
             let tolerance = tolerance(mesh, asked_tolerance);
@@ -93,7 +92,7 @@ fn describe(path: &Path, mesh: &Mesh, asked_tolerance: Option<f64>) -> String {
             line(
                 &mut text,
                 "hull error",
-                &format!("{error} (no vertex of the mesh is farther from the hull)"),
+                &format!("{error} (no vertex in use is farther from the hull)"),
             );
         }
         Err(error) => line(&mut text, "hull", &format!("none: {error}")),
@@ -117,14 +116,8 @@ fn parts(mesh: &Mesh) -> Vec<(&'static str, String)> {
     lines
 }
 
-/// Vertices of a surface that no face uses, but for those that were merged with others.
-fn unused(mesh: &Mesh) -> usize {
-    let unused = mesh.unused_vertices().saturating_sub(mesh.merged.vertices);
-    if mesh.faces.is_empty() { 0 } else { unused }
-}
-
 fn vertices(mesh: &Mesh) -> String {
-    match unused(mesh) {
+    match mesh.stray_vertices() {
         0 => mesh.vertices.len().to_string(),
         unused => {
             format!("{}, {unused} of them used by no face", mesh.vertices.len())

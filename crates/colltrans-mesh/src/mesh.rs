@@ -109,6 +109,13 @@ impl Mesh {
         self.is_used().iter().filter(|used| !**used).count()
     }
 
+    /// Returns the number of vertices that no face uses, without those that were merged into others; 0 for a mesh
+    /// without faces.
+    pub fn stray_vertices(&self) -> usize {
+        let unused = self.unused_vertices().saturating_sub(self.merged.vertices);
+        if self.faces.is_empty() { 0 } else { unused }
+    }
+
     /// For each vertex, whether a face uses it.
     fn is_used(&self) -> Vec<bool> {
         let mut is_used = vec![false; self.vertices.len()];

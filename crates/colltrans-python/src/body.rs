@@ -57,8 +57,8 @@ type Read = (String, Vec<String>);
 impl ConvexPolyhedron {
     #[new]
     fn new(py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<Self> {
-        let call =
-            "ConvexPolyhedron.from_trimesh(mesh), or ConvexPolyhedron(mesh.vertices) for its hull";
+        let call = "ConvexPolyhedron.from_trimesh(mesh), or ConvexPolyhedron(mesh.vertices) for the \
+                    hull of all its vertices";
         refuse_mesh_object(points, "points", call)?;
         let points = self::points(points, "points")?;
         py.detach(|| colltrans::ConvexPolyhedron::from_points(&points)).or_raise().map(Self::from)
@@ -387,7 +387,7 @@ impl ConvexPolyhedron {
 /// ----------
 /// path : str or os.PathLike
 /// hull : bool
-///     Take the convex hull of all vertices, whatever the faces.
+///     Take the convex hull of the vertices that faces use, of all if there are no faces.
 /// scale : float
 ///     Lengths are multiplied by this, after the tolerances, which are in the file's unit.
 /// convex_tolerance : float, optional

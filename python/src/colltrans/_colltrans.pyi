@@ -3340,7 +3340,7 @@ def read(
     ----------
     path : str or os.PathLike
     hull : bool
-        Take the convex hull of all vertices, whatever the faces.
+        Take the convex hull of the vertices that faces use, of all if there are no faces.
     scale : float
         Lengths are multiplied by this, after the tolerances, which are in the file's unit.
     convex_tolerance : float, optional

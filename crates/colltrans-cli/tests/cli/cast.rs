@@ -275,11 +275,37 @@ fn info_says_what_is_there_and_what_is_wrong() {
         cube.replace("8 6 12", "9 6 12").replace("0 1 1\n", "0 1 1\n5 5 5\n"),
     )
     .unwrap();
-    let told = "hull         8 vertices, 15 edges, 9 faces (of all vertices, as --hull takes it)\n";
+    let told = "hull         8 vertices, 12 edges, 6 faces\n";
     contains("more.off", &["convex       yes, to rounding error\n", told]);
     let both = colltrans(folder.path()).args(["info", "none.stl", "cube.off"]).output().unwrap();
     assert_eq!(both.status.code(), Some(3));
     assert!(stderr(&both).contains("none.stl") && stdout(&both).contains("cube.off"));
+}
+
+/// A stray vertex between two parts was a part of the hull, which then came in the way.
+#[test]
+fn a_hull_leaves_out_a_vertex_that_no_face_uses() {
+    let folder = folder();
+    let cube = std::fs::read_to_string(folder.path().join("cube.off")).unwrap();
+    let stray = cube.replace("8 6 12", "9 6 12").replace("0 1 1\n", "0 1 1\n0.5 0.5 500\n");
+    std::fs::write(folder.path().join("stray.off"), stray).unwrap();
+    let far = ["cast", "cube.off", "stray.off", "--moving-pose", "0,0,400", "--direction", "x"];
+    let run = |more: &[&str]| colltrans(folder.path()).args(far).args(more).output().unwrap();
+    let answer = run(&["--hull"]);
+    assert_eq!(stdout(&answer).lines().next(), Some("separated"));
+    let note = "stray.off: 1 vertex that no face uses is not in the hull";
+    assert!(stderr(&answer).contains(note), "{}", stderr(&answer));
+    let answer = json(&stdout(&run(&["--hull", "--json"])));
+    assert_eq!(answer["outcome"], "separated");
+    assert!(answer["notes"].to_string().contains(note), "{answer}");
+    let query = r#"{"moving":{"mesh":"cube.off"},"moving_pose":{"translation":[0,0,400]},
+        "fixed":{"mesh":"stray.off","hull":true},"direction":[1,0,0]}"#;
+    let batch = colltrans(folder.path())
+        .args(["batch", "-"])
+        .write_stdin(query.replace('\n', ""))
+        .output()
+        .unwrap();
+    assert_eq!(json(&stdout(&batch))["outcome"], "separated", "{}", stdout(&batch));
 }
 
 #[cfg(unix)]

@@ -15,7 +15,9 @@ use std::path::{Path, PathBuf};
 
 use colltrans::motion::{MotionCast, Moving};
 use colltrans::solid::{SolidError, SolidOptions, StartOverlap};
-use colltrans::{BuildError, Cast, ConvexPolyhedron, Placed, QueryError, Solid, TopologyError};
+use colltrans::{
+    BuildError, Cast, ConvexPolyhedron, InputVertex, Placed, QueryError, Solid, TopologyError,
+};
 use glam::DVec3;
 use thiserror::Error;
 
@@ -42,7 +44,7 @@ pub struct BodyOptions {
     pub merge_tolerance: Option<f64>,
     /// How deep a face of a convex body may lie below the hull; `None` is 1e-5 of [`Mesh::extent`].
     pub convex_tolerance: Option<f64>,
-    /// Of a convex body: the convex hull of all vertices is taken, whatever the faces are.
+    /// Of a convex body: the convex [`hull`] is taken, whatever the faces are.
     pub hull: bool,
     /// Of a solid: shells may be open, and block from both sides then.
     pub open: bool,
@@ -131,7 +133,7 @@ pub struct Loaded<B> {
 pub enum Take {
     /// A convex body, which its faces must be.
     Convex,
-    /// The convex hull of its vertices ([`BodyOptions::hull`]).
+    /// The convex hull of the vertices that its faces use ([`BodyOptions::hull`]).
     Hull,
     /// A solid, closed.
     Solid,
@@ -220,12 +222,23 @@ pub fn convex(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<ConvexPolyhed
         }
         return Ok(Loaded { body, precision, notes });
     }
-    let body = ConvexPolyhedron::from_points(&mesh.vertices)?;
+    let body = hull(&mesh)?;
+    notes.extend(Note::stray(&mesh));
     let excess = Excess::of(&mesh, &body);
     if !excess.is_within(tolerance, mesh.extent()) {
         notes.push(Note::Exceeds(excess));
     }
     Ok(Loaded { body, precision, notes })
+}
+
+/// Returns the convex hull of the vertices that the faces of a mesh use, of all vertices if it has no faces.
+/// Features of answers name vertices by their indices in the mesh.
+///
+/// # Errors
+/// What is wrong with these vertices.
+pub fn hull(mesh: &Mesh) -> Result<ConvexPolyhedron, BuildError> {
+    let numbered = |v: usize| (InputVertex(v as u32), mesh.vertices[v]);
+    ConvexPolyhedron::from_numbered_points(mesh.indices_in_use().map(numbered))
 }
 
 /// A solid of a mesh, mended where it is plain how (`docs/files.md`): what was done is in its notes.

@@ -40,6 +40,8 @@ pub enum Note {
         /// What the body is taken for, in words.
         what: String,
     },
+    /// This many vertices are in no face, and not in the hull.
+    Stray(usize),
     /// The hull has what its part has not.
     Exceeds(Excess),
     /// The mesh is convex only to within the tolerance: its surface lies up to this depth below its hull, which
@@ -84,6 +86,12 @@ impl Note {
     /// Whether it is of the file as a whole, no matter which of its shells are taken together.
     pub(super) const fn is_of_file(&self) -> bool {
         self.changes_faces() || matches!(self, Self::WithoutArea(_))
+    }
+
+    /// Returns the note about the vertices that a mesh's hull leaves out, if there are any.
+    pub(super) fn stray(mesh: &Mesh) -> Option<Self> {
+        let stray = mesh.stray_vertices();
+        (stray > 0).then_some(Self::Stray(stray))
     }
 
     /// What was merged when a mesh was read, if anything was.
@@ -135,6 +143,11 @@ impl fmt::Display for Note {
             Self::WithoutArea(n) => {
                 (n, "face without area left out", "faces without area left out")
             }
+            Self::Stray(n) => (
+                n,
+                "vertex that no face uses is not in the hull",
+                "vertices that no face uses are not in the hull",
+            ),
             Self::SlitsClosed(n) => (n, "slit without area closed", "slits without area closed"),
             Self::Crowded(n) => (
                 n,

@@ -300,6 +300,39 @@ fn a_vertex_that_no_face_uses_changes_no_tolerance() {
 }
 
 #[test]
+fn a_hull_leaves_out_what_no_face_uses() {
+    let options = BodyOptions::default().with_hull(true);
+    let angle = angle();
+    let plain = convex(&angle, &options).unwrap();
+    assert!((plain.body.volume() - 11_500.0).abs() < 1e-3, "{}", plain.body.volume());
+    for stray in [DVec3::ZERO, DVec3::splat(1e12)] {
+        for format in [Format::Obj, Format::Ply, Format::Off] {
+            let mesh = written(&with_stray(&angle, stray), format, &|x| x.to_string());
+            let loaded = convex(&mesh, &options).unwrap();
+            assert_eq!(loaded.body.vertices(), plain.body.vertices(), "{format}");
+            assert!(loaded.notes.contains(&Note::Stray(1)), "{:?}", loaded.notes);
+            assert!(!plain.notes.contains(&Note::Stray(1)));
+            // Features name the vertices of the file.
+            for (vertex, number) in loaded.body.vertices().iter().zip(loaded.body.input_indices()) {
+                assert_eq!(mesh.vertices[number.index()], *vertex, "{format}");
+            }
+        }
+    }
+    assert_eq!(Note::Stray(2).to_string(), "2 vertices that no face uses are not in the hull");
+    // A cloud of points has no faces that could use them.
+    let cloud = Mesh::new(angle.vertices.clone(), Vec::new());
+    let loaded = convex(&cloud, &options).unwrap();
+    assert_eq!(loaded.body.vertices(), plain.body.vertices());
+    assert!(!loaded.notes.iter().any(|note| matches!(note, Note::Stray(_))));
+    // A vertex that is no number is no matter if no face uses it.
+    let mut unknown = with_stray(&angle, DVec3::NAN);
+    assert_eq!(convex(&unknown, &options).unwrap().body.vertices(), plain.body.vertices());
+    unknown.vertices[3] = DVec3::NAN;
+    let said = convex(&unknown, &options).unwrap_err().to_string();
+    assert!(said.contains("point 3"), "{said}");
+}
+
+#[test]
 fn a_body_that_is_convex_by_tolerance_tells_its_dent() {
     let outline = [[0.0, 0.0], [40.0, 0.0], [40.0, 40.0], [20.0, 39.9999], [0.0, 40.0]];
     let dented = prism(&outline, [0.0, 10.0]);

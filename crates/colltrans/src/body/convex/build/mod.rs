@@ -49,6 +49,44 @@ impl ConvexPolyhedron {
         Ok(Self::from_hull(points, hull::convex_hull(points)))
     }
 
+    /// Returns the [hull](Self::from_points) of points that are some of an input, each with its number there.
+    ///
+    /// Features of answers, and [`Self::input_index`], name the points by these numbers.
+    ///
+    /// # Errors
+    /// As of [`Self::from_points`]; they name a point by its number, too.
+    ///
+    /// ```
+    /// use colltrans::glam::DVec3;
+    /// use colltrans::{ConvexPolyhedron, InputVertex};
+    ///
+    /// let input = [DVec3::splat(1e6), DVec3::ZERO, DVec3::X, DVec3::Y, DVec3::Z];
+    /// let numbered = (1..5).map(|k| (InputVertex(k), input[k as usize]));
+    /// let tetrahedron = ConvexPolyhedron::from_numbered_points(numbered)?;
+    /// assert_eq!(tetrahedron.input_indices(), [1, 2, 3, 4].map(InputVertex));
+    /// # Ok::<(), colltrans::BuildError>(())
+    /// ```
+    pub fn from_numbered_points(
+        points: impl IntoIterator<Item = (InputVertex, DVec3)>,
+    ) -> Result<Self, BuildError> {
+        let (numbers, points): (Vec<InputVertex>, Vec<DVec3>) = points.into_iter().unzip();
+        let number = |index: usize| numbers[index].index();
+        let body = Self::from_points(&points).map_err(|error| match error {
+            BuildError::NotFinite { index, point } => {
+                BuildError::NotFinite { index: number(index), point }
+            }
+            BuildError::OutOfRange { index, point } => {
+                BuildError::OutOfRange { index: number(index), point }
+            }
+            other => other,
+        });
+        let mut body = body?;
+        for v in &mut body.input_index {
+            *v = numbers[v.index()];
+        }
+        Ok(body)
+    }
+
     /// The box between two opposite corners, of 8 vertices and 6 faces; a flat one if they have a
     /// coordinate in common. Which corner is which does not matter.
     ///

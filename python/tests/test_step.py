@@ -256,7 +256,7 @@ def test_colours_are_those_of_the_file(tmp_path: Path) -> None:
 def test_big_files_say_how_far_they_are(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
 ) -> None:
-    """At most twice a second, not for every shape."""
+    """At most twice a second, not for every shape; before free-form faces of many facets."""
     pytest.importorskip("OCP")
     text = StepText()
     text.assembly("machine", *(text.part(f"rod {k}", text.rod()) for k in range(5)))
@@ -264,10 +264,18 @@ def test_big_files_say_how_far_they_are(
     monkeypatch.setattr(step, "_SAID_EVERY", -1.0)
     step.convert(tmp_path / "rods.step")
     said = capfd.readouterr().err.splitlines()
-    assert said[-5:] == [f"tessellating and measuring: {k} of 5 shapes" for k in range(5)]
+    assert said[-5:] == [f"part 'rod {k}' (shape {k + 1} of 5): tessellating" for k in range(5)]
     monkeypatch.setattr(step, "_SAID_EVERY", 1e9)
     step.convert(tmp_path / "rods.step")
-    assert not any("shapes" in line for line in capfd.readouterr().err.splitlines())
+    assert not any("shape" in line for line in capfd.readouterr().err.splitlines())
+    monkeypatch.setattr(step, "_surface", lambda face: None)
+    monkeypatch.setattr(step, "_MANY_FACETS", 1)
+    step.convert(tmp_path / "rods.step")
+    said = capfd.readouterr().err.splitlines()
+    assert [line.split(":")[0] for line in said[-5:]] == [
+        f"part 'rod {k}' (shape {k + 1} of 5)" for k in range(5)
+    ]
+    assert all("free-form faces" in line and line.endswith("to compare") for line in said[-5:])
 
 
 #: Names of products, in the bytes of a file, and as they are read.
@@ -396,6 +404,26 @@ def test_external_files_are_read_or_named(tmp_path: Path) -> None:
     done = subprocess.run(call, cwd=tmp_path, capture_output=True, check=False)
     assert (done.returncode, done.stdout) == (3, b"")
     assert b"TAIL_TURBINE.stp" in done.stderr.splitlines()[-1]
+
+
+@pytest.mark.parametrize(
+    ("file", "name"), [("s1-c5-214.stp", b"TAIL.stp"), ("TAIL.stp", b"TAIL_TURBINE.stp")]
+)
+def test_external_files_elsewhere_are_not_opened(
+    tmp_path: Path, capfd: pytest.CaptureFixture[str], file: str, name: bytes
+) -> None:
+    """The names are checked, of all files, before OpenCASCADE follows one."""
+    pytest.importorskip("OCP")
+    source = DATA / "step" / "s1"
+    if not source.exists():
+        pytest.skip("the collection is not here")
+    for each in source.glob("*.stp"):
+        shutil.copyfile(each, tmp_path / each.name)
+    text = (tmp_path / file).read_bytes()
+    (tmp_path / file).write_bytes(text.replace(b"'" + name + b"'", b"'../" + name + b"'"))
+    with pytest.raises(step.StepError, match=rf"{file}: the external file \.\./{name.decode()}"):
+        step.convert(tmp_path / "s1-c5-214.stp")
+    assert "building its product tree" not in capfd.readouterr().err
 
 
 def test_an_external_file_lies_in_the_folder_of_its_source() -> None:

@@ -46,8 +46,10 @@ PER_METRE = 1000.0
 _SAMPLES = np.array([(i, j, 8 - i - j) for i in range(9) for j in range(9 - i)]) / 8.0
 #: Pairs of points and facets that are compared at once.
 _AT_ONCE = 1 << 20
-#: Seconds between two words about how far it has come.
+#: Seconds between two messages about the progress.
 _SAID_EVERY = 0.5
+#: Facets of a shape whose comparison with a finer tessellation may take many seconds.
+_MANY_FACETS = 2000
 #: Cells along the longest side of a face, by which its points are compared.
 _CELLS = 32
 
@@ -231,15 +233,40 @@ class Face:
         return np.asarray(written[self.facets])
 
 
-def measure(faces: list[Face], chord: float, angle: float) -> Measured:
+@dataclass
+class Progress:
+    """Messages about the work on one shape after another, on standard error."""
+
+    shape: str = ""
+    said: float = field(default_factory=time.monotonic)
+
+    def say(self, what: str, is_long: bool = False) -> None:
+        """Says what is done next if it takes long, or if the last message is some time ago.
+
+        OpenCASCADE does not let other threads run, so the message comes before its work.
+        """
+        if is_long or time.monotonic() - self.said > _SAID_EVERY:
+            self.said = time.monotonic()
+            _say(f"{self.shape}: {what}")
+
+
+def measure(faces: list[Face], chord: float, angle: float, progress: Progress) -> Measured:
     """Measures the chord error of the faces of one shape, in millimetres."""
     measured = Measured()
     others = [face for face in faces if face.surface is None]
+    if others:
+        facets = sum(len(face.facets) for face in others)
+        progress.say(
+            f"tessellating its {len(others)} free-form faces ({facets} facets) more finely, "
+            "to compare",
+            is_long=facets >= _MANY_FACETS,
+        )
     finer = _tessellated([face.shape for face in others], chord / FINER, angle / FINER)
     for face in faces:
         if face.surface is not None:
             measured.take(*on_surface(face.surface, face.corners()))
-    for face, fine in zip(others, finer, strict=True):
+    for number, (face, fine) in enumerate(zip(others, finer, strict=True)):
+        progress.say(f"comparing free-form face {number + 1} of {len(others)}")
         error = beside(fine.points[fine.facets], face.corners())
         measured.take(error * (1 + FINER**-2), "compared")
     return measured
@@ -399,6 +426,7 @@ class Product:
             raise StepError(
                 f"{path}: OpenCASCADE cannot read it; export it once more as STEP AP214"
             )
+        _check_external_files(path, reader.Reader().WS(), set())
         _say(f"{path}: building its product tree")
         if not reader.Transfer(self.document):
             raise StepError(f"{path}: OpenCASCADE finds no shape in it")
@@ -407,10 +435,6 @@ class Product:
         sessions = [reader.Reader().WS()]
         for file in reader.ExternFiles():
             name = file.GetName().ToCString()
-            if not _lies_beside(name):
-                raise StepError(
-                    f"{path}: the external file {name} must lie in the folder of the source"
-                )
             if file.GetLoadStatus() != done:
                 raise StepError(
                     f"{path}: cannot read its external file {name}; put it beside the source"
@@ -515,6 +539,32 @@ def _lies_beside(name: str) -> bool:
     return ".." not in parts and parts[0] != "" and ":" not in name
 
 
+def _check_external_files(path: Path, session: Any, known: set[Path]) -> None:
+    """Checks that the external files of a source, and those of these, lie beside it.
+
+    Nothing outside of the folder is opened. A file that is missing is left to OpenCASCADE.
+    """
+    from OCP.IFSelect import IFSelect_ReturnStatus
+    from OCP.STEPConstruct import STEPConstruct_ExternRefs
+    from OCP.STEPControl import STEPControl_Reader
+
+    references = STEPConstruct_ExternRefs(session)
+    references.LoadExternRefs()
+    for number in range(1, references.NbExternRefs() + 1):
+        name = str(references.FileName(number))
+        if not _lies_beside(name):
+            raise StepError(
+                f"{path}: the external file {name} must lie in the folder of the source"
+            )
+        file = path.parent / name
+        if file in known or not file.is_file():
+            continue
+        known.add(file)
+        reader = STEPControl_Reader()
+        if reader.ReadFile(str(file.resolve())) == IFSelect_ReturnStatus.IFSelect_RetDone:
+            _check_external_files(file, reader.WS(), known)
+
+
 def _quieten() -> None:
     """Keeps OpenCASCADE's messages from standard output."""
     from OCP.Message import Message
@@ -536,6 +586,7 @@ class Writer:
     meshes: dict[tuple[str, Any], int] = field(default_factory=dict)
     parts: list[dict[str, Any]] = field(default_factory=list)
     left_out: list[str] = field(default_factory=list)
+    progress: Progress = field(default_factory=Progress)
 
     def shape_of(self, node: Node) -> tuple[list[Face], Measured, int]:
         """Returns the faces of a leaf, their chord error and its number of solids; keeps them."""
@@ -550,17 +601,16 @@ class Writer:
                 faces = _tessellated([shape], self.chord, self.angle)
             except StepError as error:
                 raise StepError(f"{self.product.path}: part {node.name!r}: {error}") from error
-            self.shapes[entry] = faces, measure(faces, self.chord, self.angle), solids
+            measured = measure(faces, self.chord, self.angle, self.progress)
+            self.shapes[entry] = faces, measured, solids
         return self.shapes[entry]
 
     def write(self, roots: list[Node]) -> None:
-        """Writes all nodes; says from time to time how many of their shapes are done."""
+        """Writes all nodes; names from time to time the shape that is converted."""
         leaves = {_entry(leaf.label): leaf for root in roots for leaf in root.leaves()}
-        said = time.monotonic()
-        for done, leaf in enumerate(leaves.values()):
-            if time.monotonic() - said > _SAID_EVERY:
-                said = time.monotonic()
-                _say(f"tessellating and measuring: {done} of {len(leaves)} shapes")
+        for number, leaf in enumerate(leaves.values()):
+            self.progress.shape = f"part {leaf.name!r} (shape {number + 1} of {len(leaves)})"
+            self.progress.say("tessellating")
             self.shape_of(leaf)
         extras: dict[str, Any] = {"unit": "mm", "per_metre": PER_METRE, "up": "z"}
         self.document = {

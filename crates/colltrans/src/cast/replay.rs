@@ -75,7 +75,9 @@ pub enum CaseError {
         known: usize,
     },
     /// A solid that its own facets do not make once more.
-    #[error("{which} body: its facets alone do not say what it is")]
+    #[error(
+        "{which} body: its facets, or the parts that it has, are not those that are made of its facets"
+    )]
     Changed {
         /// `"moving"` or `"fixed"`.
         which: &'static str,

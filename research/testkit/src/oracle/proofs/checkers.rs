@@ -24,6 +24,11 @@ impl Verdict {
     pub fn accepts(&self) -> bool {
         matches!(self, Self::Holds | Self::HoldsPartly)
     }
+
+    /// Checks whether the library refuses the order or the tree of a body's facets: it takes only its own.
+    pub fn is_about_a_tree(&self) -> bool {
+        matches!(self, Self::Refused(why) if why.contains("are not those that are made of its facets"))
+    }
 }
 
 /// Returns the verdict of the library about a proof of the format `"colltrans proof 1"`.

@@ -221,6 +221,10 @@ impl<'a> Campaign<'a> {
                 self.tally.partly += 1;
                 None
             }
+            (false, true) if library.is_about_a_tree() => {
+                self.tally.rounded += 1;
+                None
+            }
             (false, true) if file.as_ref().is_some_and(|file| self.is_rounded(file)) => {
                 self.tally.rounded += 1;
                 None

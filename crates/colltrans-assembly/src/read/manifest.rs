@@ -5,6 +5,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use colltrans::Pose;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use serde::de::Error;
 use serde::{Deserialize, Deserializer};
@@ -134,13 +135,6 @@ impl<'de, T: Deserialize<'de>, const N: usize> Deserialize<'de> for Exactly<T, N
         all.try_into().map(Self).map_err(refused)
     }
 }
-
-/// Largest difference of a rotation's numbers from a rotation that is rounding: the same as of poses.
-const UNIT_LENGTH: f64 = 1e-6;
-/// Largest difference of a quaternion's length from 1 that few digits explain: the same as on the command line.
-const FEW_DIGITS: f64 = 0.02;
-/// Largest defect of a matrix that few digits explain.
-const FEW_DIGITS_OF_MATRIX: f64 = 1e-3;
 
 pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     let path = source.path;
@@ -362,29 +356,22 @@ impl Rotation {
     }
 }
 
+/// Returns the rotation, and its defect if it was normalised, by the rule of [`Pose::from_rounded`].
 fn quaternion(q: [f64; 4]) -> Result<(DMat3, Option<f64>), String> {
     let rotation = DQuat::from_array(q);
-    let off = (rotation.length() - 1.0).abs();
-    if off > FEW_DIGITS || !rotation.is_finite() {
-        return Err(format!(
-            "quaternion {q:?} (x, y, z, w) has length {}, not 1",
-            rotation.length()
-        ));
-    }
-    Ok((DMat3::from_quat(rotation.normalize()), (off > UNIT_LENGTH).then_some(off)))
+    let (_, defect) = Pose::from_rounded(rotation, DVec3::ZERO).map_err(|_| {
+        format!("quaternion {q:?} (x, y, z, w) has length {}, not 1", rotation.length())
+    })?;
+    Ok((DMat3::from_quat(rotation.normalize()), defect))
 }
 
+/// Returns the rotation, and its defect if it was normalised, by the rule of [`Pose::from_rounded_matrix`].
 fn matrix(rows: &[[f64; 3]; 3]) -> Result<(DMat3, Option<f64>), String> {
     let matrix = DMat3::from_cols_array_2d(rows).transpose();
-    let off = matrix * matrix.transpose() - DMat3::IDENTITY;
-    let worst = off.to_cols_array().iter().fold(0.0_f64, |w, x| w.max(x.abs()));
-    if !(worst <= FEW_DIGITS_OF_MATRIX && matrix.determinant() > 0.0) {
-        return Err(format!("matrix {rows:?} is not a rotation; lengths belong into scale"));
-    }
-    if worst <= UNIT_LENGTH {
-        return Ok((matrix, None));
-    }
-    Ok((DMat3::from_quat(DQuat::from_mat3(&matrix).normalize()), Some(worst)))
+    let (pose, defect) = Pose::from_rounded_matrix(matrix, DVec3::ZERO)
+        .map_err(|_| format!("matrix {rows:?} is not a rotation; lengths belong into scale"))?;
+    // Exact rotations keep their bits.
+    Ok((defect.map_or(matrix, |_| pose.matrix()), defect))
 }
 
 /// About x by the first, then about y, then about z, in radians; quarter turns are exact.

@@ -382,6 +382,8 @@ fn rotations_of_few_digits_are_normalised_with_a_note_and_shears_are_refused() {
     }
     for few in [
         "[[1, 0.0009, 0], [0, 1, 0], [0, 0, 1]]",
+        "[[1, 0.015, 0], [0, 1, 0], [0, 0, 1]]",
+        "[[0.87, -0.5, 0], [0.5, 0.87, 0], [0, 0, 1]]",
         "[[0.866, -0.5, 0], [0.5, 0.866, 0], [0, 0, 1]]",
         "[0, 0, 0.38, 0.92]",
     ] {
@@ -395,7 +397,10 @@ fn rotations_of_few_digits_are_normalised_with_a_note_and_shears_are_refused() {
             assert!((corner(a).distance(corner(b)) - 1.0).abs() < 1e-12);
         }
     }
-    for sheared in ["[[1, 0.002, 0], [0, 1, 0], [0, 0, 1]]", "[0, 0, 0.3, 0.9]"] {
+    // As of poses: the same limit of 0.02.
+    let sheared = "[[1, 0.025, 0], [0, 1, 0], [0, 0, 1]]";
+    let mirrored = "[[-1, 0, 0], [0, 1, 0], [0, 0, 1]]";
+    for sheared in [sheared, mirrored, "[0, 0, 0.3, 0.9]"] {
         assert!(manifest(sheared).is_err());
     }
 }

@@ -32,7 +32,9 @@ pub(crate) fn run(arguments: &MotionArguments) -> Result<(), Failure> {
     refuse_picture(picture, &inputs)?;
     refuse_proof(arguments.save_proof.as_deref(), picture, &inputs)?;
     let (motions, rounded) = arguments.motions()?;
-    rounded.iter().for_each(|text| note(text));
+    for text in &rounded {
+        note(text);
+    }
     if taken != Taken::Parts {
         let options = arguments.body_options();
         let load = |k: usize| -> Result<Vec<Part>, LoadError> {

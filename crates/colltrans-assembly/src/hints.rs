@@ -4,7 +4,8 @@
 //! - *Frames*: parts that are one body in one place, or of which most pairs overlap deeply around the origin, stand in
 //!   frames of their own rather than where they belong.
 //! - *Units*: of two parts of one shape one is 1,000 or 25.4 times as large; or sizes fall in two groups so far apart that
-//!   one is in millimetres and the other in metres.
+//!   one is in millimetres and the other in metres. Where most pairs overlap deeply, a smaller ratio counts, and
+//!   the hint about frames is left out.
 
 use colltrans::{Aabb, Solid};
 use colltrans_mesh::words::first_named;
@@ -26,6 +27,9 @@ const NEAR: f64 = 0.75;
 const FACTORS: [f64; 2] = [1_000.0, 25.4];
 /// Sizes that are so many times apart are of different units.
 const APART: f64 = 250.0;
+/// Ratio of sizes from which on a factor of 1,000 brings them nearer to each other: its square root. It counts where
+/// most pairs of parts overlap deeply.
+const NEARER: f64 = 32.0;
 /// Lengths of equal shapes differ by less than this share.
 const EQUAL: f64 = 1e-3;
 /// Names that a hint lists.
@@ -70,8 +74,12 @@ pub fn hints(bodies: &Bodies, start: &Start) -> Vec<Hint> {
     let assembly = bodies.assembly();
     let likes = likes(assembly);
     let mut all = identical(assembly, &likes);
-    all.extend(frames(bodies, start, &likes));
-    all.extend(units(assembly, &likes));
+    let frames = frames(bodies, start, &likes);
+    let overlaps = frames.as_ref().is_some_and(|hint| hint.parts.len() == assembly.parts().len());
+    let units = units(assembly, &likes, if overlaps { NEARER } else { APART });
+    // Parts a thousand times too large overlap as parts in frames of their own do.
+    all.extend(frames.filter(|_| !(overlaps && units.is_some())));
+    all.extend(units);
     all
 }
 
@@ -131,7 +139,8 @@ fn frames(bodies: &Bodies, start: &Start, likes: &[usize]) -> Option<Hint> {
     })
 }
 
-fn units(assembly: &Assembly, likes: &[usize]) -> Option<Hint> {
+/// Finds parts in another unit; `apart` is the ratio of sizes that shows two units where no two parts have one shape.
+fn units(assembly: &Assembly, likes: &[usize], apart: f64) -> Option<Hint> {
     let parts = assembly.parts();
     let said = |small: Vec<usize>, factor: f64, why: &str| {
         let names = assembly.names(&small);
@@ -160,10 +169,30 @@ fn units(assembly: &Assembly, likes: &[usize]) -> Option<Hint> {
         .filter(|(size, _)| *size > 0.0)
         .collect();
     sizes.sort_by(|x, y| x.0.total_cmp(&y.0));
-    let gap = (1..sizes.len()).find(|&k| sizes[k].0 >= APART * sizes[k - 1].0)?;
-    let mut small: Vec<usize> = sizes[..gap].iter().map(|x| x.1).collect();
-    small.sort_unstable();
-    Some(said(small, FACTORS[0], "all others are hundreds of times as large"))
+    let gap = (1..sizes.len()).find(|&k| sizes[k].0 >= apart * sizes[k - 1].0)?;
+    let numbers = |group: &[(f64, usize)]| {
+        let mut numbers: Vec<usize> = group.iter().map(|x| x.1).collect();
+        numbers.sort_unstable();
+        numbers
+    };
+    // Where the source is in metres, as URDF is, the larger parts have the wrong unit.
+    if assembly.unit() == Some("m") {
+        return Some(in_millimetres(assembly, numbers(&sizes[gap..])));
+    }
+    Some(said(numbers(&sizes[..gap]), FACTORS[0], "all others are hundreds of times as large"))
+}
+
+/// Returns the hint that these parts of a source in metres have the numbers of millimetres.
+fn in_millimetres(assembly: &Assembly, large: Vec<usize>) -> Hint {
+    let names = assembly.names(&large);
+    let scales: Vec<String> =
+        names.iter().take(MOST_NAMED).map(|name| format!("--scale {name}=0.001")).collect();
+    let words = format!(
+        "{} may be in millimetres beside parts in metres, 1000 times too large: {} corrects it",
+        first_named(&names, MOST_NAMED),
+        scales.join(" ")
+    );
+    Hint { kind: HintKind::Units, parts: large, words }
 }
 
 /// Whether one solid has the shape of another one, so many times as large.

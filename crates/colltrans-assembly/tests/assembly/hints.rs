@@ -68,3 +68,38 @@ fn other_units_are_told_with_the_factor_that_corrects_them() {
     assert_eq!(units.parts, [1]);
     assert!(units.words.ends_with("nut_1 has its shape; --scale nut_2=25.4 corrects it"));
 }
+
+#[test]
+fn link_meshes_in_millimetres_beside_metres_are_a_matter_of_units() {
+    // A robot in metres, whose base and upper arm have meshes in millimetres.
+    let link = |name: &str, at: f64, size: f64| {
+        part(name, &[cuboid([-size, -size, at - size], [size, size, at + size])])
+    };
+    let robot = || {
+        vec![
+            link("base", 0.0, 120.0),
+            link("upper", 0.2, 90.0),
+            link("fore", 0.4, 1.0),
+            link("hand", 0.3, 0.8),
+        ]
+    };
+    let found = |parts: Vec<Part>, unit: Option<&str>| {
+        let assembly = Assembly::new(parts).unwrap();
+        let assembly = unit.into_iter().fold(assembly, Assembly::with_unit);
+        let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+        hints(&bodies, &Start::new(&bodies, Watch::default()).unwrap())
+    };
+    let hints = found(robot(), Some("m"));
+    assert!(of_kind(&hints, HintKind::Frames).is_empty(), "{hints:?}");
+    let [units] = of_kind(&hints, HintKind::Units)[..] else { panic!("{hints:?}") };
+    assert_eq!(units.parts, [0, 1]);
+    assert_eq!(
+        units.words,
+        "base, upper may be in millimetres beside parts in metres, 1000 times too large: \
+         --scale base=0.001 --scale upper=0.001 corrects it"
+    );
+    // A source that names no unit.
+    let hints = found(robot(), None);
+    assert!(of_kind(&hints, HintKind::Frames).is_empty(), "{hints:?}");
+    assert_eq!(of_kind(&hints, HintKind::Units)[0].parts, [2, 3]);
+}

@@ -331,7 +331,7 @@ impl Obstacles {
     /// Raises
     /// ------
     /// QueryError
-    ///     A point or a segment where a solid is asked about it.
+    ///     A convex body whose facets make no surface, where a solid is asked about it.
     #[pyo3(signature = (body, pose=None, *, ignore=HashSet::new()),
         text_signature = "($self, body, pose=None, *, ignore=())")]
     fn nearest(

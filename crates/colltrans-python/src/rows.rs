@@ -22,7 +22,7 @@ impl<'a> AnyBody<'a> {
 
     pub(crate) fn solid(self) -> Result<&'a colltrans::Solid, String> {
         match self {
-            Self::Convex(body) => body.as_solid().map_err(|what| what.to_string()),
+            Self::Convex(body) => body.as_surface().map_err(|what| what.to_string()),
             Self::Solid(solid, _) => Ok(solid),
         }
     }

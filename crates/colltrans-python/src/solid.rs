@@ -56,9 +56,16 @@ impl Piece {
 
     pub(crate) fn solid(&self) -> Result<&colltrans::Solid, colltrans::solid::SolidError> {
         match self {
-            Self::Convex(body) => body.get().0.as_solid(),
-            Self::Solid(solid) => solid.get().solid.as_solid(),
+            Self::Convex(body) => body.get().0.as_surface(),
+            Self::Solid(solid) => solid.get().solid.as_surface(),
         }
+    }
+
+    /// Returns the body as a solid; a point or a segment, which has no area, is an error.
+    pub(crate) fn solid_with_area(
+        &self,
+    ) -> Result<&colltrans::Solid, colltrans::solid::SolidError> {
+        self.solid()?.as_solid()
     }
 
     /// What it is the union of, or itself.
@@ -69,9 +76,9 @@ impl Piece {
                     let parts: Result<Vec<_>, _> = pieces.iter().map(Self::pieces).collect();
                     Ok(parts?.concat())
                 }
-                Source::Mesh(..) | Source::Moved(..) => Ok(vec![self.solid()?]),
+                Source::Mesh(..) | Source::Moved(..) => Ok(vec![self.solid_with_area()?]),
             },
-            Self::Convex(_) => Ok(vec![self.solid()?]),
+            Self::Convex(_) => Ok(vec![self.solid_with_area()?]),
         }
     }
 

@@ -2347,7 +2347,7 @@ class Obstacles:
         Raises
         ------
         QueryError
-            A point or a segment where a solid is asked about it.
+            A convex body whose facets make no surface, where a solid is asked about it.
         """
     def within(
         self,

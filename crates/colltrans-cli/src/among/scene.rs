@@ -191,7 +191,7 @@ pub(crate) fn is_list(file: &Path) -> bool {
 
 fn as_solid(placed: AnyPlaced<'_>) -> Result<Placed<'_, Solid>, QueryError> {
     Ok(match placed {
-        ByKind::Convex(Placed { body, pose }) => Placed { body: body.as_solid()?, pose },
+        ByKind::Convex(Placed { body, pose }) => Placed { body: body.as_surface()?, pose },
         ByKind::Solid(placed) => placed,
     })
 }

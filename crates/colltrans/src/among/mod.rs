@@ -106,8 +106,9 @@ impl<'a> Among<'a> {
     /// A placed body among obstacles, with the default choices.
     ///
     /// # Errors
-    /// A point or a segment where a solid is asked about it: as the moving body among solids, or among the
-    /// obstacles of a moving solid, by its id ([`QueryError::Obstacle`]).
+    /// A convex body whose facets [`Solid::from_mesh`](crate::Solid::from_mesh) refuses, where a solid is asked
+    /// about it: as the moving body among solids, or among the obstacles of a moving solid, by its id
+    /// ([`QueryError::Obstacle`]).
     pub fn new(
         moving: impl Into<AnyPlaced<'a>>,
         obstacles: &'a Obstacles,
@@ -115,7 +116,7 @@ impl<'a> Among<'a> {
         let moving = moving.into();
         let counts = obstacles.counts();
         match moving {
-            ByKind::Convex(placed) if counts.solids > 0 => drop(placed.body.as_solid()?),
+            ByKind::Convex(placed) if counts.solids > 0 => drop(placed.body.as_surface()?),
             ByKind::Solid(_) if counts.bare > 0 => obstacles.refuse_bare()?,
             _ => {}
         }
@@ -258,7 +259,7 @@ impl Obstacles {
     fn refuse_bare(&self) -> Result<(), QueryError> {
         for (id, body, _) in self.iter() {
             if let AnyBody::Convex(body) = body {
-                body.as_solid().map_err(|error| QueryError::from(error).of_obstacle(id))?;
+                body.as_surface().map_err(|error| QueryError::from(error).of_obstacle(id))?;
             }
         }
         Ok(())

@@ -107,12 +107,12 @@ impl<'a> Pair<'a, Solid> {
     /// Of bodies of either kind, as solids: a solid and a convex polyhedron, say.
     ///
     /// # Errors
-    /// A point or a segment.
+    /// A convex body whose facets [`Solid::from_mesh`] refuses.
     pub fn between<A: AsSolid, B: AsSolid>(
         moving: Placed<'a, A>,
         fixed: Placed<'a, B>,
     ) -> Result<Self, QueryError> {
-        let (a, b) = (moving.body.as_solid()?, fixed.body.as_solid()?);
+        let (a, b) = (moving.body.as_surface()?, fixed.body.as_surface()?);
         Self::new(a.at(moving.pose), b.at(fixed.pose))
     }
 

@@ -4,6 +4,7 @@
 mod common;
 
 mod free;
+mod points;
 mod sheets;
 mod solids;
 mod solids_convex;

@@ -107,10 +107,7 @@ fn a_convex_body_beside_a_solid() {
     let solids = Pair::new(own.at(there), ball.at(Pose::IDENTITY)).expect("a pair");
     assert_eq!(mixed.distance(), solids.distance());
     let point = ConvexPolyhedron::from_points(&[DVec3::ZERO]).expect("a point");
-    assert!(matches!(
-        Pair::between(point.at(there), ball.at(Pose::IDENTITY)),
-        Err(QueryError::NoSolid(_))
-    ));
+    assert!(Pair::between(point.at(there), ball.at(Pose::IDENTITY)).is_ok());
     for length in [-1.0, f64::NAN] {
         assert!(matches!(mixed.within(length), Err(QueryError::Length { .. })));
     }

@@ -9,8 +9,9 @@ impl Solid {
     /// what it is inside of.
     ///
     /// # Errors
-    /// A point or a segment.
+    /// A point or a segment, which has no area.
     pub fn from_convex(body: &ConvexPolyhedron) -> Result<Self, SolidError> {
+        check_area(body)?;
         let facets: Vec<Vec<u32>> =
             (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect();
         Ok(Self::from_mesh(body.vertices(), &facets)?.renumbered(body.input_indices()))
@@ -19,7 +20,25 @@ impl Solid {
 
 impl AsSolid for ConvexPolyhedron {
     fn as_solid(&self) -> Result<&Solid, SolidError> {
-        let made = self.solid.get_or_init(|| Box::new(Solid::from_convex(self)));
+        check_area(self)?;
+        self.as_surface()
+    }
+
+    fn as_surface(&self) -> Result<&Solid, SolidError> {
+        let make = || match self.dimension() {
+            0 => Ok(Solid::without_area(self, [0, 0, 0])),
+            1 => Ok(Solid::without_area(self, [0, 1, 1])),
+            _ => Solid::from_convex(self),
+        };
+        let made = self.solid.get_or_init(|| Box::new(make()));
         made.as_ref().as_ref().map_err(Clone::clone)
+    }
+}
+
+fn check_area(body: &ConvexPolyhedron) -> Result<(), SolidError> {
+    match body.dimension() {
+        0 => Err(SolidError::NoArea { what: "point" }),
+        1 => Err(SolidError::NoArea { what: "segment" }),
+        _ => Ok(()),
     }
 }

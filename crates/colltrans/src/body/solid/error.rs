@@ -10,6 +10,15 @@ pub enum SolidError {
     /// There are no facets with an area.
     #[error("the mesh has no facets with an area")]
     Empty,
+    /// A point or a segment in place of a body with facets.
+    #[error(
+        "a {what} has no area, which this question needs; casts, distances, motions and scenes accept a \
+         {what} as it is, and a small box around it is accepted everywhere"
+    )]
+    NoArea {
+        /// `point` or `segment`.
+        what: &'static str,
+    },
     /// More than 32-bit indices can number.
     #[error("{count} facets were given; at most {limit} are supported")]
     TooMany {

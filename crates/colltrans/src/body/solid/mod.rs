@@ -27,7 +27,7 @@ use std::sync::OnceLock;
 use glam::{DVec3, Vec3Swizzles};
 
 use crate::body::placed::sealed;
-use crate::body::{Aabb, InputFacet, InputVertex};
+use crate::body::{Aabb, ConvexPolyhedron, InputFacet, InputVertex};
 pub use error::SolidError;
 use faces::Faces;
 pub(crate) use kept::{Keepable, Kept};
@@ -110,10 +110,27 @@ pub trait AsSolid: sealed::Sealed {
     /// # Errors
     /// A point or a segment. A flat polygon is a sheet with two sides and no volume.
     fn as_solid(&self) -> Result<&Solid, SolidError>;
+
+    /// Returns the body as [`Self::as_solid`] does, and a point or a segment as one facet without area.
+    ///
+    /// Casts, distances, motions and scenes accept such a facet. It is an open shell: it has no inside, and
+    /// no tolerance shrinks it.
+    ///
+    /// # Errors
+    /// A body whose facets [`Solid::from_mesh`] refuses.
+    fn as_surface(&self) -> Result<&Solid, SolidError>;
 }
 
 impl AsSolid for Solid {
     fn as_solid(&self) -> Result<&Solid, SolidError> {
+        match self.triangles[..] {
+            [[a, b, c]] if a == b && b == c => Err(SolidError::NoArea { what: "point" }),
+            [_] if self.is_without_area(0) => Err(SolidError::NoArea { what: "segment" }),
+            _ => Ok(self),
+        }
+    }
+
+    fn as_surface(&self) -> Result<&Solid, SolidError> {
         Ok(self)
     }
 }
@@ -207,6 +224,34 @@ impl Solid {
             return Err(SolidError::Empty);
         }
         Ok(Self::from_surface(all, report))
+    }
+
+    /// Builds a surface of one facet without area: a point or a segment, by its corners.
+    pub(crate) fn without_area(body: &ConvexPolyhedron, corners: [u32; 3]) -> Self {
+        let surface = Surface {
+            vertices: body.vertices().to_vec(),
+            vertex_index: body.input_indices().to_vec(),
+            triangles: vec![corners],
+            facet_index: vec![InputFacet(0)],
+            neighbours: vec![[edges::NONE; 3]],
+            input_counts: [body.input_indices().iter().max().map_or(0, |last| last.0 + 1), 1],
+            faces: None,
+            kinds: vec![ShellKind::Sheet],
+        };
+        let shell = Shell {
+            triangles: 1,
+            volume: 0.0,
+            holes_through: None,
+            turned: false,
+            kind: ShellKind::Sheet,
+        };
+        Self::from_surface(surface, SolidReport { shells: vec![shell], ..SolidReport::default() })
+    }
+
+    /// Checks whether a triangle is a point or a segment: two of its corners are one vertex.
+    pub(crate) fn is_without_area(&self, triangle: usize) -> bool {
+        let [_, b, c] = self.triangles[triangle];
+        b == c
     }
 
     /// The same, made of a body's vertices, which have numbers in that body's input.

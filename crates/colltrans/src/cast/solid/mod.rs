@@ -182,7 +182,7 @@ impl<'a> Cast<'a, Solid> {
     /// Between bodies of either kind, as solids: a solid against a convex polyhedron, say.
     ///
     /// # Errors
-    /// A direction that is zero, not finite or out of range; a point or a segment.
+    /// A direction that is zero, not finite or out of range.
     ///
     /// ```
     /// use colltrans::glam::DVec3;
@@ -202,7 +202,7 @@ impl<'a> Cast<'a, Solid> {
         fixed: Placed<'a, B>,
         direction: DVec3,
     ) -> Result<Self, QueryError> {
-        let (a, b) = (moving.body.as_solid()?, fixed.body.as_solid()?);
+        let (a, b) = (moving.body.as_surface()?, fixed.body.as_surface()?);
         Cast::new(a.at(moving.pose), b.at(fixed.pose), direction)
     }
 

@@ -67,7 +67,7 @@ impl<'a> MotionCast<'a, Solid> {
     /// Between bodies of either kind, as solids: a solid and a convex polyhedron, say.
     ///
     /// # Errors
-    /// A point or a segment.
+    /// A convex body whose facets [`Solid::from_mesh`] refuses.
     ///
     /// ```
     /// use colltrans::glam::DVec3;
@@ -89,7 +89,7 @@ impl<'a> MotionCast<'a, Solid> {
         moving: Moving<'a, A>,
         fixed: Moving<'a, B>,
     ) -> Result<Self, QueryError> {
-        let (p, q) = (moving.body.as_solid()?, fixed.body.as_solid()?);
+        let (p, q) = (moving.body.as_surface()?, fixed.body.as_surface()?);
         Self::new(
             Moving { body: p, motion: moving.motion },
             Moving { body: q, motion: fixed.motion },

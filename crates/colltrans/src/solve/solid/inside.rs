@@ -23,7 +23,7 @@ use crate::number::integer::Integer;
 /// in isolated points only, so the first or second one does, unless it touches along facets.
 const MOST_TRIANGLES: usize = 16;
 /// Weights of points within a facet.
-const WEIGHTS: [[f64; 3]; 4] =
+pub(crate) const WEIGHTS: [[f64; 3]; 4] =
     [[0.5, 0.25, 0.25], [0.25, 0.5, 0.25], [0.25, 0.25, 0.5], [0.0, 0.5, 0.5]];
 
 /// A triangle of a shell of one body that lies inside the other.
@@ -91,14 +91,14 @@ fn decide(scene: &Scene, own: &Side, other: &Side, triangle: u32) -> bool {
 }
 
 /// A mean of the corners of a facet.
-struct Mean {
+pub(crate) struct Mean {
     at: DVec3,
     moving: bool,
     terms: [(f64, DVec3); 3],
 }
 
 impl Mean {
-    fn new(scene: &Scene, corners: [Corner; 3], weights: [f64; 3]) -> Self {
+    pub(crate) fn new(scene: &Scene, corners: [Corner; 3], weights: [f64; 3]) -> Self {
         let terms = [0, 1, 2].map(|k| (weights[k], corners[k].local));
         let local: DVec3 = terms.iter().map(|(w, p)| *p * *w).sum();
         let side = scene.side(corners[0].moving);

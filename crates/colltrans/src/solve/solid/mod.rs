@@ -3,11 +3,13 @@
 //! Data flow: [`scene`] (two placed solids and a direction) -> [`overlap`] (do they overlap where
 //! they are?) -> [`search`] (best first through both trees, with [`bound`] for pairs of nodes and
 //! [`leaf`] for pairs of facets, [`rim`] for what is on edge in open shells) -> [`contact`], or a plane between
-//! the bodies ([`separate`]) where there is one; [`parted`] has one of any direction. [`sign`] decides what rounding cannot. [`nearest`] is of the same
+//! the bodies ([`separate`]) where there is one; [`parted`] has one of any direction. [`thin`] has points and segments,
+//! [`fan`] the facets around a vertex. [`sign`] decides what rounding cannot. [`nearest`] is of the same
 //! scene without a direction. The questions are in `cast/solid` and `pair/solid`.
 
 pub(crate) mod bound;
 pub(crate) mod contact;
+mod fan;
 mod inside;
 pub(crate) mod leaf;
 pub(crate) mod nearest;
@@ -20,6 +22,7 @@ pub(crate) mod search;
 pub(crate) mod separate;
 pub(crate) mod separating_axes;
 mod sign;
+mod thin;
 mod triangle;
 
 pub use bound::Reason;

@@ -19,6 +19,8 @@
 //! another open one by 1, and by 3, where two half-planes of one are on different sides of the other's.
 //! What lies flat on something (2) does not overlap it.
 //!
+//! A point overlaps a closed shell by 4 alone, and a segment by what [`thin`] says; neither overlaps the other.
+//!
 //! Nodes whose boxes or slabs are apart are cut; what touches is looked at in exact arithmetic.
 //!
 //! Of bodies that are to keep a gap all this is asked of how near to each other two facets are: nearer than the gap for
@@ -34,6 +36,7 @@ use super::leaf::Facets;
 use super::projected::Projected;
 use super::scene::{Corner, Scene, Side};
 use super::search::{children, splits_moving};
+use super::thin;
 use super::triangle::Triangle;
 use crate::answer::SolidSteps;
 use crate::body::solid::tree::{LEAF, Node};
@@ -273,6 +276,9 @@ fn meet(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
     if (0..3).any(|axis| f.bounds.is_apart(&g.bounds, axis, noise)) {
         return false;
     }
+    if let Some(found) = thin::overlaps(scene, f, g) {
+        return found;
+    }
     let of_g = f.sides(scene, g);
     if one_sided(of_g) {
         return false;
@@ -316,7 +322,12 @@ fn are_as_near(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
 /// other.
 fn share_a_point(scene: &Scene, f: &Triangle, g: &Triangle) -> bool {
     let pierces = |f: &Triangle, g: &Triangle| (0..3).any(|k| edge_reaches(scene, f, k, g));
-    pierces(f, g) || pierces(g, f)
+    match [f, g].map(thin::ends) {
+        [Some(p), Some(q)] => thin::share_a_point(scene, p, q),
+        [Some(_), None] => pierces(f, g),
+        [None, Some(_)] => pierces(g, f),
+        [None, None] => pierces(f, g) || pierces(g, f),
+    }
 }
 
 /// Whether edge `k` of `f` has a point in common with `g`, ends and rim included.
@@ -452,7 +463,7 @@ fn edge_meets(
 }
 
 /// What of a body is around an edge.
-enum Stuff {
+pub(super) enum Stuff {
     /// Of a closed shell, a wedge of material.
     Material(Wedge),
     /// Of an open one, two half-planes.
@@ -463,7 +474,7 @@ enum Stuff {
 
 impl Stuff {
     /// Around an edge whose facet lies along the second ray, and what is across it along the first.
-    fn around(open: bool, has_across: bool, [across, own]: [Ray; 2]) -> Option<Self> {
+    pub(super) fn around(open: bool, has_across: bool, [across, own]: [Ray; 2]) -> Option<Self> {
         match (open, has_across) {
             (false, true) => Some(Self::Material(Wedge { start: across, end: own })),
             (false, false) => None,
@@ -482,7 +493,7 @@ impl Stuff {
         }
     }
 
-    fn overlaps(&self, other: &Self, axis: &impl Axis) -> bool {
+    pub(super) fn overlaps(&self, other: &Self, axis: &impl Axis) -> bool {
         match (self, other) {
             (Self::Material(a), Self::Material(b)) => a.meets(b, axis),
             (Self::Material(a), rays) | (rays, Self::Material(a)) => {
@@ -537,11 +548,11 @@ fn runs_along(scene: &Scene, [p, q]: [&Corner; 2], [r, s]: [&Corner; 2]) -> Opti
 }
 
 /// The points around an edge.
-struct Around<'c, 's, 'a> {
-    scene: &'s Scene<'a>,
-    p: &'c Corner,
-    q: &'c Corner,
-    points: [&'c Corner; 4],
+pub(super) struct Around<'c, 's, 'a> {
+    pub(super) scene: &'s Scene<'a>,
+    pub(super) p: &'c Corner,
+    pub(super) q: &'c Corner,
+    pub(super) points: [&'c Corner; 4],
 }
 
 impl Axis for Around<'_, '_, '_> {

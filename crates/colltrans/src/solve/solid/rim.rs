@@ -15,6 +15,10 @@
 //! 4. it crosses an upright facet of another plane over the one point that their shadows have in common, if
 //!    it lies inside both. At an end of a shadow an upright side may join the facet to the next one: then the two
 //!    are looked at as a bend, and bends cross if each has an arm on either side of the other.
+//! 5. a point, or a segment along the direction, has a shadow that is a point. Its *tip* enters a facet where the
+//!    shadow of the facet has it inside. At an edge it does where the strip of 1 would, and at a vertex where the
+//!    [fan](super::fan) around it says so. It meets nothing else: what touches it alone does not stop it.
+//!    A segment across the direction is an upright facet whose one leading side is all there is of it.
 //!
 //! With bodies that do not overlap at the start, the gap of 1 and 2 counts as that of two facets does:
 //! if it is positive somewhere, or zero all over. All signs are exact, and gaps are but for their last
@@ -23,6 +27,7 @@
 use std::cmp::Ordering;
 use std::cmp::Ordering::{Equal, Greater, Less};
 
+use super::fan;
 use super::leaf::{Above, Facet, Gap, Meeting, NO_GAP, over_facet, over_side};
 use super::scene::{Corner, Scene, Side};
 use crate::body::Aabb;
@@ -135,7 +140,11 @@ impl Upright {
             ends: [0, 1],
             bounds,
         };
-        upright.leads = [0, 1, 2].map(|k| upright.lead(scene, k));
+        upright.leads = if scene.side(moving).solid.is_without_area(triangle) {
+            upright.leads_of_segment(scene)
+        } else {
+            [0, 1, 2].map(|k| upright.lead(scene, k))
+        };
         // The two corners that are farthest apart along the shadow.
         let axis = upright.axis(scene);
         let order =
@@ -178,6 +187,56 @@ impl Upright {
         }
     }
 
+    /// Returns the leads of a point or a segment: there and back, unless its shadow is a point.
+    fn leads_of_segment(&self, scene: &Scene) -> [Ordering; 3] {
+        let [a, b, _] = &self.corners;
+        let is_point = (0..3).all(|axis| scene.drift(axis, a, b) == Equal);
+        if is_point { [Equal; 3] } else { [Greater, Equal, Less] }
+    }
+
+    /// Returns the number of the corner that goes ahead, of a point or a segment whose shadow is a point.
+    fn tip(&self, scene: &Scene) -> Option<u8> {
+        if self.leads != [Equal; 3] {
+            return None;
+        }
+        let [a, b, _] = &self.corners;
+        let direction = scene.setting.direction;
+        let axis = direction.abs().max_position();
+        let second_is_higher = match scene.order(axis, a, b) {
+            Equal => false,
+            order => (order == Less) == (direction[axis] > 0.0),
+        };
+        Some(u8::from(second_is_higher == self.moving && scene.order(axis, a, b) != Equal))
+    }
+
+    /// Returns the gap of a tip and a facet of the other body.
+    fn tip_and_facet(&self, scene: &Scene, tip: u8, facet: &Facet) -> Option<Gap> {
+        let corner = &self.corners[usize::from(tip)];
+        let turns = [0, 1, 2].map(|j| {
+            let [a, b] = facet.side(j);
+            scene.turn(a, b, corner)
+        });
+        if turns.contains(&Less) {
+            return None;
+        }
+        let on = |j: &usize| turns[*j] == Equal;
+        let passes = match ((0..3).find(on), (0..3).rfind(on)) {
+            (Some(j), Some(k)) if j == k => enters(scene, self.moving, facet, j),
+            (Some(j), Some(k)) => {
+                let shared = if k == j + 1 { k } else { j };
+                fan::enters(scene, self.moving, facet.triangle, &facet.corners[shared])
+            }
+            _ => true,
+        };
+        if !passes {
+            return None;
+        }
+        let mut gap = NO_GAP;
+        let at = if self.moving { Meeting::Corner(tip) } else { Meeting::Under(tip) };
+        gap.add(scene, self.ahead(over_facet(scene, facet, corner)), at);
+        Some(gap)
+    }
+
     fn leading(&self) -> impl Iterator<Item = usize> + '_ {
         (0..3).filter(|&k| self.leads[k] == Greater)
     }
@@ -191,6 +250,9 @@ impl Upright {
     fn with_facet(&self, scene: &Scene, facet: &Facet, take: &mut dyn FnMut(Gap)) {
         if self.is_beside(scene, &facet.bounds) {
             return;
+        }
+        if let Some(tip) = self.tip(scene) {
+            self.tip_and_facet(scene, tip, facet).into_iter().for_each(&mut *take);
         }
         for k in self.leading() {
             if let Some(gap) = self.side_and_facet(scene, k, facet) {
@@ -210,7 +272,7 @@ impl Upright {
         if let Some(j) = (0..3).find(|&j| along(j)) {
             let side = Named { corners: facet.side(j), number: j };
             let own = Named { corners: [p, q], number: k };
-            return enters(scene, self, facet, j)
+            return enters(scene, self.moving, facet, j)
                 .then(|| self.oriented(scene, own, side))
                 .flatten();
         }
@@ -302,9 +364,10 @@ fn across(side: &Side, triangle: usize, k: usize) -> Option<Corner> {
     (n != NONE).then(|| apex(n)).flatten().map(|v| side.corner(v))
 }
 
-/// Whether an upright facet enters the other body at side `j` of a facet, along which it runs.
-fn enters(scene: &Scene, upright: &Upright, facet: &Facet, j: usize) -> bool {
-    let side = scene.side(!upright.moving);
+/// Checks whether an upright facet of the body that is `moving` or not enters the other one at side `j` of a
+/// facet, along which it runs, or a point in passing that side.
+fn enters(scene: &Scene, moving: bool, facet: &Facet, j: usize) -> bool {
+    let side = scene.side(!moving);
     let t = facet.triangle as usize;
     let (solid, listed) = (side.solid, facet.side(j).map(|c| c.local));
     let own = side.corners(t);

@@ -251,7 +251,8 @@ fn on_edges((a, e): (DVec3, DVec3), (b, h): (DVec3, DVec3)) -> [f64; 2] {
     let (we, wh) = (way.dot(e), way.dot(h));
     let s = share(we * hh - wh * eh, ee * hh - eh * eh);
     let t = (s * eh - wh) / hh;
-    if t <= 0.0 {
+    // An edge without a length is its first end.
+    if t <= 0.0 || hh == 0.0 {
         [share(we, ee), 0.0]
     } else if t >= 1.0 {
         [share(we + eh, ee), 1.0]

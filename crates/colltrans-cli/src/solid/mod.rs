@@ -15,7 +15,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use colltrans::glam::DVec3;
-use colltrans::solid::{SolidError, SolidReport};
+use colltrans::solid::{AsSolid, SolidReport};
 use colltrans::{ConvexPolyhedron, Pose, QueryError, Solid};
 use colltrans_mesh::Mesh;
 use colltrans_mesh::body::{self, BodyOptions, Loaded, Note, Refused, load_solid};
@@ -75,13 +75,10 @@ impl Body {
         Self::of_pieces(pieces, notes)
     }
 
-    /// A convex body, in double precision.
+    /// Makes a body of the surface of a convex one, in double precision. A point or a segment is a facet without area.
     pub(crate) fn of_convex(body: &ConvexPolyhedron) -> Result<Self, String> {
-        let solid = Solid::from_convex(body).map_err(|error| match error {
-            SolidError::Empty => "without an area, which bodies asked against solids need".into(),
-            other => Refused::Solid(other).to_string(),
-        })?;
-        let piece = Piece::new(PathBuf::new(), solid, 0.0);
+        let made = body.as_surface().map_err(|error| Refused::Solid(error).to_string())?;
+        let piece = Piece::new(PathBuf::new(), made.clone(), 0.0);
         Self::of_pieces(vec![piece], Vec::new())
     }
 

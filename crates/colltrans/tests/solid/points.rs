@@ -8,7 +8,8 @@ use colltrans::glam::DVec3;
 use colltrans::motion::{Motion, MotionCast, MotionOutcome};
 use colltrans::solid::{AsSolid, SolidError};
 use colltrans::{
-    Among, Cast, Clearance, ConvexPolyhedron, Obstacles, Outcome, Pair, Pose, Solid, Within,
+    Among, Cast, Clearance, ConvexPolyhedron, Feature, InputVertex, Obstacles, Outcome, Pair, Pose,
+    Solid, Within,
 };
 use colltrans_testkit::random::Random;
 
@@ -112,7 +113,9 @@ impl Cubes {
         let mut cut =
             if random.one_in(2) { [[a, b, c], [a, c, e]] } else { [[a, b, e], [b, c, e]] };
         if !up {
-            cut.iter_mut().for_each(|t| t.swap(1, 2));
+            for triangle in &mut cut {
+                triangle.swap(1, 2);
+            }
         }
         self.triangles.extend(cut);
     }
@@ -406,30 +409,14 @@ fn distances_motions_and_scenes_take_points_and_segments() {
             assert!(found.lower <= right && right <= found.upper, "{found:?} {right}");
             assert!(found.upper - found.lower < 1e-12, "{found:?}");
             pair.verify(&proof).expect("a proof that holds");
+            let features = found.features.expect("they are apart");
+            let own = if pair.moving().is_closed() { features.fixed } else { features.moving };
+            assert!(!matches!(own, Feature::Face(_)), "{features:?}");
             assert!(matches!(pair.within(right + 1e-9), Ok(Within::Closer(_))));
             assert!(matches!(pair.within(right - 1e-9), Ok(Within::Farther(_))));
         }
     }
-    // A point at (3, 0.5, 0.5) turns about the z axis through (0, 0.5, 0) by half a turn and hits x = 1 never.
-    let turn = |p: Point, angle: f64| {
-        let motion = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, angle).expect("a turn");
-        (point(p), motion)
-    };
-    let rest = Motion::still(Pose::from_translation(DVec3::new(0.0, 3.0, -0.5)).expect("a pose"));
-    // (3, 0, 0) around the origin meets the cube from (0, 3, -0.5) on at x = 1: cos = 1 / 3 there.
-    let (body, motion) = turn([-4, 0, 0], -std::f64::consts::PI);
-    let slab = ConvexPolyhedron::cuboid(DVec3::new(0.0, 0.0, 0.0), DVec3::new(1.0, 5.0, 1.0));
-    let slab = Solid::from_convex(&slab.expect("a box")).expect("a solid");
-    let cast = MotionCast::between(body.along(&motion), slab.along(&rest)).expect("a cast");
-    let MotionOutcome::Contact(found) = cast.first_contact().expect("an answer") else {
-        panic!("no contact")
-    };
-    assert!((found.lower - 0.5).abs() < 1e-9, "{}", found.lower);
-    let MotionOutcome::Contact(proven) = cast.certified_first_contact().expect("an answer") else {
-        panic!("no contact")
-    };
-    cast.verify(&proven.proof).expect("a proof that holds");
-    assert!(cast.clearance().is_ok());
+    motions_take_points_and_segments();
     // Scenes, either way.
     let mut scene = Obstacles::new();
     scene.insert(solid.clone(), still());
@@ -442,6 +429,35 @@ fn distances_motions_and_scenes_take_points_and_segments() {
     points.insert(corner, still());
     let among = Among::new(solid.at(still()), &points).expect("a solid among points");
     assert!(among.nearest().expect("an answer").is_some());
+}
+
+/// A point and a rod come around the origin from (-4, 0, 0) to a slab that begins at x = 0, in half a turn.
+fn motions_take_points_and_segments() {
+    let turn = Motion::turn(still(), DVec3::ZERO, DVec3::Z, -std::f64::consts::PI);
+    let turn = turn.expect("a turn");
+    let slab = ConvexPolyhedron::cuboid(DVec3::new(0.0, 3.0, -0.5), DVec3::new(1.0, 8.0, 0.5));
+    let slab = Solid::from_convex(&slab.expect("a box")).expect("a solid");
+    let rest = Motion::still(still());
+    // An edge of the rod passes through the face: that is proven.
+    let rod = segment([-4, -1, 0], [-4, 1, 0]);
+    let cast = MotionCast::between(rod.along(&turn), slab.along(&rest)).expect("a cast");
+    let cast = cast.tolerating(0.0).expect("none");
+    let found = cast.certified_first_contact().expect("an answer");
+    let MotionOutcome::Contact(contact) = found else { panic!("no contact: {found:?}") };
+    let right = 0.5 - 0.25_f64.atan() / std::f64::consts::PI;
+    assert!(contact.lower <= right + 1e-15 && right <= contact.upper + 1e-15, "{contact:?}");
+    let features = contact.features.expect("they are apart");
+    assert_eq!(features.moving, Feature::Vertex(InputVertex(1)));
+    assert!(contact.upper - contact.lower < 1e-9, "{contact:?}");
+    cast.verify(&contact.proof).expect("a proof that holds");
+    assert!(cast.clearance().is_ok());
+    // A point has no edge that passes through one: proven is how far it does not meet the slab.
+    let tip = point([-4, 0, 0]);
+    let cast = MotionCast::between(tip.along(&turn), slab.along(&rest)).expect("a cast");
+    let found = cast.certified_first_contact().expect("an answer");
+    let MotionOutcome::Grazing(contact) = found else { panic!("not as near: {found:?}") };
+    assert!((contact.lower - 0.5).abs() < 1e-9, "{contact:?}");
+    cast.verify(&contact.proof).expect("a proof that holds");
 }
 
 #[test]

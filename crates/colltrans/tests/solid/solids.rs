@@ -354,7 +354,7 @@ fn a_flat_polygon_is_a_sheet_and_a_segment_is_no_solid() {
         assert!(inside || distance(&down) == z - 3.0);
     }
     let segment = ConvexPolyhedron::from_points(&[DVec3::ZERO, DVec3::X]).expect("a segment");
-    assert!(matches!(Solid::from_convex(&segment), Err(SolidError::Empty)));
+    assert!(matches!(Solid::from_convex(&segment), Err(SolidError::NoArea { .. })));
 }
 
 #[test]

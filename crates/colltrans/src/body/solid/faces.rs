@@ -187,6 +187,15 @@ impl Solid {
         let touches = |v: u32| (place(v) - point).dot(normal).abs() <= slack;
         let lies = |t: u32| self.triangles[t as usize].into_iter().all(touches);
         let own = self.triangles[triangle as usize];
+        if self.is_without_area(triangle as usize) {
+            let [a, b, _] = own;
+            let end = [a, b].into_iter().find(|&v| place(v).distance(point) <= slack);
+            let vertex = |v: u32| self.vertex_index[v as usize];
+            return match end {
+                Some(v) => Feature::Vertex(vertex(v)),
+                None => Feature::Edge([vertex(a), vertex(b)]),
+            };
+        }
         if lies(triangle) {
             return self.face_feature(triangle);
         }

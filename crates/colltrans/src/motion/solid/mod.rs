@@ -66,6 +66,10 @@ impl Solid {
 impl<'a> MotionCast<'a, Solid> {
     /// Between bodies of either kind, as solids: a solid and a convex polyhedron, say.
     ///
+    /// A point or a segment is accepted. The contact of a point, or of a segment that lies flat on a facet when it
+    /// meets it, is [`MotionOutcome::Grazing`], because no edge passes through a facet: its `lower` is proven, and no
+    /// upper bound is.
+    ///
     /// # Errors
     /// A convex body whose facets [`Solid::from_mesh`] refuses.
     ///

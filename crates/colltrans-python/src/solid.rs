@@ -76,9 +76,9 @@ impl Piece {
                     let parts: Result<Vec<_>, _> = pieces.iter().map(Self::pieces).collect();
                     Ok(parts?.concat())
                 }
-                Source::Mesh(..) | Source::Moved(..) => Ok(vec![self.solid_with_area()?]),
+                Source::Mesh(..) | Source::Moved(..) => Ok(vec![self.solid()?]),
             },
-            Self::Convex(_) => Ok(vec![self.solid_with_area()?]),
+            Self::Convex(_) => Ok(vec![self.solid()?]),
         }
     }
 

@@ -4,7 +4,7 @@
 use colltrans::motion::path::{
     Frame, Joint, JointPath, Mechanism, PathBody, PathCast, PathProofFile,
 };
-use colltrans::solid::StartOverlap;
+use colltrans::solid::{AsSolid, StartOverlap};
 use colltrans::{
     Among, CaseError, Cast, CertificateError, ConvexPolyhedron, ObstacleId, Obstacles, Pair, Pose,
     ProofFile, QueryError, SceneProof, Solid, Statement,
@@ -604,5 +604,30 @@ fn axes_of_a_path_are_unit_vectors() {
         }
         let refused = read(&file).expect_err("an axis of length 2").to_string();
         assert!(refused.ends_with("of frame 0 is not a unit vector"), "{refused}");
+    }
+}
+
+#[test]
+fn proofs_of_points_and_segments_hold() {
+    let washer = solid(&washer([1.0, 2.0], [0.0, 0.5], 12));
+    let below = Pose::from_translation(DVec3::new(0.25, 0.5, -3.0)).expect("a pose");
+    let place = |x: f64| Pose::from_translation(DVec3::new(x, 0.25, 3.0)).expect("a pose");
+    for (corners, x) in [
+        (vec![DVec3::ZERO], 1.5),
+        (vec![DVec3::ZERO], 0.0),
+        (vec![DVec3::ZERO, DVec3::new(1.0, 0.5, 0.25)], 1.25),
+        (vec![DVec3::ZERO, DVec3::Z], 1.5),
+    ] {
+        let body = ConvexPolyhedron::from_points(&corners).expect("a point or a segment");
+        let own = body.as_surface().expect("a facet without area");
+        let of = format!("{corners:?} at {x}");
+        let down = Cast::between(body.at(place(x)), washer.at(below), DVec3::NEG_Z);
+        let down = down.expect("a cast");
+        let proof = ProofFile::of_solids(&down, [&[own], &[&washer]]).expect("their facets");
+        holds(&proof, &of);
+        let pair = Pair::between(washer.at(below), body.at(place(x))).expect("a pair");
+        let (_, proof) =
+            ProofFile::with_solid_distance(&pair, [&[&washer], &[own]]).expect("their facets");
+        holds(&proof, &of);
     }
 }

@@ -11,7 +11,7 @@ use super::{Along, Bodies, ProofFile};
 use crate::answer::{Depth, Separation};
 use crate::body::ConvexPolyhedron;
 use crate::body::pose::PoseRecord;
-use crate::body::solid::{Solid, SolidError};
+use crate::body::solid::{AsSolid, Solid, SolidError};
 use crate::cast::CaseError;
 use crate::cast::replay::BodyRecord;
 use crate::pair::solid::DistanceCertificate;
@@ -245,6 +245,13 @@ impl PieceRecord {
 
     fn solid(&self) -> Result<Solid, SolidError> {
         let vertices: Vec<DVec3> = self.vertices.iter().copied().map(DVec3::from_array).collect();
+        let count = vertices.len();
+        if self.open && matches!((count, &self.triangles[..]), (1, [[0, 0, 0]]) | (2, [[0, 1, 1]]))
+        {
+            // A point or a segment.
+            let body = ConvexPolyhedron::from_points(&vertices).map_err(|_| SolidError::Empty)?;
+            return body.as_surface().cloned();
+        }
         if self.open {
             Solid::from_open_mesh(&vertices, &self.triangles)
         } else {

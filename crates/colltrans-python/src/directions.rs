@@ -39,7 +39,8 @@ struct Question {
 type Placing<'a> = [Placed<'a, colltrans::Solid>; 2];
 
 fn placed<'a>(bodies: &'a [Piece; 2], poses: &[colltrans::Pose; 2]) -> PyResult<Placing<'a>> {
-    let [moving, fixed] = [bodies[0].solid_with_area().or_raise()?, bodies[1].solid_with_area().or_raise()?];
+    let [moving, fixed] =
+        [bodies[0].solid_with_area().or_raise()?, bodies[1].solid_with_area().or_raise()?];
     Ok([moving.at(poses[0]), fixed.at(poses[1])])
 }
 

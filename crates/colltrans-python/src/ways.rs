@@ -25,7 +25,8 @@ pub(crate) struct WaysOut {
 type Placing<'a> = [Placed<'a, colltrans::Solid>; 2];
 
 fn placed<'a>(bodies: &'a [Piece; 2], poses: &[colltrans::Pose; 2]) -> PyResult<Placing<'a>> {
-    let [moving, fixed] = [bodies[0].solid_with_area().or_raise()?, bodies[1].solid_with_area().or_raise()?];
+    let [moving, fixed] =
+        [bodies[0].solid_with_area().or_raise()?, bodies[1].solid_with_area().or_raise()?];
     Ok([moving.at(poses[0]), fixed.at(poses[1])])
 }
 

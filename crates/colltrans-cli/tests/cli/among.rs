@@ -242,7 +242,13 @@ fn bodies_are_asked_as_what_they_are() {
     assert_eq!(run(folder, &["verify", "proof.json"]).status.code(), Some(6));
     let segment = r#"{"body":{"points":[[0,0,9],[1,0,9]]}}"#;
     std::fs::write(folder.join("segment.jsonl"), segment).unwrap();
-    refused(folder, &["distance", "dent.off", "--among", "segment.jsonl"], 3, &["obstacle 0"]);
+    let ask = ["distance", "dent.off", "--among", "segment.jsonl", "--save-proof", "proof.json"];
+    answered(folder, &ask);
+    answered(folder, &["verify", "proof.json"]);
+    answered(folder, &["within", "dent.off", "--among", "segment.jsonl", "--length", "20"]);
+    let ask = ["clearance", "dent.off", "--among", "segment.jsonl", "--direction", "0,0,1"];
+    answered(folder, &[&ask[..], &["--save-proof", "proof.json"]].concat());
+    answered(folder, &["verify", "proof.json"]);
 }
 
 #[test]

@@ -2382,7 +2382,7 @@ def solids_meet(span: Span, parts: tuple[Parts, Parts], meeting: Any) -> None:
     f, g = (tuple(spin.at(k, time) for k in range(3)) for spin in spins)
     size = max(abs(x) for v in (*f, *g) for x in v) + spins[0].reach + spins[1].reach
     off = size * _SURE
-    kind, claim = one_of(meeting["met"], "crossing", "near", "inside")
+    kind, claim = one_of(meeting["met"], "crossing", "near", "inside", "contained")
     if kind == "crossing" and span.keep == 0:
         fields(claim, "moving edge")
         own, other = (f, g) if truth(claim["moving"]) else (g, f)
@@ -2406,6 +2406,18 @@ def solids_meet(span: Span, parts: tuple[Parts, Parts], meeting: Any) -> None:
             raise RefusedError("the point is not inside the moving solid")
         if not is_around(parts[1].closed, at, Fraction()):
             raise RefusedError("the point is not inside the fixed solid")
+    elif kind == "contained" and span.keep == 0:
+        fields(claim, "moving weights")
+        which = 1 if truth(claim["moving"]) else 0
+        closed = parts[which].closed
+        if not closed:
+            raise RefusedError("nothing is inside of open surfaces")
+        turning = (span.moving, span.fixed)[which]
+        other = turning.of([v for triangle in closed for v in triangle])
+        corners = iter([other.at(k, time) for k in range(3 * len(closed))])
+        around = list(zip(corners, corners, corners, strict=True))
+        if not is_around(around, mean((f, g)[1 - which], claim["weights"]), 4 * off):
+            raise RefusedError("the point of the facet is not inside the other solid")
     else:
         raise RefusedError(f"{kind!r} does not say that the solids meet")
 

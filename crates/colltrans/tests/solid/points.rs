@@ -5,7 +5,7 @@
 //! even, so that middles of edges are whole.
 
 use colltrans::glam::DVec3;
-use colltrans::motion::{Motion, MotionCast, MotionOutcome};
+use colltrans::motion::{FacetsMeeting, FacetsMet, Motion, MotionCast, MotionOutcome};
 use colltrans::solid::{AsSolid, SolidError};
 use colltrans::{
     Among, Cast, Clearance, ConvexPolyhedron, Feature, InputVertex, Obstacles, Outcome, Pair, Pose,
@@ -451,13 +451,34 @@ fn motions_take_points_and_segments() {
     assert!(contact.upper - contact.lower < 1e-9, "{contact:?}");
     cast.verify(&contact.proof).expect("a proof that holds");
     assert!(cast.clearance().is_ok());
-    // A point has no edge that passes through one: proven is how far it does not meet the slab.
+    // A point has no edge that passes through one: a time is proven at which it is inside.
     let tip = point([-4, 0, 0]);
-    let cast = MotionCast::between(tip.along(&turn), slab.along(&rest)).expect("a cast");
-    let found = cast.certified_first_contact().expect("an answer");
-    let MotionOutcome::Grazing(contact) = found else { panic!("not as near: {found:?}") };
-    assert!((contact.lower - 0.5).abs() < 1e-9, "{contact:?}");
-    cast.verify(&contact.proof).expect("a proof that holds");
+    let back = Motion::turn(still(), DVec3::ZERO, DVec3::Z, std::f64::consts::PI).expect("a turn");
+    for moves in [true, false] {
+        let cast = if moves {
+            MotionCast::between(tip.along(&turn), slab.along(&rest))
+        } else {
+            MotionCast::between(slab.along(&back), tip.along(&rest))
+        };
+        let cast = cast.expect("a cast");
+        let found = cast.certified_first_contact().expect("an answer");
+        let MotionOutcome::Contact(contact) = found else { panic!("no contact: {found:?}") };
+        assert!((contact.lower - 0.5).abs() < 1e-9, "{contact:?}");
+        assert!(contact.upper - contact.lower < 1e-11, "{contact:?}");
+        assert_eq!(cast.verify(&contact.proof), Ok([contact.lower, contact.upper]));
+        let meeting = contact.proof.meeting.expect("it is proven");
+        let forged = |change: &dyn Fn(&mut FacetsMeeting)| {
+            let mut proof = contact.proof.clone();
+            change(proof.meeting.as_mut().expect("it is there"));
+            assert!(cast.verify(&proof).is_err(), "{:?}", proof.meeting);
+        };
+        forged(&|of| of.time = contact.lower);
+        forged(&|of| of.triangles[usize::from(!moves)] = 1);
+        let weights = [1.0, 0.0, 0.0];
+        forged(&|of| of.met = FacetsMet::Contained { moving: !moves, weights });
+        forged(&|of| of.met = FacetsMet::Contained { moving: moves, weights: [2.0, 0.0, 0.0] });
+        assert!(matches!(meeting.met, FacetsMet::Contained { moving, .. } if moving == moves));
+    }
 }
 
 #[test]

@@ -43,6 +43,13 @@ pub enum FacetsMet {
         /// Where, in the frame of the fixed body.
         point: [f64; 3],
     },
+    /// A point of a facet of one body is inside the other body.
+    Contained {
+        /// Whether the facet is the moving body's.
+        moving: bool,
+        /// The weights of its corners.
+        weights: [f64; 3],
+    },
 }
 
 /// Looks at two facets.
@@ -118,7 +125,7 @@ pub(super) fn holds<'a, C: Course<'a, Body = Facet>>(
                 && length + LENGTH * noise + course.error() <= course.keep()
         }
         // It is more than two facets that tell.
-        FacetsMet::Inside { .. } => false,
+        FacetsMet::Inside { .. } | FacetsMet::Contained { .. } => false,
     }
 }
 

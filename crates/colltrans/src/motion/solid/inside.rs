@@ -1,18 +1,21 @@
 //! A point inside both of two solids: that they overlap where no edge passes through a facet, as of a block that has
 //! come down on a column of its own outline.
 //!
-//! It is guessed by two facets: halfway between those that have passed each other, or a little beneath both where they lie
+//! A point or a segment is not closed. Where a point of it is inside the other solid, the two overlap as well.
+//!
+//! A point inside both is guessed by two facets: halfway between those that have passed each other, or a little beneath both where they lie
 //! in one plane and look the same way. It is given in the frame of the fixed body, and counts if no facet of either body
 //! is nearer to it than places may be off: then the surface of each goes round it as often as the real one does.
 
 use glam::DVec3;
 
+use super::facets::FacetsMet;
 use super::tree::Tree;
 use crate::body::Hull;
 use crate::body::solid::{Solid, crossing};
 use crate::number::range::{in_exact_range, without_traces};
 use crate::setting::TwoBodies;
-use crate::solve::solid::nearest::triangle::Corners;
+use crate::solve::solid::nearest::triangle::{self, Corners};
 
 /// How far facets are from it at least, in what places may be off: twice for what is off, twice for what is rounded here.
 const OFF: f64 = 4.0;
@@ -84,6 +87,68 @@ impl Guesses {
             holds(bodies, off, point).then_some((triangles, point))
         })
     }
+}
+
+/// The points of a body without area that are looked at: its ends and the middle between them.
+const POINTS: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.5, 0.5, 0.0]];
+
+/// What the points of a point or a segment are to the other solid.
+pub(super) enum Contained {
+    /// None is seen to be inside.
+    None,
+    /// One is inside, but not by more than places may be off.
+    Barely,
+    /// One is inside for certain.
+    Met(FacetsMet),
+}
+
+/// Looks for a point of a body without area inside the other body; computed places may be off by so much.
+pub(super) fn contained(bodies: &TwoBodies<Tree>, off: f64) -> Contained {
+    let is_thin = |tree: &Tree| tree.solid.is_without_area(0);
+    let moving = match [bodies.moving, bodies.fixed].map(is_thin) {
+        [true, false] => true,
+        [false, true] => false,
+        _ => return Contained::None,
+    };
+    let facet = if moving { bodies.moving } else { bodies.fixed }.facet(0).corners;
+    let count = if facet[0] == facet[1] { 1 } else { POINTS.len() };
+    let mut found = Contained::None;
+    for weights in &POINTS[..count] {
+        let point = triangle::mean(&facet, DVec3::from_array(*weights));
+        if contains(bodies, moving, point, OFF * off) {
+            return Contained::Met(FacetsMet::Contained { moving, weights: *weights });
+        }
+        if contains(bodies, moving, point, 0.0) {
+            found = Contained::Barely;
+        }
+    }
+    found
+}
+
+/// Checks whether a point of a facet of the body that is `moving` or not is inside the other one, for certain, if
+/// computed places of both may be off by so much.
+pub(super) fn holds_point(
+    bodies: &TwoBodies<Tree>,
+    off: f64,
+    moving: bool,
+    facet: &Corners,
+    weights: [f64; 3],
+) -> bool {
+    let point = triangle::mean(facet, DVec3::from_array(weights));
+    contains(bodies, moving, point, OFF * off)
+}
+
+/// Checks whether a point of the body that is `moving` or not, in its frame, is inside the other one by more than `off`.
+fn contains(bodies: &TwoBodies<Tree>, moving: bool, point: DVec3, off: f64) -> bool {
+    let of_moving = |v: DVec3| bodies.moving_matrix * v;
+    let of_fixed = |v: DVec3| bodies.fixed_matrix * v + bodies.offset;
+    let there = if moving { of_moving(point) } else { of_fixed(point) };
+    in_exact_range(without_traces(there))
+        && if moving {
+            is_inside(bodies.fixed, there, off, of_fixed)
+        } else {
+            is_inside(bodies.moving, there, off, of_moving)
+        }
 }
 
 fn normal([a, b, c]: &Corners) -> DVec3 {

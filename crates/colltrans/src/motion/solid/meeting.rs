@@ -1,12 +1,12 @@
 //! That two solids meet at one time, for certain: two facets do, of all that no plane parts then, or a point is inside both.
 //!
 //! Facets that have passed each other are apart again, as those of a face that has sunk into another: it is all pairs
-//! that tell.
+//! that tell. So are those of a solid and a point or a segment that has gone in as a whole.
 
 use super::super::look::Looker;
 use super::super::soon::Seen;
 use super::facets::{FacetLooker, FacetsMet, corners};
-use super::inside::Guesses;
+use super::inside::{Contained, Guesses, contained};
 use super::search::{parted, split};
 use super::tree::Below;
 use super::window::{Frame, Part, Plane};
@@ -49,8 +49,15 @@ pub(super) fn seen(
             stack.extend(pairs);
         }
     }
+    if frame.span.keep > 0.0 {
+        return all;
+    }
+    match contained(&bodies, off) {
+        Contained::Met(met) => return Seen::Met(([0, 0], met)),
+        Contained::Barely => return Seen::Open,
+        Contained::None => {}
+    }
     if let Seen::Open = all
-        && frame.span.keep == 0.0
         && let Some((pair, point)) = guesses.holding(&bodies, off)
     {
         return Seen::Met((pair, FacetsMet::Inside { point: point.to_array() }));

@@ -66,9 +66,9 @@ impl Solid {
 impl<'a> MotionCast<'a, Solid> {
     /// Between bodies of either kind, as solids: a solid and a convex polyhedron, say.
     ///
-    /// A point or a segment is accepted. The contact of a point, or of a segment that lies flat on a facet when it
-    /// meets it, is [`MotionOutcome::Grazing`], because no edge passes through a facet: its `lower` is proven, and no
-    /// upper bound is.
+    /// A point or a segment is accepted. Its contact with a closed solid has an upper bound: a time at which a point of it
+    /// is inside ([`FacetsMet::Contained`]), or at which a segment passes through a facet. A point that passes
+    /// through an open shell has none, and its contact is [`MotionOutcome::Grazing`].
     ///
     /// # Errors
     /// A convex body whose facets [`Solid::from_mesh`] refuses.

@@ -12,6 +12,7 @@ use super::inside;
 use super::proof::{Entry, FacetsMeeting, SolidMotionProof, SpanProof, middle};
 use super::tree::{Below, Tree};
 use super::window::{Frame, Part, Snap};
+use crate::answer::are_weights;
 use crate::body::solid::Solid;
 use crate::cast::solid::StartProof;
 use crate::motion::MotionCast;
@@ -124,10 +125,20 @@ fn meets(span: &Span<Tree>, FacetsMeeting { time, triangles, met }: &FacetsMeeti
     if !(known(0) && known(1) && (span.from..=span.to).contains(time)) {
         return false;
     }
-    if let FacetsMet::Inside { point } = *met {
-        let bodies = span.instant(*time).bodies;
-        let off = bodies.noise().point() + span.error;
-        return span.keep == 0.0 && inside::holds(&bodies, off, DVec3::from_array(point));
+    let bodies = span.instant(*time).bodies;
+    let off = bodies.noise().point() + span.error;
+    match *met {
+        FacetsMet::Inside { point } => {
+            return span.keep == 0.0 && inside::holds(&bodies, off, DVec3::from_array(point));
+        }
+        FacetsMet::Contained { moving, weights } => {
+            let k = usize::from(!moving);
+            let facet = span.body(k).facet(triangles[k]).corners;
+            return span.keep == 0.0
+                && are_weights(&weights)
+                && inside::holds_point(&bodies, off, moving, &facet, weights);
+        }
+        FacetsMet::Crossing { .. } | FacetsMet::Near { .. } => {}
     }
     let [f, g] = [0, 1].map(|k| span.body(k).facet(triangles[k]));
     let part = span.part([&f, &g], [span.from, span.to]);

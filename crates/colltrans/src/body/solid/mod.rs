@@ -32,7 +32,7 @@ pub use error::SolidError;
 use faces::Faces;
 pub(crate) use kept::{Keepable, Kept};
 pub use report::{Shell, ShellKind, SolidReport};
-pub(crate) use shells::crossing;
+pub(crate) use shells::{ShellMap, crossing};
 pub use shrink::ShrinkReport;
 pub(crate) use shrink::{Shrinking, displace};
 use tree::Node;
@@ -89,6 +89,8 @@ pub struct Solid {
     shrinking: OnceLock<Shrinking>,
     /// Made when a feature is first named.
     faces: OnceLock<Faces>,
+    /// Made when a point or a segment lies on one of several shells.
+    shell_map: OnceLock<ShellMap>,
     kept: Kept,
 }
 
@@ -295,6 +297,7 @@ impl Solid {
             report,
             shrinking: OnceLock::new(),
             faces,
+            shell_map: OnceLock::new(),
             kept: Kept::default(),
         };
         solid.spans = solid.find_spans();
@@ -466,6 +469,7 @@ impl Solid {
             + self.report.shells.capacity() * size_of::<Shell>()
             + self.shrinking.get().map_or(0, Shrinking::heap_bytes)
             + self.faces.get().map_or(0, Faces::heap_bytes)
+            + self.shell_map.get().map_or(0, ShellMap::heap_bytes)
             + self.kept.heap_bytes()
     }
 
@@ -489,5 +493,11 @@ impl Solid {
 
     pub(crate) fn spans(&self) -> &[Span] {
         &self.spans
+    }
+
+    /// Returns which shell each triangle belongs to.
+    pub(crate) fn shell_map(&self) -> &ShellMap {
+        let make = || ShellMap::new(&self.vertices, &self.triangles, &self.neighbours);
+        self.shell_map.get_or_init(make)
     }
 }

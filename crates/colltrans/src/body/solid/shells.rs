@@ -70,6 +70,34 @@ pub(super) fn components(neighbours: &[[u32; 3]]) -> Vec<u32> {
     shell_of
 }
 
+/// Which shell each triangle belongs to, and which shells are walls of cavities.
+#[derive(Debug, Clone)]
+pub(crate) struct ShellMap {
+    shell_of: Vec<u32>,
+    is_cavity: Vec<bool>,
+}
+
+impl ShellMap {
+    pub(super) fn new(vertices: &[DVec3], triangles: &[[u32; 3]], neighbours: &[[u32; 3]]) -> Self {
+        let shell_of = components(neighbours);
+        let volumes = volumes(&shell_of, triangles, |v| vertices[v as usize]);
+        Self { is_cavity: volumes.iter().map(|volume| *volume < 0.0).collect(), shell_of }
+    }
+
+    /// Returns the shell of a triangle.
+    pub(crate) fn of(&self, triangle: usize) -> u32 {
+        self.shell_of[triangle]
+    }
+
+    pub(crate) fn is_cavity(&self, shell: u32) -> bool {
+        self.is_cavity[shell as usize]
+    }
+
+    pub(super) fn heap_bytes(&self) -> usize {
+        self.shell_of.capacity() * size_of::<u32>() + self.is_cavity.capacity()
+    }
+}
+
 fn describe(surface: &Surface, shell_of: &[u32], count: usize) -> Vec<Shell> {
     let empty = Shell {
         triangles: 0,

@@ -10,6 +10,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
+use super::line;
 use super::projected::Projected;
 use super::scene::{Corner, ExactPoint, Scene, Side, place_exactly};
 use super::search::children;
@@ -63,6 +64,13 @@ pub(crate) fn is_inside(scene: &Scene, moving: bool, triangle: u32) -> bool {
 }
 
 fn decide(scene: &Scene, own: &Side, other: &Side, triangle: u32) -> bool {
+    if own.solid.is_without_area(triangle as usize) {
+        let [p, q, _] = own.corners(triangle as usize);
+        return [p, q].iter().any(|end| match winding(scene, other, end) {
+            Some(winding) => winding > 0,
+            None => line::holds(scene, other, end),
+        });
+    }
     let mut seen = [triangle; MOST_TRIANGLES];
     let (mut count, mut next) = (1, 0);
     while next < count {

@@ -4,7 +4,7 @@
 //! they are?) -> [`search`] (best first through both trees, with [`bound`] for pairs of nodes and
 //! [`leaf`] for pairs of facets, [`rim`] for what is on edge in open shells) -> [`contact`], or a plane between
 //! the bodies ([`separate`]) where there is one; [`parted`] has one of any direction. [`thin`] has points and segments,
-//! [`fan`] the facets around a vertex. [`sign`] decides what rounding cannot. [`nearest`] is of the same
+//! [`line`] where they enter material, [`fan`] the facets around a vertex. [`sign`] decides what rounding cannot. [`nearest`] is of the same
 //! scene without a direction. The questions are in `cast/solid` and `pair/solid`.
 
 pub(crate) mod bound;
@@ -12,6 +12,7 @@ pub(crate) mod contact;
 mod fan;
 mod inside;
 pub(crate) mod leaf;
+mod line;
 pub(crate) mod nearest;
 pub(crate) mod overlap;
 pub(crate) mod parted;

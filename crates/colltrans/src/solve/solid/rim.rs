@@ -16,8 +16,9 @@
 //!    it lies inside both. At an end of a shadow an upright side may join the facet to the next one: then the two
 //!    are looked at as a bend, and bends cross if each has an arm on either side of the other.
 //! 5. a point, or a segment along the direction, has a shadow that is a point. Its *tip* enters a facet where the
-//!    shadow of the facet has it inside. At an edge it does where the strip of 1 would, and at a vertex where the
-//!    [fan](super::fan) around it says so. It meets nothing else: what touches it alone does not stop it.
+//!    shadow of the facet has it inside. At an edge or a vertex it enters a solid if what lies [past](super::line) is
+//!    inside. It passes an open shell at an edge whose facets lie on both sides of the direction, and at a vertex as
+//!    the [fan](super::fan) around it says. It meets nothing else: what touches it alone does not stop it.
 //!    A segment across the direction is an upright facet whose one leading side is all there is of it.
 //!
 //! With bodies that do not overlap at the start, the gap of 1 and 2 counts as that of two facets does:
@@ -27,8 +28,9 @@
 use std::cmp::Ordering;
 use std::cmp::Ordering::{Equal, Greater, Less};
 
-use super::fan;
+use super::fan::Fan;
 use super::leaf::{Above, Facet, Gap, Meeting, NO_GAP, over_facet, over_side};
+use super::line::{self, Line, Way};
 use super::scene::{Corner, Scene, Side};
 use crate::body::Aabb;
 use crate::body::solid::edges::NONE;
@@ -219,22 +221,32 @@ impl Upright {
         if turns.contains(&Less) {
             return None;
         }
-        let on = |j: &usize| turns[*j] == Equal;
-        let passes = match ((0..3).find(on), (0..3).rfind(on)) {
-            (Some(j), Some(k)) if j == k => enters(scene, self.moving, facet, j),
-            (Some(j), Some(k)) => {
-                let shared = if k == j + 1 { k } else { j };
-                fan::enters(scene, self.moving, facet.triangle, &facet.corners[shared])
-            }
-            _ => true,
-        };
-        if !passes {
+        if !self.passes(scene, corner, facet, turns) {
             return None;
         }
         let mut gap = NO_GAP;
         let at = if self.moving { Meeting::Corner(tip) } else { Meeting::Under(tip) };
         gap.add(scene, self.ahead(over_facet(scene, facet, corner)), at);
         Some(gap)
+    }
+
+    /// Checks whether a tip is stopped where it meets a facet, by the sides of the facet that it meets.
+    fn passes(&self, scene: &Scene, tip: &Corner, facet: &Facet, turns: [Ordering; 3]) -> bool {
+        let line = Line { from: tip, way: Way::Query { forward: self.moving } };
+        let side = scene.side(!self.moving);
+        if !side.solid.is_open(facet.triangle as usize) {
+            return line::enters(scene, &line, side, facet.triangle, true);
+        }
+        let on: Vec<usize> = (0..3).filter(|&j| turns[j] == Equal).collect();
+        match on[..] {
+            [] => true,
+            [j] => enters(scene, self.moving, facet, j),
+            [j, k, ..] => {
+                let shared = if k == j + 1 { k } else { j };
+                let fan = Fan::new(scene, side, facet.triangle, &facet.corners[shared]);
+                fan.is_some_and(|fan| fan.is_passed(&line))
+            }
+        }
     }
 
     fn leading(&self) -> impl Iterator<Item = usize> + '_ {
@@ -365,7 +377,7 @@ fn across(side: &Side, triangle: usize, k: usize) -> Option<Corner> {
 }
 
 /// Checks whether an upright facet of the body that is `moving` or not enters the other one at side `j` of a
-/// facet, along which it runs, or a point in passing that side.
+/// facet, along which it runs, or a point passes that side of an open one.
 fn enters(scene: &Scene, moving: bool, facet: &Facet, j: usize) -> bool {
     let side = scene.side(!moving);
     let t = facet.triangle as usize;

@@ -1,19 +1,20 @@
 //! Points and segments: facets without area, each an open shell of its own.
 //!
-//! A segment overlaps a body where a part of it runs inside a closed shell, or where it passes from one side of an
-//! open shell to the other. It does so at a point that it shares with the surface:
+//! A segment overlaps a closed shell where a part of it is inside, and an open shell where it passes from one side to
+//! the other. A point overlaps what it is inside of. Unless an end of the segment is inside, it
+//! shares a point with the surface:
 //!
-//! 1. inside a facet: its ends lie on both sides of the facet, or one lies on the facet and the other one inside;
-//! 2. on an edge: one of the two ways along the segment lies strictly in the wedge of material;
-//! 3. at a vertex: one of the two ways points into the material, as the [`fan`](super::fan) around it says.
-//!
-//! A segment that shares no such point with the surface is inside a shell as a whole, or not at all. A point
-//! is never on the inside by what it shares with a surface.
+//! 1. It meets a facet of a closed shell, and one of its ends lies on the inner side of the facet's plane. It runs inside
+//!    if it [enters](super::line::enters) the body there.
+//! 2. It passes through an open facet, inside of which it has a point.
+//! 3. It passes an edge of an open shell, whose facets lie on both sides of it.
+//! 4. It passes a vertex of an open shell, as the [`fan`](super::fan) around the vertex says.
 
 use std::cmp::Ordering;
 use std::cmp::Ordering::{Equal, Greater, Less};
 
-use super::fan::{Fan, Line};
+use super::fan::Fan;
+use super::line::{self, Line, Way};
 use super::overlap::{Around, Stuff};
 use super::scene::{Corner, Scene};
 use super::triangle::Triangle;
@@ -36,72 +37,73 @@ pub(super) fn overlaps(scene: &Scene, f: &Triangle, g: &Triangle) -> Option<bool
 }
 
 fn runs_into(scene: &Scene, segment: [Corner; 2], facet: &Triangle) -> bool {
-    segment[0].local != segment[1].local
-        && (passes_inside(scene, &segment, facet)
-            || (0..3).any(|k| passes_edge(scene, &segment, facet, k))
-            || (0..3).any(|k| passes_vertex(scene, &segment, facet, k)))
+    if segment[0].local == segment[1].local {
+        return false;
+    }
+    if !facet.is_open() {
+        return runs_inside(scene, &segment, facet);
+    }
+    passes_facet(scene, &segment, facet)
+        || (0..3).any(|k| passes_edge(scene, &segment, facet, k))
+        || (0..3).any(|k| passes_vertex(scene, &segment, facet, k))
 }
 
 /// Case 1.
-fn passes_inside(scene: &Scene, [p, q]: &[Corner; 2], facet: &Triangle) -> bool {
+fn runs_inside(scene: &Scene, [p, q]: &[Corner; 2], facet: &Triangle) -> bool {
     let [a, b, c] = &facet.corners;
-    let passes = match [p, q].map(|end| scene.outside(a, b, c, end)) {
-        [Equal, Equal] => false,
-        [x, y] if x == y => false,
-        [Equal, x] | [x, Equal] => x == Less && !facet.is_open(),
-        _ => true,
+    let (from, to, outer) = match [p, q].map(|end| scene.outside(a, b, c, end)) {
+        [Less, Less] => return false,
+        [outer, Less] => (p, q, outer),
+        [Less, outer] => (q, p, outer),
+        _ => return false,
     };
-    passes && {
+    let around = [[a, b], [b, c], [c, a]].map(|[u, v]| scene.outside(p, q, u, v));
+    let is_met = !(around.contains(&Greater) && around.contains(&Less));
+    let line = Line { from, way: Way::To(to) };
+    is_met && line::enters(scene, &line, facet.side, facet.index as u32, outer == Greater)
+}
+
+/// Case 2.
+fn passes_facet(scene: &Scene, [p, q]: &[Corner; 2], facet: &Triangle) -> bool {
+    let [a, b, c] = &facet.corners;
+    let [x, y] = [p, q].map(|end| scene.outside(a, b, c, end));
+    x != Equal && x == y.reverse() && {
         let around = [[a, b], [b, c], [c, a]].map(|[u, v]| scene.outside(p, q, u, v));
         around[0] != Equal && around[1] == around[0] && around[2] == around[0]
     }
 }
 
-/// Case 2, for edge `k` of a facet.
+/// Case 3, for edge `k` of a facet.
 fn passes_edge(scene: &Scene, [p, q]: &[Corner; 2], facet: &Triangle, k: usize) -> bool {
     let (a, b) = (&facet.corners[k], &facet.corners[(k + 1) % 3]);
+    let Some(across) = facet.across(k) else { return false };
     if scene.outside(a, b, p, q) != Equal {
         return false;
     }
     // Across an axis along which the plane of both has an area.
-    let ends_beside = |axis: usize| [p, q].map(|end| scene.turn_about(axis, a, b, end));
-    let edge_beside = |axis: usize| [a, b].map(|end| scene.turn_about(axis, p, q, end));
     let strictly = |axis: &usize| {
-        let [x, y] = edge_beside(*axis);
+        let [x, y] = [a, b].map(|end| scene.turn_about(*axis, p, q, end));
         x != Equal && x == y.reverse()
     };
     let Some(axis) = (0..3).find(strictly) else { return false };
-    let beside = ends_beside(axis);
-    if beside[0] == beside[1] {
+    let [x, y] = [p, q].map(|end| scene.turn_about(axis, a, b, end));
+    if x == Equal || x != y.reverse() {
         return false;
     }
-    let ways: Vec<usize> = (0..2).filter(|&end| beside[end] != Equal).collect();
-    let rays = match ways[..] {
-        [way] => Stuff::Rim(Ray::to(2 + way)),
-        _ => Stuff::Bend([Ray::to(2), Ray::to(3)]),
-    };
-    let apex = &facet.corners[(k + 2) % 3];
-    let across = facet.across(k);
-    let own = Stuff::around(facet.is_open(), across.is_some(), [Ray::to(0), Ray::to(1)]);
-    let points = [across.as_ref().unwrap_or(apex), apex, p, q];
-    own.is_some_and(|own| own.overlaps(&rays, &Around { scene, p: a, q: b, points }))
+    let own = Stuff::Bend([Ray::to(0), Ray::to(1)]);
+    let points = [&across, &facet.corners[(k + 2) % 3], p, q];
+    own.overlaps(&Stuff::Bend([Ray::to(2), Ray::to(3)]), &Around { scene, p: a, q: b, points })
 }
 
-/// Case 3, for corner `k` of a facet.
+/// Case 4, for corner `k` of a facet.
 fn passes_vertex(scene: &Scene, [p, q]: &[Corner; 2], facet: &Triangle, k: usize) -> bool {
     let v = &facet.corners[k];
-    if !is_on(scene, v, [p, q]) {
+    let is_end = |end: &Corner| (0..3).all(|axis| scene.order(axis, v, end) == Equal);
+    if !is_on(scene, v, [p, q]) || is_end(p) || is_end(q) {
         return false;
     }
-    let Some(fan) = Fan::new(scene, facet.side, facet.index as u32, v) else { return false };
-    let is_before = |end: &Corner| (0..3).any(|axis| scene.order(axis, v, end) != Equal);
-    let (ahead, behind) = (is_before(q), is_before(p));
-    let [there, back] = [[*p, *q], [*q, *p]].map(Line::Through);
-    if facet.is_open() {
-        ahead && behind && fan.is_passed(&there)
-    } else {
-        ahead && fan.has_inside(&there) || behind && fan.has_inside(&back)
-    }
+    let fan = Fan::new(scene, facet.side, facet.index as u32, v);
+    fan.is_some_and(|fan| fan.is_passed(&Line { from: p, way: Way::To(q) }))
 }
 
 /// Checks whether a point lies on a segment, ends included.

@@ -1,0 +1,398 @@
+//! Where a line enters the material of a body: exactly, also along facets and through edges and vertices.
+//!
+//! A point is *inside* a body if it is inside one of its pieces: the inside is open. A closed shell that the point
+//! does not lie on counts by its winding number. A shell that it lies on counts 0, and the wall of a cavity -1. The
+//! point is inside if the sum is positive.
+//!
+//! Notation
+//! - `p + t u`: the line.
+//! - *Place*: a parameter `t` as a fraction. A point *past* a place lies infinitesimally beyond it.
+//!
+//! The winding number counts the facets ahead of the point that the line leaves through, less those that it enters.
+//! The line is moved sideways by an infinitesimal amount along two axes of the world, so that it passes no edge;
+//! facets that the line itself meets at the place are not ahead of a point past it.
+
+use std::cmp::Ordering;
+use std::cmp::Ordering::{Equal, Greater, Less};
+
+use glam::DVec3;
+
+use super::fan::Fan;
+use super::projected::Projected;
+use super::scene::{Corner, ExactPoint, Scene, Side};
+use super::search::children;
+use super::triangle::Triangle;
+use crate::body::Aabb;
+use crate::body::solid::Solid;
+use crate::body::solid::edges::NONE;
+use crate::number::integer::{Integer, SMALL, TWICE_LARGE, determinant, difference};
+
+/// A line with a direction `u`.
+#[derive(Clone, Copy)]
+pub(super) struct Line<'c> {
+    /// A point of it, `p`.
+    pub(super) from: &'c Corner,
+    pub(super) way: Way<'c>,
+}
+
+/// Where a line goes.
+#[derive(Clone, Copy)]
+pub(super) enum Way<'c> {
+    /// Along the direction of the query, or its opposite.
+    Query { forward: bool },
+    /// To another point.
+    To(&'c Corner),
+}
+
+impl Line<'_> {
+    /// Returns the sign of `det[u, a - p, b - p]`: on which side of the line the edge passes.
+    pub(super) fn turn(&self, scene: &Scene, a: &impl ExactPoint, b: &impl ExactPoint) -> Ordering {
+        match self.way {
+            Way::Query { forward: true } => scene.turn(self.from, a, b),
+            Way::Query { forward: false } => scene.turn(self.from, a, b).reverse(),
+            Way::To(q) => scene.outside(self.from, q, a, b),
+        }
+    }
+
+    /// Returns the sign of `det[u, a - p, e]` with `e` the unit vector of an axis of the world.
+    pub(super) fn turn_about(&self, scene: &Scene, axis: usize, a: &Corner) -> Ordering {
+        match self.way {
+            Way::Query { forward: true } => scene.drift(axis, self.from, a),
+            Way::Query { forward: false } => scene.drift(axis, self.from, a).reverse(),
+            Way::To(q) => scene.turn_about(axis, self.from, q, a),
+        }
+    }
+
+    /// Checks whether the line may meet a box in the query frame.
+    fn may_meet(&self, scene: &Scene, bounds: &Aabb) -> bool {
+        let (way, is_exact) = match self.way {
+            Way::Query { .. } => (DVec3::Z, true),
+            Way::To(q) => (q.at - self.from.at, false),
+        };
+        let noise = 4.0 * scene.noise;
+        let (middle, half) = (bounds.center() - self.from.at, bounds.size() * 0.5 + noise);
+        (0..3).all(|k| {
+            let (i, j) = ((k + 1) % 3, (k + 2) % 3);
+            let off = (middle[i] * way[j] - middle[j] * way[i]).abs();
+            let tilt = middle[i].abs() + middle[j].abs() + half[i] + half[j];
+            let error = if is_exact { 0.0 } else { noise * tilt };
+            off <= half[i] * way[j].abs() + half[j] * way[i].abs() + error
+        })
+    }
+}
+
+/// Checks whether a line enters a body where it meets a facet of a closed shell that faces it, edges and corners
+/// included.
+///
+/// It does if the point past the place is inside. A line that goes `through` the facet also does inside a face that
+/// nothing else touches there: faces stop what meets them, however thin the wall is.
+pub(super) fn enters(
+    scene: &Scene,
+    line: &Line,
+    side: &Side,
+    triangle: u32,
+    through: bool,
+) -> bool {
+    let facet = Triangle::new(side, triangle as usize);
+    if through && is_within_a_face(scene, line, &facet) {
+        let is_touched = is_touched::<SMALL>(scene, line, &facet)
+            .or_else(|| is_touched::<TWICE_LARGE>(scene, line, &facet));
+        if is_touched == Some(false) {
+            return true;
+        }
+    }
+    is_inside_past::<SMALL>(scene, line, &facet)
+        .or_else(|| is_inside_past::<TWICE_LARGE>(scene, line, &facet))
+        .unwrap_or_default()
+}
+
+/// Checks whether a facet of another plane has the point in which a line meets a facet.
+fn is_touched<const N: usize>(scene: &Scene, line: &Line, facet: &Triangle) -> Option<bool> {
+    let past = Ray::<N>::past(scene, line, facet.side, &facet.corners)?;
+    let ray = Ray { is_past: false, ..past };
+    let bounds = facet.bounds.grown(4.0 * scene.noise);
+    let [a, b, c] = &facet.corners;
+    let mut found = false;
+    ray.each_facet(
+        |node| node.meets(&bounds),
+        |t, corners| {
+            let is_in_plane = || corners.iter().all(|v| scene.outside(a, b, c, v) == Equal);
+            found |= t != facet.index
+                && matches!(ray.relation(corners)?, Relation::Holds)
+                && !is_in_plane();
+            Some(())
+        },
+    )?;
+    Some(found)
+}
+
+/// Checks whether the point past the place where a line meets the plane of a facet is inside the body.
+fn is_inside_past<const N: usize>(scene: &Scene, line: &Line, facet: &Triangle) -> Option<bool> {
+    Ray::<N>::past(scene, line, facet.side, &facet.corners)?.is_inside()
+}
+
+/// Checks whether a point of a surface is inside the body: of another one of its pieces.
+pub(super) fn holds(scene: &Scene, side: &Side, point: &Corner) -> bool {
+    let line = Line { from: point, way: Way::Query { forward: true } };
+    let is_inside_one = || {
+        Ray::<SMALL>::at(scene, &line, side)
+            .is_inside()
+            .or_else(|| Ray::<TWICE_LARGE>::at(scene, &line, side).is_inside())
+    };
+    side.solid.spans().len() > 1 && is_inside_one().unwrap_or_default()
+}
+
+/// Checks whether a line meets a facet inside its face, that is not where the face bends or ends.
+fn is_within_a_face(scene: &Scene, line: &Line, facet: &Triangle) -> bool {
+    let [a, b, c] = &facet.corners;
+    let is_on =
+        |k: &usize| line.turn(scene, &facet.corners[*k], &facet.corners[(k + 1) % 3]) == Equal;
+    let on: Vec<usize> = (0..3).filter(is_on).collect();
+    let (axis, facing) = facet.open_axis(scene);
+    let continues = |[x, y, z]: [&Corner; 3]| {
+        [x, y, z].into_iter().all(|v| scene.outside(a, b, c, v) == Equal)
+            && scene.turn_about(axis, x, y, z) == facing
+    };
+    match on[..] {
+        [] => true,
+        [k] => {
+            let n = facet.side.solid.neighbours()[facet.index][k];
+            n != NONE && continues(facet.side.corners(n as usize).each_ref())
+        }
+        [j, k, ..] => {
+            let shared = if k == j + 1 { k } else { j };
+            let fan = Fan::new(scene, facet.side, facet.index as u32, &facet.corners[shared]);
+            fan.is_some_and(|fan| fan.facets().all(continues))
+        }
+    }
+}
+
+/// A parameter along a line, over a positive number.
+#[derive(Clone, Copy)]
+struct Fraction<const N: usize> {
+    over: Integer<N>,
+    under: Integer<N>,
+}
+
+impl<const N: usize> Fraction<N> {
+    /// Returns `None` if a number did not fit.
+    fn new(over: Integer<N>, under: Integer<N>) -> Option<Self> {
+        let is_negative = under.sign()? == Less;
+        let (over, under) = if is_negative {
+            (Integer::ZERO.subtract(&over), Integer::ZERO.subtract(&under))
+        } else {
+            (over, under)
+        };
+        Some(Self { over, under })
+    }
+
+    fn compare(&self, other: &Self) -> Option<Ordering> {
+        self.over.multiply(&other.under).subtract(&other.over.multiply(&self.under)).sign()
+    }
+}
+
+/// What a facet is to a point on a line.
+enum Relation {
+    /// The point lies on it.
+    Holds,
+    /// The line, moved sideways, passes it ahead of the point: 1 if it leaves through it, -1 if it enters.
+    Ahead(i32),
+    Neither,
+}
+
+/// A line and a place on it, in numbers with so many limbs. What does not fit is `None`.
+struct Ray<'r, 'a, const N: usize> {
+    scene: &'r Scene<'a>,
+    line: &'r Line<'r>,
+    side: &'r Side<'a>,
+    from: [Integer<N>; 3],
+    way: [Integer<N>; 3],
+    /// The axis of the world along which the way is longest.
+    main: usize,
+    place: Fraction<N>,
+    /// Whether the point lies past the place instead of at it.
+    is_past: bool,
+}
+
+impl<'r, 'a, const N: usize> Ray<'r, 'a, N> {
+    /// Takes the first point of a line.
+    fn at(scene: &'r Scene<'a>, line: &'r Line<'r>, side: &'r Side<'a>) -> Self {
+        let from = line.from.wide(scene);
+        let direction = scene.setting.direction;
+        let (way, rough) = match line.way {
+            Way::Query { forward } => {
+                let direction = if forward { direction } else { -direction };
+                (direction.to_array().map(Integer::number), direction)
+            }
+            Way::To(q) => {
+                let rough = scene.frame.transpose() * (q.at - line.from.at);
+                (difference(&q.wide(scene), &from), rough)
+            }
+        };
+        let place = Fraction { over: Integer::ZERO, under: Integer::number(1.0) };
+        let is_none = |k: usize| way[k].sign() == Some(Equal);
+        let longest = rough.abs().max_position();
+        let main =
+            if is_none(longest) { (0..3).find(|&k| !is_none(k)).unwrap_or(0) } else { longest };
+        Self { scene, line, side, from, way, main, place, is_past: false }
+    }
+
+    /// Takes the point past the place where a line meets the plane of a facet.
+    fn past(
+        scene: &'r Scene<'a>,
+        line: &'r Line<'r>,
+        side: &'r Side<'a>,
+        facet: &[Corner; 3],
+    ) -> Option<Self> {
+        let mut ray = Self::at(scene, line, side);
+        let place = ray.place_on(&ray.seen(facet))?;
+        (ray.place, ray.is_past) = (place, true);
+        Some(ray)
+    }
+
+    /// Returns the corners of a facet as seen from the first point of the line.
+    fn seen(&self, corners: &[Corner; 3]) -> [[Integer<N>; 3]; 3] {
+        corners.each_ref().map(|c| difference(&c.wide(self.scene), &self.from))
+    }
+
+    /// Returns where the line meets the plane of a facet, which is not parallel to it.
+    fn place_on(&self, [a, b, c]: &[[Integer<N>; 3]; 3]) -> Option<Fraction<N>> {
+        let (x, y) = (difference(b, a), difference(c, a));
+        Fraction::new(determinant(&x, &y, a), determinant(&x, &y, &self.way))
+    }
+
+    /// Returns `(u x v)` along an axis: the sign is that of `det[u, v, e]`.
+    fn across(&self, axis: usize, v: &[Integer<N>; 3]) -> Integer<N> {
+        let (i, j) = ((axis + 1) % 3, (axis + 2) % 3);
+        self.way[i].multiply(&v[j]).subtract(&self.way[j].multiply(&v[i]))
+    }
+
+    /// Returns the axes along which the line is moved sideways.
+    fn sideways(&self) -> [usize; 2] {
+        [(self.main + 1) % 3, (self.main + 2) % 3]
+    }
+
+    fn relation(&self, corners: &[Corner; 3]) -> Option<Relation> {
+        let turn = |k: usize| self.line.turn(self.scene, &corners[k], &corners[(k + 1) % 3]);
+        let turns = [turn(0), turn(1), turn(2)];
+        if turns.contains(&Greater) && turns.contains(&Less) {
+            return Some(Relation::Neither);
+        }
+        let r = self.seen(corners);
+        let (x, y) = (difference(&r[1], &r[0]), difference(&r[2], &r[0]));
+        let facing = determinant(&x, &y, &self.way).sign()?;
+        if facing == Equal {
+            let is_met = turns == [Equal; 3] && self.is_along(&r)?;
+            return Some(if is_met { Relation::Holds } else { Relation::Neither });
+        }
+        let ahead = self.place_on(&r)?.compare(&self.place)?;
+        if ahead == Equal && !self.is_past {
+            return Some(Relation::Holds);
+        }
+        for (k, turn) in turns.into_iter().enumerate() {
+            if turn == Equal {
+                let edge = difference(&r[(k + 1) % 3], &r[k]);
+                let [first, second] = self.sideways().map(|axis| self.across(axis, &edge).sign());
+                if first?.then(second?) != facing {
+                    return Some(Relation::Neither);
+                }
+            }
+        }
+        Some(match (ahead, facing) {
+            (Greater, Greater) => Relation::Ahead(1),
+            (Greater, _) => Relation::Ahead(-1),
+            _ => Relation::Neither,
+        })
+    }
+
+    /// Checks whether the point lies on a facet whose plane contains the line.
+    fn is_along(&self, r: &[[Integer<N>; 3]; 3]) -> Option<bool> {
+        let offsets = |axis: usize| r.each_ref().map(|v| self.across(axis, v));
+        let [first, second] = self.sideways().map(offsets);
+        let is_flat = first.iter().all(|s| s.sign() == Some(Equal));
+        let offset = if is_flat { second } else { first };
+        let mut range: Option<[Fraction<N>; 2]> = None;
+        for k in 0..3 {
+            let next = (k + 1) % 3;
+            let met = match [offset[k].sign()?, offset[next].sign()?] {
+                [Equal, _] => Some(Fraction::new(r[k][self.main], self.way[self.main])?),
+                [_, Equal] => None,
+                [s, t] if s == t => None,
+                _ => {
+                    let over = offset[next].multiply(&r[k][self.main]);
+                    let over = over.subtract(&offset[k].multiply(&r[next][self.main]));
+                    let under = offset[next].subtract(&offset[k]).multiply(&self.way[self.main]);
+                    Some(Fraction::new(over, under)?)
+                }
+            };
+            let Some(met) = met else { continue };
+            let [low, high] = range.unwrap_or([met; 2]);
+            range = Some(match (met.compare(&low)?, met.compare(&high)?) {
+                (Less, _) => [met, high],
+                (_, Greater) => [low, met],
+                _ => [low, high],
+            });
+        }
+        let Some([low, high]) = range else { return Some(false) };
+        let [from, to] = [low.compare(&self.place)?, high.compare(&self.place)?];
+        Some(from != Greater && (to == Greater || to == Equal && !self.is_past))
+    }
+
+    fn is_inside(&self) -> Option<bool> {
+        let (mut ahead, mut on) = (Vec::new(), Vec::new());
+        self.each_facet(
+            |_| true,
+            |t, corners| {
+                match self.relation(corners)? {
+                    Relation::Holds => on.push(t),
+                    Relation::Ahead(count) => ahead.push((t, count)),
+                    Relation::Neither => {}
+                }
+                Some(())
+            },
+        )?;
+        Some(is_around(self.side.solid, &ahead, &on))
+    }
+
+    /// Takes the facets of closed shells that the line may meet, in nodes whose boxes are admitted; until `None` comes.
+    fn each_facet(
+        &self,
+        admits: impl Fn(&Aabb) -> bool,
+        mut take: impl FnMut(usize, &[Corner; 3]) -> Option<()>,
+    ) -> Option<()> {
+        let solid = self.side.solid;
+        let mut open = vec![0];
+        while let Some(at) = open.pop() {
+            let node = &solid.nodes()[at as usize];
+            let bounds = Projected::new(self.scene, self.side, at as usize).bounds;
+            if !self.line.may_meet(self.scene, &bounds) || !admits(&bounds) {
+                continue;
+            }
+            if !node.is_leaf() {
+                open.extend(children(node, at));
+                continue;
+            }
+            for t in node.facets().filter(|&t| !solid.is_open(t)) {
+                take(t, &self.side.corners(t))?;
+            }
+        }
+        Some(())
+    }
+}
+
+/// Checks whether the shells of a body go around a point, by the facets ahead of it and those that it lies on.
+fn is_around(solid: &Solid, ahead: &[(usize, i32)], on: &[usize]) -> bool {
+    if on.is_empty() {
+        return ahead.iter().map(|(_, count)| count).sum::<i32>() > 0;
+    }
+    if solid.spans().len() == 1 {
+        return false;
+    }
+    let shells = solid.shell_map();
+    let mut on: Vec<u32> = on.iter().map(|&t| shells.of(t)).collect();
+    on.sort_unstable();
+    on.dedup();
+    let others = ahead.iter().filter(|(t, _)| !on.contains(&shells.of(*t)));
+    let walls = on.iter().filter(|&&shell| shells.is_cavity(shell)).count();
+    others.map(|(_, count)| count).sum::<i32>() > walls as i32
+}

@@ -161,7 +161,7 @@ impl Solid {
     }
 
     pub(super) fn faces(&self) -> &Faces {
-        self.faces.get_or_init(|| Faces::new(self))
+        self.faces.get_or_init(|| Box::new(Faces::new(self)))
     }
 
     fn corners_of(&self, triangle: u32) -> [DVec3; 3] {

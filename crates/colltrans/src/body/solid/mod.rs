@@ -88,9 +88,9 @@ pub struct Solid {
     report: SolidReport,
     shrinking: OnceLock<Shrinking>,
     /// Made when a feature is first named.
-    faces: OnceLock<Faces>,
+    faces: OnceLock<Box<Faces>>,
     /// Made when a point or a segment lies on one of several shells.
-    shell_map: OnceLock<ShellMap>,
+    shell_map: OnceLock<Box<ShellMap>>,
     kept: Kept,
 }
 
@@ -282,7 +282,8 @@ impl Solid {
         let kinds: Vec<ShellKind> = order.iter().map(|k| surface.kinds[old(k)]).collect();
         tree::open_nodes(&mut nodes, |t| kinds[t] != ShellKind::Closed);
         let reach = surface.vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
-        let faces = surface.faces.map_or_else(OnceLock::new, |f| f.ordered(&order).into());
+        let faces =
+            surface.faces.map_or_else(OnceLock::new, |f| Box::new(f.ordered(&order)).into());
         let mut solid = Self {
             triangles: order.iter().map(|k| surface.triangles[old(k)]).collect(),
             facet_index: order.iter().map(|k| surface.facet_index[old(k)]).collect(),
@@ -468,8 +469,8 @@ impl Solid {
             + self.spans.capacity() * size_of::<Span>()
             + self.report.shells.capacity() * size_of::<Shell>()
             + self.shrinking.get().map_or(0, Shrinking::heap_bytes)
-            + self.faces.get().map_or(0, Faces::heap_bytes)
-            + self.shell_map.get().map_or(0, ShellMap::heap_bytes)
+            + self.faces.get().map_or(0, |faces| size_of::<Faces>() + faces.heap_bytes())
+            + self.shell_map.get().map_or(0, |map| size_of::<ShellMap>() + map.heap_bytes())
             + self.kept.heap_bytes()
     }
 
@@ -498,6 +499,6 @@ impl Solid {
     /// Returns which shell each triangle belongs to.
     pub(crate) fn shell_map(&self) -> &ShellMap {
         let make = || ShellMap::new(&self.vertices, &self.triangles, &self.neighbours);
-        self.shell_map.get_or_init(make)
+        self.shell_map.get_or_init(|| Box::new(make()))
     }
 }

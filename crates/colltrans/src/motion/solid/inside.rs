@@ -1,10 +1,10 @@
 //! A point inside both of two solids: that they overlap where no edge passes through a facet, as of a block that has
 //! come down on a column of its own outline.
 //!
-//! A point or a segment is not closed. Where a point of it is inside the other solid, the two overlap as well.
+//! A point or a segment is not closed. It overlaps a solid if a point of it is inside the solid.
 //!
-//! A point inside both is guessed by two facets: halfway between those that have passed each other, or a little beneath both where they lie
-//! in one plane and look the same way. It is given in the frame of the fixed body, and counts if no facet of either body
+//! A point inside both is guessed by two facets: halfway between those that have passed each other, or a little
+//! beneath both where they lie in one plane and look the same way. It is given in the frame of the fixed body, and counts if no facet of either body
 //! is nearer to it than places may be off: then the surface of each goes round it as often as the real one does.
 
 use glam::DVec3;

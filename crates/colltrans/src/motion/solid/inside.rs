@@ -4,8 +4,9 @@
 //! A point or a segment is not closed. It overlaps a solid if a point of it is inside the solid.
 //!
 //! A point inside both is guessed by two facets: halfway between those that have passed each other, or a little
-//! beneath both where they lie in one plane and look the same way. It is given in the frame of the fixed body, and counts if no facet of either body
-//! is nearer to it than places may be off: then the surface of each goes round it as often as the real one does.
+//! beneath both where they lie in one plane and look the same way. It is given in the frame of the fixed body, and
+//! counts if no facet of either body is nearer to it than places may be off: then the surface of each goes round it as
+//! often as the real one does.
 
 use glam::DVec3;
 

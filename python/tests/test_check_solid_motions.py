@@ -147,3 +147,19 @@ def test_a_point_that_is_inside_both_has_to_be() -> None:
     assert refused(changed(file, ("proof", "meeting", "time"), lambda t: t - 1e-12))
     open_ = changed(file, ("fixed", "pieces", 0), lambda piece: {**piece, "open": True})
     assert refused(open_)
+
+
+def test_a_point_of_a_facet_has_to_be_inside_the_other_solid() -> None:
+    file = proof("solids_contained")
+    report = check.check(json.dumps(file))
+    assert [line for line in report.holds if "meet at the time" in line]
+    way: tuple[Any, ...] = ("proof", "meeting", "met", "contained")
+    for weights in ([0.5, 0.0, 0.0], [2.0, -1.0, 0.0], [1.0, 0.0], [1.0, 0.0, "0"]):
+        assert refused(changed(file, (*way, "weights"), always(weights)))
+    assert refused(changed(file, (*way, "moving"), always(False)))
+    assert refused(changed(file, (*way, "moving"), always(1)))
+    for off in (-1e-9, -0.1):
+        assert refused(changed(file, ("proof", "meeting", "time"), lambda t, off=off: t + off))
+    assert refused({**file, "keep": 0.5})
+    open_ = changed(file, ("fixed", "pieces", 0), lambda piece: {**piece, "open": True})
+    assert refused(open_)

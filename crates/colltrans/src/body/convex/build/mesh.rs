@@ -8,6 +8,7 @@ use std::cell::OnceCell;
 
 use glam::DVec3;
 
+use super::depth::PlaneTree;
 use super::hull::{self, Hull, Locator};
 use crate::body::error::{BuildError, TopologyError};
 use crate::body::topology::Topology;
@@ -190,18 +191,10 @@ impl Surface {
 struct Depths<'a> {
     surface: &'a Surface,
     hull: &'a Hull,
-    /// What measures a depth, made when the first face is found off the hull: most meshes have none.
-    gauge: OnceCell<Gauge>,
+    /// The planes to measure from, made when the first face is found off the hull: most meshes have none.
+    planes: OnceCell<PlaneTree>,
     /// For each vertex of the surface, its number in the hull, if it is one of its vertices.
     in_hull: Vec<Option<u32>>,
-}
-
-/// The planes to measure from.
-struct Gauge {
-    /// Unit normal, outwards, and offset of each face or edge.
-    planes: Vec<(DVec3, f64)>,
-    /// Neighbours of the faces, to walk along.
-    locator: Locator,
 }
 
 impl<'a> Depths<'a> {
@@ -210,20 +203,19 @@ impl<'a> Depths<'a> {
         for (k, &v) in hull.vertices.iter().enumerate() {
             in_hull[v as usize] = Some(k as u32);
         }
-        Self { surface, hull, gauge: OnceCell::new(), in_hull }
+        Self { surface, hull, planes: OnceCell::new(), in_hull }
     }
 
-    fn gauge(&self) -> &Gauge {
-        self.gauge.get_or_init(|| {
+    fn planes(&self) -> &PlaneTree {
+        self.planes.get_or_init(|| {
             let (hull, points) = (self.hull, &self.surface.points);
             let vertices: Vec<DVec3> = hull.vertices.iter().map(|&v| points[v as usize]).collect();
-            let locator = Locator::of_faces(&vertices, &hull.topology);
             let planes = if hull.dimension == 2 {
                 edge_planes(&vertices, &hull.topology)
             } else {
-                locator.planes_from_origin().collect()
+                Locator::of_faces(&vertices, &hull.topology).planes_from_origin().collect()
             };
-            Gauge { planes, locator }
+            PlaneTree::new(&vertices, planes)
         })
     }
 
@@ -240,25 +232,22 @@ impl<'a> Depths<'a> {
             2 => {
                 let rim = topology.face(face).filter(|&h| self.turns_back(h));
                 let points = rim.flat_map(|h| [at(topology.origin(h)), middle(h)]);
-                points.map(|p| self.of_point(p)).fold(0.0, f64::max)
+                self.of_points(points, known, near)
             }
             _ if self.lies_on_hull(face) => 0.0,
             _ => {
                 let corners = topology.face_vertices(face).map(at);
                 let center = corners.clone().sum::<DVec3>() / corners.len() as f64;
                 let points = corners.chain(topology.face(face).map(middle)).chain([center]);
-                points.fold(0.0, |worst, p| {
-                    // An upper bound of the depth is enough where it changes nothing.
-                    let bound = self.gauge().locator.depth_bound(p, near);
-                    let depth = if bound <= worst.max(known) { bound } else { self.of_point(p) };
-                    worst.max(depth)
-                })
+                self.of_points(points, known, near)
             }
         }
     }
 
-    fn of_point(&self, p: DVec3) -> f64 {
-        self.gauge().planes.iter().map(|(n, o)| o - n.dot(p)).fold(f64::INFINITY, f64::min)
+    /// Returns the greatest depth of some points, or any number up to `known` if it is not greater than that.
+    fn of_points(&self, points: impl Iterator<Item = DVec3>, known: f64, near: &mut usize) -> f64 {
+        // A smaller depth changes nothing.
+        points.fold(0.0, |worst, p| worst.max(self.planes().least_depth(p, worst.max(known), near)))
     }
 
     /// Whether the faces at an edge of a flat surface look to opposite sides.

@@ -1,5 +1,6 @@
 //! Construction: bodies from points, from meshes and from corners.
 
+mod depth;
 mod hull;
 mod mesh;
 mod offset;

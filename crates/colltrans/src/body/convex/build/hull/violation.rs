@@ -77,15 +77,6 @@ impl Locator {
         self.around(*near).map(outside).fold(outside(*near), f64::max)
     }
 
-    /// An upper bound of the depth of a point below the faces, close to it for points near the
-    /// surface.
-    pub(in crate::body::convex) fn depth_bound(&self, point: DVec3, near: &mut usize) -> f64 {
-        let ray = point - self.center;
-        self.walk(ray, near);
-        let depth = |f: usize| self.planes[f].1 - self.planes[f].0.dot(ray);
-        self.around(*near).map(depth).fold(depth(*near), f64::min)
-    }
-
     /// Unit normals and offsets from the origin of the coordinates.
     pub(in crate::body::convex) fn planes_from_origin(
         &self,

@@ -1,0 +1,144 @@
+//! How deep a point lies below the face planes of a hull: the least depth below one of them.
+//!
+//! The depth of a point `p` below a plane is `offset - normal . p`, which is linear in normal and offset. So a tree over
+//! the planes bounds their depths by boxes of the normals and by the least offset of each node. Large faces have many
+//! neighbours, and a search that walks from face to face looks at all of them; this search does not.
+//!
+//! Invariant. A depth is computed from the plane as it is given. Only the bounds use offsets from the centre of the
+//! body, because bounds would be wide far from the origin. They are lowered by more than both can be rounded.
+
+use std::ops::Range;
+
+use glam::DVec3;
+
+use crate::work;
+
+/// Planes of a leaf.
+const LEAF: usize = 8;
+/// Rounding of a bound and a depth, relative to the size of coordinates: some ten roundings of `2^-53` each.
+const ROUNDING: f64 = 1e-14;
+
+/// A tree over planes.
+pub(super) struct PlaneTree {
+    center: DVec3,
+    slack: f64,
+    /// Unit normal and offset from the origin of each plane, leaf by leaf.
+    planes: Vec<(DVec3, f64)>,
+    /// Each node before its children, the first child right behind it.
+    nodes: Vec<Node>,
+}
+
+/// Planes that follow each other.
+struct Node {
+    planes: Range<usize>,
+    /// Bounds of their normals.
+    low: DVec3,
+    high: DVec3,
+    /// A lower bound of their offsets from the centre.
+    least_offset: f64,
+    /// The second child; `None` for a leaf.
+    second: Option<usize>,
+}
+
+impl PlaneTree {
+    /// Builds the tree over planes, each with unit normal and offset from the origin, that bound a body with these
+    /// vertices.
+    pub(super) fn new(vertices: &[DVec3], planes: Vec<(DVec3, f64)>) -> Self {
+        let center = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
+        let size = vertices.iter().map(|v| v.abs().element_sum()).fold(0.0, f64::max);
+        let mut tree = Self { center, slack: ROUNDING * size, planes, nodes: Vec::new() };
+        tree.build(0..tree.planes.len());
+        tree
+    }
+
+    fn build(&mut self, range: Range<usize>) {
+        let center = self.center;
+        let part = &mut self.planes[range.clone()];
+        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+        let mut least_offset = f64::INFINITY;
+        for (normal, offset) in part.iter() {
+            (low, high) = (low.min(*normal), high.max(*normal));
+            least_offset = least_offset.min(offset - normal.dot(center));
+        }
+        let number = self.nodes.len();
+        self.nodes.push(Node { planes: range.clone(), low, high, least_offset, second: None });
+        if range.len() <= LEAF {
+            return;
+        }
+        let axis = (high - low).max_position();
+        let half = range.len() / 2;
+        part.select_nth_unstable_by(half, |a, b| a.0[axis].total_cmp(&b.0[axis]));
+        let middle = range.start + half;
+        self.build(range.start..middle);
+        self.nodes[number].second = Some(self.nodes.len());
+        self.build(middle..range.end);
+    }
+
+    /// Returns the least depth of a point of the body below a plane, or any such depth that is not greater than
+    /// `enough`. `near` is the plane to begin with, and then the one that was found.
+    pub(super) fn least_depth(&self, p: DVec3, enough: f64, near: &mut usize) -> f64 {
+        let depth = |plane: usize| self.planes[plane].1 - self.planes[plane].0.dot(p);
+        let ray = p - self.center;
+        let bound = |node: usize| {
+            let node = &self.nodes[node];
+            let highest = (node.low * ray).max(node.high * ray).element_sum();
+            node.least_offset - highest - self.slack
+        };
+        work::count(1);
+        let mut least = depth(*near);
+        let mut stack = vec![0];
+        while let Some(number) = stack.pop().filter(|_| least > enough) {
+            work::count(1);
+            if bound(number) >= least {
+                continue;
+            }
+            let node = &self.nodes[number];
+            let Some(second) = node.second else {
+                work::count(node.planes.len());
+                for plane in node.planes.clone() {
+                    let depth = depth(plane);
+                    if depth < least {
+                        (least, *near) = (depth, plane);
+                    }
+                }
+                continue;
+            };
+            let children = [second, number + 1];
+            let is_second_deeper = bound(second) > bound(number + 1);
+            stack.extend(if is_second_deeper { children } else { [number + 1, second] });
+        }
+        least
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use colltrans_testkit::random::Random;
+
+    #[test]
+    fn the_tree_finds_the_least_depth_of_all_planes() {
+        let mut random = Random::new(3);
+        for at in [0.0, 1e3, 5e6] {
+            let center = random.vector() * at;
+            let vertices: Vec<DVec3> = (0..300).map(|_| center + random.direction()).collect();
+            let planes: Vec<(DVec3, f64)> = (0..300)
+                .map(|_| random.direction())
+                .map(|normal| {
+                    let heights = vertices.iter().map(|v| normal.dot(*v));
+                    (normal, heights.fold(f64::NEG_INFINITY, f64::max))
+                })
+                .collect();
+            let tree = PlaneTree::new(&vertices, planes.clone());
+            let mut near = 0;
+            for _ in 0..300 {
+                let p = center + random.direction() * random.range(0.0, 1.0);
+                let all = planes.iter().map(|(normal, offset)| offset - normal.dot(p));
+                let least = all.fold(f64::INFINITY, f64::min);
+                assert_eq!(tree.least_depth(p, f64::NEG_INFINITY, &mut near), least);
+                let found = tree.least_depth(p, 0.5, &mut near);
+                assert!(found == least || (least..=0.5).contains(&found), "{found} {least}");
+            }
+        }
+    }
+}

@@ -4,7 +4,7 @@
 //! the word `solid` as text files do, so the first word does not decide. A file of exactly
 //! the size that its count implies is binary; of the others those are text that begin with `solid`, perhaps
 //! after comments (`;`, `#`, `//`), and that hold no control characters, as binary numbers do, or whose second
-//! line is one of text STL. NUL and Ctrl-Z at the end are padding. Text is read here, because it may hold
+//! line is one of text STL. Other text is refused. NUL and Ctrl-Z at the end are padding. Text is read here, because it may hold
 //! several solids and more digits than single precision, and because its errors should name a
 //! line. Either way equal vertices are merged.
 
@@ -27,12 +27,14 @@ pub(crate) fn parse(bytes: Vec<u8>) -> Result<(Mesh, Precision), Fault> {
         return Err(Fault::new(Place::End, "the file is empty"));
     }
     if !is_exactly_binary(&bytes) && is_text(&bytes) {
-        let text = String::from_utf8_lossy(without_padding(without_mark(&bytes)?));
+        let text = without_padding(without_mark(&bytes)?);
+        check_end(text)?;
+        let text = String::from_utf8_lossy(text);
         return Ok((parse_text(&text)?.weld(), Precision::TEXT));
     }
     if !is_exactly_binary(&bytes) {
         // A mark of UTF-16 is the likelier reason.
-        without_mark(&bytes)?;
+        check_is_no_text(without_mark(&bytes)?)?;
         check_size(&bytes)?;
     }
     Ok((parse_binary(bytes)?.weld(), Precision::SINGLE))
@@ -58,7 +60,7 @@ pub(crate) fn is_text(bytes: &[u8]) -> bool {
     !has_control(text) || begins(second, b"facet") || begins(second, b"endsolid")
 }
 
-/// Checks whether a line outside of all solids is a comment.
+/// Checks whether a line is a comment.
 fn is_comment(line: &[u8]) -> bool {
     line.starts_with(b";") || line.starts_with(b"#") || line.starts_with(b"//")
 }
@@ -67,6 +69,30 @@ fn is_comment(line: &[u8]) -> bool {
 fn without_padding(text: &[u8]) -> &[u8] {
     let is_text = |byte: &u8| !matches!(byte, 0 | 0x1a) && !byte.is_ascii_whitespace();
     &text[..text.iter().rposition(is_text).map_or(0, |last| last + 1)]
+}
+
+/// Checks that nothing follows the character that ends a text on some systems.
+fn check_end(text: &[u8]) -> Result<(), Fault> {
+    let Some(end) = text.iter().position(|byte| *byte == 0x1a) else { return Ok(()) };
+    let (before, rest) = text.split_at(end);
+    let line = lines(&String::from_utf8_lossy(before)).count();
+    let what = format!("Ctrl-Z ends the text, but {} bytes follow it; delete them", rest.len() - 1);
+    Err(Fault::new(Place::Line(line), what))
+}
+
+/// Checks that the bytes, which do not begin as text STL, are no text at all.
+fn check_is_no_text(bytes: &[u8]) -> Result<(), Fault> {
+    let bytes = bytes.strip_suffix(b"\x1a").unwrap_or(bytes);
+    if has_control(bytes) {
+        return Ok(());
+    }
+    let text = String::from_utf8_lossy(bytes);
+    let is_blank = |line: &str| line.trim().is_empty() || is_comment(line.trim().as_bytes());
+    let Some((number, line)) = lines(&text).enumerate().find(|(_, line)| !is_blank(line)) else {
+        return Err(Fault::new(Place::End, "a text without the line `solid`, where STL begins"));
+    };
+    let what = format!("text STL begins with `solid`, not with {}", quoted(line.trim()));
+    Err(Fault::new(Place::Line(number + 1), what))
 }
 
 /// Characters that no text holds, but numbers in binary do.
@@ -175,7 +201,7 @@ fn parse_text(text: &str) -> Result<Mesh, Fault> {
     let mut name = String::new();
     for (number, line) in lines(text).enumerate() {
         let at = |what: String| Fault::new(Place::Line(number + 1), what);
-        if inside == Inside::Nothing && is_comment(line.trim_start().as_bytes()) {
+        if is_comment(line.trim_start().as_bytes()) {
             continue;
         }
         let mut words = line.split_whitespace();
@@ -226,7 +252,7 @@ fn vertex<'a>(words: impl Iterator<Item = &'a str>) -> Result<(DVec3, [Printed; 
     let mut xyz = [0.0; 3];
     let mut printed = [Printed::default(); 3];
     let mut found = 0;
-    for word in words {
+    for word in words.take_while(|word| !is_comment(word.as_bytes())) {
         let value = number(word).ok_or_else(|| format!("{} is not a number", quoted(word)))?;
         if found < 3 {
             (xyz[found], printed[found]) = value;

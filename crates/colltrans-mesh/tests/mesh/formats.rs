@@ -96,7 +96,11 @@ fn text_stl_with_padding_comments_and_strange_bytes_is_read_as_text() {
     let text = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 0.1 0 0\nvertex 0 1 0\n\
         endloop\nendfacet\nendsolid a\n";
     let plain = read(Format::Stl, text).unwrap();
-    let inputs: [Vec<u8>; 6] = [
+    let commented = text.replacen("outer", "# made by foo\n  ; bar\nouter", 1);
+    let inputs: [Vec<u8>; 9] = [
+        commented.clone().into_bytes(),
+        commented.replace('\n', "\r\n").into_bytes(),
+        text.replacen("0.1 0 0", "0.1 0 0 # the second", 1).into_bytes(),
         [text.as_bytes(), b"\x1a"].concat(),
         [text.as_bytes(), b"\0\0\0"].concat(),
         [text.as_bytes(), b"\x1a\0\r\n"].concat(),
@@ -109,8 +113,32 @@ fn text_stl_with_padding_comments_and_strange_bytes_is_read_as_text() {
     }
     let inside = text.replacen("0.1", "0\0.1", 1);
     assert_eq!(place(Format::Stl, inside), Place::Line(5));
-    // A comment inside of a solid is no keyword.
-    assert_eq!(place(Format::Stl, text.replacen("outer", "; outer", 1)), Place::Line(3));
+    // What a comment hides is missing.
+    assert_eq!(place(Format::Stl, text.replacen("outer", "; outer", 1)), Place::Line(4));
+}
+
+#[test]
+fn text_that_is_no_text_stl_is_refused_as_text() {
+    let text = format!("solid x\n{FACET}endsolid x\n");
+    let message = |bytes: Vec<u8>| read(Format::Stl, bytes).unwrap_err().to_string();
+    for (input, line) in [
+        (format!("/* made by foo */\n{text}"), "line 1"),
+        (format!("\u{feff}# a comment\n\n{}", text.replacen("solid x\n", "", 1)), "line 3"),
+        (text.replacen("solid", "sloid", 1) + "\u{1a}", "line 1"),
+        ("not a mesh".into(), "line 1"),
+    ] {
+        let said = message(input.clone().into_bytes());
+        assert!(said.contains(line), "{input}: {said}");
+        assert!(said.contains("text STL begins with `solid`, not with `"), "{input}: {said}");
+    }
+    let said = message(b"# a comment\n\n".to_vec());
+    assert!(said.contains("a text without the line `solid`"), "{said}");
+    for more in ["0123456789", "\nsolid y\n", "x\r\n\0"] {
+        let said = message(format!("{text}\u{1a}{more}").into_bytes());
+        let count = more.trim_end_matches(['\0', '\r', '\n']).len();
+        let told = format!("Ctrl-Z ends the text, but {count} bytes follow it; delete them");
+        assert!(said.contains(&told), "{said}");
+    }
 }
 
 #[test]

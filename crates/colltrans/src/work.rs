@@ -91,6 +91,39 @@ mod tests {
         });
     }
 
+    /// Prisms over stars, whose two large faces have all others as neighbours; regular, and with points of any
+    /// depth. The surface is measured against its hull, and refused or taken by the tolerance.
+    #[test]
+    fn convexity_of_stars() {
+        let mut random = Random::new(9);
+        let depths: Vec<f64> = (0..10_000).map(|_| random.range(0.2, 0.9)).collect();
+        for (what, depth) in [("regular", None), ("any depth", Some(depths))] {
+            let radius = |k: usize| match &depth {
+                _ if k % 2 == 0 => 1.0,
+                Some(depths) => depths[k],
+                None => 0.8,
+            };
+            let star = |count: usize, high: f64| -> Vec<DVec3> {
+                let rim = || ring(count, 1.0, 0.0).enumerate().map(|(k, v)| v * radius(k));
+                let top = rim().map(|v| v + DVec3::Z * high);
+                rim().chain(top).map(|v| rotation() * v).collect()
+            };
+            assert_growth(&format!("star, {what}"), 1_000, |count| {
+                let n = count as u32;
+                let mut faces: Vec<Vec<u32>> = vec![(0..n).rev().collect(), (n..2 * n).collect()];
+                faces.extend((0..n).map(|i| [i, (i + 1) % n, (i + 1) % n + n, i + n].into()));
+                let defect = crate::convexity_defect(&star(count, 1.0), &faces).expect("a prism");
+                assert!(defect.depth > 0.05, "{defect:?}");
+            });
+            assert_growth(&format!("flat star, {what}"), 1_000, |count| {
+                let n = count as u32;
+                let faces: [Vec<u32>; 2] = [(0..n).rev().collect(), (0..n).collect()];
+                let defect = crate::convexity_defect(&star(count, 1.0), &faces).expect("a polygon");
+                assert!(defect.depth > 0.05, "{defect:?}");
+            });
+        }
+    }
+
     /// Two rings, as of a prism, a frustum or a bottle: quadratic where one ring is finished before the
     /// other is begun.
     #[test]

@@ -17,6 +17,7 @@
 mod convex_mesh;
 mod fan;
 mod merge;
+mod neighbours;
 mod planar;
 mod quickhull;
 mod violation;

@@ -8,7 +8,8 @@
 
 use glam::{DVec2, DVec3};
 
-use super::quickhull::{Simplicial, side};
+use super::neighbours::{Neighbours, Node};
+use super::quickhull::{Simplicial, Triangle, side};
 use crate::body::topology::Topology;
 use crate::number::determinant::triangle_area;
 use crate::number::plane::polygon_normal;
@@ -24,8 +25,7 @@ pub(in crate::body::convex) struct Locator {
     center: DVec3,
     /// Unit normal and offset from the centre of each face.
     planes: Vec<(DVec3, f64)>,
-    neighbour_start: Vec<u32>,
-    neighbours: Vec<u32>,
+    neighbours: Neighbours,
 }
 
 impl Locator {
@@ -33,16 +33,11 @@ impl Locator {
         let at = |i: u32| points[i as usize];
         let corners = hull.triangles.iter().flat_map(|t| t.corners);
         let center = corners.map(at).sum::<DVec3>() / (3 * hull.triangles.len()) as f64;
-        Self {
-            center,
-            planes: hull
-                .triangles
-                .iter()
-                .map(|t| (t.normal, t.normal.dot(at(t.corners[0]) - center)))
-                .collect(),
-            neighbour_start: (0..=hull.triangles.len() as u32).map(|k| 3 * k).collect(),
-            neighbours: hull.triangles.iter().flat_map(|t| t.neighbours).collect(),
-        }
+        let plane = |t: &Triangle| (t.normal, t.normal.dot(at(t.corners[0]) - center));
+        let planes: Vec<(DVec3, f64)> = hull.triangles.iter().map(plane).collect();
+        let start = (0..=hull.triangles.len() as u32).map(|k| 3 * k).collect();
+        let neighbours = hull.triangles.iter().flat_map(|t| t.neighbours).collect();
+        Self { center, neighbours: Neighbours::new(start, neighbours, &planes), planes }
     }
 
     /// The faces of a polyhedron.
@@ -65,7 +60,9 @@ impl Locator {
             neighbours.extend(topology.face(face).map(twin_face));
             neighbour_start.push(neighbours.len() as u32);
         }
-        Self { center, planes: faces.map(plane).collect(), neighbour_start, neighbours }
+        let planes: Vec<(DVec3, f64)> = faces.map(plane).collect();
+        let neighbours = Neighbours::new(neighbour_start, neighbours, &planes);
+        Self { center, planes, neighbours }
     }
 
     /// How far a point is outside the face its ray passes and that face's neighbours (negative:
@@ -74,7 +71,8 @@ impl Locator {
         let ray = point - self.center;
         self.walk(ray, near);
         let outside = |f: usize| self.planes[f].0.dot(ray) - self.planes[f].1;
-        self.around(*near).map(outside).fold(outside(*near), f64::max)
+        let bound = |node: &Node| node.highest(ray) - node.least_offset;
+        self.neighbours.best(*near, (outside(*near), *near), outside, bound).0
     }
 
     /// Unit normals and offsets from the origin of the coordinates.
@@ -90,24 +88,20 @@ impl Locator {
             let (normal, offset) = self.planes[f];
             normal.dot(ray) / offset.max(f64::MIN_POSITIVE)
         };
+        let bound = |node: &Node| {
+            let highest = node.highest(ray);
+            let offset = if highest > 0.0 { node.least_offset } else { node.most_offset };
+            highest / offset.max(f64::MIN_POSITIVE)
+        };
         let mut value = passing(*near);
         // Every step increases the value; the bound is for rounding.
         for _ in 0..self.planes.len() {
-            let better = self
-                .around(*near)
-                .map(|f| (passing(f), f))
-                .fold((value, *near), |a, b| if b.0 > a.0 { b } else { a });
+            let better = self.neighbours.best(*near, (value, *near), passing, bound);
             if better.1 == *near {
                 break;
             }
             (value, *near) = better;
         }
-    }
-
-    fn around(&self, face: usize) -> impl Iterator<Item = usize> + '_ {
-        let range = self.neighbour_start[face] as usize..self.neighbour_start[face + 1] as usize;
-        work::count(range.len());
-        self.neighbours[range].iter().map(|&f| f as usize)
     }
 }
 

@@ -1,0 +1,124 @@
+//! The best of the neighbours of a face: one by one, or for a face of many by a tree over them.
+//!
+//! Both caps of a prism have all other faces as neighbours, so a walk over the faces would take quadratic time.
+//!
+//! Invariant. The result is that of a loop over the neighbours in their order, bit for bit: floating-point sums and
+//! products are monotone, so a bound is never below a value that is computed in the same way.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use glam::DVec3;
+
+use crate::work;
+
+/// Maximum number of neighbours that are looked at one by one.
+const FEW: usize = 32;
+/// Neighbours of a leaf.
+const LEAF: usize = 8;
+
+/// The faces around each face.
+pub(super) struct Neighbours {
+    start: Vec<u32>,
+    faces: Vec<u32>,
+    /// The trees of faces with many neighbours, each node before its children.
+    trees: HashMap<usize, Vec<Node>>,
+}
+
+/// Neighbours that follow each other, and bounds of their planes.
+pub(super) struct Node {
+    range: Range<usize>,
+    low: DVec3,
+    high: DVec3,
+    pub(super) least_offset: f64,
+    pub(super) most_offset: f64,
+    /// The position of the first node that is not below this one.
+    end: usize,
+}
+
+impl Node {
+    /// Returns an upper bound of the products of the normals with a vector.
+    pub(super) fn highest(&self, ray: DVec3) -> f64 {
+        DVec3::select(ray.cmpge(DVec3::ZERO), self.high, self.low).dot(ray)
+    }
+}
+
+impl Neighbours {
+    /// Takes the neighbours of all faces in one list, where each begins, and the plane of each face.
+    pub(super) fn new(start: Vec<u32>, faces: Vec<u32>, planes: &[(DVec3, f64)]) -> Self {
+        let mut trees = HashMap::new();
+        for (face, ends) in start.windows(2).enumerate() {
+            let range = ends[0] as usize..ends[1] as usize;
+            if range.len() > FEW {
+                let mut nodes = Vec::new();
+                build(&mut nodes, range, &faces, planes);
+                trees.insert(face, nodes);
+            }
+        }
+        Self { start, faces, trees }
+    }
+
+    /// Returns the first neighbour of a face with the greatest value, and this value, if that is greater than
+    /// `best`, else `best`. `bound` is an upper bound of the values of a node.
+    pub(super) fn best(
+        &self,
+        face: usize,
+        mut best: (f64, usize),
+        value: impl Fn(usize) -> f64,
+        bound: impl Fn(&Node) -> f64,
+    ) -> (f64, usize) {
+        let take = |range: Range<usize>, best: &mut (f64, usize)| {
+            work::count(range.len());
+            for &neighbour in &self.faces[range] {
+                let value = value(neighbour as usize);
+                if value > best.0 {
+                    *best = (value, neighbour as usize);
+                }
+            }
+        };
+        let range = self.start[face] as usize..self.start[face + 1] as usize;
+        if range.len() <= FEW {
+            take(range, &mut best);
+            return best;
+        }
+        let nodes = &self.trees[&face];
+        let mut next = 0;
+        while let Some(node) = nodes.get(next) {
+            work::count(1);
+            if bound(node) <= best.0 {
+                next = node.end;
+                continue;
+            }
+            if node.range.len() <= LEAF {
+                take(node.range.clone(), &mut best);
+            }
+            next += 1;
+        }
+        best
+    }
+}
+
+fn build(nodes: &mut Vec<Node>, range: Range<usize>, faces: &[u32], planes: &[(DVec3, f64)]) {
+    let number = nodes.len();
+    let mut node = Node {
+        range: range.clone(),
+        low: DVec3::INFINITY,
+        high: DVec3::NEG_INFINITY,
+        least_offset: f64::INFINITY,
+        most_offset: f64::NEG_INFINITY,
+        end: 0,
+    };
+    for &face in &faces[range.clone()] {
+        let (normal, offset) = planes[face as usize];
+        (node.low, node.high) = (node.low.min(normal), node.high.max(normal));
+        node.least_offset = node.least_offset.min(offset);
+        node.most_offset = node.most_offset.max(offset);
+    }
+    nodes.push(node);
+    if range.len() > LEAF {
+        let middle = range.start.midpoint(range.end);
+        build(nodes, range.start..middle, faces, planes);
+        build(nodes, middle..range.end, faces, planes);
+    }
+    nodes[number].end = nodes.len();
+}

@@ -110,11 +110,8 @@ fn fixed_places<'a>(numbers: impl Iterator<Item = &'a Printed>) -> Option<FixedP
     let is_fixed = |[full, padded]: [usize; 2]| padded > 0 && is_nearly_all(full + padded, total);
     let fixed = counts.into_iter().find(|((places, _), count)| *places > 1 && is_fixed(*count));
     fixed.map(|((places, has_exponent), _)| {
-        if has_exponent {
-            FixedPlaces::Digits(i32::from(places) + 1)
-        } else {
-            FixedPlaces::Decimals(i32::from(places))
-        }
+        let places = i32::from(places);
+        if has_exponent { FixedPlaces::Digits(places + 1) } else { FixedPlaces::Decimals(places) }
     })
 }
 

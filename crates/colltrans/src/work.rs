@@ -99,7 +99,7 @@ mod tests {
         let depths: Vec<f64> = (0..10_000).map(|_| random.range(0.2, 0.9)).collect();
         for (what, depth) in [("regular", None), ("any depth", Some(depths))] {
             let radius = |k: usize| match &depth {
-                _ if k % 2 == 0 => 1.0,
+                _ if k.is_multiple_of(2) => 1.0,
                 Some(depths) => depths[k],
                 None => 0.8,
             };

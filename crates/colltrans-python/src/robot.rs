@@ -645,7 +645,8 @@ impl PathAnswer {
     fn __repr__(&self) -> String {
         let upper = self.upper().map_or_else(|| "None".into(), |upper| format!("{upper:?}"));
         let pair = self.pair().map(|(a, b)| format!(", {a:?} and {b:?}")).unwrap_or_default();
-        let only: String = self.record.notes.iter().map(|note| format!(", only {note}")).collect();
+        let notes = self.record.notes.iter().map(String::as_str);
+        let only = std::iter::once("").chain(notes).collect::<Vec<_>>().join(", only ");
         let (outcome, lower) = (self.outcome(), self.lower());
         format!("PathContact({outcome:?}, lower={lower:?}, upper={upper}{pair}{only})")
     }

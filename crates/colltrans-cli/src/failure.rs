@@ -4,6 +4,7 @@ use std::fmt::Display;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
+use crate::streams::standard_output;
 use crate::terminal::{plain, plain_json, shown};
 
 /// The exit codes that are not 0, as `--help` documents them.
@@ -43,8 +44,10 @@ pub(crate) fn print_json(text: &str) -> Result<(), Failure> {
 }
 
 fn put(text: &str) -> Result<(), Failure> {
-    let mut out = io::stdout();
-    let written = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    let written = standard_output().and_then(|mut out| {
+        out.write_all(text.as_bytes())?;
+        out.flush()
+    });
     written.map_err(|error| Failure::output("standard output", &error))
 }
 

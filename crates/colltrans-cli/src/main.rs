@@ -34,6 +34,7 @@ mod replay;
 mod report;
 mod setup;
 mod solid;
+mod streams;
 mod terminal;
 
 use std::io::{self, Write};
@@ -82,7 +83,10 @@ fn main() -> ExitCode {
 /// written out where they would steer a terminal.
 fn told_by_the_parser(mut told: clap::Error) -> ExitCode {
     if !told.use_stderr() {
-        let printed = told.print().and_then(|()| io::stdout().flush());
+        let printed = streams::standard_output().and_then(|mut out| {
+            told.print()?;
+            out.flush()
+        });
         return printed.map_or(ExitCode::FAILURE, |()| ExitCode::SUCCESS);
     }
     if let Some(tip) = tip(&told) {

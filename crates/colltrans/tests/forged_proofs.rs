@@ -153,8 +153,11 @@ fn no_checker_accepts_a_false_claim_of_a_forged_proof() {
     let mut fractions = fractions();
     for kind in KINDS {
         let mut tally = Tally::default();
-        for seed in 0..2 {
-            Campaign::examine(&kind, seed, fractions.as_mut(), &mut tally);
+        // Not every seed has a proof.
+        for seed in 0..50 {
+            if tally.proofs < 2 {
+                Campaign::examine(&kind, seed, fractions.as_mut(), &mut tally);
+            }
         }
         assert_eq!(tally.false_claims, [""; 0], "{}", kind.name);
         assert_eq!(tally.disagreements, [""; 0], "{}", kind.name);

@@ -4,12 +4,13 @@
 //! their place (see [`crate::outputs`]) and put there at the end, unless the file whose place they would
 //! take turned out to be one of the inputs. Pipes and devices are written as the results come.
 
-use std::io::{self, BufWriter, Write};
+use std::io::{BufWriter, Write};
 use std::path::Path;
 
 use crate::failure::{Code, Failure};
 use crate::inputs::Watched;
 use crate::outputs::Output;
+use crate::streams::standard_output;
 
 pub(crate) type Writer = BufWriter<Box<dyn Write + Send>>;
 
@@ -22,8 +23,9 @@ pub(crate) struct Results {
 
 pub(crate) fn open(path: Option<&Path>) -> Result<(Writer, Results), Failure> {
     let Some(path) = path.filter(|path| *path != Path::new("-")) else {
-        let name = "standard output".into();
-        return Ok((BufWriter::new(Box::new(io::stdout())), Results { name, output: None }));
+        let name = "standard output".to_owned();
+        let output = standard_output().map_err(|error| Failure::output(&name, &error))?;
+        return Ok((BufWriter::new(Box::new(output)), Results { name, output: None }));
     };
     let unwritable = |error| Failure::output(path.display(), &error);
     let output = Output::create(path).map_err(unwritable)?;

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use crate::support::{CAST, answered, colltrans, folder, json, refused, run, stderr, stdout};
+use crate::support::{CAST, answered, colltrans, data, folder, json, refused, run, stderr, stdout};
 
 fn contents(folder: &Path) -> Vec<(String, Vec<u8>)> {
     let mut files: Vec<_> = std::fs::read_dir(folder)
@@ -486,4 +486,30 @@ fn a_mesh_that_is_convex_by_tolerance_says_how_deep_its_dent_is() {
     assert!((depth - 5e-6).abs() < 1e-12 && answer["dents"]["moving"].is_null(), "{answer}");
     let exact = json(&answered(folder.path(), &[&CAST[..], &["--json"]].concat()));
     assert!(exact["dents"].is_null(), "{exact}");
+}
+
+/// The runtime opens `/dev/null` in the place of a closed stream; whoever opens it himself wants no output.
+#[cfg(unix)]
+#[test]
+fn a_closed_standard_output_is_an_error() {
+    let folder = folder();
+    let program = assert_cmd::cargo::cargo_bin("colltrans");
+    let cube = data().join("cube.off");
+    let ask = |command: &str, to: &str| {
+        let line = format!("exec \"$0\" {command} {to}");
+        let mut shell = std::process::Command::new("sh");
+        shell.args(["-c", &line]).args([&program, &cube]).current_dir(folder.path());
+        shell.output().unwrap()
+    };
+    let cast = "cast \"$1\" \"$1\" --direction x --moving-pose=-3,0,0 --json";
+    let query = "{\"moving\": \"cube.off\", \"fixed\": \"cube.off\", \"direction\": [1, 0, 0]}\n";
+    std::fs::write(folder.path().join("queries.jsonl"), query).unwrap();
+    for command in [cast, "info \"$1\"", "batch queries.jsonl"] {
+        let closed = ask(command, ">&-");
+        assert_eq!(closed.status.code(), Some(5), "{command}: {}", stderr(&closed));
+        assert!(stderr(&closed).contains("standard output: cannot be written: it is closed"));
+    }
+    for to in [">/dev/null", "1<>/dev/null"] {
+        assert_eq!(ask(cast, to).status.code(), Some(0), "{to}");
+    }
 }

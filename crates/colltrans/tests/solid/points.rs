@@ -13,6 +13,7 @@ use colltrans::{
     Solid, Within,
 };
 use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::{self, Mesh};
 
 type Point = [i128; 3];
 
@@ -757,4 +758,58 @@ fn what_needs_an_area_refuses_points_with_the_way_out() {
     let surface = rod.as_surface().expect("a facet without area");
     assert_eq!(surface.as_solid().err(), Some(SolidError::NoArea { what: "segment" }));
     assert_eq!((surface.is_closed(), surface.volume()), (false, 0.0));
+}
+
+/// A block with two cavities that touch face to face, and a box through both: where the cavities touch the point lies
+/// on two walls of the block, and inside of the box, which stops it.
+#[test]
+fn a_point_on_two_walls_of_one_piece_is_stopped_by_another_piece() {
+    let block = shapes::block([0.0; 3], [12.0; 3])
+        .joined(&shapes::block([2.0; 3], [6.0, 10.0, 10.0]).reversed())
+        .joined(&shapes::block([6.0, 3.0, 3.0], [10.0, 9.0, 9.0]).reversed());
+    let plug = shapes::block([4.0, 6.0, 4.0], [8.0; 3]);
+    let solid = |mesh: &Mesh| Solid::from_mesh(&mesh.vertices, &mesh.faces).unwrap();
+    let (block, plug) = (solid(&block), solid(&plug));
+    let both = Solid::from_pieces([&block, &plug]).unwrap();
+    let point = ConvexPolyhedron::from_points(&[DVec3::new(6.0, 5.0, 5.0)]).unwrap();
+    for (body, stopped) in [(&block, 5.0), (&plug, 1.0), (&both, 1.0)] {
+        let cast = Cast::between(point.at(still()), body.at(still()), DVec3::Y).unwrap();
+        let clearance = cast.with_tolerance(0.0).unwrap().clearance().unwrap();
+        let Clearance::Blocked { contact, .. } = clearance else { panic!("{clearance:?}") };
+        assert_eq!(contact.translation.value, stopped);
+    }
+}
+
+/// An octahedral cavity that touches the outside of a block, the facets in any order: the vertex that touches says
+/// nothing of what the cavity is in.
+#[test]
+fn a_cavity_that_touches_the_outside_stays_a_cavity() {
+    let random = &mut Random::new(17);
+    let at = [[4.0, 6.0, 2.0], [8.0, 6.0, 2.0], [6.0, 4.0, 2.0], [6.0, 8.0, 2.0]];
+    let mut hollow = shapes::block([0.0; 3], [12.0; 3]);
+    let first = hollow.vertices.len() as u32;
+    hollow.vertices.extend(at.map(DVec3::from_array));
+    hollow.vertices.extend([DVec3::new(6.0, 6.0, 0.0), DVec3::new(6.0, 6.0, 4.0)]);
+    for [a, b, c] in
+        [[0, 2, 5], [2, 1, 5], [1, 3, 5], [3, 0, 5], [2, 0, 4], [1, 2, 4], [3, 1, 4], [0, 3, 4]]
+    {
+        hollow.faces.push([a, c, b].map(|v| v + first).to_vec());
+    }
+    for _ in 0..100 {
+        let mut faces = hollow.faces.clone();
+        for k in (1..faces.len()).rev() {
+            faces.swap(k, random.index(k + 1));
+        }
+        for face in &mut faces {
+            let by = random.index(face.len());
+            face.rotate_left(by);
+        }
+        let solid = Solid::from_mesh(&hollow.vertices, &faces).unwrap();
+        let volume = solid.report().shells.iter().map(|shell| shell.volume).sum::<f64>();
+        assert!((volume - (1728.0 - 32.0 / 3.0)).abs() < 1e-9, "{volume}");
+        assert!(solid.report().shells.iter().all(|shell| !shell.turned));
+        let mut bodies = solid.bodies();
+        bodies.dedup();
+        assert_eq!(bodies, [0], "the cavity is in the block");
+    }
 }

@@ -6,8 +6,10 @@
 
 use std::collections::BTreeMap;
 
+use glam::DVec3;
+
 use super::Solid;
-use super::shells::{self, crossing};
+use super::shells::{self, TRIED, crossing, lies_on};
 
 impl Solid {
     /// For each of [`Self::triangles`] the body that it is of: a closed shell with the cavities in it, or an open shell.
@@ -52,10 +54,20 @@ impl Solid {
         shell_of.iter().map(|&shell| number[body_of[shell as usize]]).collect()
     }
 
-    /// The smallest shell around a cavity; the cavity itself if there is none.
+    /// Returns the smallest shell of the same piece around a cavity; the cavity itself if there is none. Shells touch:
+    /// a vertex of the cavity is looked at that lies on no other shell, if there is such a vertex.
     fn container(&self, cavity: usize, shell_of: &[u32], volumes: &[f64]) -> usize {
         let corners = |t: usize| self.triangles[t].map(|v| self.vertices[v as usize]);
-        let [p, ..] = corners(self.spans[cavity].triangle as usize);
+        let first = self.spans[cavity].triangle as usize;
+        let others = (0..shell_of.len()).filter(|&t| t != first && shell_of[t] as usize == cavity);
+        let points = || std::iter::once(first).chain(others.clone()).flat_map(corners);
+        let is_off = |p: &DVec3| {
+            let is_on = |t: usize| shell_of[t] as usize != cavity && lies_on(*p, corners(t));
+            !(0..shell_of.len()).any(is_on)
+        };
+        let [on_first, ..] = corners(first);
+        let p = points().take(3 * TRIED).find(is_off).unwrap_or(on_first);
+        let piece = self.piece_of(first);
         let mut windings: BTreeMap<usize, i32> = BTreeMap::new();
         let mut open = vec![0];
         while let Some(at) = open.pop() {
@@ -69,7 +81,7 @@ impl Solid {
                 open.extend([at + node.skip as usize, at + node.skip as usize + 1]);
                 continue;
             }
-            for t in node.facets() {
+            for t in node.facets().filter(|&t| self.piece_of(t) == piece) {
                 *windings.entry(shell_of[t] as usize).or_default() += crossing(p, corners(t));
             }
         }

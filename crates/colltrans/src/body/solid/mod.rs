@@ -32,7 +32,7 @@ pub use error::SolidError;
 use faces::Faces;
 pub(crate) use kept::{Keepable, Kept};
 pub use report::{Shell, ShellKind, SolidReport};
-pub(crate) use shells::{ShellMap, crossing};
+pub(crate) use shells::crossing;
 pub use shrink::ShrinkReport;
 pub(crate) use shrink::{Shrinking, displace};
 use tree::Node;
@@ -89,8 +89,7 @@ pub struct Solid {
     shrinking: OnceLock<Shrinking>,
     /// Made when a feature is first named.
     faces: OnceLock<Box<Faces>>,
-    /// Made when a point or a segment lies on one of several shells.
-    shell_map: OnceLock<Box<ShellMap>>,
+    groups: Box<Groups>,
     kept: Kept,
 }
 
@@ -143,6 +142,22 @@ pub(crate) struct Span {
     pub(crate) bounds: Aabb,
     /// One of its triangles.
     pub(crate) triangle: u32,
+}
+
+/// How the facets are grouped.
+#[derive(Debug, Clone, Default)]
+struct Groups {
+    /// The first input facet of each piece after the first one.
+    piece_starts: Vec<u32>,
+    /// Made when a point or a segment lies on one of several shells.
+    body_of: OnceLock<Vec<u32>>,
+}
+
+impl Groups {
+    fn heap_bytes(&self) -> usize {
+        let bodies = self.body_of.get().map_or(0, Vec::capacity);
+        (self.piece_starts.capacity() + bodies) * size_of::<u32>()
+    }
 }
 
 impl Solid {
@@ -200,10 +215,15 @@ impl Solid {
             kinds: Vec::new(),
         };
         let mut report = SolidReport::default();
+        let mut piece_starts = Vec::new();
         for piece in pieces {
             let piece = piece.as_solid()?;
             let (v, t) = (all.vertices.len() as u32, all.triangles.len() as u32);
             let [vertex_base, facet_base] = all.input_counts;
+            if !all.triangles.is_empty() {
+                piece_starts.push(facet_base);
+            }
+            piece_starts.extend(piece.groups.piece_starts.iter().map(|start| start + facet_base));
             all.vertices.extend_from_slice(&piece.vertices);
             all.vertex_index
                 .extend(piece.vertex_index.iter().map(|v| InputVertex(v.0 + vertex_base)));
@@ -225,7 +245,9 @@ impl Solid {
         if all.triangles.is_empty() {
             return Err(SolidError::Empty);
         }
-        Ok(Self::from_surface(all, report))
+        let mut solid = Self::from_surface(all, report);
+        solid.groups.piece_starts = piece_starts;
+        Ok(solid)
     }
 
     /// Builds a surface of one facet without area: a point or a segment, by its corners.
@@ -298,7 +320,7 @@ impl Solid {
             report,
             shrinking: OnceLock::new(),
             faces,
-            shell_map: OnceLock::new(),
+            groups: Box::default(),
             kept: Kept::default(),
         };
         solid.spans = solid.find_spans();
@@ -470,7 +492,8 @@ impl Solid {
             + self.report.shells.capacity() * size_of::<Shell>()
             + self.shrinking.get().map_or(0, Shrinking::heap_bytes)
             + self.faces.get().map_or(0, |faces| size_of::<Faces>() + faces.heap_bytes())
-            + self.shell_map.get().map_or(0, |map| size_of::<ShellMap>() + map.heap_bytes())
+            + size_of::<Groups>()
+            + self.groups.heap_bytes()
             + self.kept.heap_bytes()
     }
 
@@ -496,9 +519,14 @@ impl Solid {
         &self.spans
     }
 
-    /// Returns which shell each triangle belongs to.
-    pub(crate) fn shell_map(&self) -> &ShellMap {
-        let make = || ShellMap::new(&self.vertices, &self.triangles, &self.neighbours);
-        self.shell_map.get_or_init(|| Box::new(make()))
+    /// Returns [`Self::bodies`], which are computed once.
+    pub(crate) fn body_map(&self) -> &[u32] {
+        self.groups.body_of.get_or_init(|| self.bodies())
+    }
+
+    /// Returns the number of the piece that a triangle is of.
+    fn piece_of(&self, triangle: usize) -> usize {
+        let facet = self.facet_index[triangle].0;
+        self.groups.piece_starts.partition_point(|start| *start <= facet)
     }
 }

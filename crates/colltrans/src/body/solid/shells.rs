@@ -70,34 +70,6 @@ pub(super) fn components(neighbours: &[[u32; 3]]) -> Vec<u32> {
     shell_of
 }
 
-/// Which shell each triangle belongs to, and which shells are walls of cavities.
-#[derive(Debug, Clone)]
-pub(crate) struct ShellMap {
-    shell_of: Vec<u32>,
-    is_cavity: Vec<bool>,
-}
-
-impl ShellMap {
-    pub(super) fn new(vertices: &[DVec3], triangles: &[[u32; 3]], neighbours: &[[u32; 3]]) -> Self {
-        let shell_of = components(neighbours);
-        let volumes = volumes(&shell_of, triangles, |v| vertices[v as usize]);
-        Self { is_cavity: volumes.iter().map(|volume| *volume < 0.0).collect(), shell_of }
-    }
-
-    /// Returns the shell of a triangle.
-    pub(crate) fn of(&self, triangle: usize) -> u32 {
-        self.shell_of[triangle]
-    }
-
-    pub(crate) fn is_cavity(&self, shell: u32) -> bool {
-        self.is_cavity[shell as usize]
-    }
-
-    pub(super) fn heap_bytes(&self) -> usize {
-        self.shell_of.capacity() * size_of::<u32>() + self.is_cavity.capacity()
-    }
-}
-
 fn describe(surface: &Surface, shell_of: &[u32], count: usize) -> Vec<Shell> {
     let empty = Shell {
         triangles: 0,
@@ -174,29 +146,50 @@ fn turn_over(surface: &mut Surface, shell_of: &[u32], shells: &[Shell]) {
 struct Nesting<'a> {
     surface: &'a Surface,
     shell_of: &'a [u32],
-    /// A point of each shell.
-    points: Vec<DVec3>,
+    /// The last triangles of each shell, the last one first.
+    last: Vec<Vec<usize>>,
     boxes: Vec<Aabb>,
 }
 
+/// So many triangles of a shell are looked at for a vertex that lies on no other shell.
+pub(super) const TRIED: usize = 64;
+
 impl<'a> Nesting<'a> {
     fn new(surface: &'a Surface, shell_of: &'a [u32], count: usize) -> Self {
-        let mut points = vec![DVec3::ZERO; count];
+        let mut last = vec![Vec::new(); count];
         let mut boxes = vec![Aabb::EMPTY; count];
-        for (t, corners) in surface.triangles.iter().enumerate() {
+        for (t, corners) in surface.triangles.iter().enumerate().rev() {
             let s = shell_of[t] as usize;
-            for &v in corners {
-                let p = surface.vertices[v as usize];
-                points[s] = p;
-                boxes[s].add(p);
+            if last[s].len() < TRIED {
+                last[s].push(t);
             }
+            corners.iter().for_each(|&v| boxes[s].add(surface.vertices[v as usize]));
         }
-        Self { surface, shell_of, points, boxes }
+        Self { surface, shell_of, last, boxes }
     }
 
-    /// Whether no other shell contains this one.
+    /// Checks whether no other shell contains this one, by a vertex of it that lies on no other one, if there is such
+    /// a vertex.
     fn is_outermost(&self, shell: usize) -> bool {
-        let p = self.points[shell];
+        let corners = |t: &usize| self.surface.triangles[*t].into_iter().rev();
+        let vertices = self.last[shell].iter().flat_map(corners);
+        let mut points = vertices.map(|v| self.surface.vertices[v as usize]).peekable();
+        let first = points.peek().copied();
+        let decided = points.find_map(|p| self.is_outside_others(shell, p));
+        decided.unwrap_or_else(|| first.is_none_or(|p| self.is_outside(shell, p)))
+    }
+
+    /// Checks whether a point of a shell is outside all other shells; `None` if it lies on one.
+    fn is_outside_others(&self, shell: usize, p: DVec3) -> Option<bool> {
+        let corners =
+            |t: usize| self.surface.triangles[t].map(|v| self.surface.vertices[v as usize]);
+        let is_other = |t: &usize| self.shell_of[*t] as usize != shell;
+        let is_on =
+            (0..self.surface.triangles.len()).filter(is_other).any(|t| lies_on(p, corners(t)));
+        (!is_on).then(|| self.is_outside(shell, p))
+    }
+
+    fn is_outside(&self, shell: usize, p: DVec3) -> bool {
         let boxed = |s: usize| self.boxes[s].holds(&Aabb { low: p, high: p });
         let candidates: Vec<bool> = (0..self.boxes.len()).map(|s| s != shell && boxed(s)).collect();
         if !candidates.contains(&true) {
@@ -211,6 +204,19 @@ impl<'a> Nesting<'a> {
         }
         windings.iter().all(|&w| w == 0)
     }
+}
+
+/// Checks whether a point lies on a triangle.
+pub(super) fn lies_on(p: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
+    let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+    if p.cmplt(low).any() || p.cmpgt(high).any() || exact::side(a, b, c, p) != Ordering::Equal {
+        return false;
+    }
+    let facing = |axis: &usize| exact::turn(a, b, c, *axis) != Ordering::Equal;
+    (0..3).find(facing).is_some_and(|axis| {
+        let outside = exact::turn(a, b, c, axis).reverse();
+        [[a, b], [b, c], [c, a]].into_iter().all(|[u, v]| exact::turn(u, v, p, axis) != outside)
+    })
 }
 
 /// How the triangle is crossed by the ray from `p` along `z`: 1 outwards, -1 inwards, 0 not at all.

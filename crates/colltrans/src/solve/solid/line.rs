@@ -1,8 +1,8 @@
 //! Where a line enters the material of a body: exactly, also along facets and through edges and vertices.
 //!
-//! A point is *inside* a body if it is inside one of its pieces: the inside is open. A closed shell that the point
-//! does not lie on counts by its winding number. A shell that it lies on counts 0, and the wall of a cavity -1. The
-//! point is inside if the sum is positive.
+//! A point is *inside* a solid if it is inside one of its bodies, a shell with the cavities in it: the inside is open. A
+//! body that the point does not lie on counts by its winding number, one that it lies on counts 0. The point is inside
+//! if the sum is positive.
 //!
 //! Notation
 //! - `p + t u`: the line.
@@ -388,11 +388,8 @@ fn is_around(solid: &Solid, ahead: &[(usize, i32)], on: &[usize]) -> bool {
     if solid.spans().len() == 1 {
         return false;
     }
-    let shells = solid.shell_map();
-    let mut on: Vec<u32> = on.iter().map(|&t| shells.of(t)).collect();
-    on.sort_unstable();
-    on.dedup();
-    let others = ahead.iter().filter(|(t, _)| !on.contains(&shells.of(*t)));
-    let walls = on.iter().filter(|&&shell| shells.is_cavity(shell)).count();
-    others.map(|(_, count)| count).sum::<i32>() > walls as i32
+    let bodies = solid.body_map();
+    let on: Vec<u32> = on.iter().map(|&t| bodies[t]).collect();
+    let others = ahead.iter().filter(|(t, _)| !on.contains(&bodies[*t]));
+    others.map(|(_, count)| count).sum::<i32>() > 0
 }

@@ -57,7 +57,7 @@ def test_scenes_take_points_either_way() -> None:
 @pytest.mark.parametrize("body", [POINT, SEGMENT])
 def test_motions_bound_the_contact_from_above(body: ConvexPolyhedron) -> None:
     turn = Motion.turn([1.5, 0, 0], [0, 0, 1], degrees=180)
-    found = first_contact(body, PART, turn)
+    found: Any = first_contact(body, PART, turn)
     assert found.outcome == "contact" and found.upper - found.lower < 1e-11
     report = check.check(found.proof_json())
     assert [line for line in report.holds if "meet at the time" in line]

@@ -58,6 +58,8 @@ const EXACT: u32 = 4;
 const ALL: u32 = 15;
 /// Minimum number of different coordinates that show how a writer rounds.
 const MANY: usize = 4;
+/// Maximum common divisor that numbers have by chance, in units of their last decimal.
+const GRID: u64 = 8;
 /// One number in this many may be printed in another way than the others.
 const OUTLIERS: usize = 16;
 /// Maximum number of coordinates that are looked at; of more, some at even distances.
@@ -152,7 +154,8 @@ impl NumberFormat {
             Some(FixedPlaces::Digits(fixed)) => fixed == digits,
             None => false,
         };
-        if digits <= EXACT as i32 && !is_fixed() || digits > ALL as i32 && !single {
+        let is_short = digits <= EXACT as i32 && !is_fixed();
+        if is_short || digits > ALL as i32 && !single || is_grid(&rounded, decimals) {
             return read_as;
         }
         let missing = (digits - 6).clamp(0, 2);
@@ -193,6 +196,20 @@ impl NumberFormat {
             }
         }
     }
+}
+
+/// Checks whether the numbers that end in the last decimal are multiples of a number of more than [`GRID`] units there:
+/// those of a drawing on a grid, such as 2.54. Rounded numbers have no such divisor.
+fn is_grid(numbers: &[Decimal], decimals: i32) -> bool {
+    let last = numbers.iter().filter(|number| number.decimals == decimals);
+    last.map(|number| number.mantissa).fold(0, common_divisor) > GRID
+}
+
+const fn common_divisor(mut a: u64, mut b: u64) -> u64 {
+    while b > 0 {
+        (a, b) = (b, a % b);
+    }
+    a
 }
 
 /// `10^exponent`, correctly rounded.
@@ -381,6 +398,16 @@ mod tests {
         for numbers in cases {
             let found = format_of(numbers.iter().copied(), |x| x.to_string());
             assert_eq!(found, NumberFormat::Double, "{numbers:?}");
+        }
+    }
+
+    #[test]
+    fn numbers_of_a_grid_are_exact() {
+        for step in ["2.54", "1.5875", "0.0254", "0.396875"] {
+            let step: f64 = step.parse().unwrap();
+            let numbers = random(1.0, 60.0).map(|k| k.round() * step);
+            let found = format_of(numbers, |x| format!("{x:.6}").trim_end_matches('0').to_owned());
+            assert_eq!(found, NumberFormat::Double, "{step}");
         }
     }
 

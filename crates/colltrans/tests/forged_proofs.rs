@@ -1,9 +1,13 @@
 //! Forged proofs: what both checkers accept of them is true (`campaign --proofs` does this at length).
 #![cfg(feature = "json")]
 
-use colltrans::{Cast, CertificateError, ConvexPolyhedron, Pair, Pose, ProofFile, Separation};
+use colltrans::solid::AsSolid;
+use colltrans::{
+    Cast, CertificateError, ConvexPolyhedron, Pair, Pose, ProofFile, Separation, Solid,
+};
 use colltrans_testkit::oracle::proofs::checkers::{Fractions, Verdict, verify};
 use colltrans_testkit::oracle::proofs::{Campaign, KINDS, Tally};
+use colltrans_testkit::random::Random;
 use glam::DVec3;
 use serde_json::{Value, json};
 
@@ -162,5 +166,33 @@ fn no_checker_accepts_a_false_claim_of_a_forged_proof() {
         assert_eq!(tally.false_claims, [""; 0], "{}", kind.name);
         assert_eq!(tally.disagreements, [""; 0], "{}", kind.name);
         assert!(tally.mutants > 30 && tally.accepted > 0, "{}: {}", kind.name, tally.mutants);
+    }
+}
+
+/// Triangles of a distance are numbered as in the file, whatever order the tree of a union has.
+#[test]
+fn both_checkers_take_the_distance_of_a_union() {
+    let mut fractions = fractions();
+    let random = &mut Random::new(23);
+    let mut any_box = |far: f64| {
+        let low = random.vector() * 3.0 + far;
+        let size =
+            DVec3::new(random.range(0.5, 3.0), random.range(0.5, 3.0), random.range(0.5, 3.0));
+        ConvexPolyhedron::cuboid(low, low + size).expect("a box")
+    };
+    for _ in 0..30 {
+        let pieces = [any_box(0.0), any_box(0.0), any_box(0.0)];
+        let solids = pieces.each_ref().map(|piece| AsSolid::as_solid(piece).expect("a solid"));
+        let union = Solid::from_pieces(solids).expect("a union");
+        let other = any_box(12.0);
+        let other = AsSolid::as_solid(&other).expect("a solid");
+        let origin = pose(0.0, 0.0, 0.0);
+        let pair = Pair::new(other.at(origin), union.at(origin)).expect("a pair");
+        let proof = ProofFile::of_solid_distance(&pair, [&[other], &solids], None);
+        let text = proof.expect("a proof").to_json();
+        assert_eq!(verify(&text), Verdict::Holds, "{text}");
+        if let Some(fractions) = &mut fractions {
+            assert_eq!(fractions.check(&text), Verdict::HoldsPartly, "{text}");
+        }
     }
 }

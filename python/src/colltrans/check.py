@@ -2413,8 +2413,8 @@ def solids_meet(span: Span, parts: tuple[Parts, Parts], meeting: Any) -> None:
         if not closed:
             raise RefusedError("nothing is inside of open surfaces")
         turning = (span.moving, span.fixed)[which]
-        other = turning.of([v for triangle in closed for v in triangle])
-        corners = iter([other.at(k, time) for k in range(3 * len(closed))])
+        turned = turning.of([v for triangle in closed for v in triangle])
+        corners = iter([turned.at(k, time) for k in range(3 * len(closed))])
         around = list(zip(corners, corners, corners, strict=True))
         if not is_around(around, mean((f, g)[1 - which], claim["weights"]), 4 * off):
             raise RefusedError("the point of the facet is not inside the other solid")

@@ -90,8 +90,8 @@ def cast_many(
     a proven distance along that normal, not the largest one. The answers depend on the set of rows,
     not on their order or on ``threads``. Rows of flat bodies, of bodies with more than 16,384 pairs
     of vertices, with ``solver="cta"`` or with a gap to ``keep`` always have the bits of
-    :func:`cast`. So has ``columns[i]``, which asks row ``i`` again by itself: its margin, bounds and
-    point may be others than those of the columns.
+    :func:`cast`. So has ``columns[i]``, which asks row ``i`` again by itself: its margin, bounds
+    and point may be others than those of the columns.
 
     Examples
     --------

@@ -5,6 +5,7 @@ use glam::DVec3;
 
 use crate::body::motion::{Motion, Moved, Piece};
 use crate::body::{ConvexPolyhedron, Hull, Placed};
+use crate::number::noise;
 use crate::setting::TwoBodies;
 
 /// Two bodies during a span of time.
@@ -46,7 +47,7 @@ impl<'a, B: Hull> Span<'a, B> {
             pieces: pieces.map(|piece| *piece),
             from,
             to,
-            error: error(0) + error(1),
+            error: error(0) + error(1) + noise::FLUSHED,
             keep,
         }
     }

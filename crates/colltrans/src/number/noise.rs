@@ -142,6 +142,9 @@ pub(crate) const WITNESS: f64 = 32.0 * ROUNDING;
 /// Bound on the error of a point that was turned, in multiples of its distance from the origin of its frame.
 pub(crate) const POSE: f64 = 96.0 * ROUNDING;
 
+/// How far points of two moving bodies may be off because coordinates of poses below the exact range count as 0.
+pub(crate) const FLUSHED: f64 = 8.0 * MIN_MAGNITUDE;
+
 /// The same of a displacement.
 pub(crate) const WAY: f64 = 8.0 * ROUNDING;
 

@@ -16,6 +16,7 @@ use crate::cast::CaseError;
 use crate::cast::replay::BodyRecord;
 use crate::pair::solid::DistanceCertificate;
 use crate::setting::{check_direction, check_keep};
+use crate::solve::solid::nearest::SolidNear;
 
 /// What a file of this version calls itself.
 const FORMAT: &str = "colltrans proof 1";
@@ -44,7 +45,7 @@ impl ProofFile {
             fixed_pose,
             direction: self.along.map(|along| along.direction.to_array()),
             keep: self.along.map_or(0.0, |along| along.keep),
-            statement: self.statement.clone(),
+            statement: self.statement_of_file(),
         };
         serde_json::to_string(&file).expect("numbers and names")
     }
@@ -67,7 +68,16 @@ impl ProofFile {
             },
             _ => return Err(CaseError::Mixed),
         };
-        let statement = file.statement.of(matches!(bodies, Bodies::Solids { .. }))?;
+        let mut statement = file.statement.of(matches!(bodies, Bodies::Solids { .. }))?;
+        if let (Bodies::Solids { made, .. }, Statement::SolidDistance(of)) =
+            (&bodies, &mut statement)
+        {
+            let place = |k: usize, facet: u32| {
+                let facets = made[k].facet_indices();
+                facets.iter().position(|known| known.0 == facet).map(|at| at as u32)
+            };
+            of.near = named(of.near, place).ok_or(CaseError::Statement)?;
+        }
         let is_of_pair = statement.is_of_pair();
         if is_of_pair == file.direction.is_some() || is_of_pair && file.keep != 0.0 {
             return Err(CaseError::Statement);
@@ -79,6 +89,26 @@ impl ProofFile {
         let along = direction.map(|direction| Along { direction, keep: file.keep });
         Ok(Self { bodies, poses, along, statement })
     }
+
+    /// Returns the statement with triangles by their numbers in the file.
+    fn statement_of_file(&self) -> Statement {
+        let mut statement = self.statement.clone();
+        if let (Bodies::Solids { made, .. }, Statement::SolidDistance(of)) =
+            (&self.bodies, &mut statement)
+        {
+            let number = |k: usize, at: u32| Some(made[k].facet_indices().get(at as usize)?.0);
+            of.near = named(of.near, number).unwrap_or(of.near);
+        }
+        statement
+    }
+}
+
+/// Returns the same with other names of triangles; `None` if one has none.
+fn named(near: SolidNear, name: impl Fn(usize, u32) -> Option<u32>) -> Option<SolidNear> {
+    let SolidNear::Points { triangles: [p, q], weights, distance } = near else {
+        return Some(near);
+    };
+    Some(SolidNear::Points { triangles: [name(0, p)?, name(1, q)?], weights, distance })
 }
 
 #[derive(Serialize, Deserialize)]

@@ -45,6 +45,10 @@ impl Fixed {
         Self(IBig::from(n) << BITS)
     }
 
+    fn to_f64(&self) -> f64 {
+        self.0.to_f64().value() * 2.0_f64.powi(-(BITS as i32))
+    }
+
     fn zero() -> Self {
         Self(IBig::ZERO)
     }
@@ -284,12 +288,17 @@ impl Judge<'_> {
     }
 
     /// Whether a normal of any length leaves more than the gap to be kept, and so much more.
-    fn parts(&self, [p, q]: &[Vec<Vector>; 2], normal: &Vector, more: f64) -> bool {
+    fn parts(&self, places: &[Vec<Vector>; 2], normal: &Vector, more: f64) -> bool {
+        self.left(places, normal, more).is_some_and(|left| left >= Fixed::zero())
+    }
+
+    /// What a normal leaves beside the gap to be kept, and so much more, times its length.
+    fn left(&self, [p, q]: &[Vec<Vector>; 2], normal: &Vector, more: f64) -> Option<Fixed> {
         let low = q.iter().map(|x| dot(normal, x)).reduce(|a, b| if b < a { b } else { a });
         let high = p.iter().map(|x| dot(normal, x)).reduce(|a, b| if b > a { b } else { a });
-        let (Some(low), Some(high)) = (low, high) else { return false };
+        let (low, high) = (low?, high?);
         let asked = &(Fixed::new(self.keep) + Fixed::new(more)) * &dot(normal, normal).sqrt();
-        low - high >= asked
+        Some(low - high - asked)
     }
 
     /// Whether an answer is right, by its proof.
@@ -301,9 +310,11 @@ impl Judge<'_> {
         let object = |what: String| Err(Objection(what));
         for planes in &proof.spans {
             for plane in planes {
-                if !self.parts(&self.places(plane.time), &vector(plane.normal), plane.gap) {
+                let left = self.left(&self.places(plane.time), &vector(plane.normal), plane.gap);
+                let left = left.map_or(f64::NEG_INFINITY, |left| left.to_f64());
+                if left < 0.0 {
                     return object(format!(
-                        "the plane at {} has no gap of {:e}",
+                        "the plane at {} has no gap of {:e}: {left:e} is left",
                         plane.time, plane.gap
                     ));
                 }

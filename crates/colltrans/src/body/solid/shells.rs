@@ -163,7 +163,9 @@ impl<'a> Nesting<'a> {
             if last[s].len() < TRIED {
                 last[s].push(t);
             }
-            corners.iter().for_each(|&v| boxes[s].add(surface.vertices[v as usize]));
+            for &v in corners {
+                boxes[s].add(surface.vertices[v as usize]);
+            }
         }
         Self { surface, shell_of, last, boxes }
     }

@@ -22,6 +22,7 @@ use super::chain::{Chain, Most, RAISED, Rates};
 use super::mechanism::{JointPath, Place};
 use crate::body::solid::Solid;
 use crate::body::{ConvexPolyhedron, Placed};
+use crate::number::noise;
 use crate::setting::TwoBodies;
 
 /// Points move along a normal by less than this share of how they move where they slide over a plane, nearly.
@@ -99,7 +100,7 @@ impl<'a> Couple<'a> {
     ) -> RowCourse<'p> {
         let most = self.chains.each_ref().map(|chain| chain.most(self.path, row));
         let left_out = pieces.map(ConvexPolyhedron::hull_error).iter().sum::<f64>();
-        let error = self.chains[0].error + self.chains[1].error + left_out;
+        let error = self.chains[0].error + self.chains[1].error + left_out + noise::FLUSHED;
         RowCourse {
             path: self.path,
             chains: &self.chains,

@@ -155,7 +155,7 @@ impl NumberFormat {
             None => false,
         };
         let is_short = digits <= EXACT as i32 && !is_fixed();
-        if is_short || digits > ALL as i32 && !single || is_grid(&rounded, decimals) {
+        if is_short || digits > ALL as i32 && !single {
             return read_as;
         }
         let missing = (digits - 6).clamp(0, 2);
@@ -163,6 +163,9 @@ impl NumberFormat {
         let by_place = count(&|x| x.decimals == decimals);
         let [by_digits, nearly] = [0, missing].map(|less| count(&|x| x.digits >= digits - less));
         let many = |count: usize| count >= MANY && 2 * count > rounded.len();
+        if rounded.len() >= MANY && is_grid(&rounded) {
+            return read_as;
+        }
         let found = if many(by_place) && by_place >= by_digits && decimals > 0 {
             Self::Decimals(decimals as u32)
         } else if many(nearly) {
@@ -198,11 +201,17 @@ impl NumberFormat {
     }
 }
 
-/// Checks whether the numbers that end in the last decimal are multiples of a number of more than [`GRID`] units there:
-/// those of a drawing on a grid, such as 2.54. Rounded numbers have no such divisor.
-fn is_grid(numbers: &[Decimal], decimals: i32) -> bool {
-    let last = numbers.iter().filter(|number| number.decimals == decimals);
-    last.map(|number| number.mantissa).fold(0, common_divisor) > GRID
+/// Checks whether all numbers are multiples of a number of more than [`GRID`] units in their last decimal: those of a
+/// drawing on a grid, such as 2.54. Rounded numbers have no such divisor.
+fn is_grid(numbers: &[Decimal]) -> bool {
+    let last = numbers.iter().map(|number| number.decimals).max().unwrap_or(0);
+    let units = |number: &Decimal| {
+        let power = 10_u64.checked_pow(u32::try_from(last - number.decimals).ok()?)?;
+        number.mantissa.checked_mul(power)
+    };
+    let divisor =
+        numbers.iter().try_fold(0, |divisor, number| Some(common_divisor(divisor, units(number)?)));
+    divisor.is_some_and(|divisor| divisor > GRID)
 }
 
 const fn common_divisor(mut a: u64, mut b: u64) -> u64 {

@@ -52,7 +52,7 @@ impl ConvexPolyhedron {
 
     /// Returns the [hull](Self::from_points) of points that are some of an input, each with its number there.
     ///
-    /// Features of answers, and [`Self::input_index`], name the points by these numbers.
+    /// Features of answers, and `input_indices`, name the points by these numbers.
     ///
     /// # Errors
     /// As of [`Self::from_points`]; they name a point by its number, too.

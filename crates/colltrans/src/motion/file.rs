@@ -309,9 +309,10 @@ impl MotionProofFiles {
 
     /// Returns the smallest times of all pairs. A pair that comes as near as a larger gap does not come as near as this one.
     fn first_of(&self, times: &[[f64; 2]]) -> [f64; 2] {
+        let keep = self.keep();
         let pairs = self.0.iter().zip(times);
         pairs.fold([1.0, f64::INFINITY], |[lower, upper], (proof, [l, u])| {
-            let u = if proof.keep() == self.keep() { *u } else { f64::INFINITY };
+            let u = if proof.keep() == keep { *u } else { f64::INFINITY };
             [f64::min(lower, *l), f64::min(upper, u)]
         })
     }
@@ -340,10 +341,11 @@ impl MotionProofFiles {
             return wrong("there are no proofs; there has to be one of each pair of bodies".into());
         }
         let all = Self(proofs);
+        let keep = all.keep();
         let is_other =
-            |proof: &&PairFile| matches!(proof, PairFile::Convex(_)) && proof.keep() != all.keep();
+            |proof: &&PairFile| matches!(proof, PairFile::Convex(_)) && proof.keep() != keep;
         if let Some(other) = all.0.iter().find(is_other) {
-            let keeps = [all.keep(), other.keep()];
+            let keeps = [keep, other.keep()];
             return wrong(format!("proofs of one question keep one gap, not {keeps:?}"));
         }
         Ok(all)

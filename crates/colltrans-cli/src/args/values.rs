@@ -291,7 +291,7 @@ mod tests {
     fn quaternions_of_few_digits_are_normalised_with_a_note() {
         for digits in ["0.71", "0.707", "0.7071"] {
             let place = place(&format!("0,0,0,0,0,{digits},{digits}")).unwrap();
-            assert!(place.note("--fixed").unwrap().starts_with("--fixed-pose: the quaternion has"));
+            assert!(place.note("--fixed").unwrap().starts_with("--fixed: the quaternion has"));
             let turned = place.pose(None, "--fixed").unwrap().matrix();
             assert!((turned.x_axis - DVec3::Y).length() < 1e-15, "{turned}");
         }

@@ -390,6 +390,89 @@ def test_what_the_specification_does_not_admit_is_refused(
     assert refused(file)
 
 
+def containers(value: Any, way: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
+    """Where the lists and objects are, of each list the first two entries."""
+    if not isinstance(value, dict | list):
+        return
+    if way:
+        yield way
+    items = value.items() if isinstance(value, dict) else enumerate(value[:2])
+    for key, part in items:
+        yield from containers(part, (*way, key))
+
+
+def value_at(file: Any, way: tuple[Any, ...]) -> Any:
+    for key in way:
+        file = file[key]
+    return file
+
+
+#: What claims nothing, or says that nothing is claimed, where it is null.
+MAY_BE_NULL = {"separation", "stop", "meeting", "first", "last", "slide"}
+
+
+@pytest.mark.parametrize("path", sorted(PROOFS.glob("*.json")), ids=lambda path: path.stem)
+def test_nothing_takes_the_place_of_a_list_or_an_object(path: Path) -> None:
+    file = json.loads(path.read_text())
+    ways = list(containers(file))
+    assert len(ways) > 10
+    for way in ways:
+        is_list = isinstance(value_at(file, way), list)
+        others = [{}, "", "x", 0, None] if is_list else [[], "", "x", 0, None]
+        for other in others:
+            if other is None and way[-1] in MAY_BE_NULL:
+                continue
+            assert refused(changed(file, way, always(other))), (way, other)
+
+
+@pytest.mark.parametrize("name", ["solids_free", "solids_contact", "solids_kept"])
+@pytest.mark.parametrize("start", [None, [], {}, 0, "z", "smz"])
+def test_what_is_said_of_the_beginning_has_its_form(name: str, start: Any) -> None:
+    assert refused(changed(proof(name), ("proof", "start", "apart"), always(start)))
+
+
+@pytest.mark.parametrize("place", [0, 3])
+def test_weights_that_prove_nothing_are_numbers(place: int) -> None:
+    file = proof("path_kept")
+    near = file["proof"]["meeting"]["how"]["pieces"]["met"]["near"]
+    assert not refused(file)
+    near["weights"][place] = None
+    assert refused(file)
+
+
+@pytest.mark.parametrize(
+    "steps",
+    [None, {}, [], 0, {"planar_problems": 0, "supports": 1, "pivots": 0, "iterations": None}],
+)
+def test_counts_of_work_have_their_form(steps: Any) -> None:
+    way = ("proof", "meeting", "met", "deep", "steps")
+    assert refused(changed(proof("motion_contact"), way, always(steps)))
+
+
+def test_any_corner_inside_shows_that_bodies_overlap_where_a_path_begins() -> None:
+    file = proof("path_inside")
+    assert file["proof"]["meeting"]["how"] == "inside"
+    room = next(of for of in file["bodies"] if of["name"] == "room")
+    base = {**file["bodies"][0], "name": "other base"}
+    file["bodies"].append(base)
+    file["statement"]["pairs"][3] = ["other base", "room"]
+    # Four of the eight corners are inside, and the first one is not.
+    room["pose"]["translation"][0] = 4.95
+    assert base["body"]["convex"]["vertices"][0][0] < -5.0 + 4.95
+    report = check.check(json.dumps(file))
+    assert any("'other base' and 'room' meet" in line for line in report.holds)
+    room["pose"]["translation"][0] = 5.2
+    assert refused(file)
+
+
+def test_nothing_carried_may_be_beyond_its_range() -> None:
+    file = proof("path_free")
+    carried = next(k for k, of in enumerate(file["bodies"]) if of["frame"] is not None)
+    file["bodies"][carried]["pose"]["translation"][0] = 2.0**200
+    with pytest.raises(check.NoProofError, match="farther than 2\\^200"):
+        check.check(json.dumps(file))
+
+
 def test_faces_that_may_not_be_those_of_the_hull_are_left_unchecked() -> None:
     file = proof("contacts")
     assert not check.check(json.dumps(file)).partly

@@ -382,6 +382,9 @@ def described(points: list[Vector], content: Any) -> None:
 #: at least, in largest coordinates, of bodies whose faces the library certainly takes for its own.
 _OWN_PLANE, _OWN_CORNER = 96 * 2.0**-53, 1024 * 2.0**-53
 
+#: How much volume faces of a flat body may take away, in cubes of the largest coordinate.
+_OWN_VOLUME = 48 * 2.0**-53
+
 
 def is_thin(points: list[Vector], faces: list[list[int]]) -> bool:
     """Whether a body is so thin that rounding hides which faces it has."""
@@ -432,6 +435,9 @@ def are_own_faces(points: list[Vector], content: Any) -> bool:
         ]
         if min(turns) <= 0:
             return False
+        # The library refuses flat bodies that rounding turns inside out by more than it allows.
+        if _rounded_volume(at, faces) < -_OWN_VOLUME * most**3:
+            return False
     lengths = [math.hypot(*normal) for normal in outward]
     return all(
         _along(outward[a], at[b], at[a]) > _OWN_CORNER * most * max(lengths[a], 1e-6)
@@ -459,6 +465,13 @@ def _rounded_area(corners: list[tuple[float, float, float]]) -> tuple[float, flo
 def _along(normal: Sequence[float], p: Sequence[float], q: Sequence[float]) -> float:
     """How far one point is from another along a normal, rounded."""
     return sum(n * (b - a) for n, a, b in zip(normal, p, q, strict=True))
+
+
+def _rounded_volume(at: list[tuple[float, float, float]], faces: list[list[int]]) -> float:
+    """Returns the volume within a closed surface, rounded."""
+    x, y, z = (sum(axis) / len(at) for axis in zip(*at, strict=True))
+    corners = ([at[k] for k in face] for face in faces)
+    return sum(_along(_rounded_area(face), (x, y, z), face[0]) for face in corners) / 6
 
 
 def area(points: list[Vector], face: list[int]) -> Vector:
@@ -652,6 +665,26 @@ def separation(
     )
 
 
+def check_letters(cover: Any) -> None:
+    """Checks that a cover of pairs of facets has its form."""
+    if not isinstance(cover, str) or set(cover) - set("mfapnxdos"):
+        raise NoProofError("a cover is a text of letters")
+
+
+def check_beginning(kind: str, where: Any, counts: tuple[int, int]) -> None:
+    """Checks that what a file says of two solids where they begin has its form.
+
+    ``counts`` has the numbers of their facets.
+    """
+    if kind == "apart":
+        check_letters(where)
+    elif kind == "facets":
+        for k, count in zip(listed(where, 2), counts, strict=True):
+            whole(k, count)
+    else:
+        whole(where, counts[kind == "fixed_inside"])
+
+
 def clearance(
     moving: Body, fixed: Body, d: Vector, claim: Any, report: Report, keep: Fraction = _NO_GAP
 ) -> None:
@@ -660,6 +693,18 @@ def clearance(
     certificate = fields(claim["certificate"], "tolerance start lower cover", "stop")
     if claim["start_overlap"] not in ("refuse", "ignore"):
         raise NoProofError(f"an overlap is refused or ignored, not {claim['start_overlap']!r}")
+    counts = (len(moving.facets), len(fixed.facets))
+    if certificate["start"] != "assumed":
+        kind, where = one_of(
+            certificate["start"], "apart", "facets", "moving_inside", "fixed_inside"
+        )
+        check_beginning(kind, where, counts)
+    check_letters(certificate["cover"])
+    if certificate["stop"] is not None:
+        first = fields(certificate["stop"], "distance triangles")
+        number(first["distance"])
+        for k, count in zip(listed(first["triangles"], 2), counts, strict=True):
+            whole(k, count)
     tolerance = number(certificate["tolerance"])
     plane, stop = claim["separation"], claim["stop"]
     if plane is not None:
@@ -857,13 +902,13 @@ def depth(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
 
 def enclosure(corners: list[Vector], surface: Any, lower: Fraction) -> None:
     """A closed surface around the origin, no part of which is nearer than a length."""
-    triangles = [tuple(whole(k, len(corners)) for k in t) for t in surface["triangles"]]
+    triangles = [tuple(whole(k, len(corners)) for k in t) for t in listed(surface["triangles"])]
     if any(len(t) != 3 for t in triangles) or len(surface["normals"]) != len(triangles):
         raise NoProofError("a triangle has three corners and a normal")
     sides = [(t[k], t[k - 2]) for t in triangles for k in range(3)]
     if len(set(sides)) < len(sides) or any((b, a) not in set(sides) for a, b in sides):
         raise RefusedError("the surface is not closed")
-    for t, each in zip(triangles, surface["normals"], strict=True):
+    for t, each in zip(triangles, listed(surface["normals"]), strict=True):
         normal = vector(each)
         least = min(dot(normal, corners[k]) for k in t)
         if least <= 0 or lower * lower * dot(normal, normal) > least * least:
@@ -950,7 +995,7 @@ class Scene:
             return Body.placed(*shapes[whole(place["body"], len(shapes))], place["pose"])
 
         self.moving = placed(file["moving"])
-        self.obstacles = [placed(place) for place in file["obstacles"]]
+        self.obstacles = [placed(place) for place in listed(file["obstacles"])]
         self.choices, self.statement = file["choices"], file["statement"]
         fields(self.choices, "", "keep graze_tolerance tolerance start_overlap")
         self.keep = bounded(gap_to_keep(self.choices), MOST, "the gap to be kept")
@@ -1048,7 +1093,7 @@ class Scene:
     def within(self, claim: Any) -> None:
         fields(claim, "length closer undecided apart")
         length, closer = claim["length"], self.named(claim["closer"])
-        open_ones = self.named([(k, None) for k in claim["undecided"]])
+        open_ones = self.named([(k, None) for k in listed(claim["undecided"])])
         claims = self.named(claim["apart"])
         if length is not None and number(length) < 0:
             raise RefusedError(f"a length of {length!r} is negative")
@@ -1359,7 +1404,7 @@ def free_directions(moving: Body, fixed: Body, claim: Any, report: Report) -> No
             if not is_inside(sphere, k, box_):
                 raise RefusedError(f"box {at} is not inside the {('moving', 'fixed')[k]} body")
     free, undecided, skipped = 0.0, 0.0, 0
-    for said in claim["cells"]:
+    for said in listed(claim["cells"]):
         if not stack:
             raise RefusedError("there are more cells than the sphere has")
         cell = stack.pop()
@@ -1423,7 +1468,7 @@ def summary(report: Report, count: dict[str, int], areas: list[float], skipped: 
 
 
 def pair_of(value: Any, sphere: Sphere) -> tuple[int, int]:
-    f, g = value
+    f, g = listed(value, 2)
     return whole(f, len(sphere.bodies[0])), whole(g, len(sphere.bodies[1]))
 
 
@@ -1435,7 +1480,9 @@ def whole_bodies(moving: Body, fixed: Body, claim: Any, report: Report) -> Spher
     bodies = [moving, fixed]
     if shrunk is not None:
         farthest = 0.0
-        for k, points in enumerate([[vector(v) for v in side] for side in shrunk]):
+        for k, points in enumerate(
+            [[vector(v) for v in listed(side)] for side in listed(shrunk, 2)]
+        ):
             if len(points) != len(bodies[k].points):
                 raise RefusedError("the shrunk bodies have other vertices")
             ways = [minus(a, b) for a, b in zip(points, bodies[k].points, strict=True)]
@@ -1447,8 +1494,8 @@ def whole_bodies(moving: Body, fixed: Body, claim: Any, report: Report) -> Spher
         )
     placed = [[body.at(k) for k in range(len(body.points))] for body in bodies]
     origin, inner = moving.offset, []
-    for said in claim.get("boxes", [[], []]):
-        ends = [(vector(fields(of, "low high")["low"]), vector(of["high"])) for of in said]
+    for said in listed(claim.get("boxes", [[], []])):
+        ends = [(vector(fields(of, "low high")["low"]), vector(of["high"])) for of in listed(said)]
         inner.append([(plus(low, origin), plus(high, origin)) for low, high in ends])
     if len(inner) != 2:
         raise NoProofError("there are boxes of two bodies, or of none")
@@ -2003,16 +2050,31 @@ _ONES: Vector = (Fraction(1), Fraction(1), Fraction(1))
 _POSE = 256 * _U
 
 
+def check_steps(steps: Any) -> None:
+    """Checks that counts of work, which claim nothing, have their form."""
+    if not isinstance(steps, dict):
+        raise NoProofError(f"there has to be an object with counts of work, not {steps!r:.40}")
+    for name in ("planar_problems", "supports", "pivots", "iterations"):
+        whole(steps.get(name), 2**32)
+    whole(steps.get("region_sides", 0), 2**32)
+    if steps.get("started_from", "scratch") not in ("difference", "features", "region", "scratch"):
+        raise NoProofError(f"{steps['started_from']!r} is nothing that a search starts from")
+
+
 def deep_claim(claim: Any) -> Any:
     """Returns the claim that bodies overlap, which has all of its fields."""
     fields(claim, "lower upper direction enclosure", "steps")
+    if "steps" in claim:
+        check_steps(claim["steps"])
     fields(claim["enclosure"], "pairs triangles normals")
     return claim
 
 
 def near_claim(claim: Any) -> Any:
     """Returns the claim that two points are near each other, which has all of its fields."""
-    return fields(claim, "pairs weights distance")
+    for weight in listed(fields(claim, "pairs weights distance")["weights"], 4):
+        number(weight)
+    return claim
 
 
 def is_deep(
@@ -2029,7 +2091,7 @@ def is_deep(
     """
     lower, upper, d = number(claim["lower"]), number(claim["upper"]), vector(claim["direction"])
     unit(d, "the direction of the depth")
-    for normal in claim["enclosure"]["normals"]:
+    for normal in listed(claim["enclosure"]["normals"]):
         unit(vector(normal))
     if not tolerated < lower <= upper:
         raise RefusedError(
@@ -2104,12 +2166,12 @@ def motion(file: Any) -> Report:
     all_spans, proof, report = spans(file), fields(file["proof"], "spans meeting"), Report()
     for which in ("moving", "fixed"):
         check_faces(report, which, file[which])
-    claimed = proof["spans"]
+    claimed = listed(proof["spans"])
     if len(claimed) > len(all_spans):
         raise RefusedError("there are more spans than the motions have")
     reached = Fraction()
     for span, planes in zip(all_spans, claimed, strict=False):
-        read = [Plane.read(plane) for plane in planes]
+        read = [Plane.read(plane) for plane in listed(planes)]
         if reached != span.begin or (read and read[0].time != span.begin):
             raise RefusedError("a span does not begin where the one before it ended")
         reached = chain(span, read)
@@ -2190,10 +2252,10 @@ class Parts:
         corners: list[Triangle] = []
         square = Fraction()
         fields(of, "numbers corners tree")
-        numbers = [whole(k, len(facets)) for k in of["numbers"]]
+        numbers = [whole(k, len(facets)) for k in listed(of["numbers"])]
         if sorted(numbers) != list(range(len(facets))):
             raise RefusedError("the facets are not those of the body, each once")
-        for at, triangle in zip(numbers, of["corners"], strict=True):
+        for at, triangle in zip(numbers, listed(of["corners"]), strict=True):
             a, b, c = (vector(v) for v in triangle)
             corners.append((a, b, c))
             x, y, z = (points[k] for k in facets[at])
@@ -2208,7 +2270,7 @@ class Parts:
                     for turned in ((x, y, z), (y, z, x), (z, x, y))
                 ),
             )
-        facet = [k if k == -1 else whole(k, len(corners)) for k in of["tree"]]
+        facet = [k if k == -1 else whole(k, len(corners)) for k in listed(of["tree"])]
         if sorted(k for k in facet if k >= 0) != list(range(len(corners))):
             raise RefusedError("the parts of the body are not its facets, each once")
         second = [0] * len(facet)
@@ -2268,7 +2330,7 @@ class Cover:
         if not isinstance(letters, str):
             raise NoProofError("a cover is a text of letters")
         stack = [((0, 0), self.span.begin, until)]
-        rest = iter(lists)
+        rest = iter(listed(lists))
         for number_, letter in enumerate(letters):
             if not stack:
                 raise RefusedError("the cover has more entries than there are pairs")
@@ -2373,7 +2435,8 @@ def solids_meet(span: Span, parts: tuple[Parts, Parts], meeting: Any) -> None:
     """That two facets do at a time."""
     time = number(fields(meeting, "time triangles met")["time"])
     numbers = [
-        whole(k, len(side.corners)) for k, side in zip(meeting["triangles"], parts, strict=True)
+        whole(k, len(side.corners))
+        for k, side in zip(listed(meeting["triangles"]), parts, strict=True)
     ]
     spins = [
         spin.of(list(side.corners[k]))
@@ -2391,7 +2454,10 @@ def solids_meet(span: Span, parts: tuple[Parts, Parts], meeting: Any) -> None:
             raise RefusedError("the edge does not pass through the facet")
     elif kind == "near" and span.keep > 0:
         fields(claim, "weights")
-        p, q = (mean(side, weights) for side, weights in zip((f, g), claim["weights"], strict=True))
+        p, q = (
+            mean(side, weights)
+            for side, weights in zip((f, g), listed(claim["weights"], 2), strict=True)
+        )
         between = minus(q, p)
         if not above(span.keep - 4 * off, dot(between, between)):
             raise RefusedError(f"the points are not as near as {float(span.keep)!r}")
@@ -2506,14 +2572,14 @@ def open_facets(shape: Any) -> list[bool]:
     for piece in pieces:
         if not truth(piece.get("open", False)):
             check_closed(piece)
-    return [piece.get("open", False) for piece in pieces for _ in piece["triangles"]]
+    return [piece.get("open", False) for piece in pieces for _ in listed(piece["triangles"])]
 
 
 def check_closed(piece: Any) -> None:
     """As many facets are on one side of each edge as on the other: something can be inside."""
-    points = [vector(v) for v in piece["vertices"]]
+    points = [vector(v) for v in listed(piece["vertices"])]
     sides: dict[tuple[Vector, Vector], int] = {}
-    for triangle in piece["triangles"]:
+    for triangle in listed(piece["triangles"]):
         for k in range(3):
             a, b = points[triangle[k - 1]], points[triangle[k]]
             sides[a, b] = sides.get((a, b), 0) + 1
@@ -2538,7 +2604,7 @@ def solid_motion(file: Any) -> Report:
     opens = [open_facets(file[side]) for side in ("moving", "fixed")]
     p, q = (
         Parts.read(points, facets, of, is_open)
-        for (points, facets), of, is_open in zip(shapes, file["parts"], opens, strict=True)
+        for (points, facets), of, is_open in zip(shapes, listed(file["parts"]), opens, strict=True)
     )
     parts = (p, q)
     check_tolerance(file.get("tolerance"), number(proof["tolerance"]), parts)
@@ -2553,10 +2619,11 @@ def solid_motion(file: Any) -> Report:
     meet = "meet" if keep == 0 else f"are as near as {float(keep)!r}"
     moved = float(max(side.moved for side in parts))
     of = f"the facets, moved by at most {moved:.3g}," if moved else "the facets"
-    claimed = proof["spans"]
+    claimed = listed(proof["spans"])
     if proof["start"] == "assumed":
         raise RefusedError("whether the solids overlap when the motion begins is not proven")
-    begin, _ = one_of(proof["start"], "apart", "facets", "moving_inside", "fixed_inside")
+    begin, where = one_of(proof["start"], "apart", "facets", "moving_inside", "fixed_inside")
+    check_beginning(begin, where, (len(shapes[0][1]), len(shapes[1][1])))
     if begin != "apart":
         if claimed or proof["meeting"] is not None:
             raise RefusedError("of solids that overlap when the motion begins nothing else is said")
@@ -2572,7 +2639,7 @@ def solid_motion(file: Any) -> Report:
             raise RefusedError("a span does not begin where the one before it ended")
         if until > span.begin:
             Cover(span, parts).check(claim["cover"], claim["lists"], until)
-        elif claim["cover"] or claim["lists"]:
+        elif claim["cover"] != "" or listed(claim["lists"]):
             raise RefusedError("a span without a time has entries")
         reached = until
     open_ = any(any(of) for of in opens)
@@ -2618,7 +2685,7 @@ def motions(file: Any) -> Report:
     kinds = {MOTION_FORMAT: motion, SOLID_MOTION_FORMAT: solid_motion}
     if not fields(file, "format proofs")["proofs"]:
         raise NoProofError("there is no pair of bodies")
-    keeps = [(proof["format"], number(proof.get("keep", 0.0))) for proof in file["proofs"]]
+    keeps = [(proof["format"], number(proof.get("keep", 0.0))) for proof in listed(file["proofs"])]
     least = min(keep for _, keep in keeps)
     # What is apart by a larger gap is apart by this one, too.
     if any(keep != least and kind != SOLID_MOTION_FORMAT for kind, keep in keeps):
@@ -2713,14 +2780,14 @@ class Pieces:
             return cls([body.points], [[]], fans=fans)
         is_open = open_facets(shape)
         fields(of, "numbers tree")
-        numbers = [whole(k, len(body.facets)) for k in of["numbers"]]
+        numbers = [whole(k, len(body.facets)) for k in listed(of["numbers"])]
         if sorted(numbers) != list(range(len(body.facets))):
             raise RefusedError("the facets are not those of the body, each once")
         facets: list[Triangle] = []
         for at in numbers:
             a, b, c = (body.points[k] for k in body.facets[at])
             facets.append((a, b, c))
-        tree = [k if k == -1 else whole(k, len(facets) + 1) for k in of["tree"]]
+        tree = [k if k == -1 else whole(k, len(facets) + 1) for k in listed(of["tree"])]
         count = len(tree)
         below: list[list[int]] = [[] for _ in tree]
         bounds: list[tuple[Vector, Vector]] = [(_ZERO, _ZERO)] * count
@@ -3023,14 +3090,14 @@ class Walk:
     ) -> tuple[int, Fraction]:
         """Up to where a cover proves that two pieces do not meet, and at most so far."""
         couple = self.of(numbers)
-        for step in steps:
+        for step in listed(steps):
             kind, claim = one_of(step, "planes", "parts")
             if kind == "planes":
                 here = planes_of_path(couple, claim, here, self.last)
                 continue
             which = whole(fields(claim, "which until covers")["which"], 2)
             place = settled(*place_of(claim["until"], self.last))
-            below, covers = self.pieces[which].below[numbers[which]], claim["covers"]
+            below, covers = self.pieces[which].below[numbers[which]], listed(claim["covers"])
             if not below or len(below) != len(covers) or place < here:
                 raise RefusedError("what is taken apart has not all its parts")
             reached = place
@@ -3043,8 +3110,12 @@ class Walk:
             here = place
         return min(here, until)
 
-    def is_nested(self) -> bool:
-        """Whether one is inside the other where the path begins, where no surfaces meet."""
+    def is_nested(self, everywhere: bool = False) -> bool:
+        """Whether one is inside the other where the path begins, where no surfaces meet.
+
+        A corner of each shell tells. With ``everywhere``, all corners are looked at: one inside
+        the other body shows that they overlap, whether surfaces meet or not.
+        """
         fields_ = [of.at(0, Fraction()) for of in (self.moving, self.fixed)]
 
         def placed(k: int, facets: list[Triangle]) -> list[Triangle]:
@@ -3055,6 +3126,9 @@ class Walk:
             mine, there = self.pieces[own], self.pieces[other]
             first = fields_[own].place(mine.points[0][0])
             points = shells(placed(own, mine.facets)) if mine.facets else [first]
+            if everywhere:
+                corners = [v for facet in mine.facets for v in facet] or mine.points[0]
+                points = [fields_[own].place(v) for v in corners]
             if there.facets:
                 around = placed(other, there.closed)
                 inside = any(winds(v, around) > 0 for v in points)
@@ -3083,11 +3157,11 @@ def place_of(of: Any, last: int) -> tuple[int, Fraction]:
 
 def has_planes(steps: Any) -> bool:
     """Whether a cover that holds proves that two pieces do not meet where it begins."""
-    kinds = [one_of(step, "planes", "parts") for step in steps]
+    kinds = [one_of(step, "planes", "parts") for step in listed(steps)]
     return any(
         bool(claim)
         if kind == "planes"
-        else all(has_planes(cover["steps"]) for cover in claim["covers"])
+        else all(has_planes(cover["steps"]) for cover in listed(claim["covers"]))
         for kind, claim in kinds
     )
 
@@ -3099,7 +3173,7 @@ def planes_of_path(
     before = None
     for stretch in stretches:
         row = whole(fields(stretch, "row planes")["row"], last + 1)
-        planes = [Plane.read(plane) for plane in stretch["planes"]]
+        planes = [Plane.read(plane) for plane in listed(stretch["planes"])]
         if not planes or any(plane.alone for plane in planes):
             raise RefusedError(f"the planes of row {row} are not in order")
         times = [plane.time for plane in planes]
@@ -3132,7 +3206,8 @@ def pieces_meet(walk: Walk, how: Any, row: int, share: Fraction) -> None:
     kind, claim = one_of(how, "pieces", "point")
     fields(claim, "pieces met" if kind == "pieces" else "pieces point")
     i, j = (
-        whole(k, len(side.points)) for k, side in zip(claim["pieces"], walk.pieces, strict=True)
+        whole(k, len(side.points))
+        for k, side in zip(listed(claim["pieces"]), walk.pieces, strict=True)
     )
     if walk.pieces[0].below[i] or walk.pieces[1].below[j]:
         raise RefusedError("what holds other pieces is none of a body's own")
@@ -3205,14 +3280,14 @@ class Robot:
     @classmethod
     def read(cls, file: Any) -> Robot:
         fields(file["path"], "times rows")
-        rows = [[number(x) for x in row] for row in file["path"]["rows"]]
-        times = [bounded(number(x), MOST, "a time") for x in file["path"]["times"]]
+        rows = [[number(x) for x in row] for row in listed(file["path"]["rows"])]
+        times = [bounded(number(x), MOST, "a time") for x in listed(file["path"]["times"])]
         if not rows or len(times) != len(rows) or any(b <= a for a, b in pairwise(times)):
             raise NoProofError("the times of the rows do not grow")
         frames: list[Stage] = []
         parents: list[int | None] = []
         column = 0
-        for k, frame in enumerate(file["frames"]):
+        for k, frame in enumerate(listed(file["frames"])):
             fields(frame, "parent origin joint")
             parent, joint = frame["parent"], frame["joint"]
             parents.append(None if parent is None else whole(parent, k))
@@ -3232,10 +3307,10 @@ class Robot:
                 for row in rows:
                     bounded(row[stage.column], most, "the value of a joint")
         robot = cls(frames, parents, rows, times, [], [], [], [], [])
-        for of in file["bodies"]:
+        for of in listed(file["bodies"]):
             robot.add(of)
         numbers = {name: k for k, name in enumerate(robot.names)}
-        for a, b in file["statement"]["pairs"]:
+        for a, b in listed(file["statement"]["pairs"]):
             if a not in numbers or b not in numbers or a == b:
                 raise NoProofError(f"{a!r} and {b!r} are not the names of two bodies")
             robot.pairs.append((numbers[a], numbers[b]))
@@ -3254,9 +3329,30 @@ class Robot:
             way.append(parent)
         self.names.append(name)
         self.bodies.append((way[::-1], body))
+        if self.reach(len(self.bodies) - 1) > MOST:
+            raise NoProofError(f"{name!r} can be farther than 2^200 from where its frames begin")
         self.pieces.append(Pieces.read(body, of.get("parts"), of["body"]))
         error = of["body"]["convex"]["hull_error"] if body.is_convex else 0
         self.left_out_of.append(number(error))
+
+    def reach(self, k: int) -> float:
+        """Returns how far a body can be from where its frames begin, rounded."""
+        way, body = self.bodies[k]
+        rows, offset = (
+            [[float(x) for x in row] for row in body.rows],
+            [float(x) for x in body.offset],
+        )
+        reach = 0.0
+        for point in body.points:
+            v = [float(x) for x in point]
+            at = [_along(row, (0.0, 0.0, 0.0), v) + x for row, x in zip(rows, offset, strict=True)]
+            reach = max(reach, math.hypot(*at))
+        for stage in (self.frames[frame] for frame in reversed(way)):
+            reach += math.hypot(*map(float, stage.origin.offset))
+            if stage.kind == "sliding":
+                reach += max(float(abs(row[stage.column])) for row in self.rows)
+            reach *= 1 + 1e-9
+        return reach
 
     def walk(self, pair: tuple[int, int], keep: Fraction) -> Walk:
         """Two bodies, seen from the frame that both stand in."""
@@ -3297,9 +3393,9 @@ def path(file: Any) -> Report:
     fields(file, names, "keep")
     statement = fields(file["statement"], "pairs lower upper")
     proof, robot = fields(file["proof"], "covers meeting"), Robot.read(file)
-    for of in file["bodies"]:
+    for of in listed(file["bodies"]):
         check_faces(report, of["name"], of["body"].get("convex"))
-    covers, pairs, last = proof["covers"], robot.pairs, len(robot.rows) - 1
+    covers, pairs, last = listed(proof["covers"]), robot.pairs, len(robot.rows) - 1
     if len(covers) != len(pairs):
         raise RefusedError("there is not a cover for each pair")
     begin, reached, open_, begins = (0, Fraction()), (last, Fraction()), 0, True
@@ -3340,7 +3436,7 @@ def path(file: Any) -> Report:
         raise RefusedError(f"that two bodies {meet} is said of another time")
     found, how = robot.walk(pairs[which], keep), meeting["how"]
     if how == "inside":
-        if place != begin or not found.is_nested():
+        if place != begin or not (found.is_nested() or found.is_nested(everywhere=True)):
             raise RefusedError("neither body is inside the other where the path begins")
     else:
         pieces_meet(found, how, *place)
@@ -3413,7 +3509,7 @@ def check(text: str) -> Report:
 
 def check_faces(report: Report, which: str, content: Any) -> None:
     """Says that faces of a body are not checked, if they are not clearly those of its hull."""
-    if content is None or are_own_faces([vector(v) for v in content["vertices"]], content):
+    if content is None or are_own_faces([vector(v) for v in listed(content["vertices"])], content):
         return
     report.partly = True
     report.unchecked.append(f"the faces of the {which} body: it is the hull of its vertices")

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::casts::{other_normal, other_weights};
 use super::checkers::Verdict;
-use super::file::{Bodies, numbers, vector, vectors};
+use super::file::{Bodies, is_at_limit, numbers, vector, vectors};
 use super::motions::{body, first, is_at_the_limit, pose, refused_for_rounding};
 use super::mutants::{number, pointers, with};
 use super::{Claim, Kind, Who};
@@ -75,9 +75,20 @@ fn is_marginal(file: &Value) -> bool {
     };
     let passed = file.pointer("/statement/clearance/passed").is_some();
     is_at_the_limit(file)
-        || refused_for_rounding(&verdict(file))
+        || has_a_normal_at_the_limit(file)
+        || refused_for_rounding(&verdict(file), 0.0)
         || (passed && reads_more(&verdict(file)))
         || [1e-9, -1e-9].into_iter().any(|by| moved(by) == Some(true))
+}
+
+/// Checks whether a normal of bodies that never meet is across the direction up to the limit of what is admitted.
+fn has_a_normal_at_the_limit(file: &Value) -> bool {
+    let vector_at = |at: &str| file.pointer(at).and_then(vector);
+    let Some(direction) = vector_at("/statement/clearance/direction") else { return false };
+    let all = super::mutants::pointers(file);
+    let normals = all.iter().filter(|at| at.ends_with("/separated/certificate/normal"));
+    let along = |normal: DVec3| normal.dot(direction) / direction.length();
+    normals.filter_map(|at| vector_at(at)).any(|normal| is_at_limit(along(normal)))
 }
 
 fn claims(file: &Value) -> Vec<Claim> {

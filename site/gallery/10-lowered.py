@@ -1,6 +1,6 @@
 # Half a million grasps
 # How far a gripper can be lowered onto three objects, for each place above them: columns of
-# `clearance_many`.
+# `clearance_many`. Above white places it passes all three.
 import sys
 
 import matplotlib.pyplot as plt

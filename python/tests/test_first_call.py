@@ -1,6 +1,8 @@
 """First calls: arguments that are easily confused, and files that do not exist."""
 
+import errno
 import math
+import pickle
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -183,8 +185,10 @@ def test_sections_are_built_ahead_of_the_first_cast() -> None:
 
 def test_a_missing_file_is_a_file_not_found_error(tmp_path: Path) -> None:
     for read in (colltrans.read, Solid.read):
-        with pytest.raises(FileNotFoundError, match=r"missing.stl: cannot be read"):
+        with pytest.raises(FileNotFoundError, match=r"missing.stl: cannot be read") as missing:
             read(tmp_path / "missing.stl")
+        assert missing.value.errno == errno.ENOENT
+        assert str(pickle.loads(pickle.dumps(missing.value))) == str(missing.value)
         with pytest.raises(colltrans.MeshError):
             read(tmp_path / "missing.stl")
     for name in ("missing.toml", "missing.glb", "missing.urdf", "missing.step", "missing"):

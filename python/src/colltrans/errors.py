@@ -1,5 +1,7 @@
 """What goes wrong, by type. Messages are those of the library: what, where, and by how much."""
 
+import errno
+
 
 class ColltransError(Exception):
     """The base of all errors of this package."""
@@ -57,7 +59,11 @@ class AssemblyError(ColltransError, ValueError):
 
 
 class MissingFileError(MeshError, AssemblyError, FileNotFoundError):
-    """A file of a mesh, an assembly or a robot that does not exist."""
+    """A file of a mesh, an assembly or a robot that does not exist. Its ``errno`` is ``ENOENT``."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(message)
+        self.errno = errno.ENOENT
 
 
 def as_error(error: BaseException, place: str) -> ColltransError:

@@ -391,12 +391,12 @@ def test_what_the_specification_does_not_admit_is_refused(
 
 
 def containers(value: Any, way: tuple[Any, ...] = ()) -> Iterator[tuple[Any, ...]]:
-    """Where the lists and objects are, of each list the first two entries."""
+    """Where the lists and objects are, of each list the first entry."""
     if not isinstance(value, dict | list):
         return
     if way:
         yield way
-    items = value.items() if isinstance(value, dict) else enumerate(value[:2])
+    items = value.items() if isinstance(value, dict) else enumerate(value[:1])
     for key, part in items:
         yield from containers(part, (*way, key))
 
@@ -411,15 +411,18 @@ def value_at(file: Any, way: tuple[Any, ...]) -> Any:
 MAY_BE_NULL = {"separation", "stop", "meeting", "first", "last", "slide"}
 
 
-@pytest.mark.parametrize("path", sorted(PROOFS.glob("*.json")), ids=lambda path: path.stem)
-def test_nothing_takes_the_place_of_a_list_or_an_object(path: Path) -> None:
-    file = json.loads(path.read_text())
+#: Files that take a second to check, of a kind of which another one is quick.
+SLOW = {"path_contact", "path_free", "path_kept", "path_solid"}
+
+
+@pytest.mark.parametrize("name", sorted({path.stem for path in PROOFS.glob("*.json")} - SLOW))
+def test_nothing_takes_the_place_of_a_list_or_an_object(name: str) -> None:
+    file = proof(name)
     ways = list(containers(file))
     assert len(ways) > 10
     for way in ways:
-        is_list = isinstance(value_at(file, way), list)
-        others = [{}, "", "x", 0, None] if is_list else [[], "", "x", 0, None]
-        for other in others:
+        empty = {} if isinstance(value_at(file, way), list) else []
+        for other in (empty, "", None):
             if other is None and way[-1] in MAY_BE_NULL:
                 continue
             assert refused(changed(file, way, always(other))), (way, other)

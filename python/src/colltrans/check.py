@@ -1914,6 +1914,21 @@ class Plane:
         alone = truth(of["alone"])
         return cls(number(of["time"]), vector(of["normal"]), number(of["gap"]), alone)
 
+    @property
+    def along(self) -> Fraction:
+        """The gap in multiples of the normal, at least: that is a unit vector to rounding."""
+        return self.gap * (1 - _UNIT_VECTOR)
+
+    def is_left(self, along: Fraction, keep: Fraction) -> bool:
+        """Whether what is left in multiples of the normal is the claimed gap beyond one to be kept.
+
+        A depth that is tolerated, a gap less than 0, may leave less than nothing.
+        """
+        gap, square = self.gap + keep, dot(self.normal, self.normal)
+        if gap > 0:
+            return above(along, gap * gap * square)
+        return along >= 0 or along * along <= gap * gap * square
+
 
 @dataclass
 class Span:
@@ -1935,12 +1950,7 @@ class Span:
 
     def has(self, plane: Plane) -> bool:
         """Whether it leaves the gap that is claimed, beyond the one to be kept."""
-        square = dot(plane.normal, plane.normal)
-        spare = self.gap(plane.normal, plane.time) - plane.gap
-        if self.keep > 0:
-            return above(spare, self.keep * self.keep * square)
-        # A depth that is tolerated adds to it.
-        return spare >= 0 or spare * spare <= self.keep * self.keep * square
+        return plane.is_left(self.gap(plane.normal, plane.time), self.keep)
 
     def joins(self, a: Plane, b: Plane) -> bool:
         """Whether planes prove all times between them.
@@ -1955,8 +1965,8 @@ class Span:
         if a.time == b.time:
             return True
         if a.alone:
-            return a.normal == b.normal and a.gap > self.lost(a, b)
-        if a.gap > self.carried(a, b.time):
+            return a.normal == b.normal and a.along > self.lost(a, b)
+        if a.along > self.carried(a, b.time):
             return True
         dn = minus(b.normal, a.normal)
         drift = minus(self.fixed.way, self.moving.way)
@@ -1965,8 +1975,8 @@ class Span:
             c -= 2 * self.keep * dot(dn, dn) * (1 + Fraction(1, 2**40))
         return any(
             stays(
-                a.gap,
-                b.gap,
+                a.along,
+                b.along,
                 c + self.moving.bend((a, b), 1, tightly) + self.fixed.bend((a, b), -1, tightly),
             )
             for tightly in (False, True)
@@ -3003,11 +3013,7 @@ class Couple:
 
     def has(self, plane: Plane, row: int) -> bool:
         unit(plane.normal)
-        spare = self.gap(plane.normal, row, plane.time) - plane.gap
-        square = dot(plane.normal, plane.normal)
-        return plane.gap > 0 and (
-            above(spare, self.keep * self.keep * square) if self.keep > 0 else spare >= 0
-        )
+        return plane.gap > 0 and plane.is_left(self.gap(plane.normal, row, plane.time), self.keep)
 
     def joins(self, row: int, a: Plane, b: Plane) -> bool:
         """Whether two planes of a row prove all between them.
@@ -3035,7 +3041,7 @@ class Couple:
             changes = h * h * (h * third + 3 * beside * second)
             room = 64 * _SURE * of.size * (1 + sum(of.most(row)))
             c += min(loose, (ends[0] + ends[1] + changes) / 2 + room)
-        return stays(a.gap, b.gap, c)
+        return stays(a.along, b.along, c)
 
     def way(self, row: int) -> Fraction:
         return self.moving.most(row)[0] + self.fixed.most(row)[0]
@@ -3186,7 +3192,7 @@ def planes_of_path(
                 raise RefusedError(f"the planes of row {row} do not begin where others end")
         else:
             (place, gap), next_ = before, (row, times[0])
-            far = place <= next_ and couple.between(place, next_) < gap + planes[0].gap
+            far = place <= next_ and couple.between(place, next_) < gap + planes[0].along
             if place > next_ or (settled(*place) != settled(*next_) and not far):
                 raise RefusedError(f"what is before row {row} is not proven")
         for k, plane in enumerate(planes):
@@ -3195,7 +3201,7 @@ def planes_of_path(
                 raise RefusedError(f"a plane of row {row} does not leave a gap of {gap_!r}")
             if k and not couple.joins(row, planes[k - 1], plane):
                 raise RefusedError(f"two planes of row {row} do not prove what is between them")
-        before = ((row, times[-1]), planes[-1].gap)
+        before = ((row, times[-1]), planes[-1].along)
     if before is not None:
         here = settled(*before[0])
     return here

@@ -11,6 +11,8 @@ use colltrans::{
 };
 use colltrans_testkit::oracle::among;
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
+use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::random_hull;
 use colltrans_testkit::solids::{bolt, turned, washer};
 use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
@@ -496,6 +498,30 @@ fn facets_that_are_not_those_of_the_proof_are_refused() {
 /// What is said of solids.
 fn solid_claim() -> Value {
     of_parts(&parts(), DVec3::ZERO, DVec3::NEG_Z, 0.0)["statement"].take()
+}
+
+/// The default tolerance shrinks both bodies, and the answer's bounds come from their hulls.
+#[test]
+fn convex_bodies_as_solids_are_proven_with_the_default_tolerance() {
+    let mut random = Random::new(3);
+    let mut blocked = 0;
+    for _ in 0..200 {
+        let [a, b] = [0, 1].map(|_| {
+            let count = random.pick(&[4, 8, 20]);
+            let hull = ConvexPolyhedron::from_points(&random_hull(count, &mut random).vertices);
+            Solid::from_convex(&hull.expect("a body")).expect("closed")
+        });
+        let mut pose = |at| {
+            let turn = if random.one_in(2) { random.rotation() } else { DQuat::IDENTITY };
+            Pose::new(turn, at + random.direction() * 0.3).expect("a pose")
+        };
+        let [start, target] = [DVec3::Z * 5.0, DVec3::ZERO].map(&mut pose);
+        let cast = Cast::new(a.at(start), b.at(target), DVec3::NEG_Z).expect("a query");
+        let proof = ProofFile::of_solids(&cast, [&[&a], &[&b]]).expect("a proof");
+        holds(&proof, "convex bodies");
+        blocked += i32::from(matches!(cast.clearance(), Ok(colltrans::Clearance::Blocked { .. })));
+    }
+    assert!(blocked > 100, "{blocked} contacts");
 }
 
 #[test]

@@ -17,6 +17,7 @@ use crate::free::{CellProof, FreeDirections, FreeError, FreeProof, InnerBox};
 use crate::pair::Pair;
 use crate::pair::solid::DistanceCertificate;
 use crate::setting::error::QueryError;
+use crate::solve::solid::contact::SolidContact;
 
 /// What a [`ProofFile`](crate::ProofFile) says of its bodies.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -328,8 +329,11 @@ impl SolidStatement {
         let (clearance, certificate) = cast.certified_clearance()?;
         let (stop, separation) = match clearance {
             Clearance::Blocked { contact, .. } => {
-                let facets = facets(cast, contact.triangles);
-                (facets.map(|facets| Stop { facets, translation: contact.translation }), None)
+                let stop = |facets| Stop {
+                    facets,
+                    translation: claimed_translation(cast, &certificate, &contact),
+                };
+                (facets(cast, contact.triangles).map(stop), None)
             }
             Clearance::Free(free) => (None, free.separation),
             Clearance::Overlapping(_) => (None, None),
@@ -352,12 +356,9 @@ impl SolidStatement {
         if facets(cast, triangles) != Some(stop.facets) {
             return Err(stop.refused());
         }
-        let overlapping = Some(!matches!(self.certificate.start, StartProof::Apart(_)));
-        let of_pair = Cast { options: cast.options.with_overlapping(overlapping), ..*cast };
         let refused = CertificateError::triangles(triangles);
-        let found = of_pair.stop_by(triangles).ok_or(refused)?;
-        let (claimed, proven) = (stop.translation, found.translation);
-        let Bounded { value, lower, upper } = claimed;
+        let proven = proven_translation(cast, &self.certificate, triangles).ok_or(refused)?;
+        let Bounded { value, lower, upper } = stop.translation;
         if !(lower <= value && value <= upper) {
             return Err(CertificateError::Value { value, lower, upper });
         }
@@ -368,6 +369,34 @@ impl SolidStatement {
             return Err(CertificateError::Bound { proven: proven.upper, claimed: upper });
         }
         Ok(())
+    }
+}
+
+/// Returns where two triangles first meet, as a check finds it, if they stop the moving body.
+fn proven_translation(
+    cast: &Cast<'_, Solid>,
+    certificate: &SolidCertificate,
+    triangles: [u32; 2],
+) -> Option<Bounded> {
+    let overlapping = Some(!matches!(certificate.start, StartProof::Apart(_)));
+    let of_pair = Cast { options: cast.options.with_overlapping(overlapping), ..*cast };
+    of_pair.stop_by(triangles).map(|found| found.translation)
+}
+
+/// Returns the translation of a contact, with the bounds that a check of its two triangles proves.
+///
+/// The bounds of an answer may be nearer to each other, because it may know them from the hulls of the bodies.
+fn claimed_translation(
+    cast: &Cast<'_, Solid>,
+    certificate: &SolidCertificate,
+    contact: &SolidContact,
+) -> Bounded {
+    let Bounded { value, lower, upper } = contact.translation;
+    match proven_translation(cast, certificate, contact.triangles) {
+        Some(proven) => {
+            Bounded { value, lower: lower.min(proven.lower), upper: upper.max(proven.upper) }
+        }
+        None => contact.translation,
     }
 }
 

@@ -202,6 +202,9 @@ pub struct Bodies<'a> {
     /// How often two parts were asked about.
     #[cfg(test)]
     pub(crate) asked: std::sync::atomic::AtomicUsize,
+    /// How often a part, a pair, or a node of a tree was looked at for a plan.
+    #[cfg(test)]
+    pub(crate) looks: std::sync::atomic::AtomicUsize,
 }
 
 /// What a pair has of its own.
@@ -258,6 +261,8 @@ impl<'a> Bodies<'a> {
             noise,
             #[cfg(test)]
             asked: std::sync::atomic::AtomicUsize::default(),
+            #[cfg(test)]
+            looks: std::sync::atomic::AtomicUsize::default(),
         };
         let pairs = bodies.neighbours(0.0)?;
         let overlapping = pairs.into_par_iter().filter(|&[a, b]| bodies.overlap_displaced(a, b));
@@ -387,6 +392,33 @@ impl<'a> Bodies<'a> {
     /// Takes a part away from those that are left.
     pub(crate) fn remove(&self, living: &mut Living, part: usize) {
         self.tree.remove(living, part);
+    }
+
+    /// Computes the bounds of boxes, one by part, for [`visit_high`](Self::visit_high).
+    pub(crate) fn bounds_of(&self, boxes: &[Aabb]) -> Vec<Aabb> {
+        self.tree.bounds_of(boxes)
+    }
+
+    /// Calls with the parts that are left under nodes for whose bounds `wanted` holds, as [`BoxTree::visit_high`].
+    pub(crate) fn visit_high(
+        &self,
+        living: &Living,
+        bounds: &[Aabb],
+        wanted: impl Fn(&Aabb) -> bool,
+        call: impl FnMut(usize),
+    ) {
+        let wanted = |bounds: &Aabb| {
+            self.count_look();
+            wanted(bounds)
+        };
+        self.tree.visit_high(living, bounds, wanted, call);
+    }
+
+    /// Counts one look at a part, a pair, or a node of a tree, for a plan.
+    #[cfg_attr(not(test), expect(clippy::unused_self, reason = "only tests count"))]
+    pub(crate) fn count_look(&self) {
+        #[cfg(test)]
+        self.looks.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
     }
 
     /// Calls with the parts that are left and that a part's box meets along a unit direction, and with a lower bound of

@@ -74,6 +74,11 @@ impl Living {
     pub(crate) fn has(&self, number: usize) -> bool {
         self.there[number]
     }
+
+    /// Returns by number whether a box is left.
+    pub(crate) fn there(&self) -> &[bool] {
+        &self.there
+    }
 }
 
 impl BoxTree {
@@ -159,6 +164,46 @@ impl BoxTree {
             }
         }
         None
+    }
+
+    /// Computes for each node the box around others that have the numbers of its boxes.
+    pub(crate) fn bounds_of(&self, boxes: &[Aabb]) -> Vec<Aabb> {
+        let mut bounds = vec![Aabb::EMPTY; self.nodes.len()];
+        for (at, node) in self.nodes.iter().enumerate().rev() {
+            bounds[at] = if node.skip > 0 {
+                bounds[at + 1].join(&bounds[at + node.skip])
+            } else {
+                let items = &self.items[node.first..node.first + node.count];
+                items.iter().fold(Aabb::EMPTY, |all, item| all.join(&boxes[item.1]))
+            };
+        }
+        bounds
+    }
+
+    /// Calls with the number of each box that is left under nodes for whose bounds, as of [`bounds_of`](Self::bounds_of),
+    /// `wanted` holds; of two nodes first under the one that reaches further along the third axis.
+    pub(crate) fn visit_high(
+        &self,
+        living: &Living,
+        bounds: &[Aabb],
+        wanted: impl Fn(&Aabb) -> bool,
+        mut call: impl FnMut(usize),
+    ) {
+        let mut stack = if self.nodes.is_empty() { Vec::new() } else { vec![0] };
+        while let Some(at) = stack.pop() {
+            if living.under[at] == 0 || !wanted(&bounds[at]) {
+                continue;
+            }
+            let node = &self.nodes[at];
+            if node.skip == 0 {
+                let items = self.items[node.first..node.first + node.count].iter();
+                items.filter(|item| living.has(item.1)).for_each(|item| call(item.1));
+                continue;
+            }
+            let [first, second] = [at + 1, at + node.skip];
+            let is_first_higher = bounds[first].high.z > bounds[second].high.z;
+            stack.extend(if is_first_higher { [second, first] } else { [first, second] });
+        }
     }
 
     fn grow(&mut self, first: usize, count: usize) {
@@ -271,6 +316,33 @@ mod tests {
                 there[gone] = false;
                 tree.remove(&mut living, gone);
             }
+        }
+    }
+
+    #[test]
+    fn the_highest_box_left_over_a_query_is_that_of_a_list() {
+        let mut random = Random::new(9);
+        for round in 1..200 {
+            let boxes: Vec<Aabb> = (0..round).map(|_| random_box(&mut random, false)).collect();
+            let tree = BoxTree::new(boxes.iter().copied());
+            // Others of the same numbers, as of bodies seen along a direction.
+            let seen: Vec<Aabb> = (0..round).map(|_| random_box(&mut random, false)).collect();
+            let bounds = tree.bounds_of(&seen);
+            let there: Vec<bool> = (0..round).map(|_| random.unit() < 0.7).collect();
+            let (living, query) = (tree.living(&there), random_box(&mut random, false));
+            let over =
+                |b: &Aabb| (0..2).all(|k| b.low[k] <= query.high[k] && query.low[k] <= b.high[k]);
+            let best = std::cell::Cell::new(f64::NEG_INFINITY);
+            let higher = |b: &Aabb| over(b) && b.high.z > best.get();
+            tree.visit_high(&living, &bounds, higher, |k| {
+                assert!(there[k]);
+                if higher(&seen[k]) {
+                    best.set(seen[k].high.z);
+                }
+            });
+            let all = (0..round).filter(|&k| there[k] && over(&seen[k]));
+            let expected = all.map(|k| seen[k].high.z).fold(f64::NEG_INFINITY, f64::max);
+            assert_eq!(best.get(), expected);
         }
     }
 

@@ -18,10 +18,12 @@ use colltrans::solid::StartOverlap;
 use glam::DVec3;
 use rayon::prelude::*;
 
+use super::ranking::{OwnCost, ShapeState, is_better};
 use super::shadow::Shadow;
 use super::single::Single;
 use super::stand::{Base, Standing};
 use crate::bodies::Bodies;
+use crate::boxes::Living;
 use crate::constraints::Constraints;
 use crate::liaisons::reach;
 use crate::matrix::{Matrix, bits};
@@ -69,7 +71,7 @@ pub(super) struct Order<'a> {
     size: f64,
     /// The first part of the same shape, by part.
     likes: &'a [usize],
-    there: Vec<bool>,
+    living: Living,
     /// By shape, that is its first part: how many of those that move are there.
     counts: Vec<usize>,
     /// What does not move: the base, and what is not to be moved.
@@ -82,6 +84,8 @@ pub(super) struct Order<'a> {
     shadows: Vec<Shadow>,
     last: Option<(DVec3, usize)>,
     shortcuts: Shortcuts,
+    /// Parts whose own share of a cost has changed since they were ranked.
+    changed: Vec<usize>,
 }
 
 /// What is asked for much shorter ways.
@@ -115,7 +119,7 @@ impl<'a> Order<'a> {
         let shadows = shadows.collect();
         let size = bodies.assembly().bounds().size().max_element().max(f64::MIN_POSITIVE);
         let (carried, bases) = supports(bodies, matrix, there, &base, up);
-        let there = there.to_vec();
+        let living = bodies.living(there);
         let stays = if movable.is_some() {
             (0..likes.len()).map(|part| there[part] && !moves(part)).collect()
         } else {
@@ -125,13 +129,13 @@ impl<'a> Order<'a> {
         for part in (0..likes.len()).filter(|&part| there[part]) {
             counts[likes[part]] += usize::from(!stays[part]);
         }
-        let (last, shortcuts) = (None, Shortcuts::default());
+        let (last, shortcuts, changed) = (None, Shortcuts::default(), Vec::new());
         Self {
             bodies,
             up,
             size,
             likes,
-            there,
+            living,
             counts,
             stays,
             carried,
@@ -139,6 +143,7 @@ impl<'a> Order<'a> {
             shadows,
             last,
             shortcuts,
+            changed,
         }
     }
 
@@ -150,12 +155,12 @@ impl<'a> Order<'a> {
 
     /// By part, whether it is still there.
     pub(super) fn there(&self) -> &[bool] {
-        &self.there
+        self.living.there()
     }
 
     /// The arcs of the order that is asked for.
     pub(super) fn arcs(&self) -> Vec<(usize, usize)> {
-        self.constraints().arcs(&self.there)
+        self.constraints().arcs(self.there())
     }
 
     fn constraints(&self) -> &'a Constraints {
@@ -171,7 +176,7 @@ impl<'a> Order<'a> {
             moving = left.iter().copied().filter(|k| !group.contains(k)).collect();
         }
         let may = !moving.is_empty() && !moving.iter().any(stays);
-        (may && self.constraints().lets_go(&moving, &self.there)).then_some(moving)
+        (may && self.constraints().lets_go(&moving, self.there())).then_some(moving)
     }
 
     /// What moves, and where to, if a group goes along `d`, or the others along `-d`; `None` if nothing may.
@@ -194,20 +199,51 @@ impl<'a> Order<'a> {
     /// These parts have gone, along a direction.
     pub(super) fn remove(&mut self, parts: &[usize], direction: DVec3) {
         for &part in parts {
-            self.there[part] = false;
+            self.bodies.remove(&mut self.living, part);
             // Parts that stay are not counted. They leave only where some of them are moved against others.
             let count = &mut self.counts[self.likes[part]];
             *count = count.saturating_sub(1);
-        }
-        for shadow in self.shadows.iter_mut().chain(&mut self.shortcuts.shadows) {
-            shadow.update(&self.there);
+            self.changed.extend(self.shadows.iter_mut().flat_map(|shadow| shadow.remove(part)));
+            for shadow in &mut self.shortcuts.shadows {
+                shadow.remove(part);
+            }
+            // What it rests on, and what carries the same parts as it does, now unsettles others when it leaves.
+            let below = |part: usize| self.bases[part].iter().flat_map(Base::below);
+            let beside = self.carried[part].iter().flat_map(|&above| below(above));
+            self.changed.extend(below(part).chain(beside));
         }
         self.last = parts.first().map(|&part| (direction, self.likes[part]));
     }
 
     /// The best of the parts that can leave alone.
-    pub(super) fn alone(&mut self, single: &Single) -> Option<Choice> {
-        self.best(&single.ways())
+    pub(super) fn alone(&mut self, single: &mut Single) -> Option<Choice> {
+        let mut changed = std::mem::take(&mut self.changed);
+        changed.append(&mut single.changed);
+        changed.sort_unstable();
+        changed.dedup();
+        for &part in &changed {
+            self.rank(single, part);
+        }
+        for shape in changed.into_iter().map(|part| self.likes[part]) {
+            single.ranking.set_count(shape, self.counts[shape]);
+        }
+        let last = self.last.map(|last| last.1);
+        loop {
+            let (part, k) = single.ranking.best(last, |state, way| self.cost(1, state, way))?;
+            if !self.find_shortcut(&[part], k) {
+                let direction = self.shadows[k].direction;
+                return Some(Choice { parts: vec![part], direction });
+            }
+            self.rank(single, part);
+        }
+    }
+
+    /// Ranks a part anew among those that can leave alone, if it is one of them.
+    fn rank(&mut self, single: &mut Single, part: usize) {
+        single.ranking.remove(part);
+        let Some(ways) = single.ways(part) else { return };
+        let ways = self.own_costs(&[part], ways);
+        single.ranking.insert(part, self.likes[part], ways);
     }
 
     /// The best of some groups, each with positions of directions along which it can leave.
@@ -221,11 +257,10 @@ impl<'a> Order<'a> {
         }
         loop {
             let (parts, k) = self.cheapest(groups.clone(), &ready)?;
-            let Some(shortcut) = self.shortcut(parts, k) else {
+            if !self.find_shortcut(parts, k) {
                 let (parts, direction) = (parts.to_vec(), self.shadows[k].direction);
                 return Some(Choice { parts, direction });
-            };
-            self.shortcuts.found.entry(parts.to_vec()).or_default().push(shortcut);
+            }
         }
     }
 
@@ -239,32 +274,45 @@ impl<'a> Order<'a> {
         for (parts, ways) in groups {
             let shape = self.likes[parts[0]];
             let all = parts.len() == 1 && ready[&shape] >= self.counts[shape];
-            let more = self.shortcuts.found.get(parts).map_or(&[][..], |found| found);
-            let ways = || ways.iter().chain(more).copied();
-            let (shadows, there) = (&mut self.shadows, &self.there);
-            let travels = ways().map(|k| shadows[k].travel(parts, there));
-            let least = travels.fold(f64::INFINITY, f64::min);
-            let unsettled = self.unsettled(parts).map(|parts| parts.len() as f64);
-            let falls = FALL * unsettled[0] + TIP * unsettled[1];
-            for k in ways() {
-                let travel = self.shadows[k].travel(parts, &self.there);
-                if travel > LONGER * least + self.bodies.noise() {
-                    continue;
-                }
-                let cost = self.cost(parts, (falls, all), self.shadows[k].direction, travel);
-                // Noise of the sum is far below what any choice differs by.
-                if best.is_none_or(|b| cost < b.0 - 1e-9) {
-                    best = Some((cost, parts, k));
+            let state = ShapeState { other: self.last.is_some_and(|last| last.1 != shape), all };
+            for way in self.own_costs(parts, ways) {
+                let cost = self.cost(parts.len(), state, way);
+                if is_better(cost, best.map(|best| best.0)) {
+                    best = Some((cost, parts, way.0));
                 }
             }
         }
         best.map(|(_, parts, k)| (parts, k))
     }
 
+    /// The ways of a group that are not much longer than the shortest one, each with what it costs whatever was taken
+    /// away before: what falls then, and the travel. Shortcuts that were found are ways as well.
+    fn own_costs(&mut self, parts: &[usize], ways: &[usize]) -> Vec<OwnCost> {
+        self.bodies.count_look();
+        let more = self.shortcuts.found.get(parts).map_or(&[][..], |found| found);
+        let (bodies, shadows, living) = (self.bodies, &mut self.shadows, &self.living);
+        let travel = |&k: &usize| (k, shadows[k].travel(bodies, parts, living));
+        let travels: Vec<(usize, f64)> = ways.iter().chain(more).map(travel).collect();
+        let least = travels.iter().map(|way| way.1).fold(f64::INFINITY, f64::min);
+        let unsettled = self.unsettled(parts).map(|parts| parts.len() as f64);
+        let falls = FALL * unsettled[0] + TIP * unsettled[1];
+        let mut near = travels;
+        near.retain(|way| way.1 <= LONGER * least + bodies.noise());
+        near.into_iter().map(|(k, travel)| (k, falls + travel / self.size)).collect()
+    }
+
+    /// Looks for a shortcut of a group that is to go along `k`, and keeps it as a way; checks whether there is one.
+    fn find_shortcut(&mut self, parts: &[usize], k: usize) -> bool {
+        let Some(shortcut) = self.shortcut(parts, k) else { return false };
+        self.shortcuts.found.entry(parts.to_vec()).or_default().push(shortcut);
+        true
+    }
+
     /// The position of the direction of the shortest way of a group, if that along `k` is [`MUCH_LONGER`].
     fn shortcut(&mut self, parts: &[usize], k: usize) -> Option<usize> {
-        let Self { bodies, there, shadows, shortcuts, .. } = self;
-        let way = shadows[k].travel(parts, there);
+        let Self { bodies, living, shadows, shortcuts, .. } = self;
+        let there = living.there();
+        let way = shadows[k].travel(bodies, parts, living);
         if way <= SHORT * self.size {
             return None;
         }
@@ -275,7 +323,7 @@ impl<'a> Order<'a> {
         }
         let mut shorter: Vec<(f64, DVec3)> = Vec::new();
         for shadow in shadows.iter_mut().chain(&mut shortcuts.shadows) {
-            let travel = shadow.travel(parts, there);
+            let travel = shadow.travel(bodies, parts, living);
             if MUCH_LONGER * travel < way {
                 shorter.push((travel, shadow.direction));
             }
@@ -294,25 +342,22 @@ impl<'a> Order<'a> {
     pub(super) fn position(&mut self, direction: DVec3) -> usize {
         let known = self.shadows.iter().position(|s| bits(s.direction) == bits(direction));
         known.unwrap_or_else(|| {
-            self.shadows.push(Shadow::new(self.bodies, &self.there, direction));
+            self.shadows.push(Shadow::new(self.bodies, self.living.there(), direction));
             self.shadows.len() - 1
         })
     }
 
-    /// What it takes to take a group away along `d`, beside what falls then; and whether all of its shape could leave.
-    fn cost(&self, parts: &[usize], (falls, all): (f64, bool), d: DVec3, travel: f64) -> f64 {
+    /// What it costs to take a group of so many parts away.
+    fn cost(&self, count: usize, ShapeState { other, all }: ShapeState, (k, own): OwnCost) -> f64 {
         let when = |what: bool, cost: f64| if what { cost } else { 0.0 };
-        let (turn, other) = self.last.map_or((false, false), |(last, shape)| {
-            (last.dot(d) < SAME, self.likes[parts[0]] != shape)
-        });
-        falls
-            + travel / self.size
-            + when(turn, TURN)
+        let d = self.shadows[k].direction;
+        let turn = self.last.is_some_and(|(last, _)| last.dot(d) < SAME);
+        own + when(turn, TURN)
             + when(other, OTHER_SHAPE)
             + when(other && !all, NOT_ALL)
             + when(d.abs().max_element() < SAME, OBLIQUE)
             + DOWN * (1.0 - d.dot(self.up)) / 2.0
-            + GROUP * (parts.len() - 1) as f64 / self.there.len() as f64
+            + GROUP * (count - 1) as f64 / self.likes.len() as f64
     }
 
     /// Of the parts that are left once these have gone: which then rest on nothing, and which are then off balance, if they
@@ -325,15 +370,15 @@ impl<'a> Order<'a> {
             parts.iter().flat_map(|&part| self.carried[part].iter().copied()).collect();
         above.sort_unstable();
         above.dedup();
-        above.retain(|part| self.there[*part] && !parts.contains(part));
+        above.retain(|part| self.living.has(*part) && !parts.contains(part));
         let (mut falls, mut tips) = (Vec::new(), Vec::new());
         for part in above {
             let Some(base) = &self.bases[part] else { continue };
-            let carries = |below: usize| self.there[below] && !parts.contains(&below);
+            let carries = |below: usize| self.living.has(below) && !parts.contains(&below);
             match base.standing(carries) {
                 Standing::Falls => falls.push(part),
                 Standing::OffBalance
-                    if base.standing(|below| self.there[below]) == Standing::Stands =>
+                    if base.standing(|below| self.living.has(below)) == Standing::Stands =>
                 {
                     tips.push(part);
                 }

@@ -1,20 +1,31 @@
 //! Parts as seen along a direction, and how far it is there until one is beyond all others.
 //!
-//! Invariant: what is kept of a travel names the part that it ends behind, and is asked anew once that part has gone.
+//! The tree over the boxes of all parts serves every direction: each has its own bounds of the nodes, so that only what
+//! lies over a part is looked at, not all parts.
+//!
+//! Invariant: a travel that is kept names the part that it ends behind, and is dropped once that part has gone.
+
+use std::cell::Cell;
+use std::collections::HashMap;
 
 use colltrans::Aabb;
 use glam::DVec3;
 
 use crate::bodies::Bodies;
+use crate::boxes::Living;
 use crate::part::Part;
 
 /// The parts that are there as seen along a direction.
 pub(super) struct Shadow {
     pub(super) direction: DVec3,
-    /// In a frame whose third axis is the direction; nothing of parts that are not there.
+    /// In a frame whose third axis is the direction; nothing of parts that were not there at first.
     boxes: Vec<Aabb>,
-    /// By part: its travel alone and the part that it ends behind, once asked.
-    travels: Vec<Option<(f64, Option<usize>)>>,
+    /// By node of the tree over all parts.
+    bounds: Vec<Aabb>,
+    /// The travels of single parts that were asked for.
+    travels: HashMap<usize, f64>,
+    /// By part, those whose travel is kept and ends behind it.
+    behind: HashMap<usize, Vec<usize>>,
 }
 
 impl Shadow {
@@ -26,44 +37,57 @@ impl Shadow {
             Aabb::of_points(vertices.into_iter().flatten())
         };
         let boxes: Vec<Aabb> = bodies.assembly().parts().iter().zip(there).map(around).collect();
-        Self { direction, travels: vec![None; boxes.len()], boxes }
+        let bounds = bodies.bounds_of(&boxes);
+        let (travels, behind) = (HashMap::new(), HashMap::new());
+        Self { direction, boxes, bounds, travels, behind }
     }
 
     /// How far a group goes until it is beyond all that are there.
-    pub(super) fn travel(&mut self, parts: &[usize], there: &[bool]) -> f64 {
-        if let &[part] = parts {
-            let boxes = &self.boxes;
-            let known = &mut self.travels[part];
-            return known.get_or_insert_with(|| past(boxes, part, &[], there)).0;
+    pub(super) fn travel(&mut self, bodies: &Bodies, parts: &[usize], living: &Living) -> f64 {
+        let &[part] = parts else {
+            let each = parts.iter().map(|&part| self.past(bodies, part, parts, living).0);
+            return each.fold(0.0, f64::max);
+        };
+        if let Some(&known) = self.travels.get(&part) {
+            return known;
         }
-        let each = parts.iter().map(|&part| past(&self.boxes, part, parts, there).0);
-        each.fold(0.0, f64::max)
+        let (travel, last) = self.past(bodies, part, parts, living);
+        self.travels.insert(part, travel);
+        if let Some(last) = last {
+            self.behind.entry(last).or_default().push(part);
+        }
+        travel
     }
 
-    /// Parts have gone.
-    pub(super) fn update(&mut self, there: &[bool]) {
-        for travel in &mut self.travels {
-            if travel.is_some_and(|(_, behind)| behind.is_some_and(|b| !there[b])) {
-                *travel = None;
+    /// Takes a part away, and returns the parts whose travel ended behind it.
+    pub(super) fn remove(&mut self, part: usize) -> Vec<usize> {
+        let behind = self.behind.remove(&part).unwrap_or_default();
+        for part in &behind {
+            self.travels.remove(part);
+        }
+        behind
+    }
+
+    /// How far a part goes along the third axis until it is beyond all that are there, but for those of its group; and
+    /// the part that it ends behind.
+    fn past(
+        &self,
+        bodies: &Bodies,
+        part: usize,
+        group: &[usize],
+        living: &Living,
+    ) -> (f64, Option<usize>) {
+        let own = self.boxes[part];
+        let found = Cell::new((0.0, None));
+        let is_further = |seen: &Aabb| {
+            let beside = |k: usize| seen.low[k] > own.high[k] || own.low[k] > seen.high[k];
+            seen.high.z - own.low.z > found.get().0 && !(0..2).any(beside)
+        };
+        bodies.visit_high(living, &self.bounds, is_further, |other| {
+            if !group.contains(&other) && is_further(&self.boxes[other]) {
+                found.set((self.boxes[other].high.z - own.low.z, Some(other)));
             }
-        }
+        });
+        found.get()
     }
-}
-
-/// How far a part goes along the third axis until it is beyond all that are there, but for those of its group; and the
-/// part that it ends behind.
-fn past(boxes: &[Aabb], part: usize, group: &[usize], there: &[bool]) -> (f64, Option<usize>) {
-    let own = boxes[part];
-    let mut found = (0.0, None);
-    for (other, seen) in boxes.iter().enumerate() {
-        let way = seen.high.z - own.low.z;
-        if way <= found.0 || other == part || !there[other] || group.contains(&other) {
-            continue;
-        }
-        let beside = (0..2).any(|k| seen.low[k] > own.high[k] || own.low[k] > seen.high[k]);
-        if !beside {
-            found = (way, Some(other));
-        }
-    }
-    found
 }

@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use colltrans::solid::Workspace;
 use rayon::prelude::*;
 
+use super::ranking::Ranking;
 use crate::bodies::Bodies;
 use crate::boxes::Living;
 use crate::error::AssemblyError;
@@ -28,6 +29,10 @@ pub(super) struct Single<'a> {
     watched: Vec<Vec<Vec<u32>>>,
     /// By part, the directions along which it meets nothing, increasing.
     free: BTreeMap<usize, Vec<usize>>,
+    /// The parts that are free and wait for nothing, by what it costs to take them away.
+    pub(super) ranking: Ranking,
+    /// Parts that have left, or whose ways are not those by which they were ranked.
+    pub(super) changed: Vec<usize>,
     workspace: Workspace,
 }
 
@@ -67,22 +72,37 @@ impl<'a> Single<'a> {
                 None => free.entry(part).or_default().push(k),
             }
         }
-        let (matrix, workspace) = (matrix.clone(), Workspace::default());
-        Ok(Self { bodies, matrix, living, waits, awaited, watched, free, workspace })
+        let changed = free.keys().copied().collect();
+        let (matrix, ranking, workspace) =
+            (matrix.clone(), Ranking::default(), Workspace::default());
+        Ok(Self {
+            bodies,
+            matrix,
+            living,
+            waits,
+            awaited,
+            watched,
+            free,
+            ranking,
+            changed,
+            workspace,
+        })
     }
 
-    /// Returns the parts that are free, each with the directions along which it is.
-    pub(super) fn ways(&self) -> impl Iterator<Item = (&[usize], &[usize])> + Clone {
-        let ready = self.free.iter().filter(|(part, _)| self.waits[**part] == 0);
-        ready.map(|(part, ways)| (std::slice::from_ref(part), &ways[..]))
+    /// Returns the directions along which a part is free, if there are any and it waits for nothing.
+    pub(super) fn ways(&self, part: usize) -> Option<&[usize]> {
+        let ways = self.free.get(&part).filter(|_| self.waits[part] == 0);
+        ways.map(|ways| &ways[..])
     }
 
     /// Takes a part away.
     pub(super) fn remove(&mut self, part: usize) {
         self.free.remove(&part);
+        self.changed.push(part);
         self.bodies.remove(&mut self.living, part);
         for waiting in std::mem::take(&mut self.awaited[part]) {
             self.waits[waiting] -= 1;
+            self.changed.push(waiting);
         }
         for k in 0..self.watched.len() {
             for watching in std::mem::take(&mut self.watched[k][part]) {
@@ -94,6 +114,7 @@ impl<'a> Single<'a> {
                 if let Some(by) = by {
                     self.watched[k][by].push(watching);
                 } else {
+                    self.changed.push(moving);
                     let ways = self.free.entry(moving).or_default();
                     ways.insert(ways.partition_point(|&known| known < k), k);
                 }

@@ -48,6 +48,11 @@ impl Base {
         Self { center, on: on.iter().map(corners).collect() }
     }
 
+    /// Returns the parts that it rests on.
+    pub(super) fn below(&self) -> impl Iterator<Item = usize> {
+        self.on.iter().map(|(part, _)| *part)
+    }
+
     /// How it stands on those that `carry`.
     pub(super) fn standing(&self, carry: impl Fn(usize) -> bool) -> Standing {
         let mut under = self.on.iter().filter(|(part, _)| carry(*part)).peekable();

@@ -198,6 +198,8 @@ pub struct Bodies<'a> {
     /// Pairs whose overlap is ignored, with the further tolerance with which there is none, if there is
     /// one: beyond, it would be deeper.
     passing: BTreeMap<[usize; 2], f64>,
+    /// By part, the others with which it overlaps, is ignored or has a fit of its own, in increasing order.
+    partners: Vec<Vec<usize>>,
     noise: f64,
     /// How often two parts were asked about.
     #[cfg(test)]
@@ -258,6 +260,7 @@ impl<'a> Bodies<'a> {
             slabs: OnceLock::new(),
             overlapping,
             passing,
+            partners: Vec::new(),
             noise,
             #[cfg(test)]
             asked: std::sync::atomic::AtomicUsize::default(),
@@ -271,7 +274,34 @@ impl<'a> Bodies<'a> {
         let ignored = bodies.overlapping.par_iter().filter(ignored);
         bodies.passing =
             ignored.filter_map(|&pair| Some((pair, bodies.passes_with(pair)?))).collect();
+        bodies.partners = bodies.all_partners();
         Ok(bodies)
+    }
+
+    /// Collects for each part the others with which it overlaps, is ignored or has a fit of its own.
+    fn all_partners(&self) -> Vec<Vec<usize>> {
+        let mut partners = vec![Vec::new(); self.len()];
+        let pairs = self.overlapping.iter().chain(self.pairs.keys()).copied();
+        for [a, b] in pairs.chain(self.assembly.ignored_pairs()) {
+            partners[a].push(b);
+            partners[b].push(a);
+        }
+        for others in &mut partners {
+            others.sort_unstable();
+            others.dedup();
+        }
+        partners
+    }
+
+    /// Returns the pairs of a part of a group and one that is there which overlap, are ignored or have a fit of their own,
+    /// in order.
+    pub(crate) fn partners<'s>(
+        &'s self,
+        group: &'s [usize],
+        there: &'s [bool],
+    ) -> impl Iterator<Item = [usize; 2]> + 's {
+        let pairs = |&a: &usize| self.partners[a].iter().map(move |&b| [a, b]);
+        group.iter().flat_map(pairs).filter(|&[_, b]| there[b])
     }
 
     /// A little more than the least further tolerance with which two parts do not overlap; `None` if
@@ -301,6 +331,7 @@ impl<'a> Bodies<'a> {
     }
 
     fn own_fit(&self, [a, b]: [usize; 2]) -> Option<&OwnFit> {
+        self.count_look();
         self.pairs.get(&[a.min(b), a.max(b)])
     }
 
@@ -794,6 +825,22 @@ pub(crate) struct Seen {
 }
 
 impl Seen {
+    /// Checks whether a part within a box could raise the bounds `found` of how far this part must go ([`past`](Self::past)).
+    /// `reach` is the largest coordinate of any part: rounding is taken for larger than it is.
+    pub(crate) fn may_be_behind(&self, bounds: &Aabb, reach: f64, found: &Bounded) -> bool {
+        let noise = 64.0 * f64::EPSILON * reach;
+        let apart = |k: usize| {
+            (bounds.low[k] - self.around.high[k]).max(self.around.low[k] - bounds.high[k])
+        };
+        let way = bounds.high.z - self.around.low.z;
+        way + noise > found.lower && !(0..2).any(|k| apart(k) > noise)
+    }
+
+    /// The largest coordinate.
+    pub(crate) const fn reach(&self) -> f64 {
+        self.reach
+    }
+
     /// How far this part must go until it lies wholly beyond another one, as [`Bodies::past`] says.
     pub(crate) fn past(&self, fixed: &Self) -> Bounded {
         const U: f64 = f64::EPSILON / 2.0;

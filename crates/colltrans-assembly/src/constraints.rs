@@ -67,6 +67,11 @@ impl Constraints {
         &self.never
     }
 
+    /// Checks whether anything is asked of who leaves before whom, or with whom.
+    pub(crate) fn is_any_order(&self) -> bool {
+        !self.before.is_empty() || !self.units.is_empty()
+    }
+
     /// Adds that parts leave before others.
     ///
     /// # Errors

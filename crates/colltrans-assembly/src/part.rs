@@ -412,6 +412,11 @@ impl Assembly {
         self.ignored.get(&[a.min(b), a.max(b)]).copied()
     }
 
+    /// The pairs of which something is let pass, the smaller position first.
+    pub(crate) fn ignored_pairs(&self) -> impl Iterator<Item = [usize; 2]> {
+        self.ignored.keys().copied()
+    }
+
     /// What is asked of plans: an order, subassemblies, directions.
     pub const fn constraints(&self) -> &Constraints {
         &self.constraints

@@ -62,7 +62,6 @@ pub use options::PlanOptions;
 use order::{Choice, Order};
 pub use passed::Passed;
 pub use precedence::and_or;
-use replay::Replay;
 use several::Aside;
 pub use several::Moves;
 use single::Single;
@@ -153,7 +152,8 @@ struct Planner<'a> {
     known: loose::Known,
     /// Who meets whom, of all parts of which none could leave alone, once that was asked for.
     whole: Option<Matrix<'a>>,
-    replay: Replay,
+    /// Whether there are open surfaces among all parts.
+    has_surfaces: bool,
     /// Parts that are to come out, and nothing else if it need not.
     wanted: &'a [usize],
     /// Which parts may move for that, if not all.
@@ -177,6 +177,14 @@ impl Way {
     fn straight(parts: Vec<usize>, direction: DVec3) -> Self {
         Self { parts, direction, aside: None, bayonet: None }
     }
+}
+
+/// What has left a group.
+struct Gone {
+    /// The step that took the group out, if it is not all parts.
+    within: Option<usize>,
+    /// By part, the step that took it out.
+    steps: BTreeMap<usize, usize>,
 }
 
 impl From<Choice> for Way {
@@ -225,7 +233,7 @@ impl<'a> Planner<'a> {
         let up = unit(options.up.unwrap_or(bodies.assembly().up()))?;
         let (plan, known) = (Plan::default(), loose::Known::default());
         let (wanted, movable) = (&[][..], None);
-        let (whole, replay) = (None, Replay::default());
+        let has_surfaces = bodies.assembly().parts().iter().any(Part::is_surface);
         Ok(Self {
             bodies,
             finer,
@@ -236,8 +244,8 @@ impl<'a> Planner<'a> {
             tally,
             plan,
             known,
-            whole,
-            replay,
+            whole: None,
+            has_surfaces,
             wanted,
             movable,
         })
@@ -287,6 +295,7 @@ impl<'a> Planner<'a> {
             Single::new(bodies, matrix, &arcs, there, movable, watch)
         };
         let mut single = alone(&order)?;
+        let mut gone = Gone { within, steps: BTreeMap::new() };
         while !left.is_empty() {
             self.watch.check()?;
             let one = left.len() == 1 || constraints.keeps_together(&left);
@@ -344,7 +353,7 @@ impl<'a> Planner<'a> {
             } else {
                 way.parts.iter().for_each(|&part| single.remove(part));
             }
-            self.take_out(way, &left, unsettled, matrix, within)?;
+            self.take_out(way, (&order, &left), unsettled, matrix, &mut gone)?;
         }
         Ok(left)
     }
@@ -353,32 +362,33 @@ impl<'a> Planner<'a> {
     fn take_out(
         &mut self,
         way: Way,
-        left: &[usize],
+        (order, left): (&Order, &[usize]),
         [falls, off_balance]: [Vec<usize>; 2],
         matrix: &Matrix<'a>,
-        within: Option<usize>,
+        gone: &mut Gone,
     ) -> Result<(), AssemblyError> {
+        let start = self.options.start;
         let mut travel = match &way.bayonet {
             Some((_, travel)) => *travel,
-            None => self.replay.checked(self.bodies, &way, left, self.options.start)?,
+            None => replay::checked(self.bodies, &way, (order, left), start)?,
         };
         let at = self.plan.steps.len();
         let Way { parts, direction, aside, bayonet } = way;
-        let start = self.options.start;
-        let pairs = parts.iter().flat_map(|&a| left.iter().map(move |&b| [a, b]));
-        let ignored = pairs.filter(|&[a, b]| {
+        let there = order.there();
+        let ignored = self.bodies.partners(&parts, there).filter(|&[a, b]| {
             self.bodies.tolerated([a, b]).is_none() && self.bodies.lets_pass(a, b, start)
         });
         let ignored = ignored.collect();
-        let passed = Passed::between(self.bodies, &parts, left);
+        let passed = Passed::between(self.bodies, &parts, there);
         let surfaces = self.surfaces(&parts, left, direction);
         let several = aside.is_some() || bayonet.is_some();
-        let after = self.after(&parts, direction, several, matrix, within);
+        let after = self.after(&parts, direction, several, matrix, gone);
+        gone.steps.extend(parts.iter().map(|&part| (part, at)));
         let (mut path, back) =
             aside.map_or_else(Default::default, |aside| (aside.legs, aside.back));
         path.extend(bayonet.map(|(turn, _)| turn));
         let along = (&parts[..], direction);
-        let unscrewed = || turn::unscrewed(self.bodies, along, left, travel, self.options.start);
+        let unscrewed = || turn::unscrewed(self.bodies, along, (left, there), travel, start);
         match path.is_empty().then(unscrewed).flatten() {
             Some((legs, rest)) => {
                 path.extend(legs);
@@ -392,7 +402,7 @@ impl<'a> Planner<'a> {
             travel,
             path,
             back,
-            within,
+            within: gone.within,
             after,
             ignored,
             passed,
@@ -433,31 +443,29 @@ impl<'a> Planner<'a> {
         direction: DVec3,
         several: bool,
         matrix: &Matrix,
-        within: Option<usize>,
+        Gone { within, steps }: &Gone,
     ) -> Vec<usize> {
-        let before = self.plan.steps.iter().enumerate().filter(|(_, step)| step.within == within);
-        let mut gone = BTreeMap::new();
-        for (k, step) in before {
-            gone.extend(step.parts.iter().map(|&part| (part, k)));
-        }
-        let mut after: Vec<usize> = within.into_iter().collect();
-        let went = |part: usize| gone.get(&part).copied();
+        let mut after: Vec<usize> = within.iter().copied().collect();
         let constraints = self.bodies.assembly().constraints();
-        after.extend(gone.iter().filter(|x| constraints.waits(group, *x.0)).map(|x| *x.1));
+        if constraints.is_any_order() {
+            let waits = steps.iter().filter(|(part, _)| constraints.waits(group, **part));
+            after.extend(waits.map(|(_, step)| *step));
+        }
         if several {
-            after.extend(gone.values());
+            after.extend(steps.values());
         } else if let Some(k) = matrix.position(direction).filter(|_| matrix.is_complete()) {
             let met = group.iter().flat_map(|&part| matrix.of_part(k, part));
-            after.extend(met.filter_map(|m| went(m.fixed)));
+            after.extend(met.filter_map(|m| steps.get(&m.fixed)));
         } else {
             let (mut workspace, start) = (Workspace::default(), self.options.start);
-            let there: Vec<bool> = (0..self.bodies.len()).map(|k| gone.contains_key(&k)).collect();
-            for pair in self.bodies.pairs_ahead(group, direction, &there) {
-                let step = gone[&pair[1]];
-                if !after.contains(&step)
-                    && self.bodies.meets(pair, direction, start, &mut workspace)
-                {
-                    after.push(step);
+            for &part in group {
+                for (_, other) in self.bodies.ahead(part, direction) {
+                    let Some(step) = steps.get(&other).filter(|step| !after.contains(step)) else {
+                        continue;
+                    };
+                    if self.bodies.meets([part, other], direction, start, &mut workspace) {
+                        after.push(*step);
+                    }
                 }
             }
         }
@@ -469,10 +477,10 @@ impl<'a> Planner<'a> {
     /// The surfaces of a group, and of what is left where the boxes of the group pass.
     fn surfaces(&self, group: &[usize], left: &[usize], direction: DVec3) -> Vec<usize> {
         let passed = |&part: &usize| self.bodies.ahead(part, direction).into_iter().map(|x| x.1);
-        let parts = self.bodies.assembly().parts();
-        if !parts.iter().any(Part::is_surface) {
+        if !self.has_surfaces {
             return Vec::new();
         }
+        let parts = self.bodies.assembly().parts();
         let mut found: Vec<usize> = group.iter().flat_map(passed).collect();
         found.retain(|part| left.contains(part));
         found.extend(group);

@@ -12,6 +12,7 @@ use crate::findings::Question;
 use crate::liaisons::liaisons;
 use crate::matrix::Matrix;
 use crate::part::Assembly;
+use crate::plan::disassemble;
 use crate::read::{ReadOptions, read_from};
 use crate::rooms::rooms;
 use crate::start::Start;
@@ -56,6 +57,23 @@ fn parts_in_a_row_are_planned_by_a_few_pairs_each() {
         let asked = asked();
         assert!(asked <= 4 * count, "{asked} pairs of {count} parts");
         assert!(!found.matrix.is_complete());
+    }
+}
+
+#[test]
+fn each_step_of_a_row_looks_at_a_few_parts() {
+    for count in [250, 1_000] {
+        let assembly = cubes((0..count).map(|k| [2 * k, 0, 0]));
+        let bodies = Bodies::new(&assembly, Fit::default_for(&assembly)).unwrap();
+        let (question, watch) = (Question::default(), Watch::default());
+        let found = question.look(&bodies, watch).unwrap();
+        bodies.looks.store(0, Relaxed);
+        let (matrix, finer) = (&found.matrix, &found.candidates.finer);
+        let plan = disassemble(&bodies, matrix, finer, question.options, watch).unwrap();
+        assert_eq!((plan.steps.len(), plan.last.len()), (count - 1, 1));
+        // Looks at parts, pairs and nodes of the tree over the parts, which is so deep.
+        let (looks, depth) = (bodies.looks.load(Relaxed), count.ilog2() as usize);
+        assert!(looks <= 16 * count * depth, "{looks} of {count} parts");
     }
 }
 

@@ -14,6 +14,7 @@
 
 use std::collections::BTreeMap;
 
+use colltrans::Bounded;
 use colltrans::solid::StartOverlap;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -336,6 +337,14 @@ impl<'a> Order<'a> {
         });
         let direction = free.next()?;
         Some(self.position(direction))
+    }
+
+    /// How far a group that has gone goes along a direction until it is beyond all that are left, with bounds.
+    pub(super) fn bounded_travel(&self, parts: &[usize], direction: DVec3) -> Bounded {
+        let known = self.shadows.iter().find(|s| bits(s.direction) == bits(direction));
+        let new = || Shadow::new(self.bodies, self.there(), direction);
+        let travel = |shadow: &Shadow| shadow.bounded_travel(self.bodies, parts, &self.living);
+        known.map_or_else(|| travel(&new()), travel)
     }
 
     /// The position of a direction, which need not be one of the matrix.

@@ -22,14 +22,13 @@ impl Passed {
         format!("{names}: {}", self.tolerated.words(self.role))
     }
 
-    /// All of a group that goes and others that stay.
-    pub(crate) fn between(bodies: &Bodies, group: &[usize], others: &[usize]) -> Vec<Self> {
-        let pairs = group.iter().flat_map(|&a| others.iter().map(move |&b| [a, b]));
+    /// All of a group that goes and others that are there.
+    pub(crate) fn between(bodies: &Bodies, group: &[usize], there: &[bool]) -> Vec<Self> {
         let passed = |parts: [usize; 2]| {
             let tolerated = bodies.tolerated(parts)?;
             let role = bodies.assembly().pair(parts[0], parts[1]).and_then(|fit| fit.role);
             Some(Self { parts, role, tolerated })
         };
-        pairs.filter_map(passed).collect()
+        bodies.partners(group, there).filter_map(passed).collect()
     }
 }

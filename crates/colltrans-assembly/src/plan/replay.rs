@@ -5,48 +5,27 @@ use colltrans::solid::{StartOverlap, Workspace};
 use glam::DVec3;
 
 use super::Way;
+use super::order::Order;
 use super::several::Aside;
-use crate::bodies::{Bodies, Seen};
+use crate::bodies::Bodies;
 use crate::error::AssemblyError;
-use crate::matrix::bits;
 
 /// Places on the way, as shares of the travel.
 const PLACES: [f64; 6] = [0.01, 0.1, 0.3, 0.55, 0.8, 1.0];
 
-/// Checks one step after the other.
-#[derive(Default)]
-pub(super) struct Replay {
-    /// The direction of the last step, and parts as seen along it.
-    along: Option<([u64; 3], Vec<Option<Seen>>)>,
-}
-
-impl Replay {
-    /// How far the group must go until it never meets the others again.
-    ///
-    /// # Errors
-    /// Something is in the way after all.
-    pub(super) fn checked(
-        &mut self,
-        bodies: &Bodies,
-        way: &Way,
-        others: &[usize],
-        start: StartOverlap,
-    ) -> Result<Bounded, AssemblyError> {
-        match &way.aside {
-            None => straight(bodies, way, others, start, self.travel(bodies, way, others)),
-            Some(aside) => several(bodies, aside, others),
-        }
-    }
-
-    /// How far a group goes until it is beyond all others.
-    fn travel(&mut self, bodies: &Bodies, way: &Way, others: &[usize]) -> Bounded {
-        let d = way.direction;
-        let known = self.along.take().filter(|(direction, _)| *direction == bits(d));
-        let (_, seen) = self.along.insert(known.unwrap_or((bits(d), vec![None; bodies.len()])));
-        let mut seen = |&part: &usize| *seen[part].get_or_insert_with(|| bodies.seen(part, d));
-        let moving: Vec<Seen> = way.parts.iter().map(&mut seen).collect();
-        let past = |fixed: Seen| moving.iter().map(|own| own.past(&fixed)).fold(NOTHING, larger);
-        others.iter().map(seen).map(past).fold(NOTHING, larger)
+/// How far the group, which has gone, must go until it never meets the others again.
+///
+/// # Errors
+/// Something is in the way after all.
+pub(super) fn checked(
+    bodies: &Bodies,
+    way: &Way,
+    (order, others): (&Order, &[usize]),
+    start: StartOverlap,
+) -> Result<Bounded, AssemblyError> {
+    match &way.aside {
+        None => straight(bodies, way, order, start),
+        Some(aside) => several(bodies, aside, others),
     }
 }
 
@@ -54,13 +33,13 @@ impl Replay {
 fn straight(
     bodies: &Bodies,
     way: &Way,
-    others: &[usize],
+    order: &Order,
     start: StartOverlap,
-    travel: Bounded,
 ) -> Result<Bounded, AssemblyError> {
     let d = way.direction;
+    let travel = order.bounded_travel(&way.parts, d);
     let mut workspace = Workspace::default();
-    let ahead = bodies.pairs_ahead(&way.parts, d, &bodies.mask(others));
+    let ahead = bodies.pairs_ahead(&way.parts, d, order.there());
     let mut all = ahead.iter();
     if let Some(&pair) = all.find(|pair| bodies.meets(**pair, d, start, &mut workspace)) {
         return Err(refused(bodies, pair, d, 0.0));
@@ -113,7 +92,7 @@ fn several(bodies: &Bodies, aside: &Aside, others: &[usize]) -> Result<Bounded, 
     Ok(travel)
 }
 
-const NOTHING: Bounded = Bounded { value: 0.0, lower: 0.0, upper: 0.0 };
+pub(super) const NOTHING: Bounded = Bounded { value: 0.0, lower: 0.0, upper: 0.0 };
 
 /// The larger one of two numbers.
 pub(super) fn larger(a: Bounded, b: Bounded) -> Bounded {

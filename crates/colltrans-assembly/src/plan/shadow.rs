@@ -8,9 +8,10 @@
 use std::cell::Cell;
 use std::collections::HashMap;
 
-use colltrans::Aabb;
+use colltrans::{Aabb, Bounded};
 use glam::DVec3;
 
+use super::replay::{NOTHING, larger};
 use crate::bodies::Bodies;
 use crate::boxes::Living;
 use crate::part::Part;
@@ -57,6 +58,30 @@ impl Shadow {
             self.behind.entry(last).or_default().push(part);
         }
         travel
+    }
+
+    /// How far a group that has gone goes until it is beyond all that are there, with bounds; nothing is kept.
+    pub(super) fn bounded_travel(
+        &self,
+        bodies: &Bodies,
+        parts: &[usize],
+        living: &Living,
+    ) -> Bounded {
+        let all = self.bounds.first().map_or(0.0, |b| b.low.abs().max(b.high.abs()).max_element());
+        let found = Cell::new(NOTHING);
+        for &part in parts {
+            let own = bodies.seen(part, self.direction);
+            // The frame is turned: coordinates in the world may be larger.
+            let reach = own.reach().max(2.0 * all);
+            let is_further = |seen: &Aabb| own.may_be_behind(seen, reach, &found.get());
+            bodies.visit_high(living, &self.bounds, is_further, |other| {
+                if is_further(&self.boxes[other]) {
+                    let past = own.past(&bodies.seen(other, self.direction));
+                    found.set(larger(found.get(), past));
+                }
+            });
+        }
+        found.get()
     }
 
     /// Takes a part away, and returns the parts whose travel ended behind it.

@@ -29,16 +29,16 @@ const FIRST: f64 = 0.02;
 /// A tolerance beyond the least one.
 const BEYOND: f64 = 1.05;
 
-/// The two moves of a step that unscrews some parts from others: turning, and straight on; `None` if nothing is screwed
-/// between them, or nothing looks like a helix. `travel` is how far the parts go in all.
+/// The two moves of a step that unscrews some parts from others, which alone are there: turning, and straight on; `None` if
+/// nothing is screwed between them, or nothing looks like a helix. `travel` is how far the parts go in all.
 pub(super) fn unscrewed(
     bodies: &Bodies,
     (parts, direction): (&[usize], DVec3),
-    others: &[usize],
+    (others, there): (&[usize], &[bool]),
     travel: Bounded,
     start: StartOverlap,
 ) -> Option<([Leg; 2], Bounded)> {
-    let threads = threads(bodies, parts, others, direction);
+    let threads = threads(bodies, parts, there, direction);
     let screw = Screw::new(bodies, *threads.first()?, direction)?;
     let one = threads.iter().all(|(_, thread)| screw.is_one_with(thread));
     let mut turning = screw.leg(parts);
@@ -60,14 +60,15 @@ pub(super) fn unscrewed(
     Some((legs, rest))
 }
 
-/// The threads between parts that go and others that stay, about axes along the way: the first part of each pair goes.
+/// The threads between parts that go and others that are there, about axes along the way: the first part of each pair
+/// goes.
 fn threads(
     bodies: &Bodies,
     parts: &[usize],
-    others: &[usize],
+    there: &[bool],
     d: DVec3,
 ) -> Vec<([usize; 2], Thread)> {
-    let pairs = parts.iter().flat_map(|&a| others.iter().map(move |&b| [a, b]));
+    let pairs = bodies.partners(parts, there);
     let along =
         |thread: &Thread| thread.pitch.is_some() && thread.axis[1].cross(d).length() < ALONG;
     let found = pairs.filter_map(|pair| Some((pair, bodies.thread(pair).filter(along)?)));

@@ -7,11 +7,14 @@
 //!   one is in millimetres and the other in metres. Where most pairs overlap deeply, a smaller ratio counts, and
 //!   the hint about frames is left out.
 
+use std::cell::Cell;
+
 use colltrans::{Aabb, Solid};
 use colltrans_mesh::words::first_named;
 use glam::DVec3;
 
 use crate::bodies::Bodies;
+use crate::boxes::BoxTree;
 use crate::likes::{common_name, likes};
 use crate::part::{Assembly, Part};
 use crate::start::{Overlap, Start};
@@ -107,7 +110,18 @@ fn frames(bodies: &Bodies, start: &Start, likes: &[usize]) -> Option<Hint> {
         let off = (p.low - q.low).abs().max((p.high - q.high).abs()).max_element();
         likes[*a] == likes[*b] && off <= SAME * p.size().max_element()
     };
-    let twice = |b: &usize| (0..*b).any(|a| same(&a, b));
+    // Twins have their low corners in one place, so only parts with a corner near there are compared.
+    let corner = |k: usize| Aabb::of_points([parts[k].bounds().low]);
+    let corners = BoxTree::new((0..parts.len()).map(corner));
+    let twice = |b: &usize| {
+        let reach = 2.0 * SAME * parts[*b].bounds().size().max_element();
+        let (near, found) = (corner(*b).grown(reach), Cell::new(false));
+        corners.visit(
+            |corner| !found.get() && corner.meets(&near),
+            |_, a| found.set(found.get() || a < *b && same(&a, b)),
+        );
+        found.get()
+    };
     let twins: Vec<usize> = (0..parts.len()).filter(|b| twice(b)).collect();
     let advice = "give a manifest with their places, or export the assembly as one file";
     if let Some(&twin) = twins.first() {
@@ -152,10 +166,8 @@ fn units(assembly: &Assembly, likes: &[usize], apart: f64) -> Option<Hint> {
         Hint { kind: HintKind::Units, parts: small, words }
     };
     // The same shape in two sizes.
-    for (a, b) in (0..parts.len()).flat_map(|a| (0..parts.len()).map(move |b| (a, b))) {
-        if likes[a] != a || likes[b] != b {
-            continue;
-        }
+    let shapes: Vec<usize> = (0..parts.len()).filter(|&k| likes[k] == k).collect();
+    for (&a, &b) in shapes.iter().flat_map(|a| shapes.iter().map(move |b| (a, b))) {
         let [small, large] = [a, b].map(|k| parts[k].solid());
         let found = FACTORS.into_iter().find(|factor| is_scaled(small, large, *factor));
         if let Some(factor) = found {

@@ -32,13 +32,13 @@ impl Plan {
     /// A move can be walked backwards as forwards, by the same proof; what is unscrewed is screwed in.
     pub fn assembly(&self) -> Vec<(usize, Vec<usize>)> {
         let last = self.steps.len().saturating_sub(1);
-        let waits = |step: usize| {
-            let later = self.steps.iter().enumerate().filter(move |(_, s)| s.after.contains(&step));
-            let mut before: Vec<usize> = later.map(|(k, _)| last - k).collect();
-            before.sort_unstable();
-            before
-        };
-        (0..self.steps.len()).rev().map(|step| (step, waits(step))).collect()
+        let mut before = vec![Vec::new(); self.steps.len()];
+        for (k, step) in self.steps.iter().enumerate().rev() {
+            for &earlier in &step.after {
+                before[earlier].push(last - k);
+            }
+        }
+        before.into_iter().enumerate().rev().collect()
     }
 
     /// The steps as CSV, numbered from 1: what leaves, where to and how far, after which steps, in which round, and how

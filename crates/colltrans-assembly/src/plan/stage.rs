@@ -20,11 +20,18 @@ impl Plan {
     /// waits for another one. They leave along one direction, or equally far each along its own.
     pub fn stages(&self) -> Vec<Range<usize>> {
         let mut stages: Vec<Range<usize>> = Vec::new();
+        // Whether all steps of the last stage go along one direction.
+        let mut one_way = true;
         for (k, step) in self.steps.iter().enumerate() {
-            match stages.last_mut() {
-                Some(stage) if self.joins(stage, step) => stage.end = k + 1,
-                _ => stages.push(k..k + 1),
+            if let Some(stage) = stages.last_mut() {
+                one_way &= self.steps[stage.start].direction == step.direction;
+                if self.joins(stage, step, one_way) {
+                    stage.end = k + 1;
+                    continue;
+                }
             }
+            stages.push(k..k + 1);
+            one_way = true;
         }
         stages
     }
@@ -138,7 +145,8 @@ impl Plan {
         pairs_alike(&self.likes, all).into_iter().map(told).collect()
     }
 
-    fn joins(&self, stage: &Range<usize>, step: &Step) -> bool {
+    /// Checks whether a step is of one stage with those before it; `one_way` is whether all go along one direction.
+    fn joins(&self, stage: &Range<usize>, step: &Step, one_way: bool) -> bool {
         let first = &self.steps[stage.start];
         let turns = |step: &Step| step.turn().map_or(0.0, |turn| turn.turns);
         let plain = |step: &Step| {
@@ -149,7 +157,6 @@ impl Plan {
             let [a, b] = [step, other].map(|step| step.travel.value);
             (a - b).abs() <= SAME_TRAVEL * a.max(b)
         };
-        let one_way = self.direction(stage) == Some(step.direction);
         plain(first)
             && plain(step)
             && self.likes[first.parts[0]] == self.likes[step.parts[0]]

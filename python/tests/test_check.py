@@ -377,6 +377,11 @@ def test_an_overlap_of_a_slide_is_that_of_the_shadows() -> None:
         ("separation", ("statement", "separation", "unknown"), 1.0),
         ("separation", ("keep",), -1.0),
         ("separation", ("keep",), None),
+        ("solids", ("statement", "clearance", "certificate", "tolerance"), -1.0),
+        ("solids", ("statement", "clearance", "certificate", "lower"), "x"),
+        ("solids", ("statement", "clearance", "certificate", "cover"), "z"),
+        ("solids", ("statement", "clearance", "certificate", "stop", "triangles"), [0]),
+        ("solids", ("statement", "clearance", "stop", "translation", "value"), None),
     ],
 )
 def test_what_the_specification_does_not_admit_is_refused(
@@ -421,11 +426,41 @@ def test_nothing_takes_the_place_of_a_list_or_an_object(name: str) -> None:
     ways = list(containers(file))
     assert len(ways) > 10
     for way in ways:
-        empty = {} if isinstance(value_at(file, way), list) else []
+        empty: Any = {} if isinstance(value_at(file, way), list) else []
         for other in (empty, "", None):
             if other is None and way[-1] in MAY_BE_NULL:
                 continue
             assert refused(changed(file, way, always(other))), (way, other)
+
+
+@pytest.mark.parametrize("name", ["solids", "beside", "inner", "solids_free", "path_solid"])
+def test_a_piece_that_is_not_open_is_closed(name: str) -> None:
+    file = proof(name)
+    bodies = [file.get("moving"), file.get("fixed"), *(of["body"] for of in file.get("bodies", []))]
+    triangles = next(body["pieces"][0]["triangles"] for body in bodies if body and "pieces" in body)
+    last = triangles.pop()
+    assert refused(file)
+    triangles.append(last[::-1])
+    assert refused(file)
+    triangles[-1] = [last[0]] * 3
+    assert refused(file)
+
+
+@pytest.mark.parametrize(
+    "near",
+    [
+        {"meeting": "apart"},
+        {"meeting": {"facets": [0]}},
+        {"points": {"triangles": [0, "x"], "weights": [[1, 0, 0]] * 2, "distance": 1.0}},
+        {"points": {"triangles": [0, 0], "weights": [[1, 0]] * 2, "distance": 1.0}},
+        {"points": {"triangles": [0, 0], "weights": [[1, 0, 0]] * 2, "distance": None}},
+    ],
+)
+def test_what_is_said_of_near_solids_has_its_form(near: Any) -> None:
+    file = proof("solids")
+    file["statement"] = {"solid_distance": {"lower": 0.0, "near": near, "cover": ""}}
+    del file["direction"]
+    assert refused(file)
 
 
 @pytest.mark.parametrize("name", ["solids_free", "solids_contact", "solids_kept"])

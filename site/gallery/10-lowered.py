@@ -1,6 +1,6 @@
 # Half a million grasps
 # How far a gripper can be lowered onto three objects, for each place above them: columns of
-# `clearance_many`. Above white places it passes all three.
+# `clearance_many`. Above a white place the gripper meets no object.
 import sys
 
 import matplotlib.pyplot as plt

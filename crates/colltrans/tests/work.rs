@@ -218,10 +218,10 @@ fn flat_faces_part_at_once() {
     }
 }
 
-/// Numbers of pairs of nodes that casts of combs take whose teeth are between those of each other.
+/// Returns how many pairs of nodes casts look at between two combs with interlocked teeth.
 ///
-/// Teeth as wide as the gaps touch on both sides; shifted along z they touch, too. Their tips reach the other comb, are in
-/// it, or teeth overlap.
+/// The teeth are as wide as the gaps and touch them on both sides. The second comb is also shifted along z. The tips are free,
+/// touch the other comb, or are in it; in the last place the teeth overlap.
 fn pairs_of_combs(teeth: usize, turned: DQuat, ways: &[DVec3]) -> Vec<u32> {
     let Mesh { vertices, faces } = comb(teeth);
     let comb = Solid::from_mesh(&vertices, &faces).expect("a comb");
@@ -242,10 +242,10 @@ fn pairs_of_combs(teeth: usize, turned: DQuat, ways: &[DVec3]) -> Vec<u32> {
     counts
 }
 
-/// Combs are asked along their teeth and across them, and, as their coordinates say, out of their plane and askew.
+/// Combs move along their teeth and across them; combs that are not turned also move out of their plane and askew.
 ///
-/// Directions along which facets of the caps are on edge but for rounding, or the caps of both combs lie in one plane above
-/// each other, take pairs of nodes with the square of the number of teeth, and are left out.
+/// Two cases are left out because they take pairs of nodes with the square of the number of teeth: turned combs that move askew
+/// within the plane of their caps, and combs with their caps in one plane that move askew out of it.
 #[test]
 fn combs_between_each_other_take_pairs_of_nodes_for_each_tooth() {
     let along = [DVec3::X, DVec3::Y, DVec3::NEG_Y];
@@ -256,7 +256,7 @@ fn combs_between_each_other_take_pairs_of_nodes_for_each_tooth() {
         let [few, many] = [200, 1_000].map(|teeth| pairs_of_combs(teeth, turned, ways));
         println!("{few:?} pairs of nodes of 200 teeth, {many:?} of 1,000");
         for (few, many) in few.into_iter().zip(many) {
-            // What ends early with a few pairs of nodes is no measure.
+            // An overlap is sometimes found early, with few pairs of nodes.
             let most = 15 * few.max(20_000);
             assert!(many < most, "{few} pairs of nodes, {many} of 5 times as many teeth");
         }

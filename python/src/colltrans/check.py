@@ -244,6 +244,26 @@ def minus(a: Vector, b: Vector) -> Vector:
     return a[0] - b[0], a[1] - b[1], a[2] - b[2]
 
 
+def check_closed(points: list[Vector], facets: list[tuple[int, int, int]]) -> None:
+    """Checks that a surface that is not said to be open is closed: something can be inside.
+
+    As many facets are on one side of each edge as on the other, and all of them have an area.
+    """
+    first: dict[Vector, int] = {}
+    # Corners at one place are one corner.
+    names = {k: first.setdefault(points[k], k) for facet in facets for k in facet}
+    sides: dict[tuple[int, int], int] = {}
+    for facet in facets:
+        a, b, c = (names[k] for k in facet)
+        for side in ((a, b), (b, c), (c, a)):
+            sides[side] = sides.get(side, 0) + 1
+            sides[side[::-1]] = sides.get(side[::-1], 0) - 1
+        if not any(area(points, [a, b, c])):
+            raise RefusedError("a facet of a surface that is not said to be open has no area")
+    if any(sides.values()):
+        raise RefusedError("a surface that is not said to be open has an edge with one facet")
+
+
 @dataclass(frozen=True)
 class Body:
     """Points in their frame, and the pose: ``R x + t``. Facets of a solid by their corners."""
@@ -260,7 +280,8 @@ class Body:
     @staticmethod
     def shape(shape: Any) -> tuple[list[Vector], list[tuple[int, int, int]]]:
         """Points in their frame, and facets."""
-        points, facets = [], []
+        points: list[Vector] = []
+        facets: list[tuple[int, int, int]] = []
         ((kind, content),) = shape.items()
         if kind == "convex":
             content = fields(content, "vertices faces input_indices hull_error", "input_excess")
@@ -273,10 +294,13 @@ class Body:
                     raise NoProofError("a piece is open or it is not")
                 base = len(points)
                 points += [place(v) for v in listed(piece["vertices"])]
+                begin = len(facets)
                 for triangle in listed(piece["triangles"]):
                     a, b, c = listed(triangle, 3)
                     corners = [base + whole(k, len(points) - base) for k in (a, b, c)]
                     facets.append((corners[0], corners[1], corners[2]))
+                if not each.get("open", False):
+                    check_closed(points, facets[begin:])
         else:
             raise NoProofError(f"a body is convex or made of pieces, not {kind!r}")
         if not points or (kind == "pieces" and not facets):
@@ -382,7 +406,7 @@ def described(points: list[Vector], content: Any) -> None:
 #: at least, in largest coordinates, of bodies whose faces the library certainly takes for its own.
 _OWN_PLANE, _OWN_CORNER = 96 * 2.0**-53, 1024 * 2.0**-53
 
-#: How much volume faces of a flat body may take away, in cubes of the largest coordinate.
+#: How far below 0 the volume of a flat body may be by rounding, in cubes of the largest coordinate.
 _OWN_VOLUME = 48 * 2.0**-53
 
 
@@ -665,14 +689,14 @@ def separation(
     )
 
 
-def check_letters(cover: Any) -> None:
+def check_letters(cover: Any, letters: str = "mfapnxdos") -> None:
     """Checks that a cover of pairs of facets has its form."""
-    if not isinstance(cover, str) or set(cover) - set("mfapnxdos"):
+    if not isinstance(cover, str) or set(cover) - set(letters):
         raise NoProofError("a cover is a text of letters")
 
 
 def check_beginning(kind: str, where: Any, counts: tuple[int, int]) -> None:
-    """Checks that what a file says of two solids where they begin has its form.
+    """Checks that what a file says of the overlap of two solids at the start has its form.
 
     ``counts`` has the numbers of their facets.
     """
@@ -706,6 +730,9 @@ def clearance(
         for k, count in zip(listed(first["triangles"], 2), counts, strict=True):
             whole(k, count)
     tolerance = number(certificate["tolerance"])
+    # Nothing stops the body where it is null.
+    if tolerance < 0 or (certificate["lower"] is not None and number(certificate["lower"]) < 0):
+        raise RefusedError("a tolerance, or a bound, is negative")
     plane, stop = claim["separation"], claim["stop"]
     if plane is not None:
         plane = fields(plane, "normal margin")
@@ -728,6 +755,7 @@ def clearance(
     if stop is not None and keep:
         named = listed(stop["facets"], 2)
         at = [whole(k, len(of.facets)) for k, of in zip(named, (moving, fixed), strict=True)]
+        translation_of(stop)
         report.unchecked.append(f"where facets {at[0]} and {at[1]} are {float(keep)!r} apart")
     elif stop is not None:
         facets(moving, fixed, d, stop, tolerance, report)
@@ -744,18 +772,23 @@ def clearance(
     )
 
 
+def translation_of(stop: Any) -> tuple[Fraction | None, Fraction | None]:
+    """Returns the bounds of where two facets meet; None is no bound."""
+    ends = fields(stop["translation"], "value lower upper")
+    value = number(ends["value"])
+    lower, upper = (None if ends[k] is None else number(ends[k]) for k in ("lower", "upper"))
+    if (lower is not None and lower > value) or (upper is not None and upper < value):
+        raise RefusedError("the translation is not between its bounds")
+    return lower, upper
+
+
 def facets(
     moving: Body, fixed: Body, d: Vector, stop: Any, tolerance: Fraction, report: Report
 ) -> None:
     """Where the two facets that stop a solid meet as they are."""
     named = listed(stop["facets"], 2)
     f, g = (whole(k, len(body.facets)) for k, body in zip(named, (moving, fixed), strict=True))
-    ends = fields(stop["translation"], "value lower upper")
-    value = number(ends["value"])
-    # A bound that is not there claims nothing.
-    lower, upper = (None if ends[k] is None else number(ends[k]) for k in ("lower", "upper"))
-    if (lower is not None and lower > value) or (upper is not None and upper < value):
-        raise RefusedError("the translation is not between its bounds")
+    lower, upper = translation_of(stop)
     told = f"facet {f} of the moving body and {g} of the fixed one"
     corners = [minus(q, p) for p in moving.facet(f) for q in fixed.facet(g)]
     met = entry(corners, d)
@@ -849,15 +882,32 @@ def apart(p: Vector, q: Vector, upper: Fraction, report: Report) -> None:
     report.holds.append(f"the bodies are at most {float(upper)!r} apart")
 
 
+def check_solid_near(near: Any) -> None:
+    """Checks that what a file says of the nearest places of two solids has its form."""
+    kind, claim = one_of(near, "points", "meeting")
+    if kind == "meeting":
+        kind, where = one_of(claim, "facets", "moving_inside", "fixed_inside")
+        check_beginning(kind, where, (2**32, 2**32))
+        return
+    fields(claim, "triangles weights distance")
+    for k in listed(claim["triangles"], 2):
+        whole(k, 2**32)
+    for weights in listed(claim["weights"], 2):
+        for weight in listed(weights, 3):
+            number(weight)
+    number(claim["distance"])
+
+
 def solid_distance(moving: Body, fixed: Body, claim: Any, report: Report) -> None:
     """What can be checked of the distance of solids without their trees."""
     claim = fields(claim, "lower near cover")
-    if not isinstance(claim["cover"], str):
-        raise NoProofError("a cover is made of letters")
-    if len(claim["near"]) != 1 or not {"points", "meeting"} >= set(claim["near"]):
-        raise NoProofError("there are two points, or the bodies meet")
+    check_letters(claim["cover"], "mfpqwxs")
+    check_solid_near(claim["near"])
+    if claim["cover"] and number(claim["lower"]) == 0:
+        report.partly = True
+        report.unchecked.append("the cover, which claims nothing")
     if "points" in claim["near"]:
-        near = fields(claim["near"]["points"], "triangles weights distance")
+        near = claim["near"]["points"]
         named = listed(near["triangles"], 2)
         corners = [
             body.facet(whole(k, len(body.facets)))
@@ -1046,6 +1096,7 @@ class Scene:
             return number(near["distance"])
 
         def solid(body: Body, near: Any, report: Report) -> Fraction:
+            check_solid_near(near)
             upper = number(near["points"]["distance"]) if "points" in near else Fraction()
             if self.moving.facets and body.facets:
                 solid_distance(self.moving, body, {"near": near, "lower": 0.0, "cover": ""}, report)
@@ -1066,6 +1117,8 @@ class Scene:
             return number(gap["gap"])
 
         def solid(_: Body, claim: Any, report: Report) -> Fraction:
+            check_letters(fields(claim, "lower near cover")["cover"], "mfpqwxs")
+            check_solid_near(claim["near"])
             report.partly = True
             report.unchecked.append(f"that it is at least {claim['lower']!r} away")
             return number(claim["lower"])
@@ -2579,23 +2632,7 @@ def shells(facets: list[Triangle]) -> list[Vector]:
 def open_facets(shape: Any) -> list[bool]:
     """Returns for each facet of a body whether it is part of a surface that is open."""
     pieces = shape.get("pieces", [])
-    for piece in pieces:
-        if not truth(piece.get("open", False)):
-            check_closed(piece)
     return [piece.get("open", False) for piece in pieces for _ in listed(piece["triangles"])]
-
-
-def check_closed(piece: Any) -> None:
-    """As many facets are on one side of each edge as on the other: something can be inside."""
-    points = [vector(v) for v in listed(piece["vertices"])]
-    sides: dict[tuple[Vector, Vector], int] = {}
-    for triangle in listed(piece["triangles"]):
-        for k in range(3):
-            a, b = points[triangle[k - 1]], points[triangle[k]]
-            sides[a, b] = sides.get((a, b), 0) + 1
-            sides[b, a] = sides.get((b, a), 0) - 1
-    if any(sides.values()):
-        raise RefusedError("a surface that is not said to be open has an edge with one facet")
 
 
 def has_open(shape: Any) -> bool:
@@ -3117,10 +3154,11 @@ class Walk:
         return min(here, until)
 
     def is_nested(self, everywhere: bool = False) -> bool:
-        """Whether one is inside the other where the path begins, where no surfaces meet.
+        """Whether one body has a corner inside the other where the path begins.
 
-        A corner of each shell tells. With ``everywhere``, all corners are looked at: one inside
-        the other body shows that they overlap, whether surfaces meet or not.
+        One corner of each shell is looked at. That is enough where no surfaces meet, because then
+        a shell is inside with all of its corners or with none. With ``everywhere``, all corners are
+        looked at.
         """
         fields_ = [of.at(0, Fraction()) for of in (self.moving, self.fixed)]
 

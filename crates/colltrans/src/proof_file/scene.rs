@@ -250,6 +250,9 @@ impl Scene {
 
     fn asked(&self) -> Result<Among<'_>, QueryError> {
         let Choices { keep, graze_tolerance, tolerance, start_overlap } = self.choices;
+        if let Some(tolerance) = tolerance.filter(|by| !(0.0..f64::INFINITY).contains(by)) {
+            return Err(QueryError::Tolerance { tolerance });
+        }
         let options = Options::default().with_keep(keep).with_graze_tolerance(graze_tolerance);
         let of_solids = SolidOptions::default().with_keep(keep).with_tolerance(tolerance);
         let Place { body, pose } = self.moving;

@@ -189,6 +189,7 @@ fn least_slab_gap(scene: &Scene, a: &Projected, b: &Projected) -> f64 {
 /// Checks whether no point of one node is a point of the other, by boxes, slabs, and the facets of long leaves.
 pub(crate) fn apart(scene: &Scene, a: &Projected, b: &Projected) -> bool {
     let (p, q) = (&scene.moving, &scene.fixed);
+    // The boxes of both bodies are boxes of the query frame only where both have its axes.
     !a.bounds.meets(&b.bounds)
         || beyond(scene, (p, a), (q, b))
         || beyond(scene, (q, b), (p, a))
@@ -215,8 +216,10 @@ fn leaf_avoids(
 /// Checks whether a plane certainly separates a facet, grown by `swell`, from a box of the other body: one that is
 /// parallel to a side of the box, to the facet, or to an edge of each.
 ///
-/// The facet is taken to the frame of the box. Its coordinates are off by the noise each before, and by less than
-/// twice the noise after that, and the rest of the computation adds less than a third time.
+/// The facet is taken to the frame of the box, by the transpose of the box's matrix. Where that matrix is not exactly a
+/// rotation, this moves points by the skew. Rounding: a coordinate of the query frame is off by one noise, and three of them
+/// move a point by less than two; the product with the transpose and the planes add less than one noise each. Together these
+/// are the four noises of the margin.
 fn facet_avoids(
     scene: &Scene,
     corners: [Corner; 3],

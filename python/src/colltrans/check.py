@@ -247,21 +247,26 @@ def minus(a: Vector, b: Vector) -> Vector:
 def check_closed(points: list[Vector], facets: list[tuple[int, int, int]]) -> None:
     """Checks that a surface that is not said to be open is closed: something can be inside.
 
-    As many facets are on one side of each edge as on the other, and all of them have an area.
+    As many facets are on one side of each edge as on the other, no facet has two corners at one
+    place, and one of them has an area.
     """
     first: dict[Vector, int] = {}
     # Corners at one place are one corner.
     names = {k: first.setdefault(points[k], k) for facet in facets for k in facet}
     sides: dict[tuple[int, int], int] = {}
+    has_area = False
     for facet in facets:
         a, b, c = (names[k] for k in facet)
         for side in ((a, b), (b, c), (c, a)):
             sides[side] = sides.get(side, 0) + 1
             sides[side[::-1]] = sides.get(side[::-1], 0) - 1
-        if not any(area(points, [a, b, c])):
-            raise RefusedError("a facet of a surface that is not said to be open has no area")
+        if a == b or b == c or c == a:
+            raise RefusedError("a facet of a surface that is not said to be open is an edge")
+        has_area = has_area or any(area(points, [a, b, c]))
     if any(sides.values()):
         raise RefusedError("a surface that is not said to be open has an edge with one facet")
+    if not has_area:
+        raise RefusedError("a surface that is not said to be open has no facet with an area")
 
 
 @dataclass(frozen=True)

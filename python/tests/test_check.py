@@ -442,7 +442,7 @@ def test_a_piece_that_is_not_open_is_closed(name: str) -> None:
     assert refused(file)
     triangles.append(last[::-1])
     assert refused(file)
-    triangles[-1] = [last[0]] * 3
+    triangles[:] = [[last[0]] * 3] * len(triangles)
     assert refused(file)
 
 

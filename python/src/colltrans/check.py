@@ -247,8 +247,7 @@ def minus(a: Vector, b: Vector) -> Vector:
 def check_closed(points: list[Vector], facets: list[tuple[int, int, int]]) -> None:
     """Checks that a surface that is not said to be open is closed: something can be inside.
 
-    As many facets are on one side of each edge as on the other, no facet has two corners at one
-    place, and one of them has an area.
+    As many facets are on one side of each edge as on the other, and one of them has an area.
     """
     first: dict[Vector, int] = {}
     # Corners at one place are one corner.
@@ -260,8 +259,6 @@ def check_closed(points: list[Vector], facets: list[tuple[int, int, int]]) -> No
         for side in ((a, b), (b, c), (c, a)):
             sides[side] = sides.get(side, 0) + 1
             sides[side[::-1]] = sides.get(side[::-1], 0) - 1
-        if a == b or b == c or c == a:
-            raise RefusedError("a facet of a surface that is not said to be open is an edge")
         has_area = has_area or any(area(points, [a, b, c]))
     if any(sides.values()):
         raise RefusedError("a surface that is not said to be open has an edge with one facet")

@@ -1068,8 +1068,9 @@ class Scene:
 
     def named(self, claims: Any) -> dict[int, Any]:
         """What is claimed of obstacles, each once and in order."""
-        found = {whole(k, len(self.obstacles)): claim for k, claim in claims}
-        if sorted(found) != [k for k, _ in claims]:
+        pairs = [listed(pair, 2) for pair in listed(claims)]
+        found = {whole(k, len(self.obstacles)): claim for k, claim in pairs}
+        if sorted(found) != [k for k, _ in pairs]:
             raise RefusedError("obstacles are not named once each, in order")
         return found
 
@@ -2210,7 +2211,7 @@ def spans(file: Any, described_bodies: bool = True) -> list[Span]:
         points = [_ZERO]
         if described_bodies:
             points, _ = Body.shape({"convex": file[side]})
-        spins = [Spin.read(points, piece) for piece in file[f"{side}_motion"]]
+        spins = [Spin.read(points, piece) for piece in listed(file[f"{side}_motion"])]
         times = [spin.since for spin in spins]
         if not times or times[0] != 0 or times[-1] >= 1 or sorted(set(times)) != times:
             raise NoProofError("the pieces of a motion do not begin one after the other, before 1")

@@ -697,11 +697,12 @@ def check_letters(cover: Any, letters: str = "mfapnxdos") -> None:
         raise NoProofError("a cover is a text of letters")
 
 
-def check_beginning(kind: str, where: Any, counts: tuple[int, int]) -> None:
-    """Checks that what a file says of the overlap of two solids at the start has its form.
+def overlap_of(value: Any, counts: tuple[int, int], *others: str) -> str:
+    """Returns which kind of overlap of two solids a file names, once its form is checked.
 
-    ``counts`` has the numbers of their facets.
+    ``counts`` has the numbers of their facets, and ``others`` the kinds that are no overlap.
     """
+    kind, where = one_of(value, *others, "facets", "moving_inside", "fixed_inside")
     if kind == "apart":
         check_letters(where)
     elif kind == "facets":
@@ -709,6 +710,7 @@ def check_beginning(kind: str, where: Any, counts: tuple[int, int]) -> None:
             whole(k, count)
     else:
         whole(where, counts[kind == "fixed_inside"])
+    return kind
 
 
 def clearance(
@@ -721,10 +723,7 @@ def clearance(
         raise NoProofError(f"an overlap is refused or ignored, not {claim['start_overlap']!r}")
     counts = (len(moving.facets), len(fixed.facets))
     if certificate["start"] != "assumed":
-        kind, where = one_of(
-            certificate["start"], "apart", "facets", "moving_inside", "fixed_inside"
-        )
-        check_beginning(kind, where, counts)
+        overlap_of(certificate["start"], counts, "apart")
     check_letters(certificate["cover"])
     if certificate["stop"] is not None:
         first = fields(certificate["stop"], "distance triangles")
@@ -888,8 +887,7 @@ def check_solid_near(near: Any) -> None:
     """Checks that what a file says of the nearest places of two solids has its form."""
     kind, claim = one_of(near, "points", "meeting")
     if kind == "meeting":
-        kind, where = one_of(claim, "facets", "moving_inside", "fixed_inside")
-        check_beginning(kind, where, (2**32, 2**32))
+        overlap_of(claim, (2**32, 2**32))
         return
     fields(claim, "triangles weights distance")
     for k in listed(claim["triangles"], 2):
@@ -2672,8 +2670,7 @@ def solid_motion(file: Any) -> Report:
     claimed = listed(proof["spans"])
     if proof["start"] == "assumed":
         raise RefusedError("whether the solids overlap when the motion begins is not proven")
-    begin, where = one_of(proof["start"], "apart", "facets", "moving_inside", "fixed_inside")
-    check_beginning(begin, where, (len(shapes[0][1]), len(shapes[1][1])))
+    begin = overlap_of(proof["start"], (len(shapes[0][1]), len(shapes[1][1])), "apart")
     if begin != "apart":
         if claimed or proof["meeting"] is not None:
             raise RefusedError("of solids that overlap when the motion begins nothing else is said")

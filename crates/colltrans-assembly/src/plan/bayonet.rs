@@ -11,7 +11,7 @@ use glam::DVec3;
 
 use super::PlanOptions;
 use super::order::Order;
-use super::replay::larger;
+use super::shadow::larger;
 use super::step::{Leg, Turn, TurnProof};
 use crate::bodies::{Bodies, Turned};
 use crate::boxes::span;

@@ -7,6 +7,7 @@ use glam::DVec3;
 use super::Way;
 use super::order::Order;
 use super::several::Aside;
+use super::shadow::{NOTHING, larger};
 use crate::bodies::Bodies;
 use crate::error::AssemblyError;
 
@@ -90,17 +91,6 @@ fn several(bodies: &Bodies, aside: &Aside, others: &[usize]) -> Result<Bounded, 
         look([a, b], at[a] - at[b], d * travel.value)?;
     }
     Ok(travel)
-}
-
-pub(super) const NOTHING: Bounded = Bounded { value: 0.0, lower: 0.0, upper: 0.0 };
-
-/// The larger one of two numbers.
-pub(super) fn larger(a: Bounded, b: Bounded) -> Bounded {
-    Bounded {
-        value: a.value.max(b.value),
-        lower: a.lower.max(b.lower),
-        upper: a.upper.max(b.upper),
-    }
 }
 
 fn refused(bodies: &Bodies, pair: [usize; 2], d: DVec3, t: f64) -> AssemblyError {

@@ -11,7 +11,6 @@ use std::collections::HashMap;
 use colltrans::{Aabb, Bounded};
 use glam::DVec3;
 
-use super::replay::{NOTHING, larger};
 use crate::bodies::Bodies;
 use crate::boxes::Living;
 use crate::part::Part;
@@ -114,5 +113,16 @@ impl Shadow {
             }
         });
         found.get()
+    }
+}
+
+pub(super) const NOTHING: Bounded = Bounded { value: 0.0, lower: 0.0, upper: 0.0 };
+
+/// The larger one of two numbers.
+pub(super) fn larger(a: Bounded, b: Bounded) -> Bounded {
+    Bounded {
+        value: a.value.max(b.value),
+        lower: a.lower.max(b.lower),
+        upper: a.upper.max(b.upper),
     }
 }

@@ -2084,14 +2084,14 @@ class Span:
         """That the bodies overlap deeper than is tolerated, or are as near as is to be kept."""
         off = sum((spin.off(_ONES) for spin in (self.moving, self.fixed)), Fraction())
         kind, claim = one_of(met, "deep", "near")
-        if kind == "deep" and self.keep <= 0:
+        if kind == "deep":
             surface = deep_claim(claim)["enclosure"]
             corners = [minus(q, p) for p, q in self.ends(surface["pairs"], time)]
 
             def least(n: Vector) -> Fraction:
                 return self.gap(n, time) - off
 
-            is_deep(claim, corners, least, (off, self.rounded()), -self.keep)
+            is_deep(claim, corners, least, (off, self.rounded()), max(-self.keep, Fraction()))
         elif kind == "near" and self.keep > 0:
             is_near(
                 claim, self.ends(near_claim(claim)["pairs"], time), (off, self.rounded()), self.keep
@@ -3290,7 +3290,7 @@ def do_meet(couple: Couple, met: Any, row: int, share: Fraction) -> None:
     """That two convex pieces overlap at a place, or are as near as the gap to be kept."""
     kind, claim = one_of(met, "deep", "near")
     keep, off = couple.keep, (couple.off(), couple.rounded())
-    if kind == "deep" and keep == 0:
+    if kind == "deep":
         pairs = deep_claim(claim)["enclosure"]["pairs"]
         corners = [minus(q, p) for p, q in couple.ends(pairs, row, share)]
         is_deep(claim, corners, lambda n: couple.gap(n, row, share), off, Fraction())

@@ -114,13 +114,19 @@ impl Looker<ConvexPolyhedron> for ConvexLooker {
         let pair = Pair { bodies: course.instant(time).bodies };
         let [keep, error] = [course.keep(), course.error()];
         self.steps.looks += 1;
-        if keep > 0.0 {
+        if keep > error {
             let near = pair.distance().ok()?.near;
             return (near.distance + error <= keep).then_some(Met::Near(near));
         }
-        let depth = pair.depth_beyond(error - keep).ok()?;
-        (depth.lower > error - keep).then(|| Met::Deep(Box::new(depth)))
+        let enough = deep_enough(keep, error);
+        let depth = pair.depth_beyond(enough).ok()?;
+        (depth.lower > enough).then(|| Met::Deep(Box::new(depth)))
     }
+}
+
+/// Returns the depth beyond which bodies meet that may be off by an `error`: of a gap to be kept they use all up.
+pub(super) fn deep_enough(keep: f64, error: f64) -> f64 {
+    error - keep.min(0.0)
 }
 
 impl ConvexLooker {

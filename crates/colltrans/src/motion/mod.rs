@@ -278,10 +278,10 @@ fn check_tolerated(depth: f64) -> Result<(), QueryError> {
     if is_one { Ok(()) } else { Err(QueryError::Tolerance { tolerance: depth }) }
 }
 
-/// Whether places that may be off by so much say anything of bodies.
+/// Whether places that may be off by so much say anything of bodies. Of two points they do, as nothing is smaller.
 fn check_fine<B: Hull>(bodies: [&B; 2], off: f64) -> Result<(), QueryError> {
     let size = bodies[0].reach() + bodies[1].reach();
-    if off > size { Err(QueryError::Coarse { off, size }) } else { Ok(()) }
+    if size > 0.0 && off > size { Err(QueryError::Coarse { off, size }) } else { Ok(()) }
 }
 
 /// Returns what is reported where the bodies meet, or may, between two times of a span.

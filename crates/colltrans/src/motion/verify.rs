@@ -8,6 +8,7 @@ use super::MotionCast;
 use super::answer::{Meeting, Met, MotionProof, PlaneAt};
 use super::bend::Looking;
 use super::course::Course;
+use super::look::deep_enough;
 use super::span::{Instant, spans};
 use crate::answer::CertificateError;
 use crate::body::ConvexPolyhedron;
@@ -186,7 +187,7 @@ pub(super) fn is_met<'a, C: Course<'a, Body = ConvexPolyhedron>>(
     Ok(match met {
         Met::Deep(depth) => {
             pair.verify(&**depth)?;
-            depth.lower > error - keep
+            depth.lower > deep_enough(keep, error)
         }
         Met::Near(near) => {
             pair.verify(near)?;

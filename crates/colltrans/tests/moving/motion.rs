@@ -4,7 +4,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::motion::{
-    Meeting, Motion, MotionCast, MotionContact, MotionOutcome, MotionProof, MotionProofError,
+    Meeting, Motion, MotionCast, MotionClearance, MotionContact, MotionOutcome, MotionProof,
+    MotionProofError,
 };
 use colltrans::{Cast, ConvexPolyhedron, Outcome, Pair, Pose, QueryError, Solid};
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
@@ -505,4 +506,42 @@ fn all_families_turn() {
         }
     }
     println!("{contacts}");
+}
+
+/// Of bodies with coordinates that are hardly above those which count as 0, the error of a place is more than the gap.
+#[test]
+fn bodies_overlap_at_the_start_whatever_gap_was_to_be_kept() {
+    let cube = |half: f64| {
+        ConvexPolyhedron::cuboid(DVec3::splat(-half), DVec3::splat(half)).expect("a cube")
+    };
+    for (half, keep) in [(1e-50, 2.8e-60), (1e-50, 0.0), (1.0, 1e-18), (1.0, 1e-17), (1.0, 1e-3)] {
+        let (p, q) = (cube(half), cube(2.0 * half));
+        let axis = DVec3::new(1.0, 2.0, 3.0).normalize();
+        let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, axis, 1.0).expect("a turn");
+        let cast = MotionCast::new(p.along(&turn), q.at(Pose::IDENTITY)).expect("a cast");
+        let cast = cast.keeping(keep).expect("a gap");
+        let outcome = cast.first_contact().expect("an answer");
+        assert!(matches!(outcome, MotionOutcome::Overlapping(_)), "{half} {keep}: {outcome:?}");
+        assert_eq!(cast.verify(outcome.proof()).expect("it holds"), [0.0, 0.0]);
+        let clearance = cast.clearance().expect("an answer");
+        assert!(
+            matches!(clearance, MotionClearance::Overlapping(_)),
+            "{half} {keep}: {clearance:?}"
+        );
+    }
+}
+
+/// Nothing is smaller than two points: that places are off by rounding does not make the question one too many.
+#[test]
+fn two_points_that_pass_through_each_other_graze() {
+    let point = ConvexPolyhedron::from_points(&[DVec3::ZERO]).expect("a point");
+    let motion = Motion::slide(Pose::IDENTITY, DVec3::X * 4.0).expect("a motion");
+    for x in [0.0, 1.0, 3.7] {
+        let there = Pose::from_translation(DVec3::X * x).expect("a pose");
+        let cast = MotionCast::new(point.along(&motion), point.at(there)).expect("a cast");
+        let outcome = cast.first_contact().expect("an answer");
+        let MotionOutcome::Grazing(contact) = &outcome else { panic!("{outcome:?}") };
+        assert!((contact.lower - 0.25 * x).abs() < 1e-12, "{}", contact.lower);
+        cast.verify(outcome.proof()).expect("it holds");
+    }
 }

@@ -260,3 +260,22 @@ fn a_path_of_bodies_with_many_facets_is_read_back() {
     let refused = PathProofFile::from_json(&deeper).unwrap_err().to_string();
     assert!(refused.contains("nested more than 400 deep"), "{refused}");
 }
+
+/// A depth of two cubes that are apart, as a file has it: it proves that they overlap by at least 0.
+fn depth_of_nothing(normal: [f64; 3]) -> Value {
+    let enclosure = json!({"pairs": [], "triangles": [], "normals": []});
+    json!({"deep": {"lower": 0.0, "upper": 0.0, "direction": normal, "enclosure": enclosure}})
+}
+
+#[test]
+fn a_depth_of_nothing_does_not_prove_that_a_gap_is_used_up() {
+    let file = sliding(1.0);
+    for normal in [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] {
+        for time in [0.0, 0.1] {
+            let meeting = json!({"time": time, "met": depth_of_nothing(normal)});
+            let mut forged = with(&file, "/proof/meeting", meeting);
+            forged = with(&forged, "/proof/spans", json!([[]]));
+            assert!(says(&forged).is_err(), "{:?}", says(&forged));
+        }
+    }
+}

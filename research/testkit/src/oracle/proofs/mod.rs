@@ -4,7 +4,7 @@
 //! file is false by the bodies in it alone, exactly ([docs/proofs.md](../../../../../docs/proofs.md) is the
 //! specification). [`Campaign::examine`] takes one proof through
 //!
-//! - [`mutants`]: any number, name or list of the file is changed;
+//! - [`mutants`]: any number, name or list of the file is changed, or replaced by that of another proof;
 //! - mutants of its kind, normals tilted as far as is admitted say, of which each claim is pushed as far as a checker
 //!   goes, from the weakest claim there is.
 //!
@@ -30,6 +30,9 @@ use mutants::{number, with};
 
 /// Mutants of each proof that know nothing of what it says.
 const BLIND: usize = 30;
+
+/// Mutants of each proof that have a part of another one.
+const GRAFTED: usize = 6;
 
 /// Mutants of each proof whose claims are pushed.
 const PUSHED: usize = 4;
@@ -163,6 +166,14 @@ impl<'a> Campaign<'a> {
             }
             campaign.judge(&worst.to_string(), "worst");
             campaign.push_one(&worst, random);
+        }
+        let other = (kind.base)(random.bits()).and_then(|text| serde_json::from_str(&text).ok());
+        for _ in 0..GRAFTED {
+            if let Some(mutant) =
+                other.as_ref().and_then(|other| mutants::graft(&file, other, random))
+            {
+                campaign.judge(&mutant, "grafted");
+            }
         }
     }
 

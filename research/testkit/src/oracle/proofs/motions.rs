@@ -6,7 +6,7 @@
 use colltrans::motion::{Motion, MotionCast, MotionProofFile, SolidMotionProofFile};
 use colltrans::{ConvexPolyhedron, Pose, Solid};
 use glam::{DMat3, DVec3};
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::casts::{other_normal, other_pair, other_weights, rounded_cloud};
 use super::checkers::Verdict;
@@ -240,6 +240,15 @@ fn worst(file: &mut Value, random: &mut Random) {
 
 /// Makes the proof of a meeting worse.
 pub(super) fn met(file: &mut Value, at: &str, random: &mut Random) {
+    if random.one_in(8) {
+        // An overlap by at least nothing, which is true of any two bodies.
+        let enclosure = json!({"pairs": [], "triangles": [], "normals": []});
+        let direction = random.direction().to_array();
+        let deep =
+            json!({"lower": 0.0, "upper": 0.0, "direction": direction, "enclosure": enclosure});
+        *file = with(file, at, Some(json!({"deep": deep})));
+        return;
+    }
     if file.pointer(&format!("{at}/near")).is_some() {
         if random.one_in(2) {
             other_pair(file, &format!("{at}/near/pairs"), random);

@@ -76,6 +76,20 @@ pub fn random(file: &Value, focus: &str, random: &mut Random) -> String {
     with(file, &at, change).to_string()
 }
 
+/// Returns a file with a part of another proof in the place of its own: other certificates, and where there are several
+/// kinds of one, other kinds. `None` if there is none that differs.
+pub fn graft(file: &Value, other: &Value, random: &mut Random) -> Option<String> {
+    let differs = |at: &String| {
+        let (own, others) = (file.pointer(at), other.pointer(at));
+        own.is_some() && own != others && others.is_some_and(|part| !part.is_number())
+    };
+    let places: Vec<String> = pointers(other).into_iter().filter(differs).collect();
+    // The whole file is the last one.
+    let (_, inner) = places.split_last()?;
+    let at = inner.get(random.index(inner.len().max(1)))?;
+    Some(with(file, at, other.pointer(at).cloned()).to_string())
+}
+
 /// Returns a change of a value within its type.
 fn changed(old: &Value, random: &mut Random) -> Option<Value> {
     Some(match old {

@@ -189,10 +189,12 @@ def test_several_pairs_are_asked_one_question() -> None:
     files = [proof("motion_contact"), proof("motion_free")]
     several = {"format": "colltrans motions proof 1", "proofs": files}
     assert len(check.check(json.dumps(several)).holds) == 3
-    # A pair of which planes alone prove nothing is one of solids.
-    solids = {**several, "proofs": [*files, proof("solids_contact")]}
+    # A pair of which planes alone prove nothing is one of solids, as they are.
+    assert refused({**several, "proofs": [*files, proof("solids_contact")]})
+    whole = proof("solids_whole")
+    solids = {**several, "proofs": [*files, whole]}
     found = check.check(json.dumps(solids))
-    alone = check.check(json.dumps(proof("solids_contact")))
+    alone = check.check(json.dumps(whole))
     assert found.holds[3:] == [f"pair 2: {line}" for line in alone.holds]
     assert found.unchecked == [f"pair 2: {line}" for line in alone.unchecked]
     entry: tuple[Any, ...] = ("proofs", 2, "proof", "meeting", "time")

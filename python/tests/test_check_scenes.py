@@ -47,6 +47,7 @@ def holds(file: Any) -> bool:
 def test_what_is_within_a_length_is_said_once() -> None:
     assert holds(scene(within(2.0, closer=[[0, near(2.0)]], apart=[[1, apart(3.0)]]), 3.0, 4.0))
     assert holds(scene(within(2.0, closer=[[0, near(2.0)]]), 3.0, 4.0))
+    assert holds(scene(within(2.0, undecided=[0, 1]), 3.0, 4.0))
     for lists in (
         {"closer": [[0, near(2.0)]], "apart": [[0, apart(1e9)]]},
         {"closer": [[0, near(2.0)]], "undecided": [0]},

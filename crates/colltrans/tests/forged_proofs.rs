@@ -1,9 +1,9 @@
 //! Forged proofs: what both checkers accept of them is true (`campaign --proofs` does this at length).
 #![cfg(feature = "json")]
 
-use colltrans::solid::AsSolid;
+use colltrans::solid::{AsSolid, SolidOptions, StartOverlap};
 use colltrans::{
-    Cast, CertificateError, ConvexPolyhedron, Pair, Pose, ProofFile, Separation, Solid,
+    Cast, CertificateError, Clearance, ConvexPolyhedron, Pair, Pose, ProofFile, Separation, Solid,
 };
 use colltrans_testkit::oracle::proofs::checkers::{Fractions, Verdict, verify};
 use colltrans_testkit::oracle::proofs::{Campaign, KINDS, Tally};
@@ -195,4 +195,81 @@ fn both_checkers_take_the_distance_of_a_union() {
             assert_eq!(fractions.check(&text), Verdict::HoldsPartly, "{text}");
         }
     }
+}
+
+/// Statements count vertices, so that all of them have to be there for both checkers.
+#[test]
+fn a_vertex_of_a_piece_that_no_facet_uses_is_refused() {
+    let mut fractions = fractions();
+    let (a, b) = (cube(), cube());
+    let (p, q) = (a.as_solid().expect("a solid"), b.as_solid().expect("a solid"));
+    let cast = Cast::new(p.at(pose(-3.0, 0.25, 0.5)), q.at(pose(0.0, 0.0, 0.0)), DVec3::X);
+    let cast = cast.expect("a query");
+    let proof = ProofFile::of_solids(&cast, [&[p], &[q]]).expect("a proof");
+    let mut file: Value = serde_json::from_str(&proof.to_json()).expect("JSON");
+    let verdicts_of = |file: &Value, fractions: &mut Option<Fractions>| -> Vec<bool> {
+        verdicts(file, fractions).iter().map(|v| !matches!(v, Verdict::Refused(_))).collect()
+    };
+    assert!(verdicts_of(&file, &mut fractions).iter().all(|holds| *holds));
+    let vertices = file["fixed"]["pieces"][0]["vertices"].as_array_mut().expect("vertices");
+    vertices.push(json!([0.5, 0.5, 0.5]));
+    assert_refused(&file, &mut fractions);
+}
+
+/// Facets that stop a body after it overlapped need not look at each other as they are, and meet all the same.
+#[test]
+fn stops_after_an_overlap_are_where_both_checkers_find_them() {
+    let mut fractions = fractions();
+    let bolt = bolt();
+    let random = &mut Random::new(20);
+    let mut stopped = 0;
+    for k in 0..600 {
+        let cube =
+            ConvexPolyhedron::cuboid(DVec3::ZERO, random.vector().abs() + 0.2).expect("a box");
+        let cube = cube.as_solid().expect("a solid");
+        let place = [DVec3::ZERO, random.grid(-2, 2)][k % 2] + 0.25 * random.grid(-2, 2);
+        let (p, q) =
+            (cube.at(Pose::from_translation(place).expect("a pose")), bolt.at(Pose::IDENTITY));
+        let direction = random.pick(&[DVec3::X, DVec3::NEG_Z, DVec3::new(1.0, 0.0, 0.25)]);
+        let options = SolidOptions::default()
+            .with_start_overlap(StartOverlap::Ignore)
+            .with_tolerance(random.pick(&[1e-6, 1e-3, 1e-2]));
+        let cast = Cast::new(p, q, direction).expect("a query");
+        let cast = cast.with_options(options).expect("a tolerance");
+        let Ok(Clearance::Blocked { .. }) = cast.clearance() else { continue };
+        stopped += 1;
+        let proof = ProofFile::of_solids(&cast, [&[cube], &[&bolt]]).expect("a proof");
+        let file: Value = serde_json::from_str(&proof.to_json()).expect("JSON");
+        for verdict in verdicts(&file, &mut fractions) {
+            assert!(verdict.accepts(), "{verdict:?}: {file}");
+        }
+    }
+    assert!(stopped > 30, "{stopped} are stopped");
+}
+
+/// A shank with a head and a chamfer, of 12 sides.
+fn bolt() -> Solid {
+    let rings = [(0.5, -3.0), (0.5, 0.0), (1.0, 0.0), (1.0, 0.5), (0.75, 0.75)];
+    let n = 12;
+    let mut vertices = Vec::new();
+    for (r, z) in rings {
+        for k in 0..n {
+            let (y, x) = (std::f64::consts::TAU * f64::from(k) / f64::from(n)).sin_cos();
+            vertices.push(DVec3::new(r * x, r * y, z));
+        }
+    }
+    let at = |ring: u32, k: u32| ring * n + k % n;
+    let mut facets = Vec::new();
+    for ring in 0..rings.len() as u32 - 1 {
+        for k in 0..n {
+            facets.push([at(ring, k), at(ring, k + 1), at(ring + 1, k + 1)]);
+            facets.push([at(ring, k), at(ring + 1, k + 1), at(ring + 1, k)]);
+        }
+    }
+    let top = rings.len() as u32 - 1;
+    for k in 1..n - 1 {
+        facets.push([at(0, 0), at(0, k + 1), at(0, k)]);
+        facets.push([at(top, 0), at(top, k), at(top, k + 1)]);
+    }
+    Solid::from_mesh(&vertices, &facets).expect("a bolt")
 }

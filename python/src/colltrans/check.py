@@ -301,6 +301,8 @@ class Body:
                     a, b, c = listed(triangle, 3)
                     corners = [base + whole(k, len(points) - base) for k in (a, b, c)]
                     facets.append((corners[0], corners[1], corners[2]))
+                if {k for facet in facets[begin:] for k in facet} != set(range(base, len(points))):
+                    raise RefusedError("a piece has a vertex that no facet uses")
                 if not each.get("open", False):
                     check_closed(points, facets[begin:])
         else:
@@ -1089,6 +1091,11 @@ class Scene:
             self.report.unchecked += [f"obstacle {k}: {line}" for line in scratch.unchecked]
         return found
 
+    def told(self, line: str, since: int) -> None:
+        """Notes a claim: it holds, unless some of it was left unchecked since then."""
+        checked = len(self.report.unchecked) == since
+        (self.report.holds if checked else self.report.unchecked).append(line)
+
     def near(self, k: int, claim: Any) -> Fraction:
         """The distance that an obstacle does not exceed."""
 
@@ -1133,35 +1140,39 @@ class Scene:
     def nearest(self, claim: Any) -> None:
         lower = number(fields(claim, "lower obstacle near apart")["lower"])
         nearest = whole(claim["obstacle"], len(self.obstacles))
+        open_lines = len(self.report.unchecked)
         upper, claims = self.near(nearest, claim["near"]), self.named(claim["apart"])
         if not 0 <= lower <= upper:
             raise RefusedError("the bounds are in the wrong order")
-        self.report.holds.append(f"obstacle {nearest} is at most {float(upper)!r} away")
+        self.told(f"obstacle {nearest} is at most {float(upper)!r} away", open_lines)
+        open_lines = len(self.report.unchecked)
         for k in range(len(self.obstacles)) if lower > 0 else claims:
             if not self.is_apart(k, claims.get(k), lower, strictly=False):
                 raise RefusedError(f"obstacle {k} is not proven to be so far away")
         if lower > 0:
             all_of = f"none of {len(self.obstacles)} obstacles"
-            self.report.holds.append(f"{all_of} is nearer than {float(lower)!r}")
+            self.told(f"{all_of} is nearer than {float(lower)!r}", open_lines)
 
     def within(self, claim: Any) -> None:
         fields(claim, "length closer undecided apart")
         length, closer = claim["length"], self.named(claim["closer"])
-        open_ones = self.named([(k, None) for k in listed(claim["undecided"])])
+        open_ones = self.named([[k, None] for k in listed(claim["undecided"])])
         claims = self.named(claim["apart"])
         if length is not None and number(length) < 0:
             raise RefusedError(f"a length of {length!r} is negative")
         if len({*closer, *open_ones, *claims}) < len(closer) + len(open_ones) + len(claims):
             raise RefusedError("of an obstacle two things are said")
+        open_lines = len(self.report.unchecked)
         for k, near in closer.items():
             if self.near(k, near) > (number(length) if length is not None else math.inf):
                 raise RefusedError(f"obstacle {k} is not proven to be so near")
+        self.told(f"{len(closer)} obstacles are at most {length!r} away", open_lines)
+        open_lines = len(self.report.unchecked)
         others = [k for k in range(len(self.obstacles)) if k not in closer and k not in open_ones]
         for k in others:
             if length is None or not self.is_apart(k, claims.get(k), number(length), strictly=True):
                 raise RefusedError(f"obstacle {k} is not proven to be so far away")
-        self.report.holds.append(f"{len(closer)} obstacles are at most {length!r} away")
-        self.report.holds.append(f"{len(others)} obstacles are farther")
+        self.told(f"{len(others)} obstacles are farther", open_lines)
         if open_ones:
             self.report.unchecked.append(f"{len(open_ones)} obstacles, of which nothing is claimed")
 
@@ -1177,21 +1188,23 @@ class Scene:
             self.report.holds.append(
                 f"who overlaps sideways by no more than {float(self.graze)!r} counts as passed"
             )
+        open_lines = len(self.report.unchecked)
         bounds = {k: self.passed(k, of, d) for k, of in claims.items()}
         if stop is not None:
             upper = bounds[whole(stop, len(self.obstacles))][1]
             if upper == -math.inf and lower == 0:
-                self.report.holds.append(f"obstacle {stop} overlaps the moving body")
+                self.told(f"obstacle {stop} overlaps the moving body", open_lines)
                 return
             if upper is None or lower is None or lower > max(upper, 0):
                 raise RefusedError(f"obstacle {stop} is not proven to stop the moving body")
-            self.report.holds.append(f"obstacle {stop} stops it by {float(upper)!r}")
+            self.told(f"obstacle {stop} stops it by {float(upper)!r}", open_lines)
         for k, body in enumerate(self.obstacles):
             bound = bounds[k][0] if k in bounds else box_entry(self.box, box(body), d, self.keep)
-            if not beyond(bound, lower) or (bound == 0 and k not in bounds):
+            overlaps = k in bounds and bounds[k][1] == -math.inf
+            if overlaps or not beyond(bound, lower) or (bound == 0 and k not in bounds):
                 raise RefusedError(f"obstacle {k} is not proven to stop nothing before")
         never = "never" if lower is None else f"not before a translation of {float(lower)!r}"
-        self.report.holds.append(f"{len(self.obstacles)} obstacles stop the moving body {never}")
+        self.told(f"{len(self.obstacles)} obstacles stop the moving body {never}", open_lines)
 
     def passed(self, k: int, claim: Any, d: Vector) -> Any:
         """Bounds of where an obstacle stops the moving body; None if it does not."""
@@ -1199,6 +1212,7 @@ class Scene:
         def solid(_: Body, proof: Any, report: Report) -> Any:
             report.partly = True
             report.unchecked.append("when it stops the moving body")
+            proof = fields(proof, "tolerance start lower cover", "stop")
             stop, start = proof["stop"], proof["start"]
             overlaps = start != "assumed" and "apart" not in start
             if stop is None and overlaps and self.refuses:
@@ -2740,6 +2754,8 @@ def motions(file: Any) -> Report:
     for number_, proof in enumerate(file["proofs"]):
         if proof["format"] not in kinds:
             raise NoProofError(f"the format of a proof is {proof['format']!r}")
+        if proof["format"] == SOLID_MOTION_FORMAT and number(proof["proof"]["tolerance"]) != 0:
+            raise NoProofError("a pair as solids is one of solids as they are, of tolerance 0")
         found = kinds[proof["format"]](proof)
         report.holds += [f"pair {number_}: {line}" for line in found.holds]
         report.unchecked += [f"pair {number_}: {line}" for line in found.unchecked]
@@ -3440,6 +3456,8 @@ def path(file: Any) -> Report:
     for of in listed(file["bodies"]):
         check_faces(report, of["name"], of["body"].get("convex"))
     covers, pairs, last = listed(proof["covers"]), robot.pairs, len(robot.rows) - 1
+    if not pairs:
+        raise NoProofError("there is no pair of bodies")
     if len(covers) != len(pairs):
         raise RefusedError("there is not a cover for each pair")
     begin, reached, open_, begins = (0, Fraction()), (last, Fraction()), 0, True

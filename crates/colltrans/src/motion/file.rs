@@ -341,6 +341,13 @@ impl MotionProofFiles {
             return wrong("there are no proofs; there has to be one of each pair of bodies".into());
         }
         let all = Self(proofs);
+        let is_shrunk = |proof: &PairFile| match proof {
+            PairFile::Convex(_) => false,
+            PairFile::Solids(file) => file.is_shrunk(),
+        };
+        if all.0.iter().any(is_shrunk) {
+            return wrong("a pair as solids is one of solids as they are, of tolerance 0".into());
+        }
         let keep = all.keep();
         let is_other =
             |proof: &&PairFile| matches!(proof, PairFile::Convex(_)) && proof.keep() != keep;

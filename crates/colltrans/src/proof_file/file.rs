@@ -300,8 +300,13 @@ fn lowest(lower: &[u32], mut v: u32) -> u32 {
 
 pub(super) fn union(pieces: &[PieceRecord], which: &'static str) -> Result<Solid, CaseError> {
     let refused = |error| CaseError::Solid { which, error };
-    let solids: Result<Vec<Solid>, SolidError> = pieces.iter().map(PieceRecord::solid).collect();
-    let mut solids = solids.map_err(refused)?;
+    let made = |piece: &PieceRecord| {
+        let solid = piece.solid().map_err(refused)?;
+        // Statements may count vertices: none is left out of a piece.
+        let is_whole = solid.vertices().len() == piece.vertices.len();
+        if is_whole { Ok(solid) } else { Err(CaseError::Changed { which }) }
+    };
+    let mut solids: Vec<Solid> = pieces.iter().map(made).collect::<Result<_, _>>()?;
     if solids.len() == 1 {
         return Ok(solids.remove(0));
     }

@@ -342,9 +342,10 @@ impl fmt::Display for SceneStatement {
             }
             Self::Within(NearbyProof { length, closer, undecided, .. }) => {
                 let closer: Vec<ObstacleId> = closer.iter().map(|(id, _)| *id).collect();
-                write!(f, "{} at most {length:?} away", listed(&closer))?;
+                let (which, is) = listed(&closer);
+                write!(f, "{which} {is} at most {length:?} away")?;
                 if !undecided.is_empty() {
-                    write!(f, ", of {} nothing is said", listed(undecided))?;
+                    write!(f, ", of {} nothing is said", listed(undecided).0)?;
                 }
                 f.write_str(", all others are farther")
             }
@@ -373,14 +374,14 @@ impl fmt::Display for SceneStatement {
     }
 }
 
-/// How many, and which, with what they are.
-fn listed(of: &[ObstacleId]) -> String {
+/// Returns how many, and which, and the verb that they take.
+fn listed(of: &[ObstacleId]) -> (String, &'static str) {
     let named: Vec<String> = of.iter().take(NAMED).map(ToString::to_string).collect();
     let more = if of.len() > NAMED { ", ..." } else { "" };
     let (count, is) = (of.len(), if of.len() == 1 { "is" } else { "are" });
     if of.is_empty() {
-        "none is".into()
+        ("none".into(), "is")
     } else {
-        format!("{count} ({}{more}) {is}", named.join(", "))
+        (format!("{count} ({}{more})", named.join(", ")), is)
     }
 }

@@ -7,6 +7,7 @@ use colltrans::motion::path::{
 use colltrans::motion::{
     Motion, MotionCast, MotionProofFile, MotionProofFiles, SolidMotionProofFile,
 };
+use colltrans::solid::AsSolid;
 use colltrans::{ConvexPolyhedron, Pose, Solid};
 use colltrans_testkit::shapes::Mesh;
 use colltrans_testkit::solids::turned;
@@ -277,5 +278,22 @@ fn a_depth_of_nothing_does_not_prove_that_a_gap_is_used_up() {
             forged = with(&forged, "/proof/spans", json!([[]]));
             assert!(says(&forged).is_err(), "{:?}", says(&forged));
         }
+    }
+}
+
+/// Of several pairs it is said that the bodies do not meet: none of them may be shrunk.
+#[test]
+fn a_pair_of_shrunk_solids_proves_nothing_of_the_bodies() {
+    let cube = cube().as_solid().expect("a solid").clone();
+    let motion = Motion::slide(Pose::IDENTITY, DVec3::X * 4.0).expect("a motion");
+    let there = Pose::from_translation(DVec3::new(2.0, 0.75, 0.0)).expect("a pose");
+    let cast = MotionCast::<Solid>::new(cube.along(&motion), cube.at(there)).expect("a cast");
+    for (tolerance, holds) in [(0.0, true), (0.6, false)] {
+        let cast = cast.clone().tolerating(tolerance).expect("a tolerance");
+        let (_, file) = SolidMotionProofFile::answer(&cast).expect("an answer");
+        let proof: Value = serde_json::from_str(&file.to_json()).expect("JSON");
+        let several = json!({"format": "colltrans motions proof 1", "proofs": [proof]});
+        let read = MotionProofFiles::from_json(&several.to_string());
+        assert_eq!(read.is_ok(), holds, "{tolerance}");
     }
 }

@@ -96,6 +96,9 @@ pub enum PathFileError {
         /// That name.
         name: String,
     },
+    /// There is no pair of bodies, so that nothing is said.
+    #[error("there is no pair of bodies")]
+    NoPairs,
     /// An axis has another length than 1: frames would be elsewhere by what rounding makes of it.
     #[error("the axis {:?} of frame {frame} is not a unit vector", .axis.to_array())]
     Axis {
@@ -111,8 +114,11 @@ impl PathProofFile {
     /// have no name of their own get one by their number.
     ///
     /// # Errors
-    /// As [`PathCast::first_contact`], and a solid that its own facets do not make once more.
+    /// As [`PathCast::first_contact`], a solid that its own facets do not make once more, and no pair at all.
     pub fn answer(cast: &PathCast, names: &[String]) -> Result<(PathOutcome, Self), PathFileError> {
+        if cast.pairs.is_empty() {
+            return Err(PathFileError::NoPairs);
+        }
         let names = names_of(cast.shapes.len(), names);
         let carried =
             cast.shapes.iter().zip(&cast.frames).zip(&names).map(|((shape, frame), name)| {
@@ -237,6 +243,9 @@ impl PathProofFile {
         let bodies: Vec<Carried> =
             file.bodies.into_iter().map(body).collect::<Result<_, CaseError>>()?;
         let pairs = numbers_of(&file.statement.pairs, &bodies)?;
+        if pairs.is_empty() {
+            return Err(PathFileError::NoPairs);
+        }
         let file = Self {
             mechanism: Mechanism::new(file.frames)?,
             path: file.path,

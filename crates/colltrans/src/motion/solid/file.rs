@@ -82,6 +82,11 @@ impl SolidMotionProofFile {
         self.keep
     }
 
+    /// Returns whether it is about solids that a tolerance has shrunk.
+    pub(in crate::motion) fn is_shrunk(&self) -> bool {
+        self.proof.tolerance != 0.0
+    }
+
     /// Returns the time up to which the solids do not meet, and the one at which they do, if these are claimed.
     pub(in crate::motion) fn claims(&self) -> (Option<f64>, Option<f64>) {
         let SolidMotionProof { spans, meeting, .. } = &self.proof;

@@ -20,7 +20,8 @@
 //! point, unless these are all but on edge. Then all that is known from above is that the shrunk bodies
 //! overlap beyond their own upper bound, and from below that the two facets do not meet before the least
 //! gap at any corner that their common shadow may have ([`Opposed::least_in_doubt`]); where that says too
-//! little, whole numbers decide after all. The lower bound is never larger than that of the shrunk bodies.
+//! little, whole numbers decide after all. Facets that do not look at each other may still meet: no lower bound is larger
+//! than where they do as two convex bodies. Nor is it larger than that of the shrunk bodies.
 //!
 //! So, of [`SolidContact::translation`]: up to `lower` the shrunk bodies do not overlap, which is
 //! proven, and those two facets have not met; beyond `upper` the bodies overlap. Nothing is said of other facets of the
@@ -35,9 +36,13 @@ use super::leaf::{Gap, Meeting, Opposed, listed, nearest_after};
 use super::rim;
 use super::scene::{Corner, Scene, Side};
 use super::search::{Aim, Found, exact_gap_of};
-use crate::answer::{Bounded, SolidSteps};
-use crate::body::Feature;
+use crate::answer::{Bounded, Grazing, Outcome, SolidSteps};
 use crate::body::solid::Solid;
+use crate::body::{ConvexPolyhedron, Feature};
+use crate::setting::Setting;
+use crate::solve::observe::NoObserver;
+use crate::solve::options::{Focus, Options};
+use crate::solve::{Left, WarmStart, search};
 
 /// Where a solid is stopped.
 ///
@@ -250,8 +255,34 @@ pub(crate) fn true_place(
             least = f64::INFINITY;
         }
     }
-    let lower = (least - noise).min(value - error).min(shrunk.lower);
+    let lower = (least - noise).min(value - error).min(shrunk.lower).min(first_meeting(bare, pair));
     Bounded { value, lower, upper: shrunk.upper }
+}
+
+/// Returns a lower bound of the translation at which two triangles meet, whichever way they look, as the convex bodies
+/// that they are: infinity if they never meet, minus infinity if that search has no answer.
+fn first_meeting(bare: &Scene, pair: [u32; 2]) -> f64 {
+    let found = || {
+        let body = |side: &Side, t: u32| {
+            let corners = side.solid.triangles()[t as usize];
+            let corners = corners.map(|v| side.solid.vertices()[v as usize]);
+            ConvexPolyhedron::from_points(&corners).ok()
+        };
+        let f = body(&bare.moving, pair[0])?;
+        let g = body(&bare.fixed, pair[1])?;
+        let bodies = bare.setting.bodies.holding([&f, &g]);
+        let setting = Setting::of(bodies, bare.setting.direction).ok()?;
+        let (last, mut next) = (WarmStart::Nothing, Left::default());
+        let options = Options::default();
+        search(&setting, &options, &Focus::NONE, &last, &mut next, &mut NoObserver).ok()
+    };
+    match found() {
+        Some(Outcome::Contact(contact) | Outcome::Grazing(Grazing { contact, .. })) => {
+            contact.certificate.lower
+        }
+        Some(Outcome::Separated(_)) => f64::INFINITY,
+        None => f64::NEG_INFINITY,
+    }
 }
 
 /// A normal of the plane through three points.

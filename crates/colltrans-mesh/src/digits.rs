@@ -17,7 +17,12 @@
 //!
 //! Digits are those of the shortest decimal that reads as the same double. Up to 15 significant digits that is
 //! the text of the file. Exponents and trailing zeros are no part of a double, so readers record these
-//! ([`Printed`]). The library that reads PLY hides the text, so such files are judged by their doubles alone.
+//! ([`Printed`]).
+//!
+//! The format alone may be finer than the numbers: a program that computes in single precision prints them with
+//! nine digits, eight decimals, or all digits of a double. So each number is compared with the nearest one in single
+//! precision ([`Decimal::single_bits`]). If nearly all are such numbers rounded to the printed place, and chance
+//! explains this with a probability below `2^-SURE` only, the file is in single precision.
 
 use std::collections::HashMap;
 use std::fmt;
@@ -62,6 +67,11 @@ const MANY: usize = 4;
 const GRID: u64 = 8;
 /// One number in this many may be printed in another way than the others.
 const OUTLIERS: usize = 16;
+/// Minimum evidence that numbers are in single precision, in bits: the negative binary logarithm of the probability
+/// that chance explains them.
+const SURE: f64 = 20.0;
+/// Maximum evidence of one number, in bits: [`MANY`] of these are sure.
+const MOST_BITS: f64 = SURE / MANY as f64;
 /// Maximum number of coordinates that are looked at; of more, some at even distances.
 const LOOKED_AT: usize = 1 << 16;
 
@@ -126,60 +136,68 @@ impl NumberFormat {
     /// Returns the format of the coordinates of a text, of vertices in use; `single` if they were read in single
     /// precision.
     pub(crate) fn of_text(mesh: &Mesh, single: bool) -> Self {
+        let different = different_numbers(mesh);
+        let numbers = numbers(&different, single);
+        let rounded: Vec<Decimal> =
+            numbers.iter().filter(|x| x.may_be_rounded).map(|x| x.decimal).collect();
         let read_as = if single { Self::Single } else { Self::Double };
-        let used: Vec<usize> = mesh.indices_in_use().collect();
-        let step = used.len().div_ceil(LOOKED_AT / 3).max(1);
-        let looked_at = used.into_iter().step_by(step).flat_map(|v| {
-            let printed = mesh.printed.get(v).copied().unwrap_or_default();
-            mesh.vertices[v].to_array().into_iter().zip(printed)
-        });
-        let different: HashMap<u64, Printed> =
-            looked_at.map(|(x, printed)| (x.abs().to_bits(), printed)).collect();
-        let mut text = String::new();
-        let mut decimal = |bits: u64| Decimal::of(f64::from_bits(bits), single, &mut text);
-        let rounded: Vec<Decimal> = different
-            .iter()
-            .filter_map(|(bits, printed)| Some((decimal(*bits)?, printed)))
-            .filter(|(decimal, printed)| decimal.may_be_rounded(**printed))
-            .map(|(decimal, _)| decimal)
-            .collect();
-        let most = |of: fn(&Decimal) -> i32| {
-            let mut counts: Vec<i32> = rounded.iter().map(of).collect();
-            counts.sort_unstable_by_key(|count| std::cmp::Reverse(*count));
-            counts.get(counts.len() / OUTLIERS).copied().unwrap_or(0)
+        let found = Self::of_rounded(&rounded, different.values()).unwrap_or(read_as);
+        let largest = largest_magnitude(mesh.vertices_in_use());
+        let is_shortest = || found != Self::Double && are_shortest_singles(&rounded);
+        // A few numbers may not show how they are rounded.
+        let [digits, decimals] = [most(&rounded, |x| x.digits), most(&rounded, |x| x.decimals)];
+        let others = [Self::Digits(digits as u32), Self::Decimals(decimals.max(0) as u32)];
+        let is_other = || {
+            found == Self::Double && others.into_iter().any(|format| are_singles(&numbers, format))
         };
-        let (digits, decimals) = (most(|x| x.digits), most(|x| x.decimals));
-        let is_fixed = || match fixed_places(different.values()) {
+        let is_single = || is_shortest() || are_singles(&numbers, found) || is_other();
+        if Self::Single.precision(largest) > found.precision(largest) && is_single() {
+            Self::Single
+        } else {
+            found
+        }
+    }
+
+    /// Returns the format of coordinates that are stored as doubles: single precision if these are numbers of single
+    /// precision.
+    pub(crate) fn of_doubles(mesh: &Mesh) -> Self {
+        let different = different_numbers(mesh);
+        let count = different.keys().filter(|bits| is_single(f64::from_bits(**bits))).count();
+        if !is_nearly_all(count, different.len()) {
+            return Self::Double;
+        }
+        let numbers = numbers(&different, false);
+        if are_singles(&numbers, Self::Double) { Self::Single } else { Self::Double }
+    }
+
+    /// Returns decimals or digits, if numbers that may be rounded show that they are; `None` if they are exact, or
+    /// have all digits that they were read with.
+    fn of_rounded<'a>(
+        rounded: &[Decimal],
+        printed: impl Iterator<Item = &'a Printed>,
+    ) -> Option<Self> {
+        let (digits, decimals) = (most(rounded, |x| x.digits), most(rounded, |x| x.decimals));
+        let is_fixed = || match fixed_places(printed) {
             Some(FixedPlaces::Decimals(fixed)) => fixed == decimals,
             Some(FixedPlaces::Digits(fixed)) => fixed == digits,
             None => false,
         };
-        let is_short = digits <= EXACT as i32 && !is_fixed();
-        if is_short || digits > ALL as i32 && !single {
-            return read_as;
+        if digits > ALL as i32 || digits <= EXACT as i32 && !is_fixed() {
+            return None;
         }
         let missing = (digits - 6).clamp(0, 2);
         let count = |is: &dyn Fn(&Decimal) -> bool| rounded.iter().filter(|x| is(x)).count();
         let by_place = count(&|x| x.decimals == decimals);
         let [by_digits, nearly] = [0, missing].map(|less| count(&|x| x.digits >= digits - less));
         let many = |count: usize| count >= MANY && 2 * count > rounded.len();
-        if rounded.len() >= MANY && is_grid(&rounded) {
-            return read_as;
-        }
-        let found = if many(by_place) && by_place >= by_digits && decimals > 0 {
-            Self::Decimals(decimals as u32)
+        if rounded.len() >= MANY && is_grid(rounded) {
+            None
+        } else if many(by_place) && by_place >= by_digits && decimals > 0 {
+            Some(Self::Decimals(decimals as u32))
         } else if many(nearly) {
-            Self::Digits(digits as u32)
+            Some(Self::Digits(digits as u32))
         } else {
-            return read_as;
-        };
-        // They may be numbers in single precision, which is coarser than eight or nine digits.
-        let is_single = digits > 7 && is_nearly_all(count(&|x| x.is_single), rounded.len());
-        let largest = largest_magnitude(mesh.vertices_in_use());
-        if is_single && Self::Single.precision(largest) > found.precision(largest) {
-            Self::Single
-        } else {
-            found
+            None
         }
     }
 
@@ -194,11 +212,65 @@ impl NumberFormat {
             Self::Decimals(decimals) => of_doubles.max(2.0 * power_of_ten(-(decimals as i32))),
             Self::Digits(digits) => {
                 let first = Decimal::of(largest, false, &mut String::new());
-                let exponent = first.map_or(0, |first| first.digits - first.decimals - 1);
+                let exponent = first.map_or(0, |first| first.exponent());
                 of_doubles.max(2.0 * power_of_ten(exponent - digits as i32 + 1))
             }
         }
     }
+}
+
+/// A number of a file.
+#[derive(Debug, Clone, Copy)]
+struct Number {
+    decimal: Decimal,
+    may_be_rounded: bool,
+}
+
+/// Returns the different coordinates of vertices in use without their signs, as bits, and how each is printed.
+fn different_numbers(mesh: &Mesh) -> HashMap<u64, Printed> {
+    let used: Vec<usize> = mesh.indices_in_use().collect();
+    let step = used.len().div_ceil(LOOKED_AT / 3).max(1);
+    let looked_at = used.into_iter().step_by(step).flat_map(|v| {
+        let printed = mesh.printed.get(v).copied().unwrap_or_default();
+        mesh.vertices[v].to_array().into_iter().zip(printed)
+    });
+    looked_at.map(|(x, printed)| (x.abs().to_bits(), printed)).collect()
+}
+
+/// Returns the numbers that are finite and not 0.
+fn numbers(different: &HashMap<u64, Printed>, single: bool) -> Vec<Number> {
+    let mut text = String::new();
+    let number = |(bits, printed): (&u64, &Printed)| {
+        let decimal = Decimal::of(f64::from_bits(*bits), single, &mut text)?;
+        Some(Number { decimal, may_be_rounded: decimal.may_be_rounded(*printed) })
+    };
+    different.iter().filter_map(number).collect()
+}
+
+/// Returns the largest count, except for those of one number in [`OUTLIERS`].
+fn most(numbers: &[Decimal], count: fn(&Decimal) -> i32) -> i32 {
+    let mut counts: Vec<i32> = numbers.iter().map(count).collect();
+    counts.sort_unstable_by_key(|count| std::cmp::Reverse(*count));
+    counts.get(counts.len() / OUTLIERS).copied().unwrap_or(0)
+}
+
+/// Checks whether nearly all numbers are the shortest texts of numbers in single precision, and too long for fewer
+/// digits.
+fn are_shortest_singles(rounded: &[Decimal]) -> bool {
+    let count = rounded.iter().filter(|x| x.is_single).count();
+    most(rounded, |x| x.digits) > 7 && is_nearly_all(count, rounded.len())
+}
+
+/// Checks whether nearly all numbers are numbers in single precision, printed in a format, and not by chance.
+fn are_singles(numbers: &[Number], format: NumberFormat) -> bool {
+    let bits = numbers.iter().filter_map(|number| number.single_bits(format));
+    let (count, bits) = bits.fold((0, 0.0), |(count, sum), bits| (count + 1, sum + bits));
+    bits >= SURE && is_nearly_all(count, numbers.len())
+}
+
+/// Checks whether a number is one in single precision.
+fn is_single(x: f64) -> bool {
+    f64::from(x as f32) == x
 }
 
 /// Checks whether all numbers are multiples of a number of more than [`GRID`] units in their last decimal: those of a
@@ -233,7 +305,7 @@ pub(crate) fn largest_magnitude(vertices: impl Iterator<Item = DVec3>) -> f64 {
 }
 
 /// A number `mantissa / 10^decimals` without trailing zeros.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct Decimal {
     mantissa: u64,
     /// Significant digits.
@@ -242,6 +314,33 @@ struct Decimal {
     decimals: i32,
     /// Whether a number in single precision has the same shortest text.
     is_single: bool,
+    value: f64,
+}
+
+impl Number {
+    /// Returns the evidence, in bits, that this is a number in single precision that was printed in a format; `None`
+    /// if it is not such a number. A short number is one, but without evidence.
+    fn single_bits(&self, format: NumberFormat) -> Option<f64> {
+        let Self { decimal, may_be_rounded } = self;
+        let nearest = decimal.value as f32;
+        let place = match format {
+            NumberFormat::Double | NumberFormat::Single => 0.0,
+            NumberFormat::Decimals(decimals) => power_of_ten(-(decimals as i32)),
+            NumberFormat::Digits(digits) => power_of_ten(decimal.exponent() - digits as i32 + 1),
+        };
+        // Ties are off by the rounding of the number as a double.
+        let half = 0.5 * place + f64::EPSILON * decimal.value;
+        if (decimal.value - f64::from(nearest)).abs() > half {
+            return None;
+        }
+        if *may_be_rounded {
+            let spacing = f64::from(nearest.next_up()) - f64::from(nearest);
+            return Some((spacing / place).log2().clamp(0.0, MOST_BITS));
+        }
+        // Quarters, and binary fractions of few digits, are numbers that people write.
+        let unused = (nearest.to_bits() | 1 << (f32::MANTISSA_DIGITS - 1)).trailing_zeros();
+        Some(if decimal.decimals > 2 && unused < 4 { MOST_BITS } else { 0.0 })
+    }
 }
 
 impl Decimal {
@@ -263,7 +362,12 @@ impl Decimal {
         let in_single = shortest(&(x as f32));
         let found = if single { in_single } else { shortest(&x) };
         let (mantissa, digits, decimals) = found?;
-        Some(Self { mantissa, digits, decimals, is_single: in_single == found })
+        Some(Self { mantissa, digits, decimals, is_single: in_single == found, value: x })
+    }
+
+    /// Returns the power of ten of the first digit.
+    const fn exponent(&self) -> i32 {
+        self.digits - self.decimals - 1
     }
 
     /// Checks whether a writer may have rounded the number: it is no binary fraction, or it is a whole number that
@@ -340,6 +444,64 @@ mod tests {
         assert_eq!(all, NumberFormat::Double);
         let single = format_of(random(-300.0, 300.0), |x| (x as f32).to_string());
         assert_eq!(single, NumberFormat::Single);
+    }
+
+    /// Numbers in single precision, as programs print them: of nine digits, eight decimals, and as doubles.
+    #[test]
+    fn numbers_in_single_precision_are_recognised_in_longer_text() {
+        let prints: [fn(f64) -> String; 4] = [
+            |x| general(f64::from(x as f32), 9),
+            |x| significant(f64::from(x as f32), 9),
+            |x| significant(f64::from(x as f32), 12),
+            |x| f64::from(x as f32).to_string(),
+        ];
+        for (k, print) in prints.into_iter().enumerate() {
+            for size in [1e-3, 1.0, 25.4, 300.0, 5e3, 3e4, 2e5] {
+                let found = format_of(random(-size, size), print);
+                assert_eq!(found, NumberFormat::Single, "print {k} of {size}");
+                // A box has few coordinates.
+                let few = format_of(random(-size, size).take(12), print);
+                assert_eq!(few, NumberFormat::Single, "print {k} of few of {size}");
+            }
+        }
+        for size in [3.0, 25.4, 5e3, 2e5] {
+            let eight = |x: f64| format!("{:.8}", f64::from(x as f32));
+            assert_eq!(format_of(random(-size, size), eight), NumberFormat::Single, "{size}");
+        }
+        // Eight decimals of small numbers are coarser than single precision.
+        let small = format_of(random(-0.01, 0.01), |x| format!("{:.8}", f64::from(x as f32)));
+        assert_eq!(small, NumberFormat::Decimals(8));
+    }
+
+    #[test]
+    fn doubles_and_drawings_are_not_in_single_precision() {
+        for size in [1e-3, 1.0, 25.4, 300.0, 5e3, 2e5, 1e9] {
+            for digits in [8, 9, 10, 15] {
+                let found = format_of(random(-size, size), |x| significant(x, digits));
+                assert_eq!(found, NumberFormat::Digits(digits as u32), "{size}");
+            }
+            let found = format_of(random(-size, size), |x| x.to_string());
+            assert_eq!(found, NumberFormat::Double, "{size}");
+        }
+        // Places of the UTM grid: whole numbers, halves and quarters use all bits of single precision.
+        let utm = random(0.0, 64.0).map(|x| 4_649_776.0 + x.round() / 4.0);
+        assert_eq!(format_of(utm, |x| x.to_string()), NumberFormat::Double);
+        // Sixteenths beside long whole numbers.
+        let inches = random(0.0, 1e3).map(|x| (16.0 * x).round() / 16.0);
+        assert_eq!(format_of(inches, |x| x.to_string()), NumberFormat::Double);
+    }
+
+    #[test]
+    fn doubles_that_were_in_single_precision_are_recognised() {
+        let mesh = |round: fn(f64) -> f64| {
+            let numbers: Vec<f64> = random(-20.0, 20.0).map(round).collect();
+            let vertices = numbers.as_chunks().0.iter().map(|v| DVec3::from_array(*v)).collect();
+            NumberFormat::of_doubles(&Mesh::new(vertices, Vec::new()))
+        };
+        assert_eq!(mesh(|x| f64::from(x as f32)), NumberFormat::Single);
+        assert_eq!(mesh(|x| x), NumberFormat::Double);
+        assert_eq!(mesh(|x| (8.0 * x).round() / 8.0), NumberFormat::Double);
+        assert_eq!(mesh(|x| (100.0 * x).round() / 100.0), NumberFormat::Double);
     }
 
     #[test]

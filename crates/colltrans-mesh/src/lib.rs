@@ -135,7 +135,7 @@ pub struct ReadOptions {
     ///
     /// 0 merges equal ones only. `None` is a few units in the last place of the largest
     /// coordinate ([`NumberFormat`]): `2^-22` times its magnitude where coordinates are in single precision
-    /// (binary STL, PLY with `float`), two units in the last place that a text prints, else `2^-48` times.
+    /// (binary STL, PLY with `float`, text of such numbers), two units in the last place that a text prints, else `2^-48` times.
     pub merge_tolerance: Option<f64>,
 }
 

@@ -52,7 +52,7 @@ impl Precision {
         match self {
             Self { text: true, single } => NumberFormat::of_text(mesh, single),
             Self { single: true, .. } => NumberFormat::Single,
-            Self { single: false, .. } => NumberFormat::Double,
+            Self { single: false, .. } => NumberFormat::of_doubles(mesh),
         }
     }
 }

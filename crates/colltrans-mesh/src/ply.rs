@@ -16,10 +16,11 @@ use ply_rs_bw::ply::{
     Encoding, Header, Property, PropertyAccess, PropertyAccessResult, PropertyType, ScalarType,
 };
 
+use crate::digits::Printed;
 use crate::error::{Fault, Place};
 use crate::merge::Precision;
 use crate::mesh::Mesh;
-use crate::text::{quoted, without_mark};
+use crate::text::{lines, number, quoted, without_mark};
 
 /// The mesh, and the precision of its coordinates.
 pub(crate) fn parse(bytes: &[u8]) -> Result<(Mesh, Precision), Fault> {
@@ -31,6 +32,7 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<(Mesh, Precision), Fault> {
     let text = header.encoding == Encoding::Ascii;
     check_counts(&header, reader.get_ref().len())?;
     let precision = check_properties(&header, text)?;
+    let rows = *reader.get_ref();
     let mut mesh = Mesh::default();
     let mut faces = Vec::new();
     for (name, element) in &header.elements {
@@ -53,6 +55,9 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<(Mesh, Precision), Fault> {
     for (index, face) in faces.into_iter().enumerate() {
         mesh.faces.push(face.checked(index, mesh.vertices.len())?);
     }
+    if text {
+        mesh.printed = printed(rows, &header, &mesh.vertices).unwrap_or_default();
+    }
     let rest = reader.get_ref();
     if rest.iter().all(|b| *b == 0 || b.is_ascii_whitespace()) {
         Ok((mesh, precision))
@@ -60,6 +65,29 @@ pub(crate) fn parse(bytes: &[u8]) -> Result<(Mesh, Precision), Fault> {
         let what = format!("{} bytes follow the elements that the header promises", rest.len());
         Err(Fault::new(Place::End, what))
     }
+}
+
+/// Returns how the coordinates of each vertex are printed, of the rows of a text; `None` where the words of these
+/// rows are not the coordinates that the parser found, for example where a list precedes them.
+fn printed(rows: &[u8], header: &Header, vertices: &[DVec3]) -> Option<Vec<[Printed; 3]>> {
+    let rows = std::str::from_utf8(rows).ok()?;
+    let before = header.elements.iter().take_while(|(name, _)| name.as_str() != "vertex");
+    let skipped = before.map(|(_, element)| element.count).sum();
+    let (_, vertex) = header.elements.iter().find(|(name, _)| name.as_str() == "vertex")?;
+    let column = |name: &str| vertex.properties.iter().position(|(key, _)| key.as_str() == name);
+    let columns = [column("x")?, column("y")?, column("z")?];
+    let mut lines = lines(rows).skip(skipped);
+    let form = |vertex: &DVec3| {
+        let words: Vec<&str> = lines.next()?.split_whitespace().collect();
+        let mut forms = [Printed::default(); 3];
+        for ((form, column), coordinate) in forms.iter_mut().zip(columns).zip(vertex.to_array()) {
+            let (value, printed) = number(words.get(column)?)?;
+            let is_same = value == coordinate || value as f32 == coordinate as f32;
+            *form = is_same.then_some(printed)?;
+        }
+        Some(forms)
+    };
+    vertices.iter().map(form).collect()
 }
 
 /// Turns line ends of a lone CR into LF, in the header and, where it is text, in what follows.

@@ -182,6 +182,18 @@ fn the_format_of_numbers_is_told() {
         assert_eq!(is(&turned, &all).0, NumberFormat::Double, "{format}");
         let single = |x: f64| (x as f32).to_string();
         assert_eq!(is(&turned, &single).0, NumberFormat::Single, "{format}");
+        // Numbers in single precision, printed with all digits of doubles, nine digits, or eight decimals.
+        let singles: [&dyn Fn(f64) -> String; 3] = [
+            &|x| f64::from(x as f32).to_string(),
+            &|x| format!("{:.8e}", f64::from(x as f32)),
+            &|x| format!("{:.8}", f64::from(x as f32)),
+        ];
+        for print in singles {
+            let largest = turned.vertices.iter().fold(0.0_f64, |m, v| m.max(v.abs().max_element()));
+            let (found, precision) = is(&turned, print);
+            assert_eq!(found, NumberFormat::Single, "{format}");
+            assert!((precision * f64::from(1 << 22) / largest - 1.0).abs() < 1e-6, "{precision}");
+        }
         // A drawing's numbers are exact, however they are padded.
         for size in [DVec3::new(12.5, 7.25, 1000.0), DVec3::new(104.775, 25.4, 0.1)] {
             let drawn = box_of(size);
@@ -213,7 +225,7 @@ fn a_peg_fits_where_exponents_and_zeros_show_the_rounding() {
             [placed(prism(&outline, [0.0, 2.0 * size])), hole]
         };
         let goes_through = |parts: &[Mesh; 2]| goes_through(parts, turn * DVec3::Z);
-        for format in [Format::Stl, Format::Obj, Format::Off] {
+        for format in [Format::Stl, Format::Obj, Format::Off, Format::Ply] {
             let read = |size: f64, print: &dyn Fn(f64) -> String| {
                 parts(size).each_ref().map(|mesh| written(mesh, format, print))
             };
@@ -225,6 +237,23 @@ fn a_peg_fits_where_exponents_and_zeros_show_the_rounding() {
             assert!(goes_through(&small), "{format} with three decimals");
         }
     }
+}
+
+/// Coordinates that a PLY file declares as `float`, after another property, in four digits.
+#[test]
+fn digits_of_ply_in_single_precision_are_those_of_the_text() {
+    let mut random = Random::new(3);
+    let mut text = String::from(
+        "ply\nformat ascii 1.0\nelement vertex 60\nproperty int id\nproperty float x\n\
+         property float y\nproperty float z\nend_header\n",
+    );
+    for k in 0..60 {
+        let row = (random.vector() * 20.0).to_array().map(|x| format!("{x:.3e}"));
+        writeln!(text, "{k} {}", row.join(" ")).unwrap();
+    }
+    let mesh = parse(Format::Ply, text.into_bytes(), Path::new("part.ply")).unwrap();
+    assert_eq!(mesh.format, NumberFormat::Digits(4));
+    assert_eq!(mesh.precision, 0.02);
 }
 
 /// Nodes of COLLADA move and scale what they show: its digits are no more those of the file.

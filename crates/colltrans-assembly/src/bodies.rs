@@ -51,15 +51,21 @@ pub enum Fit {
     Apart(f64),
 }
 
-/// The default tolerance: a few last digits of single precision, in which most files are written.
+/// Last digits of single precision, as a share of the assembly's extent.
 const SINGLE_DIGITS: f64 = 1.0 / (1 << 21) as f64;
-/// The default tolerance, in multiples of the largest precision of a text: as between two files of it.
-const TEXT_PRECISIONS: f64 = 4.0;
+/// Last digits of doubles that are placed in the world, as a share of the assembly's largest coordinate.
+const DOUBLE_DIGITS: f64 = 1.0 / (1_u64 << 46) as f64;
 
 impl Fit {
-    /// What is used where nobody says anything: the chord errors of the parts, where their source says them, and
-    /// `2^-21` of the assembly's size, four times the rounding of a coordinate in single precision, or more if files
-    /// are text of fewer digits.
+    /// Returns the default fit: the chord errors of the parts, where their source states them, and the last digits of
+    /// the numbers that the files write.
+    ///
+    /// For the digits this is the largest of:
+    /// - the digits of each file: `2^-21` of its largest coordinate in single precision, else four times
+    ///   [`Mesh::precision`](colltrans_mesh::Mesh::precision), as between two solids of such files
+    ///   ([`between`](colltrans_mesh::body::between));
+    /// - `2^-21` of the assembly's extent, if a part is in single precision, comes from no file, or is turned by a pose;
+    /// - `2^-46` of the largest coordinate in the world, for the rounding of doubles.
     pub fn default_for(assembly: &Assembly) -> Self {
         let base = Self::digits(assembly);
         let errors = assembly.parts().iter().filter_map(Part::chord_error);
@@ -69,10 +75,19 @@ impl Fit {
         }
     }
 
-    /// What is for the last digits of coordinates.
+    /// Returns the tolerance for the last digits of coordinates ([`Self::default_for`]).
     pub(crate) fn digits(assembly: &Assembly) -> f64 {
-        let texts = assembly.parts().iter().map(Part::text_precision).fold(0.0, f64::max);
-        (assembly.size() * SINGLE_DIGITS).max(TEXT_PRECISIONS * texts)
+        let parts = assembly.parts();
+        let of_files = parts.iter().map(Part::last_digits).fold(0.0, f64::max);
+        let is_coarse = parts.iter().any(Part::is_coarse);
+        let of_extent = if is_coarse { SINGLE_DIGITS * assembly.extent() } else { 0.0 };
+        of_files.max(of_extent).max(DOUBLE_DIGITS * assembly.size())
+    }
+
+    /// Returns the length below which distances are equal, and parts touch: [`Self::digits`], but no less than those
+    /// of single precision of the assembly's extent.
+    pub(crate) fn negligible(assembly: &Assembly) -> f64 {
+        Self::digits(assembly).max(SINGLE_DIGITS * assembly.extent())
     }
 
     /// By how much a part is shrunk.
@@ -247,7 +262,7 @@ impl<'a> Bodies<'a> {
             boxes[*part] = boxes[*part].join(&own.solid.bounds());
         }
         let tree = BoxTree::new(boxes.iter().copied());
-        let noise = 4.0 * Fit::digits(assembly);
+        let noise = 4.0 * Fit::negligible(assembly);
         let (overlapping, passing) = (Vec::new(), BTreeMap::new());
         let mut bodies = Self {
             assembly,

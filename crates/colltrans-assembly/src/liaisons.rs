@@ -75,7 +75,7 @@ impl Liaison {
 
 /// How far apart surfaces may be that touch: the tolerance, or the default one if that is larger.
 pub fn reach(bodies: &Bodies) -> f64 {
-    bodies.fit().tolerance().max(crate::Fit::digits(bodies.assembly()))
+    bodies.fit().tolerance().max(crate::Fit::negligible(bodies.assembly()))
 }
 
 /// All pairs that touch, as the files have them.

@@ -32,7 +32,8 @@ pub struct Part {
     defects: Vec<String>,
     chord_error: Option<f64>,
     colour: Option<[f64; 3]>,
-    text_precision: f64,
+    last_digits: f64,
+    is_coarse: bool,
 }
 
 impl Part {
@@ -74,9 +75,17 @@ impl Part {
             [_] => solids.remove(0),
             _ => Solid::from_pieces(&solids).map_err(|e| refused(e.into()))?,
         };
-        let text_precision = pieces.iter().map(text_precision).fold(0.0, f64::max);
-        let (fixed, chord_error, colour) = (false, None, None);
-        Ok(Self { name, solid, facets, fixed, defects, chord_error, colour, text_precision })
+        Ok(Self {
+            name,
+            solid,
+            facets,
+            fixed: false,
+            defects,
+            chord_error: None,
+            colour: None,
+            last_digits: pieces.iter().map(Piece::last_digits).fold(0.0, f64::max),
+            is_coarse: pieces.iter().any(Piece::is_coarse),
+        })
     }
 
     /// The same part, which is never moved if `fixed`.
@@ -123,10 +132,15 @@ impl Part {
         self.chord_error
     }
 
-    /// How far apart its file may write vertices that were meant to be one, in the world, where it prints fewer
-    /// digits than numbers have; else 0.
-    pub(crate) const fn text_precision(&self) -> f64 {
-        self.text_precision
+    /// Returns the tolerance between two parts of its files, for the last digits of the numbers in these.
+    pub(crate) const fn last_digits(&self) -> f64 {
+        self.last_digits
+    }
+
+    /// Checks whether places of its vertices may be off by the last digits of single precision of the assembly's
+    /// extent.
+    pub(crate) const fn is_coarse(&self) -> bool {
+        self.is_coarse
     }
 
     /// Its colour, if its source has one.
@@ -149,13 +163,34 @@ impl Part {
     }
 }
 
-/// [`Mesh::precision`] of a text with few digits, in the world; else 0.
-fn text_precision(piece: &Piece) -> f64 {
-    let columns = piece.world_from_piece.matrix3.to_cols_array_2d().map(DVec3::from_array);
-    let stretch = columns.map(DVec3::length).into_iter().fold(0.0, f64::max);
-    match piece.mesh.format {
-        NumberFormat::Decimals(_) | NumberFormat::Digits(_) => piece.mesh.precision * stretch,
-        NumberFormat::Double | NumberFormat::Single => 0.0,
+/// Tolerance between two files of text or doubles, in multiples of [`Mesh::precision`]: as of
+/// [`between`](body::between).
+const PRECISIONS: f64 = 4.0;
+/// Tolerance between two files in single precision, in multiples of [`Mesh::precision`].
+const SINGLE_PRECISIONS: f64 = 2.0;
+
+impl Piece {
+    /// Returns the tolerance between two such pieces for the last digits of the numbers in their files, in the world.
+    fn last_digits(&self) -> f64 {
+        let stretch = self.columns().map(DVec3::length).into_iter().fold(0.0, f64::max);
+        let precisions = match self.mesh.format {
+            NumberFormat::Single => SINGLE_PRECISIONS,
+            _ => PRECISIONS,
+        };
+        precisions * self.mesh.precision * stretch
+    }
+
+    /// Checks whether its vertices may be off by more than its file explains: it comes from no file, is in single
+    /// precision, or is turned by a pose whose digits are unknown.
+    fn is_coarse(&self) -> bool {
+        let of_file = self.mesh.precision > 0.0 && self.mesh.format != NumberFormat::Single;
+        let is_along_axis =
+            |column: DVec3| column.to_array().iter().filter(|x| **x != 0.0).count() == 1;
+        !(of_file && self.columns().into_iter().all(is_along_axis))
+    }
+
+    fn columns(&self) -> [DVec3; 3] {
+        self.world_from_piece.matrix3.to_cols_array_2d().map(DVec3::from_array)
     }
 }
 
@@ -486,6 +521,11 @@ impl Assembly {
     pub fn size(&self) -> f64 {
         let Aabb { low, high } = self.bounds();
         low.abs().max(high.abs()).max(high - low).max_element()
+    }
+
+    /// The largest side of the box around all parts.
+    pub(crate) fn extent(&self) -> f64 {
+        self.bounds().size().max_element()
     }
 }
 

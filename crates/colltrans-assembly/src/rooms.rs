@@ -86,7 +86,7 @@ impl PartRoom {
 ///
 /// Of several stops at one distance the first part of the group, and the lowest number of the
 /// others, is named. With [`StartOverlap::Ignore`], of those parts that a part overlaps and that stop
-/// it within `2^-19` of the assembly's size, one is named, with its distance.
+/// it within four times [`Fit::negligible`](crate::Fit), one is named, with its distance.
 pub fn room_of(
     bodies: &Bodies,
     group: &[usize],

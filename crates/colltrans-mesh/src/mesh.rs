@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-use crate::digits::{NumberFormat, Printed};
+use crate::digits::{NumberFormat, Printed, largest_magnitude};
 
 /// Vertices and polygons over them, as a file lists them.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -75,6 +75,14 @@ impl Mesh {
     /// A mesh of these vertices and faces.
     pub fn new(vertices: Vec<DVec3>, faces: Vec<Vec<u32>>) -> Self {
         Self { vertices, faces, ..Self::default() }
+    }
+
+    /// Returns the same mesh as of a file that writes its coordinates in a format, with the precision that follows.
+    #[must_use]
+    pub fn with_format(mut self, format: NumberFormat) -> Self {
+        self.precision = format.precision(largest_magnitude(self.vertices_in_use()));
+        self.format = format;
+        self
     }
 
     /// The smallest and the largest coordinates of the [vertices in use](Self::vertices_in_use); `None`

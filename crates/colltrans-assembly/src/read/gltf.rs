@@ -10,8 +10,8 @@ use std::sync::Arc;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use colltrans_mesh::Mesh;
 use colltrans_mesh::words::first_named;
+use colltrans_mesh::{Mesh, NumberFormat};
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 use serde::Deserialize;
 use serde::de::IgnoredAny;
@@ -501,7 +501,7 @@ impl Reader<'_> {
             merged.faces.extend(faces.into_iter().map(|t| t.map(name).to_vec()));
             merged.vertices.extend(used.iter().map(|&k| positions.vector(k as usize)));
         }
-        Ok(merged)
+        Ok(merged.with_format(NumberFormat::Single))
     }
 
     /// The numbers of an accessor.

@@ -56,7 +56,7 @@ fn tidy(x: f64, size: f64) -> f64 {
 }
 
 fn rooms(f: &Findings) -> Markup {
-    let size = f.bodies.assembly().size();
+    let size = f.bodies.assembly().extent();
     let name = |k: usize| f.bodies.assembly().parts()[k].name();
     let directions = f.matrix.directions();
     let cell = |room: &PartRoom| match room {

@@ -102,7 +102,7 @@ impl<'a> Words<'a> {
 
     /// Whether a length is more than the last digits of the file.
     pub(super) fn is_far(&self, travel: f64) -> bool {
-        travel > Fit::digits(self.assembly)
+        travel > Fit::negligible(self.assembly)
     }
 
     /// Names, of many the first ones.

@@ -13,6 +13,7 @@ mod known;
 mod machines;
 mod oracle;
 mod order;
+mod precision;
 mod read;
 mod report;
 mod robot;

@@ -17,8 +17,9 @@ pub(crate) struct AssemblyArguments {
     pub(crate) source: PathBuf,
     /// How deep parts may overlap and still pass: chord errors of curved fits, press fits
     ///
-    /// Every part is shrunk by half of it. In the unit of the files. [default: 4.8e-7 of the
-    /// assembly's size, for files in single precision]
+    /// Every part is shrunk by half of it. In the unit of the files. [default: from the files'
+    /// precision: 4.8e-7 of the assembly's extent and of the largest coordinate in single precision,
+    /// 8 units of the last printed place of text, 1.4e-14 of the largest coordinate of doubles]
     #[arg(long, value_name = "L", allow_hyphen_values = true, value_parser = length)]
     pub(crate) tolerance: Option<f64>,
     /// Of a STEP file: how far facets may be from its surfaces, about, in millimetres

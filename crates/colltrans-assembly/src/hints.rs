@@ -165,15 +165,20 @@ fn units(assembly: &Assembly, likes: &[usize], apart: f64) -> Option<Hint> {
         );
         Hint { kind: HintKind::Units, parts: small, words }
     };
+    // In a source in metres, as URDF is, the larger parts have the wrong unit.
+    let is_in_metres = assembly.unit() == Some("m");
     // The same shape in two sizes.
     let shapes: Vec<usize> = (0..parts.len()).filter(|&k| likes[k] == k).collect();
     for (&a, &b) in shapes.iter().flat_map(|a| shapes.iter().map(move |b| (a, b))) {
         let [small, large] = [a, b].map(|k| parts[k].solid());
         let found = FACTORS.into_iter().find(|factor| is_scaled(small, large, *factor));
         if let Some(factor) = found {
-            let group = (0..parts.len()).filter(|&k| likes[k] == a).collect();
+            let group = |like: usize| (0..parts.len()).filter(|&k| likes[k] == like).collect();
+            if is_in_metres && factor == FACTORS[0] {
+                return Some(in_millimetres(assembly, group(b)));
+            }
             let why = format!("{} has its shape", parts[b].name());
-            return Some(said(group, factor, &why));
+            return Some(said(group(a), factor, &why));
         }
     }
     let mut sizes: Vec<(f64, usize)> = (0..parts.len())
@@ -187,8 +192,7 @@ fn units(assembly: &Assembly, likes: &[usize], apart: f64) -> Option<Hint> {
         numbers.sort_unstable();
         numbers
     };
-    // Where the source is in metres, as URDF is, the larger parts have the wrong unit.
-    if assembly.unit() == Some("m") {
+    if is_in_metres {
         return Some(in_millimetres(assembly, numbers(&sizes[gap..])));
     }
     Some(said(numbers(&sizes[..gap]), FACTORS[0], "all others are hundreds of times as large"))

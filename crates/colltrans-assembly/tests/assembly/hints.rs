@@ -102,4 +102,14 @@ fn link_meshes_in_millimetres_beside_metres_are_a_matter_of_units() {
     let hints = found(robot(), None);
     assert!(of_kind(&hints, HintKind::Frames).is_empty(), "{hints:?}");
     assert_eq!(of_kind(&hints, HintKind::Units)[0].parts, [2, 3]);
+    // Two links of one shape: that in metres is right.
+    let twins = || vec![link("a", 0.0, 1.0), link("b", 0.0, 1000.0)];
+    let hints = found(twins(), Some("m"));
+    let units = of_kind(&hints, HintKind::Units)[0];
+    assert_eq!(units.parts, [1]);
+    assert!(
+        units.words.ends_with("1000 times too large: --scale b=0.001 corrects it"),
+        "{units:?}"
+    );
+    assert_eq!(of_kind(&found(twins(), None), HintKind::Units)[0].parts, [0]);
 }

@@ -42,7 +42,7 @@ export class AssemblyTab {
   private readonly tolerance = h("input", { type: "number", step: "any", min: 0, "aria-label": "Tolerance of the assembly", inputmode: "decimal" });
   private readonly ignore = h("input", { type: "checkbox" });
   private readonly fitFields = [
-    h("label", {}, "Tolerance (empty: from the size)", this.tolerance),
+    h("label", {}, "Tolerance (empty: from the files)", this.tolerance),
     h("label", { style: "display: flex; gap: 8px; align-items: center" }, this.ignore, "What overlaps at the start does not block"),
   ];
   private readonly player = new Player((t) => this.seen?.place(this.moves, t));

@@ -46,7 +46,7 @@ export interface State {
   };
   assembly: {
     direction: Vec;
-    /** `null`: from the size of the parts. */
+    /** `null`: from the precision of the files. */
     tolerance: number | null;
     ignore: boolean;
     /** The part whose removal map is shown. */

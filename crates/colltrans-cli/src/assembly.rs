@@ -154,8 +154,8 @@ fn assembly(arguments: &AssemblyArguments) -> Result<Assembly, Failure> {
     asked::constrained(assembly, &arguments.asked)
 }
 
-/// Which flag helps.
-fn advice(error: &ReadError) -> &'static str {
+/// Returns which flag of `assembly` and `path` helps.
+pub(crate) fn advice(error: &ReadError) -> &'static str {
     match error {
         ReadError::Outside { .. } => " (--allow-outside reads it)",
         ReadError::Missing { .. } => {

@@ -3,6 +3,7 @@
 
 use std::path::Path;
 
+use colltrans::solid::SolidError;
 use colltrans::{BuildError, ConvexPolyhedron};
 use colltrans_mesh::body::{BodyOptions, Excess, LoadError, Loaded, Note, Refused, Take};
 
@@ -80,6 +81,9 @@ pub(crate) fn hint(refused: &Refused) -> &'static str {
         }
         (Refused::Convex(_), [_, ..]) => {
             "; --merge-tolerance closes gaps, --hull takes the convex hull of its vertices"
+        }
+        (Refused::Solid(SolidError::Empty), _) => {
+            "; --hull takes the convex hull of its vertices, also of points without faces"
         }
         (Refused::Solid(_), [Take::Open, ..]) => {
             "; --merge-tolerance closes gaps, `clearance --open` takes it as a surface without an inside"

@@ -14,6 +14,7 @@ use colltrans_assembly::{AssemblyError, ReadError};
 use colltrans_mesh::body::BodyOptions;
 
 use crate::args::PathArguments;
+use crate::assembly::advice;
 use crate::body;
 use crate::failure::{Code, Failure, note, print, print_json};
 use crate::numbers::{counted, known, known_vector, number, unit_vector};
@@ -147,6 +148,7 @@ fn unread(error: &ReadError) -> Failure {
         ReadError::Assembly { source: AssemblyError::Part { part, .. }, .. } => {
             format!("; --hull {part} takes the convex hull of its meshes")
         }
+        ReadError::Missing { .. } | ReadError::Outside { .. } => advice(error).to_owned(),
         _ => String::new(),
     };
     Failure::new(Code::Input, format!("{error}{hint}"))

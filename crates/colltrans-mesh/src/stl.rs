@@ -4,7 +4,7 @@
 //! the word `solid` as text files do, so the first word does not decide. A file of exactly
 //! the size that its count implies is binary; of the others those are text that begin with `solid`, perhaps
 //! after comments (`;`, `#`, `//`), and that hold no control characters, as binary numbers do, or whose second
-//! line is one of text STL. Other text is refused. NUL and Ctrl-Z at the end are padding. Text is read here, because it may hold
+//! line is one of text STL. Other text is refused. NUL and Ctrl-Z at the start and the end are padding. Text is read here, because it may hold
 //! several solids and more digits than single precision, and because its errors should name a
 //! line. Either way equal vertices are merged.
 
@@ -47,7 +47,7 @@ pub(crate) fn is_exactly_binary(bytes: &[u8]) -> bool {
 
 /// Whether the file begins as a text STL does and is text.
 pub(crate) fn is_text(bytes: &[u8]) -> bool {
-    let Ok(text) = without_mark(bytes) else { return false };
+    let Ok(text) = without_mark(bytes).map(without_leading_padding) else { return false };
     let mut lines = text.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
     let mut lines = lines.by_ref().filter(|line| !line.is_empty() && !is_comment(line));
     let begins = |line: Option<&[u8]>, word: &[u8]| {
@@ -65,9 +65,21 @@ fn is_comment(line: &[u8]) -> bool {
     line.starts_with(b";") || line.starts_with(b"#") || line.starts_with(b"//")
 }
 
-/// Returns text without what some programs put behind its end: NUL and Ctrl-Z.
+/// Checks whether a byte is one that some programs put before the start and behind the end of text: NUL or Ctrl-Z.
+const fn is_padding(byte: u8) -> bool {
+    matches!(byte, 0 | 0x1a)
+}
+
+/// Returns text without padding before its start.
+fn without_leading_padding(text: &[u8]) -> &[u8] {
+    let first = text.iter().position(|byte| !is_padding(*byte));
+    &text[first.unwrap_or(0)..]
+}
+
+/// Returns text without padding.
 fn without_padding(text: &[u8]) -> &[u8] {
-    let is_text = |byte: &u8| !matches!(byte, 0 | 0x1a) && !byte.is_ascii_whitespace();
+    let text = without_leading_padding(text);
+    let is_text = |byte: &u8| !is_padding(*byte) && !byte.is_ascii_whitespace();
     &text[..text.iter().rposition(is_text).map_or(0, |last| last + 1)]
 }
 

@@ -67,6 +67,11 @@ pub(super) fn read(source: Source, bytes: &[u8]) -> Result<Assembly, ReadError> 
     for note in document.asset.extras.notes() {
         assembly = assembly.with_note(note);
     }
+    let unplaced = document.unplaced(scene);
+    if !unplaced.is_empty() {
+        let named = first_named(&unplaced, drafts::MOST_NAMED);
+        assembly = assembly.with_note(format!("left out, as they are not in the scene: {named}"));
+    }
     if !left_out.is_empty() {
         assembly =
             assembly.with_note(format!("left out: {}", first_named(&left_out, drafts::MOST_NAMED)));
@@ -366,6 +371,21 @@ struct Reader<'a> {
 }
 
 impl Document {
+    /// Returns the names of nodes with a mesh that the scene does not reach.
+    fn unplaced(&self, scene: &Scene) -> Vec<String> {
+        let mut reached = vec![false; self.nodes.len()];
+        let mut open = scene.nodes.clone();
+        while let Some(index) = open.pop() {
+            if let Some(false) = reached.get(index) {
+                reached[index] = true;
+                open.extend(&self.nodes[index].children);
+            }
+        }
+        let nodes = self.nodes.iter().enumerate();
+        let unplaced = nodes.filter(|(k, node)| node.mesh.is_some() && !reached[*k]);
+        unplaced.map(|(k, node)| node.shown_name(k)).collect()
+    }
+
     /// The colour of the largest primitive of some meshes, if it is one colour.
     fn colour(&self, meshes: impl Iterator<Item = usize>) -> Option<[f64; 3]> {
         let count = |accessor: Option<usize>| Some(self.accessors.get(accessor?)?.count);

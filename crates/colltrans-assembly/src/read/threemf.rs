@@ -10,7 +10,7 @@
 //! open. What slicers say of objects (`slicer`) are names, and which bodies are none. Whether an item is to be printed (`printable`, which slicers write) is noted, not obeyed. What a file says a reader
 //! must know (`requiredextensions`) and this one does not is refused, for the shapes may be in it.
 
-use std::collections::{HashMap, VecDeque};
+use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
 use std::io::{Cursor, Read};
 use std::rc::Rc;
 use std::sync::Arc;
@@ -108,10 +108,15 @@ pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
         }
         last = Some(k);
     }
-    let notes = notes(&models.root.items, &left_out);
+    let mut notes = notes(&models.root.items, &left_out);
+    let unplaced = models.unplaced(&root);
+    if !unplaced.is_empty() {
+        let named = first_named(&unplaced, drafts::MOST_NAMED);
+        notes.push(format!("left out, as no item of the build places them: {named}"));
+    }
     let (unit, mut holds) = (models.root.unit.clone(), package.holds());
     drop(package);
-    if let Some(note) = notes.first().filter(|_| !left_out.is_empty()) {
+    if let Some(note) = notes.first().filter(|_| !left_out.is_empty() || !unplaced.is_empty()) {
         holds = format!("{holds}; {note}");
     }
     let assembly = assembled(source, drafts, &holds)?.with_unit(unit);
@@ -376,6 +381,34 @@ struct Above<'a> {
 }
 
 impl Models {
+    /// Returns the names of objects with a mesh that no item of the build places.
+    fn unplaced(&self, root: &str) -> Vec<String> {
+        let at = |from: &str, placed: &Placed| {
+            (key(placed.path.as_deref().unwrap_or(from)), placed.id.clone())
+        };
+        let mut reached = HashSet::new();
+        let mut open: Vec<_> = self.root.items.iter().map(|item| at(root, item)).collect();
+        while let Some(place) = open.pop() {
+            let object = self.by_path.get(&place.0).and_then(|model| model.objects.get(&place.1));
+            let components = object.iter().flat_map(|object| &object.components);
+            let below: Vec<_> = components.map(|component| at(&place.0, component)).collect();
+            if reached.insert(place) {
+                open.extend(below);
+            }
+        }
+        let mut unplaced = BTreeMap::new();
+        for (path, model) in &self.by_path {
+            for (id, object) in &model.objects {
+                let place = (path.clone(), id.clone());
+                if object.has_mesh && !reached.contains(&place) {
+                    let name = object.name.clone().unwrap_or_else(|| format!("object_{id}"));
+                    unplaced.insert(place, name);
+                }
+            }
+        }
+        unplaced.into_values().collect()
+    }
+
     /// Calls with every object below one that the model `from` places.
     fn collect(
         &self,

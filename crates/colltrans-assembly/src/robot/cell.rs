@@ -167,10 +167,12 @@ impl Things {
         if listed.is_none() {
             let skipped = robot.pairs(Some(&[]))?.len() - things.len();
             let pairs = if skipped == 1 { "pair of links" } else { "pairs of links" };
-            notes.push(format!(
-                "{skipped} {pairs} with one joint between them are not held against each other; an SRDF \
-                 file says which are not"
-            ));
+            if skipped > 0 {
+                notes.push(format!(
+                    "{skipped} {pairs} with one joint between them are not held against each other; an SRDF \
+                     file says which are not"
+                ));
+            }
         }
         if listed.is_some_and(<[_]>::is_empty) {
             notes.push(

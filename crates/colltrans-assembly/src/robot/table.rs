@@ -122,7 +122,8 @@ impl Table {
             line => format!("line {line} column {}", e.column()),
         };
         let at = |e: &serde_json::Error| wrong(place(e), crate::plain::plain(e));
-        let read: Json = serde_json::from_str(text).map_err(|e| at(&e))?;
+        let read: Json =
+            serde_json::from_str(text).map_err(|e| wrong_point(text).unwrap_or_else(|| at(&e)))?;
         let Trajectory { joint_names: names, points } = match read {
             Json::Rows(rows) => return Self { rows, ..Self::default() }.even(),
             Json::Trajectory(trajectory) => trajectory,
@@ -165,6 +166,17 @@ impl Table {
             }
         }
     }
+}
+
+/// Finds the first point of a trajectory that is wrong; `None` in other texts.
+fn wrong_point(text: &str) -> Option<TableError> {
+    let whole: serde_json::Value = serde_json::from_str(text).ok()?;
+    let trajectory = whole.get("joint_trajectory").unwrap_or(&whole);
+    let points = trajectory.get("points")?.as_array()?;
+    let wrong_one = |point: &serde_json::Value| Point::deserialize(point).err();
+    let (k, error) =
+        points.iter().enumerate().find_map(|(k, point)| Some((k, wrong_one(point)?)))?;
+    Some(wrong(format!("points[{k}]"), crate::plain::plain(&error)))
 }
 
 #[derive(Deserialize)]
@@ -265,6 +277,13 @@ mod tests {
         assert_eq!(told("[[1, 2], [1]]"), "row 1: it has 1 values, not 2");
         assert!(told("{\"points\": []}").contains("it is neither a list of rows nor"));
         assert!(told("[[1, 2").contains("line 1"));
+        let point = |point: &str| {
+            told(&format!(r#"{{"joint_names": ["a"], "points": [{{"positions": [1]}}, {point}]}}"#))
+        };
+        let text = point(r#"{"positions": ["x"]}"#);
+        assert!(text.starts_with("points[1]: ") && text.contains('x'), "{text}");
+        let missing = point(r#"{"velocities": [1]}"#);
+        assert!(missing.starts_with("points[1]: ") && missing.contains("positions"), "{missing}");
         let floating = r#"{"joint_trajectory": {"joint_names": ["a"], "points": [{"positions": [1]}]},
             "multi_dof_joint_trajectory": {"joint_names": ["base"], "points": [{"transforms": [{}]}]}}"#;
         assert!(

@@ -371,6 +371,36 @@ fn objects_of_3mf_without_triangles_are_left_out_with_a_note() {
 }
 
 #[test]
+fn meshes_that_the_build_or_the_scene_does_not_place_are_named_in_a_note() {
+    let cube = mesh_of_3mf([1.0; 3]);
+    let model = format!(
+        "<model unit=\"inch\"><resources><object id=\"1\" name=\"cube\">{cube}</object><object id=\"2\" \
+         name=\"spare\">{cube}</object><object id=\"3\"><components><component objectid=\"1\"/></components>\
+         </object></resources><build><item objectid=\"3\"/></build></model>"
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("a.3mf");
+    std::fs::write(&file, package(&[("3D/3dmodel.model", &model)])).unwrap();
+    let found = open(&file).unwrap();
+    assert_eq!(found.notes(), ["left out, as no item of the build places them: spare"]);
+    let parts =
+        [0.0, 2.0].map(|x| part(&format!("at{x}"), &[cuboid([x, 0.0, 0.0], [x + 1.0, 1.0, 1.0])]));
+    let assembly = Assembly::new(parts.into()).unwrap().with_unit("m");
+    let glb = animation(&assembly, &Plan::default());
+    let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
+    let mut document: serde_json::Value = serde_json::from_slice(&glb[20..20 + length]).unwrap();
+    let data = base64::engine::general_purpose::STANDARD.encode(&glb[28 + length..]);
+    document["buffers"][0]["uri"] = format!("data:;base64,{data}").into();
+    let spare = document["nodes"].as_array().unwrap().iter().find(|node| node["mesh"].is_u64());
+    let mut spare = spare.unwrap().clone();
+    spare["name"] = "spare".into();
+    document["nodes"].as_array_mut().unwrap().push(spare);
+    let file = folder.path().join("a.gltf");
+    std::fs::write(&file, document.to_string()).unwrap();
+    assert_eq!(open(&file).unwrap().notes(), ["left out, as they are not in the scene: spare"]);
+}
+
+#[test]
 fn rotations_of_few_digits_are_normalised_with_a_note_and_shears_are_refused() {
     let manifest = |rotation: &str| {
         let toml = format!("[[part]]\nfile = 'c.off'\nrotation = {rotation}\n");

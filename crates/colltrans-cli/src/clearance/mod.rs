@@ -19,7 +19,7 @@ use crate::progress;
 use crate::proof;
 use crate::record::Line;
 use crate::solid::{self, Body, PartsQuery};
-pub(crate) use words::overlaps;
+pub(crate) use words::{overlaps, remedy};
 
 pub(crate) fn run(arguments: &ClearanceArguments) -> Result<(), Failure> {
     if !arguments.among.is_empty() {

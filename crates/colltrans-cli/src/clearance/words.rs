@@ -37,13 +37,7 @@ pub(super) fn answer(answer: &Answer, direction: DVec3, is_default: bool) -> Str
     let name = if ignored { "ignored" } else { "overlap" };
     overlaps(&mut text, record, name);
     if !ignored {
-        let hint = if record.start_overlaps.iter().all(|overlap| overlap.least_tolerance.is_some())
-        {
-            "--tolerance allows for it, --ignore-start-overlaps lets it pass"
-        } else {
-            "--ignore-start-overlaps lets it pass"
-        };
-        line(&mut text, "", hint);
+        line(&mut text, "", remedy(&record.start_overlaps));
     }
     if !record.surfaces.is_empty() {
         let what = "open, blocking from both sides, rims included; what is inside is not known";
@@ -113,6 +107,15 @@ fn blocked(text: &mut String, answer: &Answer, direction: DVec3) {
     if let (Some(normal), Some(point)) = (record.normal, record.point) {
         line(text, "normal", &unit_vector(normal.into()));
         line(text, "point", &known_vector(point.into(), answer.error));
+    }
+}
+
+/// Returns which flags let bodies move that overlap at the start.
+pub(crate) fn remedy(overlaps: &[StartOverlapRecord]) -> &'static str {
+    if overlaps.iter().all(|overlap| overlap.least_tolerance.is_some()) {
+        "--tolerance allows for it, --ignore-start-overlaps lets it pass"
+    } else {
+        "--ignore-start-overlaps lets it pass"
     }
 }
 

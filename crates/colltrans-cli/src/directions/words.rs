@@ -29,7 +29,7 @@ pub(super) fn answer(record: &FreeRecord) -> String {
         let mut overlaps = Record::default();
         overlaps.start_overlaps.clone_from(&record.start_overlaps);
         clearance::overlaps(&mut text, &overlaps, "overlap");
-        line(&mut text, "", "--tolerance allows for it, --ignore-start-overlaps lets it pass");
+        line(&mut text, "", clearance::remedy(&record.start_overlaps));
     }
     if let Some(tolerance) = record.tolerance {
         let how = if tolerance > 0.0 { " (both bodies are shrunk by half of it)" } else { "" };

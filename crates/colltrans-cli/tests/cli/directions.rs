@@ -60,6 +60,20 @@ fn what_cannot_be_asked_is_refused_with_a_reason() {
     let told = facts(folder, &["directions", "cube.off", "cube.off", "--moving-pose", "0.5,0,0"]);
     assert_eq!(told["outcome"], "overlapping");
     assert_eq!(told["start_overlaps"].as_array().unwrap().len(), 1);
+    let text =
+        answered(folder, &["directions", "cube.off", "cube.off", "--moving-pose", "0.5,0,0"]);
+    assert!(text.contains("--tolerance allows for it"), "{text}");
+    // No tolerance parts a body from itself.
+    let text = answered(folder, &["directions", "cube.off", "cube.off"]);
+    assert!(text.contains("no tolerance would part them"), "{text}");
+    assert!(!text.contains("--tolerance allows for it") && text.contains("lets it pass"), "{text}");
+    fs::write(folder.join("points.obj"), "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n").unwrap();
+    refused(
+        folder,
+        &["directions", "points.obj", "cube.off"],
+        3,
+        &["points.obj", "--hull", "points"],
+    );
     refused(folder, &["directions", "cube.off"], 2, &["--from"]);
     refused(folder, &["directions", "cube.off", "open.off"], 3, &["open.off"]);
     refused(folder, &[&LID[..], &["--tolerance", "-1"]].concat(), 2, &["negative"]);
@@ -87,7 +101,11 @@ fn parts_of_an_assembly_are_told_with_what_blocks_them() {
     assert_eq!(cover["cells"], 6, "six pairs of facets");
     assert_eq!(cover["blocked_by"][0]["fixed"], "shaft");
     assert_eq!(bolt["parts"], json!(["bolt_0"]));
-    assert!(bolt["free_share"][0].as_f64() > Some(3.9e-13), "{bolt}");
+    // The files are doubles, so the bolt fills its hole; with a tolerance it leaves along a narrow cone.
+    assert_eq!(bolt["also_free"], json!([[0.0, 0.0, 1.0]]));
+    let asked = ["assembly", "gearbox_small", "--free", "bolt_0", "--tolerance", "2e-5"];
+    let narrow = &facts(&data(), &asked)["free"][0];
+    assert!(narrow["free_share"][0].as_f64() > Some(3.9e-13), "{narrow}");
     let proof = Path::new(output).join("free-cover.json");
     let text = answered(&data(), &["verify", proof.to_str().unwrap()]);
     assert!(text.contains("the moving body cannot leave along any direction"), "{text}");

@@ -290,6 +290,7 @@ fn bad_meshes_are_taken_as_hulls_and_files_are_named() {
     fs::write(folder.path().join("fan.urdf"), robot).unwrap();
     fs::write(folder.path().join("rows.csv"), "s\n0\n0.3\n").unwrap();
     fs::write(folder.path().join("none.srdf"), "<robot name=\"r\"/>").unwrap();
+    refused(folder.path(), &["path", "fan.urdf", "rows.csv"], 3, &["fan.obj", "--package DIR"]);
     let asked = ["path", "fan.urdf", "rows.csv", "--package", ".", "--srdf", "none.srdf"];
     let refused = run(folder.path(), &asked);
     assert_eq!(refused.status.code(), Some(3));

@@ -97,7 +97,7 @@ fn text_stl_with_padding_comments_and_strange_bytes_is_read_as_text() {
         endloop\nendfacet\nendsolid a\n";
     let plain = read(Format::Stl, text).unwrap();
     let commented = text.replacen("outer", "# made by foo\n  ; bar\nouter", 1);
-    let inputs: [Vec<u8>; 9] = [
+    let inputs: [Vec<u8>; 12] = [
         commented.clone().into_bytes(),
         commented.replace('\n', "\r\n").into_bytes(),
         text.replacen("0.1 0 0", "0.1 0 0 # the second", 1).into_bytes(),
@@ -107,6 +107,9 @@ fn text_stl_with_padding_comments_and_strange_bytes_is_read_as_text() {
         [b"; made by foo\n", text.as_bytes()].concat(),
         [b"# Geh\xe4use\r\n\r\n// x\r\n", text.as_bytes()].concat(),
         text.replacen("solid a", "solid \0a", 1).into_bytes(),
+        [b"\0", text.as_bytes()].concat(),
+        [b"\x1a", text.as_bytes()].concat(),
+        [b"\xef\xbb\xbf\0\0", text.as_bytes(), b"\0"].concat(),
     ];
     for input in inputs {
         assert_eq!(read(Format::Stl, &input).unwrap().vertices, plain.vertices, "{input:?}");

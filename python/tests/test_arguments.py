@@ -1,5 +1,7 @@
 """Whatever numpy calls an array is taken, with the same bits, or refused with a reason."""
 
+from collections.abc import Callable
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -14,6 +16,7 @@ import colltrans
 from colltrans import ColltransError, ConvexPolyhedron, InputError, Pose, PoseError, cast, cast_many
 
 CUBE = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+FAR = ConvexPolyhedron.cuboid([9, 9, 9], [10, 10, 10])
 
 
 def strided(array: NDArray[Any]) -> NDArray[Any]:
@@ -52,6 +55,65 @@ FORMS: list[Any] = [
     lambda a: a[::-1].copy()[::-1],
     lambda a: a.view(np.matrix) if a.ndim == 2 else a,
 ]
+
+
+SLIDE = colltrans.Motion.slide([0, 0, 3])
+ARM = colltrans.Robot.read(Path(__file__).parents[2] / "data/arm.urdf")
+
+#: Calls with an argument that is easily confused, and words that say what is accepted.
+INSTEAD: list[tuple[Callable[[], Any], type[Exception], list[str]]] = [
+    (
+        lambda: colltrans.motion_many(CUBE, CUBE, [0, 0, 1]),
+        TypeError,
+        ["moving_motion", "Motion.slide([0.0, 0.0, 1.0])", "Motion.still([0.0, 0.0, 1.0])"],
+    ),
+    (
+        lambda: colltrans.motion_many(CUBE, CUBE, [[0, 0, 1], [0, 0, 2]]),
+        TypeError,
+        ["moving_motion", '{"slide": {"by": array}}'],
+    ),
+    (
+        lambda: colltrans.motion_many(CUBE, CUBE, {"turn": [1]}),
+        InputError,
+        ["'turn' takes a dict", "point", "axis", "radians", "not a list"],
+    ),
+    (lambda: colltrans.first_contact(CUBE, CUBE, [SLIDE]), InputError, ["motion_many"]),
+    (
+        lambda: colltrans.Assembly([CUBE]),
+        InputError,
+        ["parts: a dict", "not a list", "Assembly.read"],
+    ),
+    (lambda: colltrans.Assembly({"a": CUBE}), InputError, ["parts['a']: a pair (vertices, faces)"]),
+    (
+        lambda: ARM.first_contact([[0.0] * 3], scene=[CUBE]),
+        InputError,
+        ["scene: a dict", "not a list"],
+    ),
+    (lambda: ConvexPolyhedron("cube.obj"), InputError, ["the text", "ConvexPolyhedron.read"]),
+    (lambda: cast("cube.obj", CUBE, [0, 0, 1]), TypeError, ["ConvexPolyhedron.read(path)"]),
+    (lambda: cast(CUBE, CUBE, "z"), InputError, ["direction", "three numbers"]),
+    (
+        lambda: colltrans.read("part.step"),
+        colltrans.MeshError,
+        ["part.step", "Assembly.read(path)"],
+    ),
+    (lambda: colltrans.Solid.read("part.GLB"), colltrans.MeshError, ["Assembly.read(path)"]),
+    (
+        lambda: colltrans.motion_clearance(CUBE, FAR, SLIDE).save_proof("no/such/proof.json"),
+        FileNotFoundError,
+        ["no/such/proof.json"],
+    ),
+]
+
+
+@pytest.mark.parametrize(("call", "kind", "words"), INSTEAD)
+def test_what_is_confused_is_refused_with_what_is_accepted(
+    call: Callable[[], Any], kind: type[Exception], words: list[str]
+) -> None:
+    with pytest.raises(kind) as refused:
+        call()
+    for word in words:
+        assert word in str(refused.value)
 
 
 @pytest.mark.parametrize("form", FORMS)

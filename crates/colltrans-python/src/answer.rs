@@ -8,6 +8,7 @@ use std::path::Path;
 
 use colltrans::record::Record;
 use pyo3::PyClass;
+use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
@@ -37,7 +38,12 @@ where
 
 /// Writes a file of text, with an end of line.
 pub(crate) fn save(path: &Path, text: String) -> PyResult<()> {
-    Ok(fs::write(path, text + "\n")?)
+    fs::write(path, text + "\n").map_err(|error| {
+        let words = error.to_string();
+        let words = words.split(" (os error").next().unwrap_or_default().to_owned();
+        // Of these arguments Python makes the subclass, such as FileNotFoundError, and the name in its words.
+        PyOSError::new_err((error.raw_os_error(), words, path.to_owned()))
+    })
 }
 
 /// What all classes of answers have. `$again` makes the library's answer once more of one of them.

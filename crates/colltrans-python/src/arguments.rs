@@ -3,7 +3,7 @@
 //! Invariant: no class is known here, so that each class can use this.
 
 use pyo3::prelude::*;
-use pyo3::types::PySequence;
+use pyo3::types::{PySequence, PyString};
 
 use crate::errors::input;
 
@@ -11,6 +11,8 @@ use crate::errors::input;
 pub(crate) fn maker(given: &Bound<'_, PyAny>) -> PyResult<&'static str> {
     Ok(if given.hasattr("vertices")? && given.hasattr("faces")? {
         "ConvexPolyhedron.from_trimesh(mesh) or Solid.from_trimesh(mesh) makes a body of a mesh"
+    } else if given.is_instance_of::<PyString>() || given.hasattr("__fspath__")? {
+        "ConvexPolyhedron.read(path) and Solid.read(path) read the body of a file"
     } else if given.hasattr("__array__")? || given.is_instance_of::<PySequence>() {
         "ConvexPolyhedron(points) makes the convex hull of points"
     } else {

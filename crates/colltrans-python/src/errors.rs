@@ -3,6 +3,7 @@
 //! The exceptions are classes of Python, because they have two bases: the package's own and the one
 //! of Python that a caller would expect.
 
+use std::ffi::OsStr;
 use std::fmt::Display;
 
 use colltrans::motion::MotionError;
@@ -88,6 +89,14 @@ impl<T> OrRaise<T> for Result<T, LoadError> {
     fn or_raise(self) -> PyResult<T> {
         self.map_err(|what| match what {
             LoadError::Mesh(what) if what.is_missing_file() => error("MissingFileError", what),
+            LoadError::Mesh(ref mesh @ colltrans_mesh::Error::UnknownFormat { ref path }) => {
+                let read = "Assembly.read(path) reads it, as parts";
+                if path.extension().is_some_and(is_of_assembly) {
+                    error("MeshError", format_args!("{mesh}; {read}"))
+                } else {
+                    error("MeshError", mesh)
+                }
+            }
             LoadError::Mesh(what) => error("MeshError", what),
             LoadError::Body { ref source, .. } => match calls_instead(source) {
                 Some(calls) => error("BuildError", format_args!("{what}; {calls}")),
@@ -95,6 +104,13 @@ impl<T> OrRaise<T> for Result<T, LoadError> {
             },
         })
     }
+}
+
+/// Checks whether a file with this extension holds an assembly, not one mesh.
+fn is_of_assembly(extension: &OsStr) -> bool {
+    ["step", "stp", "glb", "gltf", "3mf", "urdf"]
+        .into_iter()
+        .any(|of| extension.eq_ignore_ascii_case(of))
 }
 
 /// Returns the calls that would take a file whose mesh was refused.

@@ -68,7 +68,12 @@ impl Robot {
         let mut bodies = Vec::new();
         if let Some(scene) = scene {
             let named = PyDict::new(scene.py());
-            named.update(scene.cast()?)?;
+            let Ok(mapping) = scene.cast() else {
+                let kind = scene.get_type().name()?;
+                let what = "a dict of names to bodies, such as {\"wire\": body}";
+                return Err(input("scene", format_args!("{what}, not a {kind}")));
+            };
+            named.update(mapping)?;
             for (name, body) in named {
                 let name: String = name.extract()?;
                 let body = any_body(&body, &format!("scene[{name:?}]"))?;

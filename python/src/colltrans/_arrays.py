@@ -4,11 +4,13 @@ The extension reads tuples, lists and arrays that are already so by itself; the 
 """
 
 from collections.abc import Sequence
+from os import PathLike
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from colltrans._colltrans import Motion
 from colltrans.errors import InputError
 
 
@@ -24,13 +26,28 @@ def floats(values: Any, name: str) -> NDArray[np.float64]:
 
     What a masked array masks is NaN, which every question refuses, in bulk row by row.
     """
+    if isinstance(values, str | PathLike):
+        raise InputError(
+            f"{name}: no array of numbers, but the text {str(values)!r}{_instead(name)}"
+        )
     try:
         array = np.asarray(_unmasked(values, float, np.nan))
     except Exception as error:
         raise InputError(f"{name}: no array of numbers: {error}") from None
     if array.dtype.kind not in "fiu":
-        raise InputError(f"{name}: no array of numbers, but of {array.dtype}")
+        several = array.dtype == object and any(isinstance(x, Motion) for x in array.flat)
+        instead = "; give one Motion, or motion_many takes a list of them" if several else ""
+        raise InputError(f"{name}: no array of numbers, but of {array.dtype}{instead}")
     return np.require(array, np.float64, ["C", "A"])
+
+
+def _instead(name: str) -> str:
+    """What to pass in place of a text."""
+    if name == "points":
+        return "; ConvexPolyhedron.read(path) reads the body of a file"
+    if name == "direction":
+        return "; a direction is three numbers, such as [0, 0, 1]"
+    return ""
 
 
 def indices(values: Any, name: str) -> NDArray[np.uint32]:

@@ -426,6 +426,8 @@ class Assembly:
     ------
     AssemblyError
         A part whose surface is none, two of one name.
+    InputError
+        No mapping, or a part that is not a pair of vertices and faces.
 
     Examples
     --------
@@ -439,6 +441,13 @@ class Assembly:
     """
 
     def __init__(self, parts: Mapping[str, tuple[ArrayLike, Any]]) -> None:
+        if not isinstance(parts, Mapping):
+            what = f"parts: a dict of names to (vertices, faces), not a {type(parts).__name__}"
+            raise InputError(f"{what}; Assembly.read(path) reads a file or a folder")
+        for name, mesh in parts.items():
+            if not isinstance(mesh, Sequence) or isinstance(mesh, str) or len(mesh) != 2:
+                what = type(mesh).__name__
+                raise InputError(f"parts[{name!r}]: a pair (vertices, faces), not a {what}")
         self._assembly = _colltrans.Assembly([(name, *mesh) for name, mesh in parts.items()])
 
     @classmethod
@@ -635,7 +644,8 @@ class Assembly:
         ----------
         directions : array_like of shape (D, 3)
         tolerance : float, optional
-            Parts are shrunk by half of this length, so that those that fit do not jam.
+            Parts are shrunk by half of this length, so that those that fit do not jam. By default
+            what the chord errors of the parts and the last digits of their files ask for.
         ignore_overlaps : bool
             Whether parts that overlap now may part, and what they do later counts.
 

@@ -315,12 +315,30 @@ def motion_table(motions: Motions, pose: Poses, name: str) -> Stack:
         return numbers_of(motions, name)
     listed = [motions] if isinstance(motions, Motion) else list(motions)
     if any(not isinstance(motion, Motion) for motion in listed):
-        raise TypeError(f"{name}: neither a Motion, nor a list of them, nor a dict of arrays")
+        raise TypeError(
+            f"{name}: neither a Motion, nor a list of them, nor a dict of arrays{_instead(listed)}"
+        )
     if pose is not None:
         raise InputError(f"{name}: a motion has its own pose; give no other one")
     table = np.empty((len(listed), 1), object)
     table[:, 0] = listed
     return Stack(table, () if isinstance(motions, Motion) else (len(listed),))
+
+
+def _instead(listed: list[Any]) -> str:
+    """What to pass in place of bare vectors."""
+    try:
+        vectors = np.asarray(listed, float)
+    except (TypeError, ValueError):
+        return ""
+    if vectors.ndim not in {1, 2} or vectors.shape[-1] != 3:
+        return ""
+    if vectors.ndim == 1:
+        vector = vectors.tolist()
+        slide = f"Motion.slide({vector}) moves the body by it"
+        still = f"Motion.still({vector}) lets it rest there"
+        return f"; three numbers could be a displacement or a place: {slide}, {still}"
+    return '; {"slide": {"by": array}} moves the body by each row of an array'
 
 
 def numbers_of(motions: Mapping[str, Mapping[str, ArrayLike]], name: str) -> Stack:
@@ -329,6 +347,10 @@ def numbers_of(motions: Mapping[str, Mapping[str, ArrayLike]], name: str) -> Sta
         raise InputError(f"{name}: one of {', '.join(KINDS)}, not {', '.join(map(str, motions))}")
     ((kind, given),) = motions.items()
     known = KINDS[kind]
+    if not isinstance(given, Mapping):
+        parts_of_kind = ", ".join(f'"{part}": ...' for part in known)
+        what = type(given).__name__
+        raise InputError(f"{name}: {kind!r} takes a dict {{{parts_of_kind}}}, not a {what}")
     if "radians" in known and "degrees" in given and "radians" not in given:
         radians = np.radians(_arrays.floats(given["degrees"], f"{name}.degrees"))
         given = {**{part: given[part] for part in given if part != "degrees"}, "radians": radians}

@@ -39,14 +39,10 @@ fn parts(at: DVec3, kind: &str, write: fn(&[DVec3], &[[usize; 3]]) -> Vec<u8>) -
 }
 
 fn obj(vertices: &[DVec3], faces: &[[usize; 3]], print: fn(f64) -> String) -> Vec<u8> {
-    let mut text = String::new();
-    for v in vertices {
-        text += &format!("v {}\n", v.to_array().map(print).join(" "));
-    }
-    for face in faces {
-        text += &format!("f {}\n", face.map(|v| (v + 1).to_string()).join(" "));
-    }
-    text.into_bytes()
+    let vertices = vertices.iter().map(|v| ["v", &v.to_array().map(print).join(" ")].join(" "));
+    let corners = |face: &[usize; 3]| face.map(|v| (v + 1).to_string()).join(" ");
+    let faces = faces.iter().map(|face| ["f", &corners(face)].join(" "));
+    vertices.chain(faces).collect::<Vec<_>>().join("\n").into_bytes()
 }
 
 fn nine_decimals(vertices: &[DVec3], faces: &[[usize; 3]]) -> Vec<u8> {

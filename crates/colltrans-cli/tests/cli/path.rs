@@ -291,6 +291,12 @@ fn bad_meshes_are_taken_as_hulls_and_files_are_named() {
     fs::write(folder.path().join("rows.csv"), "s\n0\n0.3\n").unwrap();
     fs::write(folder.path().join("none.srdf"), "<robot name=\"r\"/>").unwrap();
     refused(folder.path(), &["path", "fan.urdf", "rows.csv"], 3, &["fan.obj", "--package DIR"]);
+    // A joint whose parent has no geometry leaves out no pair, so no note says that it does.
+    let alone = box_.replace("\"a\"", "\"c\"") + "<link name=\"w\"/>" + &slide("s", "w", "c", 0.0);
+    fs::write(folder.path().join("one.urdf"), format!("<robot name=\"r\">{alone}</robot>"))
+        .unwrap();
+    let said = stderr(&run(folder.path(), &["path", "one.urdf", "rows.csv", "cube.off"]));
+    assert!(!said.contains("0 pairs of links"), "{said}");
     let asked = ["path", "fan.urdf", "rows.csv", "--package", ".", "--srdf", "none.srdf"];
     let refused = run(folder.path(), &asked);
     assert_eq!(refused.status.code(), Some(3));

@@ -145,7 +145,7 @@
 //! The modules, each using only those before it: `number` (arithmetic and its errors), `body` (poses,
 //! polyhedra and their indices), `setting` (two placed bodies, a direction, and `M`), `answer`
 //! (outcomes and certificates), `solve` (the two solvers, nearest points, and [`observe`]), `cast` and
-//! `pair` (the queries), `among` (many fixed bodies), [`free`] (all directions), [`ways`] (several moves),
+//! `pair` (the queries), `kinds` (bodies of either kind), `among` (many fixed bodies), [`free`] (all directions), [`ways`] (several moves),
 //! `proof_file`, [`motion`] (bodies that turn), `tracker` and `bulk` (rotations that stay). `written` and `record` say how
 //! all of them are written. [`solid`] holds what is of solids alone.
 
@@ -155,6 +155,7 @@ mod body;
 mod bulk;
 mod cast;
 pub mod free;
+mod kinds;
 pub mod motion;
 mod number;
 mod pair;
@@ -171,9 +172,8 @@ mod work;
 mod written;
 
 pub use among::{
-    Among, AmongProof, AmongSteps, AnyBody, AnyClearance, AnyDistance, AnyNear, AnyPlaced,
-    ApartProof, ByKind, ClearanceAmong, ClearanceProof, Nearby, NearbyProof, Nearest, NearestProof,
-    Obstacles, PassedProof, UnknownObstacle,
+    Among, AmongProof, AmongSteps, ApartProof, ClearanceAmong, ClearanceProof, Nearby, NearbyProof,
+    Nearest, NearestProof, Obstacles, PassedProof, UnknownObstacle,
 };
 pub use answer::{
     Bounded, CentralCast, Certificate, CertificateError, Clearance, Contact, ContactRange, Depth,
@@ -192,6 +192,7 @@ pub use bulk::{Approach, FixedRotations};
 pub use cast::{Case, CaseError};
 pub use cast::{Cast, WitnessPoints, cast};
 pub use glam;
+pub use kinds::{AnyBody, AnyClearance, AnyDistance, AnyNear, AnyPlaced, ByKind};
 pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
 pub use pair::{Pair, PairProof};
 #[cfg(feature = "json")]

@@ -14,7 +14,7 @@ use derive_where::derive_where;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use crate::among::{Among, AnyClearance, AnyNear, ByKind, ClearanceAmong, Nearby, Nearest};
+use crate::among::{Among, ClearanceAmong, Nearby, Nearest};
 use crate::answer::{
     Bounded, Clearance, Contact, ContactRange, Depth, Distance, Grazing, Outcome, OverlapAhead,
     Separated, Solver, Steps, WhyFree, Within,
@@ -22,6 +22,7 @@ use crate::answer::{
 use crate::body::solid::Solid;
 use crate::body::{Body, ConvexPolyhedron, Feature, Features, InputVertex, ObstacleId};
 use crate::cast::Cast;
+use crate::kinds::{AnyClearance, AnyNear, ByKind};
 use crate::pair::solid::OverlapDepth;
 use crate::pair::{Pair, points};
 use crate::setting::error::QueryError;

@@ -19,6 +19,7 @@ use glam::{DMat3, DVec3};
 
 use crate::body::solid::Solid;
 use crate::body::{Aabb, ConvexPolyhedron, Pose};
+use crate::kinds::{AnyPlaced, ByKind};
 
 /// `u`.
 const ROUNDING: f64 = 0.5 * f64::EPSILON;
@@ -31,8 +32,16 @@ const FEW: usize = 32;
 /// So many boxes of a solid's tree.
 const PARTS: usize = 16;
 
+/// Returns a box that holds a placed body.
+pub(super) fn of_placed(placed: &AnyPlaced<'_>) -> Aabb {
+    match placed {
+        ByKind::Convex(placed) => of_convex(placed.body, &placed.pose),
+        ByKind::Solid(placed) => of_solid(placed.body, &placed.pose),
+    }
+}
+
 /// A box that holds a convex body, and the points that it was made from.
-pub(super) fn of_convex(body: &ConvexPolyhedron, pose: &Pose) -> Aabb {
+fn of_convex(body: &ConvexPolyhedron, pose: &Pose) -> Aabb {
     let excess = body.input_excess();
     if body.vertices().len() <= FEW {
         return of_points(body.vertices(), pose, excess);
@@ -52,7 +61,7 @@ pub(super) fn of_convex(body: &ConvexPolyhedron, pose: &Pose) -> Aabb {
 }
 
 /// A box that holds a solid.
-pub(super) fn of_solid(solid: &Solid, pose: &Pose) -> Aabb {
+fn of_solid(solid: &Solid, pose: &Pose) -> Aabb {
     if solid.vertices().len() <= FEW {
         return of_points(solid.vertices(), pose, 0.0);
     }

@@ -3,13 +3,13 @@
 use glam::DVec3;
 
 use super::boxes::Sweep;
-use super::kinds::AnyClearance;
 use super::obstacles::Obstacle;
 use super::{Among, AmongSteps, ByKind};
 use crate::Solid;
 use crate::answer::Clearance;
 use crate::body::ObstacleId;
 use crate::cast::Cast;
+use crate::kinds::AnyClearance;
 use crate::setting::error::QueryError;
 use crate::setting::{check_direction, check_length};
 use crate::solid::SolidOptions;

@@ -16,7 +16,6 @@
 
 mod boxes;
 mod clearance;
-mod kinds;
 mod nearest;
 mod obstacles;
 mod proof;
@@ -30,12 +29,12 @@ use crate::body::solid::AsSolid;
 use crate::body::{Aabb, ObstacleId, Pose};
 use crate::cast::Cast;
 use crate::cast::solid::SolidOptions;
+use crate::kinds::{AnyBody, AnyPlaced, ByKind};
 use crate::pair::Pair;
 use crate::setting::error::QueryError;
 use crate::solve::options::Options;
 use crate::{ConvexPolyhedron, Solid};
 pub use clearance::ClearanceAmong;
-pub use kinds::{AnyBody, AnyClearance, AnyDistance, AnyNear, AnyPlaced, ByKind};
 pub use nearest::{Nearby, Nearest};
 use obstacles::Obstacle;
 pub use obstacles::{Obstacles, UnknownObstacle};
@@ -123,7 +122,7 @@ impl<'a> Among<'a> {
         Ok(Self {
             moving,
             obstacles,
-            bounds: moving.bounds(),
+            bounds: boxes::of_placed(&moving),
             ignored: None,
             options: Options::default(),
             solid_options: SolidOptions::default(),

@@ -1,11 +1,11 @@
 //! Which obstacle is nearest, and which are closer than a length.
 
 use super::boxes;
-use super::kinds::{AnyDistance, AnyNear};
 use super::obstacles::Obstacle;
 use super::{Among, AmongSteps, ByKind};
 use crate::answer::Within;
 use crate::body::ObstacleId;
+use crate::kinds::{AnyDistance, AnyNear};
 use crate::setting::check_length;
 use crate::setting::error::QueryError;
 

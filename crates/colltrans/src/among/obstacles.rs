@@ -4,9 +4,10 @@ use std::collections::HashMap;
 
 use thiserror::Error;
 
-use super::kinds::{AnyBody, AnyPlaced};
+use super::boxes::of_placed;
 use super::tree::Tree;
 use crate::body::{Aabb, ObstacleId, Pose};
+use crate::kinds::{AnyBody, AnyPlaced};
 
 /// There is no such obstacle (any more).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
@@ -107,7 +108,7 @@ impl Obstacles {
         self.positions.reserve(room);
         let ids: Vec<ObstacleId> =
             bodies.map(|(body, pose)| self.push(body.into(), pose)).collect();
-        let new = self.placed[before..].iter().map(|obstacle| obstacle.placed().bounds());
+        let new = self.placed[before..].iter().map(|obstacle| of_placed(&obstacle.placed()));
         if 2 * ids.len() > before {
             let old = (0..before).map(|item| *self.tree.bounds(item as u32));
             self.tree = Tree::build(old.chain(new));
@@ -122,13 +123,13 @@ impl Obstacles {
         self.next += 1;
         self.positions.insert(id, self.placed.len() as u32);
         self.counts.solids += usize::from(matches!(body, AnyBody::Solid(_)));
-        self.counts.bare += usize::from(body.is_bare());
+        self.counts.bare += usize::from(is_bare(&body));
         self.placed.push(Obstacle { id, body, pose });
         id
     }
 
     fn last_bounds(&self) -> Aabb {
-        self.placed.last().map_or(Aabb::EMPTY, |obstacle| obstacle.placed().bounds())
+        self.placed.last().map_or(Aabb::EMPTY, |obstacle| of_placed(&obstacle.placed()))
     }
 
     /// Takes one away: the body, and where it was; `None` if there is no such one.
@@ -140,7 +141,7 @@ impl Obstacles {
             self.positions.insert(moved.id, item);
         }
         self.counts.solids -= usize::from(matches!(body, AnyBody::Solid(_)));
-        self.counts.bare -= usize::from(body.is_bare());
+        self.counts.bare -= usize::from(is_bare(&body));
         Some((body, pose))
     }
 
@@ -152,7 +153,7 @@ impl Obstacles {
         let item = self.item(id)?;
         let obstacle = &mut self.placed[item as usize];
         obstacle.pose = pose;
-        self.tree.set(item, obstacle.placed().bounds());
+        self.tree.set(item, of_placed(&obstacle.placed()));
         Ok(())
     }
 
@@ -166,7 +167,7 @@ impl Obstacles {
         for (item, (_, pose)) in items.iter().zip(poses) {
             self.placed[*item as usize].pose = *pose;
         }
-        let bounds = |item: &u32| self.placed[*item as usize].placed().bounds();
+        let bounds = |item: &u32| of_placed(&self.placed[*item as usize].placed());
         if 4 * items.len() > self.len() {
             let mut boxes: Vec<Aabb> =
                 (0..self.len()).map(|k| *self.tree.bounds(k as u32)).collect();
@@ -224,4 +225,9 @@ impl Obstacles {
     pub(super) fn counts(&self) -> Counts {
         self.counts
     }
+}
+
+/// Returns whether a body has no faces: no solid can be asked about it.
+fn is_bare(body: &AnyBody) -> bool {
+    matches!(body, AnyBody::Convex(body) if body.face_count() == 0)
 }

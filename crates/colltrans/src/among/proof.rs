@@ -9,7 +9,6 @@ use std::convert::Infallible;
 use glam::DVec3;
 
 use super::boxes::{self, Sweep};
-use super::kinds::AnyNear;
 use super::nearest::{Closeness, Nearby, Nearest};
 use super::obstacles::Obstacle;
 use super::{Among, ByKind, ClearanceAmong};
@@ -17,6 +16,7 @@ use crate::answer::{CertificateError, Clearance, PlaneGap, WhyFree, Within, chec
 use crate::body::{Aabb, ObstacleId};
 use crate::cast::solid::{SolidCertificate, StartProof};
 use crate::cast::{Cast, verified_overlap};
+use crate::kinds::AnyNear;
 use crate::number::noise::Noise;
 use crate::pair::solid::DistanceCertificate;
 use crate::setting::error::QueryError;
@@ -348,7 +348,7 @@ impl Among<'_> {
         let sweep = Sweep::new(self.swept(), *direction);
         for one in self.asked() {
             let named = bounds.get(&one.id).map(|[lower, _]| *lower);
-            let proven = named.unwrap_or_else(|| sweep.entry(&one.placed().bounds()));
+            let proven = named.unwrap_or_else(|| sweep.entry(&boxes::of_placed(&one.placed())));
             // Who is met at 0 has to be named: what a box says there is nothing.
             require(proven >= *lower && (proven > 0.0 || named.is_some()), one.id)?;
         }
@@ -399,7 +399,7 @@ impl Among<'_> {
         claim: Option<&ApartProof>,
     ) -> Result<f64, CertificateError> {
         let Some(claim) = claim else {
-            return Ok(boxes::distance(&self.bounds, &one.placed().bounds()));
+            return Ok(boxes::distance(&self.bounds, &boxes::of_placed(&one.placed())));
         };
         let proven = match (self.pair(one)?, claim) {
             (ByKind::Convex(pair), ByKind::Convex(plane)) => pair.verify(plane),

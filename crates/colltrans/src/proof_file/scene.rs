@@ -10,14 +10,13 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::file::{BodyFile, PieceRecord, convex_body, is_same, said, union};
-use crate::among::{
-    Among, AnyBody, AnyPlaced, ByKind, ClearanceProof, NearbyProof, NearestProof, Obstacles,
-};
+use crate::among::{Among, ClearanceProof, NearbyProof, NearestProof, Obstacles};
 use crate::answer::CertificateError;
 use crate::body::{ObstacleId, Pose};
 use crate::cast::CaseError;
 use crate::cast::replay::BodyRecord;
 use crate::cast::solid::{SolidOptions, StartOverlap};
+use crate::kinds::{AnyBody, AnyPlaced, ByKind};
 use crate::setting::error::QueryError;
 use crate::solve::options::Options;
 use crate::{ConvexPolyhedron, Solid};

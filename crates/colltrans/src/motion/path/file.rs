@@ -11,9 +11,9 @@ use super::{
     Frame, JointPath, Mechanism, PathBody, PathCast, PathError, PathOutcome, PathProof,
     PathProofError,
 };
-use crate::among::{AnyBody, ByKind};
 use crate::body::{InputFacet, Pose};
 use crate::cast::CaseError;
+use crate::kinds::{AnyBody, ByKind};
 use crate::number::noise;
 use crate::proof_file::{BodyFile, Written, kept, nested, said};
 

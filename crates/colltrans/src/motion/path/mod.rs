@@ -66,8 +66,8 @@ mod verify;
 use std::collections::HashSet;
 
 use crate::Solid;
-use crate::among::{AnyPlaced, ByKind};
 use crate::body::{Placed, Pose};
+use crate::kinds::{AnyPlaced, ByKind};
 use crate::number::range::MAX_MAGNITUDE;
 use crate::pair::Pair;
 use crate::setting::check_keep;

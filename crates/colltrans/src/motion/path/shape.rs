@@ -8,9 +8,9 @@ use std::sync::OnceLock;
 
 use glam::DVec3;
 
-use crate::among::{AnyPlaced, ByKind};
 use crate::body::solid::Solid;
 use crate::body::{Aabb, ConvexPolyhedron, Pose};
+use crate::kinds::{AnyPlaced, ByKind};
 
 /// By which share of its size a box is made larger.
 const LARGER: f64 = 1e-9;

@@ -10,11 +10,11 @@ use super::super::verify::MotionProofError;
 use super::super::{Motion, MotionCast, MotionOutcome, Moving};
 use super::proof::{FacetsMeeting, SolidMotionProof};
 use super::tree::Tree;
-use crate::among::ByKind;
 use crate::body::InputFacet;
 use crate::body::solid::Solid;
 use crate::cast::CaseError;
 use crate::cast::solid::StartProof;
+use crate::kinds::ByKind;
 use crate::proof_file::{BodyFile, Written, kept, said};
 
 /// What a file of this version calls itself.

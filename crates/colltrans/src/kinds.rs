@@ -6,10 +6,8 @@ use glam::DVec3;
 
 use crate::answer::{Clearance, Distance, NearPoints};
 use crate::body::solid::Solid;
-use crate::body::{Aabb, ConvexPolyhedron, Features, Placed, Pose};
+use crate::body::{ConvexPolyhedron, Features, Placed, Pose};
 use crate::solve::solid::nearest::SolidNear;
-
-use super::boxes;
 
 /// Something of convex bodies, or of solids: a body, an answer, a proof.
 ///
@@ -49,21 +47,6 @@ impl AnyBody {
         match self {
             Self::Convex(body) => ByKind::Convex(body.at(pose)),
             Self::Solid(body) => ByKind::Solid(body.at(pose)),
-        }
-    }
-
-    /// Whether it has no faces: no solid can be asked about it.
-    pub(super) fn is_bare(&self) -> bool {
-        matches!(self, Self::Convex(body) if body.face_count() == 0)
-    }
-}
-
-impl AnyPlaced<'_> {
-    /// A box that holds it.
-    pub(super) fn bounds(&self) -> Aabb {
-        match self {
-            Self::Convex(placed) => boxes::of_convex(placed.body, &placed.pose),
-            Self::Solid(placed) => boxes::of_solid(placed.body, &placed.pose),
         }
     }
 }
@@ -118,7 +101,7 @@ impl AnyClearance {
     }
 
     /// The upper bound of where it stops the body: minus infinity if they overlap, infinite if it does not.
-    pub(super) fn upper(&self) -> f64 {
+    pub(crate) fn upper(&self) -> f64 {
         match self {
             Self::Convex(Clearance::Blocked { contact, .. }) => contact.certificate.upper,
             Self::Solid(Clearance::Blocked { contact, .. }) => contact.translation.upper,

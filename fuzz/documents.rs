@@ -107,7 +107,7 @@ pub(crate) fn cases(bytes: &[u8]) {
         vec![
             cast(&cube, DVec3::new(-3.1, 0.3, 0.1)).to_json(),
             cast(&cube, DVec3::new(0.5, 0.3, 0.1)).to_json(),
-            motion(&cube, |cast| cast.to_json()),
+            motion(&cube, |cast| MotionCase::of(cast).to_json()),
         ]
     });
     let Some(text) = text_of(bytes, &SEEDS) else { return };

@@ -374,7 +374,9 @@ impl MotionCast {
         patiently(slf.py(), &slf.get().bodies, move || match query.get().asked()? {
             Of::Convex(cast) => {
                 let found = cast.first_contact();
-                found.map(Of::Convex).map_err(|what| query_error(&what, || cast.to_json()))
+                found
+                    .map(Of::Convex)
+                    .map_err(|what| query_error(&what, || MotionCase::of(&cast).to_json()))
             }
             Of::Solids(cast) => cast.first_contact().or_raise().map(Of::Solids),
         })
@@ -388,7 +390,9 @@ impl MotionCast {
         patiently(slf.py(), &slf.get().bodies, move || match query.get().asked()? {
             Of::Convex(cast) => {
                 let found = cast.clearance();
-                found.map(Of::Convex).map_err(|what| query_error(&what, || cast.to_json()))
+                found
+                    .map(Of::Convex)
+                    .map_err(|what| query_error(&what, || MotionCase::of(&cast).to_json()))
             }
             Of::Solids(cast) => cast.clearance().or_raise().map(Of::Solids),
         })
@@ -466,7 +470,7 @@ impl MotionCast {
     /// ``colltrans replay`` of the command line reads the same.
     fn to_json(&self) -> PyResult<String> {
         match self.asked()? {
-            Of::Convex(cast) => Ok(cast.to_json()),
+            Of::Convex(cast) => Ok(MotionCase::of(&cast).to_json()),
             Of::Solids(_) => Err(error("CaseError", "a motion of solids has no file")),
         }
     }

@@ -81,6 +81,16 @@ of_both! {
     features: Option<Features>;
 }
 
+impl AnyPlaced<'_> {
+    /// Where the body is.
+    pub const fn pose(&self) -> Pose {
+        match self {
+            Self::Convex(placed) => placed.pose,
+            Self::Solid(placed) => placed.pose,
+        }
+    }
+}
+
 impl AnyDistance {
     /// What proves the upper bound.
     pub const fn near(&self) -> AnyNear {

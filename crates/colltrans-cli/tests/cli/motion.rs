@@ -3,7 +3,7 @@
 use std::fs;
 
 use colltrans::glam::DVec3;
-use colltrans::motion::{Motion, MotionCast, MotionOutcome};
+use colltrans::motion::{Motion, MotionCase, MotionCast, MotionOutcome};
 use colltrans::{ConvexPolyhedron, Pose};
 use serde_json::{Value, json};
 
@@ -305,13 +305,13 @@ fn a_saved_question_is_answered_again() {
     let screw = Motion::screw(start, DVec3::Z, DVec3::X, 0.5, 8.0).unwrap();
     let cast = MotionCast::new(cube.along(&screw), cube.at(Pose::IDENTITY)).unwrap();
     let cast = cast.keeping(0.125).unwrap();
-    fs::write(folder.path().join("case.json"), cast.to_json()).unwrap();
+    fs::write(folder.path().join("case.json"), MotionCase::of(&cast).to_json()).unwrap();
     let found = read(&answered(folder.path(), &["replay", "case.json", "--json"]));
     let MotionOutcome::Contact(contact) = cast.first_contact().unwrap() else { panic!("{found}") };
     assert_eq!(found["time"], json!({ "lower": contact.lower, "upper": contact.upper }));
     assert_eq!(found["keep"], 0.125);
     assert!(answered(folder.path(), &["replay", "case.json"]).starts_with("contact\n  time"));
-    let broken = cast.to_json().replace("\"rate\":0.5", "\"rate\":1e9");
+    let broken = MotionCase::of(&cast).to_json().replace("\"rate\":0.5", "\"rate\":1e9");
     fs::write(folder.path().join("case.json"), broken).unwrap();
     refused(folder.path(), &["replay", "case.json"], 3, &["is not a number from -1e5 to 1e5"]);
 }

@@ -50,8 +50,6 @@ mod arc;
 mod bend;
 mod clearance;
 mod course;
-#[cfg(feature = "json")]
-mod file;
 mod look;
 pub mod path;
 mod search;
@@ -68,12 +66,10 @@ pub use self::answer::{
     Meeting, Met, MotionContact, MotionFree, MotionOutcome, MotionProof, MotionSteps, PlaneAt,
 };
 pub use self::clearance::{MotionClearance, MotionOverlap, MotionStop};
-#[cfg(feature = "json")]
-pub use self::file::{MotionCase, MotionProofFile, MotionProofFiles};
 use self::look::ConvexLooker;
 use self::search::{Advanced, End, advance};
 #[cfg(feature = "json")]
-pub use self::solid::SolidMotionProofFile;
+pub(crate) use self::solid::Parts;
 pub use self::solid::{FacetsMeeting, FacetsMet, MotionCover, SolidMotionProof, SpanProof};
 use self::span::{Span, spans};
 pub use self::verify::MotionProofError;
@@ -84,6 +80,8 @@ use crate::body::solid::Solid;
 use crate::body::{ConvexPolyhedron, Hull};
 use crate::number::noise::Noise;
 use crate::number::range::MAX_MAGNITUDE;
+#[cfg(feature = "json")]
+pub use crate::proof_file::{MotionCase, MotionProofFile, MotionProofFiles, SolidMotionProofFile};
 use crate::setting::check_keep;
 use crate::setting::error::{QueryError, Stalled};
 use crate::solid::StartOverlap;
@@ -184,7 +182,7 @@ impl MotionCast<'_> {
 
     /// The question about the same bodies as solids, as they are. A gap is added by which the points that a body was
     /// made of may be beyond its faces.
-    fn between_solids(&self) -> Result<MotionCast<'_, Solid>, QueryError> {
+    pub(crate) fn between_solids(&self) -> Result<MotionCast<'_, Solid>, QueryError> {
         let moving = Moving { body: self.moving.body, motion: Cow::Borrowed(&*self.moving.motion) };
         let fixed = Moving { body: self.fixed.body, motion: Cow::Borrowed(&*self.fixed.motion) };
         MotionCast::between(moving, fixed)?.tolerating(0.0)?.keeping(self.keep + self.left_out())

@@ -5,10 +5,14 @@
 //! in a tree, so it is made for the bodies as they are read back from the file.
 //!
 //! [`statement`] is what is said of bodies, and how it is checked; [`file`] writes and reads it; [`words`] tell it.
-//! [`scene`] is all of that of one body among many.
+//! [`scene`] is all of that of one body among many, [`motion`] and [`solid_motion`] of bodies that turn, [`path`] of a
+//! path of joints.
 
 mod file;
+mod motion;
+mod path;
 mod scene;
+mod solid_motion;
 mod statement;
 mod words;
 
@@ -25,10 +29,11 @@ use crate::free::{FreeDirections, FreeError};
 use crate::pair::Pair;
 use crate::pair::solid::Unproven;
 use crate::setting::error::QueryError;
-pub(crate) use file::{BodyFile, convex_body, nested, said};
 use file::{Pieces, again};
+pub use motion::{MotionCase, MotionProofFile, MotionProofFiles};
+pub use path::{PathCheckError, PathFileError, PathProofFile, PathStatement};
 pub use scene::{SceneProof, SceneStatement};
-pub(crate) use scene::{Written, kept};
+pub use solid_motion::SolidMotionProofFile;
 use statement::options;
 pub use statement::{
     Contacts, DistanceStatement, FreeStatement, Slide, SolidStatement, Statement, Stop,

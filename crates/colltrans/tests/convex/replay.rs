@@ -103,10 +103,10 @@ fn motions_come_back_in_bits() {
                 1 => asked.keeping(0.25).expect("a gap"),
                 _ => asked.tolerating(0.25).expect("a depth"),
             };
-            let saved = asked.to_json();
+            let saved = MotionCase::of(&asked).to_json();
             let case = MotionCase::from_json(&saved).unwrap_or_else(|e| panic!("{setting}: {e}"));
             let again = case.cast();
-            assert_eq!(again.to_json(), saved, "{setting}");
+            assert_eq!(MotionCase::of(&again).to_json(), saved, "{setting}");
             assert_eq!([again.keep(), again.tolerance()], [asked.keep(), asked.tolerance()]);
             let answers = [&asked, &again].map(|cast| format!("{:?}", cast.first_contact()));
             assert_eq!(answers[0], answers[1], "{setting}");
@@ -122,7 +122,7 @@ fn what_is_no_motion_is_refused() {
     let slide = Motion::slide(cast.moving_pose(), cast.direction()).expect("a motion");
     let asked = MotionCast::new(cast.moving().along(&slide), cast.fixed().at(cast.fixed_pose()));
     let asked = asked.expect("a cast");
-    let good = asked.to_json();
+    let good = MotionCase::of(&asked).to_json();
     let proof = MotionProofFile::of(&asked, &asked.first_contact().expect("an answer")).to_json();
     for (wrong, why) in [
         ("{}".to_owned(), "not a saved query"),

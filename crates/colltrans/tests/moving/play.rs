@@ -122,7 +122,7 @@ fn a_proof_of_solids_leaves_what_hulls_leave_out() {
     (proof.spans, proof.meeting) = (Vec::new(), None);
     proof.solids = Some(Box::new(solids.proof().clone()));
     assert_eq!(cast.verify(&proof).unwrap(), [1.0, f64::INFINITY]);
-    let text = cast.to_json().replace("\"hull_error\":0.0", "\"hull_error\":1e-3");
+    let text = MotionCase::of(&cast).to_json().replace("\"hull_error\":0.0", "\"hull_error\":1e-3");
     let case = MotionCase::from_json(&text).unwrap();
     assert!(case.cast().verify(&proof).is_err(), "{text}");
 }

@@ -221,7 +221,7 @@ impl PathProof {
 
     /// Whether it proves of all pairs, if it holds, that the bodies do not meet where the path begins.
     #[cfg(feature = "json")]
-    pub(super) fn is_of_the_beginning(&self) -> bool {
+    pub(crate) fn is_of_the_beginning(&self) -> bool {
         self.covers.iter().all(Cover::is_of_the_beginning)
     }
 }

@@ -49,7 +49,7 @@ pub enum Joint {
 }
 
 impl Joint {
-    pub(super) fn axis(&self) -> Option<DVec3> {
+    pub(crate) fn axis(&self) -> Option<DVec3> {
         match self {
             Self::Fixed => None,
             Self::Turning(axis) | Self::Sliding(axis) => Some(*axis),

@@ -50,14 +50,12 @@
 //! bodies do not begin one inside the other is decided exactly; later their surfaces would have met.
 //!
 //! The modules, each using only those before it: `mechanism`, `chain`, `shape`, `couple`, `answer`, `follow`,
-//! `cover`, `verify`, `file`.
+//! `cover`, `verify`.
 
 mod answer;
 mod chain;
 mod couple;
 mod cover;
-#[cfg(feature = "json")]
-mod file;
 mod follow;
 mod mechanism;
 mod shape;
@@ -80,13 +78,13 @@ pub use self::answer::{
 use self::chain::Chain;
 use self::couple::Couple;
 use self::cover::{Search, Stop};
-#[cfg(feature = "json")]
-pub use self::file::{PathCheckError, PathFileError, PathProofFile, PathStatement};
 pub use self::mechanism::{Frame, Joint, JointPath, Mechanism, PathError, Place};
 use self::shape::Shape;
 pub use self::verify::PathProofError;
 use super::answer::MotionSteps;
 use super::course::Course;
+#[cfg(feature = "json")]
+pub use crate::proof_file::{PathCheckError, PathFileError, PathProofFile, PathStatement};
 
 /// A body that a mechanism carries, or that stands in the world.
 #[derive(Debug, Clone, Copy)]
@@ -199,6 +197,20 @@ impl<'a> PathCast<'a> {
         self.shapes.iter().map(|shape| shape.placed)
     }
 
+    /// The bodies, with the frames that carry them.
+    pub fn carried_bodies(&self) -> impl Iterator<Item = PathBody<'a>> {
+        let of = |(shape, frame): (&Shape<'a>, &Option<usize>)| PathBody {
+            frame: *frame,
+            placed: shape.placed,
+        };
+        self.shapes.iter().zip(&self.frames).map(of)
+    }
+
+    /// The frames that carry them.
+    pub const fn mechanism(&self) -> &'a Mechanism {
+        self.mechanism
+    }
+
     /// What the joints do.
     pub const fn path(&self) -> &'a JointPath {
         self.path
@@ -261,7 +273,7 @@ impl<'a> PathCast<'a> {
 
     /// Returns the same question with these convex bodies taken as solids. Pieces of shapes that this cast has made are
     /// made anew.
-    fn with_solids(&self, solids: &[usize]) -> Self {
+    pub(crate) fn with_solids(&self, solids: &[usize]) -> Self {
         let shape = |(k, shape): (usize, &Shape<'a>)| {
             let placed = shape.placed;
             Shape::new(if solids.contains(&k) {

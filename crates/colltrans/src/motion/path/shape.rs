@@ -32,10 +32,7 @@ impl<'a> Shape<'a> {
     }
 
     pub(super) fn pose(&self) -> Pose {
-        match self.placed {
-            ByKind::Convex(placed) => placed.pose,
-            ByKind::Solid(placed) => placed.pose,
-        }
+        self.placed.pose()
     }
 
     /// The points that it is the hull of, or lies within the hull of.

@@ -6,12 +6,10 @@
 //!
 //! The modules, each using only those before it: `tree` (a shrunk solid), `window` (two parts in an interval, and
 //! one plane), `facets` (two facets, as convex bodies), `inside` (a point inside both), `proof` (entries of a cover),
-//! `search`, `meeting` (what meets at a time), `verify`, `clearance`, `file`.
+//! `search`, `meeting` (what meets at a time), `verify`, `clearance`.
 
 mod clearance;
 mod facets;
-#[cfg(feature = "json")]
-mod file;
 pub(super) mod inside;
 mod meeting;
 mod proof;
@@ -26,14 +24,12 @@ use glam::DVec3;
 
 use self::facets::FacetLooker;
 pub use self::facets::FacetsMet;
-#[cfg(feature = "json")]
-pub(super) use self::file::FORMAT as SOLIDS_PROOF;
-#[cfg(feature = "json")]
-pub use self::file::SolidMotionProofFile;
 use self::meeting::seen;
 use self::proof::Written;
 pub use self::proof::{FacetsMeeting, MotionCover, SolidMotionProof, SpanProof};
 use self::search::{Found, Mode, Search};
+#[cfg(feature = "json")]
+pub(crate) use self::tree::Parts;
 use self::tree::Tree;
 use self::window::Frame;
 use super::answer::{MotionContact, MotionFree, MotionOutcome, MotionSteps};
@@ -195,6 +191,18 @@ impl<'a> MotionCast<'a, Solid> {
         let [p, q] = self.motions().map(|motion| motion.pieces()[0].start);
         let options = SolidOptions::default().with_tolerance(self.tolerance()).with_keep(self.keep);
         Cast::new(bodies[0].at(p), bodies[1].at(q), DVec3::Z)?.with_options(options)
+    }
+
+    /// The facets and trees that a proof is about.
+    #[cfg(feature = "json")]
+    pub(crate) fn parts(&self) -> [Parts; 2] {
+        self.trees(self.tolerance()).map(|tree| Parts::of(&tree))
+    }
+
+    /// The tolerance, if one was given.
+    #[cfg(feature = "json")]
+    pub(crate) const fn given_tolerance(&self) -> Option<f64> {
+        self.tolerance
     }
 
     fn trees(&self, tolerance: f64) -> [Tree<'a>; 2] {

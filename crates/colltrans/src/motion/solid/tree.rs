@@ -98,7 +98,7 @@ impl<'a> Tree<'a> {
 
     /// All nodes in preorder: the facet that one is, or -1 of one that has parts.
     #[cfg(feature = "json")]
-    pub(super) fn preorder(&self) -> Vec<i64> {
+    fn preorder(&self) -> Vec<i64> {
         let (mut all, mut open) = (Vec::with_capacity(self.nodes.len()), vec![0]);
         while let Some(at) = open.pop() {
             match self.node(at).below {
@@ -179,5 +179,27 @@ impl Part {
             Self::Node(k) => own[k].facets().start,
             Self::Facets(first, _) => first,
         }
+    }
+}
+
+/// The facets of a solid as the tolerance leaves them, in the order in which a proof counts them, and how it splits them.
+#[cfg(feature = "json")]
+#[derive(Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Parts {
+    /// The number of each in the file.
+    numbers: Vec<crate::body::InputFacet>,
+    corners: Vec<[[f64; 3]; 3]>,
+    /// The nodes in preorder: the facet that one is, or -1 of one that has two parts.
+    tree: Vec<i64>,
+}
+
+#[cfg(feature = "json")]
+impl Parts {
+    pub(super) fn of(tree: &Tree) -> Self {
+        let numbers = tree.solid.facet_indices().to_vec();
+        let count = tree.solid.triangles().len() as u32;
+        let corners = (0..count).map(|at| tree.facet(at).corners.map(|v| v.to_array()));
+        Self { numbers, corners: corners.collect(), tree: tree.preorder() }
     }
 }

@@ -6,19 +6,19 @@ use std::fmt;
 use serde::de::Error as _;
 use serde::{Deserialize, Serialize};
 
-use super::super::verify::MotionProofError;
-use super::super::{Motion, MotionCast, MotionOutcome, Moving};
-use super::proof::{FacetsMeeting, SolidMotionProof};
-use super::tree::Tree;
-use crate::body::InputFacet;
+use super::file::{BodyFile, said};
+use super::scene::{Written, kept};
 use crate::body::solid::Solid;
 use crate::cast::CaseError;
 use crate::cast::solid::StartProof;
 use crate::kinds::ByKind;
-use crate::proof_file::{BodyFile, Written, kept, said};
+use crate::motion::{
+    FacetsMeeting, Motion, MotionCast, MotionOutcome, MotionProofError, Moving, Parts,
+    SolidMotionProof,
+};
 
 /// What a file of this version calls itself.
-pub(in crate::motion) const FORMAT: &str = "colltrans motion of solids proof 1";
+pub(super) const FORMAT: &str = "colltrans motion of solids proof 1";
 
 /// A proof that owns its solids and their motions: whoever has the file can check what it says, without a search.
 ///
@@ -59,7 +59,7 @@ impl SolidMotionProofFile {
             Written::again(&kept(placed.into()), which)
         };
         let bodies = Box::new([written(0, "moving")?, written(1, "fixed")?]);
-        let (keep, tolerance) = (cast.keep, cast.tolerance);
+        let (keep, tolerance) = (cast.keep(), cast.given_tolerance());
         let again = asked(&bodies, &motions, keep, tolerance)?;
         let outcome = again.certified_first_contact()?;
         let proof = outcome.proof().clone();
@@ -78,17 +78,17 @@ impl SolidMotionProofFile {
     }
 
     /// Returns the gap that is kept.
-    pub(in crate::motion) fn keep(&self) -> f64 {
+    pub(super) fn keep(&self) -> f64 {
         self.keep
     }
 
     /// Returns whether it is about solids that a tolerance has shrunk.
-    pub(in crate::motion) fn is_shrunk(&self) -> bool {
+    pub(super) fn is_shrunk(&self) -> bool {
         self.proof.tolerance != 0.0
     }
 
     /// Returns the time up to which the solids do not meet, and the one at which they do, if these are claimed.
-    pub(in crate::motion) fn claims(&self) -> (Option<f64>, Option<f64>) {
+    pub(super) fn claims(&self) -> (Option<f64>, Option<f64>) {
         let SolidMotionProof { spans, meeting, .. } = &self.proof;
         (spans.last().map(|span| span.until), meeting.as_ref().map(|meeting| meeting.time))
     }
@@ -103,7 +103,7 @@ impl SolidMotionProofFile {
         let (format, keep, tolerance) = (FORMAT.into(), self.keep, self.tolerance);
         let proof = self.proof.clone();
         let cast = asked(&self.bodies, &self.motions, keep, tolerance);
-        let parts = cast.ok().map(|cast| cast.trees(cast.tolerance()).map(|tree| Parts::of(&tree)));
+        let parts = cast.ok().map(|cast| cast.parts());
         let file = File {
             format,
             moving,
@@ -133,10 +133,9 @@ impl SolidMotionProofFile {
         let cast = asked(&bodies, &motions, keep, tolerance)?;
         // They are there for whoever has no such trees; they have to be those of these bodies.
         let missing = || CaseError::Proof(serde_json::Error::missing_field("parts"));
-        let trees = cast.trees(cast.tolerance());
-        let told = trees.iter().zip(parts.ok_or_else(missing)?);
-        for (which, (tree, told)) in ["moving", "fixed"].into_iter().zip(told) {
-            if Parts::of(tree) != told {
+        let told = cast.parts().into_iter().zip(parts.ok_or_else(missing)?);
+        for (which, (parts, told)) in ["moving", "fixed"].into_iter().zip(told) {
+            if parts != told {
                 return Err(CaseError::Changed { which });
             }
         }
@@ -198,24 +197,4 @@ struct File {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     parts: Option<[Parts; 2]>,
     proof: SolidMotionProof,
-}
-
-/// The facets of a solid as the tolerance leaves them, in the order in which a proof counts them, and how it splits them.
-#[derive(Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Parts {
-    /// The number of each in the file.
-    numbers: Vec<InputFacet>,
-    corners: Vec<[[f64; 3]; 3]>,
-    /// The nodes in preorder: the facet that one is, or -1 of one that has two parts.
-    tree: Vec<i64>,
-}
-
-impl Parts {
-    fn of(tree: &Tree) -> Self {
-        let numbers = tree.solid.facet_indices().to_vec();
-        let count = tree.solid.triangles().len() as u32;
-        let corners = (0..count).map(|at| tree.facet(at).corners.map(|v| v.to_array()));
-        Self { numbers, corners: corners.collect(), tree: tree.preorder() }
-    }
 }

@@ -7,15 +7,16 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
-use super::{
-    Frame, JointPath, Mechanism, PathBody, PathCast, PathError, PathOutcome, PathProof,
-    PathProofError,
-};
+use super::file::{BodyFile, nested, said};
+use super::scene::{Written, kept};
 use crate::body::{InputFacet, Pose};
 use crate::cast::CaseError;
 use crate::kinds::{AnyBody, ByKind};
+use crate::motion::path::{
+    Frame, JointPath, Mechanism, PathBody, PathCast, PathError, PathOutcome, PathProof,
+    PathProofError,
+};
 use crate::number::noise;
-use crate::proof_file::{BodyFile, Written, kept, nested, said};
 
 /// What a file of this version calls itself.
 const FORMAT: &str = "colltrans path proof 2";
@@ -116,22 +117,21 @@ impl PathProofFile {
     /// # Errors
     /// As [`PathCast::first_contact`], a solid that its own facets do not make once more, and no pair at all.
     pub fn answer(cast: &PathCast, names: &[String]) -> Result<(PathOutcome, Self), PathFileError> {
-        if cast.pairs.is_empty() {
+        if cast.pairs().is_empty() {
             return Err(PathFileError::NoPairs);
         }
-        let names = names_of(cast.shapes.len(), names);
+        let names = names_of(cast.bodies().count(), names);
         let carried =
-            cast.shapes.iter().zip(&cast.frames).zip(&names).map(|((shape, frame), name)| {
-                let written = Written::again(&kept(shape.placed), "one")?;
-                let name = name.clone();
-                Ok(Carried { name, frame: *frame, pose: shape.pose(), written })
+            cast.carried_bodies().zip(&names).map(|(PathBody { frame, placed }, name)| {
+                let written = Written::again(&kept(placed), "one")?;
+                Ok(Carried { name: name.clone(), frame, pose: placed.pose(), written })
             });
         let mut file = Self {
-            mechanism: cast.mechanism.clone(),
-            path: cast.path.clone(),
+            mechanism: cast.mechanism().clone(),
+            path: cast.path().clone(),
             bodies: carried.collect::<Result<_, CaseError>>()?,
-            pairs: cast.pairs.clone(),
-            keep: cast.keep,
+            pairs: cast.pairs().to_vec(),
+            keep: cast.keep(),
             proof: PathProof::default(),
             statement: PathStatement::default(),
         };
@@ -148,7 +148,7 @@ impl PathProofFile {
             PathOutcome::Overlapping(_) => [from; 2],
             PathOutcome::Free(_) => [to, f64::INFINITY],
         };
-        let pairs = cast.pairs.iter().map(|pair| pair.map(|k| names[k].clone())).collect();
+        let pairs = cast.pairs().iter().map(|pair| pair.map(|k| names[k].clone())).collect();
         file.statement = PathStatement { pairs, lower, upper };
         file.proof = outcome.proof().clone();
         Ok((outcome, file))

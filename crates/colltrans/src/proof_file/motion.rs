@@ -7,17 +7,13 @@ use serde::de::Error as _;
 use serde::{Deserialize, Serialize};
 use serde_json::value::RawValue;
 
-use super::solid::SOLIDS_PROOF;
-use super::{
-    Motion, MotionCast, MotionOutcome, MotionProof, MotionProofError, Moving, SolidMotionProofFile,
-    check_tolerated,
-};
+use super::file::{convex_body, said};
+use super::solid_motion::{FORMAT as SOLIDS_PROOF, SolidMotionProofFile};
 use crate::body::ConvexPolyhedron;
 use crate::cast::CaseError;
 use crate::cast::replay::BodyRecord;
-use crate::proof_file::{convex_body, said};
-use crate::setting::check_keep;
-use crate::solid::StartOverlap;
+use crate::motion::{Motion, MotionCast, MotionOutcome, MotionProof, MotionProofError, Moving};
+use crate::setting::error::QueryError;
 
 /// What files of this version call themselves.
 const PROOF: &str = "colltrans motion proof 1";
@@ -35,7 +31,7 @@ const PROOFS: &str = "colltrans motions proof 1";
 /// let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 2.0)?;
 /// let cast = MotionCast::new(cube.along(&turn), cube.at(Pose::from_translation(DVec3::X * 1.2)?))?;
 ///
-/// let saved: String = cast.to_json();
+/// let saved: String = MotionCase::of(&cast).to_json();
 /// let case = MotionCase::from_json(&saved)?;
 /// assert_eq!(case.cast().first_contact()?, cast.first_contact()?);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -48,29 +44,39 @@ pub struct MotionCase {
 }
 
 impl MotionCase {
-    fn of(cast: &MotionCast) -> Self {
+    /// Of a question.
+    pub fn of(cast: &MotionCast) -> Self {
         Self {
             bodies: Box::new(cast.bodies().map(ConvexPolyhedron::clone)),
             motions: cast.motions().map(Motion::clone),
-            keep: cast.keep,
+            keep: cast.keep(),
         }
     }
 
     /// The question.
+    ///
+    /// # Panics
+    /// Never: the gap was checked when the question was made or read.
     pub fn cast(&self) -> MotionCast<'_> {
-        let side =
-            |k: usize| Moving { body: &self.bodies[k], motion: Cow::Borrowed(&self.motions[k]) };
-        let start_overlap = StartOverlap::Refuse;
-        MotionCast {
-            moving: side(0),
-            fixed: side(1),
-            keep: self.keep,
-            tolerance: None,
-            start_overlap,
-        }
+        self.asked().expect("a gap that was checked")
     }
 
-    /// From what [`MotionCast::to_json`] has written.
+    fn asked(&self) -> Result<MotionCast<'_>, QueryError> {
+        let side =
+            |k: usize| Moving { body: &self.bodies[k], motion: Cow::Borrowed(&self.motions[k]) };
+        let cast = MotionCast::new(side(0), side(1))?;
+        if self.keep < 0.0 { cast.tolerating(-self.keep) } else { cast.keeping(self.keep) }
+    }
+
+    /// As a file: bodies, their motions and what is to be kept, exact in bits. [`Self::from_json`] reads it.
+    ///
+    /// # Panics
+    /// Never: all numbers can be written.
+    pub fn to_json(&self) -> String {
+        serde_json::to_string(&Asked::of(&self.cast(), CASE)).expect("numbers and names")
+    }
+
+    /// From what [`Self::to_json`] has written.
     ///
     /// # Errors
     /// What is wrong with it.
@@ -88,24 +94,10 @@ impl MotionCase {
 
     fn read(asked: Asked) -> Result<Self, CaseError> {
         let Asked { moving, moving_motion, fixed, fixed_motion, keep, .. } = asked;
-        if keep < 0.0 {
-            check_tolerated(-keep)?;
-        } else {
-            check_keep(keep)?;
-        }
         let bodies = [convex_body(&moving, "moving")?, convex_body(&fixed, "fixed")?];
-        Ok(Self { bodies: Box::new(bodies), motions: [moving_motion, fixed_motion], keep })
-    }
-}
-
-impl MotionCast<'_> {
-    /// The question as a file: bodies, their motions and what is to be kept, exact in bits.
-    /// [`MotionCase::from_json`] reads it.
-    ///
-    /// # Panics
-    /// Never: all numbers can be written.
-    pub fn to_json(&self) -> String {
-        serde_json::to_string(&Asked::of(self, CASE)).expect("numbers and names")
+        let case = Self { bodies: Box::new(bodies), motions: [moving_motion, fixed_motion], keep };
+        case.asked()?;
+        Ok(case)
     }
 }
 
@@ -421,7 +413,7 @@ impl Asked {
     fn of(cast: &MotionCast, format: &str) -> Self {
         let [moving, fixed] = cast.bodies().map(BodyRecord::of);
         let [moving_motion, fixed_motion] = cast.motions().map(Motion::clone);
-        let (format, keep) = (format.into(), cast.keep);
+        let (format, keep) = (format.into(), cast.keep());
         Self { format, moving, moving_motion, fixed, fixed_motion, keep, proof: None }
     }
 }

@@ -64,7 +64,7 @@ cpSync(data, join(out, "data"), { recursive: true, filter: (from) => !/queries\.
 copyFileSync(join(root, "docs/paper.md"), join(out, "paper.md"));
 cpSync(join(root, "docs/figures"), join(out, "figures"), { recursive: true });
 mkdirSync(join(out, "source"));
-for (const file of ["minimise.rs", "cell.rs", "region.rs"]) copyFileSync(join(root, "crates/colltrans/src/solve/cta", file), join(out, "source", file));
+for (const file of ["minimise.rs", "cell.rs", "region.rs"]) copyFileSync(join(root, "crates/colltrans-convex/src/solve/cta", file), join(out, "source", file));
 await build({
   entryPoints: ["main.ts", "worker.ts", "style.css", "tabs.css"].map((file) => join(here, "src", file)),
   bundle: true,

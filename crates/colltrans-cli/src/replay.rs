@@ -55,7 +55,7 @@ pub(crate) fn failure(error: QueryError, cast: &Cast<'_>) -> Failure {
 
 /// The same of a motion.
 pub(crate) fn motion_failure(error: QueryError, cast: &MotionCast<'_>) -> Failure {
-    saved(error, || cast.to_json())
+    saved(error, || MotionCase::of(cast).to_json())
 }
 
 fn saved(error: QueryError, json: impl FnOnce() -> String) -> Failure {

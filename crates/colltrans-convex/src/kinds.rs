@@ -111,7 +111,9 @@ impl AnyClearance {
     }
 
     /// The upper bound of where it stops the body: minus infinity if they overlap, infinite if it does not.
-    pub(crate) fn upper(&self) -> f64 {
+    #[doc(hidden)]
+    #[inline]
+    pub fn upper(&self) -> f64 {
         match self {
             Self::Convex(Clearance::Blocked { contact, .. }) => contact.certificate.upper,
             Self::Solid(Clearance::Blocked { contact, .. }) => contact.translation.upper,

@@ -1,180 +1,32 @@
-//! Collision translations of convex polyhedra: how far can one body move before it touches
-//! another?
+//! Collision translations and distances of convex bodies, and of solids, which are the next crate to leave. What is
+//! asked and answered is told in `colltrans`, which is what programs use.
 //!
-//! A convex body `P`, the *moving* one, is translated along a direction `d`; a convex body `Q`
-//! is *fixed*. A [`Cast`] asks for the *collision translation*
-//!
-//! `coll = min { t : P + t d meets Q }`
-//!
-//! and gets it with the contact normal, bounds that enclose it exactly, a contact point on each body
-//! and the vertices, edges or faces that meet; or a proof that they never do. `t` ranges over all
-//! real numbers: a negative answer is a contact that lies behind, or an overlap now. Every answer
-//! carries a proof that can be checked without trusting the search that found it.
-//!
-//! ```
-//! use colltrans::glam::DVec3;
-//! use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose};
-//!
-//! // A pyramid one unit high, and a plate of 4 x 4 x 1 whose top is at z = 0.
-//! let pyramid = ConvexPolyhedron::from_points(&[
-//!     DVec3::new(-1.0, -1.0, 1.0),
-//!     DVec3::new(1.0, -1.0, 1.0),
-//!     DVec3::new(1.0, 1.0, 1.0),
-//!     DVec3::new(-1.0, 1.0, 1.0),
-//!     DVec3::ZERO,
-//! ])?;
-//! let plate = ConvexPolyhedron::cuboid(DVec3::new(-2.0, -2.0, -1.0), DVec3::new(2.0, 2.0, 0.0))?;
-//!
-//! // The pyramid starts with its apex at (0.5, 0, 3) and moves downwards.
-//! let start = Pose::from_translation(DVec3::new(0.5, 0.0, 3.0))?;
-//! let cast = Cast::new(pyramid.at(start), plate.at(Pose::IDENTITY), DVec3::NEG_Z)?;
-//! let Outcome::Contact(contact) = cast.first_contact()? else {
-//!     unreachable!("the plate is below")
-//! };
-//! assert_eq!(contact.translation, 3.0);
-//! assert_eq!(contact.normal, DVec3::NEG_Z);
-//! assert_eq!(contact.points(&cast).on_fixed, DVec3::new(0.5, 0.0, 0.0));
-//! let features = contact.features(&cast);
-//! assert_eq!((features.moving.kind(), features.fixed.kind()), ("vertex", "face"));
-//!
-//! // The proof: checked against the two bodies alone.
-//! assert!(cast.verify(&contact.certificate)? <= contact.certificate.rounding);
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
-//!
-//! # Bodies
-//!
-//! A [`ConvexPolyhedron`] is built once, from points ([`ConvexPolyhedron::from_points`], their
-//! convex hull), from a closed mesh ([`ConvexPolyhedron::from_mesh`], checked) or from two corners
-//! ([`ConvexPolyhedron::cuboid`]), and then asked as often as one likes, from any thread. Flat
-//! polygons, segments and single points are bodies too. Bodies that are not convex are [`Solid`]s,
-//! asked in the same way.
-//!
-//! # Frames and units
-//!
-//! Vertices are in the *body frame*; a [`Pose`] places a body in the *world*, by
-//! `x_world = R x_body + t`. Directions, normals and points of answers are in the world.
-//! The unit of length is the caller's, the same for both bodies. Translations are counted in
-//! multiples of the direction, so they are lengths if the direction has length 1. Normals are
-//! unit vectors and point from the moving body to the fixed one. Numbers are `f64`; those that
-//! are not 0 have magnitudes from [`MIN_MAGNITUDE`] to [`MAX_MAGNITUDE`], `2^-200` to `2^200`.
-//!
-//! # Questions and answers
-//!
-//! | query | question | answer |
-//! |---|---|---|
-//! | [`Cast::first_contact`], short [`cast()`] | at which translation do the bodies first meet? | [`Outcome`] |
-//! | [`Cast::contact_range`] | at which do they first and last meet? | [`ContactRange`] |
-//! | [`Cast::clearance`] | how far can one move from where it is? | [`Clearance`] |
-//! | [`Cast::directional_depth`] | how far must one go back until the overlap ends? | [`DirectionalDepth`] |
-//! | [`Cast::intersects`] | do they meet where they are? | [`Intersection`] |
-//! | [`Cast::verify`] | is this proof one? | the gap proven |
-//! | [`Pair::distance`] | how far apart are they, and where? | [`Distance`] |
-//! | [`Pair::within`] | are they closer than a length? | [`Within`] |
-//! | [`Pair::depth`] | which least translation parts them? | [`Depth`] |
-//! | [`motion::MotionCast::first_contact`] | of bodies that turn: when do they first meet? | [`motion::MotionOutcome`] |
-//! | [`motion::path::PathCast::first_contact`] | of bodies that joints carry: which first meet, and when? | [`motion::path::PathOutcome`] |
-//! | [`Among::nearest`] | which of many is nearest? | [`Nearest`] |
-//! | [`Among::within`] | which of many are closer than a length? | [`Nearby`] |
-//! | [`Among::clearance`] | which of many is hit first, and how far is it? | [`ClearanceAmong`] |
-//!
-//! Both kinds of bodies are asked in these words and answer in these types, `Clearance<Solid>` and so on,
-//! with contacts of their own; directions to go back, and trackers, are of convex bodies alone, the
-//! [least tolerance](Cast::least_tolerance) of solids. Answers about convex bodies carry their proofs;
-//! between solids a proof costs more and is asked for apart, by [`Cast::certified_clearance`].
-//!
-//! A [`Tracker`] answers the same questions, starting from its last answer: for bodies that move a
-//! little between two queries.
-//!
-//! An [`Outcome`] is a [`Contact`], [`Separated`] or [`Grazing`]. The bodies' *shadows*, their
-//! projections along the direction, decide: disjoint shadows are a separation, overlapping
-//! ones a contact. Where they overlap by no more than the *graze tolerance* the bodies slide
-//! along each other, as a peg does in a hole of its own size. That is an outcome of its own,
-//! with the contact that results if the overlap is taken for real: whether it blocks is for the
-//! caller to say ([`Cast::clearance`] says it does not). The default tolerance is what rounding
-//! cannot decide, eight times the *noise*; a larger one may be set as a length by
-//! [`Cast::with_graze_tolerance`].
-//!
-//! # Accuracy
-//!
-//! A contact's bounds enclose the true collision translation of the bodies as given, exactly:
-//! [`Certificate::lower`] `<= coll <=` [`Certificate::upper`], where a body is the convex hull of
-//! its [`vertices`](ConvexPolyhedron::vertices), placed by the nine entries of its pose's matrix and
-//! its translation. They enclose that of the points that the bodies were made from, too: what a hull leaves
-//! outside ([`ConvexPolyhedron::hull_error`]) is taken off lower bounds. [`Contact::translation`] is the best
-//! estimate between them.
-//!
-//! Let `S` be the size of the configuration: the largest distance of a vertex from the origin of
-//! its body frame, for each body, plus the distance `|t_Q - t_P|` of the two frames. The *noise*
-//! `32 u S`, with `u = 2^-53`, bounds the rounding error of a coordinate of a difference of two
-//! points. The bounds differ by at most 15 noises, and what a body may reach beyond a support point
-//! that was found by climbing, divided by `n . d` ([`Certificate::rounding`]); if they do not come
-//! that close, the query returns [`QueryError::NotConverged`], never a number. A displacement of both
-//! bodies together costs the translation nothing. The same input gives the same bits on every run,
-//! thread and platform.
-//!
-//! # As data
-//!
-//! With the feature `serde` answers, proofs, features, poses and choices can be written and read in any
-//! of its formats. A case of several is written as its name in lower case (`blocked`, with what it
-//! holds), choices by the names that they print and parse, a pose column by column, an infinite bound as
-//! nothing (`null`). Numbers come back as the same bits. What is read is checked where it is a pose or a
-//! choice of a cast; a proof is read, and believed by nobody before [`Cast::verify`]. An answer as front
-//! ends write it, for people and programs that do not check it, is a `record::Record`. The feature
-//! `json` adds whole queries and proofs as files (`Case`, `ProofFile`).
-//!
-//! # What may change
-//!
-//! Choices, contacts, counts of work and errors may grow: make choices from their defaults
-//! (`Options::default().with_solver(..)`), match with `..`. Vectors and matrices are those of [`glam`],
-//! which is exported as `colltrans::glam`: use that one, and versions fit. A new major version of
-//! `glam` (a minor one while that is `0.x`) makes a new major version of this crate (minor while `0.x`).
-//!
-//! # How it works
-//!
-//! The Minkowski difference `M = {q - p}` is never built. A search narrows down which face of `M`
-//! the line `t d` enters first: *portal refinement*, which exchanges the corners of a triangle of
-//! points of `M` that the line pierces, alone or after the *collision translation algorithm*,
-//! a convex minimisation over pairs of planar sections of the bodies (Mirolo, Carpin and Pagello,
-//! "Incremental Convex Minimization for Computing Collision Translations of Convex
-//! Polyhedra", IEEE Transactions on Robotics 23(3), 2007: *the paper* of all comments). Both end
-//! in the same portal, whose plane is the lower bound and whose corners are the upper one.
-//! Ties, where rounding cannot tell on which side of an edge the line passes, are decided in
-//! whole numbers.
-//!
-//! The modules, each using only those before it: `number` (arithmetic and its errors), `body` (poses,
-//! polyhedra and their indices), `setting` (two placed bodies, a direction, and `M`), `answer`
-//! (outcomes and certificates), `solve` (the two solvers, nearest points, and [`observe`]), `cast` and
-//! `pair` (the queries), `kinds` (bodies of either kind), `among` (many fixed bodies), [`free`] (all directions), [`ways`] (several moves),
-//! `proof_file`, [`motion`] (bodies that turn), `tracker` and `bulk` (rotations that stay). `written` and `record` say how
-//! all of them are written. [`solid`] holds what is of solids alone.
+//! Modules that are hidden from the documentation are for the crates of this workspace, without a promise.
 
-mod among;
-mod answer;
-mod body;
-mod bulk;
-mod cast;
-pub mod free;
-mod kinds;
-pub mod motion;
-mod number;
-mod pair;
-#[cfg(feature = "json")]
-mod proof_file;
-#[cfg(feature = "serde")]
-pub mod record;
-mod setting;
+#[doc(hidden)]
+pub mod answer;
+#[doc(hidden)]
+pub mod body;
+#[doc(hidden)]
+pub mod cast;
+#[doc(hidden)]
+pub mod kinds;
+#[doc(hidden)]
+pub mod number;
+#[doc(hidden)]
+pub mod pair;
+#[doc(hidden)]
+pub mod setting;
 pub mod solid;
-mod solve;
-mod tracker;
-pub mod ways;
-mod work;
-mod written;
+#[doc(hidden)]
+pub mod solve;
+#[doc(hidden)]
+pub mod tracker;
+#[doc(hidden)]
+pub mod work;
+#[doc(hidden)]
+pub mod written;
 
-pub use among::{
-    Among, AmongProof, AmongSteps, ApartProof, ClearanceAmong, ClearanceProof, Nearby, NearbyProof,
-    Nearest, NearestProof, Obstacles, PassedProof, UnknownObstacle,
-};
 pub use answer::{
     Bounded, CentralCast, Certificate, CertificateError, Clearance, Contact, ContactRange, Depth,
     DirectionalDepth, Distance, Enclosure, Grazing, Intersection, NearPoints, Outcome,
@@ -187,7 +39,6 @@ pub use body::{
     Aabb, Body, ConvexPolyhedron, ConvexityDefect, FaceId, Feature, Features, HalfEdge, InputFacet,
     InputVertex, ObstacleId, OffsetReport, Placed, Pose, VertexId, convexity_defect,
 };
-pub use bulk::{Approach, FixedRotations};
 #[cfg(feature = "json")]
 pub use cast::{Case, CaseError};
 pub use cast::{Cast, WitnessPoints, cast};
@@ -195,49 +46,9 @@ pub use glam;
 pub use kinds::{AnyBody, AnyClearance, AnyDistance, AnyNear, AnyPlaced, ByKind};
 pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
 pub use pair::{Pair, PairProof};
-#[cfg(feature = "json")]
-pub use proof_file::{
-    Contacts, DistanceStatement, FreeStatement, ProofFile, SceneProof, SceneStatement, Slide,
-    Statement, Stop,
-};
 pub use setting::VertexPair;
 pub use setting::error::{QueryError, Stalled};
 pub use solve::observe;
 pub use solve::options::{Cuts, Focus, NarrowFrom, Narrowing, Options, Region, Until};
 pub use tracker::Tracker;
 pub use written::{NoUntil, UnknownName};
-
-/// The example of the README, compiled and run as a test.
-#[cfg(doctest)]
-#[doc = include_str!("../../../README.md")]
-pub struct Readme;
-
-/// The examples of `docs/distance.md`, compiled and run as tests.
-#[cfg(doctest)]
-#[doc = include_str!("../../../docs/distance.md")]
-pub struct Distances;
-
-/// The examples of `docs/solids.md`, compiled and run as tests.
-#[cfg(doctest)]
-#[doc = include_str!("../../../docs/solids.md")]
-pub struct Solids;
-
-/// The examples of `docs/directions.md`, compiled and run as tests.
-#[cfg(doctest)]
-#[doc = include_str!("../../../docs/directions.md")]
-pub struct Directions;
-
-/// The examples of `docs/motion.md`, compiled and run as tests.
-#[cfg(doctest)]
-#[doc = include_str!("../../../docs/motion.md")]
-pub struct Motions;
-
-/// The examples of `docs/paths.md`, compiled and run as tests.
-#[cfg(doctest)]
-#[doc = include_str!("../../../docs/paths.md")]
-pub struct Paths;
-
-/// The examples of `docs/among.md`, compiled and run as tests.
-#[cfg(doctest)]
-#[doc = include_str!("../../../docs/among.md")]
-pub struct AmongMany;

@@ -8,8 +8,6 @@ pub use crate::cast::solid::{
     SolidProof, StartOverlap, StartProof, StopProof,
 };
 pub use crate::pair::solid::{DistanceCertificate, OverlapDepth, SolidPairProof};
-#[cfg(feature = "json")]
-pub use crate::proof_file::SolidStatement;
 pub use crate::solve::solid::{
     Apart, Overlap, Reason, SolidContact, SolidGap, SolidNear, Workspace,
 };

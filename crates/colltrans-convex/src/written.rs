@@ -19,6 +19,8 @@ pub struct UnknownName {
 }
 
 /// A choice and its names: those that serde writes, as `Display`, and back.
+#[doc(hidden)]
+#[macro_export]
 macro_rules! named {
     ($what:literal, $choice:ident { $($variant:ident: $name:literal),+ }) => {
         impl $choice {
@@ -37,20 +39,20 @@ macro_rules! named {
         }
 
         impl std::str::FromStr for $choice {
-            type Err = UnknownName;
+            type Err = $crate::written::UnknownName;
 
-            fn from_str(name: &str) -> Result<Self, UnknownName> {
+            fn from_str(name: &str) -> Result<Self, $crate::written::UnknownName> {
                 match name {
                     $($name => Ok(Self::$variant),)+
-                    _ => Err(UnknownName { what: $what, name: name.into(), known: &[$($name),+] }),
+                    _ => Err($crate::written::UnknownName { what: $what, name: name.into(), known: &[$($name),+] }),
                 }
             }
         }
     };
 }
 
-#[cfg(feature = "serde")]
-pub(crate) use named;
+#[doc(hidden)]
+pub use named;
 
 named!("solver", Solver { Auto: "auto", Cta: "cta", Portal: "portal" });
 named!(
@@ -97,36 +99,37 @@ impl std::str::FromStr for Until {
 /// A number that is infinite where nothing is known or nothing stops: JSON has no such number, so it
 /// is written as nothing (`null`), in every format.
 #[cfg(feature = "serde")]
-pub(crate) mod or_infinite {
+pub mod or_infinite {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde calls")]
-    pub(crate) fn serialize<S: Serializer>(value: &f64, to: S) -> Result<S::Ok, S::Error> {
+    pub fn serialize<S: Serializer>(value: &f64, to: S) -> Result<S::Ok, S::Error> {
         Some(value).filter(|value| value.is_finite()).serialize(to)
     }
 
-    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    #[inline]
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
         Ok(Option::deserialize(from)?.unwrap_or(f64::INFINITY))
     }
 }
 
 /// Whether a number is 0, so that it need not be written.
 #[cfg(feature = "serde")]
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde calls")]
-pub(crate) fn is_zero(value: &f64) -> bool {
+#[inline]
+pub fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
 
 /// The same of a count.
 #[cfg(feature = "serde")]
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde calls")]
-pub(crate) fn is_none(count: &u64) -> bool {
+#[inline]
+pub fn is_none(count: &u64) -> bool {
     *count == 0
 }
 
 /// A value that may be `null`, but has to be there: a field that is missing counts as `null` otherwise.
 #[cfg(feature = "serde")]
-pub(crate) fn given<'de, T, D>(from: D) -> Result<Option<T>, D::Error>
+#[inline]
+pub fn given<'de, T, D>(from: D) -> Result<Option<T>, D::Error>
 where
     T: serde::Deserialize<'de>,
     D: serde::Deserializer<'de>,

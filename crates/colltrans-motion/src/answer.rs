@@ -3,8 +3,8 @@
 use glam::DVec3;
 
 use super::solid::SolidMotionProof;
-use crate::answer::{Depth, NearPoints};
-use crate::body::{Features, Pose};
+use colltrans_convex::answer::{Depth, NearPoints};
+use colltrans_convex::body::{Features, Pose};
 
 /// When the bodies first meet. Of solids a proof is made when it is asked for: till then it is `()`.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,7 +37,7 @@ pub struct MotionContact<P = MotionProof> {
     /// Up to this time the bodies do not meet; 0 if they overlap at the start.
     pub lower: f64,
     /// At this time they do; infinite (`null` in JSON) where that is not proven.
-    #[cfg_attr(feature = "serde", serde(with = "crate::written::or_infinite"))]
+    #[cfg_attr(feature = "serde", serde(with = "colltrans_convex::written::or_infinite"))]
     pub upper: f64,
     /// The poses at the lower bound, to rounding.
     pub poses: [Pose; 2],
@@ -75,10 +75,16 @@ pub struct MotionSteps {
     /// Support points asked for by distances then.
     pub supports: u32,
     /// Of solids, pairs of nodes of both trees, each in an interval of time.
-    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "crate::written::is_none"))]
+    #[cfg_attr(
+        feature = "serde",
+        serde(default, skip_serializing_if = "colltrans_convex::written::is_none")
+    )]
     pub nodes: u64,
     /// Of solids, pairs of facets whose distance was looked at on their way.
-    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "crate::written::is_none"))]
+    #[cfg_attr(
+        feature = "serde",
+        serde(default, skip_serializing_if = "colltrans_convex::written::is_none")
+    )]
     pub leaves: u64,
 }
 
@@ -103,7 +109,7 @@ pub struct MotionProof {
     /// order of their times, each joined to the next one. None, if they meet when it begins.
     pub spans: Vec<Vec<PlaneAt>>,
     /// That the bodies meet at a time.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::written::given"))]
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_convex::written::given"))]
     pub meeting: Option<Meeting>,
     /// Proof of the same question about the bodies as solids, in the place of planes. `None` unless the search between
     /// convex bodies took its maximum number of steps.

@@ -16,8 +16,8 @@ use glam::DVec3;
 
 use super::bend::across;
 use super::span::{Instant, Span};
-use crate::body::Hull;
-use crate::body::motion::{Moved, Piece};
+use colltrans_convex::body::Hull;
+use colltrans_convex::body::motion::{Moved, Piece};
 
 /// Sums here are off by less than this share of the sizes.
 const ROUNDED: f64 = 1e-14;

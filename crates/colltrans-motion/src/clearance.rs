@@ -1,4 +1,4 @@
-//! How far along its motion a body can go: three cases, as of a [`Cast`](crate::Cast).
+//! How far along its motion a body can go: three cases, as of a [`Cast`](colltrans_convex::Cast).
 //!
 //! Bodies are asked as a tolerance leaves them, so that what touches may slide, turn and leave, and is stopped where it
 //! is pushed. That comes after the time at which the same bodies meet *in their true place*, as they are: from the last
@@ -9,11 +9,11 @@ use super::look::{ConvexLooker, Look, Looker};
 use super::search::{Advanced, End, advance};
 use super::span::{Span, spans};
 use super::{MotionCast, check_fine, stalled, usual_tolerance};
-use crate::answer::Bounded;
-use crate::body::Hull;
-use crate::pair::Pair;
-use crate::setting::error::QueryError;
-use crate::solid::Overlap;
+use colltrans_convex::answer::Bounded;
+use colltrans_convex::body::Hull;
+use colltrans_convex::pair::Pair;
+use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::solid::Overlap;
 
 /// How often the way back to a time at which bodies are apart as they are is doubled.
 const BACK: i32 = 40;
@@ -173,7 +173,7 @@ pub(super) fn at<'a, B: Hull, L: Looker<B>>(
     spans: &[Span<'a, B>],
     time: f64,
     looker: &mut L,
-) -> Option<Look<'a, [crate::body::motion::Moved; 2], B>> {
+) -> Option<Look<'a, [colltrans_convex::body::motion::Moved; 2], B>> {
     let span = spans.iter().rev().find(|span| span.from <= time)?;
     Some(looker.look(span, time))
 }

@@ -9,8 +9,8 @@ use super::answer::PlaneAt;
 use super::arc;
 use super::bend::{SPARE, Supports, across, bend, most_bend, usual};
 use super::span::{Instant, Span};
-use crate::body::Hull;
-use crate::body::motion::Moved;
+use colltrans_convex::body::Hull;
+use colltrans_convex::body::motion::Moved;
 
 /// Axes whose cross product is shorter are parallel.
 const PARALLEL: f64 = 1e-9;

@@ -69,34 +69,25 @@ pub use self::clearance::{MotionClearance, MotionOverlap, MotionStop};
 use self::look::ConvexLooker;
 use self::search::{Advanced, End, advance};
 #[cfg(feature = "json")]
-pub(crate) use self::solid::Parts;
+pub use self::solid::Parts;
 pub use self::solid::{FacetsMeeting, FacetsMet, MotionCover, SolidMotionProof, SpanProof};
 use self::span::{Span, spans};
 pub use self::verify::MotionProofError;
-pub use crate::body::error::MotionError;
-pub use crate::body::motion::{Motion, Moving, Piece as MotionPiece};
-use crate::body::pose::STRETCHED;
-use crate::body::solid::Solid;
-use crate::body::{ConvexPolyhedron, Hull};
-use crate::number::noise::Noise;
-use crate::number::range::MAX_MAGNITUDE;
-#[cfg(feature = "json")]
-pub use crate::proof_file::{MotionCase, MotionProofFile, MotionProofFiles, SolidMotionProofFile};
-use crate::setting::check_keep;
-use crate::setting::error::{QueryError, Stalled};
-use crate::solid::StartOverlap;
+pub use colltrans_convex::body::error::MotionError;
+pub use colltrans_convex::body::motion::{Motion, Moving, Piece as MotionPiece};
+use colltrans_convex::body::pose::STRETCHED;
+use colltrans_convex::body::solid::Solid;
+use colltrans_convex::body::{ConvexPolyhedron, Hull};
+use colltrans_convex::number::noise::Noise;
+use colltrans_convex::number::range::MAX_MAGNITUDE;
+use colltrans_convex::setting::check_keep;
+use colltrans_convex::setting::error::{QueryError, Stalled};
+use colltrans_convex::solid::StartOverlap;
 
 /// The default tolerance, in multiples of what two points may be off each other: noise, and motion.
 const TOLERANCE: f64 = 32.0;
 
-impl ConvexPolyhedron {
-    /// This body and a motion, for a [`MotionCast`].
-    pub fn along<'a>(&'a self, motion: &'a Motion) -> Moving<'a> {
-        Moving { body: self, motion: std::borrow::Cow::Borrowed(motion) }
-    }
-}
-
-/// Two bodies, either of which may move, from time 0 to 1: convex ones, or [solids](crate::Solid).
+/// Two bodies, either of which may move, from time 0 to 1: convex ones, or [solids](colltrans_convex::Solid).
 #[derive(Debug)]
 #[derive_where(Clone)]
 pub struct MotionCast<'a, B = ConvexPolyhedron> {
@@ -182,7 +173,8 @@ impl MotionCast<'_> {
 
     /// The question about the same bodies as solids, as they are. A gap is added by which the points that a body was
     /// made of may be beyond its faces.
-    pub(crate) fn between_solids(&self) -> Result<MotionCast<'_, Solid>, QueryError> {
+    #[doc(hidden)]
+    pub fn between_solids(&self) -> Result<MotionCast<'_, Solid>, QueryError> {
         let moving = Moving { body: self.moving.body, motion: Cow::Borrowed(&*self.moving.motion) };
         let fixed = Moving { body: self.fixed.body, motion: Cow::Borrowed(&*self.fixed.motion) };
         MotionCast::between(moving, fixed)?.tolerating(0.0)?.keeping(self.keep + self.left_out())

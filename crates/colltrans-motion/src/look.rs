@@ -7,11 +7,11 @@ use super::answer::{Met, MotionSteps};
 use super::bend::{Climbing, Supports};
 use super::course::Course;
 use super::span::Instant;
-use crate::answer::{Distance, PlaneGap};
-use crate::body::{ConvexPolyhedron, Hull};
-use crate::pair::{Pair, distance_from};
-use crate::setting::{TwoBodies, VertexPair};
-use crate::solve::nearest::{Difference, NearestPairs, nearly};
+use colltrans_convex::answer::{Distance, PlaneGap};
+use colltrans_convex::body::{ConvexPolyhedron, Hull};
+use colltrans_convex::pair::{Pair, distance_from};
+use colltrans_convex::setting::{TwoBodies, VertexPair};
+use colltrans_convex::solve::nearest::{Difference, NearestPairs, nearly};
 
 /// Bodies that are farther apart than such a share of their size are looked at to such a share of what is beyond it: how
 /// near they are counts where they may meet.

@@ -3,10 +3,10 @@
 use derive_where::derive_where;
 use glam::DVec3;
 
-use crate::body::motion::{Motion, Moved, Piece};
-use crate::body::{ConvexPolyhedron, Hull, Placed};
-use crate::number::noise;
-use crate::setting::TwoBodies;
+use colltrans_convex::body::motion::{Motion, Moved, Piece};
+use colltrans_convex::body::{ConvexPolyhedron, Hull, Placed};
+use colltrans_convex::number::noise;
+use colltrans_convex::setting::TwoBodies;
 
 /// Two bodies during a span of time.
 #[derive(Debug)]

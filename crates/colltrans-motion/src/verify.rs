@@ -10,10 +10,10 @@ use super::bend::Looking;
 use super::course::Course;
 use super::look::deep_enough;
 use super::span::{Instant, spans};
-use crate::answer::CertificateError;
-use crate::body::ConvexPolyhedron;
-use crate::number::noise;
-use crate::pair::Pair;
+use colltrans_convex::answer::CertificateError;
+use colltrans_convex::body::ConvexPolyhedron;
+use colltrans_convex::number::noise;
+use colltrans_convex::pair::Pair;
 use thiserror::Error;
 
 /// What of a proof about a motion is not proven.

@@ -14,20 +14,20 @@ use derive_where::derive_where;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use crate::among::{Among, ClearanceAmong, Nearby, Nearest};
-use crate::answer::{
+use colltrans_convex::answer::{
     Bounded, Clearance, Contact, ContactRange, Depth, Distance, Grazing, Outcome, OverlapAhead,
     Separated, Solver, Steps, WhyFree, Within,
 };
-use crate::body::solid::Solid;
-use crate::body::{Body, ConvexPolyhedron, Feature, Features, InputVertex, ObstacleId};
-use crate::cast::Cast;
-use crate::kinds::{AnyClearance, AnyNear, ByKind};
-use crate::pair::solid::OverlapDepth;
-use crate::pair::{Pair, points};
-use crate::setting::error::QueryError;
-use crate::solve::observe::{NoObserver, Observer};
-use crate::written::{UnknownName, named};
+use colltrans_convex::body::solid::Solid;
+use colltrans_convex::body::{Body, ConvexPolyhedron, Feature, Features, InputVertex, ObstacleId};
+use colltrans_convex::cast::Cast;
+use colltrans_convex::kinds::{AnyClearance, AnyNear, ByKind};
+use colltrans_convex::pair::solid::OverlapDepth;
+use colltrans_convex::pair::{Pair, points};
+use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::solve::observe::{NoObserver, Observer};
+use colltrans_convex::written::named;
+use colltrans_scene::{Among, ClearanceAmong, Nearby, Nearest};
 pub use free::{BlockedByRecord, FreeRecord, FreeRegionRecord};
 pub use motion::TimeRecord;
 pub use path::PathRecord;
@@ -408,7 +408,7 @@ impl PairQuestion {
         self,
         pair: &Pair<'_, Solid>,
         pieces: [&[&Solid]; 2],
-    ) -> Result<(PairAnswer<Solid>, Option<crate::ProofFile>), crate::CaseError> {
+    ) -> Result<(PairAnswer<Solid>, Option<crate::ProofFile>), colltrans_convex::CaseError> {
         use crate::ProofFile;
         Ok(match self {
             Self::Distance => {

@@ -5,14 +5,13 @@ use glam::DVec3;
 use super::boxes::Sweep;
 use super::obstacles::Obstacle;
 use super::{Among, AmongSteps, ByKind};
-use crate::Solid;
-use crate::answer::Clearance;
-use crate::body::ObstacleId;
-use crate::cast::Cast;
-use crate::kinds::AnyClearance;
-use crate::setting::error::QueryError;
-use crate::setting::{check_direction, check_length};
-use crate::solid::SolidOptions;
+use colltrans_convex::Solid;
+use colltrans_convex::answer::Clearance;
+use colltrans_convex::body::ObstacleId;
+use colltrans_convex::cast::Cast;
+use colltrans_convex::kinds::AnyClearance;
+use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::setting::{check_direction, check_length};
 
 /// Searches between solids end so many noises beyond the best answer: more than their bounds are off.
 const BEYOND: f64 = 64.0;
@@ -24,7 +23,7 @@ const BEYOND: f64 = 64.0;
 pub struct ClearanceAmong {
     /// No obstacle stops the moving body before, in multiples of the direction: infinite where none ever
     /// does, or the end that was asked for; 0 if it overlaps an obstacle now.
-    #[cfg_attr(feature = "serde", serde(with = "crate::written::or_infinite"))]
+    #[cfg_attr(feature = "serde", serde(with = "colltrans_convex::written::or_infinite"))]
     pub lower: f64,
     /// What stops it, [`Clearance::Blocked`], or overlaps it, [`Clearance::Overlapping`]: the obstacle whose
     /// upper bound is least; of equal ones, and of those that overlap, the one that came first.
@@ -116,6 +115,5 @@ fn clearance_below(cast: &Cast<'_, Solid>, limit: f64) -> Result<Clearance<Solid
     }
     let beyond = BEYOND * cast.scene(0.0).noise / cast.setting.length;
     let before = cast.options().before.unwrap_or(f64::INFINITY).min(limit + beyond);
-    let options = SolidOptions { before: Some(before), ..cast.options() };
-    Cast { options, ..*cast }.clearance()
+    cast.with_options(cast.options().with_before(before))?.clearance()
 }

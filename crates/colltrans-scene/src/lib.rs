@@ -15,6 +15,7 @@
 //! - the least lower bound of those that were asked about is one of all.
 
 mod boxes;
+mod bulk;
 mod clearance;
 mod nearest;
 mod obstacles;
@@ -25,16 +26,17 @@ use std::fmt;
 
 use glam::DVec3;
 
-use crate::body::solid::AsSolid;
-use crate::body::{Aabb, ObstacleId, Pose};
-use crate::cast::Cast;
-use crate::cast::solid::SolidOptions;
-use crate::kinds::{AnyBody, AnyPlaced, ByKind};
-use crate::pair::Pair;
-use crate::setting::error::QueryError;
-use crate::solve::options::Options;
-use crate::{ConvexPolyhedron, Solid};
+pub use bulk::{Approach, FixedRotations};
 pub use clearance::ClearanceAmong;
+use colltrans_convex::body::solid::AsSolid;
+use colltrans_convex::body::{Aabb, ObstacleId, Pose};
+use colltrans_convex::cast::Cast;
+use colltrans_convex::cast::solid::SolidOptions;
+use colltrans_convex::kinds::{AnyBody, AnyPlaced, ByKind};
+use colltrans_convex::pair::Pair;
+use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::solve::options::Options;
+use colltrans_convex::{ConvexPolyhedron, Solid};
 pub use nearest::{Nearby, Nearest};
 use obstacles::Obstacle;
 pub use obstacles::{Obstacles, UnknownObstacle};
@@ -105,7 +107,7 @@ impl<'a> Among<'a> {
     /// A placed body among obstacles, with the default choices.
     ///
     /// # Errors
-    /// A convex body whose facets [`Solid::from_mesh`](crate::Solid::from_mesh) refuses, where a solid is asked
+    /// A convex body whose facets [`Solid::from_mesh`](colltrans_convex::Solid::from_mesh) refuses, where a solid is asked
     /// about it: as the moving body among solids, or among the obstacles of a moving solid, by its id
     /// ([`QueryError::Obstacle`]).
     pub fn new(
@@ -206,21 +208,24 @@ impl<'a> Among<'a> {
 
     /// The moving body and an obstacle, if there is such a one.
     #[cfg(feature = "serde")]
-    pub(crate) fn pair_with(&self, id: ObstacleId) -> Option<AnyPair<'a>> {
+    #[doc(hidden)]
+    pub fn pair_with(&self, id: ObstacleId) -> Option<AnyPair<'a>> {
         let item = self.obstacles.item(id).ok()?;
         self.pair(self.obstacle(item)).ok()
     }
 
     /// The same, and a direction.
     #[cfg(feature = "serde")]
-    pub(crate) fn cast_at(&self, id: ObstacleId, direction: DVec3) -> Option<AnyCast<'a>> {
+    #[doc(hidden)]
+    pub fn cast_at(&self, id: ObstacleId, direction: DVec3) -> Option<AnyCast<'a>> {
         let item = self.obstacles.item(id).ok()?;
         self.cast(self.obstacle(item), direction).ok()
     }
 
     /// The same, in the order in which they came.
     #[cfg(feature = "json")]
-    pub(crate) fn asked_in_order(&self) -> impl Iterator<Item = (&'a AnyBody, Pose)> {
+    #[doc(hidden)]
+    pub fn asked_in_order(&self) -> impl Iterator<Item = (&'a AnyBody, Pose)> {
         let mut all: Vec<&Obstacle> = self.asked().collect();
         all.sort_unstable_by_key(|one| one.id);
         all.into_iter().map(|one| (&one.body, one.pose))

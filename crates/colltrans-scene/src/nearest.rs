@@ -3,11 +3,11 @@
 use super::boxes;
 use super::obstacles::Obstacle;
 use super::{Among, AmongSteps, ByKind};
-use crate::answer::Within;
-use crate::body::ObstacleId;
-use crate::kinds::{AnyDistance, AnyNear};
-use crate::setting::check_length;
-use crate::setting::error::QueryError;
+use colltrans_convex::answer::Within;
+use colltrans_convex::body::ObstacleId;
+use colltrans_convex::kinds::{AnyDistance, AnyNear};
+use colltrans_convex::setting::check_length;
+use colltrans_convex::setting::error::QueryError;
 
 /// The answer of [`Among::nearest`].
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -12,15 +12,17 @@ use super::boxes::{self, Sweep};
 use super::nearest::{Closeness, Nearby, Nearest};
 use super::obstacles::Obstacle;
 use super::{Among, ByKind, ClearanceAmong};
-use crate::answer::{CertificateError, Clearance, PlaneGap, WhyFree, Within, checked_as};
-use crate::body::{Aabb, ObstacleId};
-use crate::cast::solid::{SolidCertificate, StartProof};
-use crate::cast::{Cast, verified_overlap};
-use crate::kinds::AnyNear;
-use crate::number::noise::Noise;
-use crate::pair::solid::DistanceCertificate;
-use crate::setting::error::QueryError;
-use crate::setting::{check_direction, check_length};
+use colltrans_convex::answer::{
+    CertificateError, Clearance, PlaneGap, WhyFree, Within, checked_as,
+};
+use colltrans_convex::body::{Aabb, ObstacleId};
+use colltrans_convex::cast::solid::{SolidCertificate, StartProof};
+use colltrans_convex::cast::{Cast, verified_overlap};
+use colltrans_convex::kinds::AnyNear;
+use colltrans_convex::number::noise::Noise;
+use colltrans_convex::pair::solid::DistanceCertificate;
+use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::setting::{check_direction, check_length};
 
 /// What proves that an obstacle is not nearer than a number.
 pub type ApartProof = ByKind<PlaneGap, DistanceCertificate>;
@@ -56,7 +58,7 @@ pub struct NearestProof {
 )]
 pub struct NearbyProof {
     /// The length.
-    #[cfg_attr(feature = "serde", serde(with = "crate::written::or_infinite"))]
+    #[cfg_attr(feature = "serde", serde(with = "colltrans_convex::written::or_infinite"))]
     pub length: f64,
     /// Those that are closer, in the order in which they came, as all of these.
     pub closer: Vec<(ObstacleId, AnyNear)>,
@@ -77,10 +79,10 @@ pub struct ClearanceProof {
     /// The direction.
     pub direction: DVec3,
     /// No obstacle stops the moving body before, in multiples of the direction; 0 if it overlaps one.
-    #[cfg_attr(feature = "serde", serde(with = "crate::written::or_infinite"))]
+    #[cfg_attr(feature = "serde", serde(with = "colltrans_convex::written::or_infinite"))]
     pub lower: f64,
     /// The one that stops it, or overlaps it.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::written::given"))]
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_convex::written::given"))]
     pub stop: Option<ObstacleId>,
     /// What obstacles do whose boxes do not tell, the one that stops it among them, in the order in which
     /// they came.
@@ -91,7 +93,8 @@ pub struct ClearanceProof {
 impl ClearanceProof {
     /// The translation by which an obstacle is claimed to stop the moving body, at most: 0 if they overlap, infinite if
     /// none is.
-    pub(crate) fn upper(&self) -> f64 {
+    #[doc(hidden)]
+    pub fn upper(&self) -> f64 {
         let claim = self.stop.and_then(|stop| self.passed.iter().find(|(id, _)| *id == stop));
         match claim.map(|(_, claim)| claim) {
             None | Some(ByKind::Convex(Clearance::Free(_))) => f64::INFINITY,
@@ -269,7 +272,7 @@ impl Among<'_> {
     /// least distance, or of the translation at which the moving body is stopped; 0 where there is one bound.
     ///
     /// All obstacles are looked at that are not ignored, each by its box, made anew, or by its own proof, as
-    /// [`Pair::verify`](crate::Pair::verify) and [`Cast::verify`] check it. Choices have to be those of the
+    /// [`Pair::verify`](colltrans_convex::Pair::verify) and [`Cast::verify`] check it. Choices have to be those of the
     /// answer. Obstacles that are slid along, or moved away from, are so to within the graze tolerance and
     /// rounding, as [`Cast::clearance`] takes them.
     ///

@@ -1,6 +1,6 @@
 //! A binary tree of boxes that changes.
 //!
-//! Built from the top ([`split`](mod@crate::body::split)), each child with a quarter of the items at least.
+//! Built from the top ([`split`](mod@colltrans_convex::body::split)), each child with a quarter of the items at least.
 //! One that comes goes down to where boxes grow least; one that goes leaves its place to its neighbour; one
 //! that moves within its parent's box stays where it is, and else goes and comes, two changes. Every node is
 //! built anew after as many changes below it as it had items (and [`FEW_CHANGES`] at least).
@@ -14,8 +14,8 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
-use crate::body::Aabb;
-use crate::body::split::{Boxed, Rule, halve, split};
+use colltrans_convex::body::Aabb;
+use colltrans_convex::body::split::{Boxed, Rule, halve, split};
 
 /// Items that are halved.
 const FEW: usize = 4;
@@ -28,12 +28,12 @@ const ROOM: usize = 64;
 /// A box with an item, or of two nodes.
 #[derive(Debug, Clone, Copy)]
 struct Node {
-    bounds: Aabb,
+    pub bounds: Aabb,
     parent: u32,
     /// The first of two children, side by side; of a leaf its item.
-    first: u32,
+    pub first: u32,
     /// How many items; 1 is a leaf.
-    count: u32,
+    pub count: u32,
     /// Changes until it is built anew.
     left: u32,
 }
@@ -70,7 +70,7 @@ impl Boxed for Item {
 /// What is to be looked at: the least bound comes first, and among equals the first node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Entry {
-    bound: f64,
+    pub bound: f64,
     node: u32,
 }
 

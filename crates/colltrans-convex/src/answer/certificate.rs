@@ -217,11 +217,16 @@ pub enum CertificateError {
 }
 
 impl CertificateError {
-    pub(crate) fn of_obstacle(self, obstacle: ObstacleId) -> Self {
+    #[doc(hidden)]
+    #[must_use]
+    #[inline]
+    pub fn of_obstacle(self, obstacle: ObstacleId) -> Self {
         Self::Obstacle { obstacle, reason: Box::new(self) }
     }
 
-    pub(crate) const fn triangles([moving, fixed]: [u32; 2]) -> Self {
+    #[doc(hidden)]
+    #[inline]
+    pub const fn triangles([moving, fixed]: [u32; 2]) -> Self {
         Self::Facets { moving, fixed }
     }
 }
@@ -236,6 +241,8 @@ pub enum Proof<'a> {
 }
 
 /// What can be checked, each kind a reference under the name of its variant.
+#[doc(hidden)]
+#[macro_export]
 macro_rules! checked_as {
     ($($proof:ident { $($variant:ident($of:ty)),+ $(,)? }),+) => { $($(
         impl<'a> From<&'a $of> for $proof<'a> {
@@ -245,13 +252,14 @@ macro_rules! checked_as {
         }
     )+)+ };
 }
-pub(crate) use checked_as;
+#[doc(hidden)]
+pub use checked_as;
 
 checked_as!(Proof { Contact(Certificate), Separation(Separation) });
 
 /// A bound along a normal, and by how much rounding may have overstated it.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Along {
+pub struct Along {
     /// `min_Q n.q - max_P n.p` at the support points.
     pub(crate) distance: f64,
     /// What the computation, and bodies that reach beyond the support points, may take from it.
@@ -286,14 +294,15 @@ impl Along {
 /// What rounding, and a widening sideways, can make of the difference between the estimates of the
 /// upper and the lower bound for a normal, in multiples of the direction.
 #[inline]
-pub(crate) fn gap_rounding(setting: &Setting, normal: DVec3, noise: Noise, widening: f64) -> f64 {
+pub fn gap_rounding(setting: &Setting, normal: DVec3, noise: Noise, widening: f64) -> f64 {
     // Unwidened bodies, almost all, need no length.
     let across = if widening == 0.0 { 0.0 } else { normal.cross(setting.unit).length() };
     noise.gap(across, widening) / normal.dot(setting.direction)
 }
 
 /// Whether these are weights of a mean: none negative, together 1 to within rounding.
-pub(crate) fn are_weights(weights: &[f64]) -> bool {
+#[inline]
+pub fn are_weights(weights: &[f64]) -> bool {
     let sum: f64 = weights.iter().sum();
     weights.iter().all(|w| *w >= 0.0) && (sum - 1.0).abs() <= noise::UNIT_VECTOR
 }
@@ -423,7 +432,8 @@ fn most_rounding(setting: &Setting, normal: DVec3, noise: Noise) -> f64 {
 }
 
 /// Checks that a normal is a unit vector, and orthogonal to the direction, to within rounding.
-pub(crate) fn check_across(setting: &Setting, normal: DVec3) -> Result<(), CertificateError> {
+#[inline]
+pub fn check_across(setting: &Setting, normal: DVec3) -> Result<(), CertificateError> {
     let is_unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
     if is_unit && normal.dot(setting.unit).abs() <= noise::UNIT_VECTOR {
         Ok(())
@@ -436,7 +446,8 @@ pub(crate) fn check_across(setting: &Setting, normal: DVec3) -> Result<(), Certi
 /// negative if they may overlap, then by no more along that normal.
 ///
 /// What of the normal is along the direction is worth at most its share of the size.
-pub(crate) fn shadow_gap(setting: &Setting, normal: DVec3) -> f64 {
+#[inline]
+pub fn shadow_gap(setting: &Setting, normal: DVec3) -> f64 {
     let [low, high] = extent::dot(normal, setting.direction);
     let along = low.abs().max(high.abs()) / setting.length * ROUNDED_UP;
     let closing = along * (setting.scale() * STRETCHED) * ROUNDED_UP;

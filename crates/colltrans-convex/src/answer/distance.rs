@@ -63,7 +63,6 @@ impl<B: Body> Distance<B> {
     derive(serde::Serialize, serde::Deserialize),
     serde(rename_all = "snake_case", bound = "")
 )]
-#[non_exhaustive]
 pub enum Within<B: Body = ConvexPolyhedron> {
     /// They are: two points of them are at most the length apart.
     Closer(B::Near),

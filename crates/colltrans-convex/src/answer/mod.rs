@@ -9,9 +9,9 @@ mod range;
 mod steps;
 
 pub use bounded::Bounded;
-pub(crate) use certificate::{
-    Along, are_weights, check_across, checked_as, gap_rounding, shadow_gap,
-};
+#[doc(hidden)]
+pub use certificate::checked_as;
+pub use certificate::{Along, are_weights, check_across, gap_rounding, shadow_gap};
 pub use certificate::{Certificate, CertificateError, Proof, Separation};
 pub use clearance::{Clearance, OverlapAhead, WhyFree};
 pub use distance::{Depth, Distance, Enclosure, NearPoints, PlaneGap, Within};

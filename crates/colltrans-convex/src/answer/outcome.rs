@@ -65,6 +65,19 @@ pub struct Contact {
 }
 
 impl Contact {
+    /// Of what an answer tells, in the order of the fields.
+    #[doc(hidden)]
+    pub const fn new(
+        translation: f64,
+        normal: DVec3,
+        support: VertexPair,
+        certificate: Certificate,
+        solver: Solver,
+        steps: Steps,
+    ) -> Self {
+        Self { translation, normal, support, certificate, solver, steps }
+    }
+
     /// The translation with its proven bounds. `upper` is infinite where the bodies slide so lightly
     /// that they may not touch.
     pub fn bounded(&self) -> Bounded {
@@ -110,4 +123,12 @@ pub struct Separated {
     pub solver: Solver,
     /// Work done.
     pub steps: Steps,
+}
+
+impl Separated {
+    /// Of what an answer tells, in the order of the fields.
+    #[doc(hidden)]
+    pub const fn new(certificate: Separation, solver: Solver, steps: Steps) -> Self {
+        Self { certificate, solver, steps }
+    }
 }

@@ -49,6 +49,12 @@ pub struct Steps {
 
 #[cfg(feature = "serde")]
 impl Steps {
+    /// Of a cast that exchanged so many corners.
+    #[doc(hidden)]
+    pub fn of_pivots(pivots: u32, started_from: StartedFrom) -> Self {
+        Self { pivots, started_from, ..Self::default() }
+    }
+
     pub(crate) fn is_nothing(&self) -> bool {
         *self == Self::default()
     }

@@ -74,7 +74,8 @@ impl Aabb {
 
     /// Half the surface; of no box, nothing.
     #[inline]
-    pub(crate) fn half_area(&self) -> f64 {
+    #[doc(hidden)]
+    pub fn half_area(&self) -> f64 {
         let s = self.size();
         s.x * s.y + s.y * s.z + s.z * s.x
     }

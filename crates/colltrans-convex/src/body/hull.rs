@@ -6,7 +6,7 @@ use super::ConvexPolyhedron;
 use super::solid::Solid;
 
 /// A body, or a part of one, by its corners.
-pub(crate) trait Hull {
+pub trait Hull {
     /// In the body's frame; at least one.
     fn corners(&self) -> &[DVec3];
 

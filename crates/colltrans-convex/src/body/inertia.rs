@@ -12,14 +12,14 @@ use crate::number::plane::polygon_normal;
 
 /// Size and resemblance of a body, in its own frame.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Inertia {
+pub struct Inertia {
     /// Largest distance of a vertex from the frame's origin.
-    pub(crate) reach: f64,
+    pub reach: f64,
     /// Centroid of the volume (of the vertices, for a body of lower dimension).
-    pub(crate) center: DVec3,
+    pub center: DVec3,
     /// Lower triangular `L` with `S = L L^T` positive definite: the inertia ellipsoid is
     /// `c + L (unit ball)`.
-    pub(crate) factor: DMat3,
+    pub factor: DMat3,
     /// Root of the trace of `S`: the ellipsoid's mean size.
     pub(crate) radius: f64,
     /// Whether the ellipsoid is nearly a ball.

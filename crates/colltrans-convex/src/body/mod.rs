@@ -2,16 +2,16 @@
 
 mod aabb;
 pub(crate) mod convex;
-pub(crate) mod error;
+pub mod error;
 mod feature;
 mod hull;
 mod id;
 pub(crate) mod inertia;
-pub(crate) mod motion;
+pub mod motion;
 pub(crate) mod placed;
-pub(crate) mod pose;
-pub(crate) mod solid;
-pub(crate) mod split;
+pub mod pose;
+pub mod solid;
+pub mod split;
 pub(crate) mod topology;
 
 pub use aabb::Aabb;
@@ -19,7 +19,7 @@ pub use convex::{ConvexPolyhedron, ConvexityDefect, OffsetReport, convexity_defe
 pub(crate) use convex::{FAN, LargeFace, MOST_RIMS, Rim, greatest_near};
 pub(crate) use feature::feature;
 pub use feature::{Feature, Features};
-pub(crate) use hull::Hull;
+pub use hull::Hull;
 pub use id::{FaceId, InputFacet, InputVertex, ObstacleId, VertexId};
 pub(crate) use inertia::Inertia;
 pub use placed::{Body, Placed};

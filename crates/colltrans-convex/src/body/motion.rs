@@ -12,11 +12,14 @@
 //! A motion of several pieces begins each where the numbers of that piece say, which is where the one before
 //! it ends, to rounding.
 
+use std::borrow::Cow;
+
 use derive_where::derive_where;
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::body::error::MotionError;
-use crate::body::{Placed, Pose};
+use crate::body::solid::Solid;
+use crate::body::{ConvexPolyhedron, Placed, Pose};
 use crate::number::angle::{self, Turn, turn};
 use crate::number::error_free::{difference_error, product_error};
 use crate::number::noise;
@@ -68,11 +71,11 @@ pub struct Piece {
 
 /// Where a piece has brought its body: the rotation, and how far the frame has moved.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Moved {
-    pub(crate) rotation: DMat3,
-    pub(crate) by: DVec3,
+pub struct Moved {
+    pub rotation: DMat3,
+    pub by: DVec3,
     /// The arm, turned.
-    pub(crate) arm: DVec3,
+    pub arm: DVec3,
 }
 
 impl Motion {
@@ -230,7 +233,8 @@ impl Piece {
 
     /// Where the body is at a time that is not before the piece.
     #[inline]
-    pub(crate) fn at(&self, time: f64) -> Moved {
+    #[doc(hidden)]
+    pub fn at(&self, time: f64) -> Moved {
         let span = time - self.since;
         let way = self.velocity * span;
         if self.rate == 0.0 {
@@ -263,13 +267,16 @@ impl Piece {
 
     /// The velocity of a point of the body, from where the axis is.
     #[inline]
-    pub(crate) fn velocity_of(&self, from_axis: DVec3) -> DVec3 {
+    #[doc(hidden)]
+    pub fn velocity_of(&self, from_axis: DVec3) -> DVec3 {
         self.velocity + self.axis.cross(from_axis) * self.rate
     }
 
     /// How far points of a body, at most `reach` from the origin of its frame, may be from where the motion's
     /// numbers have them, as computed up to some time after the piece began.
-    pub(crate) fn error(&self, reach: f64, span: f64) -> f64 {
+    #[doc(hidden)]
+    #[inline]
+    pub fn error(&self, reach: f64, span: f64) -> f64 {
         let turned = if self.rate == 0.0 { 0.0 } else { reach };
         let swung = self.arm.length() * (self.rate.abs() * span).min(1.0);
         noise::POSE * (turned + swung) + noise::WAY * self.velocity.length() * span
@@ -336,6 +343,20 @@ pub struct Moving<'a, B = crate::ConvexPolyhedron> {
     pub body: &'a B,
     /// What it does.
     pub motion: std::borrow::Cow<'a, Motion>,
+}
+
+impl ConvexPolyhedron {
+    /// This body and a motion, for a cast of bodies that turn.
+    pub fn along<'a>(&'a self, motion: &'a Motion) -> Moving<'a> {
+        Moving { body: self, motion: Cow::Borrowed(motion) }
+    }
+}
+
+impl Solid {
+    /// This body and a motion, for a cast of bodies that turn.
+    pub fn along<'a>(&'a self, motion: &'a Motion) -> Moving<'a, Self> {
+        Moving { body: self, motion: Cow::Borrowed(motion) }
+    }
 }
 
 impl<'a, B> From<Placed<'a, B>> for Moving<'a, B> {

@@ -16,7 +16,7 @@ use crate::number::range::{MIN_MAGNITUDE, in_exact_range};
 const TOLERANCE: f64 = 1e-6;
 
 /// Factor by which a pose stretches a length at most: its nine entries may be off a rotation by [`TOLERANCE`].
-pub(crate) const STRETCHED: f64 = 1.0 + 4.0 * TOLERANCE;
+pub const STRETCHED: f64 = 1.0 + 4.0 * TOLERANCE;
 
 /// How far the length of a quaternion, or an entry of `R^T R`, may be off for
 /// [`Pose::from_rounded`] and [`Pose::from_rounded_matrix`]: two written digits pass.
@@ -159,7 +159,8 @@ impl Pose {
 
     /// From entries that were those of a pose before.
     #[inline]
-    pub(crate) fn checked(matrix: DMat3, translation: DVec3) -> Self {
+    #[doc(hidden)]
+    pub fn checked(matrix: DMat3, translation: DVec3) -> Self {
         Self { matrix, translation }
     }
 
@@ -227,7 +228,7 @@ impl Pose {
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct PoseRecord {
+pub struct PoseRecord {
     /// Column by column.
     matrix: [f64; 9],
     translation: [f64; 3],

@@ -10,7 +10,7 @@ const BINS: usize = 16;
 const SAMPLE: usize = 1 << 12;
 
 /// What has a box.
-pub(crate) trait Boxed {
+pub trait Boxed {
     /// Its box.
     fn bounds(&self) -> &Aabb;
     /// What tells it from others with the same box.
@@ -25,15 +25,16 @@ pub(crate) trait Boxed {
 
 /// What is tried.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Rule {
+pub struct Rule {
     /// Both children get so many items.
-    pub(crate) least: usize,
+    pub least: usize,
     /// Only across the longest way between centres: a third of the work.
-    pub(crate) longest: bool,
+    pub longest: bool,
 }
 
 /// Puts the items of the first child in front; how many they are.
-pub(crate) fn split<T: Boxed>(items: &mut [T], rule: Rule) -> usize {
+#[inline]
+pub fn split<T: Boxed>(items: &mut [T], rule: Rule) -> usize {
     let least = rule.least;
     let centers = Aabb::of_points(items.iter().map(Boxed::center));
     if let Some((axis, bin)) = cheapest(items, &centers, rule) {
@@ -47,7 +48,8 @@ pub(crate) fn split<T: Boxed>(items: &mut [T], rule: Rule) -> usize {
 }
 
 /// The same by count, across the longest way between centres.
-pub(crate) fn halve<T: Boxed>(items: &mut [T], centers: &Aabb) -> usize {
+#[inline]
+pub fn halve<T: Boxed>(items: &mut [T], centers: &Aabb) -> usize {
     let axis = centers.size().max_position();
     let middle = items.len() / 2;
     items.select_nth_unstable_by(middle, |a, b| {
@@ -58,6 +60,7 @@ pub(crate) fn halve<T: Boxed>(items: &mut [T], centers: &Aabb) -> usize {
 }
 
 /// Moves the items that `belongs` to the front; how many they are.
+#[inline]
 fn partition<T>(items: &mut [T], belongs: impl Fn(&T) -> bool) -> usize {
     let mut middle = 0;
     for k in 0..items.len() {
@@ -79,12 +82,14 @@ struct Binning {
 
 impl Binning {
     /// For so many items: few need few.
+    #[inline]
     fn new(centers: &Aabb, axis: usize, items: usize) -> Self {
         let bins = items.clamp(4, BINS);
         let scale = bins as f64 / centers.size()[axis];
         Self { axis, low: centers.low[axis], scale, last: bins - 1 }
     }
 
+    #[inline]
     fn bin(&self, item: &impl Boxed) -> usize {
         // Out of range, or not a number where all centres are one, ends at either end.
         (((item.center()[self.axis] - self.low) * self.scale) as usize).min(self.last)
@@ -100,11 +105,13 @@ struct Bin {
 impl Bin {
     const EMPTY: Self = Self { bounds: Aabb::EMPTY, count: 0 };
 
+    #[inline]
     fn join(self, other: Self) -> Self {
         Self { bounds: self.bounds.join(&other.bounds), count: self.count + other.count }
     }
 
     /// Half the surface of the box times the count.
+    #[inline]
     fn cost(&self) -> f64 {
         if self.count == 0 { 0.0 } else { self.bounds.half_area() * self.count as f64 }
     }
@@ -112,6 +119,7 @@ impl Bin {
 
 /// The axis and the last bin of the first child for which the surface-area heuristic is least; of many
 /// items a share is looked at.
+#[inline]
 fn cheapest<T: Boxed>(items: &[T], centers: &Aabb, rule: Rule) -> Option<(usize, usize)> {
     let step = items.len().div_ceil(SAMPLE);
     let counted = items.len().div_ceil(step);

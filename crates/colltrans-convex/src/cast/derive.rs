@@ -11,7 +11,7 @@ use crate::number::range::MIN_MAGNITUDE;
 use crate::setting::error::QueryError;
 
 /// The contact range, from the casts along a direction and against it.
-pub(crate) fn range_of<'a>(
+pub fn range_of<'a>(
     cast: &Cast<'a>,
     mut run: impl FnMut(&Cast<'a>) -> Result<Outcome, QueryError>,
 ) -> Result<ContactRange, QueryError> {
@@ -41,7 +41,8 @@ pub(crate) fn range_of<'a>(
 
 /// Where both ends are one, rounding may have turned the estimates round: then they are one number
 /// between the bounds of either end, which have some in common as both are right.
-pub(crate) fn common_end(first: Bounded, last: Bounded) -> Option<f64> {
+#[inline]
+pub fn common_end(first: Bounded, last: Bounded) -> Option<f64> {
     (first.value > last.value).then(|| {
         let [low, high] = [first.lower.max(last.lower), first.upper.min(last.upper)];
         f64::midpoint(first.value, last.value).min(high).max(low)
@@ -55,7 +56,8 @@ fn put_in_order(first: &mut Contact, last: &mut Contact) {
 }
 
 /// The clearance, from the cast along a direction and, if need be, the one against it.
-pub(crate) fn clearance_of<'a>(
+#[inline]
+pub fn clearance_of<'a>(
     cast: &Cast<'a>,
     mut run: impl FnMut(&Cast<'a>) -> Result<Outcome, QueryError>,
 ) -> Result<Clearance, QueryError> {
@@ -76,7 +78,8 @@ pub(crate) fn clearance_of<'a>(
 }
 
 /// The depth of an overlap, from the clearance.
-pub(crate) fn depth_of<'a>(
+#[inline]
+pub fn depth_of<'a>(
     cast: &Cast<'a>,
     run: impl FnMut(&Cast<'a>) -> Result<Outcome, QueryError>,
 ) -> Result<DirectionalDepth, QueryError> {
@@ -90,7 +93,8 @@ pub(crate) fn depth_of<'a>(
 }
 
 /// Whether the bodies meet where they are, from a cast along the line through their centres.
-pub(crate) fn intersection_of<'a>(
+#[inline]
+pub fn intersection_of<'a>(
     cast: &Cast<'a>,
     mut run: impl FnMut(&Cast<'a>) -> Result<Outcome, QueryError>,
 ) -> Result<Intersection, QueryError> {

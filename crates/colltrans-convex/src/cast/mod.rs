@@ -7,9 +7,9 @@
 mod contact;
 mod derive;
 #[cfg(feature = "json")]
-pub(crate) mod replay;
-pub(crate) mod sideways;
-pub(crate) mod solid;
+pub mod replay;
+pub mod sideways;
+pub mod solid;
 
 use derive_where::derive_where;
 use std::fmt;
@@ -27,10 +27,10 @@ use crate::solve::observe::{NoObserver, Observer};
 use crate::solve::options::{Focus, Options};
 use crate::solve::{Left, WarmStart, search};
 pub use contact::WitnessPoints;
-pub(crate) use derive::{clearance_of, common_end, depth_of, intersection_of, range_of};
+pub use derive::{clearance_of, common_end, depth_of, intersection_of, range_of};
 #[cfg(feature = "json")]
 pub use replay::{Case, CaseError};
-pub(crate) use sideways::verified_overlap;
+pub use sideways::verified_overlap;
 
 /// A moving body, a fixed one, and the direction in which the first is translated: what all queries
 /// are asked of.
@@ -67,8 +67,10 @@ pub(crate) use sideways::verified_overlap;
 #[derive(Debug)]
 #[derive_where(Clone, Copy)]
 pub struct Cast<'a, B: Body = ConvexPolyhedron> {
-    pub(crate) setting: Setting<'a, B>,
-    pub(crate) options: B::Options,
+    #[doc(hidden)]
+    pub setting: Setting<'a, B>,
+    #[doc(hidden)]
+    pub options: B::Options,
 }
 
 impl<'a, B: Body> Cast<'a, B> {

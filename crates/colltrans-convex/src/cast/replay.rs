@@ -230,7 +230,7 @@ struct File {
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct BodyRecord {
+pub struct BodyRecord {
     vertices: Vec<[f64; 3]>,
     /// None for a segment or a point; front and back for a flat polygon.
     faces: Vec<Vec<u32>>,
@@ -242,7 +242,8 @@ pub(crate) struct BodyRecord {
 }
 
 impl BodyRecord {
-    pub(crate) fn of(body: &ConvexPolyhedron) -> Self {
+    #[inline]
+    pub fn of(body: &ConvexPolyhedron) -> Self {
         Self {
             vertices: body.vertices().iter().map(DVec3::to_array).collect(),
             faces: (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect(),
@@ -252,7 +253,8 @@ impl BodyRecord {
         }
     }
 
-    pub(crate) fn body(&self) -> Result<ConvexPolyhedron, BuildError> {
+    #[inline]
+    pub fn body(&self) -> Result<ConvexPolyhedron, BuildError> {
         let vertices: Vec<DVec3> = self.vertices.iter().copied().map(DVec3::from_array).collect();
         ConvexPolyhedron::from_own_faces(
             &vertices,

@@ -6,7 +6,8 @@ use super::Cast;
 use crate::answer::{CertificateError, check_across, shadow_gap};
 
 /// Returns at least how far the shadows of two bodies overlap along a normal, with the gap that they are to keep.
-pub(crate) fn proven_overlap(normal: DVec3, cast: &Cast<'_>) -> f64 {
+#[inline]
+pub fn proven_overlap(normal: DVec3, cast: &Cast<'_>) -> f64 {
     let gap = shadow_gap(&cast.setting, normal);
     let keep = cast.options().keep;
     // Without a gap nothing is rounded.
@@ -17,7 +18,8 @@ pub(crate) fn proven_overlap(normal: DVec3, cast: &Cast<'_>) -> f64 {
 ///
 /// # Errors
 /// The normal is not.
-pub(crate) fn verified_overlap(normal: DVec3, cast: &Cast<'_>) -> Result<f64, CertificateError> {
+#[inline]
+pub fn verified_overlap(normal: DVec3, cast: &Cast<'_>) -> Result<f64, CertificateError> {
     check_across(&cast.setting, normal)?;
     Ok(proven_overlap(normal, cast))
 }

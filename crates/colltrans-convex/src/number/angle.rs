@@ -17,7 +17,7 @@
 use crate::number::error_free::{difference_error, sum_error};
 
 /// The largest angle admitted, by magnitude.
-pub(crate) const MOST: f64 = 1e5;
+pub const MOST: f64 = 1e5;
 
 /// `pi / 2` as a sum.
 const QUARTER: [f64; 3] =
@@ -49,15 +49,16 @@ const COSINE: [f64; 8] = [
 
 /// An angle's sine and cosine.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Turn {
-    pub(crate) sin: f64,
+pub struct Turn {
+    pub sin: f64,
     pub(crate) cos: f64,
     /// `1 - cos`.
-    pub(crate) versine: f64,
+    pub versine: f64,
 }
 
 /// Of an angle in radians, of at most [`MOST`], as a sum.
-pub(crate) fn turn(high: f64, low: f64) -> Turn {
+#[inline]
+pub fn turn(high: f64, low: f64) -> Turn {
     let k = (high * std::f64::consts::FRAC_2_PI).round();
     let first = high - k * QUARTER[0];
     let second = first - k * QUARTER[1];

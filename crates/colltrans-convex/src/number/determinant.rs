@@ -7,7 +7,7 @@ use super::error_free::product_error;
 
 /// `a.x b.y - a.y b.x` with an error relative to the result, not to its terms.
 #[inline]
-pub(crate) fn accurate_det(a: DVec2, b: DVec2) -> f64 {
+pub fn accurate_det(a: DVec2, b: DVec2) -> f64 {
     let (p, q) = (a.x * b.y, a.y * b.x);
     if (p - q).abs() > 0.25 * (p.abs() + q.abs()) {
         // Little cancels: the roundings of both products are a few of the result's.

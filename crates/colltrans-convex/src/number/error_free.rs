@@ -12,7 +12,7 @@ pub(crate) fn sum_error(a: f64, b: f64, s: f64) -> f64 {
 
 /// The rounding error of `a - b`, exactly: `a - b = fl(a - b) + error`.
 #[inline]
-pub(crate) fn difference_error(a: f64, b: f64) -> f64 {
+pub fn difference_error(a: f64, b: f64) -> f64 {
     let difference = a - b;
     let b_virtual = a - difference;
     let a_virtual = difference + b_virtual;
@@ -21,7 +21,7 @@ pub(crate) fn difference_error(a: f64, b: f64) -> f64 {
 
 /// The rounding error of the product `p = fl(a b)`, exactly (Dekker).
 #[inline]
-pub(crate) fn product_error(a: f64, b: f64, p: f64) -> f64 {
+pub fn product_error(a: f64, b: f64, p: f64) -> f64 {
     let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
     a_low * b_low - (((p - a_high * b_high) - a_low * b_high) - a_high * b_low)
 }

@@ -29,7 +29,7 @@ const TINY: f64 = f64::from_bits((1023 - 800) << 52);
 
 /// A point, with what each coordinate may be off by.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Fine {
+pub struct Fine {
     at: [Double; 3],
     error: f64,
 }

@@ -13,15 +13,15 @@ use std::cmp::Ordering;
 use crate::work;
 
 /// Limbs of numbers of ordinary size.
-pub(crate) const SMALL: usize = 15;
+pub const SMALL: usize = 15;
 /// Limbs that suffice for all.
-pub(crate) const LARGE: usize = 48;
+pub const LARGE: usize = 48;
 /// Limbs that suffice for the product of two determinants.
 pub(crate) const TWICE_LARGE: usize = 2 * LARGE;
 
 /// An integer with a sign, times a power of `2^64`.
 #[derive(Clone, Copy)]
-pub(crate) struct Integer<const N: usize> {
+pub struct Integer<const N: usize> {
     negative: bool,
     /// Whether it did not fit; nothing else holds then.
     overflown: bool,
@@ -33,12 +33,13 @@ pub(crate) struct Integer<const N: usize> {
 }
 
 impl<const N: usize> Integer<N> {
-    pub(crate) const ZERO: Self =
+    pub const ZERO: Self =
         Self { negative: false, overflown: false, base: 0, len: 0, limbs: [0; N] };
     const OVERFLOWN: Self = Self { overflown: true, ..Self::ZERO };
 
     /// `a b`, exactly.
-    pub(crate) fn product(a: f64, b: f64) -> Self {
+    #[inline]
+    pub fn product(a: f64, b: f64) -> Self {
         if a == 0.0 || b == 0.0 {
             return Self::ZERO;
         }
@@ -58,7 +59,8 @@ impl<const N: usize> Integer<N> {
     }
 
     /// `a`, exactly.
-    pub(crate) fn number(a: f64) -> Self {
+    #[inline]
+    pub fn number(a: f64) -> Self {
         Self::product(a, 1.0)
     }
 
@@ -101,11 +103,15 @@ impl<const N: usize> Integer<N> {
         })
     }
 
-    pub(crate) fn add(&self, other: &Self) -> Self {
+    #[must_use]
+    #[inline]
+    pub fn add(&self, other: &Self) -> Self {
         self.sum(other, other.negative)
     }
 
-    pub(crate) fn subtract(&self, other: &Self) -> Self {
+    #[must_use]
+    #[inline]
+    pub fn subtract(&self, other: &Self) -> Self {
         self.sum(other, !other.negative)
     }
 
@@ -170,7 +176,8 @@ impl<const N: usize> Integer<N> {
         rest
     }
 
-    pub(crate) fn multiply(&self, other: &Self) -> Self {
+    #[must_use]
+    pub fn multiply(&self, other: &Self) -> Self {
         if self.overflown || other.overflown {
             return Self::OVERFLOWN;
         }
@@ -203,7 +210,8 @@ impl<const N: usize> Integer<N> {
     }
 
     /// `None` if it did not fit.
-    pub(crate) fn sign(&self) -> Option<Ordering> {
+    #[inline]
+    pub fn sign(&self) -> Option<Ordering> {
         match (self.overflown, self.len, self.negative) {
             (true, ..) => None,
             (_, 0, _) => Some(Ordering::Equal),
@@ -224,7 +232,8 @@ impl<const N: usize> Integer<N> {
     }
 
     /// `self / other`, to within a few roundings of itself; `None` if one of them did not fit.
-    pub(crate) fn ratio(&self, other: &Self) -> Option<f64> {
+    #[inline]
+    pub fn ratio(&self, other: &Self) -> Option<f64> {
         if self.overflown || other.overflown {
             return None;
         }
@@ -244,7 +253,7 @@ fn decode(x: f64) -> (u64, i32) {
 }
 
 /// `det[a, b, c]`.
-pub(crate) fn determinant<const N: usize>(
+pub fn determinant<const N: usize>(
     a: &[Integer<N>; 3],
     b: &[Integer<N>; 3],
     c: &[Integer<N>; 3],
@@ -260,10 +269,7 @@ pub(crate) fn determinant<const N: usize>(
 }
 
 /// `a - b`.
-pub(crate) fn difference<const N: usize>(
-    a: &[Integer<N>; 3],
-    b: &[Integer<N>; 3],
-) -> [Integer<N>; 3] {
+pub fn difference<const N: usize>(a: &[Integer<N>; 3], b: &[Integer<N>; 3]) -> [Integer<N>; 3] {
     std::array::from_fn(|k| a[k].subtract(&b[k]))
 }
 

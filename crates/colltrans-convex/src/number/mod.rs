@@ -1,18 +1,18 @@
 //! Arithmetic: the range of numbers, the bounds of their rounding errors, and decisions that
 //! rounding cannot make.
 
-pub(crate) mod angle;
-pub(crate) mod determinant;
+pub mod angle;
+pub mod determinant;
 mod double;
-pub(crate) mod error_free;
+pub mod error_free;
 pub(crate) mod extent;
 pub(crate) mod fine;
-pub(crate) mod integer;
-pub(crate) mod noise;
+pub mod integer;
+pub mod noise;
 pub(crate) mod orientation;
 pub(crate) mod plane;
-pub(crate) mod predicates;
-pub(crate) mod range;
+pub mod predicates;
+pub mod range;
 pub(crate) mod real;
 pub(crate) mod symmetric;
 pub(crate) mod volume;

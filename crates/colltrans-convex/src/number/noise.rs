@@ -128,7 +128,7 @@ const SLIGHT: f64 = 8.0;
 const HEIGHT: [f64; 2] = [0.75, 0.25];
 
 /// Relative error of a unit vector's length and of its product with one it should be orthogonal to.
-pub(crate) const UNIT_VECTOR: f64 = 32.0 * ROUNDING;
+pub const UNIT_VECTOR: f64 = 32.0 * ROUNDING;
 
 /// Relative error of a gain along an edge, in which more is demanded of a climb.
 pub(crate) const GAIN: f64 = 8.0 * ROUNDING;
@@ -140,25 +140,25 @@ pub(crate) const COPLANAR: f64 = 64.0 * ROUNDING;
 pub(crate) const WITNESS: f64 = 32.0 * ROUNDING;
 
 /// Bound on the error of a point that was turned, in multiples of its distance from the origin of its frame.
-pub(crate) const POSE: f64 = 96.0 * ROUNDING;
+pub const POSE: f64 = 96.0 * ROUNDING;
 
 /// How far points of two moving bodies may be off because coordinates of poses below the exact range count as 0.
-pub(crate) const FLUSHED: f64 = 8.0 * MIN_MAGNITUDE;
+pub const FLUSHED: f64 = 8.0 * MIN_MAGNITUDE;
 
 /// The same of a displacement.
-pub(crate) const WAY: f64 = 8.0 * ROUNDING;
+pub const WAY: f64 = 8.0 * ROUNDING;
 
 /// Relative rounding error of sums in section coordinates.
 pub(crate) const SECTION: f64 = 128.0 * ROUNDING;
 
 /// The rounding errors of a configuration of one size.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Noise(f64);
+pub struct Noise(f64);
 
 impl Noise {
     /// For the size `S`.
     #[inline]
-    pub(crate) fn of(size: f64) -> Self {
+    pub fn of(size: f64) -> Self {
         // Two points in one place have no size; the least there can be stands for it.
         Self(POINT * ROUNDING * size.max(MIN_MAGNITUDE))
     }
@@ -166,7 +166,7 @@ impl Noise {
     /// Bound on the error of a coordinate of a point of `M`, and of comparing two along a unit
     /// normal.
     #[inline]
-    pub(crate) fn point(self) -> f64 {
+    pub fn point(self) -> f64 {
         self.0
     }
 
@@ -178,7 +178,7 @@ impl Noise {
 
     /// Sideways distance below which points are not told apart.
     #[inline]
-    pub(crate) fn touching(self) -> f64 {
+    pub fn touching(self) -> f64 {
         TOUCHING * self.0
     }
 
@@ -207,7 +207,7 @@ impl Noise {
     /// What rounding can make of `upper - lower` in units of length along `n`, for a normal with
     /// this length across the direction and bodies widened by so much.
     #[inline]
-    pub(crate) fn gap(self, across: f64, widening: f64) -> f64 {
+    pub fn gap(self, across: f64, widening: f64) -> f64 {
         // The plane as accepted among ties.
         let bounds = self.plane(true) + BOUNDS * self.0;
         if widening == 0.0 { bounds } else { bounds + across * (2.0 * WIDENING_CORNER * widening) }
@@ -215,13 +215,13 @@ impl Noise {
 
     /// By how much a lower bound along `n` has to be lowered to be one.
     #[inline]
-    pub(crate) fn lowered(self) -> f64 {
+    pub fn lowered(self) -> f64 {
         self.0
     }
 
     /// By how much an upper bound along `n` has to be raised to be one.
     #[inline]
-    pub(crate) fn raised(self) -> f64 {
+    pub fn raised(self) -> f64 {
         RAISED * self.0
     }
 

@@ -19,6 +19,7 @@ pub(crate) fn orient3d(a: DVec3, b: DVec3, c: DVec3, p: DVec3) -> f64 {
 }
 
 /// The sign of a number; that of NaN is `Equal`.
-pub(crate) fn sign(x: f64) -> Ordering {
+#[inline]
+pub fn sign(x: f64) -> Ordering {
     x.partial_cmp(&0.0).unwrap_or(Ordering::Equal)
 }

@@ -13,12 +13,13 @@ pub const MAX_MAGNITUDE: f64 = f64::from_bits((1023 + 200) << 52);
 pub const MIN_MAGNITUDE: f64 = f64::from_bits((1023 - 200) << 52);
 
 /// The same without coordinates that are too small for the exact range, which are zero.
-pub(crate) fn without_traces(v: DVec3) -> DVec3 {
+#[inline]
+pub fn without_traces(v: DVec3) -> DVec3 {
     DVec3::from_array(v.to_array().map(|c| if c.abs() < MIN_MAGNITUDE { 0.0 } else { c }))
 }
 
 /// Whether a coordinate is finite and inside the exact range.
 #[inline]
-pub(crate) fn in_exact_range(v: DVec3) -> bool {
+pub fn in_exact_range(v: DVec3) -> bool {
     v.to_array().into_iter().all(|c| c == 0.0 || (MIN_MAGNITUDE..=MAX_MAGNITUDE).contains(&c.abs()))
 }

@@ -120,7 +120,9 @@ impl Pair<'_> {
     }
 
     /// The same with bounds as near to each other as they are when the lower one is more than so much.
-    pub(crate) fn depth_beyond(&self, enough: f64) -> Result<Depth, QueryError> {
+    #[doc(hidden)]
+    #[inline]
+    pub fn depth_beyond(&self, enough: f64) -> Result<Depth, QueryError> {
         let difference = Difference::new(&self.bodies);
         let mut found = nearest(&difference, &difference.first_pair(), None);
         found.supports += 1;
@@ -179,7 +181,7 @@ fn decide(difference: &Difference, found: &Found, length: f64) -> Option<Within>
 
 /// The distance, by a search that begins with some pairs, and leaves those that it ends with.
 #[inline]
-pub(crate) fn distance_from(pair: &Pair, pairs: &mut NearestPairs) -> Result<Distance, QueryError> {
+pub fn distance_from(pair: &Pair, pairs: &mut NearestPairs) -> Result<Distance, QueryError> {
     let difference = Difference::new(&pair.bodies);
     let found = nearest(&difference, pairs, None);
     let is_new = pairs.is_empty();
@@ -219,7 +221,8 @@ fn answer(difference: &Difference, found: &Found) -> Result<Distance, QueryError
 }
 
 /// The points of the moving and of the fixed body that are near, in the world, rounded.
-pub(crate) fn points(bodies: &TwoBodies, near: &NearPoints) -> [DVec3; 2] {
+#[inline]
+pub fn points(bodies: &TwoBodies, near: &NearPoints) -> [DVec3; 2] {
     let [p, q] = bodies.weighted(&near.pairs, &near.weights);
     let origin = bodies.translations[0];
     [bodies.moving_matrix * p + origin, bodies.fixed_matrix * q + bodies.offset + origin]

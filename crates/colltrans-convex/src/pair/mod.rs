@@ -1,16 +1,16 @@
 //! Two placed bodies and no direction: how far apart they are, how deep they overlap.
 
 mod convex;
-pub(crate) mod solid;
+pub mod solid;
 mod verify;
 
 use crate::answer::{Depth, NearPoints, PlaneGap, checked_as};
 use crate::body::{Body, ConvexPolyhedron, Placed, Pose};
 use crate::setting::TwoBodies;
 use crate::setting::error::QueryError;
-pub(crate) use convex::distance_from;
+pub use convex::distance_from;
 #[cfg(feature = "serde")]
-pub(crate) use convex::points;
+pub use convex::points;
 use derive_where::derive_where;
 
 /// A moving body and a fixed one, where they are: what is asked of both and no direction. Nothing moves;
@@ -20,7 +20,8 @@ use derive_where::derive_where;
 #[derive(Debug)]
 #[derive_where(Clone, Copy)]
 pub struct Pair<'a, B: Body = ConvexPolyhedron> {
-    pub(crate) bodies: TwoBodies<'a, B>,
+    #[doc(hidden)]
+    pub bodies: TwoBodies<'a, B>,
 }
 
 /// A proof to check about two convex bodies where they are.

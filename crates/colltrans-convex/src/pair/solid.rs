@@ -97,7 +97,7 @@ struct Said {
 
 /// What a search leaves of which a proof is made: points of the bodies, and what covers all pairs of facets, where
 /// they are apart.
-pub(crate) struct Unproven {
+pub struct Unproven {
     near: SolidNear,
     cover: Option<Cover<Apart>>,
 }
@@ -160,7 +160,9 @@ impl<'a> Pair<'a, Solid> {
     }
 
     /// The distance, and what a proof is made of, where that is wanted.
-    pub(crate) fn ask(&self, prove: bool) -> Result<(Distance<Solid>, Unproven), QueryError> {
+    #[doc(hidden)]
+    #[inline]
+    pub fn ask(&self, prove: bool) -> Result<(Distance<Solid>, Unproven), QueryError> {
         let scene = self.scene()?;
         let said = self.search(&scene, Until::LEAST, prove);
         let distance = self.answer(&scene, &said);
@@ -169,7 +171,9 @@ impl<'a> Pair<'a, Solid> {
     }
 
     /// The proof by what was found: its lower bound is what the cover proves, at least that of the search.
-    pub(crate) fn prove(&self, found: Unproven) -> Result<DistanceCertificate, QueryError> {
+    #[doc(hidden)]
+    #[inline]
+    pub fn prove(&self, found: Unproven) -> Result<DistanceCertificate, QueryError> {
         let Unproven { near, cover } = found;
         let Some(cover) = cover else { return Ok(DistanceCertificate::of_near(near)) };
         Ok(match least_proven(&self.scene()?, &cover) {
@@ -233,7 +237,8 @@ impl<'a> Pair<'a, Solid> {
     }
 
     /// [`Self::within_counted`], and what a proof is made of, where that is wanted.
-    pub(crate) fn decide(
+    #[doc(hidden)]
+    pub fn decide(
         &self,
         length: f64,
         prove: bool,
@@ -309,7 +314,9 @@ impl<'a> Pair<'a, Solid> {
     /// Points of the moving and of the fixed body, in the world, rounded, that are as near to each other as is
     /// said.
     #[cfg(feature = "serde")]
-    pub(crate) fn points(&self, near: &SolidNear) -> Result<[DVec3; 2], QueryError> {
+    #[doc(hidden)]
+    #[inline]
+    pub fn points(&self, near: &SolidNear) -> Result<[DVec3; 2], QueryError> {
         let scene = self.scene()?;
         let origin = self.bodies.translations[0];
         let points = match *near {
@@ -343,7 +350,9 @@ impl<'a> Pair<'a, Solid> {
     }
 
     /// Whether a shell of one body lies inside the other one, of bodies whose surfaces do not cross.
-    pub(crate) fn is_nested(&self) -> Result<bool, QueryError> {
+    #[doc(hidden)]
+    #[inline]
+    pub fn is_nested(&self) -> Result<bool, QueryError> {
         Ok(nested(&self.scene()?).is_some())
     }
 

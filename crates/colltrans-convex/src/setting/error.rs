@@ -110,7 +110,10 @@ pub enum QueryError {
 }
 
 impl QueryError {
-    pub(crate) fn of_obstacle(self, obstacle: ObstacleId) -> Self {
+    #[doc(hidden)]
+    #[must_use]
+    #[inline]
+    pub fn of_obstacle(self, obstacle: ObstacleId) -> Self {
         Self::Obstacle { obstacle, reason: Box::new(self) }
     }
 }

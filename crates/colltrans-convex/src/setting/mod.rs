@@ -1,7 +1,7 @@
 //! The setting of a query: two placed bodies, and of a cast a direction, in a frame that all solvers
 //! share.
 
-pub(crate) mod error;
+pub mod error;
 pub(crate) mod minkowski;
 mod two_bodies;
 
@@ -13,7 +13,7 @@ use glam::DVec3;
 use crate::body::{ConvexPolyhedron, Placed, VertexId};
 use crate::number::range::{MAX_MAGNITUDE, in_exact_range};
 use crate::setting::error::QueryError;
-pub(crate) use two_bodies::TwoBodies;
+pub use two_bodies::TwoBodies;
 
 /// One vertex of each body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
@@ -31,7 +31,8 @@ pub struct VertexPair {
 
 impl VertexPair {
     #[inline]
-    pub(crate) const fn of(moving: u32, fixed: u32) -> Self {
+    #[doc(hidden)]
+    pub const fn of(moving: u32, fixed: u32) -> Self {
         Self { moving: VertexId(moving), fixed: VertexId(fixed) }
     }
 
@@ -45,7 +46,7 @@ impl VertexPair {
 /// # Errors
 /// A direction that is zero, not finite or out of range.
 #[inline]
-pub(crate) fn check_direction(direction: DVec3) -> Result<(), QueryError> {
+pub fn check_direction(direction: DVec3) -> Result<(), QueryError> {
     if direction == DVec3::ZERO || !in_exact_range(direction) {
         return Err(QueryError::Direction { direction });
     }
@@ -54,7 +55,8 @@ pub(crate) fn check_direction(direction: DVec3) -> Result<(), QueryError> {
 
 /// # Errors
 /// A length that is negative or not a number.
-pub(crate) fn check_length(length: f64) -> Result<(), QueryError> {
+#[inline]
+pub fn check_length(length: f64) -> Result<(), QueryError> {
     if length.is_nan() || length < 0.0 {
         return Err(QueryError::Length { length });
     }
@@ -64,7 +66,7 @@ pub(crate) fn check_length(length: f64) -> Result<(), QueryError> {
 /// # Errors
 /// A gap that is negative, not finite or beyond the range of coordinates; any but 0 without the feature.
 #[inline]
-pub(crate) fn check_keep(gap: f64) -> Result<(), QueryError> {
+pub fn check_keep(gap: f64) -> Result<(), QueryError> {
     let most = if cfg!(feature = "keep") { MAX_MAGNITUDE } else { 0.0 };
     if (0.0..=most).contains(&gap) { Ok(()) } else { Err(QueryError::Keep { gap }) }
 }
@@ -72,15 +74,15 @@ pub(crate) fn check_keep(gap: f64) -> Result<(), QueryError> {
 /// Two placed bodies and a direction.
 #[derive(Debug)]
 #[derive_where(Clone, Copy)]
-pub(crate) struct Setting<'a, B = ConvexPolyhedron> {
+pub struct Setting<'a, B = ConvexPolyhedron> {
     /// The bodies.
-    pub(crate) bodies: TwoBodies<'a, B>,
+    pub bodies: TwoBodies<'a, B>,
     /// The direction as given.
-    pub(crate) direction: DVec3,
+    pub direction: DVec3,
     /// Its length.
-    pub(crate) length: f64,
+    pub length: f64,
     /// `direction` at length 1.
-    pub(crate) unit: DVec3,
+    pub unit: DVec3,
 }
 
 /// What is of the bodies alone is asked of them.
@@ -108,7 +110,7 @@ impl<'a, B> Setting<'a, B> {
     /// Of bodies that are placed.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
-    pub(crate) fn of(bodies: TwoBodies<'a, B>, direction: DVec3) -> Result<Self, QueryError> {
+    pub fn of(bodies: TwoBodies<'a, B>, direction: DVec3) -> Result<Self, QueryError> {
         check_direction(direction)?;
         let length = direction.length();
         Ok(Self { bodies, direction, length, unit: direction * (1.0 / length) })

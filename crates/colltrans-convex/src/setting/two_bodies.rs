@@ -19,19 +19,19 @@ use crate::setting::VertexPair;
 /// Two placed bodies.
 #[derive(Debug)]
 #[derive_where(Clone, Copy)]
-pub(crate) struct TwoBodies<'a, B = ConvexPolyhedron> {
+pub struct TwoBodies<'a, B = ConvexPolyhedron> {
     /// The moving body P.
-    pub(crate) moving: &'a B,
+    pub moving: &'a B,
     /// Its rotation `R_P`.
-    pub(crate) moving_matrix: DMat3,
+    pub moving_matrix: DMat3,
     /// The fixed body Q.
-    pub(crate) fixed: &'a B,
+    pub fixed: &'a B,
     /// Its rotation `R_Q`.
-    pub(crate) fixed_matrix: DMat3,
+    pub fixed_matrix: DMat3,
     /// `t_P` and `t_Q`.
-    pub(crate) translations: [DVec3; 2],
+    pub translations: [DVec3; 2],
     /// `t_Q - t_P`, rounded.
-    pub(crate) offset: DVec3,
+    pub offset: DVec3,
     /// What rounding took from `offset`, exactly.
     offset_error: DVec3,
 }
@@ -39,7 +39,7 @@ pub(crate) struct TwoBodies<'a, B = ConvexPolyhedron> {
 impl<'a, B> TwoBodies<'a, B> {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
-    pub(crate) fn new(moving: Placed<'a, B>, fixed: Placed<'a, B>) -> Self {
+    pub fn new(moving: Placed<'a, B>, fixed: Placed<'a, B>) -> Self {
         let translations = [moving.pose.translation(), fixed.pose.translation()];
         let [t_p, t_q] = translations;
         Self {
@@ -58,13 +58,15 @@ impl<'a, B> TwoBodies<'a, B> {
     }
 
     /// The moving body where it is.
-    pub(crate) fn moving_placed(&self) -> Placed<'a, B> {
+    #[inline]
+    pub fn moving_placed(&self) -> Placed<'a, B> {
         let pose = Pose::checked(self.moving_matrix, self.translations[0]);
         Placed { body: self.moving, pose }
     }
 
     /// The fixed body where it is.
-    pub(crate) fn fixed_placed(&self) -> Placed<'a, B> {
+    #[inline]
+    pub fn fixed_placed(&self) -> Placed<'a, B> {
         let pose = Pose::checked(self.fixed_matrix, self.translations[1]);
         Placed { body: self.fixed, pose }
     }
@@ -84,7 +86,9 @@ impl<'a, B> TwoBodies<'a, B> {
     }
 
     /// The same bodies with other rotations, displaced by so much from where they are.
-    pub(crate) fn carried(&self, rotations: [DMat3; 2], by: [DVec3; 2]) -> Self {
+    #[must_use]
+    #[inline]
+    pub fn carried(&self, rotations: [DMat3; 2], by: [DVec3; 2]) -> Self {
         let mut moved = self.moved_by(by[0] - by[1]);
         for k in 0..3 {
             if moved.offset[k].abs() < MIN_MAGNITUDE {
@@ -97,7 +101,8 @@ impl<'a, B> TwoBodies<'a, B> {
     }
 
     /// Other bodies in their places.
-    pub(crate) fn holding<'b, C>(&self, [moving, fixed]: [&'b C; 2]) -> TwoBodies<'b, C> {
+    #[inline]
+    pub fn holding<'b, C>(&self, [moving, fixed]: [&'b C; 2]) -> TwoBodies<'b, C> {
         let Self { moving_matrix, fixed_matrix, translations, offset, offset_error, .. } = *self;
         TwoBodies { moving, moving_matrix, fixed, fixed_matrix, translations, offset, offset_error }
     }
@@ -112,38 +117,41 @@ impl<'a, B> TwoBodies<'a, B> {
 impl<B: Hull> TwoBodies<'_, B> {
     /// The size `S` of the configuration: `|q - p|` is at most this for all its points.
     #[inline]
-    pub(crate) fn scale(&self) -> f64 {
+    pub fn scale(&self) -> f64 {
         self.moving.reach() + self.fixed.reach() + self.offset.length()
     }
 
     /// The bounds on rounding errors that belong to the size.
     #[inline]
-    pub(crate) fn noise(&self) -> Noise {
+    pub fn noise(&self) -> Noise {
         Noise::of(self.scale())
     }
 
     /// At most `min_Q n.q - max_P n.p`, and less by hardly more than a rounding: all corners are looked at.
-    pub(crate) fn distance_along(&self, normal: DVec3) -> f64 {
+    #[inline]
+    pub fn distance_along(&self, normal: DVec3) -> f64 {
         let fixed = (self.fixed.corners(), &self.fixed_matrix);
         let moving = (self.moving.corners(), &self.moving_matrix);
         extent::distance(normal, fixed, moving, self.exact_offset())
     }
 
     /// The gap that a plane proves, in world units, rounded down: what a check accepts.
-    pub(crate) fn proven_gap(&self, normal: DVec3) -> f64 {
+    #[inline]
+    pub fn proven_gap(&self, normal: DVec3) -> f64 {
         let [_, square] = extent::dot(normal, normal);
         (self.distance_along(normal) / square.sqrt().next_up()).next_down()
     }
 
     /// The gap that a plane proves between the points that the bodies were made from: what a search claims.
-    pub(crate) fn input_gap(&self, normal: DVec3) -> f64 {
+    #[inline]
+    pub fn input_gap(&self, normal: DVec3) -> f64 {
         let (gap, excess) = (self.proven_gap(normal), self.input_excess());
         if excess == 0.0 { gap } else { (gap - excess).next_down() }
     }
 
     /// How much nearer to each other points of both inputs may be than the bodies are, in the world.
     #[inline]
-    pub(crate) fn input_excess(&self) -> f64 {
+    pub fn input_excess(&self) -> f64 {
         (self.moving.input_excess() + self.fixed.input_excess()) * STRETCHED
     }
 }
@@ -158,7 +166,7 @@ impl TwoBodies<'_> {
     /// Means of several pairs' vertices by weight, in the frames of the moving and the fixed body.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "passed through memory they stall their reader")]
-    pub(crate) fn weighted<const N: usize>(
+    pub fn weighted<const N: usize>(
         &self,
         pairs: &[VertexPair; N],
         weights: &[f64; N],

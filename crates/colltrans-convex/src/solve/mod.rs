@@ -12,13 +12,13 @@
 
 pub(crate) mod cta;
 pub(crate) mod keep;
-pub(crate) mod nearest;
+pub mod nearest;
 pub mod observe;
-pub(crate) mod options;
+pub mod options;
 mod pace;
 pub(crate) mod portal;
 mod proof;
-pub(crate) mod solid;
+pub mod solid;
 mod warm_start;
 
 use glam::DVec2;

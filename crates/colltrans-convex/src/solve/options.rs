@@ -76,7 +76,8 @@ impl Options {
     }
 
     #[inline]
-    pub(crate) fn check(&self) -> Result<(), QueryError> {
+    #[doc(hidden)]
+    pub fn check(&self) -> Result<(), QueryError> {
         let tolerance = self.graze_tolerance;
         if !tolerance.is_finite() || tolerance < 0.0 {
             return Err(QueryError::GrazeTolerance { tolerance });

@@ -18,9 +18,9 @@ use super::couple::Couple;
 use super::follow::{Fate, Pieces, Way};
 use super::mechanism::Place;
 use super::shape::Shape;
-use crate::body::ConvexPolyhedron;
-use crate::body::solid::Solid;
-use crate::setting::TwoBodies;
+use colltrans_convex::body::ConvexPolyhedron;
+use colltrans_convex::body::solid::Solid;
+use colltrans_convex::setting::TwoBodies;
 
 /// Steps of boxes are not smaller than such a share of their size.
 const SMALL: f64 = 0.25;

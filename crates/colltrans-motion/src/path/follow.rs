@@ -9,7 +9,7 @@ use super::super::search::{Advanced, End, advance};
 use super::answer::Stretch;
 use super::couple::Couple;
 use super::mechanism::Place;
-use crate::body::ConvexPolyhedron;
+use colltrans_convex::body::ConvexPolyhedron;
 
 /// The next look is where both may have moved by so much of the gap; and, if that is too far, by so much.
 const FAR: [f64; 2] = [1.5, 0.9];

@@ -8,12 +8,12 @@
 use glam::DVec3;
 use thiserror::Error;
 
-use crate::body::Pose;
-use crate::body::error::PoseError;
-use crate::number::angle;
-use crate::number::noise;
-use crate::number::range::{MAX_MAGNITUDE, in_exact_range, without_traces};
-use crate::setting::error::QueryError;
+use colltrans_convex::body::Pose;
+use colltrans_convex::body::error::PoseError;
+use colltrans_convex::number::angle;
+use colltrans_convex::number::noise;
+use colltrans_convex::number::range::{MAX_MAGNITUDE, in_exact_range, without_traces};
+use colltrans_convex::setting::error::QueryError;
 
 /// A place that a joint carries.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,7 +24,7 @@ use crate::setting::error::QueryError;
 )]
 pub struct Frame {
     /// The frame it stands in, one with a smaller number; none is the world.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::written::given"))]
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_convex::written::given"))]
     pub parent: Option<usize>,
     /// Where its joint is in that frame.
     pub origin: Pose,
@@ -49,7 +49,9 @@ pub enum Joint {
 }
 
 impl Joint {
-    pub(crate) fn axis(&self) -> Option<DVec3> {
+    /// Returns its axis, if it has one.
+    #[doc(hidden)]
+    pub fn axis(&self) -> Option<DVec3> {
         match self {
             Self::Fixed => None,
             Self::Turning(axis) | Self::Sliding(axis) => Some(*axis),

@@ -63,14 +63,14 @@ mod verify;
 
 use std::collections::HashSet;
 
-use crate::Solid;
-use crate::body::{Placed, Pose};
-use crate::kinds::{AnyPlaced, ByKind};
-use crate::number::range::MAX_MAGNITUDE;
-use crate::pair::Pair;
-use crate::setting::check_keep;
-use crate::setting::error::QueryError;
-use crate::solid::AsSolid;
+use colltrans_convex::Solid;
+use colltrans_convex::body::{Placed, Pose};
+use colltrans_convex::kinds::{AnyPlaced, ByKind};
+use colltrans_convex::number::range::MAX_MAGNITUDE;
+use colltrans_convex::pair::Pair;
+use colltrans_convex::setting::check_keep;
+use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::solid::AsSolid;
 
 pub use self::answer::{
     Cover, How, PathContact, PathFree, PathMeeting, PathOutcome, PathProof, Step, Stretch,
@@ -83,8 +83,6 @@ use self::shape::Shape;
 pub use self::verify::PathProofError;
 use super::answer::MotionSteps;
 use super::course::Course;
-#[cfg(feature = "json")]
-pub use crate::proof_file::{PathCheckError, PathFileError, PathProofFile, PathStatement};
 
 /// A body that a mechanism carries, or that stands in the world.
 #[derive(Debug, Clone, Copy)]
@@ -273,7 +271,9 @@ impl<'a> PathCast<'a> {
 
     /// Returns the same question with these convex bodies taken as solids. Pieces of shapes that this cast has made are
     /// made anew.
-    pub(crate) fn with_solids(&self, solids: &[usize]) -> Self {
+    #[doc(hidden)]
+    #[must_use]
+    pub fn with_solids(&self, solids: &[usize]) -> Self {
         let shape = |(k, shape): (usize, &Shape<'a>)| {
             let placed = shape.placed;
             Shape::new(if solids.contains(&k) {
@@ -504,7 +504,7 @@ fn as_solid(placed: AnyPlaced<'_>) -> Option<AnyPlaced<'_>> {
 }
 
 /// Points, normal and features.
-type Near = ([glam::DVec3; 2], Option<glam::DVec3>, Option<crate::body::Features>);
+type Near = ([glam::DVec3; 2], Option<glam::DVec3>, Option<colltrans_convex::body::Features>);
 
 /// Whether one body of a pair is inside the other one where the path begins, or a part of it is; of bodies whose
 /// surfaces are apart.

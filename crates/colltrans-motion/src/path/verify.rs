@@ -15,7 +15,7 @@ use super::couple::Couple;
 use super::mechanism::Place;
 use super::shape::Shape;
 use super::{PathCast, nested};
-use crate::answer::CertificateError;
+use colltrans_convex::answer::CertificateError;
 
 /// What of a proof about a path is not proven.
 #[derive(Debug, Clone, PartialEq, Error)]

@@ -11,12 +11,12 @@ use super::facets::{self, FacetLooker};
 use super::search::Found;
 use super::tree::{Facet, Tree};
 use super::{Mode, searched};
-use crate::answer::{Bounded, SolidSteps};
-use crate::body::solid::Solid;
-use crate::setting::error::QueryError;
-use crate::solid::{SolidOverlap, StartOverlap};
-use crate::solve::solid::nearest::triangle;
-use crate::solve::solid::overlap;
+use colltrans_convex::answer::{Bounded, SolidSteps};
+use colltrans_convex::body::solid::Solid;
+use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::solid::{SolidOverlap, StartOverlap};
+use colltrans_convex::solve::solid::nearest::triangle;
+use colltrans_convex::solve::solid::overlap;
 
 impl MotionCast<'_, Solid> {
     /// The same with another meaning of an overlap when the motion begins, for [`Self::clearance`].
@@ -25,7 +25,7 @@ impl MotionCast<'_, Solid> {
         Self { start_overlap, ..self }
     }
 
-    /// How far along its motion the body can go, in the meaning of [`Cast::clearance`](crate::Cast::clearance): a slide
+    /// How far along its motion the body can go, in the meaning of [`Cast::clearance`](colltrans_convex::Cast::clearance): a slide
     /// has the same answer.
     ///
     /// The proof of its `shrunk` bounds is that of [`Self::certified_first_contact`]. With [`StartOverlap::Ignore`],

@@ -15,8 +15,8 @@ use super::super::look::{Look, Looker, closing};
 use super::super::search::{Advanced, End, advance};
 use super::super::span::{Instant, Span};
 use super::tree::Facet;
-use crate::answer::are_weights;
-use crate::solve::solid::nearest::triangle::{self, Corners, GAP, LENGTH};
+use colltrans_convex::answer::are_weights;
+use colltrans_convex::solve::solid::nearest::triangle::{self, Corners, GAP, LENGTH};
 
 /// What proves that two facets meet, or the solids that they are of.
 #[derive(Debug, Clone, Copy, PartialEq)]

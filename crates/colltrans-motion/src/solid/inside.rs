@@ -12,11 +12,11 @@ use glam::DVec3;
 
 use super::facets::FacetsMet;
 use super::tree::Tree;
-use crate::body::Hull;
-use crate::body::solid::{Solid, crossing};
-use crate::number::range::{in_exact_range, without_traces};
-use crate::setting::TwoBodies;
-use crate::solve::solid::nearest::triangle::{self, Corners};
+use colltrans_convex::body::Hull;
+use colltrans_convex::body::solid::{Solid, crossing};
+use colltrans_convex::number::range::{in_exact_range, without_traces};
+use colltrans_convex::setting::TwoBodies;
+use colltrans_convex::solve::solid::nearest::triangle::{self, Corners};
 
 /// How far facets are from it at least, in what places may be off: twice for what is off, twice for what is rounded here.
 const OFF: f64 = 4.0;
@@ -25,7 +25,7 @@ const OFF: f64 = 4.0;
 const BENEATH: f64 = 2.0;
 
 /// A surface that goes round what is inside it, but for its open parts.
-pub(in crate::motion) trait Surface: Hull {
+pub(crate) trait Surface: Hull {
     /// The facets of its closed parts, in the body's frame.
     fn closed(&self) -> impl Iterator<Item = Corners>;
 }
@@ -46,7 +46,7 @@ impl Surface for Tree<'_> {
 
 /// Points that may be inside both, by two facets each: of such as face each other, and such as look the same way.
 #[derive(Debug, Clone, Copy, Default)]
-pub(in crate::motion) struct Guesses([Option<Guess>; 2]);
+pub(crate) struct Guesses([Option<Guess>; 2]);
 
 /// Where two facets lie above each other.
 #[derive(Debug, Clone, Copy)]
@@ -58,7 +58,7 @@ struct Guess {
 
 impl Guesses {
     /// Takes two facets in the setting frame into account: what has the largest area in common is kept.
-    pub(in crate::motion) fn take(&mut self, triangles: [u32; 2], [f, g]: [&Corners; 2], off: f64) {
+    pub(crate) fn take(&mut self, triangles: [u32; 2], [f, g]: [&Corners; 2], off: f64) {
         let [own, other] = [normal(f), normal(g)];
         let size = other.length();
         let common = clipped(f, g, other);
@@ -78,7 +78,7 @@ impl Guesses {
     }
 
     /// One that is inside both, in the frame of the fixed body, and its facets; computed places may be off by so much.
-    pub(in crate::motion) fn holding<S: Surface>(
+    pub(crate) fn holding<S: Surface>(
         &self,
         bodies: &TwoBodies<S>,
         off: f64,
@@ -178,7 +178,7 @@ fn clipped(f: &Corners, g: &Corners, normal: DVec3) -> Vec<DVec3> {
 
 /// Whether a point that is fixed to the fixed body is inside both, for certain, if computed places of both may be off
 /// each other by so much.
-pub(in crate::motion) fn holds<S: Surface>(bodies: &TwoBodies<S>, off: f64, point: DVec3) -> bool {
+pub(crate) fn holds<S: Surface>(bodies: &TwoBodies<S>, off: f64, point: DVec3) -> bool {
     let off = OFF * off;
     let there = bodies.fixed_matrix * point + bodies.offset;
     in_exact_range(without_traces(point))

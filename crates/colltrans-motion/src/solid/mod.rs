@@ -18,8 +18,6 @@ mod tree;
 mod verify;
 mod window;
 
-use std::borrow::Cow;
-
 use glam::DVec3;
 
 use self::facets::FacetLooker;
@@ -29,34 +27,27 @@ use self::proof::Written;
 pub use self::proof::{FacetsMeeting, MotionCover, SolidMotionProof, SpanProof};
 use self::search::{Found, Mode, Search};
 #[cfg(feature = "json")]
-pub(crate) use self::tree::Parts;
+pub use self::tree::Parts;
 use self::tree::Tree;
 use self::window::Frame;
 use super::answer::{MotionContact, MotionFree, MotionOutcome, MotionSteps};
 use super::soon::soon;
 use super::span::{Span, spans};
 use super::verify::MotionProofError;
-use super::{Motion, MotionCast, Moving, check_fine, usual_tolerance};
-use crate::answer::SolidSteps;
-use crate::body::Features;
-use crate::body::solid::{AsSolid, Solid};
-use crate::cast::Cast;
-use crate::cast::solid::{SolidOptions, StartProof};
-use crate::setting::error::QueryError;
-use crate::setting::{Setting, check_keep};
-use crate::solve::solid::nearest::{Spot, points_of, triangle};
-use crate::solve::solid::overlap;
-use crate::solve::solid::scene::Scene;
+use super::{MotionCast, Moving, check_fine, usual_tolerance};
+use colltrans_convex::answer::SolidSteps;
+use colltrans_convex::body::Features;
+use colltrans_convex::body::solid::{AsSolid, Solid};
+use colltrans_convex::cast::Cast;
+use colltrans_convex::cast::solid::{SolidOptions, StartProof};
+use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::setting::{Setting, check_keep};
+use colltrans_convex::solve::solid::nearest::{Spot, points_of, triangle};
+use colltrans_convex::solve::solid::overlap;
+use colltrans_convex::solve::solid::scene::Scene;
 
 /// How often a proof up to a contact is tried, each time a little shorter.
 const MOST_CUTS: i32 = 40;
-
-impl Solid {
-    /// This body and a motion, for a [`MotionCast`].
-    pub fn along<'a>(&'a self, motion: &'a Motion) -> Moving<'a, Self> {
-        Moving { body: self, motion: Cow::Borrowed(motion) }
-    }
-}
 
 /// Solids that turn. Answers are as of convex bodies, of both bodies shrunk by half the tolerance.
 impl<'a> MotionCast<'a, Solid> {
@@ -195,13 +186,15 @@ impl<'a> MotionCast<'a, Solid> {
 
     /// The facets and trees that a proof is about.
     #[cfg(feature = "json")]
-    pub(crate) fn parts(&self) -> [Parts; 2] {
+    #[doc(hidden)]
+    pub fn parts(&self) -> [Parts; 2] {
         self.trees(self.tolerance()).map(|tree| Parts::of(&tree))
     }
 
     /// The tolerance, if one was given.
     #[cfg(feature = "json")]
-    pub(crate) const fn given_tolerance(&self) -> Option<f64> {
+    #[doc(hidden)]
+    pub const fn given_tolerance(&self) -> Option<f64> {
         self.tolerance
     }
 
@@ -242,7 +235,8 @@ impl<'a> MotionCast<'a, Solid> {
         let (lower, upper) = (found.lower, meeting.map_or(f64::INFINITY, |meeting| meeting.time));
         let bodies = span.instant(lower).bodies;
         let [p, q] = [bodies.moving_matrix, bodies.fixed_matrix];
-        let poses = [0, 1].map(|k| crate::Pose::checked([p, q][k], bodies.translations[k]));
+        let poses =
+            [0, 1].map(|k| colltrans_convex::Pose::checked([p, q][k], bodies.translations[k]));
         // What is proven does not hang on it. The facets are those of the shrunk bodies, and so is the normal.
         let [f, g] = [0, 1].map(|k| span.body(k).facet(found.triangles[k]));
         let at = span.part([&f, &g], [span.from, span.to]).instant(lower);

@@ -7,7 +7,7 @@
 use super::super::answer::PlaneAt;
 use super::facets::FacetsMet;
 use super::window::Plane;
-use crate::cast::solid::StartProof;
+use colltrans_convex::cast::solid::StartProof;
 
 /// What proves an answer about solids that turn.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,7 +24,7 @@ pub struct SolidMotionProof {
     /// For each span of time in which both bodies spin evenly, up to that in which they meet.
     pub spans: Vec<SpanProof>,
     /// That they meet at a time.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "crate::written::given"))]
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_convex::written::given"))]
     pub meeting: Option<FacetsMeeting>,
 }
 
@@ -54,7 +54,7 @@ pub struct SpanProof {
 pub struct FacetsMeeting {
     /// When.
     pub time: f64,
-    /// Which ones, by their positions in [`Solid::triangles`](crate::Solid::triangles).
+    /// Which ones, by their positions in [`Solid::triangles`](colltrans_convex::Solid::triangles).
     pub triangles: [u32; 2],
     /// Why.
     pub met: FacetsMet,

@@ -1,6 +1,6 @@
 //! A solid as a search through time sees it: shrunk, with boxes down to each facet.
 //!
-//! The tree is the solid's own ([`tree`](crate::body::solid::tree)), its leaves of a few facets halved down to
+//! The tree is the solid's own ([`tree`](colltrans_convex::body::solid::tree)), its leaves of a few facets halved down to
 //! one. Boxes hold the vertices as they are shrunk, exactly but for the roundings of middle and extent, by which
 //! extents are larger.
 
@@ -8,15 +8,15 @@ use std::borrow::Cow;
 
 use glam::DVec3;
 
-use crate::body::solid::{Solid, displace};
-use crate::body::{Aabb, Hull};
+use colltrans_convex::body::solid::{Solid, displace};
+use colltrans_convex::body::{Aabb, Hull};
 
 /// Extents are larger by this share of them and of the middle.
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
 
 /// A solid, shrunk.
 #[derive(Debug, Clone)]
-pub(in crate::motion) struct Tree<'a> {
+pub(crate) struct Tree<'a> {
     pub(super) solid: &'a Solid,
     vertices: Cow<'a, [DVec3]>,
     reach: f64,
@@ -42,7 +42,7 @@ pub(super) enum Below {
 
 /// A facet as a convex body.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::motion) struct Facet {
+pub(crate) struct Facet {
     pub(super) corners: [DVec3; 3],
     reach: f64,
 }
@@ -174,7 +174,7 @@ impl Part {
         (range.len() > 1).then_some(halves)
     }
 
-    fn first(self, own: &[crate::body::solid::tree::Node]) -> usize {
+    fn first(self, own: &[colltrans_convex::body::solid::tree::Node]) -> usize {
         match self {
             Self::Node(k) => own[k].facets().start,
             Self::Facets(first, _) => first,
@@ -186,9 +186,9 @@ impl Part {
 #[cfg(feature = "json")]
 #[derive(Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(crate) struct Parts {
+pub struct Parts {
     /// The number of each in the file.
-    numbers: Vec<crate::body::InputFacet>,
+    numbers: Vec<colltrans_convex::body::InputFacet>,
     corners: Vec<[[f64; 3]; 3]>,
     /// The nodes in preorder: the facet that one is, or -1 of one that has two parts.
     tree: Vec<i64>,

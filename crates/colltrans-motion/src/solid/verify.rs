@@ -12,10 +12,10 @@ use super::inside;
 use super::proof::{Entry, FacetsMeeting, SolidMotionProof, SpanProof, middle};
 use super::tree::{Below, Tree};
 use super::window::{Frame, Part, Snap};
-use crate::answer::are_weights;
-use crate::body::solid::Solid;
-use crate::cast::solid::StartProof;
-use crate::motion::MotionCast;
+use crate::MotionCast;
+use colltrans_convex::answer::are_weights;
+use colltrans_convex::body::solid::Solid;
+use colltrans_convex::cast::solid::StartProof;
 
 pub(super) fn verify(
     cast: &MotionCast<Solid>,

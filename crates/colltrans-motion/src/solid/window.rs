@@ -19,9 +19,9 @@ use super::super::arc;
 use super::super::bend::{SPARE, across, most_bend};
 use super::super::span::Span;
 use super::tree::{Below, Facet, Node, Tree};
-use crate::body::Hull;
-use crate::body::motion::{Moved, Piece};
-use crate::number::noise::Noise;
+use colltrans_convex::body::Hull;
+use colltrans_convex::body::motion::{Moved, Piece};
+use colltrans_convex::number::noise::Noise;
 
 /// Arcs that are longer are none any more.
 const ARC: f64 = 2.0;

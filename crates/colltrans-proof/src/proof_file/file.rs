@@ -8,15 +8,15 @@ use serde::{Deserialize, Serialize};
 
 use super::statement::{Contacts, DistanceStatement, FreeStatement, SolidStatement, Statement};
 use super::{Along, Bodies, ProofFile};
-use crate::answer::{Depth, Separation};
-use crate::body::ConvexPolyhedron;
-use crate::body::pose::PoseRecord;
-use crate::body::solid::{AsSolid, Solid, SolidError};
-use crate::cast::CaseError;
-use crate::cast::replay::BodyRecord;
-use crate::pair::solid::DistanceCertificate;
-use crate::setting::{check_direction, check_keep};
-use crate::solve::solid::nearest::SolidNear;
+use colltrans_convex::answer::{Depth, Separation};
+use colltrans_convex::body::ConvexPolyhedron;
+use colltrans_convex::body::pose::PoseRecord;
+use colltrans_convex::body::solid::{AsSolid, Solid, SolidError};
+use colltrans_convex::cast::CaseError;
+use colltrans_convex::cast::replay::BodyRecord;
+use colltrans_convex::pair::solid::DistanceCertificate;
+use colltrans_convex::setting::{check_direction, check_keep};
+use colltrans_convex::solve::solid::nearest::SolidNear;
 
 /// What a file of this version calls itself.
 const FORMAT: &str = "colltrans proof 1";
@@ -121,7 +121,7 @@ struct File<S> {
     fixed_pose: PoseRecord,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     direction: Option<[f64; 3]>,
-    #[serde(default, skip_serializing_if = "crate::written::is_zero")]
+    #[serde(default, skip_serializing_if = "colltrans_convex::written::is_zero")]
     keep: f64,
     statement: S,
 }

@@ -18,17 +18,17 @@ mod words;
 
 use glam::DVec3;
 
-use crate::answer::{
+use colltrans_convex::answer::{
     CertificateError, Clearance, ContactRange, Depth, Distance, Outcome, OverlapAhead, SolidSteps,
     Steps, WhyFree, Within,
 };
-use crate::body::solid::Solid;
-use crate::body::{ConvexPolyhedron, Pose};
-use crate::cast::{CaseError, Cast};
-use crate::free::{FreeDirections, FreeError};
-use crate::pair::Pair;
-use crate::pair::solid::Unproven;
-use crate::setting::error::QueryError;
+use colltrans_convex::body::solid::Solid;
+use colltrans_convex::body::{ConvexPolyhedron, Pose};
+use colltrans_convex::cast::{CaseError, Cast};
+use colltrans_convex::pair::Pair;
+use colltrans_convex::pair::solid::Unproven;
+use colltrans_convex::setting::error::QueryError;
+use colltrans_removal::free::{FreeDirections, FreeError};
 use file::{Pieces, again};
 pub use motion::{MotionCase, MotionProofFile, MotionProofFiles};
 pub use path::{PathCheckError, PathFileError, PathProofFile, PathStatement};
@@ -133,7 +133,8 @@ impl ProofFile {
 
     /// Of an answer of [`Pair::depth`]; `pair` is the one that was asked.
     pub fn of_depth(pair: &Pair<'_>, depth: &Depth) -> Self {
-        let depth = Depth { steps: Steps::default(), ..depth.clone() };
+        let mut depth = depth.clone();
+        depth.steps = Steps::default();
         Self::of_pair(pair, Statement::Depth(depth))
     }
 
@@ -262,7 +263,7 @@ impl ProofFile {
     }
 
     /// How many facets of the moving and of the fixed body turn inside out, or pass through others, where
-    /// they are shrunk by half the tolerance each ([`ShrinkReport::inverted`](crate::solid::ShrinkReport::inverted)):
+    /// they are shrunk by half the tolerance each ([`ShrinkReport::inverted`](colltrans_convex::solid::ShrinkReport::inverted)):
     /// what is said of shrunk bodies says little there.
     pub fn inverted(&self) -> [usize; 2] {
         let tolerance = match &self.statement {

@@ -9,11 +9,11 @@ use serde_json::value::RawValue;
 
 use super::file::{convex_body, said};
 use super::solid_motion::{FORMAT as SOLIDS_PROOF, SolidMotionProofFile};
-use crate::body::ConvexPolyhedron;
-use crate::cast::CaseError;
-use crate::cast::replay::BodyRecord;
-use crate::motion::{Motion, MotionCast, MotionOutcome, MotionProof, MotionProofError, Moving};
-use crate::setting::error::QueryError;
+use colltrans_convex::body::ConvexPolyhedron;
+use colltrans_convex::cast::CaseError;
+use colltrans_convex::cast::replay::BodyRecord;
+use colltrans_convex::setting::error::QueryError;
+use colltrans_motion::{Motion, MotionCast, MotionOutcome, MotionProof, MotionProofError, Moving};
 
 /// What files of this version call themselves.
 const PROOF: &str = "colltrans motion proof 1";
@@ -403,7 +403,7 @@ struct Asked {
     moving_motion: Motion,
     fixed: BodyRecord,
     fixed_motion: Motion,
-    #[serde(default, skip_serializing_if = "crate::written::is_zero")]
+    #[serde(default, skip_serializing_if = "colltrans_convex::written::is_zero")]
     keep: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     proof: Option<MotionProof>,

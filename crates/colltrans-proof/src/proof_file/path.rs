@@ -9,14 +9,14 @@ use thiserror::Error;
 
 use super::file::{BodyFile, nested, said};
 use super::scene::{Written, kept};
-use crate::body::{InputFacet, Pose};
-use crate::cast::CaseError;
-use crate::kinds::{AnyBody, ByKind};
-use crate::motion::path::{
+use colltrans_convex::body::{InputFacet, Pose};
+use colltrans_convex::cast::CaseError;
+use colltrans_convex::kinds::{AnyBody, ByKind};
+use colltrans_convex::number::noise;
+use colltrans_motion::path::{
     Frame, JointPath, Mechanism, PathBody, PathCast, PathError, PathOutcome, PathProof,
     PathProofError,
 };
-use crate::number::noise;
 
 /// What a file of this version calls itself.
 const FORMAT: &str = "colltrans path proof 2";
@@ -66,7 +66,7 @@ pub struct PathStatement {
     /// No two bodies of a pair meet before this time; also not at it, if it is the end of the path and no contact is claimed.
     pub lower: f64,
     /// The pair of [`PathProof::meeting`] meets at this time or before; infinite where that is not claimed.
-    #[serde(with = "crate::written::or_infinite")]
+    #[serde(with = "colltrans_convex::written::or_infinite")]
     pub upper: f64,
 }
 
@@ -147,6 +147,7 @@ impl PathProofFile {
             }
             PathOutcome::Overlapping(_) => [from; 2],
             PathOutcome::Free(_) => [to, f64::INFINITY],
+            _ => [from, f64::INFINITY],
         };
         let pairs = cast.pairs().iter().map(|pair| pair.map(|k| names[k].clone())).collect();
         file.statement = PathStatement { pairs, lower, upper };
@@ -351,7 +352,7 @@ struct File {
     frames: Vec<Frame>,
     path: JointPath,
     bodies: Vec<BodyRecord>,
-    #[serde(default, skip_serializing_if = "crate::written::is_zero")]
+    #[serde(default, skip_serializing_if = "colltrans_convex::written::is_zero")]
     keep: f64,
     proof: PathProof,
     statement: PathStatement,
@@ -361,7 +362,7 @@ struct File {
 #[serde(deny_unknown_fields)]
 struct BodyRecord {
     name: String,
-    #[serde(deserialize_with = "crate::written::given")]
+    #[serde(deserialize_with = "colltrans_convex::written::given")]
     frame: Option<usize>,
     pose: Pose,
     #[serde(default, skip_serializing_if = "Option::is_none")]

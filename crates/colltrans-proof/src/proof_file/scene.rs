@@ -10,16 +10,16 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::file::{BodyFile, PieceRecord, convex_body, is_same, said, union};
-use crate::among::{Among, ClearanceProof, NearbyProof, NearestProof, Obstacles};
-use crate::answer::CertificateError;
-use crate::body::{ObstacleId, Pose};
-use crate::cast::CaseError;
-use crate::cast::replay::BodyRecord;
-use crate::cast::solid::{SolidOptions, StartOverlap};
-use crate::kinds::{AnyBody, AnyPlaced, ByKind};
-use crate::setting::error::QueryError;
-use crate::solve::options::Options;
-use crate::{ConvexPolyhedron, Solid};
+use colltrans_convex::answer::CertificateError;
+use colltrans_convex::body::{ObstacleId, Pose};
+use colltrans_convex::cast::CaseError;
+use colltrans_convex::cast::replay::BodyRecord;
+use colltrans_convex::cast::solid::{SolidOptions, StartOverlap};
+use colltrans_convex::kinds::{AnyBody, AnyPlaced, ByKind};
+use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::solve::options::Options;
+use colltrans_convex::{ConvexPolyhedron, Solid};
+use colltrans_scene::{Among, ClearanceProof, NearbyProof, NearestProof, Obstacles};
 
 /// What a file of this version calls itself.
 const FORMAT: &str = "colltrans scene proof 1";
@@ -96,9 +96,9 @@ struct Place {
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct Choices {
-    #[serde(skip_serializing_if = "crate::written::is_zero")]
+    #[serde(skip_serializing_if = "colltrans_convex::written::is_zero")]
     keep: f64,
-    #[serde(skip_serializing_if = "crate::written::is_zero")]
+    #[serde(skip_serializing_if = "colltrans_convex::written::is_zero")]
     graze_tolerance: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     tolerance: Option<f64>,

@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 
 use super::file::{BodyFile, said};
 use super::scene::{Written, kept};
-use crate::body::solid::Solid;
-use crate::cast::CaseError;
-use crate::cast::solid::StartProof;
-use crate::kinds::ByKind;
-use crate::motion::{
+use colltrans_convex::body::solid::Solid;
+use colltrans_convex::cast::CaseError;
+use colltrans_convex::cast::solid::StartProof;
+use colltrans_convex::kinds::ByKind;
+use colltrans_motion::{
     FacetsMeeting, Motion, MotionCast, MotionOutcome, MotionProofError, Moving, Parts,
     SolidMotionProof,
 };
@@ -190,7 +190,7 @@ struct File {
     moving_motion: Motion,
     fixed: BodyFile,
     fixed_motion: Motion,
-    #[serde(default, skip_serializing_if = "crate::written::is_zero")]
+    #[serde(default, skip_serializing_if = "colltrans_convex::written::is_zero")]
     keep: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     tolerance: Option<f64>,

@@ -4,20 +4,20 @@ use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 use super::Along;
-use crate::answer::{
+use colltrans_convex::answer::{
     Bounded, Certificate, CertificateError, Clearance, Contact, Depth, Distance, Grazing,
     NearPoints, PlaneGap, Separation, Within,
 };
-use crate::body::solid::Solid;
-use crate::body::{InputFacet, Placed};
-use crate::cast::Cast;
-use crate::cast::sideways::{proven_overlap, verified_overlap};
-use crate::cast::solid::{SolidCertificate, SolidOptions, StartOverlap, StartProof};
-use crate::free::{CellProof, FreeDirections, FreeError, FreeProof, InnerBox};
-use crate::pair::Pair;
-use crate::pair::solid::DistanceCertificate;
-use crate::setting::error::QueryError;
-use crate::solve::solid::contact::SolidContact;
+use colltrans_convex::body::solid::Solid;
+use colltrans_convex::body::{InputFacet, Placed};
+use colltrans_convex::cast::Cast;
+use colltrans_convex::cast::sideways::{proven_overlap, verified_overlap};
+use colltrans_convex::cast::solid::{SolidCertificate, SolidOptions, StartOverlap, StartProof};
+use colltrans_convex::pair::Pair;
+use colltrans_convex::pair::solid::DistanceCertificate;
+use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::solve::solid::contact::SolidContact;
+use colltrans_removal::free::{CellProof, FreeDirections, FreeError, FreeProof, InnerBox};
 
 /// What a [`ProofFile`](crate::ProofFile) says of its bodies.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -135,7 +135,7 @@ pub struct SolidStatement {
 pub struct Stop {
     /// Their numbers in the file, of the moving and of the fixed body; those of pieces run through.
     pub facets: [InputFacet; 2],
-    /// Where they meet in their true place: [`SolidContact::translation`](crate::solid::SolidContact::translation).
+    /// Where they meet in their true place: [`SolidContact::translation`](colltrans_convex::solid::SolidContact::translation).
     pub translation: Bounded,
 }
 

@@ -6,10 +6,10 @@ use super::statement::{
     Contacts, DistanceStatement, FreeStatement, Slide, SolidStatement, Statement, Stop,
 };
 use super::{Bodies, ProofFile};
-use crate::answer::{Bounded, Depth, Separation};
-use crate::cast::solid::{SolidCertificate, StartOverlap, StartProof};
-use crate::free::CellProof;
-use crate::pair::solid::DistanceCertificate;
+use colltrans_convex::answer::{Bounded, Depth, Separation};
+use colltrans_convex::cast::solid::{SolidCertificate, StartOverlap, StartProof};
+use colltrans_convex::pair::solid::DistanceCertificate;
+use colltrans_removal::free::CellProof;
 
 impl fmt::Display for ProofFile {
     /// Its statement, and what shrinking has done to the bodies, in words, in one line.

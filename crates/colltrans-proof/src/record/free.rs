@@ -7,7 +7,7 @@ use glam::DVec3;
 use serde::Serialize;
 
 use super::{Ending, StartOverlapRecord, coordinates};
-use crate::free::{CellKind, FreeArc, FreeDirections, FreePoint, FreeRegion};
+use colltrans_removal::free::{CellKind, FreeArc, FreeDirections, FreePoint, FreeRegion};
 
 /// All directions along which a body leaves another one; directions as fractions of the sphere are *shares*, from 0
 /// to 1. Fields that do not apply are left out.

@@ -3,9 +3,9 @@
 use serde::Serialize;
 
 use super::{Ending, FeaturesRecord, Record, StartOverlapRecord, coordinates, open_ones};
-use crate::body::Body;
-use crate::body::solid::Solid;
-use crate::motion::{MotionCast, MotionClearance, MotionContact, MotionOutcome, MotionOverlap};
+use colltrans_convex::body::Body;
+use colltrans_convex::body::solid::Solid;
+use colltrans_motion::{MotionCast, MotionClearance, MotionContact, MotionOutcome, MotionOverlap};
 
 /// Bounds of a time, from 0 at the start of a motion to 1 at its end.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
@@ -79,6 +79,7 @@ impl Record {
             MotionOutcome::Undecided(contact) => record.touching(Ending::Undecided, contact, cast),
             MotionOutcome::Free(_) => Self { outcome: Ending::Free, ..record },
             MotionOutcome::Overlapping(_) => Self { outcome: Ending::Overlapping, ..record },
+            _ => Self { outcome: Ending::Undecided, ..record },
         }
     }
 

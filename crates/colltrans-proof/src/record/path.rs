@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use serde::Serialize;
 
 use super::{Ending, TimeRecord, coordinates};
-use crate::motion::path::{PathCast, PathContact, PathOutcome, Place};
+use colltrans_motion::path::{PathCast, PathContact, PathOutcome, Place};
 
 /// Which two bodies first meet on a path, and when. Fields that do not apply are left out.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
@@ -60,7 +60,7 @@ impl PathRecord {
             PathOutcome::Grazing(_) => Ending::Grazing,
             PathOutcome::Free(_) => Ending::Free,
             PathOutcome::Overlapping(_) => Ending::Overlapping,
-            PathOutcome::Undecided(_) => Ending::Undecided,
+            _ => Ending::Undecided,
         };
         let (looks, planes) = (outcome.steps().looks, outcome.proof().planes());
         let pairs = cast.pairs().len();
@@ -97,7 +97,7 @@ impl PathRecord {
                     ..record
                 }
             }
-            PathOutcome::Free(_) => record,
+            _ => record,
         }
     }
 }

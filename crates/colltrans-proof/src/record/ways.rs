@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::ways::{Searched, WaysOut};
+use colltrans_removal::ways::{Searched, WaysOut};
 
 /// A way out in several moves, that there is none, or what was searched. Fields that do not apply are left out.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -30,7 +30,7 @@ pub struct LegRecord {
     /// Of length 1.
     pub direction: [f64; 3],
     /// How far; nothing stops the last one.
-    #[serde(serialize_with = "crate::written::or_infinite::serialize")]
+    #[serde(serialize_with = "colltrans_convex::written::or_infinite::serialize")]
     pub travel: f64,
 }
 
@@ -46,7 +46,7 @@ impl WaysRecord {
         };
         match ways {
             WaysOut::Found(way) => {
-                let leg = |leg: &crate::ways::Leg| LegRecord {
+                let leg = |leg: &colltrans_removal::ways::Leg| LegRecord {
                     direction: leg.direction.to_array(),
                     travel: leg.travel,
                 };

@@ -17,14 +17,14 @@ use super::region::{FreeRegion, regions};
 use super::rest::{Piece, Rest};
 use super::search::{Found, Search};
 use super::thin::{FreeArc, FreePoint, Thin, thin};
-use crate::answer::{CertificateError, SolidSteps};
-use crate::body::Placed;
-use crate::body::solid::{AsSolid, Solid};
-use crate::cast::Cast;
-use crate::cast::solid::StartOverlap;
-use crate::setting::check_direction;
-use crate::setting::error::QueryError;
-use crate::solve::solid::overlap;
+use colltrans_convex::answer::{CertificateError, SolidSteps};
+use colltrans_convex::body::Placed;
+use colltrans_convex::body::solid::{AsSolid, Solid};
+use colltrans_convex::cast::Cast;
+use colltrans_convex::cast::solid::StartOverlap;
+use colltrans_convex::setting::check_direction;
+use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::solve::solid::overlap;
 
 /// What is said of a direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -303,7 +303,8 @@ impl<'a> FreeDirections<'a> {
 
     /// The bodies, with a direction that plays no part.
     #[cfg(feature = "json")]
-    pub(crate) fn cast(&self) -> &Cast<'a, Solid> {
+    #[doc(hidden)]
+    pub fn cast(&self) -> &Cast<'a, Solid> {
         &self.cast
     }
 

@@ -4,10 +4,10 @@
 use glam::DVec3;
 
 use super::line::PlaneVertex;
-use crate::body::solid::tree::{self, ANY, Node};
-use crate::number::integer::{Integer, difference};
-use crate::solve::solid::projected::Projected;
-use crate::solve::solid::scene::{Corner, ExactPoint, Scene, Side};
+use colltrans_convex::body::solid::tree::{self, ANY, Node};
+use colltrans_convex::number::integer::{Integer, difference};
+use colltrans_convex::solve::solid::projected::Projected;
+use colltrans_convex::solve::solid::scene::{Corner, ExactPoint, Scene, Side};
 
 /// What bounds some facets of one body, in the setting frame.
 #[derive(Debug, Clone, Copy)]

@@ -2,9 +2,9 @@
 
 use thiserror::Error;
 
-use crate::answer::CertificateError;
-use crate::setting::error::QueryError;
-use crate::solve::solid::overlap::Overlap;
+use colltrans_convex::answer::CertificateError;
+use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::solve::solid::overlap::Overlap;
 
 /// Why free directions cannot be told.
 #[derive(Debug, Clone, PartialEq, Error)]

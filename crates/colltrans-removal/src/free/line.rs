@@ -13,9 +13,9 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::bodies::Bodies;
-use crate::number::error_free::{difference_error, product_error};
-use crate::number::integer::{Integer, LARGE, SMALL, determinant, difference};
-use crate::number::predicates::sign;
+use colltrans_convex::number::error_free::{difference_error, product_error};
+use colltrans_convex::number::integer::{Integer, LARGE, SMALL, determinant, difference};
+use colltrans_convex::number::predicates::sign;
 
 const U: f64 = f64::EPSILON / 2.0;
 
@@ -25,7 +25,7 @@ const U: f64 = f64::EPSILON / 2.0;
 pub struct PlaneVertex {
     /// Whether it is the moving body's.
     pub moving: bool,
-    /// Its position in [`Solid::vertices`](crate::Solid::vertices).
+    /// Its position in [`Solid::vertices`](colltrans_convex::Solid::vertices).
     pub vertex: u32,
 }
 

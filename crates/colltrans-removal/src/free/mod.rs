@@ -1,6 +1,6 @@
 //! All directions along which a solid can leave another one, proven.
 //!
-//! `A` moves, `B` is fixed. What [`Cast::clearance`](crate::Cast::clearance) calls blocked is a union of open convex
+//! `A` moves, `B` is fixed. What [`Cast::clearance`](colltrans_convex::Cast::clearance) calls blocked is a union of open convex
 //! cones, one for each pair of facets (`cone`). So four directions that one pair blocks block all between them, and
 //! six pairs may prove that no direction is free. The sphere is cut into `cell`s until each is blocked, free, or cut
 //! by few cones into exact convex pieces (`rest`). Where facets are too small for that, two boxes inside the bodies may

@@ -1,17 +1,17 @@
 //! Choices.
 
 use super::cell::DEEPEST;
-use crate::cast::solid::{SolidOptions, StartOverlap};
+use colltrans_convex::cast::solid::{SolidOptions, StartOverlap};
 
 /// Choices of [`FreeDirections`](super::FreeDirections). More may be added: begin with the default ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct FreeOptions {
-    /// As of a [`Cast`](crate::Cast): both bodies are shrunk by half of this length; `None` stands for 0 where both
+    /// As of a [`Cast`](colltrans_convex::Cast): both bodies are shrunk by half of this length; `None` stands for 0 where both
     /// poses turn by quarter turns, and else for what rounding can do to a fit.
     pub tolerance: Option<f64>,
-    /// As of a [`Cast`](crate::Cast): whether facets that cross now count.
+    /// As of a [`Cast`](colltrans_convex::Cast): whether facets that cross now count.
     pub start_overlap: StartOverlap,
     /// The sides of a cube are halved at most so often (and never more than 50 times).
     pub depth: u32,

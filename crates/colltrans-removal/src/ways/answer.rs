@@ -9,13 +9,13 @@ use super::enclosed::{Cells, Enclosure, NoWay, axes_of};
 use super::options::{Order, Searched, WayOptions};
 use super::pairs::{Pair, around, displaced};
 use super::search::{Group, Move, Run, Scale, Search, border};
-use crate::answer::CertificateError;
-use crate::body::solid::{AsSolid, Solid};
-use crate::body::{Aabb, Placed};
-use crate::cast::Cast;
-use crate::cast::solid::{SolidCertificate, SolidOptions, StartProof};
 use crate::free::FreeError;
-use crate::setting::error::QueryError;
+use colltrans_convex::answer::CertificateError;
+use colltrans_convex::body::solid::{AsSolid, Solid};
+use colltrans_convex::body::{Aabb, Placed};
+use colltrans_convex::cast::Cast;
+use colltrans_convex::cast::solid::{SolidCertificate, SolidOptions, StartProof};
+use colltrans_convex::setting::error::QueryError;
 
 /// The share of the tolerance that is planned with.
 const SLACK: f64 = 0.8;

@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-use crate::body::Placed;
-use crate::body::solid::Solid;
+use colltrans_convex::body::Placed;
+use colltrans_convex::body::solid::Solid;
 
 /// Axes of the largest facets of each body.
 const AXES: usize = 3;

@@ -18,11 +18,11 @@ use super::cells::{
     Crossing, DEEPEST, Displaced, Displacements, Room, RoomCell, SIDES, Side, are_independent,
 };
 use super::pairs::standing;
-use crate::answer::CertificateError;
-use crate::body::solid::{AsSolid, Solid};
-use crate::body::{Aabb, Placed};
 use crate::free::{Bodies, FreeError};
-use crate::setting::error::QueryError;
+use colltrans_convex::answer::CertificateError;
+use colltrans_convex::body::solid::{AsSolid, Solid};
+use colltrans_convex::body::{Aabb, Placed};
+use colltrans_convex::setting::error::QueryError;
 
 /// Crossings that are tried first in a new cell, at most.
 const MOST_SEEN: usize = 48;

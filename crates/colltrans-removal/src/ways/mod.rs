@@ -4,7 +4,7 @@
 //! along a direction. Where a leg stops, another direction has to be possible: `openings` tells where along a first
 //! move a second one is, of two bodies. `search` goes from place to place, `candidates` are the directions it tries.
 //!
-//! What is searched with is rounded, and nothing rests on it: each leg of the answer is a [`Cast`](crate::Cast) of
+//! What is searched with is rounded, and nothing rests on it: each leg of the answer is a [`Cast`](colltrans_convex::Cast) of
 //! each body that moves against each that stays, with its proof. The search has bodies that are a little larger
 //! (shrunk by 0.8 of what the tolerance asks for), so rounded places are no overlaps of those that are certified.
 

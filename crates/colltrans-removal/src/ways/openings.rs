@@ -9,8 +9,8 @@
 
 use glam::DVec3;
 
-use crate::body::Aabb;
 use crate::free::{Bodies, View};
+use colltrans_convex::body::Aabb;
 
 /// An open interval.
 type Span = [f64; 2];

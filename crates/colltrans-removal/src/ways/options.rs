@@ -7,7 +7,7 @@ use glam::DVec3;
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct WayOptions {
-    /// As of a [`Cast`](crate::Cast): bodies are shrunk by half of this length; `None`: the largest of the default
+    /// As of a [`Cast`](colltrans_convex::Cast): bodies are shrunk by half of this length; `None`: the largest of the default
     /// ones of their casts.
     pub tolerance: Option<f64>,
     /// At most so many legs, the last one included.

@@ -6,14 +6,14 @@ use glam::DVec3;
 
 use super::openings::Question;
 use super::options::Searched;
-use crate::answer::{Clearance, SolidSteps};
-use crate::body::solid::Solid;
-use crate::body::{Aabb, Placed};
-use crate::cast::Cast;
-use crate::cast::solid::SolidOptions;
 use crate::free::{Bodies, FreeError};
-use crate::setting::error::QueryError;
-use crate::solve::solid::{Workspace, overlap};
+use colltrans_convex::answer::{Clearance, SolidSteps};
+use colltrans_convex::body::solid::Solid;
+use colltrans_convex::body::{Aabb, Placed};
+use colltrans_convex::cast::Cast;
+use colltrans_convex::cast::solid::SolidOptions;
+use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::solve::solid::{Workspace, overlap};
 
 /// A displacement, by its bits: places lie on a grid, so equal ones are equal.
 pub(super) fn bits(v: DVec3) -> [u64; 3] {
@@ -221,7 +221,7 @@ pub(super) fn standing(
     Cast::new(a, b, DVec3::Z)?.with_options(SolidOptions::default().with_tolerance(tolerance))
 }
 
-fn moved(a: Placed<'_, Solid>, by: DVec3) -> Result<crate::Pose, QueryError> {
+fn moved(a: Placed<'_, Solid>, by: DVec3) -> Result<colltrans_convex::Pose, QueryError> {
     a.pose.translated(by).map_err(|_| QueryError::Direction { direction: by })
 }
 

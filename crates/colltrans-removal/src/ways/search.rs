@@ -25,7 +25,7 @@ use super::openings::{add, open};
 use super::options::{Order, Searched, WayOptions};
 use super::pairs::{Pair, bits};
 use crate::free::{FreeDirections, FreeError, FreeOptions};
-use crate::setting::error::QueryError;
+use colltrans_convex::setting::error::QueryError;
 
 /// Places at which free sets are asked for, at most, and pairs of nodes that each looks at.
 const MOST_FREE_SETS: usize = 64;

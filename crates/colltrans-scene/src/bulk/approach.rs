@@ -9,10 +9,10 @@ use super::FixedRotations;
 use super::faces::Faces;
 use super::proof::{Clear, Line, Rim, axes, contact, separated};
 use super::sight::{ENTERED, Reached, Seen, axes_of, steps, walk};
-use crate::answer::{Clearance, ContactRange, Outcome};
-use crate::cast::{Cast, clearance_of, range_of};
-use crate::setting::check_direction;
-use crate::setting::error::QueryError;
+use colltrans_convex::answer::{Clearance, ContactRange, Outcome};
+use colltrans_convex::cast::{Cast, clearance_of, range_of};
+use colltrans_convex::setting::check_direction;
+use colltrans_convex::setting::error::QueryError;
 
 /// Casts of one pair with one rotation of each body along one direction: [`FixedRotations::along`].
 ///
@@ -39,7 +39,7 @@ struct Map {
 
 #[derive(Debug, Clone, Copy)]
 struct Corner {
-    at: DVec3,
+    pub at: DVec3,
     /// The face beyond the side that begins here.
     beyond: Beyond,
 }

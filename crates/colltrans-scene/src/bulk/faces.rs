@@ -6,8 +6,8 @@
 use glam::DVec3;
 
 use super::star::Star;
-use crate::body::ConvexPolyhedron;
-use crate::setting::{TwoBodies, VertexPair};
+use colltrans_convex::body::ConvexPolyhedron;
+use colltrans_convex::setting::{TwoBodies, VertexPair};
 
 /// The plane of a face.
 #[derive(Debug, Clone, Copy)]

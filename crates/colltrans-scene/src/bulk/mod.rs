@@ -17,12 +17,12 @@ mod star;
 
 use glam::DVec3;
 
-use crate::answer::{Clearance, ContactRange, Outcome, Solver};
-use crate::body::{ConvexPolyhedron, Placed, Pose};
-use crate::cast::{Cast, clearance_of, range_of};
-use crate::setting::TwoBodies;
-use crate::setting::error::QueryError;
 pub use approach::Approach;
+use colltrans_convex::answer::{Clearance, ContactRange, Outcome, Solver};
+use colltrans_convex::body::{ConvexPolyhedron, Placed, Pose};
+use colltrans_convex::cast::{Cast, clearance_of, range_of};
+use colltrans_convex::setting::TwoBodies;
+use colltrans_convex::setting::error::QueryError;
 use faces::Faces;
 use proof::Line;
 use sight::Sight;
@@ -46,7 +46,7 @@ const PAYS_AFTER: usize = 500;
 ///
 /// Kinds of outcomes are those of the [`Cast`], and both are between the same true bounds, but the last digits may
 /// differ: they are computed from another triangle of the same face. Of separated bodies the plane, and so the margin
-/// along it, is another of many, as with a [`Tracker`](crate::Tracker). The bits depend on nothing but the bodies,
+/// along it, is another of many, as with a [`Tracker`](colltrans_convex::Tracker). The bits depend on nothing but the bodies,
 /// the rotations and the cast: not on other casts, their order, threads or the platform.
 ///
 /// ```

@@ -1,16 +1,16 @@
 //! From a face of `M0`, or two that meet at the rim of its shadow, to an answer with its proof.
 //!
-//! The bounds on rounding are derived in the head of [`noise`](crate::number::noise), under *Polygon* and *Rim*.
+//! The bounds on rounding are derived in the head of [`noise`](colltrans_convex::number::noise), under *Polygon* and *Rim*.
 
 use glam::{DVec2, DVec3};
 
 use super::faces::{Faces, Plane};
 use super::sight::{ENTERED, Seen};
-use crate::answer::{Certificate, Contact, Separated, Separation, Solver, Steps};
-use crate::cast::Cast;
-use crate::number::determinant::accurate_det;
-use crate::number::noise::{Noise, UNIT_VECTOR};
-use crate::setting::Setting;
+use colltrans_convex::answer::{Certificate, Contact, Separated, Separation, Solver, Steps};
+use colltrans_convex::cast::Cast;
+use colltrans_convex::number::determinant::accurate_det;
+use colltrans_convex::number::noise::{Noise, UNIT_VECTOR};
+use colltrans_convex::setting::Setting;
 
 /// Share of a noise by which the corners of a face may be off its plane.
 const THICK: f64 = 0.5;
@@ -101,21 +101,16 @@ pub(super) fn contact<S: Seen>(
     let lowered = noise.lowered() + faces.input_excess;
     let lower = ((distance - lowered) / steepness).next_down();
     let upper = (estimate + noise.raised() / steepness).next_up();
-    Some(Contact {
-        translation: estimate.max(lower),
+    let certificate = Certificate {
         normal,
-        support: lowest,
-        certificate: Certificate {
-            normal,
-            lower,
-            pairs: corners.map(|side| faces.pair(of, side)),
-            weights,
-            upper,
-            rounding: gap + (noise.raised() + lowered) * per,
-        },
-        solver: Solver::Portal,
-        steps,
-    })
+        lower,
+        pairs: corners.map(|side| faces.pair(of, side)),
+        weights,
+        upper,
+        rounding: gap + (noise.raised() + lowered) * per,
+    };
+    let translation = estimate.max(lower);
+    Some(Contact::new(translation, normal, lowest, certificate, Solver::Portal, steps))
 }
 
 /// Of the triangles at a face's first corner the one that the line enters: its corners, their weights and the height.
@@ -175,5 +170,5 @@ pub(super) fn separated(rim: &Rim, line: &Line, steps: Steps) -> Option<Separate
     let margin = (rim.least + rim.normal.dot(line.setting.offset)) - lowered;
     let certificate = Separation { normal: rim.normal, margin };
     let certain = margin > 2.0 * noise.touching();
-    certain.then_some(Separated { certificate, solver: Solver::Portal, steps })
+    certain.then_some(Separated::new(certificate, Solver::Portal, steps))
 }

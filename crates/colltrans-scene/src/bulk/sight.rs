@@ -7,8 +7,8 @@ use glam::DVec3;
 
 use super::faces::{Faces, Side};
 use super::proof::{Clear, Line, Rim, contact, separated};
-use crate::answer::{Outcome, StartedFrom, Steps};
-use crate::number::noise::UNIT_VECTOR;
+use colltrans_convex::answer::{Outcome, StartedFrom, Steps};
+use colltrans_convex::number::noise::UNIT_VECTOR;
 
 /// A component along the direction beyond what rounding makes of none.
 pub(super) const ENTERED: f64 = 0.25 * UNIT_VECTOR;
@@ -65,7 +65,7 @@ pub(super) fn walk(seen: &impl Seen, mut face: u32, clear: &Clear) -> Option<(Re
 
 /// Work done by looking at so many faces.
 pub(super) fn steps(looked: u32) -> Steps {
-    Steps { pivots: looked, started_from: StartedFrom::Difference, ..Steps::default() }
+    Steps::of_pivots(looked, StartedFrom::Difference)
 }
 
 /// All faces, along any direction.

@@ -8,7 +8,7 @@
 use glam::{DMat3, DVec3};
 
 use super::faces::Plane;
-use crate::body::ConvexPolyhedron;
+use colltrans_convex::body::ConvexPolyhedron;
 
 /// How far from its centre lines pass the ball at most.
 const INNER: f64 = 0.9;

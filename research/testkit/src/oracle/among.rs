@@ -505,12 +505,12 @@ fn within(p: AnyPlaced, q: AnyPlaced, length: f64) -> Result<(bool, bool), Query
         ByKind::Convex(pair) => match pair.within(length)? {
             Within::Closer(_) => (true, false),
             Within::Farther(_) => (false, false),
-            _ => (false, true),
+            Within::Undecided(_) => (false, true),
         },
         ByKind::Solid(pair) => match pair.within(length)? {
             Within::Closer(_) => (true, false),
             Within::Farther(_) => (false, false),
-            _ => (false, true),
+            Within::Undecided(_) => (false, true),
         },
     })
 }

@@ -110,7 +110,9 @@ impl Plateau {
 impl ConvexPolyhedron {
     /// The support point along the unit vector `normal` (body frame), given the one that a climb has
     /// found, and a bound on how far the body reaches beyond it.
-    pub(crate) fn settled(&self, normal: DVec3, vertex: u32) -> (u32, f64) {
+    #[doc(hidden)]
+    #[inline]
+    pub fn settled(&self, normal: DVec3, vertex: u32) -> (u32, f64) {
         if self.support.is_scanned() {
             return (vertex, self.excess_of_scan());
         }

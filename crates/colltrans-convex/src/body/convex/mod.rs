@@ -192,7 +192,8 @@ impl ConvexPolyhedron {
 
     /// Bound on the distance of an input point from the body; 0 if none is outside.
     #[inline]
-    pub(crate) fn input_excess(&self) -> f64 {
+    #[doc(hidden)]
+    pub fn input_excess(&self) -> f64 {
         self.input_excess
     }
 
@@ -318,7 +319,9 @@ impl ConvexPolyhedron {
             })
     }
 
-    pub(crate) fn inertia(&self) -> &Inertia {
+    #[doc(hidden)]
+    #[inline]
+    pub fn inertia(&self) -> &Inertia {
         &self.inertia
     }
 

@@ -17,7 +17,7 @@ mod report;
 mod self_intersection;
 mod shells;
 mod shrink;
-pub(crate) mod tree;
+pub mod tree;
 mod validate;
 pub(crate) mod wedge;
 mod weld;
@@ -32,9 +32,9 @@ pub use error::SolidError;
 use faces::Faces;
 pub(crate) use kept::{Keepable, Kept};
 pub use report::{Shell, ShellKind, SolidReport};
-pub(crate) use shells::crossing;
+pub use shells::crossing;
 pub use shrink::ShrinkReport;
-pub(crate) use shrink::{Shrinking, displace};
+pub use shrink::{Shrinking, displace};
 use tree::Node;
 pub(crate) use validate::Surface;
 
@@ -273,7 +273,9 @@ impl Solid {
     }
 
     /// Checks whether a triangle is a point or a segment: two of its corners are one vertex.
-    pub(crate) fn is_without_area(&self, triangle: usize) -> bool {
+    #[doc(hidden)]
+    #[inline]
+    pub fn is_without_area(&self, triangle: usize) -> bool {
         let [_, b, c] = self.triangles[triangle];
         b == c
     }
@@ -345,7 +347,9 @@ impl Solid {
     /// Whether numbers of vertices, facets and nodes mean the same of another solid. What bounds a node may still
     /// be rounded otherwise.
     #[cfg(feature = "json")]
-    pub(crate) fn has_tree_of(&self, other: &Self) -> bool {
+    #[doc(hidden)]
+    #[inline]
+    pub fn has_tree_of(&self, other: &Self) -> bool {
         let place = |node: &Node| (node.skip, node.first, node.count);
         self.vertices == other.vertices
             && self.triangles == other.triangles
@@ -385,7 +389,9 @@ impl Solid {
     }
 
     /// Whether a triangle belongs to an open shell: it has no side.
-    pub(crate) fn is_open(&self, triangle: usize) -> bool {
+    #[doc(hidden)]
+    #[inline]
+    pub fn is_open(&self, triangle: usize) -> bool {
         self.kinds[triangle] != ShellKind::Closed
     }
 
@@ -411,7 +417,9 @@ impl Solid {
     }
 
     /// Whether a shell can be shrunk.
-    pub(crate) fn can_shrink(&self) -> bool {
+    #[doc(hidden)]
+    #[inline]
+    pub fn can_shrink(&self) -> bool {
         self.report.shells.iter().any(|s| s.kind != ShellKind::Sheet)
     }
 
@@ -507,7 +515,9 @@ impl Solid {
         self.reach
     }
 
-    pub(crate) fn nodes(&self) -> &[Node] {
+    #[doc(hidden)]
+    #[inline]
+    pub fn nodes(&self) -> &[Node] {
         &self.nodes
     }
 

@@ -222,7 +222,8 @@ pub(super) fn lies_on(p: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
 }
 
 /// How the triangle is crossed by the ray from `p` along `z`: 1 outwards, -1 inwards, 0 not at all.
-pub(crate) fn crossing(p: DVec3, [a, b, c]: [DVec3; 3]) -> i32 {
+#[inline]
+pub fn crossing(p: DVec3, [a, b, c]: [DVec3; 3]) -> i32 {
     let facing = exact::turn(a, b, c, 2);
     if facing == Ordering::Equal {
         return 0;

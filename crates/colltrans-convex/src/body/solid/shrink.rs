@@ -42,11 +42,11 @@ const MOST_ROUNDS: usize = 64;
 
 /// How the vertices of a solid move when it is shrunk by 1.
 #[derive(Debug, Clone)]
-pub(crate) struct Shrinking {
+pub struct Shrinking {
     /// Displacement of each vertex.
-    pub(crate) field: Vec<DVec3>,
+    pub field: Vec<DVec3>,
     /// For each node of the tree what its facets do, at most.
-    pub(crate) nodes: Vec<NodeMotion>,
+    pub nodes: Vec<NodeMotion>,
     /// The amount up to which the rates of the nodes hold.
     pub(crate) most: f64,
     /// The longest displacement.
@@ -57,13 +57,13 @@ pub(crate) struct Shrinking {
 
 /// What shrinking does to the facets of a node; see the module's head.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct NodeMotion {
+pub struct NodeMotion {
     /// Rates of the sides of the box, and of the slab.
     pub(crate) low: [f32; 3],
     pub(crate) high: [f32; 3],
     pub(crate) slab: [f32; 2],
-    pub(crate) turn: f32,
-    pub(crate) rough: f32,
+    pub turn: f32,
+    pub rough: f32,
 }
 
 /// What could not be shrunk, or grown, as it should.
@@ -192,13 +192,16 @@ impl Solid {
     }
 
     /// The displacements, computed when they are first needed.
-    pub(crate) fn shrinking(&self) -> &Shrinking {
+    #[doc(hidden)]
+    #[inline]
+    pub fn shrinking(&self) -> &Shrinking {
         self.shrinking.get_or_init(|| Shrinking::new(self))
     }
 }
 
 /// A vertex of the shrunk body. Coordinates too small for the exact range are zero.
-pub(crate) fn displace(vertex: DVec3, field: DVec3, amount: f64) -> DVec3 {
+#[inline]
+pub fn displace(vertex: DVec3, field: DVec3, amount: f64) -> DVec3 {
     without_traces(vertex + field * amount)
 }
 

@@ -24,25 +24,25 @@ pub(crate) const LEAF: usize = 4;
 /// Subtrees with fewer facets are not worth a thread.
 const FORK: usize = 1 << 14;
 /// A sine that stands for "any angle".
-pub(crate) const ANY: f64 = 2.0;
+pub const ANY: f64 = 2.0;
 /// A sine that stands for facets without a side.
 pub(crate) const OPEN: f32 = f32::INFINITY;
 
 /// What bounds consecutive facets.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Node {
-    pub(crate) bounds: Aabb,
+pub struct Node {
+    pub bounds: Aabb,
     pub(crate) axis: DVec3,
     pub(crate) slab: [f64; 2],
     /// Sine of the largest angle of a facet's normal with `axis`; [`ANY`] from a right angle on, [`OPEN`] where one
     /// has no side.
-    pub(crate) spread: f32,
+    pub spread: f32,
     /// The first child is so far behind; 0 for a leaf.
-    pub(crate) skip: u32,
+    pub skip: u32,
     /// The first of its facets.
-    pub(crate) first: u32,
+    pub first: u32,
     /// How many.
-    pub(crate) count: u32,
+    pub count: u32,
     /// What the facets leave free of the box's corners and edges.
     pub(crate) cuts: [u8; CUTS],
     /// Which of the box's six sides, the lower ones first, may hold a facet that looks into the box.
@@ -53,7 +53,8 @@ pub(crate) struct Node {
 const ALL_SIDES: u8 = 0b11_1111;
 
 impl Node {
-    pub(crate) fn is_leaf(&self) -> bool {
+    #[inline]
+    pub fn is_leaf(&self) -> bool {
         self.skip == 0
     }
 
@@ -62,7 +63,8 @@ impl Node {
         self.spread == OPEN
     }
 
-    pub(crate) fn facets(&self) -> std::ops::Range<usize> {
+    #[inline]
+    pub fn facets(&self) -> std::ops::Range<usize> {
         self.first as usize..(self.first + self.count) as usize
     }
 }
@@ -118,7 +120,8 @@ impl Boxed for Item {
 /// The error of each component is at most 8 roundings of the terms it is made of; what of it lies
 /// along the normal turns nothing, if it cannot turn it around. Facets in planes of the axes have terms that
 /// vanish, and no error.
-pub(crate) fn normal([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
+#[inline]
+pub fn normal([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
     let (u, v) = (b - a, c - a);
     let area = u.cross(v);
     let (x, y) = (u.abs(), v.abs());

@@ -295,17 +295,23 @@ impl<'a> Cast<'a, Solid> {
         })
     }
 
-    pub(crate) fn scene(&self, tolerance: f64) -> Scene<'a> {
+    #[doc(hidden)]
+    #[inline]
+    pub fn scene(&self, tolerance: f64) -> Scene<'a> {
         Scene::new(&self.setting, [tolerance / 2.0; 2], self.options.keep)
     }
 
     /// The bodies shrunk by half the tolerance.
-    pub(crate) fn asked(&self) -> Scene<'a> {
+    #[doc(hidden)]
+    #[inline]
+    pub fn asked(&self) -> Scene<'a> {
         self.scene(self.tolerance())
     }
 
     /// The same, of bodies that the default tolerance leaves something of.
-    pub(crate) fn asked_of_something(&self) -> Result<Scene<'a>, QueryError> {
+    #[doc(hidden)]
+    #[inline]
+    pub fn asked_of_something(&self) -> Result<Scene<'a>, QueryError> {
         let tolerance = self.tolerance();
         // One that was given was checked then.
         if self.options.tolerance.is_none() {
@@ -547,7 +553,9 @@ impl<'a> Cast<'a, Solid> {
         Clearance::Blocked { distance: contact.translation.lower.max(0.0), contact }
     }
 
-    pub(crate) fn overlap_at(&self, place: Overlap, mut steps: SolidSteps) -> SolidOverlap {
+    #[doc(hidden)]
+    #[inline]
+    pub fn overlap_at(&self, place: Overlap, mut steps: SolidSteps) -> SolidOverlap {
         let least_tolerance = self.least_tolerance_from(Some(place), &mut steps);
         SolidOverlap { place, least_tolerance, steps }
     }

@@ -262,7 +262,9 @@ impl Cast<'_, Solid> {
         Ok((answer, certificate))
     }
 
-    pub(crate) fn prove_start(&self, scene: &Scene, steps: &mut SolidSteps) -> StartProof {
+    #[doc(hidden)]
+    #[inline]
+    pub fn prove_start(&self, scene: &Scene, steps: &mut SolidSteps) -> StartProof {
         // An overlap that is the answer is looked for, to be named.
         let options = self.options();
         let is_answer =
@@ -287,7 +289,9 @@ impl Cast<'_, Solid> {
 
 impl SolidCertificate {
     /// What the search was for; `None` if an overlap is the answer.
-    pub(crate) fn aim(&self, asked: SolidOptions) -> Option<Aim> {
+    #[doc(hidden)]
+    #[inline]
+    pub fn aim(&self, asked: SolidOptions) -> Option<Aim> {
         let overlapping = match self.start {
             StartProof::Assumed => asked.overlapping == Some(true),
             StartProof::Overlapping(_) => true,

@@ -79,11 +79,7 @@ impl Cast<'_, Solid> {
         }
     }
 
-    pub(crate) fn verify_start(
-        &self,
-        scene: &Scene,
-        start: &StartProof,
-    ) -> Result<(), CertificateError> {
+    pub fn verify_start(&self, scene: &Scene, start: &StartProof) -> Result<(), CertificateError> {
         let assumed = self.options().overlapping;
         let holds = match start {
             StartProof::Assumed => assumed.is_some(),

@@ -48,14 +48,14 @@ const GUESSES: usize = 6;
 const NEARLY: f64 = 0.01;
 
 /// `M` in the setting frame.
-pub(crate) struct Difference<'a> {
-    pub(crate) bodies: &'a TwoBodies<'a>,
-    pub(crate) noise: Noise,
+pub struct Difference<'a> {
+    pub bodies: &'a TwoBodies<'a>,
+    pub noise: Noise,
 }
 
 impl<'a> Difference<'a> {
     #[inline]
-    pub(crate) fn new(bodies: &'a TwoBodies<'a>) -> Self {
+    pub fn new(bodies: &'a TwoBodies<'a>) -> Self {
         Self { bodies, noise: bodies.noise() }
     }
 
@@ -90,7 +90,8 @@ impl<'a> Difference<'a> {
     }
 
     /// A pair of support points along a normal.
-    pub(crate) fn lowest_pair(&self, normal: DVec3) -> VertexPair {
+    #[inline]
+    pub fn lowest_pair(&self, normal: DVec3) -> VertexPair {
         self.lowest(normal, None).pair
     }
 
@@ -167,13 +168,14 @@ fn between(a: &Symmetric, b: &Symmetric, center: DVec3, mut r: f64) -> DVec3 {
 
 /// Up to three pairs of vertices to begin a descent with: those that the last one ended with.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(crate) struct NearestPairs {
+pub struct NearestPairs {
     pairs: [VertexPair; 3],
     count: usize,
 }
 
 impl NearestPairs {
-    pub(crate) fn is_empty(&self) -> bool {
+    #[inline]
+    pub fn is_empty(&self) -> bool {
         self.count == 0
     }
 
@@ -184,7 +186,7 @@ impl NearestPairs {
 
 /// The best plane and the best points that a descent has seen.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Found {
+pub struct Found {
     /// The plane's gap as computed, and its normal.
     lower: f64,
     normal: DVec3,
@@ -200,7 +202,7 @@ pub(crate) struct Found {
     /// Whether the pairs are four that seem to enclose the origin.
     full: bool,
     /// How many lowest points were looked for.
-    pub(crate) supports: u32,
+    pub supports: u32,
 }
 
 impl Found {
@@ -259,7 +261,7 @@ impl Found {
 
     /// What a later descent may begin with.
     #[inline]
-    pub(crate) fn pairs(&self) -> NearestPairs {
+    pub fn pairs(&self) -> NearestPairs {
         let mut pairs = NearestPairs::default();
         for pair in self.simplex().take(3) {
             pairs.pairs[pairs.count] = pair;
@@ -287,12 +289,7 @@ pub(crate) fn nearest(difference: &Difference, start: &NearestPairs, than: Optio
 
 /// The same to such a share of what bodies are farther apart than a length, if they are.
 #[inline]
-pub(crate) fn nearly(
-    difference: &Difference,
-    start: &NearestPairs,
-    share: f64,
-    beyond: f64,
-) -> Found {
+pub fn nearly(difference: &Difference, start: &NearestPairs, share: f64, beyond: f64) -> Found {
     let share = Some([share, beyond]);
     reached(difference, start, &Goal { gap: difference.noise.point(), than: None, share })
 }
@@ -359,9 +356,9 @@ fn descend_with_more_digits(difference: &Difference, goal: &Goal, found: &mut Fo
 
 /// A plane between the bodies.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Plane {
+pub struct Plane {
     /// What it proves, if that is positive.
-    pub(crate) gap: PlaneGap,
+    pub gap: PlaneGap,
     /// A pair of support points along it.
     pub(crate) lowest: VertexPair,
     /// How far the bodies, and the points that they were made from, may reach beyond these.
@@ -371,7 +368,7 @@ pub(crate) struct Plane {
 impl Found {
     /// The best plane, if there is one.
     #[inline]
-    pub(crate) fn plane(&self, difference: &Difference) -> Option<Plane> {
+    pub fn plane(&self, difference: &Difference) -> Option<Plane> {
         let (normal, lowest, beyond) = (self.normal, self.lowest?, self.beyond?);
         let gap = (self.lower - difference.noise.lowered() - beyond).next_down();
         Some(Plane { gap: PlaneGap { normal, gap }, lowest, beyond })
@@ -408,7 +405,8 @@ impl Found {
     }
 
     /// The point, by up to three pairs and their weights.
-    pub(crate) fn points(&self) -> ([VertexPair; 3], [f64; 3]) {
+    #[inline]
+    pub fn points(&self) -> ([VertexPair; 3], [f64; 3]) {
         let mut points = ([self.pairs[0]; 3], [0.0; 3]);
         let weighted = self.pairs.iter().zip(self.weights).filter(|(_, weight)| *weight > 0.0);
         for (k, (pair, weight)) in weighted.take(3).enumerate() {

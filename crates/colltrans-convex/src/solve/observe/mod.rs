@@ -199,7 +199,7 @@ pub trait Observer {
 
 /// Hears everything and does nothing.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct NoObserver;
+pub struct NoObserver;
 
 impl Observer for NoObserver {}
 

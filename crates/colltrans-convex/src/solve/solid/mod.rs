@@ -8,18 +8,18 @@
 //! scene without a direction. The questions are in `cast/solid` and `pair/solid`.
 
 pub(crate) mod bound;
-pub(crate) mod contact;
+pub mod contact;
 mod fan;
 mod inside;
 pub(crate) mod leaf;
 mod line;
-pub(crate) mod nearest;
-pub(crate) mod overlap;
+pub mod nearest;
+pub mod overlap;
 pub(crate) mod parted;
-pub(crate) mod projected;
+pub mod projected;
 pub(crate) mod rim;
-pub(crate) mod scene;
-pub(crate) mod search;
+pub mod scene;
+pub mod search;
 pub(crate) mod separate;
 pub(crate) mod separating_axes;
 mod sign;

@@ -60,7 +60,8 @@ pub enum Overlap {
 }
 
 /// Whether the interiors have a point in common, or open shells pass through what is there, and where.
-pub(crate) fn find(scene: &Scene, steps: &mut SolidSteps) -> Option<Overlap> {
+#[inline]
+pub fn find(scene: &Scene, steps: &mut SolidSteps) -> Option<Overlap> {
     find_with(scene, &mut |entry| steps.count(entry))
 }
 

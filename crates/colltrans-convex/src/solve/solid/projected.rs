@@ -20,14 +20,14 @@ const STEEP: f64 = 1e-3;
 
 /// A node in the query frame.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Projected {
+pub struct Projected {
     pub(crate) node: u32,
-    pub(crate) bounds: Aabb,
+    pub bounds: Aabb,
     /// The box in the body frame, after shrinking.
     pub(crate) local: Aabb,
     /// The node's axis and its slab.
-    pub(crate) axis: DVec3,
-    pub(crate) slab: [f64; 2],
+    pub axis: DVec3,
+    pub slab: [f64; 2],
     /// The axis' component along the direction, rounded in the body frame.
     along: f64,
     /// Facing can be told if `|along|` reaches this.
@@ -43,7 +43,7 @@ impl Projected {
         [&scene.moving, &scene.fixed].map(|side| Self::new(scene, side, 0))
     }
 
-    pub(crate) fn new(scene: &Scene, side: &Side, at: usize) -> Self {
+    pub fn new(scene: &Scene, side: &Side, at: usize) -> Self {
         let node = &side.solid.nodes()[at];
         let axis = side.view * node.axis;
         let shift = axis.dot(side.view_offset);

@@ -32,14 +32,14 @@ const ROTATION: f64 = 16.0 * f64::EPSILON;
 
 /// One of the two bodies.
 #[derive(Clone, Copy)]
-pub(crate) struct Side<'a> {
-    pub(crate) solid: &'a Solid,
+pub struct Side<'a> {
+    pub solid: &'a Solid,
     pub(crate) moving: bool,
     /// How much it is shrunk.
-    pub(crate) amount: f64,
+    pub amount: f64,
     /// How much more than itself its nodes are taken for: of the moving body the gap that is to be kept.
     pub(crate) swell: f64,
-    pub(crate) shrinking: Option<&'a Shrinking>,
+    pub shrinking: Option<&'a Shrinking>,
     /// From the body frame to the setting frame, without the offset.
     pub(crate) matrix: DMat3,
     /// The offset in the setting frame and what rounding took from it.
@@ -48,9 +48,9 @@ pub(crate) struct Side<'a> {
     pub(crate) view: DMat3,
     pub(crate) view_offset: DVec3,
     /// Whether `matrix` permutes axes and changes signs.
-    pub(crate) permutes: bool,
+    pub permutes: bool,
     /// How far `matrix^T matrix` is off the identity, in the Frobenius norm; 0 where that is rounding.
-    pub(crate) defect: f64,
+    pub defect: f64,
     /// For each axis of the query frame, whether it is an axis of the body.
     pub(crate) aligned: [bool; 3],
     /// The direction in the body frame, at length 1.
@@ -61,21 +61,22 @@ pub(crate) struct Side<'a> {
 }
 
 /// A setting of two solids, shrunk and seen along its direction.
-pub(crate) struct Scene<'a> {
+pub struct Scene<'a> {
     pub(crate) setting: Setting<'a, Solid>,
-    pub(crate) moving: Side<'a>,
-    pub(crate) fixed: Side<'a>,
+    pub moving: Side<'a>,
+    pub fixed: Side<'a>,
     /// From the setting frame to the query frame.
     pub(crate) frame: DMat3,
     /// The gap that the bodies are to keep; 0 where that is one that rounding leaves no room in.
     pub(crate) keep: f64,
     /// Bound of the rounding error of a coordinate in the query frame.
-    pub(crate) noise: f64,
+    pub noise: f64,
 }
 
 impl<'a> Scene<'a> {
     /// The moving and the fixed body shrunk by so much, which are to keep a gap.
-    pub(crate) fn new(setting: &Setting<'a, Solid>, [moving, fixed]: [f64; 2], keep: f64) -> Self {
+    #[inline]
+    pub fn new(setting: &Setting<'a, Solid>, [moving, fixed]: [f64; 2], keep: f64) -> Self {
         let frame = frame_along(setting.direction / setting.length);
         let at_origin = [DVec3::ZERO; 2];
         let moving =
@@ -128,7 +129,8 @@ impl<'a> Scene<'a> {
         self.moving.aligned == [true; 3] && self.fixed.aligned == [true; 3]
     }
 
-    pub(crate) fn side(&self, moving: bool) -> &Side<'a> {
+    #[inline]
+    pub fn side(&self, moving: bool) -> &Side<'a> {
         if moving { &self.moving } else { &self.fixed }
     }
 
@@ -199,7 +201,8 @@ impl<'a> Side<'a> {
         }
     }
 
-    pub(crate) fn corner(&self, v: u32) -> Corner {
+    #[inline]
+    pub fn corner(&self, v: u32) -> Corner {
         let local = self.vertex(v);
         let turned = self.view * local;
         let at = turned + self.view_offset;
@@ -221,18 +224,18 @@ impl<'a> Side<'a> {
 
 /// A vertex of one of the bodies.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Corner {
+pub struct Corner {
     /// In the body frame, after shrinking.
     pub(crate) local: DVec3,
     /// In the query frame.
-    pub(crate) at: DVec3,
+    pub at: DVec3,
     /// Whether `at` is exact.
-    pub(crate) exact: bool,
+    pub exact: bool,
     pub(crate) moving: bool,
 }
 
 /// Something that has a place: a vertex, or a point within a facet.
-pub(crate) trait ExactPoint {
+pub trait ExactPoint {
     /// In the query frame, rounded.
     fn at(&self) -> DVec3;
     /// Whether that is exact.

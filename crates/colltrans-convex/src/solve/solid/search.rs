@@ -26,7 +26,7 @@ pub(crate) const SLACK: f64 = 12.0;
 
 /// What is looked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Aim {
+pub enum Aim {
     /// The least gap that blocks, at least 0.
     Stop,
     /// The same, without pairs of facets that cross now.
@@ -185,13 +185,13 @@ impl Seen {
 
 /// A pair in the queue of a search: the least bound comes first, the newest first among equals.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Entry<R = ()> {
-    pub(crate) bound: f64,
-    pub(crate) number: u32,
+pub struct Entry<R = ()> {
+    pub bound: f64,
+    pub number: u32,
     /// Why that is the bound, if it is to be told.
-    pub(crate) reason: R,
+    pub reason: R,
     /// Positions among what has been seen.
-    pub(crate) views: [u32; 2],
+    pub views: [u32; 2],
 }
 
 impl<R> Ord for Entry<R> {

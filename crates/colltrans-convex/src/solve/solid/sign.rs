@@ -54,7 +54,7 @@ impl Scene<'_> {
     }
 
     /// Sign of `det[b - a, c - a, e - a]`: whether `e` is on the outer side of the facet `a b c`.
-    pub(crate) fn outside(
+    pub fn outside(
         &self,
         a: &impl ExactPoint,
         b: &impl ExactPoint,
@@ -156,7 +156,8 @@ impl Scene<'_> {
     }
 
     /// Sign of `det[b - a, c - a, e]` with `e` the unit vector of an axis of the world.
-    pub(crate) fn turn_about(
+    #[inline]
+    pub fn turn_about(
         &self,
         axis: usize,
         a: &impl ExactPoint,

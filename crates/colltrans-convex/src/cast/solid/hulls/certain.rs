@@ -116,7 +116,7 @@ struct Side<'a> {
     surface: Surface<'a>,
     matrix: DMat3,
     /// By how much it is shrunk.
-    amount: f64,
+    pub amount: f64,
     /// How far that moves a vertex, at most.
     moved: f64,
     /// The direction, of the fixed body against it, at length 1 in the body's frame.

@@ -8,7 +8,7 @@
 
 mod bound;
 pub(crate) mod search;
-pub(crate) mod triangle;
+pub mod triangle;
 
 use glam::DVec3;
 
@@ -62,9 +62,9 @@ pub struct SolidGap {
 
 /// Two points of the bodies and where they are.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Spot {
-    pub(crate) triangles: [u32; 2],
-    pub(crate) nearest: Nearest,
+pub struct Spot {
+    pub triangles: [u32; 2],
+    pub nearest: Nearest,
 }
 
 impl Spot {
@@ -82,12 +82,14 @@ impl Spot {
     }
 
     /// The two points in the setting frame.
-    pub(crate) fn points(&self, scene: &Scene) -> [DVec3; 2] {
+    #[inline]
+    pub fn points(&self, scene: &Scene) -> [DVec3; 2] {
         points_of(scene, self.triangles, self.nearest.weights)
     }
 
     /// What of each body is there.
-    pub(crate) fn features(&self, scene: &Scene) -> [Feature; 2] {
+    #[inline]
+    pub fn features(&self, scene: &Scene) -> [Feature; 2] {
         let sides = [&scene.moving, &scene.fixed];
         [0, 1].map(|k| {
             let (side, triangle) = (sides[k], self.triangles[k]);
@@ -112,7 +114,8 @@ fn of_both(scene: &Scene, [s, t]: [u32; 2]) -> [triangle::Corners; 2] {
 }
 
 /// The points of two triangles that weights say, in the setting frame.
-pub(crate) fn points_of(scene: &Scene, triangles: [u32; 2], weights: [DVec3; 2]) -> [DVec3; 2] {
+#[inline]
+pub fn points_of(scene: &Scene, triangles: [u32; 2], weights: [DVec3; 2]) -> [DVec3; 2] {
     let corners = of_both(scene, triangles);
     [0, 1].map(|k| triangle::mean(&corners[k], weights[k]))
 }

@@ -34,24 +34,24 @@ use glam::DVec3;
 const TIGHT: f64 = 0.5;
 
 /// What a computed gap is lowered by, in noises.
-pub(crate) const GAP: f64 = 0.5;
+pub const GAP: f64 = 0.5;
 
 /// What a computed length is raised by, in noises.
-pub(crate) const LENGTH: f64 = 1.0;
+pub const LENGTH: f64 = 1.0;
 
 /// The corners of a triangle in the setting frame.
-pub(crate) type Corners = [DVec3; 3];
+pub type Corners = [DVec3; 3];
 
 /// Two points of two triangles, and a plane between.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Nearest {
+pub struct Nearest {
     /// Of the corners of each.
-    pub(crate) weights: [DVec3; 2],
+    pub weights: [DVec3; 2],
     /// How far the points are apart, as computed.
     pub(crate) length: f64,
     /// A unit vector from `f` to `g`, and the gap along it, as computed; below 0 where the triangles cross.
-    pub(crate) normal: DVec3,
-    pub(crate) gap: f64,
+    pub normal: DVec3,
+    pub gap: f64,
 }
 
 impl Nearest {
@@ -77,12 +77,14 @@ struct Candidate {
 }
 
 /// The point of a triangle with these weights.
-pub(crate) fn mean([a, b, c]: &Corners, weights: DVec3) -> DVec3 {
+#[inline]
+pub fn mean([a, b, c]: &Corners, weights: DVec3) -> DVec3 {
     *a * weights.x + *b * weights.y + *c * weights.z
 }
 
 /// How far apart points with these weights are, as computed.
-pub(crate) fn length(f: &Corners, g: &Corners, weights: [DVec3; 2]) -> f64 {
+#[inline]
+pub fn length(f: &Corners, g: &Corners, weights: [DVec3; 2]) -> f64 {
     (mean(g, weights[1]) - mean(f, weights[0])).length()
 }
 
@@ -137,7 +139,8 @@ pub(crate) fn examine(f: &Corners, g: &Corners, limit: f64, noise: f64) -> Optio
 }
 
 /// Two points of the triangles that are nearest, and a plane between.
-pub(crate) fn nearest(f: &Corners, g: &Corners, noise: f64) -> Nearest {
+#[inline]
+pub fn nearest(f: &Corners, g: &Corners, noise: f64) -> Nearest {
     examine(f, g, f64::INFINITY, noise).unwrap_or_else(|| {
         // No plane is infinitely far from another; any points will do.
         let weights = [DVec3::X; 2];

@@ -1,0 +1,13 @@
+//! Answers about collision translations as front ends write them ([`record`]), and proofs of answers with all that they
+//! are about, as files.
+
+#[cfg(feature = "json")]
+mod proof_file;
+pub mod record;
+
+#[cfg(feature = "json")]
+pub use proof_file::{
+    Contacts, DistanceStatement, FreeStatement, MotionCase, MotionProofFile, MotionProofFiles,
+    PathCheckError, PathFileError, PathProofFile, PathStatement, ProofFile, SceneProof,
+    SceneStatement, Slide, SolidMotionProofFile, SolidStatement, Statement, Stop,
+};

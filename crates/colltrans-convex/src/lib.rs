@@ -3,6 +3,11 @@
 //!
 //! Modules that are hidden from the documentation are for the crates of this workspace, without a promise.
 
+#![allow(
+    rustdoc::private_intra_doc_links,
+    reason = "hidden modules are read with their private parts"
+)]
+
 #[doc(hidden)]
 pub mod answer;
 #[doc(hidden)]

@@ -45,6 +45,11 @@
 //! The modules, each using only those before it: `answer`, `span`, `bend` and `arc`, `course`,
 //! `look`, `search`, `verify`, `clearance`.
 
+#![allow(
+    rustdoc::private_intra_doc_links,
+    reason = "hidden modules are read with their private parts"
+)]
+
 mod answer;
 mod arc;
 mod bend;

@@ -14,6 +14,11 @@
 //!   first, whatever the tree looks like: that of asking all one by one;
 //! - the least lower bound of those that were asked about is one of all.
 
+#![allow(
+    rustdoc::private_intra_doc_links,
+    reason = "hidden modules are read with their private parts"
+)]
+
 mod boxes;
 mod bulk;
 mod clearance;

@@ -33,7 +33,7 @@ pub struct Steps {
     pub planar_problems: u32,
     /// Supporting planes of the Minkowski difference computed (one support point on each body).
     pub supports: u32,
-    /// Portals visited; by [`FixedRotations`](crate::FixedRotations) faces of the Minkowski difference.
+    /// Portals visited; by `FixedRotations` faces of the Minkowski difference.
     pub pivots: u32,
     /// Iterations of the loops inside planar problems: vertices of sections computed, vertices of
     /// the bodies climbed over, halvings in searches.
@@ -99,7 +99,7 @@ impl std::ops::AddAssign for SolidSteps {
     serde(rename_all = "snake_case")
 )]
 pub enum StartedFrom {
-    /// The faces of the Minkowski difference ([`FixedRotations`](crate::FixedRotations) only).
+    /// The faces of the Minkowski difference (`FixedRotations` only).
     Difference,
     /// The last answer's contact features or separating direction ([`Tracker`](crate::Tracker)
     /// only).

@@ -65,7 +65,7 @@ numbers! {
     InputFacet;
 }
 
-/// A body among many ([`Obstacles`](crate::Obstacles)): the number with which it came, from 0 on. It stays
+/// A body among many (`Obstacles`): the number with which it came, from 0 on. It stays
 /// valid whatever else comes, moves and goes, and is never used again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(transparent))]

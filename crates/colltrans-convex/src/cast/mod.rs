@@ -227,7 +227,7 @@ impl Cast<'_> {
     ///
     /// See [`Contact::translation`](crate::Contact::translation) for negative answers, and
     /// [`Self::clearance`] for "from here on". Takes `O(log n)` steps in practice and allocates
-    /// nothing, but for what [`Solver::Cta`](crate::Solver::Cta) makes of a body once.
+    /// nothing, but for what [`Solver::Cta`] makes of a body once.
     ///
     /// # Errors
     /// Only a search that ends without an answer: see [`QueryError::NotConverged`].

@@ -8,7 +8,7 @@
 //! reasons. Either their own gap, less its error, or that of a pair that was the best before, is at
 //! least a number that the search has kept ([`Found::others`]); or a bound, of nodes or of the facets,
 //! was not less than the limit of that time, which was not less than the last one, and bounds of nodes
-//! are off by less than [`node_rounding`](super::proof::node_rounding). The least of the three, less one
+//! are off by less than [`node_rounding`](super::search::node_rounding). The least of the three, less one
 //! noise, which is more than what the roundings of these few operations and of the division by the
 //! direction's length can be (some `8 u S` of `32 u S`), is the lower bound.
 //!

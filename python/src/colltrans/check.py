@@ -65,7 +65,7 @@ from __future__ import annotations
 import json
 import math
 import sys
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache
@@ -1091,10 +1091,19 @@ class Scene:
             self.report.unchecked += [f"obstacle {k}: {line}" for line in scratch.unchecked]
         return found
 
-    def told(self, line: str, since: int) -> None:
+    def told(self, line: str, since: int, by_boxes: str = "") -> None:
         """Notes a claim: it holds, unless some of it was left unchecked since then."""
-        checked = len(self.report.unchecked) == since
-        (self.report.holds if checked else self.report.unchecked).append(line)
+        if len(self.report.unchecked) == since:
+            self.report.holds.append(line)
+            return
+        self.report.unchecked.append(line)
+        if by_boxes:
+            self.report.holds.append(by_boxes)
+
+    def boxed(self, claims: Iterable[int], what: str) -> str:
+        """What the boxes tell of obstacles of which nothing is claimed."""
+        count = len(self.obstacles) - len(set(claims))
+        return f"by their boxes, {count} obstacles {what}" if count else ""
 
     def near(self, k: int, claim: Any) -> Fraction:
         """The distance that an obstacle does not exceed."""
@@ -1151,7 +1160,8 @@ class Scene:
                 raise RefusedError(f"obstacle {k} is not proven to be so far away")
         if lower > 0:
             all_of = f"none of {len(self.obstacles)} obstacles"
-            self.told(f"{all_of} is nearer than {float(lower)!r}", open_lines)
+            by_boxes = self.boxed(claims, f"are not nearer than {float(lower)!r}")
+            self.told(f"{all_of} is nearer than {float(lower)!r}", open_lines, by_boxes)
 
     def within(self, claim: Any) -> None:
         fields(claim, "length closer undecided apart")
@@ -1172,7 +1182,8 @@ class Scene:
         for k in others:
             if length is None or not self.is_apart(k, claims.get(k), number(length), strictly=True):
                 raise RefusedError(f"obstacle {k} is not proven to be so far away")
-        self.told(f"{len(others)} obstacles are farther", open_lines)
+        by_boxes = self.boxed([*closer, *open_ones, *claims], "are farther")
+        self.told(f"{len(others)} obstacles are farther", open_lines, by_boxes)
         if open_ones:
             self.report.unchecked.append(f"{len(open_ones)} obstacles, of which nothing is claimed")
 
@@ -1204,7 +1215,9 @@ class Scene:
             if overlaps or not beyond(bound, lower) or (bound == 0 and k not in bounds):
                 raise RefusedError(f"obstacle {k} is not proven to stop nothing before")
         never = "never" if lower is None else f"not before a translation of {float(lower)!r}"
-        self.told(f"{len(self.obstacles)} obstacles stop the moving body {never}", open_lines)
+        by_boxes = self.boxed(bounds, f"stop the moving body {never}")
+        line = f"{len(self.obstacles)} obstacles stop the moving body {never}"
+        self.told(line, open_lines, by_boxes)
 
     def passed(self, k: int, claim: Any, d: Vector) -> Any:
         """Bounds of where an obstacle stops the moving body; None if it does not."""

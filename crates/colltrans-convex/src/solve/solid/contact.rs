@@ -21,7 +21,7 @@
 //! overlap beyond their own upper bound, and from below that the two facets do not meet before the least
 //! gap at any corner that their common shadow may have ([`Opposed::least_in_doubt`]); where that says too
 //! little, whole numbers decide after all. Facets that do not look at each other may still meet: no lower bound is larger
-//! than where they do as two convex bodies. Nor is it larger than that of the shrunk bodies.
+//! than where they do, in rounded numbers. Nor is it larger than that of the shrunk bodies.
 //!
 //! So, of [`SolidContact::translation`]: up to `lower` the shrunk bodies do not overlap, which is
 //! proven, and those two facets have not met; beyond `upper` the bodies overlap. Nothing is said of other facets of the
@@ -36,13 +36,9 @@ use super::leaf::{Gap, Meeting, Opposed, listed, nearest_after};
 use super::rim;
 use super::scene::{Corner, Scene, Side};
 use super::search::{Aim, Found, exact_gap_of};
-use crate::answer::{Bounded, Grazing, Outcome, SolidSteps};
+use crate::answer::{Bounded, SolidSteps};
+use crate::body::Feature;
 use crate::body::solid::Solid;
-use crate::body::{ConvexPolyhedron, Feature};
-use crate::setting::Setting;
-use crate::solve::observe::NoObserver;
-use crate::solve::options::{Focus, Options};
-use crate::solve::{Left, WarmStart, search};
 
 /// Where a solid is stopped.
 ///
@@ -244,45 +240,88 @@ pub(crate) fn true_place(
     let [back, error] =
         if steep { [0.0, noise] } else { [normal.dot(shift), bare.noise].map(|x| x / slope) };
     let value = (shrunk.value + back).min(shrunk.value);
-    // They do not meet as they are, unless they look at each other.
-    let mut least = f64::INFINITY;
-    if let Some(facets) = facets {
-        least = facets.least_in_doubt(bare) / bare.setting.length;
-        if least < value - ENOUGH * noise {
-            if let Some(gap) = exact_gap_of(bare, Aim::Stop, &facets) {
-                return known(gap);
-            }
-            least = f64::INFINITY;
-        }
-    }
-    let lower = (least - noise).min(value - error).min(shrunk.lower).min(first_meeting(bare, pair));
+    let in_doubt = facets.as_ref().map(|facets| facets.least_in_doubt(bare) / bare.setting.length);
+    let least = match (facets, in_doubt) {
+        (Some(_), Some(least)) if least >= value - ENOUGH * noise => least,
+        (Some(facets), _) => match exact_gap_of(bare, Aim::Stop, &facets) {
+            Some(gap) => return known(gap),
+            None => first_meeting(bare, pair),
+        },
+        _ => first_meeting(bare, pair),
+    };
+    let lower = (least - noise).min(value - error).min(shrunk.lower);
     Bounded { value, lower, upper: shrunk.upper }
 }
 
-/// Returns a lower bound of the translation at which two triangles meet, whichever way they look, as the convex bodies
-/// that they are: infinity if they never meet, minus infinity if that search has no answer.
+/// How far the origin may be beyond what is told to hold it, in noises: what differences of corners are off by.
+const ROUND: f64 = 4.0;
+/// Shadows that are narrower count as segments, shorter ones as points, in the same unit.
+const NARROW: f64 = 64.0;
+
+/// Returns a lower bound of the translation at which two triangles meet, whichever way they look; infinity if they never
+/// meet.
+///
+/// The differences of their corners have a convex hull, which the direction enters at its lowest point above the origin:
+/// in one of the triangles of three differences, or of their sides where the shadow is too narrow to tell.
 fn first_meeting(bare: &Scene, pair: [u32; 2]) -> f64 {
-    let found = || {
-        let body = |side: &Side, t: u32| {
-            let corners = side.solid.triangles()[t as usize];
-            let corners = corners.map(|v| side.solid.vertices()[v as usize]);
-            ConvexPolyhedron::from_points(&corners).ok()
-        };
-        let f = body(&bare.moving, pair[0])?;
-        let g = body(&bare.fixed, pair[1])?;
-        let bodies = bare.setting.bodies.holding([&f, &g]);
-        let setting = Setting::of(bodies, bare.setting.direction).ok()?;
-        let (last, mut next) = (WarmStart::Nothing, Left::default());
-        let options = Options::default();
-        search(&setting, &options, &Focus::NONE, &last, &mut next, &mut NoObserver).ok()
-    };
-    match found() {
-        Some(Outcome::Contact(contact) | Outcome::Grazing(Grazing { contact, .. })) => {
-            contact.certificate.lower
+    let corners = |side: &Side, t: u32| side.corners(t as usize).map(|corner| corner.at);
+    let (f, g) = (corners(&bare.moving, pair[0]), corners(&bare.fixed, pair[1]));
+    let difference = |k: usize| g[k % 3] - f[k / 3];
+    let (mut least, off) = (f64::INFINITY, ROUND * bare.noise);
+    for a in 0..9 {
+        for b in a + 1..9 {
+            for c in b + 1..9 {
+                least = least.min(height_of([a, b, c].map(difference), off));
+            }
         }
-        Some(Outcome::Separated(_)) => f64::INFINITY,
-        None => f64::NEG_INFINITY,
     }
+    least / bare.setting.length
+}
+
+/// Returns a lower bound of the height of a triangle above the origin; infinity if its shadow is more than `off` beside it.
+fn height_of(corners: [DVec3; 3], off: f64) -> f64 {
+    let flat = corners.map(DVec3::truncate);
+    let side = |k: usize| flat[(k + 2) % 3] - flat[(k + 1) % 3];
+    let longest = (0..3).map(|k| side(k).length()).fold(0.0, f64::max);
+    let whole = side(2).perp_dot(flat[2] - flat[0]);
+    let width = whole.abs() / longest;
+    if longest == 0.0 || width <= NARROW * off {
+        let of_side = |k: usize| height_of_side(corners[(k + 1) % 3], corners[(k + 2) % 3], off);
+        return (0..3).map(of_side).fold(f64::INFINITY, f64::min);
+    }
+    // Of each corner its weight, and how far the origin is within the side across.
+    let area = |k: usize| flat[(k + 1) % 3].perp_dot(flat[(k + 2) % 3]) * whole.signum();
+    if (0..3).any(|k| area(k) < -off * side(k).length()) {
+        return f64::INFINITY;
+    }
+    let height: f64 = (0..3).map(|k| area(k) / whole.abs() * corners[k].z).sum();
+    let [low, high] = range(&corners);
+    height - off - 2.0 * off / width * (high - low)
+}
+
+/// Returns the same of a segment, which stands for all that is as far beside it as shadows are narrow.
+fn height_of_side(a: DVec3, b: DVec3, off: f64) -> f64 {
+    let near = (NARROW + ROUND) * off;
+    let along = (b - a).truncate();
+    let length = along.length();
+    let [low, high] = range(&[a, b]);
+    if length <= 4.0 * near {
+        let is_near = a.truncate().length().min(b.truncate().length()) <= 5.0 * near;
+        return if is_near { low - off } else { f64::INFINITY };
+    }
+    let unit = along / length;
+    let (at, beside) = (-unit.dot(a.truncate()), unit.perp_dot(a.truncate()));
+    if beside.abs() > near || at < -near || at > length + near {
+        return f64::INFINITY;
+    }
+    let share = (at / length).clamp(0.0, 1.0);
+    a.z + share * (b.z - a.z) - off - 2.0 * near / length * (high - low)
+}
+
+/// Returns the least and the largest height.
+fn range(of: &[DVec3]) -> [f64; 2] {
+    let ends = |[low, high]: [f64; 2], v: &DVec3| [low.min(v.z), high.max(v.z)];
+    of.iter().fold([f64::INFINITY, f64::NEG_INFINITY], ends)
 }
 
 /// A normal of the plane through three points.

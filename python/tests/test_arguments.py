@@ -60,37 +60,41 @@ FORMS: list[Any] = [
 SLIDE = colltrans.Motion.slide([0, 0, 3])
 ARM = colltrans.Robot.read(Path(__file__).parents[2] / "data/arm.urdf")
 
+#: The same without types: what is refused is no call that a type checker admits.
+CALLED: Any = colltrans
+CALLED_ARM: Any = ARM
+
 #: Calls with an argument that is easily confused, and words that say what is accepted.
 INSTEAD: list[tuple[Callable[[], Any], type[Exception], list[str]]] = [
     (
-        lambda: colltrans.motion_many(CUBE, CUBE, [0, 0, 1]),
+        lambda: CALLED.motion_many(CUBE, CUBE, [0, 0, 1]),
         TypeError,
         ["moving_motion", "Motion.slide([0.0, 0.0, 1.0])", "Motion.still([0.0, 0.0, 1.0])"],
     ),
     (
-        lambda: colltrans.motion_many(CUBE, CUBE, [[0, 0, 1], [0, 0, 2]]),
+        lambda: CALLED.motion_many(CUBE, CUBE, [[0, 0, 1], [0, 0, 2]]),
         TypeError,
         ["moving_motion", '{"slide": {"by": array}}'],
     ),
     (
-        lambda: colltrans.motion_many(CUBE, CUBE, {"turn": [1]}),
+        lambda: CALLED.motion_many(CUBE, CUBE, {"turn": [1]}),
         InputError,
         ["'turn' takes a dict", "point", "axis", "radians", "not a list"],
     ),
-    (lambda: colltrans.first_contact(CUBE, CUBE, [SLIDE]), InputError, ["motion_many"]),
+    (lambda: CALLED.first_contact(CUBE, CUBE, [SLIDE]), InputError, ["motion_many"]),
     (
-        lambda: colltrans.Assembly([CUBE]),
+        lambda: CALLED.Assembly([CUBE]),
         InputError,
         ["parts: a dict", "not a list", "Assembly.read"],
     ),
-    (lambda: colltrans.Assembly({"a": CUBE}), InputError, ["parts['a']: a pair (vertices, faces)"]),
+    (lambda: CALLED.Assembly({"a": CUBE}), InputError, ["parts['a']: a pair (vertices, faces)"]),
     (
-        lambda: ARM.first_contact([[0.0] * 3], scene=[CUBE]),
+        lambda: CALLED_ARM.first_contact([[0.0] * 3], scene=[CUBE]),
         InputError,
         ["scene: a dict", "not a list"],
     ),
     (lambda: ConvexPolyhedron("cube.obj"), InputError, ["the text", "ConvexPolyhedron.read"]),
-    (lambda: cast("cube.obj", CUBE, [0, 0, 1]), TypeError, ["ConvexPolyhedron.read(path)"]),
+    (lambda: CALLED.cast("cube.obj", CUBE, [0, 0, 1]), TypeError, ["ConvexPolyhedron.read(path)"]),
     (lambda: cast(CUBE, CUBE, "z"), InputError, ["direction", "three numbers"]),
     (
         lambda: colltrans.read("part.step"),

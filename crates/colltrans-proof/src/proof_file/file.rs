@@ -301,10 +301,15 @@ fn lowest(lower: &[u32], mut v: u32) -> u32 {
 pub(super) fn union(pieces: &[PieceRecord], which: &'static str) -> Result<Solid, CaseError> {
     let refused = |error| CaseError::Solid { which, error };
     let made = |piece: &PieceRecord| {
-        let solid = piece.solid().map_err(refused)?;
         // Statements may count vertices: none is left out of a piece.
-        let is_whole = solid.vertices().len() == piece.vertices.len();
-        if is_whole { Ok(solid) } else { Err(CaseError::Changed { which }) }
+        let mut is_used = vec![false; piece.vertices.len()];
+        for v in piece.triangles.iter().flatten() {
+            if let Some(used) = is_used.get_mut(*v as usize) {
+                *used = true;
+            }
+        }
+        let solid = piece.solid().map_err(refused)?;
+        if is_used.contains(&false) { Err(CaseError::Changed { which }) } else { Ok(solid) }
     };
     let mut solids: Vec<Solid> = pieces.iter().map(made).collect::<Result<_, _>>()?;
     if solids.len() == 1 {

@@ -20,6 +20,11 @@ const PROOF: &str = "colltrans motion proof 1";
 const CASE: &str = "colltrans motion case 1";
 const PROOFS: &str = "colltrans motions proof 1";
 
+/// Returns the gap that is to be kept, or less a depth that is tolerated.
+fn kept(cast: &MotionCast<'_>) -> f64 {
+    cast.keep() - cast.tolerance()
+}
+
 /// A question about a motion that owns its bodies, read from a file.
 ///
 /// ```
@@ -49,7 +54,7 @@ impl MotionCase {
         Self {
             bodies: Box::new(cast.bodies().map(ConvexPolyhedron::clone)),
             motions: cast.motions().map(Motion::clone),
-            keep: cast.keep(),
+            keep: kept(cast),
         }
     }
 
@@ -413,7 +418,7 @@ impl Asked {
     fn of(cast: &MotionCast, format: &str) -> Self {
         let [moving, fixed] = cast.bodies().map(BodyRecord::of);
         let [moving_motion, fixed_motion] = cast.motions().map(Motion::clone);
-        let (format, keep) = (format.into(), cast.keep());
+        let (format, keep) = (format.into(), kept(cast));
         Self { format, moving, moving_motion, fixed, fixed_motion, keep, proof: None }
     }
 }

@@ -59,9 +59,7 @@ def run(*words: str | Path, **choices: Any) -> str:
     choices = {"cwd": ROOT, "stdout": subprocess.PIPE, "text": True} | choices
     done = subprocess.run(told, check=False, **choices)
     if done.returncode != 0:
-        raise SystemExit(
-            f"{done.stdout or ''}\n{' '.join(told)}: exit code {done.returncode}"
-        )
+        raise SystemExit(f"{done.stdout or ''}\n{' '.join(told)}: exit code {done.returncode}")
     return done.stdout or ""
 
 
@@ -105,9 +103,7 @@ def relinked(text: str, file: PurePosixPath, places: dict[str, str]) -> str:
         here = PurePosixPath(places[str(file)]).parent
         return f"{bang}[{words}]({os.path.relpath(places[led], here)}{anchor or ''})"
 
-    return re.sub(
-        r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)#\s]*)(#[^)\s]*)?\)", kept, text
-    )
+    return re.sub(r"(!?)\[((?:[^\[\]]|\[[^\]]*\])*)\]\(([^)#\s]*)(#[^)\s]*)?\)", kept, text)
 
 
 def command_line(source: Path, program: Path) -> None:
@@ -122,9 +118,7 @@ def command_line(source: Path, program: Path) -> None:
     # A man page for each command, and one for all.
     run(program, "setup", "--prefix", source.parent / "setup")
     pages = (source.parent / "setup" / "share" / "man" / "man1").glob("*.1")
-    commands = sorted(
-        page.stem.removeprefix("colltrans").removeprefix("-") for page in pages
-    )
+    commands = sorted(page.stem.removeprefix("colltrans").removeprefix("-") for page in pages)
     for command in commands:
         told = run(program, *command.split(), "--help", env=wide).rstrip()
         text += [f"## colltrans {command}".rstrip(), "", "````text", told, "````", ""]
@@ -157,14 +151,7 @@ def gallery(source: Path, program: Path) -> None:
             )
         )
         text = without_head(file.read_text())
-        told += [
-            f"## {title}",
-            "",
-            " ".join(words),
-            "",
-            f"![{title}](gallery/{picture.name})",
-            "",
-        ]
+        told += [f"## {title}", "", " ".join(words), "", f"![{title}](gallery/{picture.name})", ""]
         told += [
             f"`site/gallery/{file.name} OUT.svg`",
             "",
@@ -191,9 +178,7 @@ def notebooks(source: Path) -> None:
         wrong += outputs.differences(file.stem, book)
         nbformat.write(book, file)
     if wrong:
-        raise SystemExit(
-            "\n".join([*wrong, "python site/outputs.py --keep writes new outputs"])
-        )
+        raise SystemExit("\n".join([*wrong, "python site/outputs.py --keep writes new outputs"]))
 
 
 def described(program: str) -> list[str]:
@@ -245,14 +230,10 @@ def rust(out: Path) -> None:
     folder = TARGET / "site"
     crates = [word for crate in CRATES for word in ("-p", crate)]
     flags = {"RUSTDOCFLAGS": "-D warnings", "CARGO_TARGET_DIR": str(folder)}
-    run(
-        "cargo", "doc", "--no-deps", "--lib", "--quiet", *crates, env=os.environ | flags
-    )
+    run("cargo", "doc", "--no-deps", "--lib", "--quiet", *crates, env=os.environ | flags)
     shutil.copytree(folder / "doc", out / "rust")
     names = [crate.replace("-", "_") for crate in CRATES]
-    listed = "".join(
-        f'<li><a href="{name}/index.html">{name}</a></li>' for name in names
-    )
+    listed = "".join(f'<li><a href="{name}/index.html">{name}</a></li>' for name in names)
     (out / "rust" / "index.html").write_text(page_of("Rust", f"<ul>{listed}</ul>"))
 
 
@@ -286,9 +267,7 @@ def laboratory(out: Path, results: Path | None) -> None:
 def not_built(out: Path, part: str) -> None:
     """In the place of a part that was left out, a page that says so."""
     names = {"page": "page/index.html", "laboratory": "laboratory/report.html"}
-    wanted = {
-        "rust": [f"rust/{crate.replace('-', '_')}/index.html" for crate in CRATES]
-    }
+    wanted = {"rust": [f"rust/{crate.replace('-', '_')}/index.html" for crate in CRATES]}
     for name in wanted.get(part, [names.get(part, "")]):
         file = out / name
         file.parent.mkdir(parents=True, exist_ok=True)
@@ -320,10 +299,7 @@ def main() -> None:
         help="the page as it was built, in place of building it",
     )
     parser.add_argument(
-        "--laboratory",
-        type=Path,
-        metavar="DIR",
-        help="results of a run, in place of a quick one",
+        "--laboratory", type=Path, metavar="DIR", help="results of a run, in place of a quick one"
     )
     asked = parser.parse_args()
     out = asked.out.resolve()

@@ -240,14 +240,17 @@ pub(crate) fn true_place(
     let [back, error] =
         if steep { [0.0, noise] } else { [normal.dot(shift), bare.noise].map(|x| x / slope) };
     let value = (shrunk.value + back).min(shrunk.value);
-    let in_doubt = facets.as_ref().map(|facets| facets.least_in_doubt(bare) / bare.setting.length);
-    let least = match (facets, in_doubt) {
-        (Some(_), Some(least)) if least >= value - ENOUGH * noise => least,
-        (Some(facets), _) => match exact_gap_of(bare, Aim::Stop, &facets) {
-            Some(gap) => return known(gap),
-            None => first_meeting(bare, pair),
-        },
-        _ => first_meeting(bare, pair),
+    let least = if let Some(facets) = facets {
+        let in_doubt = facets.least_in_doubt(bare) / bare.setting.length;
+        if in_doubt >= value - ENOUGH * noise {
+            in_doubt
+        } else if let Some(gap) = exact_gap_of(bare, Aim::Stop, &facets) {
+            return known(gap);
+        } else {
+            first_meeting(bare, pair)
+        }
+    } else {
+        first_meeting(bare, pair)
     };
     let lower = (least - noise).min(value - error).min(shrunk.lower);
     Bounded { value, lower, upper: shrunk.upper }

@@ -9,7 +9,6 @@ use crate::body::{Body, ConvexPolyhedron, Placed, Pose};
 use crate::setting::TwoBodies;
 use crate::setting::error::QueryError;
 pub use convex::distance_from;
-#[cfg(feature = "serde")]
 pub use convex::points;
 use derive_where::derive_where;
 

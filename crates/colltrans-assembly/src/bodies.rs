@@ -13,7 +13,7 @@ use std::sync::{Arc, OnceLock};
 
 use colltrans::free::{CellBlocker, FreeError, FreeOptions};
 use colltrans::solid::{
-    ShrinkReport, SolidContact, SolidError, SolidOptions, StartOverlap, Workspace,
+    ShrinkReport, SolidCast, SolidContact, SolidError, SolidOptions, StartOverlap, Workspace,
 };
 use colltrans::{Bounded, Cast, Clearance, MAX_MAGNITUDE, Pose, QueryError, Solid};
 use glam::DVec3;

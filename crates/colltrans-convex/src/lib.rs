@@ -46,11 +46,11 @@ pub use body::{
 };
 #[cfg(feature = "json")]
 pub use cast::{Case, CaseError};
-pub use cast::{Cast, WitnessPoints, cast};
+pub use cast::{Cast, CastBody, WitnessPoints, cast};
 pub use glam;
 pub use kinds::{AnyBody, AnyClearance, AnyDistance, AnyNear, AnyPlaced, ByKind};
 pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
-pub use pair::{Pair, PairProof};
+pub use pair::{Pair, PairBody, PairProof};
 pub use setting::VertexPair;
 pub use setting::error::{QueryError, Stalled};
 pub use solve::observe;

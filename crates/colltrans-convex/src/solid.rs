@@ -4,10 +4,12 @@
 pub use crate::answer::SolidSteps;
 pub use crate::body::solid::{AsSolid, Shell, ShellKind, ShrinkReport, SolidError, SolidReport};
 pub use crate::cast::solid::{
-    Claim, Cover, NoGrazing, SolidCertificate, SolidFree, SolidMeeting, SolidOptions, SolidOverlap,
-    SolidProof, StartOverlap, StartProof, StopProof,
+    Claim, Cover, NoGrazing, SolidCast, SolidCertificate, SolidFree, SolidMeeting, SolidOptions,
+    SolidOverlap, SolidProof, SolidScene, StartOverlap, StartProof, StopProof,
 };
-pub use crate::pair::solid::{DistanceCertificate, OverlapDepth, SolidPairProof};
+pub use crate::pair::solid::{
+    DistanceCertificate, OverlapDepth, SolidPair, SolidPairProof, SolidPairSearch,
+};
 pub use crate::solve::solid::{
     Apart, Overlap, Reason, SolidContact, SolidGap, SolidNear, Workspace,
 };

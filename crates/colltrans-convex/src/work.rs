@@ -200,6 +200,7 @@ mod tests {
         use colltrans_testkit::solids::bumpy_ball;
 
         use crate::Pair;
+        use crate::solid::SolidPairSearch;
 
         let made = |Mesh { vertices, faces }: &Mesh| Solid::from_mesh(vertices, faces).unwrap();
         let meshes = [bumpy_ball(1_000), slab(DVec3::ZERO, DVec3::ONE, [5, 5, 1])];

@@ -25,6 +25,7 @@ use colltrans_convex::kinds::{AnyClearance, AnyNear, ByKind};
 use colltrans_convex::pair::solid::OverlapDepth;
 use colltrans_convex::pair::{Pair, points};
 use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::solid::{SolidCast, SolidPair, SolidPairSearch};
 use colltrans_convex::solve::observe::{NoObserver, Observer};
 use colltrans_convex::written::named;
 use colltrans_scene::{Among, ClearanceAmong, Nearby, Nearest};

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use colltrans::free::{FreeError, FreeOptions, FreeProof, Verdict};
 use colltrans::glam::DVec3;
 use colltrans::record::FreeRecord;
+use colltrans::solid::SolidCast as _;
 use colltrans::solid::StartOverlap;
 use colltrans::{Placed, ProofFile, QueryError};
 use colltrans_mesh::body::between;

@@ -2,6 +2,7 @@
 
 use colltrans::glam::DVec3;
 use colltrans::record::{PairAnswer, PairQuestion, Record};
+use colltrans::solid::SolidPair as _;
 use colltrans::solid::SolidSteps;
 use colltrans::{ProofFile, Solid};
 use numpy::PyArray1;

@@ -1,5 +1,6 @@
 //! Questions: the functions of the package, and the methods of queries that ask.
 
+use colltrans::solid::SolidCast as _;
 use colltrans::{QueryError, Solver};
 use pyo3::prelude::*;
 use pyo3::types::PyBool;

@@ -1,6 +1,7 @@
 //! Answers of queries about solids.
 
 use colltrans::record::{Record, StartOverlapRecord};
+use colltrans::solid::SolidCast as _;
 use colltrans::solid::{Overlap, SolidOverlap, StartOverlap};
 use colltrans::{Clearance, ProofFile};
 use numpy::PyArray1;

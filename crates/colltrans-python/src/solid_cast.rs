@@ -6,6 +6,7 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
 use colltrans::glam::DVec3;
+use colltrans::solid::SolidCast as _;
 use colltrans::solid::{SolidOptions, StartOverlap};
 use colltrans_mesh::body::between;
 use numpy::PyArray1;

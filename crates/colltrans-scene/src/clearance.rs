@@ -12,6 +12,7 @@ use colltrans_convex::cast::Cast;
 use colltrans_convex::kinds::AnyClearance;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_convex::setting::{check_direction, check_length};
+use colltrans_convex::solid::{SolidCast, SolidScene};
 
 /// Searches between solids end so many noises beyond the best answer: more than their bounds are off.
 const BEYOND: f64 = 64.0;

@@ -40,6 +40,7 @@ use colltrans_convex::cast::solid::SolidOptions;
 use colltrans_convex::kinds::{AnyBody, AnyPlaced, ByKind};
 use colltrans_convex::pair::Pair;
 use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::solid::{SolidCast, SolidPair};
 use colltrans_convex::solve::options::Options;
 use colltrans_convex::{ConvexPolyhedron, Solid};
 pub use nearest::{Nearby, Nearest};
@@ -59,6 +60,7 @@ type Ignored<'a> = &'a (dyn Fn(ObstacleId) -> bool + Sync);
 ///
 /// ```
 /// use colltrans::glam::DVec3;
+/// use colltrans::solid::SolidCast;
 /// use colltrans::{Among, ConvexPolyhedron, Obstacles, Pose};
 ///
 /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;

@@ -23,6 +23,7 @@ use colltrans_convex::number::noise::Noise;
 use colltrans_convex::pair::solid::DistanceCertificate;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_convex::setting::{check_direction, check_length};
+use colltrans_convex::solid::{SolidCast, SolidPair};
 
 /// What proves that an obstacle is not nearer than a number.
 pub type ApartProof = ByKind<PlaneGap, DistanceCertificate>;

@@ -1,6 +1,6 @@
 //! Proofs of answers between solids: made, told, and checked as they were told.
 
-use colltrans::solid::{Cover, Reason, SolidCertificate, StartProof};
+use colltrans::solid::{Cover, Reason, SolidCast, SolidCertificate, StartProof};
 use colltrans::{Cast, Solid};
 use serde::Serialize;
 

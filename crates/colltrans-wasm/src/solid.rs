@@ -1,7 +1,7 @@
 //! Casts between bodies of which at least one need not be convex.
 
 use colltrans::record::Record;
-use colltrans::solid::StartOverlap;
+use colltrans::solid::{SolidCast, StartOverlap};
 use colltrans::{Cast, Clearance, Solid};
 use colltrans_mesh::body::between;
 use glam::DVec3;

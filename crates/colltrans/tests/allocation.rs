@@ -1,7 +1,7 @@
 //! A query allocates nothing on the heap, whatever its outcome and however tied it is. What the paper's
 //! algorithm makes of a body, it makes once.
 
-use colltrans::solid::{AsSolid, Workspace};
+use colltrans::solid::{AsSolid, SolidCast, Workspace};
 use colltrans::{Cast, Focus, Region, Solid, Solver, Tracker};
 use colltrans_testkit::oracle::sequences::Walk;
 use colltrans_testkit::oracle::settings::{Bodies, FAMILIES, Setting, setting};

@@ -9,6 +9,7 @@
 //! After a change that is meant to change bits, the test prints the new lines.
 
 use colltrans::glam::{DMat3, DVec3};
+use colltrans::solid::SolidCast;
 use colltrans::{
     Cast, Clearance, Contact, ConvexPolyhedron, Outcome, Pose, Solid, Solver, Tracker, VertexId,
 };

@@ -4,7 +4,7 @@
 use colltrans::motion::path::{
     Frame, Joint, JointPath, Mechanism, PathBody, PathCast, PathProofFile,
 };
-use colltrans::solid::{AsSolid, StartOverlap};
+use colltrans::solid::{AsSolid, SolidCast, SolidPair, StartOverlap};
 use colltrans::{
     Among, CaseError, Cast, CertificateError, ConvexPolyhedron, ObstacleId, Obstacles, Pair, Pose,
     ProofFile, QueryError, SceneProof, Solid, Statement,

@@ -2,6 +2,7 @@
 //! disturbs.
 
 use colltrans::glam::{DQuat, DVec3};
+use colltrans::solid::SolidCast;
 use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, Solid};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{Mesh, cuboid, ring, ring_sphere};

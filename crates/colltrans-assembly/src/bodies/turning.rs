@@ -1,7 +1,7 @@
 //! Two parts of which one turns: what is asked of [`MotionCast`].
 
 use colltrans::motion::{Motion, MotionCast, MotionOutcome};
-use colltrans::solid::{SolidOptions, StartOverlap};
+use colltrans::solid::{SolidCast, SolidOptions, StartOverlap};
 use colltrans::{Aabb, Cast, Clearance, Pose, QueryError, Solid};
 use glam::DVec3;
 

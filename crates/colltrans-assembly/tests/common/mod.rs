@@ -6,7 +6,7 @@
 use std::io::Write;
 
 use colltrans::motion::{MotionCast, MotionOutcome};
-use colltrans::solid::SolidOptions;
+use colltrans::solid::{SolidCast, SolidOptions};
 use colltrans::{Cast, Pose, Solid};
 use colltrans_assembly::plan::{Plan, PlanOptions, Step};
 use colltrans_assembly::suggest::Suggestion;

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use colltrans::glam::DVec3;
-use colltrans::solid::{AsSolid, StartOverlap};
+use colltrans::solid::{AsSolid, SolidCast, StartOverlap};
 use colltrans::{
     Aabb, AnyBody, AnyPlaced, ByKind, ObstacleId, Obstacles, Placed, Pose, QueryError, Solid,
 };

@@ -2,7 +2,7 @@
 
 use colltrans::glam::DVec3;
 use colltrans::record::{Ending, FeatureRecord, FeaturesRecord, Record, StartOverlapRecord};
-use colltrans::solid::{SolidOverlap, StartOverlap};
+use colltrans::solid::{SolidCast, SolidOverlap, StartOverlap};
 use colltrans::{Cast, Pose, ProofFile, QueryError, Solid};
 use colltrans_mesh::body::between;
 

@@ -3,6 +3,7 @@
 use colltrans::free::{FreeDirections, FreeError, FreeOptions};
 use colltrans::glam::DVec3;
 use colltrans::record::FreeRecord;
+use colltrans::solid::SolidCast;
 use colltrans::{Pose, ProofFile, Solid};
 
 use super::{Body, PartsQuery, refused};

@@ -39,3 +39,15 @@ impl Bounded {
         Self { value: value.max(0.0), lower: lower.max(0.0), upper: upper.max(0.0) }
     }
 }
+
+/// A contact at an end of a range: where it is, between proven bounds.
+#[doc(hidden)]
+pub trait RangeEnd {
+    /// Returns where the bodies meet, in multiples of the direction.
+    fn bounded(&self) -> Bounded;
+
+    /// Returns where they part along the direction, of the first contact of the reversed cast.
+    fn exit(&self) -> Bounded {
+        self.bounded().negated()
+    }
+}

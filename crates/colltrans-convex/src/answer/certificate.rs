@@ -178,7 +178,7 @@ pub enum CertificateError {
     /// Two triangles that do not stop the body.
     #[error("triangles {moving} and {fixed} do not stop the body")]
     Facets {
-        /// Of the moving body, by its position in [`Solid::triangles`](crate::Solid::triangles).
+        /// Of the moving body, by its position in `Solid::triangles`.
         moving: u32,
         /// Of the fixed body.
         fixed: u32,

@@ -8,11 +8,11 @@ use derive_where::derive_where;
 /// where it is* along the direction. One definition for all bodies; what is known of each case, its
 /// proof included, is the body's.
 ///
-/// | | [`ConvexPolyhedron`] | [`Solid`](crate::Solid) |
+/// | | [`ConvexPolyhedron`] | `Solid` |
 /// |---|---|---|
-/// | `Blocked` | [`Contact`] | [`SolidContact`](crate::solid::SolidContact) |
-/// | `Free` | [`WhyFree`] | [`SolidFree`](crate::solid::SolidFree): a separating plane, where one was found |
-/// | `Overlapping` | [`OverlapAhead`] | [`SolidOverlap`](crate::solid::SolidOverlap) |
+/// | `Blocked` | [`Contact`] | `SolidContact` |
+/// | `Free` | [`WhyFree`] | `SolidFree`: a separating plane, where one was found |
+/// | `Overlapping` | [`OverlapAhead`] | `SolidOverlap` |
 #[derive(Debug)]
 #[derive_where(Clone, Copy, PartialEq)]
 #[cfg_attr(
@@ -25,7 +25,7 @@ pub enum Clearance<B: Body = ConvexPolyhedron> {
     Blocked {
         /// How far it may safely move, in multiples of the direction: the lower bound of where it is
         /// stopped, and never negative. So it is less than the estimate, [`Contact::translation`] or
-        /// [`SolidContact::translation`](crate::solid::SolidContact::translation), by the rounding error.
+        /// `SolidContact::translation`, by the rounding error.
         distance: f64,
         /// The contact that stops it.
         contact: B::Contact,

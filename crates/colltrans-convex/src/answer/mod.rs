@@ -8,7 +8,7 @@ mod outcome;
 mod range;
 mod steps;
 
-pub use bounded::Bounded;
+pub use bounded::{Bounded, RangeEnd};
 #[doc(hidden)]
 pub use certificate::checked_as;
 pub use certificate::{Along, are_weights, check_across, gap_rounding, shadow_gap};

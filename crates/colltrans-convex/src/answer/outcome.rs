@@ -3,7 +3,7 @@
 use derive_where::derive_where;
 use glam::DVec3;
 
-use super::bounded::Bounded;
+use super::bounded::{Bounded, RangeEnd};
 use super::certificate::{Certificate, Separation};
 use super::steps::{Solver, Steps};
 use crate::body::{Body, ConvexPolyhedron};
@@ -12,7 +12,7 @@ use crate::setting::VertexPair;
 /// The answer of [`Cast::first_contact`](crate::Cast::first_contact): do the bodies meet along the direction, and where.
 ///
 /// Told apart by the bodies' shadows (projections along the direction): they overlap by more than
-/// the graze tolerance, by no more than it, or not at all. Between [`Solid`](crate::Solid)s there is no
+/// the graze tolerance, by no more than it, or not at all. Between `Solid`s there is no
 /// grazing: shadows overlap, or do not.
 #[derive(Debug)]
 #[derive_where(Clone, Copy, PartialEq)]
@@ -130,5 +130,17 @@ impl Separated {
     #[doc(hidden)]
     pub const fn new(certificate: Separation, solver: Solver, steps: Steps) -> Self {
         Self { certificate, solver, steps }
+    }
+}
+
+impl RangeEnd for Contact {
+    fn bounded(&self) -> Bounded {
+        Self::bounded(self)
+    }
+}
+
+impl RangeEnd for Grazing {
+    fn bounded(&self) -> Bounded {
+        self.contact.bounded()
     }
 }

@@ -3,15 +3,14 @@
 use derive_where::derive_where;
 use glam::DVec3;
 
-use super::bounded::Bounded;
+use super::bounded::{Bounded, RangeEnd};
 use super::clearance::{Clearance, WhyFree};
-use super::outcome::{Contact, Outcome};
-use crate::body::solid::Solid;
+use super::outcome::Outcome;
 use crate::body::{Body, ConvexPolyhedron};
 
 /// The answer of [`Cast::contact_range`](crate::Cast::contact_range): the translations at which the
 /// bodies meet first and last, with the contact at either end. Convex bodies meet at all between them;
-/// [`Solid`](crate::Solid)s may part and meet again.
+/// `Solid`s may part and meet again.
 #[derive(Debug)]
 #[derive_where(Clone, Copy, PartialEq)]
 #[cfg_attr(
@@ -40,26 +39,24 @@ pub enum ContactRange<B: Body = ConvexPolyhedron> {
     Separated(B::Separated),
 }
 
-impl ContactRange {
+impl<B: Body> ContactRange<B> {
     /// `[enter, exit]` in multiples of the direction, `None` if the bodies never meet: best estimates, as
     /// [`Self::bounds`] encloses them.
     pub fn interval(&self) -> Option<[f64; 2]> {
-        self.ends().map(|[first, last]| [first.translation, -last.translation])
+        self.bounds().map(|ends| ends.map(|end| end.value))
     }
 
     /// Where the bodies meet first and last along the direction, with proven bounds.
     pub fn bounds(&self) -> Option<[Bounded; 2]> {
-        self.ends().map(|[first, last]| [first.bounded(), last.exit()])
-    }
-
-    fn ends(&self) -> Option<[&Contact; 2]> {
         match self {
-            Self::Contact { first, last } => Some([first, last]),
-            Self::Grazing { first, last } => Some([&first.contact, &last.contact]),
+            Self::Contact { first, last } => Some([first.bounded(), last.exit()]),
+            Self::Grazing { first, last } => Some([first.bounded(), last.exit()]),
             Self::Separated(_) => None,
         }
     }
+}
 
+impl ContactRange {
     /// How far the moving body can move from where it is, as [`Cast::clearance`](crate::Cast::clearance)
     /// says.
     pub fn clearance(&self) -> Clearance {
@@ -70,20 +67,6 @@ impl ContactRange {
             Self::Grazing { first, .. } => Clearance::Free(WhyFree::Slides(first)),
             Self::Separated(separated) => Clearance::Free(WhyFree::Separated(separated)),
         }
-    }
-}
-
-impl ContactRange<Solid> {
-    /// `[enter, exit]` in multiples of the direction, `None` if the bodies never meet: best estimates, as
-    /// [`Self::bounds`] encloses them.
-    pub fn interval(&self) -> Option<[f64; 2]> {
-        self.bounds().map(|ends| ends.map(|end| end.value))
-    }
-
-    /// Where the bodies meet first and last along the direction, with proven bounds.
-    pub fn bounds(&self) -> Option<[Bounded; 2]> {
-        let Self::Contact { first, last } = self else { return None };
-        Some([first.translation, last.exit()])
     }
 }
 
@@ -106,9 +89,9 @@ pub struct DirectionalDepth {
 #[non_exhaustive]
 pub struct Intersection<B: Body = ConvexPolyhedron> {
     /// Whether the bodies, as closed sets, have a point in common: of convex ones to within rounding
-    /// error, of [`Solid`]s exactly.
+    /// error, of solids exactly.
     pub meets: bool,
-    /// What shows it: a [`CentralCast`] of convex bodies, a [`SolidMeeting`](crate::solid::SolidMeeting).
+    /// What shows it: a [`CentralCast`] of convex bodies, a `SolidMeeting`.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub evidence: B::Evidence,
 }

@@ -8,7 +8,7 @@ use super::{ConvexPolyhedron, FaceId, InputVertex};
 /// is, of the points or mesh vertices that the body was made from, for bodies of either kind.
 ///
 /// Of vertices with the same coordinates the first one counts. An edge of a
-/// [`Solid`](crate::Solid) runs from corner to corner, however finely its mesh divides it, and a face
+/// `Solid` runs from corner to corner, however finely its mesh divides it, and a face
 /// is the whole polygon that its coplanar facets make up.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(
@@ -21,7 +21,7 @@ pub enum Feature {
     Vertex(InputVertex),
     /// An edge, by its two ends.
     Edge([InputVertex; 2]),
-    /// A face: of a [`Solid`](crate::Solid) the least number of the input's facets that it is made of,
+    /// A face: of a `Solid` the least number of the input's facets that it is made of,
     /// of a [`ConvexPolyhedron`], whose faces are those of a hull, that of
     /// [`ConvexPolyhedron::face_vertices`].
     Face(FaceId),

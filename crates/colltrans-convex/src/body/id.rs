@@ -3,7 +3,7 @@
 //!
 //! What leads from one numbering to the other, or is told in an answer, has these types. Plain `u32` are the
 //! body's own numbers where nothing else can be meant: lists of corners that bodies are built and drawn from
-//! ([`Solid::triangles`](crate::Solid::triangles), [`ConvexPolyhedron::face_vertices`]), positions of
+//! (`Solid::triangles`, [`ConvexPolyhedron::face_vertices`]), positions of
 //! triangles in such a list, and walks over a body's edges ([`HalfEdge`](crate::HalfEdge),
 //! [`ConvexPolyhedron::neighbours`]): there types would be taken off again at every use.
 //!
@@ -53,15 +53,15 @@ macro_rules! numbers {
 numbers! {
     /// A vertex that a body has kept: its position in
     /// [`ConvexPolyhedron::vertices`](crate::ConvexPolyhedron::vertices) or
-    /// [`Solid::vertices`](crate::Solid::vertices).
+    /// `Solid::vertices`.
     VertexId;
     /// A face as a [`Feature`](crate::Feature) names it: of a convex polyhedron its own, of a solid the
     /// least number of the input's facets that it is made of.
     FaceId;
     /// A point or mesh vertex of the input, by its number there.
     InputVertex;
-    /// A facet of the input mesh of a [`Solid`](crate::Solid), by its number there: a part of it is a
-    /// triangle of the body, which has a position in [`Solid::triangles`](crate::Solid::triangles).
+    /// A facet of the input mesh of a `Solid`, by its number there: a part of it is a
+    /// triangle of the body, which has a position in `Solid::triangles`.
     InputFacet;
 }
 

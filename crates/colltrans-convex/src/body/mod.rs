@@ -22,6 +22,6 @@ pub use feature::{Feature, Features};
 pub use hull::Hull;
 pub use id::{FaceId, InputFacet, InputVertex, ObstacleId, VertexId};
 pub(crate) use inertia::Inertia;
-pub use placed::{Body, Placed};
+pub use placed::{Body, Numbered, Placed, Told};
 pub use pose::Pose;
 pub use topology::HalfEdge;

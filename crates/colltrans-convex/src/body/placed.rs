@@ -4,30 +4,31 @@ use derive_where::derive_where;
 use std::fmt::Debug;
 
 use super::{ConvexPolyhedron, Feature, InputVertex, Pose, VertexId};
+use crate::answer::RangeEnd;
 
-/// What queries can be asked about: a [`ConvexPolyhedron`] or a
-/// [`Solid`](crate::Solid). Sealed.
-pub trait Body: sealed::Sealed + Clone + Debug {
+/// A kind of body that queries can be asked about, and what their answers consist of: a [`ConvexPolyhedron`] or a
+/// `Solid`.
+pub trait Body: Numbered + Clone + Debug {
     /// The choices of a query about two such bodies.
     type Options: Copy + Default + Debug;
     /// What is said of a contact.
-    type Contact: sealed::Told;
+    type Contact: Told + RangeEnd;
     /// What is said of bodies that slide along each other, where a query tells.
-    type Grazing: sealed::Told;
+    type Grazing: Told + RangeEnd;
     /// What is said of bodies that never meet.
-    type Separated: sealed::Told;
+    type Separated: Told;
     /// What is said where nothing stops it.
-    type Free: sealed::Told;
+    type Free: Told;
     /// What is said of an overlap.
-    type Overlap: sealed::Told;
+    type Overlap: Told;
     /// What shows whether the bodies meet where they are.
-    type Evidence: sealed::Told;
+    type Evidence: Told;
     /// What proves that two bodies are not farther from each other than a number.
-    type Near: sealed::Told;
+    type Near: Told;
     /// What proves that they are not nearer to each other.
-    type Gap: sealed::Told;
+    type Gap: Told;
     /// How much work an answer was.
-    type Steps: sealed::Told + Default;
+    type Steps: Told + Default;
 }
 
 impl Feature {
@@ -48,61 +49,55 @@ impl Feature {
     }
 
     /// The same vertices, as positions among the vertices that the body has kept:
-    /// [`ConvexPolyhedron::vertices`] or [`Solid::vertices`](crate::Solid::vertices).
+    /// [`ConvexPolyhedron::vertices`] or `Solid::vertices`.
     ///
     /// # Panics
     /// If the feature is not one of `body`.
     pub fn own_vertices<B: Body>(self, body: &B) -> Vec<VertexId> {
-        sealed::vertices_of(body, self)
+        vertices_of(body, self)
     }
 }
 
-pub(crate) mod sealed {
-    use std::fmt::Debug;
+/// A part of an answer.
+#[cfg(not(feature = "serde"))]
+#[doc(hidden)]
+pub trait Told: Copy + Debug + PartialEq {}
 
-    use crate::body::{Feature, InputVertex, VertexId};
+#[cfg(not(feature = "serde"))]
+impl<T: Copy + Debug + PartialEq> Told for T {}
 
-    /// A part of an answer.
-    #[cfg(not(feature = "serde"))]
-    pub trait Told: Copy + Debug + PartialEq {}
+/// A part of an answer.
+#[cfg(feature = "serde")]
+#[doc(hidden)]
+pub trait Told: Copy + Debug + PartialEq + serde::Serialize + serde::de::DeserializeOwned {}
 
-    #[cfg(not(feature = "serde"))]
-    impl<T: Copy + Debug + PartialEq> Told for T {}
+#[cfg(feature = "serde")]
+impl<T> Told for T where T: Copy + Debug + PartialEq + serde::Serialize + serde::de::DeserializeOwned
+{}
 
-    /// A part of an answer.
-    #[cfg(feature = "serde")]
-    pub trait Told:
-        Copy + Debug + PartialEq + serde::Serialize + serde::de::DeserializeOwned
-    {
-    }
+/// Names the vertices of a body's features as the input does.
+#[doc(hidden)]
+pub trait Numbered {
+    /// For each vertex of the body its number in the input.
+    fn inputs(&self) -> &[InputVertex];
+    /// The corners of a face, as positions among the body's vertices.
+    fn corners_of_face(&self, face: u32) -> Vec<u32>;
+}
 
-    #[cfg(feature = "serde")]
-    impl<T> Told for T where T: Copy + Debug + PartialEq + serde::Serialize + serde::de::DeserializeOwned
-    {}
-
-    /// Bodies are those of this crate.
-    pub trait Sealed {
-        /// For each vertex of the body its number in the input.
-        fn inputs(&self) -> &[InputVertex];
-        /// The corners of a face, as positions among the body's vertices.
-        fn corners_of_face(&self, face: u32) -> Vec<u32>;
-    }
-
-    /// The vertices of a feature, as positions among the body's vertices.
-    pub(crate) fn vertices_of<B: Sealed>(body: &B, feature: Feature) -> Vec<VertexId> {
-        let position = |v: InputVertex| {
-            let found = body.inputs().iter().position(|input| *input == v);
-            VertexId(found.expect("a feature of this body") as u32)
-        };
-        match feature {
-            Feature::Vertex(v) => vec![position(v)],
-            Feature::Edge(ends) => ends.map(position).to_vec(),
-            Feature::Face(face) => body.corners_of_face(face.0).into_iter().map(VertexId).collect(),
-        }
+/// The vertices of a feature, as positions among the body's vertices.
+fn vertices_of<B: Numbered>(body: &B, feature: Feature) -> Vec<VertexId> {
+    let position = |v: InputVertex| {
+        let found = body.inputs().iter().position(|input| *input == v);
+        VertexId(found.expect("a feature of this body") as u32)
+    };
+    match feature {
+        Feature::Vertex(v) => vec![position(v)],
+        Feature::Edge(ends) => ends.map(position).to_vec(),
+        Feature::Face(face) => body.corners_of_face(face.0).into_iter().map(VertexId).collect(),
     }
 }
 
-impl sealed::Sealed for ConvexPolyhedron {
+impl Numbered for ConvexPolyhedron {
     fn inputs(&self) -> &[InputVertex] {
         self.input_indices()
     }

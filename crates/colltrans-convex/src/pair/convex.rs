@@ -6,8 +6,8 @@ use super::{PairProof, verify};
 use crate::answer::{
     CertificateError, Depth, Distance, Enclosure, NearPoints, StartedFrom, Steps, Within,
 };
-use crate::body::{Features, feature};
-use crate::pair::Pair;
+use crate::body::{ConvexPolyhedron, Features, feature};
+use crate::pair::{Pair, PairBody};
 use crate::setting::error::{QueryError, Stalled};
 use crate::setting::{TwoBodies, VertexPair, check_length};
 use crate::solve::nearest::{Difference, Found, NearestPairs, Plane, deepest, nearest};
@@ -16,85 +16,6 @@ use crate::solve::nearest::{Difference, Found, NearestPairs, Plane, deepest, nea
 const WIDEST: f64 = 64.0;
 
 impl Pair<'_> {
-    /// How far apart are the bodies, and where?
-    ///
-    /// The bounds hold exactly. They are at most four noises apart (`128 u S`, see
-    /// [the crate's introduction](crate#accuracy)), however near the bodies are to each other; of thin and
-    /// uneven ones, rarely, up to 64, and what uneven faces hide; and by what hulls leave outside. Of bodies that overlap the lower one is 0.
-    /// Of bodies that are less than a few noises apart it is, if one shows it, that of a plane whose gap is computed
-    /// nearly without rounding, from all vertices: boxes along the axes that are `1e-60` apart mostly are so for
-    /// certain; where their corners are lined up too, the bounds are 0 and some noises.
-    ///
-    /// # Errors
-    /// Only a search that ends without an answer: see [`QueryError::NotConverged`].
-    ///
-    /// ```
-    /// use colltrans::glam::DVec3;
-    /// use colltrans::{ConvexPolyhedron, Pair, Pose};
-    ///
-    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
-    /// let there = Pose::from_translation(DVec3::new(4.0, 5.0, 0.25))?;
-    /// let pair = Pair::new(cube.at(Pose::IDENTITY), cube.at(there))?;
-    ///
-    /// let distance = pair.distance()?;
-    /// assert!(distance.lower <= 5.0 && 5.0 <= distance.upper);
-    /// assert!(distance.upper - distance.lower < 1e-13);
-    /// let features = distance.features.expect("they are apart");
-    /// assert_eq!((features.moving.kind(), features.fixed.kind()), ("edge", "edge"));
-    /// // The proofs: checked against the two bodies alone.
-    /// let gap = distance.gap.expect("they are apart");
-    /// assert!(pair.verify(&gap)? >= distance.lower);
-    /// assert!(pair.verify(&distance.near)? <= distance.upper);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn distance(&self) -> Result<Distance, QueryError> {
-        distance_from(self, &mut NearestPairs::default())
-    }
-
-    /// Are the bodies closer than a length, in world units? Ended as soon as that is known: for bodies
-    /// that are far from each other or overlap, after a few steps.
-    ///
-    /// # Errors
-    /// A length that is negative or not a number; and as [`Self::distance`].
-    ///
-    /// ```
-    /// # use colltrans::glam::DVec3;
-    /// # use colltrans::{ConvexPolyhedron, Pair, Pose, Within};
-    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
-    /// let there = Pose::from_translation(DVec3::new(4.0, 5.0, 0.25))?;
-    /// let pair = Pair::new(cube.at(Pose::IDENTITY), cube.at(there))?;
-    /// assert!(matches!(pair.within(5.1)?, Within::Closer(_)));
-    /// let Within::Farther(plane) = pair.within(4.9)? else { unreachable!("they are 5 apart") };
-    /// assert!(pair.verify(&plane)? > 4.9);
-    /// assert!(matches!(pair.within(5.0)?, Within::Undecided(_)));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn within(&self, length: f64) -> Result<Within, QueryError> {
-        Ok(self.within_counted(length)?.0)
-    }
-
-    /// The same, and how much work it was.
-    ///
-    /// # Errors
-    /// As [`Self::within`].
-    pub fn within_counted(&self, length: f64) -> Result<(Within, Steps), QueryError> {
-        check_length(length)?;
-        let difference = Difference::new(&self.bodies);
-        let mut found = nearest(&difference, &NearestPairs::default(), Some(length));
-        let mut decided = decide(&difference, &found, length);
-        if decided.is_none() {
-            let before = found.supports;
-            found = nearest(&difference, &found.pairs(), None);
-            found.supports += before;
-            decided = decide(&difference, &found, length);
-        }
-        let answer = match decided {
-            Some(decided) => decided,
-            None => Within::Undecided(answer(&difference, &found)?),
-        };
-        Ok((answer, found.steps()))
-    }
-
     /// How deep do the bodies overlap: by which least translation, in any direction, are they parted?
     ///
     /// The bounds hold exactly, and are a few noises apart. Both are 0 if the bodies are apart; of bodies
@@ -142,29 +63,38 @@ impl Pair<'_> {
         let steps = Steps { supports: best.supports, ..Steps::default() };
         Ok(Depth { lower, upper, direction, enclosure, steps })
     }
+}
 
-    /// The vertex, edge or face of each body that faces the other one: what lies in the planes across the
-    /// shortest way between them. `None` if they overlap, or are less apart than rounding can tell.
-    ///
-    /// # Errors
-    /// As [`Self::distance`].
-    pub fn closest_features(&self) -> Result<Option<Features>, QueryError> {
-        Ok(self.distance()?.features)
+impl PairBody for ConvexPolyhedron {
+    type PairProof<'p> = PairProof<'p>;
+
+    fn distance(pair: &Pair<'_>) -> Result<Distance, QueryError> {
+        distance_from(pair, &mut NearestPairs::default())
     }
 
-    /// Checks a proof against the two bodies, and returns what is really proven, in world units: the gap
-    /// of a plane, the distance of two points, or a depth that is not exceeded by the true one.
-    ///
-    /// Nothing of the search is used: all vertices are looked at for a plane, the pairs named for points
-    /// and surfaces.
-    ///
-    /// # Errors
-    /// What is not proven.
-    pub fn verify<'p>(&self, proof: impl Into<PairProof<'p>>) -> Result<f64, CertificateError> {
-        match proof.into() {
-            PairProof::Gap(plane) => verify::gap(&self.bodies, plane),
-            PairProof::Near(points) => verify::near(&self.bodies, points),
-            PairProof::Depth(depth) => verify::depth(&self.bodies, depth),
+    fn within(pair: &Pair<'_>, length: f64) -> Result<(Within, Steps), QueryError> {
+        check_length(length)?;
+        let difference = Difference::new(&pair.bodies);
+        let mut found = nearest(&difference, &NearestPairs::default(), Some(length));
+        let mut decided = decide(&difference, &found, length);
+        if decided.is_none() {
+            let before = found.supports;
+            found = nearest(&difference, &found.pairs(), None);
+            found.supports += before;
+            decided = decide(&difference, &found, length);
+        }
+        let answer = match decided {
+            Some(decided) => decided,
+            None => Within::Undecided(answer(&difference, &found)?),
+        };
+        Ok((answer, found.steps()))
+    }
+
+    fn verify_pair(pair: &Pair<'_>, proof: PairProof<'_>) -> Result<f64, CertificateError> {
+        match proof {
+            PairProof::Gap(plane) => verify::gap(&pair.bodies, plane),
+            PairProof::Near(points) => verify::near(&pair.bodies, points),
+            PairProof::Depth(depth) => verify::depth(&pair.bodies, depth),
         }
     }
 }

@@ -13,8 +13,9 @@ use crate::answer::{CertificateError, Distance, SolidSteps, Within, are_weights,
 use crate::body::solid::{AsSolid, Solid};
 use crate::body::{Features, Placed};
 use crate::cast::Cast;
+use crate::cast::solid::tolerance::least_tolerance_from;
 use crate::cast::solid::{Claim, Cover};
-use crate::pair::Pair;
+use crate::pair::{Pair, PairBody};
 use crate::setting::error::QueryError;
 use crate::setting::{Setting, check_length};
 #[cfg(feature = "serde")]
@@ -102,13 +103,80 @@ pub struct Unproven {
     cover: Option<Cover<Apart>>,
 }
 
-/// Questions about two solids.
-impl<'a> Pair<'a, Solid> {
+/// What a [`Pair`] of two [`Solid`]s answers besides what every pair does.
+pub trait SolidPair<'a>: Sized {
     /// Of bodies of either kind, as solids: a solid and a convex polyhedron, say.
     ///
     /// # Errors
     /// A convex body whose facets [`Solid::from_mesh`] refuses.
-    pub fn between<A: AsSolid, B: AsSolid>(
+    fn between<A: AsSolid, B: AsSolid>(
+        moving: Placed<'a, A>,
+        fixed: Placed<'a, B>,
+    ) -> Result<Self, QueryError>;
+
+    /// The same, and the proof of it. It takes a pass over all that the search left out, and a byte for each pair
+    /// of nodes.
+    ///
+    /// # Errors
+    /// As [`Pair::distance`].
+    fn certified_distance(&self) -> Result<(Distance<Solid>, DistanceCertificate), QueryError>;
+
+    /// The same, and the proof of it if they are not closer, or hardly so: of how far apart they are at least. That
+    /// they are closer is proven by what the answer holds.
+    ///
+    /// # Errors
+    /// As [`Pair::within`].
+    fn certified_within(
+        &self,
+        length: f64,
+    ) -> Result<(Within<Solid>, Option<DistanceCertificate>), QueryError>;
+
+    /// Do the bodies overlap, and how deep, by the measure that solids have: the least tolerance with which they
+    /// would not. That is no translation; convex bodies have one, [`Pair::depth`].
+    ///
+    /// # Errors
+    /// None at present.
+    ///
+    /// ```
+    /// # use colltrans::glam::DVec3;
+    /// # use colltrans::solid::SolidPair;
+    /// # use colltrans::{Pair, Pose, ConvexPolyhedron};
+    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+    /// let there = Pose::from_translation(DVec3::new(0.75, 0.5, 0.5))?;
+    /// let found = Pair::between(cube.at(Pose::IDENTITY), cube.at(there))?.overlap_depth()?;
+    /// assert!(found.meets && (found.least_tolerance.unwrap() - 0.25).abs() < 1e-9);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    fn overlap_depth(&self) -> Result<OverlapDepth, QueryError>;
+}
+
+/// A search and its proof, apart: for the crates that write files.
+#[doc(hidden)]
+pub trait SolidPairSearch {
+    /// The distance, and what a proof is made of, where that is wanted.
+    fn ask(&self, prove: bool) -> Result<(Distance<Solid>, Unproven), QueryError>;
+
+    /// The proof by what was found: its lower bound is what the cover proves, at least that of the search.
+    fn prove(&self, found: Unproven) -> Result<DistanceCertificate, QueryError>;
+
+    /// [`Pair::within_counted`], and what a proof is made of, where that is wanted.
+    fn decide(
+        &self,
+        length: f64,
+        prove: bool,
+    ) -> Result<((Within<Solid>, SolidSteps), Unproven), QueryError>;
+
+    /// Points of the moving and of the fixed body, in the world, rounded, that are as near to each other as is
+    /// said.
+    #[cfg(feature = "serde")]
+    fn points(&self, near: &SolidNear) -> Result<[DVec3; 2], QueryError>;
+
+    /// Whether a shell of one body lies inside the other one, of bodies whose surfaces do not cross.
+    fn is_nested(&self) -> Result<bool, QueryError>;
+}
+
+impl<'a> SolidPair<'a> for Pair<'a, Solid> {
+    fn between<A: AsSolid, B: AsSolid>(
         moving: Placed<'a, A>,
         fixed: Placed<'a, B>,
     ) -> Result<Self, QueryError> {
@@ -116,42 +184,7 @@ impl<'a> Pair<'a, Solid> {
         Self::new(a.at(moving.pose), b.at(fixed.pose))
     }
 
-    /// How far apart are the bodies, as they are, and where?
-    ///
-    /// The bounds hold exactly, and are at most five noises apart (`160 u S`, see
-    /// [the crate's introduction](crate#accuracy)), however near each other the bodies are. Bodies that meet are
-    /// 0 apart: if their surfaces touch, or one lies inside the other. Of open shells the distance is that of the
-    /// surface.
-    ///
-    /// # Errors
-    /// None at present: every search ends with an answer.
-    ///
-    /// ```
-    /// use colltrans::glam::DVec3;
-    /// use colltrans::{ConvexPolyhedron, Pair, Pose, Solid};
-    ///
-    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
-    /// let post = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::new(1.0, 1.0, 4.0))?;
-    /// let step = Solid::from_pieces([&cube, &post])?;
-    /// let above = Pose::from_translation(DVec3::new(4.0, 5.0, 0.25))?;
-    /// let pair = Pair::between(cube.at(above), step.at(Pose::IDENTITY))?;
-    ///
-    /// let (distance, proof) = pair.certified_distance()?;
-    /// assert!(distance.lower <= 5.0 && 5.0 <= distance.upper);
-    /// assert!(distance.upper - distance.lower < 1e-12);
-    /// assert!(pair.verify(&proof)? < 1e-12);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn distance(&self) -> Result<Distance<Solid>, QueryError> {
-        Ok(self.ask(false)?.0)
-    }
-
-    /// The same, and the proof of it. It takes a pass over all that the search left out, and a byte for each pair
-    /// of nodes.
-    ///
-    /// # Errors
-    /// As [`Self::distance`].
-    pub fn certified_distance(&self) -> Result<(Distance<Solid>, DistanceCertificate), QueryError> {
+    fn certified_distance(&self) -> Result<(Distance<Solid>, DistanceCertificate), QueryError> {
         let (mut distance, found) = self.ask(true)?;
         let proof = self.prove(found)?;
         distance.lower = proof.lower;
@@ -159,63 +192,7 @@ impl<'a> Pair<'a, Solid> {
         Ok((distance, proof))
     }
 
-    /// The distance, and what a proof is made of, where that is wanted.
-    #[doc(hidden)]
-    #[inline]
-    pub fn ask(&self, prove: bool) -> Result<(Distance<Solid>, Unproven), QueryError> {
-        let scene = self.scene()?;
-        let said = self.search(&scene, Until::LEAST, prove);
-        let distance = self.answer(&scene, &said);
-        let cover = said.cover.filter(|_| distance.lower > 0.0);
-        Ok((distance, Unproven { near: distance.near, cover }))
-    }
-
-    /// The proof by what was found: its lower bound is what the cover proves, at least that of the search.
-    #[doc(hidden)]
-    #[inline]
-    pub fn prove(&self, found: Unproven) -> Result<DistanceCertificate, QueryError> {
-        let Unproven { near, cover } = found;
-        let Some(cover) = cover else { return Ok(DistanceCertificate::of_near(near)) };
-        Ok(match least_proven(&self.scene()?, &cover) {
-            Ok(lower) if lower > 0.0 => DistanceCertificate { lower, near, cover },
-            _ => DistanceCertificate::of_near(near),
-        })
-    }
-
-    /// Are the bodies closer than a length, in world units? Ended as soon as that is known.
-    ///
-    /// # Errors
-    /// A length that is negative or not a number; and as [`Self::distance`].
-    ///
-    /// ```
-    /// # use colltrans::glam::DVec3;
-    /// # use colltrans::{Pair, Pose, ConvexPolyhedron, Within};
-    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
-    /// let there = Pose::from_translation(DVec3::new(4.0, 5.0, 0.25))?;
-    /// let pair = Pair::between(cube.at(Pose::IDENTITY), cube.at(there))?;
-    /// assert!(matches!(pair.within(5.1)?, Within::Closer(_)));
-    /// assert!(matches!(pair.within(4.9)?, Within::Farther(_)));
-    /// assert!(matches!(pair.within(5.0)?, Within::Undecided(_)));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn within(&self, length: f64) -> Result<Within<Solid>, QueryError> {
-        Ok(self.within_counted(length)?.0)
-    }
-
-    /// The same, and how much work it was.
-    ///
-    /// # Errors
-    /// As [`Self::within`].
-    pub fn within_counted(&self, length: f64) -> Result<(Within<Solid>, SolidSteps), QueryError> {
-        Ok(self.decide(length, false)?.0)
-    }
-
-    /// The same, and the proof of it if they are not closer, or hardly so: of how far apart they are at least. That
-    /// they are closer is proven by what the answer holds.
-    ///
-    /// # Errors
-    /// As [`Self::within`].
-    pub fn certified_within(
+    fn certified_within(
         &self,
         length: f64,
     ) -> Result<(Within<Solid>, Option<DistanceCertificate>), QueryError> {
@@ -236,22 +213,52 @@ impl<'a> Pair<'a, Solid> {
         Ok((answer, Some(proof)))
     }
 
-    /// [`Self::within_counted`], and what a proof is made of, where that is wanted.
-    #[doc(hidden)]
-    pub fn decide(
+    fn overlap_depth(&self) -> Result<OverlapDepth, QueryError> {
+        let bodies = [self.bodies.moving_placed(), self.bodies.fixed_placed()];
+        // Neither question knows of a direction.
+        let cast = Cast::new(bodies[0], bodies[1], DVec3::Z)?;
+        let found = cast.intersects()?;
+        let (meets, mut steps) = (found.meets, found.evidence.steps);
+        let least_tolerance =
+            if meets { least_tolerance_from(&cast, None, &mut steps) } else { Some(0.0) };
+        Ok(OverlapDepth { meets, least_tolerance, steps })
+    }
+}
+
+impl SolidPairSearch for Pair<'_, Solid> {
+    #[inline]
+    fn ask(&self, prove: bool) -> Result<(Distance<Solid>, Unproven), QueryError> {
+        let scene = scene(self)?;
+        let said = search(self, &scene, Until::LEAST, prove);
+        let distance = answer(self, &scene, &said);
+        let cover = said.cover.filter(|_| distance.lower > 0.0);
+        Ok((distance, Unproven { near: distance.near, cover }))
+    }
+
+    #[inline]
+    fn prove(&self, found: Unproven) -> Result<DistanceCertificate, QueryError> {
+        let Unproven { near, cover } = found;
+        let Some(cover) = cover else { return Ok(DistanceCertificate::of_near(near)) };
+        Ok(match least_proven(&scene(self)?, &cover) {
+            Ok(lower) if lower > 0.0 => DistanceCertificate { lower, near, cover },
+            _ => DistanceCertificate::of_near(near),
+        })
+    }
+
+    fn decide(
         &self,
         length: f64,
         prove: bool,
     ) -> Result<((Within<Solid>, SolidSteps), Unproven), QueryError> {
         check_length(length)?;
-        let scene = self.scene()?;
+        let scene = scene(self)?;
         let until = Until {
             // What is a little farther is far enough, by more than a bound may be lowered.
             beyond: length + 0.125 * scene.noise,
             enough: length - triangle::LENGTH * scene.noise,
         };
         let Said { spot, lower, cover, mut steps } =
-            self.search(&scene, until, prove && until.beyond.is_finite());
+            search(self, &scene, until, prove && until.beyond.is_finite());
         let near = spot.map(|spot| spot.near(&scene));
         let meeting = || nested(&scene).map(SolidNear::Meeting);
         let closer = near.map_or_else(meeting, |near| (near.distance() <= length).then_some(near));
@@ -276,48 +283,10 @@ impl<'a> Pair<'a, Solid> {
         Ok(((answer, steps), found))
     }
 
-    /// What of each body is nearest to the other one: the vertices, edges or faces that the nearest points are of.
-    /// `None` if the bodies meet, or are less apart than rounding can tell.
-    ///
-    /// # Errors
-    /// As [`Self::distance`].
-    pub fn closest_features(&self) -> Result<Option<Features>, QueryError> {
-        Ok(self.distance()?.features)
-    }
-
-    /// Do the bodies overlap, and how deep, by the measure that solids have: the least tolerance with which they
-    /// would not. That is no translation; convex bodies have one, [`Pair::depth`].
-    ///
-    /// # Errors
-    /// None at present.
-    ///
-    /// ```
-    /// # use colltrans::glam::DVec3;
-    /// # use colltrans::{Pair, Pose, ConvexPolyhedron};
-    /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
-    /// let there = Pose::from_translation(DVec3::new(0.75, 0.5, 0.5))?;
-    /// let found = Pair::between(cube.at(Pose::IDENTITY), cube.at(there))?.overlap_depth()?;
-    /// assert!(found.meets && (found.least_tolerance.unwrap() - 0.25).abs() < 1e-9);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn overlap_depth(&self) -> Result<OverlapDepth, QueryError> {
-        let bodies = [self.bodies.moving_placed(), self.bodies.fixed_placed()];
-        // Neither question knows of a direction.
-        let cast = Cast::new(bodies[0], bodies[1], DVec3::Z)?;
-        let found = cast.intersects()?;
-        let (meets, mut steps) = (found.meets, found.evidence.steps);
-        let least_tolerance =
-            if meets { cast.least_tolerance_from(None, &mut steps) } else { Some(0.0) };
-        Ok(OverlapDepth { meets, least_tolerance, steps })
-    }
-
-    /// Points of the moving and of the fixed body, in the world, rounded, that are as near to each other as is
-    /// said.
     #[cfg(feature = "serde")]
-    #[doc(hidden)]
     #[inline]
-    pub fn points(&self, near: &SolidNear) -> Result<[DVec3; 2], QueryError> {
-        let scene = self.scene()?;
+    fn points(&self, near: &SolidNear) -> Result<[DVec3; 2], QueryError> {
+        let scene = scene(self)?;
         let origin = self.bodies.translations[0];
         let points = match *near {
             SolidNear::Meeting(place) => shared_points(&scene, place),
@@ -328,18 +297,33 @@ impl<'a> Pair<'a, Solid> {
         Ok(points.map(|point| point + origin))
     }
 
-    /// Checks a proof against the two bodies, and returns how far its bounds are apart, or the bound, in world
-    /// units. What a search does to find them plays no part; numbers may claim less than the proof gives.
-    ///
-    /// # Errors
-    /// What is not proven.
-    pub fn verify<'p>(
-        &self,
-        proof: impl Into<SolidPairProof<'p>>,
+    #[inline]
+    fn is_nested(&self) -> Result<bool, QueryError> {
+        Ok(nested(&scene(self)?).is_some())
+    }
+}
+
+impl PairBody for Solid {
+    type PairProof<'p> = SolidPairProof<'p>;
+
+    fn distance(pair: &Pair<'_, Self>) -> Result<Distance<Self>, QueryError> {
+        Ok(pair.ask(false)?.0)
+    }
+
+    fn within(
+        pair: &Pair<'_, Self>,
+        length: f64,
+    ) -> Result<(Within<Self>, SolidSteps), QueryError> {
+        Ok(pair.decide(length, false)?.0)
+    }
+
+    fn verify_pair(
+        pair: &Pair<'_, Self>,
+        proof: SolidPairProof<'_>,
     ) -> Result<f64, CertificateError> {
         // A direction that is no part of the proof.
-        let scene = self.scene().map_err(|_| CertificateError::Start)?;
-        match proof.into() {
+        let scene = scene(pair).map_err(|_| CertificateError::Start)?;
+        match proof {
             SolidPairProof::Near(near) => verify_near(&scene, near),
             SolidPairProof::Distance(certificate) => {
                 let upper = verify_near(&scene, &certificate.near)?;
@@ -348,56 +332,48 @@ impl<'a> Pair<'a, Solid> {
             }
         }
     }
+}
 
-    /// Whether a shell of one body lies inside the other one, of bodies whose surfaces do not cross.
-    #[doc(hidden)]
-    #[inline]
-    pub fn is_nested(&self) -> Result<bool, QueryError> {
-        Ok(nested(&self.scene()?).is_some())
-    }
+fn scene<'a>(pair: &Pair<'a, Solid>) -> Result<Scene<'a>, QueryError> {
+    let setting = Setting::of(pair.bodies, DVec3::Z)?;
+    Ok(Scene::new(&setting, [0.0; 2], 0.0))
+}
 
-    fn scene(&self) -> Result<Scene<'a>, QueryError> {
-        let setting = Setting::of(self.bodies, DVec3::Z)?;
-        Ok(Scene::new(&setting, [0.0; 2], 0.0))
-    }
-
-    fn search(&self, scene: &Scene, until: Until, prove: bool) -> Said {
-        let mut cuts = HashMap::new();
-        let mut search = Search::new(scene, until, |nodes, reason| {
-            if prove {
-                cuts.insert(nodes, reason);
-            }
-        });
-        let ((found, lower), steps) = (search.run(), search.steps);
-        // An early end leaves pairs that nothing was said of, and no bound.
-        let cover =
-            (prove && lower > 0.0).then(|| Cover::new([self.moving(), self.fixed()], &cuts));
-        Said { spot: found.map(Spot::from), lower, cover, steps }
-    }
-
-    fn answer(&self, scene: &Scene, said: &Said) -> Distance<Solid> {
-        let origin = self.bodies.translations[0];
-        let mut steps = said.steps;
-        let place = meeting(scene, said.lower, &mut steps);
-        let spot = said.spot.unwrap_or_else(|| Spot::of(scene, [0, 0]));
-        let (near, points) = match place {
-            Some(place) => (SolidNear::Meeting(place), shared_points(scene, place)),
-            None => (spot.near(scene), spot.points(scene)),
-        };
-        let lower = if place.is_some() { 0.0 } else { said.lower };
-        let spot = (lower > 0.0).then_some(spot);
-        let features = spot.map(|spot| spot.features(scene));
-        Distance {
-            lower,
-            upper: near.distance(),
-            on_moving: points[0] + origin,
-            on_fixed: points[1] + origin,
-            normal: spot.map(|spot| spot.nearest.normal),
-            features: features.map(|[moving, fixed]| Features { moving, fixed }),
-            near,
-            gap: (lower > 0.0).then_some(SolidGap { gap: lower }),
-            steps,
+fn search(pair: &Pair<'_, Solid>, scene: &Scene, until: Until, prove: bool) -> Said {
+    let mut cuts = HashMap::new();
+    let mut search = Search::new(scene, until, |nodes, reason| {
+        if prove {
+            cuts.insert(nodes, reason);
         }
+    });
+    let ((found, lower), steps) = (search.run(), search.steps);
+    // An early end leaves pairs that nothing was said of, and no bound.
+    let cover = (prove && lower > 0.0).then(|| Cover::new([pair.moving(), pair.fixed()], &cuts));
+    Said { spot: found.map(Spot::from), lower, cover, steps }
+}
+
+fn answer(pair: &Pair<'_, Solid>, scene: &Scene, said: &Said) -> Distance<Solid> {
+    let origin = pair.bodies.translations[0];
+    let mut steps = said.steps;
+    let place = meeting(scene, said.lower, &mut steps);
+    let spot = said.spot.unwrap_or_else(|| Spot::of(scene, [0, 0]));
+    let (near, points) = match place {
+        Some(place) => (SolidNear::Meeting(place), shared_points(scene, place)),
+        None => (spot.near(scene), spot.points(scene)),
+    };
+    let lower = if place.is_some() { 0.0 } else { said.lower };
+    let spot = (lower > 0.0).then_some(spot);
+    let features = spot.map(|spot| spot.features(scene));
+    Distance {
+        lower,
+        upper: near.distance(),
+        on_moving: points[0] + origin,
+        on_fixed: points[1] + origin,
+        normal: spot.map(|spot| spot.nearest.normal),
+        features: features.map(|[moving, fixed]| Features { moving, fixed }),
+        near,
+        gap: (lower > 0.0).then_some(SolidGap { gap: lower }),
+        steps,
     }
 }
 

@@ -14,7 +14,7 @@ use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
 use colltrans::motion::{MotionCast, Moving};
-use colltrans::solid::{SolidError, SolidOptions, StartOverlap};
+use colltrans::solid::{SolidCast, SolidError, SolidOptions, StartOverlap};
 use colltrans::{
     BuildError, Cast, ConvexPolyhedron, InputVertex, Placed, QueryError, Solid, TopologyError,
 };

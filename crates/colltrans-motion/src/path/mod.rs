@@ -70,7 +70,7 @@ use colltrans_convex::number::range::MAX_MAGNITUDE;
 use colltrans_convex::pair::Pair;
 use colltrans_convex::setting::check_keep;
 use colltrans_convex::setting::error::QueryError;
-use colltrans_convex::solid::AsSolid;
+use colltrans_convex::solid::{AsSolid, SolidPairSearch};
 
 pub use self::answer::{
     Cover, How, PathContact, PathFree, PathMeeting, PathOutcome, PathProof, Step, Stretch,

@@ -14,7 +14,7 @@ use super::{Mode, searched};
 use colltrans_convex::answer::{Bounded, SolidSteps};
 use colltrans_convex::body::solid::Solid;
 use colltrans_convex::setting::error::QueryError;
-use colltrans_convex::solid::{SolidOverlap, StartOverlap};
+use colltrans_convex::solid::{SolidCast, SolidOverlap, SolidScene, StartOverlap};
 use colltrans_convex::solve::solid::nearest::triangle;
 use colltrans_convex::solve::solid::overlap;
 

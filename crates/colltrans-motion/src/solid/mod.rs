@@ -42,6 +42,7 @@ use colltrans_convex::cast::Cast;
 use colltrans_convex::cast::solid::{SolidOptions, StartProof};
 use colltrans_convex::setting::error::QueryError;
 use colltrans_convex::setting::{Setting, check_keep};
+use colltrans_convex::solid::SolidScene;
 use colltrans_convex::solve::solid::nearest::{Spot, points_of, triangle};
 use colltrans_convex::solve::solid::overlap;
 use colltrans_convex::solve::solid::scene::Scene;

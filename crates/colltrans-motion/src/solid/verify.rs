@@ -16,6 +16,7 @@ use crate::MotionCast;
 use colltrans_convex::answer::are_weights;
 use colltrans_convex::body::solid::Solid;
 use colltrans_convex::cast::solid::StartProof;
+use colltrans_convex::solid::SolidScene;
 
 pub(super) fn verify(
     cast: &MotionCast<Solid>,

@@ -28,6 +28,7 @@ use colltrans_convex::cast::{CaseError, Cast};
 use colltrans_convex::pair::Pair;
 use colltrans_convex::pair::solid::Unproven;
 use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::solid::{SolidCast, SolidPairSearch};
 use colltrans_removal::free::{FreeDirections, FreeError};
 use file::{Pieces, again};
 pub use motion::{MotionCase, MotionProofFile, MotionProofFiles};

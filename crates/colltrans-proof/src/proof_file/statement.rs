@@ -16,6 +16,7 @@ use colltrans_convex::cast::solid::{SolidCertificate, SolidOptions, StartOverlap
 use colltrans_convex::pair::Pair;
 use colltrans_convex::pair::solid::DistanceCertificate;
 use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::solid::SolidCast;
 use colltrans_convex::solve::solid::contact::SolidContact;
 use colltrans_removal::free::{CellProof, FreeDirections, FreeError, FreeProof, InnerBox};
 

@@ -24,6 +24,7 @@ use colltrans_convex::cast::Cast;
 use colltrans_convex::cast::solid::StartOverlap;
 use colltrans_convex::setting::check_direction;
 use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::solid::{SolidCast, SolidScene};
 use colltrans_convex::solve::solid::overlap;
 
 /// What is said of a direction.

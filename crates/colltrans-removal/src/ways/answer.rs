@@ -16,6 +16,7 @@ use colltrans_convex::body::{Aabb, Placed};
 use colltrans_convex::cast::Cast;
 use colltrans_convex::cast::solid::{SolidCertificate, SolidOptions, StartProof};
 use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::solid::SolidCast;
 
 /// The share of the tolerance that is planned with.
 const SLACK: f64 = 0.8;

@@ -23,6 +23,7 @@ use colltrans_convex::answer::CertificateError;
 use colltrans_convex::body::solid::{AsSolid, Solid};
 use colltrans_convex::body::{Aabb, Placed};
 use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::solid::SolidScene;
 
 /// Crossings that are tried first in a new cell, at most.
 const MOST_SEEN: usize = 48;

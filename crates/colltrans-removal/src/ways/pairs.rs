@@ -13,6 +13,7 @@ use colltrans_convex::body::{Aabb, Placed};
 use colltrans_convex::cast::Cast;
 use colltrans_convex::cast::solid::SolidOptions;
 use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::solid::{SolidCast, SolidScene};
 use colltrans_convex::solve::solid::{Workspace, overlap};
 
 /// A displacement, by its bits: places lie on a grid, so equal ones are equal.

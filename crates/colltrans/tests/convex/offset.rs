@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use colltrans::solid::SolidCast;
 use colltrans::{BuildError, Cast, Clearance, ConvexPolyhedron, InputVertex, Pose, Solid};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{

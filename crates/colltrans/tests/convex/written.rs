@@ -2,7 +2,7 @@
 #![cfg(feature = "json")]
 
 use colltrans::record::{Ending, Question};
-use colltrans::solid::{SolidCertificate, SolidOptions, StartOverlap};
+use colltrans::solid::{SolidCast, SolidCertificate, SolidOptions, StartOverlap};
 use colltrans::{
     Bounded, Cast, Clearance, ContactRange, FaceId, Feature, InputVertex, Intersection, NarrowFrom,
     Options, Outcome, Pose, Solid, Solver, StartedFrom, Until, VertexId,

@@ -5,7 +5,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use colltrans::glam::{DMat3, DVec3};
 use colltrans::motion::{Motion, MotionCast, MotionClearance, MotionOutcome, MotionStop};
-use colltrans::solid::StartOverlap;
+use colltrans::solid::{SolidCast, StartOverlap};
 use colltrans::{Cast, Clearance, ConvexPolyhedron, Pose, Solid};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{Mesh, block, random_hull};

@@ -8,6 +8,7 @@ use colltrans::motion::{
     FacetsMeeting, FacetsMet, Motion, MotionCast, MotionContact, MotionCover, MotionOutcome,
     SolidMotionProof,
 };
+use colltrans::solid::SolidCast;
 use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose, Solid};
 use colltrans_testkit::oracle::solids::turning;
 use colltrans_testkit::random::Random;

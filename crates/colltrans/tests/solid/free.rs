@@ -7,7 +7,7 @@ use colltrans::free::{
     CellKind, CellProof, FreeDirections, FreeError, FreeOptions, FreeProof, InnerBox, Verdict,
 };
 use colltrans::glam::{DMat3, DQuat, DVec3};
-use colltrans::solid::StartOverlap;
+use colltrans::solid::{SolidCast, StartOverlap};
 use colltrans::{Cast, ConvexPolyhedron, Pose, Solid};
 use colltrans_testkit::oracle::solids::free::{
     FAMILIES, Judged, examine, is_free_of_all, thin::judge,

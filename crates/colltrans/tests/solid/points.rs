@@ -7,7 +7,7 @@
 
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::motion::{FacetsMeeting, FacetsMet, Motion, MotionCast, MotionOutcome};
-use colltrans::solid::{AsSolid, SolidError};
+use colltrans::solid::{AsSolid, SolidCast, SolidError, SolidPair};
 use colltrans::{
     Among, Cast, Clearance, ConvexPolyhedron, Feature, InputVertex, Obstacles, Outcome, Pair, Pose,
     Solid, Within,

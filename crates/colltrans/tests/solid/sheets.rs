@@ -1,7 +1,7 @@
 //! Open surfaces in situations with names: what a sheet blocks, and what blocks it.
 
 use colltrans::glam::{DQuat, DVec3};
-use colltrans::solid::{ShellKind, SolidFree, SolidOptions, StartOverlap};
+use colltrans::solid::{ShellKind, SolidCast, SolidFree, SolidOptions, StartOverlap};
 use colltrans::{Aabb, Bounded, Cast, Clearance, Pose, Solid};
 use colltrans_testkit::shapes::{self, Mesh};
 

@@ -1,6 +1,8 @@
 //! Solids in the situations that people have names for.
 
-use colltrans::solid::{Overlap, SolidError, SolidOptions, SolidOverlap, StartOverlap};
+use colltrans::solid::{
+    Overlap, SolidCast, SolidError, SolidOptions, SolidOverlap, SolidPair, StartOverlap,
+};
 use colltrans::{
     Bounded, Cast, Clearance, ContactRange, ConvexPolyhedron, InputFacet, Outcome, Pair, Pose,
     QueryError, Solid,

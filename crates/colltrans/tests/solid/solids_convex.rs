@@ -3,7 +3,7 @@
 //! The judge is the same body twice, as two shells in one place: it is no convex solid, so it is searched.
 
 use colltrans::glam::{DQuat, DVec3};
-use colltrans::solid::{SolidFree, SolidOptions, StartOverlap};
+use colltrans::solid::{SolidCast, SolidFree, SolidOptions, StartOverlap};
 use colltrans::{Bounded, Cast, Clearance, ConvexPolyhedron, Pose, Solid};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{Mesh, prism, ring_sphere};

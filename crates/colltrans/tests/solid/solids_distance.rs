@@ -1,6 +1,6 @@
 //! Distances of solids against exact arithmetic, and their proofs.
 
-use colltrans::solid::{Apart, Cover, DistanceCertificate, SolidNear};
+use colltrans::solid::{Apart, Cover, DistanceCertificate, SolidNear, SolidPair};
 use colltrans::{ConvexPolyhedron, Pair, Pose, QueryError, Solid, Within};
 use colltrans_testkit::oracle::settings;
 use colltrans_testkit::oracle::solids::nearest::{MESHES, Seen, Setting};

@@ -1,7 +1,7 @@
 //! What of a solid is named where it is stopped: faces, edges and corners of the part, not of its
 //! triangulation, by the numbers of the input.
 
-use colltrans::solid::SolidContact;
+use colltrans::solid::{SolidCast, SolidContact};
 use colltrans::{
     Cast, Clearance, ConvexPolyhedron, FaceId, Feature, InputVertex, Outcome, Pose, Solid,
 };

@@ -1,7 +1,7 @@
 //! Solids that keep a gap: families judged over all pairs of facets, what is known in closed form, proofs.
 
 use colltrans::glam::{DQuat, DVec3};
-use colltrans::solid::{SolidCertificate, StartOverlap};
+use colltrans::solid::{SolidCast, SolidCertificate, StartOverlap};
 use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, QueryError, Solid};
 use colltrans_testkit::oracle::settings;
 use colltrans_testkit::oracle::solids::keep::{Seen, examine};

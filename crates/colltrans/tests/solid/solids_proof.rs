@@ -1,7 +1,7 @@
 //! Proofs between solids: they hold, and what is changed in them is refused.
 
 use colltrans::solid::{
-    Overlap, Reason, SolidCertificate, SolidFree, SolidOptions, StartOverlap, StartProof,
+    Overlap, Reason, SolidCast, SolidCertificate, SolidFree, SolidOptions, StartOverlap, StartProof,
 };
 use colltrans::{Cast, CertificateError, Clearance, Pose, Solid};
 use colltrans_testkit::oracle::solids::proof::approve;

@@ -1,6 +1,6 @@
 //! What holds between solids for every setting, random or tied.
 
-use colltrans::solid::{ShellKind, SolidOptions};
+use colltrans::solid::{ShellKind, SolidCast, SolidOptions};
 use colltrans::{Cast, Clearance, Pose, Solid};
 use colltrans_testkit::oracle::solids::settings::{FAMILIES, Setting};
 use colltrans_testkit::oracle::solids::sheets;

@@ -2,6 +2,7 @@
 
 use colltrans::free::FreeError;
 use colltrans::glam::{DMat3, DVec3, EulerRot};
+use colltrans::solid::SolidCast;
 use colltrans::ways::{NoWay, Order, WayOptions, WayOut, WaysOut};
 use colltrans::{Cast, ConvexPolyhedron, Placed, Pose, Solid};
 use colltrans_testkit::oracle::cubes::Cubes;

@@ -16,7 +16,7 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use colltrans::solid::Workspace;
+use colltrans::solid::{SolidCast, Workspace};
 use colltrans::{Cast, Clearance, ConvexPolyhedron, Pose, Solid};
 use colltrans_bench::arguments::Arguments;
 use colltrans_bench::meshes::{MeshArguments, solid};

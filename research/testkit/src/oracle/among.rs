@@ -12,6 +12,7 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use colltrans::glam::{DQuat, DVec3};
+use colltrans::solid::{SolidCast, SolidPair};
 use colltrans::{
     Among, AnyBody, AnyClearance, AnyDistance, AnyPlaced, ByKind, Cast, Clearance,
     ConvexPolyhedron, NearestProof, ObstacleId, Obstacles, Pair, Pose, QueryError, Solid, WhyFree,

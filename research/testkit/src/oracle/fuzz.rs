@@ -11,7 +11,7 @@ mod pairs;
 use std::fs;
 use std::path::Path;
 
-use colltrans::solid::{SolidFree, SolidOptions, StartProof};
+use colltrans::solid::{SolidCast, SolidFree, SolidOptions, StartProof};
 use colltrans::{
     Cast, Clearance, ConvexPolyhedron, FixedRotations, Pose, PoseError, Solid, Solver,
 };

@@ -36,7 +36,7 @@ use support::SupportIndex;
 /// It may be of lower dimension: a flat polygon, a segment, a point. Immutable, `Send` and `Sync`;
 /// everything a query needs is built once, here, in `O(n)` space. Two things are made when they are
 /// first asked for, once, and kept: planar sections for [`Solver::Cta`](crate::Solver::Cta)
-/// ([`Self::prepare_sections`] makes them beforehand), and the body as a [`Solid`]. A clone copies what
+/// ([`Self::prepare_sections`] makes them beforehand), and the body as a `Solid`. A clone copies what
 /// there is.
 ///
 /// Vertices and faces are numbered from 0; [`Self::input_indices`] leads back to the input.

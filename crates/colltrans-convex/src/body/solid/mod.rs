@@ -26,8 +26,7 @@ use std::sync::OnceLock;
 
 use glam::{DVec3, Vec3Swizzles};
 
-use crate::body::placed::sealed;
-use crate::body::{Aabb, ConvexPolyhedron, InputFacet, InputVertex};
+use crate::body::{Aabb, ConvexPolyhedron, InputFacet, InputVertex, Numbered};
 pub use error::SolidError;
 use faces::Faces;
 pub(crate) use kept::{Keepable, Kept};
@@ -93,7 +92,7 @@ pub struct Solid {
     kept: Kept,
 }
 
-impl sealed::Sealed for Solid {
+impl Numbered for Solid {
     fn inputs(&self) -> &[InputVertex] {
         &self.vertex_index
     }
@@ -104,7 +103,7 @@ impl sealed::Sealed for Solid {
 }
 
 /// What a [`Solid`] can be asked against, and made of. Sealed.
-pub trait AsSolid: sealed::Sealed {
+pub trait AsSolid: Numbered {
     /// The body as a solid: itself, or a convex polyhedron's surface, made when it is first asked for
     /// and kept.
     ///

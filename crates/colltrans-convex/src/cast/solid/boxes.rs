@@ -3,7 +3,8 @@
 
 use glam::DVec3;
 
-use super::{Cast, NOISES, SolidFree};
+use super::ask::NOISES;
+use super::{Cast, SolidCast, SolidFree, SolidScene};
 use crate::answer::{Clearance, Separation, SolidSteps};
 use crate::body::solid::Solid;
 use crate::number::noise::Noise;
@@ -22,46 +23,44 @@ pub(super) enum Told {
     Nothing,
 }
 
-impl Cast<'_, Solid> {
-    /// What the boxes around the bodies tell, unless a gap is to be kept or the bodies are said to overlap.
-    pub(super) fn told_by_boxes(&self) -> Told {
-        let (setting, options) = (&self.setting, self.options);
-        if options.keep > 0.0 || options.overlapping == Some(true) {
-            return Told::Nothing;
-        }
-        let noise = setting.noise().point();
-        let boxes = Boxes::new(setting, &[self.moving().bounds(), self.fixed().bounds()]);
-        // Shrunk, they have more room.
-        let slack = TOUCHING * noise + 2.0 * options.tolerance.unwrap_or(NOISES * noise);
-        if let Some(passing) = boxes.across(slack).and_then(|normal| self.passing(normal)) {
-            return Told::Passing(passing);
-        }
-        let squared = permutes(setting.moving_matrix) && permutes(setting.fixed_matrix);
-        if squared && boxes.touch(TOUCHING * noise) { Told::Touching } else { Told::Nothing }
+/// What the boxes around the bodies tell, unless a gap is to be kept or the bodies are said to overlap.
+pub(super) fn told_by_boxes(cast: &Cast<'_, Solid>) -> Told {
+    let (setting, options) = (&cast.setting, cast.options);
+    if options.keep > 0.0 || options.overlapping == Some(true) {
+        return Told::Nothing;
     }
+    let noise = setting.noise().point();
+    let boxes = Boxes::new(setting, &[cast.moving().bounds(), cast.fixed().bounds()]);
+    // Shrunk, they have more room.
+    let slack = TOUCHING * noise + 2.0 * options.tolerance.unwrap_or(NOISES * noise);
+    if let Some(passing) = boxes.across(slack).and_then(|normal| passing(cast, normal)) {
+        return Told::Passing(passing);
+    }
+    let squared = permutes(setting.moving_matrix) && permutes(setting.fixed_matrix);
+    if squared && boxes.touch(TOUCHING * noise) { Told::Touching } else { Told::Nothing }
+}
 
-    /// That nothing stops the moving body, if a plane along the direction, with a normal, parts the boxes.
-    fn passing(&self, normal: DVec3) -> Option<Clearance<Solid>> {
-        let tolerance = self.tolerance();
-        self.check_left(tolerance).ok()?;
-        let (boxes, noise) = self.shrunk_boxes(tolerance / 2.0);
-        let margin = boxes.margin(normal, noise);
-        let separation = self.options.before.is_none().then_some(Separation { normal, margin });
-        let free = SolidFree { separation, steps: SolidSteps::default() };
-        (margin > 0.0).then_some(Clearance::Free(free))
-    }
+/// That nothing stops the moving body, if a plane along the direction, with a normal, parts the boxes.
+fn passing(cast: &Cast<'_, Solid>, normal: DVec3) -> Option<Clearance<Solid>> {
+    let tolerance = cast.tolerance();
+    cast.check_left(tolerance).ok()?;
+    let (boxes, noise) = shrunk_boxes(cast, tolerance / 2.0);
+    let margin = boxes.margin(normal, noise);
+    let separation = cast.options.before.is_none().then_some(Separation { normal, margin });
+    let free = SolidFree { separation, steps: SolidSteps::default() };
+    (margin > 0.0).then_some(Clearance::Free(free))
+}
 
-    /// Whether the moving body leaves the other one behind, by their boxes, shrunk by an amount.
-    pub(super) fn leaves_behind(&self, amount: f64) -> bool {
-        let (boxes, noise) = self.shrunk_boxes(amount);
-        boxes.are_left_behind(noise)
-    }
+/// Whether the moving body leaves the other one behind, by their boxes, shrunk by an amount.
+pub(super) fn leaves_behind(cast: &Cast<'_, Solid>, amount: f64) -> bool {
+    let (boxes, noise) = shrunk_boxes(cast, amount);
+    boxes.are_left_behind(noise)
+}
 
-    /// The boxes of the bodies, shrunk by an amount, and the noise then.
-    fn shrunk_boxes(&self, amount: f64) -> (Boxes<'_, '_>, f64) {
-        let bodies = [self.moving(), self.fixed()];
-        let moved: f64 = bodies.map(|body| body.moved_by(amount)).iter().sum();
-        let noise = Noise::of(self.setting.scale() + moved).point();
-        (Boxes::new(&self.setting, &bodies.map(|body| body.box_shrunk_by(amount))), noise)
-    }
+/// The boxes of the bodies, shrunk by an amount, and the noise then.
+fn shrunk_boxes<'c>(cast: &'c Cast<'_, Solid>, amount: f64) -> (Boxes<'c, 'c>, f64) {
+    let bodies = [cast.moving(), cast.fixed()];
+    let moved: f64 = bodies.map(|body| body.moved_by(amount)).iter().sum();
+    let noise = Noise::of(cast.setting.scale() + moved).point();
+    (Boxes::new(&cast.setting, &bodies.map(|body| body.box_shrunk_by(amount))), noise)
 }

@@ -7,7 +7,7 @@
 //! is next. Where the tolerance is not small, facets may come to overlap again: there it is doubled and halved, and the
 //! bodies are asked each time, unless the last place tells, or of convex ones a plane between them.
 
-use super::{Cast, hulls};
+use super::{Cast, SolidScene, hulls};
 use crate::answer::SolidSteps;
 use crate::body::solid::Solid;
 use crate::solve::solid::overlap::{self, Overlap};
@@ -24,73 +24,61 @@ const MOST_SECANTS: usize = 12;
 /// Places of an overlap that are asked for their tolerance, one after the other; then the bodies are asked each time.
 const MOST_PLACES: usize = 24;
 
-impl Cast<'_, Solid> {
-    /// The least tolerance with which the bodies do not overlap, from above: 0 if they do not, `None`
-    /// if there is none that leaves something of both, as of one that lies deep inside the other. Nor is there one
-    /// where they overlap and one of them has open
-    /// shells: less of a solid does not free a sheet that passes through it. It is more than the least by
-    /// `1e-12` of itself or 8 noises (`256 u S`) at most. How far convex bodies have to
-    /// go back along a direction is another question: [`Cast::directional_depth`].
-    pub fn least_tolerance(&self) -> Option<f64> {
-        self.least_tolerance_from(None, &mut SolidSteps::default())
+/// The same of bodies that overlap in a place, which is looked for if none is known.
+pub(crate) fn least_tolerance_from(
+    cast: &Cast<'_, Solid>,
+    place: Option<Overlap>,
+    steps: &mut SolidSteps,
+) -> Option<f64> {
+    let bare = cast.scene(0.0);
+    let known = place.filter(|&place| overlap::is_overlap(&bare, place));
+    let Some(mut place) = known.or_else(|| overlap::find(&bare, steps)) else {
+        return Some(0.0);
+    };
+    if !(cast.moving().is_closed() && cast.fixed().is_closed()) {
+        return None;
     }
-
-    /// The same of bodies that overlap in a place, which is looked for if none is known.
-    pub(crate) fn least_tolerance_from(
-        &self,
-        place: Option<Overlap>,
-        steps: &mut SolidSteps,
-    ) -> Option<f64> {
-        let bare = self.scene(0.0);
-        let known = place.filter(|&place| overlap::is_overlap(&bare, place));
-        let Some(mut place) = known.or_else(|| overlap::find(&bare, steps)) else {
-            return Some(0.0);
-        };
-        if !(self.moving().is_closed() && self.fixed().is_closed()) {
-            return None;
+    // Shrunk by more than there is of it, a body is inside out.
+    let vanishes = |tolerance: f64| cast.check_left(tolerance).is_err();
+    let shrunk = |tolerance: f64| bare.shrunk(tolerance / 2.0, tolerance / 2.0);
+    // As long as shrinking turns nothing inside out, what is free with one tolerance is so with more.
+    let most = 2.0 * cast.moving().shrinking().most.min(cast.fixed().shrinking().most);
+    let mut overlapping = 0.0;
+    for _ in 0..MOST_PLACES {
+        let ends = [overlapping, most];
+        let Some(least) = least_of(&bare, place, ends, &mut steps.leaves) else { break };
+        if vanishes(least) {
+            break;
         }
-        // Shrunk by more than there is of it, a body is inside out.
-        let vanishes = |tolerance: f64| self.check_left(tolerance).is_err();
-        let shrunk = |tolerance: f64| bare.shrunk(tolerance / 2.0, tolerance / 2.0);
-        // As long as shrinking turns nothing inside out, what is free with one tolerance is so with more.
-        let most = 2.0 * self.moving().shrinking().most.min(self.fixed().shrinking().most);
-        let mut overlapping = 0.0;
-        for _ in 0..MOST_PLACES {
-            let ends = [overlapping, most];
-            let Some(least) = least_of(&bare, place, ends, &mut steps.leaves) else { break };
-            if vanishes(least) {
-                break;
-            }
-            let clear = least + NOISES * bare.noise;
-            if are_parted(&shrunk(clear), place) {
-                return Some(clear);
-            }
-            let Some(next) = overlap::find(&shrunk(least), steps) else { return Some(least) };
-            (place, overlapping) = (next, least);
+        let clear = least + NOISES * bare.noise;
+        if are_parted(&shrunk(clear), place) {
+            return Some(clear);
         }
-        let convex = !bare.keeps() && hulls::are_convex(self);
-        let mut between = None;
-        let mut is_free = |tolerance| {
-            if vanishes(tolerance) {
-                return true;
-            }
-            let smaller = shrunk(tolerance);
-            steps.leaves += 1;
-            if overlap::is_overlap(&smaller, place) {
-                return false;
-            }
-            if convex && let Some(normal) = parted::plane(&smaller, between) {
-                between = Some(normal);
-                return true;
-            }
-            let found = overlap::find(&smaller, steps);
-            place = found.unwrap_or(place);
-            found.is_none()
-        };
-        let ends = doubled([overlapping, bare.size()], bare.noise, &mut is_free)?;
-        let least = halved(ends, bare.noise, is_free);
-        (!vanishes(least)).then_some(least)
+        let Some(next) = overlap::find(&shrunk(least), steps) else { return Some(least) };
+        (place, overlapping) = (next, least);
     }
+    let convex = !bare.keeps() && hulls::are_convex(cast);
+    let mut between = None;
+    let mut is_free = |tolerance| {
+        if vanishes(tolerance) {
+            return true;
+        }
+        let smaller = shrunk(tolerance);
+        steps.leaves += 1;
+        if overlap::is_overlap(&smaller, place) {
+            return false;
+        }
+        if convex && let Some(normal) = parted::plane(&smaller, between) {
+            between = Some(normal);
+            return true;
+        }
+        let found = overlap::find(&smaller, steps);
+        place = found.unwrap_or(place);
+        found.is_none()
+    };
+    let ends = doubled([overlapping, bare.size()], bare.noise, &mut is_free)?;
+    let least = halved(ends, bare.noise, is_free);
+    (!vanishes(least)).then_some(least)
 }
 
 /// Whether the plane that parts the facets of a place has all of the bodies on either side.

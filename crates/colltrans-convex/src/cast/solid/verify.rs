@@ -1,6 +1,7 @@
 //! Proofs between solids checked: each entry by itself, without a search.
 
 use super::proof::{Cover, SolidCertificate, StartProof, StopProof, cut_holds, least_of_leaves};
+use super::{SolidCast, SolidScene};
 use crate::answer::{CertificateError, Separation, checked_as};
 use crate::body::solid::Solid;
 use crate::cast::Cast;
@@ -10,7 +11,6 @@ use crate::solve::solid::overlap::{is_overlap, leaves_apart, nested, never_overl
 use crate::solve::solid::projected::Projected;
 use crate::solve::solid::scene::Scene;
 use crate::solve::solid::search::{Aim, SLACK, exact_gap, node_rounding};
-use crate::solve::solid::separate;
 use crate::solve::solid::separating_axes::SeparatingAxes;
 
 /// A proof between solids: of a clearance, or of a plane between the bodies.
@@ -27,69 +27,55 @@ checked_as!(SolidProof { Clearance(SolidCertificate), Separation(Separation) });
 /// No proof of a length is as small: far below the rounding of any body's coordinates.
 const LEAST_LENGTH: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 
-impl Cast<'_, Solid> {
-    /// Checks a [`SolidCertificate`] or a [`Separation`] against the two bodies, and returns how far
-    /// the two bounds of the distance are apart, in multiples of the direction (0 where nothing stops
-    /// the body), or the margin, in world units.
-    ///
-    /// The cast must be the one that was answered, with its options. Every entry of a cover is checked
-    /// by the boxes, slabs and normals of its two nodes, or by its facets; what a search does to find
-    /// them plays no part.
-    ///
-    /// # Errors
-    /// What is not proven.
-    pub fn verify<'p>(&self, proof: impl Into<SolidProof<'p>>) -> Result<f64, CertificateError> {
-        match proof.into() {
-            SolidProof::Clearance(certificate) => self.verify_clearance(certificate),
-            SolidProof::Separation(separation) => separate::verify(&self.asked(), separation),
-        }
+pub(super) fn verify_clearance(
+    cast: &Cast<'_, Solid>,
+    certificate: &SolidCertificate,
+) -> Result<f64, CertificateError> {
+    let SolidCertificate { tolerance, start, lower, stop, cover } = certificate;
+    let (claimed, asked) = (*tolerance, cast.tolerance());
+    if claimed != asked {
+        return Err(CertificateError::OtherTolerance { claimed, asked });
     }
+    let scene = cast.asked();
+    let options = cast.options();
+    cast.verify_start(&scene, start)?;
+    let Some(aim) = certificate.aim(options) else {
+        let plain = *lower == 0.0 && stop.is_none() && cover.is_empty();
+        return if plain { Ok(0.0) } else { Err(CertificateError::Cover { entry: 0 }) };
+    };
+    verify_cover(&scene, aim, cover, *lower)?;
+    let end = options.before.unwrap_or(f64::INFINITY);
+    let Some(stop) = stop else {
+        // Nothing before the end, to within rounding.
+        let tolerance = node_rounding(&scene) / scene.setting.length + 4.0 * f64::EPSILON * end;
+        let reached = *lower >= end || *lower >= end - 2.0 * tolerance;
+        let (proven, claimed) = (*lower, end);
+        let unproven = CertificateError::Bound { proven, claimed };
+        return if reached { Ok(0.0) } else { Err(unproven) };
+    };
+    let error = verify_stop(&scene, aim, stop)?;
+    let gap = stop.shrunk_distance - *lower;
+    let tolerance = (2.0 * leaf::SHARP + 2.0 * SLACK) * scene.noise + 2.0 * error;
+    let tolerance = tolerance / scene.setting.length;
+    if (-tolerance..=tolerance).contains(&gap) && *lower >= 0.0 {
+        Ok(gap.max(0.0))
+    } else {
+        Err(CertificateError::Bound { proven: *lower, claimed: stop.shrunk_distance })
+    }
+}
 
-    fn verify_clearance(&self, certificate: &SolidCertificate) -> Result<f64, CertificateError> {
-        let SolidCertificate { tolerance, start, lower, stop, cover } = certificate;
-        let (claimed, asked) = (*tolerance, self.tolerance());
-        if claimed != asked {
-            return Err(CertificateError::OtherTolerance { claimed, asked });
-        }
-        let scene = self.asked();
-        let options = self.options();
-        self.verify_start(&scene, start)?;
-        let Some(aim) = certificate.aim(options) else {
-            let plain = *lower == 0.0 && stop.is_none() && cover.is_empty();
-            return if plain { Ok(0.0) } else { Err(CertificateError::Cover { entry: 0 }) };
-        };
-        verify_cover(&scene, aim, cover, *lower)?;
-        let end = options.before.unwrap_or(f64::INFINITY);
-        let Some(stop) = stop else {
-            // Nothing before the end, to within rounding.
-            let tolerance = node_rounding(&scene) / scene.setting.length + 4.0 * f64::EPSILON * end;
-            let reached = *lower >= end || *lower >= end - 2.0 * tolerance;
-            let (proven, claimed) = (*lower, end);
-            let unproven = CertificateError::Bound { proven, claimed };
-            return if reached { Ok(0.0) } else { Err(unproven) };
-        };
-        let error = verify_stop(&scene, aim, stop)?;
-        let gap = stop.shrunk_distance - *lower;
-        let tolerance = (2.0 * leaf::SHARP + 2.0 * SLACK) * scene.noise + 2.0 * error;
-        let tolerance = tolerance / scene.setting.length;
-        if (-tolerance..=tolerance).contains(&gap) && *lower >= 0.0 {
-            Ok(gap.max(0.0))
-        } else {
-            Err(CertificateError::Bound { proven: *lower, claimed: stop.shrunk_distance })
-        }
-    }
-
-    pub fn verify_start(&self, scene: &Scene, start: &StartProof) -> Result<(), CertificateError> {
-        let assumed = self.options().overlapping;
-        let holds = match start {
-            StartProof::Assumed => assumed.is_some(),
-            StartProof::Overlapping(overlap) => {
-                assumed != Some(false) && is_overlap(scene, *overlap)
-            }
-            StartProof::Apart(cover) => return verify_apart(scene, cover),
-        };
-        if holds { Ok(()) } else { Err(CertificateError::Start) }
-    }
+pub(super) fn verify_start(
+    cast: &Cast<'_, Solid>,
+    scene: &Scene,
+    start: &StartProof,
+) -> Result<(), CertificateError> {
+    let assumed = cast.options().overlapping;
+    let holds = match start {
+        StartProof::Assumed => assumed.is_some(),
+        StartProof::Overlapping(overlap) => assumed != Some(false) && is_overlap(scene, *overlap),
+        StartProof::Apart(cover) => return verify_apart(scene, cover),
+    };
+    if holds { Ok(()) } else { Err(CertificateError::Start) }
 }
 
 /// Checks that the interiors are disjoint where the bodies are.

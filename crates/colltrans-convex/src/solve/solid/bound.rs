@@ -268,6 +268,7 @@ mod tests {
     use crate::body::Pose;
     use crate::body::solid::Solid;
     use crate::cast::Cast;
+    use crate::solid::{SolidCast, SolidScene};
 
     fn triangle(most: i16) -> impl Strategy<Value = Solid> {
         let point = (-most..=most, -most..=most, -most..=most);

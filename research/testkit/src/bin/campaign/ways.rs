@@ -1,6 +1,7 @@
 //! Ways out in several moves: puzzles of cubes, as they are and turned, against all moves of cubes, and boxes with holes
 //! that are large enough, or not, along the axes and slanted. Every leg is looked at in 201 places.
 
+use colltrans::solid::SolidCast;
 use colltrans::ways::{Order, WayOptions, WayOut, WaysOut};
 use colltrans::{Cast, ConvexPolyhedron, Placed, Pose, Solid};
 use colltrans_testkit::oracle::cubes::Cubes;

@@ -3,6 +3,7 @@
 //! Bytes are read as for casts: how numbers are written, a byte of which the first two bits say which body is
 //! turned and the third whether they are solids, the bodies, their poses, and what is asked.
 
+use colltrans::solid::SolidCast;
 use colltrans::{Among, AnyBody, Cast, ObstacleId, Obstacles, Pair, Pose};
 use glam::{DQuat, DVec3};
 

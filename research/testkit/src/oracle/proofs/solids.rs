@@ -1,5 +1,6 @@
 //! Proofs of clearances and distances of solids.
 
+use colltrans::solid::SolidCast;
 use colltrans::{Cast, Pair, ProofFile, Solid};
 use glam::DVec3;
 use serde_json::Value;

@@ -1,6 +1,7 @@
 //! Convex bodies as solids, against the convex core and against the rule over all pairs of facets; the
 //! bodies against the points that they were made of.
 
+use colltrans::solid::SolidCast;
 use colltrans::{Bounded, Cast, Clearance, ContactRange, Outcome, Solid};
 
 use super::facets::{rule, triangles};

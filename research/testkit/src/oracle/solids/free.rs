@@ -10,7 +10,7 @@ pub mod thin;
 use colltrans::free::{
     CellBlocker, CellProof, DirectionCell, FreeDirections, FreeError, FreeOptions, Verdict,
 };
-use colltrans::solid::StartOverlap;
+use colltrans::solid::{SolidCast, StartOverlap};
 use colltrans::{Cast, Placed, Pose, Solid};
 use glam::DVec3;
 

@@ -4,7 +4,7 @@
 //! comes nearer before is asked of each pair of facets by itself, as two flat convex bodies, whose casts are
 //! judged by [`keep`](crate::oracle::keep).
 
-use colltrans::solid::SolidCertificate;
+use colltrans::solid::{SolidCast, SolidCertificate};
 use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Solid};
 use glam::DVec3;
 

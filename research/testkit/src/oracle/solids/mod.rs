@@ -16,6 +16,7 @@ pub mod sheets;
 pub mod squares;
 pub mod turning;
 
+use colltrans::solid::SolidCast;
 use colltrans::{Bounded, Cast, Pose, Solid};
 use glam::DVec3;
 

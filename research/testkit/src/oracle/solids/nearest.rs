@@ -5,7 +5,7 @@
 //! few are asked. A closed body holds a point if a line from it, along a general direction, leaves the body's
 //! facets more often than it enters them.
 
-use colltrans::solid::{Apart, Claim, SolidNear};
+use colltrans::solid::{Apart, Claim, SolidNear, SolidPair};
 use colltrans::{Distance, Pair, Pose, Solid, Within};
 use glam::DVec3;
 

@@ -1,6 +1,6 @@
 //! Settings of bodies made of cubes, most of them tied, and how an answer is judged.
 
-use colltrans::solid::SolidFree;
+use colltrans::solid::{SolidCast, SolidFree};
 use colltrans::{Bounded, Clearance, ContactRange, Pose, Solid};
 use glam::{DMat3, DQuat, DVec3};
 

@@ -1,6 +1,6 @@
 //! Settings of open surfaces, most of them tied, and how an answer is judged.
 
-use colltrans::solid::SolidFree;
+use colltrans::solid::{SolidCast, SolidFree};
 use colltrans::{Clearance, Pose, Solid};
 use glam::{DMat3, DQuat, DVec3};
 

@@ -2,6 +2,7 @@
 //! the convex search where both are convex, and by themselves with the bodies swapped.
 
 use colltrans::motion::{Motion, MotionCast, MotionClearance, MotionOutcome, SolidMotionProof};
+use colltrans::solid::SolidCast;
 use colltrans::{Cast, ConvexPolyhedron, Pose, QueryError, Solid};
 use glam::DVec3;
 

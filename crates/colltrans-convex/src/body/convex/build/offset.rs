@@ -45,7 +45,7 @@ impl ConvexPolyhedron {
     ///
     /// Vertices are numbered anew; [`Self::input_indices`] gives for each the input of the one that it
     /// comes from, which is the farthest along its faces' normals. Planes are off by less than `2^-40`
-    /// of the largest coordinate. [`Solid::shrunk`](crate::Solid::shrunk) moves each vertex the shortest
+    /// of the largest coordinate. `Solid::shrunk` moves each vertex the shortest
     /// way: to the same places in boxes and prisms, but farther below some of the planes where a way
     /// between two of them is shorter, and one vertex stays one. Takes `O(n log n)`,
     /// some times as often where the amount is nearly all there is.

@@ -24,7 +24,9 @@ use crate::answer::{Bounded, Certificate, Clearance, Contact, Outcome, Separatio
 use crate::body::Feature;
 use crate::body::solid::Solid;
 use crate::cast::Cast;
-use crate::cast::solid::{SolidFree, default_tolerance};
+use crate::cast::solid::ask::default_tolerance;
+use crate::cast::solid::boxes::leaves_behind;
+use crate::cast::solid::{SolidFree, SolidScene};
 use crate::setting::VertexPair;
 use crate::solve::solid::contact::{SolidContact, feature};
 use crate::solve::solid::scene::{Scene, permutes};
@@ -54,7 +56,7 @@ impl Hulls<'_> {
                 told.stopped(contact, 0.0, None)
             }
             Outcome::Contact(contact) if contact.certificate.upper < 0.0 => {
-                if solids.leaves_behind(told.sides[0].amount) {
+                if leaves_behind(solids, told.sides[0].amount) {
                     let pierced = Pierced::new(&self.cast, contact, told.noise)?;
                     return pierced.height(told.shift(true)).map(|_| free(None));
                 }

@@ -237,6 +237,7 @@ mod tests {
     use crate::body::Pose;
     use crate::body::solid::Solid;
     use crate::cast::Cast;
+    use crate::solid::{SolidCast, SolidScene};
 
     fn point() -> impl Strategy<Value = DVec3> {
         (-2_i8..=2, -2_i8..=2, -2_i8..=2)

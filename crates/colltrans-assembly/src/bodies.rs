@@ -650,7 +650,7 @@ impl<'a> Bodies<'a> {
         };
         let begins = parts.iter().map(&mut begin).collect();
         let solid = Solid::from_pieces(parts.iter().map(|&part| &self.displaced[part].solid));
-        let refused = |e| AssemblyError::Free(FreeError::Query(QueryError::NoSolid(e)));
+        let refused = |e| AssemblyError::Free(FreeError::Query(QueryError::from(e)));
         Ok((solid.map_err(refused)?, begins))
     }
 

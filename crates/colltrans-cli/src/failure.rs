@@ -116,8 +116,8 @@ impl From<colltrans::QueryError> for Failure {
             | Keep { .. }
             | Length { .. }
             | NothingLeft { .. } => Code::Usage,
-            NoSolid(_) => Code::Input,
-            Obstacle { ref reason, .. } if matches!(**reason, NoSolid(_)) => Code::Input,
+            NoSolid { .. } => Code::Input,
+            Obstacle { ref reason, .. } if matches!(**reason, NoSolid { .. }) => Code::Input,
             _ => Code::Query,
         };
         Self::new(code, error.to_string())

@@ -3,7 +3,6 @@
 use thiserror::Error;
 
 use crate::answer::{Solver, StartedFrom};
-use crate::cast::solid::StartOverlap;
 use crate::solve::options::{NarrowFrom, Until};
 
 /// A text that names none of the choices.
@@ -65,7 +64,6 @@ named!(
     }
 );
 named!("start", NarrowFrom { Center: "center", Ellipsoids: "ellipsoids" });
-named!("meaning of an overlap", StartOverlap { Refuse: "refuse", Ignore: "ignore" });
 
 /// A text that says no end of a minimisation.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]

@@ -17,4 +17,4 @@ pub use clearance::{Clearance, OverlapAhead, WhyFree};
 pub use distance::{Depth, Distance, Enclosure, NearPoints, PlaneGap, Within};
 pub use outcome::{Contact, Grazing, Outcome, Separated};
 pub use range::{CentralCast, ContactRange, DirectionalDepth, Intersection};
-pub use steps::{SolidSteps, Solver, StartedFrom, Steps};
+pub use steps::{Solver, StartedFrom, Steps};

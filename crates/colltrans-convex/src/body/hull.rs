@@ -3,7 +3,6 @@
 use glam::DVec3;
 
 use super::ConvexPolyhedron;
-use super::solid::Solid;
 
 /// A body, or a part of one, by its corners.
 pub trait Hull {
@@ -34,15 +33,5 @@ impl Hull for ConvexPolyhedron {
     #[inline]
     fn input_excess(&self) -> f64 {
         Self::input_excess(self)
-    }
-}
-
-impl Hull for Solid {
-    fn corners(&self) -> &[DVec3] {
-        self.vertices()
-    }
-
-    fn reach(&self) -> f64 {
-        Self::reach(self)
     }
 }

@@ -7,6 +7,7 @@ mod feature;
 mod hull;
 mod id;
 pub(crate) mod inertia;
+mod kept;
 pub mod motion;
 pub(crate) mod placed;
 pub mod pose;
@@ -22,6 +23,8 @@ pub use feature::{Feature, Features};
 pub use hull::Hull;
 pub use id::{FaceId, InputFacet, InputVertex, ObstacleId, VertexId};
 pub(crate) use inertia::Inertia;
+#[doc(hidden)]
+pub use kept::{Keepable, Kept};
 pub use placed::{Body, Numbered, Placed, Told};
 pub use pose::Pose;
 pub use topology::HalfEdge;

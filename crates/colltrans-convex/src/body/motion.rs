@@ -18,7 +18,6 @@ use derive_where::derive_where;
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::body::error::MotionError;
-use crate::body::solid::Solid;
 use crate::body::{ConvexPolyhedron, Placed, Pose};
 use crate::number::angle::{self, Turn, turn};
 use crate::number::error_free::{difference_error, product_error};
@@ -348,13 +347,6 @@ pub struct Moving<'a, B = crate::ConvexPolyhedron> {
 impl ConvexPolyhedron {
     /// This body and a motion, for a cast of bodies that turn.
     pub fn along<'a>(&'a self, motion: &'a Motion) -> Moving<'a> {
-        Moving { body: self, motion: Cow::Borrowed(motion) }
-    }
-}
-
-impl Solid {
-    /// This body and a motion, for a cast of bodies that turn.
-    pub fn along<'a>(&'a self, motion: &'a Motion) -> Moving<'a, Self> {
         Moving { body: self, motion: Cow::Borrowed(motion) }
     }
 }

@@ -11,7 +11,6 @@ use thiserror::Error;
 use super::Cast;
 use crate::body::error::{BuildError, PoseError};
 use crate::body::pose::PoseRecord;
-use crate::body::solid::SolidError;
 use crate::body::{ConvexPolyhedron, InputVertex, Pose};
 use crate::setting::error::QueryError;
 use crate::solve::options::{Options, OptionsRecord};
@@ -36,8 +35,8 @@ pub enum CaseError {
     Body {
         /// `"moving"` or `"fixed"`; `"the"` of a body alone.
         which: &'static str,
-        /// What is wrong with it.
-        error: BuildError,
+        /// What is wrong with it: a [`BuildError`] of a convex body, a `SolidError` of a solid.
+        error: Box<dyn std::error::Error + Send + Sync>,
     },
     /// A pose is none.
     #[error(transparent)]
@@ -48,14 +47,6 @@ pub enum CaseError {
     /// It is no proof: no JSON, or it lacks something.
     #[error("not a saved proof: {}", what_is_wrong(.0))]
     Proof(serde_json::Error),
-    /// A body is no solid.
-    #[error("{which} body: {error}")]
-    Solid {
-        /// `"moving"` or `"fixed"`.
-        which: &'static str,
-        /// What is wrong with it.
-        error: SolidError,
-    },
     /// One body is convex, the other a solid.
     #[error("one body is convex, the other is made of pieces")]
     Mixed,
@@ -143,7 +134,7 @@ impl Case {
             return Err(CaseError::Format { found: file.format, known: FORMAT });
         }
         let body = |record: &BodyRecord, which| {
-            record.body().map_err(|error| CaseError::Body { which, error })
+            record.body().map_err(|error| CaseError::Body { which, error: error.into() })
         };
         let case = Self {
             bodies: [body(&file.moving, "moving")?, body(&file.fixed, "fixed")?],
@@ -212,7 +203,7 @@ impl ConvexPolyhedron {
     /// What is wrong with it.
     pub fn from_json(text: &str) -> Result<Self, CaseError> {
         let record: BodyRecord = serde_json::from_str(text)?;
-        record.body().map_err(|error| CaseError::Body { which: "the", error })
+        record.body().map_err(|error| CaseError::Body { which: "the", error: error.into() })
     }
 }
 

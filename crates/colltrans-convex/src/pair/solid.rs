@@ -9,7 +9,7 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use crate::answer::{CertificateError, Distance, SolidSteps, Within, are_weights, checked_as};
+use crate::answer::{CertificateError, Distance, Within, are_weights, checked_as};
 use crate::body::solid::{AsSolid, Solid};
 use crate::body::{Features, Placed};
 use crate::cast::Cast;
@@ -26,6 +26,7 @@ use crate::solve::solid::nearest::{
 };
 use crate::solve::solid::overlap::{is_touch, nested};
 use crate::solve::solid::scene::Scene;
+use crate::solve::solid::steps::SolidSteps;
 
 /// A proof of the distance of two solids, checked by [`Pair::verify`] without a search: every pair of facets lies
 /// under one entry of a cover, and every entry is looked at by itself.

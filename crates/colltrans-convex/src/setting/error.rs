@@ -4,7 +4,6 @@ use glam::DVec3;
 use thiserror::Error;
 
 use crate::body::ObstacleId;
-use crate::body::solid::SolidError;
 
 /// Why a query has no answer.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -64,8 +63,11 @@ pub enum QueryError {
         extent: f64,
     },
     /// A convex body that is no solid.
-    #[error("a convex body is not a solid: {0}")]
-    NoSolid(#[from] SolidError),
+    #[error("a convex body is not a solid: {reason}")]
+    NoSolid {
+        /// Why it is none.
+        reason: String,
+    },
     /// The gap at which narrowing ends is negative or not a number.
     #[error("the gap {gap} at which narrowing ends is negative or not a number")]
     NarrowingGap {

@@ -217,7 +217,7 @@ pub(crate) fn convex_body(
     record: &BodyRecord,
     which: &'static str,
 ) -> Result<ConvexPolyhedron, CaseError> {
-    record.body().map_err(|error| CaseError::Body { which, error })
+    record.body().map_err(|error| CaseError::Body { which, error: error.into() })
 }
 
 #[derive(Serialize, Deserialize)]
@@ -299,7 +299,7 @@ fn lowest(lower: &[u32], mut v: u32) -> u32 {
 }
 
 pub(super) fn union(pieces: &[PieceRecord], which: &'static str) -> Result<Solid, CaseError> {
-    let refused = |error| CaseError::Solid { which, error };
+    let refused = |error: SolidError| CaseError::Body { which, error: error.into() };
     let made = |piece: &PieceRecord| {
         // Statements may count vertices: none is left out of a piece.
         let mut is_used = vec![false; piece.vertices.len()];

@@ -19,8 +19,8 @@ mod words;
 use glam::DVec3;
 
 use colltrans_convex::answer::{
-    CertificateError, Clearance, ContactRange, Depth, Distance, Outcome, OverlapAhead, SolidSteps,
-    Steps, WhyFree, Within,
+    CertificateError, Clearance, ContactRange, Depth, Distance, Outcome, OverlapAhead, Steps,
+    WhyFree, Within,
 };
 use colltrans_convex::body::solid::Solid;
 use colltrans_convex::body::{ConvexPolyhedron, Pose};
@@ -28,6 +28,7 @@ use colltrans_convex::cast::{CaseError, Cast};
 use colltrans_convex::pair::Pair;
 use colltrans_convex::pair::solid::Unproven;
 use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::solid::SolidSteps;
 use colltrans_convex::solid::{SolidCast, SolidPairSearch};
 use colltrans_removal::free::{FreeDirections, FreeError};
 use file::{Pieces, again};

@@ -17,13 +17,14 @@ use super::region::{FreeRegion, regions};
 use super::rest::{Piece, Rest};
 use super::search::{Found, Search};
 use super::thin::{FreeArc, FreePoint, Thin, thin};
-use colltrans_convex::answer::{CertificateError, SolidSteps};
+use colltrans_convex::answer::CertificateError;
 use colltrans_convex::body::Placed;
 use colltrans_convex::body::solid::{AsSolid, Solid};
 use colltrans_convex::cast::Cast;
 use colltrans_convex::cast::solid::StartOverlap;
 use colltrans_convex::setting::check_direction;
 use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::solid::SolidSteps;
 use colltrans_convex::solid::{SolidCast, SolidScene};
 use colltrans_convex::solve::solid::overlap;
 

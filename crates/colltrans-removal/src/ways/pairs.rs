@@ -7,12 +7,13 @@ use glam::DVec3;
 use super::openings::Question;
 use super::options::Searched;
 use crate::free::{Bodies, FreeError};
-use colltrans_convex::answer::{Clearance, SolidSteps};
+use colltrans_convex::answer::Clearance;
 use colltrans_convex::body::solid::Solid;
 use colltrans_convex::body::{Aabb, Placed};
 use colltrans_convex::cast::Cast;
 use colltrans_convex::cast::solid::SolidOptions;
 use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::solid::SolidSteps;
 use colltrans_convex::solid::{SolidCast, SolidScene};
 use colltrans_convex::solve::solid::{Workspace, overlap};
 

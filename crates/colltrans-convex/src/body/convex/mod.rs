@@ -4,7 +4,6 @@
 //! [`topology`](crate::body::topology) (half-edges, no coordinates) -> the indices built on both
 //! ([`support`] points at once, [`sections`] when the paper's algorithm first asks for them).
 
-mod as_solid;
 mod build;
 mod excess;
 mod fan;
@@ -19,9 +18,8 @@ use std::sync::OnceLock;
 
 use glam::DVec3;
 
-use crate::body::solid::{Solid, SolidError};
 use crate::body::topology::{HalfEdge, Topology};
-use crate::body::{Inertia, InputVertex, VertexId};
+use crate::body::{Inertia, InputVertex, Kept, VertexId};
 use crate::number::plane::polygon_normal;
 pub use build::{ConvexityDefect, OffsetReport, convexity_defect};
 pub(crate) use excess::LargeFace;
@@ -60,7 +58,7 @@ pub struct ConvexPolyhedron {
     /// Made when [`crate::Solver::Cta`] first asks for them: portal refinement does without.
     sections: OnceLock<SectionIndex>,
     /// The same body as a solid, made when it is first asked for.
-    pub(crate) solid: OnceLock<Box<Result<Solid, SolidError>>>,
+    kept: Kept,
 }
 
 /// Bodies with more vertices than this are worth the better guess from ellipsoids (measured).
@@ -313,10 +311,13 @@ impl ConvexPolyhedron {
             + self.large_faces.capacity() * size_of::<LargeFace>()
             + self.support.heap_bytes()
             + self.sections.get().map_or(0, SectionIndex::heap_bytes)
-            + self.solid.get().map_or(0, |solid| {
-                let inside = solid.as_ref().as_ref().map_or(0, Solid::heap_bytes);
-                size_of_val(solid.as_ref()) + inside
-            })
+            + self.kept.heap_bytes()
+    }
+
+    /// What others have made of the body.
+    #[doc(hidden)]
+    pub fn kept(&self) -> &Kept {
+        &self.kept
     }
 
     #[doc(hidden)]

@@ -3,6 +3,8 @@
 use glam::DVec3;
 use thiserror::Error;
 
+use crate::setting::error::QueryError;
+
 /// Why a [`Solid`](super::Solid) was refused: what is wrong, where, and how often.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
@@ -92,4 +94,10 @@ pub enum SolidError {
         /// The amount as given.
         amount: f64,
     },
+}
+
+impl From<SolidError> for QueryError {
+    fn from(error: SolidError) -> Self {
+        Self::NoSolid { reason: error.to_string() }
+    }
 }

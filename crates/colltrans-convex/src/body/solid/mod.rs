@@ -5,12 +5,12 @@
 //! is first asked for; [`self_intersection`] finds the walls that are too thin for it.
 
 mod bodies;
+mod convex;
 pub(crate) mod cuts;
 pub(crate) mod edges;
 mod error;
 pub(crate) mod exact;
 mod faces;
-mod kept;
 mod openness;
 mod polygon;
 mod report;
@@ -22,14 +22,15 @@ mod validate;
 pub(crate) mod wedge;
 mod weld;
 
+use std::borrow::Cow;
 use std::sync::OnceLock;
 
 use glam::{DVec3, Vec3Swizzles};
 
-use crate::body::{Aabb, ConvexPolyhedron, InputFacet, InputVertex, Numbered};
+use crate::body::motion::{Motion, Moving};
+use crate::body::{Aabb, ConvexPolyhedron, Hull, InputFacet, InputVertex, Kept, Numbered};
 pub use error::SolidError;
 use faces::Faces;
-pub(crate) use kept::{Keepable, Kept};
 pub use report::{Shell, ShellKind, SolidReport};
 pub use shells::crossing;
 pub use shrink::ShrinkReport;
@@ -537,5 +538,22 @@ impl Solid {
     fn piece_of(&self, triangle: usize) -> usize {
         let facet = self.facet_index[triangle].0;
         self.groups.piece_starts.partition_point(|start| *start <= facet)
+    }
+}
+
+impl Solid {
+    /// This body and a motion, for a cast of bodies that turn.
+    pub fn along<'a>(&'a self, motion: &'a Motion) -> Moving<'a, Self> {
+        Moving { body: self, motion: Cow::Borrowed(motion) }
+    }
+}
+
+impl Hull for Solid {
+    fn corners(&self) -> &[DVec3] {
+        self.vertices()
+    }
+
+    fn reach(&self) -> f64 {
+        Self::reach(self)
     }
 }

@@ -8,7 +8,7 @@ use super::tolerance::least_tolerance_from;
 use super::{
     Cast, SolidCertificate, SolidFree, SolidOverlap, StartOverlap, StartProof, proof, verify,
 };
-use crate::answer::{Bounded, CertificateError, Clearance, Outcome, SolidSteps};
+use crate::answer::{Bounded, CertificateError, Clearance, Outcome};
 use crate::body::Placed;
 use crate::body::solid::{AsSolid, Solid};
 use crate::setting::error::QueryError;
@@ -17,6 +17,7 @@ use crate::solve::solid::overlap::{self, Overlap};
 use crate::solve::solid::scene::{Scene, noise_of, permutes};
 use crate::solve::solid::search::{Aim, Found, Search, Workspace};
 use crate::solve::solid::separate::separation;
+use crate::solve::solid::steps::SolidSteps;
 
 /// Default tolerance, in multiples of the rounding error of a coordinate.
 pub(super) const NOISES: f64 = 8.0;

@@ -5,11 +5,12 @@ use glam::DVec3;
 
 use super::ask::NOISES;
 use super::{Cast, SolidCast, SolidFree, SolidScene};
-use crate::answer::{Clearance, Separation, SolidSteps};
+use crate::answer::{Clearance, Separation};
 use crate::body::solid::Solid;
 use crate::number::noise::Noise;
 use crate::solve::solid::scene::permutes;
 use crate::solve::solid::separate::Boxes;
+use crate::solve::solid::steps::SolidSteps;
 
 /// Boxes touch that are apart, or overlap, by so many noises.
 const TOUCHING: f64 = 16.0;

@@ -11,6 +11,8 @@ mod proof;
 mod saved;
 pub(crate) mod tolerance;
 mod verify;
+#[cfg(all(test, debug_assertions))]
+mod work;
 
 pub use ask::{SolidCast, SolidScene};
 pub use proof::{Claim, Cover, SolidCertificate, StartProof, StopProof};
@@ -18,8 +20,7 @@ pub use verify::SolidProof;
 
 use super::{Cast, CastBody, common_end};
 use crate::answer::{
-    Bounded, CertificateError, Clearance, ContactRange, Intersection, Outcome, RangeEnd,
-    Separation, SolidSteps,
+    Bounded, CertificateError, Clearance, ContactRange, Intersection, Outcome, RangeEnd, Separation,
 };
 use crate::body::solid::Solid;
 use crate::body::{Body, Placed, Pose};
@@ -30,6 +31,7 @@ use crate::solve::solid::nearest::{SolidGap, SolidNear};
 use crate::solve::solid::overlap::{self, Overlap};
 use crate::solve::solid::search::Workspace;
 use crate::solve::solid::separate;
+use crate::solve::solid::steps::SolidSteps;
 
 /// What an overlap at the start means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
@@ -46,6 +48,11 @@ pub enum StartOverlap {
     /// what was ignored.
     Ignore,
 }
+
+crate::written::named!(
+    "meaning of an overlap",
+    StartOverlap { Refuse: "refuse", Ignore: "ignore" }
+);
 
 /// Choices of a query between solids. More may be added: begin with the default ones.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]

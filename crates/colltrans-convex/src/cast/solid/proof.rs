@@ -14,7 +14,7 @@ use std::collections::HashMap;
 use super::ask::{AtOnce, answer, scene_once, sunk, told_at_once};
 use super::hulls::Hulls;
 use super::{SolidCast, SolidOptions, SolidScene, StartOverlap};
-use crate::answer::{Clearance, SolidSteps};
+use crate::answer::Clearance;
 use crate::body::solid::Solid;
 use crate::cast::Cast;
 use crate::setting::error::QueryError;
@@ -26,6 +26,7 @@ use crate::solve::solid::rim::{self, Upright};
 use crate::solve::solid::scene::Scene;
 use crate::solve::solid::search::{Aim, Search, Workspace, children, node_rounding, splits_moving};
 use crate::solve::solid::separating_axes::SeparatingAxes;
+use crate::solve::solid::steps::SolidSteps;
 
 /// A proof of the answer of [`Cast::clearance`] between solids, checked by [`Cast::verify`] without a
 /// search: every pair of facets lies under one entry of a cover, and every entry is looked at by

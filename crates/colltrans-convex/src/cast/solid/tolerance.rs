@@ -8,12 +8,12 @@
 //! bodies are asked each time, unless the last place tells, or of convex ones a plane between them.
 
 use super::{Cast, SolidScene, hulls};
-use crate::answer::SolidSteps;
 use crate::body::solid::Solid;
 use crate::solve::solid::overlap::{self, Overlap};
 use crate::solve::solid::parted;
 use crate::solve::solid::scene::Scene;
 use crate::solve::solid::separate;
+use crate::solve::solid::steps::SolidSteps;
 
 /// The least tolerance is found to this share of itself, or so many noises; as many more part bodies clearly.
 const ACCURACY: f64 = 1e-12;

@@ -36,9 +36,10 @@ use super::leaf::{Gap, Meeting, Opposed, listed, nearest_after};
 use super::rim;
 use super::scene::{Corner, Scene, Side};
 use super::search::{Aim, Found, exact_gap_of};
-use crate::answer::{Bounded, SolidSteps};
+use crate::answer::Bounded;
 use crate::body::Feature;
 use crate::body::solid::Solid;
+use crate::solve::solid::steps::SolidSteps;
 
 /// Where a solid is stopped.
 ///

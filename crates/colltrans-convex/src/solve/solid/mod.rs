@@ -23,6 +23,7 @@ pub mod search;
 pub(crate) mod separate;
 pub(crate) mod separating_axes;
 mod sign;
+pub mod steps;
 mod thin;
 mod triangle;
 
@@ -31,3 +32,4 @@ pub use contact::SolidContact;
 pub use nearest::{Apart, SolidGap, SolidNear};
 pub use overlap::Overlap;
 pub use search::Workspace;
+pub use steps::SolidSteps;

@@ -207,7 +207,7 @@ impl ConvexPolyhedron {
             inertia,
             support,
             sections: OnceLock::new(),
-            solid: OnceLock::new(),
+            kept: crate::body::Kept::default(),
         };
         body.measure_faces();
         // Queries go by them around the faces of small bodies, and along the rims of large faces.

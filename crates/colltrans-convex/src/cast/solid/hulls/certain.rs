@@ -20,7 +20,7 @@ use glam::{DMat3, DVec3};
 
 use super::guessed::least_gap;
 use super::{Hulls, Spot, Surface};
-use crate::answer::{Bounded, Certificate, Clearance, Contact, Outcome, Separation, SolidSteps};
+use crate::answer::{Bounded, Certificate, Clearance, Contact, Outcome, Separation};
 use crate::body::Feature;
 use crate::body::solid::Solid;
 use crate::cast::Cast;
@@ -32,6 +32,7 @@ use crate::solve::solid::contact::{SolidContact, feature};
 use crate::solve::solid::scene::{Scene, permutes};
 use crate::solve::solid::search::{Found, SLACK};
 use crate::solve::solid::separate;
+use crate::solve::solid::steps::SolidSteps;
 
 /// Poses may be off rotations, and facets off their plane across the direction, by such a share.
 const SHEARED: f64 = 1e-5;

@@ -24,7 +24,8 @@ use glam::DVec3;
 
 use crate::answer::{Contact, Outcome};
 use crate::body::ConvexPolyhedron;
-use crate::body::solid::{Keepable, Solid};
+use crate::body::Keepable;
+use crate::body::solid::Solid;
 use crate::cast::Cast;
 use crate::setting::Setting;
 use crate::solve::options::Options;

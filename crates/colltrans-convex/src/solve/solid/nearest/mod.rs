@@ -14,8 +14,8 @@ use glam::DVec3;
 
 use super::overlap::{self, Overlap};
 use super::scene::{Scene, Side};
-use crate::answer::SolidSteps;
 use crate::body::Feature;
+use crate::solve::solid::steps::SolidSteps;
 pub use bound::Apart;
 use search::{Found, corners};
 use triangle::Nearest;

@@ -9,9 +9,9 @@ use std::collections::BinaryHeap;
 
 use super::bound::{Apart, Axes, Couple, View};
 use super::triangle::{self, Corners, GAP, Nearest};
-use crate::answer::SolidSteps;
 use crate::solve::solid::scene::{Scene, Side};
 use crate::solve::solid::search::{self, children};
+use crate::solve::solid::steps::SolidSteps;
 use crate::work;
 
 /// How far, in noises, the limit is below the least length found.

@@ -1,7 +1,17 @@
 //! A convex polyhedron as a solid, made when it is first asked for and kept.
 
-use super::ConvexPolyhedron;
-use crate::body::solid::{AsSolid, Solid, SolidError};
+use super::{AsSolid, Solid, SolidError};
+use crate::body::{ConvexPolyhedron, Keepable};
+
+/// The surface of a convex polyhedron, kept with it.
+#[derive(Debug)]
+struct Surface(Result<Solid, SolidError>);
+
+impl Keepable for Surface {
+    fn heap_bytes(&self) -> usize {
+        size_of::<Self>() + self.0.as_ref().map_or(0, Solid::heap_bytes)
+    }
+}
 
 impl Solid {
     /// A convex polyhedron, its faces cut into triangles. Vertices keep the numbers of its input, and
@@ -30,8 +40,9 @@ impl AsSolid for ConvexPolyhedron {
             1 => Ok(Solid::without_area(self, [0, 1, 1])),
             _ => Solid::from_convex(self),
         };
-        let made = self.solid.get_or_init(|| Box::new(make()));
-        made.as_ref().as_ref().map_err(Clone::clone)
+        let made = self.kept().get_or_make(|| Surface(make()));
+        let Surface(made) = made.expect("nothing else is kept with a convex polyhedron");
+        made.as_ref().map_err(Clone::clone)
     }
 }
 

@@ -15,14 +15,11 @@ pub mod body;
 #[doc(hidden)]
 pub mod cast;
 #[doc(hidden)]
-pub mod kinds;
-#[doc(hidden)]
 pub mod number;
 #[doc(hidden)]
 pub mod pair;
 #[doc(hidden)]
 pub mod setting;
-pub mod solid;
 #[doc(hidden)]
 pub mod solve;
 #[doc(hidden)]
@@ -39,7 +36,6 @@ pub use answer::{
     Within,
 };
 pub use body::error::{BuildError, PoseError, TopologyError};
-pub use body::solid::Solid;
 pub use body::{
     Aabb, Body, ConvexPolyhedron, ConvexityDefect, FaceId, Feature, Features, HalfEdge, InputFacet,
     InputVertex, ObstacleId, OffsetReport, Placed, Pose, VertexId, convexity_defect,
@@ -48,7 +44,6 @@ pub use body::{
 pub use cast::{Case, CaseError};
 pub use cast::{Cast, CastBody, WitnessPoints, cast};
 pub use glam;
-pub use kinds::{AnyBody, AnyClearance, AnyDistance, AnyNear, AnyPlaced, ByKind};
 pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
 pub use pair::{Pair, PairBody, PairProof};
 pub use setting::VertexPair;

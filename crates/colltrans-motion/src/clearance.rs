@@ -13,7 +13,7 @@ use colltrans_convex::answer::Bounded;
 use colltrans_convex::body::Hull;
 use colltrans_convex::pair::Pair;
 use colltrans_convex::setting::error::QueryError;
-use colltrans_convex::solid::Overlap;
+use colltrans_solid::Overlap;
 
 /// How often the way back to a time at which bodies are apart as they are is doubled.
 const BACK: i32 = 40;

@@ -81,18 +81,18 @@ pub use self::verify::MotionProofError;
 pub use colltrans_convex::body::error::MotionError;
 pub use colltrans_convex::body::motion::{Motion, Moving, Piece as MotionPiece};
 use colltrans_convex::body::pose::STRETCHED;
-use colltrans_convex::body::solid::Solid;
 use colltrans_convex::body::{ConvexPolyhedron, Hull};
 use colltrans_convex::number::noise::Noise;
 use colltrans_convex::number::range::MAX_MAGNITUDE;
 use colltrans_convex::setting::check_keep;
 use colltrans_convex::setting::error::{QueryError, Stalled};
-use colltrans_convex::solid::StartOverlap;
+use colltrans_solid::StartOverlap;
+use colltrans_solid::body::Solid;
 
 /// The default tolerance, in multiples of what two points may be off each other: noise, and motion.
 const TOLERANCE: f64 = 32.0;
 
-/// Two bodies, either of which may move, from time 0 to 1: convex ones, or [solids](colltrans_convex::Solid).
+/// Two bodies, either of which may move, from time 0 to 1: convex ones, or [solids](colltrans_solid::Solid).
 #[derive(Debug)]
 #[derive_where(Clone)]
 pub struct MotionCast<'a, B = ConvexPolyhedron> {

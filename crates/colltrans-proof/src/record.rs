@@ -18,17 +18,17 @@ use colltrans_convex::answer::{
     Bounded, Clearance, Contact, ContactRange, Depth, Distance, Grazing, Outcome, OverlapAhead,
     Separated, Solver, Steps, WhyFree, Within,
 };
-use colltrans_convex::body::solid::Solid;
 use colltrans_convex::body::{Body, ConvexPolyhedron, Feature, Features, InputVertex, ObstacleId};
 use colltrans_convex::cast::Cast;
-use colltrans_convex::kinds::{AnyClearance, AnyNear, ByKind};
-use colltrans_convex::pair::solid::OverlapDepth;
 use colltrans_convex::pair::{Pair, points};
 use colltrans_convex::setting::error::QueryError;
-use colltrans_convex::solid::{SolidCast, SolidPair, SolidPairSearch};
 use colltrans_convex::solve::observe::{NoObserver, Observer};
 use colltrans_convex::written::named;
 use colltrans_scene::{Among, ClearanceAmong, Nearby, Nearest};
+use colltrans_solid::body::Solid;
+use colltrans_solid::kinds::{AnyClearance, AnyNear, ByKind};
+use colltrans_solid::pair::OverlapDepth;
+use colltrans_solid::{SolidCast, SolidPair, SolidPairSearch};
 pub use free::{BlockedByRecord, FreeRecord, FreeRegionRecord};
 pub use motion::TimeRecord;
 pub use path::PathRecord;

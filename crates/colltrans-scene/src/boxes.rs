@@ -17,9 +17,9 @@
 
 use glam::{DMat3, DVec3};
 
-use colltrans_convex::body::solid::Solid;
 use colltrans_convex::body::{Aabb, ConvexPolyhedron, Pose};
-use colltrans_convex::kinds::{AnyPlaced, ByKind};
+use colltrans_solid::body::Solid;
+use colltrans_solid::kinds::{AnyPlaced, ByKind};
 
 /// `u`.
 const ROUNDING: f64 = 0.5 * f64::EPSILON;

@@ -5,14 +5,14 @@ use glam::DVec3;
 use super::boxes::Sweep;
 use super::obstacles::Obstacle;
 use super::{Among, AmongSteps, ByKind};
-use colltrans_convex::Solid;
 use colltrans_convex::answer::Clearance;
 use colltrans_convex::body::ObstacleId;
 use colltrans_convex::cast::Cast;
-use colltrans_convex::kinds::AnyClearance;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_convex::setting::{check_direction, check_length};
-use colltrans_convex::solid::{SolidCast, SolidScene};
+use colltrans_solid::Solid;
+use colltrans_solid::kinds::AnyClearance;
+use colltrans_solid::{SolidCast, SolidScene};
 
 /// Searches between solids end so many noises beyond the best answer: more than their bounds are off.
 const BEYOND: f64 = 64.0;

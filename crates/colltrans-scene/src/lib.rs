@@ -33,16 +33,17 @@ use glam::DVec3;
 
 pub use bulk::{Approach, FixedRotations};
 pub use clearance::ClearanceAmong;
-use colltrans_convex::body::solid::AsSolid;
+use colltrans_convex::ConvexPolyhedron;
 use colltrans_convex::body::{Aabb, ObstacleId, Pose};
 use colltrans_convex::cast::Cast;
-use colltrans_convex::cast::solid::SolidOptions;
-use colltrans_convex::kinds::{AnyBody, AnyPlaced, ByKind};
 use colltrans_convex::pair::Pair;
 use colltrans_convex::setting::error::QueryError;
-use colltrans_convex::solid::{SolidCast, SolidPair};
 use colltrans_convex::solve::options::Options;
-use colltrans_convex::{ConvexPolyhedron, Solid};
+use colltrans_solid::Solid;
+use colltrans_solid::body::AsSolid;
+use colltrans_solid::cast::SolidOptions;
+use colltrans_solid::kinds::{AnyBody, AnyPlaced, ByKind};
+use colltrans_solid::{SolidCast, SolidPair};
 pub use nearest::{Nearby, Nearest};
 use obstacles::Obstacle;
 pub use obstacles::{Obstacles, UnknownObstacle};
@@ -114,7 +115,7 @@ impl<'a> Among<'a> {
     /// A placed body among obstacles, with the default choices.
     ///
     /// # Errors
-    /// A convex body whose facets [`Solid::from_mesh`](colltrans_convex::Solid::from_mesh) refuses, where a solid is asked
+    /// A convex body whose facets [`Solid::from_mesh`](colltrans_solid::Solid::from_mesh) refuses, where a solid is asked
     /// about it: as the moving body among solids, or among the obstacles of a moving solid, by its id
     /// ([`QueryError::Obstacle`]).
     pub fn new(

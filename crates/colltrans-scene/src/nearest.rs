@@ -5,9 +5,9 @@ use super::obstacles::Obstacle;
 use super::{Among, AmongSteps, ByKind};
 use colltrans_convex::answer::Within;
 use colltrans_convex::body::ObstacleId;
-use colltrans_convex::kinds::{AnyDistance, AnyNear};
 use colltrans_convex::setting::check_length;
 use colltrans_convex::setting::error::QueryError;
+use colltrans_solid::kinds::{AnyDistance, AnyNear};
 
 /// The answer of [`Among::nearest`].
 #[derive(Debug, Clone, Copy, PartialEq)]

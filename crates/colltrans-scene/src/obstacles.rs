@@ -7,7 +7,7 @@ use thiserror::Error;
 use super::boxes::of_placed;
 use super::tree::Tree;
 use colltrans_convex::body::{Aabb, ObstacleId, Pose};
-use colltrans_convex::kinds::{AnyBody, AnyPlaced};
+use colltrans_solid::kinds::{AnyBody, AnyPlaced};
 
 /// There is no such obstacle (any more).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]

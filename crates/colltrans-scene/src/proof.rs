@@ -16,14 +16,14 @@ use colltrans_convex::answer::{
     CertificateError, Clearance, PlaneGap, WhyFree, Within, checked_as,
 };
 use colltrans_convex::body::{Aabb, ObstacleId};
-use colltrans_convex::cast::solid::{SolidCertificate, StartProof};
 use colltrans_convex::cast::{Cast, verified_overlap};
-use colltrans_convex::kinds::AnyNear;
 use colltrans_convex::number::noise::Noise;
-use colltrans_convex::pair::solid::DistanceCertificate;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_convex::setting::{check_direction, check_length};
-use colltrans_convex::solid::{SolidCast, SolidPair};
+use colltrans_solid::cast::{SolidCertificate, StartProof};
+use colltrans_solid::kinds::AnyNear;
+use colltrans_solid::pair::DistanceCertificate;
+use colltrans_solid::{SolidCast, SolidPair};
 
 /// What proves that an obstacle is not nearer than a number.
 pub type ApartProof = ByKind<PlaneGap, DistanceCertificate>;

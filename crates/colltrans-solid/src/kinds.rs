@@ -4,10 +4,10 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use crate::answer::{Clearance, Distance, NearPoints};
-use crate::body::solid::Solid;
-use crate::body::{ConvexPolyhedron, Features, Placed, Pose};
-use crate::solve::solid::nearest::SolidNear;
+use crate::body::Solid;
+use crate::solve::nearest::SolidNear;
+use colltrans_convex::answer::{Clearance, Distance, NearPoints};
+use colltrans_convex::body::{ConvexPolyhedron, Features, Placed, Pose};
 
 /// Something of convex bodies, or of solids: a body, an answer, a proof.
 ///

@@ -1,14 +1,36 @@
-//! What is of solids alone: the answers, proofs and choices of a [`Cast`](crate::Cast) of
-//! [`Solid`](crate::Solid)s, and what is said of their surfaces.
+//! Solids that need not be convex: bodies, their casts and distances, and the proofs.
+//!
+//! [`Solid`] is a body that `colltrans_convex::Cast` and `Pair` accept as they accept a convex polyhedron; what only
+//! solids answer are the methods of [`SolidCast`] and [`SolidPair`]. [`AnyBody`] is a body of either kind.
+//!
+//! The modules, each using only those before it: [`body`] (surfaces and their trees), [`solve`] (the search), [`cast`] and
+//! [`pair`] (the questions), [`kinds`] (bodies and answers of either kind).
 
-pub use crate::body::solid::{AsSolid, Shell, ShellKind, ShrinkReport, SolidError, SolidReport};
-pub use crate::cast::solid::{
+#![allow(
+    rustdoc::private_intra_doc_links,
+    reason = "hidden modules are read with their private parts"
+)]
+
+#[doc(hidden)]
+pub mod body;
+#[doc(hidden)]
+pub mod cast;
+#[doc(hidden)]
+pub mod kinds;
+#[doc(hidden)]
+pub mod pair;
+#[doc(hidden)]
+pub mod solve;
+
+pub use body::{AsSolid, Shell, ShellKind, ShrinkReport, Solid, SolidError, SolidReport};
+#[doc(hidden)]
+pub use cast::SolidScene;
+pub use cast::{
     Claim, Cover, NoGrazing, SolidCast, SolidCertificate, SolidFree, SolidMeeting, SolidOptions,
-    SolidOverlap, SolidProof, SolidScene, StartOverlap, StartProof, StopProof,
+    SolidOverlap, SolidProof, StartOverlap, StartProof, StopProof,
 };
-pub use crate::pair::solid::{
-    DistanceCertificate, OverlapDepth, SolidPair, SolidPairProof, SolidPairSearch,
-};
-pub use crate::solve::solid::{
-    Apart, Overlap, Reason, SolidContact, SolidGap, SolidNear, SolidSteps, Workspace,
-};
+pub use kinds::{AnyBody, AnyClearance, AnyDistance, AnyNear, AnyPlaced, ByKind};
+#[doc(hidden)]
+pub use pair::SolidPairSearch;
+pub use pair::{DistanceCertificate, OverlapDepth, SolidPair, SolidPairProof};
+pub use solve::{Apart, Overlap, Reason, SolidContact, SolidGap, SolidNear, SolidSteps, Workspace};

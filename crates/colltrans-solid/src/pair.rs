@@ -9,24 +9,24 @@ use std::collections::HashMap;
 
 use glam::DVec3;
 
-use crate::answer::{CertificateError, Distance, Within, are_weights, checked_as};
-use crate::body::solid::{AsSolid, Solid};
-use crate::body::{Features, Placed};
-use crate::cast::Cast;
-use crate::cast::solid::tolerance::least_tolerance_from;
-use crate::cast::solid::{Claim, Cover};
-use crate::pair::{Pair, PairBody};
-use crate::setting::error::QueryError;
-use crate::setting::{Setting, check_length};
+use crate::body::{AsSolid, Solid};
+use crate::cast::tolerance::least_tolerance_from;
+use crate::cast::{Claim, Cover};
 #[cfg(feature = "serde")]
-use crate::solve::solid::nearest::points_of;
-use crate::solve::solid::nearest::search::{AxesOf, Search, Until, proven};
-use crate::solve::solid::nearest::{
+use crate::solve::nearest::points_of;
+use crate::solve::nearest::search::{AxesOf, Search, Until, proven};
+use crate::solve::nearest::{
     Apart, SolidGap, SolidNear, Spot, distance_of, meeting, shared_points, triangle,
 };
-use crate::solve::solid::overlap::{is_touch, nested};
-use crate::solve::solid::scene::Scene;
-use crate::solve::solid::steps::SolidSteps;
+use crate::solve::overlap::{is_touch, nested};
+use crate::solve::scene::Scene;
+use crate::solve::steps::SolidSteps;
+use colltrans_convex::answer::{CertificateError, Distance, Within, are_weights, checked_as};
+use colltrans_convex::body::{Features, Placed};
+use colltrans_convex::cast::Cast;
+use colltrans_convex::pair::{Pair, PairBody};
+use colltrans_convex::setting::error::QueryError;
+use colltrans_convex::setting::{Setting, check_length};
 
 /// A proof of the distance of two solids, checked by [`Pair::verify`] without a search: every pair of facets lies
 /// under one entry of a cover, and every entry is looked at by itself.
@@ -72,7 +72,7 @@ checked_as!(SolidPairProof { Distance(DistanceCertificate), Near(SolidNear) });
 pub struct OverlapDepth {
     /// Whether the bodies have a point in common, as they are and exactly.
     pub meets: bool,
-    /// As [`Cast::least_tolerance`](crate::Cast::least_tolerance) says: 0 if the bodies do not overlap, `None` if
+    /// As [`Cast::least_tolerance`](crate::SolidCast::least_tolerance) says: 0 if the bodies do not overlap, `None` if
     /// there is none.
     pub least_tolerance: Option<f64>,
     /// How much work it was.

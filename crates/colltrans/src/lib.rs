@@ -80,8 +80,9 @@
 //!
 //! Both kinds of bodies are asked in these words and answer in these types, `Clearance<Solid>` and so on,
 //! with contacts of their own; directions to go back, and trackers, are of convex bodies alone, the
-//! [least tolerance](Cast::least_tolerance) of solids. Answers about convex bodies carry their proofs;
-//! between solids a proof costs more and is asked for apart, by [`Cast::certified_clearance`].
+//! [least tolerance](solid::SolidCast::least_tolerance) of solids. Answers about convex bodies carry their proofs;
+//! between solids a proof costs more and is asked for apart, by
+//! [`certified_clearance`](solid::SolidCast::certified_clearance).
 //!
 //! A [`Tracker`] answers the same questions, starting from its last answer: for bodies that move a
 //! little between two queries.
@@ -154,15 +155,14 @@ pub mod solid;
 
 #[doc(inline)]
 pub use colltrans_convex::{
-    Aabb, AnyBody, AnyClearance, AnyDistance, AnyNear, AnyPlaced, Body, Bounded, BuildError,
-    ByKind, Cast, CentralCast, Certificate, CertificateError, Clearance, Contact, ContactRange,
-    ConvexPolyhedron, ConvexityDefect, Cuts, Depth, DirectionalDepth, Distance, Enclosure, FaceId,
-    Feature, Features, Focus, Grazing, HalfEdge, InputFacet, InputVertex, Intersection,
-    MAX_MAGNITUDE, MIN_MAGNITUDE, NarrowFrom, Narrowing, NearPoints, NoUntil, ObstacleId,
-    OffsetReport, Options, Outcome, OverlapAhead, Pair, PairProof, Placed, PlaneGap, Pose,
-    PoseError, Proof, QueryError, Region, Separated, Separation, Solid, Solver, Stalled,
-    StartedFrom, Steps, TopologyError, Tracker, UnknownName, Until, VertexId, VertexPair, WhyFree,
-    Within, WitnessPoints, cast, convexity_defect, glam, observe,
+    Aabb, Body, Bounded, BuildError, Cast, CastBody, CentralCast, Certificate, CertificateError,
+    Clearance, Contact, ContactRange, ConvexPolyhedron, ConvexityDefect, Cuts, Depth,
+    DirectionalDepth, Distance, Enclosure, FaceId, Feature, Features, Focus, Grazing, HalfEdge,
+    InputFacet, InputVertex, Intersection, MAX_MAGNITUDE, MIN_MAGNITUDE, NarrowFrom, Narrowing,
+    NearPoints, NoUntil, ObstacleId, OffsetReport, Options, Outcome, OverlapAhead, Pair, PairBody,
+    PairProof, Placed, PlaneGap, Pose, PoseError, Proof, QueryError, Region, Separated, Separation,
+    Solver, Stalled, StartedFrom, Steps, TopologyError, Tracker, UnknownName, Until, VertexId,
+    VertexPair, WhyFree, Within, WitnessPoints, cast, convexity_defect, glam, observe,
 };
 #[cfg(feature = "json")]
 #[doc(inline)]
@@ -185,6 +185,8 @@ pub use colltrans_scene::{
 };
 #[doc(inline)]
 pub use colltrans_scene::{Approach, FixedRotations};
+#[doc(inline)]
+pub use colltrans_solid::{AnyBody, AnyClearance, AnyDistance, AnyNear, AnyPlaced, ByKind, Solid};
 
 /// The example of the README, compiled and run as a test.
 #[cfg(doctest)]

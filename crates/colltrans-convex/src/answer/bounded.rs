@@ -27,14 +27,16 @@ impl Bounded {
 
     /// Of the number with the other sign.
     #[must_use]
-    pub(crate) fn negated(self) -> Self {
+    #[inline]
+    pub fn negated(self) -> Self {
         // Not -0.
         Self { value: 0.0 - self.value, lower: 0.0 - self.upper, upper: 0.0 - self.lower }
     }
 
     /// Of a number that is not negative whatever was computed.
     #[must_use]
-    pub(crate) fn clamped(self) -> Self {
+    #[inline]
+    pub fn clamped(self) -> Self {
         let Self { value, lower, upper } = self;
         Self { value: value.max(0.0), lower: lower.max(0.0), upper: upper.max(0.0) }
     }

@@ -23,7 +23,6 @@ use crate::setting::VertexPair;
 #[derive(Debug)]
 #[derive_where(Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]
-#[non_exhaustive]
 pub struct Distance<B: Body = ConvexPolyhedron> {
     /// The gap of a plane between the bodies, in world units, rounded down; 0 where none was found: they
     /// overlap, or are less apart than rounding can tell.

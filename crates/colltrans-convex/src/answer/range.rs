@@ -86,7 +86,6 @@ pub struct DirectionalDepth {
 #[derive(Debug)]
 #[derive_where(Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]
-#[non_exhaustive]
 pub struct Intersection<B: Body = ConvexPolyhedron> {
     /// Whether the bodies, as closed sets, have a point in common: of convex ones to within rounding
     /// error, of solids exactly.

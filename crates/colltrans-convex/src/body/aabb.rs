@@ -24,7 +24,7 @@ impl Aabb {
 
     /// The least box that holds three points.
     #[inline]
-    pub(crate) fn of_triangle([a, b, c]: [DVec3; 3]) -> Self {
+    pub fn of_triangle([a, b, c]: [DVec3; 3]) -> Self {
         Self { low: a.min(b).min(c), high: a.max(b).max(c) }
     }
 
@@ -56,7 +56,7 @@ impl Aabb {
 
     /// Whether there is more than so much between the boxes along an axis.
     #[inline]
-    pub(crate) fn is_apart(&self, other: &Self, axis: usize, by: f64) -> bool {
+    pub fn is_apart(&self, other: &Self, axis: usize, by: f64) -> bool {
         self.low[axis] - other.high[axis] > by || other.low[axis] - self.high[axis] > by
     }
 

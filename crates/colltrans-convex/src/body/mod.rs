@@ -11,7 +11,6 @@ mod kept;
 pub mod motion;
 pub(crate) mod placed;
 pub mod pose;
-pub mod solid;
 pub mod split;
 pub(crate) mod topology;
 

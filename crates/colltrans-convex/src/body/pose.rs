@@ -309,7 +309,8 @@ fn off_rotation(matrix: DMat3) -> [f64; 9] {
 
 /// How far lengths may be stretched by a matrix: the square root of the sum of the squares of what it is off
 /// a rotation.
-pub(crate) fn rotation_defect(matrix: DMat3) -> f64 {
+#[inline]
+pub fn rotation_defect(matrix: DMat3) -> f64 {
     off_rotation(matrix).into_iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 

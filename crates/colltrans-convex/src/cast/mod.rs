@@ -9,7 +9,6 @@ mod derive;
 #[cfg(feature = "json")]
 pub mod replay;
 pub mod sideways;
-pub mod solid;
 
 use derive_where::derive_where;
 use std::fmt;

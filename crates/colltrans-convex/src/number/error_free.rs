@@ -4,7 +4,7 @@
 
 /// The rounding error of the sum `s = fl(a + b)`, exactly (Knuth).
 #[inline(always)]
-pub(crate) fn sum_error(a: f64, b: f64, s: f64) -> f64 {
+pub fn sum_error(a: f64, b: f64, s: f64) -> f64 {
     let b_virtual = s - a;
     let a_virtual = s - b_virtual;
     (a - a_virtual) + (b - b_virtual)

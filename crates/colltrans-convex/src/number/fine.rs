@@ -35,18 +35,18 @@ pub struct Fine {
 }
 
 impl Fine {
-    pub(crate) const ORIGIN: Self = Self { at: [Double::ZERO; 3], error: 0.0 };
+    pub const ORIGIN: Self = Self { at: [Double::ZERO; 3], error: 0.0 };
 
     /// `v`, exactly.
     #[inline]
-    pub(crate) fn exactly(v: DVec3) -> Self {
+    pub fn exactly(v: DVec3) -> Self {
         let at = v.to_array().map(|high| Double { high, ..Double::ZERO });
         Self { at, error: 0.0 }
     }
 
     /// The sum of two offsets and of `matrix point` for each point, by weight. Weights are powers of two.
     #[inline]
-    pub(crate) fn placed(matrix: &DMat3, offset: [DVec3; 2], points: &[(f64, DVec3)]) -> Self {
+    pub fn placed(matrix: &DMat3, offset: [DVec3; 2], points: &[(f64, DVec3)]) -> Self {
         let [high, low] = offset.map(|part| part.to_array());
         let mut sums = Sums { high, low, ..Sums::ZERO };
         for (weight, point) in points {
@@ -61,14 +61,14 @@ impl Fine {
 
     /// The way to another point.
     #[inline]
-    pub(crate) fn to<'p>(&'p self, end: &'p Self) -> Way<'p> {
+    pub fn to<'p>(&'p self, end: &'p Self) -> Way<'p> {
         Way([self, end])
     }
 }
 
 /// The way from one point to another.
 #[derive(Clone, Copy)]
-pub(crate) struct Way<'p>([&'p Fine; 2]);
+pub struct Way<'p>([&'p Fine; 2]);
 
 impl Way<'_> {
     #[inline]
@@ -95,27 +95,30 @@ impl Way<'_> {
     }
 
     /// The sign of one coordinate, if it is certain.
-    pub(crate) fn sign_along(&self, axis: usize) -> Option<Ordering> {
+    #[inline]
+    pub fn sign_along(&self, axis: usize) -> Option<Ordering> {
         self.tracked()[axis].sign()
     }
 }
 
 /// A number with a bound of its error.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Doubtful {
+pub struct Doubtful {
     value: Twice,
     error: f64,
 }
 
 impl Doubtful {
     /// The sign, if rounding leaves none in doubt.
-    pub(crate) fn sign(&self) -> Option<Ordering> {
+    #[inline]
+    pub fn sign(&self) -> Option<Ordering> {
         let high = self.value.value();
         (high.abs() > self.error).then(|| high.total_cmp(&0.0))
     }
 
     /// `self / other` to within two roundings, or to within `slack`; `None` if it is not known that well.
-    pub(crate) fn ratio(&self, other: &Self, slack: f64) -> Option<f64> {
+    #[inline]
+    pub fn ratio(&self, other: &Self, slack: f64) -> Option<f64> {
         const ROUNDING: f64 = f64::EPSILON / 4.0;
         let [over, under] = [self.value, other.value].map(|x| x.value().abs());
         let known = under * ROUNDING > other.error
@@ -130,7 +133,7 @@ fn size(way: &Vector<Twice>) -> f64 {
 
 /// `det[x, y, z]`.
 #[inline]
-pub(crate) fn determinant([x, y, z]: [Way; 3]) -> Doubtful {
+pub fn determinant([x, y, z]: [Way; 3]) -> Doubtful {
     let (e, f, g) = (x.error(), y.error(), z.error());
     let (x, y, z) = (x.twice(), y.twice(), z.twice());
     let (l, m, n) = (size(&x), size(&y), size(&z));
@@ -140,12 +143,14 @@ pub(crate) fn determinant([x, y, z]: [Way; 3]) -> Doubtful {
 }
 
 /// The sign of `det[x, y, z]`, if it is certain.
-pub(crate) fn determinant_sign(ways: [Way; 3]) -> Option<Ordering> {
+#[inline]
+pub fn determinant_sign(ways: [Way; 3]) -> Option<Ordering> {
     determinant(ways).sign().or_else(|| tracked_sign(ways))
 }
 
 /// The same of a determinant that rounding leaves in doubt.
-pub(crate) fn tracked_sign(ways: [Way; 3]) -> Option<Ordering> {
+#[inline]
+pub fn tracked_sign(ways: [Way; 3]) -> Option<Ordering> {
     tracked_determinant(&ways.map(|way| way.tracked())).sign()
 }
 
@@ -165,7 +170,8 @@ fn tracked_minor(x: &[Double; 3], y: &[Double; 3], [i, j]: [usize; 2]) -> Double
 }
 
 /// The sign of `x_i y_j - x_j y_i`, if it is certain.
-pub(crate) fn minor_sign([x, y]: [Way; 2], [i, j]: [usize; 2]) -> Option<Ordering> {
+#[inline]
+pub fn minor_sign([x, y]: [Way; 2], [i, j]: [usize; 2]) -> Option<Ordering> {
     let rough = minor([x, y], [i, j]).sign();
     rough.or_else(|| tracked_minor(&x.tracked(), &y.tracked(), [i, j]).sign())
 }

@@ -17,7 +17,7 @@ pub const SMALL: usize = 15;
 /// Limbs that suffice for all.
 pub const LARGE: usize = 48;
 /// Limbs that suffice for the product of two determinants.
-pub(crate) const TWICE_LARGE: usize = 2 * LARGE;
+pub const TWICE_LARGE: usize = 2 * LARGE;
 
 /// An integer with a sign, times a power of `2^64`.
 #[derive(Clone, Copy)]

@@ -6,14 +6,14 @@ pub mod determinant;
 mod double;
 pub mod error_free;
 pub(crate) mod extent;
-pub(crate) mod fine;
+pub mod fine;
 pub mod integer;
 pub mod noise;
 pub(crate) mod orientation;
-pub(crate) mod plane;
+pub mod plane;
 pub mod predicates;
 pub mod range;
-pub(crate) mod real;
+pub mod real;
 pub(crate) mod symmetric;
 pub(crate) mod volume;
 

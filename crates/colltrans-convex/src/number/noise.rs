@@ -238,7 +238,8 @@ impl Noise {
 
     /// Whether a gap to be kept, that the size has been made larger by, leaves no room for points that are so
     /// near for certain.
-    pub(crate) fn is_slight(self, keep: f64) -> bool {
+    #[inline]
+    pub fn is_slight(self, keep: f64) -> bool {
         keep <= SLIGHT * self.0
     }
 

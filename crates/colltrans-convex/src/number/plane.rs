@@ -12,7 +12,7 @@ const NEARLY_PARALLEL: f64 = 0.1;
 ///
 /// Where the angle at `a` is small, or `a b c` is a sliver, from other edges.
 #[inline]
-pub(crate) fn triangle_normal(corners: [DVec3; 3]) -> DVec3 {
+pub fn triangle_normal(corners: [DVec3; 3]) -> DVec3 {
     wide_normal(corners).unwrap_or_else(|| normal_of_sliver(corners))
 }
 

@@ -7,13 +7,15 @@ use glam::{DVec2, DVec3};
 use robust::{Coord, Coord3D};
 
 /// Positive if `a b c` turn to the left; exact in sign.
-pub(crate) fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+#[inline]
+pub fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     let coord = |p: DVec2| Coord { x: p.x, y: p.y };
     robust::orient2d(coord(a), coord(b), coord(c))
 }
 
 /// Positive if `p` is above the plane of the counter-clockwise triangle `a b c`; exact in sign.
-pub(crate) fn orient3d(a: DVec3, b: DVec3, c: DVec3, p: DVec3) -> f64 {
+#[inline]
+pub fn orient3d(a: DVec3, b: DVec3, c: DVec3, p: DVec3) -> f64 {
     let coord = |v: DVec3| Coord3D { x: v.x, y: v.y, z: v.z };
     -robust::orient3d(coord(a), coord(b), coord(c), coord(p))
 }

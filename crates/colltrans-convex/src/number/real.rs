@@ -7,7 +7,7 @@ use glam::DVec3;
 use super::error_free::{product_error, sum_error};
 
 /// A number to compute with.
-pub(crate) trait Real:
+pub trait Real:
     Copy
     + PartialOrd
     + Add<Output = Self>
@@ -120,7 +120,7 @@ impl Div for Twice {
 
 /// A vector of such numbers.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Vector<T>(pub(crate) [T; 3]);
+pub struct Vector<T>(pub [T; 3]);
 
 impl<T: Real> Vector<T> {
     pub(crate) const ZERO: Self = Self([T::ZERO; 3]);

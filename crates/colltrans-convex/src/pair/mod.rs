@@ -1,7 +1,6 @@
 //! Two placed bodies and no direction: how far apart they are, how deep they overlap.
 
 mod convex;
-pub mod solid;
 mod verify;
 
 use crate::answer::{CertificateError, Depth, Distance, NearPoints, PlaneGap, Within, checked_as};

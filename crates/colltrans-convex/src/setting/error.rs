@@ -49,7 +49,7 @@ pub enum QueryError {
     },
     /// Nothing is left of a closed body that is shrunk by half the tolerance: each of its points is that
     /// near to its surface. Nothing follows for the body as it is; a part of which only walls are thinner
-    /// than the tolerance is not refused ([`Solid::shrink_report`](crate::Solid::shrink_report)).
+    /// than the tolerance is not refused (`Solid::shrink_report`).
     #[error(
         "the tolerance {tolerance} leaves nothing of the {which} body, which is {extent} thick: \
          it has to be less than that"

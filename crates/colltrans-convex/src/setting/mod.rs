@@ -38,7 +38,7 @@ impl VertexPair {
 
     /// As searches walk on: of the moving and of the fixed body.
     #[inline]
-    pub(crate) const fn numbers(self) -> [u32; 2] {
+    pub const fn numbers(self) -> [u32; 2] {
         [self.moving.0, self.fixed.0]
     }
 }

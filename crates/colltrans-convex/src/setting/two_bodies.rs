@@ -109,7 +109,7 @@ impl<'a, B> TwoBodies<'a, B> {
 
     /// `t_Q - t_P`, and what rounding took from it.
     #[inline]
-    pub(crate) fn exact_offset(&self) -> [DVec3; 2] {
+    pub fn exact_offset(&self) -> [DVec3; 2] {
         [self.offset, self.offset_error]
     }
 }
@@ -181,7 +181,7 @@ impl TwoBodies<'_> {
 
     /// The point `q - p` of a pair of vertices, off by less than `9 u S`.
     #[inline]
-    pub(crate) fn difference(&self, pair: VertexPair) -> DVec3 {
+    pub fn difference(&self, pair: VertexPair) -> DVec3 {
         let [p, q] = self.vertices(pair);
         self.fixed_matrix * q - self.moving_matrix * p + self.offset
     }

@@ -11,14 +11,13 @@
 //! ([`Plane::at`], which is also the proof), and a support point is searched only if it does not.
 
 pub(crate) mod cta;
-pub(crate) mod keep;
+pub mod keep;
 pub mod nearest;
 pub mod observe;
 pub mod options;
 mod pace;
 pub(crate) mod portal;
 mod proof;
-pub mod solid;
 mod warm_start;
 
 use glam::DVec2;

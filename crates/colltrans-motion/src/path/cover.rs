@@ -19,8 +19,8 @@ use super::follow::{Fate, Pieces, Way};
 use super::mechanism::Place;
 use super::shape::Shape;
 use colltrans_convex::body::ConvexPolyhedron;
-use colltrans_convex::body::solid::Solid;
 use colltrans_convex::setting::TwoBodies;
+use colltrans_solid::body::Solid;
 
 /// Steps of boxes are not smaller than such a share of their size.
 const SMALL: f64 = 0.25;

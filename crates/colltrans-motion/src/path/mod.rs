@@ -63,14 +63,14 @@ mod verify;
 
 use std::collections::HashSet;
 
-use colltrans_convex::Solid;
 use colltrans_convex::body::{Placed, Pose};
-use colltrans_convex::kinds::{AnyPlaced, ByKind};
 use colltrans_convex::number::range::MAX_MAGNITUDE;
 use colltrans_convex::pair::Pair;
 use colltrans_convex::setting::check_keep;
 use colltrans_convex::setting::error::QueryError;
-use colltrans_convex::solid::{AsSolid, SolidPairSearch};
+use colltrans_solid::Solid;
+use colltrans_solid::kinds::{AnyPlaced, ByKind};
+use colltrans_solid::{AsSolid, SolidPairSearch};
 
 pub use self::answer::{
     Cover, How, PathContact, PathFree, PathMeeting, PathOutcome, PathProof, Step, Stretch,

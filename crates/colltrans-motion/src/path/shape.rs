@@ -8,9 +8,9 @@ use std::sync::OnceLock;
 
 use glam::DVec3;
 
-use colltrans_convex::body::solid::Solid;
 use colltrans_convex::body::{Aabb, ConvexPolyhedron, Pose};
-use colltrans_convex::kinds::{AnyPlaced, ByKind};
+use colltrans_solid::body::Solid;
+use colltrans_solid::kinds::{AnyPlaced, ByKind};
 
 /// By which share of its size a box is made larger.
 const LARGER: f64 = 1e-9;

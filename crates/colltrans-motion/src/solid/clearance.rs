@@ -12,12 +12,12 @@ use super::search::Found;
 use super::tree::{Facet, Tree};
 use super::{Mode, searched};
 use colltrans_convex::answer::Bounded;
-use colltrans_convex::body::solid::Solid;
 use colltrans_convex::setting::error::QueryError;
-use colltrans_convex::solid::SolidSteps;
-use colltrans_convex::solid::{SolidCast, SolidOverlap, SolidScene, StartOverlap};
-use colltrans_convex::solve::solid::nearest::triangle;
-use colltrans_convex::solve::solid::overlap;
+use colltrans_solid::SolidSteps;
+use colltrans_solid::body::Solid;
+use colltrans_solid::solve::nearest::triangle;
+use colltrans_solid::solve::overlap;
+use colltrans_solid::{SolidCast, SolidOverlap, SolidScene, StartOverlap};
 
 impl MotionCast<'_, Solid> {
     /// The same with another meaning of an overlap when the motion begins, for [`Self::clearance`].

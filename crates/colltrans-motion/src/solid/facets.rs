@@ -16,7 +16,7 @@ use super::super::search::{Advanced, End, advance};
 use super::super::span::{Instant, Span};
 use super::tree::Facet;
 use colltrans_convex::answer::are_weights;
-use colltrans_convex::solve::solid::nearest::triangle::{self, Corners, GAP, LENGTH};
+use colltrans_solid::solve::nearest::triangle::{self, Corners, GAP, LENGTH};
 
 /// What proves that two facets meet, or the solids that they are of.
 #[derive(Debug, Clone, Copy, PartialEq)]

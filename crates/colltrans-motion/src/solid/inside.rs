@@ -13,10 +13,10 @@ use glam::DVec3;
 use super::facets::FacetsMet;
 use super::tree::Tree;
 use colltrans_convex::body::Hull;
-use colltrans_convex::body::solid::{Solid, crossing};
 use colltrans_convex::number::range::{in_exact_range, without_traces};
 use colltrans_convex::setting::TwoBodies;
-use colltrans_convex::solve::solid::nearest::triangle::{self, Corners};
+use colltrans_solid::body::{Solid, crossing};
+use colltrans_solid::solve::nearest::triangle::{self, Corners};
 
 /// How far facets are from it at least, in what places may be off: twice for what is off, twice for what is rounded here.
 const OFF: f64 = 4.0;

@@ -36,16 +36,16 @@ use super::span::{Span, spans};
 use super::verify::MotionProofError;
 use super::{MotionCast, Moving, check_fine, usual_tolerance};
 use colltrans_convex::body::Features;
-use colltrans_convex::body::solid::{AsSolid, Solid};
 use colltrans_convex::cast::Cast;
-use colltrans_convex::cast::solid::{SolidOptions, StartProof};
 use colltrans_convex::setting::error::QueryError;
 use colltrans_convex::setting::{Setting, check_keep};
-use colltrans_convex::solid::SolidScene;
-use colltrans_convex::solid::SolidSteps;
-use colltrans_convex::solve::solid::nearest::{Spot, points_of, triangle};
-use colltrans_convex::solve::solid::overlap;
-use colltrans_convex::solve::solid::scene::Scene;
+use colltrans_solid::SolidScene;
+use colltrans_solid::SolidSteps;
+use colltrans_solid::body::{AsSolid, Solid};
+use colltrans_solid::cast::{SolidOptions, StartProof};
+use colltrans_solid::solve::nearest::{Spot, points_of, triangle};
+use colltrans_solid::solve::overlap;
+use colltrans_solid::solve::scene::Scene;
 
 /// How often a proof up to a contact is tried, each time a little shorter.
 const MOST_CUTS: i32 = 40;

@@ -7,7 +7,7 @@
 use super::super::answer::PlaneAt;
 use super::facets::FacetsMet;
 use super::window::Plane;
-use colltrans_convex::cast::solid::StartProof;
+use colltrans_solid::cast::StartProof;
 
 /// What proves an answer about solids that turn.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,7 +54,7 @@ pub struct SpanProof {
 pub struct FacetsMeeting {
     /// When.
     pub time: f64,
-    /// Which ones, by their positions in [`Solid::triangles`](colltrans_convex::Solid::triangles).
+    /// Which ones, by their positions in [`Solid::triangles`](colltrans_solid::Solid::triangles).
     pub triangles: [u32; 2],
     /// Why.
     pub met: FacetsMet,

@@ -1,6 +1,6 @@
 //! A solid as a search through time sees it: shrunk, with boxes down to each facet.
 //!
-//! The tree is the solid's own ([`tree`](colltrans_convex::body::solid::tree)), its leaves of a few facets halved down to
+//! The tree is the solid's own ([`tree`](colltrans_solid::body::tree)), its leaves of a few facets halved down to
 //! one. Boxes hold the vertices as they are shrunk, exactly but for the roundings of middle and extent, by which
 //! extents are larger.
 
@@ -8,8 +8,8 @@ use std::borrow::Cow;
 
 use glam::DVec3;
 
-use colltrans_convex::body::solid::{Solid, displace};
 use colltrans_convex::body::{Aabb, Hull};
+use colltrans_solid::body::{Solid, displace};
 
 /// Extents are larger by this share of them and of the middle.
 const ROUNDED: f64 = 4.0 * f64::EPSILON;
@@ -174,7 +174,7 @@ impl Part {
         (range.len() > 1).then_some(halves)
     }
 
-    fn first(self, own: &[colltrans_convex::body::solid::tree::Node]) -> usize {
+    fn first(self, own: &[colltrans_solid::body::tree::Node]) -> usize {
         match self {
             Self::Node(k) => own[k].facets().start,
             Self::Facets(first, _) => first,

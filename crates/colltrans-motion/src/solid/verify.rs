@@ -14,9 +14,9 @@ use super::tree::{Below, Tree};
 use super::window::{Frame, Part, Snap};
 use crate::MotionCast;
 use colltrans_convex::answer::are_weights;
-use colltrans_convex::body::solid::Solid;
-use colltrans_convex::cast::solid::StartProof;
-use colltrans_convex::solid::SolidScene;
+use colltrans_solid::SolidScene;
+use colltrans_solid::body::Solid;
+use colltrans_solid::cast::StartProof;
 
 pub(super) fn verify(
     cast: &MotionCast<Solid>,

@@ -11,12 +11,12 @@ use super::{Along, Bodies, ProofFile};
 use colltrans_convex::answer::{Depth, Separation};
 use colltrans_convex::body::ConvexPolyhedron;
 use colltrans_convex::body::pose::PoseRecord;
-use colltrans_convex::body::solid::{AsSolid, Solid, SolidError};
 use colltrans_convex::cast::CaseError;
 use colltrans_convex::cast::replay::BodyRecord;
-use colltrans_convex::pair::solid::DistanceCertificate;
 use colltrans_convex::setting::{check_direction, check_keep};
-use colltrans_convex::solve::solid::nearest::SolidNear;
+use colltrans_solid::body::{AsSolid, Solid, SolidError};
+use colltrans_solid::pair::DistanceCertificate;
+use colltrans_solid::solve::nearest::SolidNear;
 
 /// What a file of this version calls itself.
 const FORMAT: &str = "colltrans proof 1";

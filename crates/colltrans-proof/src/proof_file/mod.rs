@@ -22,15 +22,15 @@ use colltrans_convex::answer::{
     CertificateError, Clearance, ContactRange, Depth, Distance, Outcome, OverlapAhead, Steps,
     WhyFree, Within,
 };
-use colltrans_convex::body::solid::Solid;
 use colltrans_convex::body::{ConvexPolyhedron, Pose};
 use colltrans_convex::cast::{CaseError, Cast};
 use colltrans_convex::pair::Pair;
-use colltrans_convex::pair::solid::Unproven;
 use colltrans_convex::setting::error::QueryError;
-use colltrans_convex::solid::SolidSteps;
-use colltrans_convex::solid::{SolidCast, SolidPairSearch};
 use colltrans_removal::free::{FreeDirections, FreeError};
+use colltrans_solid::SolidSteps;
+use colltrans_solid::body::Solid;
+use colltrans_solid::pair::Unproven;
+use colltrans_solid::{SolidCast, SolidPairSearch};
 use file::{Pieces, again};
 pub use motion::{MotionCase, MotionProofFile, MotionProofFiles};
 pub use path::{PathCheckError, PathFileError, PathProofFile, PathStatement};
@@ -265,7 +265,7 @@ impl ProofFile {
     }
 
     /// How many facets of the moving and of the fixed body turn inside out, or pass through others, where
-    /// they are shrunk by half the tolerance each ([`ShrinkReport::inverted`](colltrans_convex::solid::ShrinkReport::inverted)):
+    /// they are shrunk by half the tolerance each ([`ShrinkReport::inverted`](colltrans_solid::ShrinkReport::inverted)):
     /// what is said of shrunk bodies says little there.
     pub fn inverted(&self) -> [usize; 2] {
         let tolerance = match &self.statement {

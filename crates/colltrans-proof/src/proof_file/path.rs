@@ -11,12 +11,12 @@ use super::file::{BodyFile, nested, said};
 use super::scene::{Written, kept};
 use colltrans_convex::body::{InputFacet, Pose};
 use colltrans_convex::cast::CaseError;
-use colltrans_convex::kinds::{AnyBody, ByKind};
 use colltrans_convex::number::noise;
 use colltrans_motion::path::{
     Frame, JointPath, Mechanism, PathBody, PathCast, PathError, PathOutcome, PathProof,
     PathProofError,
 };
+use colltrans_solid::kinds::{AnyBody, ByKind};
 
 /// What a file of this version calls itself.
 const FORMAT: &str = "colltrans path proof 2";

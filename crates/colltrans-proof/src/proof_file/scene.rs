@@ -10,16 +10,17 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 use super::file::{BodyFile, PieceRecord, convex_body, is_same, said, union};
+use colltrans_convex::ConvexPolyhedron;
 use colltrans_convex::answer::CertificateError;
 use colltrans_convex::body::{ObstacleId, Pose};
 use colltrans_convex::cast::CaseError;
 use colltrans_convex::cast::replay::BodyRecord;
-use colltrans_convex::cast::solid::{SolidOptions, StartOverlap};
-use colltrans_convex::kinds::{AnyBody, AnyPlaced, ByKind};
 use colltrans_convex::setting::error::QueryError;
 use colltrans_convex::solve::options::Options;
-use colltrans_convex::{ConvexPolyhedron, Solid};
 use colltrans_scene::{Among, ClearanceProof, NearbyProof, NearestProof, Obstacles};
+use colltrans_solid::Solid;
+use colltrans_solid::cast::{SolidOptions, StartOverlap};
+use colltrans_solid::kinds::{AnyBody, AnyPlaced, ByKind};
 
 /// What a file of this version calls itself.
 const FORMAT: &str = "colltrans scene proof 1";

@@ -8,14 +8,14 @@ use serde::{Deserialize, Serialize};
 
 use super::file::{BodyFile, said};
 use super::scene::{Written, kept};
-use colltrans_convex::body::solid::Solid;
 use colltrans_convex::cast::CaseError;
-use colltrans_convex::cast::solid::StartProof;
-use colltrans_convex::kinds::ByKind;
 use colltrans_motion::{
     FacetsMeeting, Motion, MotionCast, MotionOutcome, MotionProofError, Moving, Parts,
     SolidMotionProof,
 };
+use colltrans_solid::body::Solid;
+use colltrans_solid::cast::StartProof;
+use colltrans_solid::kinds::ByKind;
 
 /// What a file of this version calls itself.
 pub(super) const FORMAT: &str = "colltrans motion of solids proof 1";

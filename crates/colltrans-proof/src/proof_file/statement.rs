@@ -8,17 +8,17 @@ use colltrans_convex::answer::{
     Bounded, Certificate, CertificateError, Clearance, Contact, Depth, Distance, Grazing,
     NearPoints, PlaneGap, Separation, Within,
 };
-use colltrans_convex::body::solid::Solid;
 use colltrans_convex::body::{InputFacet, Placed};
 use colltrans_convex::cast::Cast;
 use colltrans_convex::cast::sideways::{proven_overlap, verified_overlap};
-use colltrans_convex::cast::solid::{SolidCertificate, SolidOptions, StartOverlap, StartProof};
 use colltrans_convex::pair::Pair;
-use colltrans_convex::pair::solid::DistanceCertificate;
 use colltrans_convex::setting::error::QueryError;
-use colltrans_convex::solid::SolidCast;
-use colltrans_convex::solve::solid::contact::SolidContact;
 use colltrans_removal::free::{CellProof, FreeDirections, FreeError, FreeProof, InnerBox};
+use colltrans_solid::SolidCast;
+use colltrans_solid::body::Solid;
+use colltrans_solid::cast::{SolidCertificate, SolidOptions, StartOverlap, StartProof};
+use colltrans_solid::pair::DistanceCertificate;
+use colltrans_solid::solve::contact::SolidContact;
 
 /// What a [`ProofFile`](crate::ProofFile) says of its bodies.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -136,7 +136,7 @@ pub struct SolidStatement {
 pub struct Stop {
     /// Their numbers in the file, of the moving and of the fixed body; those of pieces run through.
     pub facets: [InputFacet; 2],
-    /// Where they meet in their true place: [`SolidContact::translation`](colltrans_convex::solid::SolidContact::translation).
+    /// Where they meet in their true place: [`SolidContact::translation`](colltrans_solid::SolidContact::translation).
     pub translation: Bounded,
 }
 

@@ -7,9 +7,9 @@ use super::statement::{
 };
 use super::{Bodies, ProofFile};
 use colltrans_convex::answer::{Bounded, Depth, Separation};
-use colltrans_convex::cast::solid::{SolidCertificate, StartOverlap, StartProof};
-use colltrans_convex::pair::solid::DistanceCertificate;
 use colltrans_removal::free::CellProof;
+use colltrans_solid::cast::{SolidCertificate, StartOverlap, StartProof};
+use colltrans_solid::pair::DistanceCertificate;
 
 impl fmt::Display for ProofFile {
     /// Its statement, and what shrinking has done to the bodies, in words, in one line.

@@ -4,8 +4,8 @@ use serde::Serialize;
 
 use super::{Ending, FeaturesRecord, Record, StartOverlapRecord, coordinates, open_ones};
 use colltrans_convex::body::Body;
-use colltrans_convex::body::solid::Solid;
 use colltrans_motion::{MotionCast, MotionClearance, MotionContact, MotionOutcome, MotionOverlap};
+use colltrans_solid::body::Solid;
 
 /// Bounds of a time, from 0 at the start of a motion to 1 at its end.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]

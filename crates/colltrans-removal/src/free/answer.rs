@@ -19,14 +19,14 @@ use super::search::{Found, Search};
 use super::thin::{FreeArc, FreePoint, Thin, thin};
 use colltrans_convex::answer::CertificateError;
 use colltrans_convex::body::Placed;
-use colltrans_convex::body::solid::{AsSolid, Solid};
 use colltrans_convex::cast::Cast;
-use colltrans_convex::cast::solid::StartOverlap;
 use colltrans_convex::setting::check_direction;
 use colltrans_convex::setting::error::QueryError;
-use colltrans_convex::solid::SolidSteps;
-use colltrans_convex::solid::{SolidCast, SolidScene};
-use colltrans_convex::solve::solid::overlap;
+use colltrans_solid::SolidSteps;
+use colltrans_solid::body::{AsSolid, Solid};
+use colltrans_solid::cast::StartOverlap;
+use colltrans_solid::solve::overlap;
+use colltrans_solid::{SolidCast, SolidScene};
 
 /// What is said of a direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

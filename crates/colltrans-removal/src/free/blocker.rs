@@ -10,7 +10,7 @@ use super::options::FreeOptions;
 use super::proof::{Fate, holds, names_exist};
 use super::search::{Memory, Search};
 use colltrans_convex::body::Placed;
-use colltrans_convex::body::solid::AsSolid;
+use colltrans_solid::body::AsSolid;
 
 /// A square cell of directions on a side of the cube around the origin, borders included; its corners are exact.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,7 +74,7 @@ impl<'a> CellBlocker<'a> {
     }
 
     /// A pair of facets that blocks all directions of a cell, exactly, if one is found soon: positions in
-    /// [`Solid::triangles`](colltrans_convex::Solid::triangles) of the moving and of the fixed body.
+    /// [`Solid::triangles`](colltrans_solid::Solid::triangles) of the moving and of the fixed body.
     pub fn covering(&self, cell: &DirectionCell) -> Option<[u32; 2]> {
         Search::new(&self.bodies, self.options, None).covering_pair(&cell.0)
     }

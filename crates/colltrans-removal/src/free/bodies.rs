@@ -4,10 +4,10 @@
 use glam::DVec3;
 
 use super::line::PlaneVertex;
-use colltrans_convex::body::solid::tree::{self, ANY, Node};
 use colltrans_convex::number::integer::{Integer, difference};
-use colltrans_convex::solve::solid::projected::Projected;
-use colltrans_convex::solve::solid::scene::{Corner, ExactPoint, Scene, Side};
+use colltrans_solid::body::tree::{self, ANY, Node};
+use colltrans_solid::solve::projected::Projected;
+use colltrans_solid::solve::scene::{Corner, ExactPoint, Scene, Side};
 
 /// What bounds some facets of one body, in the setting frame.
 #[derive(Debug, Clone, Copy)]

@@ -17,7 +17,7 @@ use glam::DVec3;
 
 use super::bodies::Bodies;
 use super::line::{Line, PlaneVertex};
-use colltrans_convex::solve::solid::scene::Corner;
+use colltrans_solid::solve::scene::Corner;
 
 /// What a pair of facets blocks: directions on the positive side of all lines. Of none, nothing.
 #[derive(Debug, Clone)]

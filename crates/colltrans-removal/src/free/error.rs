@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use colltrans_convex::answer::CertificateError;
 use colltrans_convex::setting::error::QueryError;
-use colltrans_convex::solve::solid::overlap::Overlap;
+use colltrans_solid::solve::overlap::Overlap;
 
 /// Why free directions cannot be told.
 #[derive(Debug, Clone, PartialEq, Error)]

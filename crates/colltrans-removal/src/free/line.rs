@@ -25,7 +25,7 @@ const U: f64 = f64::EPSILON / 2.0;
 pub struct PlaneVertex {
     /// Whether it is the moving body's.
     pub moving: bool,
-    /// Its position in [`Solid::vertices`](colltrans_convex::Solid::vertices).
+    /// Its position in [`Solid::vertices`](colltrans_solid::Solid::vertices).
     pub vertex: u32,
 }
 

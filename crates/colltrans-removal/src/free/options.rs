@@ -1,7 +1,7 @@
 //! Choices.
 
 use super::cell::DEEPEST;
-use colltrans_convex::cast::solid::{SolidOptions, StartOverlap};
+use colltrans_solid::cast::{SolidOptions, StartOverlap};
 
 /// Choices of [`FreeDirections`](super::FreeDirections). More may be added: begin with the default ones.
 #[derive(Debug, Clone, Copy, PartialEq)]

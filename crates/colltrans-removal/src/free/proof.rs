@@ -15,9 +15,9 @@ use super::inner::{InnerBox, cover};
 use super::rest::{Piece, Rest, TooMuch};
 use super::search::PIECES;
 use super::window::Window;
-use colltrans_convex::cast::solid::StartOverlap;
+use colltrans_solid::cast::StartOverlap;
 
-/// What became of a cell; pairs are positions in [`Solid::triangles`](colltrans_convex::Solid::triangles) of the moving and of
+/// What became of a cell; pairs are positions in [`Solid::triangles`](colltrans_solid::Solid::triangles) of the moving and of
 /// the fixed body.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Fate {
@@ -57,7 +57,7 @@ pub struct FreeProof {
     pub cells: Vec<CellProof>,
 }
 
-/// What is said of a cell. Pairs are positions in [`Solid::triangles`](colltrans_convex::Solid::triangles) of the moving and of
+/// What is said of a cell. Pairs are positions in [`Solid::triangles`](colltrans_solid::Solid::triangles) of the moving and of
 /// the fixed body.
 #[derive(Debug, Clone, PartialEq, Eq)]
 #[cfg_attr(

@@ -25,8 +25,8 @@ use super::inner::{InnerBox, cover};
 use super::proof::Fate;
 use super::rest::{Rest, TooMuch};
 use super::window::Window;
-use colltrans_convex::cast::solid::StartOverlap;
-use colltrans_convex::solve::solid::search::Entry;
+use colltrans_solid::cast::StartOverlap;
+use colltrans_solid::solve::search::Entry;
 
 /// Pairs of nodes that a cell hands on, at most.
 const LIST: usize = 192;

@@ -43,7 +43,7 @@ pub struct FreePlane {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct PlaneFacets {
-    /// Positions in [`Solid::triangles`](colltrans_convex::Solid::triangles) of the moving and of the fixed body.
+    /// Positions in [`Solid::triangles`](colltrans_solid::Solid::triangles) of the moving and of the fixed body.
     pub triangles: [u32; 2],
     /// Vertices `a, b, c` of these, where they are, made smaller by the tolerance: `(b - a) x (c - a)` is exactly along
     /// the normal.

@@ -11,12 +11,12 @@ use super::pairs::{Pair, around, displaced};
 use super::search::{Group, Move, Run, Scale, Search, border};
 use crate::free::FreeError;
 use colltrans_convex::answer::CertificateError;
-use colltrans_convex::body::solid::{AsSolid, Solid};
 use colltrans_convex::body::{Aabb, Placed};
 use colltrans_convex::cast::Cast;
-use colltrans_convex::cast::solid::{SolidCertificate, SolidOptions, StartProof};
 use colltrans_convex::setting::error::QueryError;
-use colltrans_convex::solid::SolidCast;
+use colltrans_solid::SolidCast;
+use colltrans_solid::body::{AsSolid, Solid};
+use colltrans_solid::cast::{SolidCertificate, SolidOptions, StartProof};
 
 /// The share of the tolerance that is planned with.
 const SLACK: f64 = 0.8;

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use colltrans_convex::body::Placed;
-use colltrans_convex::body::solid::Solid;
+use colltrans_solid::body::Solid;
 
 /// Axes of the largest facets of each body.
 const AXES: usize = 3;

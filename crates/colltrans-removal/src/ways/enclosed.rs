@@ -20,10 +20,10 @@ use super::cells::{
 use super::pairs::standing;
 use crate::free::{Bodies, FreeError};
 use colltrans_convex::answer::CertificateError;
-use colltrans_convex::body::solid::{AsSolid, Solid};
 use colltrans_convex::body::{Aabb, Placed};
 use colltrans_convex::setting::error::QueryError;
-use colltrans_convex::solid::SolidScene;
+use colltrans_solid::SolidScene;
+use colltrans_solid::body::{AsSolid, Solid};
 
 /// Crossings that are tried first in a new cell, at most.
 const MOST_SEEN: usize = 48;

@@ -8,14 +8,14 @@ use super::openings::Question;
 use super::options::Searched;
 use crate::free::{Bodies, FreeError};
 use colltrans_convex::answer::Clearance;
-use colltrans_convex::body::solid::Solid;
 use colltrans_convex::body::{Aabb, Placed};
 use colltrans_convex::cast::Cast;
-use colltrans_convex::cast::solid::SolidOptions;
 use colltrans_convex::setting::error::QueryError;
-use colltrans_convex::solid::SolidSteps;
-use colltrans_convex::solid::{SolidCast, SolidScene};
-use colltrans_convex::solve::solid::{Workspace, overlap};
+use colltrans_solid::SolidSteps;
+use colltrans_solid::body::Solid;
+use colltrans_solid::cast::SolidOptions;
+use colltrans_solid::solve::{Workspace, overlap};
+use colltrans_solid::{SolidCast, SolidScene};
 
 /// A displacement, by its bits: places lie on a grid, so equal ones are equal.
 pub(super) fn bits(v: DVec3) -> [u64; 3] {

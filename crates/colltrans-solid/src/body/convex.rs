@@ -1,7 +1,7 @@
 //! A convex polyhedron as a solid, made when it is first asked for and kept.
 
 use super::{AsSolid, Solid, SolidError};
-use crate::body::{ConvexPolyhedron, Keepable};
+use colltrans_convex::body::{ConvexPolyhedron, Keepable};
 
 /// The surface of a convex polyhedron, kept with it.
 #[derive(Debug)]

@@ -9,7 +9,7 @@
 //! times an edge and `|n_k|` times a corner. So no facet reaches farther along it than the box, less
 //! the last two times the depths there.
 
-use crate::body::Aabb;
+use colltrans_convex::body::Aabb;
 use glam::{BVec3, DVec3};
 
 /// Eight corners, and four edges along each axis.

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use thiserror::Error;
 
-use crate::setting::error::QueryError;
+use colltrans_convex::setting::error::QueryError;
 
 /// Why a [`Solid`](super::Solid) was refused: what is wrong, where, and how often.
 #[derive(Debug, Clone, PartialEq, Error)]

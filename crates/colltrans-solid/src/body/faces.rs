@@ -17,7 +17,7 @@ use glam::DVec3;
 use super::Solid;
 use super::edges::NONE;
 use super::tree;
-use crate::body::{FaceId, Feature};
+use colltrans_convex::body::{FaceId, Feature};
 
 /// Precision of coordinates, in multiples of the largest distance from the origin.
 const SINGLE: f64 = 1.0 / (1_u64 << 22) as f64;

@@ -27,8 +27,10 @@ use std::sync::OnceLock;
 
 use glam::{DVec3, Vec3Swizzles};
 
-use crate::body::motion::{Motion, Moving};
-use crate::body::{Aabb, ConvexPolyhedron, Hull, InputFacet, InputVertex, Kept, Numbered};
+use colltrans_convex::body::motion::{Motion, Moving};
+use colltrans_convex::body::{
+    Aabb, ConvexPolyhedron, Hull, InputFacet, InputVertex, Kept, Numbered,
+};
 pub use error::SolidError;
 use faces::Faces;
 pub use report::{Shell, ShellKind, SolidReport};

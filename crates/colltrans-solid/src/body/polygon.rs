@@ -11,9 +11,9 @@
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
 
-use crate::number::predicates::orient2d as turn;
+use colltrans_convex::number::predicates::orient2d as turn;
 
-use crate::work;
+use colltrans_convex::work;
 
 /// Fewer corners than this are looked at one by one.
 const MANY: usize = 64;

@@ -22,8 +22,8 @@ use glam::DVec3;
 
 use super::exact::side;
 use super::{Solid, shells};
-use crate::body::Aabb;
-use crate::work;
+use colltrans_convex::body::Aabb;
+use colltrans_convex::work;
 
 mod fences;
 

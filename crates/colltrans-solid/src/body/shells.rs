@@ -13,7 +13,7 @@ use super::exact;
 use super::openness;
 use super::report::{Shell, ShellKind, SolidReport};
 use super::validate::Surface;
-use crate::body::Aabb;
+use colltrans_convex::body::Aabb;
 
 /// Finds the shells, turns those that are inside out, tells the kinds of open ones apart, and reports.
 pub(super) fn orient(surface: &mut Surface, report: &mut SolidReport) {

@@ -5,19 +5,18 @@ use glam::DVec3;
 use super::boxes::{self, told_by_boxes};
 use super::hulls::{Guessed, Hulls};
 use super::tolerance::least_tolerance_from;
-use super::{
-    Cast, SolidCertificate, SolidFree, SolidOverlap, StartOverlap, StartProof, proof, verify,
-};
-use crate::answer::{Bounded, CertificateError, Clearance, Outcome};
-use crate::body::Placed;
-use crate::body::solid::{AsSolid, Solid};
-use crate::setting::error::QueryError;
-use crate::solve::solid::contact::{SolidContact, contact, true_place};
-use crate::solve::solid::overlap::{self, Overlap};
-use crate::solve::solid::scene::{Scene, noise_of, permutes};
-use crate::solve::solid::search::{Aim, Found, Search, Workspace};
-use crate::solve::solid::separate::separation;
-use crate::solve::solid::steps::SolidSteps;
+use super::{SolidCertificate, SolidFree, SolidOverlap, StartOverlap, StartProof, proof, verify};
+use crate::body::{AsSolid, Solid};
+use crate::solve::contact::{SolidContact, contact, true_place};
+use crate::solve::overlap::{self, Overlap};
+use crate::solve::scene::{Scene, noise_of, permutes};
+use crate::solve::search::{Aim, Found, Search, Workspace};
+use crate::solve::separate::separation;
+use crate::solve::steps::SolidSteps;
+use colltrans_convex::answer::{Bounded, CertificateError, Clearance, Outcome};
+use colltrans_convex::body::Placed;
+use colltrans_convex::cast::Cast;
+use colltrans_convex::setting::error::QueryError;
 
 /// Default tolerance, in multiples of the rounding error of a coordinate.
 pub(super) const NOISES: f64 = 8.0;
@@ -89,7 +88,7 @@ pub trait SolidCast<'a>: Sized {
     /// Where the moving body would be stopped if these two triangles, by their positions in
     /// [`Solid::triangles`], were all that there is of the bodies; `None` if they do not stop it. What
     /// blocks along one direction often does so along others too: then [`Cast::clearance`] is no
-    /// larger. Bodies count as overlapping only where [`SolidOptions::overlapping`] says so.
+    /// larger. Bodies count as overlapping only where [`SolidOptions::overlapping`](super::SolidOptions::overlapping) says so.
     fn stop_by(&self, triangles: [u32; 2]) -> Option<SolidContact>;
 
     /// Where two triangles of these bodies, as they are, meet that stop them after
@@ -146,7 +145,7 @@ pub trait SolidCast<'a>: Sized {
     fn first_contact_in(&self, workspace: &mut Workspace) -> Result<Outcome<Solid>, QueryError>;
 
     /// The translation after which the bodies, as they are, never meet again, in multiples of the
-    /// direction: the last contact of [`Self::contact_range`] alone, and 0 if it lies behind; `None` if
+    /// direction: the last contact of [`Cast::contact_range`] alone, and 0 if it lies behind; `None` if
     /// they never meet. Beyond `upper` they are apart for certain.
     fn exit(&self) -> Option<Bounded>;
 

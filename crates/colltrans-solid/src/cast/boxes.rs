@@ -4,13 +4,14 @@
 use glam::DVec3;
 
 use super::ask::NOISES;
-use super::{Cast, SolidCast, SolidFree, SolidScene};
-use crate::answer::{Clearance, Separation};
-use crate::body::solid::Solid;
-use crate::number::noise::Noise;
-use crate::solve::solid::scene::permutes;
-use crate::solve::solid::separate::Boxes;
-use crate::solve::solid::steps::SolidSteps;
+use super::{SolidCast, SolidFree, SolidScene};
+use crate::body::Solid;
+use crate::solve::scene::permutes;
+use crate::solve::separate::Boxes;
+use crate::solve::steps::SolidSteps;
+use colltrans_convex::answer::{Clearance, Separation};
+use colltrans_convex::cast::Cast;
+use colltrans_convex::number::noise::Noise;
 
 /// Boxes touch that are apart, or overlap, by so many noises.
 const TOUCHING: f64 = 16.0;

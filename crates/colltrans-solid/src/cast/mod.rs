@@ -18,20 +18,20 @@ pub use ask::{SolidCast, SolidScene};
 pub use proof::{Claim, Cover, SolidCertificate, StartProof, StopProof};
 pub use verify::SolidProof;
 
-use super::{Cast, CastBody, common_end};
-use crate::answer::{
+use crate::body::Solid;
+use crate::solve::contact::SolidContact;
+use crate::solve::nearest::{SolidGap, SolidNear};
+use crate::solve::overlap::{self, Overlap};
+use crate::solve::search::Workspace;
+use crate::solve::separate;
+use crate::solve::steps::SolidSteps;
+use colltrans_convex::answer::{
     Bounded, CertificateError, Clearance, ContactRange, Intersection, Outcome, RangeEnd, Separation,
 };
-use crate::body::solid::Solid;
-use crate::body::{Body, Placed, Pose};
-use crate::setting::check_keep;
-use crate::setting::error::QueryError;
-use crate::solve::solid::contact::SolidContact;
-use crate::solve::solid::nearest::{SolidGap, SolidNear};
-use crate::solve::solid::overlap::{self, Overlap};
-use crate::solve::solid::search::Workspace;
-use crate::solve::solid::separate;
-use crate::solve::solid::steps::SolidSteps;
+use colltrans_convex::body::{Body, Placed, Pose};
+use colltrans_convex::cast::{Cast, CastBody, common_end};
+use colltrans_convex::setting::check_keep;
+use colltrans_convex::setting::error::QueryError;
 
 /// What an overlap at the start means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
@@ -49,7 +49,7 @@ pub enum StartOverlap {
     Ignore,
 }
 
-crate::written::named!(
+colltrans_convex::written::named!(
     "meaning of an overlap",
     StartOverlap { Refuse: "refuse", Ignore: "ignore" }
 );
@@ -72,8 +72,11 @@ pub struct SolidOptions {
     /// it is looked at, as is an overlap that is the answer, to be named.
     pub overlapping: Option<bool>,
     /// How near to each other the bodies may come (world units): see
-    /// [`Cast::keeping`](crate::Cast#method.keeping-1). `0`, the default: until they touch.
-    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "crate::written::is_zero"))]
+    /// [`Cast::keeping`](colltrans_convex::Cast#method.keeping-1). `0`, the default: until they touch.
+    #[cfg_attr(
+        feature = "serde",
+        serde(default, skip_serializing_if = "colltrans_convex::written::is_zero")
+    )]
     pub keep: f64,
 }
 

@@ -14,19 +14,19 @@ use std::collections::HashMap;
 use super::ask::{AtOnce, answer, scene_once, sunk, told_at_once};
 use super::hulls::Hulls;
 use super::{SolidCast, SolidOptions, SolidScene, StartOverlap};
-use crate::answer::Clearance;
-use crate::body::solid::Solid;
-use crate::cast::Cast;
-use crate::setting::error::QueryError;
-use crate::solve::solid::bound::{Profile, Reason, holds};
-use crate::solve::solid::leaf::{self, Facet, Gap, Meeting};
-use crate::solve::solid::overlap::{self, Overlap};
-use crate::solve::solid::projected::Projected;
-use crate::solve::solid::rim::{self, Upright};
-use crate::solve::solid::scene::Scene;
-use crate::solve::solid::search::{Aim, Search, Workspace, children, node_rounding, splits_moving};
-use crate::solve::solid::separating_axes::SeparatingAxes;
-use crate::solve::solid::steps::SolidSteps;
+use crate::body::Solid;
+use crate::solve::bound::{Profile, Reason, holds};
+use crate::solve::leaf::{self, Facet, Gap, Meeting};
+use crate::solve::overlap::{self, Overlap};
+use crate::solve::projected::Projected;
+use crate::solve::rim::{self, Upright};
+use crate::solve::scene::Scene;
+use crate::solve::search::{Aim, Search, Workspace, children, node_rounding, splits_moving};
+use crate::solve::separating_axes::SeparatingAxes;
+use crate::solve::steps::SolidSteps;
+use colltrans_convex::answer::Clearance;
+use colltrans_convex::cast::Cast;
+use colltrans_convex::setting::error::QueryError;
 
 /// A proof of the answer of [`Cast::clearance`] between solids, checked by [`Cast::verify`] without a
 /// search: every pair of facets lies under one entry of a cover, and every entry is looked at by
@@ -44,7 +44,7 @@ pub struct SolidCertificate {
     pub start: StartProof,
     /// No pair of facets of the shrunk bodies stops them before, in multiples of the direction; infinite if none ever
     /// does, 0 for an overlap that is the answer.
-    #[cfg_attr(feature = "serde", serde(with = "crate::written::or_infinite"))]
+    #[cfg_attr(feature = "serde", serde(with = "colltrans_convex::written::or_infinite"))]
     pub lower: f64,
     /// What stops it.
     pub stop: Option<StopProof>,
@@ -77,7 +77,7 @@ pub enum StartProof {
 )]
 pub struct StopProof {
     /// Their least gap, of the shrunk bodies, in multiples of the direction, or 0: the value of
-    /// [`SolidContact::shrunk_distance`](crate::solid::SolidContact::shrunk_distance).
+    /// [`SolidContact::shrunk_distance`](crate::SolidContact::shrunk_distance).
     #[cfg_attr(feature = "serde", serde(rename = "distance"))]
     pub shrunk_distance: f64,
     /// Positions in [`Solid::triangles`] of the moving and of the fixed body.

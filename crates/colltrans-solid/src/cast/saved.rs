@@ -3,9 +3,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::proof::{Cover, StartProof};
-use crate::solve::solid::bound::Reason;
-use crate::solve::solid::nearest::Apart;
-use crate::solve::solid::overlap::Overlap;
+use crate::solve::bound::Reason;
+use crate::solve::nearest::Apart;
+use crate::solve::overlap::Overlap;
 
 /// Reasons of covers. Sealed.
 pub trait Letters: Copy + PartialEq + 'static {
@@ -100,8 +100,8 @@ mod file {
 
     use serde::{Deserialize, Serialize};
 
-    use crate::cast::CaseError;
-    use crate::cast::solid::SolidCertificate;
+    use crate::cast::SolidCertificate;
+    use colltrans_convex::cast::CaseError;
 
     /// What a file of this version calls itself.
     const FORMAT: &str = "colltrans proof of a solid 1";

@@ -7,13 +7,14 @@
 //! is next. Where the tolerance is not small, facets may come to overlap again: there it is doubled and halved, and the
 //! bodies are asked each time, unless the last place tells, or of convex ones a plane between them.
 
-use super::{Cast, SolidScene, hulls};
-use crate::body::solid::Solid;
-use crate::solve::solid::overlap::{self, Overlap};
-use crate::solve::solid::parted;
-use crate::solve::solid::scene::Scene;
-use crate::solve::solid::separate;
-use crate::solve::solid::steps::SolidSteps;
+use super::{SolidScene, hulls};
+use crate::body::Solid;
+use crate::solve::overlap::{self, Overlap};
+use crate::solve::parted;
+use crate::solve::scene::Scene;
+use crate::solve::separate;
+use crate::solve::steps::SolidSteps;
+use colltrans_convex::cast::Cast;
 
 /// The least tolerance is found to this share of itself, or so many noises; as many more part bodies clearly.
 const ACCURACY: f64 = 1e-12;

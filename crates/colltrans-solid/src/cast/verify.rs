@@ -2,16 +2,16 @@
 
 use super::proof::{Cover, SolidCertificate, StartProof, StopProof, cut_holds, least_of_leaves};
 use super::{SolidCast, SolidScene};
-use crate::answer::{CertificateError, Separation, checked_as};
-use crate::body::solid::Solid;
-use crate::cast::Cast;
-use crate::solve::solid::bound::{Reason, apart};
-use crate::solve::solid::leaf;
-use crate::solve::solid::overlap::{is_overlap, leaves_apart, nested, never_overlap};
-use crate::solve::solid::projected::Projected;
-use crate::solve::solid::scene::Scene;
-use crate::solve::solid::search::{Aim, SLACK, exact_gap, node_rounding};
-use crate::solve::solid::separating_axes::SeparatingAxes;
+use crate::body::Solid;
+use crate::solve::bound::{Reason, apart};
+use crate::solve::leaf;
+use crate::solve::overlap::{is_overlap, leaves_apart, nested, never_overlap};
+use crate::solve::projected::Projected;
+use crate::solve::scene::Scene;
+use crate::solve::search::{Aim, SLACK, exact_gap, node_rounding};
+use crate::solve::separating_axes::SeparatingAxes;
+use colltrans_convex::answer::{CertificateError, Separation, checked_as};
+use colltrans_convex::cast::Cast;
 
 /// A proof between solids: of a clearance, or of a plane between the bodies.
 #[derive(Debug, Clone, Copy)]

@@ -5,9 +5,10 @@ use colltrans_testkit::shapes::{Mesh, extruded, ring};
 use colltrans_testkit::solids::{bumpy_ball, comb, comb_outline, slab, washer};
 use glam::{DQuat, DVec3};
 
-use crate::pair::solid::SolidPairSearch;
-use crate::work::{assert_growth, looks};
-use crate::{Cast, Pair, Pose, Solid};
+use crate::Solid;
+use crate::pair::SolidPairSearch;
+use colltrans_convex::work::{assert_growth, looks};
+use colltrans_convex::{Cast, Pair, Pose};
 
 fn rotation() -> DQuat {
     Random::new(5).rotation()

@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::projected::Projected;
 use super::scene::{Corner, Scene, Side};
 use super::separating_axes::Reach;
-use crate::body::Aabb;
+use colltrans_convex::body::Aabb;
 
 /// The facets of a leaf are compared with the box of another node if the leaf is longer than it by this factor.
 const LONG: f64 = 4.0;
@@ -265,10 +265,10 @@ mod tests {
 
     use super::super::overlap::{Overlap, is_touch};
     use super::*;
-    use crate::body::Pose;
-    use crate::body::solid::Solid;
-    use crate::cast::Cast;
-    use crate::solid::{SolidCast, SolidScene};
+    use crate::body::Solid;
+    use crate::{SolidCast, SolidScene};
+    use colltrans_convex::body::Pose;
+    use colltrans_convex::cast::Cast;
 
     fn triangle(most: i16) -> impl Strategy<Value = Solid> {
         let point = (-most..=most, -most..=most, -most..=most);
@@ -290,7 +290,7 @@ mod tests {
         ) {
             let q = if is_turned { DQuat::from_array(q).normalize() } else { DQuat::IDENTITY };
             let at = DVec3::from(at.map(f64::from));
-            let placed = |body, at: DVec3| -> crate::Placed<'_, Solid> {
+            let placed = |body, at: DVec3| -> colltrans_convex::Placed<'_, Solid> {
                 Solid::at(body, Pose::new(q, q * at).expect("a rotation"))
             };
             let [a, b] = [placed(&long, DVec3::ZERO), placed(&small, at)];

@@ -36,10 +36,10 @@ use super::leaf::{Gap, Meeting, Opposed, listed, nearest_after};
 use super::rim;
 use super::scene::{Corner, Scene, Side};
 use super::search::{Aim, Found, exact_gap_of};
-use crate::answer::Bounded;
-use crate::body::Feature;
-use crate::body::solid::Solid;
-use crate::solve::solid::steps::SolidSteps;
+use crate::body::Solid;
+use crate::solve::steps::SolidSteps;
+use colltrans_convex::answer::Bounded;
+use colltrans_convex::body::Feature;
 
 /// Where a solid is stopped.
 ///
@@ -55,7 +55,7 @@ use crate::solve::solid::steps::SolidSteps;
 pub struct SolidContact {
     /// Where the facets that stop the shrunk bodies meet in their true place, in multiples of the
     /// direction: 7 for a head that stops at 7. Negative where these facets, as they are, overlap, and
-    /// for contacts behind, of [`Cast::first_contact`](crate::Cast::first_contact).
+    /// for contacts behind, of [`Cast::first_contact`](colltrans_convex::Cast::first_contact).
     ///
     /// Up to `lower` the shrunk bodies do not overlap, and these facets have not met; beyond `upper` the
     /// bodies overlap: as they are, where these facets meet; else shrunk, and so as they are, if
@@ -82,7 +82,7 @@ pub struct SolidContact {
 }
 
 impl SolidContact {
-    /// Of the first contact of a [reversed](crate::Cast::reversed) cast: where the bodies meet last
+    /// Of the first contact of a [reversed](colltrans_convex::Cast::reversed) cast: where the bodies meet last
     /// along the direction itself, in multiples of it. Beyond `upper` they never meet.
     pub fn exit(&self) -> Bounded {
         self.translation.negated()

@@ -14,7 +14,7 @@ use std::cmp::Ordering::Equal;
 use super::inside::{Mean, WEIGHTS};
 use super::line::Line;
 use super::scene::{Corner, Scene, Side};
-use crate::body::solid::edges::NONE;
+use crate::body::edges::NONE;
 
 /// The facets around a vertex that close a ring, each by its other two corners.
 pub(super) struct Fan<'s, 'a> {

@@ -15,10 +15,10 @@ use super::projected::Projected;
 use super::scene::{Corner, ExactPoint, Scene, Side, place_exactly};
 use super::search::children;
 use super::triangle::{Triangle, lies_on};
-use crate::body::Aabb;
-use crate::body::solid::edges::NONE;
-use crate::number::fine::Fine;
-use crate::number::integer::Integer;
+use crate::body::edges::NONE;
+use colltrans_convex::body::Aabb;
+use colltrans_convex::number::fine::Fine;
+use colltrans_convex::number::integer::Integer;
 
 /// Triangles of a shell that are tried for a point off the other surface. A shell inside touches it
 /// in isolated points only, so the first or second one does, unless it touches along facets.

@@ -22,10 +22,10 @@ use super::projected::Projected;
 use super::scene::{Corner, ExactPoint, Scene, Side};
 use super::search::children;
 use super::triangle::Triangle;
-use crate::body::Aabb;
-use crate::body::solid::Solid;
-use crate::body::solid::edges::NONE;
-use crate::number::integer::{Integer, SMALL, TWICE_LARGE, determinant, difference};
+use crate::body::Solid;
+use crate::body::edges::NONE;
+use colltrans_convex::body::Aabb;
+use colltrans_convex::number::integer::{Integer, SMALL, TWICE_LARGE, determinant, difference};
 
 /// A line with a direction `u`.
 #[derive(Clone, Copy)]

@@ -38,9 +38,9 @@ use super::scene::{Corner, Scene, Side};
 use super::search::{children, splits_moving};
 use super::thin;
 use super::triangle::Triangle;
-use crate::body::solid::tree::{LEAF, Node};
-use crate::body::solid::wedge::{Axis, Ray, Wedge};
-use crate::solve::solid::steps::SolidSteps;
+use crate::body::tree::{LEAF, Node};
+use crate::body::wedge::{Axis, Ray, Wedge};
+use crate::solve::steps::SolidSteps;
 
 /// Where the solids overlap: positions in [`Solid::triangles`](crate::Solid::triangles);
 /// [`Solid::facet_indices`](crate::Solid::facet_indices) leads to the facets of the input.

@@ -7,9 +7,9 @@ use glam::DVec3;
 
 use super::scene::{Scene, Side};
 use super::separate::HEIGHTS;
-use crate::number::real::Vector;
-use crate::setting::VertexPair;
-use crate::solve::nearest::simplex::{Corner, Simplex};
+use colltrans_convex::number::real::Vector;
+use colltrans_convex::setting::VertexPair;
+use colltrans_convex::solve::nearest::simplex::{Corner, Simplex};
 
 /// Each round ends or comes closer; rounding alone could make it last.
 const MOST_ROUNDS: usize = 64;

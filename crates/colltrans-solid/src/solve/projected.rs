@@ -8,10 +8,10 @@
 use glam::{DMat3, DVec3};
 
 use super::scene::{Scene, Side};
-use crate::body::Aabb;
-use crate::body::solid::Shrinking;
-use crate::body::solid::cuts::Parts;
-use crate::number::error_free::sum_error;
+use crate::body::Shrinking;
+use crate::body::cuts::Parts;
+use colltrans_convex::body::Aabb;
+use colltrans_convex::number::error_free::sum_error;
 
 /// Cosine from which on a slab bounds more along an axis than the box does.
 const PARALLEL: f64 = 0.75;

@@ -32,9 +32,9 @@ use super::fan::Fan;
 use super::leaf::{Above, Facet, Gap, Meeting, NO_GAP, over_facet, over_side};
 use super::line::{self, Line, Way};
 use super::scene::{Corner, Scene, Side};
-use crate::body::Aabb;
-use crate::body::solid::edges::NONE;
-use crate::number::integer::{Integer, LARGE, SMALL};
+use crate::body::edges::NONE;
+use colltrans_convex::body::Aabb;
+use colltrans_convex::number::integer::{Integer, LARGE, SMALL};
 
 /// A facet of an open shell, on edge.
 pub(crate) struct Upright {

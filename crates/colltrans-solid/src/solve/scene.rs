@@ -18,14 +18,14 @@ use std::cell::OnceCell;
 
 use glam::{DMat3, DVec3};
 
-use crate::body::Aabb;
-use crate::body::pose::rotation_defect;
-use crate::body::solid::{Shrinking, Solid, displace};
-use crate::number::error_free::sum_error;
-use crate::number::fine::Fine;
-use crate::number::integer::Integer;
-use crate::number::noise::Noise;
-use crate::setting::Setting;
+use crate::body::{Shrinking, Solid, displace};
+use colltrans_convex::body::Aabb;
+use colltrans_convex::body::pose::rotation_defect;
+use colltrans_convex::number::error_free::sum_error;
+use colltrans_convex::number::fine::Fine;
+use colltrans_convex::number::integer::Integer;
+use colltrans_convex::number::noise::Noise;
+use colltrans_convex::setting::Setting;
 
 /// A rounded rotation is off one by less.
 const ROTATION: f64 = 16.0 * f64::EPSILON;

@@ -17,8 +17,8 @@ use super::rim::{self, Upright};
 use super::scene::{Scene, Side};
 use super::separate;
 use super::separating_axes::{Reach, SeparatingAxes};
-use crate::body::solid::tree::Node;
-use crate::solve::solid::steps::SolidSteps;
+use crate::body::tree::Node;
+use crate::solve::steps::SolidSteps;
 
 /// An answer may be larger than the least gap by so many times the noise of coordinates: bounds of
 /// nodes are rounded by a third of that.

@@ -16,11 +16,11 @@ use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 use super::projected::Projected;
 use super::scene::{Scene, Side, size};
 use super::search::children;
-use crate::answer::{CertificateError, Separation};
-use crate::body::Aabb;
-use crate::body::solid::Solid;
-use crate::number::noise::UNIT_VECTOR;
-use crate::setting::Setting;
+use crate::body::Solid;
+use colltrans_convex::answer::{CertificateError, Separation};
+use colltrans_convex::body::Aabb;
+use colltrans_convex::number::noise::UNIT_VECTOR;
+use colltrans_convex::setting::Setting;
 
 /// Each round ends or comes closer; rounding alone could make it last.
 const MOST_ROUNDS: usize = 32;

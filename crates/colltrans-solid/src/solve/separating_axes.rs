@@ -23,8 +23,8 @@ use glam::{DVec2, DVec3, Vec3Swizzles};
 
 use super::projected::Projected;
 use super::scene::{Scene, Side};
-use crate::body::Aabb;
-use crate::body::solid::cuts::{Depths, Parts, depths};
+use crate::body::cuts::{Depths, Parts, depths};
+use colltrans_convex::body::Aabb;
 
 /// Normals orthogonal to an axis of each box, the direction, and the axes of the moving and the fixed
 /// one.

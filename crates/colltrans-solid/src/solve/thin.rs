@@ -18,7 +18,7 @@ use super::line::{self, Line, Way};
 use super::overlap::{Around, Stuff};
 use super::scene::{Corner, Scene};
 use super::triangle::Triangle;
-use crate::body::solid::wedge::Ray;
+use crate::body::wedge::Ray;
 
 /// Returns the ends of a facet without area, equal for a point; `None` of any other facet.
 pub(super) fn ends(triangle: &Triangle) -> Option<[Corner; 2]> {

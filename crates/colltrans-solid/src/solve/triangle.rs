@@ -3,8 +3,8 @@
 use std::cmp::Ordering;
 
 use super::scene::{Corner, ExactPoint, Scene, Side};
-use crate::body::Aabb;
-use crate::body::solid::edges::NONE;
+use crate::body::edges::NONE;
+use colltrans_convex::body::Aabb;
 
 /// A triangle of one body.
 pub(crate) struct Triangle<'s, 'a> {

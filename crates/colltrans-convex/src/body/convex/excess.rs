@@ -245,7 +245,7 @@ impl ConvexPolyhedron {
 
     /// How far below a vertex its plateau is visited.
     #[inline]
-    pub(crate) fn plateau_depth(&self) -> f64 {
+    pub fn plateau_depth(&self) -> f64 {
         2.0 * noise::GAIN * self.inertia.reach + 4.0 * self.flatness
     }
 

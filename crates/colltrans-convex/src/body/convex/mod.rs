@@ -196,7 +196,9 @@ impl ConvexPolyhedron {
     }
 
     /// The body as the hull of its vertices alone, for a caller that counts itself what those lack.
-    pub(crate) fn without_input_excess(self) -> Self {
+    #[must_use]
+    #[inline]
+    pub fn without_input_excess(self) -> Self {
         Self { input_excess: 0.0, ..self }
     }
 

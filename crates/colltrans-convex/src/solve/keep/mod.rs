@@ -58,7 +58,7 @@ const SOLVED: f64 = 2.0;
 const MOST_ROUNDS: usize = 64;
 
 /// A convex set, seen from a line.
-pub(crate) trait Target {
+pub trait Target {
     /// What says of a plane where it is.
     type Support: Copy;
     /// What says of a point which it is.
@@ -73,47 +73,47 @@ pub(crate) trait Target {
 
 /// All of the set is above it.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Plane<S> {
+pub struct Plane<S> {
     /// Of length 1, but for rounding.
-    pub(crate) normal: DVec3,
+    pub normal: DVec3,
     /// At most `normal . m` for all `m`, its error taken off.
-    pub(crate) height: f64,
+    pub height: f64,
     /// What was taken off besides rounding.
-    pub(crate) beyond: f64,
-    pub(crate) support: S,
+    pub beyond: f64,
+    pub support: S,
 }
 
 /// What is seen from a place.
-pub(crate) struct Look<S, P> {
+pub struct Look<S, P> {
     /// Between the place and the set; `None` if there is none that rounding can tell.
-    pub(crate) plane: Option<Plane<S>>,
+    pub plane: Option<Plane<S>>,
     /// The nearest point, rounded.
-    pub(crate) point: DVec3,
-    pub(crate) spot: P,
+    pub point: DVec3,
+    pub spot: P,
     /// The corners of the feature that it is an inner point of, and how many.
-    pub(crate) corners: [DVec3; 3],
-    pub(crate) count: usize,
+    pub corners: [DVec3; 3],
+    pub count: usize,
 }
 
 /// A line and the gap that is kept from it.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Line {
+pub struct Line {
     /// The direction, at length 1.
-    pub(crate) unit: DVec3,
-    pub(crate) keep: f64,
+    pub unit: DVec3,
+    pub keep: f64,
     /// Of the size with the gap.
-    pub(crate) noise: Noise,
+    pub noise: Noise,
     /// Nothing is as near as the gap beyond this.
     pub(crate) reach: f64,
 }
 
 /// How near to each other bounds have come.
-pub(crate) struct Travel<T: Target> {
+pub struct Travel<T: Target> {
     /// The plane that the lower bound is of, and the bound as a length.
     pub(crate) plane: Plane<T::Support>,
-    pub(crate) lower: f64,
+    pub lower: f64,
     /// The upper bound, the point that it is of, and which.
-    pub(crate) near: Option<Near<T::Spot>>,
+    pub near: Option<Near<T::Spot>>,
     pub(crate) looks: u32,
     /// Whether a plane showed that the line passes, or all but passes.
     pub(crate) passes: bool,
@@ -121,20 +121,22 @@ pub(crate) struct Travel<T: Target> {
 
 /// A point of the set that is as near as the gap.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Near<P> {
+pub struct Near<P> {
     pub(crate) upper: f64,
-    pub(crate) point: DVec3,
+    pub point: DVec3,
     pub(crate) spot: P,
 }
 
 impl Line {
-    pub(crate) fn new(unit: DVec3, keep: f64, size: f64) -> Self {
+    #[inline]
+    pub fn new(unit: DVec3, keep: f64, size: f64) -> Self {
         let noise = Noise::of(size + keep);
         Self { unit, keep, noise, reach: size + keep + noise.point() }
     }
 
     /// How far a plane is off the direction: what bounds from below are divided by.
-    pub(crate) fn slope(&self, normal: DVec3) -> f64 {
+    #[inline]
+    pub fn slope(&self, normal: DVec3) -> f64 {
         normal.dot(self.unit)
     }
 
@@ -153,12 +155,14 @@ impl Line {
     }
 
     /// The same with the gap as it is: an estimate.
-    pub(crate) fn estimate(&self, point: DVec3) -> Option<f64> {
+    #[inline]
+    pub fn estimate(&self, point: DVec3) -> Option<f64> {
         self.root(point, self.keep)
     }
 
     /// Where a point is so near for certain.
-    pub(crate) fn upper(&self, point: DVec3) -> Option<f64> {
+    #[inline]
+    pub fn upper(&self, point: DVec3) -> Option<f64> {
         let s = self.root(point, self.keep - SOLVED * self.noise.point())?;
         self.is_near(point - self.unit * s).then_some(s)
     }
@@ -193,7 +197,7 @@ impl Line {
 
 /// Looks along the line until the bounds are as near to each other as rounding lets them, beginning with a plane
 /// that is not along it; no farther than to a limit.
-pub(crate) fn travel<T: Target>(
+pub fn travel<T: Target>(
     target: &mut T,
     line: &Line,
     start: Plane<T::Support>,
@@ -294,19 +298,15 @@ impl<T: Target> Travel<T> {
 }
 
 /// How far a line passes from a set.
-pub(crate) struct Shadow<S> {
+pub struct Shadow<S> {
     /// The best plane along the line.
-    pub(crate) plane: Plane<S>,
+    pub plane: Plane<S>,
     /// A point of the shadow is no farther from it, but for rounding; 0 if the line passes through.
     pub(crate) distance: f64,
 }
 
 /// Descends to the point of the shadow nearest to the line, from a direction to begin with.
-pub(crate) fn shadow<T: Target>(
-    target: &mut T,
-    line: &Line,
-    toward: DVec3,
-) -> Option<Shadow<T::Support>> {
+pub fn shadow<T: Target>(target: &mut T, line: &Line, toward: DVec3) -> Option<Shadow<T::Support>> {
     let x = line.unit.any_orthonormal_vector();
     let y = line.unit.cross(x);
     let flat = |v: DVec3| DVec2::new(v.dot(x), v.dot(y));

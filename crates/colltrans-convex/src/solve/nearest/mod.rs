@@ -22,7 +22,7 @@
 
 mod depth;
 mod gjk;
-pub(in crate::solve) mod simplex;
+pub mod simplex;
 mod surround;
 
 use glam::{DMat3, DVec3};

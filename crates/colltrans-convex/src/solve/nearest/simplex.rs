@@ -11,14 +11,14 @@ use crate::setting::VertexPair;
 
 /// A point of `M` and the pair of vertices it comes from.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::solve) struct Corner<T> {
-    pub(in crate::solve) at: Vector<T>,
-    pub(in crate::solve) pair: VertexPair,
+pub struct Corner<T> {
+    pub at: Vector<T>,
+    pub pair: VertexPair,
 }
 
 /// Up to four points of `M`, each with a weight.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::solve) struct Simplex<T> {
+pub struct Simplex<T> {
     at: [Vector<T>; 4],
     pairs: [VertexPair; 4],
     /// Zero beyond the corners that are there.
@@ -28,7 +28,7 @@ pub(in crate::solve) struct Simplex<T> {
 
 impl<T: Real> Simplex<T> {
     #[inline]
-    pub(in crate::solve) fn new(corner: Corner<T>) -> Self {
+    pub fn new(corner: Corner<T>) -> Self {
         let mut weights = [T::ZERO; 4];
         weights[0] = T::of(1.0);
         Self { at: [corner.at; 4], pairs: [corner.pair; 4], weights, count: 1 }
@@ -43,14 +43,15 @@ impl<T: Real> Simplex<T> {
 
     /// Adds a corner, to a simplex of fewer than four.
     #[inline]
-    pub(in crate::solve) fn push(&mut self, corner: Corner<T>) {
+    pub fn push(&mut self, corner: Corner<T>) {
         self.at[self.count] = corner.at;
         self.pairs[self.count] = corner.pair;
         self.count += 1;
     }
 
     /// Whether it is a tetrahedron, which contains the origin once [`Self::reduce`] has left it so.
-    pub(in crate::solve) fn is_full(&self) -> bool {
+    #[inline]
+    pub fn is_full(&self) -> bool {
         self.count == 4
     }
 
@@ -67,7 +68,7 @@ impl<T: Real> Simplex<T> {
 
     /// Drops what the nearest point does without, and returns that point.
     #[inline]
-    pub(in crate::solve) fn reduce(&mut self) -> Vector<T> {
+    pub fn reduce(&mut self) -> Vector<T> {
         let [a, b, c, d] = &self.at;
         self.weights = match self.count {
             1 => [T::of(1.0), T::ZERO, T::ZERO, T::ZERO],
@@ -107,7 +108,7 @@ impl<T: Real> Simplex<T> {
 
     /// The direction across the simplex from the origin's side, of any length, for its nearest point.
     #[inline]
-    pub(in crate::solve) fn normal(&self, nearest: &Vector<T>) -> DVec3 {
+    pub fn normal(&self, nearest: &Vector<T>) -> DVec3 {
         let [a, b, c, _] = &self.at;
         match self.count {
             2 => {

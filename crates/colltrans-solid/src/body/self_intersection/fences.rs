@@ -3,10 +3,10 @@
 use glam::DVec3;
 
 use super::Placing;
-use crate::body::Aabb;
-use crate::body::solid::edges::NONE;
-use crate::body::solid::tree::{self, Node};
-use crate::work;
+use crate::body::edges::NONE;
+use crate::body::tree::{self, Node};
+use colltrans_convex::body::Aabb;
+use colltrans_convex::work;
 
 /// Facets within so many roundings of the largest coordinate of a plane lie in it.
 const FLAT: f64 = 64.0 * f64::EPSILON;

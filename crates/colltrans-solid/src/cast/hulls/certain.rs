@@ -20,19 +20,19 @@ use glam::{DMat3, DVec3};
 
 use super::guessed::least_gap;
 use super::{Hulls, Spot, Surface};
-use crate::answer::{Bounded, Certificate, Clearance, Contact, Outcome, Separation};
-use crate::body::Feature;
-use crate::body::solid::Solid;
-use crate::cast::Cast;
-use crate::cast::solid::ask::default_tolerance;
-use crate::cast::solid::boxes::leaves_behind;
-use crate::cast::solid::{SolidFree, SolidScene};
-use crate::setting::VertexPair;
-use crate::solve::solid::contact::{SolidContact, feature};
-use crate::solve::solid::scene::{Scene, permutes};
-use crate::solve::solid::search::{Found, SLACK};
-use crate::solve::solid::separate;
-use crate::solve::solid::steps::SolidSteps;
+use crate::body::Solid;
+use crate::cast::ask::default_tolerance;
+use crate::cast::boxes::leaves_behind;
+use crate::cast::{SolidFree, SolidScene};
+use crate::solve::contact::{SolidContact, feature};
+use crate::solve::scene::{Scene, permutes};
+use crate::solve::search::{Found, SLACK};
+use crate::solve::separate;
+use crate::solve::steps::SolidSteps;
+use colltrans_convex::answer::{Bounded, Certificate, Clearance, Contact, Outcome, Separation};
+use colltrans_convex::body::Feature;
+use colltrans_convex::cast::Cast;
+use colltrans_convex::setting::VertexPair;
 
 /// Poses may be off rotations, and facets off their plane across the direction, by such a share.
 const SHEARED: f64 = 1e-5;
@@ -46,10 +46,7 @@ const MARGIN: f64 = separate::ROUNDING + 1.0;
 
 impl Hulls<'_> {
     /// The clearance of the solids, if what is proven of their hulls is proven of them.
-    pub(in crate::cast::solid) fn certain(
-        &self,
-        solids: &Cast<'_, Solid>,
-    ) -> Option<Clearance<Solid>> {
+    pub(in crate::cast) fn certain(&self, solids: &Cast<'_, Solid>) -> Option<Clearance<Solid>> {
         let told = Told::new(solids, self)?;
         match &self.first {
             Outcome::Separated(apart) => told.apart(&apart.certificate),
@@ -73,7 +70,7 @@ impl Hulls<'_> {
     }
 
     /// The same of bodies that touch, as far as their hulls tell, but do not, or do not overlap, as `scene` has them.
-    pub(in crate::cast::solid) fn touching(
+    pub(in crate::cast) fn touching(
         &self,
         solids: &Cast<'_, Solid>,
         scene: &Scene,
@@ -89,7 +86,7 @@ impl Hulls<'_> {
     }
 
     /// The same of bodies that two facets are known to stop, and of whose gaps none is known to be less than a length.
-    pub(in crate::cast::solid) fn stopped_by(
+    pub(in crate::cast) fn stopped_by(
         &self,
         solids: &Cast<'_, Solid>,
         found: &Found,

@@ -4,13 +4,13 @@
 use glam::DVec3;
 
 use super::{Hulls, Spot, Surface};
-use crate::answer::{Contact, Outcome};
-use crate::solve::solid::bound::box_gaps;
-use crate::solve::solid::overlap::{Overlap, is_overlap};
-use crate::solve::solid::projected::Projected;
-use crate::solve::solid::scene::{Scene, Side};
-use crate::solve::solid::search::{Aim, Found, SLACK, Search};
-use crate::solve::solid::separate::{HEIGHTS, farthest};
+use crate::solve::bound::box_gaps;
+use crate::solve::overlap::{Overlap, is_overlap};
+use crate::solve::projected::Projected;
+use crate::solve::scene::{Scene, Side};
+use crate::solve::search::{Aim, Found, SLACK, Search};
+use crate::solve::separate::{HEIGHTS, farthest};
+use colltrans_convex::answer::{Contact, Outcome};
 
 /// Facets at a place that are held against each other; how near a place is to a facet's sides for those across to be
 /// among them, in noises.
@@ -22,7 +22,7 @@ const SUNK: f64 = 1e-3;
 const MOST_TOP: usize = 32;
 
 /// What the hulls tell of gaps below a limit.
-pub(in crate::cast::solid) enum Guessed {
+pub(in crate::cast) enum Guessed {
     /// Nothing stops the moving body.
     Free,
     /// Two facets do, and no gap is less than a length.
@@ -31,7 +31,7 @@ pub(in crate::cast::solid) enum Guessed {
 
 impl Hulls<'_> {
     /// What the facets around their contact tell of gaps below a limit; `None` if that is nothing. Counts pairs of facets.
-    pub(in crate::cast::solid) fn guessed(
+    pub(in crate::cast) fn guessed(
         &self,
         scene: &Scene,
         limit: f64,
@@ -49,7 +49,7 @@ impl Hulls<'_> {
     }
 
     /// Whether the bodies overlap by as little, as far as their hulls tell, as facets around their contact may show.
-    pub(in crate::cast::solid) fn are_sunk(&self) -> bool {
+    pub(in crate::cast) fn are_sunk(&self) -> bool {
         let Outcome::Contact(contact) = &self.first else { return false };
         let proof = &contact.certificate;
         let depth = -proof.lower * proof.normal.dot(self.cast.setting.direction);
@@ -57,7 +57,7 @@ impl Hulls<'_> {
     }
 
     /// A place where they do: two of these facets. Counts pairs of them.
-    pub(in crate::cast::solid) fn sunk(&self, scene: &Scene, leaves: &mut u32) -> Option<Overlap> {
+    pub(in crate::cast) fn sunk(&self, scene: &Scene, leaves: &mut u32) -> Option<Overlap> {
         let Outcome::Contact(contact) = &self.first else { return None };
         if !self.are_sunk() {
             return None;

@@ -22,13 +22,13 @@ use std::cell::OnceCell;
 
 use glam::DVec3;
 
-use crate::answer::{Contact, Outcome};
-use crate::body::ConvexPolyhedron;
-use crate::body::Keepable;
-use crate::body::solid::Solid;
-use crate::cast::Cast;
-use crate::setting::Setting;
-use crate::solve::options::Options;
+use crate::body::Solid;
+use colltrans_convex::answer::{Contact, Outcome};
+use colltrans_convex::body::ConvexPolyhedron;
+use colltrans_convex::body::Keepable;
+use colltrans_convex::cast::Cast;
+use colltrans_convex::setting::Setting;
+use colltrans_convex::solve::options::Options;
 pub(super) use guessed::Guessed;
 use surface::{Spot, Surface};
 

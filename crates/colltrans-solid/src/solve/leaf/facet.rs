@@ -9,9 +9,9 @@ use glam::DVec3;
 
 use super::super::scene::{Corner, Remembered, Scene, Side};
 use super::super::sign::rough_turn;
-use crate::body::Aabb;
-use crate::body::solid::Solid;
-use crate::body::solid::edges::NONE;
+use crate::body::Solid;
+use crate::body::edges::NONE;
+use colltrans_convex::body::Aabb;
 
 /// Cosine of the angle from which on a facet is folded back onto the next one.
 const FOLDED: f64 = -0.999;

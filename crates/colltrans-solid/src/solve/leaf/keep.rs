@@ -1,7 +1,7 @@
 //! Facets that are to keep a gap.
 //!
 //! A body is grown by the gap, in all that a search sees of its nodes ([`Side::swell`]), and a pair of facets is the
-//! cast of a point at the difference of two triangles grown by a ball ([`keep`](crate::solve::keep)). What comes
+//! cast of a point at the difference of two triangles grown by a ball ([`keep`](colltrans_convex::solve::keep)). What comes
 //! nearer than the gap for the first time does so with a facet that looks along the direction, and one that looks
 //! against it: at the nearest points `p`, `q` the normal `n` from one to the other has `n.d > 0`; if no facet at `p`
 //! looked along `d`, `d` would lead into the body from there, and nothing of it lies beyond the plane across `n`.
@@ -17,8 +17,8 @@ use glam::DVec3;
 use super::super::nearest::triangle::{self, Corners};
 use super::super::scene::{Corner, Scene};
 use super::{Facet, Gap, Meeting, Wanted};
-use crate::number::noise::UNIT_VECTOR;
-use crate::solve::keep::{Line, Look, Plane, Target, Travel, shadow, travel};
+use colltrans_convex::number::noise::UNIT_VECTOR;
+use colltrans_convex::solve::keep::{Line, Look, Plane, Target, Travel, shadow, travel};
 
 /// How far below the gap, in noises, facets may pass each other.
 const GRAZE: f64 = 8.0;

@@ -234,10 +234,10 @@ mod tests {
 
     use super::super::search::{Aim, exact_gap};
     use super::*;
-    use crate::body::Pose;
-    use crate::body::solid::Solid;
-    use crate::cast::Cast;
-    use crate::solid::{SolidCast, SolidScene};
+    use crate::body::Solid;
+    use crate::{SolidCast, SolidScene};
+    use colltrans_convex::body::Pose;
+    use colltrans_convex::cast::Cast;
 
     fn point() -> impl Strategy<Value = DVec3> {
         (-2_i8..=2, -2_i8..=2, -2_i8..=2)

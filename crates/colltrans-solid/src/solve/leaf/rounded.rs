@@ -5,7 +5,7 @@ use std::cmp::Ordering;
 
 use super::facet::{Facet, Turn, Turns, cross};
 use super::{Gap, Meeting};
-use crate::solve::solid::scene::Scene;
+use crate::solve::scene::Scene;
 
 /// The gap from rounded coordinates.
 pub(super) enum Rounded {

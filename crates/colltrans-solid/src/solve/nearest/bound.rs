@@ -17,10 +17,10 @@
 
 use glam::{DMat3, DVec3};
 
-use crate::body::pose::rotation_defect;
-use crate::body::solid::cuts::{Depths, Parts, depths};
-use crate::body::solid::tree::Node;
-use crate::solve::solid::scene::{Scene, Side};
+use crate::body::cuts::{Depths, Parts, depths};
+use crate::body::tree::Node;
+use crate::solve::scene::{Scene, Side};
+use colltrans_convex::body::pose::rotation_defect;
 
 use super::triangle::unit;
 

@@ -14,9 +14,9 @@ use glam::DVec3;
 
 use super::overlap::{self, Overlap};
 use super::scene::{Scene, Side};
-use crate::body::Feature;
-use crate::solve::solid::steps::SolidSteps;
+use crate::solve::steps::SolidSteps;
 pub use bound::Apart;
+use colltrans_convex::body::Feature;
 use search::{Found, corners};
 use triangle::Nearest;
 
@@ -52,7 +52,7 @@ impl SolidNear {
 }
 
 /// How near two solids are at least, as a search has found. What proves it covers all pairs of facets, and is
-/// asked for apart: [`Pair::certified_distance`](crate::Pair::certified_distance).
+/// asked for apart: [`SolidPair::certified_distance`](crate::SolidPair::certified_distance).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct SolidGap {

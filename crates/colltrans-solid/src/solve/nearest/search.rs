@@ -9,10 +9,10 @@ use std::collections::BinaryHeap;
 
 use super::bound::{Apart, Axes, Couple, View};
 use super::triangle::{self, Corners, GAP, Nearest};
-use crate::solve::solid::scene::{Scene, Side};
-use crate::solve::solid::search::{self, children};
-use crate::solve::solid::steps::SolidSteps;
-use crate::work;
+use crate::solve::scene::{Scene, Side};
+use crate::solve::search::{self, children};
+use crate::solve::steps::SolidSteps;
+use colltrans_convex::work;
 
 /// How far, in noises, the limit is below the least length found.
 const SLACK: f64 = 3.0;

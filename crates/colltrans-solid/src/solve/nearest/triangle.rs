@@ -408,8 +408,8 @@ mod tests {
     use colltrans_testkit::random::Random;
 
     use super::*;
-    use crate::body::solid::exact::turn;
-    use crate::number::noise::Noise;
+    use crate::body::exact::turn;
+    use colltrans_convex::number::noise::Noise;
 
     /// Corners with ties, slivers and flat places; the second triangle near the first one or not.
     fn draw(random: &mut Random) -> [Corners; 2] {

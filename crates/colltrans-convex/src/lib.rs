@@ -35,7 +35,8 @@ pub use answer::{
     OverlapAhead, PlaneGap, Proof, Separated, Separation, Solver, StartedFrom, Steps, WhyFree,
     Within,
 };
-pub use body::error::{BuildError, PoseError, TopologyError};
+pub use body::error::{BuildError, TopologyError};
+pub use body::pose_error::PoseError;
 pub use body::{
     Aabb, Body, ConvexPolyhedron, ConvexityDefect, FaceId, Feature, Features, HalfEdge, InputFacet,
     InputVertex, ObstacleId, OffsetReport, Placed, Pose, VertexId, convexity_defect,
@@ -49,6 +50,6 @@ pub use pair::{Pair, PairBody, PairProof};
 pub use setting::VertexPair;
 pub use setting::error::{QueryError, Stalled};
 pub use solve::observe;
-pub use solve::options::{Cuts, Focus, NarrowFrom, Narrowing, Options, Region, Until};
+pub use solve::options::{Cuts, Focus, NarrowFrom, Narrowing, NoUntil, Options, Region, Until};
 pub use tracker::Tracker;
-pub use written::{NoUntil, UnknownName};
+pub use written::UnknownName;

@@ -2,9 +2,6 @@
 
 use thiserror::Error;
 
-use crate::answer::{Solver, StartedFrom};
-use crate::solve::options::{NarrowFrom, Until};
-
 /// A text that names none of the choices.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("there is no {what} {name:?}; there are {}", .known.join(", "))]
@@ -52,47 +49,6 @@ macro_rules! named {
 
 #[doc(hidden)]
 pub use named;
-
-named!("solver", Solver { Auto: "auto", Cta: "cta", Portal: "portal" });
-named!(
-    "start",
-    StartedFrom {
-        Difference: "difference",
-        Features: "features",
-        Region: "region",
-        Scratch: "scratch"
-    }
-);
-named!("start", NarrowFrom { Center: "center", Ellipsoids: "ellipsoids" });
-
-/// A text that says no end of a minimisation.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[error("{text:?} is neither `exit` nor a number that is not negative")]
-pub struct NoUntil {
-    /// The text.
-    pub text: String,
-}
-
-impl std::fmt::Display for Until {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Exit => f.pad("exit"),
-            Self::Gap(gap) => gap.fmt(f),
-        }
-    }
-}
-
-impl std::str::FromStr for Until {
-    type Err = NoUntil;
-
-    fn from_str(text: &str) -> Result<Self, NoUntil> {
-        if text == "exit" {
-            return Ok(Self::Exit);
-        }
-        let gap = text.parse().ok().filter(|gap: &f64| *gap >= 0.0);
-        gap.map(Self::Gap).ok_or_else(|| NoUntil { text: text.into() })
-    }
-}
 
 /// A number that is infinite where nothing is known or nothing stops: JSON has no such number, so it
 /// is written as nothing (`null`), in every format.

@@ -92,6 +92,18 @@ pub enum StartedFrom {
     Scratch,
 }
 
+crate::written::named!("solver", Solver { Auto: "auto", Cta: "cta", Portal: "portal" });
+
+crate::written::named!(
+    "start",
+    StartedFrom {
+        Difference: "difference",
+        Features: "features",
+        Region: "region",
+        Scratch: "scratch"
+    }
+);
+
 #[cfg(feature = "serde")]
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde calls")]
 fn is_none(count: &u32) -> bool {

@@ -9,8 +9,10 @@ mod id;
 pub(crate) mod inertia;
 mod kept;
 pub mod motion;
+mod moving;
 pub(crate) mod placed;
 pub mod pose;
+pub mod pose_error;
 pub mod split;
 pub(crate) mod topology;
 
@@ -24,6 +26,7 @@ pub use id::{FaceId, InputFacet, InputVertex, ObstacleId, VertexId};
 pub(crate) use inertia::Inertia;
 #[doc(hidden)]
 pub use kept::{Keepable, Kept};
+pub use moving::Moving;
 pub use placed::{Body, Numbered, Placed, Told};
 pub use pose::Pose;
 pub use topology::HalfEdge;

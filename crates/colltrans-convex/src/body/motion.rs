@@ -12,13 +12,10 @@
 //! A motion of several pieces begins each where the numbers of that piece say, which is where the one before
 //! it ends, to rounding.
 
-use std::borrow::Cow;
-
-use derive_where::derive_where;
 use glam::{DMat3, DQuat, DVec3};
 
-use crate::body::error::MotionError;
-use crate::body::{ConvexPolyhedron, Placed, Pose};
+use crate::body::Pose;
+use crate::body::pose_error::MotionError;
 use crate::number::angle::{self, Turn, turn};
 use crate::number::error_free::{difference_error, product_error};
 use crate::number::noise;
@@ -332,29 +329,6 @@ fn check(what: &'static str, vector: DVec3) -> Result<(), MotionError> {
 fn flushed(v: DVec3) -> DVec3 {
     let flush = |x: f64| if x.abs() < MIN_MAGNITUDE { 0.0 } else { x };
     DVec3::new(flush(v.x), flush(v.y), flush(v.z))
-}
-
-/// A body and its motion, from [`ConvexPolyhedron::along`](crate::ConvexPolyhedron::along).
-#[derive(Debug)]
-#[derive_where(Clone)]
-pub struct Moving<'a, B = crate::ConvexPolyhedron> {
-    /// The body.
-    pub body: &'a B,
-    /// What it does.
-    pub motion: std::borrow::Cow<'a, Motion>,
-}
-
-impl ConvexPolyhedron {
-    /// This body and a motion, for a cast of bodies that turn.
-    pub fn along<'a>(&'a self, motion: &'a Motion) -> Moving<'a> {
-        Moving { body: self, motion: Cow::Borrowed(motion) }
-    }
-}
-
-impl<'a, B> From<Placed<'a, B>> for Moving<'a, B> {
-    fn from(placed: Placed<'a, B>) -> Self {
-        Self { body: placed.body, motion: std::borrow::Cow::Owned(Motion::still(placed.pose)) }
-    }
 }
 
 /// A piece as it is written; read, it is checked like any other.

@@ -8,7 +8,7 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
-use crate::body::error::PoseError;
+use crate::body::pose_error::PoseError;
 use crate::number::range::{MIN_MAGNITUDE, in_exact_range};
 
 /// How far the length of a quaternion may be from 1, and an entry of `R^T R` from that of the

@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use super::Cast;
 use crate::answer::Contact;
-use crate::body::error::PoseError;
+use crate::body::pose_error::PoseError;
 use crate::body::{Features, Pose, feature};
 use crate::number::noise::Noise;
 

@@ -9,8 +9,9 @@ use serde::{Deserialize, Serialize};
 use thiserror::Error;
 
 use super::Cast;
-use crate::body::error::{BuildError, PoseError};
+use crate::body::error::BuildError;
 use crate::body::pose::PoseRecord;
+use crate::body::pose_error::PoseError;
 use crate::body::{ConvexPolyhedron, InputVertex, Pose};
 use crate::setting::error::QueryError;
 use crate::solve::options::{Options, OptionsRecord};

@@ -348,12 +348,43 @@ impl From<Until> for UntilRecord {
 
 #[cfg(feature = "serde")]
 impl TryFrom<UntilRecord> for Until {
-    type Error = crate::written::NoUntil;
+    type Error = NoUntil;
 
     fn try_from(record: UntilRecord) -> Result<Self, Self::Error> {
         match record {
             UntilRecord::Share(gap) => Ok(Self::Gap(gap.unwrap_or(f64::INFINITY))),
             UntilRecord::Name(name) => name.parse(),
         }
+    }
+}
+
+crate::written::named!("start", NarrowFrom { Center: "center", Ellipsoids: "ellipsoids" });
+
+/// A text that says no end of a minimisation.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[error("{text:?} is neither `exit` nor a number that is not negative")]
+pub struct NoUntil {
+    /// The text.
+    pub text: String,
+}
+
+impl std::fmt::Display for Until {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Exit => f.pad("exit"),
+            Self::Gap(gap) => gap.fmt(f),
+        }
+    }
+}
+
+impl std::str::FromStr for Until {
+    type Err = NoUntil;
+
+    fn from_str(text: &str) -> Result<Self, NoUntil> {
+        if text == "exit" {
+            return Ok(Self::Exit);
+        }
+        let gap = text.parse().ok().filter(|gap: &f64| *gap >= 0.0);
+        gap.map(Self::Gap).ok_or_else(|| NoUntil { text: text.into() })
     }
 }

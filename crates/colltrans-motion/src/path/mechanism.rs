@@ -9,7 +9,7 @@ use glam::DVec3;
 use thiserror::Error;
 
 use colltrans_convex::body::Pose;
-use colltrans_convex::body::error::PoseError;
+use colltrans_convex::body::pose_error::PoseError;
 use colltrans_convex::number::angle;
 use colltrans_convex::number::noise;
 use colltrans_convex::number::range::{MAX_MAGNITUDE, in_exact_range, without_traces};

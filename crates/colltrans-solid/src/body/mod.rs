@@ -27,10 +27,10 @@ use std::sync::OnceLock;
 
 use glam::{DVec3, Vec3Swizzles};
 
-use colltrans_convex::body::motion::{Motion, Moving};
 use colltrans_convex::body::{
     Aabb, ConvexPolyhedron, Hull, InputFacet, InputVertex, Kept, Numbered,
 };
+use colltrans_convex::body::{Moving, motion::Motion};
 pub use error::SolidError;
 use faces::Faces;
 pub use report::{Shell, ShellKind, SolidReport};

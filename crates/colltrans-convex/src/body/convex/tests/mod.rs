@@ -3,3 +3,5 @@
 pub(crate) mod bodies;
 mod sections;
 mod supports;
+#[cfg(debug_assertions)]
+mod work;

@@ -1,0 +1,31 @@
+//! A body that moves.
+
+use std::borrow::Cow;
+
+use derive_where::derive_where;
+
+use crate::body::motion::Motion;
+use crate::body::{ConvexPolyhedron, Placed};
+
+/// A body and its motion, from [`ConvexPolyhedron::along`](crate::ConvexPolyhedron::along).
+#[derive(Debug)]
+#[derive_where(Clone)]
+pub struct Moving<'a, B = crate::ConvexPolyhedron> {
+    /// The body.
+    pub body: &'a B,
+    /// What it does.
+    pub motion: Cow<'a, Motion>,
+}
+
+impl ConvexPolyhedron {
+    /// This body and a motion, for a cast of bodies that turn.
+    pub fn along<'a>(&'a self, motion: &'a Motion) -> Moving<'a> {
+        Moving { body: self, motion: Cow::Borrowed(motion) }
+    }
+}
+
+impl<'a, B> From<Placed<'a, B>> for Moving<'a, B> {
+    fn from(placed: Placed<'a, B>) -> Self {
+        Self { body: placed.body, motion: Cow::Owned(Motion::still(placed.pose)) }
+    }
+}

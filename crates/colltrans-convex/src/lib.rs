@@ -15,8 +15,6 @@ pub mod body;
 #[doc(hidden)]
 pub mod cast;
 #[doc(hidden)]
-pub mod number;
-#[doc(hidden)]
 pub mod pair;
 #[doc(hidden)]
 pub mod setting;
@@ -24,10 +22,6 @@ pub mod setting;
 pub mod solve;
 #[doc(hidden)]
 pub mod tracker;
-#[doc(hidden)]
-pub mod work;
-#[doc(hidden)]
-pub mod written;
 
 pub use answer::{
     Bounded, CentralCast, Certificate, CertificateError, Clearance, Contact, ContactRange, Depth,
@@ -36,7 +30,6 @@ pub use answer::{
     Within,
 };
 pub use body::error::{BuildError, TopologyError};
-pub use body::pose_error::PoseError;
 pub use body::{
     Aabb, Body, ConvexPolyhedron, ConvexityDefect, FaceId, Feature, Features, HalfEdge, InputFacet,
     InputVertex, ObstacleId, OffsetReport, Placed, Pose, VertexId, convexity_defect,
@@ -44,12 +37,13 @@ pub use body::{
 #[cfg(feature = "json")]
 pub use cast::{Case, CaseError};
 pub use cast::{Cast, CastBody, WitnessPoints, cast};
+pub use colltrans_kernel::PoseError;
+pub use colltrans_kernel::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
+pub use colltrans_kernel::written::UnknownName;
 pub use glam;
-pub use number::range::{MAX_MAGNITUDE, MIN_MAGNITUDE};
 pub use pair::{Pair, PairBody, PairProof};
 pub use setting::VertexPair;
 pub use setting::error::{QueryError, Stalled};
 pub use solve::observe;
 pub use solve::options::{Cuts, Focus, NarrowFrom, Narrowing, NoUntil, Options, Region, Until};
 pub use tracker::Tracker;
-pub use written::UnknownName;

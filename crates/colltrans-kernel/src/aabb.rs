@@ -16,6 +16,7 @@ impl Aabb {
     pub const EMPTY: Self = Self { low: DVec3::INFINITY, high: DVec3::NEG_INFINITY };
 
     /// The least box that holds these points.
+    #[inline]
     pub fn of_points(points: impl IntoIterator<Item = DVec3>) -> Self {
         let mut all = Self::EMPTY;
         points.into_iter().for_each(|p| all.add(p));
@@ -44,6 +45,7 @@ impl Aabb {
 
     /// The same with all sides moved outwards, or inwards if `by` is negative.
     #[must_use]
+    #[inline]
     pub fn grown(&self, by: f64) -> Self {
         Self { low: self.low - by, high: self.high + by }
     }

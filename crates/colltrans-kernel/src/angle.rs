@@ -14,7 +14,7 @@
 //! Both are off by less than `2 u`; of a small angle the sine by `2 u` of itself, and `1 - cos` by `4 u` of
 //! itself.
 
-use crate::number::error_free::{difference_error, sum_error};
+use crate::error_free::{difference_error, sum_error};
 
 /// The largest angle admitted, by magnitude.
 pub const MOST: f64 = 1e5;
@@ -51,7 +51,7 @@ const COSINE: [f64; 8] = [
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turn {
     pub sin: f64,
-    pub(crate) cos: f64,
+    pub cos: f64,
     /// `1 - cos`.
     pub versine: f64,
 }
@@ -83,7 +83,7 @@ pub fn turn(high: f64, low: f64) -> Turn {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::number::tests::rational;
+    use crate::tests::rational;
     use dashu_ratio::RBig;
 
     fn whole(x: i64) -> RBig {

@@ -18,7 +18,7 @@ pub fn accurate_det(a: DVec2, b: DVec2) -> f64 {
 
 /// `a x b` with an error relative to each component.
 #[inline]
-pub(crate) fn accurate_cross(a: DVec3, b: DVec3) -> DVec3 {
+pub fn accurate_cross(a: DVec3, b: DVec3) -> DVec3 {
     DVec3::new(
         accurate_det(a.yz(), b.yz()),
         accurate_det(a.zx(), b.zx()),
@@ -28,7 +28,8 @@ pub(crate) fn accurate_cross(a: DVec3, b: DVec3) -> DVec3 {
 
 /// Twice the area of the triangle `a b c`, positive if counter-clockwise, with an error of some
 /// `2^-100` of the product of its extents: relative to the result for slivers as well.
-pub(crate) fn triangle_area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
+#[inline]
+pub fn triangle_area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     let mut sum = Double::ZERO;
     for (to_b, to_c, sign) in [
         (Double::difference(b.x, a.x), Double::difference(c.y, a.y), 1.0),
@@ -42,7 +43,7 @@ pub(crate) fn triangle_area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::number::tests::rational;
+    use crate::tests::rational;
     use proptest::prelude::*;
 
     proptest! {

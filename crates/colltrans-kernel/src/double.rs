@@ -7,31 +7,33 @@ use std::cmp::Ordering;
 use super::error_free::{difference_error, product_error, split, sum_error};
 
 /// Products of this size or more have low parts that are not lost.
-pub(super) const LEAST_PRODUCT: f64 = f64::from_bits((1023 - 900) << 52);
+pub const LEAST_PRODUCT: f64 = f64::from_bits((1023 - 900) << 52);
 
 /// The number `high + low`, up to `error`; exact if that is 0.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Double {
-    pub(super) high: f64,
-    pub(super) low: f64,
-    pub(super) error: f64,
+pub struct Double {
+    pub high: f64,
+    pub low: f64,
+    pub error: f64,
 }
 
 impl Double {
-    pub(super) const ZERO: Self = Self { high: 0.0, low: 0.0, error: 0.0 };
+    pub const ZERO: Self = Self { high: 0.0, low: 0.0, error: 0.0 };
 
     /// `a - b`, exactly.
-    pub(super) fn difference(a: f64, b: f64) -> Self {
+    #[inline]
+    pub fn difference(a: f64, b: f64) -> Self {
         Self { high: a - b, low: difference_error(a, b), error: 0.0 }
     }
 
     /// The nearest `f64`, up to the error.
-    pub(super) fn value(&self) -> f64 {
+    #[inline]
+    pub fn value(&self) -> f64 {
         self.high + self.low
     }
 
     #[inline(always)]
-    pub(super) fn add(&mut self, x: f64) {
+    pub fn add(&mut self, x: f64) {
         let high = self.high + x;
         self.add_low(sum_error(self.high, x, high));
         self.high = high;
@@ -39,7 +41,7 @@ impl Double {
 
     /// Adds what is small against the sum.
     #[inline(always)]
-    pub(super) fn add_low(&mut self, x: f64) {
+    pub fn add_low(&mut self, x: f64) {
         let low = self.low + x;
         self.error += sum_error(self.low, x, low).abs();
         self.low = low;
@@ -47,7 +49,7 @@ impl Double {
 
     /// Adds a product of numbers that are not tiny.
     #[inline(always)]
-    pub(super) fn add_product(&mut self, a: f64, b: f64) {
+    pub fn add_product(&mut self, a: f64, b: f64) {
         let p = a * b;
         self.add(p);
         self.add_low(product_error(a, b, p));
@@ -55,7 +57,7 @@ impl Double {
 
     /// Adds a product.
     #[inline(always)]
-    pub(super) fn add_scaled(&mut self, x: &Self, factor: f64) {
+    pub fn add_scaled(&mut self, x: &Self, factor: f64) {
         if x.is_zero() || factor == 0.0 {
             return;
         }
@@ -68,7 +70,7 @@ impl Double {
 
     /// Adds a product of two, with a sign.
     #[inline(always)]
-    pub(super) fn add_double_product(&mut self, x: &Self, y: &Self, sign: f64) {
+    pub fn add_double_product(&mut self, x: &Self, y: &Self, sign: f64) {
         if x.is_zero() || y.is_zero() {
             return;
         }
@@ -88,19 +90,21 @@ impl Double {
 
     /// Whether the number is 0, certainly.
     #[inline(always)]
-    pub(super) fn is_zero(&self) -> bool {
+    pub fn is_zero(&self) -> bool {
         self.high == 0.0 && self.low == 0.0 && self.error == 0.0
     }
 
     /// The same with `low` less than a rounding of `high`.
     #[inline(always)]
-    pub(super) fn tidy(self) -> Self {
+    #[must_use]
+    pub fn tidy(self) -> Self {
         let high = self.high + self.low;
         Self { high, low: sum_error(self.high, self.low, high), ..self }
     }
 
     /// The sign, if it is certain.
-    pub(super) fn sign(&self) -> Option<Ordering> {
+    #[inline]
+    pub fn sign(&self) -> Option<Ordering> {
         let sum = self.high + self.low;
         // The rounding of the errors' sum and of this one.
         if sum.abs() > 1.01 * self.error {
@@ -112,18 +116,18 @@ impl Double {
 
 /// Several sums of the same shape at once, as [`Double`].
 #[derive(Clone, Copy)]
-pub(super) struct Sums<const L: usize> {
-    pub(super) high: [f64; L],
-    pub(super) low: [f64; L],
-    pub(super) error: [f64; L],
+pub struct Sums<const L: usize> {
+    pub high: [f64; L],
+    pub low: [f64; L],
+    pub error: [f64; L],
 }
 
 impl<const L: usize> Sums<L> {
-    pub(super) const ZERO: Self = Self { high: [0.0; L], low: [0.0; L], error: [0.0; L] };
+    pub const ZERO: Self = Self { high: [0.0; L], low: [0.0; L], error: [0.0; L] };
 
     /// Adds products with a common factor.
     #[inline(always)]
-    pub(super) fn add_products(&mut self, entries: [f64; L], x: f64) {
+    pub fn add_products(&mut self, entries: [f64; L], x: f64) {
         let (x_high, x_low) = split(x);
         for (k, e) in entries.into_iter().enumerate() {
             let p = e * x;
@@ -141,7 +145,7 @@ impl<const L: usize> Sums<L> {
     }
 
     #[inline(always)]
-    pub(super) fn get(&self, k: usize) -> Double {
+    pub fn get(&self, k: usize) -> Double {
         Double { high: self.high[k], low: self.low[k], error: self.error[k] }.tidy()
     }
 }

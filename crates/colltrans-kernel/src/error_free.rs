@@ -28,7 +28,7 @@ pub fn product_error(a: f64, b: f64, p: f64) -> f64 {
 
 /// `a` as a sum of two numbers with at most 26 significant bits (Veltkamp).
 #[inline]
-pub(super) fn split(a: f64) -> (f64, f64) {
+pub fn split(a: f64) -> (f64, f64) {
     const SPLITTER: f64 = ((1_u64 << 27) + 1) as f64;
     let c = SPLITTER * a;
     let high = c - (c - a);
@@ -41,7 +41,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::difference_error;
-    use crate::number::tests::{number, rational};
+    use crate::tests::{number, rational};
 
     proptest! {
         #[test]

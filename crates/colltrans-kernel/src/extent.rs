@@ -14,11 +14,12 @@ use super::double::{Double, LEAST_PRODUCT};
 const HEIGHT: f64 = 16.0 * 0.5 * f64::EPSILON;
 
 /// Points of a body, and where it is.
-pub(crate) type Placed<'a> = (&'a [DVec3], &'a DMat3);
+pub type Placed<'a> = (&'a [DVec3], &'a DMat3);
 
 /// At most `min_Q n.q - max_P n.p`, and less by hardly more than a rounding: `Q` is displaced by the
 /// sum of `offset`.
-pub(crate) fn distance(normal: DVec3, fixed: Placed, moving: Placed, offset: [DVec3; 2]) -> f64 {
+#[inline]
+pub fn distance(normal: DVec3, fixed: Placed, moving: Placed, offset: [DVec3; 2]) -> f64 {
     let mut sum = Double::ZERO;
     for part in offset {
         add_dot(&mut sum, normal, part);
@@ -32,12 +33,14 @@ pub(crate) fn distance(normal: DVec3, fixed: Placed, moving: Placed, offset: [DV
 }
 
 /// The numbers between which `a . b` lies.
-pub(crate) fn dot(a: DVec3, b: DVec3) -> [f64; 2] {
+#[inline]
+pub fn dot(a: DVec3, b: DVec3) -> [f64; 2] {
     let mut sum = Double::ZERO;
     add_dot(&mut sum, a, b);
     enclosed(sum)
 }
 
+#[inline]
 fn add_dot(sum: &mut Double, a: DVec3, b: DVec3) {
     for k in 0..3 {
         sum.add_product(a[k], b[k]);
@@ -45,6 +48,7 @@ fn add_dot(sum: &mut Double, a: DVec3, b: DVec3) {
 }
 
 /// Where a sum of products is, whatever of them underflowed.
+#[inline]
 fn enclosed(sum: Double) -> [f64; 2] {
     let sum = sum.tidy();
     let error = 1.01 * sum.error + LEAST_PRODUCT;
@@ -54,6 +58,7 @@ fn enclosed(sum: Double) -> [f64; 2] {
 }
 
 /// The height of the highest point along `normal`; minus infinity if there are none.
+#[inline]
 fn highest((points, matrix): Placed, normal: DVec3) -> Double {
     let in_body = matrix.transpose() * normal;
     let reach = points.iter().map(|v| v.length_squared()).fold(0.0, f64::max).sqrt();
@@ -73,6 +78,7 @@ fn highest((points, matrix): Placed, normal: DVec3) -> Double {
 }
 
 /// `n . R v`.
+#[inline]
 fn height(matrix: &DMat3, normal: DVec3, v: DVec3) -> Double {
     let mut sum = Double::ZERO;
     for row in 0..3 {
@@ -92,7 +98,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::number::tests::rational;
+    use crate::tests::rational;
 
     /// Coordinates of one size, with ties.
     fn point() -> impl Strategy<Value = DVec3> {

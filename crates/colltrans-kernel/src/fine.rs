@@ -78,11 +78,13 @@ impl Way<'_> {
     }
 
     /// What each coordinate may be off by, but for the rounding of the difference.
+    #[inline]
     fn error(&self) -> f64 {
         self.0[0].error + self.0[1].error
     }
 
     /// With all that it may be off by: nothing, where coordinates have few digits.
+    #[inline]
     fn tracked(&self) -> [Double; 3] {
         let [from, to] = self.0.map(|point| point.at);
         [0, 1, 2].map(|k| {
@@ -127,6 +129,7 @@ impl Doubtful {
     }
 }
 
+#[inline]
 fn size(way: &Vector<Twice>) -> f64 {
     way.value().abs().max_element()
 }
@@ -154,6 +157,7 @@ pub fn tracked_sign(ways: [Way; 3]) -> Option<Ordering> {
     tracked_determinant(&ways.map(|way| way.tracked())).sign()
 }
 
+#[inline]
 fn tracked_determinant([x, y, z]: &[[Double; 3]; 3]) -> Double {
     let mut sum = Double::ZERO;
     for (k, entry) in x.iter().enumerate() {
@@ -162,6 +166,7 @@ fn tracked_determinant([x, y, z]: &[[Double; 3]; 3]) -> Double {
     sum
 }
 
+#[inline]
 fn tracked_minor(x: &[Double; 3], y: &[Double; 3], [i, j]: [usize; 2]) -> Double {
     let mut sum = Double::ZERO;
     sum.add_double_product(&x[i], &y[j], 1.0);
@@ -192,7 +197,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::number::tests::{rational, vector};
+    use crate::tests::{rational, vector};
 
     /// Entries of a matrix, tiny ones and zero among them.
     fn matrix() -> impl Strategy<Value = DMat3> {

@@ -3,12 +3,10 @@
 //!
 //! What leads from one numbering to the other, or is told in an answer, has these types. Plain `u32` are the
 //! body's own numbers where nothing else can be meant: lists of corners that bodies are built and drawn from
-//! (`Solid::triangles`, [`ConvexPolyhedron::face_vertices`]), positions of
-//! triangles in such a list, and walks over a body's edges ([`HalfEdge`](crate::HalfEdge),
-//! [`ConvexPolyhedron::neighbours`]): there types would be taken off again at every use.
+//! (`Solid::triangles`, `ConvexPolyhedron::face_vertices`), positions of
+//! triangles in such a list, and walks over a body's edges (`HalfEdge`,
+//! `ConvexPolyhedron::neighbours`): there types would be taken off again at every use.
 //!
-//! [`ConvexPolyhedron::face_vertices`]: crate::ConvexPolyhedron::face_vertices
-//! [`ConvexPolyhedron::neighbours`]: crate::ConvexPolyhedron::neighbours
 
 use std::fmt;
 
@@ -25,6 +23,7 @@ macro_rules! numbers {
 
         impl $name {
             /// As a position in a slice.
+            #[inline]
             pub const fn index(self) -> usize {
                 self.0 as usize
             }
@@ -37,12 +36,14 @@ macro_rules! numbers {
         }
 
         impl From<u32> for $name {
+            #[inline]
             fn from(number: u32) -> Self {
                 Self(number)
             }
         }
 
         impl From<$name> for u32 {
+            #[inline]
             fn from(number: $name) -> Self {
                 number.0
             }
@@ -52,10 +53,10 @@ macro_rules! numbers {
 
 numbers! {
     /// A vertex that a body has kept: its position in
-    /// [`ConvexPolyhedron::vertices`](crate::ConvexPolyhedron::vertices) or
+    /// `ConvexPolyhedron::vertices` or
     /// `Solid::vertices`.
     VertexId;
-    /// A face as a [`Feature`](crate::Feature) names it: of a convex polyhedron its own, of a solid the
+    /// A face as a `Feature` names it: of a convex polyhedron its own, of a solid the
     /// least number of the input's facets that it is made of.
     FaceId;
     /// A point or mesh vertex of the input, by its number there.

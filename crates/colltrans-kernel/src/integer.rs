@@ -64,6 +64,7 @@ impl<const N: usize> Integer<N> {
         Self::product(a, 1.0)
     }
 
+    #[inline]
     fn trim(&mut self) {
         while self.len > 0 && self.limbs[usize::from(self.len) - 1] == 0 {
             self.len -= 1;
@@ -82,16 +83,19 @@ impl<const N: usize> Integer<N> {
     }
 
     /// One past the exponent of the highest limb.
+    #[inline]
     fn top(&self) -> i16 {
         self.base + self.len as i16
     }
 
     /// The limb of an exponent.
+    #[inline]
     fn limb(&self, exponent: i16) -> u64 {
         let k = exponent - self.base;
         if k >= 0 && k < self.len as i16 { self.limbs[k as usize] } else { 0 }
     }
 
+    #[inline]
     fn compare_magnitude(&self, other: &Self) -> Ordering {
         let low = self.base.min(other.base);
         self.top().cmp(&other.top()).then_with(|| {
@@ -116,6 +120,7 @@ impl<const N: usize> Integer<N> {
     }
 
     /// `self` and the magnitude of `other` with a sign.
+    #[inline]
     fn sum(&self, other: &Self, negative: bool) -> Self {
         if self.overflown || other.overflown {
             return Self::OVERFLOWN;
@@ -136,6 +141,7 @@ impl<const N: usize> Integer<N> {
         }
     }
 
+    #[inline]
     fn add_magnitude(&self, other: &Self) -> Self {
         let base = self.base.min(other.base);
         let count = (self.top().max(other.top()) - base) as usize;
@@ -157,6 +163,7 @@ impl<const N: usize> Integer<N> {
     }
 
     /// The larger magnitude minus the smaller one.
+    #[inline]
     fn subtract_magnitude(&self, smaller: &Self, negative: bool) -> Self {
         let base = self.base.min(smaller.base);
         let count = (self.top() - base) as usize;
@@ -221,6 +228,7 @@ impl<const N: usize> Integer<N> {
     }
 
     /// `m 2^e` to within `2^-52` of itself.
+    #[inline]
     fn leading(&self) -> (f64, i32) {
         if self.len == 0 {
             return (0.0, 0);
@@ -245,6 +253,7 @@ impl<const N: usize> Integer<N> {
 }
 
 /// Mantissa and exponent: `|x| = mantissa 2^exponent`.
+#[inline]
 fn decode(x: f64) -> (u64, i32) {
     let bits = x.to_bits();
     let fraction = bits & ((1 << 52) - 1);
@@ -253,6 +262,7 @@ fn decode(x: f64) -> (u64, i32) {
 }
 
 /// `det[a, b, c]`.
+#[inline]
 pub fn determinant<const N: usize>(
     a: &[Integer<N>; 3],
     b: &[Integer<N>; 3],
@@ -269,6 +279,7 @@ pub fn determinant<const N: usize>(
 }
 
 /// `a - b`.
+#[inline]
 pub fn difference<const N: usize>(a: &[Integer<N>; 3], b: &[Integer<N>; 3]) -> [Integer<N>; 3] {
     std::array::from_fn(|k| a[k].subtract(&b[k]))
 }

@@ -1,36 +1,77 @@
-//! Arithmetic: the range of numbers, the bounds of their rounding errors, and decisions that
-//! rounding cannot make.
+//! What every body and every search needs: numbers and the bounds of their rounding errors, decisions that rounding
+//! cannot make, poses and motions, boxes, and how things are numbered and named.
+//!
+//! In the order of use: [`range`] (the numbers that are accepted), [`error_free`], [`double`] and [`integer`] (exact
+//! arithmetic), [`predicates`] and [`orientation`] (signs), [`noise`] (bounds of rounding errors), [`fine`] (numbers of
+//! twice the precision with bounds), [`pose`] and [`motion`], [`aabb`] and [`split`] (boxes and how trees of them are
+//! built), [`id`], [`written`].
 
+#![allow(
+    rustdoc::private_intra_doc_links,
+    reason = "hidden modules are read with their private parts"
+)]
+
+pub mod aabb;
+#[doc(hidden)]
 pub mod angle;
+#[doc(hidden)]
 pub mod determinant;
-mod double;
+#[doc(hidden)]
+pub mod double;
+pub mod error;
+#[doc(hidden)]
 pub mod error_free;
-pub(crate) mod extent;
+#[doc(hidden)]
+pub mod extent;
+#[doc(hidden)]
 pub mod fine;
+pub mod id;
+#[doc(hidden)]
 pub mod integer;
+pub mod motion;
+#[doc(hidden)]
 pub mod noise;
-pub(crate) mod orientation;
+#[doc(hidden)]
+pub mod orientation;
+#[doc(hidden)]
 pub mod plane;
+pub mod pose;
+#[doc(hidden)]
 pub mod predicates;
+#[doc(hidden)]
 pub mod range;
+#[doc(hidden)]
 pub mod real;
-pub(crate) mod symmetric;
-pub(crate) mod volume;
+#[doc(hidden)]
+pub mod split;
+#[doc(hidden)]
+pub mod symmetric;
+#[doc(hidden)]
+pub mod volume;
+#[doc(hidden)]
+pub mod work;
+#[doc(hidden)]
+pub mod written;
+
+pub use aabb::Aabb;
+pub use error::{MotionError, PoseError};
+pub use id::{FaceId, InputFacet, InputVertex, ObstacleId, VertexId};
+pub use pose::Pose;
 
 #[cfg(test)]
 mod tests {
-    //! Numbers for the tests of this room.
+    //! Numbers for the tests of this crate.
 
     use dashu_ratio::RBig;
     use glam::DVec3;
     use proptest::prelude::*;
 
-    pub(super) fn rational(x: f64) -> RBig {
+    pub(crate) fn rational(x: f64) -> RBig {
         RBig::try_from(x).unwrap()
     }
 
     /// Numbers of very different size, zero and ties among them.
-    pub(super) fn number() -> impl Strategy<Value = f64> {
+    pub(crate) fn number() -> impl Strategy<Value = f64> {
         prop_oneof![
             Just(0.0),
             (-4_i32..=4).prop_map(f64::from),
@@ -39,7 +80,7 @@ mod tests {
         ]
     }
 
-    pub(super) fn vector() -> impl Strategy<Value = DVec3> {
+    pub(crate) fn vector() -> impl Strategy<Value = DVec3> {
         [number(), number(), number()].prop_map(DVec3::from_array)
     }
 }

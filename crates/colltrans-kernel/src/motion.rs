@@ -14,12 +14,12 @@
 
 use glam::{DMat3, DQuat, DVec3};
 
-use crate::body::Pose;
-use crate::body::pose_error::MotionError;
-use crate::number::angle::{self, Turn, turn};
-use crate::number::error_free::{difference_error, product_error};
-use crate::number::noise;
-use crate::number::range::{MIN_MAGNITUDE, in_exact_range};
+use crate::angle::{self, Turn, turn};
+use crate::error::MotionError;
+use crate::error_free::{difference_error, product_error};
+use crate::noise;
+use crate::pose::Pose;
+use crate::range::{MIN_MAGNITUDE, in_exact_range};
 
 /// Less than this a rotation between poses is none: the angle is within rounding of 0.
 const NO_TURN: f64 = 1e-15;
@@ -68,7 +68,9 @@ pub struct Piece {
 /// Where a piece has brought its body: the rotation, and how far the frame has moved.
 #[derive(Debug, Clone, Copy)]
 pub struct Moved {
+    /// The rotation.
     pub rotation: DMat3,
+    /// How far the frame has moved.
     pub by: DVec3,
     /// The arm, turned.
     pub arm: DVec3,
@@ -76,6 +78,7 @@ pub struct Moved {
 
 impl Motion {
     /// None: the body rests at a pose.
+    #[inline]
     pub fn still(pose: Pose) -> Self {
         Self { pieces: vec![Piece::resting(pose)] }
     }
@@ -84,6 +87,7 @@ impl Motion {
     ///
     /// # Errors
     /// A vector that is not finite or out of range.
+    #[inline]
     pub fn slide(pose: Pose, by: DVec3) -> Result<Self, MotionError> {
         Self::of(Piece { velocity: by, ..Piece::resting(pose) })
     }
@@ -96,6 +100,7 @@ impl Motion {
     ///
     /// # Errors
     /// As [`Self::turn`].
+    #[inline]
     pub fn about(
         pose: Pose,
         arm: DVec3,
@@ -113,6 +118,7 @@ impl Motion {
     ///
     /// # Errors
     /// An axis that is zero, numbers that are not finite or out of range, an angle beyond 1e5.
+    #[inline]
     pub fn turn(pose: Pose, point: DVec3, axis: DVec3, angle: f64) -> Result<Self, MotionError> {
         Self::screw(pose, point, axis, angle, 0.0)
     }
@@ -121,6 +127,7 @@ impl Motion {
     ///
     /// # Errors
     /// As [`Self::turn`].
+    #[inline]
     pub fn screw(
         pose: Pose,
         point: DVec3,
@@ -140,6 +147,7 @@ impl Motion {
     ///
     /// # Errors
     /// As [`Self::turn`]; an angular velocity of zero is none.
+    #[inline]
     pub fn thrown(
         pose: Pose,
         center: DVec3,
@@ -160,6 +168,7 @@ impl Motion {
     ///
     /// # Errors
     /// Poses between which the axis is out of range.
+    #[inline]
     pub fn between(from: Pose, to: Pose) -> Result<Self, MotionError> {
         Self::through(&[from, to])
     }
@@ -168,6 +177,7 @@ impl Motion {
     ///
     /// # Errors
     /// No poses; as [`Self::between`].
+    #[inline]
     pub fn through(poses: &[Pose]) -> Result<Self, MotionError> {
         let [first, ..] = poses else { return Err(MotionError::NoPoses) };
         let count = poses.len() - 1;
@@ -184,6 +194,7 @@ impl Motion {
         Ok(Self { pieces: pieces.collect::<Result<_, _>>()? })
     }
 
+    #[inline]
     fn of(piece: Piece) -> Result<Self, MotionError> {
         Ok(Self { pieces: vec![piece.checked()?] })
     }
@@ -192,6 +203,7 @@ impl Motion {
     ///
     /// # Errors
     /// A time beyond, a place out of range.
+    #[inline]
     pub fn at(&self, time: f64) -> Result<Pose, MotionError> {
         if !(0.0..=1.0).contains(&time) {
             return Err(MotionError::Time { time });
@@ -202,22 +214,26 @@ impl Motion {
     }
 
     /// Where the body is at time 0.
+    #[inline]
     pub fn start(&self) -> Pose {
         self.pieces[0].start
     }
 
     /// Returns the pieces that define the motion, in the order of time; the first begins at time 0.
+    #[inline]
     pub fn pieces(&self) -> &[Piece] {
         &self.pieces
     }
 }
 
 impl Piece {
+    #[inline]
     fn resting(start: Pose) -> Self {
         let [arm, velocity] = [DVec3::ZERO; 2];
         Self { since: 0.0, start, arm, axis: DVec3::Z, rate: 0.0, velocity }
     }
 
+    #[inline]
     fn checked(self) -> Result<Self, MotionError> {
         check("arm", self.arm)?;
         check("displacement", self.velocity)?;
@@ -280,6 +296,7 @@ impl Piece {
 }
 
 /// The screw from one pose to the other in a unit of time, from time 0; a slide, if they hardly turn.
+#[inline]
 fn screw_between(from: &Pose, to: &Pose) -> Piece {
     let resting = Piece::resting(*from);
     let way = to.translation() - from.translation();
@@ -302,6 +319,7 @@ fn screw_between(from: &Pose, to: &Pose) -> Piece {
 }
 
 /// The angle in the first quadrant with this sine and cosine, by Newton's steps on our own sine.
+#[inline]
 fn arc_tangent(sine: f64, cosine: f64) -> f64 {
     // Off by less than 0.05 to begin with.
     let mut angle = if sine < cosine { sine / cosine.max(0.5) } else { 1.57 - cosine / sine };
@@ -313,6 +331,7 @@ fn arc_tangent(sine: f64, cosine: f64) -> f64 {
 }
 
 /// The direction of a vector.
+#[inline]
 fn unit(what: &'static str, vector: DVec3) -> Result<DVec3, MotionError> {
     check(what, vector)?;
     if flushed(vector) == DVec3::ZERO {
@@ -321,11 +340,13 @@ fn unit(what: &'static str, vector: DVec3) -> Result<DVec3, MotionError> {
     Ok(vector / vector.length())
 }
 
+#[inline]
 fn check(what: &'static str, vector: DVec3) -> Result<(), MotionError> {
     if in_exact_range(flushed(vector)) { Ok(()) } else { Err(MotionError::Number { what, vector }) }
 }
 
 /// Components that are nothing beside others become zero.
+#[inline]
 fn flushed(v: DVec3) -> DVec3 {
     let flush = |x: f64| if x.abs() < MIN_MAGNITUDE { 0.0 } else { x };
     DVec3::new(flush(v.x), flush(v.y), flush(v.z))
@@ -346,6 +367,7 @@ struct PieceRecord {
 
 #[cfg(feature = "serde")]
 impl From<Motion> for Vec<PieceRecord> {
+    #[inline]
     fn from(motion: Motion) -> Self {
         let record = |piece: &Piece| PieceRecord {
             since: piece.since,
@@ -363,6 +385,7 @@ impl From<Motion> for Vec<PieceRecord> {
 impl TryFrom<Vec<PieceRecord>> for Motion {
     type Error = MotionError;
 
+    #[inline]
     fn try_from(records: Vec<PieceRecord>) -> Result<Self, MotionError> {
         let mut pieces: Vec<Piece> = Vec::with_capacity(records.len());
         for record in records {

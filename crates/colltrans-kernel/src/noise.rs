@@ -77,7 +77,7 @@
 //! - *Section.* A sum of a few products in section coordinates, with a margin for the errors of
 //!   their factors. Only guesses hang on it.
 
-use crate::number::range::MIN_MAGNITUDE;
+use crate::range::MIN_MAGNITUDE;
 
 /// `u`.
 const ROUNDING: f64 = 0.5 * f64::EPSILON;
@@ -96,7 +96,7 @@ const WIDER: f64 = 4.0;
 
 /// The sides of the widening rectangle: not equal, because a diagonal of a square would often be
 /// parallel to an edge.
-pub(crate) const WIDENING: [f64; 2] = [1.0, 0.8];
+pub const WIDENING: [f64; 2] = [1.0, 0.8];
 
 /// At least the length of [`WIDENING`].
 const WIDENING_CORNER: f64 = 1.3;
@@ -131,13 +131,13 @@ const HEIGHT: [f64; 2] = [0.75, 0.25];
 pub const UNIT_VECTOR: f64 = 32.0 * ROUNDING;
 
 /// Relative error of a gain along an edge, in which more is demanded of a climb.
-pub(crate) const GAIN: f64 = 8.0 * ROUNDING;
+pub const GAIN: f64 = 8.0 * ROUNDING;
 
 /// Distance from a face, in multiples of the largest coordinate, within which points lie on it.
-pub(crate) const COPLANAR: f64 = 64.0 * ROUNDING;
+pub const COPLANAR: f64 = 64.0 * ROUNDING;
 
 /// Bound on the error of a point's distance from a triangle's, in multiples of the largest coordinate.
-pub(crate) const WITNESS: f64 = 32.0 * ROUNDING;
+pub const WITNESS: f64 = 32.0 * ROUNDING;
 
 /// Bound on the error of a point that was turned, in multiples of its distance from the origin of its frame.
 pub const POSE: f64 = 96.0 * ROUNDING;
@@ -149,7 +149,7 @@ pub const FLUSHED: f64 = 8.0 * MIN_MAGNITUDE;
 pub const WAY: f64 = 8.0 * ROUNDING;
 
 /// Relative rounding error of sums in section coordinates.
-pub(crate) const SECTION: f64 = 128.0 * ROUNDING;
+pub const SECTION: f64 = 128.0 * ROUNDING;
 
 /// The rounding errors of a configuration of one size.
 #[derive(Debug, Clone, Copy)]
@@ -172,7 +172,7 @@ impl Noise {
 
     /// Bound on the distance by which the shadow of a point of `M` may be off.
     #[inline]
-    pub(crate) fn lateral(self) -> f64 {
+    pub fn lateral(self) -> f64 {
         LATERAL * self.0
     }
 
@@ -183,24 +183,27 @@ impl Noise {
     }
 
     /// Bound on how far both bodies reach beyond support points: twice four tolerances of [`COPLANAR`] of their size.
-    pub(crate) fn beyond(self) -> f64 {
+    #[inline]
+    pub fn beyond(self) -> f64 {
         BEYOND * self.0
     }
 
     /// How deep below a plane a point may be that counts as lying on it; `late` if many portals
     /// were visited.
     #[inline]
-    pub(crate) fn plane(self, late: bool) -> f64 {
+    pub fn plane(self, late: bool) -> f64 {
         if late { self.touching() } else { self.0 }
     }
 
     /// The longer half-side of the widening rectangle for bodies whose shadows are `margin` apart.
-    pub(crate) fn widening(self, margin: f64) -> f64 {
+    #[inline]
+    pub fn widening(self, margin: f64) -> f64 {
         margin.max(0.0) + WIDER * self.touching()
     }
 
     /// The largest of these: more than a noise apart, shadows are separated.
-    pub(crate) fn widest(self) -> f64 {
+    #[inline]
+    pub fn widest(self) -> f64 {
         self.widening(self.0)
     }
 
@@ -227,12 +230,13 @@ impl Noise {
 
     /// By how much the length of a weighted mean of points of `M` has to be raised to be an upper bound.
     #[inline]
-    pub(crate) fn mean_raised(self) -> f64 {
+    pub fn mean_raised(self) -> f64 {
         MEAN[0] * self.0
     }
 
     /// The same for points that are computed nearly without rounding.
-    pub(crate) fn mean_checked(self) -> f64 {
+    #[inline]
+    pub fn mean_checked(self) -> f64 {
         MEAN[1] * self.0
     }
 
@@ -244,34 +248,40 @@ impl Noise {
     }
 
     /// The same for points that are as near as a gap, after a translation.
-    pub(crate) fn mean_kept(self) -> f64 {
+    #[inline]
+    pub fn mean_kept(self) -> f64 {
         KEPT * self.0
     }
 
     /// By how much the height of a point of `M` has to be lowered to be a lower bound.
-    pub(crate) fn height_lowered(self) -> f64 {
+    #[inline]
+    pub fn height_lowered(self) -> f64 {
         HEIGHT[0] * self.0
     }
 
     /// The same for points that are computed nearly without rounding.
-    pub(crate) fn height_checked(self) -> f64 {
+    #[inline]
+    pub fn height_checked(self) -> f64 {
         HEIGHT[1] * self.0
     }
 
     /// By how much an upper bound along `n` has to lie above the weighted mean of the corners, if
     /// that is computed without rounding.
-    pub(crate) fn above_mean(self) -> f64 {
+    #[inline]
+    pub fn above_mean(self) -> f64 {
         (RAISED - 1.0) * self.0
     }
 
     /// By how much the witness points of a certificate may miss each other that claims an upper
     /// bound.
-    pub(crate) fn residual(self) -> f64 {
+    #[inline]
+    pub fn residual(self) -> f64 {
         RESIDUAL * self.0
     }
 
     /// The same for bodies that were widened sideways.
-    pub(crate) fn residual_widened(self) -> f64 {
+    #[inline]
+    pub fn residual_widened(self) -> f64 {
         WIDENING_CORNER * self.widest() + BOUNDS * self.0
     }
 }

@@ -28,14 +28,15 @@ use super::real::{Twice, Vector};
 
 /// A point of `M` as the sum of products that defines it: `R_Q q - R_P p + high + low`.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Terms<'a> {
-    pub(crate) fixed: (&'a DMat3, DVec3),
-    pub(crate) moving: (&'a DMat3, DVec3),
-    pub(crate) offset: [DVec3; 2],
+pub struct Terms<'a> {
+    pub fixed: (&'a DMat3, DVec3),
+    pub moving: (&'a DMat3, DVec3),
+    pub offset: [DVec3; 2],
 }
 
 impl Terms<'_> {
     /// Factors of the products whose sum is a coordinate.
+    #[inline]
     fn row(&self, row: usize) -> [(f64, f64); 8] {
         let ((f, q), (m, p), [high, low]) = (self.fixed, self.moving, self.offset);
         [
@@ -51,27 +52,32 @@ impl Terms<'_> {
     }
 
     /// The point, rounded as if its coordinates had been computed without rounding, or nearly so.
-    pub(crate) fn point(&self) -> DVec3 {
+    #[inline]
+    pub fn point(&self) -> DVec3 {
         DVec3::from_array(self.rounded([0, 1, 2]).map(|coordinate| coordinate.high))
     }
 
     /// The point in twice the usual precision.
-    pub(crate) fn twice(&self) -> Vector<Twice> {
+    #[inline]
+    pub fn twice(&self) -> Vector<Twice> {
         Vector(
             self.rounded([0, 1, 2]).map(|coordinate| Twice::new(coordinate.high, coordinate.low)),
         )
     }
 
     /// The point, exactly.
-    pub(super) fn coordinates<const N: usize>(&self) -> [Integer<N>; 3] {
+    #[inline]
+    pub fn coordinates<const N: usize>(&self) -> [Integer<N>; 3] {
         std::array::from_fn(|row| self.coordinate(row))
     }
 
+    #[inline]
     fn coordinate<const N: usize>(&self, row: usize) -> Integer<N> {
         self.row(row).iter().fold(Integer::ZERO, |sum, &(a, b)| sum.add(&Integer::product(a, b)))
     }
 
     /// The exact shadow.
+    #[inline]
     fn shadow<const N: usize>(&self, d: DVec3, [m, u, v]: [usize; 3]) -> [Integer<N>; 2] {
         let times = |x: &Integer<N>, k: usize| x.multiply(&Integer::number(d[k]));
         let along_m = self.coordinate(m);
@@ -85,12 +91,8 @@ impl Terms<'_> {
 /// Zero only if `a` and `b` have the same shadow along `d`.
 ///
 /// `base` is to return the [`shadow`] of `a` or `b`.
-pub(crate) fn orientation(
-    a: &Terms,
-    b: &Terms,
-    d: DVec3,
-    base: impl FnOnce() -> Shadow,
-) -> Ordering {
+#[inline]
+pub fn orientation(a: &Terms, b: &Terms, d: DVec3, base: impl FnOnce() -> Shadow) -> Ordering {
     let axes = axes_of(d);
     by_doubles(a, b, d, axes, base)
         .or_else(|| by_integers::<SMALL>(a, b, d, axes))
@@ -116,7 +118,7 @@ fn by_integers<const N: usize>(
 }
 
 /// A shadow in numbers of twice the usual precision.
-pub(crate) type Shadow = [Double; 2];
+pub type Shadow = [Double; 2];
 
 /// Rows of a matrix's column.
 #[inline(always)]
@@ -178,6 +180,7 @@ fn rounded_shadow([along_u, along_v, along_m]: [Double; 3], [u, v, m]: [f64; 3])
 }
 
 /// The axis along which `d` is largest, and the next two.
+#[inline]
 fn axes_of(d: DVec3) -> [usize; 3] {
     let main = usize::from(d.abs().max_position() as u8);
     [main, (main + 1) % 3, (main + 2) % 3]
@@ -185,7 +188,8 @@ fn axes_of(d: DVec3) -> [usize; 3] {
 
 /// The shadow of a point, without the positive or negative factor `d_m` if `d` has no other
 /// component.
-pub(crate) fn shadow(x: &Terms, d: DVec3) -> Shadow {
+#[inline]
+pub fn shadow(x: &Terms, d: DVec3) -> Shadow {
     let [m, u, v] = axes_of(d);
     if d[u] == 0.0 && d[v] == 0.0 {
         return x.rounded([u, v]);
@@ -195,7 +199,8 @@ pub(crate) fn shadow(x: &Terms, d: DVec3) -> Shadow {
 
 /// A shadow in the coordinates of lateral axes `e1, e2`, with a small error relative to its length;
 /// zero only if it is. `None` if the shadow is not known that well.
-pub(crate) fn rounded(shadow: &Shadow, axes: &DMat3, d: DVec3) -> Option<DVec2> {
+#[inline]
+pub fn rounded(shadow: &Shadow, axes: &DMat3, d: DVec3) -> Option<DVec2> {
     let [u_error, v_error] = [shadow[0].error, shadow[1].error];
     let [along_u, along_v] = [&shadow[0], &shadow[1]].map(|x| x.high + x.low);
     let size = along_u.abs().max(along_v.abs());
@@ -215,7 +220,8 @@ const RELATIVE_ERROR: f64 = 1e-9;
 /// The side on which a line passes, from the shadow of one of the segment's ends, known well, and
 /// the way between them in the shadow frame, whose coordinates have errors of two noises; if that
 /// is enough, as it is where the end is close to the line and the way is not.
-pub(crate) fn side(base: &Shadow, way: DVec2, axes: &DMat3, d: DVec3, noise: f64) -> Option<bool> {
+#[inline]
+pub fn side(base: &Shadow, way: DVec2, axes: &DMat3, d: DVec3, noise: f64) -> Option<bool> {
     let [m, u, v] = axes_of(d);
     let bare = d[u] == 0.0 && d[v] == 0.0;
     let factor = if bare { 1.0 } else { d[m] };
@@ -235,6 +241,7 @@ pub(crate) fn side(base: &Shadow, way: DVec2, axes: &DMat3, d: DVec3, noise: f64
 }
 
 /// Decides with numbers of twice the usual precision, if that is enough.
+#[inline]
 fn by_doubles(
     a: &Terms,
     b: &Terms,
@@ -275,6 +282,7 @@ fn decide(
 }
 
 /// `a.x b.y - a.y b.x`.
+#[inline]
 fn minor(a: &[Double; 2], b: &[Double; 2]) -> Double {
     let mut sum = Double::ZERO;
     sum.add_double_product(&a[0], &b[1], 1.0);
@@ -285,7 +293,7 @@ fn minor(a: &[Double; 2], b: &[Double; 2]) -> Double {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::number::tests::{number, rational, vector};
+    use crate::tests::{number, rational, vector};
     use dashu_ratio::RBig;
     use proptest::prelude::*;
 

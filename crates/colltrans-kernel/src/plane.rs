@@ -27,6 +27,7 @@ fn wide_normal([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
 
 /// From its two shorter edges, which determine it best: the product of two long, nearly parallel
 /// ones would lose the normal to rounding.
+#[inline]
 fn normal_of_sliver([a, b, c]: [DVec3; 3]) -> DVec3 {
     let edges = [b - a, c - b, a - c];
     let lengths = edges.map(DVec3::length_squared);
@@ -48,7 +49,7 @@ fn normal_of_sliver([a, b, c]: [DVec3; 3]) -> DVec3 {
 
 /// Unit normal of a convex polygon, from a triangle of its corners that spans it widely; zero if it
 /// has no area.
-pub(crate) fn polygon_normal<I: Iterator<Item = DVec3> + Clone>(mut corners: I) -> DVec3 {
+pub fn polygon_normal<I: Iterator<Item = DVec3> + Clone>(mut corners: I) -> DVec3 {
     let all = corners.clone();
     let Some(a) = corners.next() else { return DVec3::ZERO };
     let mut others = corners.clone();

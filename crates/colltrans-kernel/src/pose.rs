@@ -4,12 +4,12 @@
 //! verification all read the same nine numbers, so no rounding lies between them. They are those
 //! given, or computed once from a quaternion. They need not be a rotation to the last digit: a
 //! matrix that is off one by [`TOLERANCE`] places a body that is stretched by as much, which
-//! [`noise`](crate::number::noise) covers.
+//! [`noise`](crate::noise) covers.
 
 use glam::{DMat3, DQuat, DVec3};
 
-use crate::body::pose_error::PoseError;
-use crate::number::range::{MIN_MAGNITUDE, in_exact_range};
+use crate::error::PoseError;
+use crate::range::{MIN_MAGNITUDE, in_exact_range};
 
 /// How far the length of a quaternion may be from 1, and an entry of `R^T R` from that of the
 /// identity: single precision passes.
@@ -62,6 +62,7 @@ impl Pose {
     ///
     /// # Errors
     /// A quaternion that is not a rotation, a translation that is not finite or out of range.
+    #[inline]
     pub fn new(rotation: DQuat, translation: DVec3) -> Result<Self, PoseError> {
         let length = rotation.length();
         if length.is_nan() || (length - 1.0).abs() > TOLERANCE {
@@ -90,6 +91,7 @@ impl Pose {
     /// assert!(Pose::from_matrix(-turn, DVec3::ZERO).is_err());
     /// # Ok::<(), colltrans::PoseError>(())
     /// ```
+    #[inline]
     pub fn from_matrix(matrix: DMat3, translation: DVec3) -> Result<Self, PoseError> {
         let defect = largest_defect(matrix);
         if defect > TOLERANCE {
@@ -117,6 +119,7 @@ impl Pose {
     /// assert!(pose.transform_point(DVec3::X).distance(DVec3::Y) < 1e-15);
     /// # Ok::<(), colltrans::PoseError>(())
     /// ```
+    #[inline]
     pub fn from_rounded(
         rotation: DQuat,
         translation: DVec3,
@@ -132,6 +135,7 @@ impl Pose {
     ///
     /// # Errors
     /// As [`Self::from_matrix`], for a matrix that is off by more than 0.02.
+    #[inline]
     pub fn from_rounded_matrix(
         matrix: DMat3,
         translation: DVec3,
@@ -152,6 +156,7 @@ impl Pose {
     ///
     /// # Errors
     /// A translation that is not finite or out of range.
+    #[inline]
     pub fn from_translation(translation: DVec3) -> Result<Self, PoseError> {
         check_translation(translation)?;
         Ok(Self { matrix: DMat3::IDENTITY, translation })
@@ -168,32 +173,38 @@ impl Pose {
     ///
     /// # Errors
     /// The new translation is out of range.
-    pub(crate) fn moved_to(&self, translation: DVec3) -> Result<Self, PoseError> {
+    #[inline]
+    pub fn moved_to(&self, translation: DVec3) -> Result<Self, PoseError> {
         check_translation(translation)?;
         Ok(Self { translation, ..*self })
     }
 
     /// The rotation as a unit quaternion, to rounding error: the matrix is what counts.
+    #[inline]
     pub fn rotation(&self) -> DQuat {
         DQuat::from_mat3(&self.matrix).normalize()
     }
 
     /// The rotation matrix `R` that defines the placement.
+    #[inline]
     pub const fn matrix(&self) -> DMat3 {
         self.matrix
     }
 
     /// The translation `t`, in world units.
+    #[inline]
     pub const fn translation(&self) -> DVec3 {
         self.translation
     }
 
     /// A point of the body, in the world.
+    #[inline]
     pub fn transform_point(&self, point_in_body: DVec3) -> DVec3 {
         self.matrix * point_in_body + self.translation
     }
 
     /// A vector (difference of points) of the body, in the world.
+    #[inline]
     pub fn transform_vector(&self, vector_in_body: DVec3) -> DVec3 {
         self.matrix * vector_in_body
     }
@@ -202,6 +213,7 @@ impl Pose {
     ///
     /// # Errors
     /// The composed translation is out of range, or errors of the two matrices have added up.
+    #[inline]
     pub fn compose(&self, first: &Self) -> Result<Self, PoseError> {
         Self::from_matrix(self.matrix * first.matrix, self.transform_point(first.translation))
     }
@@ -210,6 +222,7 @@ impl Pose {
     ///
     /// # Errors
     /// The inverse's translation is out of range, or errors of the matrix have doubled.
+    #[inline]
     pub fn inverse(&self) -> Result<Self, PoseError> {
         let matrix = self.matrix.inverse();
         Self::from_matrix(matrix, -(matrix * self.translation))
@@ -219,6 +232,7 @@ impl Pose {
     ///
     /// # Errors
     /// The new translation is out of range.
+    #[inline]
     pub fn translated(&self, offset: DVec3) -> Result<Self, PoseError> {
         self.moved_to(self.translation + offset)
     }
@@ -236,6 +250,7 @@ pub struct PoseRecord {
 
 #[cfg(feature = "serde")]
 impl From<Pose> for PoseRecord {
+    #[inline]
     fn from(pose: Pose) -> Self {
         Self { matrix: pose.matrix.to_cols_array(), translation: pose.translation.to_array() }
     }
@@ -245,6 +260,7 @@ impl From<Pose> for PoseRecord {
 impl TryFrom<PoseRecord> for Pose {
     type Error = PoseError;
 
+    #[inline]
     fn try_from(record: PoseRecord) -> Result<Self, PoseError> {
         let translation = DVec3::from_array(record.translation);
         Self::from_matrix(DMat3::from_cols_array(&record.matrix), translation)
@@ -252,6 +268,7 @@ impl TryFrom<PoseRecord> for Pose {
 }
 
 impl Default for Pose {
+    #[inline]
     fn default() -> Self {
         Self::IDENTITY
     }
@@ -262,6 +279,7 @@ impl Default for Pose {
 /// Divided by the square of the length as it is computed, the entries of a quarter turn, or of a
 /// half turn about a diagonal, come out as 0 and 1: the roots of 1/2 that make it are rounded, but
 /// the same rounding is above and below.
+#[inline]
 fn matrix_of(rotation: DQuat) -> DMat3 {
     let [x, y, z, w] = rotation.to_array();
     let scale = 2.0 / ((x * x + y * y) + (z * z + w * w));
@@ -276,6 +294,7 @@ fn matrix_of(rotation: DQuat) -> DMat3 {
 
 /// Returns the largest entry of `R^T R - I` by magnitude: at least 2 for a reflection, infinite if an entry is not
 /// finite.
+#[inline]
 fn largest_defect(matrix: DMat3) -> f64 {
     let defect = off_rotation(matrix).into_iter().map(f64::abs).fold(0.0, f64::max);
     if !matrix.is_finite() {
@@ -289,6 +308,7 @@ fn largest_defect(matrix: DMat3) -> f64 {
 
 /// Returns the rotation nearest to a matrix that is close to one, by Newton's iteration for the polar factor,
 /// `R <- (R + R^-T) / 2` (Higham, "Computing the polar decomposition", 1986).
+#[inline]
 fn nearest_rotation(matrix: DMat3) -> DMat3 {
     let mut rotation = matrix;
     for _ in 0..MOST_POLAR_STEPS {
@@ -303,6 +323,7 @@ fn nearest_rotation(matrix: DMat3) -> DMat3 {
 }
 
 /// The nine entries of `R^T R - 1`, which are 0 for a rotation.
+#[inline]
 fn off_rotation(matrix: DMat3) -> [f64; 9] {
     (matrix.transpose() * matrix - DMat3::IDENTITY).to_cols_array()
 }
@@ -314,12 +335,14 @@ pub fn rotation_defect(matrix: DMat3) -> f64 {
     off_rotation(matrix).into_iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
+#[inline]
 fn check_translation(translation: DVec3) -> Result<(), PoseError> {
     if in_exact_range(translation) { Ok(()) } else { Err(PoseError::Translation { translation }) }
 }
 
 /// Entries of a rotation below `2^-200` are rounding noise of zero: they become zero, so that
 /// products with coordinates stay in the exact range.
+#[inline]
 fn flush_tiny(m: DMat3) -> DMat3 {
     DMat3::from_cols_array(
         &m.to_cols_array().map(|c| if c.abs() < MIN_MAGNITUDE { 0.0 } else { c }),

@@ -41,7 +41,7 @@ impl Real for f64 {
 /// The sum of a number and of what rounding took from it: 106 bits, less a few. Of numbers that are not
 /// tiny: what underflows is lost.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
-pub(crate) struct Twice {
+pub struct Twice {
     high: f64,
     low: f64,
 }
@@ -49,7 +49,7 @@ pub(crate) struct Twice {
 impl Twice {
     /// The sum of two, the second small against the first.
     #[inline]
-    pub(crate) fn new(high: f64, low: f64) -> Self {
+    pub fn new(high: f64, low: f64) -> Self {
         let sum = high + low;
         Self { high: sum, low: sum_error(high, low, sum) }
     }
@@ -58,10 +58,12 @@ impl Twice {
 impl Real for Twice {
     const ZERO: Self = Self { high: 0.0, low: 0.0 };
 
+    #[inline]
     fn of(x: f64) -> Self {
         Self { high: x, low: 0.0 }
     }
 
+    #[inline]
     fn value(self) -> f64 {
         self.high
     }
@@ -111,6 +113,7 @@ impl Mul for Twice {
 impl Div for Twice {
     type Output = Self;
 
+    #[inline]
     fn div(self, other: Self) -> Self {
         let first = self.high / other.high;
         let rest = self - other * Self::of(first);
@@ -123,40 +126,44 @@ impl Div for Twice {
 pub struct Vector<T>(pub [T; 3]);
 
 impl<T: Real> Vector<T> {
-    pub(crate) const ZERO: Self = Self([T::ZERO; 3]);
+    pub const ZERO: Self = Self([T::ZERO; 3]);
 
     #[inline]
-    pub(crate) fn minus(&self, other: &Self) -> Self {
+    #[must_use]
+    pub fn minus(&self, other: &Self) -> Self {
         let ([a, b, c], [x, y, z]) = (self.0, other.0);
         Self([a - x, b - y, c - z])
     }
 
     #[inline]
-    pub(crate) fn plus(&self, other: &Self) -> Self {
+    #[must_use]
+    pub fn plus(&self, other: &Self) -> Self {
         let ([a, b, c], [x, y, z]) = (self.0, other.0);
         Self([a + x, b + y, c + z])
     }
 
     #[inline]
-    pub(crate) fn times(&self, factor: T) -> Self {
+    #[must_use]
+    pub fn times(&self, factor: T) -> Self {
         Self(self.0.map(|x| x * factor))
     }
 
     #[inline]
-    pub(crate) fn dot(&self, other: &Self) -> T {
+    pub fn dot(&self, other: &Self) -> T {
         let ([a, b, c], [x, y, z]) = (self.0, other.0);
         a * x + b * y + c * z
     }
 
     #[inline]
-    pub(crate) fn cross(&self, other: &Self) -> Self {
+    #[must_use]
+    pub fn cross(&self, other: &Self) -> Self {
         let ([a, b, c], [x, y, z]) = (self.0, other.0);
         Self([b * z - c * y, c * x - a * z, a * y - b * x])
     }
 
     /// The nearest one of `f64`.
     #[inline]
-    pub(crate) fn value(&self) -> DVec3 {
+    pub fn value(&self) -> DVec3 {
         DVec3::from_array(self.0.map(T::value))
     }
 }
@@ -167,7 +174,7 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::number::tests::rational;
+    use crate::tests::rational;
 
     /// Numbers of like size, zero among them.
     fn number() -> impl Strategy<Value = Twice> {

@@ -4,26 +4,27 @@ use glam::{DMat3, DVec3};
 
 /// A symmetric 3 x 3 matrix.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Symmetric {
-    pub(crate) xx: f64,
-    pub(crate) xy: f64,
-    pub(crate) xz: f64,
-    pub(crate) yy: f64,
-    pub(crate) yz: f64,
-    pub(crate) zz: f64,
+pub struct Symmetric {
+    pub xx: f64,
+    pub xy: f64,
+    pub xz: f64,
+    pub yy: f64,
+    pub yz: f64,
+    pub zz: f64,
 }
 
 impl Symmetric {
     /// `w^T w`.
     #[inline]
-    pub(crate) fn gram(w: &DMat3) -> Self {
+    pub fn gram(w: &DMat3) -> Self {
         let (x, y, z) = (w.x_axis, w.y_axis, w.z_axis);
         Self { xx: x.dot(x), xy: x.dot(y), xz: x.dot(z), yy: y.dot(y), yz: y.dot(z), zz: z.dot(z) }
     }
 
     /// `f self + g other`.
     #[inline]
-    pub(crate) fn combine(&self, f: f64, other: &Self, g: f64) -> Self {
+    #[must_use]
+    pub fn combine(&self, f: f64, other: &Self, g: f64) -> Self {
         Self {
             xx: f * self.xx + g * other.xx,
             xy: f * self.xy + g * other.xy,
@@ -36,12 +37,13 @@ impl Symmetric {
 
     /// `self + t`, of the identity `t` times.
     #[inline]
-    pub(crate) fn plus_diagonal(&self, t: f64) -> Self {
+    #[must_use]
+    pub fn plus_diagonal(&self, t: f64) -> Self {
         Self { xx: self.xx + t, yy: self.yy + t, zz: self.zz + t, ..*self }
     }
 
     #[inline]
-    pub(crate) fn apply(&self, v: DVec3) -> DVec3 {
+    pub fn apply(&self, v: DVec3) -> DVec3 {
         DVec3::new(
             self.xx * v.x + self.xy * v.y + self.xz * v.z,
             self.xy * v.x + self.yy * v.y + self.yz * v.z,
@@ -51,13 +53,13 @@ impl Symmetric {
 
     /// `v^T self v`.
     #[inline]
-    pub(crate) fn square(&self, v: DVec3) -> f64 {
+    pub fn square(&self, v: DVec3) -> f64 {
         v.dot(self.apply(v))
     }
 
     /// The adjugate `J`, with `self^-1 = J / det`, and the determinant.
     #[inline]
-    pub(crate) fn adjugate(&self) -> (Self, f64) {
+    pub fn adjugate(&self) -> (Self, f64) {
         let xx = self.yy * self.zz - self.yz * self.yz;
         let xy = self.xz * self.yz - self.xy * self.zz;
         let xz = self.xy * self.yz - self.xz * self.yy;

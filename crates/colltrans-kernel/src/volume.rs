@@ -20,7 +20,8 @@ const ROUNDED: f64 = 32.0 * f64::EPSILON;
 
 /// The sign of `det[a, b, c]`: positive if the three are counter-clockwise as seen from beyond their plane,
 /// from the origin's other side. `size` is that of the configuration.
-pub(crate) fn sign(points: [&Terms; 3], size: f64) -> Ordering {
+#[inline]
+pub fn sign(points: [&Terms; 3], size: f64) -> Ordering {
     let [a, b, c] = points.map(Terms::point);
     let det = a.dot(b.cross(c));
     let [relative, absolute] = ERROR;
@@ -30,14 +31,16 @@ pub(crate) fn sign(points: [&Terms; 3], size: f64) -> Ordering {
     by_integers::<SMALL>(points).or_else(|| by_integers::<LARGE>(points)).unwrap_or(Ordering::Equal)
 }
 
-/// The same of points as [`TwoBodies::difference`](crate::setting::TwoBodies) rounds them, off by less than
+/// The same of points as `TwoBodies::difference` rounds them, off by less than
 /// `9 u` of the size each: where that and the determinant's own rounding leave it.
-pub(crate) fn rounded_sign([a, b, c]: [DVec3; 3], size: f64) -> Option<Ordering> {
+#[inline]
+pub fn rounded_sign([a, b, c]: [DVec3; 3], size: f64) -> Option<Ordering> {
     let det = a.dot(b.cross(c));
     (det.abs() > ROUNDED * (size * size * size)).then(|| det.total_cmp(&0.0))
 }
 
 /// The sum of the magnitudes of the determinant's terms.
+#[inline]
 fn magnitude(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     let [a, b, c] = [a, b, c].map(DVec3::abs);
     let minors = DVec3::new(b.y * c.z + b.z * c.y, b.z * c.x + b.x * c.z, b.x * c.y + b.y * c.x);
@@ -51,12 +54,14 @@ fn by_integers<const N: usize>(points: [&Terms; 3]) -> Option<Ordering> {
 }
 
 /// The faces of a tetrahedron, each opposite to a corner.
+#[inline]
 fn faces<'a>([a, b, c, d]: &'a [Terms<'a>; 4]) -> [[&'a Terms<'a>; 3]; 4] {
     [[b, c, d], [a, d, c], [a, b, d], [a, c, b]]
 }
 
 /// Whether a tetrahedron with some volume contains the origin, certainly; on its surface does.
-pub(crate) fn encloses(corners: &[Terms; 4], size: f64) -> bool {
+#[inline]
+pub fn encloses(corners: &[Terms; 4], size: f64) -> bool {
     let signs = faces(corners).map(|face| sign(face, size));
     let none = |unwanted| signs.iter().all(|sign| *sign != unwanted);
     let some = signs.iter().any(|sign| sign.is_ne());
@@ -65,7 +70,8 @@ pub(crate) fn encloses(corners: &[Terms; 4], size: f64) -> bool {
 
 /// The weights by which the corners of a tetrahedron with some volume have the origin as their mean, to
 /// within a few roundings: the volumes that it spans with the faces, as shares of the whole.
-pub(crate) fn weights_of_origin(corners: &[Terms; 4]) -> Option<[f64; 4]> {
+#[inline]
+pub fn weights_of_origin(corners: &[Terms; 4]) -> Option<[f64; 4]> {
     shares::<SMALL>(corners).or_else(|| shares::<LARGE>(corners))
 }
 

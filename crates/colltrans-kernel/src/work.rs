@@ -19,6 +19,7 @@ thread_local! {
 
 /// Returns how much is looked at in a run.
 #[cfg(debug_assertions)]
+#[inline]
 pub fn looks(run: impl FnOnce()) -> usize {
     let before = LOOKS.get();
     run();
@@ -35,6 +36,7 @@ const MOST: f64 = 15.0;
 /// # Panics
 /// If it does not, or less is looked at than there is.
 #[cfg(debug_assertions)]
+#[inline]
 pub fn assert_growth(what: &str, few: usize, run: impl Fn(usize)) {
     let [less, more] = [few, 5 * few].map(|count| looks(|| run(count)));
     assert!(less >= few, "{what}: {less} looks at {few} are not all that there is");

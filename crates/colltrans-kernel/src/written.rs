@@ -21,6 +21,7 @@ macro_rules! named {
     ($what:literal, $choice:ident { $($variant:ident: $name:literal),+ }) => {
         impl $choice {
             /// As it is written.
+            #[inline]
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$variant => $name),+
@@ -93,12 +94,12 @@ where
 
 /// The same of a lower bound.
 #[cfg(feature = "serde")]
-pub(crate) mod or_minus_infinite {
+pub mod or_minus_infinite {
     use serde::{Deserialize, Deserializer};
 
-    pub(crate) use super::or_infinite::serialize;
+    pub use super::or_infinite::serialize;
 
-    pub(crate) fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
         Ok(Option::deserialize(from)?.unwrap_or(f64::NEG_INFINITY))
     }
 }

@@ -37,7 +37,7 @@ pub struct MotionContact<P = MotionProof> {
     /// Up to this time the bodies do not meet; 0 if they overlap at the start.
     pub lower: f64,
     /// At this time they do; infinite (`null` in JSON) where that is not proven.
-    #[cfg_attr(feature = "serde", serde(with = "colltrans_convex::written::or_infinite"))]
+    #[cfg_attr(feature = "serde", serde(with = "colltrans_kernel::written::or_infinite"))]
     pub upper: f64,
     /// The poses at the lower bound, to rounding.
     pub poses: [Pose; 2],
@@ -77,13 +77,13 @@ pub struct MotionSteps {
     /// Of solids, pairs of nodes of both trees, each in an interval of time.
     #[cfg_attr(
         feature = "serde",
-        serde(default, skip_serializing_if = "colltrans_convex::written::is_none")
+        serde(default, skip_serializing_if = "colltrans_kernel::written::is_none")
     )]
     pub nodes: u64,
     /// Of solids, pairs of facets whose distance was looked at on their way.
     #[cfg_attr(
         feature = "serde",
-        serde(default, skip_serializing_if = "colltrans_convex::written::is_none")
+        serde(default, skip_serializing_if = "colltrans_kernel::written::is_none")
     )]
     pub leaves: u64,
 }
@@ -109,7 +109,7 @@ pub struct MotionProof {
     /// order of their times, each joined to the next one. None, if they meet when it begins.
     pub spans: Vec<Vec<PlaneAt>>,
     /// That the bodies meet at a time.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_convex::written::given"))]
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_kernel::written::given"))]
     pub meeting: Option<Meeting>,
     /// Proof of the same question about the bodies as solids, in the place of planes. `None` unless the search between
     /// convex bodies took its maximum number of steps.

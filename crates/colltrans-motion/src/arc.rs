@@ -17,7 +17,7 @@ use glam::DVec3;
 use super::bend::across;
 use super::span::{Instant, Span};
 use colltrans_convex::body::Hull;
-use colltrans_convex::body::motion::{Moved, Piece};
+use colltrans_kernel::motion::{Moved, Piece};
 
 /// Sums here are off by less than this share of the sizes.
 const ROUNDED: f64 = 1e-14;

@@ -26,8 +26,8 @@
 use glam::DVec3;
 
 use super::span::{Instant, Span};
-use colltrans_convex::body::motion::Moved;
 use colltrans_convex::body::{ConvexPolyhedron, Hull};
+use colltrans_kernel::motion::Moved;
 
 /// Sums here are off by less than this share of their terms.
 const ROUNDED: f64 = 1e-13;

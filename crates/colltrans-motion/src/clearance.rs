@@ -173,7 +173,7 @@ pub(super) fn at<'a, B: Hull, L: Looker<B>>(
     spans: &[Span<'a, B>],
     time: f64,
     looker: &mut L,
-) -> Option<Look<'a, [colltrans_convex::body::motion::Moved; 2], B>> {
+) -> Option<Look<'a, [colltrans_kernel::motion::Moved; 2], B>> {
     let span = spans.iter().rev().find(|span| span.from <= time)?;
     Some(looker.look(span, time))
 }

@@ -10,7 +10,7 @@ use super::arc;
 use super::bend::{SPARE, Supports, across, bend, most_bend, usual};
 use super::span::{Instant, Span};
 use colltrans_convex::body::Hull;
-use colltrans_convex::body::motion::Moved;
+use colltrans_kernel::motion::Moved;
 
 /// Axes whose cross product is shorter are parallel.
 const PARALLEL: f64 = 1e-9;

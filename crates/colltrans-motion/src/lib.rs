@@ -79,14 +79,14 @@ pub use self::solid::{FacetsMeeting, FacetsMet, MotionCover, SolidMotionProof, S
 use self::span::{Span, spans};
 pub use self::verify::MotionProofError;
 pub use colltrans_convex::body::Moving;
-pub use colltrans_convex::body::motion::{Motion, Piece as MotionPiece};
-use colltrans_convex::body::pose::STRETCHED;
-pub use colltrans_convex::body::pose_error::MotionError;
 use colltrans_convex::body::{ConvexPolyhedron, Hull};
-use colltrans_convex::number::noise::Noise;
-use colltrans_convex::number::range::MAX_MAGNITUDE;
 use colltrans_convex::setting::check_keep;
 use colltrans_convex::setting::error::{QueryError, Stalled};
+pub use colltrans_kernel::error::MotionError;
+pub use colltrans_kernel::motion::{Motion, Piece as MotionPiece};
+use colltrans_kernel::noise::Noise;
+use colltrans_kernel::pose::STRETCHED;
+use colltrans_kernel::range::MAX_MAGNITUDE;
 use colltrans_solid::StartOverlap;
 use colltrans_solid::body::Solid;
 

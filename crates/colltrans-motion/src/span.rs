@@ -3,10 +3,10 @@
 use derive_where::derive_where;
 use glam::DVec3;
 
-use colltrans_convex::body::motion::{Motion, Moved, Piece};
 use colltrans_convex::body::{ConvexPolyhedron, Hull, Placed};
-use colltrans_convex::number::noise;
 use colltrans_convex::setting::TwoBodies;
+use colltrans_kernel::motion::{Motion, Moved, Piece};
+use colltrans_kernel::noise;
 
 /// Two bodies during a span of time.
 #[derive(Debug)]

@@ -12,8 +12,8 @@ use super::look::deep_enough;
 use super::span::{Instant, spans};
 use colltrans_convex::answer::CertificateError;
 use colltrans_convex::body::ConvexPolyhedron;
-use colltrans_convex::number::noise;
 use colltrans_convex::pair::Pair;
+use colltrans_kernel::noise;
 use thiserror::Error;
 
 /// What of a proof about a motion is not proven.

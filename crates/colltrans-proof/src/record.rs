@@ -23,7 +23,7 @@ use colltrans_convex::cast::Cast;
 use colltrans_convex::pair::{Pair, points};
 use colltrans_convex::setting::error::QueryError;
 use colltrans_convex::solve::observe::{NoObserver, Observer};
-use colltrans_convex::written::named;
+use colltrans_kernel::written::named;
 use colltrans_scene::{Among, ClearanceAmong, Nearby, Nearest};
 use colltrans_solid::body::Solid;
 use colltrans_solid::kinds::{AnyClearance, AnyNear, ByKind};

@@ -24,7 +24,7 @@ const BEYOND: f64 = 64.0;
 pub struct ClearanceAmong {
     /// No obstacle stops the moving body before, in multiples of the direction: infinite where none ever
     /// does, or the end that was asked for; 0 if it overlaps an obstacle now.
-    #[cfg_attr(feature = "serde", serde(with = "colltrans_convex::written::or_infinite"))]
+    #[cfg_attr(feature = "serde", serde(with = "colltrans_kernel::written::or_infinite"))]
     pub lower: f64,
     /// What stops it, [`Clearance::Blocked`], or overlaps it, [`Clearance::Overlapping`]: the obstacle whose
     /// upper bound is least; of equal ones, and of those that overlap, the one that came first.

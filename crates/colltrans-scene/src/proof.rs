@@ -17,9 +17,9 @@ use colltrans_convex::answer::{
 };
 use colltrans_convex::body::{Aabb, ObstacleId};
 use colltrans_convex::cast::{Cast, verified_overlap};
-use colltrans_convex::number::noise::Noise;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_convex::setting::{check_direction, check_length};
+use colltrans_kernel::noise::Noise;
 use colltrans_solid::cast::{SolidCertificate, StartProof};
 use colltrans_solid::kinds::AnyNear;
 use colltrans_solid::pair::DistanceCertificate;
@@ -59,7 +59,7 @@ pub struct NearestProof {
 )]
 pub struct NearbyProof {
     /// The length.
-    #[cfg_attr(feature = "serde", serde(with = "colltrans_convex::written::or_infinite"))]
+    #[cfg_attr(feature = "serde", serde(with = "colltrans_kernel::written::or_infinite"))]
     pub length: f64,
     /// Those that are closer, in the order in which they came, as all of these.
     pub closer: Vec<(ObstacleId, AnyNear)>,
@@ -80,10 +80,10 @@ pub struct ClearanceProof {
     /// The direction.
     pub direction: DVec3,
     /// No obstacle stops the moving body before, in multiples of the direction; 0 if it overlaps one.
-    #[cfg_attr(feature = "serde", serde(with = "colltrans_convex::written::or_infinite"))]
+    #[cfg_attr(feature = "serde", serde(with = "colltrans_kernel::written::or_infinite"))]
     pub lower: f64,
     /// The one that stops it, or overlaps it.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_convex::written::given"))]
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_kernel::written::given"))]
     pub stop: Option<ObstacleId>,
     /// What obstacles do whose boxes do not tell, the one that stops it among them, in the order in which
     /// they came.

@@ -15,7 +15,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use colltrans_convex::body::Aabb;
-use colltrans_convex::body::split::{Boxed, Rule, halve, split};
+use colltrans_kernel::split::{Boxed, Rule, halve, split};
 
 /// Items that are halved.
 const FEW: usize = 4;

@@ -10,18 +10,18 @@
 //!
 //! Rounding: see [`noise`]. The two bounds differ by at most [`Certificate::rounding`]. A search lowers
 //! what it computed by more than its rounding can be. The check computes the heights of the vertices
-//! along the normal with hardly any ([`extent`](crate::number::extent)), so it accepts no lower bound
+//! along the normal with hardly any ([`extent`](colltrans_kernel::extent)), so it accepts no lower bound
 //! and no margin beyond what the plane proves, and still each that a search has lowered.
 
 use glam::DVec3;
 use thiserror::Error;
 
-use crate::body::pose::STRETCHED;
 use crate::body::{InputFacet, ObstacleId};
-use crate::number::extent;
-use crate::number::noise::{self, Noise};
 use crate::setting::error::QueryError;
 use crate::setting::{Setting, VertexPair};
+use colltrans_kernel::extent;
+use colltrans_kernel::noise::{self, Noise};
+use colltrans_kernel::pose::STRETCHED;
 
 /// Factor that is more than a few roundings.
 const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
@@ -58,7 +58,7 @@ pub struct Certificate {
     /// The upper bound they prove, in multiples of the direction. Infinite in a
     /// [`Grazing`](crate::Grazing) whose shadows rounding cannot tell to overlap: such a one claims
     /// `lower` only.
-    #[cfg_attr(feature = "serde", serde(with = "crate::written::or_infinite"))]
+    #[cfg_attr(feature = "serde", serde(with = "colltrans_kernel::written::or_infinite"))]
     pub upper: f64,
     /// What rounding alone can make of `upper - lower` at the size of this configuration: fifteen
     /// noises (see [the crate's introduction](crate#accuracy)) and what the bodies may reach beyond

@@ -92,9 +92,9 @@ pub enum StartedFrom {
     Scratch,
 }
 
-crate::written::named!("solver", Solver { Auto: "auto", Cta: "cta", Portal: "portal" });
+colltrans_kernel::written::named!("solver", Solver { Auto: "auto", Cta: "cta", Portal: "portal" });
 
-crate::written::named!(
+colltrans_kernel::written::named!(
     "start",
     StartedFrom {
         Difference: "difference",

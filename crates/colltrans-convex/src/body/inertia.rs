@@ -8,7 +8,7 @@
 use glam::{DMat3, DVec3};
 
 use super::topology::Topology;
-use crate::number::plane::polygon_normal;
+use colltrans_kernel::plane::polygon_normal;
 
 /// Size and resemblance of a body, in its own frame.
 #[derive(Debug, Clone, Copy)]

@@ -4,8 +4,8 @@ use std::borrow::Cow;
 
 use derive_where::derive_where;
 
-use crate::body::motion::Motion;
 use crate::body::{ConvexPolyhedron, Placed};
+use colltrans_kernel::motion::Motion;
 
 /// A body and its motion, from [`ConvexPolyhedron::along`](crate::ConvexPolyhedron::along).
 #[derive(Debug)]

@@ -4,9 +4,9 @@ use glam::DVec3;
 
 use super::Cast;
 use crate::answer::Contact;
-use crate::body::pose_error::PoseError;
 use crate::body::{Features, Pose, feature};
-use crate::number::noise::Noise;
+use colltrans_kernel::error::PoseError;
+use colltrans_kernel::noise::Noise;
 
 /// A contact point on each body, in the world.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -7,8 +7,8 @@ use crate::answer::{
     Bounded, CentralCast, Clearance, Contact, ContactRange, DirectionalDepth, Grazing,
     Intersection, Outcome, OverlapAhead, WhyFree,
 };
-use crate::number::range::MIN_MAGNITUDE;
 use crate::setting::error::QueryError;
+use colltrans_kernel::range::MIN_MAGNITUDE;
 
 /// The contact range, from the casts along a direction and against it.
 pub fn range_of<'a>(

@@ -10,11 +10,11 @@ use thiserror::Error;
 
 use super::Cast;
 use crate::body::error::BuildError;
-use crate::body::pose::PoseRecord;
-use crate::body::pose_error::PoseError;
 use crate::body::{ConvexPolyhedron, InputVertex, Pose};
 use crate::setting::error::QueryError;
 use crate::solve::options::{Options, OptionsRecord};
+use colltrans_kernel::error::PoseError;
+use colltrans_kernel::pose::PoseRecord;
 
 /// Why a file is no query.
 #[derive(Debug, Error)]

@@ -3,9 +3,9 @@
 use glam::DVec3;
 
 use crate::answer::{CertificateError, Depth, Enclosure, NearPoints, PlaneGap, are_weights};
-use crate::number::{extent, noise, volume};
 use crate::setting::{TwoBodies, VertexPair};
 use crate::solve::nearest::surrounds;
+use colltrans_kernel::{extent, noise, volume};
 
 /// The gap that a plane proves.
 pub(super) fn gap(bodies: &TwoBodies, plane: &PlaneGap) -> Result<f64, CertificateError> {

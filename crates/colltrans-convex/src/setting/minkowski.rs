@@ -4,18 +4,18 @@
 //! has the coordinates `(s1, s2, h)`: its shadow `s` and its height `h`. The line `t d` is the axis
 //! `s = 0`; the collision translation is the lowest height at which it meets `M`.
 //!
-//! Rounding. [`Noise`](crate::number::noise::Noise) bounds the error of a coordinate.
+//! Rounding. [`Noise`](colltrans_kernel::noise::Noise) bounds the error of a coordinate.
 
 use std::cell::Cell;
 use std::cmp::Ordering;
 
 use glam::{DMat3, DVec2, DVec3};
 
-use crate::number::noise::{self, Noise};
-use crate::number::orientation::{self, Shadow, Terms};
-use crate::number::predicates::orient2d;
-use crate::number::symmetric::Symmetric;
 use crate::setting::{Setting, VertexPair};
+use colltrans_kernel::noise::{self, Noise};
+use colltrans_kernel::orientation::{self, Shadow, Terms};
+use colltrans_kernel::predicates::orient2d;
+use colltrans_kernel::symmetric::Symmetric;
 
 /// A vertex of `M`, in the shadow frame, and the pair of vertices it comes from.
 #[derive(Debug, Clone, Copy)]

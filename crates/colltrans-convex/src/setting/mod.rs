@@ -11,8 +11,8 @@ use std::ops::Deref;
 use glam::DVec3;
 
 use crate::body::{ConvexPolyhedron, Placed, VertexId};
-use crate::number::range::{MAX_MAGNITUDE, in_exact_range};
 use crate::setting::error::QueryError;
+use colltrans_kernel::range::{MAX_MAGNITUDE, in_exact_range};
 pub use two_bodies::TwoBodies;
 
 /// One vertex of each body.

@@ -7,14 +7,14 @@
 use derive_where::derive_where;
 use glam::{DMat3, DVec3};
 
-use crate::body::pose::STRETCHED;
 use crate::body::{ConvexPolyhedron, Hull, Placed, Pose};
-use crate::number::error_free::{difference_error, sum_error};
-use crate::number::extent;
-use crate::number::noise::Noise;
-use crate::number::orientation::Terms;
-use crate::number::range::MIN_MAGNITUDE;
 use crate::setting::VertexPair;
+use colltrans_kernel::error_free::{difference_error, sum_error};
+use colltrans_kernel::extent;
+use colltrans_kernel::noise::Noise;
+use colltrans_kernel::orientation::Terms;
+use colltrans_kernel::pose::STRETCHED;
+use colltrans_kernel::range::MIN_MAGNITUDE;
 
 /// Two placed bodies.
 #[derive(Debug)]

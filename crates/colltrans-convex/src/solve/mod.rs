@@ -23,10 +23,10 @@ mod warm_start;
 use glam::DVec2;
 
 use crate::answer::{Outcome, Separated, Separation, Solver, StartedFrom};
-use crate::number::noise::Noise;
 use crate::setting::error::{QueryError, Stalled};
 use crate::setting::minkowski::MinkowskiDifference;
 use crate::setting::{Setting, VertexPair};
+use colltrans_kernel::noise::Noise;
 use cta::{CtaOptions, Guess, Origin, RegionFocus};
 use observe::{Observer, Phase, ShadowFrame, Support, Watch};
 use options::{Focus, NarrowFrom, Narrowing, Options, Region};

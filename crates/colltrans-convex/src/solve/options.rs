@@ -301,7 +301,7 @@ pub(crate) struct OptionsRecord {
     cuts: Cuts,
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     starts_cold: bool,
-    #[serde(default, skip_serializing_if = "crate::written::is_zero")]
+    #[serde(default, skip_serializing_if = "colltrans_kernel::written::is_zero")]
     keep: f64,
 }
 
@@ -358,7 +358,10 @@ impl TryFrom<UntilRecord> for Until {
     }
 }
 
-crate::written::named!("start", NarrowFrom { Center: "center", Ellipsoids: "ellipsoids" });
+colltrans_kernel::written::named!(
+    "start",
+    NarrowFrom { Center: "center", Ellipsoids: "ellipsoids" }
+);
 
 /// A text that says no end of a minimisation.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]

@@ -5,11 +5,11 @@ use glam::DVec2;
 use crate::answer::{
     Along, Certificate, Contact, Grazing, Separation, Solver, Steps, gap_rounding,
 };
-use crate::number::noise::UNIT_VECTOR;
 use crate::setting::error::Stalled;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
 use crate::solve::WarmStart;
 use crate::solve::portal::{ContactPortal, Plane, Portal};
+use colltrans_kernel::noise::UNIT_VECTOR;
 
 /// The lowest face of `M` on the line and what it proves, in the world. Small and passed by reference:
 /// moved about, an outcome goes through memory.

@@ -38,7 +38,7 @@ pub struct PathContact {
     /// Up to this time no two of the bodies meet.
     pub lower: f64,
     /// At this time these two do; infinite (`null` in JSON) where that is not proven.
-    #[cfg_attr(feature = "serde", serde(with = "colltrans_convex::written::or_infinite"))]
+    #[cfg_attr(feature = "serde", serde(with = "colltrans_kernel::written::or_infinite"))]
     pub upper: f64,
     /// Where on the path that is.
     pub place: Place,
@@ -81,7 +81,7 @@ pub struct PathProof {
     /// For each pair, in the order in which they are asked about.
     pub covers: Vec<Cover>,
     /// That two bodies meet.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_convex::written::given"))]
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_kernel::written::given"))]
     pub meeting: Option<PathMeeting>,
     /// Numbers of the convex bodies that the proof takes as solids: those of a pair whose search as convex bodies took its
     /// maximum number of steps.

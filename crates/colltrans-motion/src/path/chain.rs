@@ -34,9 +34,9 @@ use glam::{DMat3, DVec3};
 
 use super::mechanism::{Joint, JointPath, Mechanism};
 use colltrans_convex::body::Pose;
-use colltrans_convex::number::angle::turn;
-use colltrans_convex::number::noise;
-use colltrans_convex::number::range::MIN_MAGNITUDE;
+use colltrans_kernel::angle::turn;
+use colltrans_kernel::noise;
+use colltrans_kernel::range::MIN_MAGNITUDE;
 
 /// How far a product of two rotations may be off, as it moves a unit vector: nine entries, `3 u` each.
 const PRODUCT: f64 = 9.0 * f64::EPSILON;

@@ -21,8 +21,8 @@ use super::super::span::Instant;
 use super::chain::{Chain, Most, RAISED, Rates};
 use super::mechanism::{JointPath, Place};
 use colltrans_convex::body::{ConvexPolyhedron, Placed};
-use colltrans_convex::number::noise;
 use colltrans_convex::setting::TwoBodies;
+use colltrans_kernel::noise;
 use colltrans_solid::body::Solid;
 
 /// Points move along a normal by less than this share of how they move where they slide over a plane, nearly.

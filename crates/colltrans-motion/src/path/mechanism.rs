@@ -9,11 +9,11 @@ use glam::DVec3;
 use thiserror::Error;
 
 use colltrans_convex::body::Pose;
-use colltrans_convex::body::pose_error::PoseError;
-use colltrans_convex::number::angle;
-use colltrans_convex::number::noise;
-use colltrans_convex::number::range::{MAX_MAGNITUDE, in_exact_range, without_traces};
 use colltrans_convex::setting::error::QueryError;
+use colltrans_kernel::angle;
+use colltrans_kernel::error::PoseError;
+use colltrans_kernel::noise;
+use colltrans_kernel::range::{MAX_MAGNITUDE, in_exact_range, without_traces};
 
 /// A place that a joint carries.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -24,7 +24,7 @@ use colltrans_convex::setting::error::QueryError;
 )]
 pub struct Frame {
     /// The frame it stands in, one with a smaller number; none is the world.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_convex::written::given"))]
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_kernel::written::given"))]
     pub parent: Option<usize>,
     /// Where its joint is in that frame.
     pub origin: Pose,

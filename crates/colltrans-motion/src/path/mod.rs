@@ -64,10 +64,10 @@ mod verify;
 use std::collections::HashSet;
 
 use colltrans_convex::body::{Placed, Pose};
-use colltrans_convex::number::range::MAX_MAGNITUDE;
 use colltrans_convex::pair::Pair;
 use colltrans_convex::setting::check_keep;
 use colltrans_convex::setting::error::QueryError;
+use colltrans_kernel::range::MAX_MAGNITUDE;
 use colltrans_solid::Solid;
 use colltrans_solid::kinds::{AnyPlaced, ByKind};
 use colltrans_solid::{AsSolid, SolidPairSearch};

@@ -13,8 +13,8 @@ use glam::DVec3;
 use super::facets::FacetsMet;
 use super::tree::Tree;
 use colltrans_convex::body::Hull;
-use colltrans_convex::number::range::{in_exact_range, without_traces};
 use colltrans_convex::setting::TwoBodies;
+use colltrans_kernel::range::{in_exact_range, without_traces};
 use colltrans_solid::body::{Solid, crossing};
 use colltrans_solid::solve::nearest::triangle::{self, Corners};
 

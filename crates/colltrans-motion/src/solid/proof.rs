@@ -24,7 +24,7 @@ pub struct SolidMotionProof {
     /// For each span of time in which both bodies spin evenly, up to that in which they meet.
     pub spans: Vec<SpanProof>,
     /// That they meet at a time.
-    #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_convex::written::given"))]
+    #[cfg_attr(feature = "serde", serde(deserialize_with = "colltrans_kernel::written::given"))]
     pub meeting: Option<FacetsMeeting>,
 }
 

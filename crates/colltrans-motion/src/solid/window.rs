@@ -20,8 +20,8 @@ use super::super::bend::{SPARE, across, most_bend};
 use super::super::span::Span;
 use super::tree::{Below, Facet, Node, Tree};
 use colltrans_convex::body::Hull;
-use colltrans_convex::body::motion::{Moved, Piece};
-use colltrans_convex::number::noise::Noise;
+use colltrans_kernel::motion::{Moved, Piece};
+use colltrans_kernel::noise::Noise;
 
 /// Arcs that are longer are none any more.
 const ARC: f64 = 2.0;

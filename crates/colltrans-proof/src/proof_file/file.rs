@@ -10,10 +10,10 @@ use super::statement::{Contacts, DistanceStatement, FreeStatement, SolidStatemen
 use super::{Along, Bodies, ProofFile};
 use colltrans_convex::answer::{Depth, Separation};
 use colltrans_convex::body::ConvexPolyhedron;
-use colltrans_convex::body::pose::PoseRecord;
 use colltrans_convex::cast::CaseError;
 use colltrans_convex::cast::replay::BodyRecord;
 use colltrans_convex::setting::{check_direction, check_keep};
+use colltrans_kernel::pose::PoseRecord;
 use colltrans_solid::body::{AsSolid, Solid, SolidError};
 use colltrans_solid::pair::DistanceCertificate;
 use colltrans_solid::solve::nearest::SolidNear;
@@ -121,7 +121,7 @@ struct File<S> {
     fixed_pose: PoseRecord,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     direction: Option<[f64; 3]>,
-    #[serde(default, skip_serializing_if = "colltrans_convex::written::is_zero")]
+    #[serde(default, skip_serializing_if = "colltrans_kernel::written::is_zero")]
     keep: f64,
     statement: S,
 }

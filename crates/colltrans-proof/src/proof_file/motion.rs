@@ -408,7 +408,7 @@ struct Asked {
     moving_motion: Motion,
     fixed: BodyRecord,
     fixed_motion: Motion,
-    #[serde(default, skip_serializing_if = "colltrans_convex::written::is_zero")]
+    #[serde(default, skip_serializing_if = "colltrans_kernel::written::is_zero")]
     keep: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     proof: Option<MotionProof>,

@@ -11,7 +11,7 @@ use super::file::{BodyFile, nested, said};
 use super::scene::{Written, kept};
 use colltrans_convex::body::{InputFacet, Pose};
 use colltrans_convex::cast::CaseError;
-use colltrans_convex::number::noise;
+use colltrans_kernel::noise;
 use colltrans_motion::path::{
     Frame, JointPath, Mechanism, PathBody, PathCast, PathError, PathOutcome, PathProof,
     PathProofError,
@@ -66,7 +66,7 @@ pub struct PathStatement {
     /// No two bodies of a pair meet before this time; also not at it, if it is the end of the path and no contact is claimed.
     pub lower: f64,
     /// The pair of [`PathProof::meeting`] meets at this time or before; infinite where that is not claimed.
-    #[serde(with = "colltrans_convex::written::or_infinite")]
+    #[serde(with = "colltrans_kernel::written::or_infinite")]
     pub upper: f64,
 }
 
@@ -352,7 +352,7 @@ struct File {
     frames: Vec<Frame>,
     path: JointPath,
     bodies: Vec<BodyRecord>,
-    #[serde(default, skip_serializing_if = "colltrans_convex::written::is_zero")]
+    #[serde(default, skip_serializing_if = "colltrans_kernel::written::is_zero")]
     keep: f64,
     proof: PathProof,
     statement: PathStatement,
@@ -362,7 +362,7 @@ struct File {
 #[serde(deny_unknown_fields)]
 struct BodyRecord {
     name: String,
-    #[serde(deserialize_with = "colltrans_convex::written::given")]
+    #[serde(deserialize_with = "colltrans_kernel::written::given")]
     frame: Option<usize>,
     pose: Pose,
     #[serde(default, skip_serializing_if = "Option::is_none")]

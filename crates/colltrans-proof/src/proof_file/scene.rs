@@ -97,9 +97,9 @@ struct Place {
 #[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct Choices {
-    #[serde(skip_serializing_if = "colltrans_convex::written::is_zero")]
+    #[serde(skip_serializing_if = "colltrans_kernel::written::is_zero")]
     keep: f64,
-    #[serde(skip_serializing_if = "colltrans_convex::written::is_zero")]
+    #[serde(skip_serializing_if = "colltrans_kernel::written::is_zero")]
     graze_tolerance: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     tolerance: Option<f64>,

@@ -190,7 +190,7 @@ struct File {
     moving_motion: Motion,
     fixed: BodyFile,
     fixed_motion: Motion,
-    #[serde(default, skip_serializing_if = "colltrans_convex::written::is_zero")]
+    #[serde(default, skip_serializing_if = "colltrans_kernel::written::is_zero")]
     keep: f64,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     tolerance: Option<f64>,

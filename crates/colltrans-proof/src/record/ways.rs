@@ -30,7 +30,7 @@ pub struct LegRecord {
     /// Of length 1.
     pub direction: [f64; 3],
     /// How far; nothing stops the last one.
-    #[serde(serialize_with = "colltrans_convex::written::or_infinite::serialize")]
+    #[serde(serialize_with = "colltrans_kernel::written::or_infinite::serialize")]
     pub travel: f64,
 }
 

@@ -4,7 +4,7 @@
 use glam::DVec3;
 
 use super::line::PlaneVertex;
-use colltrans_convex::number::integer::{Integer, difference};
+use colltrans_kernel::integer::{Integer, difference};
 use colltrans_solid::body::tree::{self, ANY, Node};
 use colltrans_solid::solve::projected::Projected;
 use colltrans_solid::solve::scene::{Corner, ExactPoint, Scene, Side};

@@ -8,7 +8,7 @@ use std::cmp::Ordering;
 
 use glam::DVec3;
 
-use colltrans_convex::number::integer::{Integer, SMALL};
+use colltrans_kernel::integer::{Integer, SMALL};
 
 /// Cells are halved no more often: `u` and `v` are exact.
 pub(super) const DEEPEST: u32 = 50;

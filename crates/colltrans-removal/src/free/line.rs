@@ -13,9 +13,9 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use super::bodies::Bodies;
-use colltrans_convex::number::error_free::{difference_error, product_error};
-use colltrans_convex::number::integer::{Integer, LARGE, SMALL, determinant, difference};
-use colltrans_convex::number::predicates::sign;
+use colltrans_kernel::error_free::{difference_error, product_error};
+use colltrans_kernel::integer::{Integer, LARGE, SMALL, determinant, difference};
+use colltrans_kernel::predicates::sign;
 
 const U: f64 = f64::EPSILON / 2.0;
 

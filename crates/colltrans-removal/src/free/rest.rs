@@ -14,7 +14,7 @@ use super::cell::{Cell, Side, solid_angle};
 use super::cone::Cone;
 use super::line::{Line, PlaneVertex, Ray, orientation, wide_cross};
 use super::window::Window;
-use colltrans_convex::number::integer::{Integer, LARGE, SMALL};
+use colltrans_kernel::integer::{Integer, LARGE, SMALL};
 
 /// Places known less well are computed in whole numbers.
 const ROUGH: f64 = 1e-14;

@@ -1,6 +1,6 @@
 //! From a face of `M0`, or two that meet at the rim of its shadow, to an answer with its proof.
 //!
-//! The bounds on rounding are derived in the head of [`noise`](colltrans_convex::number::noise), under *Polygon* and *Rim*.
+//! The bounds on rounding are derived in the head of [`noise`](colltrans_kernel::noise), under *Polygon* and *Rim*.
 
 use glam::{DVec2, DVec3};
 
@@ -8,9 +8,9 @@ use super::faces::{Faces, Plane};
 use super::sight::{ENTERED, Seen};
 use colltrans_convex::answer::{Certificate, Contact, Separated, Separation, Solver, Steps};
 use colltrans_convex::cast::Cast;
-use colltrans_convex::number::determinant::accurate_det;
-use colltrans_convex::number::noise::{Noise, UNIT_VECTOR};
 use colltrans_convex::setting::Setting;
+use colltrans_kernel::determinant::accurate_det;
+use colltrans_kernel::noise::{Noise, UNIT_VECTOR};
 
 /// Share of a noise by which the corners of a face may be off its plane.
 const THICK: f64 = 0.5;

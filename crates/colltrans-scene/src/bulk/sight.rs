@@ -8,7 +8,7 @@ use glam::DVec3;
 use super::faces::{Faces, Side};
 use super::proof::{Clear, Line, Rim, contact, separated};
 use colltrans_convex::answer::{Outcome, StartedFrom, Steps};
-use colltrans_convex::number::noise::UNIT_VECTOR;
+use colltrans_kernel::noise::UNIT_VECTOR;
 
 /// A component along the direction beyond what rounding makes of none.
 pub(super) const ENTERED: f64 = 0.25 * UNIT_VECTOR;

@@ -4,8 +4,8 @@ use std::cmp::Ordering;
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
 
-pub(crate) use colltrans_convex::number::predicates::sign;
-use colltrans_convex::number::predicates::{orient2d, orient3d};
+pub(crate) use colltrans_kernel::predicates::sign;
+use colltrans_kernel::predicates::{orient2d, orient3d};
 
 /// The point along one of the axes, counter-clockwise order kept.
 pub(super) fn drop_axis(p: DVec3, axis: usize) -> DVec2 {

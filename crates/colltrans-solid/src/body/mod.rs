@@ -27,10 +27,11 @@ use std::sync::OnceLock;
 
 use glam::{DVec3, Vec3Swizzles};
 
+use colltrans_convex::body::Moving;
 use colltrans_convex::body::{
     Aabb, ConvexPolyhedron, Hull, InputFacet, InputVertex, Kept, Numbered,
 };
-use colltrans_convex::body::{Moving, motion::Motion};
+use colltrans_kernel::motion::Motion;
 pub use error::SolidError;
 use faces::Faces;
 pub use report::{Shell, ShellKind, SolidReport};

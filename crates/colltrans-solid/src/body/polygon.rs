@@ -11,9 +11,9 @@
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
 
-use colltrans_convex::number::predicates::orient2d as turn;
+use colltrans_kernel::predicates::orient2d as turn;
 
-use colltrans_convex::work;
+use colltrans_kernel::work;
 
 /// Fewer corners than this are looked at one by one.
 const MANY: usize = 64;

@@ -23,7 +23,7 @@ use glam::DVec3;
 use super::exact::side;
 use super::{Solid, shells};
 use colltrans_convex::body::Aabb;
-use colltrans_convex::work;
+use colltrans_kernel::work;
 
 mod fences;
 

@@ -29,7 +29,7 @@ use super::tree::{self, Node};
 use super::{ShellKind, Solid, Surface};
 use super::{self_intersection, shells};
 use colltrans_convex::body::{Aabb, InputFacet, InputVertex};
-use colltrans_convex::number::range::{in_exact_range, without_traces};
+use colltrans_kernel::range::{in_exact_range, without_traces};
 
 /// Facets less high than this share of the body's size are noise.
 const NOISE: f64 = 1e-6;

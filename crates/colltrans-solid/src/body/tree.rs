@@ -6,7 +6,7 @@
 //! all their vertices. Boxes are exact. The sine is an upper bound, and exactly 0 for facets whose
 //! computed normals are exact and equal; slabs are rounded, and whoever reads them allows for that.
 //!
-//! Built from the top ([`split`](mod@colltrans_convex::body::split)). The children of node `i` are at `i + skip` and the place behind, for a search
+//! Built from the top ([`split`](mod@colltrans_kernel::split)). The children of node `i` are at `i + skip` and the place behind, for a search
 //! reads both; then comes all that is below the first, and all that is below the second. As `skip` is
 //! relative, subtrees are built apart, on several threads, and joined end to end: the tree is the same
 //! on any number of threads.
@@ -17,7 +17,7 @@ use glam::{BVec3, DVec3, Vec3Swizzles};
 
 use super::cuts::{CUTS, Reach};
 use colltrans_convex::body::Aabb;
-use colltrans_convex::body::split::{Boxed, Rule, split};
+use colltrans_kernel::split::{Boxed, Rule, split};
 
 /// Facets of a leaf, at most.
 pub(crate) const LEAF: usize = 4;

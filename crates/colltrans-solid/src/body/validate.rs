@@ -17,7 +17,7 @@ use super::polygon::triangulate;
 use super::report::{ShellKind, SolidReport};
 use super::weld::first_equals;
 use colltrans_convex::body::{InputFacet, InputVertex};
-use colltrans_convex::number::range::in_exact_range;
+use colltrans_kernel::range::in_exact_range;
 
 /// Rounds of subdivision: each joins at least one pair of edges in every slit that can be closed.
 const MOST_ROUNDS: usize = 64;

@@ -11,7 +11,7 @@ use crate::solve::separate::Boxes;
 use crate::solve::steps::SolidSteps;
 use colltrans_convex::answer::{Clearance, Separation};
 use colltrans_convex::cast::Cast;
-use colltrans_convex::number::noise::Noise;
+use colltrans_kernel::noise::Noise;
 
 /// Boxes touch that are apart, or overlap, by so many noises.
 const TOUCHING: f64 = 16.0;

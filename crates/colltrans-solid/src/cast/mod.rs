@@ -49,7 +49,7 @@ pub enum StartOverlap {
     Ignore,
 }
 
-colltrans_convex::written::named!(
+colltrans_kernel::written::named!(
     "meaning of an overlap",
     StartOverlap { Refuse: "refuse", Ignore: "ignore" }
 );
@@ -75,7 +75,7 @@ pub struct SolidOptions {
     /// [`Cast::keeping`](colltrans_convex::Cast#method.keeping-1). `0`, the default: until they touch.
     #[cfg_attr(
         feature = "serde",
-        serde(default, skip_serializing_if = "colltrans_convex::written::is_zero")
+        serde(default, skip_serializing_if = "colltrans_kernel::written::is_zero")
     )]
     pub keep: f64,
 }

@@ -44,7 +44,7 @@ pub struct SolidCertificate {
     pub start: StartProof,
     /// No pair of facets of the shrunk bodies stops them before, in multiples of the direction; infinite if none ever
     /// does, 0 for an overlap that is the answer.
-    #[cfg_attr(feature = "serde", serde(with = "colltrans_convex::written::or_infinite"))]
+    #[cfg_attr(feature = "serde", serde(with = "colltrans_kernel::written::or_infinite"))]
     pub lower: f64,
     /// What stops it.
     pub stop: Option<StopProof>,

@@ -7,8 +7,8 @@ use glam::{DQuat, DVec3};
 
 use crate::Solid;
 use crate::pair::SolidPairSearch;
-use colltrans_convex::work::{assert_growth, looks};
 use colltrans_convex::{Cast, Pair, Pose};
+use colltrans_kernel::work::{assert_growth, looks};
 
 fn rotation() -> DQuat {
     Random::new(5).rotation()

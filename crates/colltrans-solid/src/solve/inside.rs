@@ -17,8 +17,8 @@ use super::search::children;
 use super::triangle::{Triangle, lies_on};
 use crate::body::edges::NONE;
 use colltrans_convex::body::Aabb;
-use colltrans_convex::number::fine::Fine;
-use colltrans_convex::number::integer::Integer;
+use colltrans_kernel::fine::Fine;
+use colltrans_kernel::integer::Integer;
 
 /// Triangles of a shell that are tried for a point off the other surface. A shell inside touches it
 /// in isolated points only, so the first or second one does, unless it touches along facets.

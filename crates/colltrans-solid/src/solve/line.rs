@@ -25,7 +25,7 @@ use super::triangle::Triangle;
 use crate::body::Solid;
 use crate::body::edges::NONE;
 use colltrans_convex::body::Aabb;
-use colltrans_convex::number::integer::{Integer, SMALL, TWICE_LARGE, determinant, difference};
+use colltrans_kernel::integer::{Integer, SMALL, TWICE_LARGE, determinant, difference};
 
 /// A line with a direction `u`.
 #[derive(Clone, Copy)]

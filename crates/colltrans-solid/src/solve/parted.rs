@@ -7,9 +7,9 @@ use glam::DVec3;
 
 use super::scene::{Scene, Side};
 use super::separate::HEIGHTS;
-use colltrans_convex::number::real::Vector;
 use colltrans_convex::setting::VertexPair;
 use colltrans_convex::solve::nearest::simplex::{Corner, Simplex};
+use colltrans_kernel::real::Vector;
 
 /// Each round ends or comes closer; rounding alone could make it last.
 const MOST_ROUNDS: usize = 64;

@@ -11,7 +11,7 @@ use super::scene::{Scene, Side};
 use crate::body::Shrinking;
 use crate::body::cuts::Parts;
 use colltrans_convex::body::Aabb;
-use colltrans_convex::number::error_free::sum_error;
+use colltrans_kernel::error_free::sum_error;
 
 /// Cosine from which on a slab bounds more along an axis than the box does.
 const PARALLEL: f64 = 0.75;

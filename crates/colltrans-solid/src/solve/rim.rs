@@ -34,7 +34,7 @@ use super::line::{self, Line, Way};
 use super::scene::{Corner, Scene, Side};
 use crate::body::edges::NONE;
 use colltrans_convex::body::Aabb;
-use colltrans_convex::number::integer::{Integer, LARGE, SMALL};
+use colltrans_kernel::integer::{Integer, LARGE, SMALL};
 
 /// A facet of an open shell, on edge.
 pub(crate) struct Upright {

@@ -20,12 +20,12 @@ use glam::{DMat3, DVec3};
 
 use crate::body::{Shrinking, Solid, displace};
 use colltrans_convex::body::Aabb;
-use colltrans_convex::body::pose::rotation_defect;
-use colltrans_convex::number::error_free::sum_error;
-use colltrans_convex::number::fine::Fine;
-use colltrans_convex::number::integer::Integer;
-use colltrans_convex::number::noise::Noise;
 use colltrans_convex::setting::Setting;
+use colltrans_kernel::error_free::sum_error;
+use colltrans_kernel::fine::Fine;
+use colltrans_kernel::integer::Integer;
+use colltrans_kernel::noise::Noise;
+use colltrans_kernel::pose::rotation_defect;
 
 /// A rounded rotation is off one by less.
 const ROTATION: f64 = 16.0 * f64::EPSILON;

@@ -19,8 +19,8 @@ use super::search::children;
 use crate::body::Solid;
 use colltrans_convex::answer::{CertificateError, Separation};
 use colltrans_convex::body::Aabb;
-use colltrans_convex::number::noise::UNIT_VECTOR;
 use colltrans_convex::setting::Setting;
+use colltrans_kernel::noise::UNIT_VECTOR;
 
 /// Each round ends or comes closer; rounding alone could make it last.
 const MOST_ROUNDS: usize = 32;

@@ -13,9 +13,9 @@ use std::cmp::Ordering;
 use glam::{DVec2, DVec3, Vec3Swizzles};
 
 use super::scene::{ExactPoint, Scene};
-use colltrans_convex::number::fine::{self, Fine};
-use colltrans_convex::number::integer::{Integer, LARGE, SMALL, determinant, difference};
-use colltrans_convex::number::predicates::{orient2d, orient3d, sign};
+use colltrans_kernel::fine::{self, Fine};
+use colltrans_kernel::integer::{Integer, LARGE, SMALL, determinant, difference};
+use colltrans_kernel::predicates::{orient2d, orient3d, sign};
 
 const U: f64 = f64::EPSILON / 2.0;
 

@@ -26,9 +26,9 @@ use glam::DVec3;
 
 use super::ConvexPolyhedron;
 use super::fan::{Above, FAN, MANY};
-use crate::number::noise;
-use crate::number::plane::polygon_normal;
-use crate::work;
+use colltrans_kernel::noise;
+use colltrans_kernel::plane::polygon_normal;
+use colltrans_kernel::work;
 
 /// Vertices of a plateau that are visited one by one; a larger one is taken to be the whole body.
 const VISITED: usize = 16;

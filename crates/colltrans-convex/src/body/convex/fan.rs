@@ -10,8 +10,8 @@ use glam::DVec3;
 
 use super::ring::{Cycle, Ring};
 use crate::body::topology::Topology;
-use crate::number::noise;
-use crate::work;
+use colltrans_kernel::noise;
+use colltrans_kernel::work;
 
 /// A vertex with more neighbours than this is searched, not scanned; a face with more corners has a ring.
 pub(crate) const FAN: usize = 32;

@@ -20,8 +20,8 @@ use glam::DVec3;
 
 use crate::body::topology::{HalfEdge, Topology};
 use crate::body::{Inertia, InputVertex, Kept, VertexId};
-use crate::number::plane::polygon_normal;
 pub use build::{ConvexityDefect, OffsetReport, convexity_defect};
+use colltrans_kernel::plane::polygon_normal;
 pub(crate) use excess::LargeFace;
 pub(crate) use fan::{FAN, greatest_near};
 pub(crate) use ring::Rim;

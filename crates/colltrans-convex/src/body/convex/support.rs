@@ -24,8 +24,8 @@ use super::fan::{FAN, Fan};
 use super::ring::{Rim, Ring};
 use crate::body::Inertia;
 use crate::body::topology::Topology;
-use crate::number::noise;
-use crate::work;
+use colltrans_kernel::noise;
+use colltrans_kernel::work;
 
 /// Up to this many vertices, looking at each is fastest (measured).
 const SCAN_LIMIT: usize = 20;

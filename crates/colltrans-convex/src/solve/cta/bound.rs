@@ -11,7 +11,7 @@
 use glam::{DMat3, DVec2, DVec3};
 
 use super::piece::{Affine, Piece};
-use crate::number::noise;
+use colltrans_kernel::noise;
 
 /// The sides of the rectangle of levels, the artificial bound, and one piece per step.
 const CAPACITY: usize = super::MAX_STEPS as usize + 5;

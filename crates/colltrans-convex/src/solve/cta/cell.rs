@@ -15,7 +15,7 @@ use super::piece::{Affine, contact_motion, unit};
 use super::planar::Planar;
 use super::section::FACE_SIDES;
 use super::side::{Point, Side};
-use crate::number::noise;
+use colltrans_kernel::noise;
 
 /// At most so many half-planes bound a cell: those of a vertex contact.
 const CELL_SIDES: usize = 2 + 2 * (1 + FACE_SIDES);

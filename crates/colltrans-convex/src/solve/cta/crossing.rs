@@ -6,7 +6,7 @@
 
 use glam::DVec2;
 
-use crate::number::noise;
+use colltrans_kernel::noise;
 
 /// A vertex of a section: a mesh edge that crosses the level.
 #[derive(Debug, Clone, Copy)]

@@ -25,7 +25,7 @@ use crate::setting::{Setting, TwoBodies, VertexPair};
 /// The height of a supporting plane is that of the best point if they differ by less than this
 /// share of the extent along the direction.
 ///
-/// Section coordinates are off by [`noise::SECTION`](crate::number::noise::SECTION), `1.4e-14` of
+/// Section coordinates are off by [`noise::SECTION`](colltrans_kernel::noise::SECTION), `1.4e-14` of
 /// the extent. The best point is found by crossing two lines, of section edges and then of a cell's
 /// sides, of which each divides that error by the sine between them: the share leaves room for
 /// sines that multiply to `1.4e-4`. Where they are smaller the test misses, which costs a step. A

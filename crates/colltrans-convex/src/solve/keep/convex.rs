@@ -13,7 +13,6 @@ use super::{Line, Look, Near, Plane, Target, Travel, shadow, travel};
 use crate::answer::{
     Certificate, Contact, Grazing, Outcome, Separated, Separation, Solver, StartedFrom, Steps,
 };
-use crate::number::noise::Noise;
 use crate::setting::error::{QueryError, Stalled};
 use crate::setting::minkowski::MinkowskiDifference;
 use crate::setting::{Setting, TwoBodies, VertexPair};
@@ -21,6 +20,7 @@ use crate::solve::nearest::{Difference, NearestPairs, nearest};
 use crate::solve::observe::{NoObserver, Observer, Phase, ShadowFrame, Support};
 use crate::solve::options::{Focus, Options};
 use crate::solve::{Left, WarmStart};
+use colltrans_kernel::noise::Noise;
 
 /// How far apart, in noises over `n.d`, the bounds of an answer may be.
 const WIDEST: f64 = 15.0;

@@ -35,7 +35,7 @@ pub(crate) mod convex;
 
 use glam::{DVec2, DVec3};
 
-use crate::number::noise::{Noise, UNIT_VECTOR};
+use colltrans_kernel::noise::{Noise, UNIT_VECTOR};
 
 /// Looks after which nothing more is expected; more than were ever seen.
 const MOST_LOOKS: usize = 96;

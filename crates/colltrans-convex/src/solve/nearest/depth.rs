@@ -11,7 +11,7 @@
 //!
 //! Invariant. The bounds are those of what was proposed, whatever rounding has made of the polytope:
 //!
-//! - *Lower.* The least height, less what rounding can make of it ([`height_lowered`](crate::number::noise::Noise::height_lowered)). `M` contains each triangle;
+//! - *Lower.* The least height, less what rounding can make of it ([`height_lowered`](colltrans_kernel::noise::Noise::height_lowered)). `M` contains each triangle;
 //!   a closed surface of triangles, each counter-clockwise as seen from the origin's other side or without
 //!   area, meets each ray from the origin, so that `M`, being convex, contains a ball as large as the least
 //!   height. That they are so is decided exactly, in the check as well.
@@ -23,8 +23,8 @@ use super::gjk::unit;
 use super::surround::winds;
 use super::{Difference, Found};
 use crate::answer::Enclosure;
-use crate::number::plane::triangle_normal;
 use crate::setting::VertexPair;
+use colltrans_kernel::plane::triangle_normal;
 
 /// More steps than were ever seen.
 const MOST: usize = 2_000;

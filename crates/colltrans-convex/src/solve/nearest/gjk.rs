@@ -7,8 +7,8 @@ use glam::DVec3;
 
 use super::simplex::{Corner, Simplex};
 use super::{Difference, Found};
-use crate::number::real::{Real, Twice, Vector};
 use crate::setting::VertexPair;
+use colltrans_kernel::real::{Real, Twice, Vector};
 
 /// More steps than were ever seen.
 const MOST: usize = 128;

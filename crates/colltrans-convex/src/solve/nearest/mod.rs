@@ -33,12 +33,12 @@ use self::simplex::{Corner, Simplex};
 pub(crate) use self::surround::surrounds;
 use crate::answer::{NearPoints, PlaneGap, Steps};
 use crate::body::Inertia;
-use crate::number::noise::Noise;
-use crate::number::plane::triangle_normal;
-use crate::number::real::{Real, Twice, Vector};
-use crate::number::symmetric::Symmetric;
-use crate::number::volume::{encloses, weights_of_origin};
 use crate::setting::{TwoBodies, VertexPair};
+use colltrans_kernel::noise::Noise;
+use colltrans_kernel::plane::triangle_normal;
+use colltrans_kernel::real::{Real, Twice, Vector};
+use colltrans_kernel::symmetric::Symmetric;
+use colltrans_kernel::volume::{encloses, weights_of_origin};
 
 /// Bodies that are so many noises apart, as computed, are near contact.
 const NEAR: f64 = 4.0;

@@ -6,8 +6,8 @@
 
 use glam::DVec3;
 
-use crate::number::real::{Real, Vector};
 use crate::setting::VertexPair;
+use colltrans_kernel::real::{Real, Vector};
 
 /// A point of `M` and the pair of vertices it comes from.
 #[derive(Debug, Clone, Copy)]

@@ -10,8 +10,8 @@ use std::cmp::Ordering;
 use glam::DVec3;
 
 use crate::answer::Enclosure;
-use crate::number::volume;
 use crate::setting::TwoBodies;
+use colltrans_kernel::volume;
 
 /// Whether it does, if no triangle contains the origin.
 pub(crate) fn surrounds(bodies: &TwoBodies, surface: &Enclosure) -> bool {

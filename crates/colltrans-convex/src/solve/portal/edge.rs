@@ -5,9 +5,9 @@ use glam::DVec2;
 use super::tied::crossed_or_tied;
 use super::wrap::Tilt;
 use super::{Context, Known, Line, Portal};
-use crate::number::plane::triangle_normal;
 use crate::setting::minkowski::Point;
 use crate::solve::observe::Observer;
+use colltrans_kernel::plane::triangle_normal;
 
 /// The corner after another.
 const NEXT: [usize; 3] = [1, 2, 0];

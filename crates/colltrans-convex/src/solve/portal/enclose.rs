@@ -12,10 +12,10 @@ use glam::{DMat2, DVec2, DVec3};
 
 use super::start::{slope_per_shadow, steep};
 use super::{Context, FirstNormal, Known, Plane, Portal, normal_of};
-use crate::number::determinant::accurate_det;
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
 use crate::solve::observe::{Observer, Support};
+use colltrans_kernel::determinant::accurate_det;
 
 /// What the search for a first portal ends with.
 #[derive(Debug, Clone, Copy)]

@@ -9,9 +9,9 @@
 use glam::DVec2;
 
 use super::{Context, Plane};
-use crate::number::determinant::accurate_det;
 use crate::setting::minkowski::Point;
 use crate::solve::observe::{Observer, Support};
+use colltrans_kernel::determinant::accurate_det;
 
 /// The sideways overlap, as far as it had to be known.
 #[derive(Debug, Clone, Copy)]

@@ -19,11 +19,11 @@ use super::enclose::{SeparatingLine, nearest_share};
 use super::graze::{Overlap, overlap};
 use super::plane::{Face, Plane};
 use super::{Context, Known, Portal};
-use crate::number::determinant::accurate_det;
-use crate::number::plane::triangle_normal;
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
 use crate::solve::observe::{Observer, Support};
+use colltrans_kernel::determinant::accurate_det;
+use colltrans_kernel::plane::triangle_normal;
 
 /// More portals than any body needs: then ties within rounding error keep following each other, and
 /// points below the plane by less than what counts as touching are taken to lie on it.

@@ -14,9 +14,9 @@
 
 use glam::{DMat2, DVec2, DVec3};
 
-use crate::number::symmetric::Symmetric;
 use crate::setting::minkowski::MinkowskiDifference;
 use crate::setting::{Setting, VertexPair};
+use colltrans_kernel::symmetric::Symmetric;
 
 /// Where to begin.
 #[derive(Debug, Clone, Copy)]

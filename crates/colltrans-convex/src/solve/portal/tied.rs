@@ -13,10 +13,10 @@ use super::refine::{known_at, largest, plane_normal, weights};
 use super::wrap::{Tilt, first_met};
 use super::{Context, Face, Known, Line, Plane, Portal, normal_of};
 use crate::body::VertexId;
-use crate::number::determinant::accurate_det;
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
 use crate::solve::observe::{Observer, Support};
+use colltrans_kernel::determinant::accurate_det;
 
 /// What a support point within rounding error of the line says.
 pub(super) enum Pointed {

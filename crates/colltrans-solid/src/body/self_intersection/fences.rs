@@ -6,7 +6,7 @@ use super::Placing;
 use crate::body::edges::NONE;
 use crate::body::tree::{self, Node};
 use colltrans_convex::body::Aabb;
-use colltrans_convex::work;
+use colltrans_kernel::work;
 
 /// Facets within so many roundings of the largest coordinate of a plane lie in it.
 const FLAT: f64 = 64.0 * f64::EPSILON;

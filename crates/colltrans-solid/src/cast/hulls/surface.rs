@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::Body;
 use crate::body::Solid;
 use crate::solve::search::children;
-use colltrans_convex::number::plane::triangle_normal;
+use colltrans_kernel::plane::triangle_normal;
 
 /// Steps from facet to facet around a corner, or towards a place: after the first few the tree is asked.
 const MOST_STEPS: usize = 32;

@@ -9,8 +9,8 @@ use std::cmp::Ordering;
 use super::facet::{Facet, Turns, cross};
 use super::{Gap, Meeting};
 use crate::solve::scene::{Corner, ExactPoint, Scene};
-use colltrans_convex::number::fine::{self, Fine, Way};
-use colltrans_convex::number::integer::{Integer, LARGE, SMALL, determinant, difference};
+use colltrans_kernel::fine::{self, Fine, Way};
+use colltrans_kernel::integer::{Integer, LARGE, SMALL, determinant, difference};
 
 /// A gap may be off by so much of the noise of coordinates and is still exact but for its last roundings.
 const UNSEEN: f64 = f64::EPSILON / 4.0;

@@ -17,8 +17,8 @@ use glam::DVec3;
 use super::super::nearest::triangle::{self, Corners};
 use super::super::scene::{Corner, Scene};
 use super::{Facet, Gap, Meeting, Wanted};
-use colltrans_convex::number::noise::UNIT_VECTOR;
 use colltrans_convex::solve::keep::{Line, Look, Plane, Target, Travel, shadow, travel};
+use colltrans_kernel::noise::UNIT_VECTOR;
 
 /// How far below the gap, in noises, facets may pass each other.
 const GRAZE: f64 = 8.0;

@@ -20,7 +20,7 @@ use glam::{DMat3, DVec3};
 use crate::body::cuts::{Depths, Parts, depths};
 use crate::body::tree::Node;
 use crate::solve::scene::{Scene, Side};
-use colltrans_convex::body::pose::rotation_defect;
+use colltrans_kernel::pose::rotation_defect;
 
 use super::triangle::unit;
 

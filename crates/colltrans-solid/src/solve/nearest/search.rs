@@ -12,7 +12,7 @@ use super::triangle::{self, Corners, GAP, Nearest};
 use crate::solve::scene::{Scene, Side};
 use crate::solve::search::{self, children};
 use crate::solve::steps::SolidSteps;
-use colltrans_convex::work;
+use colltrans_kernel::work;
 
 /// How far, in noises, the limit is below the least length found.
 const SLACK: f64 = 3.0;

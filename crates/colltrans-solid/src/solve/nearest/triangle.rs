@@ -409,7 +409,7 @@ mod tests {
 
     use super::*;
     use crate::body::exact::turn;
-    use colltrans_convex::number::noise::Noise;
+    use colltrans_kernel::noise::Noise;
 
     /// Corners with ties, slivers and flat places; the second triangle near the first one or not.
     fn draw(random: &mut Random) -> [Corners; 2] {

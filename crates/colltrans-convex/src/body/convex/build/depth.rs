@@ -11,7 +11,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use crate::work;
+use colltrans_kernel::work;
 
 /// Planes of a leaf.
 const LEAF: usize = 8;

@@ -13,7 +13,7 @@ use super::hull::{self, Hull, Locator};
 use crate::body::error::{BuildError, TopologyError};
 use crate::body::topology::Topology;
 use crate::body::{ConvexPolyhedron, Inertia, InputVertex};
-use crate::number::plane::polygon_normal;
+use colltrans_kernel::plane::polygon_normal;
 
 /// How far a mesh is from convex.
 #[derive(Debug, Clone, Copy, PartialEq)]

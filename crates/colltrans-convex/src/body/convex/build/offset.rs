@@ -17,8 +17,8 @@ use glam::{DMat3, DVec3};
 use super::hull::{self, Hull};
 use crate::body::error::BuildError;
 use crate::body::{ConvexPolyhedron, Inertia};
-use crate::number::plane::polygon_normal;
-use crate::number::range::without_traces;
+use colltrans_kernel::plane::polygon_normal;
+use colltrans_kernel::range::without_traces;
 
 /// A result whose farthest corner is so many times farther away than its nearest plane, in `z`, is
 /// computed anew, about itself.

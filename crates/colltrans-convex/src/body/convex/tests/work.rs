@@ -4,8 +4,8 @@ use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{even_rings, random_hull, ring, ring_points};
 use glam::{DQuat, DVec3};
 
-use crate::work::{assert_growth, looks};
 use crate::{Cast, ConvexPolyhedron, Pose};
+use colltrans_kernel::work::{assert_growth, looks};
 
 fn hull(points: &[DVec3]) -> ConvexPolyhedron {
     ConvexPolyhedron::from_points(points).expect("points")

@@ -9,9 +9,9 @@
 use glam::DVec2;
 
 use super::{Crossing, Planar};
-use crate::number::noise;
 use crate::solve::cta::crossing::{Bracket, Chain};
 use crate::solve::cta::section::{Located, PATIENCE, Section};
+use colltrans_kernel::noise;
 
 /// Steps of Newton's method at most.
 const NEWTON_STEPS: usize = 4;

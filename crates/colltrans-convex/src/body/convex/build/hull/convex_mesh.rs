@@ -12,7 +12,7 @@ use glam::DVec3;
 
 use super::quickhull::{Simplicial, Triangle, side};
 use crate::body::topology::Topology;
-use crate::number::plane::triangle_normal;
+use colltrans_kernel::plane::triangle_normal;
 
 /// The mesh as a simplicial hull, if its faces are triangles and it is convex, every vertex a
 /// corner.

@@ -52,7 +52,7 @@ mod tests {
     use colltrans_testkit::shapes::ring;
 
     use super::*;
-    use crate::number::predicates::orient3d;
+    use colltrans_kernel::predicates::orient3d;
 
     /// Cones of all widths around an apex, points on all sides, those behind it too: what lies outside of a
     /// triangle lies outside of one that is named.

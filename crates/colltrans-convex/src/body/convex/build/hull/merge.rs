@@ -8,7 +8,7 @@
 use glam::DVec3;
 
 use super::quickhull::{Simplicial, Triangle, simplicial_hull};
-use crate::work;
+use colltrans_kernel::work;
 
 const NONE: u32 = u32::MAX;
 

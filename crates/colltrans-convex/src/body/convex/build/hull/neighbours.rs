@@ -10,7 +10,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use crate::work;
+use colltrans_kernel::work;
 
 /// Maximum number of neighbours that are looked at one by one.
 const FEW: usize = 32;

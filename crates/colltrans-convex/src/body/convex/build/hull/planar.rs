@@ -6,8 +6,8 @@ use super::quickhull::Flat;
 use super::violation::{Projection, to_segment};
 use super::{BEYOND, Hull, measured, rounding};
 use crate::body::topology::Topology;
-use crate::number::predicates::orient2d as turn;
-use crate::work;
+use colltrans_kernel::predicates::orient2d as turn;
+use colltrans_kernel::work;
 
 pub(super) fn hull(points: &[DVec3], kept: &[u32], flat: Flat, tolerance: f64) -> Hull {
     match flat {

@@ -18,8 +18,8 @@ use glam::DVec3;
 use super::each_once;
 use super::fan::Fan;
 use crate::body::Aabb;
-use crate::number::plane::triangle_normal;
-use crate::work;
+use colltrans_kernel::plane::triangle_normal;
+use colltrans_kernel::work;
 
 const NONE: u32 = u32::MAX;
 
@@ -144,7 +144,7 @@ fn first_simplex(points: &[DVec3], kept: &[u32], tolerance: f64) -> Result<[u32;
     Ok(if above > 0.0 { [a, c, b, e] } else { [a, b, c, e] })
 }
 
-pub(super) use crate::number::predicates::orient3d as side;
+pub(super) use colltrans_kernel::predicates::orient3d as side;
 
 /// Where a point went.
 enum Assigned {

@@ -11,10 +11,10 @@ use glam::{DVec2, DVec3};
 use super::neighbours::{Neighbours, Node};
 use super::quickhull::{Simplicial, Triangle, side};
 use crate::body::topology::Topology;
-use crate::number::determinant::triangle_area;
-use crate::number::plane::polygon_normal;
-use crate::number::predicates::orient2d as turn;
-use crate::work;
+use colltrans_kernel::determinant::triangle_area;
+use colltrans_kernel::plane::polygon_normal;
+use colltrans_kernel::predicates::orient2d as turn;
+use colltrans_kernel::work;
 
 /// Finds the face that the ray from an inner point to a given point passes, by walking from face to
 /// face.

@@ -31,17 +31,15 @@ impl Part {
 
 /// Reads a mesh file as a convex body.
 pub(crate) fn load(path: &Path, options: &BodyOptions) -> Result<Part, LoadError> {
-    let Loaded { body, notes, precision } = colltrans_mesh::body::load_convex(path, options)?;
-    let (mut excess, mut dent) = (None, None);
+    let loaded = colltrans_mesh::body::load_convex(path, options)?;
+    let dent = loaded.dent();
+    let Loaded { body, notes, precision } = loaded;
+    let mut excess = None;
     let others = notes.iter().filter(|note| match note {
         // Said with the answer, because the answer means something else then.
         Note::Exceeds(found) => {
             excess = Some(*found);
             false
-        }
-        Note::Dented(depth) => {
-            dent = Some(*depth);
-            true
         }
         _ => true,
     });

@@ -46,6 +46,7 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<(), Failure> {
     };
     let mut record = PathRecord::of(&outcome, &cast, cell.names());
     record.hulls = cell.hulls();
+    record.dents.clone_from(cell.dents());
     record.notes.clone_from(&partial);
     if arguments.json {
         let written = serde_json::to_string(&record);
@@ -106,13 +107,13 @@ impl Asked {
         for text in &notes {
             note(text);
         }
-        let mut scene = Vec::new();
+        let (mut scene, mut dents) = (Vec::new(), Vec::new());
         for file in &arguments.scene {
             let options = BodyOptions::default().with_scale(arguments.scene_scale);
             let taken =
                 colltrans_mesh::body::load(file, &options, |mesh, options| body_of(&mesh, options));
-            let (body, notes) = taken.map_err(|e| Failure::new(Code::Input, body::refusal(&e)))?;
-            for text in &notes {
+            let loaded = taken.map_err(|e| Failure::new(Code::Input, body::refusal(&e)))?;
+            for text in &loaded.notes {
                 note(&format!("{}: {text}", file.display()));
             }
             let stem =
@@ -123,7 +124,9 @@ impl Asked {
                 alike.count() == 1 && robot.link(name).is_err()
             });
             // Where that names something else, too, a body is called as it was given.
-            scene.push((name.unwrap_or_else(|| file.display().to_string()), body));
+            let name = name.unwrap_or_else(|| file.display().to_string());
+            dents.extend(loaded.dent().map(|depth| (name.clone(), depth)));
+            scene.push((name, loaded.body));
         }
         let listed = arguments.srdf.as_deref().map(read::disabled).transpose();
         let listed = listed.map_err(|e| input(&e))?;
@@ -134,7 +137,7 @@ impl Asked {
                 }
                 _ => input(&e),
             })?;
-        let cell = cell.ignoring(&ignored);
+        let cell = cell.with_dents(dents).ignoring(&ignored);
         let cell = cell.map_err(|e| Failure::new(Code::Usage, format!("--ignore: {e}")))?;
         cell.notes().iter().for_each(|text| note(text));
         let cell = cell.with_a_pair().map_err(|e| input(&e))?;

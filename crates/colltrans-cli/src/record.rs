@@ -1,7 +1,7 @@
 //! A result as a line of JSON, in the fields that `batch --help` documents: the library's record, and
 //! what only files have.
 
-use colltrans::record::{Ending, Record};
+use colltrans::record::{Dents, Ending, Record};
 use colltrans_mesh::body::Excess;
 use serde::Serialize;
 use serde_json::value::RawValue;
@@ -17,8 +17,6 @@ pub(crate) struct Line {
     pub(crate) record: Record,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) hull: Option<Hulls>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) dents: Option<Dents>,
     /// What was done to the meshes, in a batch; other commands say it on standard error.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) notes: Vec<String>,
@@ -51,23 +49,6 @@ impl Hulls {
     }
 }
 
-/// How deep the surfaces of meshes that are convex only to within the tolerance lie below their hulls.
-#[derive(Debug, Clone, Copy, Serialize)]
-pub(crate) struct Dents {
-    #[serde(skip_serializing_if = "Option::is_none")]
-    moving: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    fixed: Option<f64>,
-}
-
-impl Dents {
-    /// Of the moving and the fixed body; `None` where the precision of their files explains them.
-    fn of(parts: [&Part; 2]) -> Option<Self> {
-        let [moving, fixed] = parts.map(|part| part.dent);
-        (moving.is_some() || fixed.is_some()).then_some(Self { moving, fixed })
-    }
-}
-
 impl From<Record> for Line {
     /// A contact that is none for certain says so.
     fn from(mut record: Record) -> Self {
@@ -81,8 +62,9 @@ impl From<Record> for Line {
 
 impl Line {
     /// The line of an answer about two convex bodies.
-    pub(crate) fn of_parts(record: Record, parts: [&Part; 2]) -> Self {
-        Self { hull: Hulls::of(parts), dents: Dents::of(parts), ..record.into() }
+    pub(crate) fn of_parts(mut record: Record, parts: [&Part; 2]) -> Self {
+        record.dents = Dents::of(parts.map(|part| part.dent));
+        Self { hull: Hulls::of(parts), ..record.into() }
     }
 
     /// That there is no answer, and why.

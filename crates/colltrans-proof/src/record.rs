@@ -154,9 +154,31 @@ pub struct Record {
     /// Of a motion: how many planes the proof has.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub planes: Option<usize>,
+    /// Depths of the dents of meshes that are convex only to within the tolerance.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dents: Option<Dents>,
     /// For people: what is wrong.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub message: Option<String>,
+}
+
+/// Depths to which the surfaces of meshes that are convex only to within the tolerance lie below their hulls, which
+/// stand for these meshes in the answer.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Dents {
+    /// Depth of the moving body's dent, a length; `None` where the precision of its file explains it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub moving: Option<f64>,
+    /// Depth of the fixed body's dent, a length; `None` where the precision of its file explains it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fixed: Option<f64>,
+}
+
+impl Dents {
+    /// Collects the dents of the moving and of the fixed body; returns `None` if neither body has one.
+    pub fn of([moving, fixed]: [Option<f64>; 2]) -> Option<Self> {
+        (moving.is_some() || fixed.is_some()).then_some(Self { moving, fixed })
+    }
 }
 
 /// How a query ended, in a word.
@@ -227,6 +249,9 @@ pub struct NearbyRecord {
     /// Points of the moving and of this body that are so far apart, in the world, rounded.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub points: Option<[[f64; 3]; 2]>,
+    /// Depth of this body's dent, a length, where its mesh is convex only to within the tolerance.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub dent: Option<f64>,
 }
 
 /// The features of both bodies in the contact plane.

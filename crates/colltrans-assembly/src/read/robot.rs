@@ -8,7 +8,7 @@ use std::collections::HashMap;
 
 use colltrans::motion::path::{Frame, Joint, Mechanism};
 use colltrans::{AnyBody, Pose};
-use colltrans_mesh::body::{self, BodyOptions};
+use colltrans_mesh::body::{self, BodyOptions, Loaded};
 use glam::{DAffine3, DVec3};
 
 use super::files::Source;
@@ -60,19 +60,22 @@ pub(super) fn read(source: Source) -> Result<Robot, ReadError> {
         let pieces = gathered.pieces(link, name, DAffine3::IDENTITY)?;
         let mut bodies = Vec::new();
         let (takes_hull, mut is_hull) = (source.options.takes_hull(name), false);
+        let mut dent: Option<f64> = None;
         for piece in &pieces {
             let options = source.options.body().with_hull(takes_hull);
-            let (body, said) = any_body(piece, &options).map_err(|refused| {
+            let loaded = any_body(piece, &options).map_err(|refused| {
                 in_file(source.path)(AssemblyError::Part { part: name.into(), source: refused })
             })?;
             // A hull that is its mesh needs no note.
-            is_hull |= takes_hull && !said.is_empty();
+            is_hull |= takes_hull && !loaded.notes.is_empty();
+            dent = dent.into_iter().chain(loaded.dent()).reduce(f64::max);
             let whose = if takes_hull { " as its convex hull" } else { "" };
-            notes.extend(said.into_iter().map(|said| format!("link {name}{whose}: {said}")));
-            bodies.push(body);
+            notes.extend(loaded.notes.iter().map(|said| format!("link {name}{whose}: {said}")));
+            bodies.push(loaded.body);
         }
         notes.extend(round(link).map(|said| format!("link {name}: {said}")));
-        links.push(Link { name: name.into(), frame: made.of_link[name], bodies, is_hull });
+        let frame = made.of_link[name];
+        links.push(Link { name: name.into(), frame, bodies, is_hull, dent });
     }
     let Gathered { missing, notes: left_out, .. } = gathered;
     if let Some(capsule) = left_out.first() {
@@ -197,8 +200,8 @@ fn mimics(
     Ok(joints)
 }
 
-/// A piece as a body in the frame of its link: convex if it is, else a solid, and what is to be said of it.
-fn any_body(piece: &Piece, options: &BodyOptions) -> Result<(AnyBody, Vec<String>), body::Refused> {
+/// Makes a body of a piece, in the frame of its link: convex if the piece is, otherwise a solid.
+fn any_body(piece: &Piece, options: &BodyOptions) -> Result<Loaded<AnyBody>, body::Refused> {
     let mut mesh = piece.mesh.clone();
     for vertex in &mut mesh.vertices {
         *vertex = piece.world_from_piece.transform_point3(*vertex);

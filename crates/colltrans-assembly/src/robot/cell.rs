@@ -1,5 +1,7 @@
 //! A robot and what stands around it: all bodies by name, and which pairs of them are held against each other.
 
+use std::collections::BTreeMap;
+
 use colltrans::motion::path::{JointPath, PathBody, PathCast, PathError};
 use colltrans::{AnyBody, Pose};
 
@@ -14,6 +16,8 @@ pub struct Cell {
     /// For each body its name: of its link, or of what stands there.
     names: Vec<String>,
     pairs: Vec<[usize; 2]>,
+    /// Depths of the dents of bodies by their names.
+    dents: BTreeMap<String, f64>,
     notes: Vec<String>,
 }
 
@@ -46,7 +50,18 @@ impl Cell {
         let mut notes = Vec::new();
         let pairs = things.pairs(&robot, listed, &mut notes)?;
         let names = things.bodies.iter().map(|thing| things.names[*thing].clone()).collect();
-        Ok(Self { robot, scene, names, pairs, notes })
+        let of_links =
+            robot.links().iter().filter_map(|link| Some((link.name.clone(), link.dent?)));
+        let dents = of_links.collect();
+        Ok(Self { robot, scene, names, pairs, dents, notes })
+    }
+
+    /// Returns the same cell with the dents of scene meshes that are convex only to within the tolerance: the
+    /// name of each body and the depth of its mesh's surface below the hull.
+    #[must_use]
+    pub fn with_dents(mut self, of_scene: impl IntoIterator<Item = (String, f64)>) -> Self {
+        self.dents.extend(of_scene);
+        self
     }
 
     /// The same without pairs of names.
@@ -99,6 +114,12 @@ impl Cell {
         let links =
             self.robot.links().iter().filter(|link| link.is_hull && !link.bodies.is_empty());
         links.map(|link| link.name.clone()).collect()
+    }
+
+    /// Returns the names of bodies whose meshes are convex only to within the tolerance, each with the depth of
+    /// its surface below the hull that stands for it: those of links and of [`Self::with_dents`].
+    pub const fn dents(&self) -> &BTreeMap<String, f64> {
+        &self.dents
     }
 
     /// What is not held against each other, as far as nobody asked for it.

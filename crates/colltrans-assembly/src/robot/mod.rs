@@ -13,7 +13,7 @@ use std::path::PathBuf;
 use colltrans::AnyBody;
 use colltrans::motion::path::Mechanism;
 use colltrans_mesh::Mesh;
-use colltrans_mesh::body::{self, BodyOptions, Refused};
+use colltrans_mesh::body::{self, BodyOptions, Loaded, Refused};
 use thiserror::Error;
 
 pub use cell::Cell;
@@ -41,6 +41,9 @@ pub struct Link {
     pub bodies: Vec<AnyBody>,
     /// Whether convex hulls stand for its meshes.
     pub is_hull: bool,
+    /// The largest dent of its meshes that are convex only to within the tolerance, a length
+    /// ([`Loaded::dent`]).
+    pub dent: Option<f64>,
 }
 
 /// A joint that moves.
@@ -148,19 +151,16 @@ pub enum RobotError {
     Path(#[from] colltrans::motion::path::PathError),
 }
 
-/// A mesh as a body, convex if it is, else a solid, which may be open; and what is to be said of it.
+/// Makes a body of a mesh: convex if the mesh is, otherwise a solid, which may be open.
 ///
 /// # Errors
 /// What is wrong with its surface.
-pub fn body_of(mesh: &Mesh, options: &BodyOptions) -> Result<(AnyBody, Vec<String>), Refused> {
-    fn told(notes: &[body::Note]) -> Vec<String> {
-        notes.iter().map(ToString::to_string).collect()
+pub fn body_of(mesh: &Mesh, options: &BodyOptions) -> Result<Loaded<AnyBody>, Refused> {
+    if let Ok(Loaded { body, precision, notes }) = body::convex(mesh, options) {
+        return Ok(Loaded { body: body.into(), precision, notes });
     }
-    if let Ok(convex) = body::convex(mesh, options) {
-        return Ok((convex.body.into(), told(&convex.notes)));
-    }
-    let solid = body::solid(mesh, &options.with_open(true))?;
-    Ok((solid.body.into(), told(&solid.notes)))
+    let Loaded { body, precision, notes } = body::solid(mesh, &options.with_open(true))?;
+    Ok(Loaded { body: body.into(), precision, notes })
 }
 
 impl Robot {

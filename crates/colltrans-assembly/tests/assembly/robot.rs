@@ -196,7 +196,7 @@ fn a_wire_that_all_samples_miss_is_found() {
     let (path, _) = arm.path(&table, &BTreeMap::new()).expect("a path");
     let options = BodyOptions::default();
     let wire = load(data("wire.obj"), &options, |mesh, options| body_of(&mesh, options));
-    let (wire, _) = wire.expect("a wire");
+    let wire = wire.expect("a wire").body;
     let asked = |path: &JointPath| {
         let bodies = arm.links().iter().flat_map(|link| {
             let body = move |body| PathBody {

@@ -6,7 +6,7 @@ mod words;
 
 use std::path::{Path, PathBuf};
 
-use colltrans::record::{PairQuestion, Record};
+use colltrans::record::{Dents, PairQuestion, Record};
 use colltrans::solid::{SolidOptions, StartOverlap};
 use colltrans::{Among, CaseError, ObstacleId, Options, Pose, SceneProof};
 
@@ -139,7 +139,7 @@ impl Request<'_> {
         Ok(scene)
     }
 
-    /// The answer, with the names of obstacles.
+    /// The answer, with the names and the dents of obstacles.
     fn say(
         &self,
         scene: &Scene,
@@ -148,8 +148,11 @@ impl Request<'_> {
     ) -> Result<(), Failure> {
         let name = |id: ObstacleId| scene.names.get(id.0 as usize).cloned();
         record.fixed = record.obstacle.and_then(name);
+        let fixed = record.obstacle.and_then(|obstacle| scene.dent(obstacle));
+        record.dents = Dents::of([scene.moving.dent, fixed]);
         for one in record.closer.iter_mut().flatten().chain(&mut record.undecided) {
             one.fixed = name(one.obstacle);
+            one.dent = scene.dent(one.obstacle);
         }
         let told = Line::from(record);
         print(&if self.json { told.json() } else { in_words(&told) })

@@ -27,6 +27,8 @@ const ROUNDING: f64 = 1e-14;
 pub(super) struct Known {
     pub(super) body: AnyBody,
     precision: f64,
+    /// As [`Part::dent`](crate::body::Part::dent).
+    pub(super) dent: Option<f64>,
 }
 
 /// How files are taken.
@@ -46,6 +48,7 @@ pub(super) struct Scene {
     /// By their numbers.
     pub(super) names: Vec<String>,
     precisions: Vec<f64>,
+    dents: Vec<Option<f64>>,
     /// What was mended, and how far hulls exceed their parts.
     pub(super) notes: Vec<String>,
 }
@@ -65,7 +68,8 @@ impl Scene {
     pub(super) fn load(moving: &Path, files: &[PathBuf], ways: &Ways) -> Result<Self, Failure> {
         let mut notes = Vec::new();
         let moving = ways.mesh(moving, 0, &mut notes)?;
-        let (mut placed, mut names, mut precisions) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut placed, mut names) = (Vec::new(), Vec::new());
+        let (mut precisions, mut dents) = (Vec::new(), Vec::new());
         for file in files {
             let found = if is_list(file) {
                 ways.list(file, &mut notes)?
@@ -73,15 +77,21 @@ impl Scene {
                 let known = ways.mesh(file, 1, &mut notes)?;
                 vec![(known, Pose::IDENTITY, file.display().to_string())]
             };
-            for (Known { body, precision }, pose, name) in found {
+            for (Known { body, precision, dent }, pose, name) in found {
                 placed.push((body, pose));
                 names.push(name);
                 precisions.push(precision);
+                dents.push(dent);
             }
         }
         let mut obstacles = Obstacles::new();
         obstacles.insert_all(placed);
-        Ok(Self { moving, obstacles, names, precisions, notes })
+        Ok(Self { moving, obstacles, names, precisions, dents, notes })
+    }
+
+    /// Returns the depth of an obstacle's dent; `None` if its mesh is convex, or it is a solid.
+    pub(super) fn dent(&self, obstacle: ObstacleId) -> Option<f64> {
+        self.dents.get(obstacle.0 as usize).copied().flatten()
     }
 
     /// The tolerance that the files and poses of all solids ask for; none without solids.
@@ -122,7 +132,11 @@ impl Ways {
                     notes.extend(part.notes);
                     let excess = part.excess.map(|excess| format!("{}: {excess}", file.display()));
                     notes.extend(excess);
-                    return Ok(Known { body: part.body.into(), precision: part.precision });
+                    return Ok(Known {
+                        body: part.body.into(),
+                        precision: part.precision,
+                        dent: part.dent,
+                    });
                 }
                 Err(error) if self.taken == Taken::AsTheyAre && is_part(&error) => {}
                 Err(error) => return Err(input(refusal(&error))),
@@ -130,7 +144,7 @@ impl Ways {
         }
         let part = Body::load(&[file.to_owned()], &self.parts[side], || ()).map_err(input)?;
         notes.extend_from_slice(&part.notes);
-        Ok(Known { body: part.solid().clone().into(), precision: part.precision() })
+        Ok(Known { body: part.solid().clone().into(), precision: part.precision(), dent: None })
     }
 
     /// Reads a file of obstacles. Bodies that occur again are kept once.
@@ -159,8 +173,11 @@ impl Ways {
             let shape = bodies.body(&body).map_err(wrong)?;
             let place = pose.pose().map_err(|what| wrong(format!("pose: {what}")))?;
             notes.extend(pose.note(&format!("{}: line {}: pose", file.display(), number + 1)));
-            let one = known.entry(Arc::as_ptr(&shape)).or_insert_with(|| Known::of(&shape));
             let named = || body.file().map(|path| path.display().to_string());
+            let one = known.entry(Arc::as_ptr(&shape)).or_insert_with(|| {
+                notes.extend_from_slice(shape.notes());
+                Known::of(&shape)
+            });
             let name = name.or_else(named).unwrap_or_else(|| format!("line {}", number + 1));
             found.push((one.clone(), place, name));
         }
@@ -175,10 +192,10 @@ impl Known {
     fn of(shape: &Shape) -> Self {
         match shape {
             Shape::Convex(part) => {
-                Self { body: part.body.clone().into(), precision: part.precision }
+                Self { body: part.body.clone().into(), precision: part.precision, dent: part.dent }
             }
             Shape::Solid(body) => {
-                Self { body: body.solid().clone().into(), precision: body.precision() }
+                Self { body: body.solid().clone().into(), precision: body.precision(), dent: None }
             }
         }
     }

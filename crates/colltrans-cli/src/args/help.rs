@@ -260,6 +260,8 @@ With --json one object:
   point normal   where the first is nearest to the second then, and the direction to it, in the world
   overlaps  where it begins: the names of all pairs that overlap there, or are as near as keep
   hulls     links whose meshes their convex hulls stand for: a contact of one is that of its hull
+  dents     {NAME: DEPTH} of meshes that are convex only to within the tolerance: how deep the surface
+            lies below its hull, which stands for it
   notes     in what the answer is about less than the input
   pairs looks planes   how many pairs of bodies were asked about, how often two were looked at, and planes
             in the proof

@@ -38,6 +38,14 @@ impl Shape {
             Self::Solid(body) => body.memory_bytes(),
         }
     }
+
+    /// Returns the notes on how the body was made of its file.
+    pub(crate) fn notes(&self) -> &[String] {
+        match self {
+            Self::Convex(part) => &part.notes,
+            Self::Solid(body) => &body.notes,
+        }
+    }
 }
 
 /// A body, or why there is none.

@@ -486,6 +486,29 @@ fn a_mesh_that_is_convex_by_tolerance_says_how_deep_its_dent_is() {
     assert!((depth - 5e-6).abs() < 1e-12 && answer["dents"]["moving"].is_null(), "{answer}");
     let exact = json(&answered(folder.path(), &[&CAST[..], &["--json"]].concat()));
     assert!(exact["dents"].is_null(), "{exact}");
+    // One body among many: of the body that is named, and of each in a list.
+    let line = r#"{"body":{"mesh":"flat.off"},"pose":{"translation":[3,0,0]}}"#;
+    std::fs::write(folder.path().join("scene.jsonl"), line).unwrap();
+    let is_depth = |depth: &serde_json::Value| (depth.as_f64().unwrap() - 5e-6).abs() < 1e-12;
+    let among = |command: &[&'static str], scene: &'static str| {
+        let words = [command, &["--moving-pose", "0,0,-3", "--json", "--among", scene]].concat();
+        let output = run(folder.path(), &words);
+        let note = "flat.off: convex only to within the tolerance";
+        assert_eq!(stderr(&output).matches(note).count(), 1, "{}", stderr(&output));
+        json(&stdout(&output))
+    };
+    for scene in ["flat.off", "scene.jsonl"] {
+        let nearest = among(&["distance", "cube.off"], scene);
+        assert!(is_depth(&nearest["dents"]["fixed"]), "{nearest}");
+        assert!(nearest["dents"]["moving"].is_null(), "{nearest}");
+        let within = among(&["within", "cube.off", "--length", "9"], scene);
+        assert!(is_depth(&within["closer"][0]["dent"]), "{within}");
+        assert!(within["dents"].is_null(), "{within}");
+    }
+    let first = among(&["clearance", "cube.off", "--direction", "z"], "flat.off");
+    assert!(is_depth(&first["dents"]["fixed"]), "{first}");
+    let moving = among(&["clearance", "flat.off", "--direction", "z"], "cube.off");
+    assert!(is_depth(&moving["dents"]["moving"]) && moving["dents"]["fixed"].is_null(), "{moving}");
 }
 
 /// The runtime opens `/dev/null` in the place of a closed stream; whoever opens it himself wants no output.

@@ -276,6 +276,36 @@ fn pairs_nearer_than_a_gap_at_the_start_are_not_said_to_overlap() {
 }
 
 #[test]
+fn meshes_convex_by_tolerance_report_their_dents_under_their_names() {
+    let folder = folder();
+    let dent = fs::read_to_string(folder.path().join("dent.off")).unwrap();
+    let flat = |depth: f64| dent.replace("0.5 0.5 0.75", &format!("0.5 0.5 {}", 1.0 - depth));
+    for (name, depth) in [("flat", 5e-6), ("flatter", 2e-6)] {
+        fs::write(folder.path().join(name).with_extension("off"), flat(depth)).unwrap();
+    }
+    let box_ =
+        "<link name=\"a\"><collision><geometry><box size=\"1 1 1\"/></geometry></collision></link>";
+    let mesh = |name: &str| {
+        format!("<collision><geometry><mesh filename=\"{name}.off\"/></geometry></collision>")
+    };
+    let both = format!("<link name=\"b\">{}{}</link>", mesh("flat"), mesh("flatter"));
+    let robot = format!("<robot name=\"r\">{box_}{both}{}</robot>", slide("s", "a", "b", 3.0));
+    fs::write(folder.path().join("flat.urdf"), robot).unwrap();
+    fs::write(folder.path().join("rows.csv"), "s\n0\n0.3\n").unwrap();
+    let asked = ["path", "flat.urdf", "rows.csv", "flatter.off", "cube.off", "--json"];
+    let told = read(&answered(folder.path(), &asked));
+    let dents = told["dents"].as_object().unwrap_or_else(|| panic!("{told}"));
+    // Of two meshes of a link the deeper dent counts; the cube has none.
+    assert_eq!(dents.keys().collect::<Vec<_>>(), ["b", "flatter"], "{told}");
+    let depths = dents.values().map(|depth| depth.as_f64().unwrap());
+    let is_near = |(depth, wanted): (f64, f64)| (depth - wanted).abs() < 1e-12;
+    assert!(depths.zip([5e-6, 2e-6]).all(is_near), "{told}");
+    let [arm, rows, _] = files();
+    let exact = read(&answered(folder.path(), &["path", &arm, &rows, "--json"]));
+    assert!(exact.get("dents").is_none(), "{exact}");
+}
+
+#[test]
 fn bad_meshes_are_taken_as_hulls_and_files_are_named() {
     let folder = folder();
     // Its first face crosses itself.

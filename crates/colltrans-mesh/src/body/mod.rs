@@ -128,6 +128,17 @@ pub struct Loaded<B> {
     pub notes: Vec<Note>,
 }
 
+impl<B> Loaded<B> {
+    /// Returns the depth of the mesh's surface below its hull if the mesh is convex only to within the
+    /// tolerance; `None` where rounding or the precision of the file explains this depth.
+    pub fn dent(&self) -> Option<f64> {
+        self.notes.iter().find_map(|note| match note {
+            Note::Dented(depth) => Some(*depth),
+            _ => None,
+        })
+    }
+}
+
 /// What a mesh can be taken as.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Take {

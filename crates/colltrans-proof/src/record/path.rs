@@ -1,6 +1,6 @@
 //! A first contact on a path of joints, as front ends write it.
 
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashSet};
 
 use serde::Serialize;
 
@@ -43,6 +43,10 @@ pub struct PathRecord {
     /// Links for whose meshes their convex hulls stand: a contact of one is that of its hull.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub hulls: Vec<String>,
+    /// Names of bodies whose meshes are convex only to within the tolerance, each with the largest depth of its
+    /// surface below the hull that stands for it, a length.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub dents: BTreeMap<String, f64>,
     /// For people: in what the answer is about less than the input.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,

@@ -53,6 +53,10 @@ pub(super) fn twice<T: PartialEq>(names: &[T]) -> Option<&T> {
     (1..names.len()).find(|&k| names[..k].contains(&names[k])).map(|k| &names[k])
 }
 
+/// The reason why a trajectory in YAML is refused.
+const YAML: &str = "it is YAML, and rows are read from CSV or JSON: write it as JSON, for example with python3 -c \
+                    'import json, sys, yaml; json.dump(next(yaml.safe_load_all(sys.stdin)), sys.stdout)'";
+
 /// Names of a column of times.
 const TIMES: [&str; 3] = ["time", "t", "time_from_start"];
 
@@ -78,6 +82,9 @@ impl Table {
 
     fn csv(text: &str) -> Result<Self, TableError> {
         let mut table = Self::default();
+        if let Some(reason) = is_yaml(text).then_some(YAML) {
+            return Err(wrong("file", reason));
+        }
         let mut first: Option<(usize, usize)> = None;
         for (k, line) in text.lines().enumerate() {
             let content = line.split('#').next().unwrap_or_default().trim();
@@ -147,12 +154,20 @@ impl Table {
         let unused = fields.into_iter().filter(|(_, is_there)| *is_there);
         let unused = unused.map(|(name, _)| name).collect();
         let timed = points.iter().filter(|point| point.time_from_start.is_some()).count();
-        if timed != 0 && timed != points.len() {
-            return Err(wrong("points", "some have a time_from_start, and some have none"));
+        let untimed = points.iter().position(|point| point.time_from_start.is_none());
+        if let Some(k) = untimed.filter(|_| timed > 0) {
+            let reason =
+                "it has no time_from_start, which other points have: give it to all or to none";
+            return Err(wrong(format!("points[{k}]"), reason));
         }
         let times: Vec<f64> =
             points.iter().filter_map(|point| Some(point.time_from_start?.seconds())).collect();
-        let rows = points.into_iter().map(|point| point.positions).collect();
+        let rows: Vec<Vec<f64>> = points.into_iter().map(|point| point.positions).collect();
+        if let Some(k) = rows.iter().position(|row| row.len() != names.len()) {
+            let (found, wanted) = (rows[k].len(), names.len());
+            let reason = format!("it has {found} positions for {wanted} joint_names");
+            return Err(wrong(format!("points[{k}]"), reason));
+        }
         Self { names: Some(names), times: (timed > 0).then_some(times), rows, unused }.even()
     }
 
@@ -166,6 +181,14 @@ impl Table {
             }
         }
     }
+}
+
+/// Checks whether a text is a trajectory as ROS prints it, in YAML: its first line is a key of such a message.
+fn is_yaml(text: &str) -> bool {
+    let lines = text.lines().map(|line| line.split('#').next().unwrap_or_default().trim());
+    let first = lines.into_iter().find(|line| !line.is_empty() && *line != "---");
+    let key = first.and_then(|line| line.split_once(':')).map(|(key, _)| key);
+    key.is_some_and(|key| ["header", "joint_names", "points", "joint_trajectory"].contains(&key))
 }
 
 /// Finds the first point of a trajectory that is wrong; `None` in other texts.
@@ -291,6 +314,11 @@ mod tests {
         );
         let mixed = r#"{"joint_names": ["a"], "points": [
             {"positions": [1], "time_from_start": 1}, {"positions": [2]}]}"#;
-        assert!(told(mixed).contains("some have none"));
+        assert!(told(mixed).starts_with("points[1]: it has no time_from_start"), "{}", told(mixed));
+        let short = point(r#"{"positions": [1, 2]}"#);
+        assert_eq!(short, "points[1]: it has 2 positions for 1 joint_names");
+        for yaml in ["---\njoint_names:\n- a\n", "header:\n  stamp: 0\n", "# ROS\npoints: []\n"] {
+            assert!(told(yaml).starts_with("file: it is YAML"), "{}", told(yaml));
+        }
     }
 }

@@ -113,17 +113,22 @@ enum FixedPlaces {
 /// Returns the places that nearly all numbers have in common, if these are two decimals or more and some of the
 /// numbers end in zeros. A single decimal shows nothing, because `1.0` is also the shortest text of a number.
 fn fixed_places<'a>(numbers: impl Iterator<Item = &'a Printed>) -> Option<FixedPlaces> {
-    let mut counts: HashMap<(u8, bool), [usize; 2]> = HashMap::new();
+    // For each number of places, without and with an exponent: how many numbers end in another digit than 0, and
+    // how many in 0.
+    let mut counts = [[[0; 2]; 2]; 256];
+    let mut total = 0;
     for number in numbers {
-        let count = counts.entry((number.places, number.has_exponent)).or_default();
+        let count = &mut counts[usize::from(number.places)][usize::from(number.has_exponent)];
         count[usize::from(number.is_padded)] += 1;
+        total += 1;
     }
-    let total = counts.values().flatten().sum();
     let is_fixed = |[full, padded]: [usize; 2]| padded > 0 && is_nearly_all(full + padded, total);
-    let fixed = counts.into_iter().find(|((places, _), count)| *places > 1 && is_fixed(*count));
-    fixed.map(|((places, has_exponent), _)| {
-        let places = i32::from(places);
-        if has_exponent { FixedPlaces::Digits(places + 1) } else { FixedPlaces::Decimals(places) }
+    (2..).zip(&counts[2..]).find_map(|(places, [plain, with_exponent])| {
+        if is_fixed(*plain) {
+            Some(FixedPlaces::Decimals(places))
+        } else {
+            is_fixed(*with_exponent).then_some(FixedPlaces::Digits(places + 1))
+        }
     })
 }
 

@@ -3,6 +3,7 @@
 import copy
 import pickle
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,10 +13,15 @@ import colltrans
 from colltrans import (
     BuildError,
     CaseError,
+    Cast,
     ConvexPolyhedron,
     InputError,
     MeshError,
+    Motion,
+    MotionCast,
     OffsetReport,
+    Pose,
+    SolidCast,
     cast_many,
 )
 
@@ -193,3 +199,52 @@ def test_bodies_that_cannot_shrink_or_grow() -> None:
         plate.grown(1e75)
     with pytest.raises(TypeError):
         plate.grown("1")  # type: ignore[arg-type]
+
+
+def flat_cube(depth: float) -> tuple[Any, list[list[int]]]:
+    """A unit cube whose lid is a pyramid of four triangles that points inwards."""
+    square = [[0, 0], [1, 0], [1, 1], [0, 1]]
+    corners = [[*place, z] for z in (0, 1) for place in square]
+    sides = [[k, (k + 1) % 4, (k + 1) % 4 + 4, k + 4] for k in range(4)]
+    lid = [[k + 4, (k + 1) % 4 + 4, 8] for k in range(4)]
+    return np.array([*corners, [0.5, 0.5, 1 - depth]]), [[3, 2, 1, 0], *sides, *lid]
+
+
+def test_answers_report_the_dents_of_meshes_that_are_convex_by_tolerance(tmp_path: Path) -> None:
+    vertices, faces = flat_cube(5e-6)
+    lines = [f"v {x!r} {y!r} {z!r}" for x, y, z in vertices.tolist()]
+    lines += ["f " + " ".join(str(v + 1) for v in face) for face in faces]
+    (tmp_path / "flat.obj").write_text("\n".join(lines))
+    cube = ConvexPolyhedron.cuboid([0, 0, 0], [1, 1, 1])
+    z = [0.0, 0.0, 1.0]
+    made = ConvexPolyhedron.from_mesh(vertices, faces, convex_tolerance=1e-5)
+    for flat in (made, colltrans.read(tmp_path / "flat.obj")):
+        assert flat.dent == pytest.approx(5e-6, abs=1e-12)
+        high = Pose([0, 0, 3])
+        swept = MotionCast(cube, flat, moving_motion=Motion.slide([0, 0, 9]), fixed_motion=high)
+        answers: list[Any] = [
+            Cast(cube, flat, z, fixed_pose=high).first_contact(),
+            Cast(cube, flat, z, fixed_pose=high).clearance(),
+            colltrans.distance(cube, flat, fixed_pose=high),
+            SolidCast(cube, flat, z, fixed_pose=high).clearance(),
+            swept.first_contact(),
+        ]
+        for answer in answers:
+            assert answer.to_dict()["dents"] == {"fixed": flat.dent}, answer
+        # Copies keep the dent although the stored body has only the hull.
+        again = pickle.loads(pickle.dumps(answers[0]))
+        assert again.to_dict() == answers[0].to_dict()
+        assert Cast(flat, cube, z).clearance().to_dict()["dents"] == {"moving": flat.dent}
+    assert cube.dent == 0
+    assert "dents" not in Cast(cube, cube, z).clearance().to_dict()
+
+
+def test_a_dent_that_the_precision_of_the_file_explains_is_not_reported(tmp_path: Path) -> None:
+    vertices, faces = flat_cube(1.5e-6)
+    lines = [f"v {x:.6f} {y:.6f} {z:.6f}" for x, y, z in (vertices + 1 / 3).tolist()]
+    lines += ["f " + " ".join(str(v + 1) for v in face) for face in faces]
+    (tmp_path / "flat.obj").write_text("\n".join(lines))
+    flat = colltrans.read(tmp_path / "flat.obj")
+    assert flat.dent == 0
+    assert flat.notes == []
+    assert "dents" not in Cast(flat, flat, [1, 0, 0]).clearance().to_dict()

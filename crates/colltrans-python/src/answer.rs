@@ -80,7 +80,9 @@ macro_rules! answer {
             /// dict
             fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
                 let $it = self;
-                let record = <$of as $crate::answer::Answer>::record(&$again, self.query.bind(py))?;
+                let mut record =
+                    <$of as $crate::answer::Answer>::record(&$again, self.query.bind(py))?;
+                record.dents = self.query.get().dents();
                 $crate::frozen::plain(py, &record)
             }
 

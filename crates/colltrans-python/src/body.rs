@@ -42,16 +42,27 @@ pub(crate) struct ConvexPolyhedron(
     pub(crate) colltrans::ConvexPolyhedron,
     /// What was mended when it was read.
     pub(crate) Vec<String>,
+    /// Depth of the dent of its mesh, where it has one and the precision of its file does not explain it.
+    Option<f64>,
 );
 
-impl From<colltrans::ConvexPolyhedron> for ConvexPolyhedron {
-    fn from(body: colltrans::ConvexPolyhedron) -> Self {
-        Self(body, Vec::new())
+impl ConvexPolyhedron {
+    /// Returns the depth of the mesh's surface below the body; `None` if rounding or the precision of its file
+    /// explains this depth.
+    pub(crate) const fn dent(&self) -> Option<f64> {
+        self.2
     }
 }
 
-/// A body as JSON, and its notes.
-type Read = (String, Vec<String>);
+impl From<colltrans::ConvexPolyhedron> for ConvexPolyhedron {
+    fn from(body: colltrans::ConvexPolyhedron) -> Self {
+        let dent = Some(body.dent()).filter(|depth| *depth > 0.0);
+        Self(body, Vec::new(), dent)
+    }
+}
+
+/// A body as JSON, its notes and its dent.
+type Read = (String, Vec<String>, Option<f64>);
 
 #[pymethods]
 impl ConvexPolyhedron {
@@ -214,11 +225,12 @@ impl ConvexPolyhedron {
 
     /// float: How deep the surface of the mesh that the body was made of lies below the body.
     ///
-    /// 0 for a mesh that is convex to rounding error, and for a body that is not made of a mesh. Otherwise
-    /// the mesh is convex only to within the tolerance, and answers are about the hull of its vertices.
-    #[getter]
-    fn dent(&self) -> f64 {
-        self.0.dent()
+    /// 0 for a mesh that is convex to rounding error or to the precision of its file, and for a body that is
+    /// not made of a mesh. Otherwise the mesh is convex only to within the tolerance, and answers are about the
+    /// hull of its vertices.
+    #[getter(dent)]
+    fn dent_depth(&self) -> f64 {
+        self.dent().unwrap_or_default()
     }
 
     /// float: The volume, in the cube of the unit of length.
@@ -348,13 +360,18 @@ impl ConvexPolyhedron {
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Read)> {
-        Ok((py.get_type::<Self>().getattr("_read")?, (self.to_json(), self.notes())))
+        Ok((py.get_type::<Self>().getattr("_read")?, (self.to_json(), self.notes(), self.dent())))
     }
 
     #[staticmethod]
     #[pyo3(name = "_read")]
-    fn read_again(py: Python<'_>, text: &str, notes: Vec<String>) -> PyResult<Self> {
-        Ok(Self(Self::from_json(py, text)?.0, notes))
+    fn read_again(
+        py: Python<'_>,
+        text: &str,
+        notes: Vec<String>,
+        dent: Option<f64>,
+    ) -> PyResult<Self> {
+        Ok(Self(Self::from_json(py, text)?.0, notes, dent))
     }
 
     /// A picture of it: see :func:`colltrans.show`.
@@ -427,5 +444,6 @@ pub(crate) fn read(
         .with_hull(hull);
     let loaded = py.detach(|| load_convex(&path, &options)).or_raise()?;
     let notes = loaded.notes.iter().map(ToString::to_string).collect();
-    Ok(ConvexPolyhedron(loaded.body, notes))
+    let dent = loaded.dent();
+    Ok(ConvexPolyhedron(loaded.body, notes, dent))
 }

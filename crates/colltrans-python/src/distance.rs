@@ -235,11 +235,11 @@ impl Within {
     /// roundings apart.
     #[getter]
     fn closer(&self) -> Option<bool> {
-        use colltrans::Within::{Closer, Farther};
+        use colltrans::Within::{Closer, Farther, Undecided};
         either!(self.found.found, found => match found.0 {
             Closer(_) => Some(true),
             Farther(_) => Some(false),
-            _ => None,
+            Undecided(_) => None,
         })
     }
 

@@ -2,7 +2,7 @@
 
 use colltrans::glam::DVec3;
 use colltrans::motion::{self, MotionCase, MotionOutcome, MotionProofFile, SolidMotionProofFile};
-use colltrans::record::Record;
+use colltrans::record::{Dents, Record};
 use colltrans::solid::StartOverlap;
 use colltrans::{ConvexPolyhedron, QueryError, Solid};
 use colltrans_mesh::body::between_motions;
@@ -332,6 +332,11 @@ type Asked<'a> = Of<motion::MotionCast<'a>, motion::MotionCast<'a, Solid>>;
 type Arguments<'py> = ((Py<PyAny>, Py<PyAny>), Bound<'py, PyDict>);
 
 impl MotionCast {
+    /// Returns the dents of the two meshes where these are convex only to within the tolerance.
+    pub(crate) fn dents(&self) -> Option<Dents> {
+        Dents::of(self.bodies.each_ref().map(Piece::dent))
+    }
+
     pub(crate) fn of(
         bodies: [&Bound<'_, PyAny>; 2],
         motions: [Option<&Bound<'_, PyAny>>; 2],

@@ -1,6 +1,6 @@
 //! Queries about two bodies where they are, as values.
 
-use colltrans::record::PairQuestion;
+use colltrans::record::{Dents, PairQuestion};
 use colltrans::{ConvexPolyhedron, ProofFile, QueryError, Solid};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -49,6 +49,11 @@ type Arguments<'py> = ((Py<PyAny>, Py<PyAny>), Bound<'py, PyDict>);
 pub(crate) type Asked<'a> = Of<colltrans::Pair<'a>, colltrans::Pair<'a, Solid>>;
 
 impl Pair {
+    /// Returns the dents of the two meshes where these are convex only to within the tolerance.
+    pub(crate) fn dents(&self) -> Option<Dents> {
+        Dents::of(self.bodies.each_ref().map(Piece::dent))
+    }
+
     pub(crate) fn of(
         moving: &Bound<'_, PyAny>,
         fixed: &Bound<'_, PyAny>,

@@ -5,6 +5,7 @@
 //! no time.
 
 use colltrans::glam::DVec3;
+use colltrans::record::Dents;
 use colltrans::{Options, QueryError};
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -73,6 +74,11 @@ pub(crate) struct Cast {
 }
 
 impl Cast {
+    /// Returns the dents of the two meshes where these are convex only to within the tolerance.
+    pub(crate) fn dents(&self) -> Option<Dents> {
+        Dents::of([&self.moving, &self.fixed].map(|body| body.get().dent()))
+    }
+
     /// Not checked yet.
     pub(crate) fn of(arguments: Arguments<'_, '_>) -> PyResult<Self> {
         let Arguments { moving, fixed, direction, poses, graze_tolerance, keep, solver } =

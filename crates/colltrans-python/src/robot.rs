@@ -51,11 +51,11 @@ struct Rows {
     rest: BTreeMap<String, f64>,
 }
 
-fn any_body(thing: &Bound<'_, PyAny>, name: &str) -> PyResult<AnyBody> {
-    Ok(match Piece::of(thing, name)? {
+fn any_body(piece: &Piece) -> AnyBody {
+    match piece {
         Piece::Convex(body) => AnyBody::from(body.get().0.clone()),
         Piece::Solid(solid) => AnyBody::from(solid.get().solid.clone()),
-    })
+    }
 }
 
 impl Robot {
@@ -65,7 +65,7 @@ impl Robot {
         ignore: &[[String; 2]],
         keep: f64,
     ) -> PyResult<Asked> {
-        let mut bodies = Vec::new();
+        let (mut bodies, mut dents) = (Vec::new(), Vec::new());
         if let Some(scene) = scene {
             let named = PyDict::new(scene.py());
             let Ok(mapping) = scene.cast() else {
@@ -76,13 +76,14 @@ impl Robot {
             named.update(mapping)?;
             for (name, body) in named {
                 let name: String = name.extract()?;
-                let body = any_body(&body, &format!("scene[{name:?}]"))?;
-                bodies.push((name, body));
+                let piece = Piece::of(&body, &format!("scene[{name:?}]"))?;
+                dents.extend(piece.dent().map(|depth| (name.clone(), depth)));
+                bodies.push((name, any_body(&piece)));
             }
         }
         let cell = Cell::new(self.arm.clone(), bodies, self.listed.as_deref());
         let cell = cell.map_err(|what| input("srdf", what))?;
-        let cell = cell.ignoring(ignore).map_err(|what| input("ignore", what))?;
+        let cell = cell.with_dents(dents).ignoring(ignore).map_err(|what| input("ignore", what))?;
         let cell = cell.with_a_pair().map_err(|what| input("scene", what))?;
         Ok(Asked { cell, keep })
     }
@@ -309,6 +310,7 @@ impl Robot {
         let found = answered(py, || asked.first_contact(&path))?;
         let (found, mut record) = found.map_err(|what| error("QueryError", what))?;
         record.hulls = asked.cell.hulls();
+        record.dents.clone_from(asked.cell.dents());
         record.notes = rows.table.straight().into_iter().collect();
         let (end, question) = (end_of(&path), Question::Asked(asked, path));
         Ok(PathAnswer { question, end, found, record, notes })

@@ -54,6 +54,14 @@ impl Piece {
         Err(PyTypeError::new_err(message))
     }
 
+    /// Returns the depth of the body's dent; `None` if its mesh is convex, or it is a solid.
+    pub(crate) fn dent(&self) -> Option<f64> {
+        match self {
+            Self::Convex(body) => body.get().dent(),
+            Self::Solid(_) => None,
+        }
+    }
+
     pub(crate) fn solid(&self) -> Result<&colltrans::Solid, colltrans::solid::SolidError> {
         match self {
             Self::Convex(body) => body.get().0.as_surface(),

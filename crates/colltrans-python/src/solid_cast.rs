@@ -6,6 +6,7 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::Duration;
 
 use colltrans::glam::DVec3;
+use colltrans::record::Dents;
 use colltrans::solid::SolidCast as _;
 use colltrans::solid::{SolidOptions, StartOverlap};
 use colltrans_mesh::body::between;
@@ -72,6 +73,11 @@ const PATIENCE: Duration = Duration::from_millis(100);
 const LARGE: usize = 4096;
 
 impl SolidCast {
+    /// Returns the dents of the two meshes where these are convex only to within the tolerance.
+    pub(crate) fn dents(&self) -> Option<Dents> {
+        Dents::of(self.bodies.each_ref().map(Piece::dent))
+    }
+
     /// Asks the library.
     fn run<T>(
         &self,

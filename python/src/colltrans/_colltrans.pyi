@@ -274,8 +274,9 @@ class ConvexPolyhedron:
     def dent(self) -> float:
         """float: How deep the surface of the mesh that the body was made of lies below the body.
 
-        0 for a mesh that is convex to rounding error, and for a body that is not made of a mesh. Otherwise
-        the mesh is convex only to within the tolerance, and answers are about the hull of its vertices.
+        0 for a mesh that is convex to rounding error or to the precision of its file, and for a body that is
+        not made of a mesh. Otherwise the mesh is convex only to within the tolerance, and answers are about the
+        hull of its vertices.
         """
     @property
     def volume(self) -> float:

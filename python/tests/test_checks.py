@@ -1,0 +1,109 @@
+"""``.ci/run`` reports each part, and fails where a part fails or cannot run."""
+
+import os
+import re
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+from conftest import ROOT
+
+pytestmark = pytest.mark.skipif(os.name == "nt", reason="the script needs bash")
+TOOLS = ["basename", "bash", "dirname", "env", "grep", "mktemp", "rm", "sed"]
+
+
+@pytest.fixture
+def machine(tmp_path: Path) -> Path:
+    """A machine with Rust, whose commands all succeed, and without any other tool."""
+    for tool in TOOLS:
+        (tmp_path / tool).symlink_to(str(shutil.which(tool)))
+    for tool in ["cargo", "rustc", "cmp"]:
+        install(tmp_path, tool, "exit 0")
+    # The pictures that the commands of the gallery would draw.
+    install(tmp_path, "colltrans", "exit 0")
+    return tmp_path
+
+
+def install(machine: Path, tool: str, script: str) -> None:
+    (machine / tool).unlink(missing_ok=True)
+    (machine / tool).write_text(f"#!/usr/bin/env bash\n{script}\n")
+    (machine / tool).chmod(0o755)
+
+
+def check(machine: Path, *arguments: str, **variables: str) -> tuple[int, str]:
+    ran = subprocess.run(
+        [shutil.which("bash") or "bash", str(ROOT / ".ci/run"), *arguments],
+        env={"PATH": str(machine), "HOME": str(machine), **variables},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    return ran.returncode, ran.stdout + ran.stderr
+
+
+def summary(output: str) -> dict[str, str]:
+    """Returns the result of each part, which the summary lists with its seconds."""
+    _, _, last = output.partition("== summary\n")
+    rows = re.findall(r"^(\w+) +(passed|failed|not run|skipped) +\d+ s$", last, re.MULTILINE)
+    return dict(rows)
+
+
+def test_a_part_that_passes_is_listed_with_its_seconds(machine: Path) -> None:
+    status, output = check(machine, "checked", "fuzz")
+    assert (status, summary(output)) == (0, {"checked": "passed", "fuzz": "passed"})
+    assert "== all passed in" in output
+
+
+@pytest.mark.parametrize(
+    ("part", "command"),
+    [
+        ("python", "apt-get install python3 python3-venv python3-pip"),
+        ("web", "apt-get install nodejs npm"),
+        ("site", "apt-get install python3 python3-venv python3-pip"),
+    ],
+)
+def test_a_missing_tool_fails_the_run_and_its_install_command_is_printed(
+    machine: Path, part: str, command: str
+) -> None:
+    status, output = check(machine, part, "fuzz")
+    assert (status, summary(output)) == (1, {part: "not run", "fuzz": "passed"})
+    assert f"\n    {command}\n" in output
+    assert "passed in" not in output
+
+
+def test_a_skipped_part_does_not_fail_the_run(machine: Path) -> None:
+    status, output = check(machine, "--skip", "web", "web", "fuzz")
+    assert (status, summary(output)) == (0, {"web": "skipped", "fuzz": "passed"})
+
+
+def test_the_parts_after_a_failed_one_still_run(machine: Path) -> None:
+    install(machine, "cargo", 'case "$*" in *"--profile checked"*) exit 3 ;; esac')
+    status, output = check(machine, "checked", "fuzz")
+    assert (status, summary(output)) == (1, {"checked": "failed", "fuzz": "passed"})
+
+
+def test_the_first_failed_command_ends_its_part(machine: Path) -> None:
+    failing = 'case "$*" in "fmt --version") ;; fmt*) exit 1 ;; esac'
+    install(machine, "cargo", f'echo "cargo $*"; {failing}')
+    status, output = check(machine, "style")
+    assert (status, summary(output)) == (1, {"style": "failed"})
+    assert "cargo clippy --release" not in output
+
+
+def test_a_run_without_arguments_takes_every_part_unless_it_checks_a_submission(
+    machine: Path,
+) -> None:
+    script = (ROOT / ".ci/run").read_text()
+    every = set(re.findall(r"^part_(\w+)\(\)", script, re.MULTILINE))
+    assert set(summary(check(machine)[1])) == every
+    submission = set(summary(check(machine, CI="true")[1]))
+    assert {"style", "readme", "tests", "checked", "python"} <= submission < every
+
+
+@pytest.mark.parametrize("arguments", [["chekced"], ["--skip", "sites"], ["--skip"]])
+def test_an_unknown_part_is_refused_with_the_names_of_all_parts(
+    machine: Path, arguments: list[str]
+) -> None:
+    status, output = check(machine, *arguments)
+    assert status == 2 and "style readme tests checked" in output

@@ -179,10 +179,11 @@ impl FileNames {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use colltrans_testkit::TemporaryFolder;
 
     #[test]
     fn what_is_not_finished_is_not_there() {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = TemporaryFolder::new();
         let path = folder.path().join("a.txt");
         let names = || fs::read_dir(folder.path()).unwrap().count();
         let mut output = Output::create(&path).unwrap();
@@ -203,7 +204,7 @@ mod tests {
 
     #[test]
     fn what_is_there_is_not_written_over_by_what_is_new() {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = TemporaryFolder::new();
         let path = folder.path().join("case.json");
         let names = || fs::read_dir(folder.path()).unwrap().count();
         let mut late = Output::create(&path).unwrap();

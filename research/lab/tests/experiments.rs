@@ -1,5 +1,6 @@
 //! All experiments on small bodies: every figure has data, every claim a verdict.
 
+use colltrans_testkit::TemporaryFolder;
 use std::collections::BTreeSet;
 
 use colltrans_lab::claims::{CLAIMS, Claim, Verdict};
@@ -80,7 +81,7 @@ fn every_figure_has_data_and_every_claim_a_verdict() {
 /// Files that are no meshes, no solids, or in folders of folders.
 #[test]
 fn real_parts_are_measured_and_others_left_out() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     std::fs::create_dir(folder.path().join("deeper")).unwrap();
     let off = "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n";

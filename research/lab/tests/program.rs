@@ -1,5 +1,6 @@
 //! The program: what can be asked for, and where the results go.
 
+use colltrans_testkit::TemporaryFolder;
 use std::path::Path;
 use std::process::Output;
 
@@ -21,7 +22,7 @@ fn stderr(output: &Output) -> String {
 
 #[test]
 fn help_says_what_there_is() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     let help = |arguments: &[&str]| {
         let output = lab(folder.path()).args(arguments).output().unwrap();
         assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", stderr(&output));
@@ -47,7 +48,7 @@ fn help_says_what_there_is() {
 
 #[test]
 fn what_there_is_not() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     for arguments in [
         &["figure", "10"][..],
         &["figure", "twelve"],
@@ -77,7 +78,7 @@ fn what_there_is_not() {
 /// What it is going to do stands first on standard error, then how far it is; what it found on standard output.
 #[test]
 fn it_says_what_it_does() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     let arguments = ["section", "3", "--tiny", "--passes", "2"];
     let output = lab(folder.path()).args(arguments).output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", stderr(&output));
@@ -91,7 +92,7 @@ fn it_says_what_it_does() {
 
 #[test]
 fn folders_that_cannot_be_written_to() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     std::fs::write(folder.path().join("file"), "").unwrap();
     let output = lab(folder.path()).args(["all", "--tiny", "-o", "file/results"]).output().unwrap();
     assert_eq!(output.status.code(), Some(5), "{}", stderr(&output));

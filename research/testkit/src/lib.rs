@@ -3,8 +3,9 @@
 //! [`oracle`]: the judge, in exact rational arithmetic, with the settings that are hard on purpose.
 //! Beside it what knows nothing of the library: [`random`] numbers on streams that do not disturb each
 //! other, [`shapes`] and [`solids`] as vertices and faces, [`machines`] made of parts, [`timing`] of single calls with the statistics
-//! of many, and [`provenance`]: where numbers come from.
+//! of many, and [`provenance`]: where numbers come from. Files of tests lie in a [`TemporaryFolder`].
 
+mod folder;
 pub mod machines;
 pub mod oracle;
 pub mod provenance;
@@ -12,3 +13,5 @@ pub mod random;
 pub mod shapes;
 pub mod solids;
 pub mod timing;
+
+pub use folder::TemporaryFolder;

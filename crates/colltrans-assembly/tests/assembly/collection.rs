@@ -1,5 +1,6 @@
 //! Real assemblies, where the collection of meshes is beside the checkout.
 
+use colltrans_testkit::TemporaryFolder;
 use std::path::{Path, PathBuf};
 
 use colltrans::solid::{StartOverlap, Workspace};
@@ -103,7 +104,7 @@ fn rooms_of_overlapping_pieces_are_those_of_all_pairs() {
     let piece = |k: usize| folder.join(format!("car_seat/car_{k}.stl"));
     let parts: Vec<PathBuf> = (1..=24).map(piece).collect();
     let list: Vec<_> = parts.iter().map(|p| serde_json::json!({ "file": p })).collect();
-    let place = tempfile::tempdir().unwrap();
+    let place = TemporaryFolder::new();
     let file = place.path().join("car.json");
     std::fs::write(&file, serde_json::json!({ "parts": list }).to_string()).unwrap();
     let assembly = read(&file, &elsewhere()).unwrap();
@@ -140,7 +141,7 @@ fn seat_in_car(folder: &Path) -> Assembly {
         {"name": "seat", "file": files("seat", 10), "scale": 0.9, "translation": [-1.0, 0.3, 0.42],
          "rotation": {"rpy_degrees": [0, 0, 180]}},
     ]});
-    let place = tempfile::tempdir().unwrap();
+    let place = TemporaryFolder::new();
     let file = place.path().join("seat.json");
     std::fs::write(&file, manifest.to_string()).unwrap();
     read(&file, &elsewhere()).unwrap()

@@ -4,6 +4,7 @@ use crate::common::*;
 use colltrans_assembly::plan::PlanOptions;
 use colltrans_assembly::read::{ReadOptions, read};
 use colltrans_assembly::{Assembly, Bodies, Fit};
+use colltrans_testkit::TemporaryFolder;
 use glam::DVec3;
 
 /// Outlines of an L and of a block in its corner, which it touches; both from the corner that they share.
@@ -29,7 +30,7 @@ fn prism(outline: &[[f64; 2]], at: DVec3) -> (Vec<DVec3>, Vec<[usize; 3]>) {
 
 /// Reads both parts from files of a kind in a place.
 fn parts(at: DVec3, kind: &str, write: fn(&[DVec3], &[[usize; 3]]) -> Vec<u8>) -> Assembly {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     for (k, outline) in OUTLINES.iter().enumerate() {
         let (vertices, faces) = prism(outline, at);
         std::fs::write(folder.path().join(format!("part{k}.{kind}")), write(&vertices, &faces))

@@ -2,6 +2,7 @@
 
 #![allow(clippy::format_push_string, reason = "small files, written for people to read")]
 
+use colltrans_testkit::TemporaryFolder;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -13,8 +14,8 @@ use colltrans_assembly::report::glb::animation;
 use colltrans_assembly::{Assembly, Ignored, ReadError};
 use glam::DVec3;
 
-fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
+fn folder(files: &[(&str, &str)]) -> TemporaryFolder {
+    let folder = TemporaryFolder::new();
     for (name, text) in files {
         let path = folder.path().join(name);
         std::fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -223,7 +224,7 @@ fn what_is_written_as_glb_is_read_back() {
         part("cube", &[cuboid([0.0; 3], [1.0, 2.0, 3.0])]),
     ];
     let assembly = Assembly::new(parts).unwrap().with_unit("m");
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     let file = folder.path().join("a.glb");
     std::fs::write(&file, animation(&assembly, &Plan::default())).unwrap();
     let back = open(&file).unwrap();
@@ -246,7 +247,7 @@ fn items_of_a_3mf_package_are_placed_and_its_unit_is_said() {
         <component objectid="1" transform="0 1 0 -1 0 0 0 0 1 0 0 0"/></components></object></resources>
         <build><item objectid="1" transform="2 0 0 0 2 0 0 0 2 10 0 0"/><item objectid="2"/></build></model>"#;
     let package = |model: &str| package(&[("3D/3dmodel.model", model)]);
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     let file = folder.path().join("a.3mf");
     std::fs::write(&file, package(&model)).unwrap();
     let assembly = open(&file).unwrap();
@@ -303,7 +304,7 @@ fn gltf_files_whose_numbers_do_not_fit_are_refused() {
             "buffers": [{"byteLength": 54, "uri": format!("data:;base64,{data}")}],
         })
     };
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     let path = folder.path().join("a.gltf");
     let read = |positions: usize, indices: usize| {
         std::fs::write(&path, file(positions, indices).to_string()).unwrap();
@@ -325,7 +326,7 @@ fn hidden_and_empty_gltf_nodes_are_left_out_with_a_note() {
     let parts = [("seen", 0.0), ("hidden", 2.0), ("lines", 4.0)];
     let parts = parts.map(|(name, x)| part(name, &cube(x)));
     let assembly = Assembly::new(parts.into()).unwrap().with_unit("m");
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     let path = folder.path().join("a.gltf");
     let glb = animation(&assembly, &Plan::default());
     let length = u32::from_le_bytes(glb[12..16].try_into().unwrap()) as usize;
@@ -361,7 +362,7 @@ fn objects_of_3mf_without_triangles_are_left_out_with_a_note() {
          name=\"bare\"><mesh><vertices><vertex x=\"0\" y=\"0\" z=\"0\"/></vertices><triangles/></mesh></object>\
          </resources><build><item objectid=\"1\"/><item objectid=\"2\"/></build></model>"
     );
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     let file = folder.path().join("a.3mf");
     std::fs::write(&file, package(&[("3D/3dmodel.model", &model)])).unwrap();
     let assembly = open(&file).unwrap();
@@ -378,7 +379,7 @@ fn meshes_that_the_build_or_the_scene_does_not_place_are_named_in_a_note() {
          name=\"spare\">{cube}</object><object id=\"3\"><components><component objectid=\"1\"/></components>\
          </object></resources><build><item objectid=\"3\"/></build></model>"
     );
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     let file = folder.path().join("a.3mf");
     std::fs::write(&file, package(&[("3D/3dmodel.model", &model)])).unwrap();
     let found = open(&file).unwrap();

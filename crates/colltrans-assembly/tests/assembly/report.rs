@@ -1,5 +1,6 @@
 //! The file that is printed for the workshop: its pages, what its pictures show, how it is printed and looks on a phone.
 
+use colltrans_testkit::TemporaryFolder;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -181,7 +182,7 @@ fn chromium(folder: &Path, arguments: &[&str], page: &Path) -> Option<std::proce
 
 #[test]
 fn the_browser_prints_a_page_a_step() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     for (name, assembly) in [("box", boxed()), ("stud", stud())] {
         let (plan, page) = reported(&assembly, name);
         let (html, pdf) = (folder.path().join("report.html"), folder.path().join("report.pdf"));
@@ -200,7 +201,7 @@ fn the_browser_prints_a_page_a_step() {
 
 #[test]
 fn nothing_is_wider_than_a_phone() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     let page = reported(&boxed(), "box").1;
     let measure = "<script>document.documentElement.style.width = '390px';
         for (const d of document.querySelectorAll('details')) d.open = true;

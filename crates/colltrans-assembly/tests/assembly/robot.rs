@@ -1,5 +1,6 @@
 //! Robots that move: what is read of URDF and SRDF, rows by names and by order, pairs; a wire that samples miss.
 
+use colltrans_testkit::TemporaryFolder;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -21,7 +22,7 @@ fn arm() -> Robot {
 
 /// A robot of a text.
 fn of(text: &str) -> Result<Robot, ReadError> {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     let file = folder.path().join("robot.urdf");
     std::fs::write(&file, format!("<robot name=\"r\">{text}</robot>")).unwrap();
     robot(&file, &ReadOptions::default())
@@ -152,7 +153,7 @@ fn pairs_leave_out_neighbours_or_what_srdf_says() {
     let arm = arm();
     // base, upper, fore, tool: one joint between each two.
     assert_eq!(arm.pairs(None).expect("pairs"), [[0, 2], [0, 3], [1, 3]]);
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     let file = folder.path().join("arm.srdf");
     let text = "<robot name=\"arm\"><disable_collisions link1=\"tool\" link2=\"base\" reason=\"Never\"/>\
                 <disable_collisions link1=\"base\" link2=\"upper\"/></robot>";

@@ -2,6 +2,7 @@
 
 #![allow(clippy::format_push_string, reason = "small files, written for people to read")]
 
+use colltrans_testkit::TemporaryFolder;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -81,7 +82,7 @@ fn a_single_file_that_names_nothing_is_its_bodies() {
 
 #[test]
 fn files_of_a_folder_stay_parts_and_it_is_said() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     let two = obj(&[("x", cube(2.0, 3.0)), ("", cube(4.0, 5.0))]);
     std::fs::write(folder.path().join("screws.obj"), &two).unwrap();
     std::fs::write(folder.path().join("plate.off"), CUBE).unwrap();

@@ -2,6 +2,7 @@
 
 #![allow(clippy::format_push_string, reason = "small files, written for people to read")]
 
+use colltrans_testkit::TemporaryFolder;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -618,7 +619,7 @@ fn manifests_speak_of_the_file_and_not_of_the_program() {
 fn what_a_source_names_lies_inside_of_its_folder() {
     use std::os::unix::fs::symlink;
 
-    let place = tempfile::tempdir().unwrap();
+    let place = TemporaryFolder::new();
     let at = |name: &str| place.path().join(name);
     let write = |name: &str, text: &str| std::fs::write(at(name), text).unwrap();
     std::fs::create_dir_all(at("in/meshes")).unwrap();

@@ -3,13 +3,13 @@
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
+use colltrans_testkit::TemporaryFolder;
 use serde_json::Value;
-use tempfile::TempDir;
 
 use crate::support::{self, colltrans, data, folder, json, stderr, stdout};
 
 /// A cube from 0 to 1, one upon it, and what places them: as URDF and as manifests.
-fn stacked() -> TempDir {
+fn stacked() -> TemporaryFolder {
     let folder = folder();
     let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
     write(
@@ -142,7 +142,7 @@ fn many_directions_come_from_a_file_or_the_sphere() {
 
 #[test]
 fn the_answer_is_the_same_on_any_number_of_threads() {
-    let (small, out) = (stacked(), tempfile::tempdir().unwrap());
+    let (small, out) = (stacked(), TemporaryFolder::new());
     let ask = |source: &Path, arguments: &[&str], threads: &str| {
         let folder = out.path().join(threads);
         let place = ["--json", "--threads", threads, "-o", folder.to_str().unwrap()];
@@ -552,7 +552,7 @@ fn a_manifest_asks_for_an_order() {
 }
 
 /// A block and a ring beside it that overlaps it by 0.05, on a floor.
-fn pressed() -> TempDir {
+fn pressed() -> TemporaryFolder {
     let folder = folder();
     let mut parts = String::from("unit = 'mm'\n");
     let mut place = |name: &str, files: &str, at: [f64; 3], scale: [f64; 3]| {

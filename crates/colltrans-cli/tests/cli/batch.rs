@@ -1,5 +1,6 @@
 //! `colltrans batch`: order, threads, bad lines, one line after the other.
 
+use colltrans_testkit::TemporaryFolder;
 use std::fmt::Write as _;
 use std::io::{BufRead, BufReader, Write as _};
 use std::process::{Command, Stdio};
@@ -234,7 +235,7 @@ fn a_reader_that_leaves_ends_the_work() {
 
 #[test]
 fn results_never_overwrite_their_queries() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     let path = folder.path().join("queries.jsonl");
     let text = "{\"moving\":{\"points\":[[0,0,0]]},\"fixed\":{\"points\":[[1,0,0]]},\"direction\":[1,0,0]}\n";
     std::fs::write(&path, text).unwrap();

@@ -3,10 +3,10 @@
 use std::path::Path;
 use std::process::Output;
 
+use colltrans_testkit::TemporaryFolder;
 use colltrans_testkit::shapes::{Mesh, block, extruded, ring};
 use glam::DVec3;
 use serde_json::Value;
-use tempfile::TempDir;
 
 use crate::support::{colltrans, data, fields, fields_without, json, stderr, stdout};
 
@@ -65,8 +65,8 @@ fn write_with_twins(mesh: &Mesh, folder: &Path, name: &str) {
 
 /// A pin of radius 1 above a plate whose hole has the same radius and other sides; a block; an open
 /// block; a file that is none.
-fn folder() -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
+fn folder() -> TemporaryFolder {
+    let folder = TemporaryFolder::new();
     write(&pin(1.0, 32, [0.0, 6.0]), folder.path(), "pin.off");
     write(&plate(1.0, 48, [-2.0, 0.0]), folder.path(), "plate.off");
     write(&block([-1.0; 3], [1.0; 3]), folder.path(), "block.off");
@@ -169,7 +169,7 @@ fn the_page_shows_what_is_printed() {
     let (_, rest) = page.split_once("```sh\ncolltrans clearance ").unwrap();
     let (command, rest) = rest.split_once(" --picture bolt.svg\n```\n\n```text\n").unwrap();
     let (shown, _) = rest.split_once("```").unwrap();
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     let picture = folder.path().join("bolt.svg");
     let drawn = ["--picture", picture.to_str().unwrap()];
     assert_eq!(stdout(&run(&root, command, &drawn)), shown);

@@ -4,10 +4,11 @@
 mod make_parts;
 
 use crate::support::data;
+use colltrans_testkit::TemporaryFolder;
 
 #[test]
 fn the_program_writes_the_committed_files() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     make_parts::write_parts(folder.path()).unwrap();
     let mut names: Vec<_> =
         std::fs::read_dir(folder.path()).unwrap().map(|entry| entry.unwrap().file_name()).collect();

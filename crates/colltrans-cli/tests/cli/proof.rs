@@ -1,5 +1,6 @@
 //! `--save-proof` and `colltrans verify`.
 
+use colltrans_testkit::TemporaryFolder;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -153,7 +154,7 @@ fn other_files_are_no_proofs() {
 
 #[test]
 fn the_example_parts_are_proven() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     let part = |name: &str| data().join("gearbox_small").join(name).display().to_string();
     let (cover, housing, gear) = (part("cover.off"), part("housing.off"), part("gear.off"));
     saved(folder.path(), &["clear", &cover, "--from", &housing, &gear, "--direction", "1,0.1,0"]);

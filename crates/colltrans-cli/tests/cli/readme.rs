@@ -1,5 +1,6 @@
 //! The README: its commands print what it shows, and its programs are the files it names.
 
+use colltrans_testkit::TemporaryFolder;
 use std::path::{Path, PathBuf};
 
 use crate::support::{colltrans, stderr, stdout};
@@ -47,7 +48,7 @@ fn commands_print_what_it_shows() {
         if !["text", "json"].contains(&answer.language.as_str()) {
             continue;
         }
-        let pictures = tempfile::tempdir().unwrap();
+        let pictures = TemporaryFolder::new();
         let picture = |word: &str| match word {
             "contact.svg" => pictures.path().join(word).to_str().unwrap().to_owned(),
             _ => word.to_owned(),

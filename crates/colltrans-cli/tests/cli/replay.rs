@@ -2,12 +2,13 @@
 
 use colltrans::glam::DVec3;
 use colltrans::{Cast, ConvexPolyhedron, Pose};
+use colltrans_testkit::TemporaryFolder;
 
 use crate::support::{colltrans, stderr, stdout};
 
 #[test]
 fn a_saved_query_is_answered_again() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).unwrap();
     let start = Pose::from_translation(DVec3::new(-3.0, 0.5, 0.0)).unwrap();
     let cast = Cast::new(cube.at(start), cube.at(Pose::IDENTITY), DVec3::X).unwrap();

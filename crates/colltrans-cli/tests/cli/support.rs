@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 use std::process::Output;
 
 use assert_cmd::Command;
+use colltrans_testkit::TemporaryFolder;
 use serde_json::Value;
-use tempfile::TempDir;
 
 /// The binary, with the current folder where the test's files are.
 pub(crate) fn colltrans(folder: &Path) -> Command {
@@ -38,8 +38,8 @@ pub(crate) fn refused(folder: &Path, arguments: &[&str], code: i32, words: &[&st
 
 /// A folder with a unit cube (`cube.off`), a body that is not convex (`dent.off`), an open one
 /// (`open.off`), a broken file (`broken.off`) and a point cloud (`points.ply`).
-pub(crate) fn folder() -> TempDir {
-    let folder = tempfile::tempdir().unwrap();
+pub(crate) fn folder() -> TemporaryFolder {
+    let folder = TemporaryFolder::new();
     let cube = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n";
     let sides = "4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
     let write = |name: &str, text: String| std::fs::write(folder.path().join(name), text).unwrap();

@@ -1,5 +1,6 @@
 //! A run and the folder it leaves.
 
+use colltrans_testkit::TemporaryFolder;
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -25,7 +26,7 @@ fn run_in(folder: &Path) -> Result<Summary, LabError> {
 
 #[test]
 fn the_folder_holds_everything() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     let results = folder.path().join("not/yet/there");
     let mut heard = Heard::default();
     let summary = run(&experiments(), &PLAN, &mut heard, &results).unwrap();
@@ -77,7 +78,7 @@ fn the_folder_holds_everything() {
 
 #[test]
 fn the_summary_lists_the_claims() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     let text = run_in(folder.path()).unwrap().to_string();
     assert!(
         text.starts_with("Figure 12: time against <size>\n  holds                  12-grows: Time"),
@@ -92,7 +93,7 @@ fn the_summary_lists_the_claims() {
 
 #[test]
 fn data_and_pictures_are_the_same_each_time() {
-    let [one, two] = [(); 2].map(|()| tempfile::tempdir().unwrap());
+    let [one, two] = [(); 2].map(|()| TemporaryFolder::new());
     run_in(one.path()).unwrap();
     run_in(two.path()).unwrap();
     for name in ["figure-12.csv", "figure-12.svg", "figure-12.png", "figure-12-table.csv"] {
@@ -103,7 +104,7 @@ fn data_and_pictures_are_the_same_each_time() {
 
 #[test]
 fn folders_that_cannot_be_made() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     let file = folder.path().join("file");
     std::fs::write(&file, "").unwrap();
     let error = run_in(&file.join("results")).unwrap_err();
@@ -113,7 +114,7 @@ fn folders_that_cannot_be_made() {
 
 #[test]
 fn files_that_cannot_be_written() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     std::fs::create_dir(folder.path().join("figure-12.svg")).unwrap();
     let error = run_in(folder.path()).unwrap_err();
     let path = folder.path().join("figure-12.svg");
@@ -125,7 +126,7 @@ fn files_that_cannot_be_written() {
 #[cfg(target_os = "linux")]
 #[test]
 fn full_disks() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = TemporaryFolder::new();
     std::os::unix::fs::symlink("/dev/full", folder.path().join("report.html")).unwrap();
     let LabError::Write { path, source } = run_in(folder.path()).unwrap_err() else {
         panic!("not about writing")

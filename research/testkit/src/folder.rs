@@ -1,0 +1,64 @@
+//! Folders for the files that a test writes.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::{env, fs, process};
+
+/// An empty folder for temporary files, removed with its contents when this value is dropped.
+///
+/// It takes the place of the crate `tempfile`, which turns on features of what the program depends on: `cargo test`
+/// and `cargo run` would then compile the same libraries twice.
+#[derive(Debug)]
+pub struct TemporaryFolder(PathBuf);
+
+impl TemporaryFolder {
+    /// Creates a folder that no other value of this type, process or earlier run has.
+    ///
+    /// # Panics
+    ///
+    /// If the system's folder for temporary files does not allow it.
+    #[expect(clippy::new_without_default, reason = "a default value would write to the disk")]
+    pub fn new() -> Self {
+        static CREATED: AtomicU64 = AtomicU64::new(0);
+        loop {
+            let number = CREATED.fetch_add(1, Ordering::Relaxed);
+            let name = format!("colltrans-test-{}-{number}", process::id());
+            let folder = env::temp_dir().join(name);
+            match fs::create_dir(&folder) {
+                Ok(()) => return Self(folder),
+                // An earlier process of this number was killed before it removed the folder.
+                Err(error) if error.kind() == std::io::ErrorKind::AlreadyExists => {}
+                Err(error) => panic!("cannot create {}: {error}", folder.display()),
+            }
+        }
+    }
+
+    /// Returns the path of the folder.
+    pub fn path(&self) -> &Path {
+        &self.0
+    }
+}
+
+impl Drop for TemporaryFolder {
+    fn drop(&mut self) {
+        // A folder that cannot be removed does not make the test fail.
+        let _ = fs::remove_dir_all(&self.0);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::TemporaryFolder;
+    use std::fs;
+
+    #[test]
+    fn folders_are_new_and_are_removed_with_their_files() {
+        let [one, two] = [TemporaryFolder::new(), TemporaryFolder::new()];
+        assert_ne!(one.path(), two.path());
+        fs::create_dir(one.path().join("inner")).unwrap();
+        fs::write(one.path().join("inner/file"), "content").unwrap();
+        let path = one.path().to_owned();
+        drop(one);
+        assert!(!path.exists() && two.path().is_dir());
+    }
+}

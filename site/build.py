@@ -31,7 +31,9 @@ TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
 #: What people build upon; the others are programs, or measure these.
 CRATES = (
     "colltrans",
+    "colltrans-kernel",
     "colltrans-convex",
+    "colltrans-solid",
     "colltrans-motion",
     "colltrans-removal",
     "colltrans-scene",

@@ -325,7 +325,7 @@ def main() -> None:
 
     part(
         "program",
-        lambda: run("cargo", "build", "--release", "--quiet", "-p", "colltrans-cli"),
+        lambda: run("cargo", "build", "--release", "--quiet", "--bin", "colltrans"),
     )
     part("texts", lambda: gather(source))
     part("help", lambda: command_line(source, program))

@@ -21,7 +21,7 @@ Batch: TypeAlias = Callable[[Iterable[dict[str, Any]]], list[dict[str, Any]]]
 @pytest.fixture(scope="session")
 def cli() -> Path:
     """The program ``colltrans``, built from this checkout."""
-    build = ["cargo", "build", "--release", "-p", "colltrans-cli", "--message-format=json"]
+    build = ["cargo", "build", "--release", "--bin", "colltrans", "--message-format=json"]
     told = subprocess.run(build, cwd=ROOT, check=True, capture_output=True, text=True).stdout
     messages = map(json.loads, told.splitlines())
     (program,) = (m["executable"] for m in messages if m.get("executable"))

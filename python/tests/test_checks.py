@@ -1,10 +1,14 @@
-"""``.ci/run`` reports each part, and fails where a part fails or cannot run."""
+"""Checks of a change: ``.ci/run`` fails where a part cannot run; cargo compiles nothing twice."""
 
+import hashlib
+import json
 import os
 import re
 import shutil
 import subprocess
+import tomllib
 from pathlib import Path
+from typing import Any
 
 import pytest
 from conftest import ROOT
@@ -107,3 +111,70 @@ def test_an_unknown_part_is_refused_with_the_names_of_all_parts(
 ) -> None:
     status, output = check(machine, *arguments)
     assert status == 2 and "style readme tests checked" in output
+
+
+def compile_units(*arguments: str) -> list[Any]:
+    """Returns the compile units of a cargo command, each with what its output depends on."""
+    command = ["cargo", *arguments, "--release", "--unit-graph", "-Zunstable-options"]
+    ran = subprocess.run(
+        command,
+        cwd=ROOT,
+        # The graph is an unstable output of cargo.
+        env={**os.environ, "RUSTC_BOOTSTRAP": "1"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    units = json.loads(ran.stdout)["units"]
+
+    def key(number: int) -> Any:
+        unit = units[number]
+        if "key" not in unit:
+            parts = [unit[part] for part in ("pkg_id", "mode", "platform", "profile", "features")]
+            needs = sorted(key(need["index"]) for need in unit["dependencies"])
+            described = [*parts, unit["target"]["name"], unit["target"]["kind"], needs]
+            digest = hashlib.sha256(json.dumps(described, sort_keys=True).encode()).hexdigest()
+            unit["key"] = f"{unit['mode']} {unit['target']['name']} {digest}"
+        return unit["key"]
+
+    return [key(number) for number in range(len(units))]
+
+
+def test_cargo_run_compiles_nothing_after_cargo_test() -> None:
+    # `cargo run` builds the same units as this, but prints no graph of them without an error.
+    tests, program = compile_units("test"), compile_units("build", "--bin", "colltrans")
+    assert [unit for unit in program if unit not in tests] == []
+
+
+def test_cargo_test_compiles_each_library_of_the_product_once() -> None:
+    # Unit tests compile the library once more: CI asks for them.
+    crates = {path.parent.name for path in ROOT.glob("crates/*/Cargo.toml")}
+    programs = [unit.split()[1] for unit in compile_units("test") if unit.startswith("test ")]
+    assert len(programs) > 5
+    assert not {name.replace("_", "-") for name in programs} & crates
+
+
+def test_workflows_name_every_action_by_its_commit() -> None:
+    uses = [
+        line.split("uses:")[1].strip()
+        for file in ROOT.glob(".github/workflows/*.yml")
+        for line in file.read_text().splitlines()
+        if "uses:" in line
+    ]
+    pinned = re.compile(r"[\w-]+/[\w-]+@[0-9a-f]{40} # v\d+\.\d+\.\d+")
+    assert len(uses) > 5 and [use for use in uses if not pinned.fullmatch(use)] == []
+
+
+def test_the_workflow_of_a_change_runs_every_part() -> None:
+    script, workflow = (
+        (ROOT / file).read_text() for file in (".ci/run", ".github/workflows/ci.yml")
+    )
+    every = set(re.findall(r"^part_(\w+)\(\)", script, re.MULTILINE))
+    listed = re.findall(r"^        part: \[(.*)\]$", workflow, re.MULTILINE)[0].split(", ")
+    assert {*listed, *re.findall(r"part: (\w+) }", workflow)} == every
+
+
+def test_the_pinned_compiler_is_the_oldest_that_is_supported() -> None:
+    pinned = tomllib.loads((ROOT / "rust-toolchain.toml").read_text())["toolchain"]
+    oldest = tomllib.loads((ROOT / "Cargo.toml").read_text())["workspace"]["package"]
+    assert pinned["channel"] == f"{oldest['rust-version']}.0"

@@ -3,8 +3,10 @@
 //! [`oracle`]: the judge, in exact rational arithmetic, with the settings that are hard on purpose.
 //! Beside it what knows nothing of the library: [`random`] numbers on streams that do not disturb each
 //! other, [`shapes`] and [`solids`] as vertices and faces, [`machines`] made of parts, [`timing`] of single calls with the statistics
-//! of many, and [`provenance`]: where numbers come from. Files of tests lie in a [`TemporaryFolder`].
+//! of many, and [`provenance`]: where numbers come from. Files of tests lie in a [`TemporaryFolder`]; [`cases`]
+//! is the number of random cases.
 
+mod cases;
 mod folder;
 pub mod machines;
 pub mod oracle;
@@ -14,4 +16,5 @@ pub mod shapes;
 pub mod solids;
 pub mod timing;
 
+pub use cases::cases;
 pub use folder::TemporaryFolder;

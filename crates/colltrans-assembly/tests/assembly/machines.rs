@@ -84,6 +84,7 @@ fn unscrewed(assembly: &Assembly, plan: &Plan, turns: std::ops::Range<f64>) {
 
 /// Threads with play, which do not overlap: found where they hold, and taken as suggested.
 #[test]
+#[ignore = "long: threads of many facets"]
 fn screws_in_modelled_threads_are_found_and_unscrewed() {
     let drawn = assembled(threaded_block());
     let fit = Fit::default_for(&drawn);
@@ -100,6 +101,7 @@ fn screws_in_modelled_threads_are_found_and_unscrewed() {
 }
 
 #[test]
+#[ignore = "long: threads of many facets"]
 fn legs_that_run_into_their_threads_are_turned_to_where_they_fit_and_unscrewed() {
     let drawn = assembled(screwed_table());
     let fit = Fit::default_for(&drawn);

@@ -232,6 +232,7 @@ fn what_is_glued_leaves_as_one_and_an_overlap_without_end_lets_what_crosses_pass
 }
 
 #[test]
+#[ignore = "long: threads of many facets"]
 fn a_thread_is_suggested_where_a_nut_is_all_around_its_screw() {
     let wave = |phase: f64| 5.0 + 0.6 * (1.0 - (2.0 * phase - 1.0).abs());
     let screw = helical(None, wave, 1.25, 8);

@@ -224,6 +224,7 @@ fn a_wanted_key_that_is_larger_than_its_plate_moves_and_the_plate_rests() {
 }
 
 #[test]
+#[ignore = "long: 150 puzzles, and all moves of their cubes"]
 fn random_puzzles_come_apart_as_all_moves_of_cubes_say() {
     let mut random = Random::new(29);
     // Stuck, taken apart, and with more than one, two and three moves.

@@ -141,6 +141,7 @@ fn many_directions_come_from_a_file_or_the_sphere() {
 }
 
 #[test]
+#[ignore = "long: plans of a whole machine"]
 fn the_answer_is_the_same_on_any_number_of_threads() {
     let (small, out) = (stacked(), TemporaryFolder::new());
     let ask = |source: &Path, arguments: &[&str], threads: &str| {
@@ -510,6 +511,7 @@ fn a_full_disk_leaves_nothing_and_is_said() {
 }
 
 #[test]
+#[ignore = "long: plans of a whole machine"]
 fn what_is_asked_of_a_plan_is_kept_to() {
     let text = answered(&data(), &["gearbox_small", "--fixed", "housing", "--remove", "cover"]);
     let words = "cover: 4 other parts go (bolt_0, bolt_1, bolt_2, bolt_3); no fewer are enough";

@@ -257,6 +257,7 @@ fn parts_with_holes_turn() {
 }
 
 #[test]
+#[ignore = "long: solids that overlap as they turn"]
 fn overlaps_at_the_start_may_be_ignored() {
     let folder = folder();
     // A cube of side 1, sunk in by a quarter, is turned out of the other one about its edge.

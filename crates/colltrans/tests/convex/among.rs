@@ -7,6 +7,7 @@ use colltrans::{
     Among, ByKind, CertificateError, ConvexPolyhedron, ObstacleId, Obstacles, Pose, QueryError,
     Solid,
 };
+use colltrans_testkit::cases;
 use colltrans_testkit::oracle::among::{FAMILIES, Setting};
 use colltrans_testkit::random::Random;
 
@@ -22,7 +23,7 @@ fn at(x: f64, y: f64, z: f64) -> Pose {
 fn all_families_are_right() {
     let (mut stopped, mut tied, mut overlapped, mut refused) = (0, 0, 0, 0);
     for family in FAMILIES {
-        for seed in 0..60 {
+        for seed in 0..cases(60) {
             let setting = Setting::draw(family, seed).expect("a setting");
             let seen = setting.examine().unwrap_or_else(|e| panic!("{family}:{seed}: {e}"));
             stopped += u32::from(seen.stopped);
@@ -31,7 +32,7 @@ fn all_families_are_right() {
             refused += seen.refused;
         }
     }
-    assert!(stopped > 50 && tied > 50 && overlapped > 50 && refused > 500);
+    assert!([stopped, tied, overlapped].iter().all(|&n| n > cases(50)) && refused > cases(500));
 }
 
 /// Small boxes, a quarter of a unit, one in each cell of a grid.

@@ -4,6 +4,7 @@ use std::mem::discriminant;
 
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{Cast, Outcome, Pose, Solver};
+use colltrans_testkit::cases;
 use colltrans_testkit::oracle::check::Judge;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::cuboid;
@@ -148,7 +149,7 @@ fn thin_slabs() {
 #[test]
 fn shadows_as_wide_as_rounding() {
     let mut differ = 0;
-    for seed in 0..30_000 {
+    for seed in 0..cases(30_000) {
         let mut rng = Random::new(seed);
         let mut needle = [0; 4].map(|_| rng.vector());
         needle[0].z = -10.0_f64.powf(rng.range(10.0, 16.0));
@@ -183,7 +184,7 @@ fn shadows_as_wide_as_rounding() {
 /// portals that are rounded to the other side.
 #[test]
 fn lines_in_upright_planes() {
-    for seed in 0..20_000 {
+    for seed in 0..cases(20_000) {
         let mut rng = Random::new(seed);
         let turn = rng.rotation();
         let mut fan: Vec<DVec3> = (0..rng.int(6, 40))

@@ -4,6 +4,7 @@ use colltrans::glam::{DMat3, DQuat, DVec3};
 use colltrans::{
     ConvexPolyhedron, Distance, NearPoints, Pair, PlaneGap, Pose, QueryError, VertexId, Within,
 };
+use colltrans_testkit::cases;
 use colltrans_testkit::oracle::nearest::Judge;
 use colltrans_testkit::oracle::settings::{FAMILIES, near_contact, setting};
 use colltrans_testkit::random::Random;
@@ -37,7 +38,7 @@ fn judged(p: &ConvexPolyhedron, a: Pose, q: &ConvexPolyhedron, b: Pose) -> (Dist
 fn all_families_are_right() {
     let mut apart = 0;
     for (family, _) in FAMILIES {
-        for seed in 0..60 {
+        for seed in 0..cases(60) {
             let setting = setting(family, seed);
             let bodies = setting.bodies().expect("bodies");
             let (distance, noises) =
@@ -49,7 +50,7 @@ fn all_families_are_right() {
             apart += u32::from(distance.lower > 0.0);
         }
     }
-    assert!(apart > 600, "{apart}");
+    assert!(apart > cases(600), "{apart}");
 }
 
 #[test]
@@ -245,7 +246,7 @@ fn depths_of_boxes_are_known() {
 fn depths_of_all_families_are_right() {
     let mut deep = 0;
     for (family, _) in FAMILIES {
-        for seed in 0..24 {
+        for seed in 0..cases(24) {
             let setting = setting(family, seed);
             let bodies = setting.bodies().expect("bodies");
             // One within the other, more or less.
@@ -265,7 +266,7 @@ fn depths_of_all_families_are_right() {
             deep += u32::from(depth.lower > 0.0);
         }
     }
-    assert!(deep > 200, "{deep}");
+    assert!(deep > cases(200), "{deep}");
 }
 
 #[test]

@@ -6,6 +6,7 @@ use colltrans::{
     Cast, Clearance, Contact, ConvexPolyhedron, Outcome, Pose, QueryError, Solver, StartedFrom,
     Tracker, WhyFree,
 };
+use colltrans_testkit::cases;
 use colltrans_testkit::oracle::keep::Judge;
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::random::Random;
@@ -40,7 +41,7 @@ fn judged(cast: &Cast) -> Option<Contact> {
 fn all_families_are_right() {
     let mut contacts = 0;
     for (family, _) in FAMILIES {
-        for seed in 0..12 {
+        for seed in 0..cases(12) {
             let setting = setting(family, seed);
             let bodies = setting.bodies().expect("bodies");
             let cast = setting.query(&bodies).expect("a query");
@@ -49,7 +50,7 @@ fn all_families_are_right() {
             }
         }
     }
-    assert!(contacts > 900, "{contacts}");
+    assert!(contacts > cases(900), "{contacts}");
 }
 
 #[test]
@@ -160,7 +161,7 @@ fn who_glides_over_another_at_about_the_gap_is_told_where() {
     assert!(kept.reversed().verify(&proof).expect("a proof") <= proof.rounding);
     assert!(matches!(kept.clearance(), Ok(Clearance::Overlapping(_))));
     for tilt in [1e-15, 1e-14, 3e-14, 6.3e-14, 1e-13, 1e-12] {
-        for more in (0..60).map(|k| 5e-15 * f64::from(k)) {
+        for more in (0..cases(60)).map(|k| 5e-15 * f64::from(k)) {
             over(tilt, 0.01 + more);
             over(-tilt, 0.01 + more);
         }
@@ -282,7 +283,7 @@ fn trackers_answer_as_one_off_queries() {
     let mut random = Random::new(7);
     let [p, q] = [0, 1].map(|_| body(&random_hull(60, &mut random).vertices));
     let (mut tracker, mut looks) = (Tracker::new(), [0, 0]);
-    for step in 0..200 {
+    for step in 0..cases(200) {
         let turn = DQuat::from_rotation_z(1e-3 * f64::from(step));
         let start = Pose::new(turn, DVec3::new(-5.0, 0.2, 1e-3 * f64::from(step)));
         let cast = Cast::new(p.at(start.expect("a pose")), q.at(Pose::IDENTITY), DVec3::X);
@@ -324,7 +325,7 @@ fn files_hold_the_gap() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(300))]
+    #![proptest_config(ProptestConfig::with_cases(cases(300)))]
 
     #[test]
     fn any_gap_and_solver(

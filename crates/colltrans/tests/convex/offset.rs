@@ -4,6 +4,7 @@ use std::collections::BTreeSet;
 
 use colltrans::solid::SolidCast;
 use colltrans::{BuildError, Cast, Clearance, ConvexPolyhedron, InputVertex, Pose, Solid};
+use colltrans_testkit::cases;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{
     Mesh, cuboid, of_bits, prism, random_hull, ring_sphere, superellipsoid,
@@ -158,6 +159,7 @@ fn placings(random: &mut Random) -> Vec<(DVec3, DQuat, DVec3)> {
 }
 
 #[test]
+#[ignore = "long: every plane of many bodies in many places"]
 fn planes_move_by_the_amount_and_no_farther() {
     let mut random = Random::new(11);
     for mesh in bodies(&mut random) {
@@ -208,7 +210,7 @@ fn check_by_triples(body: &ConvexPolyhedron, inwards: f64) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(64))]
+    #![proptest_config(ProptestConfig::with_cases(cases(64)))]
 
     #[test]
     fn small_bodies_are_the_intersection_of_their_moved_half_spaces(
@@ -480,6 +482,7 @@ fn bodies_of_lower_dimension() {
 }
 
 #[test]
+#[ignore = "long: 100,000 vertices"]
 fn large_bodies_shrink_and_grow() {
     let body = body(&random_hull(100_000, &mut Random::new(9)).vertices);
     let made = [body.shrunk(0.1).expect("it fits"), body.grown(0.1).expect("an amount")];

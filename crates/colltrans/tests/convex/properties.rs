@@ -6,6 +6,7 @@ use colltrans::glam::DVec3;
 use colltrans::{
     Clearance, ConvexPolyhedron, Outcome, OverlapAhead, Pose, QueryError, Solver, WhyFree,
 };
+use colltrans_testkit::cases;
 use colltrans_testkit::oracle::scene::Scene;
 use colltrans_testkit::oracle::settings::{Bodies, FAMILIES, Setting, setting};
 use colltrans_testkit::oracle::shadow::sideways_overlap;
@@ -81,7 +82,7 @@ fn advanced(setting: &Setting, translation: f64) -> Pose {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 512, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: cases(512), failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn both_solvers_agree(setting in any_setting()) {

@@ -5,6 +5,7 @@ use colltrans::{
     Cast, Clearance, ContactRange, ConvexPolyhedron, Focus, Options, Outcome, OverlapAhead, Pair,
     Pose, QueryError, Region, Solver, StartedFrom, Steps, Tracker,
 };
+use colltrans_testkit::cases;
 use colltrans_testkit::oracle::check::same;
 use colltrans_testkit::oracle::sequences::Walk;
 use colltrans_testkit::oracle::settings::{Bodies, FAMILIES, Setting};
@@ -24,7 +25,7 @@ fn every_family_against_one_off_queries() {
     let mut wrong = Vec::new();
     let (mut features, mut queries) = (0, 0);
     for (family, ..) in FAMILIES {
-        for seed in 0..WALKS {
+        for seed in 0..cases(WALKS) {
             let mut walk = Walk::new(family, seed);
             let bodies = walk.setting.bodies().expect("a body");
             let mut lanes = Lanes::new(&bodies);

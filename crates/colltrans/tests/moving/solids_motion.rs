@@ -10,6 +10,7 @@ use colltrans::motion::{
 };
 use colltrans::solid::SolidCast;
 use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose, Solid};
+use colltrans_testkit::cases;
 use colltrans_testkit::oracle::solids::turning;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{Mesh, block, random_hull};
@@ -383,7 +384,7 @@ fn all_families_turn() {
     let families =
         turning::FAMILIES.into_iter().chain(["grid", "mould", "sheets", "balls", "thin"]);
     for family in families.chain(["convex-boxes", "convex-face-face", "convex-identical"]) {
-        for seed in 0..12 {
+        for seed in 0..cases(12) {
             let seen = turning::examine(family, seed);
             assert!(seen.is_ok(), "{family}:{seed} {seen:?}");
         }

@@ -12,6 +12,7 @@ use colltrans::{
     Among, Cast, Clearance, ConvexPolyhedron, Feature, InputVertex, Obstacles, Outcome, Pair, Pose,
     Solid, Within,
 };
+use colltrans_testkit::cases;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{self, Mesh};
 
@@ -357,7 +358,7 @@ fn any_pose(random: &mut Random) -> Pose {
 fn a_point_enters_cubes_where_fractions_say() {
     let mut random = Random::new(5_201);
     let (mut asked, mut met, mut overlapping, mut moved) = (0, 0, 0, 0);
-    for _ in 0..250 {
+    for _ in 0..cases(250) {
         let side = 2 + random.index(2);
         let cubes = Body::random(&mut random, side);
         let Some(solid) = cubes.solid() else { continue };
@@ -411,7 +412,7 @@ fn a_point_enters_cubes_where_fractions_say() {
         }
     }
     eprintln!("{asked} points, {met} met, {moved} stopped, {overlapping} inside");
-    assert!(met > 1_000 && overlapping > 100 && moved > 300);
+    assert!(met > cases(1_000) && overlapping > cases(100) && moved > cases(300));
 }
 
 /// Whether an open part of the segment from `p` to `q`, over `by`, is inside.
@@ -423,7 +424,7 @@ fn runs_inside(body: &Body, p: Point, q: Point) -> bool {
 fn a_segment_overlaps_and_touches_cubes_as_fractions_say() {
     let mut random = Random::new(5_202);
     let (mut overlapping, mut apart) = (0, 0);
-    for _ in 0..400 {
+    for _ in 0..cases(400) {
         let cubes = Body::random(&mut random, 2);
         let Some(solid) = cubes.solid() else { continue };
         for _ in 0..8 {
@@ -455,14 +456,14 @@ fn a_segment_overlaps_and_touches_cubes_as_fractions_say() {
             *(if wanted { &mut overlapping } else { &mut apart }) += 1;
         }
     }
-    assert!(overlapping > 500 && apart > 300, "{overlapping} {apart}");
+    assert!(overlapping > cases(500) && apart > cases(300), "{overlapping} {apart}");
 }
 
 #[test]
 fn a_segment_is_stopped_where_it_first_runs_into_cubes() {
     let mut random = Random::new(5_203);
     let (mut stopped, mut free) = (0, 0);
-    for _ in 0..150 {
+    for _ in 0..cases(150) {
         let cubes = Body::random(&mut random, 2);
         let Some(solid) = cubes.solid() else { continue };
         for _ in 0..4 {
@@ -500,7 +501,7 @@ fn a_segment_is_stopped_where_it_first_runs_into_cubes() {
             }
         }
     }
-    assert!(stopped > 80 && free > 80, "{stopped} {free}");
+    assert!(stopped > cases(80) && free > cases(80), "{stopped} {free}");
 }
 
 fn cube() -> ConvexPolyhedron {
@@ -616,7 +617,7 @@ fn points_and_segments_that_turn_into_a_body_meet_it_in_proven_bounds() {
     let mut random = Random::new(5_204);
     let rest = Motion::still(still());
     let (mut met, mut free, mut grazed) = (0, 0, 0);
-    for _ in 0..600 {
+    for _ in 0..cases(600) {
         let body = Body::random(&mut random, 2);
         let Some(solid) = body.solid() else { continue };
         let [p, q] = [0; 2].map(|_| body.place(small(&mut random, -3, 9)));
@@ -663,7 +664,7 @@ fn points_and_segments_that_turn_into_a_body_meet_it_in_proven_bounds() {
         }
     }
     eprintln!("{met} met, {grazed} grazed, {free} free");
-    assert!(met > 40 && free > 10, "{met} {grazed} {free}");
+    assert!(met > cases(40) && free > cases(10), "{met} {grazed} {free}");
 }
 
 fn stop(body: &ConvexPolyhedron, solid: &Solid, d: Point) -> Option<f64> {

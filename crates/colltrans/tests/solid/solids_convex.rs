@@ -5,6 +5,7 @@
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::solid::{SolidCast, SolidFree, SolidOptions, StartOverlap};
 use colltrans::{Bounded, Cast, Clearance, ConvexPolyhedron, Pose, Solid};
+use colltrans_testkit::cases;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{Mesh, prism, ring_sphere};
 use colltrans_testkit::solids::slab;
@@ -359,7 +360,7 @@ fn what_a_hull_lacks_is_not_left_behind() {
 fn facets_of_dented_plates_stop_the_body() {
     let mut random = Random::new(3);
     for dent in [0.0, 1e-14, 1e-13, 1e-12, 1e-11, 1e-10, 3e-10] {
-        for round in 0..400 {
+        for round in 0..cases(400) {
             let mut plate = |parts| loop {
                 let mut mesh = slab(DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.25), parts);
                 for v in &mut mesh.vertices {

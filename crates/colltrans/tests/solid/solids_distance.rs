@@ -2,6 +2,7 @@
 
 use colltrans::solid::{Apart, Cover, DistanceCertificate, SolidNear, SolidPair};
 use colltrans::{ConvexPolyhedron, Pair, Pose, QueryError, Solid, Within};
+use colltrans_testkit::cases;
 use colltrans_testkit::oracle::settings;
 use colltrans_testkit::oracle::solids::nearest::{MESHES, Seen, Setting};
 use colltrans_testkit::oracle::solids::settings::FAMILIES;
@@ -22,7 +23,7 @@ fn distances_agree_with_exact_arithmetic() {
     let known = FAMILIES.into_iter().chain(sheets::FAMILIES).chain(MESHES);
     let mut seen = [0; 4];
     for family in known.map(str::to_owned).chain(convex) {
-        for seed in 0..if MESHES.contains(&family.as_str()) { 30 } else { 8 } {
+        for seed in 0..if MESHES.contains(&family.as_str()) { cases(30) } else { cases(8) } {
             let Some(setting) = Setting::draw(&family, seed).expect("a family") else { continue };
             match setting.examine() {
                 Ok(kind) => seen[kind as usize] += 1,
@@ -33,7 +34,7 @@ fn distances_agree_with_exact_arithmetic() {
     for (kind, least) in
         [(Seen::Touching, 20), (Seen::Inside, 2), (Seen::Near, 20), (Seen::Apart, 20)]
     {
-        assert!(seen[kind as usize] > least, "{kind:?} only {} times", seen[kind as usize]);
+        assert!(seen[kind as usize] > cases(least), "{kind:?} only {} times", seen[kind as usize]);
     }
 }
 
@@ -202,7 +203,7 @@ fn poses_that_stretch_are_where_their_entries_say() {
     let single = |m: DMat3| DMat3::from_cols_array(&m.to_cols_array().map(|x| f64::from(x as f32)));
     let mut random = Random::new(3);
     let mut apart = 0;
-    for k in 0..60 {
+    for k in 0..cases(60) {
         let (a, b) = (solid(&bumpy_ball(48)), solid(&bumpy_ball(108)));
         let mut pose = |at: DVec3| {
             let stretch = 1.0 + random.range(-3e-7, 3e-7);
@@ -216,5 +217,5 @@ fn poses_that_stretch_are_where_their_entries_say() {
             Err(error) => panic!("{k}: {error}"),
         }
     }
-    assert!(apart > 30, "{apart}");
+    assert!(apart > cases(30), "{apart}");
 }

@@ -3,6 +3,7 @@
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::solid::{SolidCast, SolidCertificate, StartOverlap};
 use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, QueryError, Solid};
+use colltrans_testkit::cases;
 use colltrans_testkit::oracle::settings;
 use colltrans_testkit::oracle::solids::keep::{Seen, examine};
 use colltrans_testkit::oracle::solids::nearest::MESHES;
@@ -30,13 +31,13 @@ fn all_families_are_right() {
     let known = FAMILIES.into_iter().chain(sheets::FAMILIES).chain(MESHES).map(str::to_owned);
     let mut counts = [0; 3];
     for family in known.chain(convex) {
-        for seed in 0..8 {
+        for seed in 0..cases(8) {
             let seen = examine(&family, seed).unwrap_or_else(|e| panic!("{family}:{seed}: {e}"));
             counts[seen.map_or(0, |seen| seen as usize)] += 1;
         }
     }
     let [_, free, blocked] = counts;
-    assert!(free > 30 && blocked > 30, "{free} {blocked}, {:?}", Seen::Blocked);
+    assert!(free >= cases(31) && blocked >= cases(31), "{free} {blocked}, {:?}", Seen::Blocked);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 use std::collections::HashMap;
 
+use colltrans_testkit::cases;
 use colltrans_testkit::oracle::solids::settings::{FAMILIES, Seen, Setting};
 use colltrans_testkit::oracle::solids::sheets;
 
@@ -12,7 +13,7 @@ fn each_was_seen(seen: &HashMap<Seen, usize>) {
     let least = [Seen::Overlapping, Seen::Free, Seen::BlockedNow, Seen::Blocked];
     for outcome in least {
         let count = seen.get(&outcome).copied().unwrap_or(0);
-        assert!(count as u64 > SETTINGS / 40, "{outcome:?} only {count} times");
+        assert!(count as u64 > cases(SETTINGS) / 40, "{outcome:?} only {count} times");
     }
 }
 
@@ -22,7 +23,7 @@ fn bodies_of_cubes_agree_with_exact_arithmetic() {
     for family in FAMILIES {
         // Coordinates without exact values in `f64` take whole numbers for every tie.
         let slow = matches!(family, "rotated" | "mould");
-        for seed in 0..if slow { SETTINGS / 20 } else { SETTINGS * 9 / 40 } {
+        for seed in 0..if slow { cases(SETTINGS) / 20 } else { cases(SETTINGS) * 9 / 40 } {
             let setting = Setting::draw(family, seed).expect("a family");
             match setting.examine(seed.is_multiple_of(64)) {
                 Ok(outcome) => *seen.entry(outcome).or_default() += 1,
@@ -37,7 +38,9 @@ fn bodies_of_cubes_agree_with_exact_arithmetic() {
 fn open_surfaces_agree_with_exact_arithmetic() {
     let mut seen: HashMap<Seen, usize> = HashMap::new();
     for family in sheets::FAMILIES {
-        for seed in 0..if family == "sheets-rotated" { SETTINGS / 20 } else { SETTINGS / 5 } {
+        for seed in
+            0..if family == "sheets-rotated" { cases(SETTINGS) / 20 } else { cases(SETTINGS) / 5 }
+        {
             let setting = sheets::Setting::draw(family, seed).expect("a setting");
             match setting.examine() {
                 Ok(outcome) => *seen.entry(outcome).or_default() += 1,

@@ -17,8 +17,8 @@ use colltrans::glam::DVec3;
 use colltrans::{NarrowFrom, Narrowing, Pose, Solver, Until};
 use colltrans_mesh::body::BodyOptions;
 
-use crate::among::is_list;
 use crate::failure::{Code, Failure};
+use crate::inputs::is_list;
 pub(crate) use assembly::{AssemblyArguments, ConstraintArguments, RoleArguments};
 pub(crate) use directions::DirectionsArguments;
 use help::{

@@ -10,13 +10,12 @@ use colltrans_mesh::body::{BodyOptions, LoadError};
 
 use crate::args::{self, CastArguments, DirectionArguments, PairArguments};
 use crate::body::{self, Part};
+use crate::case;
 use crate::failure::{Code, Failure, note, print};
-use crate::inputs::refuse_picture;
+use crate::inputs::{refuse_picture, refuse_proof};
 use crate::outputs;
 use crate::picture::{Scene, draw};
-use crate::proof::{self, refuse_proof};
 use crate::record::{Hulls, Line};
-use crate::replay;
 use crate::report;
 
 pub(crate) fn run(arguments: &CastArguments, question: Question) -> Result<(), Failure> {
@@ -141,11 +140,11 @@ fn answer_one(
     parts: [&Part; 2],
 ) -> Result<(), Failure> {
     let answered = ask(question, cast, parts);
-    let (answer, told) = answered.map_err(|error| replay::failure(error, cast))?;
+    let (answer, told) = answered.map_err(|error| case::failure(error, cast))?;
     let in_words = || report::answer(&answer, &told, cast.direction());
     print(&if arguments.json { told.json() } else { in_words() })?;
     if let Some(path) = &arguments.save_proof {
-        proof::save(path, &answer.proof(cast))?;
+        outputs::write_proof(path, &answer.proof(cast).to_json())?;
     }
     let Some(path) = &arguments.picture else { return Ok(()) };
     let range = match answer {
@@ -172,7 +171,7 @@ fn scan<'a>(
     for (direction, cast) in casts {
         let answered = cast.map_err(Failure::from).and_then(|cast| {
             let answered = ask(question, &cast, parts);
-            answered.map_err(|error| replay::failure(error, &cast))
+            answered.map_err(|error| case::failure(error, &cast))
         });
         let mut line = match answered {
             Ok((_, line)) => line,

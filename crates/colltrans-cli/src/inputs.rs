@@ -52,6 +52,19 @@ pub(crate) fn refuse_picture(picture: Option<&Path>, inputs: &[&Path]) -> Result
     })
 }
 
+/// A proof must not take the place of what is read, nor of the picture.
+pub(crate) fn refuse_proof(
+    proof: Option<&Path>,
+    picture: Option<&Path>,
+    inputs: &[&Path],
+) -> Result<(), Failure> {
+    let Some(proof) = proof else { return Ok(()) };
+    if picture == Some(proof) {
+        return Err(Failure::new(Code::Usage, "--save-proof and --picture name one file"));
+    }
+    refuse_overwriting(proof, inputs, "give the proof another name")
+}
+
 /// An output must not take the place of what is read; says what to do instead.
 pub(crate) fn refuse_overwriting(
     output: &Path,
@@ -69,6 +82,11 @@ pub(crate) fn refuse_overwriting(
         )),
         None => Ok(()),
     }
+}
+
+/// Whether a file is one of obstacles, by its name.
+pub(crate) fn is_list(file: &Path) -> bool {
+    file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("jsonl"))
 }
 
 /// A file that must not be read, because something else will take its place; by any thread.

@@ -7,14 +7,15 @@
 //! writes files whole or not at all, [`terminal`] keeps names from steering it.
 //! [`directions`] asks for all directions at once, [`distance`] two bodies where they are, in the same ways, [`among`] one
 //! body among many. [`info`] looks at one mesh, [`assembly`] at many parts. [`clearance`] asks two convex meshes by way of [`cast`], all
-//! others as parts, which [`solid`] makes of files; [`progress`] shows how far work is. [`proof`]
-//! saves proofs and checks saved ones. [`setup`] installs man pages and completions.
+//! others as parts, which [`solid`] makes of files; [`progress`] shows how far work is. [`verify`]
+//! checks saved proofs. [`setup`] installs man pages and completions.
 
 mod among;
 mod args;
 mod assembly;
 mod batch;
 mod body;
+mod case;
 mod cast;
 mod clearance;
 mod directions;
@@ -28,7 +29,6 @@ mod outputs;
 mod path;
 mod picture;
 mod progress;
-mod proof;
 mod record;
 mod replay;
 mod report;
@@ -36,6 +36,7 @@ mod setup;
 mod solid;
 mod streams;
 mod terminal;
+mod verify;
 
 use std::io::{self, Write};
 use std::path::Path;
@@ -70,7 +71,7 @@ fn main() -> ExitCode {
         Command::Assembly(arguments) => assembly::run(&arguments),
         Command::Info(arguments) => info::run(&arguments),
         Command::Replay(arguments) => replay::run(&arguments),
-        Command::Verify(arguments) => proof::verify(&arguments),
+        Command::Verify(arguments) => verify::run(&arguments),
         Command::Setup(arguments) => setup::run(&arguments),
     };
     match result {

@@ -13,16 +13,15 @@ use colltrans_mesh::body::LoadError;
 
 use crate::args::{MotionArguments, Sides, Taken};
 use crate::body::{self, Part, is_part};
+use crate::case;
 use crate::clearance::{self, overlaps};
 use crate::failure::{Code, Failure, note, print};
-use crate::inputs::refuse_picture;
+use crate::inputs::{refuse_picture, refuse_proof};
 use crate::numbers::{counted, known, known_vector, number, unit_vector};
 use crate::outputs;
 use crate::picture::{Moved, draw_motion};
-use crate::proof::{self, refuse_proof};
 use crate::record::Line;
-use crate::replay;
-use crate::report::{feature, hulls, kept, line, meet};
+use crate::report::{feature, hulls, kept, line, never};
 use crate::solid::{self, PartsMotion, surface_of};
 
 pub(crate) fn run(arguments: &MotionArguments) -> Result<(), Failure> {
@@ -72,7 +71,7 @@ fn convex(
             [proof] => proof.to_json(),
             _ => MotionProofFiles::of(proofs).to_json(),
         };
-        proof::save_text(path, &text)?;
+        outputs::write_proof(path, &text)?;
     }
     let surface = |k: usize, pose: &Pose, origin| surface_of(&parts[k][pair[k]].body, pose, origin);
     let (record, motions) = (&told.record, motions.each_ref());
@@ -108,7 +107,7 @@ fn parts(
     if let Some(path) = &arguments.save_proof {
         let proof = SolidMotionProofFile::answer(&asked.cast()?);
         let (_, proof) = proof.map_err(|error| Failure::new(Code::Query, error.to_string()))?;
-        proof::save_text(path, &proof.to_json())?;
+        outputs::write_proof(path, &proof.to_json())?;
     }
     let surface = |k: usize, pose: &Pose, origin| bodies[k].surface(pose, origin);
     let (record, motions) = (&told.record, motions.each_ref());
@@ -165,7 +164,7 @@ fn first_of_all(
                 Some(depth) => cast.tolerating(depth)?,
                 None => cast.keeping(arguments.keep)?,
             };
-            let failed = |error| replay::motion_failure(error, &cast);
+            let failed = |error| case::motion_failure(error, &cast);
             let mut undecided = None;
             let record = if arguments.clearance {
                 let mut record =
@@ -285,19 +284,6 @@ pub(crate) fn words(told: &Line, motions: [&Motion; 2]) -> String {
     kept(&mut text, record.keep);
     hulls(&mut text, told);
     text
-}
-
-/// What bodies that are free never do: with a tolerance they may be in each other all the time.
-pub(crate) fn never(record: &Record) -> String {
-    let meet = meet(record.keep);
-    match record.tolerance {
-        None => format!("the bodies never {meet}"),
-        // Of convex bodies a depth, whose proof has planes; solids are shrunk.
-        Some(depth) if record.planes.is_some() => {
-            format!("the bodies never overlap by more than {}", number(depth))
-        }
-        Some(_) => format!("the bodies, each shrunk by half of the tolerance, never {meet}"),
-    }
 }
 
 fn times(text: &mut String, TimeRecord { lower, upper }: TimeRecord) {

@@ -145,6 +145,11 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     one.finish()
 }
 
+/// Writes a proof.
+pub(crate) fn write_proof(path: &Path, proof: &str) -> Result<(), Failure> {
+    write(path, format!("{proof}\n").as_bytes())
+}
+
 /// Writes a file that is not there yet; what is there, also by then, is left as it is.
 pub(crate) fn write_new(path: &Path, bytes: &[u8]) -> io::Result<()> {
     // Nothing is written where it would be in vain.

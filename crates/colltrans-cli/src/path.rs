@@ -17,8 +17,9 @@ use crate::args::PathArguments;
 use crate::assembly::advice;
 use crate::body;
 use crate::failure::{Code, Failure, note, print, print_json};
+use crate::inputs::refuse_proof;
 use crate::numbers::{counted, known, known_vector, number, unit_vector};
-use crate::proof::{self, refuse_proof};
+use crate::outputs;
 use crate::report::{kept, line, meet};
 
 pub(crate) fn run(arguments: &PathArguments) -> Result<(), Failure> {
@@ -40,7 +41,7 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<(), Failure> {
                 PathFileError::Path(e) => query(e),
                 other => Failure::new(Code::Query, other.to_string()),
             })?;
-            proof::save_text(file, &saved.to_json())?;
+            outputs::write_proof(file, &saved.to_json())?;
             outcome
         }
     };

@@ -235,6 +235,19 @@ pub(crate) fn meet(keep: Option<f64>) -> String {
     keep.map_or("meet".into(), |gap| format!("come as near as {}", number(gap)))
 }
 
+/// What bodies that are free never do: with a tolerance they may be in each other all the time.
+pub(crate) fn never(record: &Record) -> String {
+    let meet = meet(record.keep);
+    match record.tolerance {
+        None => format!("the bodies never {meet}"),
+        // Of convex bodies a depth, whose proof has planes; solids are shrunk.
+        Some(depth) if record.planes.is_some() => {
+            format!("the bodies never overlap by more than {}", number(depth))
+        }
+        Some(_) => format!("the bodies, each shrunk by half of the tolerance, never {meet}"),
+    }
+}
+
 /// The gap that is kept, if there is one.
 pub(crate) fn kept(text: &mut String, keep: Option<f64>) {
     if let Some(gap) = keep {

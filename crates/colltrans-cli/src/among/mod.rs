@@ -12,9 +12,9 @@ use colltrans::{Among, CaseError, ObstacleId, Options, Pose, SceneProof};
 
 use crate::args::{ClearanceArguments, PlacedArguments};
 use crate::failure::{Code, Failure, note, print};
-use crate::proof::{refuse_proof, save_text};
+use crate::inputs::refuse_proof;
+use crate::outputs;
 use crate::record::Line;
-pub(crate) use scene::is_list;
 use scene::{Scene, Ways};
 
 /// What both kinds of questions have in common.
@@ -164,6 +164,6 @@ impl Request<'_> {
     ) -> Result<(), Failure> {
         let Some(path) = self.save_proof else { return Ok(()) };
         let proof = prove().map_err(|error| Failure::new(Code::Query, error.to_string()))?;
-        proof.map_or(Ok(()), |proof| save_text(path, &proof.to_json()))
+        proof.map_or(Ok(()), |proof| outputs::write_proof(path, &proof.to_json()))
     }
 }

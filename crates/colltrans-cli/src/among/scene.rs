@@ -16,7 +16,7 @@ use crate::args::{BodyArguments, Taken};
 use crate::batch::{Batch, BodySource, Cache, PoseSource, Shape, syntax_message};
 use crate::body::{self, is_part, refusal};
 use crate::failure::{Code, Failure};
-use crate::inputs::Watched;
+use crate::inputs::{Watched, is_list};
 use crate::solid::Body;
 
 /// What rounding alone can do to a length, as a part of the scene's size.
@@ -199,11 +199,6 @@ impl Known {
             }
         }
     }
-}
-
-/// Whether a file is one of obstacles, by its name.
-pub(crate) fn is_list(file: &Path) -> bool {
-    file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("jsonl"))
 }
 
 fn as_solid(placed: AnyPlaced<'_>) -> Result<Placed<'_, Solid>, QueryError> {

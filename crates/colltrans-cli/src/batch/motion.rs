@@ -12,7 +12,7 @@ use serde::de::{Deserialize, Deserializer, IgnoredAny, MapAccess, Visitor};
 use super::source::{PoseSource, Query};
 use crate::args::normalised_poses;
 use crate::body::Part;
-use crate::replay;
+use crate::case;
 
 /// A motion, as it is written.
 #[derive(Debug)]
@@ -159,7 +159,7 @@ pub(super) fn of_convex<B>(
         (keep, None) => cast.and_then(|cast| cast.keeping(keep.unwrap_or_default())),
     };
     let cast = cast.map_err(|error| error.to_string())?;
-    let failed = |error| replay::motion_failure(error, &cast).into_message();
+    let failed = |error| case::motion_failure(error, &cast).into_message();
     Ok(if clears {
         Record::of_motion_clearance(&cast.clearance().map_err(failed)?, &cast)
     } else {

@@ -21,9 +21,9 @@ use super::recent::Recent;
 use super::source::{Asked, BodySource, PoseSource, Query, as_written};
 use crate::args::{BodyArguments, normalised};
 use crate::body::{self, Part};
+use crate::case;
 use crate::inputs::Watched;
 use crate::record::Line as AnswerLine;
-use crate::replay;
 use crate::solid::{self, PartsMotion, PartsPair, PartsQuery};
 
 /// What all lines of a batch have in common.
@@ -336,7 +336,7 @@ impl<B> Query<'_, B> {
             _ => Question::Contact,
         };
         let answered = question.ask(&cast);
-        let answer = answered.map_err(|error| replay::failure(error, &cast).into_message())?;
+        let answer = answered.map_err(|error| case::failure(error, &cast).into_message())?;
         Ok(of_parts(answer.record(&cast), [moving, fixed]))
     }
 

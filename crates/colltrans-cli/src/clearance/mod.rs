@@ -16,7 +16,6 @@ use crate::failure::{Code, Failure, note, print};
 use crate::outputs;
 use crate::picture::draw_solids;
 use crate::progress;
-use crate::proof;
 use crate::record::Line;
 use crate::solid::{self, Body, PartsQuery};
 pub(crate) use words::{overlaps, remedy};
@@ -78,7 +77,10 @@ fn answer_one(arguments: &PairArguments, question: &PartsQuery<'_>) -> Result<()
     };
     print(&text)?;
     if let Some(path) = &arguments.save_proof {
-        proof::save(path, &question.prove(answer.record.tolerance.unwrap_or_default())?)?;
+        outputs::write_proof(
+            path,
+            &question.prove(answer.record.tolerance.unwrap_or_default())?.to_json(),
+        )?;
     }
     match &arguments.picture {
         Some(path) => outputs::write(path, draw_solids(question, &answer).as_bytes()),

@@ -9,7 +9,8 @@ use colltrans::record::FreeRecord;
 use crate::args::DirectionsArguments;
 use crate::clearance;
 use crate::failure::{Failure, note, print, print_json};
-use crate::proof::{self, refuse_proof};
+use crate::inputs::refuse_proof;
+use crate::outputs;
 use crate::solid::{FreeAnswer, PartsFree};
 pub(crate) use words::{told, verified};
 
@@ -39,7 +40,7 @@ pub(crate) fn run(arguments: &DirectionsArguments) -> Result<(), Failure> {
         print(&text)?;
     }
     match (&arguments.save_proof, proof) {
-        (Some(path), Some(proof)) => proof::save(path, &proof),
+        (Some(path), Some(proof)) => outputs::write_proof(path, &proof.to_json()),
         (Some(_), None) => {
             note("no proof is written: nothing is told of bodies that overlap");
             Ok(())

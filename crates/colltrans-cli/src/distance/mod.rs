@@ -15,10 +15,9 @@ use crate::body::{Part, is_part, refusal};
 use crate::cast;
 use crate::clearance;
 use crate::failure::{Code, Failure, note, print};
-use crate::inputs::refuse_picture;
+use crate::inputs::{refuse_picture, refuse_proof};
 use crate::outputs;
 use crate::picture::{Shown, draw_pair};
-use crate::proof::{self, refuse_proof};
 use crate::record::Line;
 use crate::solid::{PartsPair, surface_of};
 pub(crate) use words::answer;
@@ -55,7 +54,7 @@ fn convex(
     let told = Line::of_parts(answer.record(&pair), parts.each_ref());
     say(arguments, question, &told, 0.0)?;
     if let (Some(path), Some(proof)) = (&arguments.save_proof, answer.proof(&pair)) {
-        proof::save(path, &proof)?;
+        outputs::write_proof(path, &proof.to_json())?;
     }
     let surface = |k: usize, origin| surface_of(&parts[k].body, &poses[k], origin);
     draw(arguments, Shown { question, record: &told.record, surface: &surface })
@@ -81,7 +80,7 @@ fn solids(
     };
     say(arguments, question, &record.clone().into(), asked.error())?;
     if let (Some(path), Some(proof)) = (&arguments.save_proof, proof?) {
-        proof::save(path, &proof)?;
+        outputs::write_proof(path, &proof.to_json())?;
     }
     let surface = |k: usize, origin| bodies[k].surface(&poses[k], origin);
     draw(arguments, Shown { question, record: &record, surface: &surface })

@@ -14,7 +14,7 @@ use super::parts::Eye;
 use super::solid::Solid;
 use super::subject::{Subject, components, short};
 use super::viewpoint;
-use crate::motion::never;
+use crate::report::never;
 
 /// Pieces of the way that is drawn: one turn of them is round, and so are twenty.
 const WAY: u32 = 480;

@@ -1,6 +1,4 @@
-//! Proofs as files: what `--save-proof` writes and `colltrans verify` checks.
-
-use std::path::Path;
+//! `colltrans verify`: checks the proofs that `--save-proof` writes.
 
 use colltrans::free::FreeDirections;
 use colltrans::motion::path::{PathFileError, PathProofFile};
@@ -15,32 +13,8 @@ use serde_json::{Map, Value, json};
 use crate::args::VerifyArguments;
 use crate::directions;
 use crate::failure::{Code, Failure, print, print_json};
-use crate::inputs::refuse_overwriting;
-use crate::outputs;
 
-/// A proof must not take the place of what is read, nor of the picture.
-pub(crate) fn refuse_proof(
-    proof: Option<&Path>,
-    picture: Option<&Path>,
-    inputs: &[&Path],
-) -> Result<(), Failure> {
-    let Some(proof) = proof else { return Ok(()) };
-    if picture == Some(proof) {
-        return Err(Failure::new(Code::Usage, "--save-proof and --picture name one file"));
-    }
-    refuse_overwriting(proof, inputs, "give the proof another name")
-}
-
-pub(crate) fn save(path: &Path, proof: &ProofFile) -> Result<(), Failure> {
-    save_text(path, &proof.to_json())
-}
-
-/// A proof as it is written.
-pub(crate) fn save_text(path: &Path, proof: &str) -> Result<(), Failure> {
-    outputs::write(path, format!("{proof}\n").as_bytes())
-}
-
-pub(crate) fn verify(arguments: &VerifyArguments) -> Result<(), Failure> {
+pub(crate) fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
     let place = arguments.proof.display();
     let input = |what: String| Failure::new(Code::Input, format!("{place}: {what}"));
     let text = colltrans_mesh::file::text(&arguments.proof)

@@ -17,6 +17,10 @@
 //!
 //! Without the features `files` and `report` what is left reads GLB from memory and draws nothing: for
 //! a page.
+//!
+//! [`robot`] takes round shapes around the true ones, assemblies inside them. What a part meets does not depend on what has
+//! gone, as all stand where they were: one matrix serves all states of a plan. Everything parallel is gathered in order, so
+//! results are the same on any number of threads.
 
 mod bodies;
 mod boxes;

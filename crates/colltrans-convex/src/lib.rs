@@ -1,7 +1,64 @@
-//! Collision translations and distances of convex bodies, and of solids, which are the next crate to leave. What is
-//! asked and answered is told in `colltrans`, which is what programs use.
+//! Convex bodies: how far can one move before it touches another? Casts, distances, depths, and certificates of them.
 //!
-//! Modules that are hidden from the documentation are for the crates of this workspace, without a promise.
+//! Programs use the facade `colltrans`, whose documentation tells what is asked and answered. Modules that are hidden from
+//! the documentation are for the crates of this workspace, without a promise.
+//!
+//! # Modules
+//!
+//! Each module uses only those before it.
+//!
+//! - `body`: a body is checked and indexed once. `topology` has half-edges without coordinates; `inertia` and `feature`
+//!   follow. `convex` is [`ConvexPolyhedron`]: `build` makes it (hulls on exact orientations, meshes, offsets), `support`
+//!   finds support points in `O(log n)`, along a `ring` by its angle and around the apex of a `fan`, `excess` bounds how far
+//!   a body reaches beyond one, and `sections` are planar sections across four axes, made when the paper's algorithm first
+//!   asks. [`Body`] is what a kind of body brings; `kept` holds what other crates make of a body.
+//! - `setting`: two placed bodies, and of a cast a direction, in a frame at the moving body's translation. `minkowski` is `M`
+//!   seen along `d`: support points, noise, and on which side of an edge the line passes.
+//! - `answer`: outcomes, ranges, bounds, and `certificate`, which anyone can check.
+//! - `solve`: one cast. `portal` is portal refinement: from any guess to the face of `M` that the line enters, with exact
+//!   decisions; the plane and triangle it ends with are the certificate. `outline` takes bodies with rims for hulls of
+//!   ellipses, `ascent` finds where these meet. `cta` is the paper's algorithm: it minimises `phi(x, y)`, the collision
+//!   translation of two planar sections, by cutting planes in floating point; its result is a guess of the contact normal.
+//!   `nearest` descends to the nearest point of `M` over its simplices, `depth` grows a polytope of points of `M` where the
+//!   origin is nearest. `keep` finds how far until a gap is left, by Newton's method over nearest points. `observe` lets an
+//!   observer hear of every step.
+//! - `cast`: [`Cast`], the query. `derive` has answers of more than one cast, `contact` points and features on request,
+//!   `replay` a query as a file. [`CastBody`] is the trait by which other kinds of bodies are cast.
+//! - `pair`: [`Pair`], what is asked of two placed bodies without a direction, and the checks of its proofs.
+//! - `tracker`: the same questions, each begun from the last answer.
+//!
+//! Both solvers end in `portal`: `cta` carries the rounding of sections, while the last digits are a combinatorial matter,
+//! which face of `M` the line enters. So there is one finish, one error analysis and one thing to test, and a wrong guess
+//! costs time but never correctness.
+//!
+//! # Coherence
+//!
+//! A tracker keeps what a cast ended with: three pairs of vertices, or a separating direction. The next cast tries
+//!
+//! 1. *Features* (`portal/follow`): do the three pairs still enclose the line? If it left over an edge, the next
+//!    face is found by gift wrapping; if it is many faces away, slopes and curvatures say where to look.
+//! 2. *Region* (`cta` only; the paper, III-D): the minimisation starts at the last contact points and is
+//!    confined to a square of levels around them, until that fails.
+//! 3. *Scratch*, as a one-off query does.
+//!
+//! Certificates are made anew from today's poses. Nothing numerical is carried over, so a tracked answer is
+//! exactly as tight as a one-off one.
+//!
+//! # Numbers: what is exact, what is rounded
+//!
+//! All bounds are derived in the head of `colltrans_kernel::noise`, in multiples of `u S`: `u = 2^-53`, `S` the size of the
+//! configuration. *Exact*: the orientations that decide what a hull has, and on which side of an edge the line
+//! passes (a rounded determinant where its error allows, whole numbers otherwise; ties as if the line were
+//! moved by `(eps, eps^2)`, consistently). *Rounded with a bound*: everything else. *Only guesses*: sections,
+//! ellipsoids, tables.
+//!
+//! - A body is the convex hull of its `vertices()`, exactly. Points within `64 u r` of a face are dropped, and
+//!   `hull_error` bounds how far from the body any input point was left.
+//! - A plane supports `M` when no support point is deeper below it than one noise, `32 u S`. Projections that
+//!   overlap by less than eight noises are *touching*: the outcome is grazing.
+//! - The lower bound is lowered by one noise over `n . d` and by what bodies may reach beyond support points, the
+//!   upper bound raised by four: `lower <= coll <= upper` holds exactly. A clearance is the lower bound.
+//! - No function of libm but the square root is called, sine and cosine are `colltrans_kernel::angle`: bits are the same on every platform (`tests/golden.rs`).
 
 #![allow(
     rustdoc::private_intra_doc_links,

@@ -13,6 +13,11 @@
 //! - the answer is about the body whose own upper bound is the least of all, of equal ones the one that came
 //!   first, whatever the tree looks like: that of asking all one by one;
 //! - the least lower bound of those that were asked about is one of all.
+//!
+//! The modules: `boxes` (rounded outwards, and what they prove), `tree` (of boxes, which changes), `obstacles` (who is kept);
+//! then the questions, `nearest` and `clearance`, best first by boxes, and `proof`, whose checks take all bodies one by one.
+//! `bulk` is one pair asked many times while neither body turns: `faces` of `M`, made once, each with its bound; `star`
+//! guesses where a line enters, `sight` walks there, `approach` has a map for one direction.
 
 #![allow(
     rustdoc::private_intra_doc_links,

@@ -5,6 +5,13 @@
 //!
 //! The modules, each using only those before it: [`body`] (surfaces and their trees), [`solve`] (the search), [`cast`] and
 //! [`pair`] (the questions), [`kinds`] (bodies and answers of either kind).
+//!
+//! In `body`, `validate` makes a checked surface, `shells` its parts, `tree` a tree of boxes; `shrink` (facets moved inwards)
+//! and `self_intersection` (thin walls) follow when first asked for. In `solve`, `scene` is the setting of two solids,
+//! `overlap` asks about the start, `thin` has points and segments, `fan` the facets around a vertex, `leaf` asks about two
+//! facets, `search` goes best first through both trees, `separate` looks for a plane between the bodies along the direction,
+//! `parted` for one anywhere; `nearest` is the distance. In `cast`, `boxes` tell what passes, `hulls` what is convex,
+//! `tolerance` finds the least tolerance, `proof` and `verify` make and check proofs.
 
 #![allow(
     rustdoc::private_intra_doc_links,

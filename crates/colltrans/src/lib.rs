@@ -143,12 +143,10 @@
 //! Ties, where rounding cannot tell on which side of an edge the line passes, are decided in
 //! whole numbers.
 //!
-//! The modules, each using only those before it: `number` (arithmetic and its errors), `body` (poses,
-//! polyhedra and their indices), `setting` (two placed bodies, a direction, and `M`), `answer`
-//! (outcomes and certificates), `solve` (the two solvers, nearest points, and [`observe`]), `cast` and
-//! `pair` (the queries), `kinds` (bodies of either kind), `among` (many fixed bodies), [`free`] (all directions), [`ways`] (several moves),
-//! `proof_file`, [`motion`] (bodies that turn), `tracker` and `bulk` (rotations that stay). `written` and `record` say how
-//! all of them are written. [`solid`] holds what is of solids alone.
+//! The code is in crates of its own, each using only those before it: `colltrans-kernel` (numbers, predicates, poses),
+//! `colltrans-convex` (convex bodies), `colltrans-solid`, then `colltrans-removal` ([`free`], [`ways`]), `colltrans-scene`
+//! ([`Among`], [`FixedRotations`]) and `colltrans-motion` ([`motion`]), and `colltrans-proof` (files). [`solid`] holds what
+//! is of solids alone.
 
 pub mod motion;
 pub mod solid;

@@ -460,6 +460,7 @@ fn a_segment_overlaps_and_touches_cubes_as_fractions_say() {
 }
 
 #[test]
+#[ignore = "long: whole numbers at many places of each way"]
 fn a_segment_is_stopped_where_it_first_runs_into_cubes() {
     let mut random = Random::new(5_203);
     let (mut stopped, mut free) = (0, 0);

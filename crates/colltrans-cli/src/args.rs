@@ -1,7 +1,7 @@
 //! The command line.
 
 use std::num::NonZeroUsize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 mod assembly;
 mod directions;
@@ -289,7 +289,7 @@ fn not_two(meshes: &[PathBuf], among: bool) -> String {
 }
 
 /// The one mesh before --among.
-fn one(meshes: &[PathBuf]) -> Result<&Path, Failure> {
+fn one(meshes: &[PathBuf]) -> Result<&PathBuf, Failure> {
     match meshes {
         [one] => Ok(one),
         _ => Err(Failure::new(Code::Usage, "give one mesh before --among, the scene behind it")),
@@ -327,15 +327,13 @@ impl ClearanceArguments {
     }
 
     /// The one mesh before --among.
-    pub(crate) fn one(&self) -> Result<&Path, Failure> {
+    pub(crate) fn one(&self) -> Result<&PathBuf, Failure> {
         one(&self.meshes)
     }
 
     /// How the files of the moving and of the fixed body are read as parts.
     pub(crate) fn part_options(&self) -> [BodyOptions; 2] {
-        let PairArguments { places, body, .. } = &self.pair;
-        [places.moving_scale, places.fixed_scale]
-            .map(|scale| body.options(scale).with_open(self.open))
+        self.pair.body.part_options(&self.pair.places, self.open)
     }
 }
 
@@ -444,12 +442,17 @@ pub(crate) struct BodyArguments {
 
 impl BodyArguments {
     /// How a mesh becomes a body, but for whether its hull is taken.
-    pub(crate) fn options(&self, scale: f64) -> BodyOptions {
-        let Self { convex_tolerance, merge_tolerance } = *self;
+    pub(crate) fn options(self, scale: f64) -> BodyOptions {
+        let Self { convex_tolerance, merge_tolerance } = self;
         BodyOptions::default()
             .with_scale(scale)
             .with_convex_tolerance(convex_tolerance)
             .with_merge_tolerance(merge_tolerance)
+    }
+
+    /// Returns the options with which both bodies are read as parts.
+    fn part_options(self, places: &PlaceArguments, open: bool) -> [BodyOptions; 2] {
+        [places.moving_scale, places.fixed_scale].map(|scale| self.options(scale).with_open(open))
     }
 }
 

@@ -1,4 +1,4 @@
-//! The file that a query without an answer leaves, which `colltrans replay` reads.
+//! Saves a query that does not converge as a file, which `colltrans replay` reads.
 
 use std::io::ErrorKind;
 use std::path::PathBuf;

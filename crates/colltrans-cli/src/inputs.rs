@@ -1,7 +1,8 @@
-//! Refuses outputs that would overwrite an input: files by what they are, not by what they are called.
+//! Reads text, and refuses outputs that would overwrite an input. Files are compared by identity, not by
+//! name.
 
 use std::fs::Metadata;
-use std::io;
+use std::io::{self, Read as _};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering::Relaxed};
 
@@ -82,6 +83,26 @@ pub(crate) fn refuse_overwriting(
         )),
         None => Ok(()),
     }
+}
+
+/// Reads a text file.
+pub(crate) fn read_text(file: &Path) -> Result<String, Failure> {
+    or_unreadable(file, colltrans_mesh::file::text(file))
+}
+
+/// Reads a text file, or standard input if the name is `-`.
+pub(crate) fn read_text_or_stdin(file: &Path) -> Result<String, Failure> {
+    if file != Path::new("-") {
+        return read_text(file);
+    }
+    let mut text = String::new();
+    let result = io::stdin().read_to_string(&mut text).map(|_| text);
+    or_unreadable(file, result)
+}
+
+fn or_unreadable(file: &Path, text: io::Result<String>) -> Result<String, Failure> {
+    let why = |error| format!("{}: cannot be read: {error}", file.display());
+    text.map_err(|error| Failure::new(Code::Input, why(error)))
 }
 
 /// Whether a file is one of obstacles, by its name.

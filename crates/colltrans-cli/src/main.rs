@@ -1,14 +1,20 @@
 //! `colltrans`: how far can one body translate before it touches another.
 //!
-//! Data flow: [`args`] -> [`body`] (mesh file to polyhedron)
-//! -> the library's `Cast` -> [`record`] (what is said about the answer) -> [`report`]
-//! (for people, in [`numbers`] of known digits), JSON, or [`picture`]. [`cast`] drives it for two
-//! files, [`batch`] for every line of a file; [`inputs`] keeps outputs off what is read, [`outputs`]
-//! writes files whole or not at all, [`terminal`] keeps names from steering it.
-//! [`directions`] asks for all directions at once, [`distance`] two bodies where they are, in the same ways, [`among`] one
-//! body among many. [`info`] looks at one mesh, [`assembly`] at many parts. [`clearance`] asks two convex meshes by way of [`cast`], all
-//! others as parts, which [`solid`] makes of files; [`progress`] shows how far work is. [`verify`]
-//! checks saved proofs. [`setup`] installs man pages and completions.
+//! Data flow:
+//! - [`args`] parses the command line.
+//! - [`load`] reads mesh files as convex bodies ([`body`]) or as parts ([`solid`]).
+//! - A question calls the library: [`cast`], [`clearance`], [`distance`], [`directions`], [`motion`],
+//!   [`path`], and [`among`] for one body among many.
+//! - [`driver`] prints the answer as JSON ([`record`]) or as text ([`report`], [`numbers`]), then writes its
+//!   proof and its [`picture`].
+//!
+//! Other commands: [`batch`] answers every line of a file, [`assembly`] plans for many parts, [`info`]
+//! describes a mesh, [`replay`] answers a query that [`case`] has saved, [`verify`] checks saved proofs,
+//! and [`setup`] installs man pages and completions.
+//!
+//! Files and streams: [`inputs`] reads text and refuses outputs that would overwrite an input. [`outputs`]
+//! writes a file completely or not at all. [`terminal`] escapes control characters in names. [`progress`]
+//! draws bars.
 
 mod among;
 mod args;
@@ -20,9 +26,11 @@ mod cast;
 mod clearance;
 mod directions;
 mod distance;
+mod driver;
 mod failure;
 mod info;
 mod inputs;
+mod load;
 mod motion;
 mod numbers;
 mod outputs;
@@ -44,7 +52,7 @@ use std::process::ExitCode;
 
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, Parser};
-use colltrans::record::{PairQuestion, Question};
+use colltrans::record::PairQuestion;
 
 use args::{Arguments, Command};
 
@@ -57,7 +65,7 @@ fn main() -> ExitCode {
         Err(told) => return told_by_the_parser(told),
     };
     let result = match arguments.command {
-        Command::Cast(arguments) => cast::run(&arguments, Question::Contact),
+        Command::Cast(arguments) => cast::run(&arguments),
         Command::Clearance(arguments) => clearance::run(&arguments),
         Command::Directions(arguments) => directions::run(&arguments),
         Command::Distance(arguments) => distance::run(&arguments, PairQuestion::Distance),

@@ -7,133 +7,115 @@ use colltrans::glam::DVec3;
 use colltrans::motion::{
     Motion, MotionCast, MotionOutcome, MotionProofFile, MotionProofFiles, SolidMotionProofFile,
 };
-use colltrans::record::{Ending, FeaturesRecord, Record, TimeRecord};
+use colltrans::record::{Ending, Record, TimeRecord};
 use colltrans::{Pose, QueryError, Stalled};
-use colltrans_mesh::body::LoadError;
 
-use crate::args::{MotionArguments, Sides, Taken};
-use crate::body::{self, Part, is_part};
+use crate::args::MotionArguments;
+use crate::body::Part;
 use crate::case;
-use crate::clearance::{self, overlaps};
-use crate::failure::{Code, Failure, note, print};
-use crate::inputs::{refuse_picture, refuse_proof};
+use crate::clearance::overlaps;
+use crate::driver::{AnswerOutputs, OutputTargets};
+use crate::failure::{Code, Failure, note};
+use crate::load;
 use crate::numbers::{counted, known, known_vector, number, unit_vector};
-use crate::outputs;
-use crate::picture::{Moved, draw_motion};
+use crate::picture::{Moved, Surface, draw_motion};
 use crate::record::Line;
-use crate::report::{feature, hulls, kept, line, never};
+use crate::report::{features, hulls, kept, line, never};
 use crate::solid::{self, PartsMotion, surface_of};
 
 pub(crate) fn run(arguments: &MotionArguments) -> Result<(), Failure> {
-    let Sides { files, taken } = arguments.sides()?;
-    let inputs: Vec<&_> = files.into_iter().flatten().map(AsRef::as_ref).collect();
-    let picture = arguments.picture.as_deref();
-    refuse_picture(picture, &inputs)?;
-    refuse_proof(arguments.save_proof.as_deref(), picture, &inputs)?;
+    let sides = arguments.sides()?;
+    let MotionArguments { json, save_proof, picture, .. } = arguments;
+    let inputs = load::input_files(sides.files);
+    let targets = OutputTargets::new(*json, save_proof.as_ref(), picture.as_ref(), &inputs)?;
     let (motions, rounded) = arguments.motions()?;
     for text in &rounded {
         note(text);
     }
-    if taken != Taken::Parts {
-        let options = arguments.body_options();
-        let load = |k: usize| -> Result<Vec<Part>, LoadError> {
-            files[k].iter().map(|file| body::load(file, &options[k])).collect()
-        };
-        match load(0).and_then(|moving| Ok([moving, load(1)?])) {
-            Ok(parts) => return convex(arguments, files, &parts, &motions),
-            Err(error) if taken == Taken::AsTheyAre && is_part(&error) => {}
-            Err(error) => return Err(Failure::new(Code::Input, body::refusal(&error))),
-        }
+    match load::convex_bodies(&sides, &arguments.body_options())? {
+        Some(bodies) => convex(arguments, targets, sides.files, &bodies, &motions),
+        None => parts(arguments, targets, sides.files, &motions),
     }
-    parts(arguments, files, &motions)
 }
 
 /// Asked of convex meshes.
 fn convex(
     arguments: &MotionArguments,
+    targets: OutputTargets<'_>,
     files: [&[PathBuf]; 2],
-    parts: &[Vec<Part>; 2],
+    bodies: &[Vec<Part>; 2],
     motions: &[Motion; 2],
 ) -> Result<(), Failure> {
     if arguments.tolerance.is_some() && arguments.keep > 0.0 {
         let why = "convex meshes have either --keep or --tolerance";
         return Err(Failure::new(Code::Usage, why));
     }
-    tell(arguments, parts.iter().flatten().flat_map(|part| &part.notes));
-    let (found, proofs) = first_of_all(arguments, files, [&parts[0], &parts[1]], motions)?;
+    load::report_notes(&arguments.places, bodies.iter().flatten().flat_map(|part| &part.notes));
+    let (found, proofs) = first_of_all(arguments, files, [&bodies[0], &bodies[1]], motions)?;
     let Found { mut told, pair, undecided } = found;
     let name =
         |k: usize| Some(files[k][pair[k]].display().to_string()).filter(|_| files[k].len() > 1);
     (told.record.moving, told.record.fixed) = (name(0), name(1));
-    print(&if arguments.json { told.json() } else { words(&told, motions.each_ref()) })?;
-    if let Some(path) = &arguments.save_proof {
-        let text = match &proofs[..] {
-            [proof] => proof.to_json(),
-            _ => MotionProofFiles::of(proofs).to_json(),
-        };
-        outputs::write_proof(path, &text)?;
-    }
-    let surface = |k: usize, pose: &Pose, origin| surface_of(&parts[k][pair[k]].body, pose, origin);
-    let (record, motions) = (&told.record, motions.each_ref());
-    draw(arguments, Moved { record, motions, surface: &surface })?;
+    let proof = || match &proofs[..] {
+        [proof] => Ok(Some(proof.to_json())),
+        _ => Ok(Some(MotionProofFiles::of(proofs).to_json())),
+    };
+    let surface = |k: usize, pose: &Pose, from| surface_of(&bodies[k][pair[k]].body, pose, from);
+    write_answer(targets, &told, motions, proof, &surface)?;
     undecided.map_or(Ok(()), Err)
 }
 
 /// Asked of parts that need not be convex.
 fn parts(
     arguments: &MotionArguments,
+    targets: OutputTargets<'_>,
     files: [&[PathBuf]; 2],
     motions: &[Motion; 2],
 ) -> Result<(), Failure> {
-    if arguments.save_proof.is_some() && arguments.ignore_start_overlaps {
+    let MotionArguments { tolerance, keep, ignore_start_overlaps, .. } = *arguments;
+    if targets.save_proof.is_some() && ignore_start_overlaps {
         let why = "--save-proof has no proof of what --ignore-start-overlaps leaves out";
         return Err(Failure::new(Code::Usage, why));
     }
-    let bodies = clearance::load(files, &arguments.part_options())?;
-    tell(arguments, bodies.iter().flat_map(|body| &body.notes));
-    let MotionArguments { tolerance, keep, ignore_start_overlaps, .. } = *arguments;
-    let bodies_asked = [&bodies[0], &bodies[1]];
-    let asked = PartsMotion {
-        bodies: bodies_asked,
-        motions,
-        tolerance,
-        clears: arguments.clearance,
-        ignore_start_overlaps,
-        keep,
-    };
-    let told = asked.ask().map_err(|error| solid::refused(error, bodies_asked, tolerance))?;
-    let told = Line::from(told);
-    print(&if arguments.json { told.json() } else { words(&told, motions.each_ref()) })?;
-    if let Some(path) = &arguments.save_proof {
+    let loaded = load::parts(files, &arguments.part_options())?;
+    load::report_notes(&arguments.places, loaded.iter().flat_map(|body| &body.notes));
+    let (bodies, clears) = (loaded.each_ref(), arguments.clearance);
+    let asked = PartsMotion { bodies, motions, tolerance, clears, ignore_start_overlaps, keep };
+    let told = Line::from(asked.ask().map_err(|error| solid::refused(error, bodies, tolerance))?);
+    let proof = || {
         let proof = SolidMotionProofFile::answer(&asked.cast()?);
         let (_, proof) = proof.map_err(|error| Failure::new(Code::Query, error.to_string()))?;
-        outputs::write_proof(path, &proof.to_json())?;
-    }
-    let surface = |k: usize, pose: &Pose, origin| bodies[k].surface(pose, origin);
-    let (record, motions) = (&told.record, motions.each_ref());
-    draw(arguments, Moved { record, motions, surface: &surface })?;
-    match (record.outcome, record.time) {
+        Ok(Some(proof.to_json()))
+    };
+    write_answer(targets, &told, motions, proof, &|k, pose, origin| {
+        bodies[k].surface(pose, origin)
+    })?;
+    match (told.record.outcome, told.record.time) {
         (Ending::Undecided, Some(TimeRecord { lower, .. })) => Err(stalled(lower).into()),
         _ => Ok(()),
     }
 }
 
+/// Writes the answer of either kind of bodies.
+fn write_answer(
+    targets: OutputTargets<'_>,
+    told: &Line,
+    motions: &[Motion; 2],
+    proof: impl FnOnce() -> Result<Option<String>, Failure>,
+    surface: &dyn Fn(usize, &Pose, DVec3) -> Surface,
+) -> Result<(), Failure> {
+    let (record, motions) = (&told.record, motions.each_ref());
+    targets.write_answer(AnswerOutputs {
+        record: told,
+        words: || words(told, motions),
+        proof,
+        picture: || Ok(draw_motion(Moved { record, motions, surface })),
+    })
+}
+
 /// The error of a search that took its maximum number of steps.
 pub(crate) fn stalled(free_until: f64) -> QueryError {
     QueryError::NotConverged { reason: Stalled::Motion { free_until } }
-}
-
-fn draw(arguments: &MotionArguments, moved: Moved<'_>) -> Result<(), Failure> {
-    match &arguments.picture {
-        Some(path) => outputs::write(path, draw_motion(moved).as_bytes()),
-        None => Ok(()),
-    }
-}
-
-/// What was changed about the poses and mended in the files.
-fn tell<'a>(arguments: &MotionArguments, mended: impl Iterator<Item = &'a String>) {
-    arguments.places.notes().iter().flatten().for_each(|text| note(text));
-    mended.for_each(|text| note(text));
 }
 
 /// The answer of two of the meshes.
@@ -267,10 +249,7 @@ pub(crate) fn words(told: &Line, motions: [&Motion; 2]) -> String {
     if let Some(normal) = record.normal {
         line(&mut text, "normal", &unit_vector(DVec3::from_array(normal)));
     }
-    if let Some(FeaturesRecord { moving, fixed }) = &record.features {
-        line(&mut text, "moving", &feature(moving));
-        line(&mut text, "fixed", &feature(fixed));
-    }
+    features(&mut text, record, [None; 2]);
     if let (Some(planes), Some(looks)) = (record.planes, record.looks) {
         let [planes, looks] =
             [counted(planes, "plane", "planes"), counted(looks as usize, "look", "looks")];

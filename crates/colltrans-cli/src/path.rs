@@ -1,7 +1,6 @@
 //! `colltrans path`: which links of a robot first meet on a path, each other or the scene.
 
 use std::collections::BTreeMap;
-use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
 use colltrans::motion::path::{
@@ -16,24 +15,25 @@ use colltrans_mesh::body::BodyOptions;
 use crate::args::PathArguments;
 use crate::assembly::advice;
 use crate::body;
-use crate::failure::{Code, Failure, note, print, print_json};
-use crate::inputs::refuse_proof;
+use crate::driver::{AnswerOutputs, OutputTargets, no_picture};
+use crate::failure::{Code, Failure, note};
+use crate::inputs::read_text_or_stdin;
 use crate::numbers::{counted, known, known_vector, number, unit_vector};
 use crate::outputs;
 use crate::report::{kept, line, meet};
 
 pub(crate) fn run(arguments: &PathArguments) -> Result<(), Failure> {
-    let PathArguments { robot, rows, scene, srdf, .. } = arguments;
+    let PathArguments { robot, rows, scene, srdf, save_proof, .. } = arguments;
     let inputs: Vec<&Path> =
         [robot, rows].into_iter().chain(scene).chain(srdf).map(PathBuf::as_path).collect();
-    refuse_proof(arguments.save_proof.as_deref(), None, &inputs)?;
+    let targets = OutputTargets::new(arguments.json, save_proof.as_ref(), None, &inputs)?;
     let Asked { cell, path, partial } = Asked::read(arguments)?;
     let query = |e: PathError| Failure::new(Code::Query, cell.words(&e));
     let cast = cell.along(&path, arguments.keep).map_err(|e| match e {
         PathError::Query { .. } => query(e),
         wrong => Failure::new(Code::Input, cell.words(&wrong)),
     })?;
-    let outcome = match &arguments.save_proof {
+    let outcome = match targets.save_proof {
         None => cast.first_contact().map_err(query)?,
         Some(file) => {
             let answered = PathProofFile::answer(&cast, cell.names());
@@ -41,6 +41,7 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<(), Failure> {
                 PathFileError::Path(e) => query(e),
                 other => Failure::new(Code::Query, other.to_string()),
             })?;
+            // Before the answer: a proof that cannot be written leaves none.
             outputs::write_proof(file, &saved.to_json())?;
             outcome
         }
@@ -49,13 +50,12 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<(), Failure> {
     record.hulls = cell.hulls();
     record.dents.clone_from(cell.dents());
     record.notes.clone_from(&partial);
-    if arguments.json {
-        let written = serde_json::to_string(&record);
-        let written = written.map_err(|e| Failure::output("standard output", &e.into()))?;
-        print_json(&format!("{written}\n"))?;
-    } else {
-        print(&words(&record, &outcome, cell.robot()))?;
-    }
+    targets.write_answer(AnswerOutputs {
+        record: &record,
+        words: || words(&record, &outcome, cell.robot()),
+        proof: || Ok(None),
+        picture: no_picture,
+    })?;
     if let Some(why) = undecided(&record) {
         return Err(why);
     }
@@ -101,8 +101,8 @@ impl Asked {
         let robot = read::robot(&arguments.robot, &options).map_err(|e| unread(&e))?;
         robot.notes().iter().for_each(|text| note(text));
         let place = arguments.rows.display();
-        let table =
-            Table::parse(&text(&arguments.rows)?).map_err(|e| input(&format!("{place}: {e}")))?;
+        let table = Table::parse(&read_text_or_stdin(&arguments.rows)?)
+            .map_err(|e| input(&format!("{place}: {e}")))?;
         let (path, notes) =
             robot.path(&table, &rest).map_err(|e| input(&format!("{place}: {e}")))?;
         for text in &notes {
@@ -181,19 +181,6 @@ fn resting(given: &[String]) -> Result<BTreeMap<String, f64>, Failure> {
         }
     }
     Ok(joints)
-}
-
-fn text(file: &Path) -> Result<String, Failure> {
-    let mut text = String::new();
-    let read = if file == Path::new("-") {
-        io::stdin().read_to_string(&mut text).map(|_| ())
-    } else {
-        colltrans_mesh::file::text(file).map(|read| text = read)
-    };
-    read.map_err(|e| {
-        Failure::new(Code::Input, format!("{}: cannot be read: {e}", file.display()))
-    })?;
-    Ok(text)
 }
 
 /// All pairs that meet at the start, and how they are left out: those of two links as SRDF has them.

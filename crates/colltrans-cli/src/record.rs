@@ -76,38 +76,38 @@ impl Line {
         self.record.outcome == Ending::Error
     }
 
-    /// As text, with its end.
-    pub(crate) fn json(&self) -> String {
-        let mut text = Vec::new();
-        self.write(&mut text);
-        String::from_utf8(text).unwrap_or_default()
-    }
-
     /// Appends the line of a batch, with its end; the id comes first.
     pub(crate) fn write_with(&self, id: Option<&RawValue>, text: &mut Vec<u8>) {
         text.extend_from_slice(b"{\"id\":");
         text.extend_from_slice(id.map_or("null", RawValue::get).as_bytes());
         let start = text.len();
-        self.write(text);
+        write(self, text);
         // The fields go on.
         text[start] = b',';
     }
+}
 
-    fn write(&self, text: &mut Vec<u8>) {
-        let start = text.len();
-        // Nothing in a line can fail to be written.
-        let written = serde_json::to_writer(&mut *text, self);
-        debug_assert!(written.is_ok(), "{written:?}");
-        // What could steer a terminal is none of ASCII, whose control characters JSON has escaped, but one.
-        let line = &text[start..];
-        // All bytes, in lanes: looking for one costs more than a search that could end early saves.
-        if line.iter().fold(0, |highest, &byte| byte.max(highest)) >= 0x7f {
-            let safe = plain_json(&String::from_utf8_lossy(line)).into_owned();
-            text.truncate(start);
-            text.extend_from_slice(safe.as_bytes());
-        }
-        text.push(b'\n');
+/// Returns a record as a line of JSON with its line feed.
+pub(crate) fn json(record: &impl Serialize) -> String {
+    let mut text = Vec::new();
+    write(record, &mut text);
+    String::from_utf8(text).unwrap_or_default()
+}
+
+fn write(record: &impl Serialize, text: &mut Vec<u8>) {
+    let start = text.len();
+    // Nothing in a line can fail to be written.
+    let written = serde_json::to_writer(&mut *text, record);
+    debug_assert!(written.is_ok(), "{written:?}");
+    // What could steer a terminal is none of ASCII, whose control characters JSON has escaped, but one.
+    let line = &text[start..];
+    // All bytes, in lanes: looking for one costs more than a search that could end early saves.
+    if line.iter().fold(0, |highest, &byte| byte.max(highest)) >= 0x7f {
+        let safe = plain_json(&String::from_utf8_lossy(line)).into_owned();
+        text.truncate(start);
+        text.extend_from_slice(safe.as_bytes());
     }
+    text.push(b'\n');
 }
 
 #[cfg(test)]
@@ -116,7 +116,7 @@ mod tests {
 
     #[test]
     fn what_is_not_there_is_not_written() {
-        assert_eq!(Line::default().json(), "{\"outcome\":\"error\"}\n");
+        assert_eq!(json(&Line::default()), "{\"outcome\":\"error\"}\n");
         let mut text = b"before\n".to_vec();
         Line::default().write_with(None, &mut text);
         assert_eq!(text, b"before\n{\"id\":null,\"outcome\":\"error\"}\n");
@@ -140,7 +140,7 @@ mod tests {
         let excess =
             Excess { hull_volume: 0.1, part_volume: None, is_closed: false, depth: Some(2.0) };
         let hull = Some(Hulls { moving: None, fixed: Some(excess), dropped: 0.0 });
-        let text = Line { hull, notes: vec!["a".into()], ..Line::default() }.json();
+        let text = json(&Line { hull, notes: vec!["a".into()], ..Line::default() });
         let hull = r#""hull":{"fixed":{"hull_volume":0.1,"depth":2.0}},"notes":["a"]"#;
         assert_eq!(text, format!("{{\"outcome\":\"error\",{hull}}}\n"));
     }

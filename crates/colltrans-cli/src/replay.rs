@@ -6,15 +6,15 @@ use colltrans::{Case, CaseError};
 
 use crate::args::ReplayArguments;
 use crate::failure::{Code, Failure, print};
+use crate::inputs::read_text;
 use crate::motion;
-use crate::record::Line;
+use crate::record::{self, Line};
 use crate::report;
 
 pub(crate) fn run(arguments: &ReplayArguments) -> Result<(), Failure> {
     let place = arguments.case.display();
     let input = |what: String| Failure::new(Code::Input, format!("{place}: {what}"));
-    let text = colltrans_mesh::file::text(&arguments.case)
-        .map_err(|error| input(format!("cannot be read: {error}")))?;
+    let text = read_text(&arguments.case)?;
     let told = match MotionCase::from_json(&text) {
         Err(CaseError::Format { .. }) => {
             let case = Case::from_json(&text).map_err(|error| input(error.to_string()))?;
@@ -29,14 +29,14 @@ fn of_cast(case: &Case, as_json: bool) -> Result<String, Failure> {
     let cast = case.cast()?;
     let answer = Question::Contact.ask(&cast)?;
     let told = Line::from(answer.record(&cast));
-    Ok(if as_json { told.json() } else { report::answer(&answer, &told, cast.direction()) })
+    Ok(if as_json { record::json(&told) } else { report::answer(&answer, &told, cast.direction()) })
 }
 
 fn of_motion(case: &MotionCase, as_json: bool) -> Result<String, Failure> {
     let cast = case.cast();
     let found = cast.first_contact()?;
     let told = Line::from(Record::of_motion(&found, &cast));
-    let told = if as_json { told.json() } else { motion::words(&told, cast.motions()) };
+    let told = if as_json { record::json(&told) } else { motion::words(&told, cast.motions()) };
     if let MotionOutcome::Undecided(open) = &found {
         print(&told)?;
         return Err(motion::stalled(open.lower).into());

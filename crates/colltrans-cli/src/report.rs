@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use colltrans::glam::DVec3;
-use colltrans::record::{Answer, Ending, FeatureRecord, Question, Record};
+use colltrans::record::{Answer, Ending, FeatureRecord, FeaturesRecord, Question, Record};
 use colltrans::{
     Bounded, Clearance, Contact, ContactRange, Grazing, OverlapAhead, Separated, Solver, Steps,
     WhyFree,
@@ -11,6 +11,7 @@ use colltrans::{
 
 use crate::numbers::{about, known, known_vector, number, six_digits, unit_vector};
 use crate::record::{Hulls, Line};
+use crate::terminal::shown;
 
 /// Vertices of a feature that are listed.
 const LISTED: usize = 12;
@@ -196,10 +197,7 @@ fn contact(text: &mut String, first: &Contact, record: &Record, direction: DVec3
         let point = DVec3::from_array(point);
         line(text, "point", &known_vector(point, proof.rounding * direction.length()));
     }
-    if let Some(features) = &record.features {
-        line(text, "moving", &feature(&features.moving));
-        line(text, "fixed", &feature(&features.fixed));
-    }
+    features(text, record, [None; 2]);
     let bounds = if proof.upper.is_finite() {
         format!(
             "{} to {}, gap {} (rounding alone: up to {})",
@@ -303,8 +301,17 @@ pub(crate) fn line(text: &mut String, name: &str, value: &str) {
     let _ = writeln!(text, "  {name:<12} {value}");
 }
 
+/// Writes a line for each feature in contact, with the name of its file if there is one.
+pub(crate) fn features(text: &mut String, record: &Record, files: [Option<&str>; 2]) {
+    let Some(FeaturesRecord { moving, fixed }) = &record.features else { return };
+    for (name, what, file) in [("moving", moving, files[0]), ("fixed", fixed, files[1])] {
+        let file = file.map_or(String::new(), |file| format!(" of {}", shown(file)));
+        line(text, name, &format!("{}{file}", feature(what)));
+    }
+}
+
 /// A feature by its vertices, a few of them where there are many.
-pub(crate) fn feature(feature: &FeatureRecord) -> String {
+fn feature(feature: &FeatureRecord) -> String {
     let count = feature.vertices.len();
     let mut text = feature.kind.to_owned();
     if count != 1 {

@@ -1,31 +1,26 @@
 //! `colltrans verify`: checks the proofs that `--save-proof` writes.
 
-use colltrans::free::FreeDirections;
+use std::fmt::Display;
+
 use colltrans::motion::path::{PathFileError, PathProofFile};
 use colltrans::motion::{MotionProofFile, MotionProofFiles, SolidMotionProofFile};
 use colltrans::record::FreeRecord;
-use colltrans::{
-    CaseError, CertificateError, DistanceStatement, ProofFile, SceneProof, SceneStatement,
-    Statement,
-};
+use colltrans::{CaseError, DistanceStatement, ProofFile, SceneProof, SceneStatement, Statement};
 use serde_json::{Map, Value, json};
 
 use crate::args::VerifyArguments;
 use crate::directions;
 use crate::failure::{Code, Failure, print, print_json};
+use crate::inputs::read_text;
 
 pub(crate) fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
     let place = arguments.proof.display();
-    let input = |what: String| Failure::new(Code::Input, format!("{place}: {what}"));
-    let text = colltrans_mesh::file::text(&arguments.proof)
-        .map_err(|error| input(format!("cannot be read: {error}")))?;
-    let proof = Saved::read(&text).map_err(|error| input(error.to_string()))?;
-    match proof.check() {
-        Ok(free) if arguments.json => print_json(&format!("{}\n", proof.told(free.as_ref()))),
-        Ok(None) => print(&format!("holds: {}\n", proof.words())),
-        Ok(Some(free)) => {
-            print(&format!("holds: {}: {}\n", proof.words(), directions::verified(&free)))
-        }
+    let text = read_text(&arguments.proof)?;
+    let checked = Verified::check(&text)
+        .map_err(|error| Failure::new(Code::Input, format!("{place}: {error}")))?;
+    match checked {
+        Ok(of) if arguments.json => print_json(&format!("{}\n", of.json)),
+        Ok(of) => print(&format!("holds: {}\n", of.words)),
         Err(error) => {
             if arguments.json {
                 let told = json!({ "holds": false, "message": error });
@@ -36,97 +31,75 @@ pub(crate) fn run(arguments: &VerifyArguments) -> Result<(), Failure> {
     }
 }
 
-/// A proof of either format.
-enum Saved {
-    Two(Box<ProofFile>),
-    Many(Box<SceneProof>),
-    Motion(Box<MotionProofFile>),
-    Motions(Box<MotionProofFiles>),
-    SolidMotion(Box<SolidMotionProofFile>),
-    Path(Box<PathProofFile>),
+/// Statement of a proof that holds.
+struct Verified {
+    words: String,
+    /// Fields of answers.
+    json: Value,
 }
 
-impl Saved {
-    /// The first format that it is in.
-    fn read(text: &str) -> Result<Self, PathFileError> {
-        let other = |error: &CaseError| matches!(error, CaseError::Format { .. });
-        let first = match ProofFile::from_json(text) {
-            Err(error) if other(&error) => error,
-            proof => return Ok(Self::Two(Box::new(proof?))),
+/// Statement of a proof, or the reason why the proof does not hold.
+type Checked = Result<Verified, String>;
+
+/// Result of reading a text as a proof and checking it.
+type Reading = Result<Checked, PathFileError>;
+
+impl Verified {
+    /// Checks a proof of any format. Fails if the text is not a proof.
+    fn check(text: &str) -> Reading {
+        let readers: [fn(&str) -> Reading; 6] = [
+            |text| Ok(Self::of_two(&ProofFile::from_json(text)?)),
+            |text| Ok(Self::of_many(&SceneProof::from_json(text)?)),
+            |text| Ok(Self::of_time(&MotionProofFile::from_json(text)?, MotionProofFile::check)),
+            |text| Ok(Self::of_time(&MotionProofFiles::from_json(text)?, MotionProofFiles::check)),
+            |text| {
+                let proof = SolidMotionProofFile::from_json(text)?;
+                Ok(Self::of_time(&proof, SolidMotionProofFile::check))
+            },
+            |text| Ok(Self::of_path(&PathProofFile::from_json(text)?)),
+        ];
+        let is_other =
+            |found: &Reading| matches!(found, Err(PathFileError::Case(CaseError::Format { .. })));
+        let first = readers[0](text);
+        if !is_other(&first) {
+            return first;
+        }
+        let mut rest = readers[1..].iter().map(|read| read(text));
+        rest.find(|found| !is_other(found)).unwrap_or(first)
+    }
+
+    fn of_path(proof: &PathProofFile) -> Checked {
+        let mut of = Self::of_time(proof, PathProofFile::check)?;
+        of.json["pairs"] = json!(proof.statement().pairs);
+        Ok(of)
+    }
+
+    fn of_time<P: Display, E: Display>(
+        proof: &P,
+        check: impl FnOnce(&P) -> Result<[f64; 2], E>,
+    ) -> Checked {
+        let [lower, upper] = check(proof).map_err(|error| error.to_string())?;
+        let words = proof.to_string();
+        let time = json!({ "lower": lower, "upper": upper.is_finite().then_some(upper) });
+        let json = json!({ "holds": true, "statement": words, "time": time });
+        Ok(Self { words, json })
+    }
+
+    fn of_many(proof: &SceneProof) -> Checked {
+        proof.check().map_err(|error| error.to_string())?;
+        Ok(Self { words: proof.to_string(), json: told_of_many(proof) })
+    }
+
+    fn of_two(proof: &ProofFile) -> Checked {
+        let Some(free) = proof.free_directions() else {
+            proof.check().map_err(|error| error.to_string())?;
+            return Ok(Self { words: proof.to_string(), json: told(proof, None) });
         };
-        match SceneProof::from_json(text) {
-            Err(error) if other(&error) => {}
-            proof => return Ok(Self::Many(Box::new(proof?))),
-        }
-        match MotionProofFile::from_json(text) {
-            Err(error) if other(&error) => {}
-            proof => return Ok(Self::Motion(Box::new(proof?))),
-        }
-        match MotionProofFiles::from_json(text) {
-            Err(error) if other(&error) => {}
-            proof => return Ok(Self::Motions(Box::new(proof?))),
-        }
-        match SolidMotionProofFile::from_json(text) {
-            Err(error) if other(&error) => {}
-            proof => return Ok(Self::SolidMotion(Box::new(proof?))),
-        }
-        match PathProofFile::from_json(text) {
-            Err(PathFileError::Case(error)) if other(&error) => Err(first.into()),
-            proof => Ok(Self::Path(Box::new(proof?))),
-        }
+        let free = free.map_err(|error| error.to_string())?;
+        let record = FreeRecord::of(&free, |_| [None, None]);
+        let words = format!("{proof}: {}", directions::verified(&record));
+        Ok(Self { words, json: told(proof, Some(&record)) })
     }
-
-    /// Checks it; what it says of all directions, if that is what it is about.
-    fn check(&self) -> Result<Option<FreeRecord>, String> {
-        match self {
-            Self::Two(proof) => checked(proof).map_err(|error| error.to_string()),
-            Self::Many(proof) => proof.check().map(|()| None).map_err(|error| error.to_string()),
-            Self::Motion(proof) => proof.check().map(|_| None).map_err(|error| error.to_string()),
-            Self::Motions(proof) => proof.check().map(|_| None).map_err(|error| error.to_string()),
-            Self::SolidMotion(proof) => {
-                proof.check().map(|_| None).map_err(|error| error.to_string())
-            }
-            Self::Path(proof) => proof.check().map(|_| None).map_err(|error| error.to_string()),
-        }
-    }
-
-    fn words(&self) -> String {
-        match self {
-            Self::Two(proof) => proof.to_string(),
-            Self::Many(proof) => proof.to_string(),
-            Self::Motion(proof) => proof.to_string(),
-            Self::Motions(proof) => proof.to_string(),
-            Self::SolidMotion(proof) => proof.to_string(),
-            Self::Path(proof) => proof.to_string(),
-        }
-    }
-
-    fn told(&self, free: Option<&FreeRecord>) -> Value {
-        match self {
-            Self::Two(proof) => told(proof, free),
-            Self::Many(proof) => told_of_many(proof),
-            Self::Motion(proof) => {
-                told_of_time(&proof.to_string(), proof.check().unwrap_or_default())
-            }
-            Self::Motions(proof) => {
-                told_of_time(&proof.to_string(), proof.check().unwrap_or_default())
-            }
-            Self::SolidMotion(proof) => {
-                told_of_time(&proof.to_string(), proof.check().unwrap_or_default())
-            }
-            Self::Path(proof) => {
-                let mut told = told_of_time(&proof.to_string(), proof.check().unwrap_or_default());
-                told["pairs"] = json!(proof.statement().pairs);
-                told
-            }
-        }
-    }
-}
-
-/// What is proven of a time.
-fn told_of_time(statement: &str, [lower, upper]: [f64; 2]) -> Value {
-    let upper = upper.is_finite().then_some(upper);
-    json!({ "holds": true, "statement": statement, "time": { "lower": lower, "upper": upper } })
 }
 
 /// What is proven of one body among many, in the fields of answers.
@@ -162,15 +135,6 @@ fn told_of_many(proof: &SceneProof) -> Value {
         }
     }
     told
-}
-
-/// Checks it; what it says of all directions, if that is what it is about.
-fn checked(proof: &ProofFile) -> Result<Option<FreeRecord>, CertificateError> {
-    let record = |free: FreeDirections<'_>| FreeRecord::of(&free, |_| [None, None]);
-    match proof.free_directions() {
-        Some(free) => Ok(Some(record(free?))),
-        None => proof.check().map(|()| None),
-    }
 }
 
 /// What is proven, in the fields of answers.

@@ -4,27 +4,28 @@
 mod scene;
 mod words;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+use std::slice;
 
 use colltrans::record::{Dents, PairQuestion, Record};
 use colltrans::solid::{SolidOptions, StartOverlap};
 use colltrans::{Among, CaseError, ObstacleId, Options, Pose, SceneProof};
 
-use crate::args::{ClearanceArguments, PlacedArguments};
-use crate::failure::{Code, Failure, note, print};
-use crate::inputs::refuse_proof;
-use crate::outputs;
+use crate::args::{ClearanceArguments, PlaceArguments, PlacedArguments};
+use crate::driver::{AnswerOutputs, OutputTargets, no_picture};
+use crate::failure::{Code, Failure};
+use crate::load;
 use crate::record::Line;
 use scene::{Scene, Ways};
 
 /// What both kinds of questions have in common.
 struct Request<'a> {
-    moving: &'a Path,
+    moving: &'a PathBuf,
     scene: &'a [PathBuf],
     pose: Pose,
     ways: Ways,
     json: bool,
-    save_proof: Option<&'a Path>,
+    save_proof: Option<&'a PathBuf>,
 }
 
 /// `colltrans distance` and `within`.
@@ -44,14 +45,21 @@ pub(crate) fn placed(arguments: &PlacedArguments, question: PairQuestion) -> Res
             body: arguments.body,
         },
         json: arguments.json,
-        save_proof: arguments.save_proof.as_deref(),
+        save_proof: arguments.save_proof.as_ref(),
     };
-    let scene = asked.load(&arguments.places.notes())?;
+    let (scene, targets) = asked.load(&arguments.places)?;
     let among = Among::new(scene.moving.body.at(asked.pose), &scene.obstacles)?;
-    match question {
-        PairQuestion::Within(length) => asked.within(&scene, &among, length),
-        _ => asked.nearest(&scene, &among),
+    if let PairQuestion::Within(length) = question {
+        let record = scene.with_obstacles(Record::of_nearby(&among.within(length)?, &among));
+        let prove = || SceneProof::of_within(&among, length).map(Some);
+        return write_answer(targets, record, |told| words::within(told, length), prove);
     }
+    // There is a file, and so an obstacle.
+    let found = among.nearest()?.ok_or(Failure::new(Code::Input, "no obstacles"))?;
+    let error = scene.error(asked.pose, found.obstacle);
+    let record = scene.with_obstacles(Record::of_nearest(&found, &among));
+    let prove = || SceneProof::of_nearest(&among);
+    write_answer(targets, record, |told| words::nearest(told, error), prove)
 }
 
 /// `colltrans clearance`.
@@ -72,9 +80,9 @@ pub(crate) fn clearance(arguments: &ClearanceArguments) -> Result<(), Failure> {
             body: pair.body,
         },
         json: pair.json,
-        save_proof: pair.save_proof.as_deref(),
+        save_proof: pair.save_proof.as_ref(),
     };
-    let scene = asked.load(&pair.places.notes())?;
+    let (scene, targets) = asked.load(&pair.places)?;
     let tolerance = match arguments.tolerance {
         None => scene.tolerance(asked.pose, direction)?,
         given => given,
@@ -86,10 +94,10 @@ pub(crate) fn clearance(arguments: &ClearanceArguments) -> Result<(), Failure> {
     let error = record.obstacle.map_or(0.0, |obstacle| scene.error(asked.pose, obstacle));
     let is_default = arguments.tolerance.is_none();
     let graze = arguments.pair.graze_tolerance;
-    asked.say(&scene, record, |told| {
-        words::clearance(told, direction, error, is_default) + &words::grazed(graze)
-    })?;
-    asked.save(|| SceneProof::of_clearance(&among, direction).map(Some))
+    let in_words =
+        |told: &Line| words::clearance(told, direction, error, is_default) + &words::grazed(graze);
+    let prove = || SceneProof::of_clearance(&among, direction).map(Some);
+    write_answer(targets, scene.with_obstacles(record), in_words, prove)
 }
 
 /// The body among the others, asked as the arguments say.
@@ -114,56 +122,48 @@ fn choose<'a>(
     Ok(among.with_options(options)?.with_solid_options(of_solids))
 }
 
-impl Request<'_> {
-    fn nearest(&self, scene: &Scene, among: &Among<'_>) -> Result<(), Failure> {
-        // There is a file, and so an obstacle.
-        let found = among.nearest()?.ok_or(Failure::new(Code::Input, "no obstacles"))?;
-        let error = scene.error(self.pose, found.obstacle);
-        self.say(scene, Record::of_nearest(&found, among), |told| words::nearest(told, error))?;
-        self.save(|| SceneProof::of_nearest(among))
-    }
-
-    fn within(&self, scene: &Scene, among: &Among<'_>, length: f64) -> Result<(), Failure> {
-        let record = Record::of_nearby(&among.within(length)?, among);
-        self.say(scene, record, |told| words::within(told, length))?;
-        self.save(|| SceneProof::of_within(among, length).map(Some))
-    }
-
-    /// The bodies; says what was mended.
-    fn load(&self, placed: &[Option<String>; 2]) -> Result<Scene, Failure> {
-        let inputs: Vec<&Path> =
-            [self.moving].into_iter().chain(self.scene.iter().map(AsRef::as_ref)).collect();
-        refuse_proof(self.save_proof, None, &inputs)?;
+impl<'a> Request<'a> {
+    /// Loads the bodies, and reports what was mended.
+    fn load(&self, places: &PlaceArguments) -> Result<(Scene, OutputTargets<'a>), Failure> {
+        let files = [slice::from_ref(self.moving), self.scene];
+        let targets =
+            OutputTargets::new(self.json, self.save_proof, None, &load::input_files(files))?;
         let scene = Scene::load(self.moving, self.scene, &self.ways)?;
-        placed.iter().flatten().chain(&scene.notes).for_each(|text| note(text));
-        Ok(scene)
+        load::report_notes(places, &scene.notes);
+        Ok((scene, targets))
     }
+}
 
-    /// The answer, with the names and the dents of obstacles.
-    fn say(
-        &self,
-        scene: &Scene,
-        mut record: Record,
-        in_words: impl FnOnce(&Line) -> String,
-    ) -> Result<(), Failure> {
-        let name = |id: ObstacleId| scene.names.get(id.0 as usize).cloned();
+impl Scene {
+    /// Returns the record with the names and the dents of obstacles.
+    fn with_obstacles(&self, mut record: Record) -> Record {
+        let name = |id: ObstacleId| self.names.get(id.0 as usize).cloned();
         record.fixed = record.obstacle.and_then(name);
-        let fixed = record.obstacle.and_then(|obstacle| scene.dent(obstacle));
-        record.dents = Dents::of([scene.moving.dent, fixed]);
+        let fixed = record.obstacle.and_then(|obstacle| self.dent(obstacle));
+        record.dents = Dents::of([self.moving.dent, fixed]);
         for one in record.closer.iter_mut().flatten().chain(&mut record.undecided) {
             one.fixed = name(one.obstacle);
-            one.dent = scene.dent(one.obstacle);
+            one.dent = self.dent(one.obstacle);
         }
-        let told = Line::from(record);
-        print(&if self.json { told.json() } else { in_words(&told) })
+        record
     }
+}
 
-    fn save(
-        &self,
-        prove: impl FnOnce() -> Result<Option<SceneProof>, CaseError>,
-    ) -> Result<(), Failure> {
-        let Some(path) = self.save_proof else { return Ok(()) };
-        let proof = prove().map_err(|error| Failure::new(Code::Query, error.to_string()))?;
-        proof.map_or(Ok(()), |proof| outputs::write_proof(path, &proof.to_json()))
-    }
+/// Writes the answer, and the proof that `prove` makes.
+fn write_answer(
+    targets: OutputTargets<'_>,
+    record: Record,
+    in_words: impl FnOnce(&Line) -> String,
+    prove: impl FnOnce() -> Result<Option<SceneProof>, CaseError>,
+) -> Result<(), Failure> {
+    let told = Line::from(record);
+    targets.write_answer(AnswerOutputs {
+        record: &told,
+        words: || in_words(&told),
+        proof: || {
+            let proof = prove().map_err(|error| Failure::new(Code::Query, error.to_string()))?;
+            Ok(proof.map(|proof| proof.to_json()))
+        },
+        picture: no_picture,
+    })
 }

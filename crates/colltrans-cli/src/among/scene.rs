@@ -16,7 +16,7 @@ use crate::args::{BodyArguments, Taken};
 use crate::batch::{Batch, BodySource, Cache, PoseSource, Shape, syntax_message};
 use crate::body::{self, is_part, refusal};
 use crate::failure::{Code, Failure};
-use crate::inputs::{Watched, is_list};
+use crate::inputs::{Watched, is_list, read_text};
 use crate::solid::Body;
 
 /// What rounding alone can do to a length, as a part of the scene's size.
@@ -154,8 +154,7 @@ impl Ways {
         notes: &mut Vec<String>,
     ) -> Result<Vec<(Known, Pose, String)>, Failure> {
         let input = |what: String| Failure::new(Code::Input, format!("{}: {what}", file.display()));
-        let text = colltrans_mesh::file::text(file)
-            .map_err(|error| input(format!("cannot be read: {error}")))?;
+        let text = read_text(file)?;
         let bodies = Batch {
             folder: file.parent().unwrap_or(Path::new("")).to_owned(),
             hull: self.convex[1].hull,

@@ -1,12 +1,12 @@
 //! The answers in words.
 
 use colltrans::glam::DVec3;
-use colltrans::record::{Ending, FeaturesRecord, NearbyRecord, PairQuestion, Record};
+use colltrans::record::{Ending, NearbyRecord, PairQuestion, Record};
 
 use crate::distance;
 use crate::numbers::{known_vector, number, unit_vector};
 use crate::record::Line;
-use crate::report::{feature, kept, line, safe};
+use crate::report::{features, kept, line, safe};
 use crate::terminal::shown;
 
 /// Which obstacle is nearest.
@@ -93,10 +93,7 @@ fn blocked(text: &mut String, record: &Record, direction: DVec3, error: f64) {
     if let Some([lower, upper]) = record.translation_bounds {
         line(text, "bounds", &format!("{} to {}", number(lower), number(upper)));
     }
-    if let Some(FeaturesRecord { moving, fixed }) = &record.features {
-        line(text, "moving", &feature(moving));
-        line(text, "fixed", &format!("{} of {}", feature(fixed), named(record.fixed.as_deref())));
-    }
+    features(text, record, [None, record.fixed.as_deref()]);
     if let (Some(normal), Some(point)) = (record.normal, record.point) {
         let rounding = 1e-14 * point.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
         line(text, "normal", &unit_vector(normal.into()));

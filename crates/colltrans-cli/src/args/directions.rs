@@ -69,6 +69,6 @@ impl DirectionsArguments {
 
     /// How the files of both bodies are read.
     pub(crate) fn part_options(&self) -> [BodyOptions; 2] {
-        [self.places.moving_scale, self.places.fixed_scale].map(|scale| self.body.options(scale))
+        self.body.part_options(&self.places, false)
     }
 }

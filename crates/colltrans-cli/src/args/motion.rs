@@ -145,8 +145,7 @@ impl MotionArguments {
 
     /// How the files of both sides are read as parts.
     pub(crate) fn part_options(&self) -> [BodyOptions; 2] {
-        [self.places.moving_scale, self.places.fixed_scale]
-            .map(|scale| self.body.options(scale).with_open(self.open))
+        self.body.part_options(&self.places, self.open)
     }
 
     /// How the files of both sides become convex bodies.

@@ -1,6 +1,6 @@
 //! `colltrans distance`, `depth` and `within`: two bodies where they are.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use clap::Args;
 use colltrans::record::PairQuestion;
@@ -62,7 +62,7 @@ impl PlacedArguments {
     }
 
     /// The one mesh before --among.
-    pub(crate) fn one(&self) -> Result<&Path, Failure> {
+    pub(crate) fn one(&self) -> Result<&PathBuf, Failure> {
         one(&self.meshes)
     }
 
@@ -81,7 +81,6 @@ impl PlacedArguments {
 
     /// How the files of both bodies are read as parts.
     pub(crate) fn part_options(&self) -> [BodyOptions; 2] {
-        [self.places.moving_scale, self.places.fixed_scale]
-            .map(|scale| self.body.options(scale).with_open(self.open))
+        self.body.part_options(&self.places, self.open)
     }
 }

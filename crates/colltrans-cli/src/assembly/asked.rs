@@ -9,6 +9,7 @@ use colltrans_assembly::roles::{PairFit, Role};
 
 use crate::args::{ConstraintArguments, RoleArguments, direction};
 use crate::failure::{Code, Failure};
+use crate::inputs::read_text;
 
 /// The assembly with what is asked of its plans.
 pub(super) fn constrained(
@@ -80,9 +81,8 @@ pub(super) fn times(file: Option<&Path>) -> Result<Times, Failure> {
     let Some(path) = file else { return Ok(Times::default()) };
     let refused =
         |reason: String| Failure::new(Code::Input, format!("{}: {reason}", path.display()));
-    let text = colltrans_mesh::file::text(path);
-    let text = text.map_err(|e| refused(format!("cannot be read: {e}")))?;
-    let times: Times = serde_json::from_str(&text).map_err(|e| refused(e.to_string()))?;
+    let times: Times =
+        serde_json::from_str(&read_text(path)?).map_err(|e| refused(e.to_string()))?;
     match times.wrong() {
         Some((name, seconds)) => Err(refused(format!("{name}: {seconds} is no time in seconds"))),
         None => Ok(times),

@@ -358,18 +358,15 @@ impl<B> Query<'_, B> {
         }
         let [moving, fixed] = as_solids(shapes)?;
         let question = PartsQuery {
-            moving: moving.get(),
-            moving_pose: poses[0],
-            fixed: fixed.get(),
-            fixed_pose: poses[1],
+            bodies: [moving.get(), fixed.get()],
+            poses,
             direction,
             tolerance: self.tolerance,
             ignore_start_overlaps: self.ignore_start_overlaps.unwrap_or_default(),
             keep: self.keep.unwrap_or_default(),
         };
         let answer = question.ask(|| ()).map_err(|e| e.to_string())?;
-        let bodies = [question.moving, question.fixed];
-        let notes = bodies.into_iter().flat_map(|body| &body.notes).chain(&answer.notes);
+        let notes = question.bodies.into_iter().flat_map(|body| &body.notes).chain(&answer.notes);
         let notes = notes.cloned().collect();
         Ok(AnswerLine { notes, ..without_names(answer.record).into() })
     }

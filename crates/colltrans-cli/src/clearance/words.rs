@@ -1,10 +1,10 @@
 //! The answer in words.
 
 use colltrans::glam::DVec3;
-use colltrans::record::{Ending, FeaturesRecord, Record, StartOverlapRecord};
+use colltrans::record::{Ending, Record, StartOverlapRecord};
 
 use crate::numbers::{decade, known_vector, number, unit_vector};
-use crate::report::{feature, kept, line, safely, times};
+use crate::report::{features, kept, line, safely, times};
 use crate::solid::Answer;
 use crate::terminal::shown;
 
@@ -96,14 +96,7 @@ fn blocked(text: &mut String, answer: &Answer, direction: DVec3) {
             line(text, "shrunk", &format!("{}, for the shrunk bodies", times(shrunk)));
         }
     }
-    if let Some(FeaturesRecord { moving, fixed }) = &record.features {
-        for (name, what, file) in
-            [("moving", moving, &record.moving), ("fixed", fixed, &record.fixed)]
-        {
-            let file = shown(file.as_deref().unwrap_or_default());
-            line(text, name, &format!("{} of {file}", feature(what)));
-        }
-    }
+    features(text, record, [record.moving.as_deref(), record.fixed.as_deref()]);
     if let (Some(normal), Some(point)) = (record.normal, record.point) {
         line(text, "normal", &unit_vector(normal.into()));
         line(text, "point", &known_vector(point.into(), answer.error));

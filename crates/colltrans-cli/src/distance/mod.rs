@@ -3,20 +3,17 @@
 
 mod words;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use colltrans::Pair;
 use colltrans::record::PairQuestion;
-use colltrans_mesh::body::BodyOptions;
 
 use crate::among;
-use crate::args::{PlacedArguments, Sides, Taken};
-use crate::body::{Part, is_part, refusal};
-use crate::cast;
-use crate::clearance;
-use crate::failure::{Code, Failure, note, print};
-use crate::inputs::{refuse_picture, refuse_proof};
-use crate::outputs;
+use crate::args::PlacedArguments;
+use crate::body::Part;
+use crate::driver::{AnswerOutputs, OutputTargets};
+use crate::failure::{Code, Failure};
+use crate::load;
 use crate::picture::{Shown, draw_pair};
 use crate::record::Line;
 use crate::solid::{PartsPair, surface_of};
@@ -26,85 +23,60 @@ pub(crate) fn run(arguments: &PlacedArguments, question: PairQuestion) -> Result
     if !arguments.among.is_empty() {
         return among::placed(arguments, question);
     }
-    let Sides { files, taken } = arguments.sides(question)?;
-    let inputs: Vec<&Path> = files.into_iter().flatten().map(AsRef::as_ref).collect();
-    let picture = arguments.picture.as_deref();
-    refuse_picture(picture, &inputs)?;
-    refuse_proof(arguments.save_proof.as_deref(), picture, &inputs)?;
-    if let ([moving, fixed], true) = (inputs.as_slice(), taken != Taken::Parts) {
-        match cast::load([moving, fixed], &arguments.body_options()) {
-            Ok(parts) => return convex(arguments, question, &parts),
-            Err(error) if taken == Taken::AsTheyAre && is_part(&error) => {}
-            Err(error) => return Err(Failure::new(Code::Input, refusal(&error))),
-        }
+    let sides = arguments.sides(question)?;
+    let PlacedArguments { json, save_proof, picture, .. } = arguments;
+    let inputs = load::input_files(sides.files);
+    let targets = OutputTargets::new(*json, save_proof.as_ref(), picture.as_ref(), &inputs)?;
+    match load::convex_bodies(&sides, &arguments.body_options())? {
+        Some([moving, fixed]) => convex(arguments, targets, question, [&moving[0], &fixed[0]]),
+        None => parts(arguments, targets, question, sides.files),
     }
-    solids(arguments, question, files, &arguments.part_options())
 }
 
 fn convex(
     arguments: &PlacedArguments,
+    targets: OutputTargets<'_>,
     question: PairQuestion,
-    parts: &[Part; 2],
+    bodies: [&Part; 2],
 ) -> Result<(), Failure> {
     let poses = arguments.places.poses()?;
-    tell(arguments, parts.iter().flat_map(|part| &part.notes));
-    let [moving, fixed] = [0, 1].map(|k| parts[k].body.at(poses[k]));
+    load::report_notes(&arguments.places, bodies.iter().flat_map(|part| &part.notes));
+    let [moving, fixed] = [0, 1].map(|k| bodies[k].body.at(poses[k]));
     let pair = Pair::new(moving, fixed)?;
     let answer = question.ask(&pair)?;
-    let told = Line::of_parts(answer.record(&pair), parts.each_ref());
-    say(arguments, question, &told, 0.0)?;
-    if let (Some(path), Some(proof)) = (&arguments.save_proof, answer.proof(&pair)) {
-        outputs::write_proof(path, &proof.to_json())?;
-    }
-    let surface = |k: usize, origin| surface_of(&parts[k].body, &poses[k], origin);
-    draw(arguments, Shown { question, record: &told.record, surface: &surface })
+    let told = Line::of_parts(answer.record(&pair), bodies);
+    let surface = |k: usize, origin| surface_of(&bodies[k].body, &poses[k], origin);
+    targets.write_answer(AnswerOutputs {
+        record: &told,
+        words: || words::answer(question, &told, 0.0),
+        proof: || Ok(answer.proof(&pair).map(|proof| proof.to_json())),
+        picture: || Ok(draw_pair(Shown { question, record: &told.record, surface: &surface })),
+    })
 }
 
-fn solids(
+fn parts(
     arguments: &PlacedArguments,
+    targets: OutputTargets<'_>,
     question: PairQuestion,
     files: [&[PathBuf]; 2],
-    options: &[BodyOptions; 2],
 ) -> Result<(), Failure> {
-    if question == PairQuestion::Depth && arguments.save_proof.is_some() {
+    let proves = targets.save_proof.is_some();
+    if question == PairQuestion::Depth && proves {
         let why = "the depth of parts has no proof; `colltrans clearance` has one of their overlap";
         return Err(Failure::new(Code::Usage, why));
     }
     let poses = arguments.places.poses()?;
-    let bodies = clearance::load(files, options)?;
-    tell(arguments, bodies.iter().flat_map(|body| &body.notes));
-    let asked = PartsPair { bodies: [&bodies[0], &bodies[1]], poses };
-    let (record, proof) = match &arguments.save_proof {
-        Some(_) => asked.prove(question)?,
-        None => (asked.ask(question)?, Ok(None)),
-    };
-    say(arguments, question, &record.clone().into(), asked.error())?;
-    if let (Some(path), Some(proof)) = (&arguments.save_proof, proof?) {
-        outputs::write_proof(path, &proof.to_json())?;
-    }
+    let bodies = load::parts(files, &arguments.part_options())?;
+    load::report_notes(&arguments.places, bodies.iter().flat_map(|body| &body.notes));
+    let asked = PartsPair { bodies: bodies.each_ref(), poses };
+    let (record, proof) =
+        if proves { asked.prove(question)? } else { (asked.ask(question)?, Ok(None)) };
+    let told = Line::from(record);
     let surface = |k: usize, origin| bodies[k].surface(&poses[k], origin);
-    draw(arguments, Shown { question, record: &record, surface: &surface })
-}
-
-/// What was changed about the poses and mended in the files.
-fn tell<'a>(arguments: &PlacedArguments, mended: impl Iterator<Item = &'a String>) {
-    arguments.places.notes().iter().flatten().for_each(|text| note(text));
-    mended.for_each(|text| note(text));
-}
-
-/// The answer; lengths may be off by an error that the files have.
-fn say(
-    arguments: &PlacedArguments,
-    question: PairQuestion,
-    told: &Line,
-    error: f64,
-) -> Result<(), Failure> {
-    print(&if arguments.json { told.json() } else { words::answer(question, told, error) })
-}
-
-fn draw(arguments: &PlacedArguments, shown: Shown<'_>) -> Result<(), Failure> {
-    match &arguments.picture {
-        Some(path) => outputs::write(path, draw_pair(shown).as_bytes()),
-        None => Ok(()),
-    }
+    targets.write_answer(AnswerOutputs {
+        record: &told,
+        words: || words::answer(question, &told, asked.error()),
+        proof: || Ok(proof?.map(|proof| proof.to_json())),
+        picture: || Ok(draw_pair(Shown { question, record: &told.record, surface: &surface })),
+    })
 }

@@ -1,12 +1,11 @@
 //! The answer in words.
 
-use colltrans::record::{Ending, FeaturesRecord, PairQuestion, Record};
+use colltrans::record::{Ending, PairQuestion, Record};
 
 use crate::clearance;
 use crate::numbers::{known, known_vector, number, unit_vector};
 use crate::record::Line;
-use crate::report::{feature, hulls, line};
-use crate::terminal::shown;
+use crate::report::{features, hulls, line};
 
 /// The readable answer; lengths may be off by what the files' precision leaves.
 pub(crate) fn answer(question: PairQuestion, told: &Line, error: f64) -> String {
@@ -81,10 +80,5 @@ fn places(text: &mut String, record: &Record, error: f64) {
         }
         None => {}
     }
-    let Some(FeaturesRecord { moving, fixed }) = &record.features else { return };
-    for (name, what, file) in [("moving", moving, &record.moving), ("fixed", fixed, &record.fixed)]
-    {
-        let file = file.as_deref().map_or(String::new(), |file| format!(" of {}", shown(file)));
-        line(text, name, &format!("{}{file}", feature(what)));
-    }
+    features(text, record, [record.moving.as_deref(), record.fixed.as_deref()]);
 }

@@ -46,6 +46,14 @@ pub(crate) struct Scene<'a> {
     pub(crate) answer: &'a ContactRange,
 }
 
+/// Vertices of a body where it is placed, relative to a point, and triangles.
+pub(crate) type Surface = (Vec<DVec3>, Vec<[u32; 3]>);
+
+/// Returns the mean of the vertices.
+fn middle_of((vertices, _): &Surface) -> DVec3 {
+    vertices.iter().sum::<DVec3>() / vertices.len().max(1) as f64
+}
+
 /// The bodies as they are drawn.
 struct Cast {
     /// P at its start, unless that is where it stops.

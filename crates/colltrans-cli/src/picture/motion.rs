@@ -5,22 +5,16 @@ use colltrans::Pose;
 use colltrans::glam::DVec3;
 use colltrans::motion::Motion;
 use colltrans::record::{Ending, FeaturesRecord, Record, TimeRecord};
-use colltrans_picture::{MOVING, Page, Stroke, edges};
+use colltrans_picture::{MOVING, Stroke};
 
-use super::Cast;
-use super::layout::Layout;
-use super::notes::Notes;
-use super::parts::Eye;
+use super::parts::draw_seen;
 use super::solid::Solid;
 use super::subject::{Subject, components, short};
-use super::viewpoint;
+use super::{Cast, Surface, middle_of};
 use crate::report::never;
 
 /// Pieces of the way that is drawn: one turn of them is round, and so are twenty.
 const WAY: u32 = 480;
-
-/// Vertices of a body at a pose, relative to a point, and triangles.
-type Surface = (Vec<DVec3>, Vec<[u32; 3]>);
 
 /// What is drawn.
 #[derive(Clone, Copy)]
@@ -60,17 +54,11 @@ pub(crate) fn draw_motion(moved: Moved<'_>) -> String {
     let way = way(&cast, |time| place(0, time), stop, subject.origin);
     let along = way.first().zip(way.last()).map_or(DVec3::X, |(a, b)| *b - *a);
     let along = along.try_normalize().unwrap_or(DVec3::X);
-    let view = viewpoint::choose([&cast.stop, &cast.fixed], along, subject.normal);
-    let layout = Layout::of(&cast, &subject, &view);
-    let eye = Eye { view: &view, layout: &layout };
-    let mut page = Page::new(layout.window);
-    page.open_group(r#"clip-path="url(#window)""#);
-    eye.draw(&mut page, &cast, [&edges(&moving), &edges(&fixed_triangles)]);
-    let seen: Vec<_> = way.iter().map(|p| layout.on_page(view.project(*p))).collect();
-    page.polyline(Stroke::dashed(MOVING.line, 1.1, "5 4"), &seen);
-    page.close_group();
-    Notes { cast: &cast, subject: &subject, layout: &layout, view: &view }.draw(&mut page, along);
-    page.finish(layout.size, layout.window, &subject.headline)
+    draw_seen(&cast, &subject, along, [&moving, &fixed_triangles], |page, eye| {
+        let on_page = |p: &DVec3| eye.layout.on_page(eye.view.project(*p));
+        let seen: Vec<_> = way.iter().map(on_page).collect();
+        page.polyline(Stroke::dashed(MOVING.line, 1.1, "5 4"), &seen);
+    })
 }
 
 /// Points on the way of the moving body's middle.
@@ -90,10 +78,7 @@ fn subject(moved: &Moved<'_>, fixed: Pose) -> Subject {
     let record = moved.record;
     let point = record.point.map(DVec3::from);
     // Without a point the middle of the fixed body.
-    let origin = point.unwrap_or_else(|| {
-        let (vertices, _) = (moved.surface)(1, &fixed, DVec3::ZERO);
-        vertices.iter().sum::<DVec3>() / vertices.len().max(1) as f64
-    });
+    let origin = point.unwrap_or_else(|| middle_of(&(moved.surface)(1, &fixed, DVec3::ZERO)));
     Subject {
         origin,
         stop: 0.0,

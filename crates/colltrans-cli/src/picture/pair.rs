@@ -2,18 +2,11 @@
 
 use colltrans::glam::DVec3;
 use colltrans::record::{Ending, FeaturesRecord, PairQuestion, Record};
-use colltrans_picture::{Page, edges};
 
-use super::Cast;
-use super::layout::Layout;
-use super::notes::Notes;
-use super::parts::Eye;
+use super::parts::draw_seen;
 use super::solid::Solid;
 use super::subject::{Subject, components, short};
-use super::viewpoint;
-
-/// Vertices relative to a point, and triangles.
-type Surface = (Vec<DVec3>, Vec<[u32; 3]>);
+use super::{Cast, Surface, middle_of};
 
 /// What is drawn.
 #[derive(Clone, Copy)]
@@ -32,16 +25,8 @@ pub(crate) fn draw_pair(shown: Shown<'_>) -> String {
     // The way that a depth is long, or the one that is looked along.
     let way = shown.record.direction.or(shown.record.normal).map_or(DVec3::X, DVec3::from);
     let cast = Cast::placed(&moving, fixed, way, &subject);
-    let view = viewpoint::choose([&cast.stop, &cast.fixed], way, subject.normal);
-    let layout = Layout::of(&cast, &subject, &view);
-    let eye = Eye { view: &view, layout: &layout };
-    let mut page = Page::new(layout.window);
-    page.open_group(r#"clip-path="url(#window)""#);
-    let [moving_edges, fixed_edges] = surfaces.map(|(_, triangles)| edges(&triangles));
-    eye.draw(&mut page, &cast, [&moving_edges, &fixed_edges]);
-    page.close_group();
-    Notes { cast: &cast, subject: &subject, layout: &layout, view: &view }.draw(&mut page, way);
-    page.finish(layout.size, layout.window, &subject.headline)
+    let triangles = surfaces.each_ref().map(|(_, triangles)| &triangles[..]);
+    draw_seen(&cast, &subject, way, triangles, |_, _| ())
 }
 
 /// What the picture has to tell.
@@ -50,10 +35,7 @@ fn subject(shown: &Shown<'_>) -> Subject {
     let points = record.points.map(|points| points.map(DVec3::from));
     let middle = points.map(|[a, b]| a.midpoint(b));
     // Without points the middle of the fixed body.
-    let origin = middle.unwrap_or_else(|| {
-        let (vertices, _) = (shown.surface)(1, DVec3::ZERO);
-        vertices.iter().sum::<DVec3>() / vertices.len().max(1) as f64
-    });
+    let origin = middle.unwrap_or_else(|| middle_of(&(shown.surface)(1, DVec3::ZERO)));
     let is_depth = shown.question == PairQuestion::Depth;
     let stop = record.upper.filter(|_| is_depth).unwrap_or_default();
     let meets = record.outcome == Ending::Meeting || record.upper == Some(0.0);

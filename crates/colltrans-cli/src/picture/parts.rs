@@ -34,20 +34,33 @@ const MOVING_TONES: usize = SHADES + 1;
 pub(crate) fn draw_solids(question: &PartsQuery<'_>, answer: &Answer) -> String {
     let direction = question.direction;
     let subject = subject(question, answer);
-    let (vertices, triangles) = question.moving.surface(&question.moving_pose, subject.origin);
+    let surface = |k: usize| question.bodies[k].surface(&question.poses[k], subject.origin);
+    let (vertices, triangles) = surface(0);
     let moving = Solid::of_triangles(vertices, &triangles);
-    let (vertices, fixed_triangles) = question.fixed.surface(&question.fixed_pose, subject.origin);
+    let (vertices, fixed_triangles) = surface(1);
     let fixed = Solid::of_triangles(vertices, &fixed_triangles);
     let cast = Cast::placed(&moving, fixed, direction, &subject);
-    let unit = direction.normalize();
-    let view = viewpoint::choose([&cast.stop, &cast.fixed], unit, subject.normal);
-    let layout = Layout::of(&cast, &subject, &view);
+    draw_seen(&cast, &subject, direction.normalize(), [&triangles, &fixed_triangles], |_, _| ())
+}
+
+/// Draws bodies of any kind by their triangles, and `more` above them, as an SVG file.
+pub(super) fn draw_seen(
+    cast: &Cast,
+    subject: &Subject,
+    way: DVec3,
+    triangles: [&[[u32; 3]]; 2],
+    more: impl FnOnce(&mut Page, &Eye<'_>),
+) -> String {
+    let view = viewpoint::choose([&cast.stop, &cast.fixed], way, subject.normal);
+    let layout = Layout::of(cast, subject, &view);
     let eye = Eye { view: &view, layout: &layout };
     let mut page = Page::new(layout.window);
     page.open_group(r#"clip-path="url(#window)""#);
-    eye.draw(&mut page, &cast, [&edges(&triangles), &edges(&fixed_triangles)]);
+    let [moving, fixed] = triangles.map(edges);
+    eye.draw(&mut page, cast, [&moving, &fixed]);
+    more(&mut page, &eye);
     page.close_group();
-    Notes { cast: &cast, subject: &subject, layout: &layout, view: &view }.draw(&mut page, unit);
+    Notes { cast, subject, layout: &layout, view: &view }.draw(&mut page, way);
     page.finish(layout.size, layout.window, &subject.headline)
 }
 
@@ -75,7 +88,7 @@ fn subject(question: &PartsQuery<'_>, answer: &Answer) -> Subject {
         record.exit.map_or(String::new(), |exit| format!("; exit at {}", quantity(exit, length)));
     details.push(format!("tolerance {}{exit}", short(record.tolerance.unwrap_or_default())));
     Subject {
-        origin: record.point.map_or(question.fixed_pose.translation(), DVec3::from),
+        origin: record.point.map_or(question.poses[1].translation(), DVec3::from),
         stop: place.map_or(0.0, |place| place * length),
         normal: record.normal.map_or(DVec3::ZERO, DVec3::from),
         touches: record.point.is_some(),
@@ -124,7 +137,7 @@ impl Eye<'_> {
         self.layout.on_page(self.view.project(p)).extend(p.dot(self.view.toward))
     }
 
-    pub(super) fn draw(&self, page: &mut Page, cast: &Cast, [moving, fixed]: [&[Edge]; 2]) {
+    fn draw(&self, page: &mut Page, cast: &Cast, [moving, fixed]: [&[Edge]; 2]) {
         let mut raster = Raster::new(self.layout.window);
         self.rasterise(&mut raster, &cast.fixed, 0);
         self.rasterise(&mut raster, &cast.stop, MOVING_TONES);

@@ -15,10 +15,8 @@ const ROUNDING: f64 = 1e-14;
 /// How far a body can move from where it is.
 #[derive(Clone, Copy)]
 pub(crate) struct PartsQuery<'a> {
-    pub(crate) moving: &'a Body,
-    pub(crate) moving_pose: Pose,
-    pub(crate) fixed: &'a Body,
-    pub(crate) fixed_pose: Pose,
+    pub(crate) bodies: [&'a Body; 2],
+    pub(crate) poses: [Pose; 2],
     pub(crate) direction: DVec3,
     /// `None` for what the files' precision asks for.
     pub(crate) tolerance: Option<f64>,
@@ -38,10 +36,20 @@ pub(crate) struct Answer {
     pub(crate) error: f64,
 }
 
-impl PartsQuery<'_> {
+impl<'a> PartsQuery<'a> {
+    /// Returns a query between placed bodies for answers that do not depend on its direction.
+    pub(super) const fn placed(
+        bodies: [&'a Body; 2],
+        poses: [Pose; 2],
+        tolerance: Option<f64>,
+    ) -> Self {
+        let (direction, ignore_start_overlaps, keep) = (DVec3::Z, false, 0.0);
+        Self { bodies, poses, direction, tolerance, ignore_start_overlaps, keep }
+    }
+
     /// Pairs of files that may be looked at.
     pub(crate) fn pairs(&self) -> usize {
-        self.moving.pieces.len() * self.fixed.pieces.len()
+        self.bodies.map(|body| body.pieces.len()).into_iter().product()
     }
 
     /// The answer; `done` is called after each pair of files that was looked at.
@@ -51,8 +59,8 @@ impl PartsQuery<'_> {
         let clearance = cast.clearance()?;
         let mut record = Record::of_solids(&clearance, cast.exit(), &cast);
         if let Some(FeaturesRecord { moving, fixed }) = &mut record.features {
-            record.moving = Some(self.moving.renumber(moving));
-            record.fixed = Some(self.fixed.renumber(fixed));
+            record.moving = Some(self.bodies[0].renumber(moving));
+            record.fixed = Some(self.bodies[1].renumber(fixed));
         }
         if self.ignore_start_overlaps || record.outcome == Ending::Overlapping {
             record.start_overlaps = self.overlaps(tolerance, done)?;
@@ -67,33 +75,31 @@ impl PartsQuery<'_> {
 
     /// How far lengths may be off by the precision of the files and by rounding.
     pub(super) fn error(&self) -> f64 {
-        self.moving.precision() + self.fixed.precision() + ROUNDING * self.size()
+        self.bodies.map(Body::precision).into_iter().sum::<f64>() + ROUNDING * self.size()
     }
 
     /// The proof of the answer with a tolerance.
     pub(crate) fn prove(&self, tolerance: f64) -> Result<ProofFile, Failure> {
-        let cast = self.cast(self.moving.solid(), self.fixed.solid(), [0.0; 2], Some(tolerance))?;
-        let [moving, fixed] = [self.moving, self.fixed].map(Body::solids);
+        let cast = self.cast(self.bodies.map(Body::solid), [0.0; 2], Some(tolerance))?;
+        let [moving, fixed] = self.bodies.map(Body::solids);
         ProofFile::of_solids(&cast, [&moving, &fixed])
             .map_err(|error| Failure::new(Code::Query, error.to_string()))
     }
 
     /// The query as the library has it.
     pub(super) fn of_bodies(&self) -> Result<Cast<'_, Solid>, QueryError> {
-        let precisions = [self.moving.precision(), self.fixed.precision()];
-        self.cast(self.moving.solid(), self.fixed.solid(), precisions, self.tolerance)
+        self.cast(self.bodies.map(Body::solid), self.bodies.map(Body::precision), self.tolerance)
     }
 
     fn cast<'s>(
         &self,
-        moving: &'s Solid,
-        fixed: &'s Solid,
+        [moving, fixed]: [&'s Solid; 2],
         precisions: [f64; 2],
         tolerance: Option<f64>,
     ) -> Result<Cast<'s, Solid>, QueryError> {
         let start =
             if self.ignore_start_overlaps { StartOverlap::Ignore } else { StartOverlap::Refuse };
-        let (moving, fixed) = (moving.at(self.moving_pose), fixed.at(self.fixed_pose));
+        let (moving, fixed) = (moving.at(self.poses[0]), fixed.at(self.poses[1]));
         between(moving, fixed, self.direction, precisions, tolerance, start)?.keeping(self.keep)
     }
 
@@ -104,9 +110,9 @@ impl PartsQuery<'_> {
         mut done: impl FnMut(),
     ) -> Result<Vec<StartOverlapRecord>, QueryError> {
         let mut found = Vec::new();
-        for moving in &self.moving.pieces {
-            for fixed in &self.fixed.pieces {
-                let of_files = |by| self.cast(&moving.solid, &fixed.solid, [0.0; 2], Some(by));
+        for moving in &self.bodies[0].pieces {
+            for fixed in &self.bodies[1].pieces {
+                let of_files = |by| self.cast([&moving.solid, &fixed.solid], [0.0; 2], Some(by));
                 let cast = match of_files(tolerance) {
                     // A file among others of which nothing is left is asked as it is.
                     Err(QueryError::NothingLeft { .. }) => of_files(0.0)?,
@@ -129,18 +135,18 @@ impl PartsQuery<'_> {
         if tolerance == 0.0 {
             return Vec::new();
         }
-        let pieces = self.moving.pieces.iter().chain(&self.fixed.pieces);
+        let pieces = self.bodies.into_iter().flat_map(|body| &body.pieces);
         pieces.filter_map(|piece| piece.unshrunk(tolerance / 2.0)).collect()
     }
 
     /// The largest coordinate.
     fn size(&self) -> f64 {
-        let reach = |body: &Body, pose: &Pose| {
-            let bounds = body.solid().bounds();
+        let reach = |k: usize| {
+            let bounds = self.bodies[k].solid().bounds();
             let corners = [bounds.low, bounds.high].map(DVec3::length);
-            corners[0].max(corners[1]) + pose.translation().length()
+            corners[0].max(corners[1]) + self.poses[k].translation().length()
         };
-        reach(self.moving, &self.moving_pose).max(reach(self.fixed, &self.fixed_pose))
+        reach(0).max(reach(1))
     }
 }
 

@@ -1,7 +1,6 @@
 //! All directions along which a body leaves, and the proof.
 
 use colltrans::free::{FreeDirections, FreeError, FreeOptions};
-use colltrans::glam::DVec3;
 use colltrans::record::FreeRecord;
 use colltrans::solid::SolidCast;
 use colltrans::{Pose, ProofFile, Solid};
@@ -58,14 +57,8 @@ impl PartsFree<'_> {
     /// The same bodies in a query whose direction plays no part.
     const fn query(&self) -> PartsQuery<'_> {
         PartsQuery {
-            moving: self.bodies[0],
-            moving_pose: self.poses[0],
-            fixed: self.bodies[1],
-            fixed_pose: self.poses[1],
-            direction: DVec3::Z,
-            tolerance: self.tolerance,
             ignore_start_overlaps: self.ignore_start_overlaps,
-            keep: 0.0,
+            ..PartsQuery::placed(self.bodies, self.poses, self.tolerance)
         }
     }
 }

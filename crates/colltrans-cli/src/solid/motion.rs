@@ -1,6 +1,5 @@
 //! The question between two bodies made of parts that turn.
 
-use colltrans::glam::DVec3;
 use colltrans::motion::{Motion, MotionCast};
 use colltrans::record::{Ending, FeaturesRecord, Record};
 use colltrans::solid::StartOverlap;
@@ -64,19 +63,7 @@ impl PartsMotion<'_> {
 
     /// The bodies where the motion begins; of no direction.
     fn start(&self) -> PartsQuery<'_> {
-        let [moving, fixed] = self.bodies;
-        let [moving_pose, fixed_pose] = self.motions.each_ref().map(Motion::start);
-        let (tolerance, keep) = (self.tolerance, self.keep);
-        let (direction, ignore_start_overlaps) = (DVec3::Z, false);
-        PartsQuery {
-            moving,
-            moving_pose,
-            fixed,
-            fixed_pose,
-            direction,
-            tolerance,
-            ignore_start_overlaps,
-            keep,
-        }
+        let poses = self.motions.each_ref().map(Motion::start);
+        PartsQuery { keep: self.keep, ..PartsQuery::placed(self.bodies, poses, self.tolerance) }
     }
 }

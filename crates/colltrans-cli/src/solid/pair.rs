@@ -1,6 +1,5 @@
 //! The questions about two placed bodies without a direction.
 
-use colltrans::glam::DVec3;
 use colltrans::record::{Ending, FeaturesRecord, PairQuestion, Record};
 use colltrans::{CaseError, Pair, Pose, ProofFile, QueryError, Solid};
 
@@ -64,15 +63,6 @@ impl<'a> PartsPair<'a> {
 
     /// The same bodies, as they are, in a query whose direction plays no part.
     const fn clearance(&self) -> PartsQuery<'a> {
-        PartsQuery {
-            moving: self.bodies[0],
-            moving_pose: self.poses[0],
-            fixed: self.bodies[1],
-            fixed_pose: self.poses[1],
-            direction: DVec3::Z,
-            tolerance: Some(0.0),
-            ignore_start_overlaps: false,
-            keep: 0.0,
-        }
+        PartsQuery::placed(self.bodies, self.poses, Some(0.0))
     }
 }

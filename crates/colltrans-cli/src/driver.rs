@@ -1,0 +1,103 @@
+//! Writes the answer of every question: prints it, then writes its proof and its picture.
+//!
+//! A question describes its outputs in [`AnswerOutputs`]. [`OutputTargets::write_answer`] computes only
+//! those that the command line requests. [`answer_directions`] prints one line for each of many directions.
+
+use std::path::{Path, PathBuf};
+
+use colltrans::glam::DVec3;
+use colltrans::record::Record;
+use serde::Serialize;
+
+use crate::failure::{Code, Failure, print, print_json};
+use crate::inputs::{refuse_picture, refuse_proof};
+use crate::outputs;
+use crate::record::{self, Line};
+
+/// Outputs that a command line requests.
+#[derive(Clone, Copy)]
+pub(crate) struct OutputTargets<'a> {
+    pub(crate) json: bool,
+    pub(crate) save_proof: Option<&'a Path>,
+    picture: Option<&'a Path>,
+}
+
+/// Outputs of one answer. Text, proof and picture are computed only on request.
+pub(crate) struct AnswerOutputs<'a, R, Words, Proof, Picture> {
+    /// Record that is serialised as JSON.
+    pub(crate) record: &'a R,
+    pub(crate) words: Words,
+    /// Returns `None` if this answer has no proof.
+    pub(crate) proof: Proof,
+    pub(crate) picture: Picture,
+}
+
+/// Takes the place of the picture in commands without `--picture`.
+#[expect(clippy::unnecessary_wraps, reason = "it has the type of pictures that can fail")]
+pub(crate) fn no_picture() -> Result<String, Failure> {
+    Ok(String::new())
+}
+
+impl<'a> OutputTargets<'a> {
+    /// Returns the targets; fails if a file would overwrite an input, or if both files are the same.
+    pub(crate) fn new(
+        json: bool,
+        save_proof: Option<&'a PathBuf>,
+        picture: Option<&'a PathBuf>,
+        inputs: &[&Path],
+    ) -> Result<Self, Failure> {
+        let [save_proof, picture] = [save_proof, picture].map(|path| path.map(PathBuf::as_path));
+        refuse_picture(picture, inputs)?;
+        refuse_proof(save_proof, picture, inputs)?;
+        Ok(Self { json, save_proof, picture })
+    }
+
+    /// Prints the answer, then writes its proof and its picture.
+    pub(crate) fn write_answer<R: Serialize>(
+        self,
+        answer: AnswerOutputs<
+            '_,
+            R,
+            impl FnOnce() -> String,
+            impl FnOnce() -> Result<Option<String>, Failure>,
+            impl FnOnce() -> Result<String, Failure>,
+        >,
+    ) -> Result<(), Failure> {
+        if self.json {
+            print_json(&record::json(answer.record))?;
+        } else {
+            print(&(answer.words)())?;
+        }
+        if let Some(path) = self.save_proof
+            && let Some(proof) = (answer.proof)()?
+        {
+            outputs::write_proof(path, &proof)?;
+        }
+        match self.picture {
+            Some(path) => outputs::write(path, (answer.picture)()?.as_bytes()),
+            None => Ok(()),
+        }
+    }
+}
+
+/// Prints one line for each direction. Fails after the last line if any direction has no answer.
+pub(crate) fn answer_directions(
+    as_json: bool,
+    directions: Vec<DVec3>,
+    mut ask: impl FnMut(DVec3) -> Result<Line, Failure>,
+    words: impl Fn(&Record, DVec3) -> String,
+) -> Result<(), Failure> {
+    let (count, mut failed) = (directions.len(), 0);
+    for direction in directions {
+        let answered = ask(direction);
+        let mut line = answered.unwrap_or_else(|failure| Line::error(failure.into_message()));
+        failed += usize::from(line.is_error());
+        line.record.direction = Some(direction.to_array());
+        print(&if as_json { record::json(&line) } else { words(&line.record, direction) })?;
+    }
+    if failed > 0 {
+        let message = format!("{failed} of {count} directions have no answer");
+        return Err(Failure::new(Code::Lines, message));
+    }
+    Ok(())
+}

@@ -1,4 +1,4 @@
-// Builds the page into `dist/`: the library for WebAssembly by cargo, the scripts by esbuild.
+// Builds the page into `dist/`: the library for WebAssembly by cargo and wasm-opt, the scripts by esbuild.
 //
 //   node build.mjs            once
 //   node build.mjs --serve    and serves it on this machine
@@ -9,6 +9,7 @@ import { copyFileSync, cpSync, mkdirSync, readFileSync, rmSync, writeFileSync } 
 import { dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
+import { optimised } from "./optimise.mjs";
 import { shaders } from "./shaders.mjs";
 import { serve } from "./serve.mjs";
 import { Missing, built, toolchain } from "./toolchain.mjs";
@@ -54,10 +55,10 @@ if (!process.argv.includes("--no-wasm")) {
 
 rmSync(out, { recursive: true, force: true });
 mkdirSync(out, { recursive: true });
-for (const example of Object.values(MODULES)) {
+await Promise.all(Object.values(MODULES).map(async (example) => {
   const made = join(built, "wasm32-unknown-unknown/page/examples", `${example}.wasm`);
-  copyFileSync(made, join(out, `${example.replace("page", "colltrans")}.wasm`));
-}
+  copyFileSync(await optimised(made), join(out, `${example.replace("page", "colltrans")}.wasm`));
+}));
 copyFileSync(join(here, "src/index.html"), join(out, "index.html"));
 cpSync(data, join(out, "data"), { recursive: true, filter: (from) => !/queries\.jsonl$/.test(from) });
 // What the page links to.

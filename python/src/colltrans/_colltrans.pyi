@@ -389,7 +389,7 @@ class ConvexPolyhedron:
     def notes(self) -> list[str]:
         """list of str: What was mended when it was read from a file, and by how much its hull exceeds it."""
     @staticmethod
-    def _read(text: str, notes: list[str]) -> ConvexPolyhedron: ...
+    def _read(text: str, notes: list[str], dent: float | None) -> ConvexPolyhedron: ...
     def __reduce__(self) -> tuple[Any, Any]: ...
     def __copy__(self) -> ConvexPolyhedron: ...
     def __deepcopy__(self, _memo: Any) -> ConvexPolyhedron: ...
@@ -2037,6 +2037,14 @@ class PathContact:
     @property
     def normal(self) -> _Floats | None:
         """ndarray of shape (3,) or None: Unit normal in the world, from the first to the second."""
+    @property
+    def overlaps(self) -> list[tuple[str, str]]:
+        """list of tuple of (str, str): Where the path begins with overlaps, all pairs that overlap there, or are as
+        near as ``keep``.
+        """
+    @property
+    def hulls(self) -> list[str]:
+        """list of str: Links for whose meshes their convex hulls stand; a contact of one is that of its hull."""
     @property
     def pairs(self) -> int:
         """int: How many pairs of bodies were asked about."""

@@ -5,7 +5,7 @@
 //!
 //! # Modules
 //!
-//! Each module uses only those before it.
+//! Each module uses only those before it, but for what bounds say of an answer's ends (`answer::RangeEnd`).
 //!
 //! - `body`: a body is checked and indexed once. `topology` has half-edges without coordinates; `inertia` and `feature`
 //!   follow. `convex` is [`ConvexPolyhedron`]: `build` makes it (hulls on exact orientations, meshes, offsets), `support`
@@ -58,7 +58,7 @@
 //!   overlap by less than eight noises are *touching*: the outcome is grazing.
 //! - The lower bound is lowered by one noise over `n . d` and by what bodies may reach beyond support points, the
 //!   upper bound raised by four: `lower <= coll <= upper` holds exactly. A clearance is the lower bound.
-//! - No function of libm but the square root is called, sine and cosine are `colltrans_kernel::angle`: bits are the same on every platform (`tests/golden.rs`).
+//! - No function of libm but the square root is called, sine and cosine are `colltrans_kernel::angle`: bits are the same on every platform (`crates/colltrans/tests/golden.rs`).
 
 #![allow(
     rustdoc::private_intra_doc_links,

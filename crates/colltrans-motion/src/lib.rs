@@ -1,4 +1,4 @@
-//! Motions that turn: when do two convex bodies first touch?
+//! Motions that turn: when do two bodies first touch?
 //!
 //! A [`Motion`] says where a body is at every time from 0 to 1: it slides, turns, unscrews, is thrown, or
 //! goes through poses. A [`MotionCast`] answers when two such bodies first meet, with bounds on that time

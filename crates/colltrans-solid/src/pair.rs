@@ -65,14 +65,14 @@ pub enum SolidPairProof<'a> {
 
 checked_as!(SolidPairProof { Distance(DistanceCertificate), Near(SolidNear) });
 
-/// The answer of [`Pair::overlap_depth`].
+/// The answer of [`SolidPair::overlap_depth`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct OverlapDepth {
     /// Whether the bodies have a point in common, as they are and exactly.
     pub meets: bool,
-    /// As [`Cast::least_tolerance`](crate::SolidCast::least_tolerance) says: 0 if the bodies do not overlap, `None` if
+    /// As [`SolidCast::least_tolerance`](crate::SolidCast::least_tolerance) says: 0 if the bodies do not overlap, `None` if
     /// there is none.
     pub least_tolerance: Option<f64>,
     /// How much work it was.
@@ -115,14 +115,15 @@ pub trait SolidPair<'a>: Sized {
         fixed: Placed<'a, B>,
     ) -> Result<Self, QueryError>;
 
-    /// The same, and the proof of it. It takes a pass over all that the search left out, and a byte for each pair
+    /// Computes [`Pair::distance`] and the proof of it. The proof takes a pass over all that the search left out, and a byte for each pair
     /// of nodes.
     ///
     /// # Errors
     /// As [`Pair::distance`].
     fn certified_distance(&self) -> Result<(Distance<Solid>, DistanceCertificate), QueryError>;
 
-    /// The same, and the proof of it if they are not closer, or hardly so: of how far apart they are at least. That
+    /// Computes [`Pair::within`], and the proof of it if they are not closer, or hardly so: of how far apart they are at
+    /// least. That
     /// they are closer is proven by what the answer holds.
     ///
     /// # Errors

@@ -82,7 +82,8 @@
 //! with contacts of their own; directions to go back, and trackers, are of convex bodies alone, the
 //! [least tolerance](solid::SolidCast::least_tolerance) of solids. Answers about convex bodies carry their proofs;
 //! between solids a proof costs more and is asked for apart, by
-//! [`certified_clearance`](solid::SolidCast::certified_clearance).
+//! [`certified_clearance`](solid::SolidCast::certified_clearance). Queries of a solid and a convex body together
+//! (`Cast::between`), and those that only solids answer, need `use colltrans::solid::{SolidCast, SolidPair};`.
 //!
 //! A [`Tracker`] answers the same questions, starting from its last answer: for bodies that move a
 //! little between two queries.

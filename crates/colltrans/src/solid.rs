@@ -5,4 +5,12 @@
 #[doc(inline)]
 pub use colltrans_proof::SolidStatement;
 #[doc(inline)]
-pub use colltrans_solid::*;
+pub use colltrans_solid::{
+    Apart, AsSolid, Claim, Cover, DistanceCertificate, NoGrazing, Overlap, OverlapDepth, Reason,
+    Shell, ShellKind, ShrinkReport, SolidCast, SolidCertificate, SolidContact, SolidError,
+    SolidFree, SolidGap, SolidMeeting, SolidNear, SolidOptions, SolidOverlap, SolidPair,
+    SolidPairProof, SolidProof, SolidReport, SolidSteps, StartOverlap, StartProof, StopProof,
+    Workspace,
+};
+#[doc(hidden)]
+pub use colltrans_solid::{SolidPairSearch, SolidScene};

@@ -31,8 +31,8 @@ pub use derive::{clearance_of, common_end, depth_of, intersection_of, range_of};
 pub use replay::{Case, CaseError};
 pub use sideways::verified_overlap;
 
-/// A kind of body that a [`Cast`] is answered for: the searches of convex bodies are in this crate, those of other
-/// kinds beside it.
+/// A kind of body that a [`Cast`] is answered for: this crate implements it for convex
+/// polyhedra, `colltrans-solid` for solids. It is not meant to be implemented elsewhere.
 pub trait CastBody: Body {
     /// What a cast can be checked against.
     type CastProof<'p>;
@@ -386,7 +386,7 @@ impl Cast<'_> {
         Self { options: self.options.with_solver(solver), ..self }
     }
 
-    /// The same, with an observer: a [`Clock`](crate::observe::Clock), a
+    /// Computes [`Self::first_contact`] with an observer: a [`Clock`](crate::observe::Clock), a
     /// [`Recording`](crate::observe::Recording).
     ///
     /// # Errors
@@ -400,7 +400,7 @@ impl Cast<'_> {
         search(&self.setting, &self.options, &Focus::NONE, &last, &mut next, observer)
     }
 
-    /// The same, with an observer, as for [`Self::first_contact_observed`].
+    /// Computes [`Self::contact_range`] with an observer, as for [`Self::first_contact_observed`].
     ///
     /// # Errors
     /// As [`Self::first_contact`].
@@ -411,7 +411,7 @@ impl Cast<'_> {
         range_of(self, |cast| cast.first_contact_observed(observer))
     }
 
-    /// The same, with an observer, as for [`Self::first_contact_observed`].
+    /// Computes [`Self::clearance`] with an observer, as for [`Self::first_contact_observed`].
     ///
     /// # Errors
     /// As [`Self::first_contact`].

@@ -11,7 +11,7 @@ pub use convex::distance_from;
 pub use convex::points;
 use derive_where::derive_where;
 
-/// A kind of body that a [`Pair`] is answered for.
+/// A kind of body that a [`Pair`] is answered for. It is not meant to be implemented outside this workspace.
 pub trait PairBody: Body {
     /// What can be checked about two bodies where they are.
     type PairProof<'p>;

@@ -106,7 +106,7 @@ impl Numbered for Solid {
     }
 }
 
-/// What a [`Solid`] can be asked against, and made of. Sealed.
+/// What a [`Solid`] can be asked against, and made of.
 pub trait AsSolid: Numbered {
     /// The body as a solid: itself, or a convex polyhedron's surface, made when it is first asked for
     /// and kept.

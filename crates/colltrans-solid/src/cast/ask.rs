@@ -21,12 +21,12 @@ use colltrans_convex::setting::error::QueryError;
 /// Default tolerance, in multiples of the rounding error of a coordinate.
 pub(super) const NOISES: f64 = 8.0;
 
-/// What a [`Cast`] of two [`Solid`]s answers besides what every cast does.
+/// Queries that only a [`Cast`] of two [`Solid`]s supports.
 pub trait SolidCast<'a>: Sized {
     /// Between bodies of either kind, as solids: a solid against a convex polyhedron, say.
     ///
     /// # Errors
-    /// A direction that is zero, not finite or out of range.
+    /// A direction that is zero, not finite or out of range; a convex body whose facets [`Solid::from_mesh`] refuses.
     ///
     /// ```
     /// use colltrans::glam::DVec3;
@@ -48,8 +48,8 @@ pub trait SolidCast<'a>: Sized {
         direction: DVec3,
     ) -> Result<Self, QueryError>;
 
-    /// The same with both bodies shrunk by half of this length. A graze tolerance would depend on how
-    /// finely a solid is meshed; there is none:
+    /// Returns the cast with both bodies shrunk by half of this length. Solids have no graze tolerance, since it would
+    /// depend on how finely they are meshed:
     ///
     /// ```compile_fail
     /// # use colltrans::{Cast, Solid};
@@ -62,14 +62,14 @@ pub trait SolidCast<'a>: Sized {
     /// As [`Cast::with_options`].
     fn with_tolerance(self, tolerance: f64) -> Result<Self, QueryError>;
 
-    /// The same with another meaning of an overlap at the start.
+    /// Returns the cast with another meaning of an overlap at the start.
     #[must_use]
     fn with_start_overlap(self, start_overlap: StartOverlap) -> Self;
 
     /// The tolerance that is used, as a length.
     fn tolerance(&self) -> f64;
 
-    /// The same with a queue that is kept.
+    /// Computes [`Cast::clearance`] and reuses the queue in `workspace`.
     ///
     /// # Errors
     /// As [`Cast::clearance`].
@@ -138,7 +138,7 @@ pub trait SolidCast<'a>: Sized {
     /// go back along a direction is another question: [`Cast::directional_depth`].
     fn least_tolerance(&self) -> Option<f64>;
 
-    /// The same with a queue that is kept.
+    /// Computes [`Cast::first_contact`] and reuses the queue in `workspace`.
     ///
     /// # Errors
     /// As [`Cast::first_contact`].
@@ -149,7 +149,7 @@ pub trait SolidCast<'a>: Sized {
     /// they never meet. Beyond `upper` they are apart for certain.
     fn exit(&self) -> Option<Bounded>;
 
-    /// The same with a queue that is kept.
+    /// Computes [`Self::exit`] and reuses the queue in `workspace`.
     fn exit_in(&self, workspace: &mut Workspace) -> Option<Bounded>;
 }
 
@@ -161,7 +161,7 @@ pub trait SolidScene<'a> {
     /// The bodies shrunk by half the tolerance.
     fn asked(&self) -> Scene<'a>;
 
-    /// The same, of bodies that the default tolerance leaves something of.
+    /// Returns the bodies shrunk by half the tolerance, or an error if nothing is left of one.
     fn asked_of_something(&self) -> Result<Scene<'a>, QueryError>;
 
     /// Refuses a tolerance that leaves nothing of a body.

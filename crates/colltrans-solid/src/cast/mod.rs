@@ -44,7 +44,7 @@ pub enum StartOverlap {
     /// It is the answer.
     #[default]
     Refuse,
-    /// Facets that cross now do not block; contacts that begin later do. [`Cast::start_overlap`] says
+    /// Facets that cross now do not block; contacts that begin later do. [`SolidCast::start_overlap`] says
     /// what was ignored.
     Ignore,
 }
@@ -67,12 +67,12 @@ pub struct SolidOptions {
     /// Contacts at this translation or beyond, of the shrunk bodies, are of no interest: the least `shrunk_distance` so
     /// far, where one body is asked against many. As they are, bodies may meet long before they do shrunk.
     pub before: Option<f64>,
-    /// Whether the bodies overlap where they are: what [`Cast::overlaps`] has said of the same
+    /// Whether the bodies overlap where they are: what [`SolidCast::overlaps`] has said of the same
     /// bodies, poses and tolerance. Whoever asks one pair along many directions asks once. `None`:
     /// it is looked at, as is an overlap that is the answer, to be named.
     pub overlapping: Option<bool>,
     /// How near to each other the bodies may come (world units): see
-    /// [`Cast::keeping`](colltrans_convex::Cast#method.keeping-1). `0`, the default: until they touch.
+    /// [`Cast::keeping`]. `0`, the default: until they touch.
     #[cfg_attr(
         feature = "serde",
         serde(default, skip_serializing_if = "colltrans_kernel::written::is_zero")
@@ -121,7 +121,7 @@ pub struct SolidOverlap {
     /// cross, or a shell that is inside.
     pub place: Overlap,
     /// The least tolerance with which they would not overlap, from above; `None` if there is none, as
-    /// where what overlaps is an open shell: see [`Cast::least_tolerance`].
+    /// where what overlaps is an open shell: see [`SolidCast::least_tolerance`].
     #[cfg_attr(feature = "serde", serde(rename = "depth"))]
     pub least_tolerance: Option<f64>,
     /// Work done.

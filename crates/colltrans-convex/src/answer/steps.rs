@@ -47,7 +47,6 @@ pub struct Steps {
     pub started_from: StartedFrom,
 }
 
-#[cfg(feature = "serde")]
 impl Steps {
     /// Of a cast that exchanged so many corners.
     #[doc(hidden)]
@@ -55,6 +54,7 @@ impl Steps {
         Self { pivots, started_from, ..Self::default() }
     }
 
+    #[cfg(feature = "serde")]
     pub(crate) fn is_nothing(&self) -> bool {
         *self == Self::default()
     }

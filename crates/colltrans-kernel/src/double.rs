@@ -7,7 +7,7 @@ use std::cmp::Ordering;
 use super::error_free::{difference_error, product_error, split, sum_error};
 
 /// Products of this size or more have low parts that are not lost.
-pub const LEAST_PRODUCT: f64 = f64::from_bits((1023 - 900) << 52);
+pub(crate) const LEAST_PRODUCT: f64 = f64::from_bits((1023 - 900) << 52);
 
 /// The number `high + low`, up to `error`; exact if that is 0.
 #[derive(Debug, Clone, Copy)]
@@ -116,18 +116,18 @@ impl Double {
 
 /// Several sums of the same shape at once, as [`Double`].
 #[derive(Clone, Copy)]
-pub struct Sums<const L: usize> {
-    pub high: [f64; L],
-    pub low: [f64; L],
-    pub error: [f64; L],
+pub(crate) struct Sums<const L: usize> {
+    pub(crate) high: [f64; L],
+    pub(crate) low: [f64; L],
+    pub(crate) error: [f64; L],
 }
 
 impl<const L: usize> Sums<L> {
-    pub const ZERO: Self = Self { high: [0.0; L], low: [0.0; L], error: [0.0; L] };
+    pub(crate) const ZERO: Self = Self { high: [0.0; L], low: [0.0; L], error: [0.0; L] };
 
     /// Adds products with a common factor.
     #[inline(always)]
-    pub fn add_products(&mut self, entries: [f64; L], x: f64) {
+    pub(crate) fn add_products(&mut self, entries: [f64; L], x: f64) {
         let (x_high, x_low) = split(x);
         for (k, e) in entries.into_iter().enumerate() {
             let p = e * x;
@@ -145,7 +145,7 @@ impl<const L: usize> Sums<L> {
     }
 
     #[inline(always)]
-    pub fn get(&self, k: usize) -> Double {
+    pub(crate) fn get(&self, k: usize) -> Double {
         Double { high: self.high[k], low: self.low[k], error: self.error[k] }.tidy()
     }
 }

@@ -16,8 +16,7 @@ pub mod aabb;
 pub mod angle;
 #[doc(hidden)]
 pub mod determinant;
-#[doc(hidden)]
-pub mod double;
+mod double;
 pub mod error;
 #[doc(hidden)]
 pub mod error_free;

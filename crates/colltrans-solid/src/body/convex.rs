@@ -3,11 +3,11 @@
 use super::{AsSolid, Solid, SolidError};
 use colltrans_convex::body::{ConvexPolyhedron, Keepable};
 
-/// The surface of a convex polyhedron, kept with it.
+/// The solid of a convex polyhedron, kept with it.
 #[derive(Debug)]
-struct Surface(Result<Solid, SolidError>);
+struct KeptSolid(Result<Solid, SolidError>);
 
-impl Keepable for Surface {
+impl Keepable for KeptSolid {
     fn heap_bytes(&self) -> usize {
         size_of::<Self>() + self.0.as_ref().map_or(0, Solid::heap_bytes)
     }
@@ -40,8 +40,8 @@ impl AsSolid for ConvexPolyhedron {
             1 => Ok(Solid::without_area(self, [0, 1, 1])),
             _ => Solid::from_convex(self),
         };
-        let made = self.kept().get_or_make(|| Surface(make()));
-        let Surface(made) = made.expect("nothing else is kept with a convex polyhedron");
+        let made = self.kept().get_or_make(|| KeptSolid(make()));
+        let KeptSolid(made) = made.expect("nothing else is kept with a convex polyhedron");
         made.as_ref().map_err(Clone::clone)
     }
 }

@@ -27,17 +27,15 @@ use std::sync::OnceLock;
 
 use glam::{DVec3, Vec3Swizzles};
 
-use colltrans_convex::body::Moving;
 use colltrans_convex::body::{
-    Aabb, ConvexPolyhedron, Hull, InputFacet, InputVertex, Kept, Numbered,
+    Aabb, ConvexPolyhedron, Hull, InputFacet, InputVertex, Kept, Moving, Numbered,
 };
 use colltrans_kernel::motion::Motion;
 pub use error::SolidError;
 use faces::Faces;
 pub use report::{Shell, ShellKind, SolidReport};
 pub use shells::crossing;
-pub use shrink::ShrinkReport;
-pub use shrink::{Shrinking, displace};
+pub use shrink::{ShrinkReport, Shrinking, displace};
 use tree::Node;
 pub(crate) use validate::Surface;
 

@@ -164,12 +164,6 @@ pub trait SolidScene<'a> {
     /// Returns the bodies shrunk by half the tolerance, or an error if nothing is left of one.
     fn asked_of_something(&self) -> Result<Scene<'a>, QueryError>;
 
-    /// Refuses a tolerance that leaves nothing of a body.
-    fn check_left(&self, tolerance: f64) -> Result<(), QueryError>;
-
-    /// Gaps from here on are of no interest, a length.
-    fn limit(&self, scene: &Scene) -> f64;
-
     fn overlap_at(&self, place: Overlap, steps: SolidSteps) -> SolidOverlap;
 
     fn prove_start(&self, scene: &Scene, steps: &mut SolidSteps) -> StartProof;
@@ -221,7 +215,7 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
                 None => Aim::Stop,
             },
         };
-        let found = first(scene, aim, self.limit(scene), workspace, &mut steps);
+        let found = first(scene, aim, limit(self, scene), workspace, &mut steps);
         Ok(answer(self, scene, found.as_ref(), steps))
     }
 
@@ -237,7 +231,7 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
         let later = self.options.overlapping == Some(true)
             && self.options.start_overlap == StartOverlap::Ignore;
         let aim = if later { Aim::LaterStop } else { Aim::Stop };
-        let search = Search::new(&scene, aim, self.limit(&scene), |_, _| ());
+        let search = Search::new(&scene, aim, limit(self, &scene), |_, _| ());
         let found = search.of_pair(triangles)?;
         // Nothing stops a body before 0.
         Some(contact(&scene, &found, found.bounded(&scene).clamped(), SolidSteps::default()))
@@ -304,23 +298,9 @@ impl<'a> SolidScene<'a> for Cast<'a, Solid> {
         let tolerance = self.tolerance();
         // One that was given was checked then.
         if self.options.tolerance.is_none() {
-            self.check_left(tolerance)?;
+            check_left(self, tolerance)?;
         }
         Ok(self.scene(tolerance))
-    }
-
-    fn check_left(&self, tolerance: f64) -> Result<(), QueryError> {
-        for (which, solid) in [("moving", self.moving()), ("fixed", self.fixed())] {
-            if solid.vanishes(tolerance / 2.0) {
-                let extent = solid.thickness();
-                return Err(QueryError::NothingLeft { which, tolerance, extent });
-            }
-        }
-        Ok(())
-    }
-
-    fn limit(&self, scene: &Scene) -> f64 {
-        self.options.before.map_or(f64::INFINITY, |t| t * scene.setting.length)
     }
 
     #[inline]
@@ -337,6 +317,22 @@ impl<'a> SolidScene<'a> for Cast<'a, Solid> {
     fn verify_start(&self, scene: &Scene, start: &StartProof) -> Result<(), CertificateError> {
         verify::verify_start(self, scene, start)
     }
+}
+
+/// Refuses a tolerance that leaves nothing of a body.
+pub(super) fn check_left(cast: &Cast<'_, Solid>, tolerance: f64) -> Result<(), QueryError> {
+    for (which, solid) in [("moving", cast.moving()), ("fixed", cast.fixed())] {
+        if solid.vanishes(tolerance / 2.0) {
+            let extent = solid.thickness();
+            return Err(QueryError::NothingLeft { which, tolerance, extent });
+        }
+    }
+    Ok(())
+}
+
+/// Returns the length from which on gaps are of no interest.
+pub(super) fn limit(cast: &Cast<'_, Solid>, scene: &Scene) -> f64 {
+    cast.options.before.map_or(f64::INFINITY, |t| t * scene.setting.length)
 }
 
 /// What is told of a clearance before any search.
@@ -366,7 +362,7 @@ pub(super) fn told_at_once<'a>(
         return Ok(AtOnce::Answer(answer));
     }
     let scene = scene_once(cast, scene)?;
-    if touching && overlap::pass(scene, cast.limit(scene)) {
+    if touching && overlap::pass(scene, limit(cast, scene)) {
         steps.nodes += 1;
         return Ok(AtOnce::Answer(answer(cast, scene, None, *steps)));
     }
@@ -424,7 +420,7 @@ pub(super) fn guessed_by_hulls(
         return Some(answer);
     }
     let mut steps = SolidSteps::default();
-    Some(match hulls.guessed(scene, cast.limit(scene), &mut steps.leaves)? {
+    Some(match hulls.guessed(scene, limit(cast, scene), &mut steps.leaves)? {
         Guessed::Stop(found, least) => {
             let told = hulls.stopped_by(cast, &found, least, steps);
             told.unwrap_or_else(|| answer(cast, scene, Some(&found), steps))

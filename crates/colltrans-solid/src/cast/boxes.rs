@@ -3,8 +3,8 @@
 
 use glam::DVec3;
 
-use super::ask::NOISES;
-use super::{SolidCast, SolidFree, SolidScene};
+use super::ask::{self, NOISES};
+use super::{SolidCast, SolidFree};
 use crate::body::Solid;
 use crate::solve::scene::permutes;
 use crate::solve::separate::Boxes;
@@ -45,7 +45,7 @@ pub(super) fn told_by_boxes(cast: &Cast<'_, Solid>) -> Told {
 /// That nothing stops the moving body, if a plane along the direction, with a normal, parts the boxes.
 fn passing(cast: &Cast<'_, Solid>, normal: DVec3) -> Option<Clearance<Solid>> {
     let tolerance = cast.tolerance();
-    cast.check_left(tolerance).ok()?;
+    ask::check_left(cast, tolerance).ok()?;
     let (boxes, noise) = shrunk_boxes(cast, tolerance / 2.0);
     let margin = boxes.margin(normal, noise);
     let separation = cast.options.before.is_none().then_some(Separation { normal, margin });

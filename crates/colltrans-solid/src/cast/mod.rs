@@ -197,7 +197,7 @@ impl CastBody for Solid {
         if !(tolerance.is_finite() && tolerance >= 0.0) {
             return Err(QueryError::Tolerance { tolerance });
         }
-        cast.check_left(tolerance)
+        ask::check_left(cast, tolerance)
     }
 
     #[inline]

@@ -11,7 +11,7 @@
 
 use std::collections::HashMap;
 
-use super::ask::{AtOnce, answer, scene_once, sunk, told_at_once};
+use super::ask::{self, AtOnce, answer, scene_once, sunk, told_at_once};
 use super::hulls::Hulls;
 use super::{SolidCast, SolidOptions, SolidScene, StartOverlap};
 use crate::body::Solid;
@@ -239,7 +239,7 @@ pub(super) fn certified_clearance(
         (aim, _) => aim.unwrap_or(Aim::Stop),
     };
     let mut cuts = HashMap::new();
-    let limit = cast.limit(scene);
+    let limit = ask::limit(cast, scene);
     let cut = |nodes, reason| {
         cuts.insert(nodes, reason);
     };

@@ -21,9 +21,9 @@ use glam::{DMat3, DVec3};
 use super::guessed::least_gap;
 use super::{Hulls, Spot, Surface};
 use crate::body::Solid;
-use crate::cast::ask::default_tolerance;
+use crate::cast::SolidFree;
+use crate::cast::ask::{check_left, default_tolerance};
 use crate::cast::boxes::leaves_behind;
-use crate::cast::{SolidFree, SolidScene};
 use crate::solve::contact::{SolidContact, feature};
 use crate::solve::scene::{Scene, permutes};
 use crate::solve::search::{Found, SLACK};
@@ -134,7 +134,7 @@ impl<'h, 'a> Told<'h, 'a> {
         let is_dented = |surface: &Surface| surface.body.dent > SIDEWAYS * noise;
         if tolerance > default_tolerance(false, noise)
             || hulls.bodies.iter().any(is_dented)
-            || solids.check_left(tolerance).is_err()
+            || check_left(solids, tolerance).is_err()
         {
             return None;
         }

@@ -10,7 +10,7 @@
 
 use glam::DVec3;
 
-use super::facets::FacetsMet;
+use super::proof::FacetsMet;
 use super::tree::Tree;
 use colltrans_convex::body::Hull;
 use colltrans_convex::setting::TwoBodies;

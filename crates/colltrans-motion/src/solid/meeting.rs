@@ -5,8 +5,9 @@
 
 use super::super::look::Looker;
 use super::super::soon::Seen;
-use super::facets::{FacetLooker, FacetsMet, corners};
+use super::facets::{FacetLooker, corners};
 use super::inside::{Contained, Guesses, contained};
+use super::proof::FacetsMet;
 use super::search::{parted, split};
 use super::tree::Below;
 use super::window::{Frame, Part, Plane};

@@ -21,10 +21,9 @@ mod window;
 use glam::DVec3;
 
 use self::facets::FacetLooker;
-pub use self::facets::FacetsMet;
 use self::meeting::seen;
 use self::proof::Written;
-pub use self::proof::{FacetsMeeting, MotionCover, SolidMotionProof, SpanProof};
+pub use self::proof::{FacetsMeeting, FacetsMet, MotionCover, SolidMotionProof, SpanProof};
 use self::search::{Found, Mode, Search};
 #[cfg(feature = "json")]
 pub use self::tree::Parts;

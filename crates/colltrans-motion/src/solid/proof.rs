@@ -5,7 +5,6 @@
 //! list of planes of its own. Read to its end it covers all pairs of facets at all times.
 
 use super::super::answer::PlaneAt;
-use super::facets::FacetsMet;
 use super::window::Plane;
 use colltrans_solid::cast::StartProof;
 
@@ -58,6 +57,40 @@ pub struct FacetsMeeting {
     pub triangles: [u32; 2],
     /// Why.
     pub met: FacetsMet,
+}
+
+/// What proves that two facets meet, or the solids that they are of.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(
+    feature = "serde",
+    derive(serde::Serialize, serde::Deserialize),
+    serde(rename_all = "snake_case", deny_unknown_fields)
+)]
+pub enum FacetsMet {
+    /// An edge of one passes through the other, by more than computed places may be off.
+    Crossing {
+        /// Whether the edge is one of the moving body's facet.
+        moving: bool,
+        /// Which one, from this corner to the next: 0, 1 or 2.
+        edge: u8,
+    },
+    /// Two points are no farther apart than the gap to be kept.
+    Near {
+        /// The weights of the corners of either facet.
+        weights: [[f64; 3]; 2],
+    },
+    /// A point is inside both solids.
+    Inside {
+        /// Where, in the frame of the fixed body.
+        point: [f64; 3],
+    },
+    /// A point of a facet of one body is inside the other body.
+    Contained {
+        /// Whether the facet is the moving body's.
+        moving: bool,
+        /// The weights of its corners.
+        weights: [f64; 3],
+    },
 }
 
 /// What became of each pair of parts in its interval, in preorder. As text a letter each: `T` its time was halved,

@@ -9,8 +9,8 @@
 
 use super::super::answer::MotionSteps;
 use super::super::search::{Advanced, End, advance};
-use super::facets::{FacetLooker, FacetsMet, Later, later};
-use super::proof::{Entry, Written, middle};
+use super::facets::{FacetLooker, Later, later};
+use super::proof::{Entry, FacetsMet, Written, middle};
 use super::tree::{Below, Node, Tree};
 use super::window::{Frame, Part, Plane, Snap, Window};
 

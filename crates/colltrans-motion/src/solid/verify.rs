@@ -7,9 +7,9 @@ use glam::DVec3;
 
 use super::super::span::{Span, spans};
 use super::super::verify::{MotionProofError, chain};
-use super::facets::{self, FacetsMet};
+use super::facets;
 use super::inside;
-use super::proof::{Entry, FacetsMeeting, SolidMotionProof, SpanProof, middle};
+use super::proof::{Entry, FacetsMeeting, FacetsMet, SolidMotionProof, SpanProof, middle};
 use super::tree::{Below, Tree};
 use super::window::{Frame, Part, Snap};
 use crate::MotionCast;

@@ -63,6 +63,25 @@ impl Node {
         self.spread == OPEN
     }
 
+    /// The children of this node, which is the one at `at`.
+    #[inline]
+    pub(crate) fn children(&self, at: u32) -> [u32; 2] {
+        [at + self.skip, at + self.skip + 1]
+    }
+
+    /// The square of its box's diagonal.
+    #[inline]
+    pub(crate) fn size(&self) -> f64 {
+        self.bounds.size().length_squared()
+    }
+
+    /// Whether of this node of a moving body and one of a fixed body this one is to be split: the larger one, unless it
+    /// is a leaf.
+    #[inline]
+    pub(crate) fn splits_before(&self, fixed: &Self) -> bool {
+        !self.is_leaf() && (fixed.is_leaf() || self.size() >= fixed.size())
+    }
+
     #[inline]
     pub fn facets(&self) -> std::ops::Range<usize> {
         self.first as usize..(self.first + self.count) as usize

@@ -3,8 +3,7 @@
 
 use glam::DVec3;
 
-use super::ask::{self, NOISES};
-use super::{SolidCast, SolidFree};
+use super::{NOISES, SolidCast, SolidFree, check_left};
 use crate::body::Solid;
 use crate::solve::scene::permutes;
 use crate::solve::separate::Boxes;
@@ -45,7 +44,7 @@ pub(super) fn told_by_boxes(cast: &Cast<'_, Solid>) -> Told {
 /// That nothing stops the moving body, if a plane along the direction, with a normal, parts the boxes.
 fn passing(cast: &Cast<'_, Solid>, normal: DVec3) -> Option<Clearance<Solid>> {
     let tolerance = cast.tolerance();
-    ask::check_left(cast, tolerance).ok()?;
+    check_left(cast, tolerance).ok()?;
     let (boxes, noise) = shrunk_boxes(cast, tolerance / 2.0);
     let margin = boxes.margin(normal, noise);
     let separation = cast.options.before.is_none().then_some(Separation { normal, margin });

@@ -3,6 +3,7 @@
 //! With a tolerance `L` both bodies are shrunk by `L / 2`. If their interiors then share a point, they
 //! overlap: how much has a file of its own, [`tolerance`].
 
+mod answer;
 mod ask;
 mod boxes;
 mod hulls;
@@ -32,6 +33,9 @@ use colltrans_convex::body::{Body, Placed, Pose};
 use colltrans_convex::cast::{Cast, CastBody, common_end};
 use colltrans_convex::setting::check_keep;
 use colltrans_convex::setting::error::QueryError;
+
+/// Default tolerance, in multiples of the rounding error of a coordinate.
+const NOISES: f64 = 8.0;
 
 /// What an overlap at the start means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
@@ -197,7 +201,7 @@ impl CastBody for Solid {
         if !(tolerance.is_finite() && tolerance >= 0.0) {
             return Err(QueryError::Tolerance { tolerance });
         }
-        ask::check_left(cast, tolerance)
+        check_left(cast, tolerance)
     }
 
     #[inline]
@@ -242,4 +246,20 @@ impl CastBody for Solid {
             SolidProof::Separation(separation) => separate::verify(&cast.asked(), separation),
         }
     }
+}
+
+/// Refuses a tolerance that leaves nothing of a body.
+fn check_left(cast: &Cast<'_, Solid>, tolerance: f64) -> Result<(), QueryError> {
+    for (which, solid) in [("moving", cast.moving()), ("fixed", cast.fixed())] {
+        if solid.vanishes(tolerance / 2.0) {
+            let extent = solid.thickness();
+            return Err(QueryError::NothingLeft { which, tolerance, extent });
+        }
+    }
+    Ok(())
+}
+
+/// The tolerance of bodies for which none was given, whose matrices permute axes, or not.
+fn default_tolerance(permuted: bool, noise: f64) -> f64 {
+    if permuted { 0.0 } else { NOISES * noise }
 }

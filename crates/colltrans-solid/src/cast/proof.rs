@@ -1,4 +1,4 @@
-//! What a proof of a clearance is, and how a search makes one.
+//! What a proof of a clearance is.
 //!
 //! Above, the pair of facets that attains the answer. Below, the antichain of pairs of nodes at which
 //! the descent through both trees stopped, each with its reason. Which node of a pair is split is a
@@ -11,22 +11,17 @@
 
 use std::collections::HashMap;
 
-use super::ask::{self, AtOnce, answer, scene_once, sunk, told_at_once};
-use super::hulls::Hulls;
-use super::{SolidCast, SolidOptions, SolidScene, StartOverlap};
+use super::{SolidOptions, StartOverlap};
 use crate::body::Solid;
 use crate::solve::bound::{Profile, Reason, holds};
 use crate::solve::leaf::{self, Facet, Gap, Meeting};
-use crate::solve::overlap::{self, Overlap};
+use crate::solve::overlap::Overlap;
 use crate::solve::projected::Projected;
 use crate::solve::rim::{self, Upright};
 use crate::solve::scene::Scene;
-use crate::solve::search::{Aim, Search, Workspace, children, node_rounding, splits_moving};
+use crate::solve::search::{Aim, node_rounding};
 use crate::solve::separating_axes::SeparatingAxes;
-use crate::solve::steps::SolidSteps;
-use colltrans_convex::answer::Clearance;
 use colltrans_convex::cast::Cast;
-use colltrans_convex::setting::error::QueryError;
 
 /// A proof of the answer of [`Cast::clearance`] between solids, checked by [`Cast::verify`] without a
 /// search: every pair of facets lies under one entry of a cover, and every entry is looked at by
@@ -154,12 +149,12 @@ impl<R: Copy> Cover<R> {
                 Some(reason) if check(number, nodes, *reason) => {}
                 Some(_) => return Err(number),
                 None if a.is_leaf() && b.is_leaf() => return Err(number),
-                None if splits_moving(a, b) => {
-                    let [first, second] = children(a, nodes[0]);
+                None if a.splits_before(b) => {
+                    let [first, second] = a.children(nodes[0]);
                     stack.extend([[second, nodes[1]], [first, nodes[1]]]);
                 }
                 None => {
-                    let [first, second] = children(b, nodes[1]);
+                    let [first, second] = b.children(nodes[1]);
                     stack.extend([[nodes[0], second], [nodes[0], first]]);
                 }
             }
@@ -189,11 +184,11 @@ impl<R: Copy> Cover<R> {
                 continue;
             }
             let [a, b] = [0, 1].map(|k| &bodies[k].nodes()[nodes[k] as usize]);
-            if splits_moving(a, b) {
-                let [first, second] = children(a, nodes[0]);
+            if a.splits_before(b) {
+                let [first, second] = a.children(nodes[0]);
                 stack.extend([[second, nodes[1]], [first, nodes[1]]]);
             } else {
-                let [first, second] = children(b, nodes[1]);
+                let [first, second] = b.children(nodes[1]);
                 stack.extend([[nodes[0], second], [nodes[0], first]]);
             }
         }
@@ -205,89 +200,6 @@ impl Cover {
     /// What the cover says of which facets; `None` if it does not fit the bodies.
     pub fn claims(&self, cast: &Cast<'_, Solid>) -> Option<Vec<Claim>> {
         self.claims_of([cast.moving(), cast.fixed()])
-    }
-}
-
-/// How far the moving body can move from where it is, as [`Self::clearance`] says, and the proof
-/// of it. Allocates what the proof takes: a byte for each pair of nodes.
-///
-/// Of convex bodies every answer carries its proof, which the search ends with anyway. Between solids
-/// it takes a pass over all that the search left out, and as much space: so it is asked for apart.
-///
-/// # Errors
-/// As [`Self::clearance`].
-pub(super) fn certified_clearance(
-    cast: &Cast<'_, Solid>,
-) -> Result<(Clearance<Solid>, SolidCertificate), QueryError> {
-    let (mut scene, mut steps) = (None, SolidSteps::default());
-    let told = told_at_once(cast, &mut scene, &mut SolidSteps::default())?;
-    let scene = scene_once(cast, &mut scene)?;
-    let bodies = [cast.moving(), cast.fixed()];
-    let start = cast.prove_start(scene, &mut steps);
-    let mut certificate = SolidCertificate {
-        tolerance: cast.tolerance(),
-        start,
-        lower: 0.0,
-        stop: None,
-        cover: Cover::default(),
-    };
-    let aim = match (certificate.aim(cast.options()), &certificate.start) {
-        (None, &StartProof::Overlapping(place)) => {
-            let overlap = cast.overlap_at(place, steps);
-            return Ok((Clearance::Overlapping(overlap), certificate));
-        }
-        (aim, _) => aim.unwrap_or(Aim::Stop),
-    };
-    let mut cuts = HashMap::new();
-    let limit = ask::limit(cast, scene);
-    let cut = |nodes, reason| {
-        cuts.insert(nodes, reason);
-    };
-    let mut search = Search::new(scene, aim, limit, cut);
-    let found = search.run(&mut Workspace::default());
-    let end = search.limit;
-    steps += search.steps;
-    certificate.cover = Cover::new(bodies, &cuts);
-    let answer = match told {
-        AtOnce::Answer(answer) => answer,
-        _ => answer(cast, scene, found.as_ref(), steps),
-    };
-    if let Clearance::Blocked { contact, .. } = &answer {
-        let shrunk_distance = contact.shrunk_distance.value;
-        certificate.stop = Some(StopProof { shrunk_distance, triangles: contact.triangles });
-    }
-    certificate.lower = proven(scene, aim, end, &certificate.cover) / scene.setting.length;
-    if certificate.lower <= 0.0 {
-        // Nothing contributes less than 0.
-        certificate.lower = 0.0;
-        certificate.cover = Cover(vec![Some(Reason::NotBefore)]);
-    }
-    Ok((answer, certificate))
-}
-
-pub(super) fn prove_start(
-    cast: &Cast<'_, Solid>,
-    scene: &Scene,
-    steps: &mut SolidSteps,
-) -> StartProof {
-    // An overlap that is the answer is looked for, to be named.
-    let options = cast.options();
-    let is_answer =
-        options.overlapping == Some(true) && options.start_overlap == StartOverlap::Refuse;
-    if options.overlapping.is_some() && !is_answer {
-        return StartProof::Assumed;
-    }
-    if let Some(place) = sunk(cast, Hulls::of(cast).as_ref(), scene, steps) {
-        return StartProof::Overlapping(place);
-    }
-    let mut entries = Vec::new();
-    let mut note = |entry| {
-        steps.count(entry);
-        entries.push(entry);
-    };
-    match overlap::find_with(scene, &mut note) {
-        Some(overlap) => StartProof::Overlapping(overlap),
-        None => StartProof::Apart(Cover(entries)),
     }
 }
 
@@ -307,24 +219,6 @@ impl SolidCertificate {
             (true, StartOverlap::Refuse) => None,
         }
     }
-}
-
-/// The least gap that the parts of a cover prove, their rounding taken off, of a search that has ended
-/// with a limit.
-fn proven(scene: &Scene, aim: Aim, limit: f64, cover: &Cover) -> f64 {
-    // A little more, for the roundings of the bound on its way into the proof and out of it.
-    let mut lower = limit - 1.0625 * node_rounding(scene);
-    if lower <= 0.0 {
-        return 0.0;
-    }
-    let bodies = [scene.moving.solid, scene.fixed.solid];
-    let fits = cover.walk(bodies, |_, nodes, reason| {
-        if reason == Reason::Examined {
-            lower = lower.min(least_of_leaves(scene, aim, nodes, limit));
-        }
-        true
-    });
-    if fits.is_ok() { lower } else { 0.0 }
 }
 
 /// The least gap of pairs of facets of two leaves that count, less its error; what is not below

@@ -7,7 +7,7 @@
 //! is next. Where the tolerance is not small, facets may come to overlap again: there it is doubled and halved, and the
 //! bodies are asked each time, unless the last place tells, or of convex ones a plane between them.
 
-use super::{SolidScene, ask, hulls};
+use super::{SolidScene, check_left, hulls};
 use crate::body::Solid;
 use crate::solve::overlap::{self, Overlap};
 use crate::solve::parted;
@@ -40,7 +40,7 @@ pub(crate) fn least_tolerance_from(
         return None;
     }
     // Shrunk by more than there is of it, a body is inside out.
-    let vanishes = |tolerance: f64| ask::check_left(cast, tolerance).is_err();
+    let vanishes = |tolerance: f64| check_left(cast, tolerance).is_err();
     let shrunk = |tolerance: f64| bare.shrunk(tolerance / 2.0, tolerance / 2.0);
     // As long as shrinking turns nothing inside out, what is free with one tolerance is so with more.
     let most = 2.0 * cast.moving().shrinking().most.min(cast.fixed().shrinking().most);

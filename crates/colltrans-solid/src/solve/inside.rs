@@ -13,7 +13,6 @@ use glam::DVec3;
 use super::line;
 use super::projected::Projected;
 use super::scene::{Corner, ExactPoint, Scene, Side, place_exactly};
-use super::search::children;
 use super::triangle::{Triangle, lies_on};
 use crate::body::edges::NONE;
 use colltrans_convex::body::Aabb;
@@ -152,7 +151,7 @@ fn winding_below(scene: &Scene, side: &Side, point: &impl ExactPoint, at: u32) -
         return Some(0);
     }
     if !node.is_leaf() {
-        let [first, second] = children(node, at);
+        let [first, second] = node.children(at);
         return Some(
             winding_below(scene, side, point, first)? + winding_below(scene, side, point, second)?,
         );

@@ -20,7 +20,6 @@ use glam::DVec3;
 use super::fan::Fan;
 use super::projected::Projected;
 use super::scene::{Corner, ExactPoint, Scene, Side};
-use super::search::children;
 use super::triangle::Triangle;
 use crate::body::Solid;
 use crate::body::edges::NONE;
@@ -369,7 +368,7 @@ impl<'r, 'a, const N: usize> Ray<'r, 'a, N> {
                 continue;
             }
             if !node.is_leaf() {
-                open.extend(children(node, at));
+                open.extend(node.children(at));
                 continue;
             }
             for t in node.facets().filter(|&t| !solid.is_open(t)) {

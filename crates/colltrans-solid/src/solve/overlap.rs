@@ -35,7 +35,6 @@ use super::inside;
 use super::leaf::Facets;
 use super::projected::Projected;
 use super::scene::{Corner, Scene, Side};
-use super::search::{children, splits_moving};
 use super::thin;
 use super::triangle::Triangle;
 use crate::body::tree::{LEAF, Node};
@@ -229,8 +228,8 @@ fn descend(
         return leaves(scene, m, n, judge);
     }
     cut(None);
-    if splits_moving(m, n) {
-        for part in children(m, nodes[0] as u32).map(|c| c as usize) {
+    if m.splits_before(n) {
+        for part in m.children(nodes[0] as u32).map(|c| c as usize) {
             let projected = Projected::new(scene, &scene.moving, part);
             if let Some(reason) = judge.dismisses(scene, &projected, b) {
                 cut(Some(reason));
@@ -242,7 +241,7 @@ fn descend(
             }
         }
     } else {
-        for part in children(n, nodes[1] as u32).map(|c| c as usize) {
+        for part in n.children(nodes[1] as u32).map(|c| c as usize) {
             let projected = Projected::new(scene, &scene.fixed, part);
             if let Some(reason) = judge.dismisses(scene, a, &projected) {
                 cut(Some(reason));

@@ -17,7 +17,6 @@ use super::rim::{self, Upright};
 use super::scene::{Scene, Side};
 use super::separate;
 use super::separating_axes::{Reach, SeparatingAxes};
-use crate::body::tree::Node;
 use crate::solve::steps::SolidSteps;
 
 /// An answer may be larger than the least gap by so many times the noise of coordinates: bounds of
@@ -139,7 +138,7 @@ impl Seen {
     fn look(&mut self, query: &Query, moving: bool, at: u32) {
         let side = query.scene.side(moving);
         let node = &side.solid.nodes()[at as usize];
-        let (leaf, size) = (node.is_leaf(), size(node));
+        let (leaf, size) = (node.is_leaf(), node.size());
         let projected = Projected::new(query.scene, side, at as usize);
         if let Some(axes) = &query.axes {
             self.reaches.push(axes.reach(side, &projected));
@@ -160,7 +159,7 @@ impl Seen {
         }
         let first = self.views.len() as u32;
         let nodes = query.scene.side(moving).solid.nodes();
-        for part in children(&nodes[node as usize], node) {
+        for part in nodes[node as usize].children(node) {
             self.look(query, moving, part);
         }
         self.views[view as usize].parts = Some([first, 2]);
@@ -213,20 +212,6 @@ impl<R> PartialEq for Entry<R> {
 }
 
 impl<R> Eq for Entry<R> {}
-
-/// Whether the moving node of a pair is the one to be split: the larger one, unless it is a leaf.
-pub(crate) fn splits_moving(a: &Node, b: &Node) -> bool {
-    !a.is_leaf() && (b.is_leaf() || size(a) >= size(b))
-}
-
-fn size(node: &Node) -> f64 {
-    node.bounds.size().length_squared()
-}
-
-/// The children of a node.
-pub(crate) fn children(node: &Node, at: u32) -> [u32; 2] {
-    [at + node.skip, at + node.skip + 1]
-}
 
 /// One search under way.
 pub(crate) struct Search<'s, 'a, F: FnMut([u32; 2], Reason)> {

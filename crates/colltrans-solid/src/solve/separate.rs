@@ -15,7 +15,6 @@ use glam::{DMat3, DVec2, DVec3, Vec3Swizzles};
 
 use super::projected::Projected;
 use super::scene::{Scene, Side, size};
-use super::search::children;
 use crate::body::Solid;
 use colltrans_convex::answer::{CertificateError, Separation};
 use colltrans_convex::body::Aabb;
@@ -290,7 +289,7 @@ impl<'s, 'a> Farthest<'s, 'a> {
             }
             self.local.dot(DVec3::select(self.local.cmpgt(DVec3::ZERO), ends.high, ends.low))
         };
-        let mut parts = children(node, at).map(|k| (bound(k), k));
+        let mut parts = node.children(at).map(|k| (bound(k), k));
         if parts[1].0 > parts[0].0 {
             parts.swap(0, 1);
         }

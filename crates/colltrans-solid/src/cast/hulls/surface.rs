@@ -4,7 +4,6 @@ use glam::DVec3;
 
 use super::Body;
 use crate::body::Solid;
-use crate::solve::search::children;
 use colltrans_kernel::plane::triangle_normal;
 
 /// Steps from facet to facet around a corner, or towards a place: after the first few the tree is asked.
@@ -128,7 +127,7 @@ impl<'a> Surface<'a> {
                     return found;
                 }
             } else {
-                [left[count], left[count + 1]] = children(node, at);
+                [left[count], left[count + 1]] = node.children(at);
                 count += 2;
             }
         }

@@ -10,7 +10,7 @@ use std::collections::BinaryHeap;
 use super::bound::{Apart, Axes, Couple, View};
 use super::triangle::{self, Corners, GAP, Nearest};
 use crate::solve::scene::{Scene, Side};
-use crate::solve::search::{self, children};
+use crate::solve::search;
 use crate::solve::steps::SolidSteps;
 use colltrans_kernel::work;
 
@@ -67,7 +67,7 @@ impl Seen {
         }
         let first = self.views.len() as u32;
         let at = self.views[view as usize].node;
-        for part in children(&side.solid.nodes()[at as usize], at) {
+        for part in side.solid.nodes()[at as usize].children(at) {
             self.look(axes, side, part);
         }
         self.parts[view as usize] = Some(first);

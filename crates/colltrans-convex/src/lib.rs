@@ -7,11 +7,10 @@
 //!
 //! Each module uses only those before it, but for what bounds say of an answer's ends (`answer::RangeEnd`).
 //!
-//! - `body`: a body is checked and indexed once. `topology` has half-edges without coordinates; `inertia` and `feature`
-//!   follow. `convex` is [`ConvexPolyhedron`]: `build` makes it (hulls on exact orientations, meshes, offsets), `support`
+//! - `body`: a body is checked and indexed once. `inertia` and `feature` follow. `convex` is [`ConvexPolyhedron`]: `build` makes it (hulls on exact orientations, meshes, offsets), `support`
 //!   finds support points in `O(log n)`, along a `ring` by its angle and around the apex of a `fan`, `excess` bounds how far
 //!   a body reaches beyond one, and `sections` are planar sections across four axes, made when the paper's algorithm first
-//!   asks. [`Body`] is what a kind of body brings; `kept` holds what other crates make of a body.
+//!   asks. [`Body`] is what a kind of body brings.
 //! - `setting`: two placed bodies, and of a cast a direction, in a frame at the moving body's translation. `minkowski` is `M`
 //!   seen along `d`: support points, noise, and on which side of an edge the line passes.
 //! - `answer`: outcomes, ranges, bounds, and `certificate`, which anyone can check.

@@ -3,8 +3,9 @@
 //!
 //! In the order of use: [`range`] (the numbers that are accepted), [`error_free`], [`double`] and [`integer`] (exact
 //! arithmetic), [`predicates`] and [`orientation`] (signs), [`noise`] (bounds of rounding errors), [`fine`] (numbers of
-//! twice the precision with bounds), [`pose`] and [`motion`], [`aabb`] and [`split`] (boxes and how trees of them are
-//! built), [`id`], [`written`].
+//! twice the precision with bounds), [`bounded`], [`pose`] and [`motion`], [`aabb`] and [`split`] (boxes and how trees of
+//! them are built), [`topology`] (half-edges without coordinates), [`kept`] (what is made once with a body), [`id`],
+//! [`written`].
 
 #![allow(
     rustdoc::private_intra_doc_links,
@@ -14,6 +15,8 @@
 pub mod aabb;
 #[doc(hidden)]
 pub mod angle;
+#[doc(hidden)]
+pub mod bounded;
 #[doc(hidden)]
 pub mod determinant;
 mod double;
@@ -27,6 +30,8 @@ pub mod fine;
 pub mod id;
 #[doc(hidden)]
 pub mod integer;
+#[doc(hidden)]
+pub mod kept;
 pub mod motion;
 #[doc(hidden)]
 pub mod noise;
@@ -45,6 +50,8 @@ pub mod real;
 pub mod split;
 #[doc(hidden)]
 pub mod symmetric;
+#[doc(hidden)]
+pub mod topology;
 #[doc(hidden)]
 pub mod volume;
 #[doc(hidden)]

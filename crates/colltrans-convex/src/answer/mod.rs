@@ -1,6 +1,5 @@
 //! What a query answers, and how anyone checks it.
 
-mod bounded;
 mod certificate;
 mod clearance;
 mod distance;
@@ -8,12 +7,12 @@ mod outcome;
 mod range;
 mod steps;
 
-pub use bounded::{Bounded, RangeEnd};
 #[doc(hidden)]
 pub use certificate::checked_as;
 pub use certificate::{Along, are_weights, check_across, gap_rounding, shadow_gap};
 pub use certificate::{Certificate, CertificateError, Proof, Separation};
 pub use clearance::{Clearance, OverlapAhead, WhyFree};
+pub use colltrans_kernel::bounded::{Bounded, RangeEnd};
 pub use distance::{Depth, Distance, Enclosure, NearPoints, PlaneGap, Within};
 pub use outcome::{Contact, Grazing, Outcome, Separated};
 pub use range::{CentralCast, ContactRange, DirectionalDepth, Intersection};

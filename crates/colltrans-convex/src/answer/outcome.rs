@@ -3,11 +3,11 @@
 use derive_where::derive_where;
 use glam::DVec3;
 
-use super::bounded::{Bounded, RangeEnd};
 use super::certificate::{Certificate, Separation};
 use super::steps::{Solver, Steps};
 use crate::body::{Body, ConvexPolyhedron};
 use crate::setting::VertexPair;
+use colltrans_kernel::bounded::{Bounded, RangeEnd};
 
 /// The answer of [`Cast::first_contact`](crate::Cast::first_contact): do the bodies meet along the direction, and where.
 ///

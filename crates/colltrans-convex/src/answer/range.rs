@@ -3,10 +3,10 @@
 use derive_where::derive_where;
 use glam::DVec3;
 
-use super::bounded::{Bounded, RangeEnd};
 use super::clearance::{Clearance, WhyFree};
 use super::outcome::Outcome;
 use crate::body::{Body, ConvexPolyhedron};
+use colltrans_kernel::bounded::{Bounded, RangeEnd};
 
 /// The answer of [`Cast::contact_range`](crate::Cast::contact_range): the translations at which the
 /// bodies meet first and last, with the contact at either end. Convex bodies meet at all between them;

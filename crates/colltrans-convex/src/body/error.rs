@@ -3,6 +3,8 @@
 use glam::DVec3;
 use thiserror::Error;
 
+pub use colltrans_kernel::error::TopologyError;
+
 /// Why no [`ConvexPolyhedron`](crate::ConvexPolyhedron) could be built.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
@@ -98,100 +100,4 @@ pub enum BuildError {
         /// The tolerance as given.
         tolerance: f64,
     },
-}
-
-/// Why faces do not form the boundary of one body.
-#[derive(Debug, Clone, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum TopologyError {
-    /// A face has fewer than three vertices.
-    #[error("face {face} has {count} vertices; a face needs at least 3")]
-    DegenerateFace {
-        /// Index of the face.
-        face: usize,
-        /// Number of its vertices.
-        count: usize,
-    },
-    /// A face names a vertex that does not exist.
-    #[error("face {face} names vertex {vertex}, but there are only {vertices} vertices")]
-    UnknownVertex {
-        /// Index of the face.
-        face: usize,
-        /// The index that does not exist.
-        vertex: usize,
-        /// Number of vertices.
-        vertices: usize,
-    },
-    /// A face names the same vertex twice.
-    #[error("face {face} passes twice through vertex {vertex}")]
-    RepeatedVertex {
-        /// Index of the face.
-        face: usize,
-        /// The vertex it repeats.
-        vertex: usize,
-    },
-    /// An edge has a face on one side only.
-    #[error(
-        "the surface is open: the edge from vertex {from} to vertex {to} of face {face} has no face \
-         on its other side"
-    )]
-    OpenEdge {
-        /// Start of the edge, along its face.
-        from: usize,
-        /// End of the edge.
-        to: usize,
-        /// The face on the side that has one.
-        face: usize,
-    },
-    /// More than two faces meet at an edge, or two run along it in the same direction.
-    #[error(
-        "the edge between vertices {from} and {to} is used {count} times, not once in each direction"
-    )]
-    NonManifoldEdge {
-        /// One end of the edge.
-        from: usize,
-        /// Its other end.
-        to: usize,
-        /// How often faces run along it.
-        count: usize,
-    },
-    /// The faces around a vertex form more than one fan.
-    #[error("the faces around vertex {vertex} form more than one fan")]
-    NonManifoldVertex {
-        /// The vertex.
-        vertex: usize,
-    },
-    /// The faces form several surfaces, or one with holes through it (handles).
-    #[error(
-        "the surface is {}, not one sphere ({vertices} vertices - {edges} edges + {faces} faces = \
-         {euler}, not 2)",
-        surface_in_words(*euler, *shells)
-    )]
-    NotASphere {
-        /// Number of vertices in use.
-        vertices: usize,
-        /// Number of edges.
-        edges: usize,
-        /// Number of faces.
-        faces: usize,
-        /// Their alternating sum.
-        euler: i64,
-        /// Number of surfaces that share no vertex.
-        shells: usize,
-    },
-    /// There are no faces.
-    #[error("the mesh has no faces")]
-    NoFaces,
-}
-
-/// What closed surfaces with this Euler characteristic are: every shell adds 2, every hole through
-/// one takes 2 away.
-fn surface_in_words(euler: i64, shells: usize) -> String {
-    match (shells, shells as i64 - euler / 2) {
-        (1, 1) => "one body with a hole through it".into(),
-        (1, holes) => format!("one body with {holes} holes through it"),
-        (_, 0) => format!("{shells} separate shells"),
-        (_, 1) => format!("{shells} separate shells with a hole through one of them"),
-        (_, holes) => format!("{shells} separate shells with {holes} holes in all"),
-    }
 }

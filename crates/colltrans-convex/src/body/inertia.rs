@@ -7,8 +7,8 @@
 
 use glam::{DMat3, DVec3};
 
-use super::topology::Topology;
 use colltrans_kernel::plane::polygon_normal;
+use colltrans_kernel::topology::Topology;
 
 /// Size and resemblance of a body, in its own frame.
 #[derive(Debug, Clone, Copy)]

@@ -5,11 +5,12 @@ pub mod error;
 mod feature;
 mod hull;
 pub(crate) mod inertia;
-mod kept;
 mod moving;
 pub(crate) mod placed;
-pub(crate) mod topology;
 
+#[doc(hidden)]
+pub use colltrans_kernel::kept::{Keepable, Kept};
+pub use colltrans_kernel::topology::HalfEdge;
 pub use colltrans_kernel::{Aabb, FaceId, InputFacet, InputVertex, ObstacleId, Pose, VertexId};
 pub use convex::{ConvexPolyhedron, ConvexityDefect, OffsetReport, convexity_defect};
 pub(crate) use convex::{FAN, LargeFace, MOST_RIMS, Rim, greatest_near};
@@ -17,8 +18,5 @@ pub(crate) use feature::feature;
 pub use feature::{Feature, Features};
 pub use hull::Hull;
 pub(crate) use inertia::Inertia;
-#[doc(hidden)]
-pub use kept::{Keepable, Kept};
 pub use moving::Moving;
 pub use placed::{Body, Numbered, Placed, Told};
-pub use topology::HalfEdge;

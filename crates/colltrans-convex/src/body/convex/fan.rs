@@ -9,8 +9,8 @@
 use glam::DVec3;
 
 use super::ring::{Cycle, Ring};
-use crate::body::topology::Topology;
 use colltrans_kernel::noise;
+use colltrans_kernel::topology::Topology;
 use colltrans_kernel::work;
 
 /// A vertex with more neighbours than this is searched, not scanned; a face with more corners has a ring.

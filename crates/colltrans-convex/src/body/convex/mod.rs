@@ -18,10 +18,10 @@ use std::sync::OnceLock;
 
 use glam::DVec3;
 
-use crate::body::topology::{HalfEdge, Topology};
 use crate::body::{Inertia, InputVertex, Kept, VertexId};
 pub use build::{ConvexityDefect, OffsetReport, convexity_defect};
 use colltrans_kernel::plane::polygon_normal;
+use colltrans_kernel::topology::{HalfEdge, Topology};
 pub(crate) use excess::LargeFace;
 pub(crate) use fan::{FAN, greatest_near};
 pub(crate) use ring::Rim;

@@ -13,8 +13,8 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::body::topology::Topology;
 use colltrans_kernel::plane::polygon_normal;
+use colltrans_kernel::topology::Topology;
 use colltrans_kernel::work;
 
 /// Corners this near an ellipse, as a share of its size, are taken to lie on it.

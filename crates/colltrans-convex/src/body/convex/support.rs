@@ -23,8 +23,8 @@ use glam::{DMat3, DVec2, DVec3};
 use super::fan::{FAN, Fan};
 use super::ring::{Rim, Ring};
 use crate::body::Inertia;
-use crate::body::topology::Topology;
 use colltrans_kernel::noise;
+use colltrans_kernel::topology::Topology;
 use colltrans_kernel::work;
 
 /// Up to this many vertices, looking at each is fastest (measured).

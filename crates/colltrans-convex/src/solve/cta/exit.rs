@@ -19,8 +19,8 @@ use super::cell::{End, Ends, face_of};
 use super::planar::Planar;
 use super::region::Region;
 use super::side::Side;
-use crate::body::topology::Topology;
 use crate::setting::{Setting, TwoBodies, VertexPair};
+use colltrans_kernel::topology::Topology;
 
 /// The height of a supporting plane is that of the best point if they differ by less than this
 /// share of the extent along the direction.

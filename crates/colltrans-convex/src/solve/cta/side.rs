@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 
 use super::crossing::Chain;
 use crate::body::convex::sections::{AxisSections, Search, SectionMap, Turn};
-use crate::body::topology::Topology;
+use colltrans_kernel::topology::Topology;
 
 /// Levels that are this many mean edges apart are near (measured).
 const NEAR: f64 = 4.0;

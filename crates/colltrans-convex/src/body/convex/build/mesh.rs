@@ -11,9 +11,9 @@ use glam::DVec3;
 use super::depth::PlaneTree;
 use super::hull::{self, Hull, Locator};
 use crate::body::error::{BuildError, TopologyError};
-use crate::body::topology::Topology;
 use crate::body::{ConvexPolyhedron, Inertia, InputVertex};
 use colltrans_kernel::plane::polygon_normal;
+use colltrans_kernel::topology::Topology;
 
 /// How far a mesh is from convex.
 #[derive(Debug, Clone, Copy, PartialEq)]

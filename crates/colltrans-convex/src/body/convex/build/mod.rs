@@ -12,9 +12,9 @@ use glam::DVec3;
 use super::ConvexPolyhedron;
 use super::support::SupportIndex;
 use crate::body::error::BuildError;
-#[cfg(any(test, feature = "json"))]
-use crate::body::topology::Topology;
 use crate::body::{Inertia, InputVertex};
+#[cfg(any(test, feature = "json"))]
+use colltrans_kernel::topology::Topology;
 use hull::Hull;
 pub use mesh::{ConvexityDefect, convexity_defect};
 pub use offset::OffsetReport;

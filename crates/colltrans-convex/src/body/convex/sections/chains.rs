@@ -17,7 +17,7 @@
 //! there is no answer, and a walk has to do.
 
 use super::snapshots::{Mesh, Turn};
-use crate::body::topology::Topology;
+use colltrans_kernel::topology::Topology;
 
 /// A face of more sides is searched along its boundary.
 const MANY_SIDES: u32 = 8;

@@ -19,9 +19,9 @@ mod walk;
 
 use glam::DVec3;
 
-use crate::body::topology::Topology;
 pub(crate) use axes::{AXES, AXIS_LENGTH, AxisPair};
 pub(crate) use chains::Search;
+use colltrans_kernel::topology::Topology;
 use snapshots::RING;
 pub(crate) use snapshots::{AxisSections, SectionMap, Snapshot, Turn};
 pub(crate) use walk::{next_clockwise, next_counter_clockwise};

@@ -21,7 +21,7 @@ use glam::{DVec2, DVec3};
 
 use super::chains::Chains;
 use super::walk::next_counter_clockwise;
-use crate::body::topology::Topology;
+use colltrans_kernel::topology::Topology;
 
 /// Edges of vertices passed per entry of a snapshot: about a vertex's worth of upward and downward
 /// edges.

@@ -4,7 +4,7 @@
 //! form one run, those below the other. From the half-edge at one change of runs, the other change
 //! is found by galloping and bisection, so a face with `k` vertices costs `O(log k)`.
 
-use crate::body::topology::Topology;
+use colltrans_kernel::topology::Topology;
 
 /// Vertices of a face tried one by one before galloping: most faces are triangles or
 /// quadrilaterals.

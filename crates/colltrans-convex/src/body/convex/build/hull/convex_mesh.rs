@@ -11,8 +11,8 @@
 use glam::DVec3;
 
 use super::quickhull::{Simplicial, Triangle, side};
-use crate::body::topology::Topology;
 use colltrans_kernel::plane::triangle_normal;
+use colltrans_kernel::topology::Topology;
 
 /// The mesh as a simplicial hull, if its faces are triangles and it is convex, every vertex a
 /// corner.

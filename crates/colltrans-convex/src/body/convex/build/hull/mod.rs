@@ -26,9 +26,9 @@ use glam::DVec3;
 
 use crate::body::Aabb;
 use crate::body::error::{BuildError, TopologyError};
-use crate::body::topology::{Topology, bucket};
 use colltrans_kernel::noise;
 use colltrans_kernel::range::in_exact_range;
+use colltrans_kernel::topology::{Topology, bucket};
 use quickhull::Simplicial;
 use violation::Gauge;
 pub(super) use violation::Locator;

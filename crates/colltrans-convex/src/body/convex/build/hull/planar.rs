@@ -5,8 +5,8 @@ use glam::{DVec2, DVec3, Vec3Swizzles};
 use super::quickhull::Flat;
 use super::violation::{Projection, to_segment};
 use super::{BEYOND, Hull, measured, rounding};
-use crate::body::topology::Topology;
 use colltrans_kernel::predicates::orient2d as turn;
+use colltrans_kernel::topology::Topology;
 use colltrans_kernel::work;
 
 pub(super) fn hull(points: &[DVec3], kept: &[u32], flat: Flat, tolerance: f64) -> Hull {

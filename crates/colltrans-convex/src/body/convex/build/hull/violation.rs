@@ -10,10 +10,10 @@ use glam::{DVec2, DVec3};
 
 use super::neighbours::{Neighbours, Node};
 use super::quickhull::{Simplicial, Triangle, side};
-use crate::body::topology::Topology;
 use colltrans_kernel::determinant::triangle_area;
 use colltrans_kernel::plane::polygon_normal;
 use colltrans_kernel::predicates::orient2d as turn;
+use colltrans_kernel::topology::Topology;
 use colltrans_kernel::work;
 
 /// Finds the face that the ray from an inner point to a given point passes, by walking from face to

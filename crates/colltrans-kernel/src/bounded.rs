@@ -12,10 +12,10 @@ pub struct Bounded {
     /// The best estimate.
     pub value: f64,
     /// Not more than the true number.
-    #[cfg_attr(feature = "serde", serde(with = "colltrans_kernel::written::or_minus_infinite"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::written::or_minus_infinite"))]
     pub lower: f64,
     /// Not less than the true number.
-    #[cfg_attr(feature = "serde", serde(with = "colltrans_kernel::written::or_infinite"))]
+    #[cfg_attr(feature = "serde", serde(with = "crate::written::or_infinite"))]
     pub upper: f64,
 }
 

@@ -14,9 +14,9 @@
 
 use std::sync::OnceLock;
 
-use crate::body::error::TopologyError;
+use crate::error::TopologyError;
 
-/// A directed edge along the boundary of a face of a [`ConvexPolyhedron`](crate::ConvexPolyhedron).
+/// A directed edge along the boundary of a face of a polyhedron.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct HalfEdge {
@@ -30,7 +30,7 @@ pub struct HalfEdge {
 
 /// Vertices, half-edges and faces, by index.
 #[derive(Debug, Clone)]
-pub(crate) struct Topology {
+pub struct Topology {
     /// The vertex that each half-edge starts from: the corners of all faces, one after the other.
     origins: Vec<u32>,
     /// First half-edge of each face, and one entry past the end.
@@ -54,7 +54,7 @@ const NONE: u32 = u32::MAX;
 
 impl Topology {
     /// One sphere, from faces as in [`Self::from_faces`].
-    pub(crate) fn sphere(
+    pub fn sphere(
         vertex_count: usize,
         face_start: Vec<u32>,
         face_vertices: Vec<u32>,
@@ -68,7 +68,7 @@ impl Topology {
     /// `f` is `face_vertices[face_start[f]..face_start[f + 1]]`.
     ///
     /// Vertices that no face uses are allowed here and have no neighbours.
-    pub(crate) fn from_faces(
+    pub fn from_faces(
         vertex_count: usize,
         mut face_start: Vec<u32>,
         mut face_vertices: Vec<u32>,
@@ -88,7 +88,7 @@ impl Topology {
     }
 
     /// A segment (2 vertices) or a point (1 vertex).
-    pub(crate) fn without_faces(vertex_count: usize) -> Self {
+    pub fn without_faces(vertex_count: usize) -> Self {
         debug_assert!(vertex_count == 1 || vertex_count == 2, "no faces only below dimension 2");
         let segment = vertex_count == 2;
         Self {
@@ -101,7 +101,7 @@ impl Topology {
     }
 
     /// Lets go of what is made again when it is next asked for.
-    pub(crate) fn let_go_of_links(&mut self) {
+    pub fn let_go_of_links(&mut self) {
         self.links.take();
     }
 
@@ -115,71 +115,79 @@ impl Topology {
         })
     }
 
-    pub(crate) fn vertex_count(&self) -> usize {
+    #[inline]
+    pub fn vertex_count(&self) -> usize {
         self.vertex_start.len() - 1
     }
 
-    pub(crate) fn face_count(&self) -> usize {
+    #[inline]
+    pub fn face_count(&self) -> usize {
         self.face_start.len() - 1
     }
 
-    pub(crate) fn edge_count(&self) -> usize {
+    #[inline]
+    pub fn edge_count(&self) -> usize {
         self.neighbours.len() / 2
     }
 
     #[inline]
-    pub(crate) fn half_edge(&self, h: u32) -> HalfEdge {
+    pub fn half_edge(&self, h: u32) -> HalfEdge {
         self.links().half_edges[h as usize]
     }
 
-    pub(crate) fn half_edges(&self) -> &[HalfEdge] {
+    #[inline]
+    pub fn half_edges(&self) -> &[HalfEdge] {
         &self.links().half_edges
     }
 
     /// The vertices that the half-edges start from.
-    pub(crate) fn origins(&self) -> &[u32] {
+    #[inline]
+    pub fn origins(&self) -> &[u32] {
         &self.origins
     }
 
     /// The vertex that a half-edge starts from.
     #[inline]
-    pub(crate) fn origin(&self, h: u32) -> u32 {
+    pub fn origin(&self, h: u32) -> u32 {
         self.origins[h as usize]
     }
 
     /// The half-edges of a face, in order.
-    pub(crate) fn face(&self, face: u32) -> std::ops::Range<u32> {
+    #[inline]
+    pub fn face(&self, face: u32) -> std::ops::Range<u32> {
         self.face_start[face as usize]..self.face_start[face as usize + 1]
     }
 
     /// The vertices of a face, in order.
-    pub(crate) fn face_vertices(
-        &self,
-        face: u32,
-    ) -> impl ExactSizeIterator<Item = u32> + Clone + '_ {
+    #[inline]
+    pub fn face_vertices(&self, face: u32) -> impl ExactSizeIterator<Item = u32> + Clone + '_ {
         let range = self.face(face);
         self.origins[range.start as usize..range.end as usize].iter().copied()
     }
 
     /// The next half-edge along the same face.
-    pub(crate) fn next(&self, h: u32) -> u32 {
+    #[inline]
+    pub fn next(&self, h: u32) -> u32 {
         let range = self.face(self.half_edge(h).face);
         if h + 1 == range.end { range.start } else { h + 1 }
     }
 
     /// The vertex a half-edge ends at.
-    pub(crate) fn target(&self, h: u32) -> u32 {
+    #[inline]
+    pub fn target(&self, h: u32) -> u32 {
         self.origin(self.half_edge(h).twin)
     }
 
     /// The neighbours of a vertex, clockwise as seen from outside.
-    pub(crate) fn neighbours(&self, vertex: u32) -> &[u32] {
+    #[inline]
+    pub fn neighbours(&self, vertex: u32) -> &[u32] {
         let (start, end) = self.vertex_range(vertex);
         &self.neighbours[start..end]
     }
 
     /// The half-edges that leave a vertex, in the order of [`Self::neighbours`].
-    pub(crate) fn outgoing(&self, vertex: u32) -> &[u32] {
+    #[inline]
+    pub fn outgoing(&self, vertex: u32) -> &[u32] {
         let outgoing = &self.links().outgoing;
         if outgoing.is_empty() {
             return &[];
@@ -189,7 +197,7 @@ impl Topology {
     }
 
     /// Bytes on the heap.
-    pub(crate) fn heap_bytes(&self) -> usize {
+    pub fn heap_bytes(&self) -> usize {
         4 * (self.origins.capacity()
             + self.face_start.capacity()
             + self.vertex_start.capacity()
@@ -197,6 +205,7 @@ impl Topology {
             + self.links.get().map_or(0, Links::heap_bytes)
     }
 
+    #[inline]
     fn vertex_range(&self, vertex: u32) -> (usize, usize) {
         let v = vertex as usize;
         (self.vertex_start[v] as usize, self.vertex_start[v + 1] as usize)
@@ -256,6 +265,7 @@ impl Links {
         Ok((links, vertex_start))
     }
 
+    #[inline]
     fn next(&self, face_start: &[u32], h: u32) -> u32 {
         let face = self.half_edges[h as usize].face as usize;
         if h + 1 == face_start[face + 1] { face_start[face] } else { h + 1 }
@@ -346,10 +356,7 @@ impl Links {
 }
 
 /// Counting sort: the indices of `keys` grouped by key, and where each group starts.
-pub(crate) fn bucket(
-    key_count: usize,
-    keys: impl Iterator<Item = u32> + Clone,
-) -> (Vec<u32>, Vec<u32>) {
+pub fn bucket(key_count: usize, keys: impl Iterator<Item = u32> + Clone) -> (Vec<u32>, Vec<u32>) {
     let mut start = vec![0_u32; key_count + 1];
     for key in keys.clone() {
         start[key as usize + 1] += 1;

@@ -19,7 +19,7 @@ use crate::setting::error::QueryError;
 use crate::solve::nearest::NearestPairs;
 use crate::solve::observe::{NoObserver, Observer};
 use crate::solve::options::{Focus, Region};
-use crate::solve::{Left, Pace, WarmStart, search};
+use crate::solve::{Left, Pace, WarmStart};
 
 /// Queries that follow each other closely, each starting from the answer of the one before.
 ///
@@ -264,6 +264,6 @@ impl<'a> Tracker<'a> {
         let last = if rests { WarmStart::Nothing } else { left.start };
         *followed = focus.features && !matches!(last, WarmStart::Nothing);
         *is_of_query = true;
-        search(&cast.setting, &cast.options, &focus, &last, left, observer)
+        cast.search(&focus, &last, left, observer)
     }
 }

@@ -24,7 +24,7 @@ use crate::setting::Setting;
 use crate::setting::error::QueryError;
 use crate::solve::observe::{NoObserver, Observer};
 use crate::solve::options::{Focus, Options};
-use crate::solve::{Left, WarmStart, search};
+use crate::solve::{Left, WarmStart, keep, search};
 pub use contact::WitnessPoints;
 pub use derive::{clearance_of, common_end, depth_of, intersection_of, range_of};
 #[cfg(feature = "json")]
@@ -397,7 +397,23 @@ impl Cast<'_> {
         observer: &mut O,
     ) -> Result<Outcome, QueryError> {
         let (last, mut next) = (WarmStart::Nothing, Left::default());
-        search(&self.setting, &self.options, &Focus::NONE, &last, &mut next, observer)
+        self.search(&Focus::NONE, &last, &mut next, observer)
+    }
+
+    /// Searches where the bodies first meet or, if the options ask for a gap, where they are first as near as that.
+    #[inline]
+    pub(crate) fn search<O: Observer>(
+        &self,
+        focus: &Focus,
+        last: &WarmStart,
+        next: &mut Left,
+        observer: &mut O,
+    ) -> Result<Outcome, QueryError> {
+        let Self { setting, options } = self;
+        if cfg!(feature = "keep") && options.keep != 0.0 {
+            return keep::convex::search(setting, options, focus, last, next, observer);
+        }
+        search(setting, options, focus, last, next, observer)
     }
 
     /// Computes [`Self::contact_range`] with an observer, as for [`Self::first_contact_observed`].

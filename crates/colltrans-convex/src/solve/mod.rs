@@ -26,7 +26,6 @@ use crate::answer::{Outcome, Separated, Separation, Solver, StartedFrom};
 use crate::setting::error::{QueryError, Stalled};
 use crate::setting::minkowski::MinkowskiDifference;
 use crate::setting::{Setting, VertexPair};
-use colltrans_kernel::noise::Noise;
 use cta::{CtaOptions, Guess, Origin, RegionFocus};
 use observe::{Observer, Phase, ShadowFrame, Support, Watch};
 use options::{Focus, NarrowFrom, Narrowing, Options, Region};
@@ -39,7 +38,7 @@ use proof::Proven;
 pub(crate) use warm_start::{Left, WarmStart};
 
 /// Casts, starting from the `last` cast as far as `focus` allows, and leaves in `next` where the next one may start
-/// and the work that was done, if there is an answer.
+/// and the work that was done, if there is an answer. No gap is kept.
 #[inline]
 pub(crate) fn search<O: Observer>(
     setting: &Setting,
@@ -54,9 +53,6 @@ pub(crate) fn search<O: Observer>(
         solver => solver,
     };
     *next = Left::default();
-    if cfg!(feature = "keep") && options.keep != 0.0 {
-        return kept(setting, options, focus, last, next, observer);
-    }
     let mut run = Run {
         context: Context {
             difference: MinkowskiDifference::new(setting),
@@ -69,27 +65,6 @@ pub(crate) fn search<O: Observer>(
         next,
     };
     run.run(focus, last)
-}
-
-/// The same of bodies that are to keep a gap.
-#[cold]
-fn kept<O: Observer>(
-    setting: &Setting,
-    options: &Options,
-    focus: &Focus,
-    last: &WarmStart,
-    next: &mut Left,
-    observer: &mut O,
-) -> Result<Outcome, QueryError> {
-    if Noise::of(setting.scale() + options.keep).is_slight(options.keep) {
-        let touching = Options { keep: 0.0, ..*options };
-        let outcome = search(setting, &touching, focus, last, next, observer)?;
-        if let Some(outcome) = keep::convex::slightly_apart(setting, options.keep, outcome) {
-            return Ok(outcome);
-        }
-    }
-    let last = if focus.features { *last } else { WarmStart::Nothing };
-    keep::convex::search(setting, options, &last, next, observer)
 }
 
 /// Turns of the lateral axes, by 0, 0.7 and 2.1: ties that follow each other in a circle in one

@@ -123,8 +123,30 @@ fn mean(corners: &[DVec3; 3], weights: &[f64; 3]) -> DVec3 {
     corners.iter().zip(weights).map(|(corner, weight)| *corner * (weight / sum)).sum()
 }
 
-/// Where bodies that are to keep a gap are first as near as that; leaves in `next` where a later search may start.
+/// Casts bodies that are to keep a gap, as [`crate::solve::search`] does those that are not.
+#[cold]
 pub(crate) fn search<O: Observer>(
+    setting: &Setting,
+    options: &Options,
+    focus: &Focus,
+    last: &WarmStart,
+    next: &mut Left,
+    observer: &mut O,
+) -> Result<Outcome, QueryError> {
+    *next = Left::default();
+    if Noise::of(setting.scale() + options.keep).is_slight(options.keep) {
+        let touching = Options { keep: 0.0, ..*options };
+        let outcome = crate::solve::search(setting, &touching, focus, last, next, observer)?;
+        if let Some(outcome) = slightly_apart(setting, options.keep, outcome) {
+            return Ok(outcome);
+        }
+    }
+    let last = if focus.features { *last } else { WarmStart::Nothing };
+    search_apart(setting, options, &last, next, observer)
+}
+
+/// Where bodies that are to keep a gap are first as near as that; leaves in `next` where a later search may start.
+fn search_apart<O: Observer>(
     setting: &Setting,
     options: &Options,
     last: &WarmStart,
@@ -343,7 +365,7 @@ fn stalled(reason: Stalled) -> QueryError {
 }
 
 /// The outcome of bodies that keep a slight gap, from that of the bodies as they are; `None` if only a search for the gap can tell.
-pub(crate) fn slightly_apart(setting: &Setting, keep: f64, outcome: Outcome) -> Option<Outcome> {
+fn slightly_apart(setting: &Setting, keep: f64, outcome: Outcome) -> Option<Outcome> {
     let nearer = |contact: Contact| {
         let certificate = contact.certificate;
         let back = keep / contact.normal.dot(setting.direction);

@@ -14,7 +14,7 @@ mod values;
 
 use clap::{Args, Parser, Subcommand};
 use colltrans::glam::DVec3;
-use colltrans::{NarrowFrom, Narrowing, Pose, Solver, Until};
+use colltrans::{Pose, Solver, cta};
 use colltrans_mesh::body::BodyOptions;
 
 use crate::failure::{Code, Failure};
@@ -181,11 +181,11 @@ pub(crate) struct ClearanceArguments {
 pub(crate) struct NarrowingArguments {
     /// Of --solver cta: where the minimisation starts [default: center]
     #[arg(long, value_name = "WHERE", value_parser = start())]
-    start: Option<NarrowFrom>,
+    start: Option<cta::Start>,
     /// Of --solver cta: where it ends, at the `exit` test of the paper, or where its bounds are as near as this share
     /// of the bodies' extent [default: exit]
     #[arg(long, value_name = "exit|SHARE")]
-    until: Option<Until>,
+    until: Option<cta::Until>,
 }
 
 /// What is asked of two bodies, and what becomes of the answer.
@@ -458,12 +458,12 @@ impl BodyArguments {
 
 impl PairArguments {
     /// How the solver narrows the search.
-    pub(crate) fn narrowing(&self) -> Result<Narrowing, Failure> {
+    pub(crate) fn narrowing(&self) -> Result<cta::Options, Failure> {
         let NarrowingArguments { start, until } = self.narrowing;
         if self.solver != Solver::Cta && (start.is_some() || until.is_some()) {
             return Err(Failure::new(Code::Usage, "--start and --until are of --solver cta"));
         }
-        Ok(Narrowing::new(start.unwrap_or_default(), until.unwrap_or_default()))
+        Ok(cta::Options::new(start.unwrap_or_default(), until.unwrap_or_default()))
     }
 
     /// Whether something is asked that only convex bodies have.

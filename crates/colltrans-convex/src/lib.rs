@@ -70,6 +70,10 @@ pub mod answer;
 pub mod body;
 #[doc(hidden)]
 pub mod cast;
+/// The choices of [`Solver::Cta`], the paper's collision translation algorithm.
+pub mod cta {
+    pub use crate::solve::cta::options::{Cuts, NoUntil, Options, Region, Start, Until};
+}
 #[doc(hidden)]
 pub mod pair;
 #[doc(hidden)]
@@ -101,5 +105,5 @@ pub use pair::{Pair, PairBody, PairProof};
 pub use setting::VertexPair;
 pub use setting::error::{QueryError, Stalled};
 pub use solve::observe;
-pub use solve::options::{Cuts, Focus, NarrowFrom, Narrowing, NoUntil, Options, Region, Until};
+pub use solve::options::{Focus, Options};
 pub use tracker::Tracker;

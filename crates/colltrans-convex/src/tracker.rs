@@ -16,9 +16,10 @@ use crate::body::ConvexPolyhedron;
 use crate::cast::{Cast, clearance_of, depth_of, intersection_of, range_of};
 use crate::pair::{Pair, distance_from};
 use crate::setting::error::QueryError;
+use crate::solve::cta::options::Region;
 use crate::solve::nearest::NearestPairs;
 use crate::solve::observe::{NoObserver, Observer};
-use crate::solve::options::{Focus, Region};
+use crate::solve::options::Focus;
 use crate::solve::{Left, Pace, WarmStart};
 
 /// Queries that follow each other closely, each starting from the answer of the one before.

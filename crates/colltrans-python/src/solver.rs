@@ -1,6 +1,6 @@
 //! How a search is narrowed: a solver by its name, or the paper's algorithm with its choices.
 
-use colltrans::{NarrowFrom, Narrowing, Options, Solver, Until};
+use colltrans::{Options, Solver, cta};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
@@ -32,20 +32,20 @@ use crate::errors::error;
 /// 2.0
 #[pyclass(frozen, eq, module = "colltrans")]
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) struct Cta(Narrowing);
+pub(crate) struct Cta(cta::Options);
 
 #[pymethods]
 impl Cta {
     #[new]
     #[pyo3(signature = (*, start=None, until=None), text_signature = "(*, start='center', until='exit')")]
     fn new(start: Option<&str>, until: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
-        let Narrowing { start: default, .. } = Narrowing::default();
-        let start = start.map_or(Ok(default), |name| name.parse::<NarrowFrom>().map_err(refused));
+        let cta::Options { start: default, .. } = cta::Options::default();
+        let start = start.map_or(Ok(default), |name| name.parse::<cta::Start>().map_err(refused));
         let until = match until {
-            None => Ok(Until::default()),
-            Some(until) => until.str()?.to_str()?.parse::<Until>().map_err(refused),
+            None => Ok(cta::Until::default()),
+            Some(until) => until.str()?.to_str()?.parse::<cta::Until>().map_err(refused),
         };
-        Ok(Self(Narrowing::new(start?, until?)))
+        Ok(Self(cta::Options::new(start?, until?)))
     }
 
     /// str: Where the minimisation starts.
@@ -58,8 +58,8 @@ impl Cta {
     #[getter]
     fn until<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         Ok(match self.0.until {
-            Until::Exit => "exit".into_pyobject(py)?.into_any(),
-            Until::Gap(gap) => gap.into_pyobject(py)?.into_any(),
+            cta::Until::Exit => "exit".into_pyobject(py)?.into_any(),
+            cta::Until::Gap(gap) => gap.into_pyobject(py)?.into_any(),
         })
     }
 
@@ -74,7 +74,7 @@ impl Cta {
     }
 
     fn __repr__(&self) -> String {
-        let quote = if self.0.until == Until::Exit { "'" } else { "" };
+        let quote = if self.0.until == cta::Until::Exit { "'" } else { "" };
         format!("Cta(start='{}', until={quote}{}{quote})", self.0.start, self.0.until)
     }
 }

@@ -3,7 +3,7 @@
 //! The library's tracker borrows its bodies, so both live together in one cell, and other bodies get
 //! a new cell: a tracker makes nothing of its memory of others anyway.
 
-use colltrans::{Focus, QueryError, Region};
+use colltrans::{Focus, QueryError, cta};
 use pyo3::prelude::*;
 use self_cell::self_cell;
 
@@ -102,10 +102,10 @@ fn focus(features: Option<bool>, region: Option<&Bound<'_, PyAny>>) -> PyResult<
     let focus = Focus::default().with_features(features.unwrap_or(false));
     let Some(region) = region else { return Ok(Some(focus)) };
     let region = match region.extract::<f64>() {
-        Ok(half_side) => Region::Fixed(half_side),
+        Ok(half_side) => cta::Region::Fixed(half_side),
         Err(_) => match region.extract::<&str>()? {
-            "automatic" => Region::Automatic,
-            "everywhere" => Region::Everywhere,
+            "automatic" => cta::Region::Automatic,
+            "everywhere" => cta::Region::Everywhere,
             other => {
                 let known = format_args!("no region {other:?}: automatic, everywhere or a length");
                 return Err(error("QueryError", known));

@@ -3,7 +3,7 @@
 //! Read by hand but for proofs, which the library reads: what derived readers of all of them would add is a
 //! third of the download.
 
-use colltrans::{Narrowing, Solver, Until};
+use colltrans::{Solver, cta};
 use colltrans_mesh::body::Take;
 use serde::Deserialize;
 use serde_json::Value;
@@ -50,7 +50,7 @@ pub(crate) struct Pair {
     /// Between convex bodies.
     pub(crate) solver: Solver,
     /// Of `cta`: from `start`, `center` or `ellipsoids`, `until` it ends, `exit` or a gap.
-    pub(crate) narrowing: Narrowing,
+    pub(crate) narrowing: cta::Options,
     /// Between solids: by how much they are shrunk; what the files' precision asks for by default.
     pub(crate) tolerance: Option<f64>,
     /// Between solids: facets that cross at the start do not block.
@@ -79,7 +79,7 @@ impl Question {
 trait Read {
     fn load(&self) -> Result<Load, String>;
     fn pair(&self) -> Result<Pair, String>;
-    fn narrowing(&self) -> Result<Narrowing, String>;
+    fn narrowing(&self) -> Result<cta::Options, String>;
 }
 
 impl Read for Fields<'_> {
@@ -115,15 +115,15 @@ impl Read for Fields<'_> {
         })
     }
 
-    fn narrowing(&self) -> Result<Narrowing, String> {
-        let Narrowing { start, until, .. } = Narrowing::default();
+    fn narrowing(&self) -> Result<cta::Options, String> {
+        let cta::Options { start, until, .. } = cta::Options::default();
         let text = |name| self.get(name).and_then(Value::as_str);
         let start = text("start").map_or(Ok(start), str::parse).map_err(|e| e.to_string())?;
         let until = match self.number("until") {
-            Ok(gap) => gap.map_or(until, Until::Gap),
-            Err(_) if text("until") == Some("exit") => Until::Exit,
+            Ok(gap) => gap.map_or(until, cta::Until::Gap),
+            Err(_) if text("until") == Some("exit") => cta::Until::Exit,
             Err(error) => return Err(error),
         };
-        Ok(Narrowing::new(start, until))
+        Ok(cta::Options::new(start, until))
     }
 }

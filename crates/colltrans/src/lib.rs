@@ -155,13 +155,13 @@ pub mod solid;
 #[doc(inline)]
 pub use colltrans_convex::{
     Aabb, Body, Bounded, BuildError, Cast, CastBody, CentralCast, Certificate, CertificateError,
-    Clearance, Contact, ContactRange, ConvexPolyhedron, ConvexityDefect, Cuts, Depth,
-    DirectionalDepth, Distance, Enclosure, FaceId, Feature, Features, Focus, Grazing, HalfEdge,
-    InputFacet, InputVertex, Intersection, MAX_MAGNITUDE, MIN_MAGNITUDE, NarrowFrom, Narrowing,
-    NearPoints, NoUntil, ObstacleId, OffsetReport, Options, Outcome, OverlapAhead, Pair, PairBody,
-    PairProof, Placed, PlaneGap, Pose, PoseError, Proof, QueryError, Region, Separated, Separation,
-    Solver, Stalled, StartedFrom, Steps, TopologyError, Tracker, UnknownName, Until, VertexId,
-    VertexPair, WhyFree, Within, WitnessPoints, cast, convexity_defect, glam, observe,
+    Clearance, Contact, ContactRange, ConvexPolyhedron, ConvexityDefect, Depth, DirectionalDepth,
+    Distance, Enclosure, FaceId, Feature, Features, Focus, Grazing, HalfEdge, InputFacet,
+    InputVertex, Intersection, MAX_MAGNITUDE, MIN_MAGNITUDE, NearPoints, ObstacleId, OffsetReport,
+    Options, Outcome, OverlapAhead, Pair, PairBody, PairProof, Placed, PlaneGap, Pose, PoseError,
+    Proof, QueryError, Separated, Separation, Solver, Stalled, StartedFrom, Steps, TopologyError,
+    Tracker, UnknownName, VertexId, VertexPair, WhyFree, Within, WitnessPoints, cast,
+    convexity_defect, cta, glam, observe,
 };
 #[cfg(feature = "json")]
 #[doc(inline)]

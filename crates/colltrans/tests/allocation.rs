@@ -2,7 +2,7 @@
 //! algorithm makes of a body, it makes once.
 
 use colltrans::solid::{AsSolid, SolidCast, Workspace};
-use colltrans::{Cast, Focus, Region, Solid, Solver, Tracker};
+use colltrans::{Cast, Focus, Solid, Solver, Tracker, cta};
 use colltrans_testkit::oracle::sequences::Walk;
 use colltrans_testkit::oracle::settings::{Bodies, FAMILIES, Setting, setting};
 use colltrans_testkit::oracle::solids::settings as solids;
@@ -83,8 +83,8 @@ fn bytes(Bodies { moving, fixed }: &Bodies) -> [usize; 2] {
 fn tracked_queries_allocate_nothing() {
     let foci = [
         Focus::default(),
-        Focus::NONE.with_region(Region::Automatic),
-        Focus::NONE.with_region(Region::Fixed(0.1)),
+        Focus::NONE.with_region(cta::Region::Automatic),
+        Focus::NONE.with_region(cta::Region::Fixed(0.1)),
     ];
     for (family, ..) in FAMILIES {
         for seed in 0..4 {

@@ -1,10 +1,7 @@
 //! The solvers compared: every algorithm behind one trait.
 
 use colltrans::observe::Observer;
-use colltrans::{
-    Cuts, Focus, NarrowFrom, Narrowing, Options, Outcome, QueryError, Region, Solver, Steps,
-    Tracker,
-};
+use colltrans::{Focus, Options, Outcome, QueryError, Solver, Steps, Tracker, cta};
 use colltrans_baselines::egjk::{Egjk, SupportSearch};
 use colltrans_baselines::hwalk::HWalk;
 use colltrans_baselines::pqp::Pqp;
@@ -20,9 +17,9 @@ pub(crate) enum Who {
     Cta(Until),
     /// The paper's incremental algorithm: from the region of the last solution, a fixed half-side
     /// being in diameters.
-    CtaRegion(Region, Until),
+    CtaRegion(cta::Region, Until),
     /// The same to the end, each planar problem from nothing: what its section V-F says of the paper's.
-    CtaCold(Region),
+    CtaCold(cta::Region),
     /// What `colltrans` does by default from scratch: portal refinement.
     Portal,
     /// What `colltrans` does by default from query to query: feature focus.
@@ -59,22 +56,22 @@ impl Until {
     /// The paper's minimisation, down to here.
     pub(crate) fn options(self) -> Options {
         let until = match self {
-            Self::Near => colltrans::Until::Gap(PAPER_GAP),
-            Self::End | Self::EndAcrossCells => colltrans::Until::Exit,
+            Self::Near => colltrans::cta::Until::Gap(PAPER_GAP),
+            Self::End | Self::EndAcrossCells => colltrans::cta::Until::Exit,
         };
         let keeps_to_cell = self != Self::EndAcrossCells;
-        cta(Narrowing::new(NarrowFrom::Center, until).with_keeps_to_cell(keeps_to_cell))
+        cta(cta::Options::new(cta::Start::Center, until).with_keeps_to_cell(keeps_to_cell))
     }
 }
 
 /// The paper's minimisation with these choices.
-fn cta(narrowing: Narrowing) -> Options {
+fn cta(narrowing: cta::Options) -> Options {
     Options::default().with_solver(Solver::Cta).with_narrowing(narrowing)
 }
 
 /// To the end with cuts through the centroid, which are not shifted.
 pub(crate) fn centroid_cuts() -> Options {
-    cta(Narrowing::default().with_cuts(Cuts::Centroid))
+    cta(cta::Options::default().with_cuts(cta::Cuts::Centroid))
 }
 
 /// What a solver said.
@@ -142,7 +139,7 @@ impl Who {
                 Box::new(Tracked::in_region(bodies, region, until.options()))
             }
             Self::CtaCold(region) => {
-                let cold = cta(Narrowing::default().with_starts_cold(true));
+                let cold = cta(cta::Options::default().with_starts_cold(true));
                 Box::new(Tracked::in_region(bodies, region, cold))
             }
             Self::Tracker => Box::new(Tracked::new(bodies, Focus::default(), Options::default())),
@@ -185,9 +182,9 @@ pub(crate) struct Tracked<'a> {
 
 impl<'a> Tracked<'a> {
     /// The paper's incremental algorithm; a fixed half-side of the region is in diameters.
-    pub(crate) fn in_region(bodies: &'a Bodies, region: Region, options: Options) -> Self {
+    pub(crate) fn in_region(bodies: &'a Bodies, region: cta::Region, options: Options) -> Self {
         let region = match region {
-            Region::Fixed(delta) => Region::Fixed(delta * bodies.diameter),
+            cta::Region::Fixed(delta) => cta::Region::Fixed(delta * bodies.diameter),
             region => region,
         };
         Self::new(bodies, Focus::NONE.with_region(region), options)

@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use colltrans::glam::{DMat3, DQuat, DVec3};
-use colltrans::{NarrowFrom, Pose, Solver};
+use colltrans::{Pose, Solver, cta};
 
 /// Moves that one step may have.
 const MOST_LEGS: usize = 1_000;
@@ -59,13 +59,13 @@ pub(crate) fn solver() -> impl TypedValueParser<Value = Solver> {
 }
 
 /// Where a minimisation starts, by its name.
-pub(crate) fn start() -> impl TypedValueParser<Value = NarrowFrom> {
-    let named = |start: NarrowFrom, what| PossibleValue::new(start.name()).help(what);
+pub(crate) fn start() -> impl TypedValueParser<Value = cta::Start> {
+    let named = |start: cta::Start, what| PossibleValue::new(start.name()).help(what);
     PossibleValuesParser::new([
-        named(NarrowFrom::Center, "At the centre of all sections, as the paper"),
-        named(NarrowFrom::Ellipsoids, "Where ellipsoids would meet: often no section is needed"),
+        named(cta::Start::Center, "At the centre of all sections, as the paper"),
+        named(cta::Start::Ellipsoids, "Where ellipsoids would meet: often no section is needed"),
     ])
-    .try_map(|name| name.parse::<NarrowFrom>())
+    .try_map(|name| name.parse::<cta::Start>())
 }
 
 /// A translation, and perhaps a rotation before it.

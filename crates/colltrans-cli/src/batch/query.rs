@@ -7,7 +7,7 @@ use std::sync::Arc;
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::motion::Motion;
 use colltrans::record::{PairQuestion, Question, Record};
-use colltrans::{Cast, ConvexPolyhedron, Narrowing, Options, Pair, Pose, PoseError, Solver};
+use colltrans::{Cast, ConvexPolyhedron, Options, Pair, Pose, PoseError, Solver, cta};
 use colltrans_assembly::read::plain;
 use colltrans_mesh::body::{LoadError, Take};
 use serde::Deserialize;
@@ -305,11 +305,11 @@ impl<B> Query<'_, B> {
     }
 
     /// How the solver narrows the search.
-    fn narrowing(&self) -> Result<Narrowing, String> {
+    fn narrowing(&self) -> Result<cta::Options, String> {
         if self.solver != Some(Solver::Cta) && (self.start.is_some() || self.until.is_some()) {
             return Err(r#"`start` and `until` are for "solver": "cta""#.into());
         }
-        Ok(Narrowing::new(self.start.unwrap_or_default(), self.until.unwrap_or_default()))
+        Ok(cta::Options::new(self.start.unwrap_or_default(), self.until.unwrap_or_default()))
     }
 
     fn of_convex(

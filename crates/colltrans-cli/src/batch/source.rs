@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use colltrans::{NarrowFrom, Solver, Until};
+use colltrans::{Solver, cta};
 use serde::{Deserialize, Deserializer};
 use serde_json::value::RawValue;
 
@@ -29,8 +29,8 @@ pub(super) struct Query<'a, Body> {
     pub(super) graze_tolerance: Option<f64>,
     pub(super) solver: Option<Solver>,
     /// Of [`Solver::Cta`].
-    pub(super) start: Option<NarrowFrom>,
-    pub(super) until: Option<Until>,
+    pub(super) start: Option<cta::Start>,
+    pub(super) until: Option<cta::Until>,
     pub(super) tolerance: Option<f64>,
     pub(super) ignore_start_overlaps: Option<bool>,
     pub(super) keep: Option<f64>,

@@ -15,7 +15,7 @@ pub enum Solver {
     /// of planar sections, from the centre of the levels, or in a [`Tracker`](crate::Tracker) from those around the last
     /// solution, until the features that touch are seen to solve the problem. One portal, the face of `M` over
     /// these, makes the certificate of it; where the exit is not seen, portal refinement finds the face.
-    /// [`Narrowing`](crate::Narrowing) is what can be chosen. Bodies of lower dimension
+    /// [`cta::Options`](crate::cta::Options) is what can be chosen. Bodies of lower dimension
     /// have no sections to speak of: portal refinement does their work alone. A body's first cast
     /// that solves a planar problem makes its sections
     /// ([`ConvexPolyhedron::prepare_sections`](crate::ConvexPolyhedron::prepare_sections)).

@@ -26,9 +26,10 @@ use crate::answer::{Outcome, Separated, Separation, Solver, StartedFrom};
 use crate::setting::error::{QueryError, Stalled};
 use crate::setting::minkowski::MinkowskiDifference;
 use crate::setting::{Setting, VertexPair};
+use cta::options::Region;
 use cta::{CtaOptions, Guess, Origin, RegionFocus};
 use observe::{Observer, Phase, ShadowFrame, Support, Watch};
-use options::{Focus, NarrowFrom, Narrowing, Options, Region};
+use options::{Focus, Options};
 pub(crate) use pace::Pace;
 use portal::{
     Context, Enclosure, Face, FirstNormal, Followed, Known, Overlap, Plane, Portal, Refined,
@@ -92,7 +93,7 @@ struct Run<'a, 'o, 'n, O> {
     context: Context<'a, 'o, O>,
     graze_tolerance: f64,
     solver: Solver,
-    narrowing: Narrowing,
+    narrowing: cta::options::Options,
     /// Which of the `TURNS` an attempt from scratch has.
     turn: usize,
     /// Written with the answer.
@@ -330,8 +331,8 @@ impl<O: Observer> Run<'_, '_, '_, O> {
             return self.narrow(Origin::Region(focus));
         }
         match self.narrowing.start {
-            NarrowFrom::Center => self.narrow(Origin::Center),
-            NarrowFrom::Ellipsoids => self.start_at_ellipsoids(),
+            cta::options::Start::Center => self.narrow(Origin::Center),
+            cta::options::Start::Ellipsoids => self.start_at_ellipsoids(),
         }
     }
 
@@ -355,7 +356,7 @@ impl<O: Observer> Run<'_, '_, '_, O> {
     /// By the collision translation algorithm.
     fn narrow(&mut self, origin: Origin) -> Start {
         self.context.watch.ended(Phase::Setup);
-        let Narrowing { until, keeps_to_cell, cuts, starts_cold, .. } = self.narrowing;
+        let cta::options::Options { until, keeps_to_cell, cuts, starts_cold, .. } = self.narrowing;
         let gap = until.gap();
         let options = CtaOptions { start: origin, gap, keeps_to_cell, cuts, starts_cold };
         let narrowed =

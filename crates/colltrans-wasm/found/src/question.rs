@@ -1,6 +1,6 @@
 //! The questions, as the page writes them.
 
-use colltrans::{Cast, ConvexPolyhedron, NarrowFrom, Narrowing, Options, Solver, Until};
+use colltrans::{Cast, ConvexPolyhedron, Options, Solver, cta};
 use glam::DVec3;
 use serde::Deserialize;
 
@@ -37,9 +37,9 @@ pub(crate) struct Pair {
     solver: Solver,
     /// Of `cta`: from `start`, `center` or `ellipsoids`, `until` it ends, `exit` or a gap.
     #[serde(default)]
-    start: NarrowFrom,
+    start: cta::Start,
     #[serde(default)]
-    until: Until,
+    until: cta::Until,
 }
 
 /// A search to look at.
@@ -77,7 +77,7 @@ impl Pair {
         let fixed = fixed.at(pose(self.fixed_pose, "fixed")?);
         let options = Options::default()
             .with_solver(self.solver)
-            .with_narrowing(Narrowing::new(self.start, self.until))
+            .with_narrowing(cta::Options::new(self.start, self.until))
             .with_graze_tolerance(self.graze);
         let cast = Cast::new(moving, fixed, DVec3::from_array(self.direction));
         cast.and_then(|cast| cast.with_options(options)).map_err(|error| error.to_string())

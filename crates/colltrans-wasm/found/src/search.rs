@@ -2,7 +2,7 @@
 
 use colltrans::observe::{Event, Recording, Touch};
 use colltrans::{
-    Cast, ConvexPolyhedron, Focus, Outcome, Pose, QueryError, Region, Solver, Steps, Tracker,
+    Cast, ConvexPolyhedron, Focus, Outcome, Pose, QueryError, Solver, Steps, Tracker, cta,
 };
 use glam::{DVec2, DVec3};
 use serde::Serialize;
@@ -69,7 +69,7 @@ fn region(before: &Cast, cast: &Cast) -> Result<Option<Around>, QueryError> {
     let q = back(before.fixed_pose(), points.on_fixed);
     let apart = cast.fixed_pose().transform_point(q) - cast.moving_pose().transform_point(p);
     let half_side = apart.reject_from(cast.direction()).length();
-    let focus = Focus::NONE.with_region(Region::Fixed(half_side));
+    let focus = Focus::NONE.with_region(cta::Region::Fixed(half_side));
     let (mut seen, mut tracker) = (Recording::default(), Tracker::new().with_focus(focus)?);
     tracker.first_contact_observed(before, &mut seen)?;
     seen.clear();

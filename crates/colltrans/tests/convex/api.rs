@@ -3,8 +3,8 @@
 use colltrans::glam::{DMat3, DQuat, DVec3};
 use colltrans::{
     BuildError, Cast, Certificate, CertificateError, Clearance, ContactRange, ConvexPolyhedron,
-    HalfEdge, MAX_MAGNITUDE, MIN_MAGNITUDE, NarrowFrom, Narrowing, Options, Outcome, OverlapAhead,
-    Pose, PoseError, QueryError, Separation, TopologyError, Until, VertexId, WhyFree, cast,
+    HalfEdge, MAX_MAGNITUDE, MIN_MAGNITUDE, Options, Outcome, OverlapAhead, Pose, PoseError,
+    QueryError, Separation, TopologyError, VertexId, WhyFree, cast, cta,
 };
 use colltrans_testkit::oracle::exact::Vector;
 use colltrans_testkit::oracle::settings::{FAMILIES, Setting, setting};
@@ -146,7 +146,7 @@ fn directions_are_checked() {
     for tolerance in [-1.0, f64::NAN, f64::INFINITY] {
         let error = valid.with_graze_tolerance(tolerance).unwrap_err();
         assert!(matches!(error, QueryError::GrazeTolerance { .. }), "{error}");
-        let narrowing = Narrowing::new(NarrowFrom::Ellipsoids, Until::Gap(-1.0));
+        let narrowing = cta::Options::new(cta::Start::Ellipsoids, cta::Until::Gap(-1.0));
         let error = valid.with_options(Options::default().with_narrowing(narrowing)).unwrap_err();
         assert!(matches!(error, QueryError::NarrowingGap { .. }), "{error}");
     }

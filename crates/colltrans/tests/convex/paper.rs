@@ -3,8 +3,8 @@
 
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{
-    Cast, Contact, ConvexPolyhedron, Focus, NarrowFrom, Narrowing, Options, Outcome, Pose, Region,
-    Solver, StartedFrom, Tracker, Until,
+    Cast, Contact, ConvexPolyhedron, Focus, Options, Outcome, Pose, Solver, StartedFrom, Tracker,
+    cta,
 };
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{
@@ -47,7 +47,7 @@ fn contact(outcome: Outcome) -> Option<Contact> {
     }
 }
 
-fn with<'a>(cast: &Cast<'a>, narrowing: Narrowing) -> Cast<'a> {
+fn with<'a>(cast: &Cast<'a>, narrowing: cta::Options) -> Cast<'a> {
     let options = Options::default().with_solver(Solver::Cta).with_narrowing(narrowing);
     cast.with_options(options).expect("options")
 }
@@ -121,19 +121,19 @@ fn starts_ends_and_focus_can_be_chosen() {
     let (mut of_whole, mut of_part, mut of_rough) = (0, 0, 0);
     for _ in 0..SETTINGS {
         let cast = cast(&body, &mut random);
-        let part = Narrowing::new(NarrowFrom::Center, Until::Gap(0.1));
+        let part = cta::Options::new(cta::Start::Center, cta::Until::Gap(0.1));
         let problems = |narrowing| {
             let outcome = with(&cast, narrowing).first_contact().expect("an answer");
             contact(outcome).map_or(0, |contact| contact.steps.planar_problems)
         };
-        of_whole += problems(Narrowing::default());
+        of_whole += problems(cta::Options::default());
         of_part += problems(part);
-        of_rough += problems(Narrowing::ROUGH);
+        of_rough += problems(cta::Options::ROUGH);
     }
     assert!(of_rough < of_part && 3 * of_part < 2 * of_whole, "{of_rough} {of_part} {of_whole}");
     // Features first, if it is asked for.
     let cast = cast(&body, &mut random).with_solver(Solver::Cta);
-    let focus = Focus::default().with_region(Region::Everywhere);
+    let focus = Focus::default().with_region(cta::Region::Everywhere);
     let mut tracker = Tracker::new().with_focus(focus).expect("a focus");
     for from in [StartedFrom::Scratch, StartedFrom::Features] {
         let outcome = tracker.first_contact(&cast).expect("an answer");

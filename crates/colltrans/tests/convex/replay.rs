@@ -2,7 +2,7 @@
 #![cfg(feature = "json")]
 
 use colltrans::motion::{Motion, MotionCase, MotionCast, MotionProofFile};
-use colltrans::{Case, CaseError, Cuts, Narrowing, Options, Solver};
+use colltrans::{Case, CaseError, Options, Solver, cta};
 use colltrans_testkit::oracle::settings::{FAMILIES, NEARLY_FLAT, setting};
 
 #[test]
@@ -48,8 +48,8 @@ fn choices_come_back() {
     let setting = setting("boxes", 3);
     let bodies = setting.bodies().expect("bodies");
     for keeps_to_cell in [false, true] {
-        let cuts = if keeps_to_cell { Cuts::Shifted } else { Cuts::Centroid };
-        let narrowing = Narrowing::default()
+        let cuts = if keeps_to_cell { cta::Cuts::Shifted } else { cta::Cuts::Centroid };
+        let narrowing = cta::Options::default()
             .with_keeps_to_cell(keeps_to_cell)
             .with_cuts(cuts)
             .with_starts_cold(!keeps_to_cell);

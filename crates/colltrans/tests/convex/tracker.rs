@@ -3,7 +3,7 @@
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{
     Cast, Clearance, ContactRange, ConvexPolyhedron, Focus, Options, Outcome, OverlapAhead, Pair,
-    Pose, QueryError, Region, Solver, StartedFrom, Steps, Tracker,
+    Pose, QueryError, Solver, StartedFrom, Steps, Tracker, cta,
 };
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::check::same;
@@ -311,7 +311,7 @@ fn reset_forgets() {
 #[test]
 fn a_focus_is_checked() {
     for half_side in [-1.0, f64::NAN] {
-        let focus = Focus::NONE.with_features(true).with_region(Region::Fixed(half_side));
+        let focus = Focus::NONE.with_features(true).with_region(cta::Region::Fixed(half_side));
         let refused = Tracker::new().with_focus(focus);
         assert!(matches!(refused, Err(QueryError::RegionFocus { .. })), "{refused:?}");
     }

@@ -4,8 +4,8 @@
 use colltrans::record::{Ending, Question};
 use colltrans::solid::{SolidCast, SolidCertificate, SolidOptions, StartOverlap};
 use colltrans::{
-    Bounded, Cast, Clearance, ContactRange, FaceId, Feature, InputVertex, Intersection, NarrowFrom,
-    Options, Outcome, Pose, Solid, Solver, StartedFrom, Until, VertexId,
+    Bounded, Cast, Clearance, ContactRange, FaceId, Feature, InputVertex, Intersection, Options,
+    Outcome, Pose, Solid, Solver, StartedFrom, VertexId, cta,
 };
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::solids::{bolt, washer};
@@ -111,12 +111,12 @@ fn names_are_those_that_serde_writes() {
         StartedFrom::Region,
         StartedFrom::Scratch,
     ]);
-    named(&[NarrowFrom::Ellipsoids, NarrowFrom::Center]);
-    for (until, text) in [(Until::Exit, "exit"), (Until::Gap(0.25), "0.25")] {
+    named(&[cta::Start::Ellipsoids, cta::Start::Center]);
+    for (until, text) in [(cta::Until::Exit, "exit"), (cta::Until::Gap(0.25), "0.25")] {
         assert_eq!((until.to_string().as_str(), text.parse()), (text, Ok(until)));
     }
     for wrong in ["end", "-1", "NaN", ""] {
-        let error = wrong.parse::<Until>().expect_err(wrong).to_string();
+        let error = wrong.parse::<cta::Until>().expect_err(wrong).to_string();
         assert_eq!(error, format!("{wrong:?} is neither `exit` nor a number that is not negative"));
     }
     named(&[Question::Contact, Question::Clearance]);

@@ -7,9 +7,7 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use colltrans::{
-    Focus, NarrowFrom, Narrowing, Options, Outcome, QueryError, Region, Solver, Tracker, Until,
-};
+use colltrans::{Focus, Options, Outcome, QueryError, Solver, Tracker, cta};
 use colltrans_bench::arguments::Arguments;
 use colltrans_bench::parry::Scale;
 use colltrans_bench::report::{self, Measured, Times};
@@ -46,7 +44,7 @@ struct Compared {
     solver: Solver,
     /// If none, the tracker decides.
     focus: Option<Focus>,
-    narrowing: Narrowing,
+    narrowing: cta::Options,
 }
 
 const COMPARED: [Compared; 6] = [
@@ -58,21 +56,21 @@ const COMPARED: [Compared; 6] = [
         name: "rough",
         solver: Solver::Cta,
         focus: Some(Focus::NONE),
-        narrowing: Narrowing::ROUGH,
+        narrowing: cta::Options::ROUGH,
     },
     Compared {
         name: "rough tracker",
         solver: Solver::Cta,
         focus: Some(BOTH),
-        narrowing: Narrowing::ROUGH,
+        narrowing: cta::Options::ROUGH,
     },
 ];
 
-const REGION: Focus = Focus::NONE.with_region(Region::Automatic);
-const BOTH: Focus = Focus::NONE.with_features(true).with_region(Region::Automatic);
+const REGION: Focus = Focus::NONE.with_region(cta::Region::Automatic);
+const BOTH: Focus = Focus::NONE.with_features(true).with_region(cta::Region::Automatic);
 
 /// The paper's: from the centre of the levels until the exit test; of no effect on the others.
-const PAPER: Narrowing = Narrowing::new(NarrowFrom::Center, Until::Exit);
+const PAPER: cta::Options = cta::Options::new(cta::Start::Center, cta::Until::Exit);
 
 fn main() -> ExitCode {
     let Command { arguments } = Command::parse();

@@ -10,9 +10,7 @@
 use std::process::ExitCode;
 
 use clap::Parser;
-use colltrans::{
-    BuildError, Focus, NarrowFrom, Narrowing, Options, Region, Solver, Tracker, Until, observe,
-};
+use colltrans::{BuildError, Focus, Options, Solver, Tracker, cta, observe};
 use colltrans_bench::arguments::Arguments;
 use colltrans_bench::parry::Scale;
 use colltrans_bench::report::{self, Measured, Times};
@@ -45,16 +43,16 @@ const LENGTH: usize = 50;
 const CHANGES: [f64; 3] = [0.01, 0.0025, 0.000_625];
 
 /// How a solver narrows the search: `None` is portal refinement alone.
-const COMPARED: [(&str, Option<Narrowing>); 4] = [
+const COMPARED: [(&str, Option<cta::Options>); 4] = [
     ("portal", None),
-    ("rough", Some(Narrowing::ROUGH)),
-    ("centre 1%", Some(to(Until::Gap(0.01)))),
-    ("centre end", Some(to(Until::Exit))),
+    ("rough", Some(cta::Options::ROUGH)),
+    ("centre 1%", Some(to(cta::Until::Gap(0.01)))),
+    ("centre end", Some(to(cta::Until::Exit))),
 ];
 
 /// From the centre to here, across cells where little of the region is left.
-const fn to(until: Until) -> Narrowing {
-    Narrowing::new(NarrowFrom::Center, until).with_keeps_to_cell(false)
+const fn to(until: cta::Until) -> cta::Options {
+    cta::Options::new(cta::Start::Center, until).with_keeps_to_cell(false)
 }
 
 /// Bodies to measure on.
@@ -78,7 +76,7 @@ const KINDS: [Kind; 5] = [
 const STRETCH: f64 = 100.0;
 
 /// Only the region of the last solution is remembered.
-const REGION: Focus = Focus::NONE.with_region(Region::Automatic);
+const REGION: Focus = Focus::NONE.with_region(cta::Region::Automatic);
 
 impl Kind {
     fn name(self) -> String {
@@ -194,7 +192,7 @@ fn to_json(measured: &Measured, unit: f64) -> Value {
     json.into()
 }
 
-fn options(narrowing: Option<Narrowing>) -> Options {
+fn options(narrowing: Option<cta::Options>) -> Options {
     match narrowing {
         None => Options::default().with_solver(Solver::Portal),
         Some(narrowing) => Options::default().with_solver(Solver::Cta).with_narrowing(narrowing),
@@ -245,7 +243,7 @@ fn phases(blocks: &Blocks) -> Value {
 
 /// The same with region focus, in sequences.
 fn focused_phases(sequences: &Blocks) -> Value {
-    let options = options(Some(to(Until::Exit)));
+    let options = options(Some(to(cta::Until::Exit)));
     let mut spent = Spent::default();
     for (bodies, sequence) in sequences {
         let mut tracker = Tracker::new().with_focus(REGION).expect("a focus");
@@ -287,7 +285,11 @@ impl Spent {
 /// Region focus to a gap of 1 % and to the end, and the same without focus.
 fn tracked(sequences: &Blocks, scale: &Scale) -> (Vec<Measured>, Times) {
     let stopwatch = Stopwatch::new();
-    let compared = [(Until::Gap(0.01), REGION), (Until::Exit, REGION), (Until::Exit, Focus::NONE)];
+    let compared = [
+        (cta::Until::Gap(0.01), REGION),
+        (cta::Until::Exit, REGION),
+        (cta::Until::Exit, Focus::NONE),
+    ];
     let mut measured: Vec<Measured> = compared.iter().map(|_| Measured::default()).collect();
     let mut parry = Times::default();
     for (turn, (bodies, sequence)) in sequences.iter().enumerate() {

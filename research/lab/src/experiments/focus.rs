@@ -1,6 +1,6 @@
 //! Figures 13 and 14: what it saves to start from the solution of a similar configuration.
 
-use colltrans::Region;
+use colltrans::cta;
 
 use super::{Coherence, Race, Results, axis, in_passes, means, reference, series, thousands};
 use crate::Experiment;
@@ -29,8 +29,8 @@ pub(super) const FIGURE_14: Experiment = Experiment {
 const WHO: [Who; 5] = [
     Who::Cta(Until::End),
     Who::Cta(Until::Near),
-    Who::CtaRegion(Region::Automatic, Until::End),
-    Who::CtaRegion(Region::Automatic, Until::Near),
+    Who::CtaRegion(cta::Region::Automatic, Until::End),
+    Who::CtaRegion(cta::Region::Automatic, Until::Near),
     Who::Tracker,
 ];
 const SCRATCH: [usize; 2] = [0, 1];

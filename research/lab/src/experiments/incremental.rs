@@ -1,6 +1,6 @@
 //! Figure 18: from query to query, beside enhanced GJK.
 
-use colltrans::Region;
+use colltrans::cta;
 use colltrans::observe::Clock;
 use colltrans_baselines::egjk::SupportSearch;
 
@@ -26,11 +26,11 @@ pub(super) const FIGURE_18: Experiment = Experiment {
 };
 
 const WHO: [Who; 5] = [
-    Who::CtaRegion(Region::Automatic, Until::End),
+    Who::CtaRegion(cta::Region::Automatic, Until::End),
     Who::Egjk(SupportSearch::Climbing),
-    Who::CtaRegion(Region::Automatic, Until::Near),
+    Who::CtaRegion(cta::Region::Automatic, Until::Near),
     Who::Tracker,
-    Who::CtaCold(Region::Automatic),
+    Who::CtaCold(cta::Region::Automatic),
 ];
 const REGION: usize = 0;
 const EGJK: usize = 1;
@@ -187,7 +187,7 @@ fn floor(plan: &Plan) -> Table {
 fn profile(plan: &Plan, n: usize) -> Vec<(&'static str, f64)> {
     let bodies = bodies(plan.seed, Kind::Balanced, n, 0);
     let mut random = Random::stream(plan.seed, &[18, n as u64]);
-    let mut tracked = Tracked::in_region(&bodies, Region::Automatic, Until::End.options());
+    let mut tracked = Tracked::in_region(&bodies, cta::Region::Automatic, Until::End.options());
     let mut phases: Vec<(&'static str, Vec<f64>)> = Vec::new();
     for _ in 0..plan.by_scale(2, 20, 50) {
         let sequence = Setting::sequence(&bodies, Meeting::Colliding, 1e-4, 50, &mut random);

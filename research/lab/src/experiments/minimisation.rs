@@ -3,11 +3,11 @@
 //!
 //! The method before the paper's, its reference [3], cut through the centroid of what was left and searched the
 //! rectangles of a grid in place of the cells of the mark. Here only the cuts are its own
-//! ([`colltrans::Cuts::Centroid`]): a search ends, as the paper's does, where the best point of a cell solves the
+//! ([`colltrans::cta::Cuts::Centroid`]): a search ends, as the paper's does, where the best point of a cell solves the
 //! problem.
 
 use colltrans::observe::{Cut, Observer, PlanarProblem, Sections, Touch};
-use colltrans::{Outcome, Region};
+use colltrans::{Outcome, cta};
 use glam::DVec2;
 
 use super::{Gathered, against_size, axis, in_passes, listed, series, thousands};
@@ -134,7 +134,7 @@ fn look(plan: &Plan, n: usize, pass: u32) -> Seen {
         let setting = Setting::draw(&bodies, Meeting::Colliding, &mut random);
         look_at_one(&bodies, &setting, group, &mut seen);
     }
-    let mut tracked = Tracked::in_region(&bodies, Region::Automatic, Until::End.options());
+    let mut tracked = Tracked::in_region(&bodies, cta::Region::Automatic, Until::End.options());
     for (change, found) in CHANGES.iter().zip(&mut seen.inside) {
         for number in 0..count / 2 {
             let pair = Setting::sequence(&bodies, Meeting::Colliding, *change, 2, &mut random);

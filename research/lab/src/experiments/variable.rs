@@ -6,7 +6,7 @@
 //! features are picked, from the finest to the coarsest. Costs are iterations of all loops. CTA is judged with
 //! planar problems that begin *cold*, from nothing, as the paper's did (V-F); *warm* ones are a curve beside.
 
-use colltrans::Region;
+use colltrans::cta;
 
 use super::{Coherence, Race, Results, axis, in_passes, means, series, thousands, time};
 use crate::Experiment;
@@ -90,7 +90,7 @@ fn run(plan: &Plan, progress: &mut dyn Progress) -> Finding {
 }
 
 fn orbits(plan: &Plan, n: usize, alpha: f64, pass: u32) -> Results {
-    let region = |half: f64| Region::Fixed(half);
+    let region = |half: f64| cta::Region::Fixed(half);
     let mut who: Vec<_> = HALF_SIDES.map(|h| Who::CtaCold(region(h))).to_vec();
     who.extend(HALF_SIDES.map(|h| Who::CtaRegion(region(h), Until::End)));
     who.extend(LAYERS.map(Who::HWalk));

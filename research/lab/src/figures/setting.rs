@@ -1,9 +1,7 @@
 //! The two cubes of the pictures, and what the algorithm does with them, as it tells an observer.
 
 use colltrans::observe::{Cut, Event, PlanarProblem, Recording, Sections};
-use colltrans::{
-    Cast, ConvexPolyhedron, Focus, Outcome, Pose, QueryError, Region, Solver, Tracker,
-};
+use colltrans::{Cast, ConvexPolyhedron, Focus, Outcome, Pose, QueryError, Solver, Tracker, cta};
 use glam::{DQuat, DVec2, DVec3};
 
 /// A cube of side 2 at its own origin.
@@ -65,7 +63,7 @@ impl Setting {
 
     /// After another setting, in the neighbourhood of its solution with this half side.
     pub(super) fn run_after(&self, before: &Self, half: f64) -> Result<Run, Error> {
-        let focus = Focus::NONE.with_region(Region::Fixed(half));
+        let focus = Focus::NONE.with_region(cta::Region::Fixed(half));
         let (mut tracker, mut seen) = (Tracker::new().with_focus(focus)?, Recording::default());
         tracker.first_contact(&before.cast()?)?;
         let outcome = tracker.first_contact_observed(&self.cast()?, &mut seen)?;

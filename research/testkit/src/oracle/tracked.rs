@@ -5,7 +5,7 @@
 //! that holds by itself.
 
 use colltrans::{
-    Contact, Focus, Grazing, Outcome, QueryError, Region, Solver, StartedFrom, Steps, Tracker,
+    Contact, Focus, Grazing, Outcome, QueryError, Solver, StartedFrom, Steps, Tracker, cta,
 };
 
 use crate::oracle::check::{Judge, Objection, Proof, same};
@@ -30,13 +30,13 @@ pub fn lanes(reach: f64) -> [Lane; 7] {
         Lane { name, solvers, focus }
     };
     [
-        lane("auto", auto, true, Region::Automatic),
-        lane("auto, features", auto, true, Region::Everywhere),
-        lane("cta", cta, true, Region::Automatic),
-        lane("cta, features", cta, true, Region::Everywhere),
-        lane("cta, region", cta, false, Region::Automatic),
-        lane("cta, fixed region", cta, false, Region::Fixed(0.05 * reach)),
-        lane("in turn", &[Solver::Cta, Solver::Auto, Solver::Portal], true, Region::Automatic),
+        lane("auto", auto, true, cta::Region::Automatic),
+        lane("auto, features", auto, true, cta::Region::Everywhere),
+        lane("cta", cta, true, cta::Region::Automatic),
+        lane("cta, features", cta, true, cta::Region::Everywhere),
+        lane("cta, region", cta, false, cta::Region::Automatic),
+        lane("cta, fixed region", cta, false, cta::Region::Fixed(0.05 * reach)),
+        lane("in turn", &[Solver::Cta, Solver::Auto, Solver::Portal], true, cta::Region::Automatic),
     ]
 }
 

@@ -12,6 +12,7 @@ use super::bound::{LowerBound, Progress};
 use super::cell::{Best, Cell};
 use super::crossing::Crossing;
 use super::exit::{Beyond, Corners, Exit, ExitTest, SAME_HEIGHT, Solved};
+use super::options::Cuts;
 use super::pair::SectionPair;
 use super::piece::{Affine, Piece};
 use super::planar::{self, Hint, Planar};
@@ -19,7 +20,6 @@ use super::region::{Region, Square};
 use super::start::Origin;
 use crate::setting::Setting;
 use crate::solve::observe::{Cut, Observer, Phase, PlanarProblem, Touch, Watch};
-use crate::solve::options::Cuts;
 
 /// Levels to search that are together at most so many times as wide as near ones are apart are
 /// crossed from cell to cell: at most so many cells before the next planar problem (both measured).

@@ -21,6 +21,7 @@ mod cell;
 mod crossing;
 mod exit;
 mod minimise;
+pub(crate) mod options;
 mod pair;
 mod piece;
 mod planar;

@@ -5,6 +5,7 @@ use glam::{DQuat, DVec2, DVec3};
 use super::cell::face_of;
 use super::crossing::{Chain, Crossing};
 use super::minimise::{Narrowed, minimise};
+use super::options::Cuts;
 use super::pair::SectionPair;
 use super::planar::{self, Hint, Last, Planar};
 use super::section::Section;
@@ -17,7 +18,6 @@ use crate::body::convex::tests::bodies::{Random, cone, cuboid, ellipsoid, prism,
 use crate::setting::Setting;
 use crate::setting::minkowski::MinkowskiDifference;
 use crate::solve::observe::{NoObserver, Observer, Watch};
-use crate::solve::options::Cuts;
 use crate::solve::portal;
 
 /// Exit tests, and how many of them ended a search.

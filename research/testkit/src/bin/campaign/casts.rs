@@ -1,16 +1,16 @@
 //! Single settings: bodies held against their input points, cast with every solver, each answer checked
 //! exactly, a sample solved again.
 
-use colltrans::{Narrowing, Options, Outcome, QueryError, Solver};
+use colltrans::{Options, Outcome, QueryError, Solver, cta};
 use colltrans_testkit::oracle::check::Proof;
 use colltrans_testkit::oracle::settings::{Bodies, Setting, setting};
 
 use crate::print;
 
 /// Who answers: every solver, and the collision translation algorithm as a first guess alone.
-const WHO: [(&str, Solver, Option<Narrowing>); 4] = [
+const WHO: [(&str, Solver, Option<cta::Options>); 4] = [
     ("Cta", Solver::Cta, None),
-    ("Cta, rough", Solver::Cta, Some(Narrowing::ROUGH)),
+    ("Cta, rough", Solver::Cta, Some(cta::Options::ROUGH)),
     ("Portal", Solver::Portal, None),
     ("Auto", Solver::Auto, None),
 ];
@@ -19,7 +19,7 @@ fn ask(
     setting: &Setting,
     bodies: &Bodies,
     solver: Solver,
-    narrowing: Option<Narrowing>,
+    narrowing: Option<cta::Options>,
 ) -> Result<Outcome, QueryError> {
     let options = Options::default()
         .with_solver(solver)

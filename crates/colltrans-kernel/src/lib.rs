@@ -3,8 +3,8 @@
 //!
 //! In the order of use: [`range`] (the numbers that are accepted), [`error_free`], [`double`] and [`integer`] (exact
 //! arithmetic), [`predicates`] and [`orientation`] (signs), [`noise`] (bounds of rounding errors), [`fine`] (numbers of
-//! twice the precision with bounds), [`bounded`], [`pose`] and [`motion`], [`aabb`] and [`split`] (boxes and how trees of
-//! them are built), [`topology`] (half-edges without coordinates), [`kept`] (what is made once with a body), [`id`],
+//! twice the precision with bounds), [`bounded`], [`pose`] and [`motion`], [`aabb`], [`split`] and [`descent`] (boxes, how
+//! trees of them are built, and searches down two of them), [`topology`] (half-edges without coordinates), [`kept`] (what is made once with a body), [`id`],
 //! [`written`].
 
 #![allow(
@@ -17,6 +17,8 @@ pub mod aabb;
 pub mod angle;
 #[doc(hidden)]
 pub mod bounded;
+#[doc(hidden)]
+pub mod descent;
 #[doc(hidden)]
 pub mod determinant;
 mod double;

@@ -20,6 +20,7 @@ use super::mechanism::Place;
 use super::shape::Shape;
 use colltrans_convex::body::ConvexPolyhedron;
 use colltrans_convex::setting::TwoBodies;
+use colltrans_kernel::descent::{node_to_split, replaced};
 use colltrans_solid::body::Solid;
 
 /// Steps of boxes are not smaller than such a share of their size.
@@ -106,11 +107,12 @@ impl<'p> Search<'p> {
                 seen = Seen::Open;
                 continue;
             };
-            stack.extend(self.shapes[which].parts(numbers[which]).into_iter().map(|part| {
-                let mut below = numbers;
-                below[which] = part;
-                below
-            }));
+            stack.extend(
+                self.shapes[which]
+                    .parts(numbers[which])
+                    .into_iter()
+                    .map(|part| replaced(numbers, which, part)),
+            );
         }
         match flush.and_then(|flush| flush.holding()) {
             Some(how) if matches!(seen, Seen::Open) => Seen::Met(how),
@@ -175,10 +177,8 @@ impl<'p> Search<'p> {
             let next = self.apart_again(&pieces, size, here, until);
             let parts = self.shapes[which].parts(numbers[which]);
             let covers = parts.into_iter().map(|part| {
-                let mut below = numbers;
-                below[which] = part;
                 let next = self.until(next);
-                self.cover(below, here, next)
+                self.cover(replaced(numbers, which, part), here, next)
             });
             let covers = covers.collect();
             steps.push(Step::Parts { which, until: next, covers });
@@ -279,16 +279,8 @@ impl<'p> Flush<'p> {
 
 /// The larger piece of two, of those that hold others.
 fn which_to_part(shapes: [&Shape; 2], pieces: [usize; 2]) -> Option<usize> {
-    let holds = |which: usize| !shapes[which].parts(pieces[which]).is_empty();
-    match [holds(0), holds(1)] {
-        [false, false] => None,
-        [true, false] => Some(0),
-        [false, true] => Some(1),
-        [true, true] => {
-            let size = |which: usize| extent(shapes[which].piece(pieces[which]));
-            Some(usize::from(size(1) > size(0)))
-        }
-    }
+    let are_own = [0, 1].map(|k| shapes[k].parts(pieces[k]).is_empty());
+    node_to_split(are_own, |k| extent(shapes[k].piece(pieces[k])))
 }
 
 fn extent(piece: &ConvexPolyhedron) -> f64 {

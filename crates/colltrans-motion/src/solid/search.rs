@@ -13,6 +13,7 @@ use super::facets::{FacetLooker, Later, later};
 use super::proof::{Entry, FacetsMet, Written, middle};
 use super::tree::{Below, Node, Tree};
 use super::window::{Frame, Part, Plane, Snap, Window};
+use colltrans_kernel::descent::{node_to_split, replaced};
 
 /// Longer arcs are halved at once.
 const TURN: f64 = 0.7;
@@ -231,15 +232,10 @@ impl<'s, 'a> Search<'s, 'a> {
 
 /// Which of two nodes is split, the larger one that is no facet, and the pairs that come of it.
 pub(super) fn split(at: [u32; 2], nodes: [&Node; 2]) -> Option<(u8, [[u32; 2]; 2])> {
-    let moving = nodes[0].half.length() >= nodes[1].half.length();
-    let (which, first) = match nodes.map(|node| node.below) {
-        [Below::Nodes(first), Below::Facet(_)] => (0, first),
-        [Below::Nodes(first), Below::Nodes(_)] if moving => (0, first),
-        [_, Below::Nodes(first)] => (1, first),
-        [_, Below::Facet(_)] => return None,
-    };
-    let part = |k: u32| if which == 0 { [k, at[1]] } else { [at[0], k] };
-    Some((which, [part(first), part(first + 1)]))
+    let are_facets = nodes.map(|node| matches!(node.below, Below::Facet(_)));
+    let which = node_to_split(are_facets, |k| nodes[k].half.length())?;
+    let Below::Nodes(first) = nodes[which].below else { return None };
+    Some((which as u8, [first, first + 1].map(|part| replaced(at, which, part))))
 }
 
 /// The plane that parts two parts throughout an interval, of which it is told whether they are facets: that which

@@ -4,6 +4,7 @@
 use glam::DVec3;
 
 use super::line::PlaneVertex;
+use colltrans_kernel::descent::{node_to_split, replaced};
 use colltrans_kernel::integer::{Integer, difference};
 use colltrans_solid::body::tree::{self, ANY, Node};
 use colltrans_solid::solve::projected::Projected;
@@ -60,6 +61,18 @@ impl<'a> Bodies<'a> {
         let views = [0, 1].map(|k| views(&scene, sides[k], &corners[k]));
         let permutes = sides.map(|side| side.permutes);
         Self { scene, corners, views, permutes }
+    }
+
+    /// The two views of a pair.
+    pub(crate) fn views_of(&self, pair: [u32; 2]) -> [&View; 2] {
+        [0, 1].map(|k| &self.views[k][pair[k] as usize])
+    }
+
+    /// The pairs that a pair is made of, by the parts of the larger view that has some; none of two facets.
+    pub(crate) fn parts(&self, pair: [u32; 2]) -> Option<impl Iterator<Item = [u32; 2]> + use<>> {
+        let views = self.views_of(pair);
+        let which = node_to_split(views.map(View::is_facet), |k| views[k].size())?;
+        Some(views[which].parts().map(move |part| replaced(pair, which, part)))
     }
 
     pub(crate) fn corner(&self, spot: PlaneVertex) -> &Corner {

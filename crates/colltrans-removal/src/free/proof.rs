@@ -8,7 +8,7 @@
 
 use glam::DVec3;
 
-use super::bodies::{Bodies, View};
+use super::bodies::Bodies;
 use super::cell::{Cell, DEEPEST};
 use super::cone::Cone;
 use super::inner::{InnerBox, cover};
@@ -170,11 +170,11 @@ pub(super) fn blocking_pair(bodies: &Bodies, cell: &Cell, d: DVec3) -> Option<[u
     let window = Window::new(cell.side, around(i), around(j));
     let mut stack = vec![[0, 0]];
     while let Some(pair) = stack.pop() {
-        let [p, q] = views(bodies, pair);
+        let [p, q] = bodies.views_of(pair);
         if window.is_missed(bodies, p, q) {
             continue;
         }
-        if let Some(parts) = parts(bodies, pair) {
+        if let Some(parts) = bodies.parts(pair) {
             stack.extend(parts);
             continue;
         }
@@ -186,30 +186,16 @@ pub(super) fn blocking_pair(bodies: &Bodies, cell: &Cell, d: DVec3) -> Option<[u
     None
 }
 
-/// The two views of a pair.
-fn views<'b>(bodies: &'b Bodies, [a, b]: [u32; 2]) -> [&'b View; 2] {
-    [&bodies.views[0][a as usize], &bodies.views[1][b as usize]]
-}
-
-/// The pairs that a pair is made of, by the parts of the larger view that has some; none of two facets.
-fn parts(bodies: &Bodies, pair: [u32; 2]) -> Option<Vec<[u32; 2]>> {
-    let [p, q] = views(bodies, pair);
-    if !p.is_facet() && (q.is_facet() || p.size() >= q.size()) {
-        return Some(p.parts().map(|part| [part, pair[1]]).collect());
-    }
-    (!q.is_facet()).then(|| q.parts().map(|part| [pair[0], part]).collect())
-}
-
 /// Whether no pair of facets meets any piece of what is left of a cell: each pair is looked at once, for all of them.
 fn is_free(bodies: &Bodies, rest: &Rest) -> bool {
     let alone = |piece: &Piece| (rest.window(piece), rest.only(piece));
     let mut pieces: Vec<(Window, Rest)> = rest.pieces.iter().map(alone).collect();
     let mut stack = vec![[0, 0]];
     while let Some(pair) = stack.pop() {
-        let [p, q] = views(bodies, pair);
+        let [p, q] = bodies.views_of(pair);
         let mut met = pieces.iter_mut().filter(|(window, _)| !window.is_missed(bodies, p, q));
         let Some((_, first)) = met.next() else { continue };
-        if let Some(parts) = parts(bodies, pair) {
+        if let Some(parts) = bodies.parts(pair) {
             stack.extend(parts);
             continue;
         }

@@ -25,8 +25,8 @@ use super::inner::{InnerBox, cover};
 use super::proof::Fate;
 use super::rest::{Rest, TooMuch};
 use super::window::Window;
+use colltrans_kernel::descent::Entry;
 use colltrans_solid::cast::StartOverlap;
-use colltrans_solid::solve::search::Entry;
 
 /// Pairs of nodes that a cell hands on, at most.
 const LIST: usize = 192;
@@ -306,14 +306,11 @@ impl<'s, 'a> Search<'s, 'a> {
 
     /// The parts of a pair, of the larger view that has some; none of two facets.
     fn parts(&self, pair: Pair) -> impl Iterator<Item = Pair> + use<> {
-        let [a, b] = self.views(pair);
-        let moving = !a.is_facet() && (b.is_facet() || a.size() >= b.size());
-        let parts = if moving { a.parts() } else { b.parts() };
-        parts.map(move |part| if moving { [part, pair[1]] } else { [pair[0], part] })
+        self.bodies.parts(pair).into_iter().flatten()
     }
 
-    fn views(&self, [a, b]: Pair) -> [&View; 2] {
-        [&self.bodies.views[0][a as usize], &self.bodies.views[1][b as usize]]
+    fn views(&self, pair: Pair) -> [&View; 2] {
+        self.bodies.views_of(pair)
     }
 
     fn is_leaf(&self, pair: Pair) -> bool {

@@ -17,6 +17,7 @@ use glam::{BVec3, DVec3, Vec3Swizzles};
 
 use super::cuts::{CUTS, Reach};
 use colltrans_convex::body::Aabb;
+use colltrans_kernel::descent::{node_to_split, replaced};
 use colltrans_kernel::split::{Boxed, Rule, split};
 
 /// Facets of a leaf, at most.
@@ -75,17 +76,18 @@ impl Node {
         self.bounds.size().length_squared()
     }
 
-    /// Whether of this node of a moving body and one of a fixed body this one is to be split: the larger one, unless it
-    /// is a leaf.
-    #[inline]
-    pub(crate) fn splits_before(&self, fixed: &Self) -> bool {
-        !self.is_leaf() && (fixed.is_leaf() || self.size() >= fixed.size())
-    }
-
     #[inline]
     pub fn facets(&self) -> std::ops::Range<usize> {
         self.first as usize..(self.first + self.count) as usize
     }
+}
+
+/// Returns the pairs that two nodes, each of a tree of its own, are split into; `None` of two leaves.
+#[inline]
+pub(crate) fn split_pair(trees: [&[Node]; 2], pair: [u32; 2]) -> Option<[[u32; 2]; 2]> {
+    let nodes = [0, 1].map(|k| &trees[k][pair[k] as usize]);
+    let which = node_to_split(nodes.map(Node::is_leaf), |k| nodes[k].size())?;
+    Some(nodes[which].children(pair[which]).map(|child| replaced(pair, which, child)))
 }
 
 /// What the builder needs of one facet.

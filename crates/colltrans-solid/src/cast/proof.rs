@@ -13,6 +13,7 @@ use std::collections::HashMap;
 
 use super::{SolidOptions, StartOverlap};
 use crate::body::Solid;
+use crate::body::tree::split_pair;
 use crate::solve::bound::{Profile, Reason, holds};
 use crate::solve::leaf::{self, Facet, Gap, Meeting};
 use crate::solve::overlap::Overlap;
@@ -141,21 +142,15 @@ impl<R: Copy> Cover<R> {
         bodies: [&Solid; 2],
         mut check: impl FnMut(usize, [u32; 2], R) -> bool,
     ) -> Result<(), usize> {
-        let mut stack = vec![[0, 0]];
+        let (trees, mut stack) = (bodies.map(Solid::nodes), vec![[0, 0]]);
         for (number, entry) in self.0.iter().enumerate() {
             let Some(nodes) = stack.pop() else { return Err(number) };
-            let [a, b] = [0, 1].map(|k| &bodies[k].nodes()[nodes[k] as usize]);
             match entry {
                 Some(reason) if check(number, nodes, *reason) => {}
                 Some(_) => return Err(number),
-                None if a.is_leaf() && b.is_leaf() => return Err(number),
-                None if a.splits_before(b) => {
-                    let [first, second] = a.children(nodes[0]);
-                    stack.extend([[second, nodes[1]], [first, nodes[1]]]);
-                }
                 None => {
-                    let [first, second] = b.children(nodes[1]);
-                    stack.extend([[nodes[0], second], [nodes[0], first]]);
+                    let [first, second] = split_pair(trees, nodes).ok_or(number)?;
+                    stack.extend([second, first]);
                 }
             }
         }
@@ -176,20 +171,14 @@ impl<R: Copy> Cover<R> {
     /// In preorder, from the pairs of nodes that were not split.
     pub(crate) fn new(bodies: [&Solid; 2], cuts: &HashMap<[u32; 2], R>) -> Self {
         let mut entries = Vec::new();
-        let mut stack = vec![[0_u32, 0]];
+        let (trees, mut stack) = (bodies.map(Solid::nodes), vec![[0_u32, 0]]);
         while let Some(nodes) = stack.pop() {
             let cut = cuts.get(&nodes).copied();
             entries.push(cut);
-            if cut.is_some() {
-                continue;
-            }
-            let [a, b] = [0, 1].map(|k| &bodies[k].nodes()[nodes[k] as usize]);
-            if a.splits_before(b) {
-                let [first, second] = a.children(nodes[0]);
-                stack.extend([[second, nodes[1]], [first, nodes[1]]]);
-            } else {
-                let [first, second] = b.children(nodes[1]);
-                stack.extend([[nodes[0], second], [nodes[0], first]]);
+            if cut.is_none()
+                && let Some([first, second]) = split_pair(trees, nodes)
+            {
+                stack.extend([second, first]);
             }
         }
         Self(entries)

@@ -40,6 +40,7 @@ use super::triangle::Triangle;
 use crate::body::tree::{LEAF, Node};
 use crate::body::wedge::{Axis, Ray, Wedge};
 use crate::solve::steps::SolidSteps;
+use colltrans_kernel::descent::{node_to_split, replaced};
 
 /// Where the solids overlap: positions in [`Solid::triangles`](crate::Solid::triangles);
 /// [`Solid::facet_indices`](crate::Solid::facet_indices) leads to the facets of the input.
@@ -223,34 +224,23 @@ fn descend(
     cut: &mut impl FnMut(Option<Reason>),
 ) -> Option<(u32, u32)> {
     let (m, n) = (&scene.moving.solid.nodes()[nodes[0]], &scene.fixed.solid.nodes()[nodes[1]]);
-    if m.is_leaf() && n.is_leaf() {
+    let are_leaves = [m.is_leaf(), n.is_leaf()];
+    let Some(which) = node_to_split(are_leaves, |k| [m, n][k].size()) else {
         cut(Some(Reason::Examined));
         return leaves(scene, m, n, judge);
-    }
+    };
     cut(None);
-    if m.splits_before(n) {
-        for part in m.children(nodes[0] as u32).map(|c| c as usize) {
-            let projected = Projected::new(scene, &scene.moving, part);
-            if let Some(reason) = judge.dismisses(scene, &projected, b) {
-                cut(Some(reason));
-                continue;
-            }
-            let found = descend(scene, [part, nodes[1]], &projected, b, judge, cut);
-            if found.is_some() {
-                return found;
-            }
+    for part in [m, n][which].children(nodes[which] as u32) {
+        let part = part as usize;
+        let projected = Projected::new(scene, scene.side(which == 0), part);
+        let [p, q] = replaced([a, b], which, &projected);
+        if let Some(reason) = judge.dismisses(scene, p, q) {
+            cut(Some(reason));
+            continue;
         }
-    } else {
-        for part in n.children(nodes[1] as u32).map(|c| c as usize) {
-            let projected = Projected::new(scene, &scene.fixed, part);
-            if let Some(reason) = judge.dismisses(scene, a, &projected) {
-                cut(Some(reason));
-                continue;
-            }
-            let found = descend(scene, [nodes[0], part], a, &projected, judge, cut);
-            if found.is_some() {
-                return found;
-            }
+        let found = descend(scene, replaced(nodes, which, part), p, q, judge, cut);
+        if found.is_some() {
+            return found;
         }
     }
     None

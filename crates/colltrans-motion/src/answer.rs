@@ -14,19 +14,19 @@ use colltrans_convex::body::{Features, Pose};
     serde(rename_all = "snake_case")
 )]
 #[non_exhaustive]
-pub enum MotionOutcome<P = MotionProof> {
+pub enum MotionOutcome<P = MotionProof, C = MotionContact<P>> {
     /// They do, at a time between two bounds.
-    Contact(MotionContact<P>),
+    Contact(C),
     /// They come nearer to each other than rounding can tell. Proven is that they do not meet before; not
     /// that they meet, and nothing of later times.
-    Grazing(MotionContact<P>),
+    Grazing(C),
     /// They do not: proven of the whole motion.
     Free(MotionFree<P>),
     /// They overlap at time 0.
-    Overlapping(MotionContact<P>),
+    Overlapping(C),
     /// The search took its maximum number of steps. Proven is that they do not meet before [`MotionContact::lower`];
     /// whether they do later is open.
-    Undecided(MotionContact<P>),
+    Undecided(C),
 }
 
 /// A first contact, or what may be one.
@@ -180,24 +180,36 @@ impl MotionProof {
     }
 }
 
-impl<P> MotionOutcome<P> {
-    /// What proves it.
-    pub const fn proof(&self) -> &P {
+/// A contact with its proof.
+pub trait Proven<P> {
+    /// Returns the proof, and how much work it was.
+    #[doc(hidden)]
+    fn proven(&self) -> (&P, MotionSteps);
+}
+
+impl<P> Proven<P> for MotionContact<P> {
+    fn proven(&self) -> (&P, MotionSteps) {
+        (&self.proof, self.steps)
+    }
+}
+
+impl<P, C: Proven<P>> MotionOutcome<P, C> {
+    fn proven(&self) -> (&P, MotionSteps) {
         match self {
             Self::Contact(of) | Self::Grazing(of) | Self::Overlapping(of) | Self::Undecided(of) => {
-                &of.proof
+                of.proven()
             }
-            Self::Free(of) => &of.proof,
+            Self::Free(of) => (&of.proof, of.steps),
         }
     }
 
+    /// What proves it.
+    pub fn proof(&self) -> &P {
+        self.proven().0
+    }
+
     /// How much work it was.
-    pub const fn steps(&self) -> MotionSteps {
-        match self {
-            Self::Contact(of) | Self::Grazing(of) | Self::Overlapping(of) | Self::Undecided(of) => {
-                of.steps
-            }
-            Self::Free(of) => of.steps,
-        }
+    pub fn steps(&self) -> MotionSteps {
+        self.proven().1
     }
 }

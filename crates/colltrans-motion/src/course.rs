@@ -15,6 +15,9 @@ use colltrans_kernel::motion::Moved;
 /// Axes whose cross product is shorter are parallel.
 const PARALLEL: f64 = 1e-9;
 
+/// Both bodies of a course at a time.
+pub(super) type At<'a, C> = Instant<'a, <C as Course<'a>>::Moved, <C as Course<'a>>::Body>;
+
 /// Two bodies during a span of time.
 pub(super) trait Course<'a> {
     /// What the bodies are.
@@ -32,20 +35,15 @@ pub(super) trait Course<'a> {
     fn keep(&self) -> f64;
 
     /// Where the bodies are.
-    fn instant(&self, time: f64) -> Instant<'a, Self::Moved, Self::Body>;
+    fn instant(&self, time: f64) -> At<'a, Self>;
 
     /// The velocity of a point of the moving body (0) or the fixed one (1), in its body's frame.
-    fn velocity(
-        &self,
-        at: &Instant<'a, Self::Moved, Self::Body>,
-        which: usize,
-        point: DVec3,
-    ) -> DVec3;
+    fn velocity(&self, at: &At<'a, Self>, which: usize, point: DVec3) -> DVec3;
 
     /// `C` between two planes, at least, as far as one cares: a loose one if that is at most `enough`.
     fn bend(
         &self,
-        ends: [&Instant<'a, Self::Moved, Self::Body>; 2],
+        ends: [&At<'a, Self>; 2],
         normals: [DVec3; 2],
         enough: f64,
         supports: &impl Supports<Self::Body>,
@@ -58,22 +56,18 @@ pub(super) trait Course<'a> {
     fn arcs(&self) -> usize;
 
     /// How much of the gap that a plane leaves at the first of two times is lost until the second, at most.
-    fn lost(&self, ends: [&Instant<'a, Self::Moved, Self::Body>; 2], normal: DVec3) -> f64;
+    fn lost(&self, ends: [&At<'a, Self>; 2], normal: DVec3) -> f64;
 
     /// A normal across the axis of a body that turns, to a point of the other one: of a plane beside all that its turn
     /// sweeps, if that leaves one.
-    fn aside(
-        &self,
-        at: &Instant<'a, Self::Moved, Self::Body>,
-        points: [DVec3; 2],
-    ) -> Option<DVec3> {
+    fn aside(&self, at: &At<'a, Self>, points: [DVec3; 2]) -> Option<DVec3> {
         let _ = (at, points);
         None
     }
 
     /// The normal of a plane across the shortest way from the moving body's axis to the fixed one's, if both turn: of two
     /// round bodies it parts all that their turns sweep.
-    fn between_axes(&self, at: &Instant<'a, Self::Moved, Self::Body>) -> Option<DVec3> {
+    fn between_axes(&self, at: &At<'a, Self>) -> Option<DVec3> {
         let _ = at;
         None
     }
@@ -84,23 +78,18 @@ pub(super) trait Course<'a> {
     }
 
     /// The same, if the plane is carried along by the moving body: little, where both spin as one.
-    fn carried(
-        &self,
-        from: &Instant<'a, Self::Moved, Self::Body>,
-        until: f64,
-        normal: DVec3,
-    ) -> f64 {
+    fn carried(&self, from: &At<'a, Self>, until: f64, normal: DVec3) -> f64 {
         let _ = (from, until, normal);
         f64::INFINITY
     }
 
     /// What a plane proves at a time of the gap beyond what is to be kept, over all corners.
-    fn proven_gap(&self, at: &Instant<'a, Self::Moved, Self::Body>, normal: DVec3) -> f64 {
+    fn proven_gap(&self, at: &At<'a, Self>, normal: DVec3) -> f64 {
         at.bodies.proven_gap(normal) - self.keep() - self.error()
     }
 
     /// What a search claims of that gap: the one between the points that the bodies were made from.
-    fn claimed_gap(&self, at: &Instant<'a, Self::Moved, Self::Body>, normal: DVec3) -> f64 {
+    fn claimed_gap(&self, at: &At<'a, Self>, normal: DVec3) -> f64 {
         at.bodies.input_gap(normal) - self.keep() - self.error()
     }
 
@@ -108,7 +97,7 @@ pub(super) trait Course<'a> {
     fn joins(
         &self,
         planes: [&PlaneAt; 2],
-        ends: [&Instant<'a, Self::Moved, Self::Body>; 2],
+        ends: [&At<'a, Self>; 2],
         supports: &impl Supports<Self::Body>,
     ) -> bool {
         if ends[0].time == ends[1].time {

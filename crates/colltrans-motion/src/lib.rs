@@ -73,6 +73,7 @@ use derive_where::derive_where;
 
 pub use self::answer::{
     Meeting, Met, MotionContact, MotionFree, MotionOutcome, MotionProof, MotionSteps, PlaneAt,
+    Proven,
 };
 pub use self::clearance::{MotionClearance, MotionOverlap, MotionStop};
 use self::look::ConvexLooker;

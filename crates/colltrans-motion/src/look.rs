@@ -5,7 +5,7 @@ use glam::DVec3;
 
 use super::answer::{Met, MotionSteps};
 use super::bend::{Climbing, Supports};
-use super::course::Course;
+use super::course::{At, Course};
 use super::span::Instant;
 use colltrans_convex::answer::{Distance, PlaneGap};
 use colltrans_convex::body::{ConvexPolyhedron, Hull};
@@ -33,6 +33,9 @@ pub(super) struct Look<'a, M, B = ConvexPolyhedron> {
     /// Below this a gap is none, as rounding goes.
     pub(super) floor: f64,
 }
+
+/// A look at the bodies of a course.
+pub(super) type LookAt<'a, C> = Look<'a, <C as Course<'a>>::Moved, <C as Course<'a>>::Body>;
 
 impl<M, B> Look<'_, M, B> {
     pub(super) fn time(&self) -> f64 {
@@ -159,7 +162,7 @@ type MeanPair = ([VertexPair; 3], [f64; 3]);
 /// How fast points, given in the bodies' frames, come together along a normal.
 pub(super) fn closing<'a, C: Course<'a>>(
     course: &C,
-    at: &Instant<'a, C::Moved, C::Body>,
+    at: &At<'a, C>,
     points: [DVec3; 2],
     normal: DVec3,
 ) -> f64 {

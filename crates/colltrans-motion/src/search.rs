@@ -18,7 +18,7 @@ use glam::DVec3;
 use super::answer::PlaneAt;
 use super::bend::{SPARE, most_bend};
 use super::course::Course;
-use super::look::{Look, Looker};
+use super::look::{Look, LookAt, Looker};
 
 /// Maximum number of steps of a search, and how many more for each radian by which the bodies turn.
 const MOST: usize = 20_000;
@@ -97,8 +97,8 @@ struct Search<'s, 'a, C: Course<'a>, L> {
     course: &'s C,
     looker: &'s mut L,
     planes: Vec<PlaneAt>,
-    left: Look<'a, C::Moved, C::Body>,
-    stack: Vec<Look<'a, C::Moved, C::Body>>,
+    left: LookAt<'a, C>,
+    stack: Vec<LookAt<'a, C>>,
     end: f64,
     ahead: Ahead,
     /// `K`, and what it usually is at most.
@@ -180,7 +180,7 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
         End::Stalled
     }
 
-    fn note(&mut self, look: &Look<'a, C::Moved, C::Body>, alone: bool) {
+    fn note(&mut self, look: &LookAt<'a, C>, alone: bool) {
         if let Some(last) = self.planes.last_mut() {
             last.alone = alone;
         }
@@ -188,7 +188,7 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
         self.planes.push(PlaneAt { time: look.time(), normal, gap, alone: false });
     }
 
-    fn go_on(&mut self, look: &Look<'a, C::Moved, C::Body>) {
+    fn go_on(&mut self, look: &LookAt<'a, C>) {
         self.note(look, false);
         let h = look.time() - self.left.time();
         if h > 0.0 {
@@ -202,11 +202,7 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
     }
 
     /// Whether all between a plane at left and a later one is proven.
-    fn joins(
-        &mut self,
-        left: &Look<'a, C::Moved, C::Body>,
-        next: &Look<'a, C::Moved, C::Body>,
-    ) -> bool {
+    fn joins(&mut self, left: &LookAt<'a, C>, next: &LookAt<'a, C>) -> bool {
         let enough = most_bend([left.gap, next.gap], 2.0 * SPARE);
         let normals = [left.normal, next.normal];
         // A loose bound costs less. A long search gains more by steps as long as the tight one allows.
@@ -222,12 +218,12 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
 
     /// Goes on to a later plane where a depth is tolerated, by either normal for all of the time in between: the shallowest
     /// way out may change from one time to the next, while both are shallow enough for a while.
-    fn changes_to(&mut self, next: &Look<'a, C::Moved, C::Body>) -> bool {
+    fn changes_to(&mut self, next: &LookAt<'a, C>) -> bool {
         if self.course.keep() >= 0.0 {
             return false;
         }
         let left = self.left;
-        let turned = |look: &Look<'a, C::Moved, C::Body>, normal: DVec3| Look {
+        let turned = |look: &LookAt<'a, C>, normal: DVec3| Look {
             normal,
             gap: self.course.claimed_gap(&look.at, normal),
             ..*look
@@ -246,7 +242,7 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
     }
 
     /// Whether a plane proves all up to a time, carried along.
-    fn is_carried(&self, look: &Look<'a, C::Moved, C::Body>, time: f64) -> bool {
+    fn is_carried(&self, look: &LookAt<'a, C>, time: f64) -> bool {
         let Look { at, gap, normal, .. } = look;
         self.course.carried(at, time, *normal) < KEPT * gap
     }
@@ -401,7 +397,7 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
     fn swings_to_end(&mut self) -> bool {
         let (left, course) = (self.left, self.course);
         let at = course.instant(self.end);
-        let ends_with = |look: Look<'a, C::Moved, C::Body>, most: f64| {
+        let ends_with = |look: LookAt<'a, C>, most: f64| {
             if course.lost([&left.at, &at], look.normal) >= most {
                 return None;
             }
@@ -412,7 +408,7 @@ impl<'a, C: Course<'a>, L: Looker<C::Body>> Search<'_, 'a, C, L> {
             let gap = course.claimed_gap(&left.at, normal);
             (gap > 0.0).then_some(Look { normal, gap, ..left })
         };
-        let plain = |look: Look<'a, C::Moved, C::Body>| ends_with(look, SPENT * look.gap);
+        let plain = |look: LookAt<'a, C>| ends_with(look, SPENT * look.gap);
         let aside = || plain(along(course.aside(&left.at, left.points)?)?);
         let between = || {
             let look = along(course.between_axes(&left.at)?)?;

@@ -7,9 +7,9 @@
 use super::MotionCast;
 use super::answer::{Meeting, Met, MotionProof, PlaneAt};
 use super::bend::Looking;
-use super::course::Course;
+use super::course::{At, Course};
 use super::look::deep_enough;
-use super::span::{Instant, spans};
+use super::span::spans;
 use colltrans_convex::answer::CertificateError;
 use colltrans_convex::body::ConvexPolyhedron;
 use colltrans_convex::pair::Pair;
@@ -136,14 +136,10 @@ impl Broken {
     }
 }
 
-/// A plane, and the time that it is at.
-type Seen<'a, 'p, C> =
-    (&'p PlaneAt, Instant<'a, <C as Course<'a>>::Moved, <C as Course<'a>>::Body>);
-
 /// Each plane with its gap, each joined to the next.
 pub(super) fn chain<'a, C: Course<'a>>(course: &C, planes: &[PlaneAt]) -> Result<(), Broken> {
     let to = course.times()[1];
-    let mut before: Option<Seen<C>> = None;
+    let mut before: Option<(&PlaneAt, At<C>)> = None;
     for (index, plane) in planes.iter().enumerate() {
         let PlaneAt { time, normal, gap, .. } = *plane;
         let is_unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;

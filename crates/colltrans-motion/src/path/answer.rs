@@ -2,33 +2,16 @@
 
 use glam::DVec3;
 
-use super::super::answer::{Met, MotionSteps, PlaneAt};
+use super::super::answer::{Met, MotionOutcome, MotionSteps, PlaneAt, Proven};
 use super::mechanism::Place;
 use colltrans_convex::body::{Features, Pose};
 
-/// What the bodies of a mechanism do on a path.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(
-    feature = "serde",
-    derive(serde::Serialize, serde::Deserialize),
-    serde(rename_all = "snake_case")
-)]
-#[non_exhaustive]
-pub enum PathOutcome {
-    /// Two of them meet, at a time between two bounds, and none before.
-    Contact(PathContact),
-    /// Two come nearer to each other than rounding can tell. Proven is that none meet before; not that they meet,
-    /// and nothing of later times.
-    Grazing(PathContact),
-    /// None meet: proven of the whole path.
-    Free(PathFree),
-    /// Two of them overlap where the path begins.
-    Overlapping(PathContact),
-    /// The search between the two bodies of [`PathContact::pair`] took its maximum number of steps. Proven is that no two
-    /// bodies of all pairs meet before [`PathContact::lower`]; whether these two do later is open. A finite
-    /// [`PathContact::upper`] is when the two bodies of [`PathProof::meeting`] are proven to meet.
-    Undecided(PathContact),
-}
+/// What the bodies of a mechanism do on a path: which two of them meet first, or that none do, proven of the whole path.
+///
+/// [`MotionOutcome::Undecided`]: the search between the two bodies of [`PathContact::pair`] took its maximum number of
+/// steps. Proven is that no two bodies of all pairs meet before [`PathContact::lower`]; whether these two do later is open.
+/// A finite [`PathContact::upper`] is when the two bodies of [`PathProof::meeting`] are proven to meet.
+pub type PathOutcome = MotionOutcome<PathProof, PathContact>;
 
 /// A first contact, or what may be one.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,17 +37,6 @@ pub struct PathContact {
     /// What faces each other across it, of bodies that are convex.
     pub features: Option<Features>,
     /// What proves the bounds.
-    pub proof: PathProof,
-    /// How much work it was.
-    pub steps: MotionSteps,
-}
-
-/// No contact.
-#[derive(Debug, Clone, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub struct PathFree {
-    /// What proves it.
     pub proof: PathProof,
     /// How much work it was.
     pub steps: MotionSteps,
@@ -180,25 +152,9 @@ pub enum How {
     Inside,
 }
 
-impl PathOutcome {
-    /// What proves it.
-    pub const fn proof(&self) -> &PathProof {
-        match self {
-            Self::Contact(of) | Self::Grazing(of) | Self::Overlapping(of) | Self::Undecided(of) => {
-                &of.proof
-            }
-            Self::Free(of) => &of.proof,
-        }
-    }
-
-    /// How much work it was.
-    pub const fn steps(&self) -> MotionSteps {
-        match self {
-            Self::Contact(of) | Self::Grazing(of) | Self::Overlapping(of) | Self::Undecided(of) => {
-                of.steps
-            }
-            Self::Free(of) => of.steps,
-        }
+impl Proven<PathProof> for PathContact {
+    fn proven(&self) -> (&PathProof, MotionSteps) {
+        (&self.proof, self.steps)
     }
 }
 

@@ -73,7 +73,7 @@ use colltrans_solid::kinds::{AnyPlaced, ByKind};
 use colltrans_solid::{AsSolid, SolidPairSearch};
 
 pub use self::answer::{
-    Cover, How, PathContact, PathFree, PathMeeting, PathOutcome, PathProof, Step, Stretch,
+    Cover, How, PathContact, PathMeeting, PathOutcome, PathProof, Step, Stretch,
 };
 use self::chain::Chain;
 use self::couple::Couple;
@@ -81,7 +81,7 @@ use self::cover::{Search, Stop};
 pub use self::mechanism::{Frame, Joint, JointPath, Mechanism, PathError, Place};
 use self::shape::Shape;
 pub use self::verify::PathProofError;
-use super::answer::MotionSteps;
+use super::answer::{MotionFree, MotionSteps};
 use super::course::Course;
 
 /// A body that a mechanism carries, or that stands in the world.
@@ -388,7 +388,7 @@ impl<'a> PathCast<'a> {
         steps: MotionSteps,
     ) -> PathOutcome {
         match stopped {
-            None => PathOutcome::Free(PathFree { proof, steps }),
+            None => PathOutcome::Free(MotionFree { proof, steps }),
             Some((pair, Stop::Met(place, how))) => {
                 let meeting = PathMeeting { pair, place, how };
                 if place == Place::START {

@@ -14,9 +14,9 @@ use crate::cast::tolerance::least_tolerance_from;
 use crate::cast::{Claim, Cover};
 #[cfg(feature = "serde")]
 use crate::solve::nearest::points_of;
-use crate::solve::nearest::search::{AxesOf, Search, Until, proven};
+use crate::solve::nearest::search::{Search, Until, proven};
 use crate::solve::nearest::{
-    Apart, SolidGap, SolidNear, Spot, distance_of, meeting, shared_points, triangle,
+    Apart, Axes, SolidGap, SolidNear, Spot, distance_of, meeting, shared_points, triangle,
 };
 use crate::solve::overlap::{is_touch, nested};
 use crate::solve::scene::Scene;
@@ -382,7 +382,7 @@ fn answer(pair: &Pair<'_, Solid>, scene: &Scene, said: &Said) -> Distance<Solid>
 /// The least that the entries of a cover prove.
 fn least_proven(scene: &Scene, cover: &Cover<Apart>) -> Result<f64, CertificateError> {
     let bodies = [scene.moving.solid, scene.fixed.solid];
-    let axes = AxesOf::new(scene);
+    let axes = Axes::new(scene);
     let mut least = f64::INFINITY;
     let walked = cover.walk(bodies, |_, nodes, reason| {
         let leaf = |k: usize| bodies[k].nodes()[nodes[k] as usize].is_leaf();

@@ -74,7 +74,49 @@ impl<'a> SolidCast<'a> for Cast<'a, Solid> {
     }
 
     fn certified_clearance(&self) -> Result<(Clearance<Solid>, SolidCertificate), QueryError> {
-        certified_clearance(self)
+        let (mut scene, mut steps) = (None, SolidSteps::default());
+        let told = told_at_once(self, &mut scene, &mut SolidSteps::default())?;
+        let scene = scene_once(self, &mut scene)?;
+        let bodies = [self.moving(), self.fixed()];
+        let start = self.prove_start(scene, &mut steps);
+        let mut certificate = SolidCertificate {
+            tolerance: self.tolerance(),
+            start,
+            lower: 0.0,
+            stop: None,
+            cover: Cover::default(),
+        };
+        let aim = match (certificate.aim(self.options()), &certificate.start) {
+            (None, &StartProof::Overlapping(place)) => {
+                let overlap = self.overlap_at(place, steps);
+                return Ok((Clearance::Overlapping(overlap), certificate));
+            }
+            (aim, _) => aim.unwrap_or(Aim::Stop),
+        };
+        let mut cuts = HashMap::new();
+        let cut = |nodes, reason| {
+            cuts.insert(nodes, reason);
+        };
+        let mut search = Search::new(scene, aim, limit(self, scene), cut);
+        let found = search.run(&mut Workspace::default());
+        let end = search.limit;
+        steps += search.steps;
+        certificate.cover = Cover::new(bodies, &cuts);
+        let answer = match told {
+            AtOnce::Answer(answer) => answer,
+            _ => answer(self, scene, found.as_ref(), steps),
+        };
+        if let Clearance::Blocked { contact, .. } = &answer {
+            let shrunk_distance = contact.shrunk_distance.value;
+            certificate.stop = Some(StopProof { shrunk_distance, triangles: contact.triangles });
+        }
+        certificate.lower = proven(scene, aim, end, &certificate.cover) / scene.setting.length;
+        if certificate.lower <= 0.0 {
+            // Nothing contributes less than 0.
+            certificate.lower = 0.0;
+            certificate.cover = Cover(vec![Some(Reason::NotBefore)]);
+        }
+        Ok((answer, certificate))
     }
 
     fn stop_by(&self, triangles: [u32; 2]) -> Option<SolidContact> {
@@ -163,9 +205,26 @@ impl<'a> SolidScene<'a> for Cast<'a, Solid> {
         SolidOverlap { place, least_tolerance, steps }
     }
 
-    #[inline]
     fn prove_start(&self, scene: &Scene, steps: &mut SolidSteps) -> StartProof {
-        prove_start(self, scene, steps)
+        // An overlap that is the answer is looked for, to be named.
+        let options = self.options();
+        let is_answer =
+            options.overlapping == Some(true) && options.start_overlap == StartOverlap::Refuse;
+        if options.overlapping.is_some() && !is_answer {
+            return StartProof::Assumed;
+        }
+        if let Some(place) = sunk(self, Hulls::of(self).as_ref(), scene, steps) {
+            return StartProof::Overlapping(place);
+        }
+        let mut entries = Vec::new();
+        let mut note = |entry| {
+            steps.count(entry);
+            entries.push(entry);
+        };
+        match overlap::find_with(scene, &mut note) {
+            Some(overlap) => StartProof::Overlapping(overlap),
+            None => StartProof::Apart(Cover(entries)),
+        }
     }
 
     fn verify_start(&self, scene: &Scene, start: &StartProof) -> Result<(), CertificateError> {
@@ -270,84 +329,6 @@ fn guessed_by_hulls(
         }
         Guessed::Free => answer(cast, scene, None, steps),
     })
-}
-
-/// How far the moving body can move from where it is, as [`Cast::clearance`] says, and the proof
-/// of it. Allocates what the proof takes: a byte for each pair of nodes.
-///
-/// Of convex bodies every answer carries its proof, which the search ends with anyway. Between solids
-/// it takes a pass over all that the search left out, and as much space: so it is asked for apart.
-///
-/// # Errors
-/// As [`Cast::clearance`].
-fn certified_clearance(
-    cast: &Cast<'_, Solid>,
-) -> Result<(Clearance<Solid>, SolidCertificate), QueryError> {
-    let (mut scene, mut steps) = (None, SolidSteps::default());
-    let told = told_at_once(cast, &mut scene, &mut SolidSteps::default())?;
-    let scene = scene_once(cast, &mut scene)?;
-    let bodies = [cast.moving(), cast.fixed()];
-    let start = cast.prove_start(scene, &mut steps);
-    let mut certificate = SolidCertificate {
-        tolerance: cast.tolerance(),
-        start,
-        lower: 0.0,
-        stop: None,
-        cover: Cover::default(),
-    };
-    let aim = match (certificate.aim(cast.options()), &certificate.start) {
-        (None, &StartProof::Overlapping(place)) => {
-            let overlap = cast.overlap_at(place, steps);
-            return Ok((Clearance::Overlapping(overlap), certificate));
-        }
-        (aim, _) => aim.unwrap_or(Aim::Stop),
-    };
-    let mut cuts = HashMap::new();
-    let cut = |nodes, reason| {
-        cuts.insert(nodes, reason);
-    };
-    let mut search = Search::new(scene, aim, limit(cast, scene), cut);
-    let found = search.run(&mut Workspace::default());
-    let end = search.limit;
-    steps += search.steps;
-    certificate.cover = Cover::new(bodies, &cuts);
-    let answer = match told {
-        AtOnce::Answer(answer) => answer,
-        _ => answer(cast, scene, found.as_ref(), steps),
-    };
-    if let Clearance::Blocked { contact, .. } = &answer {
-        let shrunk_distance = contact.shrunk_distance.value;
-        certificate.stop = Some(StopProof { shrunk_distance, triangles: contact.triangles });
-    }
-    certificate.lower = proven(scene, aim, end, &certificate.cover) / scene.setting.length;
-    if certificate.lower <= 0.0 {
-        // Nothing contributes less than 0.
-        certificate.lower = 0.0;
-        certificate.cover = Cover(vec![Some(Reason::NotBefore)]);
-    }
-    Ok((answer, certificate))
-}
-
-fn prove_start(cast: &Cast<'_, Solid>, scene: &Scene, steps: &mut SolidSteps) -> StartProof {
-    // An overlap that is the answer is looked for, to be named.
-    let options = cast.options();
-    let is_answer =
-        options.overlapping == Some(true) && options.start_overlap == StartOverlap::Refuse;
-    if options.overlapping.is_some() && !is_answer {
-        return StartProof::Assumed;
-    }
-    if let Some(place) = sunk(cast, Hulls::of(cast).as_ref(), scene, steps) {
-        return StartProof::Overlapping(place);
-    }
-    let mut entries = Vec::new();
-    let mut note = |entry| {
-        steps.count(entry);
-        entries.push(entry);
-    };
-    match overlap::find_with(scene, &mut note) {
-        Some(overlap) => StartProof::Overlapping(overlap),
-        None => StartProof::Apart(Cover(entries)),
-    }
 }
 
 /// The least gap that the parts of a cover prove, their rounding taken off, of a search that has ended

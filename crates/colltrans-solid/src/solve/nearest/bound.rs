@@ -52,7 +52,7 @@ pub enum Apart {
 }
 
 /// The axes along which all nodes are measured: those of the fixed and of the moving body.
-pub(super) struct Axes {
+pub(crate) struct Axes {
     /// As the moving and as the fixed body see them.
     seen: [[Axis; 6]; 2],
     /// What the length of three gaps is multiplied by.
@@ -93,7 +93,7 @@ impl Axis {
 }
 
 impl Axes {
-    pub(super) fn new(scene: &Scene) -> Self {
+    pub(crate) fn new(scene: &Scene) -> Self {
         let frames = [scene.fixed.matrix, scene.moving.matrix];
         let sides = [&scene.moving, &scene.fixed];
         let columns = |m: DMat3| [m.x_axis, m.y_axis, m.z_axis];

@@ -16,6 +16,7 @@ use super::overlap::{self, Overlap};
 use super::scene::{Scene, Side};
 use crate::solve::steps::SolidSteps;
 pub use bound::Apart;
+pub(crate) use bound::Axes;
 use colltrans_convex::body::Feature;
 use search::{Found, corners};
 use triangle::Nearest;

@@ -181,11 +181,11 @@ impl<F: FnMut([u32; 2], Apart)> Pairs for Search<'_, '_, F> {
 }
 
 /// What a reason proves of two nodes: no pair of their facets is nearer.
-pub(crate) fn proven(scene: &Scene, axes: &AxesOf, nodes: [u32; 2], reason: Apart) -> f64 {
+pub(crate) fn proven(scene: &Scene, axes: &Axes, nodes: [u32; 2], reason: Apart) -> f64 {
     if reason != Apart::Examined {
-        let moving = View::new(&axes.0, &scene.moving, nodes[0]);
-        let fixed = View::new(&axes.0, &scene.fixed, nodes[1]);
-        return Couple { scene, axes: &axes.0, moving: &moving, fixed: &fixed }.bound(reason);
+        let moving = View::new(axes, &scene.moving, nodes[0]);
+        let fixed = View::new(axes, &scene.fixed, nodes[1]);
+        return Couple { scene, axes: axes, moving: &moving, fixed: &fixed }.bound(reason);
     }
     let mut least = f64::INFINITY;
     for f in facets(&scene.moving, nodes[0]) {
@@ -194,13 +194,4 @@ pub(crate) fn proven(scene: &Scene, axes: &AxesOf, nodes: [u32; 2], reason: Apar
         }
     }
     least.max(0.0)
-}
-
-/// The axes along which proofs are checked.
-pub(crate) struct AxesOf(Axes);
-
-impl AxesOf {
-    pub(crate) fn new(scene: &Scene) -> Self {
-        Self(Axes::new(scene))
-    }
 }

@@ -21,10 +21,46 @@ mod words;
 
 pub use colltrans_picture::escaped;
 use glam::DVec3;
+use maud::PreEscaped;
 
 pub(crate) use crate::digits::{digits, short};
 use crate::findings::Findings;
 use crate::plan::Step;
+use scene::Studio;
+use words::Words;
+
+/// What all pages are made of.
+struct Report<'a> {
+    pub f: &'a Findings<'a>,
+    pub words: Words<'a>,
+    pub studio: Studio<'a>,
+    /// Of each step.
+    pub seconds: Vec<f64>,
+    /// The number of each step's round.
+    pub rounds: Vec<usize>,
+    /// The length of the diagonal of the box around all parts.
+    pub diagonal: f64,
+}
+
+impl<'a> Report<'a> {
+    fn new(f: &'a Findings<'a>) -> Self {
+        let mut rounds = vec![0; f.plan.steps.len()];
+        for (round, steps) in f.plan.rounds().iter().enumerate() {
+            for &step in steps {
+                rounds[step] = round;
+            }
+        }
+        let bounds = f.bodies.assembly().bounds();
+        let diagonal = DVec3::length(bounds.high - bounds.low);
+        let (words, studio, seconds) = (Words::new(f), Studio::new(f), f.times.of(&f.plan));
+        Self { f, words, studio, seconds, rounds, diagonal }
+    }
+}
+
+/// A picture that was drawn here, whose texts are escaped.
+fn picture(svg: String) -> PreEscaped<String> {
+    PreEscaped(svg)
+}
 
 /// A direction, for people: an axis by name.
 pub(crate) fn arrow(d: glam::DVec3) -> String {

@@ -4,10 +4,9 @@ use std::ops::Range;
 
 use maud::{Markup, html};
 
-use super::html::{Report, picture};
 use super::sheet::{self, far, step_words, takes, ways};
 use super::words::{numbers, time};
-use super::{arrow, short};
+use super::{Report, arrow, picture, short};
 use crate::Fit;
 use crate::map;
 use crate::plan::Passed;

@@ -5,12 +5,11 @@ use glam::{DVec2, DVec3};
 use maud::{Markup, html};
 
 use super::exploded::Exploded;
-use super::hexadecimal;
-use super::html::{Report, picture};
 use super::kinds::{Kind, kinds};
 use super::scene::{Look, Scene, Shown};
 use super::sheet::step_words;
 use super::words::{sentence, time};
+use super::{Report, hexadecimal, picture};
 use crate::Fit;
 use crate::plan::Stuck;
 

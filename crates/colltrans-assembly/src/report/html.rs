@@ -6,43 +6,12 @@
 
 use std::ops::Range;
 
-use glam::DVec3;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use rayon::prelude::*;
 
-use super::scene::Studio;
-use super::words::Words;
-use super::{Findings, after, cover, sheet, tables, viewer};
+use super::{Findings, Report, after, cover, sheet, tables, viewer};
 
 const STYLE: &str = include_str!("../../assets/report.css");
-
-/// What all pages are made of.
-pub(super) struct Report<'a> {
-    pub f: &'a Findings<'a>,
-    pub words: Words<'a>,
-    pub studio: Studio<'a>,
-    /// Of each step.
-    pub seconds: Vec<f64>,
-    /// The number of each step's round.
-    pub rounds: Vec<usize>,
-    /// The length of the diagonal of the box around all parts.
-    pub diagonal: f64,
-}
-
-impl<'a> Report<'a> {
-    fn new(f: &'a Findings<'a>) -> Self {
-        let mut rounds = vec![0; f.plan.steps.len()];
-        for (round, steps) in f.plan.rounds().iter().enumerate() {
-            for &step in steps {
-                rounds[step] = round;
-            }
-        }
-        let bounds = f.bodies.assembly().bounds();
-        let diagonal = DVec3::length(bounds.high - bounds.low);
-        let (words, studio, seconds) = (Words::new(f), Studio::new(f), f.times.of(&f.plan));
-        Self { f, words, studio, seconds, rounds, diagonal }
-    }
-}
 
 /// The report.
 pub fn page(f: &Findings, title: &str) -> String {
@@ -77,9 +46,4 @@ pub fn page(f: &Findings, title: &str) -> String {
         }
     };
     page.into_string()
-}
-
-/// A picture that was drawn here, whose texts are escaped.
-pub(super) fn picture(svg: String) -> PreEscaped<String> {
-    PreEscaped(svg)
 }

@@ -7,10 +7,9 @@ use colltrans::Aabb;
 use glam::{DVec2, DVec3};
 use maud::{Markup, html};
 
-use super::html::{Report, picture};
 use super::scene::{Arrow, Look, Scene, Shown, Viewpoint};
-use super::there;
 use super::words::{numbers, time};
+use super::{Report, picture, there};
 use crate::Fit;
 use crate::likes::pairs_alike;
 use crate::plan::Passed;

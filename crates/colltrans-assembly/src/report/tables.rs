@@ -2,8 +2,7 @@
 
 use maud::{Markup, html};
 
-use super::html::picture;
-use super::{Findings, arrow, graph, short};
+use super::{Findings, arrow, graph, picture, short};
 use crate::blocking::Blocking;
 use crate::bodies::Fit;
 use crate::part::Part;

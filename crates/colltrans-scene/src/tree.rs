@@ -11,7 +11,7 @@
 //!
 //! Invariant. A node's box holds the boxes of all items below it; inner boxes are the joins of their children's.
 
-use std::cmp::Ordering;
+use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use colltrans_convex::body::Aabb;
@@ -64,27 +64,6 @@ impl Boxed for Item {
     #[inline]
     fn number(&self) -> u32 {
         self.number
-    }
-}
-
-/// What is to be looked at: the least bound comes first, and among equals the first node.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Entry {
-    pub bound: f64,
-    node: u32,
-}
-
-impl Eq for Entry {}
-
-impl Ord for Entry {
-    fn cmp(&self, other: &Self) -> Ordering {
-        other.bound.total_cmp(&self.bound).then(other.node.cmp(&self.node))
-    }
-}
-
-impl PartialOrd for Entry {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
     }
 }
 
@@ -296,7 +275,7 @@ impl Tree {
     }
 
     /// Visits items by their least bounds first, as long as these are not above a limit; `bound` is not
-    /// above that of what a box holds, and infinite for what is of no interest. `visit` says the new limit.
+    /// above that of what a box holds, not negative, and infinite for what is of no interest. `visit` says the new limit.
     /// How many boxes were looked at.
     ///
     /// # Errors
@@ -307,25 +286,29 @@ impl Tree {
         bound: impl Fn(&Aabb) -> f64,
         mut visit: impl FnMut(u32, f64) -> Result<f64, E>,
     ) -> Result<u32, E> {
-        let Some(root) = self.root() else { return Ok(0) };
+        if self.nodes.is_empty() {
+            return Ok(0);
+        }
+        // The least bound comes first, and among equals the first node: bounds are not negative, so they are in the order
+        // of their bits.
+        let entry =
+            |node: u32| Reverse((bound(&self.nodes[node as usize].bounds).abs().to_bits(), node));
         let (mut queue, mut looked) = (BinaryHeap::with_capacity(ROOM), 1);
-        let mut next = Some(Entry { bound: bound(root), node: 0 });
-        while let Some(entry) = next.take().or_else(|| queue.pop()) {
-            if entry.bound > limit || entry.bound == f64::INFINITY {
+        let mut next = Some(entry(0));
+        while let Some(Reverse((bits, at))) = next.take().or_else(|| queue.pop()) {
+            let least = f64::from_bits(bits);
+            if least > limit || least == f64::INFINITY {
                 break;
             }
-            let node = &self.nodes[entry.node as usize];
+            let node = &self.nodes[at as usize];
             if node.is_leaf() {
-                limit = visit(node.first, entry.bound)?;
+                limit = visit(node.first, least)?;
                 continue;
             }
             looked += 2;
-            let [a, b] = [node.first, node.first + 1].map(|node| {
-                let bound = bound(&self.nodes[node as usize].bounds);
-                Entry { bound, node }
-            });
+            let [a, b] = [node.first, node.first + 1].map(entry);
             let (near, far) = if a > b { (a, b) } else { (b, a) };
-            if far.bound <= limit {
+            if f64::from_bits(far.0.0) <= limit {
                 queue.push(far);
             }
             // Straight down, unless something else is nearer.

@@ -29,15 +29,21 @@ pub mod pair;
 #[doc(hidden)]
 pub mod solve;
 
+/// Proofs of answers between solids: what they hold, and why a pair of nodes matters no more.
+pub mod proof {
+    pub use crate::cast::{Claim, Cover, SolidCertificate, SolidProof, StartProof, StopProof};
+    pub use crate::pair::{DistanceCertificate, SolidPairProof};
+    pub use crate::solve::{Apart, Reason};
+}
+
 pub use body::{AsSolid, Shell, ShellKind, ShrinkReport, Solid, SolidError, SolidReport};
 #[doc(hidden)]
 pub use cast::SolidScene;
 pub use cast::{
-    Claim, Cover, NoGrazing, SolidCast, SolidCertificate, SolidFree, SolidMeeting, SolidOptions,
-    SolidOverlap, SolidProof, StartOverlap, StartProof, StopProof,
+    NoGrazing, SolidCast, SolidFree, SolidMeeting, SolidOptions, SolidOverlap, StartOverlap,
 };
 pub use kinds::{AnyBody, AnyClearance, AnyDistance, AnyNear, AnyPlaced, ByKind};
 #[doc(hidden)]
 pub use pair::SolidPairSearch;
-pub use pair::{DistanceCertificate, OverlapDepth, SolidPair, SolidPairProof};
-pub use solve::{Apart, Overlap, Reason, SolidContact, SolidGap, SolidNear, SolidSteps, Workspace};
+pub use pair::{OverlapDepth, SolidPair};
+pub use solve::{Overlap, SolidContact, SolidGap, SolidNear, SolidSteps, Workspace};

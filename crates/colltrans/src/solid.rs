@@ -5,12 +5,15 @@
 #[doc(inline)]
 pub use colltrans_proof::SolidStatement;
 #[doc(inline)]
+pub use colltrans_solid::proof::{
+    Apart, Claim, Cover, DistanceCertificate, Reason, SolidCertificate, SolidPairProof, SolidProof,
+    StartProof, StopProof,
+};
+#[doc(inline)]
 pub use colltrans_solid::{
-    Apart, AsSolid, Claim, Cover, DistanceCertificate, NoGrazing, Overlap, OverlapDepth, Reason,
-    Shell, ShellKind, ShrinkReport, SolidCast, SolidCertificate, SolidContact, SolidError,
-    SolidFree, SolidGap, SolidMeeting, SolidNear, SolidOptions, SolidOverlap, SolidPair,
-    SolidPairProof, SolidProof, SolidReport, SolidSteps, StartOverlap, StartProof, StopProof,
-    Workspace,
+    AsSolid, NoGrazing, Overlap, OverlapDepth, Shell, ShellKind, ShrinkReport, SolidCast,
+    SolidContact, SolidError, SolidFree, SolidGap, SolidMeeting, SolidNear, SolidOptions,
+    SolidOverlap, SolidPair, SolidReport, SolidSteps, StartOverlap, Workspace,
 };
 #[doc(hidden)]
 pub use colltrans_solid::{SolidPairSearch, SolidScene};

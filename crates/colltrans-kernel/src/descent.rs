@@ -218,92 +218,79 @@ mod tests {
     use super::*;
 
     /// The nearest of two sorted lists of numbers: a view is a range of either list.
-    struct Nearest<'n> {
-        lists: [&'n [f64]; 2],
+    #[derive(Default)]
+    struct Nearest {
+        lists: [Vec<f64>; 2],
         seen: [Seen<Range<usize>, f64>; 2],
-        least: f64,
+        found: Option<f64>,
         judged: usize,
-        dismissed: usize,
     }
 
-    impl Pairs for Nearest<'_> {
+    impl Pairs for Nearest {
         type Reason = ();
         const FIRST_OF_EQUALS: bool = true;
 
         fn limit(&self) -> f64 {
-            self.least
+            self.found.unwrap_or(f64::INFINITY)
         }
 
         fn is_found(&self) -> bool {
-            self.least < f64::INFINITY
+            self.found.is_some()
         }
 
         fn bound(&mut self, views: [u32; 2]) -> Option<(f64, ())> {
             self.judged += 1;
-            let [[a, b], [c, d]] = [0, 1].map(|k| {
-                let range = self.seen[k].view(views[k]);
-                [self.lists[k][range.start], self.lists[k][range.end - 1]]
-            });
-            let bound = (c - b).max(a - d).max(0.0);
-            (bound < self.least).then_some((bound, ()))
+            let [p, q] = [0, 1].map(|k| &self.lists[k][self.seen[k].view(views[k]).clone()]);
+            let bound = (q[0] - p[p.len() - 1]).max(p[0] - q[q.len() - 1]).max(0.0);
+            (bound < self.limit()).then_some((bound, ()))
         }
 
         fn split(&mut self, views: [u32; 2]) -> Option<[[u32; 2]; 2]> {
-            let ranges = [0, 1].map(|k| self.seen[k].view(views[k]).clone());
-            let size = |k: usize| ranges[k].len() as f64;
-            let Some(which) = node_to_split([0, 1].map(|k| ranges[k].len() == 1), size) else {
+            let lengths = [0, 1].map(|k| self.seen[k].view(views[k]).len());
+            let Some(which) = node_to_split(lengths.map(|n| n == 1), |k| lengths[k] as f64) else {
                 let [x, y] = [0, 1].map(|k| {
-                    let list = self.lists[k];
-                    let held =
-                        self.seen[k].leaf(views[k], |range| list[range.clone()].iter().copied());
-                    self.seen[k].items(held)[0]
+                    let (list, seen) = (&self.lists[k], &mut self.seen[k]);
+                    let held = seen.leaf(views[k], |range| list[range.clone()].iter().copied());
+                    seen.items(held)[0]
                 });
-                self.least = self.least.min((x - y).abs());
+                self.found = Some(self.limit().min((x - y).abs()));
                 return None;
             };
-            let halves = |range: &Range<usize>, k: usize| {
+            let parts = self.seen[which].children(views[which], |range, k| {
                 let middle = range.start + range.len() / 2;
-                if k == 0 { range.start..middle } else { middle..range.end }
-            };
-            let parts = self.seen[which].children(views[which], halves);
+                [range.start..middle, middle..range.end][k].clone()
+            });
             Some(parts.map(|part| replaced(views, which, part)))
         }
 
         fn dismiss(&mut self, entry: &Entry) {
-            assert!(entry.bound >= self.least);
-            self.dismissed += 1;
+            assert!(entry.bound >= self.limit());
         }
     }
 
     #[test]
     fn best_first_finds_the_nearest_without_judging_all_pairs() {
-        let list = |factor: f64, count: u32| -> Vec<f64> {
-            let mut list: Vec<f64> =
-                (1..=count).map(|k| (f64::from(k) * factor).fract() * 100.0).collect();
+        let lists = [(0.618_033_988_75, 150), (0.414_213_562_37, 110)].map(|(factor, count)| {
+            let mut list: Vec<f64> = (1..=count).map(|k| (f64::from(k) * factor).fract()).collect();
             list.sort_by(f64::total_cmp);
             list
-        };
-        let (a, b) = (list(0.618_033_988_75, 150), list(0.414_213_562_37, 110));
-        let brute = a.iter().flat_map(|x| b.iter().map(move |y| (x - y).abs()));
-        let brute = brute.fold(f64::INFINITY, f64::min);
-        let mut seen = <[Seen<_, _>; 2]>::default();
-        seen[0].start(0..a.len());
-        seen[1].start(0..b.len());
-        let mut search =
-            Nearest { lists: [&a, &b], seen, least: f64::INFINITY, judged: 0, dismissed: 0 };
+        });
+        let pairs = lists[0].iter().flat_map(|x| lists[1].iter().map(move |y| (x - y).abs()));
+        let brute = pairs.reduce(f64::min);
+        let mut search = Nearest { lists, ..Nearest::default() };
+        for k in 0..2 {
+            search.seen[k].start(0..search.lists[k].len());
+        }
         best_first(&mut search, &mut BinaryHeap::new());
-        assert_eq!(search.least, brute);
-        assert!(search.judged < a.len() * b.len() / 4, "{} pairs", search.judged);
-        assert!(search.dismissed > 0);
+        assert_eq!(search.found, brute);
+        assert!(search.judged < 150 * 110 / 4, "{} pairs", search.judged);
     }
 
     #[test]
     fn larger_node_is_split_and_never_a_leaf() {
         let split = |are_leaves, sizes: [f64; 2]| node_to_split(are_leaves, |k| sizes[k]);
-        assert_eq!(split([false; 2], [1.0, 1.0]), Some(0));
-        assert_eq!(split([false; 2], [1.0, 2.0]), Some(1));
-        assert_eq!(split([false, true], [1.0, 2.0]), Some(0));
-        assert_eq!(split([true, false], [2.0, 1.0]), Some(1));
-        assert_eq!(split([true; 2], [2.0, 1.0]), None);
+        let inner = [[1.0, 1.0], [1.0, 2.0]].map(|sizes| split([false; 2], sizes));
+        let leaves = [[false, true], [true, false], [true; 2]].map(|leaf| split(leaf, [1.0, 1.0]));
+        assert_eq!((inner, leaves), ([Some(0), Some(1)], [Some(0), Some(1), None]));
     }
 }

@@ -3,9 +3,9 @@
 //!
 //! In the order of use: [`range`] (the numbers that are accepted), [`error_free`], [`double`] and [`integer`] (exact
 //! arithmetic), [`predicates`] and [`orientation`] (signs), [`noise`] (bounds of rounding errors), [`fine`] (numbers of
-//! twice the precision with bounds), [`bounded`], [`pose`] and [`motion`], [`aabb`], [`split`] and [`descent`] (boxes, how
-//! trees of them are built, and searches down two of them), [`topology`] (half-edges without coordinates), [`kept`] (what is made once with a body), [`id`],
-//! [`written`].
+//! twice the precision with bounds), [`bounded`], [`pose`] and [`motion`], [`aabb`], [`split`], [`dynamic_tree`] and
+//! [`descent`] (boxes, how trees of them are built, one that changes, and searches down two of them), [`plane_tree`],
+//! [`topology`] (half-edges without coordinates), [`kept`] (what is made once with a body), [`id`], [`written`].
 
 #![allow(
     rustdoc::private_intra_doc_links,
@@ -22,6 +22,8 @@ pub mod descent;
 #[doc(hidden)]
 pub mod determinant;
 mod double;
+#[doc(hidden)]
+pub mod dynamic_tree;
 pub mod error;
 #[doc(hidden)]
 pub mod error_free;
@@ -41,6 +43,8 @@ pub mod noise;
 pub mod orientation;
 #[doc(hidden)]
 pub mod plane;
+#[doc(hidden)]
+pub mod plane_tree;
 pub mod pose;
 #[doc(hidden)]
 pub mod predicates;

@@ -1,6 +1,6 @@
 //! One body among many placed ones: which is nearest, which are closer than a length, which is hit first.
 //!
-//! The bodies lie in a [`tree`] of [`boxes`]. A search asks about single bodies, with the questions that a
+//! The bodies lie in a [tree that changes](colltrans_kernel::dynamic_tree) of [`boxes`]. A search asks about single bodies, with the questions that a
 //! [`Pair`] and a [`Cast`] answer, by the bounds of their boxes, the least first; what a box
 //! proves to be of no interest is not asked about.
 //!
@@ -14,7 +14,7 @@
 //!   first, whatever the tree looks like: that of asking all one by one;
 //! - the least lower bound of those that were asked about is one of all.
 //!
-//! The modules: `boxes` (rounded outwards, and what they prove), `tree` (of boxes, which changes), `obstacles` (who is kept);
+//! The modules: `boxes` (rounded outwards, and what they prove), `obstacles` (who is kept);
 //! then the questions, `nearest` and `clearance`, best first by boxes, and `proof`, whose checks take all bodies one by one.
 //! `bulk` is one pair asked many times while neither body turns: `faces` of `M`, made once, each with its bound; `star`
 //! guesses where a line enters, `sight` walks there, `approach` has a map for one direction.
@@ -30,7 +30,6 @@ mod clearance;
 mod nearest;
 mod obstacles;
 mod proof;
-mod tree;
 
 use std::fmt;
 

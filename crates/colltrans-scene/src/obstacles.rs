@@ -5,8 +5,8 @@ use std::collections::HashMap;
 use thiserror::Error;
 
 use super::boxes::of_placed;
-use super::tree::Tree;
 use colltrans_convex::body::{Aabb, ObstacleId, Pose};
+use colltrans_kernel::dynamic_tree::DynamicTree;
 use colltrans_solid::kinds::{AnyBody, AnyPlaced};
 
 /// There is no such obstacle (any more).
@@ -53,7 +53,7 @@ pub struct UnknownObstacle {
 pub struct Obstacles {
     /// In the order of the tree's items.
     placed: Vec<Obstacle>,
-    tree: Tree,
+    tree: DynamicTree,
     positions: HashMap<ObstacleId, u32>,
     next: u64,
     counts: Counts,
@@ -111,7 +111,7 @@ impl Obstacles {
         let new = self.placed[before..].iter().map(|obstacle| of_placed(&obstacle.placed()));
         if 2 * ids.len() > before {
             let old = (0..before).map(|item| *self.tree.bounds(item as u32));
-            self.tree = Tree::build(old.chain(new));
+            self.tree = DynamicTree::build(old.chain(new));
         } else {
             new.for_each(|bounds| self.tree.insert(bounds));
         }
@@ -174,7 +174,7 @@ impl Obstacles {
             for item in &items {
                 boxes[*item as usize] = bounds(item);
             }
-            self.tree = Tree::build(boxes);
+            self.tree = DynamicTree::build(boxes);
         } else {
             for item in &items {
                 self.tree.set(*item, bounds(item));
@@ -218,7 +218,7 @@ impl Obstacles {
         &self.placed
     }
 
-    pub(super) fn tree(&self) -> &Tree {
+    pub(super) fn tree(&self) -> &DynamicTree {
         &self.tree
     }
 

@@ -8,11 +8,11 @@ use std::cell::OnceCell;
 
 use glam::DVec3;
 
-use super::depth::PlaneTree;
 use super::hull::{self, Hull, Locator};
 use crate::body::error::{BuildError, TopologyError};
 use crate::body::{ConvexPolyhedron, Inertia, InputVertex};
 use colltrans_kernel::plane::polygon_normal;
+use colltrans_kernel::plane_tree::PlaneTree;
 use colltrans_kernel::topology::Topology;
 
 /// How far a mesh is from convex.

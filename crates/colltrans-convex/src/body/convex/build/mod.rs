@@ -1,6 +1,5 @@
 //! Construction: bodies from points, from meshes and from corners.
 
-mod depth;
 mod hull;
 mod mesh;
 mod offset;

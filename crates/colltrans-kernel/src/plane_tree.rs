@@ -11,7 +11,7 @@ use std::ops::Range;
 
 use glam::DVec3;
 
-use colltrans_kernel::work;
+use crate::work;
 
 /// Planes of a leaf.
 const LEAF: usize = 8;
@@ -19,7 +19,8 @@ const LEAF: usize = 8;
 const ROUNDING: f64 = 1e-14;
 
 /// A tree over planes.
-pub(super) struct PlaneTree {
+#[derive(Debug)]
+pub struct PlaneTree {
     center: DVec3,
     slack: f64,
     /// Unit normal and offset from the origin of each plane, leaf by leaf.
@@ -29,6 +30,7 @@ pub(super) struct PlaneTree {
 }
 
 /// Planes that follow each other.
+#[derive(Debug)]
 struct Node {
     planes: Range<usize>,
     /// Bounds of their normals.
@@ -43,7 +45,7 @@ struct Node {
 impl PlaneTree {
     /// Builds the tree over planes, each with unit normal and offset from the origin, that bound a body with these
     /// vertices.
-    pub(super) fn new(vertices: &[DVec3], planes: Vec<(DVec3, f64)>) -> Self {
+    pub fn new(vertices: &[DVec3], planes: Vec<(DVec3, f64)>) -> Self {
         let center = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
         let size = vertices.iter().map(|v| v.abs().element_sum()).fold(0.0, f64::max);
         let mut tree = Self { center, slack: ROUNDING * size, planes, nodes: Vec::new() };
@@ -76,7 +78,7 @@ impl PlaneTree {
 
     /// Returns the least depth of a point of the body below a plane, or any such depth that is not greater than
     /// `enough`. `near` is the plane to begin with, and then the one that was found.
-    pub(super) fn least_depth(&self, p: DVec3, enough: f64, near: &mut usize) -> f64 {
+    pub fn least_depth(&self, p: DVec3, enough: f64, near: &mut usize) -> f64 {
         let depth = |plane: usize| self.planes[plane].1 - self.planes[plane].0.dot(p);
         let ray = p - self.center;
         let bound = |node: usize| {

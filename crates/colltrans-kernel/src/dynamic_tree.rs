@@ -1,6 +1,6 @@
 //! A binary tree of boxes that changes.
 //!
-//! Built from the top ([`split`](mod@colltrans_convex::body::split)), each child with a quarter of the items at least.
+//! Built from the top ([`split`](mod@crate::split)), each child with a quarter of the items at least.
 //! One that comes goes down to where boxes grow least; one that goes leaves its place to its neighbour; one
 //! that moves within its parent's box stays where it is, and else goes and comes, two changes. Every node is
 //! built anew after as many changes below it as it had items (and [`FEW_CHANGES`] at least).
@@ -14,8 +14,8 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use colltrans_convex::body::Aabb;
-use colltrans_kernel::split::{Boxed, Rule, halve, split};
+use crate::aabb::Aabb;
+use crate::split::{Boxed, Rule, halve, split};
 
 /// Items that are halved.
 const FEW: usize = 4;
@@ -28,19 +28,19 @@ const ROOM: usize = 64;
 /// A box with an item, or of two nodes.
 #[derive(Debug, Clone, Copy)]
 struct Node {
-    pub bounds: Aabb,
+    bounds: Aabb,
     parent: u32,
     /// The first of two children, side by side; of a leaf its item.
-    pub first: u32,
+    first: u32,
     /// How many items; 1 is a leaf.
-    pub count: u32,
+    count: u32,
     /// Changes until it is built anew.
     left: u32,
 }
 
 /// Items, numbered from 0 without gaps, and their boxes.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Tree {
+pub struct DynamicTree {
     /// The root first, if there are items.
     nodes: Vec<Node>,
     /// Pairs of nodes out of use, by the first of them.
@@ -67,9 +67,9 @@ impl Boxed for Item {
     }
 }
 
-impl Tree {
+impl DynamicTree {
     /// Of items with these boxes.
-    pub(super) fn build(boxes: impl IntoIterator<Item = Aabb>) -> Self {
+    pub fn build(boxes: impl IntoIterator<Item = Aabb>) -> Self {
         let number = |(k, bounds)| Item { bounds, number: k as u32 };
         let mut items: Vec<Item> = boxes.into_iter().enumerate().map(number).collect();
         let mut tree = Self::default();
@@ -83,12 +83,14 @@ impl Tree {
     }
 
     /// The box of an item.
-    pub(super) fn bounds(&self, item: u32) -> &Aabb {
+    #[inline]
+    pub fn bounds(&self, item: u32) -> &Aabb {
         &self.nodes[self.leaves[item as usize] as usize].bounds
     }
 
     /// The box of all items.
-    pub(super) fn root(&self) -> Option<&Aabb> {
+    #[inline]
+    pub fn root(&self) -> Option<&Aabb> {
         self.nodes.first().map(|root| &root.bounds)
     }
 
@@ -145,7 +147,7 @@ impl Tree {
     }
 
     /// A new item, the last one.
-    pub(super) fn insert(&mut self, bounds: Aabb) {
+    pub fn insert(&mut self, bounds: Aabb) {
         self.leaves.push(0);
         self.hang(self.leaves.len() as u32 - 1, bounds);
     }
@@ -178,7 +180,7 @@ impl Tree {
     }
 
     /// Takes an item out; the last one gets its number.
-    pub(super) fn remove(&mut self, item: u32) {
+    pub fn remove(&mut self, item: u32) {
         self.unhang(item);
         let last = self.leaves.len() as u32 - 1;
         if item != last {
@@ -212,7 +214,7 @@ impl Tree {
     }
 
     /// An item that has another box now.
-    pub(super) fn set(&mut self, item: u32, bounds: Aabb) {
+    pub fn set(&mut self, item: u32, bounds: Aabb) {
         let leaf = self.leaves[item as usize] as usize;
         let parent = self.nodes[leaf].parent;
         if parent == NONE {
@@ -280,7 +282,7 @@ impl Tree {
     ///
     /// # Errors
     /// What `visit` says.
-    pub(super) fn search<E>(
+    pub fn search<E>(
         &self,
         mut limit: f64,
         bound: impl Fn(&Aabb) -> f64,
@@ -364,7 +366,7 @@ mod tests {
     }
 
     /// Whether the tree is one, with these items.
-    fn check(tree: &Tree, boxes: &[Aabb]) {
+    fn check(tree: &DynamicTree, boxes: &[Aabb]) {
         assert_eq!(tree.leaves.len(), boxes.len());
         for (item, bounds) in boxes.iter().enumerate() {
             assert_eq!(tree.bounds(item as u32), bounds);
@@ -390,7 +392,7 @@ mod tests {
         assert!(tree.height() as f64 <= most, "{} of {}", tree.height(), boxes.len());
     }
 
-    fn found(tree: &Tree, limit: f64) -> Vec<u32> {
+    fn found(tree: &DynamicTree, limit: f64) -> Vec<u32> {
         let mut all = Vec::new();
         let visit = |item, _| {
             all.push(item);
@@ -409,7 +411,7 @@ mod tests {
         ) {
             let of = |[x, y, z]: [i32; 3]| cube(f64::from(x), f64::from(y), f64::from(z));
             let mut boxes: Vec<Aabb> = start.into_iter().map(of).collect();
-            let mut tree = Tree::build(boxes.iter().copied());
+            let mut tree = DynamicTree::build(boxes.iter().copied());
             for (kind, which, at) in changes {
                 let bounds = of(at);
                 if kind == 0 || boxes.is_empty() {
@@ -434,7 +436,7 @@ mod tests {
 
     #[test]
     fn one_after_the_other_makes_no_list() {
-        let mut tree = Tree::default();
+        let mut tree = DynamicTree::default();
         let mut boxes = Vec::new();
         for k in 0..3_000 {
             boxes.push(cube(2.0 * f64::from(k), 0.0, 0.0));

@@ -185,7 +185,9 @@ pub fn best_first<P: Pairs>(pairs: &mut P, queue: &mut BinaryHeap<Entry<P::Reaso
         if entry.bound >= pairs.limit() {
             // As are all others: it is the least, or else the limit is below all bounds.
             pairs.dismiss(&entry);
-            queue.drain().for_each(|rest| pairs.dismiss(&rest));
+            for rest in queue.drain() {
+                pairs.dismiss(&rest);
+            }
             return;
         }
         let Some(parts) = pairs.split(entry.views) else {

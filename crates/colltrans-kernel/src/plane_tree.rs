@@ -77,8 +77,9 @@ impl PlaneTree {
     }
 
     /// Returns the least depth of a point of the body below a plane, or any such depth that is not greater than
-    /// `enough`. `near` is the plane to begin with, and then the one that was found.
-    pub fn least_depth(&self, p: DVec3, enough: f64, near: &mut usize) -> f64 {
+    /// `enough`. `near` is the plane to begin with, and then the one that was found. Planes and nodes that are looked at are
+    /// added to `looks`.
+    pub fn least_depth(&self, p: DVec3, enough: f64, near: &mut usize, looks: &mut usize) -> f64 {
         let depth = |plane: usize| self.planes[plane].1 - self.planes[plane].0.dot(p);
         let ray = p - self.center;
         let bound = |node: usize| {
@@ -86,17 +87,16 @@ impl PlaneTree {
             let highest = (node.low * ray).max(node.high * ray).element_sum();
             node.least_offset - highest - self.slack
         };
-        work::count(1);
         let mut least = depth(*near);
-        let mut stack = vec![0];
+        let (mut stack, mut looked) = (vec![0], 1);
         while let Some(number) = stack.pop().filter(|_| least > enough) {
-            work::count(1);
+            looked += 1;
             if bound(number) >= least {
                 continue;
             }
             let node = &self.nodes[number];
             let Some(second) = node.second else {
-                work::count(node.planes.len());
+                looked += node.planes.len();
                 for plane in node.planes.clone() {
                     let depth = depth(plane);
                     if depth < least {
@@ -109,6 +109,8 @@ impl PlaneTree {
             let is_second_deeper = bound(second) > bound(number + 1);
             stack.extend(if is_second_deeper { children } else { [number + 1, second] });
         }
+        work::count(looked);
+        *looks += looked;
         least
     }
 }
@@ -137,8 +139,8 @@ mod tests {
                 let p = center + random.direction() * random.range(0.0, 1.0);
                 let all = planes.iter().map(|(normal, offset)| offset - normal.dot(p));
                 let least = all.fold(f64::INFINITY, f64::min);
-                assert_eq!(tree.least_depth(p, f64::NEG_INFINITY, &mut near), least);
-                let found = tree.least_depth(p, 0.5, &mut near);
+                assert_eq!(tree.least_depth(p, f64::NEG_INFINITY, &mut near, &mut 0), least);
+                let found = tree.least_depth(p, 0.5, &mut near, &mut 0);
                 assert!(found == least || (least..=0.5).contains(&found), "{found} {least}");
             }
         }

@@ -6,6 +6,7 @@
 //! surfaces that is all there is, in a large flat face some other point may lie a little deeper.
 
 use colltrans::ConvexPolyhedron;
+use colltrans_kernel::plane_tree::PlaneTree;
 use glam::DVec3;
 
 use crate::Mesh;
@@ -14,7 +15,7 @@ use crate::Mesh;
 const DEEP: bool = cfg!(feature = "depth");
 
 /// Planes and nodes that are looked at before the search for the deepest point is given up: some seconds.
-const MOST_LOOKS: u64 = 1_000_000_000;
+const MOST_LOOKS: usize = 1_000_000_000;
 
 /// What a hull has and its part has not.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -64,123 +65,30 @@ fn depth(mesh: &Mesh, hull: &ConvexPolyhedron) -> Option<f64> {
 }
 
 /// [`depth`], and how many planes and nodes were looked at.
-fn depth_counted(mesh: &Mesh, hull: &ConvexPolyhedron, looks: &mut u64) -> Option<f64> {
+fn depth_counted(mesh: &Mesh, hull: &ConvexPolyhedron, looks: &mut usize) -> Option<f64> {
     if hull.dimension() < 3 {
         return Some(0.0);
     }
-    let planes = Planes::of(hull);
+    let centre = hull.vertices().iter().sum::<DVec3>() / hull.vertices().len() as f64;
+    let around: Vec<DVec3> = hull.vertices().iter().map(|v| *v - centre).collect();
+    let plane = |face: u32| {
+        let normal = hull.face_normal(face);
+        let heights = hull.face_vertices(face).map(|v| normal.dot(around[v as usize]));
+        (normal, heights.fold(f64::NEG_INFINITY, f64::max))
+    };
+    let planes = PlaneTree::new(&around, (0..hull.face_count() as u32).map(plane).collect());
     // Less than this is rounding.
     let noise = 1e-13 * mesh.extent();
     let mut deepest = noise;
     // Points in the order of the mesh are near each other, and mostly below the same face.
     let mut near = 0;
     for p in mesh.faces.iter().flat_map(|face| samples(mesh, face)) {
-        deepest = deepest.max(planes.least_depth(p, deepest, &mut near, looks));
+        deepest = deepest.max(planes.least_depth(p - centre, deepest, &mut near, looks));
         if *looks > MOST_LOOKS {
             return None;
         }
     }
     Some(if deepest == noise { 0.0 } else { deepest })
-}
-
-/// Planes of a leaf.
-const LEAF: usize = 8;
-
-/// The face planes of a hull in a tree of boxes of their normals and offsets, as the depth of a point below the
-/// nearest of them is the least value of a function that is linear in both.
-struct Planes {
-    /// A point inside.
-    centre: DVec3,
-    /// Unit normal and distance from the centre of each face's plane, leaf by leaf.
-    faces: Vec<(DVec3, f64)>,
-    /// Each node before its children, the first child right behind it.
-    nodes: Vec<Node>,
-}
-
-/// Planes that follow each other, and bounds of their numbers.
-struct Node {
-    low: DVec3,
-    high: DVec3,
-    least_offset: f64,
-    range: std::ops::Range<usize>,
-    /// The second child; none for a leaf.
-    second: Option<usize>,
-}
-
-impl Planes {
-    fn of(hull: &ConvexPolyhedron) -> Self {
-        let vertices = hull.vertices();
-        let centre = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
-        let plane = |face: u32| {
-            let normal = hull.face_normal(face);
-            let corners = hull.face_vertices(face).map(|v| vertices[v as usize]);
-            let heights = corners.map(|corner| normal.dot(corner - centre));
-            (normal, heights.fold(f64::NEG_INFINITY, f64::max))
-        };
-        let faces = (0..hull.face_count() as u32).map(plane).collect();
-        let mut tree = Self { centre, faces, nodes: Vec::new() };
-        tree.build(0..tree.faces.len());
-        tree
-    }
-
-    fn build(&mut self, range: std::ops::Range<usize>) {
-        let part = &mut self.faces[range.clone()];
-        let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-        let mut least_offset = f64::INFINITY;
-        for (normal, offset) in part.iter() {
-            (low, high) = (low.min(*normal), high.max(*normal));
-            least_offset = least_offset.min(*offset);
-        }
-        let number = self.nodes.len();
-        self.nodes.push(Node { low, high, least_offset, range: range.clone(), second: None });
-        if range.len() <= LEAF {
-            return;
-        }
-        let axis = (high - low).max_position();
-        let half = range.len() / 2;
-        part.select_nth_unstable_by(half, |a, b| a.0[axis].total_cmp(&b.0[axis]));
-        let middle = range.start + half;
-        self.build(range.start..middle);
-        self.nodes[number].second = Some(self.nodes.len());
-        self.build(middle..range.end);
-    }
-
-    /// How far a point is below the plane that it is nearest to, or some plane that it is not deeper below than
-    /// `enough`. `near` is the plane to begin with, and the one that was found.
-    fn least_depth(&self, p: DVec3, enough: f64, near: &mut usize, looks: &mut u64) -> f64 {
-        let ray = p - self.centre;
-        let below = |plane: usize| self.faces[plane].1 - self.faces[plane].0.dot(ray);
-        // What rounding can make of a bound.
-        let slack = 1e-14 * ray.abs().element_sum();
-        let bound = |node: &Node| {
-            let most = (node.low * ray).max(node.high * ray).element_sum();
-            node.least_offset - most - 1e-14 * node.least_offset.abs() - slack
-        };
-        let mut least = below(*near);
-        let mut stack = vec![0];
-        *looks += 1;
-        while let Some(number) = stack.pop().filter(|_| least > enough) {
-            let node = &self.nodes[number];
-            *looks += 1;
-            if bound(node) >= least {
-                continue;
-            }
-            let Some(second) = node.second else {
-                for plane in node.range.clone() {
-                    *looks += 1;
-                    let depth = below(plane);
-                    if depth < least {
-                        (least, *near) = (depth, plane);
-                    }
-                }
-                continue;
-            };
-            let children = [number + 1, second];
-            let [first, last] = children.map(|child| bound(&self.nodes[child]));
-            stack.extend(if first < last { [second, number + 1] } else { children });
-        }
-        least
-    }
 }
 
 /// The corners of a face, the middles of its edges and its centre.

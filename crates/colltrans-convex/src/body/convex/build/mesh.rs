@@ -247,7 +247,9 @@ impl<'a> Depths<'a> {
     /// Returns the greatest depth of some points, or any number up to `known` if it is not greater than that.
     fn of_points(&self, points: impl Iterator<Item = DVec3>, known: f64, near: &mut usize) -> f64 {
         // A smaller depth changes nothing.
-        points.fold(0.0, |worst, p| worst.max(self.planes().least_depth(p, worst.max(known), near)))
+        points.fold(0.0, |worst, p| {
+            worst.max(self.planes().least_depth(p, worst.max(known), near, &mut 0))
+        })
     }
 
     /// Whether the faces at an edge of a flat surface look to opposite sides.

@@ -185,7 +185,7 @@ pub(crate) fn proven(scene: &Scene, axes: &Axes, nodes: [u32; 2], reason: Apart)
     if reason != Apart::Examined {
         let moving = View::new(axes, &scene.moving, nodes[0]);
         let fixed = View::new(axes, &scene.fixed, nodes[1]);
-        return Couple { scene, axes: axes, moving: &moving, fixed: &fixed }.bound(reason);
+        return Couple { scene, axes, moving: &moving, fixed: &fixed }.bound(reason);
     }
     let mut least = f64::INFINITY;
     for f in facets(&scene.moving, nodes[0]) {

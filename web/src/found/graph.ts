@@ -168,13 +168,16 @@ export class Graph {
       marks.push(dot(at, colours.normal, 5));
       if (shift >= 1) words.push({ at: place(at), text: "q", italic: true, bold: true });
     }
-    if (found.square && isSeen(found.square.center)) {
+    if (found.square) {
       const { center: [x, y], half } = found.square;
-      const [[u, v], [s, t]] = [place([x - half, y + half]), place([x + half, y - half])];
-      // Often smaller than a dot, which it stands around then.
-      const [wide, tall] = [Math.max(s - u, 16), Math.max(t - v, 16)];
-      marks.push(svg("rect", { x: (u + s - wide) / 2, y: (v + t - tall) / 2, width: wide, height: tall, fill: "none", stroke: colours.fixedMark, "stroke-width": 1.6, "stroke-dasharray": "4 3", "pointer-events": "none", class: "neighbourhood" }));
-      words.push({ at: [Math.min(Math.max((u + s) / 2, EDGE + 20), SIZE - 34), Math.max(v, 26)], text: "N(p)", italic: true });
+      const overlaps = x + half >= low[0] && x - half <= high[0] && y + half >= low[1] && y - half <= high[1];
+      if (overlaps) {
+        const [[u, v], [s, t]] = [place([x - half, y + half]), place([x + half, y - half])];
+        // A square smaller than a dot is drawn around the dot.
+        const [wide, tall] = [Math.max(s - u, 16), Math.max(t - v, 16)];
+        inner.push(svg("rect", { x: (u + s - wide) / 2, y: (v + t - tall) / 2, width: wide, height: tall, fill: "none", stroke: colours.fixedMark, "stroke-width": 1.6, "stroke-dasharray": "4 3", "pointer-events": "none", class: "neighbourhood" }));
+        words.push({ at: [Math.min(Math.max((u + s) / 2, EDGE + 20), SIZE - 34), Math.min(Math.max(v, 26), 10 + INNER - 6)], text: "N(p)", italic: true });
+      }
     }
     if (now) marks.push(...this.arrow(place, now.levels, now.gradient, window, colours.text));
     words.sort((a, b) => Number(b.bold ?? 0) - Number(a.bold ?? 0));

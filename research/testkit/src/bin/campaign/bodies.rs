@@ -3,86 +3,50 @@
 
 use colltrans_testkit::oracle::settings::{Setting, setting};
 
-use crate::casts;
+use crate::{Asked, casts};
 
-/// What became of the bodies of one family.
-#[derive(Debug, Default, Clone)]
-pub(crate) struct Tally {
-    bodies: u64,
-    /// By dimension.
-    dimensions: [u64; 4],
-    dropped: usize,
-    /// Largest distance of a dropped point, and largest hull error, in multiples of the largest
-    /// coordinate.
-    farthest: f64,
-    error: f64,
-    casts: casts::Tally,
-}
+use crate::tally::Tally;
 
-impl crate::Tally for Tally {
-    const CHUNK: u64 = 64;
-
-    fn header() -> String {
-        format!(
-            "{:>8} {:>8} {:>8} {:>8} {:>9} {:>10} {:>10} {}",
-            "bodies",
-            "solid",
-            "flat",
-            "straight",
-            "dropped",
-            "farthest",
-            "claimed",
-            casts::Tally::header()
-        )
-    }
-
-    fn line(&self) -> String {
-        let [point, segment, flat, solid] = self.dimensions;
-        format!(
-            "{:>8} {solid:>8} {flat:>8} {:>8} {:>9} {:>10.2e} {:>10.2e} {}",
-            self.bodies,
-            point + segment,
-            self.dropped,
-            self.farthest,
-            self.error,
-            self.casts.line()
-        )
-    }
-
-    fn merge(mut self, other: Self) -> Self {
-        self.bodies += other.bodies;
-        for (mine, theirs) in self.dimensions.iter_mut().zip(other.dimensions) {
-            *mine += theirs;
-        }
-        self.dropped += other.dropped;
-        self.farthest = self.farthest.max(other.farthest);
-        self.error = self.error.max(other.error);
-        self.casts = self.casts.merge(other.casts);
-        self
-    }
-
-    fn disagreements(&self) -> &[String] {
-        self.casts.disagreements()
-    }
-}
+/// What is counted: bodies by dimension, points that were dropped, and, in multiples of the largest coordinate, how
+/// far from the body the farthest one is and the largest hull error; then what casts count.
+pub(crate) const COLUMNS: &[&str] = &[
+    "bodies",
+    "solid",
+    "flat",
+    "straight",
+    "dropped",
+    "farthest",
+    "claimed",
+    "settings",
+    "contact",
+    "grazing",
+    "separated",
+    "proven",
+    "lp",
+    "gap/size",
+    "gap/tol",
+    "miss/u",
+];
 
 /// Examines the fixed body of a setting, and a cast onto it that is solved again.
-pub(crate) fn examine(family: &str, seed: u64, tally: &mut Tally) {
-    let setting = setting(family, seed);
-    tally.note(&setting);
-    casts::examine_setting(&setting, true, &mut tally.casts);
+pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) {
+    let setting = setting(asked.family, asked.seed);
+    examine_body(&setting, tally);
+    casts::examine_setting(&setting, true, tally);
 }
 
-impl Tally {
-    fn note(&mut self, setting: &Setting) {
-        let Ok(bodies) = setting.bodies() else { return };
-        self.bodies += 1;
-        self.dimensions[usize::from(bodies.fixed.dimension())] += 1;
-        let largest = setting.fixed.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
-        self.error = self.error.max(bodies.fixed.hull_error() / largest);
-        if let Ok([_, kept]) = setting.judge_bodies(&bodies) {
-            self.dropped += kept.dropped;
-            self.farthest = self.farthest.max(kept.farthest / largest);
-        }
+fn examine_body(setting: &Setting, tally: &mut Tally) {
+    let Ok(bodies) = setting.bodies() else { return };
+    tally.count("bodies");
+    tally.count(match bodies.fixed.dimension() {
+        0 | 1 => "straight",
+        2 => "flat",
+        _ => "solid",
+    });
+    let largest = setting.fixed.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
+    tally.largest("claimed", bodies.fixed.hull_error() / largest);
+    if let Ok([_, kept]) = setting.judge_bodies(&bodies) {
+        tally.add("dropped", kept.dropped as u64);
+        tally.largest("farthest", kept.farthest / largest);
     }
 }

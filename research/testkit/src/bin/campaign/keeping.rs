@@ -9,6 +9,9 @@ use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::random_hull;
 use glam::{DQuat, DVec3};
 
+use crate::Asked;
+use crate::tally::Tally;
+
 /// Boxes and hulls with a flat side over another, which slide along it at the gap but for some noises and a tilt
 /// of about as many, against each other.
 pub(crate) const GLIDING: &str = "gliding";
@@ -16,89 +19,42 @@ pub(crate) const GLIDING: &str = "gliding";
 /// Bounds that are so many noises over `n.d` apart are counted.
 const WIDE: f64 = 6.0;
 
-/// What became of the settings of one family.
-#[derive(Debug, Default, Clone)]
-pub(crate) struct Tally {
-    settings: u64,
-    contacts: u64,
-    grazing: u64,
-    separated: u64,
-    blocked: u64,
-    nearer: u64,
-    /// Without an answer: nothing is claimed of them.
-    open: u64,
-    /// The most that bounds are apart, in noises over `n.d`.
-    widest: f64,
-    wide: u64,
-    looks: u64,
-    most_looks: u32,
-    disagreements: Vec<String>,
-}
-
-impl crate::Tally for Tally {
-    const CHUNK: u64 = 64;
-
-    fn header() -> String {
-        let heads = ["settings", "contacts", "grazing", "separated", "blocked", "nearer"];
-        let rest = ["widest", "wide", "looks", "most", "open", "wrong"];
-        let heads = heads.iter().chain(&rest);
-        heads.map(|head| format!("{head:>9} ")).collect::<Vec<_>>().concat()
-    }
-
-    fn line(&self) -> String {
-        let looks = self.looks as f64 / self.contacts.max(1) as f64;
-        let counts =
-            [self.settings, self.contacts, self.grazing, self.separated, self.blocked, self.nearer]
-                .map(|count| format!("{count:>9} "))
-                .concat();
-        let Self { widest, wide, most_looks, open, .. } = self;
-        let wrong = self.disagreements.len();
-        format!(
-            "{counts}{widest:>9.2} {wide:>9} {looks:>9.2} {most_looks:>9} {open:>9} {wrong:>9} "
-        )
-    }
-
-    fn merge(mut self, other: Self) -> Self {
-        self.settings += other.settings;
-        self.contacts += other.contacts;
-        self.grazing += other.grazing;
-        self.separated += other.separated;
-        self.blocked += other.blocked;
-        self.nearer += other.nearer;
-        self.open += other.open;
-        self.widest = self.widest.max(other.widest);
-        self.wide += other.wide;
-        self.looks += other.looks;
-        self.most_looks = self.most_looks.max(other.most_looks);
-        self.disagreements.extend(other.disagreements);
-        self
-    }
-
-    fn disagreements(&self) -> &[String] {
-        &self.disagreements
-    }
-}
+/// What is counted.
+pub(crate) const COLUMNS: &[&str] = &[
+    "settings",
+    "contacts",
+    "grazing",
+    "separated",
+    "blocked",
+    "nearer",
+    "widest",
+    "wide",
+    "looks",
+    "most looks",
+    "open",
+];
 
 /// Casts the bodies of a setting, and judges the answers.
-pub(crate) fn examine(family: &str, seed: u64, tally: &mut Tally) {
+pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) {
+    let Asked { family, seed, .. } = *asked;
     if family == GLIDING {
         return glide(seed, tally);
     }
     let setting = setting(family, seed);
-    tally.settings += 1;
+    tally.count("settings");
     let Ok(bodies) = setting.bodies() else { return };
     let mut random = Random::new(seed ^ 0x6a9);
     let Ok(cast) = setting.query(&bodies) else { return };
     let gap = gap(&cast, &mut random);
     if let Err(objection) = judge(&cast, gap, tally) {
-        tally.disagreements.push(format!("{setting} {gap:e} {objection}"));
+        tally.disagree(format!("{setting} {gap:e} {objection}"));
     }
 }
 
 /// One setting of [`GLIDING`].
 fn glide(seed: u64, tally: &mut Tally) {
     let mut random = Random::new(seed ^ 0x61de);
-    tally.settings += 1;
+    tally.count("settings");
     let size = 10.0_f64.powf(random.range(-3.0, 3.0));
     let flat = |random: &mut Random, side: f64| {
         let half =
@@ -131,7 +87,7 @@ fn glide(seed: u64, tally: &mut Tally) {
     let Ok(pose) = Pose::new(tilt, start + DVec3::Z * height) else { return };
     let Ok(cast) = Cast::new(moving.at(pose), fixed.at(Pose::IDENTITY), DVec3::X) else { return };
     if let Err(objection) = judge(&cast, gap, tally) {
-        tally.disagreements.push(format!("{GLIDING}:{seed} {gap:e} {objection}"));
+        tally.disagree(format!("{GLIDING}:{seed} {gap:e} {objection}"));
     }
 }
 
@@ -177,7 +133,7 @@ fn judge(cast: &Cast, gap: f64, tally: &mut Tally) -> Result<(), Objection> {
         (Ok(outcome), Ok(clearance)) => (outcome, clearance),
         (Err(QueryError::NotConverged { reason }), _)
         | (_, Err(QueryError::NotConverged { reason })) => {
-            tally.open += 1;
+            tally.count("open");
             eprintln!("no answer with a gap of {gap:e}: {reason}");
             return Ok(());
         }
@@ -187,16 +143,16 @@ fn judge(cast: &Cast, gap: f64, tally: &mut Tally) -> Result<(), Objection> {
     judge.check_clearance(&clearance)?;
     match &outcome {
         Outcome::Contact(contact) => {
-            tally.contacts += 1;
-            tally.looks += u64::from(contact.steps.pivots);
-            tally.most_looks = tally.most_looks.max(contact.steps.pivots);
-            tally.widest = tally.widest.max(noises);
-            tally.wide += u64::from(noises > WIDE);
+            tally.count("contacts");
+            tally.mean("looks", contact.steps.pivots);
+            tally.largest("most looks", contact.steps.pivots);
+            tally.largest("widest", noises);
+            tally.count_if("wide", noises > WIDE);
         }
-        Outcome::Grazing(_) => tally.grazing += 1,
-        Outcome::Separated(_) => tally.separated += 1,
+        Outcome::Grazing(_) => tally.count("grazing"),
+        Outcome::Separated(_) => tally.count("separated"),
     }
-    tally.blocked += u64::from(matches!(clearance, Clearance::Blocked { .. }));
-    tally.nearer += u64::from(matches!(clearance, Clearance::Overlapping(_)));
+    tally.count_if("blocked", matches!(clearance, Clearance::Blocked { .. }));
+    tally.count_if("nearer", matches!(clearance, Clearance::Overlapping(_)));
     Ok(())
 }

@@ -25,6 +25,7 @@ mod proofs;
 mod scenes;
 mod sequences;
 mod solids;
+mod tally;
 mod ways;
 
 use std::process::ExitCode;
@@ -38,50 +39,117 @@ use colltrans_testkit::oracle::still::CASTS;
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
 
+use crate::tally::{Tally, header};
+
 /// Disagreements printed for each family; all are counted.
 const SHOWN: usize = 12;
+/// Settings of casts, if nothing is asked for, and how many of them the linear programme solves.
+const SETTINGS: u64 = 20_000;
+const LP: u64 = 1_000;
 
-const USAGE: &str = "\
-campaign [--settings N] [--lp N] [--seed S] [--only FAMILY]
-campaign --sequences QUERIES [--seed S] [--only FAMILY]
-campaign --solids N [--seed S] [--only FAMILY]
-campaign --solid-distances N [--seed S] [--only FAMILY]
-campaign --free DIRECTIONS [--seed S] [--only FAMILY]
-campaign --bodies N [--seed S] [--only FAMILY]
-campaign --distances N [--seed S] [--only FAMILY]
-campaign --scenes N [--seed S] [--only FAMILY]
-campaign --keeping N [--seed S] [--only FAMILY]
-campaign --solid-keeping N [--seed S] [--only FAMILY]
-campaign --motions N [--seed S] [--only FAMILY]
-campaign --solid-motions N [--seed S] [--only FAMILY]
-campaign --paths N [--seed S] [--only FAMILY]
-campaign --play N [--seed S] [--only FAMILY]
-campaign --ways N [--seed S] [--only FAMILY]
-campaign --proofs MUTANTS [--seed S] [--only KIND]
-campaign --bulk CASTS [--seed S] [--only FAMILY]
-campaign --case FAMILY:SEED | FAMILY:SEED:STEP
-campaign --free 1 --case FAMILY:SEED
-    one setting of that campaign; so of all others, but for those of solids
-";
+/// One kind of campaign.
+struct Campaign {
+    /// Its option, and what the option counts.
+    option: &'static str,
+    counts: &'static str,
+    /// How many of them an examination makes.
+    each: u64,
+    families: fn() -> Vec<String>,
+    columns: &'static [&'static str],
+    examine: fn(&Asked<'_>, &mut Tally),
+}
+
+/// One setting to be examined.
+struct Asked<'a> {
+    family: &'a str,
+    seed: u64,
+    /// Of casts: one in so many is solved by the linear programme.
+    every: u64,
+}
+
+impl Asked<'_> {
+    /// Returns the number of the setting in its family.
+    fn index(&self) -> u64 {
+        self.seed & u64::from(u32::MAX)
+    }
+}
+
+const fn campaign(
+    option: &'static str,
+    families: fn() -> Vec<String>,
+    columns: &'static [&'static str],
+    examine: fn(&Asked<'_>, &mut Tally),
+) -> Campaign {
+    Campaign { option, counts: "N", each: 1, families, columns, examine }
+}
+
+/// All campaigns; the first one is for who asks for none.
+const CAMPAIGNS: [Campaign; 17] = [
+    campaign("--settings", settings, casts::COLUMNS, casts::examine),
+    Campaign {
+        counts: "QUERIES",
+        each: sequences::QUERIES,
+        ..campaign("--sequences", settings, sequences::COLUMNS, sequences::examine)
+    },
+    campaign("--solids", solids::cast_families, solids::CASTS, solids::casts),
+    campaign("--solid-distances", solids::mesh_families, solids::DISTANCES, solids::distances),
+    campaign("--solid-keeping", solids::mesh_families, solids::KEEPING, solids::keeping),
+    campaign("--solid-motions", solids::motion_families, solids::MOTIONS, solids::motions),
+    Campaign {
+        counts: "DIRECTIONS",
+        each: free::DIRECTIONS,
+        ..campaign("--free", || names(&free::FAMILIES), free::COLUMNS, free::examine)
+    },
+    campaign("--bodies", || names(NEARLY_FLAT), bodies::COLUMNS, bodies::examine),
+    campaign("--distances", settings, distances::COLUMNS, distances::examine),
+    campaign("--scenes", || names(&among::FAMILIES), scenes::COLUMNS, scenes::examine),
+    campaign("--keeping", keeping_families, keeping::COLUMNS, keeping::examine),
+    campaign("--motions", settings, motions::COLUMNS, motions::examine),
+    campaign("--paths", || names(&paths::FAMILIES), paths::COLUMNS, paths::examine),
+    campaign("--play", || names(&play::families()), play::COLUMNS, play::examine),
+    campaign("--ways", || names(&ways::FAMILIES), ways::COLUMNS, ways::examine),
+    Campaign {
+        counts: "MUTANTS",
+        each: proofs::MUTANTS,
+        ..campaign("--proofs", proof_kinds, proofs::COLUMNS, proofs::examine)
+    },
+    Campaign {
+        counts: "CASTS",
+        each: CASTS as u64,
+        ..campaign("--bulk", settings, bulk::COLUMNS, bulk::examine)
+    },
+];
+
+fn names(families: &[&str]) -> Vec<String> {
+    families.iter().map(|&name| name.to_owned()).collect()
+}
+
+fn settings() -> Vec<String> {
+    FAMILIES.iter().map(|family| family.0.to_owned()).collect()
+}
+
+fn keeping_families() -> Vec<String> {
+    settings().into_iter().chain([keeping::GLIDING.to_owned()]).collect()
+}
+
+fn proof_kinds() -> Vec<String> {
+    KINDS.iter().map(|kind| kind.name.to_owned()).collect()
+}
+
+fn usage() -> String {
+    let lines = CAMPAIGNS.iter().map(|campaign| {
+        let Campaign { option, counts, .. } = campaign;
+        format!("campaign {option} {counts} [--seed S] [--only FAMILY | --case FAMILY:SEED]\n")
+    });
+    let rest = "\
+        campaign --settings N --lp N\n    so many of them are solved by the linear programme too\n\
+        campaign --case FAMILY:SEED | FAMILY:SEED:STEP\n    \
+        one cast, or one step of a sequence, with all its numbers\n";
+    lines.chain([rest.to_owned()]).collect()
+}
 
 struct Arguments {
-    settings: u64,
-    sequences: Option<u64>,
-    solids: Option<u64>,
-    solid_distances: Option<u64>,
-    solid_keeping: Option<u64>,
-    solid_motions: Option<u64>,
-    free: Option<u64>,
-    motions: Option<u64>,
-    paths: Option<u64>,
-    play: Option<u64>,
-    ways: Option<u64>,
-    proofs: Option<u64>,
-    bulk: Option<u64>,
-    bodies: Option<u64>,
-    distances: Option<u64>,
-    scenes: Option<u64>,
-    keeping: Option<u64>,
+    campaign: Option<(&'static Campaign, u64)>,
     lp: u64,
     seed: u64,
     only: Option<String>,
@@ -111,118 +179,34 @@ impl FromStr for Case {
 
 fn main() -> ExitCode {
     if std::env::args().any(|word| word == "--help" || word == "-h") {
-        print!("{USAGE}");
+        print!("{}", usage());
         return ExitCode::SUCCESS;
     }
-    let arguments = match parse(std::env::args().skip(1)) {
-        Ok(arguments) => arguments,
+    match parse(std::env::args().skip(1)).and_then(|arguments| carry_out(&arguments)) {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
         Err(message) => {
             eprintln!("{message}");
-            return ExitCode::from(2);
+            ExitCode::from(2)
         }
-    };
-    if let Some(count) = arguments.solids {
-        return exit_code(solids::run(count, arguments.seed, arguments.only.as_deref()));
     }
-    if let Some(count) = arguments.solid_distances {
-        return exit_code(solids::distances(count, arguments.seed, arguments.only.as_deref()));
-    }
-    if let Some(count) = arguments.solid_keeping {
-        return exit_code(solids::keeping(count, arguments.seed, arguments.only.as_deref()));
-    }
-    if let Some(count) = arguments.solid_motions {
-        return exit_code(solids::motions(count, arguments.seed, arguments.only.as_deref()));
-    }
-    let families: Vec<&str> = FAMILIES.iter().map(|f| f.0).collect();
-    exit_code(if let Some(directions) = arguments.free {
-        run(&arguments, &free::FAMILIES, directions.div_ceil(free::DIRECTIONS), free::examine)
-    } else if let Some(count) = arguments.bodies {
-        run(&arguments, NEARLY_FLAT, count, bodies::examine)
-    } else if let Some(count) = arguments.distances {
-        run(&arguments, &families, count, distances::examine)
-    } else if let Some(count) = arguments.motions {
-        run(&arguments, &families, count, motions::examine)
-    } else if let Some(count) = arguments.paths {
-        run(&arguments, &paths::FAMILIES, count, paths::examine)
-    } else if let Some(count) = arguments.play {
-        run(&arguments, &play::families(), count, play::examine)
-    } else if let Some(count) = arguments.ways {
-        run(&arguments, &ways::FAMILIES, count, ways::examine)
-    } else if let Some(count) = arguments.proofs {
-        let kinds: Vec<&str> = KINDS.iter().map(|kind| kind.name).collect();
-        run(&arguments, &kinds, count.div_ceil(proofs::MUTANTS), proofs::examine)
-    } else if let Some(count) = arguments.bulk {
-        run(&arguments, &families, count.div_ceil(CASTS as u64), bulk::examine)
-    } else if let Some(count) = arguments.scenes {
-        run(&arguments, &among::FAMILIES, count, scenes::examine)
-    } else if let Some(count) = arguments.keeping {
-        let families: Vec<&str> = families.into_iter().chain([keeping::GLIDING]).collect();
-        run(&arguments, &families, count, keeping::examine)
-    } else if let Some(queries) = arguments.sequences {
-        run(&arguments, &families, queries.div_ceil(sequences::QUERIES), sequences::examine)
-    } else if let Some(case) = &arguments.case {
-        replay(case)
-    } else {
-        let every = (arguments.settings / arguments.lp.max(1)).max(1);
-        run(&arguments, &families, arguments.settings, |name, seed, tally| {
-            casts::examine(name, seed, every, tally);
-        })
-    })
-}
-
-fn exit_code(clean: bool) -> ExitCode {
-    if clean { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }
 
 fn parse(mut words: impl Iterator<Item = String>) -> Result<Arguments, String> {
-    let mut arguments = Arguments {
-        settings: 20_000,
-        sequences: None,
-        solids: None,
-        solid_distances: None,
-        solid_keeping: None,
-        solid_motions: None,
-        free: None,
-        motions: None,
-        paths: None,
-        play: None,
-        ways: None,
-        proofs: None,
-        bulk: None,
-        bodies: None,
-        distances: None,
-        scenes: None,
-        keeping: None,
-        lp: 1_000,
-        seed: 1,
-        only: None,
-        case: None,
-    };
+    let mut arguments = Arguments { campaign: None, lp: LP, seed: 1, only: None, case: None };
     while let Some(word) = words.next() {
         let value = words.next().ok_or_else(|| format!("{word} needs a value"))?;
         match word.as_str() {
-            "--settings" => arguments.settings = number(&value)?,
-            "--sequences" => arguments.sequences = Some(number(&value)?),
-            "--solids" => arguments.solids = Some(number(&value)?),
-            "--distances" => arguments.distances = Some(number(&value)?),
-            "--keeping" => arguments.keeping = Some(number(&value)?),
-            "--solid-keeping" => arguments.solid_keeping = Some(number(&value)?),
-            "--solid-motions" => arguments.solid_motions = Some(number(&value)?),
-            "--motions" => arguments.motions = Some(number(&value)?),
-            "--paths" => arguments.paths = Some(number(&value)?),
-            "--play" => arguments.play = Some(number(&value)?),
-            "--ways" => arguments.ways = Some(number(&value)?),
-            "--proofs" => arguments.proofs = Some(number(&value)?),
-            "--bulk" => arguments.bulk = Some(number(&value)?),
-            "--free" => arguments.free = Some(number(&value)?),
-            "--solid-distances" => arguments.solid_distances = Some(number(&value)?),
-            "--scenes" => arguments.scenes = Some(number(&value)?),
-            "--bodies" => arguments.bodies = Some(number(&value)?),
             "--lp" => arguments.lp = number(&value)?,
             "--seed" => arguments.seed = number(&value)?,
             "--only" => arguments.only = Some(value),
             "--case" => arguments.case = Some(value.parse()?),
-            _ => return Err(format!("unknown option {word}\n{USAGE}")),
+            _ => {
+                let campaign = CAMPAIGNS.iter().find(|campaign| campaign.option == word);
+                let campaign =
+                    campaign.ok_or_else(|| format!("unknown option {word}\n{}", usage()))?;
+                arguments.campaign = Some((campaign, number(&value)?));
+            }
         }
     }
     Ok(arguments)
@@ -232,94 +216,83 @@ fn number<T: FromStr>(text: &str) -> Result<T, String> {
     text.parse().map_err(|_| format!("{text} is not a number"))
 }
 
-/// What became of the settings, or the sequences, of one family.
-trait Tally: Default + Send {
-    /// How many of them a thread is handed at a time.
-    const CHUNK: u64;
-
-    /// The heads of the columns.
-    fn header() -> String;
-    /// A line of the table.
-    fn line(&self) -> String;
-    /// Both together.
-    fn merge(self, other: Self) -> Self;
-    /// What is wrong.
-    fn disagreements(&self) -> &[String];
+/// Examines what is asked for; `true` if nothing disagrees.
+fn carry_out(arguments: &Arguments) -> Result<bool, String> {
+    let (campaign, count) = match (arguments.campaign, &arguments.case) {
+        (Some(asked), _) => asked,
+        (None, Some(case)) => return replay(case),
+        (None, None) => (&CAMPAIGNS[0], SETTINGS),
+    };
+    let families = (campaign.families)();
+    println!("{:<20} {}", "family", header(campaign.columns));
+    if let Some(Case { family, seed, .. }) = &arguments.case {
+        if !families.contains(family) {
+            return Err(unknown(family, &families));
+        }
+        let mut tally = Tally::default();
+        (campaign.examine)(&Asked { family, seed: *seed, every: 1 }, &mut tally);
+        return Ok(print(family, &tally, campaign.columns));
+    }
+    let chosen: Vec<&String> = families
+        .iter()
+        .filter(|name| arguments.only.as_ref().is_none_or(|only| only == *name))
+        .collect();
+    match &arguments.only {
+        Some(only) if chosen.is_empty() => Err(unknown(only, &families)),
+        _ => Ok(run(campaign, &chosen, count, arguments)),
+    }
 }
 
-/// Examines so many seeds, the same number of each family, or the one case that is asked for; `true` if nothing
-/// disagrees.
-fn run<T: Tally>(
-    arguments: &Arguments,
-    families: &[&str],
-    count: u64,
-    examine: impl Fn(&str, u64, &mut T) + Sync,
-) -> bool {
-    if let Some(Case { family, seed, .. }) = &arguments.case {
-        if !families.contains(&family.as_str()) {
-            return unknown(family);
-        }
-        let mut tally = T::default();
-        examine(family, *seed, &mut tally);
-        println!("{:<20} {}", "family", T::header());
-        print(family, &tally);
-        return tally.disagreements().is_empty();
-    }
-    let families: Vec<&str> = families
-        .iter()
-        .copied()
-        .filter(|name| arguments.only.as_ref().is_none_or(|only| only == name))
-        .collect();
-    let per_family = count.div_ceil(families.len().max(1) as u64);
+/// Examines so many seeds, the same number of each family; `true` if nothing disagrees.
+fn run(campaign: &Campaign, families: &[&String], count: u64, arguments: &Arguments) -> bool {
+    let per_family = count.div_ceil(campaign.each).div_ceil(families.len() as u64);
+    let every = (count / arguments.lp.max(1)).max(1);
     let started = Instant::now();
     let bar = ProgressBar::new(per_family * families.len() as u64).with_style(
         ProgressStyle::with_template("{msg:20} {wide_bar} {pos}/{len} {eta}").expect("a template"),
     );
-    println!("{:<20} {}", "family", T::header());
-    let mut total = T::default();
-    for name in families {
+    let mut total = Tally::default();
+    for &name in families {
         bar.set_message(name.to_owned());
-        let tally = (0..per_family.div_ceil(T::CHUNK))
+        let tally = (0..per_family)
             .into_par_iter()
-            .map(|chunk| {
-                let mut tally = T::default();
-                let range = chunk * T::CHUNK..((chunk + 1) * T::CHUNK).min(per_family);
-                bar.inc(range.end - range.start);
-                for index in range {
-                    examine(name, arguments.seed << 32 | index, &mut tally);
-                }
+            .fold(Tally::default, |mut tally, index| {
+                let seed = arguments.seed << 32 | index;
+                (campaign.examine)(&Asked { family: name, seed, every }, &mut tally);
+                bar.inc(1);
                 tally
             })
-            .reduce(T::default, T::merge);
-        bar.suspend(|| print(name, &tally));
-        total = total.merge(tally);
+            .reduce(Tally::default, Tally::merged);
+        bar.suspend(|| print(name, &tally, campaign.columns));
+        total = total.merged(tally);
     }
     bar.finish_and_clear();
-    println!("{:<20} {}", "all", total.line());
+    println!("{:<20} {}", "all", total.line(campaign.columns));
     println!("{:.1} s", started.elapsed().as_secs_f64());
-    total.disagreements().is_empty()
+    total.disagreements.is_empty()
 }
 
-/// A line of the table, and the first disagreements.
-fn print(name: &str, tally: &impl Tally) {
-    println!("{name:<20} {}", tally.line());
-    for line in tally.disagreements().iter().take(SHOWN) {
+/// Prints a line of the table, and the first disagreements; `true` if there are none.
+fn print(name: &str, tally: &Tally, columns: &[&str]) -> bool {
+    println!("{name:<20} {}", tally.line(columns));
+    for line in tally.disagreements.iter().take(SHOWN) {
         println!("    {line}");
     }
+    tally.disagreements.is_empty()
 }
 
 /// One setting of casts, or one step of a sequence, with all its numbers.
-fn replay(Case { family, seed, step }: &Case) -> bool {
-    if !FAMILIES.iter().any(|f| f.0 == family) {
-        return unknown(family);
+fn replay(Case { family, seed, step }: &Case) -> Result<bool, String> {
+    let families = settings();
+    if !families.contains(family) {
+        return Err(unknown(family, &families));
     }
-    match step {
+    Ok(match step {
         Some(step) => sequences::replay(family, *seed, *step),
         None => casts::replay(family, *seed),
-    }
+    })
 }
 
-fn unknown(family: &str) -> bool {
-    eprintln!("this campaign has no family {family}");
-    false
+fn unknown(family: &str, families: &[String]) -> String {
+    format!("this campaign has no family {family}; it has: {}", families.join(", "))
 }

@@ -10,74 +10,34 @@ use colltrans_testkit::oracle::settings::setting;
 use colltrans_testkit::random::Random;
 use glam::DVec3;
 
+use crate::Asked;
+use crate::tally::Tally;
+
 /// One setting in so many is judged in whole numbers.
 const SAMPLE: u64 = 100;
 
 /// Times on the way of a body at which it is asked how deep it is.
 const TIMES: u32 = 8;
 
-/// What became of the settings of one family.
-#[derive(Debug, Default, Clone)]
-pub(crate) struct Tally {
-    settings: u64,
-    contacts: u64,
-    grazing: u64,
-    free: u64,
-    overlapping: u64,
-    /// Of how far the body can go: not to the end, and as far as it is asked.
-    stopped: u64,
-    looks: u64,
-    most_looks: u32,
-    judged: u64,
-    /// Without an answer.
-    open: u64,
-    disagreements: Vec<String>,
-}
-
-impl crate::Tally for Tally {
-    const CHUNK: u64 = 64;
-
-    fn header() -> String {
-        let heads = ["settings", "contacts", "grazing", "free", "overlap", "stopped"];
-        let rest = ["looks", "most", "judged", "open", "wrong"];
-        heads.iter().chain(&rest).map(|head| format!("{head:>9} ")).collect::<Vec<_>>().concat()
-    }
-
-    fn line(&self) -> String {
-        let looks = self.looks as f64 / self.settings.max(1) as f64;
-        let Self { settings, contacts, grazing, free, overlapping, stopped, .. } = self;
-        let counts = [settings, contacts, grazing, free, overlapping, stopped]
-            .map(|count| format!("{count:>9} "))
-            .concat();
-        let Self { most_looks, judged, open, .. } = self;
-        let wrong = self.disagreements.len();
-        format!("{counts}{looks:>9.2} {most_looks:>9} {judged:>9} {open:>9} {wrong:>9} ")
-    }
-
-    fn merge(mut self, other: Self) -> Self {
-        self.settings += other.settings;
-        self.contacts += other.contacts;
-        self.grazing += other.grazing;
-        self.free += other.free;
-        self.overlapping += other.overlapping;
-        self.stopped += other.stopped;
-        self.looks += other.looks;
-        self.most_looks = self.most_looks.max(other.most_looks);
-        self.judged += other.judged;
-        self.open += other.open;
-        self.disagreements.extend(other.disagreements);
-        self
-    }
-
-    fn disagreements(&self) -> &[String] {
-        &self.disagreements
-    }
-}
+/// What is counted.
+pub(crate) const COLUMNS: &[&str] = &[
+    "settings",
+    "contacts",
+    "grazing",
+    "free",
+    "overlapping",
+    "stopped",
+    "looks",
+    "most looks",
+    "judged",
+    "open",
+];
 
 /// Lets the bodies of a setting move, and judges the answer.
-pub(crate) fn examine(family: &str, seed: u64, tally: &mut Tally) {
+pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) {
+    let Asked { family, seed, .. } = *asked;
     let setting = setting(family, seed);
-    tally.settings += 1;
+    tally.count("settings");
     let Ok(bodies) = setting.bodies() else { return };
     let Ok(cast) = setting.query(&bodies) else { return };
     let mut random = Random::new(seed ^ 0x0710_7104);
@@ -99,7 +59,7 @@ pub(crate) fn examine(family: &str, seed: u64, tally: &mut Tally) {
     };
     let judge = Judge { bodies: [p, q], spins: [moving, fixed], keep };
     if let Err(Objection(what)) = examined(&judge, seed.is_multiple_of(SAMPLE), tally) {
-        tally.disagreements.push(format!("{family}:{seed} {what}"));
+        tally.disagree(format!("{family}:{seed} {what}"));
     }
 }
 
@@ -154,19 +114,19 @@ fn examined(judge: &Judge, in_whole_numbers: bool, tally: &mut Tally) -> Result<
     };
     cast.verify(outcome.proof()).map_err(|e| Objection(e.to_string()))?;
     let looks = outcome.steps().looks;
-    tally.looks += u64::from(looks);
-    tally.most_looks = tally.most_looks.max(looks);
+    tally.mean("looks", looks);
+    tally.largest("most looks", looks);
     match &outcome {
-        MotionOutcome::Contact(_) => tally.contacts += 1,
-        MotionOutcome::Grazing(_) => tally.grazing += 1,
-        MotionOutcome::Overlapping(_) => tally.overlapping += 1,
-        MotionOutcome::Undecided(_) => tally.open += 1,
-        _ => tally.free += 1,
+        MotionOutcome::Contact(_) => tally.count("contacts"),
+        MotionOutcome::Grazing(_) => tally.count("grazing"),
+        MotionOutcome::Overlapping(_) => tally.count("overlapping"),
+        MotionOutcome::Undecided(_) => tally.count("open"),
+        _ => tally.count("free"),
     }
     let planes: usize = outcome.proof().spans.iter().map(Vec::len).sum();
     let judged = in_whole_numbers && judge.bodies.iter().all(|b| b.vertices().len() < 60);
     if judged && planes < 60 && outcome.proof().solids.is_none() {
-        tally.judged += 1;
+        tally.count("judged");
         judge.check(&outcome)?;
     }
     clearance(judge, &cast, &outcome, judged, tally)
@@ -183,7 +143,7 @@ fn clearance(
     let found = match cast.clearance() {
         Ok(found) => found,
         Err(QueryError::NotConverged { .. }) => {
-            tally.open += 1;
+            tally.count("open");
             return Ok(());
         }
         // Of bodies that are smaller than rounding.
@@ -200,7 +160,7 @@ fn clearance(
         }
         MotionClearance::Free(free) => MotionOutcome::Free(free.clone()),
         MotionClearance::Blocked { time, contact } => {
-            tally.stopped += 1;
+            tally.count("stopped");
             let MotionStop { time: place, shrunk, .. } = &**contact;
             let is_bound = *time <= place.lower && *time <= shrunk.lower && *time >= 0.0;
             if !is_bound || place.lower > place.value || place.value > place.upper {

@@ -2,71 +2,26 @@
 
 use colltrans_testkit::oracle::among::Setting;
 
-/// What became of the scenes of one family.
-#[derive(Debug, Default, Clone)]
-pub(crate) struct Tally {
-    scenes: u64,
-    obstacles: usize,
-    asked: usize,
-    overlapped: u64,
-    tied: u64,
-    stopped: u64,
-    refused: usize,
-    disagreements: Vec<String>,
-}
+use crate::Asked;
+use crate::tally::Tally;
 
-impl crate::Tally for Tally {
-    const CHUNK: u64 = 16;
-
-    fn header() -> String {
-        let names = ["scenes", "obstacles", "asked", "overlapped", "tied", "stopped", "refused"];
-        let heads: Vec<String> = names.iter().map(|name| format!("{name:>11}")).collect();
-        format!("{} {:>8}", heads.concat(), "wrong")
-    }
-
-    fn line(&self) -> String {
-        format!(
-            "{:>11}{:>11}{:>11}{:>11}{:>11}{:>11}{:>11} {:>8}",
-            self.scenes,
-            self.obstacles,
-            self.asked,
-            self.overlapped,
-            self.tied,
-            self.stopped,
-            self.refused,
-            self.disagreements.len()
-        )
-    }
-
-    fn merge(mut self, other: Self) -> Self {
-        self.scenes += other.scenes;
-        self.obstacles += other.obstacles;
-        self.asked += other.asked;
-        self.overlapped += other.overlapped;
-        self.tied += other.tied;
-        self.stopped += other.stopped;
-        self.refused += other.refused;
-        self.disagreements.extend(other.disagreements);
-        self
-    }
-
-    fn disagreements(&self) -> &[String] {
-        &self.disagreements
-    }
-}
+/// What is counted.
+pub(crate) const COLUMNS: &[&str] =
+    &["scenes", "obstacles", "asked", "overlapped", "tied", "stopped", "refused"];
 
 /// Draws a scene, asks everything, and judges it.
-pub(crate) fn examine(family: &str, seed: u64, tally: &mut Tally) {
-    tally.scenes += 1;
+pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) {
+    let Asked { family, seed, .. } = *asked;
+    tally.count("scenes");
     match Setting::draw(family, seed).and_then(|setting| setting.examine()) {
         Ok(seen) => {
-            tally.obstacles += seen.obstacles;
-            tally.asked += seen.asked;
-            tally.overlapped += u64::from(seen.overlapped);
-            tally.tied += u64::from(seen.tied);
-            tally.stopped += u64::from(seen.stopped);
-            tally.refused += seen.refused;
+            tally.add("obstacles", seen.obstacles as u64);
+            tally.add("asked", seen.asked as u64);
+            tally.count_if("overlapped", seen.overlapped);
+            tally.count_if("tied", seen.tied);
+            tally.count_if("stopped", seen.stopped);
+            tally.add("refused", seen.refused as u64);
         }
-        Err(objection) => tally.disagreements.push(format!("{family}:{seed}: {objection}")),
+        Err(objection) => tally.disagree(format!("{family}:{seed}: {objection}")),
     }
 }

@@ -8,6 +8,9 @@ use colltrans_testkit::oracle::cubes::Cubes;
 use colltrans_testkit::random::Random;
 use glam::DVec3;
 
+use crate::Asked;
+use crate::tally::Tally;
+
 /// The kinds of settings.
 pub(crate) const FAMILIES: [&str; 4] =
     ["tunnels", "turned tunnels", "boxes with holes", "turned boxes"];
@@ -17,58 +20,15 @@ const LEGS: usize = 12;
 /// Places of each leg, without its start.
 const PLACES: u32 = 200;
 
-/// What became of the settings of one family.
-#[derive(Debug, Default, Clone)]
-pub(crate) struct Tally {
-    settings: u64,
-    found: u64,
-    proven: u64,
-    open: u64,
-    legs: u64,
-    most: u64,
-    judged: u64,
-    refused: u64,
-    disagreements: Vec<String>,
-}
-
-impl crate::Tally for Tally {
-    const CHUNK: u64 = 4;
-
-    fn header() -> String {
-        let heads =
-            ["settings", "found", "proven", "open", "legs", "most", "places", "refused", "wrong"];
-        heads.map(|head| format!("{head:>9} ")).concat()
-    }
-
-    fn line(&self) -> String {
-        let Self { settings, found, proven, open, legs, most, judged, refused, .. } = self;
-        let wrong = self.disagreements.len() as u64;
-        let counts = [settings, found, proven, open, legs, most, judged, refused, &wrong];
-        counts.map(|count| format!("{count:>9} ")).concat()
-    }
-
-    fn merge(mut self, other: Self) -> Self {
-        self.settings += other.settings;
-        self.found += other.found;
-        self.proven += other.proven;
-        self.open += other.open;
-        self.legs += other.legs;
-        self.most = self.most.max(other.most);
-        self.judged += other.judged;
-        self.refused += other.refused;
-        self.disagreements.extend(other.disagreements);
-        self
-    }
-
-    fn disagreements(&self) -> &[String] {
-        &self.disagreements
-    }
-}
+/// What is counted.
+pub(crate) const COLUMNS: &[&str] =
+    &["settings", "found", "proven", "open", "legs", "most legs", "places", "refused"];
 
 /// Examines a setting.
-pub(crate) fn examine(family: &str, seed: u64, tally: &mut Tally) {
+pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) {
+    let Asked { family, seed, .. } = *asked;
     let mut random = Random::new(seed);
-    tally.settings += 1;
+    tally.count("settings");
     let pose = if family.starts_with("turned") {
         Pose::new(random.rotation(), DVec3::ZERO).map_err(|e| e.to_string())
     } else {
@@ -79,7 +39,7 @@ pub(crate) fn examine(family: &str, seed: u64, tally: &mut Tally) {
         _ => holes(&mut random, pose, tally),
     });
     if let Err(objection) = said {
-        tally.disagreements.push(format!("{family}:{seed}: {objection}"));
+        tally.disagree(format!("{family}:{seed}: {objection}"));
     }
 }
 
@@ -157,19 +117,19 @@ fn judged(
     let way = match answer {
         WaysOut::Found(way) => way,
         WaysOut::Proven(proof) => {
-            tally.proven += 1;
+            tally.count("proven");
             return proof.verify(&placed[0], &placed[1]).map_err(|e| e.to_string());
         }
         WaysOut::NotFound { .. } => {
-            tally.open += 1;
+            tally.count("open");
             return Ok(());
         }
     };
     way.verify(placed).map_err(|e| e.to_string())?;
-    tally.found += 1;
-    tally.legs += way.legs.len() as u64;
-    tally.most = tally.most.max(way.legs.len() as u64);
-    if let Some(entered) = entered(way, placed.len(), &enters, &mut tally.judged) {
+    tally.count("found");
+    tally.add("legs", way.legs.len() as u64);
+    tally.largest("most legs", way.legs.len() as f64);
+    if let Some(entered) = entered(way, placed.len(), &enters, tally) {
         return Err(entered);
     }
     changed(placed, way, &enters, tally)
@@ -180,7 +140,7 @@ fn entered(
     way: &WayOut,
     bodies: usize,
     enters: &impl Fn([usize; 2], DVec3) -> bool,
-    judged: &mut u64,
+    tally: &mut Tally,
 ) -> Option<String> {
     let mut at = vec![DVec3::ZERO; bodies];
     for (k, leg) in way.legs.iter().enumerate() {
@@ -190,7 +150,7 @@ fn entered(
             let [i, j] = proof.bodies;
             for place in 0..=PLACES {
                 let by = at[i] - at[j] + motion * (f64::from(place) / f64::from(PLACES));
-                *judged += 1;
+                tally.count("places");
                 if enters([i, j], by) {
                     return Some(format!("leg {k}: {i} enters {j} at place {place}"));
                 }
@@ -217,8 +177,8 @@ fn changed(
         leg.travel = leg.motion.length();
         leg.direction = leg.motion.normalize();
         if longer.verify(placed).is_err() {
-            tally.refused += 1;
-        } else if let Some(entered) = entered(&longer, placed.len(), enters, &mut tally.judged) {
+            tally.count("refused");
+        } else if let Some(entered) = entered(&longer, placed.len(), enters, tally) {
             return Err(format!("leg {k}, made longer, is accepted, but {entered}"));
         }
     }

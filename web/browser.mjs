@@ -14,17 +14,17 @@ const root = join(dirname(fileURLToPath(import.meta.url)), "..");
 export const data = join(root, "data");
 export const dist = join(root, "web/dist");
 
-/** An example of crates/colltrans-wasm: there, cargo build --profile native --workspace --example NAME. */
+/** An example of crates/colltrans-wasm: there, `cargo build --profile native --all-features --example NAME`. */
 export const program = (name) => join(built, "native/examples", name);
 
-/** Its answers, a line each. */
-export function answers(name, questions) {
-  return execFileSync(program(name), { input: questions.join("\n"), encoding: "utf8", maxBuffer: 1 << 28 }).trim().split("\n");
+/** The answers of a module (`page`, `found`, ...) natively, a line each. */
+export function answers(module, questions) {
+  return execFileSync(program("native"), [module], { input: questions.join("\n"), encoding: "utf8", maxBuffer: 1 << 28 }).trim().split("\n");
 }
 
-/** The same questions, some with a file of data/, to a page's engine and to a program; as they agree to the bit, their answers. */
-export async function agreed(page, engine, name, questions) {
-  const native = answers(name, questions.map(({ file, question }) =>
+/** Asks a module of the page and the native one the same questions, some with a file of data/; returns the answers, which agree to the bit. */
+export async function agreed(page, module, questions) {
+  const native = answers(module, questions.map(({ file, question }) =>
     (file ? `${join(data, file)}\t` : "") + JSON.stringify(question)));
   const seen = await page.evaluate(async ([engine, questions]) => {
     const asked = new (window.colltrans.probe().engine.constructor)(engine);
@@ -34,7 +34,7 @@ export async function agreed(page, engine, name, questions) {
       texts.push((await asked.ask(question, bytes)).text);
     }
     return texts;
-  }, [engine, questions]);
+  }, [`colltrans_${module}`, questions]);
   assert.deepEqual(seen, native);
   return seen;
 }

@@ -29,23 +29,18 @@ const root = join(here, "..");
 const data = join(root, "data");
 const out = join(here, "dist");
 
-/** The examples that are the page's modules, by their packages. */
+/** The page's modules, by the features of `colltrans-wasm` that they are built with: the fewer, the smaller they are. */
 const MODULES = {
-  "colltrans-wasm": "page",
-  "colltrans-wasm-assembly": "page_assembly",
-  "colltrans-wasm-distance": "page_distance",
-  "colltrans-wasm-found": "page_found",
-  "colltrans-wasm-motion": "page_motion",
-  "colltrans-wasm-picture": "page_picture",
+  "": ["page", "page_distance", "page_found", "page_picture"],
+  motion: ["page_motion"],
+  assembly: ["page_assembly"],
 };
 
 if (!process.argv.includes("--no-wasm")) {
   const env = { ...process.env, ...found() };
-  // What is built at once has all features that one of them asks for: these keep gaps, the page's first one does not.
-  const keeping = ["colltrans-wasm-assembly", "colltrans-wasm-motion"];
-  for (const names of [Object.keys(MODULES).filter((name) => !keeping.includes(name)), keeping]) {
-    const packages = names.flatMap((name) => ["-p", name, "--example", MODULES[name]]);
-    execFileSync("cargo", ["build", "--profile", "page", ...packages, "--target", "wasm32-unknown-unknown"], {
+  for (const [features, examples] of Object.entries(MODULES)) {
+    const named = examples.flatMap((name) => ["--example", name]);
+    execFileSync("cargo", ["build", "--profile", "page", "--features", features, ...named, "--target", "wasm32-unknown-unknown"], {
       cwd: join(root, "crates/colltrans-wasm"),
       env,
       stdio: "inherit",
@@ -55,7 +50,7 @@ if (!process.argv.includes("--no-wasm")) {
 
 rmSync(out, { recursive: true, force: true });
 mkdirSync(out, { recursive: true });
-await Promise.all(Object.values(MODULES).map(async (example) => {
+await Promise.all(Object.values(MODULES).flat().map(async (example) => {
   const made = join(built, "wasm32-unknown-unknown/page/examples", `${example}.wasm`);
   copyFileSync(await optimised(made), join(out, `${example.replace("page", "colltrans")}.wasm`));
 }));

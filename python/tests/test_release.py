@@ -22,9 +22,7 @@ def test_all_that_is_released_has_one_version() -> None:
     found = {
         "the extension": colltrans.__version__,
         "its crate": toml("crates/colltrans-python/Cargo.toml")["package"]["version"],
-        "the page's crates": toml("crates/colltrans-wasm/Cargo.toml")["workspace"]["package"][
-            "version"
-        ],
+        "the page's crate": toml("crates/colltrans-wasm/Cargo.toml")["package"]["version"],
         "the Python package": toml("python/pyproject.toml")["project"]["version"],
         "the page": json.loads((ROOT / "web/package.json").read_text())["version"],
         "the citation": re.findall(r"^version: (\S+)$", citation, re.MULTILINE)[0],

@@ -69,7 +69,7 @@ test("1,000 answers are the native ones, bit for bit", async () => {
     }
   }
   const lines = questions.map(({ file, question }) => (file ? `${join(data, file)}\t` : "") + JSON.stringify(question));
-  const expected = nativeAnswers("native", lines);
+  const expected = nativeAnswers("page", lines);
   const answers = await page.evaluate(async (questions) => {
     const { engine } = window.colltrans.probe();
     const answers = [];

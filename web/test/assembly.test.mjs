@@ -86,7 +86,7 @@ test("the gearbox: the plan, its slider, and the native answers", async () => {
     ...files.map((name) => `${join(gearbox, name)}\t${JSON.stringify({ do: "add", name })}`),
     ...[{ do: "parts" }, { do: "fit", tolerance: 0.1 }, { do: "plan" }, ...more].map((q) => JSON.stringify(q)),
   ];
-  const [, nativeFit, nativePlan, ...native] = answers("native_assembly", questions).slice(files.length);
+  const [, nativeFit, nativePlan, ...native] = answers("assembly", questions).slice(files.length);
   // Bit for bit: of numbers, strictly equal are those with the same bits.
   assert.deepStrictEqual([fit, plan], [nativeFit, nativePlan].map((text) => JSON.parse(text)));
   const told = await page.evaluate(async (more) => {

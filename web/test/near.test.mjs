@@ -1,5 +1,5 @@
 // How far the bodies are apart where they are, in a browser, held against the same code built natively. Needs `npm run
-// build` before, and the example `native_distance`.
+// build` before, and the example `native`.
 
 import assert from "node:assert/strict";
 import { after, before, test } from "node:test";
@@ -62,7 +62,7 @@ test("its answers are the native ones, bit for bit, and as the schema says", asy
       questions.push({ question: { do: "distance", moving_pose: place(), fixed_pose: [0, 0, 0, ...turn()] } });
     }
   }
-  const seen = await agreed(page, "colltrans_distance", "native_distance", questions);
+  const seen = await agreed(page, "distance", questions);
   const outcomes = new Set();
   seen.forEach((text, k) => {
     const told = JSON.parse(text);

@@ -1,5 +1,5 @@
-// What the page is answered is what docs/answers.schema.json says. Needs the examples `native`,
-// `native_found` and `native_assembly`.
+// What the page is answered is what docs/answers.schema.json says. Needs the
+// example `native` (`.ci/run web` builds it).
 
 import assert from "node:assert/strict";
 import { join } from "node:path";
@@ -7,9 +7,9 @@ import { test } from "node:test";
 import { answers, conform, data } from "../browser.mjs";
 
 /** Its answers; each is what the schema calls `page_` and what was asked. */
-function told(program, questions) {
+function told(module, questions) {
   const lines = questions.map(({ file, ...question }) => (file ? `${join(data, file)}\t` : "") + JSON.stringify(question));
-  return answers(program, lines).map((line, k) => {
+  return answers(module, lines).map((line, k) => {
     const answer = JSON.parse(line);
     conform(answer.error === undefined ? `page_${questions[k].do}` : "page_error", answer);
     return answer;
@@ -26,14 +26,14 @@ test("convex bodies: contact, grazing, separated; proofs", () => {
     // However much their shadows overlap, it is tolerated.
     pair([6, 1, 9], [-0.3, 0.1, -1], { graze: 100 }),
   ];
-  const casts = told("native", [...bodies, ...asked.map((one) => ({ do: "cast", ...one }))]).slice(2);
+  const casts = told("page", [...bodies, ...asked.map((one) => ({ do: "cast", ...one }))]).slice(2);
   const outcomes = casts.map(({ record, clearance }) => `${record.outcome} ${clearance.outcome}`);
   for (const one of ["contact blocked", "separated separated", "contact overlapping", "contact behind", "grazing slides"]) assert.ok(outcomes.includes(one), outcomes.join());
-  const proven = told("native", [...bodies, ...asked.map((one, k) => ({ do: "verify", ...one, proof: casts[k].proof }))]).slice(2);
+  const proven = told("page", [...bodies, ...asked.map((one, k) => ({ do: "verify", ...one, proof: casts[k].proof }))]).slice(2);
   assert.ok(proven.every(({ holds }) => holds));
   const { contact } = casts[0].proof;
   const lie = { contact: { ...contact, lower: contact.lower + 1 } };
-  assert.equal(told("native", [...bodies, { do: "verify", ...asked[0], proof: lie }])[2].holds, false);
+  assert.equal(told("page", [...bodies, { do: "verify", ...asked[0], proof: lie }])[2].holds, false);
 });
 
 test("how it was found", () => {
@@ -41,11 +41,11 @@ test("how it was found", () => {
   const asked = pair([6, 1, 9], [-0.3, 0.1, -1]);
   const search = { do: "search", ...asked, solver: "cta", start: "center", until: "exit", after: pair([6, 1, 9], [-0.3, 0.101, -1]) };
   const miss = { ...search, ...pair([6, 1, 9], [1, 0, 0]), after: undefined };
-  const found = told("native_found", [...bodies, search, { ...search, solver: "portal" }, { ...search, solver: "portal", after: undefined }, { ...search, start: "ellipsoids", until: 0.2 }, miss]).slice(2);
+  const found = told("found", [...bodies, search, { ...search, solver: "portal" }, { ...search, solver: "portal", after: undefined }, { ...search, start: "ellipsoids", until: 0.2 }, miss]).slice(2);
   assert.ok(found[0].region && found[1].tracked && !found[2].tracked && found[4].events.some(({ touch }) => touch === "separated"));
   const { sections: [moving, fixed], ranges } = found[0].events.find((event) => event.sections);
   const grid = { do: "levels", ...asked, moving_axis: moving, fixed_axis: fixed, moving_levels: ranges[0], fixed_levels: ranges[1] };
-  assert.equal(told("native_found", [...bodies, grid])[2].values, 4);
+  assert.equal(told("found", [...bodies, grid])[2].values, 4);
 });
 
 test("solids and open surfaces: free, blocked, overlapping; proofs", () => {
@@ -54,9 +54,9 @@ test("solids and open surfaces: free, blocked, overlapping; proofs", () => {
   for (const [moving, how, fixed, as] of pairs) {
     const bodies = [load("moving", moving, how), load("fixed", fixed, as)];
     for (const at of [pair([0, 0, 7], [0, 0, -1]), pair([0, 0, 7], [0, 0, 1]), pair([40, 0, 7], [0, 0, -1]), pair([0, 0, 0], [0, 0, 1])]) {
-      const [, , cast, certified] = told("native", [...bodies, { do: "cast", ...at }, { do: "certify", ...at }]);
+      const [, , cast, certified] = told("page", [...bodies, { do: "cast", ...at }, { do: "certify", ...at }]);
       seen.add(`${cast.record.outcome}${cast.proof ? " by a plane" : ""}`);
-      const [, , checked] = told("native", [...bodies, { do: "verify", ...at, proof: certified.proof }]);
+      const [, , checked] = told("page", [...bodies, { do: "verify", ...at, proof: certified.proof }]);
       assert.equal(checked.holds, true, checked.because);
     }
   }
@@ -64,7 +64,7 @@ test("solids and open surfaces: free, blocked, overlapping; proofs", () => {
 });
 
 test("what has no answer", () => {
-  const refused = told("native", [load("moving", "plate.off", "convex"), { do: "cast" }, { do: "cast", ...pair([0, 0, 0], [0, 0, 1]) }, { do: "dance" }]);
+  const refused = told("page", [load("moving", "plate.off", "convex"), { do: "cast" }, { do: "cast", ...pair([0, 0, 0], [0, 0, 1]) }, { do: "dance" }]);
   assert.ok(refused.every(({ error }) => error));
   assert.ok(refused[0].instead.includes("solid"));
 });
@@ -75,7 +75,7 @@ test("assemblies", () => {
     ...names.map((name) => ({ do: "add", name, file: name })), { do: "parts" }, { do: "fit", tolerance: 0.1 }, { do: "along", direction: [0, 0, 1] },
     { do: "along", direction: [1, 0, 0] }, { do: "map", group: [0] }, { do: "plan" },
   ];
-  const all = told("native_assembly", questions);
+  const all = told("assembly", questions);
   assert.ok(all.every(({ error }) => error === undefined), JSON.stringify(all.find(({ error }) => error)));
   assert.ok(all.at(-1).plan.length > 0);
 });

@@ -1,5 +1,5 @@
 // Bodies that turn, in a browser, held against the same code built natively. Needs `npm run build` before, and the
-// example `native_motion`.
+// example `native`.
 
 import assert from "node:assert/strict";
 import { join } from "node:path";
@@ -241,7 +241,7 @@ test("its answers are the native ones, bit for bit, and as the schema says", asy
       if (k % 3 === 0) questions.push({ question: { do: "prove", ...asked } });
     }
   }
-  const seen = await agreed(page, "colltrans_motion", "native_motion", questions);
+  const seen = await agreed(page, "motion", questions);
   const outcomes = new Set();
   seen.forEach((text, k) => {
     const told = JSON.parse(text);

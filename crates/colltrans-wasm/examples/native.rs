@@ -1,10 +1,42 @@
-//! The same answers without a browser, a line each ([`lines`]).
+//! Answers the questions of a page without a browser: one question a line in, one answer a line out.
 //!
-//! `cargo run --profile native --example native < questions > answers`
+//! A line is `FILE<tab>QUESTION` for a question that comes with a file, else the question alone. The argument names
+//! the module that answers; without it, that is `page`.
+//!
+//! `cargo run --profile native --all-features --example native -- distance < questions > answers`
 
-mod lines;
+use std::error::Error;
+use std::io::{self, BufRead as _, Write as _};
 
-fn main() -> std::io::Result<()> {
-    let mut state = colltrans_wasm::State::default();
-    lines::answer(|question, file| state.ask(question, file).text)
+use colltrans_wasm::{Answers, distance, found, page, picture};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let module = std::env::args().nth(1).unwrap_or_else(|| "page".to_owned());
+    match &*module {
+        "page" => answer(page::State::default()),
+        "distance" => answer(distance::State::default()),
+        "found" => answer(found::State::default()),
+        "picture" => answer(picture::State),
+        #[cfg(feature = "assembly")]
+        "assembly" => answer(colltrans_wasm::assembly::State::default()),
+        #[cfg(feature = "motion")]
+        "motion" => answer(colltrans_wasm::motion::State::default()),
+        _ => return Err(format!("{module}: no module has this name, or its feature is off").into()),
+    }?;
+    Ok(())
+}
+
+/// Writes the text of the answer to each line.
+fn answer(mut state: impl Answers) -> io::Result<()> {
+    let mut out = io::BufWriter::new(io::stdout());
+    for line in io::stdin().lock().lines() {
+        let line = line?;
+        let (file, question) = match line.split_once('\t') {
+            Some((path, question)) => (std::fs::read(path)?, question),
+            None => (Vec::new(), line.as_str()),
+        };
+        out.write_all(&state.ask(question.as_bytes(), file).text)?;
+        out.write_all(b"\n")?;
+    }
+    out.flush()
 }

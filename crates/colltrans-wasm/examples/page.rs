@@ -1,5 +1,5 @@
-//! The module that a page reads: the names that the library exports, and what they need.
+//! The module `page` as a page loads it.
 //!
 //! It is linked alone, not beside a Rust library, so that all of it is optimised at once.
 
-use colltrans_wasm as _;
+colltrans_wasm::export!(colltrans_wasm::page::State);

@@ -1,30 +1,38 @@
 //! The library in a browser.
 //!
-//! Data flow: a page writes a question, JSON and perhaps the bytes of a file, to a buffer (`exports`) ->
-//! [`State::ask`] reads it as a `question::Question` -> `body` (files become bodies, which stay in the
-//! state), `convex` and `solid` (casts, as `record` has them), `certify` (proofs between solids) -> an
-//! [`Answer`]: JSON, and perhaps numbers in binary for large things.
+//! Each module answers the questions of a part of the page, and is linked as a WebAssembly module of its own that the
+//! page loads when it needs it: [`page`] answers the first question of every visitor, so it is the smallest one. All
+//! of them export the same names ([`export`]).
 //!
-//! The parts for assemblies, for distances, for motions that turn and for how an answer was found are modules of
-//! their own, read when they are asked for (`assembly/`, `distance/`, `motion/`, `found/`); they have the same
-//! exported names.
+//! Data flow: a page writes a question, JSON and perhaps the bytes of a file, to a buffer ([`exports`]) -> the
+//! module's state answers it ([`Answers::ask`]) -> an [`Answer`]: JSON, and perhaps numbers in binary for large things.
 //!
-//! Nothing here computes geometry. The same code runs natively (`examples/native.rs`), so what a
-//! browser answers can be held against it, byte for byte: numbers are written with as many digits as
-//! it takes to read the same bits.
+//! Nothing here computes geometry. The same code runs natively (`examples/native.rs`), so the tests compare what a
+//! browser answers with it, byte for byte: numbers are written with as many digits as it takes to read the same bits.
+//!
+//! Features: `motion` compiles the module [`motion`], and the library with gaps that a cast keeps; `assembly` compiles
+//! the module [`assembly`], and the library with all that it has. The other modules need neither and are smaller
+//! without them. `report` is for the test of a report's viewer alone.
 
 mod answer;
-mod body;
-mod certify;
-mod convex;
-mod exports;
+#[cfg(feature = "assembly")]
+pub mod assembly;
+pub mod distance;
+pub mod exports;
 mod fields;
+pub mod found;
 mod lit;
+#[cfg(feature = "motion")]
+pub mod motion;
+pub mod page;
+pub mod picture;
+mod placing;
 mod pose;
-mod question;
-mod record;
-mod solid;
-mod state;
 
 pub use answer::Answer;
-pub use state::State;
+
+/// What answers a page's questions.
+pub trait Answers: Default {
+    /// Answers one question; `file` holds the bytes that come with it, if any.
+    fn ask(&mut self, question: &[u8], file: Vec<u8>) -> Answer;
+}

@@ -70,7 +70,7 @@ interface Point {
   q: number;
 }
 
-/** Triangles and segments on the page, as the module of drawings reads them (`crates/colltrans-wasm/picture/src/scene.rs`). */
+/** Triangles and segments on the page, as the module of drawings reads them (`crates/colltrans-wasm/src/picture/scene.rs`). */
 class Sheet {
   private readonly styles: Record<"areas" | "lines", Map<string, number>> = { areas: new Map(), lines: new Map() };
   private readonly corners: number[] = [];

@@ -1,0 +1,46 @@
+//! The report of an assembly as the command writes it with `-o`, for the test of its viewer: parts in a
+//! tolerance, and where to write. One file may be a manifest, whose first part is mapped too.
+//!
+//! In `crates/colltrans-wasm`: `cargo run --release --features report --example report -- 0.1
+//! report.html *.off`
+
+use std::error::Error;
+use std::path::Path;
+
+use colltrans_assembly::map::{MapOptions, RemovalMap};
+use colltrans_assembly::read::{ReadOptions, read};
+use colltrans_assembly::report::html;
+use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Question, Watch};
+use glam::DAffine3;
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let [tolerance, target, files @ ..] = &arguments[..] else {
+        return Err("give a tolerance, where to write, and files".into());
+    };
+    let watch = Watch::default();
+    let (assembly, is_manifest) = match files {
+        [one] if Path::new(one).extension().is_some_and(|ending| ending == "json") => {
+            (read(one, &ReadOptions::default())?, true)
+        }
+        _ => (assembly(files)?, false),
+    };
+    let bodies = Bodies::new(&assembly, Fit::Tolerance(tolerance.parse()?))?;
+    let mut findings = Question::default().ask(&bodies, watch)?;
+    let name = assembly.parts()[0].name().to_owned();
+    if is_manifest {
+        let options = MapOptions::default().with_samples(42).with_border(0.1);
+        findings.maps.push((name.clone(), RemovalMap::new(&bodies, &[0], &[], options, watch)?));
+    }
+    Ok(std::fs::write(target, html::page(&findings, if is_manifest { &name } else { "parts" }))?)
+}
+
+fn assembly(files: &[String]) -> Result<Assembly, Box<dyn Error>> {
+    let parts = files.iter().map(|file| {
+        let mesh = colltrans_mesh::read(file)?;
+        let name = Path::new(file).file_stem().unwrap_or_default().to_string_lossy();
+        let piece = Piece { mesh, world_from_piece: DAffine3::IDENTITY };
+        Ok(Part::new(name, &[piece])?)
+    });
+    Ok(Assembly::new(parts.collect::<Result<_, Box<dyn Error>>>()?)?)
+}

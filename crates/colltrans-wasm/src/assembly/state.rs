@@ -1,0 +1,222 @@
+//! The parts in use, and what is answered about them.
+//!
+//! Questions, by their field `do`:
+//! - `add`: the file that comes with it, named `name`, adds a part, or with GLB several;
+//! - `parts`: all that was added becomes the assembly; how its parts look;
+//! - `fit`: with `tolerance` (the default one without) and `ignore_overlaps`; what overlaps, who
+//!   touches whom;
+//! - `along` a `direction`: who stops whom, and what comes out;
+//! - `map` of the parts `group`: their free travel in all directions;
+//! - `plan`: how everything comes apart;
+//! - `report` with a `title`: that, as the file that is printed for the workshop.
+
+use std::path::Path;
+
+use colltrans::solid::StartOverlap;
+use colltrans_assembly::candidates::{Candidates, Choice, candidates};
+use colltrans_assembly::liaisons::{Liaison, liaisons};
+use colltrans_assembly::map::{MapOptions, RemovalMap};
+use colltrans_assembly::matrix::Matrix;
+use colltrans_assembly::plan::{Plan, PlanOptions};
+use colltrans_assembly::report::html;
+use colltrans_assembly::sphere::unit;
+use colltrans_assembly::start::Start;
+use colltrans_assembly::{Assembly, Bodies, Findings, Fit, Part, Piece, Question, Watch, read};
+use colltrans_mesh::Format;
+use glam::{DAffine3, DVec3};
+use serde_json::{Value, json};
+
+use super::tell;
+use crate::Answers;
+use crate::answer::{Answer, Refusal};
+use crate::fields::Fields;
+
+/// A browser has one thread for this: with more the command line is the better place.
+const MOST_PARTS: usize = 120;
+/// The same.
+const MOST_TRIANGLES: usize = 400_000;
+/// Samples of a removal map before its borders are refined, and how well those are known, in radians:
+/// coarser than on the command line, for a picture to click into.
+const SAMPLES: usize = 642;
+const BORDER: f64 = 0.04;
+
+/// An assembly, as files made it.
+#[derive(Default)]
+pub struct State {
+    gathered: Vec<Part>,
+    unit: Option<String>,
+    set: Option<Set>,
+}
+
+/// What was found out with one fit.
+struct Set {
+    /// Kept for as long as the module is: a page starts another one for another assembly.
+    assembly: &'static Assembly,
+    fitted: Option<Fitted>,
+}
+
+struct Fitted {
+    bodies: Bodies<'static>,
+    start: StartOverlap,
+    candidates: Candidates,
+    plan: Option<Plan>,
+}
+
+impl Answers for State {
+    /// Answers one question; `file` holds the bytes that come with it, if any.
+    fn ask(&mut self, question: &[u8], file: Vec<u8>) -> Answer {
+        let asked: Result<Value, _> = serde_json::from_slice(question);
+        let answer = match &asked {
+            Err(error) => Err(format!("the question cannot be read: {error}").into()),
+            Ok(asked) => {
+                Fields::of(asked).map_err(Refusal::from).and_then(|f| self.answer(&f, file))
+            }
+        };
+        answer.unwrap_or_else(Refusal::answer)
+    }
+}
+
+impl State {
+    fn answer(&mut self, asked: &Fields, file: Vec<u8>) -> Result<Answer, Refusal> {
+        match asked.text("do")? {
+            "add" => self.add(asked.text("name")?, file),
+            "parts" => self.parts(),
+            "fit" => self.fit(asked.number("tolerance")?, asked.flag("ignore_overlaps")),
+            "along" => self.along(asked.array("direction")?),
+            "map" => self.map(&asked.list("group")?),
+            "plan" => self.plan(),
+            "report" => self.report(asked.text("title")?),
+            other => Err(format!("nothing is known to do for {other}").into()),
+        }
+    }
+
+    fn add(&mut self, name: &str, file: Vec<u8>) -> Result<Answer, Refusal> {
+        let path = Path::new(name);
+        let before = self.gathered.len();
+        if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("glb")) {
+            let read = read::glb(path, &file).map_err(|error| error.to_string())?;
+            self.unit = read.unit().map(str::to_owned);
+            self.gathered.extend_from_slice(read.parts());
+        } else {
+            let format = Format::of_path(path).map_err(|error| error.to_string())?;
+            let mesh =
+                colltrans_mesh::parse(format, file, path).map_err(|error| error.to_string())?;
+            let stem = path.file_stem().unwrap_or(path.as_os_str()).to_string_lossy();
+            let piece = Piece { mesh, world_from_piece: DAffine3::IDENTITY };
+            let part = Part::new(self.unused(&stem), &[piece]);
+            self.gathered.push(part.map_err(|error| format!("{name}: {error}"))?);
+        }
+        if let Err(refusal) = self.check_size(name) {
+            self.gathered.truncate(before);
+            return Err(refusal);
+        }
+        Ok(Answer::of(&json!({ "parts": self.gathered.len() })))
+    }
+
+    fn check_size(&self, name: &str) -> Result<(), Refusal> {
+        let triangles: usize = self.gathered.iter().map(|p| p.solid().triangles().len()).sum();
+        if self.gathered.len() <= MOST_PARTS && triangles <= MOST_TRIANGLES {
+            return Ok(());
+        }
+        let parts = self.gathered.len();
+        Err(format!(
+            "{name}: with it these would be {parts} parts of {triangles} triangles; a page takes up to \
+             {MOST_PARTS} parts and {MOST_TRIANGLES} triangles, the command line larger assemblies"
+        )
+        .into())
+    }
+
+    /// A name that no part has yet.
+    fn unused(&self, stem: &str) -> String {
+        let taken = |name: &str| self.gathered.iter().any(|part| part.name() == name);
+        let numbered = (2..).map(|number| format!("{stem}_{number}"));
+        std::iter::once(stem.to_owned())
+            .chain(numbered)
+            .find(|name| !taken(name))
+            .unwrap_or_default()
+    }
+
+    fn parts(&mut self) -> Result<Answer, Refusal> {
+        let parts = std::mem::take(&mut self.gathered);
+        if parts.is_empty() {
+            return Err("there are no parts".to_owned().into());
+        }
+        let mut assembly = Assembly::new(parts).map_err(|error| error.to_string())?;
+        if let Some(unit) = self.unit.take() {
+            assembly = assembly.with_unit(unit);
+        }
+        let assembly: &'static Assembly = Box::leak(Box::new(assembly));
+        self.set = Some(Set { assembly, fitted: None });
+        Ok(tell::parts(assembly))
+    }
+
+    fn fit(&mut self, tolerance: Option<f64>, ignore: bool) -> Result<Answer, Refusal> {
+        let Some(set) = &mut self.set else { return Err("there are no parts".to_owned().into()) };
+        let default = Fit::default_for(set.assembly);
+        let fit = tolerance.map_or(default, Fit::Tolerance);
+        let watch = Watch::default();
+        let said = |error: colltrans_assembly::AssemblyError| error.to_string();
+        let bodies = Bodies::new(set.assembly, fit).map_err(said)?;
+        let start = Start::new(&bodies, watch).map_err(said)?;
+        let touching: Vec<Liaison> = liaisons(&bodies, watch).map_err(said)?;
+        let candidates = candidates(&bodies, &touching, &Choice::default()).map_err(said)?;
+        let answer = tell::fit(&bodies, default.tolerance(), &start, &touching);
+        let overlaps = if ignore { StartOverlap::Ignore } else { StartOverlap::Refuse };
+        set.fitted = Some(Fitted { bodies, start: overlaps, candidates, plan: None });
+        Ok(answer)
+    }
+
+    fn fitted(&mut self) -> Result<&mut Fitted, Refusal> {
+        let fitted = self.set.as_mut().and_then(|set| set.fitted.as_mut());
+        fitted.ok_or_else(|| "the parts have no fit yet".to_owned().into())
+    }
+
+    fn along(&mut self, direction: [f64; 3]) -> Result<Answer, Refusal> {
+        let Fitted { bodies, start, .. } = self.fitted()?;
+        let d = unit(DVec3::from_array(direction)).map_err(|error| error.to_string())?;
+        let all = vec![true; bodies.len()];
+        let matrix = Matrix::new(bodies, &[d], &all, *start, Watch::default());
+        Ok(tell::along(&matrix.map_err(|error| error.to_string())?, bodies))
+    }
+
+    fn map(&mut self, group: &[f64]) -> Result<Answer, Refusal> {
+        let Fitted { bodies, start, candidates, .. } = self.fitted()?;
+        let mut parts: Vec<usize> = group.iter().map(|k| *k as usize).collect();
+        parts.sort_unstable();
+        parts.dedup();
+        if parts.last().is_none_or(|last| *last >= bodies.len()) {
+            return Err(format!("there are {} parts, and none of {group:?}", bodies.len()).into());
+        }
+        let options =
+            MapOptions::default().with_samples(SAMPLES).with_border(BORDER).with_start(*start);
+        let directions = candidates.directions();
+        let map = RemovalMap::new(bodies, &parts, &directions, options, Watch::default());
+        Ok(tell::map(&map.map_err(|error| error.to_string())?, bodies.assembly()))
+    }
+
+    fn plan(&mut self) -> Result<Answer, Refusal> {
+        let Fitted { bodies, start, plan, .. } = self.fitted()?;
+        let found = question(*start).ask(bodies, Watch::default());
+        let found = found.map_err(|error| error.to_string())?;
+        let answer = tell::plan(bodies, &found.plan, found.matrix.directions().len());
+        *plan = Some(found.plan);
+        Ok(answer)
+    }
+
+    /// The bytes of the file are the answer's numbers.
+    fn report(&mut self, title: &str) -> Result<Answer, Refusal> {
+        let Fitted { bodies, start, plan, .. } = self.fitted()?;
+        let Some(plan) = plan.clone() else {
+            return Err("nothing is planned yet".to_owned().into());
+        };
+        let found = question(*start).look(bodies, Watch::default());
+        let found = Findings { plan, ..found.map_err(|error| error.to_string())? };
+        let page = html::page(&found, title).into_bytes();
+        Ok(Answer { numbers: page, ..Answer::of(&json!({ "title": title })) })
+    }
+}
+
+/// What a plan is asked for.
+fn question(start: StartOverlap) -> Question {
+    Question::default().with_options(PlanOptions::default().with_start(start))
+}

@@ -1,0 +1,228 @@
+//! The bodies in use, and when they first meet.
+
+use colltrans::motion::{Motion, MotionCast, MotionContact, MotionOutcome, MotionProofError};
+use colltrans::record::Record;
+use colltrans::{Body, Features, Pose, QueryError, Solid};
+use colltrans_mesh::body::between_motions;
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+use serde_json::json;
+
+use crate::Answers;
+use crate::answer::{Answer, Refusal};
+use crate::lit::{Lit, Touching};
+use crate::placing::{Part, Places, Slot};
+use crate::pose::pose;
+
+/// One question.
+#[derive(Deserialize)]
+#[serde(tag = "do", rename_all = "snake_case")]
+enum Question {
+    /// The file that comes with it becomes a body.
+    Place { slot: Slot, name: String, take: String },
+    /// When do the bodies first meet?
+    Motion(Asked),
+    /// The proof of that answer, made and checked.
+    Prove(Asked),
+}
+
+/// What a body does, and where one that does nothing rests. Poses are `x,y,z,qx,qy,qz,qw`.
+#[derive(Deserialize)]
+struct Asked {
+    moving_pose: [f64; 7],
+    fixed_pose: [f64; 7],
+    #[serde(default)]
+    moving_motion: Option<Kind>,
+    #[serde(default)]
+    fixed_motion: Option<Kind>,
+    /// A gap to be kept.
+    #[serde(default)]
+    keep: f64,
+    /// Of convex bodies, in the place of a gap, a depth; `None` for none, and of solids for what the files ask for.
+    #[serde(default)]
+    tolerance: Option<f64>,
+}
+
+/// As a line of a batch says it; angles are radians.
+#[derive(Deserialize)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+enum Kind {
+    Turn { point: [f64; 3], axis: [f64; 3], angle: f64 },
+    Screw { point: [f64; 3], axis: [f64; 3], angle: f64, rise: f64 },
+}
+
+impl Kind {
+    fn from(&self, start: Pose) -> Result<Motion, String> {
+        let v = DVec3::from_array;
+        let motion = match *self {
+            Self::Turn { point, axis, angle } => Motion::turn(start, v(point), v(axis), angle),
+            Self::Screw { point, axis, angle, rise } => {
+                Motion::screw(start, v(point), v(axis), angle, rise)
+            }
+        };
+        motion.map_err(|error| error.to_string())
+    }
+}
+
+/// Two bodies, as files made them.
+#[derive(Debug, Default)]
+pub struct State(Places);
+
+/// The answer; fields that do not apply are left out.
+#[derive(Serialize)]
+struct MotionAnswer {
+    /// How the bodies were taken: `convex` or `solid`.
+    kind: &'static str,
+    record: Record,
+    /// The pose of the moving body at the lower bound.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pose: Option<[f64; 7]>,
+    /// What touches.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    lit: Option<Touching>,
+}
+
+/// A query between bodies of either kind.
+enum Query<'a> {
+    Convex(MotionCast<'a>),
+    Solid(MotionCast<'a, Solid>),
+}
+
+impl Answers for State {
+    /// Answers one question: `place`, a body of the file that comes with it; `motion`, when they first meet;
+    /// `prove`, what came of a check of its proof.
+    fn ask(&mut self, question: &[u8], file: Vec<u8>) -> Answer {
+        let answered = match serde_json::from_slice(question) {
+            Err(error) => Err(format!("the question cannot be read: {error}")),
+            Ok(Question::Place { slot, name, take }) => self.0.place(slot, &name, &take, file),
+            Ok(Question::Motion(asked)) => self.with(&asked, first_contact),
+            Ok(Question::Prove(asked)) => self.with(&asked, prove),
+        };
+        answered.unwrap_or_else(|error| Refusal::from(error).answer())
+    }
+}
+
+impl State {
+    fn with(
+        &self,
+        asked: &Asked,
+        answer: impl FnOnce(&Query<'_>) -> Result<Answer, String>,
+    ) -> Result<Answer, String> {
+        let parts = self.0.both()?;
+        let motions = asked.motions()?;
+        answer(&asked.query(parts, &motions)?)
+    }
+}
+
+impl Asked {
+    fn motions(&self) -> Result<[Motion; 2], String> {
+        let motion = |kind: Option<&Kind>, start: Pose| {
+            kind.map_or(Ok(Motion::still(start)), |kind| kind.from(start))
+        };
+        let (moving, fixed) = (pose(self.moving_pose, "moving")?, pose(self.fixed_pose, "fixed")?);
+        Ok([
+            motion(self.moving_motion.as_ref(), moving)?,
+            motion(self.fixed_motion.as_ref(), fixed)?,
+        ])
+    }
+
+    fn query<'a>(
+        &self,
+        [moving, fixed]: [&'a Part; 2],
+        [moves, other]: &'a [Motion; 2],
+    ) -> Result<Query<'a>, String> {
+        let query = if let (Part::Convex(p), Part::Convex(q)) = (moving, fixed) {
+            let cast = MotionCast::new(p.body.along(moves), q.body.along(other));
+            match self.tolerance {
+                Some(_) if self.keep > 0.0 => {
+                    return Err("convex bodies have either a gap or a tolerance".into());
+                }
+                Some(depth) => cast.and_then(|cast| cast.tolerating(depth)),
+                None => cast.and_then(|cast| cast.keeping(self.keep)),
+            }
+            .map(Query::Convex)
+        } else {
+            let precisions = [precision(moving), precision(fixed)];
+            moving
+                .solid()
+                .and_then(|p| {
+                    let (p, q) = (p.along(moves), fixed.solid()?.along(other));
+                    between_motions(p, q, precisions, self.tolerance)
+                })
+                .and_then(|cast| cast.keeping(self.keep))
+                .map(Query::Solid)
+        };
+        query.map_err(|error| error.to_string())
+    }
+}
+
+const fn precision(part: &Part) -> f64 {
+    match part {
+        Part::Convex(of) => of.precision,
+        Part::Solid(of) => of.precision,
+    }
+}
+
+fn first_contact(query: &Query<'_>) -> Result<Answer, String> {
+    let said = |error: QueryError| error.to_string();
+    Ok(Answer::of(&match query {
+        Query::Convex(cast) => {
+            let outcome = cast.first_contact().map_err(said)?;
+            told("convex", Record::of_motion(&outcome, cast), &outcome, cast.bodies())
+        }
+        Query::Solid(cast) => {
+            let outcome = cast.first_contact().map_err(said)?;
+            told("solid", Record::of_solid_motion(&outcome, cast), &outcome, cast.bodies())
+        }
+    }))
+}
+
+fn told<P, B: Body>(
+    kind: &'static str,
+    record: Record,
+    outcome: &MotionOutcome<P>,
+    bodies: [&B; 2],
+) -> MotionAnswer {
+    let (MotionOutcome::Contact(at) | MotionOutcome::Grazing(at) | MotionOutcome::Undecided(at)) =
+        outcome
+    else {
+        return MotionAnswer { kind, record, pose: None, lit: None };
+    };
+    let MotionContact { poses, features, .. } = at;
+    let lit = features.map(|Features { moving, fixed }| Touching {
+        moving: Lit::of(moving, bodies[0]),
+        fixed: Lit::of(fixed, bodies[1]),
+    });
+    MotionAnswer { kind, record, pose: Some(numbers(poses[0])), lit }
+}
+
+fn numbers(pose: Pose) -> [f64; 7] {
+    let (at, turn) = (pose.translation(), pose.rotation());
+    [at.x, at.y, at.z, turn.x, turn.y, turn.z, turn.w]
+}
+
+/// Makes the proof, and checks it without a search.
+fn prove(query: &Query<'_>) -> Result<Answer, String> {
+    let said = |error: QueryError| error.to_string();
+    let (checked, entries) = match query {
+        Query::Convex(cast) => {
+            let outcome = cast.first_contact().map_err(said)?;
+            let proof = outcome.proof();
+            (cast.verify(proof), proof.planes())
+        }
+        Query::Solid(cast) => {
+            let outcome = cast.certified_first_contact().map_err(said)?;
+            let proof = outcome.proof();
+            (cast.verify(proof), proof.spans.iter().map(|span| span.cover.len()).sum())
+        }
+    };
+    Ok(judged(checked, entries))
+}
+
+fn judged(checked: Result<[f64; 2], MotionProofError>, entries: usize) -> Answer {
+    Answer::of(&match checked {
+        // Infinite, that they meet is not claimed, is written as null.
+        Ok(proven) => json!({ "holds": true, "proven": proven, "entries": entries }),
+        Err(error) => json!({ "holds": false, "because": error.to_string() }),
+    })
+}

@@ -1,0 +1,68 @@
+//! Casts between convex bodies, and the check of their proofs.
+
+use colltrans::record::Record;
+use colltrans::{Cast, CertificateError, ContactRange, Features, Options};
+use glam::DVec3;
+use serde_json::json;
+
+use super::body::Hull;
+use super::question::Pair;
+use super::record::{CastAnswer, Proof};
+use crate::answer::{Answer, Refusal};
+use crate::lit::{Lit, Touching};
+use crate::pose::pose;
+
+/// The query that a question asks.
+pub(crate) fn query<'a>([moving, fixed]: [&'a Hull; 2], pair: &Pair) -> Result<Cast<'a>, Refusal> {
+    let moving = moving.body.at(pose(pair.moving_pose, "moving")?);
+    let fixed = fixed.body.at(pose(pair.fixed_pose, "fixed")?);
+    let options = Options::default()
+        .with_solver(pair.solver)
+        .with_narrowing(pair.narrowing)
+        .with_graze_tolerance(pair.graze);
+    let cast = Cast::new(moving, fixed, DVec3::from_array(pair.direction));
+    Ok(cast.and_then(|cast| cast.with_options(options)).map_err(|error| error.to_string())?)
+}
+
+pub(crate) fn cast(bodies: [&Hull; 2], pair: &Pair) -> Result<Answer, Refusal> {
+    let cast = query(bodies, pair)?;
+    let range = cast.contact_range().map_err(|error| error.to_string())?;
+    let clearance = cast.clearance().map_err(|error| error.to_string())?;
+    let first = match &range {
+        ContactRange::Contact { first, .. } => Ok(first),
+        ContactRange::Grazing { first, .. } => Ok(&first.contact),
+        ContactRange::Separated(separated) => Err(separated.certificate),
+    };
+    Ok(Answer::of(&CastAnswer {
+        kind: "convex",
+        record: Record::of_contact_range(&range, &cast),
+        clearance: Some(Record::of_clearance(&clearance, &cast)),
+        lit: first.ok().map(|contact| {
+            let Features { moving, fixed } = contact.features(&cast);
+            Touching { moving: Lit::of(moving, cast.moving()), fixed: Lit::of(fixed, cast.fixed()) }
+        }),
+        proof: Some(
+            first.map_or_else(Proof::Separation, |contact| Proof::Contact(contact.certificate)),
+        ),
+        precision: None,
+    }))
+}
+
+/// Checks a proof as it was written, against the two bodies alone.
+pub(crate) fn verify(bodies: [&Hull; 2], pair: &Pair, proof: &Proof) -> Result<Answer, Refusal> {
+    let cast = query(bodies, pair)?;
+    let checked = match proof {
+        Proof::Contact(certificate) => cast.verify(certificate),
+        Proof::Separation(separation) => cast.verify(separation),
+        Proof::Clearance(_) => return Err("that is a proof between solids".to_owned().into()),
+    };
+    Ok(judged(checked))
+}
+
+/// What came of a check.
+pub(crate) fn judged(checked: Result<f64, CertificateError>) -> Answer {
+    Answer::of(&match checked {
+        Ok(proven) => json!({ "holds": true, "proven": proven }),
+        Err(error) => json!({ "holds": false, "because": error.to_string() }),
+    })
+}

@@ -1,0 +1,14 @@
+//! Casts of two bodies: all that the first answer of the page needs.
+//!
+//! Data flow: [`State::ask`](crate::Answers::ask) reads a `question::Question` -> `body` (files become bodies, which
+//! stay in the state), `convex` and `solid` (casts, as `record` has them), `certify` (proofs between solids).
+
+mod body;
+mod certify;
+mod convex;
+mod question;
+mod record;
+mod solid;
+mod state;
+
+pub use state::State;

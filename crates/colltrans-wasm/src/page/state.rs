@@ -1,0 +1,128 @@
+//! The bodies in use, and what is answered about them.
+
+use colltrans_mesh::Mesh;
+use colltrans_mesh::body::Take;
+
+use super::body::{self, Part};
+use super::question::{Load, Question, Slot};
+use super::{certify, convex, solid};
+use crate::Answers;
+use crate::answer::{Answer, Refusal};
+
+/// A body made of a file with more bytes goes before the next file is read: both may not fit.
+const LARGE: usize = 64 << 20;
+
+/// Two bodies, as files made them.
+#[derive(Debug, Default)]
+pub struct State {
+    moving: Place,
+    fixed: Place,
+}
+
+/// What is asked about, and what is to take its place: a file that no body was made of is refused, and what
+/// was there stays.
+#[derive(Debug, Default)]
+struct Place {
+    body: Option<(File, Part)>,
+    offered: Option<File>,
+}
+
+/// A file, read once.
+#[derive(Debug)]
+struct File {
+    name: String,
+    bytes: usize,
+    mesh: Mesh,
+}
+
+impl Place {
+    /// A file without bytes is the one that was offered last, or else the one in use, taken in another way.
+    fn load(&mut self, load: Load, bytes: Vec<u8>) -> Result<Answer, Refusal> {
+        let used = self.body.as_ref().map(|(file, _)| file);
+        let known = self.offered.as_ref().or(used).is_some_and(|file| file.name == load.name);
+        if !bytes.is_empty() || !known {
+            self.offered = None;
+            self.drop_large();
+            let length = bytes.len();
+            let mesh = body::read(&load.name, bytes)?;
+            self.offered = Some(File { name: load.name, bytes: length, mesh });
+        }
+        let mut file = match self.offered.take() {
+            Some(file) => file,
+            None => self.body.take().map(|(file, _)| file).ok_or_else(|| "no file".to_owned())?,
+        };
+        match body::build(&file.mesh, &file.name, load.take) {
+            Ok((part, answer)) => {
+                if load.take == Take::Convex {
+                    // Nothing else will be made of it.
+                    file.mesh = Mesh::default();
+                }
+                self.body = Some((file, part));
+                Ok(answer)
+            }
+            Err(refusal) => {
+                self.offered = Some(file);
+                Err(refusal)
+            }
+        }
+    }
+
+    fn drop_large(&mut self) {
+        if self.body.as_ref().is_some_and(|(file, _)| file.bytes > LARGE) {
+            self.body = None;
+        }
+    }
+}
+
+impl Answers for State {
+    /// Answers one question; `file` holds the bytes that come with it, if any.
+    fn ask(&mut self, question: &[u8], file: Vec<u8>) -> Answer {
+        let answer = match Question::read(question) {
+            Ok(question) => self.answer(question, file),
+            Err(error) => Err(format!("the question cannot be read: {error}").into()),
+        };
+        answer.unwrap_or_else(Refusal::answer)
+    }
+}
+
+impl State {
+    fn answer(&mut self, question: Question, file: Vec<u8>) -> Result<Answer, Refusal> {
+        match question {
+            Question::Load(load) => self.load(load, file),
+            Question::Cast(pair) => {
+                let bodies = self.bodies()?;
+                match bodies {
+                    [Part::Convex(moving), Part::Convex(fixed)] => {
+                        convex::cast([moving, fixed], &pair)
+                    }
+                    _ => solid::cast(bodies, &pair),
+                }
+            }
+            Question::Certify(pair) => certify::certify(self.bodies()?, &pair),
+            Question::Verify(pair, proof) => match self.bodies()? {
+                [Part::Convex(moving), Part::Convex(fixed)] => {
+                    convex::verify([moving, fixed], &pair, &proof)
+                }
+                bodies => certify::verify(bodies, &pair, &proof),
+            },
+        }
+    }
+
+    fn load(&mut self, load: Load, file: Vec<u8>) -> Result<Answer, Refusal> {
+        let place = match load.slot {
+            Slot::Moving => &mut self.moving,
+            Slot::Fixed => &mut self.fixed,
+        };
+        let answer = place.load(load, file);
+        answer.map_err(|refusal| Refusal { gone: place.body.is_none(), ..refusal })
+    }
+
+    fn bodies(&self) -> Result<[&Part; 2], Refusal> {
+        let [Some(moving), Some(fixed)] =
+            [&self.moving, &self.fixed].map(|place| place.body.as_ref().map(|(_, part)| part))
+        else {
+            return Err("two bodies are needed".to_owned().into());
+        };
+        Ok([moving, fixed])
+    }
+}

@@ -1,0 +1,101 @@
+//! From the scene to SVG.
+//!
+//! From below to above: lines on the ground, areas, lines, what nothing hides, words.
+
+use std::collections::HashSet;
+
+use colltrans_picture::{Depth, Facet, Frame, Page, Raster, escaped, ordered};
+use glam::{DVec2, DVec3};
+
+use super::scene::{Area, Line, Scene, Segment, Styles};
+
+/// The width of an opaque area's rim, so that nothing shines through between it and its neighbours: pixels.
+const RIM: f64 = 0.7;
+const WORDS: &str = r#"font-family="sans-serif" font-size="14" font-style="italic""#;
+
+pub(crate) fn drawing(scene: &Scene) -> String {
+    let Styles { size, ground, text, words, .. } = &scene.styles;
+    let size = DVec2::from_array(*size);
+    let window = Frame { low: DVec2::ZERO, high: size };
+    let mut page = Page::new(window);
+    let lines = Lines::new(scene, window);
+    lines.draw(&mut page, |style| style.below);
+    areas(&mut page, scene, window, |area| !area.above);
+    lines.draw(&mut page, |style| !style.below);
+    areas(&mut page, scene, window, |area| area.above);
+    for word in words {
+        let look = format!(r#"{WORDS} fill="{}""#, escaped(text));
+        page.text(DVec2::from_array(word.at), "middle", &look, &word.text);
+    }
+    page.alone(size, ground)
+}
+
+/// Neighbours of one style are one path.
+fn areas(page: &mut Page, scene: &Scene, window: Frame, some: impl Fn(&Area) -> bool) {
+    let style = |facet: &Facet| &scene.styles.areas[facet.style as usize];
+    let facets = scene.triangles.iter().map(|(facet, _)| *facet).filter(|f| some(style(f)));
+    let painted = ordered(facets.collect(), window, Depth::Inverse, scene.styles.slack);
+    for same in painted.chunk_by(|a, b| a.style == b.style) {
+        let Area { fill, opacity, .. } = style(&same[0]);
+        let fill = escaped(fill);
+        let look = if same[0].opaque {
+            format!(r#"fill="{fill}" stroke="{fill}" stroke-width="{RIM}""#)
+        } else {
+            format!(r#"fill="{fill}" fill-opacity="{opacity}""#)
+        };
+        page.polygons(&look, same.iter().map(one_way_round));
+    }
+}
+
+/// All of them the same way round: then overlaps add up and nothing is a hole.
+fn one_way_round(facet: &Facet) -> Vec<DVec2> {
+    let [a, b, c] = facet.corners.map(DVec3::truncate);
+    if (b - a).perp_dot(c - a) > 0.0 { vec![a, b, c] } else { vec![a, c, b] }
+}
+
+/// Lines, and what hides them.
+struct Lines<'a> {
+    scene: &'a Scene,
+    raster: Raster,
+    /// Triangles that are drawn.
+    drawn: HashSet<u32>,
+}
+
+impl<'a> Lines<'a> {
+    fn new(scene: &'a Scene, window: Frame) -> Self {
+        let mut raster = Raster::new(window).with_depths(Depth::Inverse);
+        let mut drawn = HashSet::new();
+        for (facet, number) in &scene.triangles {
+            if facet.opaque && !scene.styles.areas[facet.style as usize].above {
+                raster.draw(facet.corners, *number);
+                drawn.insert(*number);
+            }
+        }
+        Self { scene, raster, drawn }
+    }
+
+    fn draw(&self, page: &mut Page, some: impl Fn(&Line) -> bool) {
+        let styles = &self.scene.styles.lines;
+        for same in self.scene.segments.chunk_by(|a, b| a.style == b.style) {
+            let Line { colour, opacity, dash, .. } = match &styles[same[0].style as usize] {
+                style if some(style) => style,
+                _ => continue,
+            };
+            let ends = match dash {
+                Some(dash) => format!(r#"stroke-linecap="butt" stroke-dasharray="{dash:.2}""#),
+                None => r#"stroke-linecap="round""#.to_owned(),
+            };
+            let look = format!(r#"stroke="{}" stroke-opacity="{opacity}" {ends}"#, escaped(colour));
+            page.lines(&look, same.iter().flat_map(|segment| self.seen(segment)));
+        }
+    }
+
+    /// Nothing of an edge whose triangles all look away.
+    fn seen(&self, Segment { ends, beside, .. }: &Segment) -> Vec<[DVec2; 2]> {
+        if !beside.is_empty() && !beside.iter().any(|number| self.drawn.contains(number)) {
+            return Vec::new();
+        }
+        let [seen, _] = self.raster.split_edge(*ends, self.scene.styles.slack, beside);
+        seen
+    }
+}

@@ -28,9 +28,8 @@ import outputs
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
 TARGET = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
-#: What people build upon; the others are programs, or measure these.
+#: What people build upon, each after those that it uses; the others are programs, or measure these.
 CRATES = (
-    "colltrans",
     "colltrans-kernel",
     "colltrans-convex",
     "colltrans-solid",
@@ -38,9 +37,11 @@ CRATES = (
     "colltrans-removal",
     "colltrans-scene",
     "colltrans-proof",
+    "colltrans",
     "colltrans-mesh",
     "colltrans-picture",
     "colltrans-assembly",
+    "colltrans-assembly-io",
 )
 #: Of each a text, or a folder of them, and its place on the site.
 TEXTS = {
@@ -230,9 +231,10 @@ def sphinx(source: Path, out: Path) -> None:
 def rust(out: Path) -> None:
     # A folder of its own: what else has been documented is not on the site.
     folder = TARGET / "site"
-    crates = [word for crate in CRATES for word in ("-p", crate)]
     flags = {"RUSTDOCFLAGS": "-D warnings", "CARGO_TARGET_DIR": str(folder)}
-    run("cargo", "doc", "--no-deps", "--lib", "--quiet", *crates, env=os.environ | flags)
+    # One after the other: rustdoc links to the pages of a crate only where they exist.
+    for crate in CRATES:
+        run("cargo", "doc", "--no-deps", "--lib", "--quiet", "-p", crate, env=os.environ | flags)
     shutil.copytree(folder / "doc", out / "rust")
     names = [crate.replace("-", "_") for crate in CRATES]
     listed = "".join(f'<li><a href="{name}/index.html">{name}</a></li>' for name in names)

@@ -7,7 +7,7 @@
 //! `v`.
 //!
 //! The numbers `s, R, T, a, k, w, v` *define* a motion, as real numbers: `k` counts as if its length were
-//! exactly 1. What is computed of it is off by what [`Piece::error`] says.
+//! exactly 1. `Piece::error` bounds how far what is computed of it is off.
 //!
 //! A motion of several pieces begins each where the numbers of that piece say, which is where the one before
 //! it ends, to rounding.

@@ -99,21 +99,10 @@
 //!
 //! # Accuracy
 //!
-//! A contact's bounds enclose the true collision translation of the bodies as given, exactly:
-//! [`Certificate::lower`] `<= coll <=` [`Certificate::upper`], where a body is the convex hull of
-//! its [`vertices`](ConvexPolyhedron::vertices), placed by the nine entries of its pose's matrix and
-//! its translation. They enclose that of the points that the bodies were made from, too: what a hull leaves
-//! outside ([`ConvexPolyhedron::hull_error`]) is taken off lower bounds. [`Contact::translation`] is the best
-//! estimate between them.
-//!
-//! Let `S` be the size of the configuration: the largest distance of a vertex from the origin of
-//! its body frame, for each body, plus the distance `|t_Q - t_P|` of the two frames. The *noise*
-//! `32 u S`, with `u = 2^-53`, bounds the rounding error of a coordinate of a difference of two
-//! points. The bounds differ by at most 15 noises, and what a body may reach beyond a support point
-//! that was found by climbing, divided by `n . d` ([`Certificate::rounding`]); if they do not come
-//! that close, the query returns [`QueryError::NotConverged`], never a number. A displacement of both
-//! bodies together costs the translation nothing. The same input gives the same bits on every run,
-//! thread and platform.
+//! A contact's bounds enclose the true collision translation of the bodies as given:
+//! [`Certificate::lower`] `<= coll <=` [`Certificate::upper`]. They differ by at most 15 *noises* (`32 u S`, with `S` the
+//! size of the configuration and `u = 2^-53`) divided by `n . d`. [`Certificate`] says it in full. The same input gives
+//! the same bits on every run, thread and platform.
 //!
 //! # As data
 //!
@@ -160,9 +149,14 @@ pub use colltrans_convex::{
     InputVertex, Intersection, MAX_MAGNITUDE, MIN_MAGNITUDE, NearPoints, ObstacleId, OffsetReport,
     Options, Outcome, OverlapAhead, Pair, PairBody, PairProof, Placed, PlaneGap, Pose, PoseError,
     Proof, QueryError, Separated, Separation, Solver, Stalled, StartedFrom, Steps, TopologyError,
-    Tracker, UnknownName, VertexId, VertexPair, WhyFree, Within, WitnessPoints, cast,
-    convexity_defect, cta, glam, observe,
+    Tracker, UnknownName, VertexId, VertexPair, WhyFree, Within, WitnessPoints, convexity_defect,
+    cta, observe,
 };
+// The function alone: the name of the core's module is the same.
+#[doc(inline)]
+pub use colltrans_convex::cast::cast;
+#[doc(no_inline)]
+pub use colltrans_convex::glam;
 #[cfg(feature = "json")]
 #[doc(inline)]
 pub use colltrans_convex::{Case, CaseError};

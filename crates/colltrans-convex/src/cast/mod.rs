@@ -1,7 +1,7 @@
 //! A query as a value: two placed bodies and a direction, checked once.
 //!
-//! The way: [`Cast`] holds the setting and the choices, [`derive`](mod@derive) makes the answers
-//! that take more than one cast, [`contact`] computes what is not needed for an answer but asked of
+//! The way: [`Cast`] holds the setting and the choices, `derive` makes the answers
+//! that take more than one cast, `contact` computes what is not needed for an answer but asked of
 //! it; `replay` saves a query as a file (feature `json`).
 
 mod contact;

@@ -9,8 +9,8 @@ use std::io::{Cursor, Write};
 use std::path::{Path, PathBuf};
 
 use arbitrary::Unstructured;
-use colltrans_assembly::read::{ReadOptions, disabled, read_from};
-use colltrans_assembly::robot::Table;
+use colltrans_assembly_io::read::{ReadOptions, disabled, read_from};
+use colltrans_assembly_io::robot::Table;
 use colltrans_mesh::Format;
 
 #[path = "written.rs"]

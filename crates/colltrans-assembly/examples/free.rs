@@ -9,9 +9,9 @@ use std::time::Instant;
 use colltrans::free::{CellKind, FreeDirections, FreeOptions, Verdict};
 use colltrans::solid::{StartOverlap, Workspace};
 use colltrans_assembly::free::Removal;
-use colltrans_assembly::read::{ReadOptions, read};
 use colltrans_assembly::rooms::room_of;
 use colltrans_assembly::{Bodies, Fit, Part};
+use colltrans_assembly_io::read::{ReadOptions, read};
 use glam::DVec3;
 
 type Failure = Box<dyn std::error::Error>;

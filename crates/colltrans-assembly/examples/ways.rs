@@ -6,7 +6,7 @@ use std::time::Instant;
 use colltrans::Pose;
 use colltrans::glam::DVec3;
 use colltrans::ways::{WayOptions, WaysOut, of_large_facets};
-use colltrans_assembly::read::{ReadOptions, read};
+use colltrans_assembly_io::read::{ReadOptions, read};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();

@@ -10,14 +10,13 @@ const UNITS: [(&[&str], f64); 6] = [
     (&["micron", "um"], 1e-6),
 ];
 
-/// How many metres a unit is; `None` if its name is not known.
-pub(crate) fn metres(name: &str) -> Option<f64> {
+/// Returns how many metres a unit is; `None` if its name is not known.
+pub fn metres(name: &str) -> Option<f64> {
     UNITS.iter().find(|(names, _)| names.contains(&name)).map(|(_, metres)| *metres)
 }
 
-/// The name of a unit of so many metres, if it has one.
-#[cfg(feature = "files")]
-pub(crate) fn name(metres: f64) -> Option<&'static str> {
+/// Returns the name of a unit of so many metres, if it has one.
+pub fn name(metres: f64) -> Option<&'static str> {
     let same = |(_, of): &&(&[&'static str], f64)| (of / metres - 1.0).abs() < 1e-9;
     UNITS.iter().find(same).map(|(names, _)| names[0])
 }

@@ -1,19 +1,18 @@
 //! How what is asked grows with the number of parts: counted, not timed, so that no machine disturbs it.
 
-use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::Path;
 use std::sync::atomic::Ordering::Relaxed;
 
 use colltrans::solid::StartOverlap;
-use glam::DVec3;
+use colltrans_mesh::Format;
+use glam::{DAffine3, DVec3};
 
 use crate::bodies::{Bodies, Fit};
 use crate::findings::Question;
 use crate::liaisons::liaisons;
 use crate::matrix::Matrix;
-use crate::part::Assembly;
+use crate::part::{Assembly, Part, Piece};
 use crate::plan::disassemble;
-use crate::read::{ReadOptions, read_from};
 use crate::rooms::rooms;
 use crate::start::Start;
 use crate::watch::Watch;
@@ -30,18 +29,15 @@ fn grid() -> Assembly {
     cubes((0..GRID.iter().product()).map(|k| at(k).map(|x| 2 * x)))
 }
 
-/// Cubes in one manifest.
+/// Unit cubes at places.
 fn cubes(places: impl Iterator<Item = [usize; 3]>) -> Assembly {
-    let mut manifest = String::new();
-    for (k, [x, y, z]) in places.enumerate() {
-        let place = format!("[{x}, {y}, {z}]");
-        let part = format!("[[part]]\nfile = 'c.off'\nname = 'p{k}'\ntranslation = {place}\n");
-        manifest.push_str(&part);
-    }
-    let files = [("m.toml", manifest.as_str()), ("c.off", CUBE)];
-    let files: BTreeMap<PathBuf, Vec<u8>> =
-        files.map(|(name, text)| (name.into(), text.into())).into();
-    read_from("m.toml", &files, &ReadOptions::default()).unwrap()
+    let mesh = colltrans_mesh::parse(Format::Off, CUBE.into(), Path::new("cube.off")).unwrap();
+    let parts = places.enumerate().map(|(k, place)| {
+        let at = DVec3::from_array(place.map(|x| x as f64));
+        let piece = Piece { mesh: mesh.clone(), world_from_piece: DAffine3::from_translation(at) };
+        Part::new(format!("p{k}"), &[piece]).unwrap()
+    });
+    Assembly::new(parts.collect()).unwrap()
 }
 
 #[test]

@@ -15,13 +15,12 @@ use colltrans::solid::StartOverlap;
 use colltrans_assembly::candidates::{Candidates, Choice};
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::plan::PlanOptions;
-use colltrans_assembly::read::{self, Geometry, ReadOptions};
 use colltrans_assembly::rooms::{PartRoom, rooms};
 use colltrans_assembly::sphere::{Sphere, unit};
 use colltrans_assembly::suggest;
-use colltrans_assembly::{
-    Assembly, AssemblyError, Bodies, Fit, Ignored, Question, ReadError, Stage, Watch,
-};
+use colltrans_assembly::{Assembly, AssemblyError, Bodies, Fit, Ignored, Question, Stage, Watch};
+use colltrans_assembly_io::ReadError;
+use colltrans_assembly_io::read::{self, Geometry, ReadOptions};
 use colltrans_mesh::body::Refused;
 use indicatif::{ProgressBar, ProgressStyle};
 

@@ -7,9 +7,10 @@ use colltrans::motion::path::{
     JointPath, PathError, PathFileError, PathOutcome, PathProofFile, Place,
 };
 use colltrans::record::{Ending, PathRecord, TimeRecord};
-use colltrans_assembly::read::{self, ReadOptions};
-use colltrans_assembly::robot::{Cell, Robot, RobotError, Table, body_of};
-use colltrans_assembly::{AssemblyError, ReadError};
+use colltrans_assembly::AssemblyError;
+use colltrans_assembly_io::ReadError;
+use colltrans_assembly_io::read::{self, ReadOptions};
+use colltrans_assembly_io::robot::{Cell, Robot, RobotError, Table, body_of};
 use colltrans_mesh::body::BodyOptions;
 
 use crate::args::PathArguments;

@@ -20,7 +20,7 @@ use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
 use colltrans_assembly::plan::{Leg, Passed, Plan, PlanOptions, Step, Times, Turn, Wanted};
-use colltrans_assembly::read::{self, Geometry, ReadOptions};
+use colltrans_assembly_io::read::{self, Geometry, ReadOptions};
 use colltrans_assembly::report::html;
 use colltrans_assembly::roles::{PairFit, Role, Tolerated};
 use colltrans_assembly::rooms::{PartRoom, rooms};

@@ -11,8 +11,8 @@ use colltrans::motion::path::{
 };
 use colltrans::record::PathRecord;
 use colltrans::{AnyBody, AnyPlaced};
-use colltrans_assembly::read::{self, ReadOptions};
-use colltrans_assembly::robot::{Cell, Robot as Arm, RobotJoint, Table};
+use colltrans_assembly_io::read::{self, ReadOptions};
+use colltrans_assembly_io::robot::{Cell, Robot as Arm, RobotJoint, Table};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};

@@ -8,7 +8,7 @@ use std::error::Error;
 use std::path::Path;
 
 use colltrans_assembly::map::{MapOptions, RemovalMap};
-use colltrans_assembly::read::{ReadOptions, read};
+use colltrans_assembly_io::read::{ReadOptions, read};
 use colltrans_assembly::report::html;
 use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Question, Watch};
 use glam::DAffine3;

@@ -12,8 +12,9 @@ use glam::{DAffine3, DVec3};
 
 use super::files::Source;
 use super::{MOST_PLACED, Names, contents, in_file};
-use crate::error::{AssemblyError, ReadError};
-use crate::part::{Assembly, Part, Piece};
+use crate::error::ReadError;
+use colltrans_assembly::AssemblyError;
+use colltrans_assembly::{Assembly, Part, Piece};
 
 /// Names that a note lists.
 pub(super) const MOST_NAMED: usize = 4;

@@ -10,8 +10,8 @@ use glam::{DAffine3, DVec3};
 use super::files::Source;
 use super::{Draft, Placed, assembled, io, mesh, stem};
 use crate::error::ReadError;
-use crate::part::Assembly;
-use crate::units;
+use colltrans_assembly::Assembly;
+use colltrans_assembly::units;
 
 pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {
     let (mut files, mut others) = (Vec::new(), Others::default());

@@ -19,9 +19,9 @@ use serde_json::Value;
 
 use super::files::{Source, percent_decoded, unescaped};
 use super::{Budget, Draft, Names, Placed, assembled, contents, drafts, plain};
-use crate::colour::on_screen;
 use crate::error::ReadError;
-use crate::part::Assembly;
+use colltrans_assembly::Assembly;
+use colltrans_assembly::colour::on_screen;
 
 /// Nodes nested deeper than this are a ring.
 const DEEPEST: usize = 256;

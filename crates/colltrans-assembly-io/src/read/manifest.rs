@@ -14,11 +14,12 @@ use super::files::Source;
 use super::{
     Budget, Draft, Placed, Split, assembled, contents, in_file, mesh, plain, plain_words, stem,
 };
-use crate::constraints::WITHIN_DEGREES;
-use crate::error::{AssemblyError, ReadError};
-use crate::part::{Assembly, Ignored};
-use crate::roles::{PairFit, Role};
-use crate::units;
+use crate::error::ReadError;
+use colltrans_assembly::AssemblyError;
+use colltrans_assembly::constraints::WITHIN_DEGREES;
+use colltrans_assembly::roles::{PairFit, Role};
+use colltrans_assembly::units;
+use colltrans_assembly::{Assembly, Ignored};
 
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields, expecting = "an object that holds a manifest")]

@@ -31,11 +31,12 @@ use std::path::{Path, PathBuf};
 use colltrans_mesh::Mesh;
 use colltrans_mesh::body::BodyOptions;
 
-use crate::error::{AssemblyError, ReadError};
-use crate::part::Assembly;
+use crate::error::ReadError;
 pub use crate::plain::plain;
 #[cfg(feature = "files")]
 use crate::plain::plain_words;
+use colltrans_assembly::Assembly;
+use colltrans_assembly::AssemblyError;
 pub use drafts::Split;
 use drafts::{Draft, Placed, assembled};
 pub use files::{FileFault, Files};

@@ -15,9 +15,10 @@ use super::files::Source;
 use super::shapes::{Round, SIDES};
 use super::urdf::{self, Gathered};
 use super::{contents, in_file};
-use crate::error::{AssemblyError, ReadError};
-use crate::part::Piece;
+use crate::error::ReadError;
 use crate::robot::{Kind, Link, Mimic, Robot, RobotJoint};
+use colltrans_assembly::AssemblyError;
+use colltrans_assembly::Piece;
 use colltrans_mesh::xml::Element;
 
 pub(super) fn read(source: Source) -> Result<Robot, ReadError> {

@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 use colltrans_mesh::Mesh;
 use glam::{DAffine3, DVec3};
 
-use crate::part::Piece;
+use colltrans_assembly::Piece;
 
 pub(super) const SIDES: usize = 64;
 
@@ -111,7 +111,7 @@ fn turned(profile: &[(f64, f64)], poles: Option<[f64; 2]>, world_from_piece: DAf
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::part::Part;
+    use colltrans_assembly::Part;
 
     #[test]
     fn shapes_are_closed_and_have_their_volumes() {

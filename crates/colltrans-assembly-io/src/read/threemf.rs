@@ -27,7 +27,7 @@ use super::files::{Source, unescaped};
 use super::slicer::{self, Told, Whole};
 use super::{Budget, Draft, Names, Split, assembled, contents, drafts};
 use crate::error::ReadError;
-use crate::part::Assembly;
+use colltrans_assembly::Assembly;
 use colltrans_mesh::xml::{self, Element, Lines};
 
 /// All models of a package may unpack to so many bytes, and to so many for each byte of it.

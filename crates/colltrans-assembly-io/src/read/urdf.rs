@@ -11,7 +11,7 @@ use super::manifest::rpy_matrix;
 use super::shapes::Round;
 use super::{Budget, Draft, Geometry, Placed, assembled, contents, mesh, shapes};
 use crate::error::ReadError;
-use crate::part::{Assembly, Piece};
+use colltrans_assembly::{Assembly, Piece};
 use colltrans_mesh::xml::Element;
 
 pub(super) fn read(source: Source) -> Result<Assembly, ReadError> {

@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use colltrans::solid::{StartOverlap, Workspace};
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::plan::{Plan, PlanOptions};
-use colltrans_assembly::read::{ReadOptions, read};
 use colltrans_assembly::roles::{PairFit, Role};
 use colltrans_assembly::rooms::rooms;
 use colltrans_assembly::sphere::Sphere;
 use colltrans_assembly::start::Start;
 use colltrans_assembly::{Assembly, Bodies, Fit, Room, Watch};
+use colltrans_assembly_io::read::{ReadOptions, read};
 
 fn collection() -> Option<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");

@@ -12,9 +12,9 @@ use std::path::{Path, PathBuf};
 use crate::common::{CUBE, mesh_of_3mf, package};
 use colltrans_assembly::map::{self, MapOptions, RemovalMap};
 use colltrans_assembly::plan::PlanOptions;
-use colltrans_assembly::read::{ReadOptions, read_from};
 use colltrans_assembly::report::{facts, glb, html};
 use colltrans_assembly::{Assembly, Bodies, Fit, Question, Watch};
+use colltrans_assembly_io::read::{ReadOptions, read_from};
 use quick_xml::events::Event;
 use serde_json::{Value, json};
 

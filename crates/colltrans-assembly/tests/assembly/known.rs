@@ -15,7 +15,6 @@ use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
 use colltrans_assembly::plan::{Plan, PlanOptions, disassemble};
-use colltrans_assembly::read::{ReadOptions, read};
 use colltrans_assembly::record;
 use colltrans_assembly::report::html;
 use colltrans_assembly::rooms::{PartRoom, room_of, rooms};
@@ -25,6 +24,7 @@ use colltrans_assembly::suggest::applied;
 use colltrans_assembly::{
     Assembly, AssemblyError, Bodies, Fit, Ignored, Part, Piece, Question, Room, Watch,
 };
+use colltrans_assembly_io::read::{ReadOptions, read};
 use colltrans_testkit::random::Random;
 use glam::{DAffine3, DVec3};
 

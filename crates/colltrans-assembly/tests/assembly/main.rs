@@ -16,7 +16,6 @@ mod order;
 mod precision;
 mod read;
 mod report;
-mod robot;
 mod roles;
 mod several;
 mod split;

@@ -2,8 +2,8 @@
 
 use crate::common::*;
 use colltrans_assembly::plan::PlanOptions;
-use colltrans_assembly::read::{ReadOptions, read};
 use colltrans_assembly::{Assembly, Bodies, Fit};
+use colltrans_assembly_io::read::{ReadOptions, read};
 use colltrans_testkit::TemporaryFolder;
 use glam::DVec3;
 

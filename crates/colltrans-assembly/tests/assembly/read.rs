@@ -9,9 +9,10 @@ use std::path::Path;
 use crate::common::*;
 use base64::Engine;
 use colltrans_assembly::plan::Plan;
-use colltrans_assembly::read::{Geometry, ReadOptions, read};
 use colltrans_assembly::report::glb::animation;
-use colltrans_assembly::{Assembly, Ignored, ReadError};
+use colltrans_assembly::{Assembly, Ignored};
+use colltrans_assembly_io::ReadError;
+use colltrans_assembly_io::read::{Geometry, ReadOptions, read};
 use glam::DVec3;
 
 fn folder(files: &[(&str, &str)]) -> TemporaryFolder {

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use crate::common::*;
 use colltrans_assembly::plan::{Leg, Moves, Plan, PlanOptions};
-use colltrans_assembly::read::{ReadOptions, read};
 use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Question, Watch, record};
+use colltrans_assembly_io::read::{ReadOptions, read};
 use colltrans_testkit::oracle::cubes::Cubes;
 use colltrans_testkit::random::Random;
 use glam::DVec3;

@@ -8,8 +8,9 @@ use std::path::{Path, PathBuf};
 
 use crate::common::{CUBE, mesh_of_3mf, package};
 use colltrans_assembly::plan::Plan;
-use colltrans_assembly::read::{ReadOptions, Split, read_from};
-use colltrans_assembly::{Assembly, Bodies, Fit, Part, ReadError, Room};
+use colltrans_assembly::{Assembly, Bodies, Fit, Part, Room};
+use colltrans_assembly_io::ReadError;
+use colltrans_assembly_io::read::{ReadOptions, Split, read_from};
 use colltrans_testkit::shapes::{Mesh, block};
 
 type Files = BTreeMap<PathBuf, Vec<u8>>;
@@ -87,7 +88,7 @@ fn files_of_a_folder_stay_parts_and_it_is_said() {
     std::fs::write(folder.path().join("screws.obj"), &two).unwrap();
     std::fs::write(folder.path().join("plate.off"), CUBE).unwrap();
     let read = |split| {
-        colltrans_assembly::read::read(folder.path(), &ReadOptions::default().with_split(split))
+        colltrans_assembly_io::read::read(folder.path(), &ReadOptions::default().with_split(split))
             .unwrap()
     };
     let kept = read(Split::Auto);
@@ -216,7 +217,8 @@ fn what_a_converter_says_of_nodes_is_read() {
         {"name": "plate", "mesh": 0, "translation": [0, 0, 3], "extras": part(1e-5)},
     ]);
     let converted = json!({"version": "2.0", "extras": {"colltrans": {"unit": "mm", "per_metre": 1000, "up": "z"}}});
-    let read = |nodes, asset| colltrans_assembly::read::glb("a.glb", &glb(nodes, asset)).unwrap();
+    let read =
+        |nodes, asset| colltrans_assembly_io::read::glb("a.glb", &glb(nodes, asset)).unwrap();
     let found = read(&nodes, &converted);
     assert_eq!(parts(&found), [("screw", 24), ("plate", 12)]);
     assert_eq!((found.unit(), found.up().to_array()), (Some("mm"), [0.0, 0.0, 1.0]));
@@ -251,13 +253,13 @@ fn what_a_converter_says_of_nodes_is_read() {
 fn glb_out_lies_over_glb_in() {
     let nodes =
         serde_json::json!([{"name": "a", "mesh": 0, "scale": [1, 2, 3], "translation": [4, 5, 6]}]);
-    let first = colltrans_assembly::read::glb(
+    let first = colltrans_assembly_io::read::glb(
         "a.glb",
         &glb(&nodes, &serde_json::json!({"version": "2.0"})),
     )
     .unwrap();
     let written = colltrans_assembly::report::glb::animation(&first, &Plan::default());
-    let again = colltrans_assembly::read::glb("b.glb", &written).unwrap();
+    let again = colltrans_assembly_io::read::glb("b.glb", &written).unwrap();
     let bounds = |assembly: &Assembly| assembly.parts()[0].solid().bounds();
     assert_eq!(
         (bounds(&first).low, bounds(&first).high),
@@ -266,7 +268,7 @@ fn glb_out_lies_over_glb_in() {
     // What has z upwards lies on its side in glTF, in metres.
     let z = first.with_up(glam::DVec3::Z).with_unit("mm");
     let written = colltrans_assembly::report::glb::animation(&z, &Plan::default());
-    let low = bounds(&colltrans_assembly::read::glb("b.glb", &written).unwrap()).low;
+    let low = bounds(&colltrans_assembly_io::read::glb("b.glb", &written).unwrap()).low;
     assert!((low - glam::DVec3::new(0.004, 0.006, -0.007)).length() < 1e-9, "{low}");
 }
 
@@ -308,7 +310,8 @@ fn nodes_of_collada_are_parts_in_their_unit() {
     let metres = open("b.dae", &files, Split::Never).unwrap();
     assert_eq!((metres.unit(), high(&metres, 0)), (Some("m"), 2.5));
     assert!((high(&open("m.toml", &files, Split::Auto).unwrap(), 0) - 50.0).abs() < 1e-9);
-    let visual = ReadOptions::default().with_geometry(colltrans_assembly::read::Geometry::Visual);
+    let visual =
+        ReadOptions::default().with_geometry(colltrans_assembly_io::read::Geometry::Visual);
     let robot = read_from(Path::new("r.urdf"), &files, &visual).unwrap();
     assert!((high(&robot, 0) - 0.05).abs() < 1e-12);
     files.insert("c.dae".into(), b"<COLLADA/>".to_vec());

@@ -10,9 +10,10 @@ use crate::common::{CUBE, mesh_of_3mf, package};
 use allocation_counter::measure;
 use base64::Engine;
 use colltrans_assembly::plan::Plan;
-use colltrans_assembly::read::{ReadOptions, Split, read, read_from};
 use colltrans_assembly::report::glb::animation;
-use colltrans_assembly::{Assembly, Bodies, Fit, ReadError};
+use colltrans_assembly::{Assembly, Bodies, Fit};
+use colltrans_assembly_io::ReadError;
+use colltrans_assembly_io::read::{ReadOptions, Split, read, read_from};
 use colltrans_testkit::shapes::block;
 use glam::DVec3;
 use serde_json::{Value, json};
@@ -103,7 +104,7 @@ fn parts_have_the_colour_of_their_largest_primitive() {
     };
     let read = coloured(&materials, [json!(0), json!(1), json!(1)]);
     let written = animation(&read, &Plan::default());
-    for assembly in [&read, &colltrans_assembly::read::glb("b.glb", &written).unwrap()] {
+    for assembly in [&read, &colltrans_assembly_io::read::glb("b.glb", &written).unwrap()] {
         near(assembly.parts()[0].colour(), [1.0, 0.0, 0.5]);
         near(assembly.parts()[1].colour(), [0.0, 1.0, 0.0]);
     }

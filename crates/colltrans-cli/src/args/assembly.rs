@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use colltrans::glam::DVec3;
-use colltrans_assembly::read::Split;
+use colltrans_assembly_io::read::Split;
 
 use super::directions::WorkArguments;
 use super::values::{direction, factor, legs, length, samples, threads};

@@ -8,7 +8,7 @@ use colltrans::glam::{DQuat, DVec3};
 use colltrans::motion::Motion;
 use colltrans::record::{PairQuestion, Question, Record};
 use colltrans::{Cast, ConvexPolyhedron, Options, Pair, Pose, PoseError, Solver, cta};
-use colltrans_assembly::read::plain;
+use colltrans_assembly_io::read::plain;
 use colltrans_mesh::body::{LoadError, Take};
 use serde::Deserialize;
 use serde_json::value::RawValue;

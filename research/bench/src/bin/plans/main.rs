@@ -13,10 +13,10 @@ use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
 use clap::Parser;
-use colltrans_assembly::read::{ReadOptions, read};
 use colltrans_assembly::{
     Assembly, Bodies, Findings, Fit, Part, Piece, Question, Stage, Watch, suggest,
 };
+use colltrans_assembly_io::read::{ReadOptions, read};
 use colltrans_mesh::Mesh;
 use colltrans_testkit::machines::{
     NamedPart, flange, radial_engine, screwed_table, threaded_block,

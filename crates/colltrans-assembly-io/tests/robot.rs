@@ -6,9 +6,9 @@ use std::path::{Path, PathBuf};
 
 use colltrans::motion::path::{Joint, JointPath, PathBody, PathCast, PathOutcome};
 use colltrans::{AnyBody, Pose};
-use colltrans_assembly::ReadError;
-use colltrans_assembly::read::{ReadOptions, disabled, robot};
-use colltrans_assembly::robot::{Kind, Robot, RobotError, Table, body_of};
+use colltrans_assembly_io::ReadError;
+use colltrans_assembly_io::read::{ReadOptions, disabled, robot};
+use colltrans_assembly_io::robot::{Kind, Robot, RobotError, Table, body_of};
 use colltrans_mesh::body::{BodyOptions, load};
 use glam::{DAffine3, DVec3};
 
@@ -71,7 +71,7 @@ fn frames_stand_where_the_assembly_reader_has_the_links() {
     let values = [("shoulder", 0.7), ("elbow", -0.4), ("reach", 0.05)];
     let joints: BTreeMap<String, f64> = values.map(|(name, x)| (name.to_owned(), x)).into();
     let options = ReadOptions::default().with_joints(joints);
-    let parts = colltrans_assembly::read::read(data("arm.urdf"), &options).expect("parts");
+    let parts = colltrans_assembly_io::read::read(data("arm.urdf"), &options).expect("parts");
     let path = JointPath::evenly(vec![values.map(|(_, x)| x).to_vec()]).expect("a path");
     let bodies = arm.links().iter().flat_map(|link| {
         let body =

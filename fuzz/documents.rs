@@ -5,7 +5,7 @@ use std::sync::LazyLock;
 
 use arbitrary::Unstructured;
 use colltrans::glam::DVec3;
-use colltrans::motion::{Motion, MotionCase, MotionCast, MotionProofFile, MotionProofFiles};
+use colltrans::motion::{Motion, MotionCase, MotionCast};
 use colltrans::{Case, Cast, ConvexPolyhedron, Pair, Pose, ProofFile};
 
 #[path = "written.rs"]
@@ -82,7 +82,7 @@ pub(crate) fn proofs(bytes: &[u8]) {
             }
         }
         seeds.push(motion(&cube, |cast| {
-            MotionProofFile::of(cast, &cast.first_contact().expect("an answer")).to_json()
+            ProofFile::of_motion(cast, &cast.first_contact().expect("an answer")).to_json()
         }));
         seeds
     });
@@ -91,13 +91,6 @@ pub(crate) fn proofs(bytes: &[u8]) {
         let checked = proof.check().is_ok();
         let again = ProofFile::from_json(&proof.to_json()).expect("what it has written");
         assert_eq!(again.check().is_ok(), checked);
-    }
-    if let Ok(proof) = MotionProofFile::from_json(&text) {
-        let _ = proof.check();
-        MotionProofFile::from_json(&proof.to_json()).expect("what it has written");
-    }
-    if let Ok(proofs) = MotionProofFiles::from_json(&text) {
-        let _ = proofs.check();
     }
 }
 

@@ -57,7 +57,7 @@ FILES = {
     "scene.jsonl": '{"body": "data/cube.off", "pose": [9, 0, 0]}\n'
     '{"body": "data/dodecahedron.off", "pose": [0, 9, 0], "name": "d"}\n',
     "poses.json": "[[0, 0, 9, 0, 0, 0, 1], [3, 0, 5, 0, 0, 0, 1]]",
-    "bad.json": '{"format": "colltrans proof 1", "moving": {}}',
+    "bad.json": '{"format": "colltrans proof", "version": 2, "bodies": []}',
 }
 
 

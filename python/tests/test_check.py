@@ -20,7 +20,15 @@ PROOFS = HERE / "proofs"
 FILE = HERE.parent / "src" / "colltrans" / "check.py"
 
 
-FAR = ("moving_pose", "translation", 0)
+#: Where the moving and the fixed body stand, and the direction.
+MOVING_POSE = ("placement", "poses", 0, "pose")
+FIXED_POSE = ("placement", "poses", 1, "pose")
+DIRECTION = ("query", "cast", "direction")
+#: The proofs of a motion, of one of solids and of a path.
+MOTION = ("statement", "motions", 0, "convex")
+SOLIDS = ("statement", "motions", 0, "solids", "proof")
+PATH = ("statement", "path", "proof")
+FAR = (*MOVING_POSE, "translation", 0)
 
 
 def _load() -> Any:
@@ -67,7 +75,7 @@ def changed(file: Any, way: tuple[Any, ...], by: Callable[[Any], Any]) -> Any:
     at = other
     for key in way[:-1]:
         at = at[key]
-    at[way[-1]] = by(at[way[-1]])
+    at[way[-1]] = by(at.get(way[-1]) if isinstance(at, dict) else at[way[-1]])
     return other
 
 
@@ -112,8 +120,8 @@ def less(x: Any) -> Any:
 @pytest.mark.parametrize("by", [more, less])
 def test_every_number_of_a_contact_counts(by: Callable[[Any], Any]) -> None:
     file = proof("contacts")
-    for place in ["moving_pose", "fixed_pose", "direction"]:
-        assert believed(file, (place,), by) == []
+    for way in [MOVING_POSE, FIXED_POSE, DIRECTION]:
+        assert believed(file, way, by) == []
     for end in ["first", "last"]:
         for part in ["normal", "weights", "pairs"]:
             assert believed(file, ("statement", "contacts", end, part), by) == []
@@ -148,7 +156,7 @@ def test_the_stop_of_solids_counts() -> None:
     assert believed(file, (*way, "translation", "upper"), lambda x: x - 1e-9) == []
     # Facets of one plane meet the others as early; those of other planes do not, nor those missing.
     assert believed(file, (*way, "facets"), lambda k: k + 10_000) == []
-    assert refused(changed(file, ("moving_pose", "translation", 2), more))
+    assert refused(changed(file, (*MOVING_POSE, "translation", 2), more))
     assert not refused(changed(file, (*way, "translation", "lower"), lambda _: None))
     beside = proof("beside")
     assert refused(changed(beside, ("statement", "clearance", "separation", "normal", 0), more))
@@ -168,9 +176,7 @@ def test_every_facet_of_a_cell_counts() -> None:
     file = proof("directions")
     way = ("statement", "free_directions", "cells")
     at = list(places(file["statement"]["free_directions"]["cells"]))
-    counts = [
-        sum(len(piece["triangles"]) for piece in file[k]["pieces"]) for k in ("moving", "fixed")
-    ]
+    counts = [sum(len(piece["triangles"]) for piece in body["pieces"]) for body in file["bodies"]]
     tried = held = 0
     for k, place in enumerate(at[::4]):
         for facet in (k % counts[place[-1]], counts[place[-1]]):
@@ -237,31 +243,32 @@ def test_what_is_missing_claims_nothing() -> None:
     contacts["first"] = None
     with pytest.raises(check.NoProofError, match="no contact is claimed"):
         check.check(json.dumps(file))
-    file["statement"] = {"contacts": None, "separation": None}
-    with pytest.raises(check.NoProofError, match="it has to say one thing, not 0"):
-        check.check(json.dumps(file))
+    for none in ({}, None, {"contacts": None, "separation": None}):
+        file["statement"] = none
+        with pytest.raises(check.NoProofError, match="there has to be one of contacts"):
+            check.check(json.dumps(file))
 
 
 def test_what_is_said_of_a_body_counts() -> None:
     file = proof("contacts")
-    body = ("moving", "convex")
+    body = ("bodies", 0, "convex")
     assert believed(file, (*body, "faces"), lambda k: k + 1) == []
     assert believed(file, (*body, "faces"), lambda _: 10_000) == []
     assert believed(file, (*body, "hull_error"), lambda x: -x - 1.0) == []
     for name, wrong in [
-        ("faces", file["moving"]["convex"]["faces"][1:]),
-        ("faces", [face[::-1] for face in file["moving"]["convex"]["faces"]]),
+        ("faces", file["bodies"][0]["convex"]["faces"][1:]),
+        ("faces", [face[::-1] for face in file["bodies"][0]["convex"]["faces"]]),
         ("input_indices", []),
         ("hull_error", None),
     ]:
         other = proof("contacts")
-        other["moving"]["convex"][name] = wrong
+        other["bodies"][0]["convex"][name] = wrong
         assert refused(other), name
 
 
 def test_a_body_may_be_kept_without_some_of_its_input() -> None:
     file = proof("contacts")
-    content = file["moving"]["convex"]
+    content = file["bodies"][0]["convex"]
     content["hull_error"] = 1e-12
     for excess in (None, 0.0, 1e-12):
         content["input_excess"] = excess
@@ -285,17 +292,17 @@ def test_a_slide_is_one() -> None:
 def test_a_contact_that_rounding_hides_is_said_to_be_one() -> None:
     """A corner that the line misses by the last bit: no triangle is met exactly."""
     file = proof("contacts")
-    cube = file["fixed"]["convex"]["vertices"]
+    cube = file["bodies"][1]["convex"]["vertices"]
     first = file["statement"]["contacts"]["first"]
     pair = first["pairs"][0]
     # The pair alone, with the direction rounded from one corner to the other.
-    turn = file["moving_pose"]
+    turn = value_at(file, MOVING_POSE)
     rows = [turn["matrix"][k::3] for k in range(3)]
-    v = file["moving"]["convex"]["vertices"][pair["moving"]]
+    v = file["bodies"][0]["convex"]["vertices"][pair["moving"]]
     p = [sum(a * b for a, b in zip(row, v, strict=True)) for row in rows]
     p = [a + b for a, b in zip(p, turn["translation"], strict=True)]
     way = [a - b for a, b in zip(cube[pair["fixed"]], p, strict=True)]
-    file["direction"] = [x / 3 for x in way]
+    file["query"]["cast"]["direction"] = [x / 3 for x in way]
     first.update(pairs=[pair] * 3, lower=-100.0, upper=3.0 + 1e-12)
     del file["statement"]["contacts"]["last"]
     report = check.check(json.dumps(file))
@@ -304,19 +311,30 @@ def test_a_contact_that_rounding_hides_is_said_to_be_one() -> None:
     assert refused(file)
 
 
+#: A solid, and places under the name of another placement.
+BESIDE = proof("solids")["bodies"][1]
+RENAMED = {"motions": proof("contacts")["placement"]["poses"]}
+
+
 def test_other_files_are_no_proofs(tmp_path: Path) -> None:
     text = (PROOFS / "contacts.json").read_text()
     wrong = {
         "half": text[: len(text) // 2],
         "empty": "",
         "list": "[]",
-        "format": text.replace("proof 1", "proof 2"),
+        "format": text.replace("colltrans proof", "colltrans proofs"),
+        "version": text.replace('"version":2', '"version":3'),
+        "no version": text.replace('"version":2,', ""),
+        "older": text.replace("colltrans proof", "colltrans proof 1"),
         "twice": text.replace('"direction":', '"direction":[1,0,0],"direction":'),
         "infinite": text.replace('"direction":[1.0', '"direction":[Infinity'),
         "deep": "[" * 100_000,
         "far": json.dumps(changed(proof("contacts"), FAR, lambda _: -1e300)),
-        "still": json.dumps({**proof("contacts"), "direction": [0, 0, 0]}),
-        "mixed": json.dumps({**proof("contacts"), "fixed": proof("solids")["fixed"]}),
+        "still": json.dumps(changed(proof("contacts"), DIRECTION, always([0, 0, 0]))),
+        "mixed": json.dumps(changed(proof("contacts"), ("bodies", 1), always(BESIDE))),
+        "other query": json.dumps({**proof("contacts"), "query": "pair"}),
+        "two queries": json.dumps(changed(proof("contacts"), ("query", "scene"), always({}))),
+        "other placement": json.dumps(changed(proof("contacts"), ("placement",), always(RENAMED))),
     }
     for name, content in wrong.items():
         with pytest.raises(check.NoProofError):
@@ -341,7 +359,7 @@ def test_it_runs_alone() -> None:
 
 def test_a_margin_is_that_of_the_shadows_not_along_a_tilted_normal() -> None:
     file = proof("slide")
-    file["moving_pose"]["translation"] = [-100.0, 1.1, 0.25]
+    value_at(file, MOVING_POSE)["translation"] = [-100.0, 1.1, 0.25]
     separation = {"normal": [0.0, -1.0, 0.0], "margin": 0.09}
     file["statement"] = {"separation": separation}
     assert not refused(file)
@@ -353,7 +371,7 @@ def test_a_margin_is_that_of_the_shadows_not_along_a_tilted_normal() -> None:
 
 def test_an_overlap_of_a_slide_is_that_of_the_shadows() -> None:
     file = proof("slide")
-    file["moving_pose"]["translation"] = [-1e9, 1.0 - 1e-6, 0.25]
+    value_at(file, MOVING_POSE)["translation"] = [-1e9, 1.0 - 1e-6, 0.25]
     slide = {"normal": [0.0, -1.0, 0.0], "overlap": 1.1e-6}
     file["statement"]["contacts"] = {
         "slide": slide,
@@ -371,12 +389,12 @@ def test_an_overlap_of_a_slide_is_that_of_the_shadows() -> None:
         ("contacts", ("statement", "contacts", "first", "rounding"), -1e-300),
         ("contacts", ("statement", "contacts", "first", "rounding"), 1.0),
         ("contacts", ("statement", "contacts", "first", "weights"), {}),
-        ("contacts", ("moving", "convex", "hull_error"), 1e200),
-        ("contacts", ("moving_pose", "translation", 0), 5e-324),
-        ("contacts", ("direction", 1), 1e-300),
+        ("contacts", ("bodies", 0, "convex", "hull_error"), 1e200),
+        ("contacts", (*MOVING_POSE, "translation", 0), 5e-324),
+        ("contacts", (*DIRECTION, 1), 1e-300),
         ("separation", ("statement", "separation", "unknown"), 1.0),
-        ("separation", ("keep",), -1.0),
-        ("separation", ("keep",), None),
+        ("separation", ("query", "cast", "keep"), -1.0),
+        ("separation", ("query", "cast", "keep"), None),
         ("solids", ("statement", "clearance", "certificate", "tolerance"), -1.0),
         ("solids", ("statement", "clearance", "certificate", "lower"), "x"),
         ("solids", ("statement", "clearance", "certificate", "cover"), "z"),
@@ -436,8 +454,8 @@ def test_nothing_takes_the_place_of_a_list_or_an_object(name: str) -> None:
 @pytest.mark.parametrize("name", ["solids", "beside", "inner", "solids_free", "path_solid"])
 def test_a_piece_that_is_not_open_is_closed(name: str) -> None:
     file = proof(name)
-    bodies = [file.get("moving"), file.get("fixed"), *(of["body"] for of in file.get("bodies", []))]
-    triangles = next(body["pieces"][0]["triangles"] for body in bodies if body and "pieces" in body)
+    solids = (body for body in file["bodies"] if "pieces" in body)
+    triangles = next(solids)["pieces"][0]["triangles"]
     last = triangles.pop()
     assert refused(file)
     triangles.append(last[::-1])
@@ -459,20 +477,20 @@ def test_a_piece_that_is_not_open_is_closed(name: str) -> None:
 def test_what_is_said_of_near_solids_has_its_form(near: Any) -> None:
     file = proof("solids")
     file["statement"] = {"solid_distance": {"lower": 0.0, "near": near, "cover": ""}}
-    del file["direction"]
+    file["query"] = "pair"
     assert refused(file)
 
 
 @pytest.mark.parametrize("name", ["solids_free", "solids_contact", "solids_kept"])
 @pytest.mark.parametrize("start", [None, [], {}, 0, "z", "smz"])
 def test_what_is_said_of_the_beginning_has_its_form(name: str, start: Any) -> None:
-    assert refused(changed(proof(name), ("proof", "start", "apart"), always(start)))
+    assert refused(changed(proof(name), (*SOLIDS, "start", "apart"), always(start)))
 
 
 @pytest.mark.parametrize("place", [0, 3])
 def test_weights_that_prove_nothing_are_numbers(place: int) -> None:
     file = proof("path_kept")
-    near = file["proof"]["meeting"]["how"]["pieces"]["met"]["near"]
+    near = value_at(file, PATH)["meeting"]["how"]["pieces"]["met"]["near"]
     assert not refused(file)
     near["weights"][place] = None
     assert refused(file)
@@ -483,20 +501,21 @@ def test_weights_that_prove_nothing_are_numbers(place: int) -> None:
     [None, {}, [], 0, {"planar_problems": 0, "supports": 1, "pivots": 0, "iterations": None}],
 )
 def test_counts_of_work_have_their_form(steps: Any) -> None:
-    way = ("proof", "meeting", "met", "deep", "steps")
+    way = (*MOTION, "meeting", "met", "deep", "steps")
     assert refused(changed(proof("motion_contact"), way, always(steps)))
 
 
 def test_any_corner_inside_shows_that_bodies_overlap_where_a_path_begins() -> None:
     file = proof("path_inside")
-    assert file["proof"]["meeting"]["how"] == "inside"
-    room = next(of for of in file["bodies"] if of["name"] == "room")
-    base = {**file["bodies"][0], "name": "other base"}
-    file["bodies"].append(base)
-    file["statement"]["pairs"][3] = ["other base", "room"]
+    assert value_at(file, PATH)["meeting"]["how"] == "inside"
+    links = file["placement"]["robot"]["bodies"]
+    room = next(of for of in links if of["name"] == "room")
+    base = {**links[0], "name": "other base"}
+    links.append(base)
+    file["statement"]["path"]["pairs"][3] = ["other base", "room"]
     # Four of the eight corners are inside, and the first one is not.
     room["pose"]["translation"][0] = 4.95
-    assert base["body"]["convex"]["vertices"][0][0] < -5.0 + 4.95
+    assert file["bodies"][base["body"]]["convex"]["vertices"][0][0] < -5.0 + 4.95
     report = check.check(json.dumps(file))
     assert any("'other base' and 'room' meet" in line for line in report.holds)
     room["pose"]["translation"][0] = 5.2
@@ -505,8 +524,8 @@ def test_any_corner_inside_shows_that_bodies_overlap_where_a_path_begins() -> No
 
 def test_nothing_carried_may_be_beyond_its_range() -> None:
     file = proof("path_free")
-    carried = next(k for k, of in enumerate(file["bodies"]) if of["frame"] is not None)
-    file["bodies"][carried]["pose"]["translation"][0] = 2.0**200
+    links = file["placement"]["robot"]["bodies"]
+    next(of for of in links if of["frame"] is not None)["pose"]["translation"][0] = 2.0**200
     with pytest.raises(check.NoProofError, match="farther than 2\\^200"):
         check.check(json.dumps(file))
 
@@ -514,12 +533,10 @@ def test_nothing_carried_may_be_beyond_its_range() -> None:
 def test_faces_that_may_not_be_those_of_the_hull_are_left_unchecked() -> None:
     file = proof("contacts")
     assert not check.check(json.dumps(file)).partly
-    corner = file["moving"]["convex"]["vertices"][0]
-    corner[0] += 1e-12 * max(abs(x) for v in file["moving"]["convex"]["vertices"] for x in v)
+    corner = file["bodies"][0]["convex"]["vertices"][0]
+    corner[0] += 1e-12 * max(abs(x) for v in file["bodies"][0]["convex"]["vertices"] for x in v)
     lower, upper = (file["statement"]["contacts"][end] for end in ("first", "last"))
     for end in (lower, upper):
         end |= {"lower": end["lower"] - 1e-9, "upper": None}
     report = check.check(json.dumps(file))
-    assert report.partly and any(
-        "the faces of the moving body" in line for line in report.unchecked
-    )
+    assert report.partly and any("the faces of body 0" in line for line in report.unchecked)

@@ -11,7 +11,11 @@ from fractions import Fraction
 from typing import Any
 
 import pytest
-from test_check import changed, check, proof, refused, without_field
+from test_check import MOTION, always, changed, check, proof, refused, value_at, without_field
+
+#: The moving and the fixed body, where they move.
+MOVERS = ("placement", "motions", 0)
+KEEP = ("query", "motions", 0, "keep")
 
 ALL = ["contact", "free", "kept", "through", "alone", "sinking"]
 
@@ -39,9 +43,9 @@ def test_a_proof_holds(name: str, holds: list[str]) -> None:
 @pytest.mark.parametrize("name", ALL)
 def test_no_plane_may_say_more_than_it_leaves(name: str) -> None:
     file = proof(f"motion_{name}")
-    for s, planes in enumerate(file["proof"]["spans"]):
+    for s, planes in enumerate(value_at(file, MOTION)["spans"]):
         for k in range(len(planes)):
-            way = ("proof", "spans", s, k)
+            way = (*MOTION, "spans", s, k)
             assert refused(changed(file, (*way, "gap"), lambda x: x + 1e-12 * (1 + abs(x))))
             assert refused(changed(file, (*way, "gap"), lambda x: -x))
             assert refused(changed(file, (*way, "normal"), lambda n: [-x for x in n]))
@@ -53,48 +57,48 @@ def test_no_plane_may_say_more_than_it_leaves(name: str) -> None:
 @pytest.mark.parametrize("name", ALL)
 def test_planes_that_are_needed_may_not_be_dropped(name: str) -> None:
     file = proof(f"motion_{name}")
-    for s, planes in enumerate(file["proof"]["spans"]):
+    for s, planes in enumerate(value_at(file, MOTION)["spans"]):
         # The first says where the span begins; all but the last at once leave the motion unproven.
         without = json.loads(json.dumps(file))
-        without["proof"]["spans"][s] = planes[1:]
+        value_at(without, MOTION)["spans"][s] = planes[1:]
         assert planes[1]["time"] == planes[0]["time"] or refused(without)
-        without["proof"]["spans"][s] = [{**planes[0], "alone": False}, planes[-1]]
+        value_at(without, MOTION)["spans"][s] = [{**planes[0], "alone": False}, planes[-1]]
         assert name in {"sinking", "through"} or refused(without)
-    if len(file["proof"]["spans"]) > 1:
-        del file["proof"]["spans"][0]
+    if len(value_at(file, MOTION)["spans"]) > 1:
+        del value_at(file, MOTION)["spans"][0]
         assert refused(file)
 
 
 def test_one_plane_alone_needs_the_arcs() -> None:
     file = proof("motion_alone")
-    way = ("proof", "spans", 0, 0, "alone")
+    way = (*MOTION, "spans", 0, 0, "alone")
     assert refused(changed(file, way, lambda alone: not alone))
     assert refused(changed(file, way, lambda alone: 1))
     # Of the contact no plane is enough alone.
     file = proof("motion_contact")
-    for k in range(len(file["proof"]["spans"][0]) - 1):
-        assert refused(changed(file, ("proof", "spans", 0, k, "alone"), lambda alone: True))
+    for k in range(len(value_at(file, MOTION)["spans"][0]) - 1):
+        assert refused(changed(file, (*MOTION, "spans", 0, k, "alone"), lambda alone: True))
 
 
 @pytest.mark.parametrize("name", ["contact", "kept", "sinking"])
 def test_the_time_of_contact_may_not_be_moved(name: str) -> None:
     file = proof(f"motion_{name}")
-    time = file["proof"]["meeting"]["time"]
-    reached = file["proof"]["spans"][-1][-1]["time"]
-    assert refused(changed(file, ("proof", "meeting", "time"), lambda t: 0.5 * t))
+    time = value_at(file, MOTION)["meeting"]["time"]
+    reached = value_at(file, MOTION)["spans"][-1][-1]["time"]
+    assert refused(changed(file, (*MOTION, "meeting", "time"), lambda t: 0.5 * t))
     # Just after the last plane they do not meet yet.
-    assert refused(changed(file, ("proof", "meeting", "time"), lambda t: reached))
-    assert refused(changed(file, ("proof", "meeting", "time"), lambda t: 1.5))
-    assert refused(changed(file, ("proof", "spans", -1, -1, "time"), lambda t: time + 1e-6))
-    kind = next(iter(file["proof"]["meeting"]["met"]))
+    assert refused(changed(file, (*MOTION, "meeting", "time"), lambda t: reached))
+    assert refused(changed(file, (*MOTION, "meeting", "time"), lambda t: 1.5))
+    assert refused(changed(file, (*MOTION, "spans", -1, -1, "time"), lambda t: time + 1e-6))
+    kind = next(iter(value_at(file, MOTION)["meeting"]["met"]))
     if kind == "near":
-        way: tuple[Any, ...] = ("proof", "meeting", "met", "near", "pairs", 0, "moving")
+        way: tuple[Any, ...] = (*MOTION, "meeting", "met", "near", "pairs", 0, "moving")
     else:
-        way = ("proof", "meeting", "met", "deep", "enclosure", "triangles", 0, 0)
+        way = (*MOTION, "meeting", "met", "deep", "enclosure", "triangles", 0, 0)
     assert refused(changed(file, way, lambda k: k + 1))
     other = {"near": "deep", "deep": "near"}[kind]
-    met = file["proof"]["meeting"]["met"]
-    assert refused(changed(file, ("proof", "meeting", "met"), lambda _: {other: met[kind]}))
+    met = value_at(file, MOTION)["meeting"]["met"]
+    assert refused(changed(file, (*MOTION, "meeting", "met"), lambda _: {other: met[kind]}))
 
 
 @pytest.mark.parametrize(
@@ -114,48 +118,51 @@ def test_the_time_of_contact_may_not_be_moved(name: str) -> None:
 )
 def test_every_number_of_a_motion_counts(part: tuple[Any, ...], by: Callable[[Any], Any]) -> None:
     file = proof("motion_contact")
-    assert refused(changed(file, ("moving_motion", 0, *part), by))
+    assert refused(changed(file, (*MOVERS, 0, "motion", 0, *part), by))
 
 
 def test_other_bodies_are_refused() -> None:
     file = proof("motion_contact")
-    for side in ("moving", "fixed"):
+    for side in range(2):
         for factor in (0.99, 1.01):
             larger = json.loads(json.dumps(file))
-            vertices = larger[side]["vertices"]
-            larger[side]["vertices"] = [[factor * x for x in v] for v in vertices]
+            body = larger["bodies"][side]["convex"]
+            body["vertices"] = [[factor * x for x in v] for v in body["vertices"]]
             assert refused(larger)
-    swapped = {**file, "moving": file["fixed"], "fixed": file["moving"]}
-    assert refused(swapped)
-    assert refused({**file, "keep": 0.01}) and refused({**file, "keep": -0.01})
-    assert refused({**proof("motion_kept"), "keep": 0.26})
-    assert refused({**proof("motion_sinking"), "keep": -0.0009})
-    two = proof("motion_free")
-    two["moving_motion"].append({**two["moving_motion"][0], "since": 0.5})
-    assert refused(two)
+    assert refused(changed(file, ("bodies",), lambda bodies: bodies[::-1]))
+    for keep in (0.01, -0.01, "0", None):
+        assert refused(changed(file, KEEP, always(keep)))
+    assert refused(changed(file, (*KEEP[:-1], "tolerance"), always(0.0)))
+    assert refused(changed(proof("motion_kept"), KEEP, always(0.26)))
+    assert refused(changed(proof("motion_sinking"), KEEP, always(-0.0009)))
+    two = (*MOVERS, 0, "motion")
+    assert refused(changed(proof("motion_free"), two, lambda of: [*of, {**of[0], "since": 0.5}]))
 
 
 def test_what_is_no_proof_is_refused() -> None:
     file = proof("motion_contact")
-    for name in ("moving", "fixed", "moving_motion", "fixed_motion", "proof"):
+    for name in file:
         assert refused({k: v for k, v in file.items() if k != name})
-    assert refused({**file, "moving_motion": []})
-    assert refused({**file, "keep": "0"})
+    assert refused(changed(file, (*MOVERS, 0, "motion"), always([])))
+    assert refused(changed(file, MOVERS, lambda pair: pair[:1]))
+    assert refused(changed(file, (*MOVERS, 0, "body"), always(2)))
+    for name in ("placement", "query", "statement"):
+        assert refused(changed(file, (name, "motions"), lambda all_: [*all_, all_[0]]))
     # It says nothing, which holds.
-    assert check.check(json.dumps({**file, "proof": {"spans": [], "meeting": None}})).holds == []
+    nothing = changed(file, MOTION, always({"spans": [], "meeting": None}))
+    assert check.check(json.dumps(nothing)).holds == []
 
 
 def test_a_piece_that_begins_when_the_motion_ends_is_refused() -> None:
     # It would put the body elsewhere at the time 1, which no plane is of.
-    file = proof("motion_free")
-    last = {**file["moving_motion"][-1], "since": 1.0}
-    assert refused({**file, "moving_motion": [*file["moving_motion"], last]})
+    way = (*MOVERS, 0, "motion")
+    assert refused(changed(proof("motion_free"), way, lambda of: [*of, {**of[-1], "since": 1.0}]))
 
 
 def test_how_deep_and_how_near_is_said_holds_to_rounding() -> None:
     for name in ("contact", "sinking"):
         file = proof(f"motion_{name}")
-        way: tuple[Any, ...] = ("proof", "meeting", "met", "deep")
+        way: tuple[Any, ...] = (*MOTION, "meeting", "met", "deep")
         assert check.check(json.dumps(file)).unchecked == []
         for field, by in (
             ("lower", lambda x: x + 1e-9),
@@ -165,7 +172,7 @@ def test_how_deep_and_how_near_is_said_holds_to_rounding() -> None:
         ):
             assert refused(changed(file, (*way, field), by)), (name, field)
     file = proof("motion_kept")
-    way = ("proof", "meeting", "met", "near")
+    way = (*MOTION, "meeting", "met", "near")
     assert refused(changed(file, (*way, "distance"), lambda x: x - 1e-9))
     assert refused(changed(file, (*way, "distance"), lambda x: -x))
     assert refused(changed(file, (*way, "pairs"), lambda pairs: pairs[:3]))
@@ -173,8 +180,8 @@ def test_how_deep_and_how_near_is_said_holds_to_rounding() -> None:
 
 def test_fields_that_are_missing_or_unknown_are_refused() -> None:
     file = proof("motion_contact")
-    met: tuple[Any, ...] = ("proof", "meeting", "met", "deep")
-    for under in ((), ("proof",), ("proof", "spans", 0, 0), ("proof", "meeting"), met):
+    met: tuple[Any, ...] = (*MOTION, "meeting", "met", "deep")
+    for under in ((), MOTION, (*MOTION, "spans", 0, 0), (*MOTION, "meeting"), met):
         at = file
         for key in under:
             at = at[key]
@@ -185,24 +192,39 @@ def test_fields_that_are_missing_or_unknown_are_refused() -> None:
             assert refused(rest), name
 
 
+def several(files: list[Any]) -> Any:
+    """The pairs of several files as one file."""
+    bodies: list[Any] = []
+    joined: dict[str, list[Any]] = {"placement": [], "query": [], "statement": []}
+    for file in files:
+        for pair in file["placement"]["motions"]:
+            moved = [{**of, "body": of["body"] + len(bodies)} for of in pair]
+            joined["placement"].append(moved)
+        joined["query"] += file["query"]["motions"]
+        joined["statement"] += file["statement"]["motions"]
+        bodies += file["bodies"]
+    parts = {name: {"motions": of} for name, of in joined.items()}
+    return {"format": "colltrans proof", "version": 2, "bodies": bodies, **parts}
+
+
 def test_several_pairs_are_asked_one_question() -> None:
     files = [proof("motion_contact"), proof("motion_free")]
-    several = {"format": "colltrans motions proof 1", "proofs": files}
-    assert len(check.check(json.dumps(several)).holds) == 3
+    assert len(check.check(json.dumps(several(files))).holds) == 3
     # A pair of which planes alone prove nothing is one of solids, as they are.
-    assert refused({**several, "proofs": [*files, proof("solids_contact")]})
+    assert refused(several([*files, proof("solids_contact")]))
     whole = proof("solids_whole")
-    solids = {**several, "proofs": [*files, whole]}
+    solids = several([*files, whole])
     found = check.check(json.dumps(solids))
     alone = check.check(json.dumps(whole))
     assert found.holds[3:] == [f"pair 2: {line}" for line in alone.holds]
     assert found.unchecked == [f"pair 2: {line}" for line in alone.unchecked]
-    entry: tuple[Any, ...] = ("proofs", 2, "proof", "meeting", "time")
+    entry: tuple[Any, ...] = ("statement", "motions", 2, "solids", "proof", "meeting", "time")
     assert refused(changed(solids, entry, lambda time: time / 2))
-    assert refused({**several, "proofs": [proof("path_free")]})
-    assert refused({**several, "proofs": []})
+    path = proof("path_free")["statement"]
+    assert refused({**several(files), "statement": {"motions": [path, path]}})
+    assert refused(several([]))
     # What is said of all of them would be said of two gaps.
-    assert refused({**several, "proofs": [*files, proof("motion_kept")]})
+    assert refused(several([*files, proof("motion_kept")]))
 
 
 def test_sine_and_cosine_are_enclosed() -> None:

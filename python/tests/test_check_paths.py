@@ -7,12 +7,17 @@ from typing import Any
 
 import numpy as np
 import pytest
-from test_check import always, changed, check, proof, refused, without_field
+from test_check import PATH, always, changed, check, proof, refused, value_at, without_field
 from test_schema import conform
 
 from colltrans import Robot, Solid
 
 ALL = ["contact", "free", "kept", "solid"]
+STATEMENT = ("statement", "path")
+QUERY = ("query", "path")
+JOINTS = (*QUERY, "path")
+ROBOT = ("placement", "robot")
+LINKS = (*ROBOT, "bodies")
 
 
 @pytest.mark.parametrize(
@@ -64,8 +69,8 @@ def planes(file: Any) -> list[tuple[Any, ...]]:
             for c, part in enumerate(step.get("parts", {}).get("covers", [])):
                 yield from within(part, (*way, "steps", s, "parts", "covers", c))
 
-    covers = enumerate(file["proof"]["covers"])
-    return [way for c, cover in covers for way in within(cover, ("proof", "covers", c))]
+    covers = enumerate(value_at(file, PATH)["covers"])
+    return [way for c, cover in covers for way in within(cover, (*PATH, "covers", c))]
 
 
 @pytest.mark.parametrize("name", ALL)
@@ -92,41 +97,39 @@ def test_planes_that_are_needed_may_not_be_dropped(name: str) -> None:
         dropped += refused(without)
     assert dropped > len(all_) // 2
     without = json.loads(json.dumps(file))
-    del without["proof"]["covers"][0]
+    del value_at(without, PATH)["covers"][0]
     assert refused(without)
-    without["statement"]["pairs"] = without["statement"]["pairs"][1:]
+    value_at(without, STATEMENT)["pairs"].pop(0)
     assert name != "free" or not refused(without)
 
 
 def test_the_time_of_contact_may_not_be_moved() -> None:
     for name in ("contact", "kept"):
         file = proof(f"path_{name}")
-        way: tuple[Any, ...] = ("proof", "meeting", "place", "share")
+        way: tuple[Any, ...] = (*PATH, "meeting", "place", "share")
         assert refused(changed(file, way, lambda t: 0.5 * t))
         assert refused(changed(file, way, lambda t: 1.5))
-        assert refused(changed(file, ("statement", "upper"), lambda t: t - 1e-9))
-        assert refused(changed(file, ("statement", "lower"), lambda t: t + 1e-9))
-        assert refused(changed(file, ("proof", "meeting", "pair"), lambda k: k - 1))
-        assert refused(changed(file, ("proof", "meeting"), lambda of: None))
+        assert refused(changed(file, (*STATEMENT, "upper"), lambda t: t - 1e-9))
+        assert refused(changed(file, (*STATEMENT, "lower"), lambda t: t + 1e-9))
+        assert refused(changed(file, (*PATH, "meeting", "pair"), lambda k: k - 1))
+        assert refused(changed(file, (*PATH, "meeting"), lambda of: None))
 
 
 def test_a_later_time_is_a_bound_and_none_is_no_claim() -> None:
     file = proof("path_contact")
-    of = file["statement"]
+    of = value_at(file, STATEMENT)
     for upper, told in ((of["upper"] + 1.0, "by the time"), (None, "on the path")):
-        report = check.check(json.dumps({**file, "statement": {**of, "upper": upper}}))
+        report = check.check(json.dumps({**file, "statement": {"path": {**of, "upper": upper}}}))
         meeting = report.holds[-1]
         assert f"meet {told}" in meeting
 
 
 def test_pairs_that_were_left_out_are_named() -> None:
     file = proof("path_free")
-    of, covers = file["statement"], file["proof"]["covers"]
-    first, *others = of["pairs"]
-    proof_ = {**file["proof"], "covers": covers[1:]}
-    report = check.check(
-        json.dumps({**file, "statement": {**of, "pairs": others}, "proof": proof_})
-    )
+    first, *others = value_at(file, STATEMENT)["pairs"]
+    value_at(file, STATEMENT)["pairs"] = others
+    del value_at(file, PATH)["covers"][0]
+    report = check.check(json.dumps(file))
     a, b = map(repr, first)
     assert any(f"{a} and {b}" in line or f"{b} and {a}" in line for line in report.unchecked)
     (line,) = report.holds
@@ -135,71 +138,70 @@ def test_pairs_that_were_left_out_are_named() -> None:
 
 def test_the_pairs_of_a_statement_are_those_of_the_covers() -> None:
     file = proof("path_free")
-    pairs: tuple[Any, ...] = ("statement", "pairs")
+    pairs: tuple[Any, ...] = (*STATEMENT, "pairs")
     assert refused(changed(file, pairs, lambda all_: all_[1:]))
     assert refused(changed(file, pairs, lambda all_: [*all_, all_[0]]))
     assert refused(changed(file, (*pairs, 0), lambda pair: [pair[0], pair[0]]))
     assert refused(changed(file, (*pairs, 0, 1), lambda name: name + " of another robot"))
     # The names say which bodies: two of one name say nothing.
-    name = file["bodies"][0]["name"]
-    assert refused(changed(file, ("bodies", 1, "name"), lambda _: name))
-    assert refused(changed(file, ("bodies", 1, "name"), lambda _: ""))
+    name = value_at(file, (*LINKS, 0, "name"))
+    assert refused(changed(file, (*LINKS, 1, "name"), lambda _: name))
+    assert refused(changed(file, (*LINKS, 1, "name"), lambda _: ""))
 
 
 @pytest.mark.parametrize(
     ("part", "by"),
     [
-        (("path", "rows", 0, 0), lambda x: x + 0.01),
-        (("path", "rows", 1, 1), lambda x: x - 0.01),
-        (("path", "times", 1), lambda x: -x),
-        (("frames", 0, "joint", "turning"), lambda axis: [-x for x in axis]),
-        (("frames", 1, "joint", "turning"), lambda axis: [2 * x for x in axis]),
-        (("frames", 1, "origin", "translation", 0), lambda x: x + 0.01),
-        (("frames", 1, "parent"), lambda k: 1),
-        (("bodies", -1, "pose", "translation", 0), lambda x: x + 0.01),
-        (("bodies", -1, "frame"), lambda k: 0),
-        (("keep",), lambda x: -1.0),
+        ((*JOINTS, "rows", 0, 0), lambda x: x + 0.01),
+        ((*JOINTS, "rows", 1, 1), lambda x: x - 0.01),
+        ((*JOINTS, "times", 1), lambda x: -x),
+        ((*ROBOT, "frames", 0, "joint", "turning"), lambda axis: [-x for x in axis]),
+        ((*ROBOT, "frames", 1, "joint", "turning"), lambda axis: [2 * x for x in axis]),
+        ((*ROBOT, "frames", 1, "origin", "translation", 0), lambda x: x + 0.01),
+        ((*ROBOT, "frames", 1, "parent"), lambda k: 1),
+        ((*LINKS, -1, "pose", "translation", 0), lambda x: x + 0.01),
+        ((*LINKS, -1, "frame"), lambda k: 0),
+        ((*QUERY, "keep"), lambda x: -1.0),
     ],
 )
 def test_every_number_of_a_path_counts(part: tuple[Any, ...], by: Callable[[Any], Any]) -> None:
-    file = {"keep": 0.0, **proof("path_contact")}
+    file = proof("path_contact")
     assert refused(changed(file, part, by))
 
 
 def test_parts_of_a_solid_may_not_be_left_out() -> None:
     file = proof("path_solid")
-    (at,) = (k for k, body in enumerate(file["bodies"]) if "parts" in body)
-    way: tuple[Any, ...] = ("bodies", at, "parts")
+    (at,) = (k for k, body in enumerate(file["bodies"]) if "pieces" in body)
+    way: tuple[Any, ...] = (*STATEMENT, "parts", at)
     assert refused(changed(file, (*way, "numbers", 0), lambda k: k + 1))
     assert refused(changed(file, (*way, "numbers"), lambda all_: all_[1:]))
     assert refused(changed(file, (*way, "tree"), lambda tree: tree[:-1]))
     assert refused(changed(file, (*way, "tree", -1), lambda k: k + 1))
     steps = [
         (c, s)
-        for c, cover in enumerate(file["proof"]["covers"])
+        for c, cover in enumerate(value_at(file, PATH)["covers"])
         for s, step in enumerate(cover["steps"])
         if "parts" in step
     ]
     assert steps
     for c, s in steps:
-        parts: tuple[Any, ...] = ("proof", "covers", c, "steps", s, "parts")
+        parts: tuple[Any, ...] = (*PATH, "covers", c, "steps", s, "parts")
         assert refused(changed(file, (*parts, "covers"), lambda all_: all_[1:]))
         assert refused(changed(file, (*parts, "covers"), lambda all_: all_[::-1]))
         assert refused(changed(file, (*parts, "which"), lambda k: 1 - k))
-    met: tuple[Any, ...] = ("proof", "meeting", "how", "pieces", "pieces")
+    met: tuple[Any, ...] = (*PATH, "meeting", "how", "pieces", "pieces")
     assert refused(changed(file, (*met, 1), lambda k: k - 7))
     assert refused(changed(file, (*met, 1), lambda k: 0))
-    without = json.loads(json.dumps(file))
-    parts_of = without["bodies"][at].pop("parts")
-    assert refused(without)
-    assert refused(changed(file, ("bodies", 1 - at), lambda of: {**of, "parts": parts_of}))
+    assert refused(changed(file, way, always(None)))
+    assert refused(changed(file, way[:-1], lambda all_: all_[:-1]))
+    assert refused(changed(file, (*way[:-1], 1 - at), always(value_at(file, way))))
 
 
 def test_no_place_is_beyond_the_way_to_the_next_row() -> None:
     file = proof("path_solid")
     steps = [
-        ("proof", "covers", c, "steps", s, "parts", "until", "share")
-        for c, cover in enumerate(file["proof"]["covers"])
+        (*PATH, "covers", c, "steps", s, "parts", "until", "share")
+        for c, cover in enumerate(value_at(file, PATH)["covers"])
         for s, step in enumerate(cover["steps"])
         if "parts" in step
     ]
@@ -213,31 +215,32 @@ def test_no_place_is_beyond_the_way_to_the_next_row() -> None:
 def test_a_path_of_one_row_is_free_by_planes_alone() -> None:
     file = proof("path_free")
     one = json.loads(json.dumps(file))
-    one["path"] = {"times": [2.0], "rows": file["path"]["rows"][:1]}
-    for cover in one["proof"]["covers"]:
+    value_at(one, JOINTS)["times"] = [2.0]
+    del value_at(one, JOINTS)["rows"][1:]
+    for cover in value_at(one, PATH)["covers"]:
         (step,) = cover["steps"]
         (first, *_) = step["planes"]
         step["planes"] = [{**first, "planes": first["planes"][:1]}]
     (line,) = check.check(json.dumps(one)).holds
     assert "of 3 pairs of bodies none meet up to the time 2.0" in line
-    one["proof"]["covers"][1]["steps"] = []
+    value_at(one, PATH)["covers"][1]["steps"] = []
     assert check.check(json.dumps(one)).holds == []
 
 
 def test_planes_leave_what_the_hulls_leave_out() -> None:
     file = proof("path_free")
-    names = {name for pair in file["statement"]["pairs"] for name in pair}
-    for body in file["bodies"]:
-        if body["name"] in names:
-            body["body"]["convex"]["hull_error"] = 1e-15
+    names = {name for pair in value_at(file, STATEMENT)["pairs"] for name in pair}
+    named = [of["body"] for of in value_at(file, LINKS) if of["name"] in names]
+    for k in named:
+        file["bodies"][k]["convex"]["hull_error"] = 1e-15
     assert not refused(file)
-    body["body"]["convex"]["hull_error"] = 10.0
+    file["bodies"][named[-1]]["convex"]["hull_error"] = 10.0
     assert refused(file)
 
 
 def test_fields_that_are_missing_or_unknown_are_refused() -> None:
     file = proof("path_contact")
-    for under in ((), ("proof",), ("statement",), ("proof", "meeting"), ("bodies", 0)):
+    for under in ((), PATH, STATEMENT, (*PATH, "meeting"), (*LINKS, 0)):
         assert refused(changed({"of": file}, ("of", *under), lambda of: {**of, "more": 0})["of"])
         at = file
         for key in under:
@@ -251,10 +254,11 @@ def test_what_is_inside_where_a_path_begins_is_seen() -> None:
     file = proof("path_inside")
     (line,) = check.check(json.dumps(file)).holds
     assert "'upper' and 'room' meet by the time 0.0" in line
-    (at,) = (k for k, body in enumerate(file["bodies"]) if "parts" in body)
-    way: tuple[Any, ...] = ("bodies", at, "pose", "translation", 0)
+    (at,) = (k for k, body in enumerate(file["bodies"]) if "pieces" in body)
+    (link,) = (k for k, of in enumerate(value_at(file, LINKS)) if of["body"] == at)
+    way: tuple[Any, ...] = (*LINKS, link, "pose", "translation", 0)
     assert refused(changed(file, way, lambda x: x + 20.0))
-    later: tuple[Any, ...] = ("proof", "meeting", "place", "share")
+    later: tuple[Any, ...] = (*PATH, "meeting", "place", "share")
     assert refused(changed(file, later, lambda t: 0.5))
 
 
@@ -274,22 +278,29 @@ def test_a_solid_inside_a_convex_body_is_seen() -> None:
     }
     parts = {"numbers": [0, 1, 2, 3], "tree": [4]}
     slide = {"parent": None, "origin": here, "joint": {"sliding": [1.0, 0.0, 0.0]}}
-    bodies = [
-        {"name": "small", "frame": 0, "pose": here, "parts": parts, "body": {"pieces": [small]}},
-        {"name": "block", "frame": None, "pose": here, "body": {"convex": block}},
+    links = [
+        {"body": 0, "name": "small", "frame": 0, "pose": here},
+        {"body": 1, "name": "block", "frame": None, "pose": here},
     ]
     meeting = {"pair": 0, "place": {"row": 0, "share": 0.0}, "how": "inside"}
-    file = {
-        "format": "colltrans path proof 2",
-        "frames": [slide],
-        "path": {"times": [0.0, 1.0], "rows": [[0.0], [1.0]]},
-        "bodies": bodies,
+    statement = {
+        "pairs": [["small", "block"]],
+        "lower": 0.0,
+        "upper": 0.0,
+        "parts": [parts, None],
         "proof": {"covers": [{"steps": []}], "meeting": meeting},
-        "statement": {"pairs": [["small", "block"]], "lower": 0.0, "upper": 0.0},
+    }
+    file = {
+        "format": "colltrans proof",
+        "version": 2,
+        "bodies": [{"pieces": [small]}, {"convex": block}],
+        "placement": {"robot": {"frames": [slide], "bodies": links}},
+        "query": {"path": {"path": {"times": [0.0, 1.0], "rows": [[0.0], [1.0]]}}},
+        "statement": {"path": statement},
     }
     (line,) = check.check(json.dumps(file)).holds
     assert line == "'small' and 'block' meet by the time 0.0"
-    beside: tuple[Any, ...] = ("bodies", 1, "pose", "translation", 0)
+    beside: tuple[Any, ...] = (*LINKS, 1, "pose", "translation", 0)
     # One corner of the small body is still inside, and then none.
     assert not refused(changed(file, beside, lambda x: x + 5.5))
     assert refused(changed(file, beside, lambda x: x + 6.5))
@@ -320,10 +331,10 @@ def test_solids_that_meet_face_to_face_do_by_a_point_inside_both(tmp_path: Path)
     assert found.lower <= 0.25 <= found.upper < 0.25 + 1e-11
     found.verify()
     file = json.loads(found.proof_json())
-    conform("path_proof", file)
+    conform("proof", file)
     report = check.check(json.dumps(file))
     assert "'plate' and 'column' meet" in report.holds[-1] and not report.unchecked
-    point = file["proof"]["meeting"]["how"]["point"]["point"]
+    point = value_at(file, PATH)["meeting"]["how"]["point"]["point"]
     for axis, far in ((0, 3.0), (1, -3.0), (2, 1.0), (2, -1.0)):
         point[axis] += far
         with pytest.raises(check.RefusedError, match="the point is not inside"):

@@ -17,11 +17,11 @@ def scene(statement: Any, *places: float, **choices: Any) -> dict[str, Any]:
     faces = [[0, 1, 3, 2], [4, 6, 7, 5], [0, 4, 5, 1], [2, 3, 7, 6], [0, 2, 6, 4], [1, 5, 7, 3]]
     cube = {"vertices": corners, "faces": faces, "input_indices": list(range(8)), "hull_error": 0.0}
     return {
-        "format": "colltrans scene proof 1",
+        "format": "colltrans proof",
+        "version": 2,
         "bodies": [{"convex": cube}],
-        "moving": placed(0.0),
-        "obstacles": [placed(x) for x in places],
-        "choices": choices,
+        "placement": {"poses": [placed(x) for x in (0.0, *places)]},
+        "query": {"scene": {"start_overlap": "refuse", **choices}},
         "statement": statement,
     }
 
@@ -78,6 +78,7 @@ def test_choices_are_those_that_there_are() -> None:
         {"start_overlap": "allow"},
         {"graze_tolerance": -1.0},
         {"tolerance": -1.0},
+        {"tolerance": ""},
         {"keep": -1.0},
         {"more": 1.0},
     ):
@@ -97,4 +98,4 @@ def test_an_obstacle_ahead_is_not_behind() -> None:
     }
     passed = [[0, {"convex": {"free": {"behind": {"certificate": certificate}}}}]]
     claim = {"direction": [1.0, 0.0, 0.0], "lower": None, "stop": None, "passed": passed}
-    assert refused(scene({"clearance": claim}, 1.5, keep=10.0))
+    assert refused(scene({"scene_clearance": claim}, 1.5, keep=10.0))

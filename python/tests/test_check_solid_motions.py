@@ -6,10 +6,13 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from test_check import always, changed, check, proof, refused, without_field
+from test_check import SOLIDS, always, changed, check, proof, refused, value_at, without_field
 
 ALL = ["contact", "free", "kept", "carried", "inside"]
-WAY = ("proof", "spans", 0, "cover")
+MOVERS = ("placement", "motions", 0)
+QUERY = ("query", "motions", 0)
+PARTS = ("statement", "motions", 0, "solids", "parts")
+WAY = (*SOLIDS, "spans", 0, "cover")
 
 
 @pytest.mark.parametrize(
@@ -35,7 +38,7 @@ def test_a_proof_holds(name: str, holds: list[str]) -> None:
 @pytest.mark.parametrize("name", ALL)
 def test_no_entry_of_a_cover_may_be_another(name: str) -> None:
     file = proof(f"solids_{name}")
-    cover = file["proof"]["spans"][0]["cover"]
+    cover = value_at(file, SOLIDS)["spans"][0]["cover"]
     drawn = random.Random(3)
     count = 0
     for _ in range(12):
@@ -48,47 +51,47 @@ def test_no_entry_of_a_cover_may_be_another(name: str) -> None:
     # One that is in the slot of the other is parted from it by no plane as a whole.
     for letter in "mabcxyz" if name in {"free", "carried"} else "":
         whole = changed(file, WAY, always(letter))
-        whole["proof"]["spans"][0]["lists"] = []
+        value_at(whole, SOLIDS)["spans"][0]["lists"] = []
         assert refused(whole)
 
 
 @pytest.mark.parametrize(
     ("part", "by"),
     [
-        (("moving_motion", 0, "rate"), lambda x: 1.5 * x + 0.1),
-        (("moving_motion", 0, "arm", 0), lambda x: x + 1.0),
-        (("moving_motion", 0, "start", "translation", 0), lambda x: x - 1.5),
-        (("proof", "spans", 0, "until"), lambda x: min(1.0, x + 1e-3)),
-        (("proof", "meeting", "time"), lambda x: 0.9 * x),
-        (("proof", "meeting", "triangles", 0), lambda k: k + 1),
-        (("proof", "meeting", "triangles", 0), lambda k: 1000),
-        (("proof", "meeting", "met", "crossing", "moving"), lambda of: not of),
-        (("parts", 0, "numbers", 0), lambda k: k + 1),
-        (("parts", 0, "tree", 0), lambda k: 0),
-        (("parts", 0, "tree"), lambda tree: tree[:-1]),
-        (("parts", 1, "corners"), lambda of: of[:-1]),
-        (("proof", "meeting", "met", "crossing", "moving"), lambda of: int(of)),
-        (("proof", "meeting", "met", "crossing", "edge"), lambda k: k + 3),
-        (("proof", "start"), lambda of: "assumed"),
-        (("proof", "start"), lambda of: "apart"),
-        (("proof", "start"), lambda of: {"facets": [0, 0]}),
-        (("proof", "tolerance"), lambda x: -x),
-        (("proof", "tolerance"), lambda x: 0.0),
-        (("tolerance",), lambda x: 0.25),
-        (("proof", "spans", 0, "cover"), list),
-        (("proof", "spans", 0, "cover"), lambda of: [of[:1] + of[1:]]),
-        (("keep",), lambda x: 0.5),
-        (("keep",), lambda x: -0.5),
+        ((*MOVERS, 0, "motion", 0, "rate"), lambda x: 1.5 * x + 0.1),
+        ((*MOVERS, 0, "motion", 0, "arm", 0), lambda x: x + 1.0),
+        ((*MOVERS, 0, "motion", 0, "start", "translation", 0), lambda x: x - 1.5),
+        ((*SOLIDS, "spans", 0, "until"), lambda x: min(1.0, x + 1e-3)),
+        ((*SOLIDS, "meeting", "time"), lambda x: 0.9 * x),
+        ((*SOLIDS, "meeting", "triangles", 0), lambda k: k + 1),
+        ((*SOLIDS, "meeting", "triangles", 0), lambda k: 1000),
+        ((*SOLIDS, "meeting", "met", "crossing", "moving"), lambda of: not of),
+        ((*PARTS, 0, "numbers", 0), lambda k: k + 1),
+        ((*PARTS, 0, "tree", 0), lambda k: 0),
+        ((*PARTS, 0, "tree"), lambda tree: tree[:-1]),
+        ((*PARTS, 1, "corners"), lambda of: of[:-1]),
+        ((*SOLIDS, "meeting", "met", "crossing", "moving"), lambda of: int(of)),
+        ((*SOLIDS, "meeting", "met", "crossing", "edge"), lambda k: k + 3),
+        ((*SOLIDS, "start"), lambda of: "assumed"),
+        ((*SOLIDS, "start"), lambda of: "apart"),
+        ((*SOLIDS, "start"), lambda of: {"facets": [0, 0]}),
+        ((*SOLIDS, "tolerance"), lambda x: -x),
+        ((*SOLIDS, "tolerance"), lambda x: 0.0),
+        ((*QUERY, "tolerance"), lambda x: 0.25),
+        ((*SOLIDS, "spans", 0, "cover"), list),
+        ((*SOLIDS, "spans", 0, "cover"), lambda of: [of[:1] + of[1:]]),
+        ((*QUERY, "keep"), lambda x: 0.5),
+        ((*QUERY, "keep"), lambda x: -0.5),
     ],
 )
 def test_every_number_counts(part: tuple[Any, ...], by: Callable[[Any], Any]) -> None:
-    file = {"keep": 0.0, "tolerance": None, **proof("solids_contact")}
+    file = proof("solids_contact")
     assert refused(changed(file, part, by))
 
 
 def test_how_far_facets_were_moved_is_said() -> None:
     file = proof("solids_free")
-    moved = changed(file, ("parts", 0, "corners", 0, 0, 2), lambda x: x + 0.125)
+    moved = changed(file, (*PARTS, 0, "corners", 0, 0, 2), lambda x: x + 0.125)
     report = check.check(json.dumps(moved))
     assert any("moved by at most 0.125" in line for line in report.holds)
     # How the tolerance moves them is not checked: what is said holds in part.
@@ -97,12 +100,12 @@ def test_how_far_facets_were_moved_is_said() -> None:
 
 def test_fields_that_are_missing_or_unknown_are_refused() -> None:
     file = proof("solids_contact")
-    for under in ((), ("proof",), ("proof", "spans", 0), ("proof", "meeting"), ("parts", 0)):
+    for under in ((), SOLIDS, (*SOLIDS, "spans", 0), (*SOLIDS, "meeting"), (*PARTS, 0)):
         at = file
         for key in under:
             at = at[key]
         assert refused(changed({"of": file}, ("of", *under), lambda of: {**of, "more": 0})["of"])
-        for name in set(at) - {"tolerance", "keep"} | ({"tolerance"} if under else set()):
+        for name in at:
             rest = changed({"of": file}, ("of", *under), without_field(name))["of"]
             assert name not in at or refused(rest), name
 
@@ -111,11 +114,11 @@ def test_what_is_inside_is_refused() -> None:
     file = proof("solids_free")
     # The other solid, far larger and around the first one: no facets meet, all planes are gone.
     inside = json.loads(json.dumps(file))
-    for piece in inside["fixed"]["pieces"]:
+    for piece in inside["bodies"][1]["pieces"]:
         piece["vertices"] = [[100.0 * (x - 0.5) for x in v] for v in piece["vertices"]]
-    inside["parts"][1]["corners"] = [
-        [[100.0 * (x - 0.5) for x in v] for v in triangle]
-        for triangle in inside["parts"][1]["corners"]
+    parts = value_at(inside, PARTS)[1]
+    parts["corners"] = [
+        [[100.0 * (x - 0.5) for x in v] for v in triangle] for triangle in parts["corners"]
     ]
     assert refused(inside)
     with pytest.raises(check.RefusedError):
@@ -125,27 +128,25 @@ def test_what_is_inside_is_refused() -> None:
 
 def placed(file: Any) -> tuple[Any, Any]:
     """The first span of a file, and its parts."""
-    shapes = [check.Body.shape(file[side]) for side in ("moving", "fixed")]
+    shapes = [check.Body.shape(body) for body in file["bodies"]]
     parts = [
         check.Parts.read(points, facets, of)
-        for (points, facets), of in zip(shapes, file["parts"], strict=True)
+        for (points, facets), of in zip(shapes, value_at(file, PARTS), strict=True)
     ]
-    plain = {
-        **{side: {"vertices": [[0.0, 0.0, 0.0]]} for side in ("moving", "fixed")},
-        **{name: file[name] for name in ("moving_motion", "fixed_motion")},
-    }
-    return check.spans(plain, described_bodies=False)[0], (parts[0], parts[1])
+    origin = [check._ZERO]
+    spans = check.spans(value_at(file, MOVERS), [origin, origin], check.Fraction())
+    return spans[0], (parts[0], parts[1])
 
 
 def test_a_point_that_is_inside_both_has_to_be() -> None:
     file = proof("solids_inside")
-    way: tuple[Any, ...] = ("proof", "meeting", "met", "inside", "point")
-    at = proof("solids_inside")["proof"]["meeting"]["met"]["inside"]["point"]
+    way: tuple[Any, ...] = (*SOLIDS, "meeting", "met", "inside", "point")
+    at = value_at(proof("solids_inside"), (*SOLIDS, "meeting", "met", "inside", "point"))
     for k in range(3):
         for off in (2.5, -2.5, 1e-12 if k == 2 else 5.0):
             assert refused(changed(file, (*way, k), always(at[k] + off)))
-    assert refused(changed(file, ("proof", "meeting", "time"), lambda t: t - 1e-12))
-    open_ = changed(file, ("fixed", "pieces", 0), lambda piece: {**piece, "open": True})
+    assert refused(changed(file, (*SOLIDS, "meeting", "time"), lambda t: t - 1e-12))
+    open_ = changed(file, ("bodies", 1, "pieces", 0), lambda piece: {**piece, "open": True})
     assert refused(open_)
 
 
@@ -153,14 +154,14 @@ def test_a_point_of_a_facet_has_to_be_inside_the_other_solid() -> None:
     file = proof("solids_contained")
     report = check.check(json.dumps(file))
     assert [line for line in report.holds if "meet at the time" in line]
-    way: tuple[Any, ...] = ("proof", "meeting", "met", "contained")
+    way: tuple[Any, ...] = (*SOLIDS, "meeting", "met", "contained")
     for weights in ([0.5, 0.0, 0.0], [2.0, -1.0, 0.0], [1.0, 0.0], [1.0, 0.0, "0"]):
         assert refused(changed(file, (*way, "weights"), always(weights)))
     assert refused(changed(file, (*way, "moving"), always(False)))
     assert refused(changed(file, (*way, "moving"), always(1)))
-    time = file["proof"]["meeting"]["time"]
+    time = value_at(file, SOLIDS)["meeting"]["time"]
     for off in (-1e-9, -0.1):
-        assert refused(changed(file, ("proof", "meeting", "time"), always(time + off)))
-    assert refused({**file, "keep": 0.5})
-    open_ = changed(file, ("fixed", "pieces", 0), lambda piece: {**piece, "open": True})
+        assert refused(changed(file, (*SOLIDS, "meeting", "time"), always(time + off)))
+    assert refused(changed(file, (*QUERY, "keep"), always(0.5)))
+    open_ = changed(file, ("bodies", 1, "pieces", 0), lambda piece: {**piece, "open": True})
     assert refused(open_)

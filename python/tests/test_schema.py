@@ -128,11 +128,12 @@ def test_one_body_among_many(cli: Path, tmp_path: Path, words: list[str]) -> Non
     answer = ask(cli, [*words, "--save-proof", str(proof)])
     conform("among", answer)
     file = json.loads(proof.read_text())
-    conform("scene_proof", file)
+    conform("proof", file)
     conform("verified", ask(cli, ["verify", str(proof)]))
     assert check.check(proof.read_text()).holds
     # A body that has come nearer than what is claimed.
-    file["obstacles"][1]["pose"] = file["moving"]["pose"]
+    places = file["placement"]["poses"]
+    places[2]["pose"] = places[0]["pose"]
     if answer["outcome"] not in ("meeting", "overlapping"):
         with pytest.raises(check.RefusedError):
             check.check(json.dumps(file))
@@ -185,7 +186,8 @@ def test_a_proof_that_does_not_hold(cli: Path, tmp_path: Path) -> None:
     proof = tmp_path / "proof.json"
     ask(cli, ["cast", *CAST, "-5,0.2,0.3", "--save-proof", str(proof)])
     file = json.loads(proof.read_text())
-    file["direction"] = [-x for x in file["direction"]]
+    cast = file["query"]["cast"]
+    cast["direction"] = [-x for x in cast["direction"]]
     proof.write_text(json.dumps(file))
     conform("verified", ask(cli, ["verify", str(proof)], code=6))
 

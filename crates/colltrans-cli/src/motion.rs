@@ -4,11 +4,9 @@
 use std::path::PathBuf;
 
 use colltrans::glam::DVec3;
-use colltrans::motion::{
-    Motion, MotionCast, MotionOutcome, MotionProofFile, MotionProofFiles, SolidMotionProofFile,
-};
+use colltrans::motion::{Motion, MotionCast, MotionOutcome};
 use colltrans::record::{Ending, Record, TimeRecord};
-use colltrans::{Pose, QueryError, Stalled};
+use colltrans::{Pose, ProofFile, QueryError, Stalled};
 
 use crate::args::MotionArguments;
 use crate::body::Part;
@@ -56,9 +54,9 @@ fn convex(
     let name =
         |k: usize| Some(files[k][pair[k]].display().to_string()).filter(|_| files[k].len() > 1);
     (told.record.moving, told.record.fixed) = (name(0), name(1));
-    let proof = || match &proofs[..] {
-        [proof] => Ok(Some(proof.to_json())),
-        _ => Ok(Some(MotionProofFiles::of(proofs).to_json())),
+    let proof = || {
+        let proof = ProofFile::of_motions(proofs);
+        Ok(Some(proof.map_err(|error| Failure::new(Code::Query, error.to_string()))?.to_json()))
     };
     let surface = |k: usize, pose: &Pose, from| surface_of(&bodies[k][pair[k]].body, pose, from);
     write_answer(targets, &told, motions, proof, &surface)?;
@@ -83,7 +81,7 @@ fn parts(
     let asked = PartsMotion { bodies, motions, tolerance, clears, ignore_start_overlaps, keep };
     let told = Line::from(asked.ask().map_err(|error| solid::refused(error, bodies, tolerance))?);
     let proof = || {
-        let proof = SolidMotionProofFile::answer(&asked.cast()?);
+        let proof = ProofFile::with_solid_motion(&asked.cast()?);
         let (_, proof) = proof.map_err(|error| Failure::new(Code::Query, error.to_string()))?;
         Ok(Some(proof.to_json()))
     };
@@ -134,7 +132,7 @@ fn first_of_all(
     files: [&[PathBuf]; 2],
     parts: [&[Part]; 2],
     motions: &[Motion; 2],
-) -> Result<(Found, Vec<MotionProofFile>), Failure> {
+) -> Result<(Found, Vec<ProofFile>), Failure> {
     let (mut first, mut proofs): (Option<Found>, _) = (None, Vec::new());
     // When two are first proven to meet.
     let mut meets: Option<(f64, [usize; 2])> = None;
@@ -162,7 +160,7 @@ fn first_of_all(
                     undecided = Some(failed(stalled(open.lower)));
                 }
                 if arguments.save_proof.is_some() {
-                    proofs.push(MotionProofFile::of(&cast, &outcome));
+                    proofs.push(ProofFile::of_motion(&cast, &outcome));
                 }
                 Record::of_motion(&outcome, &cast)
             };

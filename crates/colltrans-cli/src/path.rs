@@ -3,10 +3,9 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use colltrans::motion::path::{
-    JointPath, PathError, PathFileError, PathOutcome, PathProofFile, Place,
-};
+use colltrans::motion::path::{JointPath, PathError, PathOutcome, Place};
 use colltrans::record::{Ending, PathRecord, TimeRecord};
+use colltrans::{ProofFile, ProofFileError};
 use colltrans_assembly::AssemblyError;
 use colltrans_assembly_io::ReadError;
 use colltrans_assembly_io::read::{self, ReadOptions};
@@ -37,9 +36,9 @@ pub(crate) fn run(arguments: &PathArguments) -> Result<(), Failure> {
     let outcome = match targets.save_proof {
         None => cast.first_contact().map_err(query)?,
         Some(file) => {
-            let answered = PathProofFile::answer(&cast, cell.names());
+            let answered = ProofFile::with_path(&cast, cell.names());
             let (outcome, saved) = answered.map_err(|e| match e {
-                PathFileError::Path(e) => query(e),
+                ProofFileError::Path(e) => query(e),
                 other => Failure::new(Code::Query, other.to_string()),
             })?;
             // Before the answer: a proof that cannot be written leaves none.

@@ -12,7 +12,7 @@ pub mod record;
 
 #[cfg(feature = "json")]
 pub use proof_file::{
-    Contacts, DistanceStatement, FreeStatement, MotionCase, MotionProofFile, MotionProofFiles,
-    PathCheckError, PathFileError, PathProofFile, PathStatement, ProofFile, SceneProof,
-    SceneStatement, Slide, SolidMotionProofFile, SolidStatement, Statement, Stop,
+    Contacts, DistanceStatement, FreeStatement, MotionCase, MotionStatement, PathStatement,
+    ProofError, ProofFile, ProofFileError, Proven, Slide, SolidMotionStatement, SolidStatement,
+    Statement, Stop, Verify,
 };

@@ -434,7 +434,7 @@ impl PairQuestion {
         self,
         pair: &Pair<'_, Solid>,
         pieces: [&[&Solid]; 2],
-    ) -> Result<(PairAnswer<Solid>, Option<crate::ProofFile>), colltrans_convex::CaseError> {
+    ) -> Result<(PairAnswer<Solid>, Option<crate::ProofFile>), crate::ProofFileError> {
         use crate::ProofFile;
         Ok(match self {
             Self::Distance => {

@@ -106,7 +106,7 @@ impl Distance {
     /// CertificateError
     ///     What is not proven.
     fn verify(&self, py: Python<'_>) -> PyResult<()> {
-        proof_of(&self.found, self.query.bind(py))?.check().or_raise()
+        proof_of(&self.found, self.query.bind(py))?.check().map(drop).or_raise()
     }
 
     fn __repr__(&self) -> String {
@@ -279,7 +279,7 @@ impl Within {
     /// CertificateError
     ///     What is not proven.
     fn verify(&self, py: Python<'_>) -> PyResult<()> {
-        within_proof(&self.found, self.query.bind(py))?.check().or_raise()
+        within_proof(&self.found, self.query.bind(py))?.check().map(drop).or_raise()
     }
 
     fn __repr__(&self) -> String {

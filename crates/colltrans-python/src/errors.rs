@@ -8,7 +8,9 @@ use std::fmt::Display;
 
 use colltrans::motion::MotionError;
 use colltrans::solid::SolidError;
-use colltrans::{BuildError, CaseError, CertificateError, PoseError, QueryError};
+use colltrans::{
+    BuildError, CaseError, CertificateError, PoseError, ProofError, ProofFileError, QueryError,
+};
 use colltrans_assembly::AssemblyError;
 use colltrans_assembly_io::ReadError;
 use colltrans_mesh::body::{LoadError, Refused, Take};
@@ -63,8 +65,8 @@ macro_rules! raised {
 raised! {
     BuildError: BuildError, SolidError, Refused;
     PoseError: PoseError;
-    CertificateError: CertificateError;
-    CaseError: CaseError;
+    CertificateError: CertificateError, ProofError;
+    CaseError: CaseError, ProofFileError;
     QueryError: QueryError, MotionError;
     AssemblyError: AssemblyError;
 }

@@ -1,10 +1,10 @@
 //! What a body does, and when two such bodies first meet.
 
 use colltrans::glam::DVec3;
-use colltrans::motion::{self, MotionCase, MotionOutcome, MotionProofFile, SolidMotionProofFile};
+use colltrans::motion::{self, MotionCase, MotionOutcome};
 use colltrans::record::{Dents, Record};
 use colltrans::solid::StartOverlap;
-use colltrans::{ConvexPolyhedron, QueryError, Solid};
+use colltrans::{ConvexPolyhedron, ProofFile, QueryError, Solid};
 use colltrans_mesh::body::between_motions;
 use numpy::PyArray1;
 use pyo3::prelude::*;
@@ -746,7 +746,7 @@ impl Answer for Found {
     fn proof(&self, query: &Bound<'_, MotionCast>) -> PyResult<String> {
         match (self, query.get().asked()?) {
             (Self::Convex(found), Of::Convex(cast)) => {
-                Ok(MotionProofFile::of(&cast, found).to_json())
+                Ok(ProofFile::of_motion(&cast, found).to_json())
             }
             (Self::Solids(_), Of::Solids(cast)) => solid_proof(&cast),
             _ => Err(other_bodies()),
@@ -756,7 +756,7 @@ impl Answer for Found {
 
 /// The proof of a first contact of solids, which are asked once more for it.
 fn solid_proof(cast: &motion::MotionCast<'_, Solid>) -> PyResult<String> {
-    SolidMotionProofFile::answer(cast).map(|(_, file)| file.to_json()).or_raise()
+    ProofFile::with_solid_motion(cast).map(|(_, file)| file.to_json()).or_raise()
 }
 
 /// An answer about how far a body can go; those of solids are proven when that is asked for.
@@ -933,7 +933,7 @@ impl Answer for Cleared {
         match (self, query.get().asked()?) {
             (Self::Convex(found), Of::Convex(cast)) => {
                 let outcome = first_of(found).ok_or_else(unproven)?;
-                Ok(MotionProofFile::of(&cast.cleared(), &outcome).to_json())
+                Ok(ProofFile::of_motion(&cast.cleared(), &outcome).to_json())
             }
             (Self::Solids(found), Of::Solids(cast)) => {
                 if first_of(found).is_none() || query.get().ignore_start_overlaps() {

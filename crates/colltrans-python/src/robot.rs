@@ -6,11 +6,9 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use colltrans::glam::DVec3;
-use colltrans::motion::path::{
-    JointPath, PathCast, PathContact, PathOutcome, PathProof, PathProofFile, Place,
-};
+use colltrans::motion::path::{JointPath, PathCast, PathContact, PathOutcome, PathProof, Place};
 use colltrans::record::PathRecord;
-use colltrans::{AnyBody, AnyPlaced};
+use colltrans::{AnyBody, AnyPlaced, ProofFile, Statement};
 use colltrans_assembly_io::read::{self, ReadOptions};
 use colltrans_assembly_io::robot::{Cell, Robot as Arm, RobotJoint, Table};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
@@ -358,7 +356,7 @@ pub(crate) struct PathAnswer {
 /// What was asked: of a robot, or as a pickle has it.
 enum Question {
     Asked(Arc<Asked>, JointPath),
-    Saved(Box<PathProofFile>),
+    Saved(Box<ProofFile>),
 }
 
 impl Question {
@@ -369,10 +367,15 @@ impl Question {
     ) -> Result<T, String> {
         match self {
             Self::Asked(asked, path) => of(&asked.cast(path)?, asked.cell.names()),
-            Self::Saved(file) => of(&file.cast().map_err(|what| what.to_string())?, &file.names()),
+            Self::Saved(file) => {
+                let (cast, names) = file.path().ok_or(NO_PATH)?;
+                of(&cast, &names)
+            }
         }
     }
 }
+
+const NO_PATH: &str = "the proof is not about a path";
 
 /// Where the proof of an answer is.
 fn proof_of(found: &mut PathOutcome) -> Option<&mut PathProof> {
@@ -423,10 +426,10 @@ impl PathAnswer {
     }
 
     /// The question as a file with its proof, of which the answer is asked once more.
-    fn saved(&self, py: Python<'_>) -> PyResult<(PathOutcome, PathProofFile)> {
+    fn saved(&self, py: Python<'_>) -> PyResult<(PathOutcome, ProofFile)> {
         let told = answered(py, || {
             self.question.with(|cast, names| {
-                PathProofFile::answer(cast, names).map_err(|what| what.to_string())
+                ProofFile::with_path(cast, names).map_err(|what| what.to_string())
             })
         })?;
         told.map_err(|what| error("CaseError", what))
@@ -619,8 +622,8 @@ impl PathAnswer {
         py: Python<'py>,
     ) -> PyResult<Reduced<'py, (String, String, Vec<String>)>> {
         let (mut found, file) = self.saved(py)?;
-        let record = file.cast().map(|cast| PathRecord::of(&found, &cast, &file.names()));
-        if record.map_err(|what| error("CaseError", what))? != self.record {
+        let record = file.path().map(|(cast, names)| PathRecord::of(&found, &cast, &names));
+        if record.is_none_or(|record| record != self.record) {
             return Err(error("CaseError", "the bodies are not what their file makes of them"));
         }
         if let Some(proof) = proof_of(&mut found) {
@@ -631,13 +634,17 @@ impl PathAnswer {
 
     #[staticmethod]
     fn _of(file: &str, found: &str, notes: Vec<String>) -> PyResult<Self> {
-        let file = PathProofFile::from_json(file).map_err(|what| error("CaseError", what))?;
+        let file = ProofFile::from_json(file).or_raise()?;
         let mut found: PathOutcome = read(found)?;
+        let ((cast, names), Statement::Path(of)) =
+            (file.path().ok_or_else(|| error("CaseError", NO_PATH))?, file.statement())
+        else {
+            return Err(error("CaseError", NO_PATH));
+        };
         if let Some(proof) = proof_of(&mut found) {
-            *proof = file.proof().clone();
+            proof.clone_from(&of.proof);
         }
-        let cast = file.cast().map_err(|what| error("CaseError", what))?;
-        let (record, end) = (PathRecord::of(&found, &cast, &file.names()), end_of(cast.path()));
+        let (record, end) = (PathRecord::of(&found, &cast, &names), end_of(cast.path()));
         Ok(Self { question: Question::Saved(Box::new(file)), end, found, record, notes })
     }
 

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::sync::{Arc, PoisonError, RwLock, RwLockReadGuard};
 
 use colltrans::solid::SolidOptions;
-use colltrans::{Among, AnyPlaced, CaseError, ObstacleId, Options, QueryError, SceneProof};
+use colltrans::{Among, AnyPlaced, ObstacleId, Options, ProofFile, ProofFileError, QueryError};
 use pyo3::prelude::*;
 
 use crate::errors::{OrRaise, error};
@@ -76,8 +76,8 @@ impl Asked {
     pub(crate) fn proof(
         &self,
         py: Python<'_>,
-        ask: impl FnOnce(&Among<'_>) -> Result<Option<SceneProof>, CaseError> + Send,
-    ) -> PyResult<SceneProof> {
+        ask: impl FnOnce(&Among<'_>) -> Result<Option<ProofFile>, ProofFileError> + Send,
+    ) -> PyResult<ProofFile> {
         let made = py.detach(|| {
             let kept = self.scene.read();
             if kept.changes != self.changes {

@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use colltrans::glam::DVec3;
-use colltrans::{Among, ByKind, Clearance, ClearanceAmong, Nearby, SceneProof};
+use colltrans::{Among, ByKind, Clearance, ClearanceAmong, Nearby, ProofFile};
 use numpy::PyArray1;
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
@@ -54,7 +54,7 @@ macro_rules! proven {
             ///     What is not proven.
             fn verify(&self, py: Python<'_>) -> PyResult<()> {
                 let proof = self.proof(py)?;
-                py.detach(|| proof.check()).or_raise()
+                py.detach(|| proof.check().map(drop)).or_raise()
             }
         }
     };
@@ -70,8 +70,8 @@ pub(crate) struct NearestObstacle {
 proven!(NearestObstacle);
 
 impl NearestObstacle {
-    fn proof(&self, py: Python<'_>) -> PyResult<SceneProof> {
-        self.asked.proof(py, SceneProof::of_nearest)
+    fn proof(&self, py: Python<'_>) -> PyResult<ProofFile> {
+        self.asked.proof(py, ProofFile::of_nearest)
     }
 }
 
@@ -131,8 +131,8 @@ pub(crate) struct NearbyObstacles {
 proven!(NearbyObstacles);
 
 impl NearbyObstacles {
-    fn proof(&self, py: Python<'_>) -> PyResult<SceneProof> {
-        self.asked.proof(py, |among| SceneProof::of_within(among, self.length).map(Some))
+    fn proof(&self, py: Python<'_>) -> PyResult<ProofFile> {
+        self.asked.proof(py, |among| ProofFile::of_within(among, self.length).map(Some))
     }
 }
 
@@ -191,9 +191,9 @@ pub(crate) struct ObstacleClearance {
 proven!(ObstacleClearance);
 
 impl ObstacleClearance {
-    fn proof(&self, py: Python<'_>) -> PyResult<SceneProof> {
+    fn proof(&self, py: Python<'_>) -> PyResult<ProofFile> {
         let of = |among: &Among<'_>| {
-            SceneProof::of_clearance(&keeping(among, self.keep)?, self.direction).map(Some)
+            ProofFile::of_scene_clearance(&keeping(among, self.keep)?, self.direction).map(Some)
         };
         self.asked.proof(py, of)
     }

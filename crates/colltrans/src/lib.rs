@@ -166,8 +166,8 @@ pub use colltrans_proof::record;
 #[cfg(feature = "json")]
 #[doc(inline)]
 pub use colltrans_proof::{
-    Contacts, DistanceStatement, FreeStatement, ProofFile, SceneProof, SceneStatement, Slide,
-    Statement, Stop,
+    Contacts, DistanceStatement, FreeStatement, ProofError, ProofFile, ProofFileError, Proven,
+    Slide, Statement, Stop, Verify,
 };
 #[doc(inline)]
 pub use colltrans_removal::{free, ways};

@@ -24,7 +24,7 @@
 pub use colltrans_motion::*;
 #[cfg(feature = "json")]
 #[doc(inline)]
-pub use colltrans_proof::{MotionCase, MotionProofFile, MotionProofFiles, SolidMotionProofFile};
+pub use colltrans_proof::{MotionCase, MotionStatement, SolidMotionStatement};
 
 /// Paths of joints: when do bodies of a mechanism first meet?
 pub mod path {
@@ -32,5 +32,5 @@ pub mod path {
     pub use colltrans_motion::path::*;
     #[cfg(feature = "json")]
     #[doc(inline)]
-    pub use colltrans_proof::{PathCheckError, PathFileError, PathProofFile, PathStatement};
+    pub use colltrans_proof::PathStatement;
 }

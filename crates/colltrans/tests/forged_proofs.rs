@@ -100,7 +100,7 @@ fn an_overlap_of_a_slide_that_a_tilt_hides_is_refused() {
     let mut fractions = fractions();
     assert_holds(&file, &mut fractions);
     // The shadows overlap by 1e-6, and along the tilted normal the bodies are apart.
-    file["moving_pose"]["translation"][2] = json!(1.0 - 1e-6);
+    file["placement"]["poses"][0]["pose"]["translation"][2] = json!(1.0 - 1e-6);
     file["statement"]["contacts"]["slide"] = json!({"normal": [3e-15, 0.0, -1.0], "overlap": 0.0});
     assert_refused(&file, &mut fractions);
     file["statement"]["contacts"]["slide"]["normal"] = json!([-3e-15, 0.0, -1.0]);
@@ -132,8 +132,8 @@ fn both_checkers_refuse_what_the_specification_does_not_admit() {
     };
     changed(&distance, "/statement/distance/gap/gap", json!(-1.0));
     changed(&distance, "/statement/distance/near/weights", json!(["a", 0.0, 0.0, 1.0]));
-    changed(&distance, "/moving/convex/vertices/0/0", json!(5e-324));
-    changed(&distance, "/moving/convex/hull_error", json!(-1e-300));
+    changed(&distance, "/bodies/0/convex/vertices/0/0", json!(5e-324));
+    changed(&distance, "/bodies/0/convex/hull_error", json!(-1e-300));
     changed(&depth, "/statement/depth/enclosure/normals/0", json!([1e-3, 0.0, 0.0]));
     changed(&depth, "/statement/depth/enclosure", Value::Null);
     changed(&depth, "/statement/depth/lower", json!(-1e-300));
@@ -148,7 +148,7 @@ fn both_checkers_refuse_what_the_specification_does_not_admit() {
     file["statement"]["contacts"]["first"].as_object_mut().expect("fields").remove("rounding");
     assert_refused(&file, &mut fractions);
     file = contacts;
-    file["keep"] = json!(-1.0);
+    file["query"]["cast"]["keep"] = json!(-1.0);
     assert_refused(&file, &mut fractions);
 }
 
@@ -212,7 +212,7 @@ fn a_vertex_of_a_piece_that_no_facet_uses_is_refused() {
         verdicts(file, fractions).iter().map(|v| !matches!(v, Verdict::Refused(_))).collect()
     };
     assert!(verdicts_of(&file, &mut fractions).iter().all(|holds| *holds));
-    let vertices = file["fixed"]["pieces"][0]["vertices"].as_array_mut().expect("vertices");
+    let vertices = file["bodies"][1]["pieces"][0]["vertices"].as_array_mut().expect("vertices");
     vertices.push(json!([0.5, 0.5, 0.5]));
     assert_refused(&file, &mut fractions);
 }

@@ -1,13 +1,11 @@
 //! Proofs as files: they hold, and whatever number of what is claimed is changed, they do not.
 #![cfg(feature = "json")]
 
-use colltrans::motion::path::{
-    Frame, Joint, JointPath, Mechanism, PathBody, PathCast, PathProofFile,
-};
+use colltrans::motion::path::{Frame, Joint, JointPath, Mechanism, PathBody, PathCast};
 use colltrans::solid::{AsSolid, SolidCast, SolidPair, StartOverlap};
 use colltrans::{
-    Among, CaseError, Cast, CertificateError, ConvexPolyhedron, ObstacleId, Obstacles, Pair, Pose,
-    ProofFile, QueryError, SceneProof, Solid, Statement,
+    Among, Cast, CertificateError, ConvexPolyhedron, ObstacleId, Obstacles, Pair, Pose, ProofError,
+    ProofFile, ProofFileError, QueryError, Solid, Statement,
 };
 use colltrans_testkit::oracle::among;
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
@@ -26,7 +24,7 @@ fn holds(proof: &ProofFile, of: &str) -> Value {
     let text = proof.to_json();
     let read = ProofFile::from_json(&text).unwrap_or_else(|e| panic!("{of}: {e}: {text}"));
     read.check().unwrap_or_else(|e| panic!("{of}: {e}: {text}"));
-    assert_eq!(read.to_json(), text);
+    assert_eq!((read.to_json(), read.to_string()), (text.clone(), proof.to_string()));
     serde_json::from_str(&text).expect("JSON")
 }
 
@@ -104,37 +102,46 @@ fn a_statement_fits_its_file() {
     let pair = Pair::new(cube.at(start), cube.at(Pose::IDENTITY)).expect("a pair");
     let proof = ProofFile::of_distance(&pair, &pair.distance().expect("an answer"));
     let file = holds(&proof, "cubes");
-    let is_refused =
-        |file: &Value| matches!(ProofFile::from_json(&file.to_string()), Err(CaseError::Statement));
-    let mut directed = file.clone();
-    directed["direction"] = json!([1, 0, 0]);
-    assert!(is_refused(&directed));
-    let mut cast = cube_cast(&cube, 0.3);
-    cast.as_object_mut().expect("an object").remove("direction");
-    assert!(is_refused(&cast));
-    let mut nothing = file.clone();
-    nothing["statement"] = json!({"distance": {}});
-    assert!(is_refused(&nothing));
-    let mut two = file;
+    let read = |file: &Value| ProofFile::from_json(&file.to_string());
+    let is_refused = |file: &Value| matches!(read(file), Err(ProofFileError::Statement));
+    let of = |name: &str, value: Value| {
+        let mut other = file.clone();
+        other[name] = value;
+        other
+    };
+    let cast = cube_cast(&cube, 0.3);
+    for query in [&cast["query"], &json!({"scene": {"start_overlap": "refuse"}})] {
+        assert!(is_refused(&of("query", query.clone())), "{query}");
+    }
+    for query in [json!({"motions": [{"keep": 0.0}]}), json!({"motions": []})] {
+        assert!(is_refused(&of("query", query)));
+    }
+    assert!(is_refused(&of("placement", json!({"motions": []}))));
+    let mut undirected = cast.clone();
+    undirected["query"] = json!("pair");
+    assert!(is_refused(&undirected));
+    assert!(is_refused(&of("statement", json!({"distance": {}}))));
+    assert!(is_refused(&of("statement", json!({"motions": []}))));
+    for places in [0, 1, 3] {
+        let place = &file["placement"]["poses"][0];
+        assert!(is_refused(&of("placement", json!({"poses": vec![place; places]}))), "{places}");
+    }
+    let mut two = file.clone();
     two["statement"]["separation"] = json!({"normal": [1, 0, 0], "margin": 1});
-    assert!(is_refused(&two));
+    let nothing = of("statement", json!({}));
+    for choice in [two, nothing, of("query", json!({})), of("placement", json!({}))] {
+        assert!(matches!(read(&choice), Err(ProofFileError::Choice(_))), "{:?}", read(&choice));
+    }
+    for (version, found) in [(json!(1), Some(1)), (json!(3), Some(3)), (Value::Null, None)] {
+        let refused = read(&of("version", version)).expect_err("another version");
+        assert!(matches!(refused, ProofFileError::Version { found: of } if of == found));
+    }
+    assert!(read(&of("version", json!(2.0))).is_err() && read(&of("more", json!(1))).is_err());
 }
 
 fn refused(file: &Value) -> bool {
     let text = file.to_string();
-    if file.get("obstacles").is_some() {
-        return SceneProof::from_json(&text).map_or(true, |proof| proof.check().is_err());
-    }
     ProofFile::from_json(&text).map_or(true, |proof| proof.check().is_err())
-}
-
-/// Of one body among many: written, read, checked.
-fn scene_holds(proof: &SceneProof, of: &str) -> Value {
-    let text = proof.to_json();
-    let read = SceneProof::from_json(&text).unwrap_or_else(|e| panic!("{of}: {e}: {text}"));
-    read.check().unwrap_or_else(|e| panic!("{of}: {e}: {text}"));
-    assert_eq!((read.to_json(), read.to_string()), (text.clone(), proof.to_string()));
-    serde_json::from_str(&text).expect("JSON")
 }
 
 #[test]
@@ -148,21 +155,22 @@ fn scenes_of_every_family_have_proofs() {
             for asked in
                 [setting.asked().expect("a scene")].map(|all| [all, all.ignoring(&own)]).concat()
             {
-                let found = SceneProof::of_nearest(&asked).expect("an answer");
+                let found = ProofFile::of_nearest(&asked).expect("an answer");
                 nearest += usize::from(found.is_some());
                 for proof in [
                     found,
-                    Some(SceneProof::of_within(&asked, length).expect("an answer")),
-                    Some(SceneProof::of_clearance(&asked, direction).expect("an answer")),
+                    Some(ProofFile::of_within(&asked, length).expect("an answer")),
+                    Some(ProofFile::of_scene_clearance(&asked, direction).expect("an answer")),
                 ]
                 .into_iter()
                 .flatten()
                 {
-                    let file = scene_holds(&proof, family);
-                    let count = |name: &str| file[name].as_array().expect("a list").len();
-                    assert_eq!(proof.obstacles(), asked.count());
-                    assert_eq!(count("obstacles"), asked.count());
-                    shared += usize::from(count("bodies") < count("obstacles"));
+                    let file = holds(&proof, family);
+                    let count = |of: &Value| of.as_array().expect("a list").len();
+                    let places = count(&file["placement"]["poses"]);
+                    assert_eq!(proof.obstacles(), Some(asked.count()));
+                    assert_eq!(places, 1 + asked.count());
+                    shared += usize::from(count(&file["bodies"]) + 1 < places);
                 }
             }
         }
@@ -187,11 +195,11 @@ fn a_number_of_a_scene_that_is_changed_is_noticed() {
     let asked = Among::new(cube.at(start), &row).expect("a scene");
     let down = DVec3::new(0.0, 0.01, -1.0);
     let [nearest, within, stop] = [
-        SceneProof::of_nearest(&asked).map(|found| found.expect("there are some")),
-        SceneProof::of_within(&asked, 3.5),
-        SceneProof::of_clearance(&asked, down),
+        ProofFile::of_nearest(&asked).map(|found| found.expect("there are some")),
+        ProofFile::of_within(&asked, 3.5),
+        ProofFile::of_scene_clearance(&asked, down),
     ]
-    .map(|proof| scene_holds(&proof.expect("an answer"), "a row"));
+    .map(|proof| holds(&proof.expect("an answer"), "a row"));
     let up: [fn(f64) -> f64; 1] = [|x| x + 1e-9];
     let down: [fn(f64) -> f64; 1] = [|x| x - 1e-9];
     let far: [fn(f64) -> f64; 1] = [|x| x + 9.0];
@@ -200,18 +208,18 @@ fn a_number_of_a_scene_that_is_changed_is_noticed() {
     assert_eq!(believed(&nearest, "/statement/nearest/obstacle", &far), [""; 0]);
     assert_eq!(believed(&within, "/statement/within/length", &far), [""; 0]);
     assert_eq!(believed(&within, "/statement/within/closer/0/0", &far), [""; 0]);
-    assert_eq!(believed(&stop, "/statement/clearance/lower", &up), [""; 0]);
-    assert_eq!(believed(&stop, "/statement/clearance/stop", &far), [""; 0]);
+    assert_eq!(believed(&stop, "/statement/scene_clearance/lower", &up), [""; 0]);
+    assert_eq!(believed(&stop, "/statement/scene_clearance/stop", &far), [""; 0]);
     for file in [&nearest, &within, &stop] {
         // A cube that is elsewhere: the nearest one, or one that is now in the way.
         let mut moved = file.clone();
-        moved["obstacles"][2] = file["obstacles"][0].clone();
+        moved["placement"]["poses"][3] = file["placement"]["poses"][1].clone();
         assert!(refused(&moved));
         let mut near = file.clone();
-        near["obstacles"][0]["pose"] = file["moving"]["pose"].clone();
+        near["placement"]["poses"][1]["pose"] = file["placement"]["poses"][0]["pose"].clone();
         assert!(refused(&near), "a cube where the moving one is");
         let mut fewer = file.clone();
-        fewer["obstacles"] = json!([]);
+        fewer["placement"]["poses"].as_array_mut().expect("places").truncate(1);
         assert!(refused(&fewer));
         let mut other = file.clone();
         other["statement"] = json!({"nearest": {}, "within": {}});
@@ -235,21 +243,20 @@ fn a_number_of_a_scene_that_is_changed_is_noticed() {
     unclaimed["statement"]["nearest"]["apart"] = json!([[0, false_gap]]);
     assert!(refused(&unclaimed));
     // A bound that is weaker is not where the obstacle stops the moving body, nor what is nearest.
-    let said =
-        |file: &Value| SceneProof::from_json(&file.to_string()).expect("a proof").to_string();
+    let said = |file: &Value| ProofFile::from_json(&file.to_string()).expect("a proof").to_string();
     let mut weak = stop.clone();
-    weak["statement"]["clearance"]["lower"] = json!(0.0);
+    weak["statement"]["scene_clearance"]["lower"] = json!(0.0);
     assert!(!refused(&weak) && !said(&weak).contains("overlaps"), "{}", said(&weak));
     assert!(said(&stop).contains("obstacle 2 does by 2."), "{}", said(&stop));
     let mut missing = stop.clone();
-    missing["statement"]["clearance"].as_object_mut().expect("a claim").remove("stop");
+    missing["statement"]["scene_clearance"].as_object_mut().expect("a claim").remove("stop");
     assert!(refused(&missing));
     let mut far = nearest.clone();
     far["statement"]["nearest"]["lower"] = json!(0.5);
     assert!(said(&far).ends_with("none is nearer than 0.5"), "{}", said(&far));
     let mut none = nearest;
-    none["obstacles"][0]["body"] = json!(7);
-    let error = SceneProof::from_json(&none.to_string()).expect_err("there is no such body");
+    none["placement"]["poses"][1]["body"] = json!(7);
+    let error = ProofFile::from_json(&none.to_string()).expect_err("there is no such body");
     assert_eq!(error.to_string(), "a place names the body 7, and there are 6, from 0 on");
 }
 
@@ -298,7 +305,7 @@ fn a_number_that_is_changed_is_noticed() {
     let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube");
     let file = cube_cast(&cube, 0.3);
     let both: [fn(f64) -> f64; 2] = [|x| x * 1.001 + 1e-3, |x| x * 0.999 - 1e-3];
-    for place in ["/moving_pose", "/fixed_pose", "/direction"] {
+    for place in ["/placement/poses/0/pose", "/placement/poses/1/pose", "/query/cast/direction"] {
         assert_eq!(believed(&file, place, &both), [""; 0], "{place}");
     }
     for end in ["first", "last"] {
@@ -364,7 +371,7 @@ fn another_body_is_noticed() {
     let file = cube_cast(&small, 0.3);
     let mut wrong = file.clone();
     for k in 0..8 {
-        let x = wrong.pointer_mut(&format!("/moving/convex/vertices/{k}/0")).expect("a vertex");
+        let x = wrong.pointer_mut(&format!("/bodies/0/convex/vertices/{k}/0")).expect("a vertex");
         *x = json!(x.as_f64().expect("a number") * 1.001);
     }
     assert!(refused(&wrong));
@@ -393,9 +400,12 @@ fn proofs_between_solids_hold_and_their_numbers_count() {
     for tolerance in [0.0, 1e-6] {
         let down = of_parts(&parts, DVec3::new(0.01, 0.02, 0.0), DVec3::NEG_Z, tolerance);
         let far: [fn(f64) -> f64; 1] = [|x| x + 0.01];
-        for place in
-            ["/moving_pose", "/fixed_pose", "/direction", "/statement/clearance/certificate"]
-        {
+        for place in [
+            "/placement/poses/0/pose",
+            "/placement/poses/1/pose",
+            "/query/cast/direction",
+            "/statement/clearance/certificate",
+        ] {
             // Aside the bolt has play, and what stops it is no other.
             let mut found = believed(&down, place, &far);
             found.retain(|place| {
@@ -448,8 +458,8 @@ fn bounds_that_are_missing_or_wrong_are_told() {
     }
     let mut wrong = file.clone();
     *wrong.pointer_mut(&format!("{place}/value")).expect("a value") = json!(6.5);
-    let wrong = ProofFile::from_json(&wrong.to_string()).expect("a proof").check();
-    let told = wrong.expect_err("outside").to_string();
+    let wrong = ProofFile::from_json(&wrong.to_string()).expect("a proof");
+    let told = wrong.check().expect_err("outside").to_string();
     assert!(told.starts_with("the translation 6.5 is not between its bounds, "), "{told}");
 }
 
@@ -480,7 +490,10 @@ fn a_proof_of_bodies_of_which_nothing_is_left_is_refused() {
     let proof = ProofFile::from_json(&file.to_string()).expect("a proof");
     let refused = proof.check().expect_err("nothing is left of the washer");
     assert!(
-        matches!(refused, CertificateError::Query(QueryError::NothingLeft { .. })),
+        matches!(
+            refused,
+            ProofError::Certificate(CertificateError::Query(QueryError::NothingLeft { .. }))
+        ),
         "{refused}"
     );
 }
@@ -492,7 +505,10 @@ fn facets_that_are_not_those_of_the_proof_are_refused() {
     *stop = (stop.as_u64().expect("a number") + 1).into();
     let proof = ProofFile::from_json(&file.to_string()).expect("a proof");
     let refused = proof.check().expect_err("another facet");
-    assert!(matches!(refused, CertificateError::OtherFacets { .. }), "{refused}");
+    assert!(
+        matches!(refused, ProofError::Certificate(CertificateError::OtherFacets { .. })),
+        "{refused}"
+    );
 }
 
 /// What is said of solids.
@@ -541,7 +557,7 @@ fn unions_and_turned_solids_are_proven() {
         let proof = ProofFile::of_solids(&cast, [&[&bolt, &cube], &[&washer]]).expect("a proof");
         holds(&proof, "a union");
         let wrong = ProofFile::of_solids(&cast, [&[&bolt], &[&washer]]);
-        assert!(matches!(wrong, Err(CaseError::Changed { which: "moving" })));
+        assert!(matches!(wrong, Err(ProofFileError::Changed { body: 0 })));
     }
 }
 
@@ -554,30 +570,39 @@ fn other_files_are_refused_in_words() {
     assert!(said(&text[..text.len() / 2]).contains("it ends too early"));
     assert!(said("solid cube").contains("it is not JSON"));
     assert!(said("{}").contains("a saved proof"));
-    assert!(said(&text.replace("proof 1", "proof 9")).contains("\"colltrans proof 9\""));
+    assert_eq!(
+        said(&text.replace("colltrans proof", "colltrans proof 1")),
+        "the format is \"colltrans proof 1\", not \"colltrans proof\""
+    );
+    let older = text.replace("\"version\":2", "\"version\":1");
+    assert_eq!(said(&older), "the version of the format is 1, not 2");
+    let fit = "the statement has to say something, and to fit the query";
     let mut mixed = file.clone();
-    mixed["moving"] = json!({"pieces": []});
-    assert_eq!(said(&mixed.to_string()), "one body is convex, the other is made of pieces");
-    mixed["fixed"] = json!({"pieces": []});
-    assert!(said(&mixed.to_string()).starts_with("moving body: "));
+    mixed["bodies"][0] = of_parts(&parts(), DVec3::Z * 40.0, DVec3::NEG_Z, 0.0)["bodies"][0].take();
+    assert!(said(&mixed.to_string()).starts_with(fit));
+    mixed["bodies"][1] = json!({"pieces": []});
+    assert!(said(&mixed.to_string()).starts_with("body 1: "));
     let mut both = file["statement"].clone();
     both["separation"] = json!({"normal": [0, 1, 0], "margin": 1});
-    for says in [json!({"contacts": {}}), json!({}), both, solid_claim()] {
+    for (says, why) in [
+        (json!({"contacts": {}}), fit),
+        (solid_claim(), fit),
+        (json!({}), "not a saved proof: line 1, column "),
+        (both, "not a saved proof: line 1, column "),
+    ] {
         let mut wrong = file.clone();
         wrong["statement"] = says;
-        assert!(
-            said(&wrong.to_string()).starts_with("it has to say one thing, and one of such bodies")
-        );
+        assert!(said(&wrong.to_string()).starts_with(why), "{}", said(&wrong.to_string()));
     }
     let large = text.replacen("-3.1", "1e999", 1);
     assert!(said(&large).contains("a number is larger than any double"), "{}", said(&large));
     let mut open = of_parts(&parts(), DVec3::ZERO, DVec3::NEG_Z, 0.0);
-    let triangles = open.pointer_mut("/fixed/pieces/0/triangles").expect("triangles");
+    let triangles = open.pointer_mut("/bodies/1/pieces/0/triangles").expect("triangles");
     triangles.as_array_mut().expect("a list").pop();
     let told = said(&open.to_string());
-    assert!(told.starts_with("fixed body: the surface is open") && !told.contains("::"), "{told}");
+    assert!(told.starts_with("body 1: the surface is open") && !told.contains("::"), "{told}");
     let mut still = file;
-    still["direction"] = json!([0.0, 0.0, 0.0]);
+    still["query"]["cast"]["direction"] = json!([0.0, 0.0, 0.0]);
     assert!(said(&still.to_string()).contains("direction"));
 }
 
@@ -600,9 +625,12 @@ fn distances_of_solids_hold_and_their_numbers_count() {
     }
     let pair = Pair::new(a.at(place(1.0)), b.at(place(0.0))).expect("a pair");
     let other = ProofFile::of_solid_distance(&pair, [&[&b], &[&b]], None);
-    assert!(matches!(other, Err(CaseError::Changed { which: "moving" })), "{other:?}");
+    assert!(matches!(other, Err(ProofFileError::Changed { body: 0 })), "{other:?}");
     let negative = ProofFile::of_solid_distance(&pair, [&[&a], &[&b]], Some(-1.0));
-    assert!(matches!(negative, Err(CaseError::Query(QueryError::Length { .. }))), "{negative:?}");
+    assert!(
+        matches!(negative, Err(ProofFileError::Query(QueryError::Length { .. }))),
+        "{negative:?}"
+    );
 }
 
 /// As the checker in fractions does.
@@ -620,11 +648,12 @@ fn axes_of_a_path_are_unit_vectors() {
         let bodies =
             vec![PathBody::carried(0, cube.at(Pose::IDENTITY)), PathBody::standing(cube.at(there))];
         let cast = PathCast::new(&mechanism, &path, bodies, vec![[0, 1]]).expect("a cast");
-        let (_, file) = PathProofFile::answer(&cast, &[]).expect("an answer");
+        let (_, file) = ProofFile::with_path(&cast, &[]).expect("an answer");
         let mut file: Value = serde_json::from_str(&file.to_json()).expect("JSON");
-        let read = |file: &Value| PathProofFile::from_json(&file.to_string());
+        let read = |file: &Value| ProofFile::from_json(&file.to_string());
         assert!(read(&file).expect("a proof").check().is_ok());
-        let axis = file["frames"][0]["joint"][kind].as_array_mut().expect("an axis");
+        let axis =
+            file["placement"]["robot"]["frames"][0]["joint"][kind].as_array_mut().expect("an axis");
         for x in axis {
             *x = Value::from(2.0 * x.as_f64().expect("a number"));
         }

@@ -73,10 +73,8 @@ from itertools import combinations, pairwise, product
 from pathlib import Path
 from typing import Any, TypeAlias
 
-FORMAT = "colltrans proof 1"
-SCENE_FORMAT = "colltrans scene proof 1"
-MOTION_FORMAT = "colltrans motion proof 1"
-SOLID_MOTION_FORMAT = "colltrans motion of solids proof 1"
+FORMAT = "colltrans proof"
+VERSION = 2
 Vector: TypeAlias = tuple[Fraction, Fraction, Fraction]
 Matrix: TypeAlias = tuple[Vector, Vector, Vector]
 Triangle: TypeAlias = tuple[Vector, Vector, Vector]
@@ -274,10 +272,6 @@ class Body:
     rows: Matrix
     offset: Vector
     facets: list[tuple[int, int, int]]
-
-    @classmethod
-    def read(cls, shape: Any, pose: Any) -> Body:
-        return cls.placed(*cls.shape(shape), pose)
 
     @staticmethod
     def shape(shape: Any) -> tuple[list[Vector], list[tuple[int, int, int]]]:
@@ -1034,37 +1028,77 @@ def refuses(start_overlap: Any) -> bool:
     return bool(start_overlap == "refuse")
 
 
+@dataclass(frozen=True)
+class File:
+    """The bodies of a file, where they are, and what is asked of them."""
+
+    bodies: list[Any]
+    #: Of each body its points in its frame, and its facets.
+    shapes: list[tuple[list[Vector], list[tuple[int, int, int]]]]
+    asked: str
+    query: Any
+    placement: Any
+
+    @classmethod
+    def read(cls, content: dict[str, Any]) -> File:
+        bodies = listed(content["bodies"])
+        shapes = [Body.shape(shape) for shape in bodies]
+        asked, query = "pair", None
+        if content["query"] != "pair":
+            asked, query = one_of(content["query"], *PLACEMENTS)
+        _, placement = one_of(content["placement"], PLACEMENTS[asked])
+        return cls(bodies, shapes, asked, query, placement)
+
+    def number(self, value: Any) -> int:
+        """The number of a body."""
+        return whole(value, len(self.bodies))
+
+    def placed(self, of: Any) -> Body:
+        """A body in its pose."""
+        return Body.placed(*self.shapes[self.number(of["body"])], of["pose"])
+
+    def poses(self) -> list[Body]:
+        """The bodies where they are, the moving one first."""
+        return [self.placed(fields(of, "body pose")) for of in listed(self.placement)]
+
+    def two(self, solids: bool) -> tuple[Body, Body]:
+        """The moving and the fixed body: two solids, or two convex bodies."""
+        listed(self.placement, 2)
+        moving, fixed = self.poses()
+        if moving.is_convex == solids or fixed.is_convex == solids:
+            raise NoProofError("this is not claimed of such bodies")
+        return moving, fixed
+
+
+#: What places bodies, by what is asked of them.
+PLACEMENTS = {
+    "cast": "poses",
+    "pair": "poses",
+    "scene": "poses",
+    "motions": "motions",
+    "path": "robot",
+}
+
+
 class Scene:
     """A proof about one body among many."""
 
-    def __init__(self, file: Any) -> None:
-        fields(file, "format bodies moving obstacles choices statement")
-        self.shapes = file["bodies"]
-        shapes = [Body.shape(shape) for shape in self.shapes]
-
-        def placed(place: Any) -> Body:
-            fields(place, "body pose")
-            return Body.placed(*shapes[whole(place["body"], len(shapes))], place["pose"])
-
-        self.moving = placed(file["moving"])
-        self.obstacles = [placed(place) for place in listed(file["obstacles"])]
-        self.choices, self.statement = file["choices"], file["statement"]
-        fields(self.choices, "", "keep graze_tolerance tolerance start_overlap")
-        self.keep = bounded(gap_to_keep(self.choices), MOST, "the gap to be kept")
-        self.graze = number(self.choices.get("graze_tolerance", 0.0))
-        if self.graze < 0 or (self.choices.get("tolerance") or 0.0) < 0:
+    def __init__(self, file: File, report: Report) -> None:
+        self.moving, *self.obstacles = file.poses()
+        choices = file.query
+        fields(choices, "start_overlap", "keep graze_tolerance tolerance")
+        self.keep = bounded(gap_to_keep(choices), MOST, "the gap to be kept")
+        self.graze = number(choices.get("graze_tolerance", 0.0))
+        tolerance = choices.get("tolerance")
+        if self.graze < 0 or (tolerance is not None and number(tolerance) < 0):
             raise NoProofError("a tolerance is negative")
-        self.refuses = refuses(self.choices.get("start_overlap", "refuse"))
+        self.refuses = refuses(choices["start_overlap"])
         self.box = box(self.moving)
-        self.report = Report()
+        self.report = report
 
-    def check(self) -> Report:
-        for k, shape in enumerate(self.shapes):
-            check_faces(self.report, f"{k}.", shape.get("convex"))
-        kinds = {"nearest": self.nearest, "within": self.within, "clearance": self.clearance}
-        kind, claim = one_of(self.statement, *kinds)
-        kinds[kind](claim)
-        return self.report
+    def check(self, kind: str, claim: Any) -> None:
+        kinds = {"nearest": self.nearest, "within": self.within}
+        kinds.get(kind, self.clearance)(claim)
 
     def named(self, claims: Any) -> dict[int, Any]:
         """What is claimed of obstacles, each once and in order."""
@@ -2229,19 +2263,15 @@ def stays(a: Fraction, b: Fraction, c: Fraction) -> bool:
     return min(a, b) > 0 and (over < 0 or over * over < 4 * a * b)
 
 
-def spans(file: Any, described_bodies: bool = True) -> list[Span]:
+def spans(movers: list[Any], points: Sequence[list[Vector]], keep: Fraction) -> list[Span]:
     """The times in which both bodies spin evenly, one after the other."""
     sides = []
-    for side in ("moving", "fixed"):
-        points = [_ZERO]
-        if described_bodies:
-            points, _ = Body.shape({"convex": file[side]})
-        spins = [Spin.read(points, piece) for piece in listed(file[f"{side}_motion"])]
+    for of, own in zip(movers, points, strict=True):
+        spins = [Spin.read(own, piece) for piece in listed(of["motion"])]
         times = [spin.since for spin in spins]
         if not times or times[0] != 0 or times[-1] >= 1 or sorted(set(times)) != times:
             raise NoProofError("the pieces of a motion do not begin one after the other, before 1")
         sides.append(spins)
-    keep = bounded(number(file.get("keep", 0.0)), MOST, "the gap to be kept")
     borders = [*sorted({spin.since for side in sides for spin in side}), Fraction(1)]
     found = []
     for begin, end in pairwise(borders):
@@ -2250,13 +2280,14 @@ def spans(file: Any, described_bodies: bool = True) -> list[Span]:
     return found
 
 
-def motion(file: Any) -> Report:
+def motion(file: File, movers: list[Any], asked: Any, proof: Any, report: Report) -> None:
     """When two convex bodies that move first meet."""
-    names = "format moving moving_motion fixed fixed_motion proof"
-    fields(file, names, "keep")
-    all_spans, proof, report = spans(file), fields(file["proof"], "spans meeting"), Report()
-    for which in ("moving", "fixed"):
-        check_faces(report, which, file[which])
+    shapes = [file.shapes[of["body"]] for of in movers]
+    if any(facets for _, facets in shapes) or asked["tolerance"] is not None:
+        raise NoProofError("this is claimed of convex bodies, which have no tolerance but a gap")
+    keep = asked["keep"]
+    all_spans = spans(movers, [points for points, _ in shapes], keep)
+    fields(proof, "spans meeting")
     claimed = listed(proof["spans"])
     if len(claimed) > len(all_spans):
         raise RefusedError("there are more spans than the motions have")
@@ -2266,7 +2297,6 @@ def motion(file: Any) -> Report:
         if reached != span.begin or (read and read[0].time != span.begin):
             raise RefusedError("a span does not begin where the one before it ended")
         reached = chain(span, read)
-    keep = all_spans[0].keep
     meet = "meet" if keep == 0 else f"are as near as {float(keep)!r}"
     if keep < 0:
         meet = f"overlap by more than {float(-keep)!r}"
@@ -2280,7 +2310,6 @@ def motion(file: Any) -> Report:
             raise RefusedError(f"that the bodies {meet} is said of another time")
         all_spans[len(claimed) - 1].meets(meeting["met"], time)
         report.holds.append(f"the bodies {meet} at the time {float(time)!r}")
-    return report
 
 
 def chain(span: Span, planes: list[Plane]) -> Fraction:
@@ -2668,29 +2697,24 @@ def has_open(shape: Any) -> bool:
     return any(open_facets(shape))
 
 
-def solid_motion(file: Any) -> Report:
+def solid_motion(file: File, movers: list[Any], asked: Any, claim: Any, report: Report) -> None:
     """When two solids that move first meet, as they are moved inwards in the file."""
-    names = "format moving moving_motion fixed fixed_motion parts proof"
-    fields(file, names, "keep tolerance")
-    proof, report = fields(file["proof"], "tolerance start spans meeting"), Report()
-    shapes = [Body.shape(file[side]) for side in ("moving", "fixed")]
+    fields(claim, "parts proof")
+    proof = fields(claim["proof"], "tolerance start spans meeting")
+    shapes = [file.shapes[of["body"]] for of in movers]
     if any(not facets for _, facets in shapes):
         raise NoProofError("the bodies are not made of facets")
-    opens = [open_facets(file[side]) for side in ("moving", "fixed")]
+    opens = [open_facets(file.bodies[of["body"]]) for of in movers]
     p, q = (
         Parts.read(points, facets, of, is_open)
-        for (points, facets), of, is_open in zip(shapes, listed(file["parts"]), opens, strict=True)
+        for (points, facets), of, is_open in zip(shapes, listed(claim["parts"]), opens, strict=True)
     )
     parts = (p, q)
-    check_tolerance(file.get("tolerance"), number(proof["tolerance"]), parts)
-    plain = {
-        **{name: file[name] for name in ("moving_motion", "fixed_motion")},
-        "keep": file.get("keep", 0.0),
-    }
-    all_spans = spans(plain, described_bodies=False)
-    keep = all_spans[0].keep
+    check_tolerance(asked["tolerance"], number(proof["tolerance"]), parts)
+    keep = asked["keep"]
     if keep < 0:
         raise NoProofError("the gap to be kept is negative")
+    all_spans = spans(movers, [[_ZERO], [_ZERO]], keep)
     meet = "meet" if keep == 0 else f"are as near as {float(keep)!r}"
     moved = float(max(side.moved for side in parts))
     of = f"the facets, moved by at most {moved:.3g}," if moved else "the facets"
@@ -2703,7 +2727,7 @@ def solid_motion(file: Any) -> Report:
             raise RefusedError("of solids that overlap when the motion begins nothing else is said")
         report.unchecked.append("that they overlap when the motion begins")
         report.partly = True
-        return report
+        return
     if len(claimed) > len(all_spans):
         raise RefusedError("there are more spans than the motions have")
     reached = Fraction()
@@ -2739,7 +2763,6 @@ def solid_motion(file: Any) -> Report:
     if moved:
         report.unchecked.append("whether facets were moved inwards as the tolerance says")
         report.partly = True
-    return report
 
 
 def check_tolerance(asked: Any, told: Fraction, parts: tuple[Parts, Parts]) -> None:
@@ -2752,31 +2775,38 @@ def check_tolerance(asked: Any, told: Fraction, parts: tuple[Parts, Parts]) -> N
         raise RefusedError("facets are moved, and the tolerance is 0")
 
 
-def motions(file: Any) -> Report:
+def motions(file: File, claims: Any, report: Report) -> None:
     """Checks which two of several pairs of bodies, convex or as solids, first meet."""
-    report = Report()
-    kinds: dict[str, Callable[[Any], Report]]
-    kinds = {MOTION_FORMAT: motion, SOLID_MOTION_FORMAT: solid_motion}
-    if not fields(file, "format proofs")["proofs"]:
+    placed, asked = listed(file.placement), []
+    for of in listed(file.query):
+        fields(of, "keep", "tolerance")
+        keep = bounded(number(of["keep"]), MOST, "the gap to be kept")
+        asked.append({"keep": keep, "tolerance": of.get("tolerance")})
+    pairs = list(zip(placed, asked, listed(claims), strict=True))
+    if not pairs:
         raise NoProofError("there is no pair of bodies")
-    keeps = [(proof["format"], number(proof.get("keep", 0.0))) for proof in listed(file["proofs"])]
-    least = min(keep for _, keep in keeps)
-    # What is apart by a larger gap is apart by this one, too.
-    if any(keep != least and kind != SOLID_MOTION_FORMAT for kind, keep in keeps):
-        raise NoProofError("the proofs are of several gaps to be kept")
-    for number_, proof in enumerate(file["proofs"]):
-        if proof["format"] not in kinds:
-            raise NoProofError(f"the format of a proof is {proof['format']!r}")
-        if proof["format"] == SOLID_MOTION_FORMAT and number(proof["proof"]["tolerance"]) != 0:
-            raise NoProofError("a pair as solids is one of solids as they are, of tolerance 0")
-        found = kinds[proof["format"]](proof)
-        report.holds += [f"pair {number_}: {line}" for line in found.holds]
-        report.unchecked += [f"pair {number_}: {line}" for line in found.unchecked]
+    least = min(of["keep"] for of in asked)
+    for number_, (movers, of, claim) in enumerate(pairs):
+        for mover in listed(movers, 2):
+            file.number(fields(mover, "body motion")["body"])
+        kind, proof = one_of(claim, "convex", "solids")
+        # What is apart by a larger gap, as solids may be, is apart by this one, too.
+        if kind == "convex" and of["keep"] != least:
+            raise NoProofError("the proofs are of several gaps to be kept")
+        found = Report()
+        if kind == "convex":
+            motion(file, movers, of, proof, found)
+        else:
+            solid_motion(file, movers, of, proof, found)
+            if len(pairs) > 1 and number(proof["proof"]["tolerance"]) != 0:
+                raise NoProofError("a pair as solids is one of solids as they are, of tolerance 0")
+        pair = f"pair {number_}: " if len(pairs) > 1 else ""
+        report.holds += [f"{pair}{line}" for line in found.holds]
+        report.unchecked += [f"{pair}{line}" for line in found.unchecked]
         report.partly = report.partly or found.partly
-        if not found.holds:
-            report.unchecked.append(f"pair {number_}: nothing is proven of it")
+        if pair and not found.holds:
+            report.unchecked.append(f"{pair}nothing is proven of it")
             report.partly = True
-    return report
 
 
 #: So many pairs of bodies are named in a line.
@@ -3351,16 +3381,17 @@ class Robot:
     pairs: list[tuple[int, int]]
 
     @classmethod
-    def read(cls, file: Any) -> Robot:
-        fields(file["path"], "times rows")
-        rows = [[number(x) for x in row] for row in listed(file["path"]["rows"])]
-        times = [bounded(number(x), MOST, "a time") for x in listed(file["path"]["times"])]
+    def read(cls, file: File, claim: Any) -> Robot:
+        placement, joints = fields(file.placement, "frames bodies"), file.query["path"]
+        fields(joints, "times rows")
+        rows = [[number(x) for x in row] for row in listed(joints["rows"])]
+        times = [bounded(number(x), MOST, "a time") for x in listed(joints["times"])]
         if not rows or len(times) != len(rows) or any(b <= a for a, b in pairwise(times)):
             raise NoProofError("the times of the rows do not grow")
         frames: list[Stage] = []
         parents: list[int | None] = []
         column = 0
-        for k, frame in enumerate(listed(file["frames"])):
+        for k, frame in enumerate(listed(placement["frames"])):
             fields(frame, "parent origin joint")
             parent, joint = frame["parent"], frame["joint"]
             parents.append(None if parent is None else whole(parent, k))
@@ -3380,23 +3411,24 @@ class Robot:
                 for row in rows:
                     bounded(row[stage.column], most, "the value of a joint")
         robot = cls(frames, parents, rows, times, [], [], [], [], [])
-        for of in listed(file["bodies"]):
-            robot.add(of)
+        parts = listed(claim["parts"], len(file.bodies))
+        for k, (shape, own) in enumerate(zip(file.bodies, parts, strict=True)):
+            if ("convex" in shape) == (own is not None):
+                raise NoProofError(f"body {k}: a solid has parts, a convex body has none")
+        for of in listed(placement["bodies"]):
+            robot.add(file, fields(of, "body name frame pose"), parts)
         numbers = {name: k for k, name in enumerate(robot.names)}
-        for a, b in listed(file["statement"]["pairs"]):
+        for a, b in listed(claim["pairs"]):
             if a not in numbers or b not in numbers or a == b:
                 raise NoProofError(f"{a!r} and {b!r} are not the names of two bodies")
             robot.pairs.append((numbers[a], numbers[b]))
         return robot
 
-    def add(self, of: Any) -> None:
+    def add(self, file: File, of: Any, parts: list[Any]) -> None:
         """Adds a body of the file."""
-        fields(of, "name frame pose body", "parts")
-        name, body = of["name"], Body.read(of["body"], of["pose"])
+        name, body = of["name"], file.placed(of)
         if not isinstance(name, str) or not name or name in self.names:
             raise NoProofError(f"{name!r} is not a name, or the name of several bodies")
-        if body.is_convex == (of.get("parts") is not None):
-            raise NoProofError(f"{name!r}: a solid has parts, a convex body has none")
         way = [] if of["frame"] is None else [whole(of["frame"], len(self.frames))]
         while way and (parent := self.parents[way[-1]]) is not None:
             way.append(parent)
@@ -3404,8 +3436,9 @@ class Robot:
         self.bodies.append((way[::-1], body))
         if self.reach(len(self.bodies) - 1) > MOST:
             raise NoProofError(f"{name!r} can be farther than 2^200 from where its frames begin")
-        self.pieces.append(Pieces.read(body, of.get("parts"), of["body"]))
-        error = of["body"]["convex"]["hull_error"] if body.is_convex else 0
+        shape = file.bodies[of["body"]]
+        self.pieces.append(Pieces.read(body, parts[of["body"]], shape))
+        error = shape["convex"]["hull_error"] if body.is_convex else 0
         self.left_out_of.append(number(error))
 
     def reach(self, k: int) -> float:
@@ -3459,15 +3492,12 @@ class Robot:
         ]
 
 
-def path(file: Any) -> Report:
+def path(file: File, statement: Any, report: Report) -> None:
     """Which two bodies that joints carry first meet, of the pairs that are named."""
-    report, keep = Report(), bounded(gap_to_keep(file), MOST, "the gap to be kept")
-    names = "format frames path bodies proof statement"
-    fields(file, names, "keep")
-    statement = fields(file["statement"], "pairs lower upper")
-    proof, robot = fields(file["proof"], "covers meeting"), Robot.read(file)
-    for of in listed(file["bodies"]):
-        check_faces(report, of["name"], of["body"].get("convex"))
+    fields(file.query, "path", "keep")
+    keep = bounded(gap_to_keep(file.query), MOST, "the gap to be kept")
+    fields(statement, "pairs lower upper parts proof")
+    proof, robot = fields(statement["proof"], "covers meeting"), Robot.read(file, statement)
     covers, pairs, last = listed(proof["covers"]), robot.pairs, len(robot.rows) - 1
     if not pairs:
         raise NoProofError("there is no pair of bodies")
@@ -3504,7 +3534,7 @@ def path(file: Any) -> Report:
     if meeting is None:
         if upper is not None:
             raise RefusedError("that two bodies meet is said, and not proven")
-        return report
+        return
     which = whole(fields(meeting, "pair place how")["pair"], len(pairs))
     place = place_of(meeting["place"], last)
     if place < reached or (upper is not None and robot.time(*place) > upper):
@@ -3517,7 +3547,6 @@ def path(file: Any) -> Report:
         pieces_meet(found, how, *place)
     by = f"by the time {float(upper)!r}" if upper is not None else "on the path"
     report.holds.append(f"{robot.told(pairs[which])} {meet} {by}")
-    return report
 
 
 def check(text: str) -> Report:
@@ -3531,50 +3560,34 @@ def check(text: str) -> Report:
         Something that it claims does not hold.
     """
     try:
-        file = json.loads(
+        content = json.loads(
             text.removeprefix("\ufeff"),
             object_pairs_hook=_once,
             parse_int=_integer,
             parse_float=_finite,
             parse_constant=_no_number,
         )
-        if file["format"] == SCENE_FORMAT:
-            return Scene(file).check()
-        if file["format"] in MOTIONS:
-            return MOTIONS[file["format"]](file)
-        if file["format"] != FORMAT:
-            raise NoProofError(f"the format is {file['format']!r}, not {FORMAT!r}")
-        keep = gap_to_keep(file)
-        file = fields(
-            file, "format moving moving_pose fixed fixed_pose statement", "direction keep"
-        )
-        moving = Body.read(file["moving"], file["moving_pose"])
-        fixed = Body.read(file["fixed"], file["fixed_pose"])
-        if bool(moving.facets) != bool(fixed.facets):
-            raise NoProofError("one body is convex, the other is made of pieces")
-        direction = file.get("direction")
-        d = None if direction is None else place(direction)
-        if d is not None and not any(d):
-            raise NoProofError("the direction is zero")
-        report = Report()
-        for which in ("moving", "fixed"):
-            check_faces(report, which, file[which].get("convex"))
-        said = fields(file["statement"], "", " ".join((*PLACED, *ALONG)))
-        claims = {kind: claim for kind, claim in said.items() if claim is not None}
-        if len(claims) != 1:
-            raise NoProofError(f"it has to say one thing, not {len(claims)}")
-        ((kind, claim),) = claims.items()
-        if kind in PLACED:
-            of_solids = kind in ("solid_distance", "free_directions")
-            if d is not None or keep or bool(moving.facets) != of_solids:
-                raise NoProofError(f"{kind!r} is not claimed of such bodies, or of a direction")
-            if kind == "free_directions" and any(map(has_open, (file["moving"], file["fixed"]))):
-                raise NoProofError("of open surfaces free directions are not claimed")
-            PLACED[kind](moving, fixed, claim, report)
-        elif d is None:
-            raise NoProofError("there is no direction")
+        if content["format"] != FORMAT:
+            raise NoProofError(f"the format is {content['format']!r}, not {FORMAT!r}")
+        if type(content.get("version")) is not int or content["version"] != VERSION:
+            raise NoProofError(f"the version is {content.get('version')!r}, not {VERSION}")
+        fields(content, "format version bodies placement query statement")
+        file, report = File.read(content), Report()
+        for k, body in enumerate(file.bodies):
+            check_faces(report, k, body.get("convex"))
+        kind, claim = one_of(content["statement"], *CLAIMS)
+        if CLAIMS[kind] != file.asked:
+            raise NoProofError(f"{kind!r} is not what is asked: {file.asked!r}")
+        if file.asked == "cast":
+            along(file, kind, claim, report)
+        elif file.asked == "pair":
+            pair(file, kind, claim, report)
+        elif file.asked == "scene":
+            Scene(file, report).check(kind, claim)
+        elif file.asked == "motions":
+            motions(file, claim, report)
         else:
-            _claim(kind, claim, (moving, fixed), d, report, keep)
+            path(file, claim, report)
     except (*_MALFORMED, RecursionError) as error:
         if isinstance(error, NoProofError):
             raise
@@ -3582,21 +3595,12 @@ def check(text: str) -> Report:
     return report
 
 
-def check_faces(report: Report, which: str, content: Any) -> None:
+def check_faces(report: Report, body: int, content: Any) -> None:
     """Says that faces of a body are not checked, if they are not clearly those of its hull."""
     if content is None or are_own_faces([vector(v) for v in listed(content["vertices"])], content):
         return
     report.partly = True
-    report.unchecked.append(f"the faces of the {which} body: it is the hull of its vertices")
-
-
-#: What is claimed of motions, by its format.
-MOTIONS: dict[str, Callable[[Any], Report]] = {
-    MOTION_FORMAT: motion,
-    "colltrans motions proof 1": motions,
-    SOLID_MOTION_FORMAT: solid_motion,
-    "colltrans path proof 2": path,
-}
+    report.unchecked.append(f"the faces of body {body}: it is the hull of its vertices")
 
 
 def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
@@ -3614,10 +3618,14 @@ PLACED = {
     "solid_distance": solid_distance,
     "free_directions": free_directions,
 }
-
-
-#: What is claimed of bodies along a direction.
-ALONG = ("contacts", "separation", "clearance")
+#: What is asked, by what is claimed.
+CLAIMS = {
+    **dict.fromkeys(("contacts", "separation", "clearance"), "cast"),
+    **dict.fromkeys(PLACED, "pair"),
+    **dict.fromkeys(("nearest", "within", "scene_clearance"), "scene"),
+    "motions": "motions",
+    "path": "path",
+}
 
 
 def _integer(text: str) -> int | float:
@@ -3647,32 +3655,47 @@ def gap_to_keep(of: Any) -> Fraction:
     return keep
 
 
-def _claim(
-    kind: str, claim: Any, bodies: tuple[Body, Body], d: Vector, report: Report, keep: Fraction
-) -> None:
-    moving, fixed = bodies
-    is_solid = bool(moving.facets)
-    if is_solid != (kind == "clearance"):
-        raise NoProofError(f"{kind!r} is not claimed of such bodies")
-    if kind == "contacts":
-        claim = fields(claim, "", "slide first last")
-        claim = {name: part for name, part in claim.items() if part is not None}
-        if not {"first", "last"} & set(claim):
-            raise NoProofError("no contact is claimed")
-        if "slide" in claim:
-            slide(moving, fixed, d, claim["slide"], report, keep)
-        if "first" in claim:
-            contact(moving, fixed, d, claim["first"], report, "along the direction", keep)
-        if "last" in claim:
-            back = scaled(d, Fraction(-1))
-            contact(moving, fixed, back, claim["last"], report, "against the direction", keep)
-        report.unchecked.append("what is said of rounding, which proves nothing")
-    elif kind == "separation":
+def pair(file: File, kind: str, claim: Any, report: Report) -> None:
+    """What is claimed of two bodies where they are."""
+    moving, fixed = file.two(solids=kind in ("solid_distance", "free_directions"))
+    if kind == "free_directions" and any(
+        has_open(file.bodies[of["body"]]) for of in file.placement
+    ):
+        raise NoProofError("of open surfaces free directions are not claimed")
+    PLACED[kind](moving, fixed, claim, report)
+
+
+def along(file: File, kind: str, claim: Any, report: Report) -> None:
+    """What is claimed of two bodies along a direction."""
+    moving, fixed = file.two(solids=kind == "clearance")
+    fields(file.query, "direction", "keep")
+    d, keep = place(file.query["direction"]), gap_to_keep(file.query)
+    if not any(d):
+        raise NoProofError("the direction is zero")
+    if kind == "separation":
         separation(moving, fixed, d, claim, report, keep)
-    elif is_solid:
+    elif kind == "clearance":
         clearance(moving, fixed, d, claim, report, keep)
     else:
-        raise NoProofError(f"{kind!r} is nothing that is claimed")
+        contacts(moving, fixed, d, claim, report, keep)
+
+
+def contacts(
+    moving: Body, fixed: Body, d: Vector, claim: Any, report: Report, keep: Fraction
+) -> None:
+    """The ends of the translations at which two convex bodies meet."""
+    claim = fields(claim, "", "slide first last")
+    claim = {name: part for name, part in claim.items() if part is not None}
+    if not {"first", "last"} & set(claim):
+        raise NoProofError("no contact is claimed")
+    if "slide" in claim:
+        slide(moving, fixed, d, claim["slide"], report, keep)
+    if "first" in claim:
+        contact(moving, fixed, d, claim["first"], report, "along the direction", keep)
+    if "last" in claim:
+        back = scaled(d, Fraction(-1))
+        contact(moving, fixed, back, claim["last"], report, "against the direction", keep)
+    report.unchecked.append("what is said of rounding, which proves nothing")
 
 
 def main(words: Sequence[str] | None = None) -> int:

@@ -9,7 +9,7 @@ use std::slice;
 
 use colltrans::record::{Dents, PairQuestion, Record};
 use colltrans::solid::{SolidOptions, StartOverlap};
-use colltrans::{Among, CaseError, ObstacleId, Options, Pose, SceneProof};
+use colltrans::{Among, ObstacleId, Options, Pose, ProofFile, ProofFileError};
 
 use crate::args::{ClearanceArguments, PlaceArguments, PlacedArguments};
 use crate::driver::{AnswerOutputs, OutputTargets, no_picture};
@@ -51,14 +51,14 @@ pub(crate) fn placed(arguments: &PlacedArguments, question: PairQuestion) -> Res
     let among = Among::new(scene.moving.body.at(asked.pose), &scene.obstacles)?;
     if let PairQuestion::Within(length) = question {
         let record = scene.with_obstacles(Record::of_nearby(&among.within(length)?, &among));
-        let prove = || SceneProof::of_within(&among, length).map(Some);
+        let prove = || ProofFile::of_within(&among, length).map(Some);
         return write_answer(targets, record, |told| words::within(told, length), prove);
     }
     // There is a file, and so an obstacle.
     let found = among.nearest()?.ok_or(Failure::new(Code::Input, "no obstacles"))?;
     let error = scene.error(asked.pose, found.obstacle);
     let record = scene.with_obstacles(Record::of_nearest(&found, &among));
-    let prove = || SceneProof::of_nearest(&among);
+    let prove = || ProofFile::of_nearest(&among);
     write_answer(targets, record, |told| words::nearest(told, error), prove)
 }
 
@@ -96,7 +96,7 @@ pub(crate) fn clearance(arguments: &ClearanceArguments) -> Result<(), Failure> {
     let graze = arguments.pair.graze_tolerance;
     let in_words =
         |told: &Line| words::clearance(told, direction, error, is_default) + &words::grazed(graze);
-    let prove = || SceneProof::of_clearance(&among, direction).map(Some);
+    let prove = || ProofFile::of_scene_clearance(&among, direction).map(Some);
     write_answer(targets, scene.with_obstacles(record), in_words, prove)
 }
 
@@ -154,7 +154,7 @@ fn write_answer(
     targets: OutputTargets<'_>,
     record: Record,
     in_words: impl FnOnce(&Line) -> String,
-    prove: impl FnOnce() -> Result<Option<SceneProof>, CaseError>,
+    prove: impl FnOnce() -> Result<Option<ProofFile>, ProofFileError>,
 ) -> Result<(), Failure> {
     let told = Line::from(record);
     targets.write_answer(AnswerOutputs {

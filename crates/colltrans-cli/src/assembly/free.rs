@@ -38,7 +38,8 @@ pub(super) fn all(
             let [moving, fixed] = removal.solids();
             ProofFile::of_free_directions(&free, [&[moving], &[fixed]])
         });
-        let refused = |error: colltrans::CaseError| Failure::new(Code::Query, error.to_string());
+        let refused =
+            |error: colltrans::ProofFileError| Failure::new(Code::Query, error.to_string());
         let parts = bodies.assembly().names(&group).into_iter().map(str::to_owned).collect();
         let record = removal.record(bodies, &free);
         Ok(Leaving { name, parts, record, proof: proof.transpose().map_err(refused)? })

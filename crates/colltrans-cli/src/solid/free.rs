@@ -50,7 +50,8 @@ impl PartsFree<'_> {
             let [moving, fixed] = self.bodies.map(Body::solids);
             ProofFile::of_free_directions(&free, [&moving, &fixed])
         });
-        let refused = |error: colltrans::CaseError| Failure::new(Code::Query, error.to_string());
+        let refused =
+            |error: colltrans::ProofFileError| Failure::new(Code::Query, error.to_string());
         Ok(FreeAnswer { record, notes, proof: proof.transpose().map_err(refused)? })
     }
 

@@ -1,7 +1,7 @@
 //! The questions about two placed bodies without a direction.
 
 use colltrans::record::{Ending, FeaturesRecord, PairQuestion, Record};
-use colltrans::{CaseError, Pair, Pose, ProofFile, QueryError, Solid};
+use colltrans::{Pair, Pose, ProofFile, ProofFileError, QueryError, Solid};
 
 use super::{Body, PartsQuery};
 use crate::failure::{Code, Failure};
@@ -29,7 +29,7 @@ impl<'a> PartsPair<'a> {
         let pair = self.pair()?;
         match question.prove_solids(&pair, [&moving, &fixed]) {
             Ok((answer, proof)) => Ok((self.named(answer.record(&pair)?)?, Ok(proof))),
-            Err(CaseError::Query(error)) => Err(error),
+            Err(ProofFileError::Query(error)) => Err(error),
             Err(error) => {
                 let failed = Failure::new(Code::Query, error.to_string());
                 Ok((self.ask(question)?, Err(failed)))

@@ -104,7 +104,7 @@ fn proofs_hold_here_and_in_fractions() {
         ("clearance", &near_dent, &["--direction", "-z"], "obstacle 20 does by ", 7),
     ] {
         let file = saved(folder, &[&[command], &bodies[..], more].concat());
-        assert_eq!(file["obstacles"].as_array().unwrap().len(), 22);
+        assert_eq!(file["placement"]["poses"].as_array().unwrap().len(), 23);
         assert_eq!(file["bodies"].as_array().unwrap().len(), 4, "a body is written once");
         let text = answered(folder, &["verify", "proof.json"]);
         assert!(text.starts_with("holds: ") && text.contains(said), "{said:?} is not in {text}");
@@ -113,7 +113,8 @@ fn proofs_hold_here_and_in_fractions() {
         checked_in_fractions(folder, code);
         // A cube where the moving one is.
         let mut changed = file;
-        changed["obstacles"][1]["pose"] = changed["moving"]["pose"].clone();
+        let places = &mut changed["placement"]["poses"];
+        places[2]["pose"] = places[0]["pose"].clone();
         std::fs::write(folder.join("proof.json"), changed.to_string()).unwrap();
         let output = run(folder, &["verify", "proof.json"]);
         assert_eq!(output.status.code(), Some(6), "{}", stdout(&output));
@@ -213,8 +214,8 @@ fn proofs_that_say_more_than_rounding_explains_are_refused() {
     let mut proof = saved(folder, &ask);
     assert!(checked(folder, &proof).is_none_or(|code| code == 0));
     // Moved ahead, and said to be behind to within rounding.
-    proof["obstacles"][0]["pose"]["translation"] = json!([3.0, 0.0, 0.0]);
-    let free = &mut proof["statement"]["clearance"]["passed"][0][1]["convex"]["free"];
+    proof["placement"]["poses"][1]["pose"]["translation"] = json!([3.0, 0.0, 0.0]);
+    let free = &mut proof["statement"]["scene_clearance"]["passed"][0][1]["convex"]["free"];
     let certificate = &mut free["behind"]["certificate"];
     certificate["lower"] = json!(-1e3);
     certificate["rounding"] = json!(1e4);

@@ -292,7 +292,7 @@ fn a_proof_of_several_meshes_is_one_of_each_pair() {
     assert!(text.starts_with("holds: of 2 pairs of bodies the first meet at a time"), "{text}");
     let file = folder.path().join("proof.json");
     let mut proof: Value = serde_json::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
-    proof["proofs"][1]["moving_motion"][0]["rate"] = json!(2.7);
+    proof["placement"]["motions"][1][0]["motion"][0]["rate"] = json!(2.7);
     fs::write(&file, proof.to_string()).unwrap();
     let output = run(folder.path(), &["verify", "proof.json"]);
     assert_eq!(output.status.code(), Some(6), "{}", stderr(&output));
@@ -330,7 +330,7 @@ fn a_proof_is_checked_elsewhere() {
     assert_eq!(told["holds"], true);
     let file = folder.path().join("proof.json");
     let mut proof: Value = serde_json::from_str(&fs::read_to_string(&file).unwrap()).unwrap();
-    proof["moving_motion"][0]["rate"] = json!(2.7);
+    proof["placement"]["motions"][0][0]["motion"][0]["rate"] = json!(2.7);
     fs::write(&file, proof.to_string()).unwrap();
     let output = run(folder.path(), &["verify", "proof.json"]);
     assert_eq!(output.status.code(), Some(6), "{}", stderr(&output));

@@ -125,10 +125,13 @@ fn a_proof_is_checked_elsewhere() {
         let output = run(folder.path(), &["verify", "proof.json"]);
         assert_eq!(output.status.code(), Some(6), "{}", stderr(&output));
     };
-    changed(&|proof| proof["path"]["rows"][1][0] = json!(0.95));
-    changed(&|proof| proof["statement"]["pairs"] = json!([["upper", "tool"]]));
-    changed(&|proof| proof["statement"]["lower"] = json!(0.7));
-    changed(&|proof| proof["frames"][1]["origin"]["translation"] = json!([0.6, 0.0, 0.0]));
+    changed(&|proof| proof["query"]["path"]["path"]["rows"][1][0] = json!(0.95));
+    changed(&|proof| proof["statement"]["path"]["pairs"] = json!([["upper", "tool"]]));
+    changed(&|proof| proof["statement"]["path"]["lower"] = json!(0.7));
+    changed(&|proof| {
+        let frame = &mut proof["placement"]["robot"]["frames"][1];
+        frame["origin"]["translation"] = json!([0.6, 0.0, 0.0]);
+    });
     answered(folder.path(), &["path", &arm, &rows, "--save-proof", "proof.json"]);
     let text = answered(folder.path(), &["verify", "proof.json"]);
     assert!(

@@ -45,39 +45,10 @@ pub enum CaseError {
     /// The direction or a choice is refused.
     #[error(transparent)]
     Query(#[from] QueryError),
-    /// It is no proof: no JSON, or it lacks something.
-    #[error("not a saved proof: {}", what_is_wrong(.0))]
-    Proof(serde_json::Error),
-    /// One body is convex, the other a solid.
-    #[error("one body is convex, the other is made of pieces")]
-    Mixed,
-    /// Nothing is said, or more than one thing, or what is said is not of such bodies.
-    #[error(
-        "it has to say one thing, and one of such bodies: contacts, a separation, a distance or a depth of \
-         convex ones, a clearance, a solid_distance or free_directions of pieces; with a direction if it is of a \
-         contact, a separation or a clearance"
-    )]
-    Statement,
-    /// A place of a scene is that of a body that is not there.
-    #[error("a place names the body {body}, and there are {known}, from 0 on")]
-    NoBody {
-        /// The one that is named.
-        body: usize,
-        /// How many there are.
-        known: usize,
-    },
-    /// A solid that its own facets do not make once more.
-    #[error(
-        "{which} body: its facets, or the parts that it has, are not those that are made of its facets"
-    )]
-    Changed {
-        /// `"moving"` or `"fixed"`.
-        which: &'static str,
-    },
 }
 
-/// In words of the file, not of its parser.
-fn what_is_wrong(error: &serde_json::Error) -> String {
+/// Tells what is wrong in words of the file, not of its parser.
+pub fn what_is_wrong(error: &serde_json::Error) -> String {
     use serde_json::error::Category;
     let what = match error.classify() {
         Category::Io => return error.to_string(),

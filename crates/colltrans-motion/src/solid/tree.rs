@@ -184,7 +184,7 @@ impl Part {
 
 /// The facets of a solid as the tolerance leaves them, in the order in which a proof counts them, and how it splits them.
 #[cfg(feature = "json")]
-#[derive(Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Parts {
     /// The number of each in the file.

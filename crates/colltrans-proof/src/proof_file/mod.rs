@@ -1,52 +1,46 @@
 //! A proof with all that it is about, as one file.
 //!
-//! Bodies are written as they are, exact in bits, with their poses and the direction of a cast; then what
-//! is claimed of them, with its certificates. A certificate between solids tells facets by their place
-//! in a tree, so it is made for the bodies as they are read back from the file.
+//! Bodies are written as they are, exact in bits; then where they are, what was asked of them, and one statement with
+//! its certificates.
 //!
-//! [`statement`] is what is said of bodies, and how it is checked; [`file`] writes and reads it; [`words`] tell it.
-//! [`scene`] is all of that of one body among many, [`motion`] and [`solid_motion`] of bodies that turn, [`path`] of a
-//! path of joints.
+//! [`file`] is the format, [`body`] the bodies in it; [`statement`], [`scene`], [`motion`] and [`path`] are what can be
+//! said of them; [`verify`] joins both and checks them; [`words`] tell them. [`case`] is a question about a motion.
 
+mod body;
+mod case;
+mod error;
 mod file;
 mod motion;
 mod path;
 mod scene;
-mod solid_motion;
 mod statement;
+mod verify;
 mod words;
-
-use glam::DVec3;
 
 use colltrans_convex::answer::{
     CertificateError, Clearance, ContactRange, Depth, Distance, Outcome, OverlapAhead, Steps,
     WhyFree, Within,
 };
-use colltrans_convex::body::{ConvexPolyhedron, Pose};
-use colltrans_convex::cast::{CaseError, Cast};
+use colltrans_convex::cast::Cast;
 use colltrans_convex::pair::Pair;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_removal::free::{FreeDirections, FreeError};
-use colltrans_solid::SolidSteps;
 use colltrans_solid::body::Solid;
+use colltrans_solid::kinds::AnyPlaced;
 use colltrans_solid::pair::Unproven;
-use colltrans_solid::{SolidCast, SolidPairSearch};
-use file::{Pieces, again};
-pub use motion::{MotionCase, MotionProofFile, MotionProofFiles};
-pub use path::{PathCheckError, PathFileError, PathProofFile, PathStatement};
-pub use scene::{SceneProof, SceneStatement};
-pub use solid_motion::SolidMotionProofFile;
-use statement::options;
+use colltrans_solid::{SolidCast, SolidPairSearch, SolidSteps};
+
+use body::StoredBody;
+pub use case::MotionCase;
+pub use error::{ProofError, ProofFileError};
+use file::{Along, Place, Placement, Query};
+pub use motion::{MotionStatement, SolidMotionStatement};
+pub use path::PathStatement;
 pub use statement::{
     Contacts, DistanceStatement, FreeStatement, Slide, SolidStatement, Statement, Stop,
 };
-
-/// What a cast asks, besides bodies: the direction, and the gap that is kept.
-#[derive(Debug, Clone, Copy)]
-struct Along {
-    direction: DVec3,
-    keep: f64,
-}
+use statement::{in_file, options};
+pub use verify::{Proven, Verify};
 
 /// A proof that owns its bodies: whoever has the file can check what it says, without a search.
 ///
@@ -61,22 +55,16 @@ struct Along {
 /// let saved = ProofFile::of_range(&cast, &cast.contact_range()?).to_json();
 /// let proof = ProofFile::from_json(&saved)?;
 /// proof.check()?;
-/// assert!(proof.statement().to_string().starts_with("the bodies meet from a translation"));
+/// assert!(proof.to_string().starts_with("the bodies meet from a translation"));
 /// assert!(ProofFile::from_json(&saved.replace("[-3.0,", "[-3.1,"))?.check().is_err());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug, Clone)]
 pub struct ProofFile {
-    bodies: Bodies,
-    poses: [Pose; 2],
-    along: Option<Along>,
+    bodies: Vec<StoredBody>,
+    placement: Placement,
+    query: Query,
     statement: Statement,
-}
-
-#[derive(Debug, Clone)]
-enum Bodies {
-    Convex(Box<[ConvexPolyhedron; 2]>),
-    Solids { made: Box<[Solid; 2]>, of: Pieces },
 }
 
 impl ProofFile {
@@ -120,12 +108,10 @@ impl ProofFile {
     }
 
     fn of_convex(cast: &Cast<'_>, statement: Statement) -> Self {
-        Self {
-            bodies: Bodies::Convex(Box::new([cast.moving().clone(), cast.fixed().clone()])),
-            poses: [cast.moving_pose(), cast.fixed_pose()],
-            along: Some(Along { direction: cast.direction(), keep: cast.options().keep }),
-            statement,
-        }
+        let bodies = vec![StoredBody::convex(cast.moving()), StoredBody::convex(cast.fixed())];
+        let along = Along { direction: cast.direction(), keep: cast.options().keep };
+        let poses = [cast.moving_pose(), cast.fixed_pose()];
+        Self { bodies, placement: Placement::of_two(poses), query: Query::Cast(along), statement }
     }
 
     /// Of an answer of [`Pair::distance`] or [`Pair::within`]; `pair` is the one that was asked.
@@ -141,9 +127,9 @@ impl ProofFile {
     }
 
     fn of_pair(pair: &Pair<'_>, statement: Statement) -> Self {
-        let bodies = Bodies::Convex(Box::new([pair.moving().clone(), pair.fixed().clone()]));
-        let poses = [pair.moving_pose(), pair.fixed_pose()];
-        Self { bodies, poses, along: None, statement }
+        let bodies = vec![StoredBody::convex(pair.moving()), StoredBody::convex(pair.fixed())];
+        let placement = Placement::of_two([pair.moving_pose(), pair.fixed_pose()]);
+        Self { bodies, placement, query: Query::Pair, statement }
     }
 
     /// Of [`Cast::clearance`] between solids, asked once more with its proof. `pieces` are those that
@@ -152,15 +138,19 @@ impl ProofFile {
     ///
     /// # Errors
     /// A body that its own facets do not make once more.
-    pub fn of_solids(cast: &Cast<'_, Solid>, pieces: [&[&Solid]; 2]) -> Result<Self, CaseError> {
-        let (made, of) = again(pieces, [cast.moving(), cast.fixed()])?;
+    pub fn of_solids(
+        cast: &Cast<'_, Solid>,
+        pieces: [&[&Solid]; 2],
+    ) -> Result<Self, ProofFileError> {
+        let made = MadeSolids::of(pieces, [cast.moving(), cast.fixed()])?;
+        let [moving, fixed] = made.bodies()?;
         let (poses, direction) = ([cast.moving_pose(), cast.fixed_pose()], cast.direction());
         let keep = cast.options().keep;
         let options = options(cast.options().start_overlap, cast.tolerance(), keep);
-        let again = Cast::new(made[0].at(poses[0]), made[1].at(poses[1]), direction)?;
+        let again = Cast::new(moving.at(poses[0]), fixed.at(poses[1]), direction)?;
         let statement = Statement::Clearance(SolidStatement::of(&again.with_options(options)?)?);
-        let bodies = Bodies::Solids { made, of };
-        Ok(Self { bodies, poses, along: Some(Along { direction, keep }), statement })
+        let (placement, query) = (Placement::of_two(poses), Query::Cast(Along { direction, keep }));
+        Ok(Self { bodies: made.0.into(), placement, query, statement })
     }
 
     /// Of the distance of solids, asked with its proof: of [`Pair::distance`], or of
@@ -172,7 +162,7 @@ impl ProofFile {
         pair: &Pair<'_, Solid>,
         pieces: [&[&Solid]; 2],
         within: Option<f64>,
-    ) -> Result<Self, CaseError> {
+    ) -> Result<Self, ProofFileError> {
         Ok(match within {
             None => Self::with_solid_distance(pair, pieces)?.1,
             Some(length) => Self::with_solid_within(pair, pieces, length)?.1,
@@ -188,7 +178,7 @@ impl ProofFile {
     pub fn with_solid_distance(
         pair: &Pair<'_, Solid>,
         pieces: [&[&Solid]; 2],
-    ) -> Result<(Distance<Solid>, Self), CaseError> {
+    ) -> Result<(Distance<Solid>, Self), ProofFileError> {
         Self::of_search(pair, pieces, |pair| pair.ask(true))
     }
 
@@ -200,7 +190,7 @@ impl ProofFile {
         pair: &Pair<'_, Solid>,
         pieces: [&[&Solid]; 2],
         length: f64,
-    ) -> Result<((Within<Solid>, SolidSteps), Self), CaseError> {
+    ) -> Result<((Within<Solid>, SolidSteps), Self), ProofFileError> {
         Self::of_search(pair, pieces, |pair| pair.decide(length, true))
     }
 
@@ -209,18 +199,19 @@ impl ProofFile {
         pair: &Pair<'_, Solid>,
         pieces: [&[&Solid]; 2],
         ask: impl Fn(&Pair<'_, Solid>) -> Result<(T, Unproven), QueryError>,
-    ) -> Result<(T, Self), CaseError> {
+    ) -> Result<(T, Self), ProofFileError> {
         let bodies = [pair.moving(), pair.fixed()];
-        let (made, of) = again(pieces, bodies)?;
+        let made = MadeSolids::of(pieces, bodies)?;
+        let [moving, fixed] = made.bodies()?;
         let poses = [pair.moving_pose(), pair.fixed_pose()];
-        let again = Pair::new(made[0].at(poses[0]), made[1].at(poses[1]))?;
+        let again = Pair::new(moving.at(poses[0]), fixed.at(poses[1]))?;
         let (answer, mut found) = ask(pair)?;
-        if !(bodies[0].has_tree_of(&made[0]) && bodies[1].has_tree_of(&made[1])) {
+        if !(bodies[0].has_tree_of(moving) && bodies[1].has_tree_of(fixed)) {
             found = ask(&again)?.1;
         }
-        let proof = again.prove(found)?;
-        let (bodies, statement) = (Bodies::Solids { made, of }, Statement::SolidDistance(proof));
-        Ok((answer, Self { bodies, poses, along: None, statement }))
+        let statement = Statement::SolidDistance(in_file(again.prove(found)?, [moving, fixed]));
+        let (placement, query) = (Placement::of_two(poses), Query::Pair);
+        Ok((answer, Self { bodies: made.0.into(), placement, query, statement }))
     }
 
     /// Of all free directions, asked once more of the bodies as a file has them. `pieces` as in [`Self::of_solids`].
@@ -230,33 +221,22 @@ impl ProofFile {
     pub fn of_free_directions(
         free: &FreeDirections<'_>,
         pieces: [&[&Solid]; 2],
-    ) -> Result<Self, CaseError> {
+    ) -> Result<Self, ProofFileError> {
         let cast = free.cast();
-        let (made, of) = again(pieces, [cast.moving(), cast.fixed()])?;
+        let made = MadeSolids::of(pieces, [cast.moving(), cast.fixed()])?;
+        let [moving, fixed] = made.bodies()?;
         let poses = [cast.moving_pose(), cast.fixed_pose()];
         let options = free.options().with_tolerance(free.tolerance());
-        let again = FreeDirections::of(&made[0].at(poses[0]), &made[1].at(poses[1]), options);
+        let again = FreeDirections::of(&moving.at(poses[0]), &fixed.at(poses[1]), options);
         let statement = match again {
-            Ok(again) => FreeStatement::of(&again, &made),
+            Ok(again) => FreeStatement::of(&again, [moving, fixed]),
             Err(FreeError::Query(error)) => return Err(error.into()),
             Err(_) => Err(CertificateError::Start),
         };
-        let statement = statement.map_err(|_| CaseError::Changed { which: "moving" })?;
-        let bodies = Bodies::Solids { made, of };
-        Ok(Self { bodies, poses, along: None, statement: Statement::FreeDirections(statement) })
-    }
-
-    /// What it says of all directions, if that is what it is about: checked, as by [`Self::check`].
-    ///
-    /// # Errors
-    /// The first thing that is not proven.
-    pub fn free_directions(&self) -> Option<Result<FreeDirections<'_>, CertificateError>> {
-        match (&self.bodies, &self.statement) {
-            (Bodies::Solids { made, .. }, Statement::FreeDirections(of)) => {
-                Some(of.checked([made[0].at(self.poses[0]), made[1].at(self.poses[1])]))
-            }
-            _ => None,
-        }
+        let statement = statement.map_err(|_| ProofFileError::Changed { body: 0 })?;
+        let statement = Statement::FreeDirections(statement);
+        let (placement, query) = (Placement::of_two(poses), Query::Pair);
+        Ok(Self { bodies: made.0.into(), placement, query, statement })
     }
 
     /// What it says; true if [`Self::check`] does not object.
@@ -273,40 +253,55 @@ impl ProofFile {
             Statement::FreeDirections(of) => of.tolerance,
             _ => 0.0,
         };
-        match &self.bodies {
-            Bodies::Solids { made, .. } if tolerance > 0.0 => {
-                made.each_ref().map(|body| body.shrink_report(tolerance / 2.0).inverted.len())
+        match self.solids() {
+            Some(bodies) if tolerance > 0.0 => {
+                bodies.map(|body| body.shrink_report(tolerance / 2.0).inverted.len())
             }
             _ => [0; 2],
         }
     }
 
-    /// Checks it as [`Cast::verify`] and [`Pair::verify`] do, without a search.
-    ///
-    /// # Errors
-    /// The first thing that is not proven.
-    pub fn check(&self) -> Result<(), CertificateError> {
-        let [moving, fixed] = self.poses;
-        match (&self.bodies, self.along) {
-            (Bodies::Convex(bodies), along) => {
-                let placed = [bodies[0].at(moving), bodies[1].at(fixed)];
-                match along {
-                    Some(Along { direction, keep }) => {
-                        let cast = Cast::new(placed[0], placed[1], direction)?.keeping(keep)?;
-                        self.statement.check(&cast)
-                    }
-                    None => self.statement.check_pair(&Pair::new(placed[0], placed[1])?),
-                }
-            }
-            (Bodies::Solids { made, .. }, along) => {
-                let placed = [made[0].at(moving), made[1].at(fixed)];
-                self.statement.check_solids(placed, along)
-            }
+    /// The gap that the bodies of a cast are to keep, in world units; 0 if they may touch.
+    pub const fn keep(&self) -> f64 {
+        if let Query::Cast(along) = &self.query { along.keep } else { 0.0 }
+    }
+
+    /// Returns how many obstacles there are in a scene. `None` if it is not about one.
+    pub fn obstacles(&self) -> Option<usize> {
+        match (&self.query, &self.placement) {
+            (Query::Scene(_), Placement::Poses(places)) => places.len().checked_sub(1),
+            _ => None,
         }
     }
 
-    /// The gap that the bodies are to keep, in world units; 0 if they may touch.
-    pub fn keep(&self) -> f64 {
-        self.along.map_or(0.0, |along| along.keep)
+    /// Returns the moving and the fixed body, if there are just these two.
+    fn two(&self, places: &[Place]) -> Result<[AnyPlaced<'_>; 2], ProofFileError> {
+        let [moving, fixed] = places else { return Err(ProofFileError::Statement) };
+        let body = |of: &Place| StoredBody::of(&self.bodies, of.body);
+        Ok([body(moving)?.body.at(moving.pose), body(fixed)?.body.at(fixed.pose)])
+    }
+
+    /// Returns the moving and the fixed body of a statement about two solids.
+    fn solids(&self) -> Option<[&Solid; 2]> {
+        let Placement::Poses(places) = &self.placement else { return None };
+        match self.two(places).ok()? {
+            [AnyPlaced::Solid(moving), AnyPlaced::Solid(fixed)] => Some([moving.body, fixed.body]),
+            _ => None,
+        }
+    }
+}
+
+/// Two solids made once more of their pieces, as they are read back from a file.
+struct MadeSolids([StoredBody; 2]);
+
+impl MadeSolids {
+    fn of(pieces: [&[&Solid]; 2], asked: [&Solid; 2]) -> Result<Self, ProofFileError> {
+        let made = |k: usize| StoredBody::union(pieces[k], asked[k], k);
+        Ok(Self([made(0)?, made(1)?]))
+    }
+
+    fn bodies(&self) -> Result<[&Solid; 2], ProofFileError> {
+        let body = |k: usize| self.0[k].as_solid().ok_or(ProofFileError::Changed { body: k });
+        Ok([&**body(0)?, &**body(1)?])
     }
 }

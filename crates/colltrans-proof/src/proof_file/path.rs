@@ -1,62 +1,24 @@
-//! A proof about a path with all that it is about, as one file.
+//! Proofs about bodies that joints carry along a path: which two of them first meet.
 
 use std::collections::HashMap;
 use std::fmt;
 
-use glam::DVec3;
 use serde::{Deserialize, Serialize};
-use thiserror::Error;
 
-use super::file::{BodyFile, nested, said};
-use super::scene::{Written, kept};
-use colltrans_convex::body::{InputFacet, Pose};
-use colltrans_convex::cast::CaseError;
-use colltrans_kernel::noise;
-use colltrans_motion::path::{
-    Frame, JointPath, Mechanism, PathBody, PathCast, PathError, PathOutcome, PathProof,
-    PathProofError,
-};
+use super::ProofFile;
+use super::body::StoredBody;
+use super::error::{ProofError, ProofFileError};
+use super::file::{Joints, Link, Placement, Query, Robot};
+use super::statement::Statement;
+use super::verify::{Proven, Verify};
+use colltrans_convex::body::InputFacet;
+use colltrans_motion::path::{PathBody, PathCast, PathOutcome, PathProof};
 use colltrans_solid::kinds::{AnyBody, ByKind};
-
-/// What a file of this version calls itself.
-const FORMAT: &str = "colltrans path proof 2";
 
 /// So many pairs are named in words.
 const NAMED: usize = 12;
 
-/// A proof that owns its mechanism, bodies and path: whoever has the file can check what it says, without a search.
-///
-/// ```
-/// use colltrans::glam::DVec3;
-/// use colltrans::motion::path::{Frame, Joint, JointPath, Mechanism, PathBody, PathCast, PathProofFile};
-/// use colltrans::{ConvexPolyhedron, Pose};
-///
-/// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
-/// let frame = Frame { parent: None, origin: Pose::IDENTITY, joint: Joint::Sliding(DVec3::X) };
-/// let slide = Mechanism::new(vec![frame])?;
-/// let path = JointPath::evenly(vec![vec![0.0], vec![4.0]])?;
-/// let there = Pose::from_translation(DVec3::X * 3.0)?;
-/// let bodies = vec![PathBody::carried(0, cube.at(Pose::IDENTITY)), PathBody::standing(cube.at(there))];
-/// let cast = PathCast::new(&slide, &path, bodies, vec![[0, 1]])?;
-/// let names = ["cart".into(), "stop".into()];
-/// let (_, saved) = PathProofFile::answer(&cast, &names)?;
-/// let [lower, upper] = PathProofFile::from_json(&saved.to_json())?.check()?;
-/// assert!(lower <= 0.5 && 0.5 <= upper && upper - lower < 1e-12);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Debug, Clone)]
-pub struct PathProofFile {
-    mechanism: Mechanism,
-    path: JointPath,
-    bodies: Vec<Carried>,
-    /// Of the statement, by the numbers of the bodies.
-    pairs: Vec<[usize; 2]>,
-    keep: f64,
-    proof: PathProof,
-    statement: PathStatement,
-}
-
-/// What a [`PathProofFile`] claims: of these pairs of bodies none meet before a time, and when some do.
+/// What is said of a path: of these pairs of bodies none meet before a time, and when some do.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 #[non_exhaustive]
@@ -68,79 +30,104 @@ pub struct PathStatement {
     /// The pair of [`PathProof::meeting`] meets at this time or before; infinite where that is not claimed.
     #[serde(with = "colltrans_kernel::written::or_infinite")]
     pub upper: f64,
+    /// Of each body of the file that is a solid, for whoever has no such trees; they have to be those of these bodies.
+    parts: Vec<Option<Parts>>,
+    /// The proof.
+    pub proof: PathProof,
 }
 
-/// A body and who carries it.
-#[derive(Debug, Clone)]
-struct Carried {
-    name: String,
-    frame: Option<usize>,
-    pose: Pose,
-    written: Written,
+/// What is asked of bodies of a mechanism.
+#[derive(Debug)]
+pub(super) struct PathSetting<'a> {
+    bodies: &'a [StoredBody],
+    cast: PathCast<'a>,
 }
 
-/// Why a file has no proof.
-#[derive(Debug, Error)]
-#[non_exhaustive]
-pub enum PathFileError {
-    /// It is no such file, or a body in it is none.
-    #[error(transparent)]
-    Case(#[from] CaseError),
-    /// What is asked has no answer.
-    #[error(transparent)]
-    Path(#[from] PathError),
-    /// A name that none of the bodies has, or several.
-    #[error(
-        "{name:?} is not the name of one of the bodies, or of several; each has one of its own"
-    )]
-    Name {
-        /// That name.
-        name: String,
-    },
-    /// There is no pair of bodies, so that nothing is said.
-    #[error("there is no pair of bodies")]
-    NoPairs,
-    /// An axis has another length than 1: frames would be elsewhere by what rounding makes of it.
-    #[error("the axis {:?} of frame {frame} is not a unit vector", .axis.to_array())]
-    Axis {
-        /// Which frame.
-        frame: usize,
-        /// Its axis.
-        axis: DVec3,
-    },
+impl<'a> PathSetting<'a> {
+    pub(super) fn new(
+        bodies: &'a [StoredBody],
+        robot: &'a Robot,
+        joints: &'a Joints,
+        pairs: &[[String; 2]],
+    ) -> Result<Self, ProofFileError> {
+        if pairs.is_empty() {
+            return Err(ProofFileError::NoPairs);
+        }
+        let carried = |link: &Link| {
+            let placed = StoredBody::of(bodies, link.body)?.body.at(link.pose);
+            Ok(PathBody { frame: link.frame, placed })
+        };
+        let carried = robot.bodies.iter().map(carried).collect::<Result<_, ProofFileError>>()?;
+        let pairs = numbers_of(pairs, &robot.bodies)?;
+        let cast = PathCast::new(&robot.frames, &joints.path, carried, pairs)?;
+        Ok(Self { bodies, cast: cast.keeping(joints.keep)? })
+    }
 }
 
-impl PathProofFile {
-    /// Asks, of the bodies as they are read back from the file, and keeps the proof. The statement names bodies: those that
-    /// have no name of their own get one by their number.
+impl Verify<'_, PathSetting<'_>> for PathStatement {
+    fn verify(&self, about: &PathSetting<'_>) -> Result<Proven<'static>, ProofError> {
+        let parts: Vec<_> = about.bodies.iter().map(|of| Parts::of(&of.body)).collect();
+        if parts != self.parts {
+            let body = parts.iter().zip(&self.parts).take_while(|(own, said)| own == said).count();
+            return Err(ProofError::Parts { body });
+        }
+        let proven = about.cast.verify(&self.proof)?;
+        let said = [self.lower, self.upper];
+        if said[0] <= proven[0] && proven[1] <= said[1] {
+            return Ok(Proven::Time(proven));
+        }
+        Err(ProofError::Said { said, proven })
+    }
+}
+
+/// Of questions about bodies of a mechanism.
+///
+/// ```
+/// use colltrans::glam::DVec3;
+/// use colltrans::motion::path::{Frame, Joint, JointPath, Mechanism, PathBody, PathCast};
+/// use colltrans::{ConvexPolyhedron, Pose, ProofFile};
+///
+/// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+/// let frame = Frame { parent: None, origin: Pose::IDENTITY, joint: Joint::Sliding(DVec3::X) };
+/// let slide = Mechanism::new(vec![frame])?;
+/// let path = JointPath::evenly(vec![vec![0.0], vec![4.0]])?;
+/// let there = Pose::from_translation(DVec3::X * 3.0)?;
+/// let bodies = vec![PathBody::carried(0, cube.at(Pose::IDENTITY)), PathBody::standing(cube.at(there))];
+/// let cast = PathCast::new(&slide, &path, bodies, vec![[0, 1]])?;
+/// let names = ["cart".into(), "stop".into()];
+/// let (_, saved) = ProofFile::with_path(&cast, &names)?;
+/// let [lower, upper] = ProofFile::from_json(&saved.to_json())?.check()?.time().expect("bounds");
+/// assert!(lower <= 0.5 && 0.5 <= upper && upper - lower < 1e-12);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+impl ProofFile {
+    /// The first contact on a path, asked of the bodies as they are read back from the file, and its proof. The statement
+    /// names bodies: those that have no name of their own get one by their number.
     ///
     /// # Errors
     /// As [`PathCast::first_contact`], a solid that its own facets do not make once more, and no pair at all.
-    pub fn answer(cast: &PathCast, names: &[String]) -> Result<(PathOutcome, Self), PathFileError> {
-        if cast.pairs().is_empty() {
-            return Err(PathFileError::NoPairs);
-        }
+    pub fn with_path(
+        cast: &PathCast<'_>,
+        names: &[String],
+    ) -> Result<(PathOutcome, Self), ProofFileError> {
         let names = names_of(cast.bodies().count(), names);
-        let carried =
-            cast.carried_bodies().zip(&names).map(|(PathBody { frame, placed }, name)| {
-                let written = Written::again(&kept(placed), "one")?;
-                Ok(Carried { name: name.clone(), frame, pose: placed.pose(), written })
-            });
-        let mut file = Self {
-            mechanism: cast.mechanism().clone(),
-            path: cast.path().clone(),
-            bodies: carried.collect::<Result<_, CaseError>>()?,
-            pairs: cast.pairs().to_vec(),
-            keep: cast.keep(),
-            proof: PathProof::default(),
-            statement: PathStatement::default(),
-        };
-        let outcome = file.cast()?.first_contact()?;
-        if !outcome.proof().solids.is_empty() {
-            // The file has those bodies as the solids that the proof takes them as.
-            return Self::answer(&cast.with_solids(&outcome.proof().solids), &names);
+        let (mut bodies, mut links) = (Vec::new(), Vec::new());
+        for (body, (of, name)) in cast.carried_bodies().zip(&names).enumerate() {
+            let (name, frame, pose) = (name.clone(), of.frame, of.placed.pose());
+            bodies.push(StoredBody::again(of.placed, body)?);
+            links.push(Link { body, name, frame, pose });
         }
-        let [from, to] = file.path.ends();
+        let robot = Robot { frames: cast.mechanism().clone(), bodies: links };
+        let joints = Joints { path: cast.path().clone(), keep: cast.keep() };
+        let pairs: Vec<_> =
+            cast.pairs().iter().map(|pair| pair.map(|k| names[k].clone())).collect();
+        let outcome = PathSetting::new(&bodies, &robot, &joints, &pairs)?.cast.first_contact()?;
+        let proof = outcome.proof().clone();
+        if !proof.solids.is_empty() {
+            // The file has those bodies as the solids that the proof takes them as.
+            return Self::with_path(&cast.with_solids(&proof.solids), &names);
+        }
+        let [from, to] = joints.path.ends();
         let [lower, upper] = match &outcome {
             PathOutcome::Contact(of) | PathOutcome::Grazing(of) | PathOutcome::Undecided(of) => {
                 [of.lower, of.upper]
@@ -149,115 +136,21 @@ impl PathProofFile {
             PathOutcome::Free(_) => [to, f64::INFINITY],
             _ => [from, f64::INFINITY],
         };
-        let pairs = cast.pairs().iter().map(|pair| pair.map(|k| names[k].clone())).collect();
-        file.statement = PathStatement { pairs, lower, upper };
-        file.proof = outcome.proof().clone();
-        Ok((outcome, file))
+        let parts = bodies.iter().map(|of| Parts::of(&of.body)).collect();
+        let statement = Statement::Path(PathStatement { pairs, lower, upper, parts, proof });
+        let (placement, query) = (Placement::Robot(robot), Query::Path(joints));
+        Ok((outcome, Self { bodies, placement, query, statement }))
     }
 
-    /// Checks it, as [`PathCast::verify`] does.
-    ///
-    /// # Errors
-    /// What is not proven.
-    pub fn check(&self) -> Result<[f64; 2], PathCheckError> {
-        let proven = self.cast()?.verify(&self.proof)?;
-        let PathStatement { lower, upper, .. } = self.statement;
-        if lower <= proven[0] && proven[1] <= upper {
-            return Ok(proven);
-        }
-        Err(PathCheckError::Said { said: [lower, upper], proven })
-    }
-
-    /// The names of its bodies.
-    pub fn names(&self) -> Vec<String> {
-        self.bodies.iter().map(|of| of.name.clone()).collect()
-    }
-
-    /// What it claims; true if [`Self::check`] does not object.
-    pub const fn statement(&self) -> &PathStatement {
-        &self.statement
-    }
-
-    /// Its proof, checked or not.
-    pub const fn proof(&self) -> &PathProof {
-        &self.proof
-    }
-
-    /// What it is about.
-    ///
-    /// # Errors
-    /// Bodies that are none of a path.
-    pub fn cast(&self) -> Result<PathCast<'_>, PathError> {
-        let body = |of| {
-            let Carried { frame, pose, written, .. }: &Carried = of;
-            PathBody { frame: *frame, placed: written.body.at(*pose) }
+    /// Returns what a proof about a path is about, and the names of the bodies. `None` if it is not about a path.
+    pub fn path(&self) -> Option<(PathCast<'_>, Vec<String>)> {
+        let (Placement::Robot(robot), Query::Path(joints), Statement::Path(of)) =
+            (&self.placement, &self.query, &self.statement)
+        else {
+            return None;
         };
-        let bodies = self.bodies.iter().map(body).collect();
-        PathCast::new(&self.mechanism, &self.path, bodies, self.pairs.clone())?.keeping(self.keep)
-    }
-
-    /// As a file: numbers that read back as the same bits.
-    ///
-    /// # Panics
-    /// Never: all numbers can be written.
-    pub fn to_json(&self) -> String {
-        let body = |of: &Carried| BodyRecord {
-            name: of.name.clone(),
-            frame: of.frame,
-            pose: of.pose,
-            parts: Parts::of(&of.written.body),
-            body: of.written.file(),
-        };
-        let file = File {
-            format: FORMAT.into(),
-            frames: self.mechanism.frames().to_vec(),
-            path: self.path.clone(),
-            bodies: self.bodies.iter().map(body).collect(),
-            keep: self.keep,
-            proof: self.proof.clone(),
-            statement: self.statement.clone(),
-        };
-        serde_json::to_string(&file).expect("numbers and names")
-    }
-
-    /// From what [`Self::to_json`] has written. It is read, not believed: see [`Self::check`].
-    ///
-    /// # Errors
-    /// What is wrong with it.
-    pub fn from_json(text: &str) -> Result<Self, PathFileError> {
-        let text = said(text, FORMAT)?;
-        let file: File = nested(text)?;
-        let body = |of: BodyRecord| {
-            let written = Written::of(of.body)?;
-            // They are there for whoever has no such trees; they have to be those of these bodies.
-            if of.parts != Parts::of(&written.body) {
-                return Err(CaseError::Changed { which: "one" });
-            }
-            Ok(Carried { name: of.name, frame: of.frame, pose: of.pose, written })
-        };
-        for (frame, of) in file.frames.iter().enumerate() {
-            let is_unit = |axis: &DVec3| (axis.length() - 1.0).abs() <= noise::UNIT_VECTOR;
-            if let Some(axis) = of.joint.axis().filter(|axis| !is_unit(axis)) {
-                return Err(PathFileError::Axis { frame, axis });
-            }
-        }
-        let bodies: Vec<Carried> =
-            file.bodies.into_iter().map(body).collect::<Result<_, CaseError>>()?;
-        let pairs = numbers_of(&file.statement.pairs, &bodies)?;
-        if pairs.is_empty() {
-            return Err(PathFileError::NoPairs);
-        }
-        let file = Self {
-            mechanism: Mechanism::new(file.frames)?,
-            path: file.path,
-            bodies,
-            pairs,
-            keep: file.keep,
-            proof: file.proof,
-            statement: file.statement,
-        };
-        file.cast()?;
-        Ok(file)
+        let setting = PathSetting::new(&self.bodies, robot, joints, &of.pairs).ok()?;
+        Some((setting.cast, robot.bodies.iter().map(|of| of.name.clone()).collect()))
     }
 }
 
@@ -278,57 +171,37 @@ fn names_of(count: usize, own: &[String]) -> Vec<String> {
 }
 
 /// The pairs of a statement by the numbers of their bodies, each of which has a name of its own.
-fn numbers_of(pairs: &[[String; 2]], bodies: &[Carried]) -> Result<Vec<[usize; 2]>, PathFileError> {
+fn numbers_of(pairs: &[[String; 2]], links: &[Link]) -> Result<Vec<[usize; 2]>, ProofFileError> {
     let mut numbers = HashMap::new();
-    for (k, Carried { name, .. }) in bodies.iter().enumerate() {
+    for (k, Link { name, .. }) in links.iter().enumerate() {
         if name.is_empty() || numbers.insert(name.as_str(), k).is_some() {
-            return Err(PathFileError::Name { name: name.clone() });
+            return Err(ProofFileError::Name { name: name.clone() });
         }
     }
     let number = |name: &String| {
         numbers
             .get(name.as_str())
             .copied()
-            .ok_or_else(|| PathFileError::Name { name: name.clone() })
+            .ok_or_else(|| ProofFileError::Name { name: name.clone() })
     };
     pairs.iter().map(|[a, b]| Ok([number(a)?, number(b)?])).collect()
 }
 
-/// Why a file does not prove what it says.
-#[derive(Debug, Clone, PartialEq, Error)]
-#[non_exhaustive]
-pub enum PathCheckError {
-    /// Its bodies are none of a path.
-    #[error(transparent)]
-    Path(#[from] PathError),
-    /// Its proof is none.
-    #[error(transparent)]
-    Proof(#[from] PathProofError),
-    /// It says more than is proven.
-    #[error("it says that the first contact is between {} and {}, and proves {} and {}", .said[0], .said[1], .proven[0], .proven[1])]
-    Said {
-        /// What it says.
-        said: [f64; 2],
-        /// What it proves.
-        proven: [f64; 2],
-    },
-}
-
-impl fmt::Display for PathProofFile {
-    /// What is said, in words.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let meet = match self.keep {
+impl PathStatement {
+    /// Tells it in words.
+    pub(super) fn tell(&self, f: &mut fmt::Formatter<'_>, joints: &Joints) -> fmt::Result {
+        let meet = match joints.keep {
             keep if keep > 0.0 => format!("come as near as {keep}"),
             _ => "meet".into(),
         };
-        let PathStatement { pairs, lower, upper } = &self.statement;
+        let Self { pairs, lower, upper, proof, .. } = self;
         let named = |[a, b]: &[String; 2]| format!("{a} and {b}");
         let first: Vec<String> = pairs.iter().take(NAMED).map(named).collect();
         let more = if pairs.len() > NAMED { ", ..." } else { "" };
         write!(f, "of {} pairs ({}{more}) ", pairs.len(), first.join(", "))?;
-        let [from, to] = self.path.ends();
-        let meeting = self.proof.meeting.as_ref().and_then(|meeting| pairs.get(meeting.pair));
-        let is_whole = *lower == to && self.proof.is_of_the_beginning();
+        let [from, to] = joints.path.ends();
+        let meeting = proof.meeting.as_ref().and_then(|meeting| pairs.get(meeting.pair));
+        let is_whole = *lower == to && proof.is_of_the_beginning();
         match meeting {
             None if is_whole => write!(f, "none {meet} on the whole path, up to the time {lower}"),
             None if from == to => f.write_str("nothing is said"),
@@ -345,34 +218,9 @@ impl fmt::Display for PathProofFile {
     }
 }
 
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct File {
-    format: String,
-    frames: Vec<Frame>,
-    path: JointPath,
-    bodies: Vec<BodyRecord>,
-    #[serde(default, skip_serializing_if = "colltrans_kernel::written::is_zero")]
-    keep: f64,
-    proof: PathProof,
-    statement: PathStatement,
-}
-
-#[derive(Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-struct BodyRecord {
-    name: String,
-    #[serde(deserialize_with = "colltrans_kernel::written::given")]
-    frame: Option<usize>,
-    pose: Pose,
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    parts: Option<Parts>,
-    body: BodyFile,
-}
-
 /// How a solid is taken apart: its facets by their numbers in the file, in the order in which a proof counts them, and the
 /// nodes of its tree in preorder, -1 for one that has two parts, else how many of the next facets it holds.
-#[derive(Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Parts {
     numbers: Vec<InputFacet>,

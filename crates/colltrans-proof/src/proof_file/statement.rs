@@ -3,7 +3,11 @@
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use super::Along;
+use super::error::ProofError;
+use super::file::Along;
+use super::motion::MotionStatement;
+use super::path::PathStatement;
+use super::verify::{Proven, Verify};
 use colltrans_convex::answer::{
     Bounded, Certificate, CertificateError, Clearance, Contact, Depth, Distance, Grazing,
     NearPoints, PlaneGap, Separation, Within,
@@ -14,11 +18,13 @@ use colltrans_convex::cast::sideways::{proven_overlap, verified_overlap};
 use colltrans_convex::pair::Pair;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_removal::free::{CellProof, FreeDirections, FreeError, FreeProof, InnerBox};
+use colltrans_scene::{ClearanceProof, NearbyProof, NearestProof};
 use colltrans_solid::SolidCast;
 use colltrans_solid::body::Solid;
 use colltrans_solid::cast::{SolidCertificate, SolidOptions, StartOverlap, StartProof};
 use colltrans_solid::pair::DistanceCertificate;
 use colltrans_solid::solve::contact::SolidContact;
+use colltrans_solid::solve::nearest::SolidNear;
 
 /// What a [`ProofFile`](crate::ProofFile) says of its bodies.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -38,6 +44,16 @@ pub enum Statement {
     SolidDistance(DistanceCertificate),
     /// Along which directions a solid can leave.
     FreeDirections(FreeStatement),
+    /// Which of many obstacles is nearest.
+    Nearest(NearestProof),
+    /// Which of many obstacles are closer than a length.
+    Within(NearbyProof),
+    /// Which of many obstacles stops the moving body, and where.
+    SceneClearance(ClearanceProof),
+    /// When the bodies of each pair first meet.
+    Motions(Vec<MotionStatement>),
+    /// When bodies of a mechanism first meet.
+    Path(PathStatement),
 }
 
 /// Along which directions a solid can leave another one.
@@ -148,12 +164,12 @@ impl Stop {
 }
 
 impl Slide {
-    pub(super) fn of(grazing: &Grazing, cast: &Cast<'_>) -> Self {
+    fn of(grazing: &Grazing, cast: &Cast<'_>) -> Self {
         let normal = grazing.separating_direction;
         Self { normal, overlap: proven_overlap(normal, cast) }
     }
 
-    pub(super) fn check(&self, cast: &Cast<'_>) -> Result<(), CertificateError> {
+    fn check(&self, cast: &Cast<'_>) -> Result<(), CertificateError> {
         let Self { normal, overlap: claimed } = *self;
         let proven = verified_overlap(normal, cast)?;
         if claimed >= proven { Ok(()) } else { Err(CertificateError::Bound { proven, claimed }) }
@@ -188,56 +204,81 @@ pub(super) fn options(start_overlap: StartOverlap, tolerance: f64, keep: f64) ->
     options.with_tolerance(tolerance).with_keep(keep)
 }
 
-impl Statement {
-    /// Of convex bodies.
-    pub(super) fn check(&self, cast: &Cast<'_>) -> Result<(), CertificateError> {
-        match self {
-            Self::Contacts(Contacts { slide, first, last }) if first.or(*last).is_some() => {
-                slide.map_or(Ok(()), |slide| slide.check(cast))?;
-                first.map_or(Ok(0.0), |first| cast.verify(&first))?;
-                last.map_or(Ok(0.0), |last| cast.reversed().verify(&last))?;
-                Ok(())
-            }
-            Self::Separation(separation) => cast.verify(separation).map(|_| ()),
-            _ => Err(CertificateError::Start),
-        }
+impl Verify<'_, Cast<'_>> for Contacts {
+    fn verify(&self, cast: &Cast<'_>) -> Result<Proven<'static>, ProofError> {
+        let Self { slide, first, last } = self;
+        slide.map_or(Ok(()), |slide| slide.check(cast))?;
+        first.map_or(Ok(0.0), |first| cast.verify(&first))?;
+        last.map_or(Ok(0.0), |last| cast.reversed().verify(&last))?;
+        Ok(Proven::Statement)
     }
+}
 
-    /// Of convex bodies and no direction.
-    pub(super) fn check_pair(&self, pair: &Pair<'_>) -> Result<(), CertificateError> {
-        match self {
-            Self::Distance(DistanceStatement { gap, near }) if gap.is_some() || near.is_some() => {
-                gap.map_or(Ok(0.0), |gap| pair.verify(&gap))?;
-                near.map_or(Ok(0.0), |near| pair.verify(&near))?;
-                Ok(())
-            }
-            Self::Depth(depth) => pair.verify(depth).map(|_| ()),
-            _ => Err(CertificateError::Start),
-        }
+impl Verify<'_, Cast<'_>> for Separation {
+    fn verify(&self, cast: &Cast<'_>) -> Result<Proven<'static>, ProofError> {
+        cast.verify(self)?;
+        Ok(Proven::Statement)
     }
+}
 
-    pub(super) fn check_solids(
-        &self,
-        [moving, fixed]: [Placed<'_, Solid>; 2],
-        along: Option<Along>,
-    ) -> Result<(), CertificateError> {
-        match (self, along) {
-            (Self::Clearance(of), Some(Along { direction, keep })) => {
-                let options = options(of.start_overlap, of.certificate.tolerance, keep);
-                of.check(&Cast::new(moving, fixed, direction)?.with_options(options)?)
-            }
-            (Self::SolidDistance(of), None) => Pair::new(moving, fixed)?.verify(of).map(|_| ()),
-            (Self::FreeDirections(of), None) => of.checked([moving, fixed]).map(|_| ()),
-            _ => Err(CertificateError::Start),
-        }
+impl Verify<'_, Pair<'_>> for DistanceStatement {
+    fn verify(&self, pair: &Pair<'_>) -> Result<Proven<'static>, ProofError> {
+        self.gap.map_or(Ok(0.0), |gap| pair.verify(&gap))?;
+        self.near.map_or(Ok(0.0), |near| pair.verify(&near))?;
+        Ok(Proven::Statement)
     }
+}
 
-    /// Whether it is of bodies where they are, without a direction.
-    pub(super) const fn is_of_pair(&self) -> bool {
-        matches!(
-            self,
-            Self::Distance(_) | Self::Depth(_) | Self::SolidDistance(_) | Self::FreeDirections(_)
-        )
+impl Verify<'_, Pair<'_>> for Depth {
+    fn verify(&self, pair: &Pair<'_>) -> Result<Proven<'static>, ProofError> {
+        pair.verify(self)?;
+        Ok(Proven::Statement)
+    }
+}
+
+/// The triangles are named by the facets of the file.
+impl Verify<'_, Pair<'_, Solid>> for DistanceCertificate {
+    fn verify(&self, pair: &Pair<'_, Solid>) -> Result<Proven<'static>, ProofError> {
+        let place = |k: usize, facet: u32| {
+            let facets = [pair.moving(), pair.fixed()][k].facet_indices();
+            facets.iter().position(|known| known.0 == facet).map(|at| at as u32)
+        };
+        let near = named(self.near, place).ok_or(CertificateError::Start)?;
+        pair.verify(&Self { near, ..self.clone() })?;
+        Ok(Proven::Statement)
+    }
+}
+
+/// Returns a proof whose triangles are named by the facets of the file.
+pub(super) fn in_file(of: DistanceCertificate, bodies: [&Solid; 2]) -> DistanceCertificate {
+    let number = |k: usize, at: u32| Some(bodies[k].facet_indices().get(at as usize)?.0);
+    let near = named(of.near, number).unwrap_or(of.near);
+    DistanceCertificate { near, ..of }
+}
+
+/// Returns the same with other names of triangles; `None` if one has none.
+fn named(near: SolidNear, name: impl Fn(usize, u32) -> Option<u32>) -> Option<SolidNear> {
+    let SolidNear::Points { triangles: [p, q], weights, distance } = near else {
+        return Some(near);
+    };
+    Some(SolidNear::Points { triangles: [name(0, p)?, name(1, q)?], weights, distance })
+}
+
+/// Two solids, and what is asked along a direction.
+pub(super) type SolidsAlong<'a> = ([Placed<'a, Solid>; 2], Along);
+
+impl Verify<'_, SolidsAlong<'_>> for SolidStatement {
+    fn verify(&self, about: &SolidsAlong<'_>) -> Result<Proven<'static>, ProofError> {
+        let ([moving, fixed], Along { direction, keep }) = *about;
+        let options = options(self.start_overlap, self.certificate.tolerance, keep);
+        self.check(&Cast::new(moving, fixed, direction)?.with_options(options)?)?;
+        Ok(Proven::Statement)
+    }
+}
+
+impl<'a> Verify<'a, [Placed<'a, Solid>; 2]> for FreeStatement {
+    fn verify(&self, about: &[Placed<'a, Solid>; 2]) -> Result<Proven<'a>, ProofError> {
+        Ok(Proven::Directions(Box::new(self.checked(*about)?)))
     }
 }
 
@@ -245,18 +286,18 @@ impl FreeStatement {
     /// Of an answer about these bodies, which are those of a file.
     pub(super) fn of(
         free: &FreeDirections<'_>,
-        made: &[Solid; 2],
+        made: [&Solid; 2],
     ) -> Result<Self, CertificateError> {
         let FreeProof { tolerance, start_overlap, boxes, cells } = free.proof();
         let number = |k: usize, triangle: u32| made[k].facet_indices()[triangle as usize].0;
         let in_file = |pair: [u32; 2]| Some([number(0, pair[0]), number(1, pair[1])]);
         let cells = renamed(&cells, in_file).ok_or(CertificateError::Start)?;
-        let shrunk = shrunk(made.each_ref(), tolerance)?;
+        let shrunk = shrunk(made, tolerance)?;
         Ok(Self { tolerance, start_overlap, shrunk, boxes, cells })
     }
 
     /// What it says of two bodies, if it holds.
-    pub(super) fn checked<'a>(
+    fn checked<'a>(
         &self,
         [moving, fixed]: [Placed<'a, Solid>; 2],
     ) -> Result<FreeDirections<'a>, CertificateError> {

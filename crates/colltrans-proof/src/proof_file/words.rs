@@ -2,28 +2,47 @@
 
 use std::fmt;
 
+use super::file::{Choices, Query};
 use super::statement::{
     Contacts, DistanceStatement, FreeStatement, Slide, SolidStatement, Statement, Stop,
 };
-use super::{Bodies, ProofFile};
+use super::{ProofFile, motion};
 use colltrans_convex::answer::{Bounded, Depth, Separation};
+use colltrans_convex::body::ObstacleId;
 use colltrans_removal::free::CellProof;
+use colltrans_scene::{ClearanceProof, NearbyProof, NearestProof};
 use colltrans_solid::cast::{SolidCertificate, StartOverlap, StartProof};
 use colltrans_solid::pair::DistanceCertificate;
 
+/// As many obstacles are named in words.
+const NAMED: usize = 12;
+
 impl fmt::Display for ProofFile {
-    /// Its statement, and what shrinking has done to the bodies, in words, in one line.
+    /// Its statement in words, in one line; translations in multiples of the direction.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let [moving, fixed] = self.inverted();
-        if self.keep() > 0.0 {
-            let keep = self.keep();
-            write!(f, "counted as meeting where they are {keep:?} apart or nearer, ")?;
-            // Facets that are less than eight noises nearer may pass.
-            if matches!(self.bodies, Bodies::Solids { .. }) {
-                f.write_str("to within rounding, ")?;
+        match (&self.query, &self.statement) {
+            (Query::Cast(along), _) if along.keep > 0.0 => {
+                let keep = along.keep;
+                write!(f, "counted as meeting where they are {keep:?} apart or nearer, ")?;
+                // Facets that are less than eight noises nearer may pass.
+                if matches!(self.statement, Statement::Clearance(_)) {
+                    f.write_str("to within rounding, ")?;
+                }
             }
+            (Query::Scene(choices), statement) => {
+                write!(f, "of {} obstacles, ", self.obstacles().unwrap_or_default())?;
+                if let Statement::SceneClearance(_) = statement {
+                    choices.tell(f)?;
+                }
+            }
+            (Query::Motions(asked), Statement::Motions(of)) => {
+                return f.write_str(&motion::words(asked, of));
+            }
+            (Query::Path(joints), Statement::Path(of)) => return of.tell(f, joints),
+            _ => {}
         }
-        self.statement.fmt(f)?;
+        self.statement.tell(f)?;
+        let [moving, fixed] = self.inverted();
         if [moving, fixed] == [0; 2] {
             return Ok(());
         }
@@ -35,18 +54,33 @@ impl fmt::Display for ProofFile {
     }
 }
 
-impl fmt::Display for Statement {
-    /// In words, in one line; translations in multiples of the direction.
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+impl Choices {
+    fn tell(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { keep, tolerance, graze_tolerance, .. } = *self;
+        if keep > 0.0 {
+            write!(f, "counted as met where they are {keep:?} away or nearer, ")?;
+        }
+        if graze_tolerance > 0.0 {
+            write!(f, "passed where they overlap sideways by no more than {graze_tolerance:?}, ")?;
+        }
+        if let Some(tolerance) = tolerance.filter(|by| *by > 0.0) {
+            write!(f, "solids shrunk by {:?} each, ", tolerance / 2.0)?;
+        }
+        Ok(())
+    }
+}
+
+impl Statement {
+    fn tell(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Contacts(contacts) => contacts.fmt(f),
+            Self::Contacts(contacts) => fmt::Display::fmt(contacts, f),
             Self::Separation(Separation { margin, .. }) => {
                 write!(
                     f,
                     "the bodies never meet along the direction: seen along it, a gap of {margin:?} lies between them"
                 )
             }
-            Self::Clearance(statement) => statement.fmt(f),
+            Self::Clearance(statement) => fmt::Display::fmt(statement, f),
             Self::Distance(DistanceStatement { gap, near }) => {
                 let near = near.as_ref().map(|near| near.distance);
                 f.write_str(&apart(gap.map(|gap| gap.gap), near))
@@ -62,7 +96,48 @@ impl fmt::Display for Statement {
                 let lower = Some(*lower).filter(|lower| *lower > 0.0);
                 f.write_str(&apart(lower, Some(near.distance())))
             }
-            Self::FreeDirections(statement) => statement.fmt(f),
+            Self::FreeDirections(statement) => fmt::Display::fmt(statement, f),
+            Self::Nearest(NearestProof { lower, obstacle, near, .. }) => {
+                let upper = near.distance();
+                write!(
+                    f,
+                    "obstacle {obstacle} is at most {upper:?} away, none is nearer than {lower:?}"
+                )
+            }
+            Self::Within(NearbyProof { length, closer, undecided, .. }) => {
+                let closer: Vec<ObstacleId> = closer.iter().map(|(id, _)| *id).collect();
+                let (which, is) = listed(&closer);
+                write!(f, "{which} {is} at most {length:?} away")?;
+                if !undecided.is_empty() {
+                    write!(f, ", of {} nothing is said", listed(undecided).0)?;
+                }
+                f.write_str(", all others are farther")
+            }
+            Self::SceneClearance(ClearanceProof { stop: None, lower, .. })
+                if lower.is_infinite() =>
+            {
+                f.write_str("none ever stops the moving body")
+            }
+            Self::SceneClearance(of) => {
+                let ClearanceProof { lower, stop, .. } = of;
+                let Some(stop) = stop else {
+                    return write!(
+                        f,
+                        "none stops the moving body before a translation of {lower:?}"
+                    );
+                };
+                match of.upper() {
+                    upper if upper <= 0.0 => {
+                        write!(f, "obstacle {stop} overlaps the moving body, or stops it at once")
+                    }
+                    upper => write!(
+                        f,
+                        "none stops the moving body before a translation of {lower:?}, obstacle {stop} does by {upper:?}"
+                    ),
+                }
+            }
+            // Told with their queries.
+            Self::Motions(_) | Self::Path(_) => Ok(()),
         }
     }
 }
@@ -169,5 +244,17 @@ fn meeting(Bounded { lower, upper, .. }: Bounded) -> String {
         [true, false] => format!("the facets that do meet, as they are, not before {lower:?}"),
         [false, true] => format!("the facets that do meet, as they are, by {upper:?}"),
         [false, false] => "it is not said where the facets that do meet, as they are".into(),
+    }
+}
+
+/// Returns how many, and which, and the verb that they take.
+fn listed(of: &[ObstacleId]) -> (String, &'static str) {
+    let named: Vec<String> = of.iter().take(NAMED).map(ToString::to_string).collect();
+    let more = if of.len() > NAMED { ", ..." } else { "" };
+    let (count, is) = (of.len(), if of.len() == 1 { "is" } else { "are" });
+    if of.is_empty() {
+        ("none".into(), "is")
+    } else {
+        (format!("{count} ({}{more})", named.join(", ")), is)
     }
 }

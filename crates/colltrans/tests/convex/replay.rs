@@ -1,8 +1,8 @@
 //! Queries as files: the same bits again, and no file that is not one.
 #![cfg(feature = "json")]
 
-use colltrans::motion::{Motion, MotionCase, MotionCast, MotionProofFile};
-use colltrans::{Case, CaseError, Options, Solver, cta};
+use colltrans::motion::{Motion, MotionCase, MotionCast};
+use colltrans::{Case, CaseError, Options, ProofFile, Solver, cta};
 use colltrans_testkit::oracle::settings::{FAMILIES, NEARLY_FLAT, setting};
 
 #[test]
@@ -123,12 +123,12 @@ fn what_is_no_motion_is_refused() {
     let asked = MotionCast::new(cast.moving().along(&slide), cast.fixed().at(cast.fixed_pose()));
     let asked = asked.expect("a cast");
     let good = MotionCase::of(&asked).to_json();
-    let proof = MotionProofFile::of(&asked, &asked.first_contact().expect("an answer")).to_json();
+    let proof = ProofFile::of_motion(&asked, &asked.first_contact().expect("an answer")).to_json();
     for (wrong, why) in [
         ("{}".to_owned(), "not a saved query"),
         (cast.to_json(), "the format is"),
         (proof.clone(), "the format is"),
-        (proof.replace("motion proof 1", "motion case 1"), "unknown field `proof`"),
+        (proof.replace("colltrans proof", "colltrans motion case 1"), "unknown field `version`"),
         (good.replace("\"since\":0.0", "\"since\":0.5"), "time"),
         (good.replace("\"rate\":0.0", "\"rate\":1e9"), "angle"),
         (good.replace("\"format\"", "\"keep\":1e70,\"format\""), "gap"),
@@ -139,6 +139,7 @@ fn what_is_no_motion_is_refused() {
         let error = MotionCase::from_json(&wrong).expect_err(why).to_string();
         assert!(error.contains(why), "{error}, not {why}");
     }
-    let error = MotionProofFile::from_json(&good.replace("case", "proof")).expect_err("no proof");
-    assert!(error.to_string().contains("missing field `proof`"), "{error}");
+    let other = good.replace("colltrans motion case 1", "colltrans proof");
+    let error = ProofFile::from_json(&other).expect_err("no proof").to_string();
+    assert_eq!(error, "the version of the format is missing, not 2");
 }

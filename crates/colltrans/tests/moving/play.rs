@@ -3,10 +3,8 @@
 use std::f64::consts::TAU;
 
 use colltrans::motion::path::PathOutcome;
-use colltrans::motion::{
-    Motion, MotionCase, MotionCast, MotionOutcome, MotionProofFile, MotionProofFiles,
-};
-use colltrans::{ConvexPolyhedron, Pose};
+use colltrans::motion::{Motion, MotionCase, MotionCast, MotionOutcome};
+use colltrans::{ConvexPolyhedron, Pose, ProofFile};
 use colltrans_testkit::oracle::play::{KINDS, Screw, chain, slider};
 use glam::DVec3;
 
@@ -66,22 +64,21 @@ fn a_file_of_several_pairs_has_proofs_of_solids() {
     // As of a pair whose planes run out.
     free.proof.spans.clear();
     free.proof.solids = Some(Box::new(solids.proof().clone()));
-    let files = [MotionOutcome::Free(free), convex].map(|of| MotionProofFile::of(&cast, &of));
-    let bounds = files.iter().map(|file| file.check().unwrap());
+    let files = [MotionOutcome::Free(free), convex].map(|of| ProofFile::of_motion(&cast, &of));
+    let bounds = files.iter().map(|file| file.check().unwrap().time().unwrap());
     let bounds = bounds.fold([1.0, f64::INFINITY], |all, [lower, upper]| {
         [f64::min(all[0], lower), f64::min(all[1], upper)]
     });
-    let saved = MotionProofFiles::of(files.to_vec()).to_json();
-    let formats = ["colltrans motion of solids proof 1", "colltrans motion proof 1"];
-    for format in formats {
-        assert_eq!(saved.matches(&format!("\"format\":\"{format}\"")).count(), 1, "{format}");
+    let saved = ProofFile::of_motions(files.to_vec()).unwrap().to_json();
+    for kind in ["\"solids\":{\"parts\"", "\"convex\":{\"spans\""] {
+        assert_eq!(saved.matches(kind).count(), 1, "{kind}");
     }
-    let read = MotionProofFiles::from_json(&saved).unwrap();
-    assert_eq!(read.check().unwrap(), bounds);
+    let read = ProofFile::from_json(&saved).unwrap();
+    assert_eq!(read.check().unwrap().time(), Some(bounds));
     assert_eq!(read.to_json(), saved);
     assert!(read.to_string().starts_with("of 2 pairs of bodies "), "{read}");
-    let other = saved.replace(formats[0], "colltrans path proof 2");
-    assert!(MotionProofFiles::from_json(&other).is_err());
+    let other = saved.replace("\"solids\":", "\"path\":");
+    assert!(other != saved && ProofFile::from_json(&other).is_err());
 }
 
 /// A proof about the bodies as solids counts for the same question alone: not with a gap, a depth, or planes beside it.

@@ -1,14 +1,10 @@
 //! Claims of proof files about motions and paths that are weaker, or other, than what the file proves.
 #![cfg(feature = "json")]
 
-use colltrans::motion::path::{
-    Frame, Joint, JointPath, Mechanism, PathBody, PathCast, PathProofFile,
-};
-use colltrans::motion::{
-    Motion, MotionCast, MotionProofFile, MotionProofFiles, SolidMotionProofFile,
-};
+use colltrans::motion::path::{Frame, Joint, JointPath, Mechanism, PathBody, PathCast};
+use colltrans::motion::{Motion, MotionCast};
 use colltrans::solid::AsSolid;
-use colltrans::{ConvexPolyhedron, Pose, Solid};
+use colltrans::{ConvexPolyhedron, Pose, ProofFile, ProofFileError, Solid};
 use colltrans_testkit::shapes::Mesh;
 use colltrans_testkit::solids::turned;
 use glam::{DMat3, DQuat, DVec3};
@@ -28,12 +24,18 @@ fn sliding(keep: f64) -> Value {
     let cast = MotionCast::new(cube.along(&motion), cube.at(at(3.0))).expect("a cast");
     let cast = cast.keeping(keep).expect("a gap");
     let outcome = cast.first_contact().expect("an answer");
-    serde_json::from_str(&MotionProofFile::of(&cast, &outcome).to_json()).expect("JSON")
+    serde_json::from_str(&ProofFile::of_motion(&cast, &outcome).to_json()).expect("JSON")
 }
 
-/// What a proof of a motion says, if it holds.
+/// Where the proofs of a motion, of one of solids and of a path are, and the moving body's motion.
+const MOTION: &str = "/statement/motions/0/convex";
+const SOLIDS: &str = "/statement/motions/0/solids/proof";
+const PATH: &str = "/statement/path/proof";
+const MOVES: &str = "/placement/motions/0/0/motion";
+
+/// What a proof says, if it holds.
 fn says(file: &Value) -> Result<String, String> {
-    let proof = MotionProofFile::from_json(&file.to_string()).map_err(|e| e.to_string())?;
+    let proof = ProofFile::from_json(&file.to_string()).map_err(|e| e.to_string())?;
     proof.check().map_err(|e| e.to_string())?;
     Ok(proof.to_string())
 }
@@ -57,7 +59,7 @@ fn with(file: &Value, at: &str, value: Value) -> Value {
 fn a_meeting_without_planes_is_not_one_at_the_beginning() {
     let file = sliding(0.0);
     assert!(says(&file).expect("it holds").starts_with("the bodies first meet at a time between"));
-    let weaker = says(&with(&file, "/proof/spans", json!([[]]))).expect("it holds");
+    let weaker = says(&with(&file, &format!("{MOTION}/spans"), json!([[]]))).expect("it holds");
     assert!(weaker.starts_with("the bodies meet by the time 0.5"), "{weaker}");
 }
 
@@ -66,41 +68,50 @@ fn a_piece_that_begins_when_the_motion_ends_is_refused() {
     let (cube, motion) = (cube(), Motion::slide(Pose::IDENTITY, DVec3::Y).expect("a motion"));
     let cast = MotionCast::new(cube.along(&motion), cube.at(at(3.0))).expect("a cast");
     let outcome = cast.first_contact().expect("an answer");
-    let file = MotionProofFile::of(&cast, &outcome).to_json();
+    let file = ProofFile::of_motion(&cast, &outcome).to_json();
     let mut file: Value = serde_json::from_str(&file).expect("JSON");
     assert_eq!(says(&file).expect("free"), "the bodies never meet throughout the motion");
     // At the time 1 the body would be inside the other one.
-    let mut last = file["moving_motion"][0].clone();
+    let pieces = file.pointer_mut(MOVES).and_then(Value::as_array_mut).expect("pieces");
+    let mut last = pieces[0].clone();
     last["since"] = json!(1.0);
     last["start"]["translation"] = json!([3.0, 0.0, 0.0]);
-    file["moving_motion"].as_array_mut().expect("pieces").push(last);
+    pieces.push(last);
     says(&file).expect_err("a piece of no time");
 }
 
 #[test]
 fn what_may_be_null_has_to_be_there() {
     let file = sliding(0.0);
-    says(&without(&file, "/proof", "meeting")).expect_err("no meeting");
-    says(&with(&file, "/proof/meeting", Value::Null)).expect("none is claimed");
+    says(&without(&file, MOTION, "meeting")).expect_err("no meeting");
+    says(&with(&file, &format!("{MOTION}/meeting"), Value::Null)).expect("none is claimed");
     let mut more = file.clone();
-    more["proof"]["spans"][0][0]["more"] = json!(1);
+    more["statement"]["motions"][0]["convex"]["spans"][0][0]["more"] = json!(1);
     says(&more).expect_err("a field that is not known");
 }
 
 #[test]
 fn pairs_of_one_question_keep_one_gap() {
     let several = |proofs: &[Value]| {
-        let file = json!({"format": "colltrans motions proof 1", "proofs": proofs});
-        let proofs = MotionProofFiles::from_json(&file.to_string()).map_err(|e| e.to_string())?;
-        proofs.check().map_err(|e| e.to_string())?;
-        Ok::<_, String>(proofs.to_string())
+        let proofs =
+            proofs.iter().map(|of| ProofFile::from_json(&of.to_string()).expect("a proof"));
+        ProofFile::of_motions(proofs.collect())
     };
     let [plain, kept] = [sliding(0.0), sliding(0.25)];
-    let said = several(&[kept.clone(), kept.clone()]).expect("it holds");
+    let both = several(&[kept.clone(), kept.clone()]).expect("one question");
+    let file: Value = serde_json::from_str(&both.to_json()).expect("JSON");
+    assert_eq!(file["bodies"].as_array().map(Vec::len), Some(1), "a body is written once");
+    let said = says(&file).expect("it holds");
     assert!(said.starts_with("of 2 pairs of bodies the first come as near as 0.25 at"), "{said}");
     // Of all of them it would be said that they do not come as near as 0.25.
-    several(&[kept, plain]).expect_err("two gaps");
-    several(&[]).expect_err("no pairs");
+    assert!(matches!(several(&[kept, plain]), Err(ProofFileError::Pairs { pair: 0 })));
+    assert!(matches!(several(&[]), Err(ProofFileError::NoPairs)));
+    says(&with(&file, "/query/motions/1/keep", json!(0.125))).expect_err("two gaps");
+    let pair = file["placement"]["motions"][0].clone();
+    says(&with(&file, "/placement/motions", json!([pair]))).expect_err("a pair is missing");
+    says(&with(&file, "/placement/motions/1/0/body", json!(1))).expect_err("no such body");
+    says(&with(&file, "/query/motions/0", json!({"keep": 0.25, "tolerance": 0.0})))
+        .expect_err("convex bodies have no tolerance");
 }
 
 /// A block that turns into a post, both as solids.
@@ -113,7 +124,7 @@ fn turning() -> Value {
     let turn = turn.expect("a turn");
     let still = Motion::still(Pose::from_translation(DVec3::Y * 1.5).expect("a pose"));
     let cast = MotionCast::<Solid>::new(bar.along(&turn), post.along(&still)).expect("a cast");
-    let (_, file) = SolidMotionProofFile::answer(&cast).expect("an answer");
+    let (_, file) = ProofFile::with_solid_motion(&cast).expect("an answer");
     serde_json::from_str(&file.to_json()).expect("JSON")
 }
 
@@ -121,13 +132,15 @@ fn turning() -> Value {
 fn a_facet_has_three_edges() {
     let file = turning();
     let holds = |file: &Value| {
-        SolidMotionProofFile::from_json(&file.to_string()).is_ok_and(|proof| proof.check().is_ok())
+        ProofFile::from_json(&file.to_string()).is_ok_and(|proof| proof.check().is_ok())
     };
     assert!(holds(&file));
-    let place = "/proof/meeting/met/crossing/edge";
+    let place = &format!("{SOLIDS}/meeting/met/crossing/edge");
     let edge = file.pointer(place).and_then(Value::as_u64).expect("an edge");
     assert!(!holds(&with(&file, place, json!(edge + 3))));
-    for (under, name) in [("", "parts"), ("/proof", "meeting"), ("/proof", "start")] {
+    for (under, name) in
+        [("/statement/motions/0/solids", "parts"), (SOLIDS, "meeting"), (SOLIDS, "start")]
+    {
         assert!(!holds(&without(&file, under, name)), "{name}");
     }
 }
@@ -143,15 +156,8 @@ fn cart(rows: &[f64]) -> Value {
     let pairs = vec![[0, 1], [0, 2], [0, 3]];
     let cast = PathCast::new(&slide, &path, bodies, pairs).expect("a cast");
     let names = ["cart".into(), "stop".into(), "wall".into()];
-    let (_, file) = PathProofFile::answer(&cast, &names).expect("an answer");
+    let (_, file) = ProofFile::with_path(&cast, &names).expect("an answer");
     serde_json::from_str(&file.to_json()).expect("JSON")
-}
-
-/// What a proof of a path says, if it holds.
-fn says_of_path(file: &Value) -> Result<String, String> {
-    let proof = PathProofFile::from_json(&file.to_string()).map_err(|e| e.to_string())?;
-    proof.check().map_err(|e| e.to_string())?;
-    Ok(proof.to_string())
 }
 
 const PAIRS: &str = "of 3 pairs (cart and stop, cart and wall, cart and body 3)";
@@ -159,17 +165,17 @@ const PAIRS: &str = "of 3 pairs (cart and stop, cart and wall, cart and body 3)"
 #[test]
 fn a_path_names_its_pairs() {
     let file = cart(&[0.0, 8.0]);
-    let said = says_of_path(&file).expect("it holds");
+    let said = says(&file).expect("it holds");
     assert!(said.starts_with(&format!("{PAIRS} none meet before the time 0.24999")), "{said}");
     assert!(said.contains(", and cart and stop meet by the time 0.25"), "{said}");
     for (place, value) in [
-        ("/statement/pairs/0/1", json!("wall of another room")),
-        ("/statement/pairs/0/1", json!("cart")),
-        ("/statement/pairs", json!([["cart", "stop"]])),
-        ("/bodies/1/name", json!("wall")),
-        ("/bodies/1/name", json!("")),
+        ("/statement/path/pairs/0/1", json!("wall of another room")),
+        ("/statement/path/pairs/0/1", json!("cart")),
+        ("/statement/path/pairs", json!([["cart", "stop"]])),
+        ("/placement/robot/bodies/1/name", json!("wall")),
+        ("/placement/robot/bodies/1/name", json!("")),
     ] {
-        says_of_path(&with(&file, place, value)).expect_err(place);
+        says(&with(&file, place, value)).expect_err(place);
     }
 }
 
@@ -177,20 +183,21 @@ fn a_path_names_its_pairs() {
 fn who_meets_later_is_not_said_to_meet_first() {
     // Only of the later contact it is known where it is; nothing is proven of the time before.
     let (one, both) = (cart(&[0.0, 8.0]), cart(&[3.9, 8.0]));
+    let how = both.pointer(&format!("{PATH}/meeting/how")).expect("how");
     let mut weak = one.clone();
-    weak["proof"]["covers"] = json!([{"steps": []}, {"steps": []}, {"steps": []}]);
-    weak["proof"]["meeting"]["pair"] = json!(1);
-    weak["proof"]["meeting"]["place"]["share"] = json!(0.51);
-    weak["statement"]["lower"] = json!(0.0);
-    weak["statement"]["upper"] = json!(0.52);
+    let proof = weak.pointer_mut(PATH).expect("a proof");
+    proof["covers"] = json!([{"steps": []}, {"steps": []}, {"steps": []}]);
+    proof["meeting"]["pair"] = json!(1);
+    proof["meeting"]["place"]["share"] = json!(0.51);
     // Both cubes are the same; the surface around the origin is one of cubes that are 1/12 deep.
-    weak["proof"]["meeting"]["how"] =
-        with(&both, "/proof/meeting/pair", json!(1))["proof"]["meeting"]["how"].clone();
-    if let Ok(said) = says_of_path(&weak) {
+    proof["meeting"]["how"] = how.clone();
+    weak["statement"]["path"]["lower"] = json!(0.0);
+    weak["statement"]["path"]["upper"] = json!(0.52);
+    if let Ok(said) = says(&weak) {
         assert!(!said.contains("first"), "{said}");
         assert!(said.contains("none meet before the time 0, and cart and wall"), "{said}");
     }
-    let told = says_of_path(&one).expect("it holds");
+    let told = says(&one).expect("it holds");
     assert!(!told.contains("the first"), "{told}");
 }
 
@@ -198,10 +205,10 @@ fn who_meets_later_is_not_said_to_meet_first() {
 fn a_path_of_one_row_is_free_by_planes_alone() {
     let file = cart(&[0.0]);
     let whole = format!("{PAIRS} none meet on the whole path, up to the time 0");
-    assert_eq!(says_of_path(&file).expect("it holds"), whole);
+    assert_eq!(says(&file).expect("it holds"), whole);
     for k in 0..3 {
-        let less = with(&file, &format!("/proof/covers/{k}/steps"), json!([]));
-        let said = says_of_path(&less).expect("it says less");
+        let less = with(&file, &format!("{PATH}/covers/{k}/steps"), json!([]));
+        let said = says(&less).expect("it says less");
         assert_eq!(said, format!("{PAIRS} nothing is said"));
     }
 }
@@ -212,27 +219,27 @@ fn places_are_on_the_path() {
     for (row, share) in [(u64::MAX, 1.0), (u64::MAX, 0.0), (2, 0.0), (1, 0.5), (0, 1.5), (0, -0.5)]
     {
         let place = json!({"row": row, "share": share});
-        says_of_path(&with(&file, "/proof/meeting/place", place.clone()))
+        says(&with(&file, &format!("{PATH}/meeting/place"), place.clone()))
             .expect_err("off the path");
         let parts = json!([{"parts": {"which": 0, "until": place, "covers": []}}]);
-        says_of_path(&with(&file, "/proof/covers/0/steps", parts)).expect_err("off the path");
+        says(&with(&file, &format!("{PATH}/covers/0/steps"), parts)).expect_err("off the path");
     }
     for (under, name) in [
-        ("/proof", "meeting"),
-        ("/frames/0", "parent"),
-        ("/bodies/0", "frame"),
-        ("/statement", "pairs"),
-        ("/statement", "upper"),
+        (PATH, "meeting"),
+        ("/placement/robot/frames/0", "parent"),
+        ("/placement/robot/bodies/0", "frame"),
+        ("/statement/path", "pairs"),
+        ("/statement/path", "upper"),
     ] {
-        says_of_path(&without(&file, under, name)).expect_err(name);
+        says(&without(&file, under, name)).expect_err(name);
     }
 }
 
 #[test]
 fn traces_in_axes_are_no_reason_to_refuse() {
     let file = cart(&[0.0, 8.0]);
-    let traced = with(&file, "/frames/0/joint/sliding", json!([1.0, 1e-310, 0.0]));
-    says_of_path(&traced).expect("it holds");
+    let traced = with(&file, "/placement/robot/frames/0/joint/sliding", json!([1.0, 1e-310, 0.0]));
+    says(&traced).expect("it holds");
 }
 
 /// Two rings of 14,400 facets that hang in each other: their cover is nested deeper than JSON is read by default.
@@ -252,13 +259,13 @@ fn a_path_of_bodies_with_many_facets_is_read_back() {
     let bodies =
         vec![PathBody::carried(0, ring.at(Pose::IDENTITY)), PathBody::standing(ring.at(through))];
     let cast = PathCast::new(&hinge, &path, bodies, vec![[0, 1]]).expect("a cast");
-    let (_, file) = PathProofFile::answer(&cast, &[]).expect("an answer");
+    let (_, file) = ProofFile::with_path(&cast, &[]).expect("an answer");
     let text = file.to_json();
     assert!(serde_json::from_str::<Value>(&text).is_err(), "it is not nested that deep");
-    let read = PathProofFile::from_json(&text).expect("a proof");
-    assert_eq!(read.check().expect("it holds"), [2.0, f64::INFINITY]);
+    let read = ProofFile::from_json(&text).expect("a proof");
+    assert_eq!(read.check().expect("it holds").time(), Some([2.0, f64::INFINITY]));
     let deeper = text.replacen("\"covers\":[", &format!("\"covers\":{}", "[".repeat(500)), 1);
-    let refused = PathProofFile::from_json(&deeper).unwrap_err().to_string();
+    let refused = ProofFile::from_json(&deeper).unwrap_err().to_string();
     assert!(refused.contains("nested more than 400 deep"), "{refused}");
 }
 
@@ -274,8 +281,8 @@ fn a_depth_of_nothing_does_not_prove_that_a_gap_is_used_up() {
     for normal in [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 1.0, 0.0]] {
         for time in [0.0, 0.1] {
             let meeting = json!({"time": time, "met": depth_of_nothing(normal)});
-            let mut forged = with(&file, "/proof/meeting", meeting);
-            forged = with(&forged, "/proof/spans", json!([[]]));
+            let mut forged = with(&file, &format!("{MOTION}/meeting"), meeting);
+            forged = with(&forged, &format!("{MOTION}/spans"), json!([[]]));
             assert!(says(&forged).is_err(), "{:?}", says(&forged));
         }
     }
@@ -290,10 +297,9 @@ fn a_pair_of_shrunk_solids_proves_nothing_of_the_bodies() {
     let cast = MotionCast::<Solid>::new(cube.along(&motion), cube.at(there)).expect("a cast");
     for (tolerance, holds) in [(0.0, true), (0.6, false)] {
         let cast = cast.clone().tolerating(tolerance).expect("a tolerance");
-        let (_, file) = SolidMotionProofFile::answer(&cast).expect("an answer");
-        let proof: Value = serde_json::from_str(&file.to_json()).expect("JSON");
-        let several = json!({"format": "colltrans motions proof 1", "proofs": [proof]});
-        let read = MotionProofFiles::from_json(&several.to_string());
+        let (_, file) = ProofFile::with_solid_motion(&cast).expect("an answer");
+        assert!(file.check().is_ok(), "alone it says that they are shrunk");
+        let read = ProofFile::of_motions(vec![file.clone(), file]);
         assert_eq!(read.is_ok(), holds, "{tolerance}");
     }
 }

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::file::{Bodies, differences, is_at_limit, numbers, scene, square, vector};
 use super::mutants::{number, with};
-use super::{Claim, Kind, Who, checkers};
+use super::{Claim, Kind, Who};
 use crate::oracle::exact::Ratio;
 use crate::oracle::settings::{Bodies as Convex, FAMILIES, Setting, near_contact, setting};
 use crate::oracle::shadow::SignedDistance;
@@ -21,7 +21,6 @@ pub const CASTS: Kind = Kind {
     worst,
     falsehood,
     is_marginal,
-    verify: checkers::verify,
 };
 
 /// Casts of bodies that keep a gap.
@@ -245,7 +244,7 @@ pub(super) fn other_pair(file: &mut Value, at: &str, random: &mut Random) {
 }
 
 fn worst(file: &mut Value, random: &mut Random) {
-    let Some(d) = file.get("direction").and_then(vector) else { return };
+    let Some(d) = file.pointer("/query/cast/direction").and_then(vector) else { return };
     let parts = parts(file);
     if parts.is_empty() {
         return;

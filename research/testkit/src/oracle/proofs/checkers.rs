@@ -31,10 +31,10 @@ impl Verdict {
     }
 }
 
-/// Returns the verdict of the library about a proof of the format `"colltrans proof 1"`.
+/// Returns the verdict of the library about a proof.
 pub fn verify(text: &str) -> Verdict {
     let checked = ProofFile::from_json(text).map_err(|error| error.to_string());
-    let checked = checked.and_then(|proof| proof.check().map_err(|error| error.to_string()));
+    let checked = checked.and_then(|proof| proof.check().map(drop).map_err(|e| e.to_string()));
     checked.map_or_else(Verdict::Refused, |()| Verdict::Holds)
 }
 

@@ -1,4 +1,4 @@
-//! What a proof of the format `"colltrans proof 1"` is about, in exact coordinates.
+//! What a proof is about, in exact coordinates.
 
 use colltrans::MIN_MAGNITUDE;
 use glam::{DMat3, DVec3};
@@ -33,8 +33,9 @@ impl Bodies {
     pub fn read(file: &Value) -> Option<Self> {
         let (mut points, mut facets) = ([Vec::new(), Vec::new()], [Vec::new(), Vec::new()]);
         let (mut size, mut origins) = (0.0, [DVec3::ZERO; 2]);
-        for (k, which) in ["moving", "fixed"].into_iter().enumerate() {
-            let body = file.get(which)?;
+        for k in 0..2 {
+            let at = file.pointer(&format!("/placement/poses/{k}"))?;
+            let body = body_at(file, at)?;
             let mut vertices = Vec::new();
             if let Some(convex) = body.get("convex") {
                 vertices = vectors(convex.get("vertices")?)?;
@@ -48,7 +49,7 @@ impl Bodies {
                     }
                 }
             }
-            let pose = file.get(format!("{which}_pose"))?;
+            let pose = at.get("pose")?;
             let entries = numbers(pose.get("matrix")?)?;
             let entries: Vec<f64> =
                 entries.iter().map(|x| if x.abs() < MIN_MAGNITUDE { 0.0 } else { *x }).collect();
@@ -57,9 +58,9 @@ impl Bodies {
             size += vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
             points[k] = place(matrix, origins[k], &vertices);
         }
-        let direction = file.get("direction").filter(|d| !d.is_null());
-        let direction = direction.map(vector).map_or(Some(None), |d| d.map(Some))?;
-        let keep = file.get("keep").map_or(Some(0.0), Value::as_f64)?;
+        let direction = file.pointer("/query/cast/direction").map(vector);
+        let direction = direction.map_or(Some(None), |d| d.map(Some))?;
+        let keep = file.pointer("/query/cast/keep").map_or(Some(0.0), Value::as_f64)?;
         let size = (size + (origins[1] - origins[0]).length()).max(MIN_MAGNITUDE);
         Some(Self { points, facets, direction, keep, size })
     }
@@ -137,6 +138,11 @@ pub fn scene([moving, fixed]: [&[Vector]; 2], direction: DVec3) -> Scene {
 fn moved(points: &[Vector], direction: DVec3, t: f64) -> Vec<Vector> {
     let by = Vector::new(direction).times(&Dyadic::new(t));
     points.iter().map(|p| p.plus(&by)).collect()
+}
+
+/// Returns the body of a file that a place names.
+pub fn body_at<'a>(file: &'a Value, place: &Value) -> Option<&'a Value> {
+    file.get("bodies")?.get(place.get("body")?.as_u64()? as usize)
 }
 
 /// Three numbers.

@@ -25,7 +25,7 @@ pub mod solids;
 use serde_json::Value;
 
 use crate::random::Random;
-use checkers::{Fractions, Verdict};
+use checkers::{Fractions, Verdict, verify};
 use mutants::{number, with};
 
 /// Mutants of each proof that know nothing of what it says.
@@ -79,8 +79,6 @@ pub struct Kind {
     pub falsehood: fn(&Value, Who) -> Option<String>,
     /// Checks whether a number is so near the limit of what is admitted that the library may refuse it.
     pub is_marginal: fn(&Value) -> bool,
-    /// The verdict of the library.
-    pub verify: fn(&str) -> Verdict,
 }
 
 /// All kinds.
@@ -145,7 +143,7 @@ impl<'a> Campaign<'a> {
         campaign.tally.proofs += 1;
         let random = &mut Random::stream(seed, &[0xf0_26ed]);
         // Also where `check.py` has checked it in part.
-        if !campaign.judge(&text, "as written") || !(kind.verify)(&text).accepts() {
+        if !campaign.judge(&text, "as written") || !verify(&text).accepts() {
             campaign
                 .tally
                 .disagreements
@@ -194,7 +192,6 @@ impl<'a> Campaign<'a> {
         if !self.judge(&at(pushed.weakest), "weakest") {
             return;
         }
-        let verify = self.kind.verify;
         let mut steps = 0;
         let end = limit(pushed.weakest, pushed.strongest, |x| {
             steps += 1;
@@ -215,7 +212,7 @@ impl<'a> Campaign<'a> {
     /// Has both checkers judge a file, and what they accept judged by the truth. Returns whether one accepts it.
     fn judge(&mut self, text: &str, what: &str) -> bool {
         self.tally.mutants += 1;
-        let library = (self.kind.verify)(text);
+        let library = verify(text);
         let fractions = match &mut self.fractions {
             Some(fractions) => fractions.check(text),
             None => library.clone(),
@@ -269,7 +266,7 @@ impl<'a> Campaign<'a> {
         let claims = (self.kind.claims)(file);
         let accepts = |claims: &[Claim]| {
             let weaker = claims.iter().fold(file.clone(), |file, claim| claim.eased(file));
-            (self.kind.verify)(&weaker.to_string()).accepts()
+            verify(&weaker.to_string()).accepts()
         };
         (self.kind.is_marginal)(file)
             || accepts(&claims)

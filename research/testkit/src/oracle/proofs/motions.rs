@@ -3,14 +3,14 @@
 //! The truth is looked up at some times, with the motion as the real function of its numbers: a file that claims that
 //! bodies are apart up to a time is false if they are not at one of these.
 
-use colltrans::motion::{Motion, MotionCast, MotionProofFile, SolidMotionProofFile};
-use colltrans::{ConvexPolyhedron, Pose, Solid};
+use colltrans::motion::{Motion, MotionCast};
+use colltrans::{ConvexPolyhedron, Pose, ProofFile, Solid};
 use glam::{DMat3, DVec3};
 use serde_json::{Value, json};
 
 use super::casts::{other_normal, other_pair, other_weights, rounded_cloud};
-use super::checkers::Verdict;
-use super::file::{indices, is_at_limit, numbers, vector, vectors};
+use super::checkers::{Verdict, verify};
+use super::file::{body_at, indices, is_at_limit, numbers, vector, vectors};
 use super::mutants::{number, with};
 use super::{Claim, Kind, Who};
 use crate::oracle::distance::distance;
@@ -22,19 +22,24 @@ use crate::shapes::random_hull;
 
 /// Motions of convex bodies, with a gap, a depth that is tolerated, or neither.
 pub const CONVEX: Kind =
-    Kind { name: "motions", focus: "/proof", base, claims, worst, falsehood, is_marginal, verify };
+    Kind { name: "motions", focus: CONVEX_PROOF, base, claims, worst, falsehood, is_marginal };
 
 /// Motions of solids.
 pub const SOLIDS: Kind = Kind {
     name: "solid-motions",
-    focus: "/proof",
+    focus: SOLID_PROOF,
     base: solid_base,
     claims: solid_claims,
     worst: solid_worst,
     falsehood: solid_falsehood,
-    is_marginal: is_marginal_of_solids,
-    verify: verify_solids,
+    is_marginal,
 };
+
+/// Where the proof of a pair of convex bodies is.
+const CONVEX_PROOF: &str = "/statement/motions/0/convex";
+
+/// Where the one of a pair of solids is.
+const SOLID_PROOF: &str = "/statement/motions/0/solids/proof";
 
 /// Times at which bodies are looked at, besides those that a proof names.
 const TIMES: usize = 6;
@@ -44,18 +49,6 @@ const MOST_TIMES: usize = 6;
 
 /// What is less than this share of a length is the judge's own rounding.
 const OWN: f64 = 1e-25;
-
-fn verify(text: &str) -> Verdict {
-    let checked = MotionProofFile::from_json(text).map_err(|error| error.to_string());
-    let checked = checked.and_then(|proof| proof.check().map_err(|error| error.to_string()));
-    checked.map_or_else(Verdict::Refused, |_| Verdict::Holds)
-}
-
-fn verify_solids(text: &str) -> Verdict {
-    let checked = SolidMotionProofFile::from_json(text).map_err(|error| error.to_string());
-    let checked = checked.and_then(|proof| proof.check().map_err(|error| error.to_string()));
-    checked.map_or_else(Verdict::Refused, |_| Verdict::Holds)
-}
 
 /// A body of a few vertices; one in three leaves out some of the points that it is made of.
 pub(super) fn body(random: &mut Random) -> ConvexPolyhedron {
@@ -123,7 +116,7 @@ fn base(seed: u64) -> Option<String> {
     let cast = cast.ok()?;
     let outcome = cast.first_contact().ok()?;
     (outcome.proof().spans.iter().map(Vec::len).sum::<usize>() < 40)
-        .then(|| MotionProofFile::of(&cast, &outcome).to_json())
+        .then(|| ProofFile::of_motion(&cast, &outcome).to_json())
 }
 
 fn solid_base(seed: u64) -> Option<String> {
@@ -149,16 +142,16 @@ fn solid_base(seed: u64) -> Option<String> {
         1 => cast = cast.tolerating(0.0).ok()?,
         _ => {}
     }
-    let text = SolidMotionProofFile::answer(&cast).ok()?.1.to_json();
+    let text = ProofFile::with_solid_motion(&cast).ok()?.1.to_json();
     (text.len() < 15_000).then_some(text)
 }
 
 /// The last plane of a proof.
 fn last_plane(file: &Value) -> Option<String> {
-    let spans = file.pointer("/proof/spans")?.as_array()?;
+    let spans = file.pointer(&format!("{CONVEX_PROOF}/spans"))?.as_array()?;
     let planes = spans.last()?.as_array()?;
     let last = planes.len().checked_sub(1)?;
-    Some(format!("/proof/spans/{}/{last}", spans.len() - 1))
+    Some(format!("{CONVEX_PROOF}/spans/{}/{last}", spans.len() - 1))
 }
 
 fn claims(file: &Value) -> Vec<Claim> {
@@ -172,17 +165,18 @@ fn claims(file: &Value) -> Vec<Claim> {
         claim(format!("{last}/time"), 1.0, 1e-9);
         claim(format!("{last}/gap"), 1e300, 1e-9);
     }
-    claim("/proof/meeting/time".into(), 0.0, 1e-9);
-    claim("/proof/meeting/met/deep/lower".into(), 1e300, 1e-9);
-    claim("/proof/meeting/met/deep/upper".into(), 0.0, 1e-9);
-    claim("/proof/meeting/met/near/distance".into(), 0.0, 1e-9);
+    claim(format!("{CONVEX_PROOF}/meeting/time"), 0.0, 1e-9);
+    claim(format!("{CONVEX_PROOF}/meeting/met/deep/lower"), 1e300, 1e-9);
+    claim(format!("{CONVEX_PROOF}/meeting/met/deep/upper"), 0.0, 1e-9);
+    claim(format!("{CONVEX_PROOF}/meeting/met/near/distance"), 0.0, 1e-9);
     found
 }
 
 fn solid_claims(file: &Value) -> Vec<Claim> {
-    let last = file.pointer("/proof/spans").and_then(Value::as_array).map_or(0, Vec::len);
-    let until = format!("/proof/spans/{}/until", last.wrapping_sub(1));
-    let places = [(until, 1.0), ("/proof/meeting/time".to_owned(), 0.0)];
+    let last =
+        file.pointer(&format!("{SOLID_PROOF}/spans")).and_then(Value::as_array).map_or(0, Vec::len);
+    let until = format!("{SOLID_PROOF}/spans/{}/until", last.wrapping_sub(1));
+    let places = [(until, 1.0), (format!("{SOLID_PROOF}/meeting/time"), 0.0)];
     let value = |at: &str| file.pointer(at).and_then(Value::as_f64);
     let claim = |(pointer, strongest): (String, f64)| {
         let weakest = value(&pointer)?;
@@ -228,8 +222,8 @@ fn worst(file: &mut Value, random: &mut Random) {
                 list.truncate(k);
             }
         }
-        6 => *file = with(file, "/proof/meeting", Some(Value::Null)),
-        7 => met(file, "/proof/meeting/met", random),
+        6 => *file = with(file, &format!("{CONVEX_PROOF}/meeting"), Some(Value::Null)),
+        7 => met(file, &format!("{CONVEX_PROOF}/meeting/met"), random),
         _ => {
             let time = file.pointer(&place("time")).and_then(Value::as_f64).unwrap_or(0.0);
             let time = time + random.range(-0.1, 0.1) * random.pick(&[1.0, 1e-3, 1e-9]);
@@ -285,8 +279,11 @@ pub(super) fn met(file: &mut Value, at: &str, random: &mut Random) {
 fn solid_worst(file: &mut Value, random: &mut Random) {
     match random.index(7) {
         0 | 1 => {
-            let spans = file.pointer("/proof/spans").and_then(Value::as_array).map_or(0, Vec::len);
-            let place = format!("/proof/spans/{}/cover", random.index(spans.max(1)));
+            let spans = file
+                .pointer(&format!("{SOLID_PROOF}/spans"))
+                .and_then(Value::as_array)
+                .map_or(0, Vec::len);
+            let place = format!("{SOLID_PROOF}/spans/{}/cover", random.index(spans.max(1)));
             let Some(cover) = file.pointer(&place).and_then(Value::as_str) else { return };
             let mut letters: Vec<u8> = cover.bytes().collect();
             if letters.is_empty() {
@@ -303,21 +300,21 @@ fn solid_worst(file: &mut Value, random: &mut Random) {
         }
         2 => {
             let side = random.index(2);
-            let corners = format!("/parts/{side}/corners");
+            let corners = format!("/statement/motions/0/solids/parts/{side}/corners");
             let count = file.pointer(&corners).and_then(Value::as_array).map_or(1, Vec::len);
             let place = format!("{corners}/{}/{}", random.index(count), random.index(3));
             let Some(v) = file.pointer(&place).and_then(vector) else { return };
             let v = v + random.vector() * random.pick(&[1e-12, 1e-3, 1.0]);
             *file = with(file, &place, Some(Value::from(v.to_array().to_vec())));
         }
-        3 => *file = with(file, "/proof/meeting", Some(Value::Null)),
+        3 => *file = with(file, &format!("{SOLID_PROOF}/meeting"), Some(Value::Null)),
         4 => {
             let edge = random.index(4);
-            let place = "/proof/meeting/met/crossing/edge";
-            *file = with(file, place, Some(Value::from(edge)));
+            let place = format!("{SOLID_PROOF}/meeting/met/crossing/edge");
+            *file = with(file, &place, Some(Value::from(edge)));
         }
         5 => {
-            let place = format!("/proof/meeting/triangles/{}", random.index(2));
+            let place = format!("{SOLID_PROOF}/meeting/triangles/{}", random.index(2));
             *file = with(file, &place, Some(Value::from(random.index(24))));
         }
         _ => worst(file, random),
@@ -396,10 +393,11 @@ pub(super) fn first(found: Option<Vec<String>>) -> Option<String> {
 
 /// What is false; `None` if the file cannot be read.
 fn found(file: &Value, _: Who) -> Option<Vec<String>> {
-    let keep = file.get("keep").map_or(Some(0.0), Value::as_f64)?;
-    let body = |which: &str| vectors(file.get(which)?.get("vertices")?);
-    let bodies = [body("moving")?, body("fixed")?];
-    let moves = [Moves::read(file.get("moving_motion")?)?, Moves::read(file.get("fixed_motion")?)?];
+    let keep = file.pointer("/query/motions/0/keep").map_or(Some(0.0), Value::as_f64)?;
+    let movers = file.pointer("/placement/motions/0")?;
+    let body = |k: usize| vectors(body_at(file, &movers[k])?.pointer("/convex/vertices")?);
+    let bodies = [body(0)?, body(1)?];
+    let moves = [Moves::read(&movers[0]["motion"])?, Moves::read(&movers[1]["motion"])?];
     let points = |time: f64, ends: bool| [0, 1].map(|k| moves[k].at(&bodies[k], time, ends));
     let named: Vec<f64> = planes(file)
         .iter()
@@ -417,7 +415,7 @@ fn found(file: &Value, _: Who) -> Option<Vec<String>> {
             return Some(vec![format!("they meet at {time}, before {reached}")]);
         }
     }
-    let meeting = file.pointer("/proof/meeting")?;
+    let meeting = file.pointer(&format!("{CONVEX_PROOF}/meeting"))?;
     if meeting.is_null() {
         return Some(Vec::new());
     }
@@ -460,13 +458,18 @@ fn solid_falsehood(file: &Value, who: Who) -> Option<String> {
 
 /// What is false of the facets that a file has: they are those of the shrunk solids for the library.
 fn found_of_solids(file: &Value, who: Who) -> Option<Vec<String>> {
-    let keep = file.get("keep").map_or(Some(0.0), Value::as_f64)?;
+    let keep = file.pointer("/query/motions/0/keep").map_or(Some(0.0), Value::as_f64)?;
     let facets = |k: usize| -> Option<Vec<Vec<DVec3>>> {
-        file.pointer(&format!("/parts/{k}/corners"))?.as_array()?.iter().map(vectors).collect()
+        file.pointer(&format!("/statement/motions/0/solids/parts/{k}/corners"))?
+            .as_array()?
+            .iter()
+            .map(vectors)
+            .collect()
     };
     let bodies = [facets(0)?, facets(1)?];
-    let moves = [Moves::read(file.get("moving_motion")?)?, Moves::read(file.get("fixed_motion")?)?];
-    let start = file.pointer("/proof/start")?;
+    let movers = file.pointer("/placement/motions/0")?;
+    let moves = [Moves::read(&movers[0]["motion"])?, Moves::read(&movers[1]["motion"])?];
+    let start = file.pointer(&format!("{SOLID_PROOF}/start"))?;
     let apart = start.get("apart").is_some();
     let crosses = |time: f64, ends: bool, by: f64| {
         let places = [0, 1].map(|k| -> Vec<Vec<Vector>> {
@@ -476,7 +479,7 @@ fn found_of_solids(file: &Value, who: Who) -> Option<Vec<String>> {
             .iter()
             .any(|f| places[1].iter().any(|g| near(f, g, keep) && meets([f, g], keep, by)))
     };
-    let spans = file.pointer("/proof/spans")?.as_array()?;
+    let spans = file.pointer(&format!("{SOLID_PROOF}/spans"))?.as_array()?;
     let reached = spans.last().map_or(Some(0.0), |span| span.get("until")?.as_f64())?;
     if !apart {
         // Of solids that overlap at once check.py says nothing.
@@ -492,7 +495,7 @@ fn found_of_solids(file: &Value, who: Who) -> Option<Vec<String>> {
     if let Some((time, _)) = all.into_iter().find(|(time, ends)| crosses(*time, *ends, 1.0)) {
         return Some(vec![format!("facets meet at {time}, before {reached}")]);
     }
-    let meeting = file.pointer("/proof/meeting")?;
+    let meeting = file.pointer(&format!("{SOLID_PROOF}/meeting"))?;
     if meeting.is_null() || meeting.pointer("/met/inside").is_some() {
         return Some(Vec::new());
     }
@@ -521,7 +524,7 @@ fn near(f: &[Vector], g: &[Vector], keep: f64) -> bool {
 /// What the library may refuse of a number that holds, beside the size of the bodies.
 const ROUNDED: f64 = 1e-9;
 
-/// Whether the library refuses a file of convex bodies for what it takes off for rounding.
+/// Whether the library refuses a file for what it takes off for rounding.
 fn is_marginal(file: &Value) -> bool {
     is_at_the_limit(file) || refused_for_rounding(&verify(&file.to_string()), size(file))
 }
@@ -529,13 +532,9 @@ fn is_marginal(file: &Value) -> bool {
 /// Returns the largest number of two motions, of which their rounding is a share.
 fn size(file: &Value) -> f64 {
     let all = super::mutants::pointers(file);
-    let of_motion = all.iter().filter(|at| at.contains("_motion/"));
+    let of_motion = all.iter().filter(|at| at.starts_with("/placement/motions/"));
     let sizes = of_motion.filter_map(|at| Some(file.pointer(at)?.as_f64()?.abs()));
     sizes.fold(0.0, f64::max)
-}
-
-fn is_marginal_of_solids(file: &Value) -> bool {
-    is_at_the_limit(file) || refused_for_rounding(&verify_solids(&file.to_string()), size(file))
 }
 
 /// Whether a reason is one of rounding: what is proven is hardly less than what is claimed, or planes that hold each for

@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::casts::{BAND, HUGE, drawn, other_normal, other_pair, other_weights, put};
 use super::file::{Bodies, differences, indices, is_at_limit, numbers, square, vector, vectors};
 use super::mutants::with;
-use super::{Claim, Kind, Who, checkers};
+use super::{Claim, Kind, Who};
 use crate::oracle::exact::{Dyadic, Ratio, Vector};
 use crate::oracle::nearest::depth;
 use crate::random::Random;
@@ -21,7 +21,6 @@ pub const DISTANCES: Kind = Kind {
     worst,
     falsehood,
     is_marginal,
-    verify: checkers::verify,
 };
 
 /// Depths.

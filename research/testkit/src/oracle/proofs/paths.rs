@@ -1,15 +1,12 @@
 //! Proofs of paths of joints, judged at some places of each row.
 
-use colltrans::Pose;
-use colltrans::Solid;
-use colltrans::motion::path::{
-    Frame, Joint, JointPath, Mechanism, PathBody, PathCast, PathProofFile, Place,
-};
+use colltrans::motion::path::{Frame, Joint, JointPath, Mechanism, PathBody, PathCast, Place};
+use colltrans::{Pose, ProofFile, Solid};
 use glam::DVec3;
 use serde_json::Value;
 
-use super::checkers::Verdict;
-use super::file::{numbers, vector, vectors};
+use super::checkers::verify;
+use super::file::{body_at, numbers, vector, vectors};
 use super::motions::{
     body, depth_is_false, first, is_at_the_limit, meets, met, pose, refused_for_rounding,
 };
@@ -21,16 +18,13 @@ use crate::random::Random;
 
 /// Paths of a few joints and bodies.
 pub const PATHS: Kind =
-    Kind { name: "paths", focus: "/proof", base, claims, worst, falsehood, is_marginal, verify };
+    Kind { name: "paths", focus: PROOF, base, claims, worst, falsehood, is_marginal };
+
+/// Where the proof is.
+const PROOF: &str = "/statement/path/proof";
 
 /// Places of each row that are looked at.
 const PLACES: usize = 4;
-
-fn verify(text: &str) -> Verdict {
-    let checked = PathProofFile::from_json(text).map_err(|error| error.to_string());
-    let checked = checked.and_then(|proof| proof.check().map_err(|error| error.to_string()));
-    checked.map_or_else(Verdict::Refused, |_| Verdict::Holds)
-}
 
 fn base(seed: u64) -> Option<String> {
     let random = &mut Random::stream(seed, &[0x9a_7104]);
@@ -78,7 +72,7 @@ fn base(seed: u64) -> Option<String> {
     let cast = PathCast::new(&mechanism, &path, bodies, pairs).ok()?;
     let keep = 10.0_f64.powf(random.range(-5.0, -1.0));
     let cast = if random.one_in(3) { cast.keeping(keep) } else { Ok(cast) }.ok()?;
-    let (_, file) = PathProofFile::answer(&cast, &[]).ok()?;
+    let (_, file) = ProofFile::with_path(&cast, &[]).ok()?;
     let text = file.to_json();
     (text.len() < 20_000).then_some(text)
 }
@@ -89,10 +83,12 @@ fn is_marginal(file: &Value) -> bool {
 }
 
 fn claims(file: &Value) -> Vec<Claim> {
-    let Some(times) = file.pointer("/path/times").and_then(numbers) else { return Vec::new() };
+    let Some(times) = file.pointer("/query/path/path/times").and_then(numbers) else {
+        return Vec::new();
+    };
     let [Some(&from), Some(&to)] = [times.first(), times.last()] else { return Vec::new() };
     let claim = |name: &str, weakest, strongest| {
-        let pointer = format!("/statement/{name}");
+        let pointer = format!("/statement/path/{name}");
         let is_there = file.pointer(&pointer).is_some_and(Value::is_number);
         is_there.then_some(Claim { pointer, weakest, strongest, band: 1e-9 })
     };
@@ -105,7 +101,7 @@ fn worst(file: &mut Value, random: &mut Random) {
         all.iter().filter_map(|at| at.strip_suffix(end)).map(ToOwned::to_owned).collect()
     };
     let (planes, parts) = (under("/alone"), under("/parts"));
-    let pairs = file.pointer("/statement/pairs").and_then(Value::as_array).map_or(0, Vec::len);
+    let pairs = file.pointer("/statement/path/pairs").and_then(Value::as_array).map_or(0, Vec::len);
     match random.index(10) {
         0..=3 if !planes.is_empty() => {
             let at = &planes[random.index(planes.len())];
@@ -139,28 +135,28 @@ fn worst(file: &mut Value, random: &mut Random) {
         5 => {
             let (row, share) = (random.index(4), random.pick(&[0.0, 0.5, 1.0, 5.0, -1.0]));
             let place = serde_json::json!({"row": row, "share": share});
-            *file = with(file, "/proof/meeting/place", Some(place));
+            *file = with(file, &format!("{PROOF}/meeting/place"), Some(place));
         }
         6 if pairs > 0 => {
             // Another pair, or none.
             let k = random.index(pairs);
-            let at = format!("/statement/pairs/{k}");
+            let at = format!("/statement/path/pairs/{k}");
             if random.one_in(2) {
                 *file = with(file, &at, Some(serde_json::json!(["body 0", "body 2"])));
             } else {
-                for list in ["/statement/pairs", "/proof/covers"] {
+                for list in ["/statement/path/pairs", "/statement/path/proof/covers"] {
                     *file = with(file, &format!("{list}/{k}"), None);
                 }
             }
         }
         7 if pairs > 0 => {
-            let at = format!("/proof/covers/{}/steps", random.index(pairs));
+            let at = format!("{PROOF}/covers/{}/steps", random.index(pairs));
             *file = with(file, &at, Some(Value::Array(Vec::new())));
         }
-        8 => met(file, "/proof/meeting/how/pieces/met", random),
+        8 => met(file, &format!("{PROOF}/meeting/how/pieces/met"), random),
         _ => {
-            *file = with(file, "/proof/meeting", Some(Value::Null));
-            *file = with(file, "/statement/upper", Some(Value::Null));
+            *file = with(file, &format!("{PROOF}/meeting"), Some(Value::Null));
+            *file = with(file, "/statement/path/upper", Some(Value::Null));
         }
     }
 }
@@ -179,12 +175,12 @@ struct Path {
 
 impl Path {
     fn read(file: &Value) -> Option<Self> {
-        let times = file.pointer("/path/times").and_then(numbers)?;
-        let rows = file.pointer("/path/rows")?.as_array()?;
+        let times = file.pointer("/query/path/path/times").and_then(numbers)?;
+        let rows = file.pointer("/query/path/path/rows")?.as_array()?;
         let rows = rows.iter().map(numbers).collect::<Option<Vec<_>>>()?;
         let (mut frames, mut column) = (Vec::new(), 0);
         let index = |of: &Value| of.as_u64().map(|k| k as usize);
-        for frame in file.get("frames")?.as_array()? {
+        for frame in file.pointer("/placement/robot/frames")?.as_array()? {
             let joint = frame.get("joint")?;
             let axis = joint.get("turning").map(|axis| (axis, true));
             let axis = axis.or_else(|| joint.get("sliding").map(|axis| (axis, false)));
@@ -196,7 +192,7 @@ impl Path {
             column += usize::from(axis.is_some());
         }
         let body = |of: &Value| -> Option<_> {
-            let shape = of.get("body")?;
+            let shape = body_at(file, of)?;
             let points = match shape.get("convex") {
                 Some(convex) => vectors(convex.get("vertices")?)?,
                 None => vectors(shape.pointer("/pieces/0/vertices")?)?,
@@ -204,8 +200,9 @@ impl Path {
             let name = of.get("name")?.as_str()?.to_owned();
             Some((name, index(of.get("frame")?), pose(of.get("pose")?)?, points))
         };
-        let bodies = file.get("bodies")?.as_array()?.iter().map(body).collect::<Option<_>>()?;
-        let keep = file.get("keep").map_or(Some(0.0), Value::as_f64)?;
+        let links = file.pointer("/placement/robot/bodies")?.as_array()?;
+        let bodies = links.iter().map(body).collect::<Option<_>>()?;
+        let keep = file.pointer("/query/path/keep").map_or(Some(0.0), Value::as_f64)?;
         Some(Self { times, rows, frames, bodies, keep })
     }
 
@@ -263,11 +260,11 @@ fn falsehood(file: &Value, who: Who) -> Option<String> {
 /// What is false; `None` if the file cannot be read.
 fn found(file: &Value, _: Who) -> Option<Vec<String>> {
     let path = Path::read(file)?;
-    let lower = file.pointer("/statement/lower")?.as_f64()?;
-    let upper = file.pointer("/statement/upper")?.as_f64();
-    let meeting = file.pointer("/proof/meeting")?;
-    let pairs = file.pointer("/statement/pairs")?.as_array()?;
-    let covers = file.pointer("/proof/covers")?.as_array()?;
+    let lower = file.pointer("/statement/path/lower")?.as_f64()?;
+    let upper = file.pointer("/statement/path/upper")?.as_f64();
+    let meeting = file.pointer(&format!("{PROOF}/meeting"))?;
+    let pairs = file.pointer("/statement/path/pairs")?.as_array()?;
+    let covers = file.pointer(&format!("{PROOF}/covers"))?.as_array()?;
     if covers.len() != pairs.len() {
         return Some(vec!["not a cover for each pair".into()]);
     }
@@ -306,9 +303,9 @@ fn found(file: &Value, _: Who) -> Option<Vec<String>> {
     }
     // Of pieces of solids a depth is their own.
     let both = [a, b].iter().all(|name| {
-        let of =
-            file["bodies"].as_array().and_then(|all| all.iter().find(|of| of["name"] == **name));
-        of.is_some_and(|of| of["body"].get("convex").is_some())
+        let links = file.pointer("/placement/robot/bodies").and_then(Value::as_array);
+        let of = links.and_then(|all| all.iter().find(|of| of["name"] == **name));
+        of.and_then(|of| body_at(file, of)).is_some_and(|body| body.get("convex").is_some())
     });
     let met = meeting.pointer("/how/pieces/met").filter(|_| both);
     Some(met.and_then(|met| depth_is_false(met, [&p, &q], 1e-11)).into_iter().collect())

@@ -1,12 +1,12 @@
 //! Proofs of one convex body among many, judged over all obstacles, one by one.
 
-use colltrans::{Among, ConvexPolyhedron, Obstacles, Pose, SceneProof};
+use colltrans::{Among, ConvexPolyhedron, Obstacles, Pose, ProofFile};
 use glam::DVec3;
 use serde_json::Value;
 
 use super::casts::{other_normal, other_weights};
-use super::checkers::Verdict;
-use super::file::{Bodies, is_at_limit, numbers, vector, vectors};
+use super::checkers::{Verdict, verify};
+use super::file::{Bodies, body_at, is_at_limit, numbers, vector, vectors};
 use super::motions::{body, first, is_at_the_limit, pose, refused_for_rounding};
 use super::mutants::{number, pointers, with};
 use super::{Claim, Kind, Who};
@@ -15,25 +15,11 @@ use crate::oracle::nearest::depth;
 use crate::random::Random;
 
 /// The nearest obstacle, those within a length, and what stops the body.
-pub const SCENES: Kind = Kind {
-    name: "scenes",
-    focus: "/statement",
-    base,
-    claims,
-    worst,
-    falsehood,
-    is_marginal,
-    verify,
-};
+pub const SCENES: Kind =
+    Kind { name: "scenes", focus: "/statement", base, claims, worst, falsehood, is_marginal };
 
 /// What a bound may be off where an obstacle is passed, in noises: what counts as sliding, or as being behind.
 const PASSED: f64 = 300.0;
-
-fn verify(text: &str) -> Verdict {
-    let checked = SceneProof::from_json(text).map_err(|error| error.to_string());
-    let checked = checked.and_then(|proof| proof.check().map_err(|error| error.to_string()));
-    checked.map_or_else(Verdict::Refused, |()| Verdict::Holds)
-}
 
 fn base(seed: u64) -> Option<String> {
     let random = &mut Random::stream(seed, &[0x5ce_4e5]);
@@ -52,10 +38,10 @@ fn base(seed: u64) -> Option<String> {
         asked = asked.with_solid_options(asked.solid_options().with_keep(keep));
     }
     let file = match random.index(4) {
-        0 => SceneProof::of_nearest(&asked).ok()??,
-        1 => SceneProof::of_within(&asked, random.range(0.0, 3.0)).ok()?,
-        2 => SceneProof::of_clearance(&asked, random.grid(-1, 1)).ok()?,
-        _ => SceneProof::of_clearance(&asked, random.direction()).ok()?,
+        0 => ProofFile::of_nearest(&asked).ok()??,
+        1 => ProofFile::of_within(&asked, random.range(0.0, 3.0)).ok()?,
+        2 => ProofFile::of_scene_clearance(&asked, random.grid(-1, 1)).ok()?,
+        _ => ProofFile::of_scene_clearance(&asked, random.direction()).ok()?,
     };
     Some(file.to_json())
 }
@@ -73,7 +59,7 @@ fn is_marginal(file: &Value) -> bool {
         Verdict::Refused(reason) => reason.starts_with("not a saved proof"),
         _ => false,
     };
-    let passed = file.pointer("/statement/clearance/passed").is_some();
+    let passed = file.pointer("/statement/scene_clearance/passed").is_some();
     is_at_the_limit(file)
         || has_a_normal_at_the_limit(file)
         || refused_for_rounding(&verdict(file), 0.0)
@@ -84,7 +70,7 @@ fn is_marginal(file: &Value) -> bool {
 /// Checks whether a normal of bodies that never meet is across the direction up to the limit of what is admitted.
 fn has_a_normal_at_the_limit(file: &Value) -> bool {
     let vector_at = |at: &str| file.pointer(at).and_then(vector);
-    let Some(direction) = vector_at("/statement/clearance/direction") else { return false };
+    let Some(direction) = vector_at("/statement/scene_clearance/direction") else { return false };
     let all = super::mutants::pointers(file);
     let normals = all.iter().filter(|at| at.ends_with("/separated/certificate/normal"));
     let along = |normal: DVec3| normal.dot(direction) / direction.length();
@@ -97,7 +83,7 @@ fn claims(file: &Value) -> Vec<Claim> {
         ("/statement/nearest/near/convex/distance", 1e300, 0.0),
         ("/statement/within/length", 0.0, 1e300),
         ("/statement/within/length", 1e300, 0.0),
-        ("/statement/clearance/lower", 0.0, 1e300),
+        ("/statement/scene_clearance/lower", 0.0, 1e300),
     ]
     .into_iter()
     .filter(|(pointer, ..)| file.pointer(pointer).is_some_and(Value::is_number))
@@ -115,7 +101,7 @@ fn worst(file: &mut Value, random: &mut Random) {
     let ending = |end: &str| -> Vec<&String> {
         all.iter().filter(|at| at.starts_with("/statement") && at.ends_with(end)).collect()
     };
-    let count = file["obstacles"].as_array().map_or(1, Vec::len);
+    let count = file.pointer("/placement/poses").and_then(Value::as_array).map_or(1, Vec::len);
     let pick = |of: &[&String], random: &mut Random| {
         (!of.is_empty()).then(|| of[random.index(of.len())].clone())
     };
@@ -152,7 +138,7 @@ fn worst(file: &mut Value, random: &mut Random) {
                 "/statement/within/apart",
                 "/statement/within/closer",
                 "/statement/within/undecided",
-                "/statement/clearance/passed",
+                "/statement/scene_clearance/passed",
             ];
             let there: Vec<String> = lists
                 .iter()
@@ -178,18 +164,19 @@ fn worst(file: &mut Value, random: &mut Random) {
             }
         }
         5 => {
-            for at in ["/statement/nearest/obstacle", "/statement/clearance/stop"] {
+            for at in ["/statement/nearest/obstacle", "/statement/scene_clearance/stop"] {
                 *file = with(file, at, Some(Value::from(random.index(count))));
             }
         }
         6 => {
-            let old = file.pointer("/statement/clearance/direction").and_then(vector);
+            let old = file.pointer("/statement/scene_clearance/direction").and_then(vector);
             let Some(d) = old else { return };
             let d = (d + random.direction() * random.pick(&[1e-15, 1e-3])).to_array();
-            *file = with(file, "/statement/clearance/direction", Some(Value::from(d.to_vec())));
+            *file =
+                with(file, "/statement/scene_clearance/direction", Some(Value::from(d.to_vec())));
         }
         _ => {
-            let place = format!("/obstacles/{}/pose/translation", random.index(count));
+            let place = format!("/placement/poses/{}/pose/translation", random.index(count));
             let Some(at) = file.pointer(&place).and_then(vector) else { return };
             let at = (at + random.direction() * random.pick(&[1e-15, 1e-9, 0.1])).to_array();
             *file = with(file, &place, Some(Value::from(at.to_vec())));
@@ -199,17 +186,19 @@ fn worst(file: &mut Value, random: &mut Random) {
 
 /// The moving body and each obstacle.
 fn pairs(file: &Value) -> Option<Vec<Bodies>> {
-    let bodies = file.get("bodies")?.as_array()?;
     let placed = |at: &Value| {
-        let body = bodies.get(at.get("body")?.as_u64()? as usize)?;
+        let body = body_at(file, at)?;
         let points = vectors(body.pointer("/convex/vertices")?)?;
         let pose: Pose = pose(at.get("pose")?)?;
         let reach = points.iter().map(|v| v.length()).fold(0.0, f64::max);
         Some((place(pose.matrix(), pose.translation(), &points), reach, pose.translation()))
     };
-    let (p, reach, origin) = placed(file.get("moving")?)?;
-    let keep = file.pointer("/choices/keep").map_or(Some(0.0), Value::as_f64)?;
-    let direction = match file.pointer("/statement/clearance/direction") {
+    let [moving, obstacles @ ..] = &file.pointer("/placement/poses")?.as_array()?[..] else {
+        return None;
+    };
+    let (p, reach, origin) = placed(moving)?;
+    let keep = file.pointer("/query/scene/keep").map_or(Some(0.0), Value::as_f64)?;
+    let direction = match file.pointer("/statement/scene_clearance/direction") {
         Some(direction) => Some(vector(direction)?),
         None => None,
     };
@@ -224,7 +213,7 @@ fn pairs(file: &Value) -> Option<Vec<Bodies>> {
             size,
         })
     };
-    file.get("obstacles")?.as_array()?.iter().map(of).collect()
+    obstacles.iter().map(of).collect()
 }
 
 fn falsehood(file: &Value, who: Who) -> Option<String> {
@@ -271,9 +260,9 @@ fn found(file: &Value, _: Who) -> Option<Vec<String>> {
         }
         return Some(Vec::new());
     }
-    let of = file.pointer("/statement/clearance")?;
+    let of = file.pointer("/statement/scene_clearance")?;
     let lower = of.get("lower")?.as_f64().unwrap_or(f64::INFINITY);
-    let graze = file.pointer("/choices/graze_tolerance").map_or(Some(0.0), Value::as_f64)?;
+    let graze = file.pointer("/query/scene/graze_tolerance").map_or(Some(0.0), Value::as_f64)?;
     let d = vector(of.get("direction")?)?;
     let claim = |k: usize| {
         let passed = of.get("passed")?.as_array()?;

@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::casts::{BAND, HUGE, false_gap, first_of, other_normal, other_weights, put};
 use super::file::{Bodies, is_at_limit, numbers, square, vector};
 use super::mutants::with;
-use super::{Claim, Kind, Who, checkers};
+use super::{Claim, Kind, Who};
 use crate::oracle::exact::{Ratio, Vector};
 use crate::oracle::solids::facets::rule;
 use crate::oracle::solids::{nearest, settings};
@@ -23,7 +23,6 @@ pub const CLEARANCES: Kind = Kind {
     worst,
     falsehood,
     is_marginal,
-    verify: checkers::verify,
 };
 
 /// Distances.
@@ -105,7 +104,7 @@ fn claims(file: &Value) -> Vec<Claim> {
 }
 
 fn worst(file: &mut Value, random: &mut Random) {
-    let toward = file.get("direction").and_then(vector).unwrap_or(DVec3::X);
+    let toward = file.pointer("/query/cast/direction").and_then(vector).unwrap_or(DVec3::X);
     let normal = format!("{SEPARATION}/normal");
     if let Some(n) = file.pointer(&normal).and_then(vector) {
         let other = other_normal(n, toward, random).to_array();
@@ -205,7 +204,8 @@ fn false_clearance(bodies: &Bodies, file: &Value, who: Who) -> Option<String> {
 }
 
 fn is_marginal(file: &Value) -> bool {
-    let unit = file.get("direction").and_then(vector).map_or(DVec3::X, DVec3::normalize);
+    let unit =
+        file.pointer("/query/cast/direction").and_then(vector).map_or(DVec3::X, DVec3::normalize);
     let mut near = false;
     if let Some(normal) = file.pointer(&format!("{SEPARATION}/normal")).and_then(vector) {
         near |= is_at_limit(normal.length() - 1.0) || is_at_limit(normal.dot(unit));

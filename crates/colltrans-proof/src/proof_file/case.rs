@@ -1,0 +1,115 @@
+//! A question about a motion as a file.
+
+use std::borrow::Cow;
+
+use serde::{Deserialize, Serialize};
+
+use super::motion::{convex_cast, kept};
+use colltrans_convex::body::ConvexPolyhedron;
+use colltrans_convex::cast::CaseError;
+use colltrans_convex::cast::replay::BodyRecord;
+use colltrans_convex::setting::error::QueryError;
+use colltrans_motion::{Motion, MotionCast, Moving};
+
+/// What a file of this version calls itself.
+const FORMAT: &str = "colltrans motion case 1";
+
+/// A question about a motion that owns its bodies, read from a file.
+///
+/// ```
+/// use colltrans::glam::DVec3;
+/// use colltrans::motion::{Motion, MotionCase, MotionCast};
+/// use colltrans::{ConvexPolyhedron, Pose};
+///
+/// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
+/// let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 2.0)?;
+/// let cast = MotionCast::new(cube.along(&turn), cube.at(Pose::from_translation(DVec3::X * 1.2)?))?;
+///
+/// let saved: String = MotionCase::of(&cast).to_json();
+/// let case = MotionCase::from_json(&saved)?;
+/// assert_eq!(case.cast().first_contact()?, cast.first_contact()?);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct MotionCase {
+    bodies: Box<[ConvexPolyhedron; 2]>,
+    motions: [Motion; 2],
+    keep: f64,
+}
+
+impl MotionCase {
+    /// Of a question.
+    pub fn of(cast: &MotionCast) -> Self {
+        Self {
+            bodies: Box::new(cast.bodies().map(ConvexPolyhedron::clone)),
+            motions: cast.motions().map(Motion::clone),
+            keep: kept(cast),
+        }
+    }
+
+    /// The question.
+    ///
+    /// # Panics
+    /// Never: the gap was checked when the question was made or read.
+    pub fn cast(&self) -> MotionCast<'_> {
+        self.asked().expect("a gap that was checked")
+    }
+
+    fn asked(&self) -> Result<MotionCast<'_>, QueryError> {
+        let side =
+            |k: usize| Moving { body: &self.bodies[k], motion: Cow::Borrowed(&self.motions[k]) };
+        convex_cast([side(0), side(1)], self.keep)
+    }
+
+    /// As a file: bodies, their motions and what is to be kept, exact in bits. [`Self::from_json`] reads it.
+    ///
+    /// # Panics
+    /// Never: all numbers can be written.
+    pub fn to_json(&self) -> String {
+        let [moving, fixed] = self.bodies.each_ref().map(BodyRecord::of);
+        let [moving_motion, fixed_motion] = self.motions.clone();
+        let (format, keep) = (FORMAT.into(), self.keep);
+        let file = File { format, moving, moving_motion, fixed, fixed_motion, keep };
+        serde_json::to_string(&file).expect("numbers and names")
+    }
+
+    /// From what [`Self::to_json`] has written.
+    ///
+    /// # Errors
+    /// What is wrong with it.
+    pub fn from_json(text: &str) -> Result<Self, CaseError> {
+        // Some editors begin a file with a byte-order mark.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let Named { format } = serde_json::from_str(text)?;
+        if format != FORMAT {
+            return Err(CaseError::Format { found: format, known: FORMAT });
+        }
+        let File { moving, moving_motion, fixed, fixed_motion, keep, .. } =
+            serde_json::from_str(text)?;
+        let body = |of: BodyRecord, which| {
+            of.body().map_err(|error| CaseError::Body { which, error: error.into() })
+        };
+        let bodies = Box::new([body(moving, "moving")?, body(fixed, "fixed")?]);
+        let case = Self { bodies, motions: [moving_motion, fixed_motion], keep };
+        case.asked()?;
+        Ok(case)
+    }
+}
+
+/// The format of a file.
+#[derive(Deserialize)]
+struct Named {
+    format: String,
+}
+
+#[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+struct File {
+    format: String,
+    moving: BodyRecord,
+    moving_motion: Motion,
+    fixed: BodyRecord,
+    fixed_motion: Motion,
+    #[serde(default, skip_serializing_if = "colltrans_kernel::written::is_zero")]
+    keep: f64,
+}

@@ -1,0 +1,120 @@
+//! How a statement is checked: against what it is about, without a search.
+
+use super::ProofFile;
+use super::error::{ProofError, ProofFileError};
+use super::file::{Placement, Query};
+use super::path::PathSetting;
+use super::scene::Scene;
+use super::statement::Statement;
+use colltrans_convex::cast::Cast;
+use colltrans_convex::pair::Pair;
+use colltrans_convex::setting::{check_direction, check_keep};
+use colltrans_removal::free::FreeDirections;
+use colltrans_solid::kinds::ByKind;
+
+/// A statement that can be checked against what it is about.
+pub trait Verify<'a, Setting> {
+    /// Checks all of it, without a search.
+    ///
+    /// # Errors
+    /// The first thing that is not proven.
+    fn verify(&self, about: &Setting) -> Result<Proven<'a>, ProofError>;
+}
+
+/// What a check has proven.
+pub enum Proven<'a> {
+    /// What the statement says.
+    Statement,
+    /// Bounds of the time at which bodies first meet: infinity if they are not proven to meet.
+    Time([f64; 2]),
+    /// Along which directions the moving body can leave.
+    Directions(Box<FreeDirections<'a>>),
+}
+
+impl std::fmt::Debug for Proven<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            Self::Statement => f.write_str("Statement"),
+            Self::Time(bounds) => f.debug_tuple("Time").field(bounds).finish(),
+            Self::Directions(_) => f.write_str("Directions"),
+        }
+    }
+}
+
+impl Proven<'_> {
+    /// Returns the bounds of the time at which bodies first meet, if the proof is about one.
+    pub const fn time(&self) -> Option<[f64; 2]> {
+        if let Self::Time(bounds) = self { Some(*bounds) } else { None }
+    }
+}
+
+/// A statement with what it is about.
+type Claim<'a> = Box<dyn FnOnce() -> Result<Proven<'a>, ProofError> + 'a>;
+
+fn claim<'a, S: 'a, V: Verify<'a, S>>(statement: &'a V, about: S) -> Claim<'a> {
+    Box::new(move || statement.verify(&about))
+}
+
+impl ProofFile {
+    /// Checks it as [`Cast::verify`] and [`Pair::verify`] do, without a search.
+    ///
+    /// # Errors
+    /// The first thing that is not proven.
+    pub fn check(&self) -> Result<Proven<'_>, ProofError> {
+        self.claim()?()
+    }
+
+    /// Joins the statement with what it is about. Fails if they do not fit.
+    pub(super) fn claim(&self) -> Result<Claim<'_>, ProofFileError> {
+        use ByKind::{Convex, Solid};
+        Ok(match (&self.query, &self.placement, &self.statement) {
+            (Query::Cast(along), Placement::Poses(places), statement) => {
+                check_direction(along.direction)?;
+                check_keep(along.keep)?;
+                match (statement, self.two(places)?) {
+                    (Statement::Contacts(of), [Convex(p), Convex(q)])
+                        if of.first.or(of.last).is_some() =>
+                    {
+                        claim(of, Cast::new(p, q, along.direction)?.keeping(along.keep)?)
+                    }
+                    (Statement::Separation(of), [Convex(p), Convex(q)]) => {
+                        claim(of, Cast::new(p, q, along.direction)?.keeping(along.keep)?)
+                    }
+                    (Statement::Clearance(of), [Solid(p), Solid(q)]) => claim(of, ([p, q], *along)),
+                    _ => return Err(ProofFileError::Statement),
+                }
+            }
+            (Query::Pair, Placement::Poses(places), statement) => {
+                match (statement, self.two(places)?) {
+                    (Statement::Distance(of), [Convex(p), Convex(q)])
+                        if of.gap.is_some() || of.near.is_some() =>
+                    {
+                        claim(of, Pair::new(p, q)?)
+                    }
+                    (Statement::Depth(of), [Convex(p), Convex(q)]) => claim(of, Pair::new(p, q)?),
+                    (Statement::SolidDistance(of), [Solid(p), Solid(q)]) => {
+                        claim(of, Pair::new(p, q)?)
+                    }
+                    (Statement::FreeDirections(of), [Solid(p), Solid(q)]) => claim(of, [p, q]),
+                    _ => return Err(ProofFileError::Statement),
+                }
+            }
+            (Query::Scene(choices), Placement::Poses(places), statement) => {
+                let scene = Scene::new(&self.bodies, places, *choices)?;
+                match statement {
+                    Statement::Nearest(of) => claim(of, scene),
+                    Statement::Within(of) => claim(of, scene),
+                    Statement::SceneClearance(of) => claim(of, scene),
+                    _ => return Err(ProofFileError::Statement),
+                }
+            }
+            (Query::Motions(asked), Placement::Motions(movers), Statement::Motions(of)) => {
+                claim(of, self.motions(asked, movers, of)?)
+            }
+            (Query::Path(joints), Placement::Robot(robot), Statement::Path(of)) => {
+                claim(of, PathSetting::new(&self.bodies, robot, joints, &of.pairs)?)
+            }
+            _ => return Err(ProofFileError::Statement),
+        })
+    }
+}

@@ -59,7 +59,7 @@ fn told(
     words: &str,
 ) -> Value {
     let mut fields = Map::new();
-    let mut say = |name: &str, value: Value| drop(fields.insert(name.into(), value));
+    let mut say = |name: &str, value: Value| fields.insert(name.into(), value);
     say("holds", json!(true));
     if let Some(count) = proof.obstacles() {
         say("obstacles", json!(count));
@@ -96,7 +96,9 @@ fn told(
             say("lower", json!(proof.lower));
             say("upper", json!(proof.near.distance()));
         }
-        Statement::FreeDirections(of) => say("tolerance", json!(of.tolerance)),
+        Statement::FreeDirections(of) => {
+            say("tolerance", json!(of.tolerance));
+        }
         Statement::Nearest(of) => {
             say("obstacle", json!(of.obstacle));
             say("lower", json!(of.lower));
@@ -117,7 +119,9 @@ fn told(
             of.lower.is_finite().then(|| say("distance", json!(of.lower)));
         }
         Statement::Motions(_) => {}
-        Statement::Path(of) => say("pairs", json!(of.pairs)),
+        Statement::Path(of) => {
+            say("pairs", json!(of.pairs));
+        }
     }
     if let Some([lower, upper]) = time {
         let upper = upper.is_finite().then_some(upper);

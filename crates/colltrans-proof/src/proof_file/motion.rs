@@ -53,10 +53,10 @@ pub(super) fn kept(cast: &MotionCast<'_>) -> f64 {
 }
 
 /// Returns what is asked of convex bodies, with the gap that is to be kept, or less a depth that is tolerated.
-pub(super) fn convex_cast<'a>(
-    [moving, fixed]: [Moving<'a>; 2],
+pub(super) fn convex_cast(
+    [moving, fixed]: [Moving<'_>; 2],
     keep: f64,
-) -> Result<MotionCast<'a>, QueryError> {
+) -> Result<MotionCast<'_>, QueryError> {
     let cast = MotionCast::new(moving, fixed)?;
     if keep < 0.0 { cast.tolerating(-keep) } else { cast.keeping(keep) }
 }
@@ -143,6 +143,9 @@ impl ProofFile {
     ///
     /// # Errors
     /// No proofs, one that is not about motions, and pairs that keep several gaps or are shrunk.
+    ///
+    /// # Panics
+    /// Never: all numbers can be written.
     pub fn of_motions(proofs: Vec<Self>) -> Result<Self, ProofFileError> {
         let (mut bodies, mut known) = (Vec::new(), HashMap::new());
         let (mut movers, mut asked, mut statements) = (Vec::new(), Vec::new(), Vec::new());
@@ -353,10 +356,10 @@ fn meet(keep: f64) -> String {
 }
 
 /// Returns what is asked of solids.
-fn solid_cast<'a>(
-    [moving, fixed]: [Moving<'a, Solid>; 2],
+fn solid_cast(
+    [moving, fixed]: [Moving<'_, Solid>; 2],
     Timed { keep, tolerance }: Timed,
-) -> Result<MotionCast<'a, Solid>, QueryError> {
+) -> Result<MotionCast<'_, Solid>, QueryError> {
     let cast = MotionCast::<Solid>::new(moving, fixed)?.keeping(keep)?;
     match tolerance {
         Some(tolerance) => cast.tolerating(tolerance),

@@ -55,12 +55,9 @@ impl StoredBody {
             ByKind::Solid(placed) => placed.body,
         };
         // Of a union whatever hangs together is a piece of its own.
-        let whole = Self::solid(vec![PieceRecord::of(solid)], body);
-        let parts = || Self::solid(PieceRecord::parts(solid), body);
-        let found = whole.ok().filter(|made| made.is_same(solid));
-        found
-            .or_else(|| parts().ok().filter(|made| made.is_same(solid)))
-            .ok_or(ProofFileError::Changed { body })
+        let ways = [|of: &Solid| vec![PieceRecord::of(of)], PieceRecord::parts];
+        let mut made = ways.iter().filter_map(|pieces| Self::solid(pieces(solid), body).ok());
+        made.find(|made| made.is_same(solid)).ok_or(ProofFileError::Changed { body })
     }
 
     fn solid(pieces: Vec<PieceRecord>, body: usize) -> Result<Self, ProofFileError> {
@@ -70,11 +67,10 @@ impl StoredBody {
     pub(super) fn read(file: BodyFile, body: usize) -> Result<Self, ProofFileError> {
         match file {
             BodyFile::Convex(record) => {
-                let refused = |error: colltrans_convex::body::error::BuildError| {
-                    ProofFileError::Body { body, error: error.into() }
-                };
-                let made = AnyBody::from(record.body().map_err(refused)?);
-                Ok(Self { body: made, pieces: Vec::new() })
+                let made = record.body();
+                let made =
+                    made.map_err(|error| ProofFileError::Body { body, error: error.into() })?;
+                Ok(Self { body: AnyBody::from(made), pieces: Vec::new() })
             }
             BodyFile::Pieces(pieces) => Self::solid(pieces, body),
         }

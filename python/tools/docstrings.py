@@ -1,99 +1,93 @@
-"""Docstrings of the extension into its stub, so that editors show them: one text, told twice.
+"""Writes the docstrings of the extension into the stub of each wheel: editors read only the stub.
 
-``python python/tools/docstrings.py`` writes them, as the installed extension has them;
-``--check`` says whether the stub has the same.
+``python python/tools/docstrings.py dist/*.whl`` changes the wheels in place. It loads their
+extension, so it runs on a platform that they are for. It needs the package ``wheel``.
 """
 
-import argparse
 import ast
 import inspect
 import subprocess
 import sys
+from importlib.machinery import ExtensionFileLoader, ModuleSpec
+from importlib.util import module_from_spec
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from textwrap import indent
+from types import ModuleType
 from typing import Any
 
-from colltrans import _colltrans
 
-STUB = Path(__file__).parents[1] / "src" / "colltrans" / "_colltrans.pyi"
-Edit = tuple[tuple[int, int], tuple[int, int], str]
+def documented(stub: str, extension: ModuleType) -> str:
+    """Returns a stub with the docstrings of the extension; of overloads only the first has one."""
+    module = ast.parse(stub)
+    found = _docstrings(module, extension)
+    # A class of the stub alone documents what the classes derived from it have in common.
+    classes = [node for node in module.body if isinstance(node, ast.ClassDef)]
+    owners: dict[str, Any] = {}
+    for node in reversed(classes):
+        owner = owners.setdefault(node.name, getattr(extension, node.name, None))
+        owners |= {ast.unparse(base): owner for base in node.bases}
+        if not hasattr(extension, node.name):
+            found += _docstrings(node, owner)
+    lines = stub.splitlines()
+    for node, text in sorted(found, key=lambda each: -each[0].lineno):
+        _insert(lines, node, text)
+    return "\n".join(lines) + "\n"
 
 
-def edits_of(module: ast.Module) -> list[Edit]:
-    """What is to be put in the place of what, from the first to the last."""
-    edits, told = [], set()
-    for node in module.body:
-        thing = getattr(_colltrans, getattr(node, "name", ""), None)
-        if thing is None or isinstance(node, (ast.Assign, ast.AnnAssign)):
+def _docstrings(node: Any, owner: Any) -> list[tuple[Any, str]]:
+    """Returns the definitions inside a module or class, and their docstrings."""
+    found: dict[str, tuple[Any, str]] = {}
+    inner = []
+    for child in node.body:
+        thing = inspect.getattr_static(owner, getattr(child, "name", ""), None)
+        if thing is None or child.name.startswith("_") or child.name in found:
             continue
-        if isinstance(node, ast.FunctionDef) and node.name not in told:
-            edits += edit_of(node, thing)
-            told.add(node.name)
-        if isinstance(node, ast.ClassDef):
-            edits += edit_of(node, thing) + members_of(node, thing)
-    return edits
+        if text := getattr(thing, "__func__", thing).__doc__:
+            found[child.name] = (child, inspect.cleandoc(text))
+        if isinstance(child, ast.ClassDef):
+            inner += _docstrings(child, thing)
+    return [*found.values(), *inner]
 
 
-def members_of(node: ast.ClassDef, thing: Any) -> list[Edit]:
-    """Of an overloaded method the first has the text."""
-    edits, told = [], set()
-    for member in node.body:
-        if isinstance(member, ast.FunctionDef) and not member.name.startswith("_"):
-            if member.name not in told:
-                edits += edit_of(member, inspect.getattr_static(thing, member.name))
-            told.add(member.name)
-    return edits
-
-
-def edit_of(node: ast.ClassDef | ast.FunctionDef, thing: Any) -> list[Edit]:
-    text = getattr(thing, "__func__", thing).__doc__
-    if not text:
-        return []
-    margin = " " * (node.col_offset + 4)
-    lines = inspect.cleandoc(text)
-    closing = "\n" if "\n" in lines else ""
-    raw = "r" if "\\" in lines else ""
-    written = indent(f'{raw}"""{lines}{closing}"""', margin).lstrip()
+def _insert(lines: list[str], node: Any, text: str) -> None:
+    """Puts a docstring before the body of a definition, or in the place of its dots."""
+    raw, end = "r" if "\\" in text else "", "\n" if "\n" in text else ""
+    docstring = indent(f'{raw}"""{text}{end}"""', " " * (node.col_offset + 4))
     first = node.body[0]
-    if isinstance(first, ast.Expr):  # The text that was there, or dots, maybe behind the colon.
-        place = (first.lineno, first.col_offset)
-        begins = "\n" + margin if first.col_offset > len(margin) else ""
-        return [(place, (first.end_lineno or 0, first.end_col_offset or 0), begins + written)]
-    decorators = getattr(first, "decorator_list", [])
-    place = (min(part.lineno for part in (first, *decorators)), len(margin))
-    return [(place, place, f"{written}\n\n{margin}")]
+    line = min([first.lineno, *(each.lineno for each in getattr(first, "decorator_list", []))]) - 1
+    if isinstance(first, ast.Expr):
+        before = lines[line][: first.col_offset].rstrip()
+        lines[line : line + 1] = [before, docstring] if before else [docstring]
+    else:
+        lines.insert(line, docstring)
 
 
-def told(source: str) -> str:
-    """The stub with the docstrings that it should have."""
-    lines = source.splitlines(keepends=True)
-    for (line, column), (last, until), text in reversed(edits_of(ast.parse(source))):
-        before = lines[line - 1].encode()[:column].decode()
-        after = lines[last - 1].encode()[until:].decode()
-        if text.startswith("\n"):
-            before = before.rstrip()
-        lines[line - 1 : last] = [before + text + after]
-    command = ["ruff", "format", "--stdin-filename", str(STUB), "-"]
-    formatted = subprocess.run(
-        command, input="".join(lines), capture_output=True, text=True, check=True
-    )
-    return formatted.stdout
+def write_docstrings(wheel: Path) -> None:
+    """Rewrites a wheel with docstrings in its stub."""
+    # Windows cannot remove an extension that is loaded.
+    with TemporaryDirectory(ignore_cleanup_errors=True) as folder:
+        _run_wheel("unpack", wheel, "--dest", folder)
+        (content,) = Path(folder).iterdir()
+        package = content / "colltrans"
+        (library,) = (*package.glob("_colltrans*.so"), *package.glob("_colltrans*.pyd"))
+        stub = package / "_colltrans.pyi"
+        stub.write_text(documented(stub.read_text("utf-8"), _load(library)), "utf-8")
+        _run_wheel("pack", content, "--dest", wheel.parent)
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--check", action="store_true", help="write nothing")
-    checks = parser.parse_args().check
-    source = STUB.read_text()
-    written = told(source)
-    if written == source:
-        return 0
-    if checks:
-        print(f"{STUB} has other docstrings: run python python/tools/docstrings.py")
-        return 1
-    STUB.write_text(written)
-    return 0
+def _load(library: Path) -> ModuleType:
+    """Loads an extension without the package around it, whose dependencies may be missing."""
+    loader = ExtensionFileLoader("_colltrans", str(library))
+    module = module_from_spec(ModuleSpec("_colltrans", loader, origin=str(library)))
+    loader.exec_module(module)
+    return module
+
+
+def _run_wheel(*words: str | Path) -> None:
+    subprocess.run([sys.executable, "-m", "wheel", *words], check=True)
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    for name in sys.argv[1:]:
+        write_docstrings(Path(name))

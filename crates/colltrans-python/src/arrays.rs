@@ -14,6 +14,11 @@ use pyo3::types::{PyFloat, PyInt, PyList, PyTuple};
 
 use crate::errors::input;
 
+/// An array of numbers for Python.
+pub(crate) type Vector<'py> = Bound<'py, PyArray1<f64>>;
+/// An array of indices for Python.
+pub(crate) type Indices<'py> = Bound<'py, PyArray1<u32>>;
+
 /// Up to 4 x 4 numbers.
 pub(crate) struct Numbers {
     pub(crate) values: [f64; 16],
@@ -171,10 +176,7 @@ pub(crate) fn read_only<T: Element, D: numpy::ndarray::Dimension>(
 }
 
 /// Numbers of vertices or facets for Python.
-pub(crate) fn ids<'py, T: Copy + Into<u32>>(
-    py: Python<'py>,
-    of: &[T],
-) -> Bound<'py, PyArray1<u32>> {
+pub(crate) fn ids<'py, T: Copy + Into<u32>>(py: Python<'py>, of: &[T]) -> Indices<'py> {
     PyArray1::from_iter(py, of.iter().map(|&number| number.into()))
 }
 

@@ -36,6 +36,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{faces, points, table};
 use crate::errors::{OrRaise, error};
+use crate::frozen::getters;
 use crate::pool;
 
 /// Time between two looks for signals.
@@ -244,6 +245,13 @@ fn role(name: Option<&str>) -> PyResult<Option<Role>> {
     name.map(named).transpose()
 }
 
+getters!(Assembly, |it| {
+    names: Vec<String> = it.0.parts().iter().map(|part| part.name().to_owned()).collect();
+    chord_errors: Vec<Option<f64>> = it.0.parts().iter().map(Part::chord_error).collect();
+    unit: Option<String> = it.0.unit().map(str::to_owned);
+    notes: Vec<String> = it.0.notes().to_vec();
+});
+
 #[pymethods]
 impl Assembly {
     #[new]
@@ -360,11 +368,6 @@ impl Assembly {
         self.0.group(&names).or_raise()
     }
 
-    #[getter]
-    fn names(&self) -> Vec<String> {
-        self.0.parts().iter().map(|part| part.name().to_owned()).collect()
-    }
-
     /// The vertices and triangles of all parts, in the world.
     fn meshes<'py>(&self, py: Python<'py>) -> PyResult<Vec<Surface<'py>>> {
         let mesh = |part: &colltrans_assembly::Part| {
@@ -373,21 +376,6 @@ impl Assembly {
             Ok((vertices, table(py, solid.triangles().iter().copied())?))
         };
         self.0.parts().iter().map(mesh).collect()
-    }
-
-    #[getter]
-    fn chord_errors(&self) -> Vec<Option<f64>> {
-        self.0.parts().iter().map(Part::chord_error).collect()
-    }
-
-    #[getter]
-    fn unit(&self) -> Option<String> {
-        self.0.unit().map(str::to_owned)
-    }
-
-    #[getter]
-    fn notes(&self) -> Vec<String> {
-        self.0.notes().to_vec()
     }
 
     fn index(&self, name: &str) -> PyResult<usize> {

@@ -4,14 +4,14 @@ use std::path::PathBuf;
 
 use colltrans::glam::DVec3;
 use colltrans_mesh::body::{BodyOptions, load_convex};
-use numpy::{IntoPyArray, PyArray1, PyArray2};
+use numpy::{IntoPyArray, PyArray2};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 
 use crate::arguments::refuse_mesh_object;
-use crate::arrays::{self, faces, ids, points, read_only, row, table, vector};
+use crate::arrays::{self, Indices, Vector, faces, ids, points, read_only, row, table, vector};
 use crate::errors::{OrRaise, error};
-use crate::frozen::{Options, Shown, html, show};
+use crate::frozen::{Options, Shown, getters, html, show};
 use crate::offset::OffsetReport;
 
 /// A convex polyhedron in its own frame: the convex hull of points.
@@ -63,6 +63,30 @@ impl From<colltrans::ConvexPolyhedron> for ConvexPolyhedron {
 
 /// A body as JSON, its notes and its dent.
 type Read = (String, Vec<String>, Option<f64>);
+
+getters!(ConvexPolyhedron, |it| {
+    /// ndarray of shape (N, 3): The vertices, in the body frame.
+    vertices(py): PyResult<Bound<'py, PyArray2<f64>>> =
+        table(py, it.0.vertices().iter().map(DVec3::to_array)).map(read_only);
+    /// ndarray of shape (N,): For each vertex its index in the points or mesh it was made from.
+    input_indices(py): Indices<'py> = ids(py, it.0.input_indices());
+    /// list of ndarray: The vertices of each face, counter-clockwise as seen from outside.
+    faces(py): Vec<Indices<'py>> = {
+        let face = |f| it.0.face_vertices(f).collect::<Vec<_>>().into_pyarray(py);
+        (0..it.0.face_count() as u32).map(face).collect()
+    };
+    /// int: 3 for a body with a volume, 2 for a flat polygon, 1 for a segment, 0 for a point.
+    dimension: u8 = it.0.dimension();
+    /// float: How far from the body an input point lies at most, a length of the size of rounding.
+    hull_error: f64 = it.0.hull_error();
+    /// float: The volume, in the cube of the unit of length.
+    volume: f64 = it.0.volume();
+    /// int: Bytes of memory that the body occupies now; the sections that ``solver="cta"`` needs count
+    /// once they are built (:meth:`prepare`).
+    nbytes: usize = it.0.memory_bytes();
+    /// list of str: What was mended when it was read from a file, and by how much its hull exceeds it.
+    notes: Vec<String> = it.1.clone();
+});
 
 #[pymethods]
 impl ConvexPolyhedron {
@@ -176,25 +200,6 @@ impl ConvexPolyhedron {
         self.0.to_json()
     }
 
-    /// ndarray of shape (N, 3): The vertices, in the body frame.
-    #[getter]
-    fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        table(py, self.0.vertices().iter().map(DVec3::to_array)).map(read_only)
-    }
-
-    /// ndarray of shape (N,): For each vertex its index in the points or mesh it was made from.
-    #[getter]
-    fn input_indices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        ids(py, self.0.input_indices())
-    }
-
-    /// list of ndarray: The vertices of each face, counter-clockwise as seen from outside.
-    #[getter]
-    fn faces<'py>(&self, py: Python<'py>) -> Vec<Bound<'py, PyArray1<u32>>> {
-        let face = |f| self.0.face_vertices(f).collect::<Vec<_>>().into_pyarray(py);
-        (0..self.0.face_count() as u32).map(face).collect()
-    }
-
     /// Unit normal of a face, outwards, in the body frame.
     ///
     /// Parameters
@@ -204,23 +209,11 @@ impl ConvexPolyhedron {
     /// Returns
     /// -------
     /// ndarray of shape (3,)
-    fn face_normal<'py>(&self, py: Python<'py>, face: u32) -> PyResult<Bound<'py, PyArray1<f64>>> {
+    fn face_normal<'py>(&self, py: Python<'py>, face: u32) -> PyResult<Vector<'py>> {
         if face as usize >= self.0.face_count() {
             return Err(PyIndexError::new_err(format!("there are {} faces", self.0.face_count())));
         }
         Ok(row(py, self.0.face_normal(face)))
-    }
-
-    /// int: 3 for a body with a volume, 2 for a flat polygon, 1 for a segment, 0 for a point.
-    #[getter]
-    fn dimension(&self) -> u8 {
-        self.0.dimension()
-    }
-
-    /// float: How far from the body an input point lies at most, a length of the size of rounding.
-    #[getter]
-    fn hull_error(&self) -> f64 {
-        self.0.hull_error()
     }
 
     /// float: How deep the surface of the mesh that the body was made of lies below the body.
@@ -231,12 +224,6 @@ impl ConvexPolyhedron {
     #[getter(dent)]
     fn dent_depth(&self) -> f64 {
         self.dent().unwrap_or_default()
-    }
-
-    /// float: The volume, in the cube of the unit of length.
-    #[getter]
-    fn volume(&self) -> f64 {
-        self.0.volume()
     }
 
     /// The vertex farthest along a direction.
@@ -344,19 +331,6 @@ impl ConvexPolyhedron {
     /// True
     fn prepare(&self, py: Python<'_>) {
         py.detach(|| self.0.prepare_sections());
-    }
-
-    /// int: Bytes of memory that the body occupies now; the sections that ``solver="cta"`` needs count
-    /// once they are built (:meth:`prepare`).
-    #[getter]
-    fn nbytes(&self) -> usize {
-        self.0.memory_bytes()
-    }
-
-    /// list of str: What was mended when it was read from a file, and by how much its hull exceeds it.
-    #[getter]
-    fn notes(&self) -> Vec<String> {
-        self.1.clone()
     }
 
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Read)> {

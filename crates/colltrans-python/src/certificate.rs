@@ -4,9 +4,9 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::arrays::{row, table};
+use crate::arrays::{Vector, row, table};
 use crate::errors::OrRaise;
-use crate::frozen::{Reduced, match_args, pickled, read, reduced, written};
+use crate::frozen::{Reduced, getters, match_args, pickled, read, reduced, written};
 use crate::query::Cast;
 
 /// A proof, and what it was made for: to bytes and back.
@@ -43,50 +43,26 @@ pub(crate) struct Certificate {
 
 of_a_query!(Certificate("lower", "upper"));
 
+getters!(Certificate, |it| {
+    /// float: The proven lower bound, in multiples of the direction.
+    lower: f64 = it.proof.lower;
+    /// float: The proven upper bound; infinite where bodies only touch sideways.
+    upper: f64 = it.proof.upper;
+    /// float: ``upper - lower``.
+    gap: f64 = it.proof.gap();
+    /// float: What rounding alone can make of the gap.
+    rounding: f64 = it.proof.rounding;
+    /// ndarray of shape (3,): Unit normal of the supporting plane, in the world.
+    normal(py): Vector<'py> = row(py, it.proof.normal);
+    /// ndarray of shape (3, 2): Vertices of the moving and of the fixed body (their own numbers).
+    pairs(py): PyResult<Bound<'py, PyArray2<u32>>> =
+        table(py, it.proof.pairs.map(|pair| [pair.moving.0, pair.fixed.0]));
+    /// ndarray of shape (3,): Weights of the pairs, not negative, of sum 1.
+    weights(py): Vector<'py> = PyArray1::from_slice(py, &it.proof.weights);
+});
+
 #[pymethods]
 impl Certificate {
-    /// float: The proven lower bound, in multiples of the direction.
-    #[getter]
-    fn lower(&self) -> f64 {
-        self.proof.lower
-    }
-
-    /// float: The proven upper bound; infinite where bodies only touch sideways.
-    #[getter]
-    fn upper(&self) -> f64 {
-        self.proof.upper
-    }
-
-    /// float: ``upper - lower``.
-    #[getter]
-    fn gap(&self) -> f64 {
-        self.proof.gap()
-    }
-
-    /// float: What rounding alone can make of the gap.
-    #[getter]
-    fn rounding(&self) -> f64 {
-        self.proof.rounding
-    }
-
-    /// ndarray of shape (3,): Unit normal of the supporting plane, in the world.
-    #[getter]
-    fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.proof.normal)
-    }
-
-    /// ndarray of shape (3, 2): Vertices of the moving and of the fixed body (their own numbers).
-    #[getter]
-    fn pairs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        table(py, self.proof.pairs.map(|pair| [pair.moving.0, pair.fixed.0]))
-    }
-
-    /// ndarray of shape (3,): Weights of the pairs, not negative, of sum 1.
-    #[getter]
-    fn weights<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.proof.weights)
-    }
-
     /// Checks the proof against the two bodies alone.
     ///
     /// Parameters
@@ -124,21 +100,16 @@ pub(crate) struct Separation {
 
 of_a_query!(Separation("normal", "margin"));
 
-#[pymethods]
-impl Separation {
+getters!(Separation, |it| {
     /// ndarray of shape (3,): Unit normal of the plane, in the world, from the moving body to the
     /// fixed one.
-    #[getter]
-    fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.proof.normal)
-    }
-
+    normal(py): Vector<'py> = row(py, it.proof.normal);
     /// float: A lower bound of the distance of the shadows, a length.
-    #[getter]
-    fn margin(&self) -> f64 {
-        self.proof.margin
-    }
+    margin: f64 = it.proof.margin;
+});
 
+#[pymethods]
+impl Separation {
     /// Checks the proof against the two bodies alone.
     ///
     /// Parameters
@@ -173,20 +144,15 @@ pub(crate) struct SolidCertificate(pub(crate) colltrans::solid::SolidCertificate
 
 pickled!(SolidCertificate);
 
+getters!(SolidCertificate, |it| {
+    /// float: The tolerance by which the bodies were shrunk.
+    tolerance: f64 = it.0.tolerance;
+    /// float: The proven lower bound of the shrunk bodies' distance, in multiples of the direction.
+    lower: f64 = it.0.lower;
+});
+
 #[pymethods]
 impl SolidCertificate {
-    /// float: The tolerance by which the bodies were shrunk.
-    #[getter]
-    fn tolerance(&self) -> f64 {
-        self.0.tolerance
-    }
-
-    /// float: The proven lower bound of the shrunk bodies' distance, in multiples of the direction.
-    #[getter]
-    fn lower(&self) -> f64 {
-        self.0.lower
-    }
-
     /// The proof as text.
     pub(crate) fn to_json(&self) -> String {
         self.0.to_json()

@@ -3,11 +3,11 @@
 use colltrans::glam::DVec3;
 use colltrans::record::Record;
 use colltrans::{CentralCast, Clearance, Outcome, OverlapAhead, ProofFile, WhyFree};
-use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::answer::{Answer, answer, object};
-use crate::arrays::{coordinates, row};
+use crate::arrays::{Vector, coordinates, row};
+use crate::frozen::getters;
 use crate::outcome::{Contact, Grazing, LastContact, contact_text, grazing_text};
 use crate::query::Cast;
 
@@ -23,20 +23,15 @@ answer!(Blocked("distance", "contact") of Clearance, Cast, |it| {
     Clearance::Blocked { distance: it.distance, contact: it.contact }
 });
 
+getters!(Blocked, |it| {
+    /// float: How far it may safely move, in multiples of the direction: never more than it can.
+    distance: f64 = it.distance;
+    /// Contact: What stops it.
+    contact(py): Contact = Contact { contact: it.contact, query: it.query(py) };
+});
+
 #[pymethods]
 impl Blocked {
-    /// float: How far it may safely move, in multiples of the direction: never more than it can.
-    #[getter]
-    fn distance(&self) -> f64 {
-        self.distance
-    }
-
-    /// Contact: What stops it.
-    #[getter]
-    fn contact(&self, py: Python<'_>) -> Contact {
-        Contact { contact: self.contact, query: self.query(py) }
-    }
-
     fn __repr__(&self) -> String {
         format!("Blocked(distance={:?})", self.distance)
     }
@@ -51,20 +46,15 @@ pub(crate) struct Slides {
 
 answer!(Slides("grazing") of Clearance, Cast, |it| Clearance::Free(WhyFree::Slides(it.grazing)));
 
+getters!(Slides, |it| {
+    /// float: Infinite.
+    distance: f64 = f64::INFINITY;
+    /// Grazing: Along what it slides.
+    grazing(py): Grazing = Grazing { grazing: it.grazing, query: it.query(py) };
+});
+
 #[pymethods]
 impl Slides {
-    /// float: Infinite.
-    #[getter]
-    fn distance(&self) -> f64 {
-        f64::INFINITY
-    }
-
-    /// Grazing: Along what it slides.
-    #[getter]
-    fn grazing(&self, py: Python<'_>) -> Grazing {
-        Grazing { grazing: self.grazing, query: self.query(py) }
-    }
-
     fn __repr__(&self) -> String {
         format!("Slides(grazing={})", grazing_text(&self.grazing))
     }
@@ -79,20 +69,15 @@ pub(crate) struct Behind {
 
 answer!(Behind("contact") of Clearance, Cast, |it| Clearance::Free(WhyFree::Behind(it.contact)));
 
+getters!(Behind, |it| {
+    /// float: Infinite.
+    distance: f64 = f64::INFINITY;
+    /// Contact: The last one: the first one of the query turned round.
+    contact(py): PyResult<Contact> = last(py, it.contact, &it.query);
+});
+
 #[pymethods]
 impl Behind {
-    /// float: Infinite.
-    #[getter]
-    fn distance(&self) -> f64 {
-        f64::INFINITY
-    }
-
-    /// Contact: The last one: the first one of the query turned round.
-    #[getter]
-    fn contact(&self, py: Python<'_>) -> PyResult<Contact> {
-        last(py, self.contact, &self.query)
-    }
-
     fn __repr__(&self) -> String {
         format!("Behind(contact={})", contact_text(&self.contact))
     }
@@ -107,26 +92,17 @@ pub(crate) struct Overlapping {
 
 answer!(Overlapping("first", "last") of Clearance, Cast, |it| Clearance::Overlapping(it.ends));
 
+getters!(Overlapping, |it| {
+    /// None: There is none.
+    distance: Option<f64> = None;
+    /// Contact: The first contact, behind.
+    first(py): Contact = Contact { contact: it.ends.first, query: it.query(py) };
+    /// LastContact: The last contact, ahead.
+    last(py): PyResult<LastContact> = LastContact::of(py, Outcome::Contact(it.ends.last), &it.query);
+});
+
 #[pymethods]
 impl Overlapping {
-    /// None: There is none.
-    #[getter]
-    fn distance(&self) -> Option<f64> {
-        None
-    }
-
-    /// Contact: The first contact, behind.
-    #[getter]
-    fn first(&self, py: Python<'_>) -> Contact {
-        Contact { contact: self.ends.first, query: self.query(py) }
-    }
-
-    /// LastContact: The last contact, ahead.
-    #[getter]
-    fn last(&self, py: Python<'_>) -> PyResult<LastContact> {
-        LastContact::of(py, Outcome::Contact(self.ends.last), &self.query)
-    }
-
     fn __repr__(&self) -> String {
         let [first, last] = [&self.ends.first, &self.ends.last].map(contact_text);
         format!("Overlapping(first={first}, last={last})")
@@ -142,20 +118,15 @@ pub(crate) struct DirectionalDepth {
 
 answer!(DirectionalDepth("depth") of colltrans::DirectionalDepth, Cast, |it| it.depth);
 
+getters!(DirectionalDepth, |it| {
+    /// float: In multiples of the direction, never less than the true depth; 0 without overlap.
+    depth: f64 = it.depth.depth;
+    /// Blocked or Slides or Behind or Separated or Overlapping: What it follows from.
+    clearance(py): PyResult<Bound<'py, PyAny>> = it.depth.clearance.object(it.query.bind(py));
+});
+
 #[pymethods]
 impl DirectionalDepth {
-    /// float: In multiples of the direction, never less than the true depth; 0 without overlap.
-    #[getter]
-    fn depth(&self) -> f64 {
-        self.depth.depth
-    }
-
-    /// Blocked or Slides or Behind or Separated or Overlapping: What it follows from.
-    #[getter]
-    fn clearance<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.depth.clearance.object(self.query.bind(py))
-    }
-
     fn __repr__(&self) -> String {
         format!("DirectionalDepth(depth={:?})", self.depth.depth)
     }
@@ -170,29 +141,21 @@ pub(crate) struct Intersection {
 
 answer!(Intersection("meets") of colltrans::Intersection, Cast, |it| it.found);
 
-#[pymethods]
-impl Intersection {
+getters!(Intersection, |it| {
     /// bool: Whether they have a point in common, to within rounding error.
-    #[getter]
-    fn meets(&self) -> bool {
-        self.found.meets
-    }
-
+    meets: bool = it.found.meets;
     /// ndarray of shape (3,): The direction between the centres, of the cast that found out.
-    #[getter]
-    fn direction<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.found.evidence.direction)
-    }
-
+    direction(py): Vector<'py> = row(py, it.found.evidence.direction);
     /// Contact or Grazing or Separated: What that cast found.
-    #[getter]
-    fn outcome<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.found
+    outcome(py): PyResult<Bound<'py, PyAny>> =
+        it.found
             .evidence
             .outcome
-            .object(&along(self.query.bind(py), self.found.evidence.direction)?)
-    }
+            .object(&along(it.query.bind(py), it.found.evidence.direction)?);
+});
 
+#[pymethods]
+impl Intersection {
     fn __bool__(&self) -> bool {
         self.found.meets
     }

@@ -15,7 +15,7 @@ use pyo3::prelude::*;
 use crate::answer::save;
 use crate::arrays::points;
 use crate::errors::{OrRaise, error};
-use crate::frozen::plain;
+use crate::frozen::{getters, plain};
 use crate::pose::{Pose, pose};
 use crate::solid::Piece;
 use crate::solid_cast::{patiently, placed_bodies};
@@ -91,57 +91,32 @@ impl Question {
 
 placed_bodies!(FreeDirections);
 
-#[pymethods]
-impl FreeDirections {
+getters!(FreeDirections, |it| {
     /// str: ``"free"`` if some directions are, ``"blocked"`` if none is, which is proven, ``"undecided"`` if
     /// none is known to be and not all are known.
-    #[getter]
-    fn outcome(&self) -> &'static str {
-        self.record.outcome.name()
-    }
-
+    outcome: &'static str = it.record.outcome.name();
     /// tuple of (float, float): The share of all directions that is free, at least and at most, without
     /// what is undecided.
-    #[getter]
-    fn free_share(&self) -> (f64, f64) {
-        self.record.free_share.unwrap_or_default().into()
-    }
-
+    free_share: (f64, f64) = it.record.free_share.unwrap_or_default().into();
     /// float: At most this share of all directions is not known.
-    #[getter]
-    fn undecided_share(&self) -> f64 {
-        self.record.undecided_share.unwrap_or_default()
-    }
-
+    undecided_share: f64 = it.record.undecided_share.unwrap_or_default();
     /// float: The tolerance that was used, a length: both bodies are shrunk by half of it.
-    #[getter]
-    fn tolerance(&self) -> f64 {
-        self.proof.tolerance
-    }
-
+    tolerance: f64 = it.proof.tolerance;
     /// list of dict: Connected regions, the largest first: ``share``, ``center``, ``corners`` and the convex
     /// ``pieces`` that together are it.
-    #[getter]
-    fn regions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        plain(py, &self.record.regions)
-    }
-
+    regions(py): PyResult<Bound<'py, PyAny>> = plain(py, &it.record.regions);
     /// list of dict: Arcs of free directions beside which there is no region, exactly: each goes
     /// counterclockwise around the ``normal`` of its ``plane``, from the first of its ``ends`` (points; none
     /// of a whole circle) to the second, through the directions ``along``.
-    #[getter]
-    fn arcs<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        plain(py, &self.record.arcs)
-    }
-
+    arcs(py): PyResult<Bound<'py, PyAny>> = plain(py, &it.record.arcs);
     /// list of dict: Free directions with no other beside them: the ``direction``, rounded, and two
     /// ``planes``, each with its ``normal`` and what it is ``of``: two ``triangles``, and three ``vertices``
     /// that span it. The direction is exactly along the vector product of the normals.
-    #[getter]
-    fn points<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        plain(py, &self.record.points)
-    }
+    points(py): PyResult<Bound<'py, PyAny>> = plain(py, &it.record.points);
+});
 
+#[pymethods]
+impl FreeDirections {
     /// What is said of directions.
     ///
     /// Parameters

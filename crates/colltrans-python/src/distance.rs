@@ -5,14 +5,14 @@ use colltrans::record::{PairAnswer, PairQuestion, Record};
 use colltrans::solid::SolidPair as _;
 use colltrans::solid::SolidSteps;
 use colltrans::{ProofFile, Solid};
-use numpy::PyArray1;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
 use crate::answer::{Answer, answer, object};
-use crate::arrays::{coordinates, row};
+use crate::arrays::{Vector, coordinates, row};
 use crate::errors::{OrRaise, error};
 use crate::features::{Feature, Features, Steps};
+use crate::frozen::getters;
 use crate::pair::{Of, Pair};
 
 type DistanceOf = Of<colltrans::Distance, colltrans::Distance<Solid>>;
@@ -43,62 +43,40 @@ macro_rules! either {
     };
 }
 
-#[pymethods]
-impl Distance {
+getters!(Distance, |it| {
     /// float: The bodies are not nearer; 0 if they meet, or are less apart than rounding can tell.
-    #[getter]
-    fn lower(&self) -> f64 {
-        either!(self.found, found => found.lower)
-    }
-
+    lower: f64 = either!(it.found, found => found.lower);
     /// float: They are not farther; 0 where they are proven to meet.
-    #[getter]
-    fn upper(&self) -> f64 {
-        either!(self.found, found => found.upper)
-    }
-
+    upper: f64 = either!(it.found, found => found.upper);
     /// ndarray of shape (3,): The point of the moving body that is nearest to the fixed one, in the
     /// world.
-    #[getter]
-    fn on_moving<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, either!(self.found, found => found.on_moving))
-    }
-
+    on_moving(py): Vector<'py> = row(py, either!(it.found, found => found.on_moving));
     /// ndarray of shape (3,): The point of the fixed body that is nearest to the moving one, in the
     /// world.
-    #[getter]
-    fn on_fixed<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, either!(self.found, found => found.on_fixed))
-    }
-
+    on_fixed(py): Vector<'py> = row(py, either!(it.found, found => found.on_fixed));
     /// ndarray of shape (3,) or None: Unit normal in the world, from the moving body to the fixed one; None
     /// if they meet.
-    #[getter]
-    fn normal<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        either!(self.found, found => found.normal).map(|normal| row(py, normal))
-    }
-
+    normal(py): Option<Vector<'py>> =
+        either!(it.found, found => found.normal).map(|normal| row(py, normal));
     /// Features or None: What of each body faces the other one; None if they meet.
-    #[getter]
-    fn features(&self) -> PyResult<Option<Features>> {
-        let query = self.query.get();
-        let features = either!(self.found, found => found.features);
+    features: PyResult<Option<Features>> = {
+        let query = it.query.get();
+        let features = either!(it.found, found => found.features);
         let Some(colltrans::Features { moving, fixed }) = features else { return Ok(None) };
         either!(query.asked()?, pair => Ok(Some(Features {
             moving: Feature::of(moving, pair.moving()),
             fixed: Feature::of(fixed, pair.fixed()),
         })))
-    }
-
+    };
     /// Steps or None: Work done; None of solids.
-    #[getter]
-    fn steps(&self) -> Option<Steps> {
-        match self.found {
-            Of::Convex(found) => Some(Steps(found.steps)),
-            Of::Solids(_) => None,
-        }
-    }
+    steps: Option<Steps> = match it.found {
+        Of::Convex(found) => Some(Steps(found.steps)),
+        Of::Solids(_) => None,
+    };
+});
 
+#[pymethods]
+impl Distance {
     /// Checks the proof against the bodies alone; between solids they are asked once more for it.
     ///
     /// Raises
@@ -124,38 +102,21 @@ pub(crate) struct Depth {
 
 answer!(Depth("lower", "upper", "direction") of PairAnswer, Pair, |it| PairAnswer::Depth(it.depth.clone()));
 
+getters!(Depth, |it| {
+    /// float: After any shorter translation they overlap; 0 if they are apart, touch, or are flat.
+    lower: f64 = it.depth.lower;
+    /// float: After a translation of this length along ``direction`` they do not; 0 if they are apart.
+    upper: f64 = it.depth.upper;
+    /// ndarray of shape (3,): Unit vector, in the world, along which the moving body leaves.
+    direction(py): Vector<'py> = row(py, it.depth.direction);
+    /// ndarray of shape (3,): The translation of the moving body that parts the bodies.
+    translation(py): Vector<'py> = row(py, it.depth.translation());
+    /// Steps: Work done.
+    steps: Steps = Steps(it.depth.steps);
+});
+
 #[pymethods]
 impl Depth {
-    /// float: After any shorter translation they overlap; 0 if they are apart, touch, or are flat.
-    #[getter]
-    fn lower(&self) -> f64 {
-        self.depth.lower
-    }
-
-    /// float: After a translation of this length along ``direction`` they do not; 0 if they are apart.
-    #[getter]
-    fn upper(&self) -> f64 {
-        self.depth.upper
-    }
-
-    /// ndarray of shape (3,): Unit vector, in the world, along which the moving body leaves.
-    #[getter]
-    fn direction<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.depth.direction)
-    }
-
-    /// ndarray of shape (3,): The translation of the moving body that parts the bodies.
-    #[getter]
-    fn translation<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.depth.translation())
-    }
-
-    /// Steps: Work done.
-    #[getter]
-    fn steps(&self) -> Steps {
-        Steps(self.depth.steps)
-    }
-
     /// Checks the proof against the bodies alone.
     ///
     /// Raises
@@ -185,21 +146,16 @@ pub(crate) struct OverlapDepth {
 
 answer!(OverlapDepth("meets", "least_tolerance") of PairAnswer, Pair, |it| PairAnswer::OverlapDepth(it.depth));
 
-#[pymethods]
-impl OverlapDepth {
+getters!(OverlapDepth, |it| {
     /// bool: Whether they have a point in common, decided exactly.
-    #[getter]
-    fn meets(&self) -> bool {
-        self.depth.meets
-    }
-
+    meets: bool = it.depth.meets;
     /// float or None: The least tolerance with which they would not overlap: 0 if they do not, None if
     /// there is none.
-    #[getter]
-    fn least_tolerance(&self) -> Option<f64> {
-        self.depth.least_tolerance
-    }
+    least_tolerance: Option<f64> = it.depth.least_tolerance;
+});
 
+#[pymethods]
+impl OverlapDepth {
     fn __repr__(&self) -> String {
         let (meets, depth) = (self.depth.meets, self.depth.least_tolerance);
         let meets = if meets { "True" } else { "False" };
@@ -223,55 +179,38 @@ impl Within {
     }
 }
 
-#[pymethods]
-impl Within {
+getters!(Within, |it| {
     /// float: The length.
-    #[getter]
-    fn length(&self) -> f64 {
-        self.found.length
-    }
-
+    length: f64 = it.found.length;
     /// bool or None: Whether they are; None where the length lies between the bounds of the distance, a few
     /// roundings apart.
-    #[getter]
-    fn closer(&self) -> Option<bool> {
+    closer: Option<bool> = {
         use colltrans::Within::{Closer, Farther, Undecided};
-        either!(self.found.found, found => match found.0 {
+        either!(it.found.found, found => match found.0 {
             Closer(_) => Some(true),
             Farther(_) => Some(false),
             Undecided(_) => None,
         })
-    }
-
+    };
     /// float or None: The bodies are not nearer, where that was found out.
-    #[getter]
-    fn lower(&self, py: Python<'_>) -> PyResult<Option<f64>> {
-        Ok(self.record(py)?.lower)
-    }
-
+    lower(py): PyResult<Option<f64>> = Ok(it.record(py)?.lower);
     /// float or None: They are not farther, where that was found out.
-    #[getter]
-    fn upper(&self, py: Python<'_>) -> PyResult<Option<f64>> {
-        Ok(self.record(py)?.upper)
-    }
-
+    upper(py): PyResult<Option<f64>> = Ok(it.record(py)?.upper);
     /// tuple of (ndarray, ndarray) or None: Points of the moving and of the fixed body, in the world, that
     /// are ``upper`` apart.
-    #[getter]
-    fn points<'py>(&self, py: Python<'py>) -> PyResult<Option<[Bound<'py, PyArray1<f64>>; 2]>> {
-        let points = self.record(py)?.points;
+    points(py): PyResult<Option<[Vector<'py>; 2]>> = {
+        let points = it.record(py)?.points;
         Ok(points.map(|points| points.map(|point| row(py, DVec3::from_array(point)))))
-    }
-
+    };
     /// Steps or None: Work done; None of solids.
-    #[getter]
-    fn steps(&self) -> Option<Steps> {
-        match self.found.found {
-            Of::Convex((_, steps)) => Some(Steps(steps)),
-            Of::Solids(_) => None,
-        }
-    }
+    steps: Option<Steps> = match it.found.found {
+        Of::Convex((_, steps)) => Some(Steps(steps)),
+        Of::Solids(_) => None,
+    };
+});
 
+#[pymethods]
+impl Within {
     /// Checks the proof against the bodies alone; between solids they are asked once more for it.
     ///
     /// Raises

@@ -7,7 +7,8 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::frozen::{match_args, pickled};
+use crate::arrays::Indices;
+use crate::frozen::{getters, match_args, pickled};
 
 /// Work done for one answer.
 #[pyclass(frozen, module = "colltrans")]
@@ -16,44 +17,23 @@ pub(crate) struct Steps(pub(crate) colltrans::Steps);
 
 pickled!(Steps, Feature, Features);
 
+getters!(Steps, |it| {
+    /// int: Planar problems solved.
+    planar_problems: u32 = it.0.planar_problems;
+    /// int: Supporting planes computed.
+    supports: u32 = it.0.supports;
+    /// int: Portals visited.
+    pivots: u32 = it.0.pivots;
+    /// int: Iterations of inner loops.
+    iterations: u32 = it.0.iterations;
+    /// int: Sides that the region of section levels had at most; 0 if there was none.
+    region_sides: u32 = it.0.region_sides;
+    /// str: ``"scratch"``, or of a tracker ``"features"`` or ``"region"``.
+    started_from: &'static str = it.0.started_from.name();
+});
+
 #[pymethods]
 impl Steps {
-    /// int: Planar problems solved.
-    #[getter]
-    fn planar_problems(&self) -> u32 {
-        self.0.planar_problems
-    }
-
-    /// int: Supporting planes computed.
-    #[getter]
-    fn supports(&self) -> u32 {
-        self.0.supports
-    }
-
-    /// int: Portals visited.
-    #[getter]
-    fn pivots(&self) -> u32 {
-        self.0.pivots
-    }
-
-    /// int: Iterations of inner loops.
-    #[getter]
-    fn iterations(&self) -> u32 {
-        self.0.iterations
-    }
-
-    /// int: Sides that the region of section levels had at most; 0 if there was none.
-    #[getter]
-    fn region_sides(&self) -> u32 {
-        self.0.region_sides
-    }
-
-    /// str: ``"scratch"``, or of a tracker ``"features"`` or ``"region"``.
-    #[getter]
-    fn started_from(&self) -> &'static str {
-        self.0.started_from.name()
-    }
-
     fn __repr__(&self) -> String {
         let colltrans::Steps {
             planar_problems, supports, pivots, iterations, started_from, ..
@@ -85,20 +65,15 @@ impl Feature {
     }
 }
 
+getters!(Feature, |it| {
+    /// str: ``"vertex"``, ``"edge"`` or ``"face"``.
+    kind: &str = &it.kind;
+    /// ndarray: Its vertices, by the numbers of the points or the mesh that the body was made from.
+    vertices(py): Indices<'py> = PyArray1::from_slice(py, &it.vertices);
+});
+
 #[pymethods]
 impl Feature {
-    /// str: ``"vertex"``, ``"edge"`` or ``"face"``.
-    #[getter]
-    fn kind(&self) -> &str {
-        &self.kind
-    }
-
-    /// ndarray: Its vertices, by the numbers of the points or the mesh that the body was made from.
-    #[getter]
-    fn vertices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        PyArray1::from_slice(py, &self.vertices)
-    }
-
     fn __repr__(&self) -> String {
         format!("Feature('{}', {:?})", self.kind, self.vertices)
     }
@@ -122,20 +97,15 @@ impl Features {
     }
 }
 
+getters!(Features, |it| {
+    /// Feature: Of the moving body.
+    moving: Feature = it.moving.clone();
+    /// Feature: Of the fixed body.
+    fixed: Feature = it.fixed.clone();
+});
+
 #[pymethods]
 impl Features {
-    /// Feature: Of the moving body.
-    #[getter]
-    fn moving(&self) -> Feature {
-        self.moving.clone()
-    }
-
-    /// Feature: Of the fixed body.
-    #[getter]
-    fn fixed(&self) -> Feature {
-        self.fixed.clone()
-    }
-
     fn __repr__(&self) -> String {
         let [moving, fixed] = [&self.moving, &self.fixed].map(|f| f.__repr__());
         format!("Features(moving={moving}, fixed={fixed})")

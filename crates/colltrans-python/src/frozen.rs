@@ -72,6 +72,30 @@ macro_rules! pickled {
 }
 pub(crate) use pickled;
 
+/// Defines the attributes of a class: documentation, name and type of each, and its value, computed on access.
+macro_rules! getters {
+    ($class:ident, |$it:ident| {
+        $($(#[$documentation:meta])* $name:ident $(($py:ident))?: $type:ty = $value:expr;)*
+    }) => {
+        #[pyo3::pymethods]
+        impl $class {$(
+            $(#[$documentation])*
+            #[getter]
+            #[allow(
+                clippy::extra_unused_lifetimes,
+                clippy::elidable_lifetime_names,
+                reason = "only some values need the interpreter"
+            )]
+            pub(crate) fn $name<'py>(&self $(, $py: pyo3::Python<'py>)?) -> $type {
+                #[allow(unused_variables, reason = "some values are constants")]
+                let $it = self;
+                $value
+            }
+        )*}
+    };
+}
+pub(crate) use getters;
+
 /// The names by which `match` takes a class apart.
 macro_rules! match_args {
     ($class:ident($($name:literal),*)) => {

@@ -6,17 +6,16 @@ use colltrans::record::{Dents, Record};
 use colltrans::solid::StartOverlap;
 use colltrans::{ConvexPolyhedron, ProofFile, QueryError, Solid};
 use colltrans_mesh::body::between_motions;
-use numpy::PyArray1;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use serde::{Deserialize, Serialize};
 
 use crate::answer::{Answer, answer, object};
-use crate::arrays::{Numbers, Shape, coordinates, row, vector};
+use crate::arrays::{Numbers, Shape, Vector, coordinates, row, vector};
 use crate::body;
 use crate::errors::{OrRaise, error, input, query_error};
 use crate::features::{Feature, Features};
-use crate::frozen::{Options, Shown, html, pickled, show};
+use crate::frozen::{Options, Shown, getters, html, pickled, show};
 use crate::pair::Of;
 use crate::pose::{Bare, Pose, bare_numbers, of_bare, pose};
 use crate::solid::Piece;
@@ -43,6 +42,11 @@ use crate::solid_cast::patiently;
 pub(crate) struct Motion(pub(crate) motion::Motion);
 
 pickled!(Motion);
+
+getters!(Motion, |it| {
+    /// Pose: Where the body is at time 0.
+    start: Pose = Pose(it.0.start());
+});
 
 #[pymethods]
 impl Motion {
@@ -179,12 +183,6 @@ impl Motion {
     /// Where the body is at a time from 0 to 1, to rounding.
     fn at(&self, time: f64) -> PyResult<Pose> {
         self.0.at(time).or_raise().map(Pose)
-    }
-
-    /// Pose: Where the body is at time 0.
-    #[getter]
-    fn start(&self) -> Pose {
-        Pose(self.0.start())
     }
 
     /// Writes a call that makes the motion again, to rounding: its kind, axis, angle and the pose at time 0.
@@ -432,6 +430,26 @@ pub(crate) fn solid_cast<'a>(
     between_motions(p.along(a), q.along(b), precisions, tolerance)?.keeping(keep)
 }
 
+getters!(MotionCast, |it| {
+    /// ConvexPolyhedron or Solid: The moving body.
+    moving(py): Py<PyAny> = it.bodies[0].object(py);
+    /// ConvexPolyhedron or Solid: The fixed body.
+    fixed(py): Py<PyAny> = it.bodies[1].object(py);
+    /// Motion: What the moving body does.
+    moving_motion: Motion = Motion(it.motions[0].clone());
+    /// Motion: What the fixed body does.
+    fixed_motion: Motion = Motion(it.motions[1].clone());
+    /// float: The gap to be kept; 0 if there is none.
+    keep: f64 = it.keep;
+    /// float: The depth that is tolerated; of solids the tolerance that is used.
+    tolerance: PyResult<f64> = Ok(match it.asked()? {
+        Of::Convex(cast) => cast.tolerance(),
+        Of::Solids(cast) => cast.tolerance(),
+    });
+    /// bool: Whether what overlaps when the motion begins is ignored.
+    ignore_start_overlaps: bool = it.start_overlap == StartOverlap::Ignore;
+});
+
 #[pymethods]
 impl MotionCast {
     #[new]
@@ -497,51 +515,6 @@ impl MotionCast {
             tolerance: Some(cast.tolerance()).filter(|depth| *depth > 0.0),
             start_overlap: StartOverlap::Refuse,
         })
-    }
-
-    /// ConvexPolyhedron or Solid: The moving body.
-    #[getter]
-    fn moving(&self, py: Python<'_>) -> Py<PyAny> {
-        self.bodies[0].object(py)
-    }
-
-    /// ConvexPolyhedron or Solid: The fixed body.
-    #[getter]
-    fn fixed(&self, py: Python<'_>) -> Py<PyAny> {
-        self.bodies[1].object(py)
-    }
-
-    /// Motion: What the moving body does.
-    #[getter]
-    fn moving_motion(&self) -> Motion {
-        Motion(self.motions[0].clone())
-    }
-
-    /// Motion: What the fixed body does.
-    #[getter]
-    fn fixed_motion(&self) -> Motion {
-        Motion(self.motions[1].clone())
-    }
-
-    /// float: The gap to be kept; 0 if there is none.
-    #[getter]
-    fn keep(&self) -> f64 {
-        self.keep
-    }
-
-    /// float: The depth that is tolerated; of solids the tolerance that is used.
-    #[getter]
-    fn tolerance(&self) -> PyResult<f64> {
-        Ok(match self.asked()? {
-            Of::Convex(cast) => cast.tolerance(),
-            Of::Solids(cast) => cast.tolerance(),
-        })
-    }
-
-    /// bool: Whether what overlaps when the motion begins is ignored.
-    #[getter]
-    fn ignore_start_overlaps(&self) -> bool {
-        self.start_overlap == StartOverlap::Ignore
     }
 
     /// A picture of the bodies at the start, where they touch and at the end: see :func:`colltrans.show`.
@@ -617,63 +590,44 @@ impl FirstContact {
     }
 }
 
-#[pymethods]
-impl FirstContact {
+getters!(FirstContact, |it| {
     /// str: ``"contact"``, ``"grazing"``, ``"free"``, ``"overlapping"`` or ``"undecided"``.
-    #[getter]
-    fn outcome(&self, py: Python<'_>) -> PyResult<&'static str> {
-        Ok(self.told(py)?.outcome.name())
-    }
-
+    outcome(py): PyResult<&'static str> = Ok(it.told(py)?.outcome.name());
     /// float: The bodies do not meet before: 1 if they never do, 0 if they overlap when the motion begins.
-    #[getter]
-    fn lower(&self) -> f64 {
+    lower: f64 = {
         let free = matches!(
-            self.found,
+            it.found,
             Of::Convex(MotionOutcome::Free(_)) | Of::Solids(MotionOutcome::Free(_))
         );
         let none = if free { 1.0 } else { 0.0 };
-        contact!(self.found, contact => contact.lower).unwrap_or(none)
-    }
-
+        contact!(it.found, contact => contact.lower).unwrap_or(none)
+    };
     /// float or None: At this time they do meet; None where that is not proven, or they never do.
-    #[getter]
-    fn upper(&self) -> Option<f64> {
+    upper: Option<f64> = {
         let overlapping = matches!(
-            self.found,
+            it.found,
             Of::Convex(MotionOutcome::Overlapping(_)) | Of::Solids(MotionOutcome::Overlapping(_))
         );
         let upper =
-            contact!(self.found, contact => contact.upper).filter(|upper| upper.is_finite());
+            contact!(it.found, contact => contact.upper).filter(|upper| upper.is_finite());
         upper.or(overlapping.then_some(0.0))
-    }
-
+    };
     /// tuple of (Pose, Pose) or None: Where both bodies are at ``lower``, to rounding; None if they never
     /// meet or overlap at the start.
-    #[getter]
-    fn poses(&self) -> Option<(Pose, Pose)> {
-        contact!(self.found, contact => (Pose(contact.poses[0]), Pose(contact.poses[1])))
-    }
-
+    poses: Option<(Pose, Pose)> =
+        contact!(it.found, contact => (Pose(contact.poses[0]), Pose(contact.poses[1])));
     /// ndarray of shape (3,) or None: The point of the fixed body that is nearest then, in the world.
-    #[getter]
-    fn point<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        contact!(self.found, contact => contact.points)?.map(|points| row(py, points[1]))
-    }
-
+    point(py): Option<Vector<'py>> =
+        contact!(it.found, contact => contact.points)?.map(|points| row(py, points[1]));
     /// ndarray of shape (3,) or None: Unit normal in the world, from the moving body to the fixed one.
-    #[getter]
-    fn normal<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        contact!(self.found, contact => contact.normal)?.map(|normal| row(py, normal))
-    }
-
+    normal(py): Option<Vector<'py>> =
+        contact!(it.found, contact => contact.normal)?.map(|normal| row(py, normal));
     /// Features or None: What of each body faces the other one.
-    #[getter]
-    fn features(&self) -> PyResult<Option<Features>> {
-        let features = contact!(self.found, contact => contact.features).flatten();
+    features: PyResult<Option<Features>> = {
+        let features = contact!(it.found, contact => contact.features).flatten();
         let Some(colltrans::Features { moving, fixed }) = features else { return Ok(None) };
         let of = |moving, fixed| Ok(Some(Features { moving, fixed }));
-        match self.query.get().asked()? {
+        match it.query.get().asked()? {
             Of::Convex(cast) => {
                 let [p, q] = cast.bodies();
                 of(Feature::of(moving, p), Feature::of(fixed, q))
@@ -683,17 +637,16 @@ impl FirstContact {
                 of(Feature::of(moving, p), Feature::of(fixed, q))
             }
         }
-    }
-
+    };
     /// int: At how many times the bodies were looked at.
-    #[getter]
-    fn looks(&self) -> u32 {
-        match &self.found {
-            Of::Convex(found) => found.steps().looks,
-            Of::Solids(found) => found.steps().looks,
-        }
-    }
+    looks: u32 = match &it.found {
+        Of::Convex(found) => found.steps().looks,
+        Of::Solids(found) => found.steps().looks,
+    };
+});
 
+#[pymethods]
+impl FirstContact {
     /// Checks the proof against the bodies alone; between solids they are asked once more for it.
     ///
     /// Raises
@@ -808,56 +761,35 @@ impl MotionClearance {
     }
 }
 
-#[pymethods]
-impl MotionClearance {
+getters!(MotionClearance, |it| {
     /// str: ``"blocked"``, ``"free"`` or ``"overlapping"``.
-    #[getter]
-    fn outcome(&self) -> &'static str {
-        match (self.time(), self.stop()) {
-            (_, Some(_)) => "blocked",
-            (Some(_), None) => "free",
-            (None, None) => "overlapping",
-        }
-    }
-
+    outcome: &'static str = match (it.time(), it.stop()) {
+        (_, Some(_)) => "blocked",
+        (Some(_), None) => "free",
+        (None, None) => "overlapping",
+    };
     /// float or None: Up to then the body may go: 1 to the end; None if the bodies overlap when it begins.
-    #[getter]
-    fn time(&self) -> Option<f64> {
-        match &self.found {
-            Of::Convex(found) => found.time(),
-            Of::Solids(found) => found.time(),
-        }
-    }
-
+    time: Option<f64> = match &it.found {
+        Of::Convex(found) => found.time(),
+        Of::Solids(found) => found.time(),
+    };
     /// tuple of (float, float or None) or None: When what stops it meets in its true place: not before the
     /// first, for certain at the second, if there is one.
-    #[getter]
-    fn bounds(&self) -> Option<(f64, Option<f64>)> {
-        self.stop().map(|stop| bounds(stop.place))
-    }
-
+    bounds: Option<(f64, Option<f64>)> = it.stop().map(|stop| bounds(stop.place));
     /// tuple of (float, float or None) or None: When the bodies meet as the tolerance leaves them.
-    #[getter]
-    fn shrunk(&self) -> Option<(f64, Option<f64>)> {
-        self.stop().map(|stop| bounds(stop.shrunk))
-    }
-
+    shrunk: Option<(f64, Option<f64>)> = it.stop().map(|stop| bounds(stop.shrunk));
     /// float or None: The tolerance that was used, a length, where something stops it.
-    #[getter]
-    fn tolerance(&self) -> Option<f64> {
-        self.stop().map(|stop| stop.tolerance)
-    }
-
+    tolerance: Option<f64> = it.stop().map(|stop| stop.tolerance);
     /// float or None: The least tolerance with which the bodies would not overlap when the motion begins.
-    #[getter]
-    fn least_tolerance(&self) -> Option<f64> {
-        match &self.found {
-            Of::Convex(motion::MotionClearance::Overlapping(found))
-            | Of::Solids(motion::MotionClearance::Overlapping(found)) => found.least_tolerance,
-            _ => None,
-        }
-    }
+    least_tolerance: Option<f64> = match &it.found {
+        Of::Convex(motion::MotionClearance::Overlapping(found))
+        | Of::Solids(motion::MotionClearance::Overlapping(found)) => found.least_tolerance,
+        _ => None,
+    };
+});
 
+#[pymethods]
+impl MotionClearance {
     /// Checks the proof of the bounds ``shrunk`` against the bodies alone; between solids they are asked once
     /// more for it.
     ///

@@ -5,8 +5,8 @@ use numpy::PyArray1;
 use pyo3::prelude::*;
 use serde::{Deserialize, Serialize};
 
-use crate::arrays::ids;
-use crate::frozen::{match_args, pickled};
+use crate::arrays::{Indices, ids};
+use crate::frozen::{getters, match_args, pickled};
 
 /// What became of a convex body whose faces were moved.
 #[pyclass(frozen, module = "colltrans")]
@@ -26,20 +26,15 @@ impl From<colltrans::OffsetReport> for OffsetReport {
     }
 }
 
+getters!(OffsetReport, |it| {
+    /// float: The largest distance of a vertex from the one that it comes from, a length.
+    farthest: f64 = it.farthest;
+    /// ndarray: Faces of the body as it was of which nothing is left, in increasing order.
+    vanished(py): Indices<'py> = PyArray1::from_slice(py, &it.vanished);
+});
+
 #[pymethods]
 impl OffsetReport {
-    /// float: The largest distance of a vertex from the one that it comes from, a length.
-    #[getter]
-    fn farthest(&self) -> f64 {
-        self.farthest
-    }
-
-    /// ndarray: Faces of the body as it was of which nothing is left, in increasing order.
-    #[getter]
-    fn vanished<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        PyArray1::from_slice(py, &self.vanished)
-    }
-
     fn __repr__(&self) -> String {
         let Self { farthest, vanished } = self;
         format!("OffsetReport(farthest={farthest:?}, vanished={vanished:?})")
@@ -65,29 +60,20 @@ impl From<colltrans::solid::ShrinkReport> for ShrinkReport {
     }
 }
 
-#[pymethods]
-impl ShrinkReport {
+getters!(ShrinkReport, |it| {
     /// float: The largest displacement of a vertex, a length.
-    #[getter]
-    fn farthest(&self) -> f64 {
-        self.farthest
-    }
-
+    farthest: f64 = it.farthest;
     /// ndarray: Vertices that stay, because no displacement is inwards for all facets around them;
     /// indices of the input.
-    #[getter]
-    fn stuck<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        ids(py, &self.stuck)
-    }
-
+    stuck(py): Indices<'py> = ids(py, &it.stuck);
     /// ndarray: Facets that turned inside out, or passed through others, because the body (or a gap in
     /// it that grows shut) is thinner than twice the amount there; indices of the input, in increasing
     /// order.
-    #[getter]
-    fn inverted<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        ids(py, &self.inverted)
-    }
+    inverted(py): Indices<'py> = ids(py, &it.inverted);
+});
 
+#[pymethods]
+impl ShrinkReport {
     fn __repr__(&self) -> String {
         let farthest = self.farthest;
         let stuck: Vec<u32> = self.stuck.iter().map(|v| v.0).collect();

@@ -2,15 +2,14 @@
 
 use colltrans::record::Record;
 use colltrans::{ContactRange as Range, Outcome, ProofFile};
-use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::answer::{Answer, answer, object};
-use crate::arrays::{coordinates, row};
+use crate::arrays::{Vector, coordinates, row};
 use crate::certificate::{Certificate, Separation};
 use crate::errors::{OrRaise, error};
 use crate::features::{Features, Steps};
-use crate::frozen::{Reduced, match_args, read, reduced, written};
+use crate::frozen::{Reduced, getters, match_args, read, reduced, written};
 use crate::pose::Pose;
 use crate::query::Cast;
 
@@ -23,66 +22,39 @@ pub(crate) struct Contact {
 
 answer!(Contact("translation", "normal", "point") of Outcome, Cast, |it| Outcome::Contact(it.contact));
 
-#[pymethods]
-impl Contact {
+getters!(Contact, |it| {
     /// float: The collision translation, in multiples of the direction. Negative: a contact that
     /// lies behind, or an overlap now.
-    #[getter]
-    fn translation(&self) -> f64 {
-        self.contact.translation
-    }
-
+    translation: f64 = it.contact.translation;
     /// ndarray of shape (3,): Unit contact normal in the world, from the moving body to the fixed one.
-    #[getter]
-    fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.contact.normal)
-    }
-
+    normal(py): Vector<'py> = row(py, it.contact.normal);
     /// ndarray of shape (3,): The contact point, in the world.
-    #[getter]
-    fn point<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let points = self.query.get().with(|cast| self.contact.points(cast))?;
+    point(py): PyResult<Vector<'py>> = {
+        let points = it.query.get().with(|cast| it.contact.points(cast))?;
         Ok(row(py, points.on_fixed))
-    }
-
+    };
     /// ndarray of shape (3,): The same point of the moving body before it moves, in the world.
-    #[getter]
-    fn point_at_start<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let points = self.query.get().with(|cast| self.contact.points(cast))?;
+    point_at_start(py): PyResult<Vector<'py>> = {
+        let points = it.query.get().with(|cast| it.contact.points(cast))?;
         Ok(row(py, points.on_moving))
-    }
-
+    };
     /// Features: The vertex, edge or face of each body in the contact plane.
-    #[getter]
-    fn features(&self) -> PyResult<Features> {
-        self.query.get().with(|cast| Features::of(&self.contact, cast))
-    }
-
+    features: PyResult<Features> = it.query.get().with(|cast| Features::of(&it.contact, cast));
     /// Certificate: Both bounds with their proofs.
-    #[getter]
-    fn certificate(&self, py: Python<'_>) -> Certificate {
-        Certificate { proof: self.contact.certificate, query: self.query.clone_ref(py) }
-    }
-
+    certificate(py): Certificate =
+        Certificate { proof: it.contact.certificate, query: it.query.clone_ref(py) };
     /// Pose: The moving body's pose after the motion up to this contact and not beyond, whatever
     /// rounding does.
-    #[getter]
-    fn pose_before(&self) -> PyResult<Pose> {
-        self.query.get().with(|cast| self.contact.pose_before(cast))?.or_raise().map(Pose)
-    }
-
+    pose_before: PyResult<Pose> =
+        it.query.get().with(|cast| it.contact.pose_before(cast))?.or_raise().map(Pose);
     /// str: The solver that found it.
-    #[getter]
-    fn solver(&self) -> &'static str {
-        self.contact.solver.name()
-    }
-
+    solver: &'static str = it.contact.solver.name();
     /// Steps: Work done.
-    #[getter]
-    fn steps(&self) -> Steps {
-        Steps(self.contact.steps)
-    }
+    steps: Steps = Steps(it.contact.steps);
+});
 
+#[pymethods]
+impl Contact {
     fn __repr__(&self) -> String {
         contact_text(&self.contact)
     }
@@ -102,28 +74,19 @@ pub(crate) struct Grazing {
 
 answer!(Grazing("overlap", "contact") of Outcome, Cast, |it| Outcome::Grazing(it.grazing));
 
-#[pymethods]
-impl Grazing {
+getters!(Grazing, |it| {
     /// float: How far the shadows overlap, a length; negative if they miss by less than rounding
     /// can tell.
-    #[getter]
-    fn overlap(&self) -> f64 {
-        self.grazing.overlap
-    }
-
+    overlap: f64 = it.grazing.overlap;
     /// ndarray of shape (3,): Unit vector of the world, across the direction, from the moving body's
     /// shadow to the fixed one's.
-    #[getter]
-    fn separating_direction<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.grazing.separating_direction)
-    }
-
+    separating_direction(py): Vector<'py> = row(py, it.grazing.separating_direction);
     /// Contact: The contact if the overlap is taken for real.
-    #[getter]
-    fn contact(&self, py: Python<'_>) -> Contact {
-        Contact { contact: self.grazing.contact, query: self.query(py) }
-    }
+    contact(py): Contact = Contact { contact: it.grazing.contact, query: it.query(py) };
+});
 
+#[pymethods]
+impl Grazing {
     fn __repr__(&self) -> String {
         grazing_text(&self.grazing)
     }
@@ -143,44 +106,24 @@ pub(crate) struct Separated {
 
 answer!(Separated("margin", "normal") of Outcome, Cast, |it| Outcome::Separated(it.separated));
 
+getters!(Separated, |it| {
+    /// float: A lower bound of the distance of the shadows, a length.
+    margin: f64 = it.separated.certificate.margin;
+    /// ndarray of shape (3,): Unit normal of a plane between them, parallel to the direction.
+    normal(py): Vector<'py> = row(py, it.separated.certificate.normal);
+    /// Separation: The proof.
+    certificate(py): Separation =
+        Separation { proof: it.separated.certificate, query: it.query.clone_ref(py) };
+    /// float: How far the moving body can move: infinitely.
+    distance: f64 = f64::INFINITY;
+    /// str: The solver that found it.
+    solver: &'static str = it.separated.solver.name();
+    /// Steps: Work done.
+    steps: Steps = Steps(it.separated.steps);
+});
+
 #[pymethods]
 impl Separated {
-    /// float: A lower bound of the distance of the shadows, a length.
-    #[getter]
-    fn margin(&self) -> f64 {
-        self.separated.certificate.margin
-    }
-
-    /// ndarray of shape (3,): Unit normal of a plane between them, parallel to the direction.
-    #[getter]
-    fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.separated.certificate.normal)
-    }
-
-    /// Separation: The proof.
-    #[getter]
-    fn certificate(&self, py: Python<'_>) -> Separation {
-        Separation { proof: self.separated.certificate, query: self.query.clone_ref(py) }
-    }
-
-    /// float: How far the moving body can move: infinitely.
-    #[getter]
-    fn distance(&self) -> f64 {
-        f64::INFINITY
-    }
-
-    /// str: The solver that found it.
-    #[getter]
-    fn solver(&self) -> &'static str {
-        self.separated.solver.name()
-    }
-
-    /// Steps: Work done.
-    #[getter]
-    fn steps(&self) -> Steps {
-        Steps(self.separated.steps)
-    }
-
     fn __repr__(&self) -> String {
         format!("Separated(margin={:?})", self.separated.certificate.margin)
     }
@@ -195,37 +138,34 @@ pub(crate) struct ContactRange {
 
 answer!(ContactRange("interval") of Range, Cast, |it| it.range);
 
-#[pymethods]
-impl ContactRange {
+getters!(ContactRange, |it| {
     /// tuple of float: First and last translation, in multiples of the direction.
-    #[getter]
-    fn interval(&self) -> (f64, f64) {
-        let [enter, exit] = self.range.interval().unwrap_or([f64::NAN; 2]);
+    interval: (f64, f64) = {
+        let [enter, exit] = it.range.interval().unwrap_or([f64::NAN; 2]);
         (enter, exit + 0.0)
-    }
-
+    };
     /// Contact or Grazing: The first contact along the direction.
-    #[getter]
-    fn first<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let first = match self.range {
+    first(py): PyResult<Bound<'py, PyAny>> = {
+        let first = match it.range {
             Range::Contact { first, .. } => Outcome::Contact(first),
             Range::Grazing { first, .. } => Outcome::Grazing(first),
             Range::Separated(separated) => Outcome::Separated(separated),
         };
-        first.object(self.query.bind(py))
-    }
-
+        first.object(it.query.bind(py))
+    };
     /// LastContact: The last contact along the direction.
-    #[getter]
-    fn last(&self, py: Python<'_>) -> PyResult<LastContact> {
-        let last = match self.range {
+    last(py): PyResult<LastContact> = {
+        let last = match it.range {
             Range::Contact { last, .. } => Outcome::Contact(last),
             Range::Grazing { last, .. } => Outcome::Grazing(last),
             Range::Separated(separated) => Outcome::Separated(separated),
         };
-        LastContact::of(py, last, &self.query)
-    }
+        LastContact::of(py, last, &it.query)
+    };
+});
 
+#[pymethods]
+impl ContactRange {
     fn __repr__(&self) -> String {
         format!("ContactRange(interval={:?})", self.interval())
     }
@@ -260,54 +200,35 @@ impl LastContact {
     }
 }
 
-#[pymethods]
-impl LastContact {
+getters!(LastContact, |it| {
     /// float: The translation, in multiples of the direction.
-    #[getter]
-    fn translation(&self) -> PyResult<f64> {
-        Ok(self.contact()?.exit().value + 0.0)
-    }
-
+    translation: PyResult<f64> = Ok(it.contact()?.exit().value + 0.0);
     /// tuple of float: Proven bounds of the translation; beyond the second the bodies never meet.
-    #[getter]
-    fn bounds(&self) -> PyResult<(f64, f64)> {
-        let exit = self.contact()?.exit();
+    bounds: PyResult<(f64, f64)> = {
+        let exit = it.contact()?.exit();
         Ok((exit.lower + 0.0, exit.upper + 0.0))
-    }
-
+    };
     /// ndarray of shape (3,): Unit contact normal in the world, from the moving body to the fixed one.
-    #[getter]
-    fn normal<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        Ok(row(py, self.contact()?.normal))
-    }
-
+    normal(py): PyResult<Vector<'py>> = Ok(row(py, it.contact()?.normal));
     /// ndarray of shape (3,): The contact point, in the world.
-    #[getter]
-    fn point<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let contact = self.contact()?;
-        Ok(row(py, self.turned.get().with(|cast| contact.points(cast))?.on_fixed))
-    }
-
+    point(py): PyResult<Vector<'py>> = {
+        let contact = it.contact()?;
+        Ok(row(py, it.turned.get().with(|cast| contact.points(cast))?.on_fixed))
+    };
     /// Features: The vertex, edge or face of each body in the contact plane.
-    #[getter]
-    fn features(&self) -> PyResult<Features> {
-        let contact = self.contact()?;
-        self.turned.get().with(|cast| Features::of(contact, cast))
-    }
-
+    features: PyResult<Features> = {
+        let contact = it.contact()?;
+        it.turned.get().with(|cast| Features::of(contact, cast))
+    };
     /// Cast: The query.
-    #[getter]
-    fn query(&self, py: Python<'_>) -> Py<Cast> {
-        self.query.clone_ref(py)
-    }
-
+    query(py): Py<Cast> = it.query.clone_ref(py);
     /// Contact or Grazing: The same as the first contact of the query turned round, with its proof:
     /// translations count the other way.
-    #[getter]
-    fn turned<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.found.object(self.turned.bind(py))
-    }
+    turned(py): PyResult<Bound<'py, PyAny>> = it.found.object(it.turned.bind(py));
+});
 
+#[pymethods]
+impl LastContact {
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<Reduced<'py, (Py<Cast>, String)>> {
         reduced::<Self, _>(py, (self.query(py), written(&self.found)?))
     }

@@ -5,8 +5,9 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PySequence;
 
-use crate::arrays::{Numbers, Shape, numbers, plain_numbers, row, table};
+use crate::arrays::{Numbers, Shape, Vector, numbers, plain_numbers, row, table};
 use crate::errors::{OrRaise, input, warn_of_rounded_pose};
+use crate::frozen::getters;
 
 /// A rigid placement of a body in the world: ``x_world = R @ x_body + t``.
 ///
@@ -38,30 +39,22 @@ use crate::errors::{OrRaise, input, warn_of_rounded_pose};
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Pose(pub(crate) colltrans::Pose);
 
+getters!(Pose, |it| {
+    /// ndarray of shape (3,): The translation ``t``, in world units.
+    translation(py): Vector<'py> = row(py, it.0.translation());
+    /// ndarray of shape (3, 3): The matrix ``R``, whose nine entries define where a body is.
+    rotation(py): PyResult<Bound<'py, PyArray2<f64>>> =
+        table(py, it.0.matrix().transpose().to_cols_array_2d().map(|row| row.map(|c| c + 0.0)));
+    /// ndarray of shape (4,): The rotation as a unit quaternion x, y, z, w, rounded.
+    quaternion(py): Vector<'py> = PyArray1::from_slice(py, &it.0.rotation().to_array());
+});
+
 #[pymethods]
 impl Pose {
     #[new]
     #[pyo3(signature = (source=None))]
     fn new(source: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         pose(source, "source").map(Self)
-    }
-
-    /// ndarray of shape (3,): The translation ``t``, in world units.
-    #[getter]
-    fn translation<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.0.translation())
-    }
-
-    /// ndarray of shape (3, 3): The matrix ``R``, whose nine entries define where a body is.
-    #[getter]
-    fn rotation<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        table(py, self.0.matrix().transpose().to_cols_array_2d().map(|row| row.map(|c| c + 0.0)))
-    }
-
-    /// ndarray of shape (4,): The rotation as a unit quaternion x, y, z, w, rounded.
-    #[getter]
-    fn quaternion<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, &self.0.rotation().to_array())
     }
 
     /// The matrix of shape (4, 4).

@@ -7,13 +7,12 @@
 use colltrans::glam::DVec3;
 use colltrans::record::Dents;
 use colltrans::{Options, QueryError};
-use numpy::PyArray1;
 use pyo3::prelude::*;
 
-use crate::arrays::{row, vector};
+use crate::arrays::{Vector, row, vector};
 use crate::body::ConvexPolyhedron;
 use crate::errors::{OrRaise, error, query_error};
-use crate::frozen::{Options as Shows, Shown, html, show};
+use crate::frozen::{Options as Shows, Shown, getters, html, show};
 use crate::pose::{Pose, pose};
 use crate::solid::ConvexArgument;
 use crate::solver::options_of;
@@ -134,6 +133,25 @@ impl Cast {
     }
 }
 
+getters!(Cast, |it| {
+    /// ConvexPolyhedron: The moving body.
+    moving(py): Py<ConvexPolyhedron> = it.moving.clone_ref(py);
+    /// ConvexPolyhedron: The fixed body.
+    fixed(py): Py<ConvexPolyhedron> = it.fixed.clone_ref(py);
+    /// Pose: Where the moving body is.
+    moving_pose: Pose = Pose(it.poses[0]);
+    /// Pose: Where the fixed body is.
+    fixed_pose: Pose = Pose(it.poses[1]);
+    /// ndarray of shape (3,): The direction, as given.
+    direction(py): Vector<'py> = row(py, it.direction);
+    /// float: Sideways overlaps up to this length count as grazing.
+    graze_tolerance: f64 = it.options.graze_tolerance;
+    /// float: The gap to be kept; 0 if there is none.
+    keep: f64 = it.options.keep;
+    /// str: How the search is narrowed.
+    solver: &'static str = it.options.solver.name();
+});
+
 #[pymethods]
 impl Cast {
     #[new]
@@ -185,54 +203,6 @@ impl Cast {
             direction: cast.direction(),
             options: cast.options(),
         })
-    }
-
-    /// ConvexPolyhedron: The moving body.
-    #[getter]
-    fn moving(&self, py: Python<'_>) -> Py<ConvexPolyhedron> {
-        self.moving.clone_ref(py)
-    }
-
-    /// ConvexPolyhedron: The fixed body.
-    #[getter]
-    fn fixed(&self, py: Python<'_>) -> Py<ConvexPolyhedron> {
-        self.fixed.clone_ref(py)
-    }
-
-    /// Pose: Where the moving body is.
-    #[getter]
-    fn moving_pose(&self) -> Pose {
-        Pose(self.poses[0])
-    }
-
-    /// Pose: Where the fixed body is.
-    #[getter]
-    fn fixed_pose(&self) -> Pose {
-        Pose(self.poses[1])
-    }
-
-    /// ndarray of shape (3,): The direction, as given.
-    #[getter]
-    fn direction<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.direction)
-    }
-
-    /// float: Sideways overlaps up to this length count as grazing.
-    #[getter]
-    fn graze_tolerance(&self) -> f64 {
-        self.options.graze_tolerance
-    }
-
-    /// float: The gap to be kept; 0 if there is none.
-    #[getter]
-    fn keep(&self) -> f64 {
-        self.options.keep
-    }
-
-    /// str: How the search is narrowed.
-    #[getter]
-    fn solver(&self) -> &'static str {
-        self.options.solver.name()
     }
 
     /// A picture of the bodies and of the first contact: see :func:`colltrans.show`.

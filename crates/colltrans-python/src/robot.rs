@@ -11,14 +11,16 @@ use colltrans::record::PathRecord;
 use colltrans::{AnyBody, AnyPlaced, ProofFile, Statement};
 use colltrans_assembly_io::read::{self, ReadOptions};
 use colltrans_assembly_io::robot::{Cell, Robot as Arm, RobotJoint, Table};
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
 use crate::answer::save;
-use crate::arrays::{coordinates, row, table};
+use crate::arrays::{Vector, coordinates, row, table};
 use crate::errors::{OrRaise, error, input};
-use crate::frozen::{Options, Reduced, Shown, match_args, plain, read, reduced, show, written};
+use crate::frozen::{
+    Options, Reduced, Shown, getters, match_args, plain, read, reduced, show, written,
+};
 use crate::obstacles::wait;
 use crate::solid::Piece;
 
@@ -161,6 +163,26 @@ fn table_of(
     Ok(Table { names, times, rows, ..Table::default() })
 }
 
+getters!(Robot, |it| {
+    /// str: Its name.
+    name: &str = it.arm.name();
+    /// list of str: The names of its links.
+    links: Vec<&str> = it.arm.links().iter().map(|link| link.name.as_str()).collect();
+    /// list of str: The joints that move by themselves, in the order of the values of a row.
+    joints: Vec<&str> = {
+        let own = it.arm.joints().iter().filter(|joint| joint.mimic.is_none());
+        own.map(|joint| joint.name.as_str()).collect()
+    };
+    /// dict of str to tuple of (float, float): The limits of joints that have some, in radians or metres.
+    limits: BTreeMap<&str, (f64, f64)> = {
+        let of = |joint: &'_ RobotJoint| -> Option<(f64, f64)> { joint.limits.map(Into::into) };
+        let joints = it.arm.joints().iter();
+        joints.filter_map(|joint| Some((joint.name.as_str(), of(joint)?))).collect()
+    };
+    /// list of str: What was noted when it was read.
+    notes: Vec<String> = it.arm.notes().to_vec();
+});
+
 #[pymethods]
 impl Robot {
     /// A robot of a URDF file, in metres and radians.
@@ -219,39 +241,6 @@ impl Robot {
             })?;
             Ok(Self { arm, listed })
         })
-    }
-
-    /// str: Its name.
-    #[getter]
-    fn name(&self) -> &str {
-        self.arm.name()
-    }
-
-    /// list of str: The names of its links.
-    #[getter]
-    fn links(&self) -> Vec<&str> {
-        self.arm.links().iter().map(|link| link.name.as_str()).collect()
-    }
-
-    /// list of str: The joints that move by themselves, in the order of the values of a row.
-    #[getter]
-    fn joints(&self) -> Vec<&str> {
-        let own = self.arm.joints().iter().filter(|joint| joint.mimic.is_none());
-        own.map(|joint| joint.name.as_str()).collect()
-    }
-
-    /// dict of str to tuple of (float, float): The limits of joints that have some, in radians or metres.
-    #[getter]
-    fn limits(&self) -> BTreeMap<&str, (f64, f64)> {
-        let of = |joint: &'_ RobotJoint| -> Option<(f64, f64)> { joint.limits.map(Into::into) };
-        let joints = self.arm.joints().iter();
-        joints.filter_map(|joint| Some((joint.name.as_str(), of(joint)?))).collect()
-    }
-
-    /// list of str: What was noted when it was read.
-    #[getter]
-    fn notes(&self) -> Vec<String> {
-        self.arm.notes().to_vec()
     }
 
     /// Which two bodies first meet on a path, and when?
@@ -436,88 +425,40 @@ impl PathAnswer {
     }
 }
 
-#[pymethods]
-impl PathAnswer {
+getters!(PathAnswer, |it| {
     /// str: ``"contact"``, ``"grazing"``, ``"free"``, ``"overlapping"`` or ``"undecided"``.
-    #[getter]
-    fn outcome(&self) -> &'static str {
-        self.record.outcome.name()
-    }
-
+    outcome: &'static str = it.record.outcome.name();
     /// float: No two meet before: the end of the path if none do, its beginning if two overlap there.
-    #[getter]
-    fn lower(&self) -> f64 {
-        self.contact().map_or(self.end.0, |contact| contact.lower)
-    }
-
+    lower: f64 = it.contact().map_or(it.end.0, |contact| contact.lower);
     /// float or None: At this time two do meet; None where that is not proven, or none do.
-    #[getter]
-    fn upper(&self) -> Option<f64> {
-        self.contact().map(|contact| contact.upper).filter(|upper| upper.is_finite())
-    }
-
+    upper: Option<f64> =
+        it.contact().map(|contact| contact.upper).filter(|upper| upper.is_finite());
     /// tuple of (str, str) or None: The two, links or what stands around.
-    #[getter]
-    fn pair(&self) -> Option<(&str, &str)> {
-        self.record.pair.as_ref().map(|[a, b]| (a.as_str(), b.as_str()))
-    }
-
+    pair: Option<(&str, &str)> = it.record.pair.as_ref().map(|[a, b]| (a.as_str(), b.as_str()));
     /// tuple of (int, float) or None: Where ``lower`` is: the row before, and which part of the way to the
     /// next one.
-    #[getter]
-    fn place(&self) -> Option<(usize, f64)> {
-        self.record.place.map(|place| (place.row, place.share))
-    }
-
+    place: Option<(usize, f64)> = it.record.place.map(|place| (place.row, place.share));
     /// ndarray of shape (3,) or None: Where the first one is nearest to the second then, in the world.
-    #[getter]
-    fn point<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        self.contact()?.points.map(|points| row(py, points[0]))
-    }
-
+    point(py): Option<Vector<'py>> = it.contact()?.points.map(|points| row(py, points[0]));
     /// ndarray of shape (3,) or None: Unit normal in the world, from the first to the second.
-    #[getter]
-    fn normal<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        self.contact()?.normal.map(|normal| row(py, normal))
-    }
-
+    normal(py): Option<Vector<'py>> = it.contact()?.normal.map(|normal| row(py, normal));
     /// list of tuple of (str, str): Where the path begins with overlaps, all pairs that overlap there, or are as
     /// near as ``keep``.
-    #[getter]
-    fn overlaps(&self) -> Vec<(String, String)> {
-        self.record.overlaps.iter().cloned().map(Into::into).collect()
-    }
-
+    overlaps: Vec<(String, String)> = it.record.overlaps.iter().cloned().map(Into::into).collect();
     /// list of str: Links for whose meshes their convex hulls stand; a contact of one is that of its hull.
-    #[getter]
-    fn hulls(&self) -> Vec<String> {
-        self.record.hulls.clone()
-    }
-
+    hulls: Vec<String> = it.record.hulls.clone();
     /// int: How many pairs of bodies were asked about.
-    #[getter]
-    fn pairs(&self) -> usize {
-        self.record.pairs
-    }
-
+    pairs: usize = it.record.pairs;
     /// int: How often two bodies were looked at.
-    #[getter]
-    fn looks(&self) -> u32 {
-        self.record.looks
-    }
-
+    looks: u32 = it.record.looks;
     /// int: Planes in the proof.
-    #[getter]
-    fn planes(&self) -> usize {
-        self.record.planes
-    }
-
+    planes: usize = it.record.planes;
     /// list of str: What was not asked though nobody said so, and values beyond a joint's limits.
-    #[getter]
-    fn notes(&self) -> Vec<String> {
-        self.notes.clone()
-    }
+    notes: Vec<String> = it.notes.clone();
+});
 
+#[pymethods]
+impl PathAnswer {
     /// Checks the proof against the robot, its path and the scene alone, without a search.
     ///
     /// Raises

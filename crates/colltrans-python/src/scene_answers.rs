@@ -4,14 +4,14 @@ use std::path::PathBuf;
 
 use colltrans::glam::DVec3;
 use colltrans::{Among, ByKind, Clearance, ClearanceAmong, Nearby, ProofFile};
-use numpy::PyArray1;
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::types::{PyIterator, PyTuple};
 
 use crate::answer::save;
-use crate::arrays::row;
+use crate::arrays::{Vector, row};
 use crate::errors::OrRaise;
+use crate::frozen::getters;
 use crate::scene::{Asked, keeping};
 
 /// What all have in common: their proof.
@@ -75,45 +75,24 @@ impl NearestObstacle {
     }
 }
 
-#[pymethods]
-impl NearestObstacle {
+getters!(NearestObstacle, |it| {
     /// int: Which one.
-    #[getter]
-    fn obstacle(&self) -> u64 {
-        self.found.obstacle.0
-    }
-
+    obstacle: u64 = it.found.obstacle.0;
     /// float: No obstacle is nearer, rounded down.
-    #[getter]
-    fn lower(&self) -> f64 {
-        self.found.lower
-    }
-
+    lower: f64 = it.found.lower;
     /// float: This one is not farther, rounded up.
-    #[getter]
-    fn upper(&self) -> f64 {
-        self.found.distance.upper()
-    }
-
+    upper: f64 = it.found.distance.upper();
     /// ndarray of shape (3,): The point of the moving body that is nearest to it, in the world.
-    #[getter]
-    fn on_moving<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.found.distance.on_moving())
-    }
-
+    on_moving(py): Vector<'py> = row(py, it.found.distance.on_moving());
     /// ndarray of shape (3,): Its point that is nearest to the moving body.
-    #[getter]
-    fn on_fixed<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.found.distance.on_fixed())
-    }
-
+    on_fixed(py): Vector<'py> = row(py, it.found.distance.on_fixed());
     /// ndarray of shape (3,) or None: Unit vector in the world, from the moving body to it, where they are
     /// apart.
-    #[getter]
-    fn normal<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        self.found.distance.normal().map(|normal| row(py, normal))
-    }
+    normal(py): Option<Vector<'py>> = it.found.distance.normal().map(|normal| row(py, normal));
+});
 
+#[pymethods]
+impl NearestObstacle {
     fn __repr__(&self) -> String {
         let (obstacle, lower, upper) = (self.obstacle(), self.lower(), self.upper());
         format!("NearestObstacle(obstacle={obstacle}, lower={lower:?}, upper={upper:?})")
@@ -136,20 +115,15 @@ impl NearbyObstacles {
     }
 }
 
+getters!(NearbyObstacles, |it| {
+    /// list of int: Those that are at most the length away, in the order in which they came.
+    closer: Vec<u64> = it.found.closer.iter().map(|(id, _)| id.0).collect();
+    /// list of int: Those of which rounding cannot tell.
+    undecided: Vec<u64> = it.found.undecided.iter().map(|(id, _)| id.0).collect();
+});
+
 #[pymethods]
 impl NearbyObstacles {
-    /// list of int: Those that are at most the length away, in the order in which they came.
-    #[getter]
-    fn closer(&self) -> Vec<u64> {
-        self.found.closer.iter().map(|(id, _)| id.0).collect()
-    }
-
-    /// list of int: Those of which rounding cannot tell.
-    #[getter]
-    fn undecided(&self) -> Vec<u64> {
-        self.found.undecided.iter().map(|(id, _)| id.0).collect()
-    }
-
     fn __len__(&self) -> usize {
         2
     }
@@ -218,48 +192,31 @@ pub(crate) fn upper_of(found: &ClearanceAmong) -> f64 {
     }
 }
 
-#[pymethods]
-impl ObstacleClearance {
+getters!(ObstacleClearance, |it| {
     /// str: ``"blocked"``, ``"free"`` or ``"overlapping"``.
-    #[getter]
-    fn outcome(&self) -> &'static str {
-        outcome_of(&self.found)
-    }
-
+    outcome: &'static str = outcome_of(&it.found);
     /// int or None: What stops the body, or overlaps it.
-    #[getter]
-    fn obstacle(&self) -> Option<u64> {
-        self.found.stop.map(|(id, _)| id.0)
-    }
-
+    obstacle: Option<u64> = it.found.stop.map(|(id, _)| id.0);
     /// float or None: How far the body may safely move past all obstacles, in multiples of the direction; None
     /// if it overlaps one now.
-    #[getter]
-    fn distance(&self) -> Option<f64> {
-        self.found.distance()
-    }
-
+    distance: Option<f64> = it.found.distance();
     /// float: The body is stopped no later, for certain; infinite if nothing stops it, NaN if it overlaps an
     /// obstacle.
-    #[getter]
-    fn upper(&self) -> f64 {
-        upper_of(&self.found)
-    }
-
+    upper: f64 = upper_of(&it.found);
     /// ndarray of shape (3,) or None: Unit normal of the contact, from the moving body to what stops it.
-    #[getter]
-    fn normal<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        match self.found.stop {
-            Some((_, ByKind::Convex(Clearance::Blocked { contact, .. }))) => {
-                Some(row(py, contact.normal))
-            }
-            Some((_, ByKind::Solid(Clearance::Blocked { contact, .. }))) => {
-                Some(row(py, contact.normal))
-            }
-            _ => None,
+    normal(py): Option<Vector<'py>> = match it.found.stop {
+        Some((_, ByKind::Convex(Clearance::Blocked { contact, .. }))) => {
+            Some(row(py, contact.normal))
         }
-    }
+        Some((_, ByKind::Solid(Clearance::Blocked { contact, .. }))) => {
+            Some(row(py, contact.normal))
+        }
+        _ => None,
+    };
+});
 
+#[pymethods]
+impl ObstacleClearance {
     fn __repr__(&self) -> String {
         let or_none = |text: Option<String>| text.unwrap_or_else(|| "None".into());
         let obstacle = or_none(self.obstacle().map(|id| id.to_string()));

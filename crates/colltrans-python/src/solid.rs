@@ -11,16 +11,16 @@ use colltrans::glam::DVec3;
 use colltrans::solid::{AsSolid, ShellKind};
 use colltrans_mesh::Mesh;
 use colltrans_mesh::body::{self, BodyOptions, Loaded, Refused, load};
-use numpy::{IntoPyArray, PyArray1, PyArray2};
+use numpy::{IntoPyArray, PyArray2};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
 use crate::arguments::{maker, refuse_mesh_object};
-use crate::arrays::{self, faces, ids, points, read_only, table};
+use crate::arrays::{self, Indices, faces, ids, points, read_only, table};
 use crate::body::ConvexPolyhedron;
 use crate::errors::{OrRaise, input};
-use crate::frozen::{Options, Shown, html, show};
+use crate::frozen::{Options, Shown, getters, html, show};
 use crate::offset::ShrinkReport;
 
 /// What a solid was made of.
@@ -205,6 +205,42 @@ impl Solid {
     }
 }
 
+getters!(Solid, |it| {
+    /// ndarray of shape (N, 3): The vertices in use, in the body frame.
+    vertices(py): PyResult<Bound<'py, PyArray2<f64>>> =
+        table(py, it.solid.vertices().iter().map(DVec3::to_array)).map(read_only);
+    /// ndarray of shape (M, 3): The triangles, as indices into ``vertices``.
+    triangles(py): PyResult<Bound<'py, PyArray2<u32>>> =
+        table(py, it.solid.triangles().iter().copied()).map(read_only);
+    /// ndarray of shape (N,): For each vertex its index in the input.
+    input_indices(py): Indices<'py> = ids(py, it.solid.vertex_indices());
+    /// ndarray of shape (M,): For each triangle the face of the input that it is a part of.
+    face_indices(py): Indices<'py> = ids(py, it.solid.facet_indices());
+    /// bool: Whether all shells are closed; if not, the body is a surface, at least in part.
+    is_closed: bool = it.solid.is_closed();
+    /// dict of str to int: How many shells are ``closed`` (with an inside), ``sided`` (open, but all but
+    /// closed) and ``sheet``. Open ones block from both sides, rims included; sheets are neither shrunk
+    /// nor grown.
+    shells: BTreeMap<&'static str, usize> = {
+        let report = it.solid.report();
+        ShellKind::ALL.into_iter().map(|kind| (kind.name(), report.count(kind))).collect()
+    };
+    /// list of str: What was mended to make it of its mesh, or is not as it is in the file.
+    notes: Vec<String> = it.notes.clone();
+    /// float: How far apart vertices of its file may be written that were meant to be one, a length: from
+    /// it comes the default tolerance of a query. 0 for what was not read from a file.
+    precision: f64 = it.precision;
+    /// float: The volume, in the cube of the unit of length.
+    volume: f64 = it.solid.volume();
+    /// ndarray of shape (2, 3): Smallest and largest coordinates.
+    bounds(py): PyResult<Bound<'py, PyArray2<f64>>> = {
+        let bounds = it.solid.bounds();
+        table(py, [bounds.low, bounds.high].map(|v| v.to_array()))
+    };
+    /// int: Bytes of memory that the body occupies, without what it was made of.
+    nbytes: usize = it.solid.memory_bytes();
+});
+
 #[pymethods]
 impl Solid {
     #[new]
@@ -363,77 +399,6 @@ impl Solid {
     ///     As of :meth:`shrunk`.
     fn grown(slf: &Bound<'_, Self>, amount: f64) -> PyResult<(Self, ShrinkReport)> {
         Self::moved(slf, amount, false)
-    }
-
-    /// ndarray of shape (N, 3): The vertices in use, in the body frame.
-    #[getter]
-    fn vertices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        table(py, self.solid.vertices().iter().map(DVec3::to_array)).map(read_only)
-    }
-
-    /// ndarray of shape (M, 3): The triangles, as indices into ``vertices``.
-    #[getter]
-    fn triangles<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<u32>>> {
-        table(py, self.solid.triangles().iter().copied()).map(read_only)
-    }
-
-    /// ndarray of shape (N,): For each vertex its index in the input.
-    #[getter]
-    fn input_indices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        ids(py, self.solid.vertex_indices())
-    }
-
-    /// ndarray of shape (M,): For each triangle the face of the input that it is a part of.
-    #[getter]
-    fn face_indices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        ids(py, self.solid.facet_indices())
-    }
-
-    /// bool: Whether all shells are closed; if not, the body is a surface, at least in part.
-    #[getter]
-    fn is_closed(&self) -> bool {
-        self.solid.is_closed()
-    }
-
-    /// dict of str to int: How many shells are ``closed`` (with an inside), ``sided`` (open, but all but
-    /// closed) and ``sheet``. Open ones block from both sides, rims included; sheets are neither shrunk
-    /// nor grown.
-    #[getter]
-    fn shells(&self) -> BTreeMap<&'static str, usize> {
-        let report = self.solid.report();
-        ShellKind::ALL.into_iter().map(|kind| (kind.name(), report.count(kind))).collect()
-    }
-
-    /// list of str: What was mended to make it of its mesh, or is not as it is in the file.
-    #[getter]
-    fn notes(&self) -> Vec<String> {
-        self.notes.clone()
-    }
-
-    /// float: How far apart vertices of its file may be written that were meant to be one, a length: from
-    /// it comes the default tolerance of a query. 0 for what was not read from a file.
-    #[getter]
-    fn precision(&self) -> f64 {
-        self.precision
-    }
-
-    /// float: The volume, in the cube of the unit of length.
-    #[getter]
-    fn volume(&self) -> f64 {
-        self.solid.volume()
-    }
-
-    /// ndarray of shape (2, 3): Smallest and largest coordinates.
-    #[getter]
-    fn bounds<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let bounds = self.solid.bounds();
-        table(py, [bounds.low, bounds.high].map(|v| v.to_array()))
-    }
-
-    /// int: Bytes of memory that the body occupies, without what it was made of.
-    #[getter]
-    fn nbytes(&self) -> usize {
-        self.solid.memory_bytes()
     }
 
     fn __reduce__<'py>(

@@ -4,13 +4,13 @@ use colltrans::record::{Record, StartOverlapRecord};
 use colltrans::solid::SolidCast as _;
 use colltrans::solid::{Overlap, SolidOverlap, StartOverlap};
 use colltrans::{Clearance, ProofFile};
-use numpy::PyArray1;
 use pyo3::prelude::*;
 
 use crate::answer::{Answer, answer, object};
-use crate::arrays::{coordinates, row};
+use crate::arrays::{Vector, coordinates, row};
 use crate::errors::OrRaise;
 use crate::features::Feature;
+use crate::frozen::getters;
 use crate::solid::Piece;
 use crate::solid_cast::SolidCast;
 
@@ -25,67 +25,35 @@ pub(crate) struct SolidContact {
 
 answer!(SolidContact("translation", "normal", "point") of colltrans::solid::SolidContact, SolidCast, |it| it.contact);
 
-#[pymethods]
-impl SolidContact {
+getters!(SolidContact, |it| {
     /// float: Where the faces that stop the body meet in their true place, not shrunk, in multiples of
     /// the direction; the best estimate.
-    #[getter]
-    fn translation(&self) -> f64 {
-        self.contact.translation.value
-    }
-
+    translation: f64 = it.contact.translation.value;
     /// tuple of (float, float): Its proven bounds. Up to the first the shrunk bodies do not overlap and
     /// those two faces have not met; beyond the second the bodies overlap: as they are, or, where
     /// those faces pass each other as they are, shrunk.
-    #[getter]
-    fn translation_bounds(&self) -> (f64, f64) {
-        self.contact.translation.bounds().into()
-    }
-
+    translation_bounds: (f64, f64) = it.contact.translation.bounds().into();
     /// float: How far the bodies go that were shrunk by half the tolerance each, in multiples of the
     /// direction.
-    #[getter]
-    fn shrunk_distance(&self) -> f64 {
-        self.contact.shrunk_distance.value
-    }
-
+    shrunk_distance: f64 = it.contact.shrunk_distance.value;
     /// tuple of (float, float): Its proven bounds.
-    #[getter]
-    fn shrunk_distance_bounds(&self) -> (f64, f64) {
-        self.contact.shrunk_distance.bounds().into()
-    }
-
+    shrunk_distance_bounds: (f64, f64) = it.contact.shrunk_distance.bounds().into();
     /// ndarray of shape (3,): Unit contact normal in the world, from the moving body to the fixed one.
-    #[getter]
-    fn normal<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.contact.normal)
-    }
-
+    normal(py): Vector<'py> = row(py, it.contact.normal);
     /// ndarray of shape (3,): The contact point on the fixed body, in the world.
-    #[getter]
-    fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.contact.point_on_fixed)
-    }
-
+    point(py): Vector<'py> = row(py, it.contact.point_on_fixed);
     /// ndarray of shape (3,): The same point of the moving body before it moves, in the world.
-    #[getter]
-    fn point_at_start<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.contact.point_on_moving)
-    }
-
+    point_at_start(py): Vector<'py> = row(py, it.contact.point_on_moving);
     /// Feature: What of the moving body touches: a corner, an edge from corner to corner, or the whole
     /// polygon of a face.
-    #[getter]
-    fn moving_feature(&self) -> PyResult<Feature> {
-        feature(self.contact.moving_feature, &self.query.get().bodies[0])
-    }
-
+    moving_feature: PyResult<Feature> =
+        feature(it.contact.moving_feature, &it.query.get().bodies[0]);
     /// Feature: What of the fixed body touches.
-    #[getter]
-    fn fixed_feature(&self) -> PyResult<Feature> {
-        feature(self.contact.fixed_feature, &self.query.get().bodies[1])
-    }
+    fixed_feature: PyResult<Feature> = feature(it.contact.fixed_feature, &it.query.get().bodies[1]);
+});
 
+#[pymethods]
+impl SolidContact {
     fn __repr__(&self) -> String {
         let (t, n) = (self.contact.translation.value, coordinates(self.contact.normal));
         format!("SolidContact(translation={t:?}, normal={n:?})")
@@ -108,28 +76,19 @@ answer!(SolidBlocked("distance", "contact") of SolidClearance, SolidCast, |it| {
     SolidClearance::Blocked { distance: it.distance, contact: it.contact }
 });
 
-#[pymethods]
-impl SolidBlocked {
+getters!(SolidBlocked, |it| {
     /// float: How far it may safely move, in multiples of the direction: the lower bound of where it is
     /// stopped, and never negative.
-    #[getter]
-    fn distance(&self) -> f64 {
-        self.distance
-    }
-
+    distance: f64 = it.distance;
     /// SolidContact: What stops it.
-    #[getter]
-    fn contact(&self, py: Python<'_>) -> SolidContact {
-        SolidContact { contact: self.contact, query: self.query(py) }
-    }
-
+    contact(py): SolidContact = SolidContact { contact: it.contact, query: it.query(py) };
     /// list of str: Which of ``moving`` and ``fixed`` are open surfaces, at least in part: what is inside
     /// of them is not known.
-    #[getter]
-    fn surfaces(&self) -> PyResult<Vec<&'static str>> {
-        surfaces(&self.query)
-    }
+    surfaces: PyResult<Vec<&'static str>> = surfaces(&it.query);
+});
 
+#[pymethods]
+impl SolidBlocked {
     fn __repr__(&self) -> String {
         format!("SolidBlocked(distance={:?})", self.distance)
     }
@@ -144,34 +103,21 @@ pub(crate) struct SolidFree {
 
 answer!(SolidFree() of SolidClearance, SolidCast, |it| SolidClearance::Free(it.free));
 
-#[pymethods]
-impl SolidFree {
+getters!(SolidFree, |it| {
     /// float: Infinite.
-    #[getter]
-    fn distance(&self) -> f64 {
-        f64::INFINITY
-    }
-
+    distance: f64 = f64::INFINITY;
     /// float or None: The margin of a plane between the bodies, parallel to the direction, a length;
     /// None if there is no such plane: it slides along, or moves away.
-    #[getter]
-    fn margin(&self) -> Option<f64> {
-        self.free.separation.map(|s| s.margin)
-    }
-
+    margin: Option<f64> = it.free.separation.map(|s| s.margin);
     /// ndarray of shape (3,) or None: Unit normal of that plane, in the world.
-    #[getter]
-    fn normal<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        self.free.separation.map(|s| row(py, s.normal))
-    }
-
+    normal(py): Option<Vector<'py>> = it.free.separation.map(|s| row(py, s.normal));
     /// list of str: Which of ``moving`` and ``fixed`` are open surfaces, at least in part: what is inside
     /// of them is not known.
-    #[getter]
-    fn surfaces(&self) -> PyResult<Vec<&'static str>> {
-        surfaces(&self.query)
-    }
+    surfaces: PyResult<Vec<&'static str>> = surfaces(&it.query);
+});
 
+#[pymethods]
+impl SolidFree {
     fn __repr__(&self) -> &'static str {
         "SolidFree()"
     }
@@ -186,45 +132,34 @@ pub(crate) struct SolidOverlapping {
 
 answer!(SolidOverlapping("least_tolerance") of SolidClearance, SolidCast, |it| SolidClearance::Overlapping(it.overlap));
 
-#[pymethods]
-impl SolidOverlapping {
+getters!(SolidOverlapping, |it| {
     /// None: There is none.
-    #[getter]
-    fn distance(&self) -> Option<f64> {
-        None
-    }
-
+    distance: Option<f64> = None;
     /// float or None: The least tolerance with which they would not overlap, a length; None if there is
     /// none, as for open surfaces.
-    #[getter]
-    fn least_tolerance(&self) -> Option<f64> {
-        self.overlap.least_tolerance
-    }
-
+    least_tolerance: Option<f64> = it.overlap.least_tolerance;
     /// tuple of (int or None, int or None): One of the places where the bodies, shrunk by half the
     /// tolerance each, overlap: a face of the moving and one of the fixed body that cross, as they
     /// were numbered in the input; where one of them is None, the shell with the other lies inside
     /// that body.
-    #[getter]
-    fn place(&self) -> PyResult<(Option<u32>, Option<u32>)> {
-        let [moving, fixed] = &self.query.get().bodies;
+    place: PyResult<(Option<u32>, Option<u32>)> = {
+        let [moving, fixed] = &it.query.get().bodies;
         let face = |body: &Piece, at: u32| -> PyResult<_> {
             Ok(Some(body.solid().or_raise()?.facet_indices()[at as usize].0))
         };
-        Ok(match self.overlap.place {
+        Ok(match it.overlap.place {
             Overlap::Facets(s, t) => (face(moving, s)?, face(fixed, t)?),
             Overlap::MovingInside(s) => (face(moving, s)?, None),
             Overlap::FixedInside(t) => (None, face(fixed, t)?),
         })
-    }
-
+    };
     /// list of str: Which of ``moving`` and ``fixed`` are open surfaces, at least in part: what is inside
     /// of them is not known.
-    #[getter]
-    fn surfaces(&self) -> PyResult<Vec<&'static str>> {
-        surfaces(&self.query)
-    }
+    surfaces: PyResult<Vec<&'static str>> = surfaces(&it.query);
+});
 
+#[pymethods]
+impl SolidOverlapping {
     fn __repr__(&self) -> String {
         format!(
             "SolidOverlapping(least_tolerance={})",

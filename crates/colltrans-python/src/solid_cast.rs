@@ -10,14 +10,13 @@ use colltrans::record::Dents;
 use colltrans::solid::SolidCast as _;
 use colltrans::solid::{SolidOptions, StartOverlap};
 use colltrans_mesh::body::between;
-use numpy::PyArray1;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-use crate::arrays::{coordinates, row, vector};
+use crate::arrays::{Vector, coordinates, row, vector};
 use crate::errors::{OrRaise, error};
-use crate::frozen::{Options, Shown, html, show};
+use crate::frozen::{Options, Shown, getters, html, show};
 use crate::pose::{Pose, pose};
 use crate::solid::Piece;
 
@@ -166,6 +165,15 @@ pub(crate) fn patiently<T: Send + 'static>(
     })
 }
 
+getters!(SolidCast, |it| {
+    /// float: The tolerance that is used, a length.
+    tolerance(py): PyResult<f64> = py.detach(|| it.run(|cast| cast.tolerance()));
+    /// float: The gap to be kept; 0 if there is none.
+    keep: f64 = it.options.keep;
+    /// ndarray of shape (3,): The direction, as given.
+    direction(py): Vector<'py> = row(py, it.direction);
+});
+
 #[pymethods]
 impl SolidCast {
     #[new]
@@ -196,24 +204,6 @@ impl SolidCast {
         };
         py.detach(|| cast.run(|_| ()))?;
         Ok(cast)
-    }
-
-    /// float: The tolerance that is used, a length.
-    #[getter]
-    fn tolerance(&self, py: Python<'_>) -> PyResult<f64> {
-        py.detach(|| self.run(|cast| cast.tolerance()))
-    }
-
-    /// float: The gap to be kept; 0 if there is none.
-    #[getter]
-    fn keep(&self) -> f64 {
-        self.options.keep
-    }
-
-    /// ndarray of shape (3,): The direction, as given.
-    #[getter]
-    fn direction<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        row(py, self.direction)
     }
 
     /// The same bodies where they are, and the direction turned round.

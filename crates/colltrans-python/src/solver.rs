@@ -5,6 +5,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 
 use crate::errors::error;
+use crate::frozen::getters;
 
 /// The paper's algorithm with its choices, to be given as ``solver``.
 ///
@@ -34,6 +35,16 @@ use crate::errors::error;
 #[derive(Clone, Copy, PartialEq)]
 pub(crate) struct Cta(cta::Options);
 
+getters!(Cta, |it| {
+    /// str: Where the minimisation starts.
+    start: &'static str = it.0.start.name();
+    /// str or float: Where it ends.
+    until(py): PyResult<Bound<'py, PyAny>> = Ok(match it.0.until {
+        cta::Until::Exit => "exit".into_pyobject(py)?.into_any(),
+        cta::Until::Gap(gap) => gap.into_pyobject(py)?.into_any(),
+    });
+});
+
 #[pymethods]
 impl Cta {
     #[new]
@@ -46,21 +57,6 @@ impl Cta {
             Some(until) => until.str()?.to_str()?.parse::<cta::Until>().map_err(refused),
         };
         Ok(Self(cta::Options::new(start?, until?)))
-    }
-
-    /// str: Where the minimisation starts.
-    #[getter]
-    fn start(&self) -> &'static str {
-        self.0.start.name()
-    }
-
-    /// str or float: Where it ends.
-    #[getter]
-    fn until<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        Ok(match self.0.until {
-            cta::Until::Exit => "exit".into_pyobject(py)?.into_any(),
-            cta::Until::Gap(gap) => gap.into_pyobject(py)?.into_any(),
-        })
     }
 
     fn __getnewargs_ex__<'py>(

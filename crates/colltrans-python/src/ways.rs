@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::points;
 use crate::errors::{OrRaise, error};
-use crate::frozen::plain;
+use crate::frozen::{getters, plain};
 use crate::pose::{Pose, pose};
 use crate::solid::Piece;
 use crate::solid_cast::{patiently, placed_bodies};
@@ -39,35 +39,23 @@ fn raised(what: FreeError) -> PyErr {
 
 placed_bodies!(WaysOut);
 
-#[pymethods]
-impl WaysOut {
+getters!(WaysOut, |it| {
     /// str: ``"found"``; ``"none"`` if there is none by translations, which is proven; ``"not_found"``,
     /// which proves nothing.
-    #[getter]
-    fn outcome(&self) -> &'static str {
-        self.record.outcome
-    }
-
+    outcome: &'static str = it.record.outcome;
     /// list of tuple of (tuple of float, float): What to do, in order: a direction of length 1 and how far
     /// to go; infinitely with the last one. Empty if no way was found.
-    #[getter]
-    fn legs(&self) -> Vec<([f64; 3], f64)> {
-        self.record.legs.iter().map(|leg| (leg.direction, leg.travel)).collect()
-    }
-
+    legs: Vec<([f64; 3], f64)> =
+        it.record.legs.iter().map(|leg| (leg.direction, leg.travel)).collect();
     /// float or None: The tolerance, a length: both bodies are shrunk by half of it. None if nothing is
     /// proven.
-    #[getter]
-    fn tolerance(&self) -> Option<f64> {
-        self.record.tolerance
-    }
-
+    tolerance: Option<f64> = it.record.tolerance;
     /// int or None: How many cells of displacements prove that there is no way.
-    #[getter]
-    fn cells(&self) -> Option<usize> {
-        self.record.cells
-    }
+    cells: Option<usize> = it.record.cells;
+});
 
+#[pymethods]
+impl WaysOut {
     /// Checks the proof of every move, or that there is none, without a search. If nothing was found there
     /// is nothing to check.
     ///

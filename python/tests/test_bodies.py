@@ -81,7 +81,7 @@ def test_faces_that_are_refused(faces: object, error: type[Exception], match: st
         ([[0, 0, 1e300]], BuildError, "exact range"),
         ([[0, 0]], InputError, r"\(1, 2\), not \(N, 3\)"),
         ([0, 0, 0], InputError, r"\(3,\), not \(N, 3\)"),
-        ("points", InputError, "points: no array of numbers"),
+        ("points", InputError, "points: the text 'points' is not an array"),
     ],
 )
 def test_points_that_are_refused(points: object, error: type[Exception], match: str) -> None:

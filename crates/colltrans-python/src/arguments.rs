@@ -20,8 +20,20 @@ pub(crate) fn maker(given: &Bound<'_, PyAny>) -> PyResult<&'static str> {
     })
 }
 
-/// Refuses a mesh object where an array of points is expected.
-pub(crate) fn refuse_mesh_object(given: &Bound<'_, PyAny>, name: &str, call: &str) -> PyResult<()> {
+/// Refuses a mesh object, or the name of a file, where an array of points of `class` is expected; `call` takes a mesh.
+pub(crate) fn refuse_mesh(
+    given: &Bound<'_, PyAny>,
+    name: &str,
+    class: &str,
+    call: &str,
+) -> PyResult<()> {
+    if given.is_instance_of::<PyString>() || given.hasattr("__fspath__")? {
+        let call = format_args!("call {class}.read(path) for the body of a file");
+        return Err(input(
+            name,
+            format_args!("the text {} is not an array: {call}", given.str()?.repr()?),
+        ));
+    }
     if !given.hasattr("vertices")? || !given.hasattr("faces")? {
         return Ok(());
     }

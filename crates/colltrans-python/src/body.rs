@@ -8,7 +8,7 @@ use numpy::{IntoPyArray, PyArray2};
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 
-use crate::arguments::refuse_mesh_object;
+use crate::arguments::refuse_mesh;
 use crate::arrays::{self, Indices, Vector, faces, ids, points, read_only, row, table, vector};
 use crate::errors::{OrRaise, error};
 use crate::frozen::{Options, Shown, getters, html, show};
@@ -94,7 +94,7 @@ impl ConvexPolyhedron {
     fn new(py: Python<'_>, points: &Bound<'_, PyAny>) -> PyResult<Self> {
         let call = "ConvexPolyhedron.from_trimesh(mesh), or ConvexPolyhedron(mesh.vertices) for the \
                     hull of all its vertices";
-        refuse_mesh_object(points, "points", call)?;
+        refuse_mesh(points, "points", "ConvexPolyhedron", call)?;
         let points = self::points(points, "points")?;
         py.detach(|| colltrans::ConvexPolyhedron::from_points(&points)).or_raise().map(Self::from)
     }

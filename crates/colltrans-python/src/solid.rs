@@ -16,7 +16,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
-use crate::arguments::{maker, refuse_mesh_object};
+use crate::arguments::{maker, refuse_mesh};
 use crate::arrays::{self, Indices, faces, ids, points, read_only, table};
 use crate::body::ConvexPolyhedron;
 use crate::errors::{OrRaise, input};
@@ -251,7 +251,7 @@ impl Solid {
         faces: Option<&Bound<'_, PyAny>>,
         open: bool,
     ) -> PyResult<Self> {
-        refuse_mesh_object(vertices, "vertices", "Solid.from_trimesh(mesh)")?;
+        refuse_mesh(vertices, "vertices", "Solid", "Solid.from_trimesh(mesh)")?;
         let Some(faces) = faces else {
             let what = "they are missing; ConvexPolyhedron(points) makes the hull of points alone";
             return Err(input("faces", what));

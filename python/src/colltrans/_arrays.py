@@ -27,9 +27,8 @@ def floats(values: Any, name: str) -> NDArray[np.float64]:
     What a masked array masks is NaN, which every question refuses, in bulk row by row.
     """
     if isinstance(values, str | PathLike):
-        raise InputError(
-            f"{name}: no array of numbers, but the text {str(values)!r}{_instead(name)}"
-        )
+        wanted = "give an array, for example the three numbers [0, 0, 1]"
+        raise InputError(f"{name}: the text {str(values)!r} is not an array of numbers; {wanted}")
     try:
         array = np.asarray(_unmasked(values, float, np.nan))
     except Exception as error:
@@ -39,15 +38,6 @@ def floats(values: Any, name: str) -> NDArray[np.float64]:
         instead = "; give one Motion, or motion_many takes a list of them" if several else ""
         raise InputError(f"{name}: no array of numbers, but of {array.dtype}{instead}")
     return np.require(array, np.float64, ["C", "A"])
-
-
-def _instead(name: str) -> str:
-    """What to pass in place of a text."""
-    if name == "points":
-        return "; ConvexPolyhedron.read(path) reads the body of a file"
-    if name == "direction":
-        return "; a direction is three numbers, such as [0, 0, 1]"
-    return ""
 
 
 def indices(values: Any, name: str) -> NDArray[np.uint32]:

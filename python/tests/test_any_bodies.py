@@ -109,7 +109,10 @@ def test_bad_rows_of_solids_are_errors() -> None:
     directions[3] = 0
     bodies: Any = [BOLT, BuildError("it was bent"), ConvexPolyhedron([[0, 0, 0], [1, 0, 0]])]
     index = [0, 0, 0, 0, 1, -1, 9, 2]
-    columns = clearance_many(bodies, PLATE, directions, moving_pose=starts, moving_index=index)
+    asked: dict[str, Any] = {"moving_pose": starts, "moving_index": index}
+    columns = clearance_many(bodies, PLATE, directions, **asked)
+    gaps = [np.nan, *[0.0] * 7]
+    assert 0 in clearance_many(bodies, PLATE, directions, **asked, keep=gaps).errors
     assert sorted(columns.errors) == [1, 2, 3, 4, 5, 6]
     assert columns.errors[4] == "moving: it was bent"
     assert columns.errors[5] == "moving: no body -1 among 3"

@@ -53,6 +53,7 @@ def test_nothing_gives_nothing() -> None:
         assert columns.counts() == {}
         assert "0 rows" in columns._repr_html_()
     assert len(cast_many([], CUBE, AHEAD)) == 0
+    assert len(cast_many(CUBE, CUBE, AHEAD, moving_pose=np.zeros((0, 3, 4)))) == 0
 
 
 def test_bodies_by_index_or_one_a_row() -> None:

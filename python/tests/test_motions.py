@@ -277,6 +277,7 @@ def test_rows_of_many_kinds() -> None:
     thrown = motion_many(CUBE, CUBE, {"thrown": numbers}, fixed_pose=[4, 0.25, 0.25])
     alone = Motion.thrown([0.5, 0.5, 0.5], [8, 0, 0], [1, 2, 3])
     assert thrown.lower[0] == first_contact(CUBE, CUBE, alone, Pose([4, 0.25, 0.25])).lower
+    assert isinstance(row := thrown[0], FirstContact) and row.lower == thrown.lower[0]
     listed = motion_many(CUBE, CUBE, [alone, Motion.still()], fixed_pose=[4, 0.25, 0.25])
     assert listed.lower[0] == thrown.lower[0] and listed.counts() == {"contact": 1, "free": 1}
     slide: dict[str, Any] = {"slide": {"by": [[8, 0, 0], [8, np.nan, 0]]}}

@@ -9,8 +9,8 @@
 //!    direction;
 //! 4. answers: `certificate`, `features`, `answer` (what all have in common), `outcome`, `clearance`,
 //!    `solid_answer`, `distance`, `directions`, `ways`, `motion` (queries and answers about bodies that turn);
-//! 5. those who ask: `questions` (functions, and methods of queries), `tracker` (in sequence), `rows`, `repeats` and
-//!    `many` (in bulk), `obstacles` (one body among many) with its `scene` and `scene_answers`,
+//! 5. those who ask: `questions` (functions, and methods of queries), `tracker` (in sequence), `rows`, `repeats`,
+//!    `columns`, `bulk` and `many` (in bulk), `obstacles` (one body among many) with its `scene` and `scene_answers`,
 //!    `assembly` (many parts), `robot` (links on paths of joints).
 //!
 //! The package itself is in `python/`; its stub `_colltrans.pyi` has the types.
@@ -20,8 +20,10 @@ mod arguments;
 mod arrays;
 mod assembly;
 mod body;
+mod bulk;
 mod certificate;
 mod clearance;
+mod columns;
 mod directions;
 mod distance;
 mod errors;
@@ -67,7 +69,7 @@ mod _colltrans {
     #[pymodule_export]
     use crate::features::{Feature, Features, Steps};
     #[pymodule_export]
-    use crate::many::{ask_many, ask_motions, ask_pairs};
+    use crate::many::ask_many;
     #[pymodule_export]
     use crate::motion::{
         FirstContact, Motion, MotionCast, MotionClearance, first_contact, motion_clearance,

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use colltrans::glam::DVec3;
@@ -11,12 +10,14 @@ use colltrans::record::PathRecord;
 use colltrans::{AnyBody, AnyPlaced, ProofFile, Statement};
 use colltrans_assembly_io::read::{self, ReadOptions};
 use colltrans_assembly_io::robot::{Cell, Robot as Arm, RobotJoint, Table};
-use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::{PyArray2, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
 
 use crate::answer::save;
 use crate::arrays::{Vector, coordinates, row, table};
+use crate::bulk::{Answered, Plan};
+use crate::columns::{self, Row};
 use crate::errors::{OrRaise, error, input};
 use crate::frozen::{
     Options, Reduced, Shown, getters, match_args, plain, read, reduced, show, written,
@@ -607,49 +608,28 @@ impl PathAnswer {
     }
 }
 
-/// Columns, names of outcomes, names of bodies, messages.
-type Answered<'py> = (Bound<'py, PyDict>, [&'static str; 6], Vec<String>, BTreeMap<usize, String>);
-
-/// One row of an answer.
-struct Told {
-    outcome: u8,
-    times: [f64; 2],
-    place: (i64, f64),
-    pair: [i64; 2],
-    vectors: [[f64; 3]; 2],
-}
-
-impl Told {
-    fn nothing(outcome: u8) -> Self {
-        let none = [f64::NAN; 3];
-        Self {
-            outcome,
-            times: [f64::NAN; 2],
-            place: (-1, f64::NAN),
-            pair: [-1; 2],
-            vectors: [none; 2],
-        }
-    }
-
-    fn of(outcome: &PathOutcome) -> Self {
-        let (code, of) = match outcome {
-            PathOutcome::Contact(of) => (0, of),
-            PathOutcome::Grazing(of) => (1, of),
-            PathOutcome::Overlapping(of) => (3, of),
-            PathOutcome::Undecided(of) => (4, of),
-            _ => return Self::nothing(2),
-        };
-        let upper = if of.upper.is_finite() { of.upper } else { f64::NAN };
-        let point = of.points.map(|points| points[0]);
-        let vectors = [of.normal, point].map(|vector| vector.map_or([f64::NAN; 3], coordinates));
-        Self {
-            outcome: code,
-            times: [of.lower, upper],
-            place: (of.place.row as i64, of.place.share),
-            pair: of.pair.map(|body| body as i64),
-            vectors,
-        }
-    }
+/// Returns the columns of an answer.
+fn row_of(outcome: &PathOutcome) -> Row {
+    let (code, of) = match outcome {
+        PathOutcome::Contact(of) => (0, of),
+        PathOutcome::Grazing(of) => (1, of),
+        PathOutcome::Overlapping(of) => (3, of),
+        PathOutcome::Undecided(of) => (4, of),
+        _ => return Row { outcome: 2, ..Row::NONE },
+    };
+    let point = of.points.map(|points| points[0]);
+    let row = Row { outcome: code, ..Row::NONE }
+        .with(columns::AT_LEAST, of.lower)
+        .with(columns::AT_MOST, if of.upper.is_finite() { of.upper } else { f64::NAN })
+        .with(columns::ROW, of.place.row as f64)
+        .with(columns::SHARE, of.place.share)
+        .with(columns::FIRST, of.pair[0] as f64)
+        .with(columns::SECOND, of.pair[1] as f64);
+    [(columns::NORMAL, of.normal), (columns::POINT, point)]
+        .into_iter()
+        .fold(row, |row, (k, vector)| {
+            vector.map_or(row, |vector| row.along(k, coordinates(vector)))
+        })
 }
 
 /// The extension's half of ``colltrans.path_many``.
@@ -665,72 +645,26 @@ pub(crate) fn ask_paths<'py>(
     joints: BTreeMap<String, f64>,
     columns: Option<Vec<String>>,
     times: Option<Vec<Bound<'py, PyAny>>>,
+    told: Vec<String>,
     threads: Option<usize>,
-) -> PyResult<Answered<'py>> {
+) -> PyResult<(Answered<'py>, Vec<String>)> {
     let asked = robot.get().asked(scene, &ignore, keep)?;
     let rows = paths.iter().enumerate().map(|(k, path)| {
         let times = times.as_ref().map(|all| &all[k]);
         Rows::of(path, columns.clone(), times, joints.clone())
     });
     let rows: Vec<Rows> = rows.collect::<PyResult<_>>()?;
-    let n = rows.len();
-    let all = std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = threads.unwrap_or(all).clamp(1, n.max(1));
-    let (next, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
-    let told: Mutex<Vec<(usize, Result<Told, String>)>> = Mutex::default();
-    let work = || {
-        while !stopped.load(Ordering::Relaxed) {
-            let k = next.fetch_add(1, Ordering::Relaxed);
-            let Some(rows) = rows.get(k) else { return };
-            let found = asked.path(rows).and_then(|(path, _)| {
-                asked.first_contact(&path).map(|(found, _)| Told::of(&found))
-            });
-            told.lock().unwrap_or_else(PoisonError::into_inner).push((k, found));
-        }
+    let plan = Plan {
+        rows: rows.len(),
+        chunk: 1,
+        columns: &told,
+        featured: false,
+        outcomes: &OUTCOMES,
+        threads,
     };
-    py.detach(|| {
-        std::thread::scope(|scope| {
-            let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-            wait(&workers).inspect_err(|_| stopped.store(true, Ordering::Relaxed))
-        })
+    let answered = plan.run(py, |k| {
+        let (path, _) = asked.path(&rows[k])?;
+        asked.first_contact(&path).map(|(found, _)| row_of(&found))
     })?;
-    let mut told = told.into_inner().unwrap_or_else(PoisonError::into_inner);
-    told.sort_unstable_by_key(|(k, _)| *k);
-    if told.len() != n {
-        return Err(error("QueryError", "internal error; please report it"));
-    }
-    let mut messages = BTreeMap::new();
-    let told: Vec<Told> = told
-        .into_iter()
-        .map(|(k, found)| {
-            found.unwrap_or_else(|message| {
-                messages.insert(k, message);
-                Told::nothing(OUTCOMES.len() as u8 - 1)
-            })
-        })
-        .collect();
-    let names = asked.cell.names().to_vec();
-    Ok((columns_of(py, &told)?, OUTCOMES, names, messages))
-}
-
-fn columns_of<'py>(py: Python<'py>, told: &[Told]) -> PyResult<Bound<'py, PyDict>> {
-    let n = told.len();
-    let columns = PyDict::new(py);
-    let numbers = |of: fn(&Told) -> f64| told.iter().map(of).collect::<Vec<f64>>().into_pyarray(py);
-    let codes: Vec<u8> = told.iter().map(|row| row.outcome).collect();
-    columns.set_item("outcome", codes.into_pyarray(py))?;
-    columns.set_item("lower", numbers(|row| row.times[0]))?;
-    columns.set_item("upper", numbers(|row| row.times[1]))?;
-    let rows: Vec<i64> = told.iter().map(|row| row.place.0).collect();
-    columns.set_item("row", rows.into_pyarray(py))?;
-    columns.set_item("share", numbers(|row| row.place.1))?;
-    for (k, name) in ["first", "second"].into_iter().enumerate() {
-        let bodies: Vec<i64> = told.iter().map(|row| row.pair[k]).collect();
-        columns.set_item(name, bodies.into_pyarray(py))?;
-    }
-    for (k, name) in ["normal", "point"].into_iter().enumerate() {
-        let flat: Vec<f64> = told.iter().flat_map(|row| row.vectors[k]).collect();
-        columns.set_item(name, flat.into_pyarray(py).reshape([n, 3])?)?;
-    }
-    Ok(columns)
+    Ok((answered, asked.cell.names().to_vec()))
 }

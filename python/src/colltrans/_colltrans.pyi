@@ -66,8 +66,6 @@ __all__ = [
     "WaysOut",
     "Within",
     "ask_many",
-    "ask_motions",
-    "ask_pairs",
     "ask_paths",
     "cast",
     "clearance",
@@ -83,6 +81,7 @@ __all__ = [
     "ways_out",
     "within",
 ]
+_Answered: TypeAlias = tuple[dict[str, NDArray[Any]], list[str], dict[int, str]]
 _SolidClearance: TypeAlias = SolidBlocked | SolidFree | SolidOverlapping
 
 @type_check_only
@@ -1447,33 +1446,16 @@ def read(
     merge_tolerance: float | None = None,
 ) -> ConvexPolyhedron: ...
 def ask_many(
+    question: str,
     n: int,
-    question: Literal["contact", "range", "clearance"],
     moving: tuple[list[Any], NDArray[np.int64] | None],
     fixed: tuple[list[Any], NDArray[np.int64] | None],
-    direction: _Floats,
-    moving_pose: _Floats,
-    fixed_pose: _Floats,
-    graze_tolerance: _Floats,
-    keep: _Floats,
+    tables: Mapping[str, _Floats | list[Motion]],
     solver: _Solver,
+    columns: Sequence[str],
     featured: bool,
     threads: int | None,
-) -> tuple[dict[str, NDArray[Any]], list[str], dict[int, str]]: ...
-def ask_motions(
-    n: int,
-    question: Literal["motion", "motion_clearance"],
-    moving: tuple[list[Any], NDArray[np.int64] | None],
-    fixed: tuple[list[Any], NDArray[np.int64] | None],
-    moving_motion: list[Motion] | _Floats,
-    fixed_motion: list[Motion] | _Floats,
-    moving_pose: _Floats,
-    fixed_pose: _Floats,
-    keep: _Floats,
-    tolerance: _Floats,
-    featured: bool,
-    threads: int | None,
-) -> tuple[dict[str, NDArray[Any]], list[str], dict[int, str]]: ...
+) -> _Answered: ...
 def ask_paths(
     robot: Robot,
     paths: list[Any],
@@ -1483,16 +1465,6 @@ def ask_paths(
     joints: dict[str, float],
     columns: Sequence[str] | None,
     times: list[Any] | None,
+    told: Sequence[str],
     threads: int | None,
-) -> tuple[dict[str, NDArray[Any]], list[str], list[str], dict[int, str]]: ...
-def ask_pairs(
-    n: int,
-    question: Literal["distance", "depth", "within"],
-    moving: tuple[list[Any], NDArray[np.int64] | None],
-    fixed: tuple[list[Any], NDArray[np.int64] | None],
-    moving_pose: _Floats,
-    fixed_pose: _Floats,
-    length: _Floats,
-    featured: bool,
-    threads: int | None,
-) -> tuple[dict[str, NDArray[Any]], list[str], dict[int, str]]: ...
+) -> tuple[_Answered, list[str]]: ...

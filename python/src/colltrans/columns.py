@@ -21,7 +21,7 @@ from colltrans._colltrans import (
 )
 from colltrans.errors import ColltransError, InputError
 from colltrans.outcomes import Outcomes
-from colltrans.queries import Floats, Shape
+from colltrans.queries import Floats, Queries, Shape, checked_threads
 
 if TYPE_CHECKING:
     import pandas
@@ -103,7 +103,21 @@ class Table(Generic[Answer_co]):
     moving_feature: NDArray[np.int64] | None = field(default=None, kw_only=True)
     fixed_feature: NDArray[np.int64] | None = field(default=None, kw_only=True)
 
+    #: What is asked of one row, and the name of the question in bulk.
     _question: ClassVar[Any]
+    _name: ClassVar[str]
+
+    @classmethod
+    def _columns(cls) -> list[str]:
+        """The columns that only answers to this question have."""
+        common = {each.name for each in fields(Table)}
+        return [each.name for each in fields(cls) if each.name not in common]
+
+    @classmethod
+    def _ask(cls, queries: Queries, features: bool, threads: int | None) -> Self:
+        """Answers all queries."""
+        threads = checked_threads(threads)
+        return cls(**queries.ask_all(cls._name, cls._columns(), features, threads))
 
     def __post_init__(self) -> None:
         if not isinstance(self.outcome, Outcomes):
@@ -159,7 +173,7 @@ class Table(Generic[Answer_co]):
             answer = self._queries.ask(type(self)._question, i)
         except ColltransError:
             answer = None
-        if not self._is_row(answer, i):
+        if answer is None or not self._is_row(answer, i):
             raise ColltransError(f"row {i}: the arrays that were given have changed since")
         return answer
 
@@ -274,8 +288,13 @@ class Table(Generic[Answer_co]):
                 yield name, column
 
     def _is_row(self, answer: Any, i: int) -> bool:
-        """Whether a row says what this answer does."""
-        raise NotImplementedError
+        """Checks whether a row has the outcome of an answer, and its bounds."""
+        record = answer.to_dict()
+        bounds = record.get("time", record)
+        found = [bounds.get(name, np.nan) for name in ("lower", "upper")]
+        told: Any = self
+        same = np.array_equal([told.lower[i], told.upper[i]], found, equal_nan=True)
+        return same and self.outcome[i] == record["outcome"]
 
     def __repr__(self) -> str:
         counts = ", ".join(f"{n} {name}" for name, n in self.counts().items())
@@ -306,14 +325,6 @@ class TimeColumns(Table[Answer_co]):
 
     lower: Floats
     upper: Floats
-
-    def _is_row(self, answer: Any, i: int) -> bool:
-        if answer is None:
-            return False
-        told = answer.to_dict()
-        found = [told.get("time", {}).get(name, np.nan) for name in ("lower", "upper")]
-        same = np.array_equal([self.lower[i], self.upper[i]], found, equal_nan=True)
-        return same and self.outcome[i] == told["outcome"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -349,27 +360,13 @@ class Columns(Table[Answer_co]):
     point: Floats
 
     def _is_row(self, answer: Any, i: int) -> bool:
-        match answer:
-            case None:
-                return False
-            case Blocked(contact=contact):
-                name, translation = "blocked", contact.translation
-            case Slides(grazing=grazing):
-                name, translation = "slides", grazing.contact.translation
-            case Behind() | Separated():
-                name, translation = type(answer).__name__.lower(), np.nan
-            case Overlapping(first=first):
-                name, translation = "overlapping", first.translation
-            case Grazing(contact=contact) | ContactRange(first=Grazing(contact=contact)):
-                name, translation = "grazing", contact.translation
-            case (Contact() as contact) | ContactRange(first=Contact() as contact):
-                name, translation = "contact", contact.translation
-        told = self.translation[i]
+        record = answer.to_dict()
+        told, found = self.translation[i], record.get("translation", np.nan)
         # Rows of one pair are asked together, a row alone by a cast: both are right, each within
         # its rounding.
-        same = np.array_equal(told, translation, equal_nan=True)
-        same = same or abs(told - translation) <= 2 * self.rounding[i]
-        return bool(same) and self.outcome[i] == name
+        same = np.array_equal(told, found, equal_nan=True)
+        same = same or abs(told - found) <= 2 * self.rounding[i]
+        return bool(same) and self.outcome[i] == record["outcome"]
 
 
 Columns_ = TypeVar("Columns_", bound=Table[Any])
@@ -435,7 +432,7 @@ def _cell(value: Any) -> str:
 class ContactColumns(Columns[Contact | Grazing | Separated]):
     """The answers of :func:`cast_many`; see :class:`Columns`."""
 
-    _question = staticmethod(_colltrans.cast)
+    _question, _name = staticmethod(_colltrans.cast), "contact"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -454,7 +451,7 @@ class RangeColumns(Columns[ContactRange | Separated]):
     exit_lower: Floats
     exit_upper: Floats
 
-    _question = staticmethod(_colltrans.contact_range)
+    _question, _name = staticmethod(_colltrans.contact_range), "range"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -481,4 +478,4 @@ class ClearanceColumns(Columns[Blocked | Slides | Behind | Separated | Overlappi
     back: Floats
     on: Floats
 
-    _question = staticmethod(_colltrans.clearance)
+    _question, _name = staticmethod(_colltrans.clearance), "clearance"

@@ -3,41 +3,15 @@
 from dataclasses import dataclass
 from typing import Any
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from colltrans._colltrans import FreeDirections, free_directions
-from colltrans.columns import Table
-from colltrans.outcomes import Outcomes
-from colltrans.pairs import PairQueries, pair_queries
-from colltrans.queries import AnyBodies, Floats, Poses, Shape, checked_threads, row_of
-from colltrans.solids import answer_rows, check_bodies
-
-OUTCOMES = ("free", "blocked", "undecided", "error")
-
-
-@dataclass(frozen=True)
-class FreeQueries:
-    """What was asked: bodies where they are, and choices that are one for all rows."""
-
-    pairs: PairQueries
-    choices: dict[str, Any]
-
-    @property
-    def shape(self) -> Shape:
-        return self.pairs.shape
-
-    def ask(self, question: Any, i: int) -> Any:
-        """One of them, alone."""
-        moving, fixed, places = self.pairs.placed(i)
-        # NaN stands for none.
-        found = np.nan if self.pairs.number is None else float(row_of(self.pairs.number, i)[0])
-        tolerance = None if np.isnan(found) else found
-        return question(moving, fixed, **places, **self.choices, tolerance=tolerance)
+from colltrans.queries import AnyBodies, Floats, Poses, column, queries_of
+from colltrans.rows import RowColumns
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class FreeColumns(Table[FreeDirections]):
+class FreeColumns(RowColumns[FreeDirections]):
     """The answers of :func:`free_directions_many`; see :class:`Table`.
 
     Attributes
@@ -61,12 +35,22 @@ class FreeColumns(Table[FreeDirections]):
     direction: Floats
 
     _question = staticmethod(free_directions)
+    _outcomes = ("free", "blocked", "undecided", "error")
 
-    def _is_row(self, answer: Any, i: int) -> bool:
-        if answer is None:
-            return False
-        bounds = (self.free_lower[i], self.free_upper[i])
-        return bool(self.outcome[i] == answer.outcome and bounds == answer.free_share)
+    @staticmethod
+    def _values(answer: Any) -> dict[str, Any]:
+        lower, upper = answer.free_share
+        regions = answer.regions
+        return {
+            "outcome": answer.outcome,
+            "free_lower": lower,
+            "free_upper": upper,
+            "undecided": answer.undecided_share,
+            "regions": len(regions),
+            "arcs": len(answer.arcs),
+            "points": len(answer.points),
+            "direction": regions[0]["center"] if regions else None,
+        }
 
 
 def free_directions_many(
@@ -109,37 +93,7 @@ def free_directions_many(
     (True, [0.0, 0.0, 1.0])
     """
     poses, indices = (moving_pose, fixed_pose), (moving_index, fixed_index)
-    tolerances = {} if tolerance is None else {"tolerance": tolerance}
-    asked = FreeQueries(
-        pair_queries((moving, fixed), poses, indices, tolerances),
-        {"ignore_start_overlaps": ignore_start_overlaps, "depth": depth, "looks": looks},
-    )
-    return _answered(asked, checked_threads(threads))
-
-
-def _answered(asked: FreeQueries, threads: int | None) -> FreeColumns:
-    n = int(np.prod(asked.shape))
-    names = ("free_lower", "free_upper", "undecided", "regions", "arcs", "points")
-    columns = FreeColumns(
-        outcome=Outcomes(np.full(n, OUTCOMES.index("error"), np.uint8), OUTCOMES),
-        outcomes=OUTCOMES,
-        errors={},
-        _queries=asked,
-        direction=np.full((n, 3), np.nan),
-        **{name: np.full(n, np.nan) for name in names},
-    )
-    numbers = [getattr(columns, name) for name in names]
-
-    def answer(i: int) -> None:
-        check_bodies(asked.pairs.bodies, asked.pairs.indices, i)
-        found = asked.ask(free_directions, i)
-        counts = map(len, (found.regions, found.arcs, found.points))
-        values = (*found.free_share, found.undecided_share, *counts)
-        for place, value in zip(numbers, values, strict=True):
-            place[i] = value
-        if found.regions:
-            columns.direction[i] = found.regions[0]["center"]
-        columns.outcome.codes[i] = OUTCOMES.index(found.outcome)
-
-    columns.errors.update(answer_rows(n, answer, threads))
-    return columns
+    tables = {"tolerance": column(tolerance, "tolerance")}
+    chosen = {"ignore_start_overlaps": ignore_start_overlaps, "depth": depth, "looks": looks}
+    queries = queries_of((moving, fixed), poses, indices, tables, **chosen)
+    return FreeColumns._ask(queries, False, threads)

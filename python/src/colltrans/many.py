@@ -20,13 +20,15 @@ from colltrans.queries import (
     AnyBodies,
     Bodies,
     Poses,
+    Queries,
     Solver,
-    checked_threads,
+    column,
     listed,
     queries_of,
     refuse_solids,
+    table,
 )
-from colltrans.solids import SolidColumns, ask_solids
+from colltrans.solids import SolidColumns, solid_casts
 
 
 def cast_many(
@@ -109,8 +111,8 @@ def cast_many(
     """
     poses, indices = (moving_pose, fixed_pose), (moving_index, fixed_index)
     refuse_solids(moving, fixed)
-    queries = queries_of((moving, fixed), direction, poses, indices, graze_tolerance, keep, solver)
-    return ContactColumns(**queries.ask_all("contact", features, checked_threads(threads)))
+    queries = _casts((moving, fixed), direction, poses, indices, graze_tolerance, keep, solver)
+    return ContactColumns._ask(queries, features, threads)
 
 
 def contact_range_many(
@@ -151,8 +153,8 @@ def contact_range_many(
     """
     poses, indices = (moving_pose, fixed_pose), (moving_index, fixed_index)
     refuse_solids(moving, fixed)
-    queries = queries_of((moving, fixed), direction, poses, indices, graze_tolerance, keep, solver)
-    return RangeColumns(**queries.ask_all("range", features, checked_threads(threads)))
+    queries = _casts((moving, fixed), direction, poses, indices, graze_tolerance, keep, solver)
+    return RangeColumns._ask(queries, features, threads)
 
 
 @overload
@@ -273,10 +275,28 @@ def clearance_many(
         if np.any(graze_tolerance) or solver != "auto":
             told = "graze_tolerance, solver: are for convex bodies; solids have tolerance"
             raise InputError(told)
-        asked = queries_of(bodies, direction, poses, indices, 0.0, keep, solver, tolerance)
-        return ask_solids(asked, ignore_start_overlaps, features, checked_threads(threads))
+        solids = solid_casts(
+            bodies, direction, poses, indices, keep, tolerance, ignore_start_overlaps
+        )
+        return SolidColumns._ask(solids, features, threads)
     if tolerance is not None or ignore_start_overlaps:
         raise InputError("tolerance, ignore_start_overlaps: are for solids")
-    queries = queries_of(bodies, direction, poses, indices, graze_tolerance, keep, solver)
-    found = queries.ask_all("clearance", features, checked_threads(threads))
-    return ClearanceColumns(**found)
+    queries = _casts(bodies, direction, poses, indices, graze_tolerance, keep, solver)
+    return ClearanceColumns._ask(queries, features, threads)
+
+
+def _casts(
+    bodies: tuple[AnyBodies, AnyBodies],
+    direction: ArrayLike,
+    poses: tuple[Poses, Poses],
+    indices: tuple[ArrayLike | None, ArrayLike | None],
+    graze_tolerance: ArrayLike,
+    keep: ArrayLike,
+    solver: Solver,
+) -> Queries:
+    tables = {
+        "direction": table(direction, "direction", 3),
+        "graze_tolerance": column(graze_tolerance, "graze_tolerance"),
+        "keep": column(keep, "keep"),
+    }
+    return queries_of(bodies, poses, indices, tables, solver=solver)

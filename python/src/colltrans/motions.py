@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Literal, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,16 +14,11 @@ from colltrans.errors import InputError
 from colltrans.queries import (
     AnyBodies,
     Floats,
-    Index,
     Poses,
-    Shape,
+    Queries,
     Stack,
-    body_list,
-    checked_threads,
     column,
-    indices_of,
-    pose_table,
-    row_of,
+    queries_of,
     together,
 )
 
@@ -37,65 +32,6 @@ KINDS: dict[str, dict[str, int]] = {
     "screw": {"point": 3, "axis": 3, "radians": 1, "rise": 1},
     "thrown": {"center": 3, "velocity": 3, "angular_velocity": 3},
 }
-
-
-@dataclass(frozen=True)
-class MotionQueries:
-    """What was asked: tables with one row or as many as there are queries."""
-
-    question: Literal["motion", "motion_clearance"]
-    bodies: tuple[list[Any], list[Any]]
-    indices: tuple[Index, Index]
-    #: Lists of motions, or tables of 3 (slides), 8 (screws) or 9 numbers (what is thrown).
-    motions: tuple[list[Motion] | Floats, list[Motion] | Floats]
-    poses: tuple[Floats, Floats]
-    keep: Floats
-    #: NaN stands for none.
-    tolerance: Floats
-    shape: Shape
-
-    def ask_all(self, features: bool, threads: int | None) -> dict[str, Any]:
-        (moving, fixed), (moving_index, fixed_index) = self.bodies, self.indices
-        columns, outcomes, errors = _colltrans.ask_motions(
-            int(np.prod(self.shape)),
-            self.question,
-            (moving, moving_index),
-            (fixed, fixed_index),
-            *self.motions,
-            *self.poses,
-            self.keep,
-            self.tolerance,
-            features,
-            threads,
-        )
-        return {**columns, "outcomes": tuple(outcomes), "errors": errors, "_queries": self}
-
-    def ask(self, question: Any, i: int) -> Any:
-        """One of them, alone."""
-        moving, fixed = (
-            bodies[0 if index is None else index[i]]
-            for bodies, index in zip(self.bodies, self.indices, strict=True)
-        )
-        motions = (
-            one_of(motions, poses, i)
-            for motions, poses in zip(self.motions, self.poses, strict=True)
-        )
-        tolerance = float(row_of(self.tolerance, i)[0])
-        choices = {} if np.isnan(tolerance) else {"tolerance": tolerance}
-        return question(moving, fixed, *motions, keep=float(row_of(self.keep, i)[0]), **choices)
-
-
-def one_of(motions: list[Motion] | Floats, poses: Floats, i: int) -> Motion:
-    """The motion of a row."""
-    if isinstance(motions, list):
-        return motions[i if len(motions) > 1 else 0]
-    row, pose = row_of(motions, i).ravel(), row_of(poses, i)
-    if len(row) == 3:
-        return Motion.slide(row, pose=pose)
-    if len(row) == 8:
-        angle, rise = float(row[6]), float(row[7])
-        return Motion.screw(row[:3], row[3:6], radians=angle, rise=rise, pose=pose)
-    return Motion.thrown(row[:3], row[3:6], row[6:], pose=pose)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -116,7 +52,7 @@ class MotionColumns(TimeColumns[FirstContact]):
     normal: Floats
     point: Floats
 
-    _question = staticmethod(_colltrans.first_contact)
+    _question, _name = staticmethod(_colltrans.first_contact), "motion"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -140,7 +76,7 @@ class MotionClearanceColumns(TimeColumns[MotionClearance]):
     normal: Floats
     point: Floats
 
-    _question = staticmethod(_colltrans.motion_clearance)
+    _question, _name = staticmethod(_colltrans.motion_clearance), "motion_clearance"
 
 
 def motion_many(
@@ -203,7 +139,7 @@ def motion_many(
         (moving, moving_index, moving_motion, moving_pose),
         (fixed, fixed_index, fixed_motion, fixed_pose),
     )
-    return MotionColumns(**answers_of("motion", sides, keep, tolerance, features, threads))
+    return MotionColumns._ask(_motions(sides, keep, tolerance), features, threads)
 
 
 def motion_clearance_many(
@@ -245,66 +181,23 @@ def motion_clearance_many(
         (moving, moving_index, moving_motion, moving_pose),
         (fixed, fixed_index, fixed_motion, fixed_pose),
     )
-    told = answers_of("motion_clearance", sides, keep, tolerance, features, threads)
-    return MotionClearanceColumns(**told)
+    return MotionClearanceColumns._ask(_motions(sides, keep, tolerance), features, threads)
 
 
 #: The bodies of a side, their numbers for each row, what they do and where.
 Side: TypeAlias = tuple[AnyBodies, ArrayLike | None, Motions, Poses]
 
 
-def answers_of(
-    question: Literal["motion", "motion_clearance"],
-    sides: tuple[Side, Side],
-    keep: ArrayLike,
-    tolerance: ArrayLike | None,
-    features: bool,
-    threads: int | None,
-) -> dict[str, Any]:
-    """The columns of a table of answers to what is asked, checked."""
-    queries = queries_of(question, sides, keep, tolerance)
-    return queries.ask_all(features, checked_threads(threads))
-
-
-def queries_of(
-    question: Literal["motion", "motion_clearance"],
-    sides: tuple[Side, Side],
-    keep: ArrayLike,
-    tolerance: ArrayLike | None,
-) -> MotionQueries:
-    """What is asked, checked."""
-    named = tuple(zip(("moving", "fixed"), sides, strict=True))
-    bodies = [body_list(side[0], side[1], name) for name, side in named]
-    poses = [pose_table(side[3], f"{name}_pose") for name, side in named]
-    motions = [motion_table(side[2], side[3], f"{name}_motion") for name, side in named]
-    shape, tables = together(
-        {
-            "moving_motion": motions[0],
-            "fixed_motion": motions[1],
-            "moving_pose": poses[0],
-            "fixed_pose": poses[1],
-            "keep": column(keep, "keep"),
-            "tolerance": column(np.nan if tolerance is None else tolerance, "tolerance"),
-            "moving_index": bodies[0][1],
-            "fixed_index": bodies[1][1],
-        }
-    )
-
-    def motions_of(name: str) -> list[Motion] | Floats:
-        table = tables[name]
-        listed: list[Motion] = table.reshape(-1).tolist() if table.dtype == object else []
-        return listed or np.require(table, np.float64, ["C", "A"])
-
-    return MotionQueries(
-        question=question,
-        bodies=(bodies[0][0], bodies[1][0]),
-        indices=indices_of(tables, shape),
-        motions=(motions_of("moving_motion"), motions_of("fixed_motion")),
-        poses=(tables["moving_pose"], tables["fixed_pose"]),
-        keep=tables["keep"],
-        tolerance=tables["tolerance"],
-        shape=shape,
-    )
+def _motions(sides: tuple[Side, Side], keep: ArrayLike, tolerance: ArrayLike | None) -> Queries:
+    moving, fixed = sides
+    tables = {
+        "moving_motion": motion_table(moving[2], moving[3], "moving_motion"),
+        "fixed_motion": motion_table(fixed[2], fixed[3], "fixed_motion"),
+        "keep": column(keep, "keep"),
+        "tolerance": column(tolerance, "tolerance"),
+    }
+    bodies, indices, poses = (moving[0], fixed[0]), (moving[1], fixed[1]), (moving[3], fixed[3])
+    return queries_of(bodies, poses, indices, tables)
 
 
 def motion_table(motions: Motions, pose: Poses, name: str) -> Stack:

@@ -1,75 +1,13 @@
 """Bodies where they are, in bulk: distances, depths, comparisons with a length; columns out."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
-from typing import Any, Literal, TypeAlias
 
-import numpy as np
 from numpy.typing import ArrayLike
 
 from colltrans import _colltrans
 from colltrans._colltrans import Depth, Distance, OverlapDepth, Within
 from colltrans.columns import Answer_co, Table
-from colltrans.queries import (
-    AnyBodies,
-    Floats,
-    Index,
-    Poses,
-    Shape,
-    body_list,
-    checked_threads,
-    column,
-    indices_of,
-    pose_table,
-    row_of,
-    together,
-)
-
-PairQuestion: TypeAlias = Literal["distance", "depth", "within"]
-
-
-@dataclass(frozen=True)
-class PairQueries:
-    """What was asked: tables with one row or as many as there are queries."""
-
-    bodies: tuple[list[Any], list[Any]]
-    indices: tuple[Index, Index]
-    poses: tuple[Floats, Floats]
-    #: The length of :func:`within_many`; the tolerance of :func:`free_directions_many`.
-    number: Floats | None
-    shape: Shape
-
-    def ask_all(
-        self, question: PairQuestion, threads: int | None, features: bool = False
-    ) -> dict[str, Any]:
-        (moving, fixed), (moving_index, fixed_index) = self.bodies, self.indices
-        columns, outcomes, errors = _colltrans.ask_pairs(
-            int(np.prod(self.shape)),
-            question,
-            (moving, moving_index),
-            (fixed, fixed_index),
-            *self.poses,
-            np.zeros((1, 1)) if self.number is None else self.number,
-            features,
-            threads,
-        )
-        return {**columns, "outcomes": tuple(outcomes), "errors": errors, "_queries": self}
-
-    def ask(self, question: Any, i: int) -> Any:
-        """One of them, alone."""
-        moving, fixed, places = self.placed(i)
-        number = () if self.number is None else (float(row_of(self.number, i)[0]),)
-        return question(moving, fixed, *number, **places)
-
-    def placed(self, i: int) -> tuple[Any, Any, dict[str, Floats]]:
-        """The bodies of a row, and where they are."""
-        moving, fixed = (
-            bodies[0 if index is None else index[i]]
-            for bodies, index in zip(self.bodies, self.indices, strict=True)
-        )
-        at, to = (row_of(table, i) for table in self.poses)
-        return moving, fixed, {"moving_pose": at, "fixed_pose": to}
+from colltrans.queries import AnyBodies, Floats, Poses, column, queries_of
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -84,14 +22,6 @@ class PairColumns(Table[Answer_co]):
 
     lower: Floats
     upper: Floats
-
-    def _is_row(self, answer: Any, i: int) -> bool:
-        if answer is None:
-            return False
-        told = answer.to_dict()
-        found = [told.get(name, np.nan) for name in ("lower", "upper")]
-        same = np.array_equal([self.lower[i], self.upper[i]], found, equal_nan=True)
-        return same and self.outcome[i] == told["outcome"]
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -110,7 +40,7 @@ class DistanceColumns(PairColumns[Distance]):
     on_moving: Floats
     on_fixed: Floats
 
-    _question = staticmethod(_colltrans.distance)
+    _question, _name = staticmethod(_colltrans.distance), "distance"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -128,7 +58,7 @@ class DepthColumns(PairColumns[Depth | OverlapDepth]):
     least_tolerance: Floats
     direction: Floats
 
-    _question = staticmethod(_colltrans.depth)
+    _question, _name = staticmethod(_colltrans.depth), "depth"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -147,7 +77,7 @@ class WithinColumns(PairColumns[Within]):
     on_moving: Floats
     on_fixed: Floats
 
-    _question = staticmethod(_colltrans.within)
+    _question, _name = staticmethod(_colltrans.within), "within"
 
 
 def distance_many(
@@ -189,8 +119,8 @@ def distance_many(
     'face'
     """
     poses, indices = (moving_pose, fixed_pose), (moving_index, fixed_index)
-    queries = pair_queries((moving, fixed), poses, indices)
-    return DistanceColumns(**queries.ask_all("distance", checked_threads(threads), features))
+    queries = queries_of((moving, fixed), poses, indices, {})
+    return DistanceColumns._ask(queries, features, threads)
 
 
 def depth_many(
@@ -223,8 +153,8 @@ def depth_many(
     (array([0.25, 0.  ]), {'overlapping': 1, 'apart': 1})
     """
     poses, indices = (moving_pose, fixed_pose), (moving_index, fixed_index)
-    queries = pair_queries((moving, fixed), poses, indices)
-    return DepthColumns(**queries.ask_all("depth", checked_threads(threads)))
+    queries = queries_of((moving, fixed), poses, indices, {})
+    return DepthColumns._ask(queries, False, threads)
 
 
 def within_many(
@@ -260,32 +190,5 @@ def within_many(
     array([ True, False])
     """
     poses, indices = (moving_pose, fixed_pose), (moving_index, fixed_index)
-    queries = pair_queries((moving, fixed), poses, indices, {"length": length})
-    return WithinColumns(**queries.ask_all("within", checked_threads(threads)))
-
-
-def pair_queries(
-    bodies: tuple[AnyBodies, AnyBodies],
-    poses: tuple[Poses, Poses],
-    indices: tuple[ArrayLike | None, ArrayLike | None],
-    number: Mapping[str, ArrayLike] = MappingProxyType({}),
-) -> PairQueries:
-    """What is asked, checked; ``number`` is one for each row, by its name."""
-    moving, moving_index = body_list(bodies[0], indices[0], "moving")
-    fixed, fixed_index = body_list(bodies[1], indices[1], "fixed")
-    shape, tables = together(
-        {
-            "moving_pose": pose_table(poses[0], "moving_pose"),
-            "fixed_pose": pose_table(poses[1], "fixed_pose"),
-            **{name: column(values, name) for name, values in number.items()},
-            "moving_index": moving_index,
-            "fixed_index": fixed_index,
-        }
-    )
-    return PairQueries(
-        bodies=(moving, fixed),
-        indices=indices_of(tables, shape),
-        poses=(tables["moving_pose"], tables["fixed_pose"]),
-        number=next((tables[name] for name in number), None),
-        shape=shape,
-    )
+    queries = queries_of((moving, fixed), poses, indices, {"length": column(length, "length")})
+    return WithinColumns._ask(queries, False, threads)

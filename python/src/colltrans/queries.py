@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from colltrans import _arrays, _colltrans
-from colltrans._colltrans import ConvexPolyhedron, Cta, Pose, Solid
+from colltrans._colltrans import ConvexPolyhedron, Cta, Motion, Pose, Solid
 from colltrans.errors import ColltransError, InputError, RoundedPoseWarning
 
 if TYPE_CHECKING:
@@ -30,7 +30,11 @@ AnyBodies: TypeAlias = (
 )
 Poses: TypeAlias = "ArrayLike | Pose | Sequence[Pose] | HasMatrix | None"
 Solver: TypeAlias = Literal["auto", "cta", "portal"] | Cta
-Question: TypeAlias = Literal["contact", "range", "clearance"]
+#: Arguments that stand before the poses.
+POSITIONAL = ("direction", "moving_motion", "fixed_motion")
+#: The two bodies of a query.
+SIDES = ("moving", "fixed")
+POSES = ("moving_pose", "fixed_pose")
 
 
 class Stack(NamedTuple):
@@ -42,66 +46,71 @@ class Stack(NamedTuple):
 
 @dataclass(frozen=True)
 class Queries:
-    """What was asked: tables with one row or as many as there are queries."""
+    """What was asked: bodies, and the other arguments of the question by name."""
 
     bodies: tuple[list[Any], list[Any]]
     indices: tuple[Index, Index]
-    direction: Floats
-    poses: tuple[Floats, Floats]
-    graze_tolerance: Floats
-    keep: Floats
-    #: Of solids; NaN stands for none.
-    tolerance: Floats
-    solver: Solver
+    #: Of each argument one row for all queries or one for each. The tolerance NaN is the default.
+    tables: dict[str, Floats | list[Motion]]
+    #: The same for all queries.
+    choices: dict[str, Any]
     shape: Shape
 
     @property
     def count(self) -> int:
         return int(np.prod(self.shape))
 
-    def ask_all(self, question: Question, features: bool, threads: int | None) -> dict[str, Any]:
-        (moving, fixed), (moving_index, fixed_index) = self.bodies, self.indices
-        columns, outcomes, errors = _colltrans.ask_many(
-            self.count,
-            question,
-            (moving, moving_index),
-            (fixed, fixed_index),
-            self.direction,
-            *self.poses,
-            self.graze_tolerance,
-            self.keep,
-            self.solver,
-            features,
-            threads,
+    def ask_all(
+        self, question: str, columns: list[str], features: bool, threads: int | None
+    ) -> dict[str, Any]:
+        """Answers all queries, with these columns."""
+        moving, fixed = zip(self.bodies, self.indices, strict=True)
+        solver = self.choices.get("solver", "auto")
+        found, outcomes, errors = _colltrans.ask_many(
+            question, self.count, moving, fixed, self.tables, solver, columns, features, threads
         )
-        return {**columns, "outcomes": tuple(outcomes), "errors": errors, "_queries": self}
+        return {**found, "outcomes": tuple(outcomes), "errors": errors, "_queries": self}
 
     def ask(self, question: Any, i: int) -> Any:
-        """One of them, alone."""
-        tolerance = float(row_of(self.graze_tolerance, i)[0])
-        return self.ask_with(question, i, graze_tolerance=tolerance, solver=self.solver)
+        """Answers one query alone."""
+        bodies = (self._body(side, i) for side in (0, 1))
+        arguments = {name: _argument(name, table, i) for name, table in self.tables.items()}
+        for side in SIDES:
+            if (motion := arguments.get(f"{side}_motion")) is not None:
+                pose = arguments.pop(f"{side}_pose")
+                if not isinstance(motion, Motion):
+                    arguments[f"{side}_motion"] = _motion_of(motion, pose)
+        given = {name: value for name, value in arguments.items() if value is not None}
+        return question(*bodies, **given, **self.choices)
 
-    def ask_with(self, question: Any, i: int, **choices: Any) -> Any:
-        """One of them, alone, with the choices that its kind has."""
-        moving, fixed = (
-            bodies[0 if index is None else index[i]]
-            for bodies, index in zip(self.bodies, self.indices, strict=True)
-        )
-        return question(
-            moving,
-            fixed,
-            row_of(self.direction, i),
-            moving_pose=row_of(self.poses[0], i),
-            fixed_pose=row_of(self.poses[1], i),
-            keep=float(row_of(self.keep, i)[0]),
-            **choices,
-        )
+    def _body(self, side: int, i: int) -> Any:
+        listed, index = self.bodies[side], self.indices[side]
+        which = 0 if index is None else int(index[i])
+        if not 0 <= which < len(listed):
+            raise InputError(f"{SIDES[side]}: no body {which} among {len(listed)}")
+        if isinstance(listed[which], Exception):
+            raise InputError(f"{SIDES[side]}: {listed[which]}")
+        return listed[which]
 
 
-def row_of(table: Floats, i: int) -> Floats:
-    """A row of a table of one for all or one for each; a matrix as one."""
-    values: Floats = table[i if len(table) > 1 else 0]
-    return values.reshape(-1, 4) if values.size > 7 else values
+def _argument(name: str, table: Floats | list[Motion], i: int) -> Any:
+    """Returns what a table has for a query; None stands for the default."""
+    row: Any = table[i if len(table) > 1 else 0]
+    if isinstance(row, Motion):
+        return row
+    if row.size == 1:
+        return None if name == "tolerance" and np.isnan(row[0]) else float(row[0])
+    return row.reshape(-1, 4) if name in POSES and row.size > 7 else row
+
+
+def _motion_of(row: Floats, pose: Floats) -> Motion:
+    """Returns the motion of 3 (a slide), 8 (a screw) or 9 numbers (what is thrown)."""
+    if len(row) == 3:
+        return Motion.slide(row, pose=pose)
+    if len(row) == 8:
+        angle, rise = float(row[6]), float(row[7])
+        return Motion.screw(row[:3], row[3:6], radians=angle, rise=rise, pose=pose)
+    return Motion.thrown(row[:3], row[3:6], row[6:], pose=pose)
 
 
 def refuse_solids(*sides: Any) -> None:
@@ -115,38 +124,29 @@ def listed(bodies: Any) -> Any:
 
 def queries_of(
     bodies: tuple[AnyBodies, AnyBodies],
-    direction: ArrayLike,
     poses: tuple[Poses, Poses],
     indices: tuple[ArrayLike | None, ArrayLike | None],
-    graze_tolerance: ArrayLike,
-    keep: ArrayLike,
-    solver: Solver,
-    tolerance: ArrayLike | None = None,
+    tables: Mapping[str, Stack],
+    **choices: Any,
 ) -> Queries:
-    """All arguments as tables, and which axes they have together."""
-    moving_bodies, moving_index = body_list(bodies[0], indices[0], "moving")
-    fixed_bodies, fixed_index = body_list(bodies[1], indices[1], "fixed")
-    shape, tables = together(
-        {
-            "direction": _table(direction, "direction", 3),
-            "moving_pose": pose_table(poses[0], "moving_pose"),
-            "fixed_pose": pose_table(poses[1], "fixed_pose"),
-            "graze_tolerance": column(graze_tolerance, "graze_tolerance"),
-            "keep": column(keep, "keep"),
-            "tolerance": column(np.nan if tolerance is None else tolerance, "tolerance"),
-            "moving_index": moving_index,
-            "fixed_index": fixed_index,
-        }
-    )
+    """Returns all arguments as tables, with the axes that they have together."""
+    sides = zip(SIDES, bodies, poses, indices, strict=True)
+    listed, stacks, indexed = [], dict[str, Stack | None](), dict[str, Stack | None]()
+    for side, of_side, pose, index in sides:
+        all_bodies, indexed[f"{side}_index"] = body_list(of_side, index, side)
+        listed.append(all_bodies)
+        stacks[f"{side}_pose"] = pose_table(pose, f"{side}_pose")
+    before = {name: tables[name] for name in POSITIONAL if name in tables}
+    shape, rows = together({**before, **stacks, **tables, **indexed})
     return Queries(
-        bodies=(moving_bodies, fixed_bodies),
-        indices=indices_of(tables, shape),
-        direction=tables["direction"],
-        poses=(tables["moving_pose"], tables["fixed_pose"]),
-        graze_tolerance=tables["graze_tolerance"],
-        keep=tables["keep"],
-        tolerance=tables["tolerance"],
-        solver=solver,
+        bodies=(listed[0], listed[1]),
+        indices=indices_of(rows, shape),
+        tables={
+            name: table.reshape(-1).tolist() if table.dtype == object else table
+            for name, table in rows.items()
+            if name not in indexed
+        },
+        choices=choices,
         shape=shape,
     )
 
@@ -213,7 +213,7 @@ def body_list(
     return all_bodies, Stack(np.require(found, np.int64, ["C", "A"]).reshape(-1, 1), found.shape)
 
 
-def _table(values: ArrayLike, name: str, width: int) -> Stack:
+def table(values: ArrayLike, name: str, width: int) -> Stack:
     array = _arrays.floats(values, name)
     if array.ndim == 0 or array.shape[-1] != width:
         shape = np.shape(values)
@@ -221,8 +221,9 @@ def _table(values: ArrayLike, name: str, width: int) -> Stack:
     return Stack(array.reshape(-1, width), array.shape[:-1])
 
 
-def column(values: ArrayLike, name: str) -> Stack:
-    array = _arrays.floats(values, name)
+def column(values: ArrayLike | None, name: str) -> Stack:
+    """Returns a number for each query; NaN stands for None."""
+    array = _arrays.floats(np.nan if values is None else values, name)
     return Stack(array.reshape(-1, 1), array.shape)
 
 
@@ -264,7 +265,7 @@ def nearest_rotations(table: Floats, name: str) -> Floats:
         rotations = table[:, 3:]
         defects = np.abs(np.linalg.norm(rotations, axis=1) - 1)
     elif table.shape[1] > 7:
-        rotations = table.reshape(len(table), -1, 4)[:, :3, :3]
+        rotations = table.reshape(len(table), table.shape[1] // 4, 4)[:, :3, :3]
         gram = np.einsum("nki,nkj->nij", rotations, rotations)
         defects = np.abs(gram - np.eye(3)).max(axis=(1, 2))
         defects[np.linalg.det(np.nan_to_num(rotations)) < 0] = 2

@@ -17,6 +17,9 @@ from colltrans.queries import Floats, Shape, checked_threads
 #: Rows of joint values, or a file of them.
 Path: TypeAlias = ArrayLike | str | PathLike[str]
 
+#: The columns of whole numbers.
+POSITIONS = ("row", "first", "second")
+
 
 @dataclass(frozen=True)
 class PathQueries:
@@ -35,8 +38,8 @@ class PathQueries:
     def shape(self) -> Shape:
         return (len(self.paths),)
 
-    def ask_all(self, threads: int | None) -> dict[str, Any]:
-        columns, outcomes, bodies, errors = _colltrans.ask_paths(
+    def ask_all(self, columns: list[str], threads: int | None) -> dict[str, Any]:
+        (found, outcomes, errors), bodies = _colltrans.ask_paths(
             self.robot,
             self.paths,
             self.scene,
@@ -45,10 +48,12 @@ class PathQueries:
             self.joints,
             self.columns,
             self.times,
+            columns,
             threads,
         )
+        whole = {name: np.nan_to_num(found[name], nan=-1).astype(np.int64) for name in POSITIONS}
         names = {"outcomes": tuple(outcomes), "bodies": tuple(bodies)}
-        return {**columns, **names, "errors": errors, "_queries": self}
+        return {**found, **whole, **names, "errors": errors, "_queries": self}
 
     def ask(self, question: Any, i: int) -> Any:
         """One of them, alone."""
@@ -158,4 +163,4 @@ def path_many(
         columns=None if columns is None else list(columns),
         times=None if times is None else list(times),
     )
-    return PathColumns(**queries.ask_all(checked_threads(threads)))
+    return PathColumns(**queries.ask_all(PathColumns._columns(), checked_threads(threads)))

@@ -16,8 +16,7 @@ from colltrans.errors import InputError
 from colltrans.many import cast_many, clearance_many, contact_range_many
 from colltrans.motions import motion_clearance_many, motion_many
 from colltrans.pairs import depth_many, distance_many, within_many
-from colltrans.queries import queries_of
-from colltrans.solids import ask_solids
+from colltrans.solids import SolidColumns, solid_casts
 
 QUESTIONS: dict[str, Any] = {
     "contact": cast_many,
@@ -191,20 +190,16 @@ def _solid_clearances(
     """As solids, whatever they are: the columns are the same if no body could be built."""
     names = queries.schema.names
     moving, fixed, direction = sides
-    tolerance = None
-    if "tolerance" in names:
-        tolerance = _numbers_of(queries, "tolerance", np.nan)
-    asked = queries_of(
+    asked = solid_casts(
         (moving, fixed),
         direction,
         (arguments.get("moving_pose"), arguments.get("fixed_pose")),
         (arguments["moving_index"], arguments["fixed_index"]),
-        graze_tolerance=0.0,
         keep=_numbers_of(queries, "keep", 0.0) if "keep" in names else 0.0,
-        solver="auto",
-        tolerance=tolerance,
+        tolerance=_numbers_of(queries, "tolerance", np.nan) if "tolerance" in names else None,
+        ignore_start_overlaps=False,
     )
-    return ask_solids(asked, False, options.features, options.threads)
+    return SolidColumns._ask(asked, options.features, options.threads)
 
 
 def column_of(queries: Any, name: str) -> Any:

@@ -1,0 +1,196 @@
+//! Rows answered in bulk, on any number of threads, without the interpreter's lock.
+//!
+//! The rows are cut into chunks, each with its own part of every column; threads take chunks until
+//! none is left. Threads live for one call: a pool that is kept would be lost in a forked process,
+//! and starting a thread costs as much as some ten casts. A row without an answer is one of outcome *error*,
+//! with a message, even if it is a bug that ends it.
+//!
+//! The calling thread looks for signals ten times a second, so that Ctrl-C ends the call.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+use numpy::IntoPyArray;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::arrays::table;
+use crate::columns::{Corners, FEATURES, NO_CORNERS, NUMBERS, Row, VECTORS};
+
+/// Rows between two looks at the clock.
+const LOOK: usize = 16;
+/// Time between two looks for signals.
+const PATIENCE: Duration = Duration::from_millis(100);
+
+/// The columns by their names, the names of the outcomes, and the messages by their rows.
+pub(crate) type Answered<'py> = (Bound<'py, PyDict>, &'static [&'static str], Bound<'py, PyDict>);
+
+/// Which columns are computed, of how many rows, and how.
+pub(crate) struct Plan<'a> {
+    pub(crate) rows: usize,
+    /// Rows that a thread takes at a time.
+    pub(crate) chunk: usize,
+    pub(crate) columns: &'a [String],
+    /// Whether features are columns, too.
+    pub(crate) featured: bool,
+    /// The last one is that of a row without an answer.
+    pub(crate) outcomes: &'static [&'static str],
+    /// All processors without.
+    pub(crate) threads: Option<usize>,
+}
+
+impl Plan<'_> {
+    /// Answers all rows.
+    pub(crate) fn run<'py>(
+        &self,
+        py: Python<'py>,
+        answer: impl Fn(usize) -> Result<Row, String> + Sync,
+    ) -> PyResult<Answered<'py>> {
+        let mut columns = Columns::new(self.rows, self.columns, self.featured);
+        let failures = Failures::default();
+        let error = self.outcomes.len() as u8 - 1;
+        let ask = |row: usize| {
+            let answered = catch_unwind(AssertUnwindSafe(|| answer(row)))
+                .unwrap_or_else(|_| Err("internal error; please report it".into()));
+            answered.unwrap_or_else(|message| {
+                failures.lock().unwrap_or_else(PoisonError::into_inner).push((row, message));
+                Row { outcome: error, ..Row::NONE }
+            })
+        };
+        let parts = columns.parts(self.chunk);
+        let all = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+        let threads = self.threads.unwrap_or_else(all);
+        py.detach(|| fill_all(&ask, parts, threads))?;
+        let mut failures = failures.into_inner().unwrap_or_else(PoisonError::into_inner);
+        failures.sort_unstable();
+        let messages = PyDict::new(py);
+        failures.into_iter().try_for_each(|(row, message)| messages.set_item(row, message))?;
+        Ok((columns.into_python(py)?, self.outcomes, messages))
+    }
+}
+
+/// A chunk's part of every column.
+struct Part<'a> {
+    first: usize,
+    places: &'a [Vec<usize>; 2],
+    outcome: &'a mut [u8],
+    numbers: Vec<&'a mut [f64]>,
+    vectors: Vec<&'a mut [[f64; 3]]>,
+    /// None, or of both bodies.
+    features: Vec<&'a mut [Corners]>,
+}
+
+/// All columns; those of numbers and vectors with their places in a row.
+struct Columns {
+    places: [Vec<usize>; 2],
+    outcome: Vec<u8>,
+    numbers: Vec<Vec<f64>>,
+    vectors: Vec<Vec<[f64; 3]>>,
+    features: Vec<Vec<Corners>>,
+}
+
+impl Columns {
+    fn new(n: usize, names: &[String], featured: bool) -> Self {
+        let found = |known: &[&str]| -> Vec<usize> {
+            names.iter().filter_map(|name| known.iter().position(|one| one == name)).collect()
+        };
+        let places = [found(&NUMBERS), found(&VECTORS)];
+        let numbers = vec![vec![0.0; n]; places[0].len()];
+        let vectors = vec![vec![[0.0; 3]; n]; places[1].len()];
+        let corners = vec![vec![NO_CORNERS; n]; if featured { FEATURES.len() } else { 0 }];
+        Self { places, outcome: vec![0; n], numbers, vectors, features: corners }
+    }
+
+    /// The columns by their names.
+    fn into_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+        let found = PyDict::new(py);
+        found.set_item("outcome", self.outcome.into_pyarray(py))?;
+        for (place, column) in self.places[0].iter().zip(self.numbers) {
+            found.set_item(NUMBERS[*place], column.into_pyarray(py))?;
+        }
+        for (place, column) in self.places[1].iter().zip(self.vectors) {
+            found.set_item(VECTORS[*place], table(py, column)?)?;
+        }
+        for (name, column) in FEATURES.iter().zip(self.features) {
+            found.set_item(name, table(py, column)?)?;
+        }
+        Ok(found)
+    }
+
+    /// Cuts all columns into chunks of rows.
+    fn parts(&mut self, chunk: usize) -> Vec<Part<'_>> {
+        let mut numbers: Vec<_> = self.numbers.iter_mut().map(|c| c.chunks_mut(chunk)).collect();
+        let mut vectors: Vec<_> = self.vectors.iter_mut().map(|c| c.chunks_mut(chunk)).collect();
+        let mut features: Vec<_> = self.features.iter_mut().map(|c| c.chunks_mut(chunk)).collect();
+        let part = |(k, outcome)| Part {
+            first: k * chunk,
+            places: &self.places,
+            outcome,
+            numbers: numbers.iter_mut().filter_map(Iterator::next).collect(),
+            vectors: vectors.iter_mut().filter_map(Iterator::next).collect(),
+            features: features.iter_mut().filter_map(Iterator::next).collect(),
+        };
+        self.outcome.chunks_mut(chunk).enumerate().map(part).collect()
+    }
+}
+
+/// Rows without an answer, and why.
+type Failures = Mutex<Vec<(usize, String)>>;
+
+/// Fills a chunk, unless `stop` says not to.
+fn fill(ask: &impl Fn(usize) -> Row, part: Part<'_>, mut stop: impl FnMut() -> bool) {
+    let Part { first, places, outcome, mut numbers, mut vectors, mut features } = part;
+    for i in 0..outcome.len() {
+        if i % LOOK == 0 && stop() {
+            return;
+        }
+        let row = ask(first + i);
+        outcome[i] = row.outcome;
+        for (column, place) in numbers.iter_mut().zip(&places[0]) {
+            column[i] = row.numbers[*place];
+        }
+        for (column, place) in vectors.iter_mut().zip(&places[1]) {
+            column[i] = row.vectors[*place];
+        }
+        for (column, corners) in features.iter_mut().zip(row.features) {
+            column[i] = corners;
+        }
+    }
+}
+
+/// Fills all chunks on some threads; what a signal raised is returned.
+fn fill_all(
+    ask: &(impl Fn(usize) -> Row + Sync),
+    parts: Vec<Part<'_>>,
+    threads: usize,
+) -> PyResult<()> {
+    let threads = threads.clamp(1, parts.len().max(1));
+    let parts = Mutex::new(parts.into_iter());
+    let next = || parts.lock().unwrap_or_else(PoisonError::into_inner).next();
+    let stopped = AtomicBool::new(false);
+    let mut raised = Ok(());
+    let mut looked = Instant::now();
+    let mut look = || {
+        if looked.elapsed() > PATIENCE {
+            looked = Instant::now();
+            raised = Python::attach(|py| py.check_signals());
+            stopped.store(raised.is_err(), Ordering::Relaxed);
+        }
+        stopped.load(Ordering::Relaxed)
+    };
+    std::thread::scope(|scope| {
+        for _ in 1..threads {
+            scope.spawn(|| {
+                while let Some(part) = next() {
+                    fill(ask, part, || stopped.load(Ordering::Relaxed));
+                }
+            });
+        }
+        while let Some(part) = next() {
+            fill(ask, part, &mut look);
+        }
+    });
+    raised
+}

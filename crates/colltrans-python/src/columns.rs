@@ -1,0 +1,253 @@
+//! Columns of answers in bulk: their names, and how each is taken from an answer.
+//!
+//! Which columns a question has is listed in Python, by the classes of its answers (`colltrans.columns`, ...).
+
+use colltrans::record::{FeatureRecord, Record};
+use colltrans::{
+    Cast, Clearance, Contact, ContactRange, Features, InputVertex, Outcome, OverlapAhead, WhyFree,
+};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::arrays::coordinates;
+use crate::repeats::By;
+
+/// The numbers of an answer; NaN where there is none.
+#[derive(Clone, Copy)]
+pub(crate) struct Row {
+    /// An index into the question's outcomes.
+    pub(crate) outcome: u8,
+    pub(crate) numbers: [f64; NUMBERS.len()],
+    pub(crate) vectors: [[f64; 3]; VECTORS.len()],
+    /// The features of both bodies, if they are asked for.
+    pub(crate) features: [Corners; 2],
+}
+
+/// The first vertices of a feature, by the numbers of the input: one of a vertex, two of an edge, three of a face;
+/// -1 where there is none.
+pub(crate) type Corners = [i64; 3];
+pub(crate) const NO_CORNERS: Corners = [-1; 3];
+/// The names of the columns of features.
+pub(crate) const FEATURES: [&str; 2] = ["moving_feature", "fixed_feature"];
+
+/// Declares columns: for each its place in a row, and all names in the order of their places.
+macro_rules! columns {
+    ($(#[$documentation:meta])* $names:ident, $places:ident: $($place:ident = $name:literal,)*) => {
+        $(#[$documentation])*
+        pub(crate) const $names: [&str; [$($name),*].len()] = [$($name),*];
+        #[allow(clippy::upper_case_acronyms, non_camel_case_types, reason = "they count places")]
+        enum $places { $($place),* }
+        $(pub(crate) const $place: usize = $places::$place as usize;)*
+    };
+}
+
+columns! {
+    /// The names of [`Row::numbers`].
+    NUMBERS, Numbers:
+    DISTANCE = "distance",
+    TRANSLATION = "translation",
+    EXIT = "exit",
+    BACK = "back",
+    ON = "on",
+    LOWER = "translation_lower",
+    UPPER = "translation_upper",
+    ROUNDING = "rounding",
+    MARGIN = "margin",
+    EXIT_LOWER = "exit_lower",
+    EXIT_UPPER = "exit_upper",
+    OVERLAP = "overlap",
+    AT_LEAST = "lower",
+    AT_MOST = "upper",
+    LEAST_TOLERANCE = "least_tolerance",
+    ROW = "row",
+    SHARE = "share",
+    FIRST = "first",
+    SECOND = "second",
+}
+
+columns! {
+    /// The names of [`Row::vectors`].
+    VECTORS, Vectors:
+    NORMAL = "normal",
+    POINT = "point",
+    ON_MOVING = "on_moving",
+    ON_FIXED = "on_fixed",
+    DIRECTION = "direction",
+}
+
+/// Which question is asked of every row.
+#[derive(Clone, Copy)]
+pub(crate) enum Question {
+    Contact,
+    Range,
+    Clearance,
+    Distance,
+    Depth,
+    Within,
+    Motion,
+    MotionClearance,
+}
+
+impl Question {
+    pub(crate) fn called(name: &str) -> PyResult<Self> {
+        match name {
+            "contact" => Ok(Self::Contact),
+            "range" => Ok(Self::Range),
+            "clearance" => Ok(Self::Clearance),
+            "distance" => Ok(Self::Distance),
+            "depth" => Ok(Self::Depth),
+            "within" => Ok(Self::Within),
+            "motion" => Ok(Self::Motion),
+            "motion_clearance" => Ok(Self::MotionClearance),
+            _ => Err(PyValueError::new_err(format!("no question {name:?}"))),
+        }
+    }
+
+    /// The names of the outcomes, by their numbers; the last is *error*.
+    pub(crate) fn outcomes(self) -> &'static [&'static str] {
+        match self {
+            Self::Contact | Self::Range => &["contact", "grazing", "separated", "error"],
+            Self::Clearance => {
+                &["blocked", "slides", "behind", "separated", "overlapping", "error"]
+            }
+            Self::Distance => &["apart", "meeting", "error"],
+            Self::Depth => &["overlapping", "touching", "apart", "error"],
+            Self::Within => &["closer", "farther", "undecided", "error"],
+            Self::Motion => &["contact", "grazing", "free", "overlapping", "undecided", "error"],
+            Self::MotionClearance => &["blocked", "free", "overlapping", "error"],
+        }
+    }
+
+    /// `featured`: with the features that touch.
+    pub(crate) fn ask<'a>(
+        self,
+        cast: &Cast<'a>,
+        by: &By<'_, '_, 'a>,
+        featured: bool,
+    ) -> Result<Row, colltrans::QueryError> {
+        let of = |outcome: u8, first: &Contact| Row::of(outcome, first, cast, featured);
+        Ok(match self {
+            Self::Contact => match by.first_contact(cast)? {
+                Outcome::Contact(contact) => of(0, &contact),
+                Outcome::Grazing(grazing) => of(1, &grazing.contact).with(OVERLAP, grazing.overlap),
+                Outcome::Separated(separated) => Row::separated(2, &separated),
+            },
+            Self::Range => match by.contact_range(cast)? {
+                ContactRange::Contact { first, last } => of(0, &first).with_exit(&last),
+                ContactRange::Grazing { first, last } => {
+                    of(1, &first.contact).with_exit(&last.contact).with(OVERLAP, first.overlap)
+                }
+                ContactRange::Separated(separated) => Row::separated(2, &separated),
+            },
+            // The others have no direction.
+            _ => Row::clearance(&by.clearance(cast)?, cast, featured),
+        })
+    }
+}
+
+impl Row {
+    pub(crate) const NONE: Self = Self {
+        outcome: 0,
+        numbers: [f64::NAN; NUMBERS.len()],
+        vectors: [[f64::NAN; 3]; VECTORS.len()],
+        features: [NO_CORNERS; 2],
+    };
+
+    pub(crate) fn with(mut self, which: usize, number: f64) -> Self {
+        self.numbers[which] = number;
+        self
+    }
+
+    pub(crate) fn along(mut self, which: usize, vector: [f64; 3]) -> Self {
+        self.vectors[which] = vector;
+        self
+    }
+
+    /// Of bodies where they are.
+    pub(crate) fn of_record(question: Question, record: &Record) -> Self {
+        let name = record.outcome.name();
+        let outcome = question.outcomes().iter().position(|known| *known == name);
+        let mut row = Self { outcome: outcome.unwrap_or_default() as u8, ..Self::NONE };
+        let overlap = record.start_overlaps.first().and_then(|overlap| overlap.least_tolerance);
+        let lower = record.lower.or(record.time.map(|time| time.lower));
+        let upper = record.upper.or(record.time.and_then(|time| time.upper));
+        let numbers = [(AT_LEAST, lower), (AT_MOST, upper), (LEAST_TOLERANCE, overlap)];
+        for (which, number) in numbers {
+            row = number.map_or(row, |number| row.with(which, number));
+        }
+        let [from, to] = [0, 1].map(|k| record.points.map(|points| points[k]));
+        let vectors = [
+            (NORMAL, record.normal),
+            (POINT, record.point),
+            (ON_MOVING, from),
+            (ON_FIXED, to),
+            (DIRECTION, record.direction),
+        ];
+        for (which, vector) in vectors {
+            row = vector.map_or(row, |vector| row.along(which, vector));
+        }
+        if let Some(features) = &record.features {
+            let of = |feature: &FeatureRecord| corners(feature.vertices.iter().copied());
+            row.features = [of(&features.moving), of(&features.fixed)];
+        }
+        row
+    }
+
+    fn with_exit(self, last: &Contact) -> Self {
+        let exit = last.exit();
+        self.with(EXIT, exit.value).with(EXIT_LOWER, exit.lower).with(EXIT_UPPER, exit.upper)
+    }
+
+    fn of(outcome: u8, first: &Contact, cast: &Cast<'_>, featured: bool) -> Self {
+        let mut row = Self { outcome, ..Self::NONE }
+            .along(NORMAL, coordinates(first.normal))
+            .along(POINT, coordinates(first.points(cast).on_fixed));
+        if featured {
+            let Features { moving, fixed } = first.features(cast);
+            row.features =
+                [corners(moving.vertices(cast.moving())), corners(fixed.vertices(cast.fixed()))];
+        }
+        let proof = &first.certificate;
+        row.with(TRANSLATION, first.translation)
+            .with(LOWER, proof.lower)
+            .with(UPPER, proof.upper)
+            .with(ROUNDING, proof.rounding)
+    }
+
+    fn separated(outcome: u8, separated: &colltrans::Separated) -> Self {
+        let normal = coordinates(separated.certificate.normal);
+        let row = Self { outcome, ..Self::NONE }.along(NORMAL, normal);
+        row.with(MARGIN, separated.certificate.margin)
+    }
+
+    fn clearance(answer: &Clearance, cast: &Cast<'_>, featured: bool) -> Self {
+        let of = |outcome: u8, first: &Contact| Self::of(outcome, first, cast, featured);
+        let row = match answer {
+            Clearance::Blocked { contact, .. } => of(0, contact),
+            Clearance::Free(WhyFree::Slides(grazing)) => {
+                of(1, &grazing.contact).with(OVERLAP, grazing.overlap)
+            }
+            // The last contact is the first one of the way back, whose bounds are not this way's.
+            Clearance::Free(WhyFree::Behind(last)) => Self {
+                numbers: Self::NONE.with(ROUNDING, last.certificate.rounding).numbers,
+                ..Self::of(2, last, &cast.reversed(), featured)
+            }
+            .with_exit(last),
+            Clearance::Free(WhyFree::Separated(separated)) => Self::separated(3, separated),
+            Clearance::Overlapping(OverlapAhead { first, last }) => of(4, first)
+                .with_exit(last)
+                .with(BACK, -first.certificate.lower)
+                .with(ON, -last.certificate.lower),
+        };
+        row.with(DISTANCE, answer.distance().unwrap_or(f64::NAN))
+    }
+}
+
+/// The first of a feature's vertices.
+fn corners(vertices: impl IntoIterator<Item = InputVertex>) -> Corners {
+    let mut corners = NO_CORNERS;
+    for (corner, vertex) in corners.iter_mut().zip(vertices) {
+        *corner = u32::from(vertex).into();
+    }
+    corners
+}

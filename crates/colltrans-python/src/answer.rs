@@ -51,14 +51,13 @@ macro_rules! answer {
     ($class:ident($($name:literal),*) of $of:ty, $query:ident, |$it:ident| $again:expr) => {
         $crate::frozen::match_args!($class($($name),*));
 
+        $crate::frozen::getters!($class, |it| {
+            /// Cast or SolidCast or Pair: The query; of a last contact the one turned round.
+            query(py): Py<$query> = it.query.clone_ref(py);
+        });
+
         #[pymethods]
         impl $class {
-            /// Cast or SolidCast or Pair: The query; of a last contact the one turned round.
-            #[getter]
-            fn query(&self, py: Python<'_>) -> Py<$query> {
-                self.query.clone_ref(py)
-            }
-
             /// A picture: see :func:`colltrans.show`.
             #[pyo3(signature = (**options))]
             fn show<'py>(

@@ -18,6 +18,7 @@ use pyo3::types::PyDict;
 
 use crate::arrays::table;
 use crate::columns::{Corners, FEATURES, NO_CORNERS, NUMBERS, Row, VECTORS};
+use crate::errors::error;
 
 /// Rows between two looks at the clock.
 const LOOK: usize = 16;
@@ -52,17 +53,13 @@ impl Plan<'_> {
         let failures = Failures::default();
         let error = self.outcomes.len() as u8 - 1;
         let ask = |row: usize| {
-            let answered = catch_unwind(AssertUnwindSafe(|| answer(row)))
-                .unwrap_or_else(|_| Err("internal error; please report it".into()));
-            answered.unwrap_or_else(|message| {
+            answer_or_bug(|| answer(row)).unwrap_or_else(|message| {
                 failures.lock().unwrap_or_else(PoisonError::into_inner).push((row, message));
                 Row { outcome: error, ..Row::NONE }
             })
         };
         let parts = columns.parts(self.chunk);
-        let all = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
-        let threads = self.threads.unwrap_or_else(all);
-        py.detach(|| fill_all(&ask, parts, threads))?;
+        py.detach(|| on_threads(parts, self.threads, |part, stop| fill(&ask, part, stop)))?;
         let mut failures = failures.into_inner().unwrap_or_else(PoisonError::into_inner);
         failures.sort_unstable();
         let messages = PyDict::new(py);
@@ -140,7 +137,7 @@ impl Columns {
 type Failures = Mutex<Vec<(usize, String)>>;
 
 /// Fills a chunk, unless `stop` says not to.
-fn fill(ask: &impl Fn(usize) -> Row, part: Part<'_>, mut stop: impl FnMut() -> bool) {
+fn fill(ask: &impl Fn(usize) -> Row, part: Part<'_>, stop: &mut dyn FnMut() -> bool) {
     let Part { first, places, outcome, mut numbers, mut vectors, mut features } = part;
     for i in 0..outcome.len() {
         if i % LOOK == 0 && stop() {
@@ -160,13 +157,44 @@ fn fill(ask: &impl Fn(usize) -> Row, part: Part<'_>, mut stop: impl FnMut() -> b
     }
 }
 
-/// Fills all chunks on some threads; what a signal raised is returned.
-fn fill_all(
-    ask: &(impl Fn(usize) -> Row + Sync),
-    parts: Vec<Part<'_>>,
-    threads: usize,
+/// The answer of a row, or what is wrong, even if a bug ended it.
+fn answer_or_bug<T>(answer: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+    catch_unwind(AssertUnwindSafe(answer))
+        .unwrap_or_else(|_| Err("internal error; please report it".into()))
+}
+
+/// Answers rows that become no columns, on some threads. Raises what is wrong with the first bad one.
+pub(crate) fn each<T: Send>(
+    rows: usize,
+    chunk: usize,
+    threads: Option<usize>,
+    ask: impl Fn(usize) -> Result<T, String> + Sync,
+) -> PyResult<Vec<T>> {
+    let mut answers: Vec<_> = std::iter::repeat_with(|| None).take(rows).collect();
+    let parts = answers.chunks_mut(chunk).enumerate().collect();
+    on_threads(parts, threads, |(k, part), stop| {
+        for (row, answer) in (k * chunk..).zip(part) {
+            if stop() {
+                return;
+            }
+            *answer = Some(answer_or_bug(|| ask(row)));
+        }
+    })?;
+    let answer = |(row, answer): (usize, Result<T, String>)| {
+        answer.map_err(|what| error("QueryError", format_args!("row {row}: {what}")))
+    };
+    answers.into_iter().flatten().enumerate().map(answer).collect()
+}
+
+/// Works on all parts on some threads, all processors without a number. The work ends where it is told to stop,
+/// after a signal; what the signal raised is returned.
+fn on_threads<P: Send>(
+    parts: Vec<P>,
+    threads: Option<usize>,
+    work: impl Fn(P, &mut dyn FnMut() -> bool) + Sync,
 ) -> PyResult<()> {
-    let threads = threads.clamp(1, parts.len().max(1));
+    let all = || std::thread::available_parallelism().map_or(1, std::num::NonZero::get);
+    let threads = threads.unwrap_or_else(all).clamp(1, parts.len().max(1));
     let parts = Mutex::new(parts.into_iter());
     let next = || parts.lock().unwrap_or_else(PoisonError::into_inner).next();
     let stopped = AtomicBool::new(false);
@@ -184,12 +212,12 @@ fn fill_all(
         for _ in 1..threads {
             scope.spawn(|| {
                 while let Some(part) = next() {
-                    fill(ask, part, || stopped.load(Ordering::Relaxed));
+                    work(part, &mut || stopped.load(Ordering::Relaxed));
                 }
             });
         }
         while let Some(part) = next() {
-            fill(ask, part, &mut look);
+            work(part, &mut look);
         }
     });
     raised

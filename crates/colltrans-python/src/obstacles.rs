@@ -4,11 +4,7 @@
 //! removes waits for them. Rows of many are answered on any number of threads, each by itself.
 
 use std::collections::{HashMap, HashSet};
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
-use std::thread::ScopedJoinHandle;
-use std::time::Duration;
 
 use colltrans::glam::DVec3;
 use colltrans::{Among, AnyBody, ClearanceAmong, ObstacleId, QueryError};
@@ -18,7 +14,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::arrays::vector;
-use crate::errors::{OrRaise, error, input};
+use crate::bulk::each;
+use crate::errors::{OrRaise, input};
 use crate::pose::{Pose, pose};
 use crate::scene::{Asked, Scene, keeping};
 use crate::scene_answers::{
@@ -28,8 +25,6 @@ use crate::solid::Piece;
 
 /// Rows that a thread takes at a time.
 const CHUNK: usize = 64;
-/// Between two looks for signals.
-const PATIENCE: Duration = Duration::from_millis(100);
 
 /// Many placed bodies, of either kind, in a tree of boxes that is kept as they come, move and go.
 ///
@@ -63,9 +58,6 @@ pub(crate) struct Obstacles {
     bodies: Mutex<HashMap<usize, (Piece, AnyBody)>>,
 }
 
-/// Of a chunk of rows the first, and their answers.
-type Parts<T> = Vec<(usize, Vec<T>)>;
-
 impl Obstacles {
     /// Asks about one body, without the interpreter's lock.
     fn ask<T: Send>(
@@ -95,7 +87,7 @@ impl Obstacles {
     ) -> PyResult<Vec<T>> {
         py.detach(|| {
             let kept = self.scene.read();
-            rows(poses.len(), threads, |k| {
+            each(poses.len(), CHUNK, threads, |k| {
                 kept.ask((body, poses[k]), ignore, |among| question(k, among))
                     .map_err(|what| what.to_string())
             })
@@ -111,66 +103,6 @@ fn clearance_keeping(
     keep: f64,
 ) -> Result<ClearanceAmong, QueryError> {
     keeping(among, keep)?.clearance_before(direction, before)
-}
-
-/// The answers of so many rows, in order.
-fn rows<T: Send>(
-    n: usize,
-    threads: Option<usize>,
-    ask: impl Fn(usize) -> Result<T, String> + Sync,
-) -> PyResult<Vec<T>> {
-    let all = std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = threads.unwrap_or(all).clamp(1, n.div_ceil(CHUNK).max(1));
-    let (next, stopped) = (AtomicUsize::new(0), AtomicBool::new(false));
-    let parts: Mutex<Parts<T>> = Mutex::default();
-    let failed: Mutex<Option<(usize, String)>> = Mutex::default();
-    let one = |k: usize| {
-        catch_unwind(AssertUnwindSafe(|| ask(k)))
-            .unwrap_or_else(|_| Err("internal error; please report it".into()))
-    };
-    let work = || {
-        while !stopped.load(Ordering::Relaxed) {
-            let first = next.fetch_add(CHUNK, Ordering::Relaxed);
-            let rows = first..(first + CHUNK).min(n);
-            if rows.is_empty() {
-                return;
-            }
-            let answers = rows.map(|k| one(k).map_err(|what| (k, what))).collect();
-            match answers {
-                Ok(answers) => lock(&parts).push((first, answers)),
-                Err(what) => {
-                    let mut failed = lock(&failed);
-                    let least = failed.take().into_iter().chain([what]).min();
-                    *failed = least;
-                    stopped.store(true, Ordering::Relaxed);
-                }
-            }
-        }
-    };
-    std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        wait(&workers).inspect_err(|_| stopped.store(true, Ordering::Relaxed))
-    })?;
-    if let Some((k, what)) = lock(&failed).take() {
-        return Err(error("QueryError", format_args!("row {k}: {what}")));
-    }
-    let mut parts = parts.into_inner().unwrap_or_else(PoisonError::into_inner);
-    parts.sort_unstable_by_key(|(first, _)| *first);
-    Ok(parts.into_iter().flat_map(|(_, answers)| answers).collect())
-}
-
-/// Until all have ended, or a signal raises something.
-pub(crate) fn wait(workers: &[ScopedJoinHandle<'_, ()>]) -> PyResult<()> {
-    let mut nap = Duration::from_micros(20);
-    while !workers.iter().all(|worker| worker.is_finished()) {
-        std::thread::sleep(nap);
-        if nap < PATIENCE {
-            nap = (nap * 2).min(PATIENCE);
-        } else {
-            Python::attach(|py| py.check_signals())?;
-        }
-    }
-    Ok(())
 }
 
 fn lock<T>(of: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {

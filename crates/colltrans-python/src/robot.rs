@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
 
 use colltrans::glam::DVec3;
 use colltrans::motion::path::{JointPath, PathCast, PathContact, PathOutcome, PathProof, Place};
@@ -22,9 +23,10 @@ use crate::errors::{OrRaise, error, input};
 use crate::frozen::{
     Options, Reduced, Shown, getters, match_args, plain, read, reduced, show, written,
 };
-use crate::obstacles::wait;
 use crate::solid::Piece;
 
+/// Between two looks for signals.
+const PATIENCE: Duration = Duration::from_millis(100);
 /// The names of the outcomes, by their numbers; the last is that of a row without an answer.
 const OUTCOMES: [&str; 6] = ["contact", "grazing", "free", "overlapping", "undecided", "error"];
 
@@ -319,7 +321,16 @@ fn answered<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResul
                 let found = work();
                 *done.lock().unwrap_or_else(PoisonError::into_inner) = Some(found);
             });
-            wait(&[worker])
+            let mut nap = Duration::from_micros(20);
+            while !worker.is_finished() {
+                std::thread::sleep(nap);
+                if nap < PATIENCE {
+                    nap = (nap * 2).min(PATIENCE);
+                } else {
+                    Python::attach(|py| py.check_signals())?;
+                }
+            }
+            Ok::<_, PyErr>(())
         })
     })?;
     let found = done.into_inner().unwrap_or_else(PoisonError::into_inner);

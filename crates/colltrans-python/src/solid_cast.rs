@@ -104,32 +104,16 @@ impl SolidCast {
 /// Where two bodies of any kind are, of a query that has `bodies` and `poses`.
 macro_rules! placed_bodies {
     ($query:ident) => {
-        #[pymethods]
-        impl $query {
+        $crate::frozen::getters!($query, |it| {
             /// ConvexPolyhedron or Solid: The moving body.
-            #[getter]
-            fn moving(&self, py: Python<'_>) -> Py<PyAny> {
-                self.bodies[0].object(py)
-            }
-
+            moving(py): Py<PyAny> = it.bodies[0].object(py);
             /// ConvexPolyhedron or Solid: The fixed body.
-            #[getter]
-            fn fixed(&self, py: Python<'_>) -> Py<PyAny> {
-                self.bodies[1].object(py)
-            }
-
+            fixed(py): Py<PyAny> = it.bodies[1].object(py);
             /// Pose: Where the moving body is.
-            #[getter]
-            fn moving_pose(&self) -> Pose {
-                Pose(self.poses[0])
-            }
-
+            moving_pose: Pose = Pose(it.poses[0]);
             /// Pose: Where the fixed body is.
-            #[getter]
-            fn fixed_pose(&self) -> Pose {
-                Pose(self.poses[1])
-            }
-        }
+            fixed_pose: Pose = Pose(it.poses[1]);
+        });
     };
 }
 pub(crate) use placed_bodies;

@@ -20,7 +20,9 @@ pub(crate) fn maker(given: &Bound<'_, PyAny>) -> PyResult<&'static str> {
     })
 }
 
-/// Refuses a mesh object, or the name of a file, where an array of points of `class` is expected; `call` takes a mesh.
+/// Refuses a mesh object, or the name of a file, where `class` expects an array of points.
+///
+/// `call` is the call that takes a mesh.
 pub(crate) fn refuse_mesh(
     given: &Bound<'_, PyAny>,
     name: &str,

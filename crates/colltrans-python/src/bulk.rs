@@ -100,7 +100,7 @@ impl Columns {
         Self { places, outcome: vec![0; n], numbers, vectors, features: corners }
     }
 
-    /// The columns by their names.
+    /// Returns the columns by their names.
     fn into_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         let found = PyDict::new(py);
         found.set_item("outcome", self.outcome.into_pyarray(py))?;
@@ -157,13 +157,13 @@ fn fill(ask: &impl Fn(usize) -> Row, part: Part<'_>, stop: &mut dyn FnMut() -> b
     }
 }
 
-/// The answer of a row, or what is wrong, even if a bug ended it.
+/// Returns the answer of a row, or what is wrong with it, even if a bug ended the search.
 fn answer_or_bug<T>(answer: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(answer))
         .unwrap_or_else(|_| Err("internal error; please report it".into()))
 }
 
-/// Answers rows that become no columns, on some threads. Raises what is wrong with the first bad one.
+/// Answers rows that do not become columns, on some threads. The first bad row is raised.
 pub(crate) fn each<T: Send>(
     rows: usize,
     chunk: usize,
@@ -186,8 +186,9 @@ pub(crate) fn each<T: Send>(
     answers.into_iter().flatten().enumerate().map(answer).collect()
 }
 
-/// Works on all parts on some threads, all processors without a number. The work ends where it is told to stop,
-/// after a signal; what the signal raised is returned.
+/// Works on all parts, on `threads` threads or on all processors.
+///
+/// After a signal the second argument of `work` returns true, and what the signal raised is returned.
 fn on_threads<P: Send>(
     parts: Vec<P>,
     threads: Option<usize>,

@@ -202,7 +202,7 @@ pub(crate) enum Argument<'py> {
     Motions(Vec<Bound<'py, crate::motion::Motion>>),
 }
 
-/// Answers `n` queries. `colltrans.queries` has made all arguments what they have to be: tables with one row or `n`.
+/// Answers `n` queries, whose arguments are tables of one row or `n` (`colltrans.queries` makes them).
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "they are the parts of a query")]
 pub(crate) fn ask_many<'py>(
@@ -260,7 +260,7 @@ fn argument<'a, 'py>(name: &str, of: &'a Arguments<'py>) -> PyResult<&'a Argumen
     of.get(name).ok_or_else(|| PyValueError::new_err(format!("{name} is missing")))
 }
 
-/// One motion for all rows, or one for each; or their numbers.
+/// Returns one motion for all rows, or one for each, or their numbers.
 fn motions<'a>(name: &'static str, of: &'a Arguments<'_>, n: usize) -> PyResult<Motions<'a>> {
     match argument(name, of)? {
         Argument::Motions(all) if all.len() == n || all.len() == 1 => {
@@ -282,7 +282,7 @@ fn index<'a>(of: Option<&'a PyReadonlyArray1<'_, i64>>, n: usize) -> PyResult<Op
     Ok(index)
 }
 
-/// A table of one row or `n`.
+/// Returns a table of one row or `n`.
 fn numbers<'a>(name: &'static str, of: &'a Arguments<'_>, n: usize) -> PyResult<Table<'a>> {
     let Argument::Numbers(numbers) = argument(name, of)? else {
         return Err(PyValueError::new_err(format!("{name} is not a table of numbers")));

@@ -20,7 +20,6 @@ use colltrans_assembly::liaisons::liaisons;
 use colltrans_assembly::map::{MapOptions, RemovalMap};
 use colltrans_assembly::matrix::Matrix;
 use colltrans_assembly::plan::{Leg, Passed, Plan, PlanOptions, Step, Times, Turn, Wanted};
-use colltrans_assembly_io::read::{self, Geometry, ReadOptions};
 use colltrans_assembly::report::html;
 use colltrans_assembly::roles::{PairFit, Role, Tolerated};
 use colltrans_assembly::rooms::{PartRoom, rooms};
@@ -30,6 +29,7 @@ use colltrans_assembly::suggest::{Suggestion, loose_threads, suggestions};
 use colltrans_assembly::{
     AssemblyError, Bodies, Findings, Fit, Ignored, Part, Piece, Question, Watch,
 };
+use colltrans_assembly_io::read::{self, Geometry, ReadOptions};
 use colltrans_mesh::Mesh;
 use numpy::PyArray2;
 use pyo3::prelude::*;

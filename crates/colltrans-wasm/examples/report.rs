@@ -8,9 +8,9 @@ use std::error::Error;
 use std::path::Path;
 
 use colltrans_assembly::map::{MapOptions, RemovalMap};
-use colltrans_assembly_io::read::{ReadOptions, read};
 use colltrans_assembly::report::html;
 use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Question, Watch};
+use colltrans_assembly_io::read::{ReadOptions, read};
 use glam::DAffine3;
 
 fn main() -> Result<(), Box<dyn Error>> {

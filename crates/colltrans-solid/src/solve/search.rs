@@ -1,21 +1,24 @@
-//! [Best first](best_first) through both trees.
+//! Best first through both trees, straight down until something is found.
 //!
-//! Bounds of gaps that block are clamped at 0, so that a contact at the start is found by going straight down. The search
-//! ends when no bound is smaller than the best gap found. Every pair of nodes that is not split is a *cut*, with its
-//! reason: together they are the proof that nothing blocks earlier.
+//! A pair of nodes stands for all pairs of their facets. The pair with the least bound is split next,
+//! the newest first among equals; bounds of gaps that block are clamped at 0, so that a contact at the
+//! start is found by going straight down. It ends when no bound is smaller than the best gap found.
+//! Every pair that is not split is a *cut*, with its reason: together they are the proof that nothing
+//! blocks earlier.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
+use std::ops::Range;
 
 use super::bound::{Profile, Reason, dismissed, least_gap};
 use super::leaf::{self, Facet, Gap, Meeting, Opposed, Wanted};
 use super::projected::Projected;
 use super::rim::{self, Upright};
-use super::scene::Scene;
+use super::scene::{Scene, Side};
 use super::separate;
 use super::separating_axes::{Reach, SeparatingAxes};
 use crate::solve::steps::SolidSteps;
-use colltrans_kernel::descent::{self, Entry, Pairs, best_first, node_to_split, replaced};
+use colltrans_kernel::descent::Entry;
 
 /// An answer may be larger than the least gap by so many times the noise of coordinates: bounds of
 /// nodes are rounded by a third of that.
@@ -105,27 +108,13 @@ struct Query<'s, 'a> {
     axes: Option<SeparatingAxes>,
 }
 
-impl Query<'_, '_> {
-    /// Takes a node into the query frame, and notes how far it reaches.
-    fn look(&self, moving: bool, at: u32, reaches: &mut Vec<Reach>) -> View {
-        let side = self.scene.side(moving);
-        let node = &side.solid.nodes()[at as usize];
-        let (leaf, size) = (node.is_leaf(), node.size());
-        let projected = Projected::new(self.scene, side, at as usize);
-        if let Some(axes) = &self.axes {
-            reaches.push(axes.reach(side, &projected));
-        }
-        View { projected, leaf, size }
-    }
-}
-
-/// What a search has seen of a body.
+/// The nodes of a body that a search has come to, and the facets of leaves: each is in many pairs.
 #[derive(Debug, Clone, Default)]
 struct Seen {
-    /// The nodes that it has come to, and the facets of leaves that look the right way.
-    nodes: descent::Seen<View, Facet>,
+    views: Vec<View>,
     /// Of all views, or of none.
     reaches: Vec<Reach>,
+    facets: Vec<Facet>,
 }
 
 /// A node in the query frame.
@@ -134,17 +123,63 @@ struct View {
     projected: Projected,
     leaf: bool,
     size: f64,
+    /// Where its children are among the views, or those of its facets that matter among the facets,
+    /// and how many; once they have been asked for.
+    parts: Option<[u32; 2]>,
 }
 
 impl Seen {
     fn start(&mut self, query: &Query, moving: bool) {
+        self.views.clear();
         self.reaches.clear();
-        self.nodes.start(query.look(moving, 0, &mut self.reaches));
+        self.facets.clear();
+        self.look(query, moving, 0);
+    }
+
+    fn look(&mut self, query: &Query, moving: bool, at: u32) {
+        let side = query.scene.side(moving);
+        let node = &side.solid.nodes()[at as usize];
+        let (leaf, size) = (node.is_leaf(), node.size());
+        let projected = Projected::new(query.scene, side, at as usize);
+        if let Some(axes) = &query.axes {
+            self.reaches.push(axes.reach(side, &projected));
+        }
+        self.views.push(View { projected, leaf, size, parts: None });
     }
 
     fn profile(&self, view: u32) -> Profile<'_> {
-        let projected = &self.nodes.view(view).projected;
-        Profile { projected, reach: self.reaches.get(view as usize) }
+        let at = view as usize;
+        Profile { projected: &self.views[at].projected, reach: self.reaches.get(at) }
+    }
+
+    /// The first of the two children of a view.
+    fn children(&mut self, query: &Query, moving: bool, view: u32) -> u32 {
+        let &View { projected: Projected { node, .. }, parts, .. } = &self.views[view as usize];
+        if let Some([first, _]) = parts {
+            return first;
+        }
+        let first = self.views.len() as u32;
+        let nodes = query.scene.side(moving).solid.nodes();
+        for part in nodes[node as usize].children(node) {
+            self.look(query, moving, part);
+        }
+        self.views[view as usize].parts = Some([first, 2]);
+        first
+    }
+
+    /// The facets of a leaf that look the right way.
+    fn leaf(&mut self, scene: &Scene, side: &Side, view: u32) -> Range<usize> {
+        let &View { projected: Projected { node, .. }, parts, .. } = &self.views[view as usize];
+        let [first, count] = parts.unwrap_or_else(|| {
+            let wanted = if side.moving { Ordering::Greater } else { Ordering::Less };
+            let facing = |t| Facet::facing(scene, side.moving, t, wanted);
+            let first = self.facets.len();
+            self.facets.extend(side.solid.nodes()[node as usize].facets().filter_map(facing));
+            let parts = [first as u32, (self.facets.len() - first) as u32];
+            self.views[view as usize].parts = Some(parts);
+            parts
+        });
+        first as usize..(first + count) as usize
     }
 }
 
@@ -190,6 +225,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
 
     pub(crate) fn run(&mut self, workspace: &mut Workspace) -> Option<Found> {
         let Workspace { queue, seen } = workspace;
+        queue.clear();
         let scene = self.scene;
         let [p, q] = Projected::roots(scene);
         if let Some(reason) = dismissed(&p, &q, self.limit, self.aim != Aim::Least) {
@@ -207,11 +243,62 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
             Query { scene, axes: (!scene.is_aligned()).then(|| SeparatingAxes::new(scene)) };
         seen[0].start(&query, true);
         seen[1].start(&query, false);
-        best_first(&mut Descent { search: self, query, seen }, queue);
+        let mut next = self.judge(seen, [0, 0], 0);
+        let mut number = 0;
+        while let Some(entry) = next.take().or_else(|| queue.pop()) {
+            if entry.bound >= self.limit {
+                (self.cut)(nodes(seen, entry.views), Reason::NotBefore);
+                // As are all others: it is the least, or else the limit is not positive.
+                for rest in queue.drain() {
+                    (self.cut)(nodes(seen, rest.views), Reason::NotBefore);
+                }
+                break;
+            }
+            let (a, b) =
+                (&seen[0].views[entry.views[0] as usize], &seen[1].views[entry.views[1] as usize]);
+            if a.leaf && b.leaf {
+                self.leaves(seen, entry.views);
+                (self.cut)(nodes(seen, entry.views), Reason::Examined);
+                continue;
+            }
+            let split_moving = !a.leaf && (b.leaf || a.size >= b.size);
+            for views in split(&query, seen, entry.views, split_moving) {
+                number += 1;
+                let Some(child) = self.judge(seen, views, number) else { continue };
+                // The better child goes on without a detour through the queue.
+                match next {
+                    Some(best) if best.bound < child.bound => queue.push(child),
+                    Some(best) => {
+                        queue.push(best);
+                        next = Some(child);
+                    }
+                    None => next = Some(child),
+                }
+            }
+            // Straight down at first: what is found bounds what has to be kept.
+            if let (true, Some(child), Some(top)) = (self.found.is_some(), next, queue.peek())
+                && top.bound < child.bound
+            {
+                queue.push(child);
+                next = None;
+            }
+        }
         // A little more, for the roundings of a bound on its way into a proof.
         let bounds = self.limit - 1.0625 * node_rounding(scene);
         let others = self.others.min(bounds);
         self.found.map(|found| Found { others, ..found.sharpened(scene, self.aim) })
+    }
+
+    /// A pair with its bound, unless it is cut.
+    fn judge(&mut self, seen: &[Seen; 2], views: [u32; 2], number: u32) -> Option<Entry> {
+        self.steps.nodes += 1;
+        match self.bound(seen, views) {
+            Ok(bound) => Some(Entry { bound: self.aim.clamp(bound), number, reason: (), views }),
+            Err(reason) => {
+                (self.cut)(nodes(seen, views), reason);
+                None
+            }
+        }
     }
 
     fn bound(&self, seen: &[Seen; 2], [a, b]: [u32; 2]) -> Result<f64, Reason> {
@@ -224,17 +311,10 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
     fn leaves(&mut self, seen: &mut [Seen; 2], views: [u32; 2]) {
         self.steps.leaves += 1;
         let scene = self.scene;
-        let [front, back] = [0, 1].map(|k| {
-            let (moving, wanted) = [(true, Ordering::Greater), (false, Ordering::Less)][k];
-            let facing = |t| Facet::facing(scene, moving, t, wanted);
-            let all = |view: &View| {
-                let nodes = scene.side(moving).solid.nodes();
-                nodes[view.projected.node as usize].facets().filter_map(facing)
-            };
-            seen[k].nodes.leaf(views[k], all)
-        });
-        for f in seen[0].nodes.items(front.clone()) {
-            for g in seen[1].nodes.items(back.clone()) {
+        let front = seen[0].leaf(scene, &scene.moving, views[0]);
+        let back = seen[1].leaf(scene, &scene.fixed, views[1]);
+        for f in &seen[0].facets[front.clone()] {
+            for g in &seen[1].facets[back.clone()] {
                 self.facets(f, g);
             }
         }
@@ -244,8 +324,7 @@ impl<'s, 'a, F: FnMut([u32; 2], Reason)> Search<'s, 'a, F> {
                 let k = usize::from(!moving);
                 (Upright::of_leaf(scene, moving, nodes[k]), facets, k)
             });
-            let [f, g] =
-                [f, g].map(|(uprights, facets, k)| (uprights, seen[k].nodes.items(facets)));
+            let [f, g] = [f, g].map(|(uprights, facets, k)| (uprights, &seen[k].facets[facets]));
             rim::each_gap(scene, (&f.0, f.1), (&g.0, g.1), &mut |pair, gap| self.take(pair, &gap));
         }
     }
@@ -306,61 +385,16 @@ pub(crate) fn exact_gap_of(scene: &Scene, aim: Aim, facets: &Opposed) -> Option<
 
 /// The nodes of a pair.
 fn nodes(seen: &[Seen; 2], views: [u32; 2]) -> [u32; 2] {
-    [0, 1].map(|k| seen[k].nodes.view(views[k]).projected.node)
+    [0, 1].map(|k| seen[k].views[views[k] as usize].projected.node)
 }
 
-/// A search on its way down both trees.
-struct Descent<'d, 's, 'a, F: FnMut([u32; 2], Reason)> {
-    search: &'d mut Search<'s, 'a, F>,
-    query: Query<'s, 'a>,
-    seen: &'d mut [Seen; 2],
-}
-
-impl<F: FnMut([u32; 2], Reason)> Pairs for Descent<'_, '_, '_, F> {
-    type Reason = ();
-    const FIRST_OF_EQUALS: bool = false;
-
-    #[inline]
-    fn limit(&self) -> f64 {
-        self.search.limit
-    }
-
-    #[inline]
-    fn is_found(&self) -> bool {
-        self.search.found.is_some()
-    }
-
-    #[inline]
-    fn bound(&mut self, views: [u32; 2]) -> Option<(f64, ())> {
-        self.search.steps.nodes += 1;
-        match self.search.bound(self.seen, views) {
-            Ok(bound) => Some((self.search.aim.clamp(bound), ())),
-            Err(reason) => {
-                (self.search.cut)(nodes(self.seen, views), reason);
-                None
-            }
-        }
-    }
-
-    #[inline]
-    fn split(&mut self, views: [u32; 2]) -> Option<[[u32; 2]; 2]> {
-        let [a, b] = [0, 1].map(|k| self.seen[k].nodes.view(views[k]));
-        let Some(which) = node_to_split([a.leaf, b.leaf], |k| [a.size, b.size][k]) else {
-            self.search.leaves(self.seen, views);
-            (self.search.cut)(nodes(self.seen, views), Reason::Examined);
-            return None;
-        };
-        let (query, moving) = (&self.query, which == 0);
-        let Seen { nodes, reaches } = &mut self.seen[which];
-        let parts = nodes.children(views[which], |view, k| {
-            let at = view.projected.node;
-            let node = &query.scene.side(moving).solid.nodes()[at as usize];
-            query.look(moving, node.children(at)[k], reaches)
-        });
-        Some(parts.map(|part| replaced(views, which, part)))
-    }
-
-    fn dismiss(&mut self, entry: &Entry) {
-        (self.search.cut)(nodes(self.seen, entry.views), Reason::NotBefore);
+/// The two pairs that a pair is split into.
+fn split(query: &Query, seen: &mut [Seen; 2], [a, b]: [u32; 2], moving: bool) -> [[u32; 2]; 2] {
+    if moving {
+        let first = seen[0].children(query, true, a);
+        [[first, b], [first + 1, b]]
+    } else {
+        let first = seen[1].children(query, false, b);
+        [[a, first], [a, first + 1]]
     }
 }

@@ -15,6 +15,8 @@ pub mod read;
 pub mod robot;
 
 pub use error::ReadError;
-pub use read::{ReadOptions, read};
+pub use read::ReadOptions;
+#[cfg(feature = "files")]
+pub use read::read;
 #[cfg(feature = "files")]
 pub use robot::Robot;

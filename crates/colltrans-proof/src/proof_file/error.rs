@@ -2,12 +2,16 @@
 
 use thiserror::Error;
 
-use super::file::{FORMAT, VERSION};
 use colltrans_convex::answer::CertificateError;
 use colltrans_convex::cast::replay::what_is_wrong;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_motion::MotionProofError;
 use colltrans_motion::path::{PathError, PathProofError};
+
+/// What a file calls itself.
+pub(super) const FORMAT: &str = "colltrans proof";
+/// The version of the format.
+pub(super) const VERSION: u64 = 2;
 
 /// Why a file is no proof, or an answer has none.
 #[derive(Debug, Error)]

@@ -4,20 +4,14 @@ use glam::DVec3;
 use serde::de::{DeserializeOwned, Error as _};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::ProofFile;
 use super::body::{BodyFile, StoredBody};
-use super::error::ProofFileError;
-use super::statement::Statement;
+use super::error::{FORMAT, ProofFileError, VERSION};
+use super::{ProofFile, Statement};
 use colltrans_convex::body::Pose;
 use colltrans_kernel::noise;
 use colltrans_motion::Motion;
 use colltrans_motion::path::{Frame, JointPath, Mechanism};
 use colltrans_solid::cast::StartOverlap;
-
-/// What a file calls itself.
-pub(super) const FORMAT: &str = "colltrans proof";
-/// The version of the format.
-pub(super) const VERSION: u64 = 2;
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -4,7 +4,7 @@
 //! its certificates.
 //!
 //! [`file`] is the format, [`body`] the bodies in it; [`statement`], [`scene`], [`motion`] and [`path`] are what can be
-//! said of them; [`verify`] joins both and checks them; [`words`] tell them. [`case`] is a question about a motion.
+//! said of them, and what [`proven`] is of it; [`verify`] joins them and checks; [`words`] tell them. [`case`] is a question about a motion.
 
 mod body;
 mod case;
@@ -12,22 +12,26 @@ mod error;
 mod file;
 mod motion;
 mod path;
+mod proven;
 mod scene;
 mod statement;
 mod verify;
 mod words;
 
+use serde::{Deserialize, Serialize};
+
 use colltrans_convex::answer::{
-    CertificateError, Clearance, ContactRange, Depth, Distance, Outcome, OverlapAhead, Steps,
-    WhyFree, Within,
+    CertificateError, Clearance, ContactRange, Depth, Distance, Outcome, OverlapAhead, Separation,
+    Steps, WhyFree, Within,
 };
 use colltrans_convex::cast::Cast;
 use colltrans_convex::pair::Pair;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_removal::free::{FreeDirections, FreeError};
+use colltrans_scene::{ClearanceProof, NearbyProof, NearestProof};
 use colltrans_solid::body::Solid;
 use colltrans_solid::kinds::AnyPlaced;
-use colltrans_solid::pair::Unproven;
+use colltrans_solid::pair::{DistanceCertificate, Unproven};
 use colltrans_solid::{SolidCast, SolidPairSearch, SolidSteps};
 
 use body::StoredBody;
@@ -36,11 +40,39 @@ pub use error::{ProofError, ProofFileError};
 use file::{Along, Place, Placement, Query};
 pub use motion::{MotionStatement, SolidMotionStatement};
 pub use path::PathStatement;
-pub use statement::{
-    Contacts, DistanceStatement, FreeStatement, Slide, SolidStatement, Statement, Stop,
-};
+pub use proven::{Proven, Verify};
+pub use statement::{Contacts, DistanceStatement, FreeStatement, Slide, SolidStatement, Stop};
 use statement::{in_file, options};
-pub use verify::{Proven, Verify};
+
+/// What a [`ProofFile`](crate::ProofFile) says of its bodies.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Statement {
+    /// Where convex bodies meet first, or last, or both.
+    Contacts(Contacts),
+    /// That convex bodies never meet.
+    Separation(Separation),
+    /// How far a solid can move from where it is.
+    Clearance(SolidStatement),
+    /// How far convex bodies are apart where they are.
+    Distance(DistanceStatement),
+    /// How deep convex bodies overlap where they are.
+    Depth(Depth),
+    /// How far solids are apart where they are.
+    SolidDistance(DistanceCertificate),
+    /// Along which directions a solid can leave.
+    FreeDirections(FreeStatement),
+    /// Which of many obstacles is nearest.
+    Nearest(NearestProof),
+    /// Which of many obstacles are closer than a length.
+    Within(NearbyProof),
+    /// Which of many obstacles stops the moving body, and where.
+    SceneClearance(ClearanceProof),
+    /// When the bodies of each pair first meet.
+    Motions(Vec<MotionStatement>),
+    /// When bodies of a mechanism first meet.
+    Path(PathStatement),
+}
 
 /// A proof that owns its bodies: whoever has the file can check what it says, without a search.
 ///

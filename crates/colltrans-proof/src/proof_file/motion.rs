@@ -5,12 +5,11 @@ use std::collections::HashMap;
 
 use serde::{Deserialize, Serialize};
 
-use super::ProofFile;
 use super::body::StoredBody;
 use super::error::{ProofError, ProofFileError};
 use super::file::{Mover, Placement, Query, Timed};
-use super::statement::Statement;
-use super::verify::{Proven, Verify};
+use super::proven::{Proven, Verify};
+use super::{ProofFile, Statement};
 use colltrans_convex::body::Body;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_motion::{

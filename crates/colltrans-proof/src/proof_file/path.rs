@@ -5,12 +5,11 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use super::ProofFile;
 use super::body::StoredBody;
 use super::error::{ProofError, ProofFileError};
 use super::file::{Joints, Link, Placement, Query, Robot};
-use super::statement::Statement;
-use super::verify::{Proven, Verify};
+use super::proven::{Proven, Verify};
+use super::{ProofFile, Statement};
 use colltrans_convex::body::InputFacet;
 use colltrans_motion::path::{PathBody, PathCast, PathOutcome, PathProof};
 use colltrans_solid::kinds::{AnyBody, ByKind};

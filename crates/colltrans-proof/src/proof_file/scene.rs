@@ -7,12 +7,11 @@ use std::sync::Arc;
 
 use glam::DVec3;
 
-use super::ProofFile;
 use super::body::StoredBody;
 use super::error::{ProofError, ProofFileError};
 use super::file::{Choices, Place, Placement, Query};
-use super::statement::Statement;
-use super::verify::{Proven, Verify};
+use super::proven::{Proven, Verify};
+use super::{ProofFile, Statement};
 use colltrans_convex::setting::error::QueryError;
 use colltrans_convex::solve::options::Options;
 use colltrans_scene::{Among, AmongProof, Obstacles};

@@ -5,9 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::ProofError;
 use super::file::Along;
-use super::motion::MotionStatement;
-use super::path::PathStatement;
-use super::verify::{Proven, Verify};
+use super::proven::{Proven, Verify};
 use colltrans_convex::answer::{
     Bounded, Certificate, CertificateError, Clearance, Contact, Depth, Distance, Grazing,
     NearPoints, PlaneGap, Separation, Within,
@@ -18,43 +16,12 @@ use colltrans_convex::cast::sideways::{proven_overlap, verified_overlap};
 use colltrans_convex::pair::Pair;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_removal::free::{CellProof, FreeDirections, FreeError, FreeProof, InnerBox};
-use colltrans_scene::{ClearanceProof, NearbyProof, NearestProof};
 use colltrans_solid::SolidCast;
 use colltrans_solid::body::Solid;
 use colltrans_solid::cast::{SolidCertificate, SolidOptions, StartOverlap, StartProof};
 use colltrans_solid::pair::DistanceCertificate;
 use colltrans_solid::solve::contact::SolidContact;
 use colltrans_solid::solve::nearest::SolidNear;
-
-/// What a [`ProofFile`](crate::ProofFile) says of its bodies.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Statement {
-    /// Where convex bodies meet first, or last, or both.
-    Contacts(Contacts),
-    /// That convex bodies never meet.
-    Separation(Separation),
-    /// How far a solid can move from where it is.
-    Clearance(SolidStatement),
-    /// How far convex bodies are apart where they are.
-    Distance(DistanceStatement),
-    /// How deep convex bodies overlap where they are.
-    Depth(Depth),
-    /// How far solids are apart where they are.
-    SolidDistance(DistanceCertificate),
-    /// Along which directions a solid can leave.
-    FreeDirections(FreeStatement),
-    /// Which of many obstacles is nearest.
-    Nearest(NearestProof),
-    /// Which of many obstacles are closer than a length.
-    Within(NearbyProof),
-    /// Which of many obstacles stops the moving body, and where.
-    SceneClearance(ClearanceProof),
-    /// When the bodies of each pair first meet.
-    Motions(Vec<MotionStatement>),
-    /// When bodies of a mechanism first meet.
-    Path(PathStatement),
-}
 
 /// Along which directions a solid can leave another one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

@@ -1,52 +1,15 @@
 //! How a statement is checked: against what it is about, without a search.
 
-use super::ProofFile;
 use super::error::{ProofError, ProofFileError};
 use super::file::{Placement, Query};
 use super::path::PathSetting;
+use super::proven::{Proven, Verify};
 use super::scene::Scene;
-use super::statement::Statement;
+use super::{ProofFile, Statement};
 use colltrans_convex::cast::Cast;
 use colltrans_convex::pair::Pair;
 use colltrans_convex::setting::{check_direction, check_keep};
-use colltrans_removal::free::FreeDirections;
 use colltrans_solid::kinds::ByKind;
-
-/// A statement that can be checked against what it is about.
-pub trait Verify<'a, Setting> {
-    /// Checks all of it, without a search.
-    ///
-    /// # Errors
-    /// The first thing that is not proven.
-    fn verify(&self, about: &Setting) -> Result<Proven<'a>, ProofError>;
-}
-
-/// What a check has proven.
-pub enum Proven<'a> {
-    /// What the statement says.
-    Statement,
-    /// Bounds of the time at which bodies first meet: infinity if they are not proven to meet.
-    Time([f64; 2]),
-    /// Along which directions the moving body can leave.
-    Directions(Box<FreeDirections<'a>>),
-}
-
-impl std::fmt::Debug for Proven<'_> {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Statement => f.write_str("Statement"),
-            Self::Time(bounds) => f.debug_tuple("Time").field(bounds).finish(),
-            Self::Directions(_) => f.write_str("Directions"),
-        }
-    }
-}
-
-impl Proven<'_> {
-    /// Returns the bounds of the time at which bodies first meet, if the proof is about one.
-    pub const fn time(&self) -> Option<[f64; 2]> {
-        if let Self::Time(bounds) = self { Some(*bounds) } else { None }
-    }
-}
 
 /// A statement with what it is about.
 type Claim<'a> = Box<dyn FnOnce() -> Result<Proven<'a>, ProofError> + 'a>;

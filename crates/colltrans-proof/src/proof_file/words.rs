@@ -3,10 +3,8 @@
 use std::fmt;
 
 use super::file::{Choices, Query};
-use super::statement::{
-    Contacts, DistanceStatement, FreeStatement, Slide, SolidStatement, Statement, Stop,
-};
-use super::{ProofFile, motion};
+use super::statement::{Contacts, DistanceStatement, FreeStatement, Slide, SolidStatement, Stop};
+use super::{ProofFile, Statement, motion};
 use colltrans_convex::answer::{Bounded, Depth, Separation};
 use colltrans_convex::body::ObstacleId;
 use colltrans_removal::free::CellProof;

@@ -259,7 +259,10 @@ impl Solid {
             triangles: vec![corners],
             facet_index: vec![InputFacet(0)],
             neighbours: vec![[edges::NONE; 3]],
-            input_counts: [body.input_indices().iter().max().map_or(0, |last| last.0.saturating_add(1)), 1],
+            input_counts: [
+                body.input_indices().iter().max().map_or(0, |last| last.0.saturating_add(1)),
+                1,
+            ],
             faces: None,
             kinds: vec![ShellKind::Sheet],
         };

@@ -81,8 +81,6 @@ fn told(
                 say("facets", json!(stop.facets));
             }
             statement.separation.map(|plane| say("margin", json!(plane.margin)));
-            let inverted = proof.inverted();
-            (inverted != [0; 2]).then(|| say("inverted", json!(inverted)));
         }
         Statement::Distance(DistanceStatement { gap, near }) => {
             gap.map(|gap| say("lower", json!(gap.gap)));
@@ -123,6 +121,8 @@ fn told(
             say("pairs", json!(of.pairs));
         }
     }
+    let inverted = proof.inverted();
+    (inverted != [0; 2]).then(|| say("inverted", json!(inverted)));
     if let Some([lower, upper]) = time {
         let upper = upper.is_finite().then_some(upper);
         say("time", json!({ "lower": lower, "upper": upper }));

@@ -2,7 +2,7 @@
 #![cfg(feature = "json")]
 
 use colltrans::motion::path::{Frame, Joint, JointPath, Mechanism, PathBody, PathCast};
-use colltrans::solid::{AsSolid, SolidCast, SolidPair, StartOverlap};
+use colltrans::solid::{AsSolid, SolidCast, SolidOptions, SolidPair, StartOverlap};
 use colltrans::{
     Among, Cast, CertificateError, ConvexPolyhedron, ObstacleId, Obstacles, Pair, Pose, ProofError,
     ProofFile, ProofFileError, QueryError, Solid, Statement,
@@ -479,8 +479,42 @@ fn shrunk_bodies_that_are_inside_out_are_told() {
     let inside_out = ProofFile::from_json(&file.to_string()).expect("a proof");
     let [bolt, cup] = inside_out.inverted();
     assert!(cup > 0, "{cup}");
-    let words = format!("; shrunk so far, {bolt} facets of the moving body and {cup} of the fixed");
+    let words =
+        format!("; at this offset {bolt} facets of moving bodies and {cup} of fixed ones are");
     assert!(inside_out.to_string().contains(&words), "{inside_out}");
+
+    let mut obstacles = Obstacles::new();
+    obstacles.insert(parts[1].clone(), Pose::IDENTITY);
+    let place = Pose::from_translation(DVec3::new(0.01, 0.02, 40.0)).expect("a pose");
+    let options = SolidOptions::default().with_tolerance(Some(1.5));
+    let among = Among::new(parts[0].at(place), &obstacles).expect("a query");
+    let file = ProofFile::of_scene_clearance(&among.with_solid_options(options), DVec3::NEG_Z);
+    let file = file.expect("a proof");
+    assert_eq!(file.inverted(), [bolt, cup]);
+    assert!(file.to_string().contains(&words), "{file}");
+}
+
+#[test]
+fn obstacles_that_are_undecided_are_named_as_such() {
+    let mut obstacles = Obstacles::new();
+    let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).expect("a cube");
+    for x in [2.0, 3.0] {
+        obstacles.insert(cube.clone(), Pose::from_translation(DVec3::X * x).expect("a pose"));
+    }
+    let among = Among::new(cube.at(Pose::IDENTITY), &obstacles).expect("a query");
+    let file = ProofFile::of_within(&among, 2.5).expect("a proof");
+    assert_eq!(
+        file.to_string(),
+        "of 2 obstacles, 2 (0, 1) are at most 2.5 away, all others are farther"
+    );
+    let mut file: Value = serde_json::from_str(&file.to_json()).expect("JSON");
+    let claim = &mut file["statement"]["within"];
+    claim["closer"].as_array_mut().expect("a list").pop();
+    claim["undecided"] = json!([1]);
+    let proof = ProofFile::from_json(&file.to_string()).expect("a proof");
+    proof.check().expect("it holds");
+    let words = "1 (0) is proven to be at most 2.5 away, 1 (1) may be, all others are farther";
+    assert_eq!(proof.to_string(), format!("of 2 obstacles, {words}"));
 }
 
 #[test]
@@ -572,7 +606,7 @@ fn other_files_are_refused_in_words() {
     assert!(said("{}").contains("a saved proof"));
     assert_eq!(
         said(&text.replace("colltrans proof", "colltrans proof 1")),
-        "the format is \"colltrans proof 1\", not \"colltrans proof\""
+        "the format is \"colltrans proof 1\", not \"colltrans proof\"; --save-proof writes the files that are accepted"
     );
     let older = text.replace("\"version\":2", "\"version\":1");
     assert_eq!(said(&older), "the version of the format is 1, not 2");

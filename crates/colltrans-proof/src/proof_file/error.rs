@@ -27,7 +27,10 @@ pub enum ProofFileError {
     )]
     Choice(serde_json::Error),
     /// It is a file of another kind.
-    #[error("the format is {found:?}, not {:?}", FORMAT)]
+    #[error(
+        "the format is {found:?}, not {:?}; --save-proof writes the files that are accepted",
+        FORMAT
+    )]
     Format {
         /// The format that the file names.
         found: String,

@@ -18,6 +18,8 @@ mod statement;
 mod verify;
 mod words;
 
+use std::collections::HashMap;
+
 use serde::{Deserialize, Serialize};
 
 use colltrans_convex::answer::{
@@ -276,21 +278,45 @@ impl ProofFile {
         &self.statement
     }
 
-    /// How many facets of the moving and of the fixed body turn inside out, or pass through others, where
-    /// they are shrunk by half the tolerance each ([`ShrinkReport::inverted`](colltrans_solid::ShrinkReport::inverted)):
-    /// what is said of shrunk bodies says little there.
+    /// Returns the number of facets, of the moving bodies and of the fixed ones, that turn inside out or pass through
+    /// others when the solids are offset inwards by half the tolerance each
+    /// ([`ShrinkReport::inverted`](colltrans_solid::ShrinkReport::inverted)). There the statement about the offset solids
+    /// says little about the solids themselves. A body that several pairs or places share counts once on each side.
     pub fn inverted(&self) -> [usize; 2] {
-        let tolerance = match &self.statement {
-            Statement::Clearance(of) => of.certificate.tolerance,
-            Statement::FreeDirections(of) => of.tolerance,
-            _ => 0.0,
+        // The tolerance of each body on each side.
+        let mut offset: [HashMap<usize, f64>; 2] = Default::default();
+        let mut add = |side: usize, body: usize, tolerance: f64| {
+            let known = offset[side].entry(body).or_default();
+            *known = known.max(tolerance);
         };
-        match self.solids() {
-            Some(bodies) if tolerance > 0.0 => {
-                bodies.map(|body| body.shrink_report(tolerance / 2.0).inverted.len())
+        match (&self.query, &self.placement, &self.statement) {
+            (Query::Motions(_), Placement::Motions(movers), Statement::Motions(of)) => {
+                for (pair, statement) in movers.iter().zip(of) {
+                    let tolerance = statement.tolerance();
+                    (0..2).for_each(|side| add(side, pair[side].body, tolerance));
+                }
             }
-            _ => [0; 2],
+            (query, Placement::Poses(places), statement) => {
+                let tolerance = match (query, statement) {
+                    (_, Statement::Clearance(of)) => of.certificate.tolerance,
+                    (_, Statement::FreeDirections(of)) => of.tolerance,
+                    (Query::Scene(of), Statement::SceneClearance(_)) => of.tolerance.unwrap_or(0.0),
+                    _ => 0.0,
+                };
+                for (number, place) in places.iter().enumerate() {
+                    add(usize::from(number > 0), place.body, tolerance);
+                }
+            }
+            _ => {}
         }
+        let inverted = |(body, tolerance): (&usize, &f64)| match self.bodies.get(*body)?.as_solid()
+        {
+            Some(solid) if *tolerance > 0.0 => {
+                Some(solid.shrink_report(tolerance / 2.0).inverted.len())
+            }
+            _ => None,
+        };
+        offset.map(|side| side.iter().filter_map(inverted).sum())
     }
 
     /// The gap that the bodies of a cast are to keep, in world units; 0 if they may touch.
@@ -311,15 +337,6 @@ impl ProofFile {
         let [moving, fixed] = places else { return Err(ProofFileError::Statement) };
         let body = |of: &Place| StoredBody::of(&self.bodies, of.body);
         Ok([body(moving)?.body.at(moving.pose), body(fixed)?.body.at(fixed.pose)])
-    }
-
-    /// Returns the moving and the fixed body of a statement about two solids.
-    fn solids(&self) -> Option<[&Solid; 2]> {
-        let Placement::Poses(places) = &self.placement else { return None };
-        match self.two(places).ok()? {
-            [AnyPlaced::Solid(moving), AnyPlaced::Solid(fixed)] => Some([moving.body, fixed.body]),
-            _ => None,
-        }
     }
 }
 

@@ -282,6 +282,14 @@ fn first_of(asked: &[Timed], times: &[[f64; 2]]) -> [f64; 2] {
 }
 
 impl MotionStatement {
+    /// Returns the tolerance of solids, 0 of convex bodies.
+    pub(super) fn tolerance(&self) -> f64 {
+        match self {
+            Self::Convex(_) => 0.0,
+            Self::Solids(of) => of.proof.tolerance,
+        }
+    }
+
     /// Returns the time up to which the bodies do not meet, and the one at which they do, if these are claimed.
     fn claims(&self) -> (Option<f64>, Option<f64>) {
         match self {
@@ -290,7 +298,10 @@ impl MotionStatement {
                 (last, meeting.as_ref().map(|meeting| meeting.time))
             }
             Self::Solids(SolidMotionStatement { proof, .. }) => {
-                let SolidMotionProof { spans, meeting, .. } = proof;
+                let SolidMotionProof { start, spans, meeting, .. } = proof;
+                if let StartProof::Overlapping(_) = start {
+                    return (None, Some(0.0));
+                }
                 (spans.last().map(|span| span.until), meeting.as_ref().map(|of| of.time))
             }
         }
@@ -303,13 +314,11 @@ impl MotionStatement {
         let bodies = match self {
             Self::Convex(_) => "the bodies ".into(),
             Self::Solids(of) => {
-                format!("the solids, shrunk by {} each, ", 0.5 * of.proof.tolerance)
+                format!("the solids, shrunk by {:?} each, ", 0.5 * of.proof.tolerance)
             }
         };
-        let is_overlapping =
-            |of: &SolidMotionStatement| matches!(of.proof.start, StartProof::Overlapping(_));
         let told = match (self, reached, meeting) {
-            (Self::Solids(of), ..) if is_overlapping(of) => "overlap when the motion begins".into(),
+            (Self::Solids(_), None, Some(0.0)) => "overlap when the motion begins".into(),
             (Self::Convex(_), None, None) => return "nothing is said".into(),
             (Self::Convex(_), None, Some(0.0)) => format!("{meet} when the motion begins"),
             (Self::Convex(_), None, Some(upper)) => format!("{meet} by the time {upper}"),
@@ -335,7 +344,9 @@ pub(super) fn words(asked: &[Timed], statements: &[MotionStatement]) -> String {
     });
     let [lower, upper] = first_of(asked, &claimed.collect::<Vec<_>>());
     let (count, meet) = (statements.len(), meet(least_gap(asked)));
-    let told = if upper.is_finite() {
+    let told = if upper == 0.0 {
+        format!("those of one {meet} when the motion begins")
+    } else if upper.is_finite() {
         format!("the first {meet} at a time between {lower} and {upper}")
     } else if lower == 1.0 {
         format!("none {meet} throughout the motion")
@@ -348,8 +359,8 @@ pub(super) fn words(asked: &[Timed], statements: &[MotionStatement]) -> String {
 /// Returns what bodies do that meet, in words, with the gap that is kept.
 fn meet(keep: f64) -> String {
     match keep {
-        keep if keep > 0.0 => format!("come as near as {keep}"),
-        keep if keep < 0.0 => format!("overlap by more than {}", -keep),
+        keep if keep > 0.0 => format!("come as near as {keep:?}"),
+        keep if keep < 0.0 => format!("overlap by more than {:?}", -keep),
         _ => "meet".into(),
     }
 }

@@ -9,6 +9,7 @@ use super::body::StoredBody;
 use super::error::{ProofError, ProofFileError};
 use super::file::{Joints, Link, Placement, Query, Robot};
 use super::proven::{Proven, Verify};
+use super::words::shown;
 use super::{ProofFile, Statement};
 use colltrans_convex::body::InputFacet;
 use colltrans_motion::path::{PathBody, PathCast, PathOutcome, PathProof};
@@ -190,11 +191,11 @@ impl PathStatement {
     /// Tells it in words.
     pub(super) fn tell(&self, f: &mut fmt::Formatter<'_>, joints: &Joints) -> fmt::Result {
         let meet = match joints.keep {
-            keep if keep > 0.0 => format!("come as near as {keep}"),
+            keep if keep > 0.0 => format!("come as near as {keep:?}"),
             _ => "meet".into(),
         };
         let Self { pairs, lower, upper, proof, .. } = self;
-        let named = |[a, b]: &[String; 2]| format!("{a} and {b}");
+        let named = |[a, b]: &[String; 2]| format!("{} and {}", shown(a), shown(b));
         let first: Vec<String> = pairs.iter().take(NAMED).map(named).collect();
         let more = if pairs.len() > NAMED { ", ..." } else { "" };
         write!(f, "of {} pairs ({}{more}) ", pairs.len(), first.join(", "))?;

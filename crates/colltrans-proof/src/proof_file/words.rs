@@ -33,21 +33,23 @@ impl fmt::Display for ProofFile {
                     choices.tell(f)?;
                 }
             }
-            (Query::Motions(asked), Statement::Motions(of)) => {
-                return f.write_str(&motion::words(asked, of));
-            }
-            (Query::Path(joints), Statement::Path(of)) => return of.tell(f, joints),
             _ => {}
         }
-        self.statement.tell(f)?;
+        match (&self.query, &self.statement) {
+            (Query::Motions(asked), Statement::Motions(of)) => {
+                f.write_str(&motion::words(asked, of))?;
+            }
+            (Query::Path(joints), Statement::Path(of)) => of.tell(f, joints)?,
+            (_, statement) => statement.tell(f)?,
+        }
         let [moving, fixed] = self.inverted();
         if [moving, fixed] == [0; 2] {
             return Ok(());
         }
         write!(
             f,
-            "; shrunk so far, {moving} facets of the moving body and {fixed} of the fixed one are inside out: \
-             where a body is thinner than the tolerance, nothing is said of it as it is"
+            "; at this offset {moving} facets of moving bodies and {fixed} of fixed ones are inside out: where a \
+             body is thinner than the tolerance, the statement does not cover its original surface"
         )
     }
 }
@@ -105,9 +107,11 @@ impl Statement {
             Self::Within(NearbyProof { length, closer, undecided, .. }) => {
                 let closer: Vec<ObstacleId> = closer.iter().map(|(id, _)| *id).collect();
                 let (which, is) = listed(&closer);
-                write!(f, "{which} {is} at most {length:?} away")?;
-                if !undecided.is_empty() {
-                    write!(f, ", of {} nothing is said", listed(undecided).0)?;
+                if undecided.is_empty() {
+                    write!(f, "{which} {is} at most {length:?} away")?;
+                } else {
+                    let open = listed(undecided).0;
+                    write!(f, "{which} {is} proven to be at most {length:?} away, {open} may be")?;
                 }
                 f.write_str(", all others are farther")
             }
@@ -243,6 +247,12 @@ fn meeting(Bounded { lower, upper, .. }: Bounded) -> String {
         [false, true] => format!("the facets that do meet, as they are, by {upper:?}"),
         [false, false] => "it is not said where the facets that do meet, as they are".into(),
     }
+}
+
+/// Returns a body's name as a sentence shows it: quoted, unless it is one word of letters, digits and `_-.:/`.
+pub(super) fn shown(name: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "_-.:/".contains(c);
+    if !name.is_empty() && name.chars().all(is_plain) { name.into() } else { format!("{name:?}") }
 }
 
 /// Returns how many, and which, and the verb that they take.

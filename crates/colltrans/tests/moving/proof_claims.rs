@@ -160,7 +160,7 @@ fn cart(rows: &[f64]) -> Value {
     serde_json::from_str(&file.to_json()).expect("JSON")
 }
 
-const PAIRS: &str = "of 3 pairs (cart and stop, cart and wall, cart and body 3)";
+const PAIRS: &str = "of 3 pairs (cart and stop, cart and wall, cart and \"body 3\")";
 
 #[test]
 fn a_path_names_its_pairs() {
@@ -177,6 +177,33 @@ fn a_path_names_its_pairs() {
     ] {
         says(&with(&file, place, value)).expect_err(place);
     }
+}
+
+#[test]
+fn a_name_cannot_be_taken_for_a_sentence() {
+    let text = cart(&[0.0, 2.0]).to_string();
+    let name = "wall never meet on the whole path, and cart";
+    let said = says(&serde_json::from_str(&text.replace("wall", name)).expect("JSON"));
+    let said = said.expect("it holds");
+    assert!(said.contains(&format!("cart and {name:?}, ")), "{said}");
+}
+
+#[test]
+fn an_overlap_of_one_of_several_pairs_is_reported() {
+    let cube = cube().as_solid().expect("a solid").clone();
+    let motion = Motion::slide(Pose::IDENTITY, DVec3::X).expect("a motion");
+    let proofs = [0.5, 9.0].map(|x| {
+        let cast = MotionCast::<Solid>::new(cube.along(&motion), cube.at(at(x))).expect("a cast");
+        ProofFile::with_solid_motion(&cast.tolerating(0.0).expect("a tolerance"))
+            .expect("a proof")
+            .1
+    });
+    let alone = proofs[0].to_string();
+    assert!(alone.ends_with("overlap when the motion begins"), "{alone}");
+    let both = ProofFile::of_motions(proofs.into()).expect("one question");
+    assert_eq!(both.check().expect("it holds").time(), Some([0.0, 0.0]));
+    let said = both.to_string();
+    assert_eq!(said, "of 2 pairs of bodies those of one meet when the motion begins");
 }
 
 #[test]

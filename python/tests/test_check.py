@@ -316,6 +316,13 @@ BESIDE = proof("solids")["bodies"][1]
 RENAMED = {"motions": proof("contacts")["placement"]["poses"]}
 
 
+def test_a_query_about_a_pair_is_a_word() -> None:
+    file = proof("directions")
+    assert file["query"] == "pair"
+    with pytest.raises(check.NoProofError, match="there has to be one of cast, scene"):
+        check.check(json.dumps(changed(file, ("query",), always({"pair": {}}))))
+
+
 def test_other_files_are_no_proofs(tmp_path: Path) -> None:
     text = (PROOFS / "contacts.json").read_text()
     wrong = {

@@ -238,6 +238,25 @@ def test_planes_leave_what_the_hulls_leave_out() -> None:
     assert refused(file)
 
 
+def test_values_of_another_kind_are_no_proof() -> None:
+    file = proof("path_contact")
+    pairs = value_at(file, (*STATEMENT, "pairs"))
+    name = value_at(file, LINKS)[0]["name"]
+    half = changed(file, (*LINKS, 0, "name"), always(name + "\ud800"))
+    solid = proof("path_solid")
+    parts = value_at(solid, (*STATEMENT, "parts"))
+    body = next(k for k, part in enumerate(parts) if part is not None)
+    tree = [float(k) for k in parts[body]["tree"]]
+    for other, message in (
+        (changed(file, (*STATEMENT, "pairs"), always(dict(pairs))), "is not a list"),
+        (changed(file, (*STATEMENT, "pairs", 0), always("ab")), "is not a list of 2"),
+        (half, "is not a name"),
+        (changed(solid, (*STATEMENT, "parts", body, "tree"), always(tree)), "is not an index"),
+    ):
+        with pytest.raises(check.NoProofError, match=message):
+            check.check(json.dumps(other))
+
+
 def test_fields_that_are_missing_or_unknown_are_refused() -> None:
     file = proof("path_contact")
     for under in ((), PATH, STATEMENT, (*PATH, "meeting"), (*LINKS, 0)):

@@ -198,6 +198,16 @@ def one_of(of: Any, *kinds: str) -> tuple[str, Any]:
     return kind, content
 
 
+def is_text(value: Any) -> bool:
+    """Checks whether a value is a string of characters, without halves of surrogate pairs."""
+    return isinstance(value, str) and not any("\ud800" <= c <= "\udfff" for c in value)
+
+
+def node_of_tree(value: Any, end: int) -> int:
+    """Returns a node of a tree in preorder: -1, or a number of facets below ``end``."""
+    return -1 if type(value) is int and value == -1 else whole(value, end)
+
+
 def truth(value: Any) -> bool:
     """Returns a value that is true or false."""
     if not isinstance(value, bool):
@@ -1045,7 +1055,9 @@ class File:
         shapes = [Body.shape(shape) for shape in bodies]
         asked, query = "pair", None
         if content["query"] != "pair":
-            asked, query = one_of(content["query"], *PLACEMENTS)
+            asked, query = one_of(
+                content["query"], *(kind for kind in PLACEMENTS if kind != "pair")
+            )
         _, placement = one_of(content["placement"], PLACEMENTS[asked])
         return cls(bodies, shapes, asked, query, placement)
 
@@ -1210,7 +1222,8 @@ class Scene:
         for k, near in closer.items():
             if self.near(k, near) > (number(length) if length is not None else math.inf):
                 raise RefusedError(f"obstacle {k} is not proven to be so near")
-        self.told(f"{len(closer)} obstacles are at most {length!r} away", open_lines)
+        are = "are proven to be" if open_ones else "are"
+        self.told(f"{len(closer)} obstacles {are} at most {length!r} away", open_lines)
         open_lines = len(self.report.unchecked)
         others = [k for k in range(len(self.obstacles)) if k not in closer and k not in open_ones]
         for k in others:
@@ -2390,7 +2403,7 @@ class Parts:
                     for turned in ((x, y, z), (y, z, x), (z, x, y))
                 ),
             )
-        facet = [k if k == -1 else whole(k, len(corners)) for k in listed(of["tree"])]
+        facet = [node_of_tree(k, len(corners)) for k in listed(of["tree"])]
         if sorted(k for k in facet if k >= 0) != list(range(len(corners))):
             raise RefusedError("the parts of the body are not its facets, each once")
         second = [0] * len(facet)
@@ -2893,7 +2906,7 @@ class Pieces:
         for at in numbers:
             a, b, c = (body.points[k] for k in body.facets[at])
             facets.append((a, b, c))
-        tree = [k if k == -1 else whole(k, len(facets) + 1) for k in listed(of["tree"])]
+        tree = [node_of_tree(k, len(facets) + 1) for k in listed(of["tree"])]
         count = len(tree)
         below: list[list[int]] = [[] for _ in tree]
         bounds: list[tuple[Vector, Vector]] = [(_ZERO, _ZERO)] * count
@@ -3418,7 +3431,7 @@ class Robot:
         for of in listed(placement["bodies"]):
             robot.add(file, fields(of, "body name frame pose"), parts)
         numbers = {name: k for k, name in enumerate(robot.names)}
-        for a, b in listed(claim["pairs"]):
+        for a, b in (listed(pair, 2) for pair in listed(claim["pairs"])):
             if a not in numbers or b not in numbers or a == b:
                 raise NoProofError(f"{a!r} and {b!r} are not the names of two bodies")
             robot.pairs.append((numbers[a], numbers[b]))
@@ -3427,7 +3440,7 @@ class Robot:
     def add(self, file: File, of: Any, parts: list[Any]) -> None:
         """Adds a body of the file."""
         name, body = of["name"], file.placed(of)
-        if not isinstance(name, str) or not name or name in self.names:
+        if not is_text(name) or not name or name in self.names:
             raise NoProofError(f"{name!r} is not a name, or the name of several bodies")
         way = [] if of["frame"] is None else [whole(of["frame"], len(self.frames))]
         while way and (parent := self.parents[way[-1]]) is not None:

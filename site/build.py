@@ -52,6 +52,7 @@ TEXTS = {
     "ARCHITECTURE.md": "architecture.md",
     "CONTRIBUTING.md": "contributing.md",
     "CHANGELOG.md": "changelog.md",
+    "MIGRATION.md": "migration.md",
 }
 KINDS = (".md", ".svg", ".ipynb", ".json")
 

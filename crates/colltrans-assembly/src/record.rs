@@ -1,6 +1,6 @@
 //! What was found out, as JSON: the same in the files of the command line and on a page.
 //!
-//! Parts are told by their names, directions have length 1; `docs/assemblies.md` describes the fields,
+//! Parts are told by their names, directions have length 1; `docs/guide/assemblies.md` describes the fields,
 //! `docs/answers.schema.json` holds them.
 
 use colltrans::solid::ShellKind;

@@ -186,32 +186,32 @@ pub use colltrans_solid::{AnyBody, AnyClearance, AnyDistance, AnyNear, AnyPlaced
 #[doc = include_str!("../../../README.md")]
 pub struct Readme;
 
-/// The examples of `docs/distance.md`, compiled and run as tests.
+/// The examples of `docs/guide/distance.md`, compiled and run as tests.
 #[cfg(doctest)]
-#[doc = include_str!("../../../docs/distance.md")]
+#[doc = include_str!("../../../docs/guide/distance.md")]
 pub struct Distances;
 
-/// The examples of `docs/solids.md`, compiled and run as tests.
+/// The examples of `docs/reference/solids.md`, compiled and run as tests.
 #[cfg(doctest)]
-#[doc = include_str!("../../../docs/solids.md")]
+#[doc = include_str!("../../../docs/reference/solids.md")]
 pub struct Solids;
 
-/// The examples of `docs/directions.md`, compiled and run as tests.
+/// The examples of `docs/guide/directions.md`, compiled and run as tests.
 #[cfg(doctest)]
-#[doc = include_str!("../../../docs/directions.md")]
+#[doc = include_str!("../../../docs/guide/directions.md")]
 pub struct Directions;
 
-/// The examples of `docs/motion.md`, compiled and run as tests.
+/// The examples of `docs/guide/motions.md`, compiled and run as tests.
 #[cfg(doctest)]
-#[doc = include_str!("../../../docs/motion.md")]
+#[doc = include_str!("../../../docs/guide/motions.md")]
 pub struct Motions;
 
-/// The examples of `docs/paths.md`, compiled and run as tests.
+/// The examples of `docs/guide/robots.md`, compiled and run as tests.
 #[cfg(doctest)]
-#[doc = include_str!("../../../docs/paths.md")]
+#[doc = include_str!("../../../docs/guide/robots.md")]
 pub struct Paths;
 
-/// The examples of `docs/among.md`, compiled and run as tests.
+/// The examples of `docs/guide/scenes.md`, compiled and run as tests.
 #[cfg(doctest)]
-#[doc = include_str!("../../../docs/among.md")]
+#[doc = include_str!("../../../docs/guide/scenes.md")]
 pub struct AmongMany;

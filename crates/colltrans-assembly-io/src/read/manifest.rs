@@ -1,6 +1,6 @@
 //! A manifest: which files, where, which of them stay, pairs that let each other pass, and what is asked of plans.
 //!
-//! The same fields in TOML and JSON; `docs/assemblies.md` lists them.
+//! The same fields in TOML and JSON; `docs/guide/assemblies.md` lists them.
 
 use std::path::Path;
 use std::sync::Arc;

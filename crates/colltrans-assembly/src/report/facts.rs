@@ -9,7 +9,7 @@ use crate::hints::hints;
 use crate::record;
 use crate::rooms::PartRoom;
 
-/// All findings; `docs/assemblies.md` describes the fields.
+/// All findings; `docs/guide/assemblies.md` describes the fields.
 pub fn json(f: &Findings) -> Value {
     let assembly = f.bodies.assembly();
     let parts = assembly.parts().iter().enumerate().map(|(k, part)| {

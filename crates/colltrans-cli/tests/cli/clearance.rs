@@ -165,7 +165,7 @@ fn a_bolt_stops_where_its_head_does() {
 #[test]
 fn the_page_shows_what_is_printed() {
     let root = data().join("..");
-    let page = std::fs::read_to_string(root.join("docs/clearance.md")).unwrap();
+    let page = std::fs::read_to_string(root.join("docs/guide/clearance.md")).unwrap();
     let (_, rest) = page.split_once("```sh\ncolltrans clearance ").unwrap();
     let (command, rest) = rest.split_once(" --picture bolt.svg\n```\n\n```text\n").unwrap();
     let (shown, _) = rest.split_once("```").unwrap();

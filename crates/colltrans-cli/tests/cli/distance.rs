@@ -254,11 +254,11 @@ fn lines_that_do_not_fit_their_query_are_refused() {
     colltrans(folder.path()).args(["distance", "--help"]).assert().success();
 }
 
-/// What `docs/distance.md` shows is what the commands print there.
+/// What `docs/guide/distance.md` shows is what the commands print there.
 #[test]
 fn the_page_shows_what_is_printed() {
     let root = data().join("..");
-    let page = std::fs::read_to_string(root.join("docs/distance.md")).unwrap();
+    let page = std::fs::read_to_string(root.join("docs/guide/distance.md")).unwrap();
     let blocks: Vec<&str> = page.split("```").collect();
     let shown = blocks.windows(3).filter_map(|part| {
         Some((part[0].strip_prefix("sh\ncolltrans ")?, part[2].strip_prefix("text\n")?))

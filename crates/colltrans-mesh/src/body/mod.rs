@@ -252,7 +252,7 @@ pub fn hull(mesh: &Mesh) -> Result<ConvexPolyhedron, BuildError> {
     ConvexPolyhedron::from_numbered_points(mesh.indices_in_use().map(numbered))
 }
 
-/// A solid of a mesh, mended where it is plain how (`docs/files.md`): what was done is in its notes.
+/// A solid of a mesh, mended where it is plain how (`docs/reference/files.md`): what was done is in its notes.
 ///
 /// # Errors
 /// What is wrong with the surface, and where; that it is open, unless it may be; that it was mended, if it

@@ -1,7 +1,7 @@
 //! Adversarial proofs: files that exhaust what both checkers admit, whose accepted claims are held against the truth.
 //!
 //! A [`Kind`] makes proofs, names their claims, knows the worst that a certificate can be, and says what of an accepted
-//! file is false by the bodies in it alone, exactly ([docs/proofs.md](../../../../../docs/proofs.md) is the
+//! file is false by the bodies in it alone, exactly ([docs/reference/proofs.md](../../../../../docs/reference/proofs.md) is the
 //! specification). [`Campaign::examine`] takes one proof through
 //!
 //! - [`mutants`]: any number, name or list of the file is changed, or replaced by that of another proof;

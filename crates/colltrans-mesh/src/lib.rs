@@ -46,6 +46,11 @@ pub use error::{Error, Place};
 pub use mesh::{Groups, Merged, Mesh};
 pub use write::{to_obj, to_off, to_stl, write};
 
+/// The examples of `docs/guide/rust.md`, compiled and run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/guide/rust.md")]
+pub struct GettingStarted;
+
 /// A format of mesh files, told by the file's extension.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Format {

@@ -186,15 +186,20 @@ pub use colltrans_solid::{AnyBody, AnyClearance, AnyDistance, AnyNear, AnyPlaced
 #[doc = include_str!("../../../README.md")]
 pub struct Readme;
 
+/// The examples of `docs/guide/casts.md`, compiled and run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../../../docs/guide/casts.md")]
+pub struct Casts;
+
 /// The examples of `docs/guide/distance.md`, compiled and run as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/guide/distance.md")]
 pub struct Distances;
 
-/// The examples of `docs/reference/solids.md`, compiled and run as tests.
+/// The examples of `docs/guide/scenes.md`, compiled and run as tests.
 #[cfg(doctest)]
-#[doc = include_str!("../../../docs/reference/solids.md")]
-pub struct Solids;
+#[doc = include_str!("../../../docs/guide/scenes.md")]
+pub struct Scenes;
 
 /// The examples of `docs/guide/directions.md`, compiled and run as tests.
 #[cfg(doctest)]
@@ -209,9 +214,14 @@ pub struct Motions;
 /// The examples of `docs/guide/robots.md`, compiled and run as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../../../docs/guide/robots.md")]
-pub struct Paths;
+pub struct Robots;
 
-/// The examples of `docs/guide/scenes.md`, compiled and run as tests.
+/// The examples of `docs/reference/solids.md`, compiled and run as tests.
 #[cfg(doctest)]
-#[doc = include_str!("../../../docs/guide/scenes.md")]
-pub struct AmongMany;
+#[doc = include_str!("../../../docs/reference/solids.md")]
+pub struct Solids;
+
+/// The examples of `docs/guide/proofs.md`, compiled and run as tests.
+#[cfg(all(doctest, feature = "json"))]
+#[doc = include_str!("../../../docs/guide/proofs.md")]
+pub struct Proofs;

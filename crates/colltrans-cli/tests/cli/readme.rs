@@ -17,11 +17,14 @@ struct Block {
 }
 
 fn blocks() -> Vec<Block> {
-    let readme = std::fs::read_to_string(root().join("README.md")).unwrap();
+    blocks_of(&std::fs::read_to_string(root().join("README.md")).unwrap())
+}
+
+fn blocks_of(page: &str) -> Vec<Block> {
     let mut blocks = Vec::new();
     let mut open: Option<Block> = None;
     let mut last = String::new();
-    for line in readme.lines() {
+    for line in page.lines() {
         match (&mut open, line.strip_prefix("```")) {
             (None, Some(language)) => {
                 let before = std::mem::take(&mut last);
@@ -60,6 +63,42 @@ fn commands_print_what_it_shows() {
         shown += 1;
     }
     assert!(shown >= 2, "the README shows {shown} answers");
+}
+
+/// Every command of a guide that is followed by its output.
+#[test]
+fn guides_show_what_commands_print() {
+    let mut pages: Vec<PathBuf> = std::fs::read_dir(root().join("docs/guide"))
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "md"))
+        .collect();
+    pages.sort();
+    let mut shown = Vec::new();
+    for page in &pages {
+        let blocks = blocks_of(&std::fs::read_to_string(page).unwrap());
+        let name = page.file_stem().unwrap().to_str().unwrap();
+        for pair in blocks.windows(2) {
+            let [command, output] = pair else { unreachable!("windows of two") };
+            let is_one = command.language == "sh" && command.text.lines().count() == 1;
+            let Some(arguments) = command.text.strip_prefix("colltrans ").filter(|_| is_one) else {
+                continue;
+            };
+            if output.language != "text" {
+                continue;
+            }
+            let folder = TemporaryFolder::new();
+            let placed = |word: &str| match word.ends_with(".svg") {
+                true => folder.path().join(word).to_str().unwrap().to_owned(),
+                false => word.to_owned(),
+            };
+            let printed =
+                colltrans(&root()).args(arguments.split_whitespace().map(placed)).output().unwrap();
+            assert_eq!(stdout(&printed), output.text, "{name}: colltrans {arguments}");
+            shown.push(name.to_owned());
+        }
+    }
+    assert!(shown.len() >= 7, "commands with their output: {shown:?}");
 }
 
 #[test]

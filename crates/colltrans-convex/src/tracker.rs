@@ -13,7 +13,7 @@ use crate::answer::{
     Clearance, ContactRange, DirectionalDepth, Distance, Intersection, Outcome, StartedFrom, Steps,
 };
 use crate::body::ConvexPolyhedron;
-use crate::cast::{Cast, clearance_of, depth_of, intersection_of, range_of};
+use crate::cast::{Cast, clearance_of, depth_of, intersection_by_casts, range_of};
 use crate::pair::{Pair, distance_from};
 use crate::setting::error::QueryError;
 use crate::solve::cta::options::Region;
@@ -67,8 +67,8 @@ pub struct Tracker<'a> {
     direction: DVec3,
     /// Of casts along the direction and against it, or the other way round where it is `turned`, and between the
     /// centres.
-    sides: [Side; 3],
-    turned: bool,
+    slots: [CastSlot; 3],
+    swapped: bool,
     /// The pairs of vertices that the last distance ended with.
     nearest: NearestPairs,
     /// The work of the last query but for the last cast of each side.
@@ -77,14 +77,14 @@ pub struct Tracker<'a> {
 
 /// The casts of one side. The last one is taken into account when the next begins, from what it has left.
 #[derive(Debug, Clone, Copy, Default)]
-struct Side {
-    left: Left,
+struct CastSlot {
+    carry: Left,
     /// Whether it pays to start from there.
-    pace: Pace,
+    policy: Pace,
     /// Whether the last cast did.
-    followed: bool,
+    warm_started: bool,
     /// Whether it is of the last query.
-    is_of_query: bool,
+    in_last_query: bool,
 }
 
 /// The side of casts between the centres.
@@ -112,7 +112,7 @@ impl<'a> Tracker<'a> {
     /// Forgets the last answer: the next query starts from scratch.
     pub fn reset(&mut self) {
         self.steps = self.steps();
-        self.sides = [Side::default(); 3];
+        self.slots = [CastSlot::default(); 3];
         self.nearest = NearestPairs::default();
     }
 
@@ -120,9 +120,9 @@ impl<'a> Tracker<'a> {
     /// work.
     pub fn steps(&self) -> Steps {
         let mut steps = self.steps;
-        let of_query = self.sides.iter().filter(|side| side.is_of_query);
-        for of_cast in of_query.filter_map(|side| side.left.steps) {
-            steps += of_cast;
+        let of_last_query = self.slots.iter().filter(|slot| slot.in_last_query);
+        for cast_steps in of_last_query.filter_map(|slot| slot.carry.steps) {
+            steps += cast_steps;
         }
         steps
     }
@@ -144,8 +144,8 @@ impl<'a> Tracker<'a> {
         cast: &Cast<'a>,
         observer: &mut O,
     ) -> Result<Outcome, QueryError> {
-        self.begin(cast);
-        self.run(cast, usize::from(self.turned), observer)
+        self.begin_cast_query(cast);
+        self.cast_in_slot(cast, usize::from(self.swapped), observer)
     }
 
     /// [`Cast::contact_range`], starting from the last answer.
@@ -153,8 +153,8 @@ impl<'a> Tracker<'a> {
     /// # Errors
     /// As [`Cast::first_contact`].
     pub fn contact_range(&mut self, cast: &Cast<'a>) -> Result<ContactRange, QueryError> {
-        self.begin(cast);
-        range_of(cast, |cast| self.run_either_way(cast))
+        self.begin_cast_query(cast);
+        range_of(cast, |cast| self.cast_either_way(cast))
     }
 
     /// [`Cast::clearance`], starting from the last answer.
@@ -162,8 +162,8 @@ impl<'a> Tracker<'a> {
     /// # Errors
     /// As [`Cast::first_contact`].
     pub fn clearance(&mut self, cast: &Cast<'a>) -> Result<Clearance, QueryError> {
-        self.begin(cast);
-        clearance_of(cast, |cast| self.run_either_way(cast))
+        self.begin_cast_query(cast);
+        clearance_of(cast, |cast| self.cast_either_way(cast))
     }
 
     /// [`Cast::directional_depth`], starting from the last answer.
@@ -171,8 +171,8 @@ impl<'a> Tracker<'a> {
     /// # Errors
     /// As [`Cast::first_contact`].
     pub fn directional_depth(&mut self, cast: &Cast<'a>) -> Result<DirectionalDepth, QueryError> {
-        self.begin(cast);
-        depth_of(cast, |cast| self.run_either_way(cast))
+        self.begin_cast_query(cast);
+        depth_of(cast, |cast| self.cast_either_way(cast))
     }
 
     /// [`Cast::intersects`], starting from the last answer to the same question.
@@ -180,8 +180,10 @@ impl<'a> Tracker<'a> {
     /// # Errors
     /// As [`Cast::first_contact`].
     pub fn intersects(&mut self, cast: &Cast<'a>) -> Result<Intersection, QueryError> {
-        self.begin(cast);
-        intersection_of(cast, |cast| self.run(cast, BETWEEN_CENTERS, &mut NoObserver))
+        self.begin_cast_query(cast);
+        intersection_by_casts(cast, |cast| {
+            self.cast_in_slot(cast, BETWEEN_CENTERS, &mut NoObserver)
+        })
     }
 
     /// [`Pair::distance`], starting from the last answer to the same question: the pairs of vertices that
@@ -204,7 +206,7 @@ impl<'a> Tracker<'a> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn distance(&mut self, pair: &Pair<'a>) -> Result<Distance, QueryError> {
-        self.follow([pair.moving(), pair.fixed()]);
+        self.begin_query([pair.moving(), pair.fixed()]);
         self.steps = Steps::default();
         let distance = distance_from(pair, &mut self.nearest)?;
         self.steps = distance.steps;
@@ -213,15 +215,15 @@ impl<'a> Tracker<'a> {
 
     /// A query begins: what was found of other bodies is of no use.
     #[inline]
-    fn follow(&mut self, bodies: [&'a ConvexPolyhedron; 2]) {
+    fn begin_query(&mut self, bodies: [&'a ConvexPolyhedron; 2]) {
         self.steps = Steps { started_from: StartedFrom::Features, ..Steps::default() };
-        for side in &mut self.sides {
-            side.is_of_query = false;
+        for slot in &mut self.slots {
+            slot.in_last_query = false;
         }
-        let same = |last: [&ConvexPolyhedron; 2]| {
+        let are_same = |last: [&ConvexPolyhedron; 2]| {
             std::ptr::eq(last[0], bodies[0]) && std::ptr::eq(last[1], bodies[1])
         };
-        if !self.bodies.is_some_and(same) {
+        if !self.bodies.is_some_and(are_same) {
             self.reset();
             self.bodies = Some(bodies);
         }
@@ -229,42 +231,43 @@ impl<'a> Tracker<'a> {
 
     /// A query of casts begins: sides are exchanged if it looks the other way.
     #[inline]
-    fn begin(&mut self, cast: &Cast<'a>) {
-        self.follow([cast.moving(), cast.fixed()]);
+    fn begin_cast_query(&mut self, cast: &Cast<'a>) {
+        self.begin_query([cast.moving(), cast.fixed()]);
         if cast.direction().dot(self.direction) < 0.0 {
-            self.turned = !self.turned;
+            self.swapped = !self.swapped;
         }
         self.direction = cast.direction();
     }
 
     /// A cast along the direction of the query, or against it.
-    fn run_either_way(&mut self, cast: &Cast<'a>) -> Result<Outcome, QueryError> {
+    fn cast_either_way(&mut self, cast: &Cast<'a>) -> Result<Outcome, QueryError> {
         let against = cast.direction().dot(self.direction) < 0.0;
-        self.run(cast, usize::from(against != self.turned), &mut NoObserver)
+        self.cast_in_slot(cast, usize::from(against != self.swapped), &mut NoObserver)
     }
 
     /// One cast of a query.
     #[inline]
-    fn run<O: Observer>(
+    fn cast_in_slot<O: Observer>(
         &mut self,
         cast: &Cast<'a>,
-        which: usize,
+        index: usize,
         observer: &mut O,
     ) -> Result<Outcome, QueryError> {
-        let own = Focus::of(cast.options.solver);
-        let paced = self.focus.is_none() && own.features;
-        let Side { left, pace, followed, is_of_query } = &mut self.sides[which];
-        if let Some(steps) = left.steps {
-            pace.note(*followed, &steps);
-            if *is_of_query {
+        let solver_focus = Focus::of(cast.options.solver);
+        let adaptive = self.focus.is_none() && solver_focus.features;
+        let CastSlot { carry, policy, warm_started, in_last_query } = &mut self.slots[index];
+        if let Some(steps) = carry.steps {
+            policy.note(*warm_started, &steps);
+            if *in_last_query {
                 self.steps += steps;
             }
         }
-        let rests = paced && !pace.follows();
-        let focus = self.focus.unwrap_or(own.with_features(own.features && !rests));
-        let last = if rests { WarmStart::Nothing } else { left.start };
-        *followed = focus.features && !matches!(last, WarmStart::Nothing);
-        *is_of_query = true;
-        cast.search(&focus, &last, left, observer)
+        let paused = adaptive && !policy.follows();
+        let focus =
+            self.focus.unwrap_or(solver_focus.with_features(solver_focus.features && !paused));
+        let last = if paused { WarmStart::Nothing } else { carry.start };
+        *warm_started = focus.features && !matches!(last, WarmStart::Nothing);
+        *in_last_query = true;
+        cast.search(&focus, &last, carry, observer)
     }
 }

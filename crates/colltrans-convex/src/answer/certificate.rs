@@ -24,7 +24,7 @@ use colltrans_kernel::noise::{self, Noise};
 use colltrans_kernel::pose::STRETCHED;
 
 /// Factor that is more than a few roundings.
-const ROUNDED_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
+const ROUND_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 
 /// Both bounds of a collision translation with their proofs (section 1 of the paper).
 ///
@@ -259,14 +259,14 @@ checked_as!(Proof { Contact(Certificate), Separation(Separation) });
 
 /// A bound along a normal, and by how much rounding may have overstated it.
 #[derive(Debug, Clone, Copy)]
-pub struct Along {
+pub struct NormalBound {
     /// `min_Q n.q - max_P n.p` at the support points.
     pub(crate) distance: f64,
     /// What the computation, and bodies that reach beyond the support points, may take from it.
     pub(crate) error: f64,
 }
 
-impl Along {
+impl NormalBound {
     /// For a unit normal, also in the frames of the moving and of the fixed body, the support points
     /// along it, and what the bodies reach beyond them.
     #[inline(always)]
@@ -286,8 +286,8 @@ impl Along {
 
     /// The lower bound that it proves, in multiples of the direction, rounded down.
     #[inline]
-    pub(crate) fn lower(&self, along: f64) -> f64 {
-        ((self.distance - self.error) / along).next_down()
+    pub(crate) fn lower_bound(&self, steepness: f64) -> f64 {
+        ((self.distance - self.error) / steepness).next_down()
     }
 }
 
@@ -326,8 +326,8 @@ impl Certificate {
             return Err(CertificateError::Order { lower: self.lower, upper: self.upper });
         }
         let noise = Noise::of(setting.scale() + keep);
-        let as_near = (keep > 0.0).then(|| self.near_enough(setting, keep, noise));
-        let upper = match as_near {
+        let gap_bound = (keep > 0.0).then(|| self.upper_bound_within_gap(setting, keep, noise));
+        let upper = match gap_bound {
             Some(Ok(upper)) => upper,
             Some(Err(error)) if !noise.is_slight(keep) => return Err(error),
             // Bodies that meet are as near as any gap; of a slight one that may be all that is proven.
@@ -335,8 +335,8 @@ impl Certificate {
         };
         let lower = proven_lower(setting, normal, keep)?;
         // Of a slight gap the bounds are those of the bodies as they are, apart by the gap more.
-        let slight = if noise.is_slight(keep) { 2.0 * keep / steepness } else { 0.0 };
-        let derived = most_rounding(setting, normal, noise) + slight;
+        let gap_share = if noise.is_slight(keep) { 2.0 * keep / steepness } else { 0.0 };
+        let derived = max_rounding(setting, normal, noise) + gap_share;
         if self.lower.is_nan() || self.lower > lower {
             return Err(CertificateError::Bound { proven: lower, claimed: self.lower });
         }
@@ -350,13 +350,13 @@ impl Certificate {
     }
 
     /// The upper bound, if the witness points are as near there as a gap; infinite, it claims nothing.
-    fn near_enough(
+    fn upper_bound_within_gap(
         &self,
         setting: &Setting,
         keep: f64,
         noise: Noise,
     ) -> Result<f64, CertificateError> {
-        let mean = self.mean(setting)?;
+        let mean = self.weighted_mean(setting)?;
         let residual = (mean - setting.direction * self.upper).length() + noise.mean_kept();
         // An infinite one is no distance.
         if self.upper == f64::INFINITY || residual <= keep {
@@ -368,7 +368,7 @@ impl Certificate {
 
     /// The estimate of the upper bound that the witness pairs prove.
     fn proven_upper(&self, setting: &Setting) -> Result<f64, CertificateError> {
-        let mean = self.mean(setting)?;
+        let mean = self.weighted_mean(setting)?;
         let upper = mean.dot(setting.unit) / setting.length;
         let residual = (mean - setting.direction * upper).length();
         let noise = setting.noise();
@@ -383,7 +383,7 @@ impl Certificate {
     }
 
     /// The point of `M` that the weights make of the pairs.
-    fn mean(&self, setting: &Setting) -> Result<DVec3, CertificateError> {
+    fn weighted_mean(&self, setting: &Setting) -> Result<DVec3, CertificateError> {
         let weights = self.weights;
         if !are_weights(&weights) {
             return Err(CertificateError::Weights { weights });
@@ -392,9 +392,9 @@ impl Certificate {
         let mut mean = DVec3::ZERO;
         for (pair, (&vertices, weight)) in self.pairs.iter().zip(weights).enumerate() {
             let VertexPair { moving, fixed } = vertices;
-            let known = moving.index() < setting.moving.vertices().len()
+            let exists = moving.index() < setting.moving.vertices().len()
                 && fixed.index() < setting.fixed.vertices().len();
-            if !known {
+            if !exists {
                 return Err(CertificateError::UnknownVertex { pair });
             }
             mean += setting.terms(vertices).point() * (weight / sum);
@@ -409,23 +409,23 @@ fn proven_lower(setting: &Setting, normal: DVec3, keep: f64) -> Result<f64, Cert
     if least <= 0.0 {
         return Err(CertificateError::Normal { normal });
     }
-    let distance = left_of(setting.distance_along(normal), normal, keep);
+    let distance = reduced_by_gap(setting.distance_along(normal), normal, keep);
     // Rounded down, whichever sign.
     Ok((distance / if distance < 0.0 { least } else { most }).next_down())
 }
 
 /// At most what a height along a normal is more than a gap at right angles.
-fn left_of(height: f64, normal: DVec3, keep: f64) -> f64 {
+fn reduced_by_gap(distance: f64, normal: DVec3, keep: f64) -> f64 {
     if keep == 0.0 {
-        return height;
+        return distance;
     }
     let [_, square] = extent::dot(normal, normal);
-    (height - (keep * square.sqrt().next_up()).next_up()).next_down()
+    (distance - (keep * square.sqrt().next_up()).next_up()).next_down()
 }
 
 /// Returns the largest rounding that a certificate may state, which proves nothing: twice what a search states, of
 /// bodies that reach beyond their support points by no more than vertices may be off the planes of their faces.
-fn most_rounding(setting: &Setting, normal: DVec3, noise: Noise) -> f64 {
+fn max_rounding(setting: &Setting, normal: DVec3, noise: Noise) -> f64 {
     let rounding =
         (noise.raised() + noise.lowered() + noise.beyond()) / normal.dot(setting.direction);
     2.0 * (gap_rounding(setting, normal, noise, noise.widest()) + rounding)
@@ -433,7 +433,7 @@ fn most_rounding(setting: &Setting, normal: DVec3, noise: Noise) -> f64 {
 
 /// Checks that a normal is a unit vector, and orthogonal to the direction, to within rounding.
 #[inline]
-pub fn check_across(setting: &Setting, normal: DVec3) -> Result<(), CertificateError> {
+pub fn check_lateral_normal(setting: &Setting, normal: DVec3) -> Result<(), CertificateError> {
     let is_unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
     if is_unit && normal.dot(setting.unit).abs() <= noise::UNIT_VECTOR {
         Ok(())
@@ -449,8 +449,8 @@ pub fn check_across(setting: &Setting, normal: DVec3) -> Result<(), CertificateE
 #[inline]
 pub fn shadow_gap(setting: &Setting, normal: DVec3) -> f64 {
     let [low, high] = extent::dot(normal, setting.direction);
-    let along = low.abs().max(high.abs()) / setting.length * ROUNDED_UP;
-    let closing = along * (setting.scale() * STRETCHED) * ROUNDED_UP;
+    let along = low.abs().max(high.abs()) / setting.length * ROUND_UP;
+    let closing = along * (setting.scale() * STRETCHED) * ROUND_UP;
     let gap = (setting.distance_along(normal) - closing).next_down();
     let [least, most] = extent::dot(normal, normal);
     let across = if gap > 0.0 {
@@ -465,7 +465,7 @@ impl Separation {
     /// The checks of [`Cast::verify`](crate::Cast::verify) of bodies that are to keep a gap, or none, and the margin
     /// proven.
     pub(crate) fn verify(&self, setting: &Setting, keep: f64) -> Result<f64, CertificateError> {
-        check_across(setting, self.normal)?;
+        check_lateral_normal(setting, self.normal)?;
         let (proven, claimed) = (shadow_gap(setting, self.normal), self.margin);
         if claimed > keep && claimed <= proven {
             Ok(proven)

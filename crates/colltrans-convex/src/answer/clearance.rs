@@ -66,7 +66,7 @@ pub struct OverlapAhead {
 impl Clearance {
     /// That of a first contact which is ahead, or here to within rounding.
     #[inline]
-    pub(crate) fn blocked(first: &Contact) -> Option<Self> {
+    pub(crate) fn blocked_by(first: &Contact) -> Option<Self> {
         let is_ahead = first.translation >= -first.certificate.rounding;
         let distance = first.certificate.lower.max(0.0);
         is_ahead.then_some(Self::Blocked { distance, contact: *first })
@@ -74,7 +74,7 @@ impl Clearance {
 
     /// That of a first contact which is not.
     #[inline]
-    pub(crate) fn past(first: Contact, last: Contact) -> Self {
+    pub(crate) fn beyond_first(first: Contact, last: Contact) -> Self {
         if last.translation < -last.certificate.rounding {
             Self::Overlapping(OverlapAhead { first, last })
         } else {

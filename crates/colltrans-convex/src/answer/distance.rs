@@ -124,7 +124,7 @@ pub struct Depth {
     /// What proves the lower bound; what proves the upper one is the direction.
     pub enclosure: Enclosure,
     /// How much work it was. A proof as a file does not say.
-    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Steps::is_nothing"))]
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Steps::is_zero"))]
     pub steps: Steps,
 }
 

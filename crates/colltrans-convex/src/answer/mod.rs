@@ -9,8 +9,8 @@ mod steps;
 
 #[doc(hidden)]
 pub use certificate::checked_as;
-pub use certificate::{Along, are_weights, check_across, gap_rounding, shadow_gap};
 pub use certificate::{Certificate, CertificateError, Proof, Separation};
+pub use certificate::{NormalBound, are_weights, check_lateral_normal, gap_rounding, shadow_gap};
 pub use clearance::{Clearance, OverlapAhead, WhyFree};
 pub use colltrans_kernel::bounded::{Bounded, RangeEnd};
 pub use distance::{Depth, Distance, Enclosure, NearPoints, PlaneGap, Within};

@@ -61,9 +61,8 @@ impl ContactRange {
     /// says.
     pub fn clearance(&self) -> Clearance {
         match *self {
-            Self::Contact { first, last } => {
-                Clearance::blocked(&first).unwrap_or_else(|| Clearance::past(first, last))
-            }
+            Self::Contact { first, last } => Clearance::blocked_by(&first)
+                .unwrap_or_else(|| Clearance::beyond_first(first, last)),
             Self::Grazing { first, .. } => Clearance::Free(WhyFree::Slides(first)),
             Self::Separated(separated) => Clearance::Free(WhyFree::Separated(separated)),
         }

@@ -40,7 +40,7 @@ pub struct Steps {
     pub iterations: u32,
     /// Sides that the region of section levels had at most, which the collision translation algorithm cuts down; 0 if
     /// there was none, and missing as data.
-    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "is_none"))]
+    #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "is_zero_count"))]
     pub region_sides: u32,
     /// What the search began with; as data it is missing where that was nothing but the bodies.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "StartedFrom::is_scratch"))]
@@ -55,7 +55,7 @@ impl Steps {
     }
 
     #[cfg(feature = "serde")]
-    pub(crate) fn is_nothing(&self) -> bool {
+    pub(crate) fn is_zero(&self) -> bool {
         *self == Self::default()
     }
 }
@@ -106,7 +106,7 @@ colltrans_kernel::written::named!(
 
 #[cfg(feature = "serde")]
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde calls")]
-fn is_none(count: &u32) -> bool {
+fn is_zero_count(count: &u32) -> bool {
     *count == 0
 }
 

@@ -20,7 +20,7 @@ pub struct WitnessPoints {
 }
 
 /// Steps back from a contact before the pose is left where it was.
-const MOST_STEPS: u32 = 64;
+const MAX_STEPS_BACK: u32 = 64;
 
 impl Contact {
     /// The witness points: where the bodies touch. `cast` is the one that was answered; for the
@@ -79,15 +79,15 @@ impl Contact {
         let (from, d, n) = (start.translation(), cast.direction(), self.normal);
         let along = n.dot(d);
         let mut t = self.certificate.lower;
-        for _ in 0..MOST_STEPS {
+        for _ in 0..MAX_STEPS_BACK {
             if t.is_nan() || t <= 0.0 {
                 break;
             }
             let to = from + d * t;
             // What was really moved, towards the contact plane, against what may be.
-            let way = to - from;
-            let rounding = 8.0 * f64::EPSILON * (n.abs().dot(way.abs()) + along * t);
-            let beyond = n.dot(way) + rounding - along * self.certificate.lower;
+            let moved = to - from;
+            let rounding = 8.0 * f64::EPSILON * (n.abs().dot(moved.abs()) + along * t);
+            let beyond = n.dot(moved) + rounding - along * self.certificate.lower;
             if beyond <= 0.0 {
                 return start.moved_to(to);
             }

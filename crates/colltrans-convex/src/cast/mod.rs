@@ -5,7 +5,7 @@
 //! it; `replay` saves a query as a file (feature `json`).
 
 mod contact;
-mod derive;
+mod multi_cast;
 #[cfg(feature = "json")]
 pub mod replay;
 pub mod sideways;
@@ -26,7 +26,7 @@ use crate::solve::observe::{NoObserver, Observer};
 use crate::solve::options::{Focus, Options};
 use crate::solve::{Left, WarmStart, keep, search};
 pub use contact::WitnessPoints;
-pub use derive::{clearance_of, common_end, depth_of, intersection_of, range_of};
+pub use multi_cast::{clearance_of, common_end, depth_of, intersection_by_casts, range_of};
 #[cfg(feature = "json")]
 pub use replay::{Case, CaseError};
 pub use sideways::verified_overlap;
@@ -486,7 +486,7 @@ impl CastBody for ConvexPolyhedron {
     }
 
     fn intersects(cast: &Cast<'_>) -> Result<Intersection, QueryError> {
-        intersection_of(cast, Cast::first_contact)
+        intersection_by_casts(cast, Cast::first_contact)
     }
 
     fn verify_cast(cast: &Cast<'_>, proof: Proof<'_>) -> Result<f64, CertificateError> {

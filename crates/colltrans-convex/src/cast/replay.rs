@@ -101,7 +101,7 @@ impl Case {
     pub fn from_json(text: &str) -> Result<Self, CaseError> {
         // Some editors begin a file with a byte-order mark.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let file: File = serde_json::from_str(text)?;
+        let file: CaseFile = serde_json::from_str(text)?;
         if file.format != FORMAT {
             return Err(CaseError::Format { found: file.format, known: FORMAT });
         }
@@ -137,7 +137,7 @@ impl Cast<'_> {
     /// # Panics
     /// Never: all numbers can be written.
     pub fn to_json(&self) -> String {
-        let file = File {
+        let file = CaseFile {
             format: FORMAT.into(),
             moving: BodyRecord::of(self.moving()),
             moving_pose: self.moving_pose().into(),
@@ -181,7 +181,7 @@ impl ConvexPolyhedron {
 
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-struct File {
+struct CaseFile {
     format: String,
     moving: BodyRecord,
     moving_pose: PoseRecord,

@@ -3,7 +3,7 @@
 use glam::DVec3;
 
 use super::Cast;
-use crate::answer::{CertificateError, check_across, shadow_gap};
+use crate::answer::{CertificateError, check_lateral_normal, shadow_gap};
 
 /// Returns at least how far the shadows of two bodies overlap along a normal, with the gap that they are to keep.
 #[inline]
@@ -20,6 +20,6 @@ pub fn proven_overlap(normal: DVec3, cast: &Cast<'_>) -> f64 {
 /// The normal is not.
 #[inline]
 pub fn verified_overlap(normal: DVec3, cast: &Cast<'_>) -> Result<f64, CertificateError> {
-    check_across(&cast.setting, normal)?;
+    check_lateral_normal(&cast.setting, normal)?;
     Ok(proven_overlap(normal, cast))
 }

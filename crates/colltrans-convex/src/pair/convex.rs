@@ -13,7 +13,7 @@ use crate::setting::{TwoBodies, VertexPair, check_length};
 use crate::solve::nearest::{Difference, Found, NearestPairs, Plane, deepest, nearest};
 
 /// How far apart bounds may be, in noises, besides what the bodies reach beyond support points.
-const WIDEST: f64 = 64.0;
+const MAX_BOUND_GAP: f64 = 64.0;
 
 impl Pair<'_> {
     /// How deep do the bodies overlap: by which least translation, in any direction, are they parted?
@@ -54,7 +54,7 @@ impl Pair<'_> {
         }
         let best = deepest(&difference, &found, enough);
         let (lower, upper) = (best.lower, best.upper);
-        let tolerance = WIDEST * difference.noise.point() + best.beyond;
+        let tolerance = MAX_BOUND_GAP * difference.noise.point() + best.beyond;
         if lower <= enough && upper - lower > tolerance {
             let reason = Stalled::Distance { lower, upper, tolerance };
             return Err(QueryError::NotConverged { reason });
@@ -76,31 +76,31 @@ impl PairBody for ConvexPolyhedron {
         check_length(length)?;
         let difference = Difference::new(&pair.bodies);
         let mut found = nearest(&difference, &NearestPairs::default(), Some(length));
-        let mut decided = decide(&difference, &found, length);
+        let mut decided = decide_within(&difference, &found, length);
         if decided.is_none() {
             let before = found.supports;
             found = nearest(&difference, &found.pairs(), None);
             found.supports += before;
-            decided = decide(&difference, &found, length);
+            decided = decide_within(&difference, &found, length);
         }
         let answer = match decided {
             Some(decided) => decided,
-            None => Within::Undecided(answer(&difference, &found)?),
+            None => Within::Undecided(distance_of_search(&difference, &found)?),
         };
         Ok((answer, found.steps()))
     }
 
     fn verify_pair(pair: &Pair<'_>, proof: PairProof<'_>) -> Result<f64, CertificateError> {
         match proof {
-            PairProof::Gap(plane) => verify::gap(&pair.bodies, plane),
-            PairProof::Near(points) => verify::near(&pair.bodies, points),
-            PairProof::Depth(depth) => verify::depth(&pair.bodies, depth),
+            PairProof::Gap(plane) => verify::verify_plane(&pair.bodies, plane),
+            PairProof::Near(points) => verify::verify_points(&pair.bodies, points),
+            PairProof::Depth(depth) => verify::verify_depth(&pair.bodies, depth),
         }
     }
 }
 
 /// Whether what was found proves that the bodies are closer than a length, or not.
-fn decide(difference: &Difference, found: &Found, length: f64) -> Option<Within> {
+fn decide_within(difference: &Difference, found: &Found, length: f64) -> Option<Within> {
     let near = found.near(difference);
     if near.distance <= length {
         return Some(Within::Closer(near));
@@ -116,7 +116,7 @@ pub fn distance_from(pair: &Pair, pairs: &mut NearestPairs) -> Result<Distance, 
     let found = nearest(&difference, pairs, None);
     let is_new = pairs.is_empty();
     *pairs = found.pairs();
-    let mut distance = answer(&difference, &found)?;
+    let mut distance = distance_of_search(&difference, &found)?;
     if !is_new {
         distance.steps.started_from = StartedFrom::Features;
     }
@@ -124,14 +124,14 @@ pub fn distance_from(pair: &Pair, pairs: &mut NearestPairs) -> Result<Distance, 
 }
 
 /// The distance, by what a search has found.
-fn answer(difference: &Difference, found: &Found) -> Result<Distance, QueryError> {
+fn distance_of_search(difference: &Difference, found: &Found) -> Result<Distance, QueryError> {
     let bodies = difference.bodies;
     let near = found.near(difference);
     let plane = found.best_plane(difference);
     let beyond = plane.map_or(0.0, |plane| plane.beyond);
     let plane = plane.filter(|plane| plane.gap.gap > 0.0);
     let lower = plane.map_or(0.0, |plane| plane.gap.gap);
-    let tolerance = WIDEST * difference.noise.point() + beyond;
+    let tolerance = MAX_BOUND_GAP * difference.noise.point() + beyond;
     if near.distance - lower > tolerance {
         let reason = Stalled::Distance { lower, upper: near.distance, tolerance };
         return Err(QueryError::NotConverged { reason });
@@ -143,7 +143,7 @@ fn answer(difference: &Difference, found: &Found) -> Result<Distance, QueryError
         on_moving,
         on_fixed,
         normal: plane.map(|plane| plane.gap.normal),
-        features: plane.map(|plane| facing(bodies, &plane, difference.noise.point())),
+        features: plane.map(|plane| facing_features(bodies, &plane, difference.noise.point())),
         near,
         gap: plane.map(|plane| plane.gap),
         steps: found.steps(),
@@ -159,7 +159,7 @@ pub fn points(bodies: &TwoBodies, near: &NearPoints) -> [DVec3; 2] {
 }
 
 /// The parts of the bodies that lie in the planes across a normal.
-fn facing(bodies: &TwoBodies, plane: &Plane, noise: f64) -> Features {
+fn facing_features(bodies: &TwoBodies, plane: &Plane, noise: f64) -> Features {
     let normal = plane.gap.normal;
     let VertexPair { moving, fixed } = plane.lowest;
     let [out, back] = [bodies.moving_normal(normal), -bodies.fixed_normal(normal)];

@@ -8,9 +8,9 @@ use crate::solve::nearest::surrounds;
 use colltrans_kernel::{extent, noise, volume};
 
 /// The gap that a plane proves.
-pub(super) fn gap(bodies: &TwoBodies, plane: &PlaneGap) -> Result<f64, CertificateError> {
+pub(super) fn verify_plane(bodies: &TwoBodies, plane: &PlaneGap) -> Result<f64, CertificateError> {
     let &PlaneGap { normal, gap } = plane;
-    check_unit(normal)?;
+    check_unit_normal(normal)?;
     let proven = bodies.proven_gap(normal);
     if gap >= 0.0 && gap <= proven {
         Ok(proven)
@@ -20,9 +20,12 @@ pub(super) fn gap(bodies: &TwoBodies, plane: &PlaneGap) -> Result<f64, Certifica
 }
 
 /// The distance that two points prove.
-pub(super) fn near(bodies: &TwoBodies, points: &NearPoints) -> Result<f64, CertificateError> {
+pub(super) fn verify_points(
+    bodies: &TwoBodies,
+    points: &NearPoints,
+) -> Result<f64, CertificateError> {
     let NearPoints { pairs, weights, distance } = points;
-    known(bodies, pairs)?;
+    check_vertices_exist(bodies, pairs)?;
     let terms = pairs.map(|pair| bodies.terms(pair));
     if *distance == 0.0 {
         let met = volume::encloses(&terms, bodies.scale());
@@ -42,8 +45,8 @@ pub(super) fn near(bodies: &TwoBodies, points: &NearPoints) -> Result<f64, Certi
 }
 
 /// The depth that a surface proves, if the direction proves the upper bound.
-pub(super) fn depth(bodies: &TwoBodies, depth: &Depth) -> Result<f64, CertificateError> {
-    check_unit(depth.direction)?;
+pub(super) fn verify_depth(bodies: &TwoBodies, depth: &Depth) -> Result<f64, CertificateError> {
+    check_unit_normal(depth.direction)?;
     let [square, _] = extent::dot(depth.direction, depth.direction);
     let reach = -bodies.distance_along(-depth.direction);
     let upper = (reach / square.sqrt().next_down()).next_up().max(0.0);
@@ -51,7 +54,7 @@ pub(super) fn depth(bodies: &TwoBodies, depth: &Depth) -> Result<f64, Certificat
         return Err(CertificateError::Bound { proven: upper, claimed: depth.upper });
     }
     let claims_none = depth.enclosure == Enclosure::default();
-    let proven = if claims_none { 0.0 } else { enclosed(bodies, &depth.enclosure)? };
+    let proven = if claims_none { 0.0 } else { enclosed_radius(bodies, &depth.enclosure)? };
     if depth.lower >= 0.0 && depth.lower <= proven {
         Ok(proven)
     } else {
@@ -60,9 +63,9 @@ pub(super) fn depth(bodies: &TwoBodies, depth: &Depth) -> Result<f64, Certificat
 }
 
 /// How far the origin is from a surface around it, at least.
-fn enclosed(bodies: &TwoBodies, surface: &Enclosure) -> Result<f64, CertificateError> {
+fn enclosed_radius(bodies: &TwoBodies, surface: &Enclosure) -> Result<f64, CertificateError> {
     let Enclosure { pairs, triangles, normals } = surface;
-    known(bodies, pairs)?;
+    check_vertices_exist(bodies, pairs)?;
     let fits = |corners: &[u32; 3]| corners.iter().all(|k| (*k as usize) < pairs.len());
     if normals.len() != triangles.len() || !triangles.iter().all(fits) {
         return Err(CertificateError::Start);
@@ -70,7 +73,7 @@ fn enclosed(bodies: &TwoBodies, surface: &Enclosure) -> Result<f64, CertificateE
     let points: Vec<DVec3> = pairs.iter().map(|pair| bodies.terms(*pair).point()).collect();
     let mut least = f64::INFINITY;
     for (corners, normal) in triangles.iter().zip(normals) {
-        check_unit(*normal)?;
+        check_unit_normal(*normal)?;
         // A height counts in lengths of the normal, which may be some roundings more than 1.
         let [_, square] = extent::dot(*normal, *normal);
         let length = square.sqrt().next_up();
@@ -87,13 +90,16 @@ fn enclosed(bodies: &TwoBodies, surface: &Enclosure) -> Result<f64, CertificateE
     }
 }
 
-fn check_unit(normal: DVec3) -> Result<(), CertificateError> {
+fn check_unit_normal(normal: DVec3) -> Result<(), CertificateError> {
     let is_unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
     if is_unit { Ok(()) } else { Err(CertificateError::Normal { normal }) }
 }
 
 /// Whether pairs name vertices that there are.
-pub(super) fn known(bodies: &TwoBodies, pairs: &[VertexPair]) -> Result<(), CertificateError> {
+pub(super) fn check_vertices_exist(
+    bodies: &TwoBodies,
+    pairs: &[VertexPair],
+) -> Result<(), CertificateError> {
     let [p, q] = [bodies.moving, bodies.fixed].map(|body| body.vertices().len());
     let unknown = |pair: &VertexPair| pair.moving.index() >= p || pair.fixed.index() >= q;
     match pairs.iter().position(unknown) {

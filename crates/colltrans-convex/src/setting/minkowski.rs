@@ -36,14 +36,14 @@ impl Point {
 
 /// Cosine of the largest angle by which bodies turn against each other between queries that have
 /// something in common (measured).
-const ALIGNED: f64 = 0.94;
+const MIN_COSINE_BETWEEN_QUERIES: f64 = 0.94;
 
 /// How many noises along a normal a point that the line nearly passes may be too low: with those for
 /// its own height, and for dividing by the normal's share, less than an upper bound is raised by.
-const RISE: f64 = 3.25;
+const MAX_RISE: f64 = 3.25;
 
 /// Largest displacement between such queries, as a share of both bodies' radii (measured).
-const NEAR: f64 = 0.1;
+const MAX_DISPLACEMENT: f64 = 0.1;
 
 /// `M` in the shadow frame: support points and orientations.
 #[derive(Debug, Clone)]
@@ -64,27 +64,30 @@ pub(crate) struct MinkowskiDifference<'a> {
     /// body.
     pub(crate) widening: f64,
     /// The exact shadow that was needed last.
-    known: Cell<Option<(VertexPair, Shadow)>>,
+    exact_shadow_cache: Cell<Option<(VertexPair, Shadow)>>,
 }
 
 impl<'a> MinkowskiDifference<'a> {
     /// With the lateral axes turned by an angle, given by its cosine and sine.
     #[cold]
-    pub(crate) fn turned_by(setting: &'a Setting<'a>, turn: DVec2) -> Self {
+    pub(crate) fn with_rotated_axes(setting: &'a Setting<'a>, turn: DVec2) -> Self {
         let e1 = setting.unit.any_orthonormal_vector();
-        Self::with_axis(setting, (e1 * turn.x + setting.unit.cross(e1) * turn.y).normalize())
+        Self::with_lateral_axis(
+            setting,
+            (e1 * turn.x + setting.unit.cross(e1) * turn.y).normalize(),
+        )
     }
 
     /// With lateral axes along the world's where the direction is.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
     pub(crate) fn new(setting: &'a Setting<'a>) -> Self {
-        Self::with_axis(setting, setting.unit.any_orthonormal_vector())
+        Self::with_lateral_axis(setting, setting.unit.any_orthonormal_vector())
     }
 
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
-    fn with_axis(setting: &'a Setting<'a>, e1: DVec3) -> Self {
+    fn with_lateral_axis(setting: &'a Setting<'a>, e1: DVec3) -> Self {
         let e2 = setting.unit.cross(e1);
         let axes = DMat3::from_cols(e1, e2, setting.unit);
         Self {
@@ -95,7 +98,7 @@ impl<'a> MinkowskiDifference<'a> {
             offset: axes.transpose() * setting.offset,
             noise: setting.noise(),
             widening: 0.0,
-            known: Cell::new(None),
+            exact_shadow_cache: Cell::new(None),
         }
     }
 
@@ -141,13 +144,13 @@ impl<'a> MinkowskiDifference<'a> {
     /// A normal of the moving body's frame in the shadow frame.
     #[inline]
     pub(crate) fn shadow_of_moving(&self, normal: DVec3) -> DVec3 {
-        transposed(&self.moving_from_shadow, normal)
+        transpose_mul(&self.moving_from_shadow, normal)
     }
 
     /// A normal of the fixed body's frame in the shadow frame.
     #[inline]
     pub(crate) fn shadow_of_fixed(&self, normal: DVec3) -> DVec3 {
-        transposed(&self.fixed_from_shadow, normal)
+        transpose_mul(&self.fixed_from_shadow, normal)
     }
 
     /// One normal of an earlier query, kept in the frames of the moving and of the fixed body, in
@@ -157,16 +160,16 @@ impl<'a> MinkowskiDifference<'a> {
         &self,
         [in_moving, in_fixed]: [DVec3; 2],
     ) -> Option<[DVec3; 2]> {
-        let p = transposed(&self.moving_from_shadow, in_moving);
-        let q = transposed(&self.fixed_from_shadow, in_fixed);
-        (p.dot(q) > ALIGNED).then_some([p, q])
+        let p = transpose_mul(&self.moving_from_shadow, in_moving);
+        let q = transpose_mul(&self.fixed_from_shadow, in_fixed);
+        (p.dot(q) > MIN_COSINE_BETWEEN_QUERIES).then_some([p, q])
     }
 
     /// Whether points that met in an earlier query, and are a lateral distance apart now, are still
     /// near each other as bodies of this size go.
     pub(crate) fn is_near(&self, apart: f64) -> bool {
         let size = self.setting.moving.inertia().radius + self.setting.fixed.inertia().radius;
-        apart < NEAR * size
+        apart < MAX_DISPLACEMENT * size
     }
 
     /// A normal of the shadow frame in the fixed body's frame.
@@ -188,7 +191,8 @@ impl<'a> MinkowskiDifference<'a> {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
     pub(crate) fn difference(&self, moving: DVec3, fixed: DVec3) -> DVec3 {
-        (transposed(&self.fixed_from_shadow, fixed) - transposed(&self.moving_from_shadow, moving))
+        (transpose_mul(&self.fixed_from_shadow, fixed)
+            - transpose_mul(&self.moving_from_shadow, moving))
             + self.offset
     }
 
@@ -225,9 +229,9 @@ impl<'a> MinkowskiDifference<'a> {
     /// Whether balls inside the bodies prove that the shadow of `M` contains all that is nearer to
     /// the line than `margin`.
     #[inline]
-    pub(crate) fn is_deep(&self, margin: f64) -> bool {
-        let rest = self.inner_radius() - (margin + self.noise.point());
-        rest > 0.0 && self.center().truncate().length_squared() < rest * rest
+    pub(crate) fn shadow_contains_disc(&self, margin: f64) -> bool {
+        let radius_left = self.inner_radius() - (margin + self.noise.point());
+        radius_left > 0.0 && self.center().truncate().length_squared() < radius_left * radius_left
     }
 
     /// The same by an edge of `M` as well, which the line passes nearby.
@@ -237,24 +241,25 @@ impl<'a> MinkowskiDifference<'a> {
     /// nearer to a place on it than `R e / s`, for either end at `e` from the place and `s`, at most,
     /// from these points.
     #[inline]
-    pub(crate) fn is_deep_on(&self, edge: [&Point; 2], margin: f64) -> bool {
+    pub(crate) fn shadow_contains_disc_near_edge(&self, edge: [&Point; 2], margin: f64) -> bool {
         let [from, to] = edge.map(Point::shadow);
         let center = self.center().truncate();
         let length = (to - from).length();
         let radius = self.inner_radius();
-        let around = self.around([from, to], length, center);
+        let disc_reach = self.disc_reach_beyond_edge([from, to], length, center);
         let along = -from.dot(to - from) / length;
         let apart = from.perp_dot(to).abs() / length;
         let least = margin + apart + self.noise.point();
-        let reaches =
-            |end: DVec2, inside: f64| inside * around > least * ((end - center).length() + radius);
-        around > 0.0 && reaches(from, along) && reaches(to, length - along)
+        let reaches = |end: DVec2, inside: f64| {
+            inside * disc_reach > least * ((end - center).length() + radius)
+        };
+        disc_reach > 0.0 && reaches(from, along) && reaches(to, length - along)
     }
 
     /// How far beyond an edge of this length a disc around the centre, inside the shadow, reaches on
     /// either side.
     #[inline]
-    fn around(&self, [from, to]: [DVec2; 2], length: f64, center: DVec2) -> f64 {
+    fn disc_reach_beyond_edge(&self, [from, to]: [DVec2; 2], length: f64, center: DVec2) -> f64 {
         let away = (to - from).perp_dot(center - from).abs() / length;
         self.inner_radius() - (away + self.noise.point())
     }
@@ -270,13 +275,14 @@ impl<'a> MinkowskiDifference<'a> {
     ///
     /// `M` contains the point, and a level disc around its centre; hence the cone between them. If
     /// the disc covers the line and `R` around it, the line is in the cone at `residual / R` of the
-    /// way from the point to the disc.
-    pub(crate) fn is_met_at(&self, point: DVec3, residual: f64, normal: DVec3) -> bool {
+    /// way from the point to the disc_reach.
+    pub(crate) fn is_upper_bound(&self, point: DVec3, residual: f64, normal: DVec3) -> bool {
         let noise = self.noise.point();
         let center = self.center();
-        let around = self.inner_radius() - (center.truncate().length() + noise);
+        let disc_reach = self.inner_radius() - (center.truncate().length() + noise);
         let rise = (center.z - point.z + noise) * (normal.z / normal.length());
-        around > 0.0 && (residual + self.noise.lateral()) * rise <= RISE * noise * around
+        disc_reach > 0.0
+            && (residual + self.noise.lateral()) * rise <= MAX_RISE * noise * disc_reach
     }
 
     /// The same for a point on an edge in a plane across `normal`.
@@ -285,7 +291,7 @@ impl<'a> MinkowskiDifference<'a> {
     /// the disc farthest across it. If these are at least `R` beyond the edge, the line is in one of
     /// the triangles at `residual / R` of the way from the edge to its third corner, and at most that
     /// share of the corner's height above the plane; the plane itself rises by the residual at most.
-    pub(crate) fn is_met_on(
+    pub(crate) fn is_upper_bound_on_edge(
         &self,
         edge: [&Point; 2],
         point: DVec3,
@@ -298,26 +304,26 @@ impl<'a> MinkowskiDifference<'a> {
         let length = (to - from).length();
         let center = self.center();
         let radius = self.inner_radius();
-        let around = self.around([from, to], length, center.truncate());
+        let disc_reach = self.disc_reach_beyond_edge([from, to], length, center.truncate());
         let rise = (normal.dot(center - point) + radius * normal.truncate().length())
             / normal.length()
             + noise;
         // The triangle's way across the edge leads along it, too.
         let along = away * (center.truncate() - point.truncate()).length();
         let inside = (point.truncate() - from).length().min((point.truncate() - to).length());
-        let level = around > 0.0
-            && along <= 0.5 * inside * around
-            && away * (around + rise) <= RISE * noise * around;
-        level || self.is_met_at(point, residual, normal)
+        let level = disc_reach > 0.0
+            && along <= 0.5 * inside * disc_reach
+            && away * (disc_reach + rise) <= MAX_RISE * noise * disc_reach;
+        level || self.is_upper_bound(point, residual, normal)
     }
 
     /// A pair's exact shadow, computed once if it is asked for several times.
-    fn shadow_of(&self, pair: VertexPair, terms: &Terms) -> Shadow {
-        match self.known.get() {
-            Some((known, shadow)) if known == pair => shadow,
+    fn cached_exact_shadow(&self, pair: VertexPair, terms: &Terms) -> Shadow {
+        match self.exact_shadow_cache.get() {
+            Some((cached, shadow)) if cached == pair => shadow,
             _ => {
                 let new = orientation::shadow(terms, self.setting.direction);
-                self.known.set(Some((pair, new)));
+                self.exact_shadow_cache.set(Some((pair, new)));
                 new
             }
         }
@@ -329,7 +335,7 @@ impl<'a> MinkowskiDifference<'a> {
         if self.widening != 0.0 {
             return None;
         }
-        let exact = self.shadow_of(pair, &self.setting.terms(pair));
+        let exact = self.cached_exact_shadow(pair, &self.setting.terms(pair));
         orientation::rounded(&exact, &self.setting_from_shadow, self.setting.direction)
     }
 
@@ -365,12 +371,12 @@ impl<'a> MinkowskiDifference<'a> {
             // The line passes near one of the two again and again.
             let from_is_near = from.shadow().length_squared() < to.shadow().length_squared();
             let (near, terms) = if from_is_near { (from.pair, &a) } else { (to.pair, &b) };
-            let base = || self.shadow_of(near, terms);
-            let way = to.shadow() - from.shadow();
-            if way.length_squared() > self.touching() * self.touching() {
+            let base = || self.cached_exact_shadow(near, terms);
+            let segment = to.shadow() - from.shadow();
+            if segment.length_squared() > self.touching() * self.touching() {
                 let side = orientation::side(
                     &base(),
-                    way,
+                    segment,
                     &self.setting_from_shadow,
                     setting.direction,
                     self.noise.point(),
@@ -393,6 +399,6 @@ impl<'a> MinkowskiDifference<'a> {
 
 /// `m^T v`.
 #[inline]
-fn transposed(m: &DMat3, v: DVec3) -> DVec3 {
+fn transpose_mul(m: &DMat3, v: DVec3) -> DVec3 {
     DVec3::new(m.x_axis.dot(v), m.y_axis.dot(v), m.z_axis.dot(v))
 }

@@ -126,7 +126,7 @@ impl<'a, B> Setting<'a, B> {
 impl Setting<'_> {
     /// How far two points, in the frames of the moving and of the fixed body, are apart sideways:
     /// for those that met in an earlier query, what poses and direction have changed since.
-    pub(crate) fn displacement(&self, [p, q]: [DVec3; 2]) -> f64 {
+    pub(crate) fn lateral_displacement(&self, [p, q]: [DVec3; 2]) -> f64 {
         let apart = self.fixed_matrix * q + self.offset - self.moving_matrix * p;
         apart.reject_from_normalized(self.unit).length()
     }

@@ -188,7 +188,7 @@ impl TwoBodies<'_> {
 
     /// The way from one such point to another, off by a few `u` of how far the vertices are apart.
     #[inline]
-    pub(crate) fn way(&self, from: VertexPair, to: VertexPair) -> DVec3 {
+    pub(crate) fn displacement_between(&self, from: VertexPair, to: VertexPair) -> DVec3 {
         let ([p, q], [r, s]) = (self.vertices(from), self.vertices(to));
         self.fixed_matrix * (s - q) - self.moving_matrix * (r - p)
     }
@@ -209,7 +209,11 @@ impl TwoBodies<'_> {
     /// have found; and how far the bodies, and the points that they were made from, may reach towards each
     /// other beyond it.
     #[inline]
-    pub(crate) fn settled(&self, normals: &[DVec3; 2], found: VertexPair) -> (VertexPair, f64) {
+    pub(crate) fn support_with_excess(
+        &self,
+        normals: &[DVec3; 2],
+        found: VertexPair,
+    ) -> (VertexPair, f64) {
         let (moving, p) = self.moving.settled(normals[0], found.moving.0);
         let (fixed, q) = self.fixed.settled(-normals[1], found.fixed.0);
         (VertexPair::of(moving, fixed), p + q + self.input_excess())

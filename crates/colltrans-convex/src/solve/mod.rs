@@ -161,7 +161,7 @@ impl<O: Observer> Run<'_, '_, '_, O> {
             return Err(QueryError::NotConverged { reason });
         };
         let setting = self.context.difference.setting;
-        self.context.difference = MinkowskiDifference::turned_by(setting, turn);
+        self.context.difference = MinkowskiDifference::with_rotated_axes(setting, turn);
         self.run(&Focus::NONE, &WarmStart::Nothing)
     }
 
@@ -393,7 +393,7 @@ impl<O: Observer> Run<'_, '_, '_, O> {
             Region::Fixed(delta) => delta,
             Region::Automatic => {
                 self.context.difference.shadow_from_bodies(normals)?;
-                setting.displacement(touching)
+                setting.lateral_displacement(touching)
             }
         };
         let worth = region != Region::Automatic || self.context.difference.is_near(half_side);

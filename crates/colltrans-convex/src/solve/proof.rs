@@ -3,7 +3,7 @@
 use glam::DVec2;
 
 use crate::answer::{
-    Along, Certificate, Contact, Grazing, Separation, Solver, Steps, gap_rounding,
+    Certificate, Contact, Grazing, NormalBound, Separation, Solver, Steps, gap_rounding,
 };
 use crate::setting::error::Stalled;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
@@ -39,27 +39,27 @@ impl<'a> Proven<'a> {
         let noise = difference.noise;
         let &Plane { normal, ref normals, lowest, beyond } = plane;
         let steepness = normal.dot(setting.direction);
-        let along = Along::new(setting, noise, normal, normals, lowest, beyond);
+        let bound = NormalBound::new(setting, noise, normal, normals, lowest, beyond);
         let [_, v, w] = weights;
         let [a, b, c] = portal.each_ref().map(Point::height);
         // Of corners at one height it is theirs, whatever the weights were rounded to.
         let estimate = (a + (b - a) * v + (c - a) * w) / setting.length;
         let most = gap_rounding(setting, normal, noise, difference.widening);
-        let lower = along.distance / steepness;
+        let lower = bound.distance / steepness;
         let gap = estimate - lower;
         // A plane along the direction bounds nothing.
         let is_upward = steepness > UNIT_VECTOR * setting.length;
         if !is_upward || gap.is_nan() || gap > most {
             return Err(Stalled::Gap { lower, upper: estimate, tolerance: most });
         }
-        let lower = along.lower(steepness);
+        let lower = bound.lower_bound(steepness);
         // Of widened bodies nothing is known from above.
         let upper = if difference.widening == 0.0 {
             (estimate + noise.raised() / steepness).next_up()
         } else {
             f64::INFINITY
         };
-        let rounding = most + (noise.raised() + along.error) / steepness;
+        let rounding = most + (noise.raised() + bound.error) / steepness;
         let translation = estimate.max(lower);
         Ok(Self { portal, plane, weights, translation, lower, upper, rounding })
     }

@@ -92,7 +92,7 @@ impl<O: Observer> Target for Bodies<'_, '_, '_, O> {
             moving: bodies.moving.support(normals[0]),
             fixed: bodies.fixed.support(-normals[1]),
         };
-        let (support, beyond) = bodies.settled(&normals, found);
+        let (support, beyond) = bodies.support_with_excess(&normals, found);
         (self.plane(normal, support, beyond), bodies.difference(support))
     }
 

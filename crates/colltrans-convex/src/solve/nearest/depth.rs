@@ -205,7 +205,7 @@ impl<'a> Polytope<'a> {
         if outward.dot(at) >= best.upper {
             return Point { at, pair: found };
         }
-        let (pair, beyond) = bodies.settled(&normals, found);
+        let (pair, beyond) = bodies.support_with_excess(&normals, found);
         let at = if pair == found { at } else { self.difference.point(pair) };
         let raised = (outward.dot(at) + noise.lowered() + beyond).next_up();
         best.note(outward, raised, beyond);

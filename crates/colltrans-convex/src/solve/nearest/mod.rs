@@ -246,7 +246,7 @@ impl Found {
         let Some(pair) = self.lowest.filter(|_| self.beyond.is_none()) else { return };
         let bodies = difference.bodies;
         let normals = [bodies.moving_normal(self.normal), bodies.fixed_normal(self.normal)];
-        let (settled, beyond) = bodies.settled(&normals, pair);
+        let (settled, beyond) = bodies.support_with_excess(&normals, pair);
         (self.lowest, self.beyond) = (Some(settled), Some(beyond));
         if settled != pair {
             self.lower = self.normal.dot(difference.point(settled));
@@ -333,12 +333,16 @@ fn across_simplex(difference: &Difference, found: &Found) -> Option<DVec3> {
     let NearestPairs { pairs: [a, b, c], count } = found.pairs();
     let across = match count {
         2 => {
-            let edge = bodies.way(a, b);
+            let edge = bodies.displacement_between(a, b);
             let nearest =
                 difference.point(a) * found.weights[0] + difference.point(b) * found.weights[1];
             nearest - edge * (nearest.dot(edge) / edge.length_squared())
         }
-        3 => triangle_normal([DVec3::ZERO, bodies.way(a, b), bodies.way(a, c)]),
+        3 => triangle_normal([
+            DVec3::ZERO,
+            bodies.displacement_between(a, b),
+            bodies.displacement_between(a, c),
+        ]),
         _ => return None,
     };
     unit(across)

@@ -42,7 +42,7 @@ pub(crate) fn overlap<O: Observer>(
     tolerance: f64,
 ) -> Overlap {
     let Some(edge) = edge_within(portal, tolerance) else { return Overlap::Ample };
-    if context.difference.is_deep(tolerance) {
+    if context.difference.shadow_contains_disc(tolerance) {
         return Overlap::Ample;
     }
     beyond_edge(context, portal, edge, tolerance)
@@ -57,7 +57,7 @@ fn beyond_edge<O: Observer>(
     edge: [&Point; 2],
     tolerance: f64,
 ) -> Overlap {
-    if context.difference.is_deep_on(edge, tolerance) {
+    if context.difference.shadow_contains_disc_near_edge(edge, tolerance) {
         return Overlap::Ample;
     }
     search(context, portal, tolerance)

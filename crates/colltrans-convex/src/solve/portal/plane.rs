@@ -44,7 +44,7 @@ impl Plane {
         let setting = difference.setting;
         let normal = (difference.setting_from_shadow * normal).normalize();
         let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
-        let (lowest, beyond) = setting.settled(&normals, found);
+        let (lowest, beyond) = setting.support_with_excess(&normals, found);
         Self { normal, normals, lowest, beyond }
     }
 

@@ -3,7 +3,7 @@
 //! On which side it passes does not matter if what it passes is lowest: if it lies in a supporting
 //! plane of `M`, the plane is the lower bound, and what the line nearly meets there is an upper bound
 //! as soon as the line is deep inside the shadow of `M`
-//! ([`is_met_at`](MinkowskiDifference::is_met_at)). Parts of machines stand like this as a rule, and
+//! ([`is_upper_bound`](MinkowskiDifference::is_upper_bound)). Parts of machines stand like this as a rule, and
 //! then nothing has to be decided exactly. Whatever is not settled so is left to exact decisions.
 
 use glam::{DVec2, DVec3};
@@ -64,7 +64,7 @@ pub(super) fn pointed<O: Observer>(
     };
     let residual = vertex.shadow().length();
     if residual <= context.difference.noise.point()
-        && context.difference.is_met_at(vertex.at, residual, normal)
+        && context.difference.is_upper_bound(vertex.at, residual, normal)
     {
         return at_corner();
     }
@@ -177,7 +177,7 @@ pub(super) fn met_share(
     let contact = from.at + (to.at - from.at) * share;
     let residual = contact.truncate().length();
     let is_met = residual <= difference.noise.point()
-        && difference.is_met_on([from, to], contact, residual, normal);
+        && difference.is_upper_bound_on_edge([from, to], contact, residual, normal);
     is_met.then_some(share)
 }
 
@@ -191,7 +191,7 @@ fn lowest_face<O: Observer>(context: &mut Context<O>, portal: &Portal) -> Option
     let least = 2 - largest([weights[2], weights[1], weights[0]].map(|w| -w));
     let edge = [&portal[(least + 1) % 3], &portal[(least + 2) % 3]];
     if residual > context.difference.noise.point()
-        || !context.difference.is_met_on(edge, contact, residual, normal)
+        || !context.difference.is_upper_bound_on_edge(edge, contact, residual, normal)
     {
         return None;
     }

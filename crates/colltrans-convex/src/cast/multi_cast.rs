@@ -30,9 +30,9 @@ pub fn range_of<'a>(
         (Outcome::Grazing(first), Outcome::Grazing(last)) => ContactRange::Grazing { first, last },
     };
     match &mut range {
-        ContactRange::Contact { first, last } => put_in_order(first, last),
+        ContactRange::Contact { first, last } => order_range_ends(first, last),
         ContactRange::Grazing { first, last } => {
-            put_in_order(&mut first.contact, &mut last.contact);
+            order_range_ends(&mut first.contact, &mut last.contact);
         }
         ContactRange::Separated(_) => {}
     }
@@ -49,7 +49,7 @@ pub fn common_end(first: Bounded, last: Bounded) -> Option<f64> {
     })
 }
 
-fn put_in_order(first: &mut Contact, last: &mut Contact) {
+fn order_range_ends(first: &mut Contact, last: &mut Contact) {
     if let Some(both) = common_end(first.bounded(), last.exit()) {
         (first.translation, last.translation) = (both, -both);
     }
@@ -66,11 +66,11 @@ pub fn clearance_of<'a>(
         Outcome::Grazing(grazing) => return Ok(Clearance::Free(WhyFree::Slides(grazing))),
         Outcome::Separated(separated) => return Ok(Clearance::Free(WhyFree::Separated(separated))),
     };
-    if let Some(blocked) = Clearance::blocked(&contact) {
+    if let Some(blocked) = Clearance::blocked_by(&contact) {
         return Ok(blocked);
     }
     Ok(match run(&cast.reversed())? {
-        Outcome::Contact(last) => Clearance::past(contact, last),
+        Outcome::Contact(last) => Clearance::beyond_first(contact, last),
         // Seen backwards the shadows are the same; only the last bits of their overlap may differ.
         Outcome::Grazing(grazing) => Clearance::Free(WhyFree::Slides(grazing)),
         Outcome::Separated(separated) => Clearance::Free(WhyFree::Separated(separated)),
@@ -94,11 +94,11 @@ pub fn depth_of<'a>(
 
 /// Whether the bodies meet where they are, from a cast along the line through their centres.
 #[inline]
-pub fn intersection_of<'a>(
+pub fn intersection_by_casts<'a>(
     cast: &Cast<'a>,
     mut run: impl FnMut(&Cast<'a>) -> Result<Outcome, QueryError>,
 ) -> Result<Intersection, QueryError> {
-    let direction = between_centers(cast);
+    let direction = direction_between_centers(cast);
     let through = cast.along(direction)?;
     let outcome = run(&through)?;
     let meets = match &outcome {
@@ -111,7 +111,7 @@ pub fn intersection_of<'a>(
 }
 
 /// The unit vector from the moving body's centre to the fixed one's; any if they are one.
-fn between_centers(cast: &Cast) -> DVec3 {
+fn direction_between_centers(cast: &Cast) -> DVec3 {
     let setting = &cast.setting;
     let p = setting.moving_matrix * setting.moving.inertia().center;
     let q = setting.fixed_matrix * setting.fixed.inertia().center;

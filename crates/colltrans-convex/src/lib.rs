@@ -1,85 +1,64 @@
-//! Convex bodies: how far can one move before it touches another? Casts, distances, depths, and certificates of them.
+//! Convex bodies: casts, distances, penetration depths, and certificates of the answers.
 //!
-//! Programs use the facade `colltrans`, whose documentation tells what is asked and answered. Modules that are hidden from
-//! the documentation are for the crates of this workspace, without a promise.
+//! Programs use the facade `colltrans`, whose documentation explains the queries. The hidden modules serve
+//! the crates of this workspace; their interface may change at any time.
 //!
 //! # Modules
 //!
-//! Each module uses only those before it, but for what bounds say of an answer's ends (`answer::RangeEnd`).
+//! Each module uses only those before it, with one exception: `body` names `answer::RangeEnd` in a trait
+//! bound.
 //!
-//! - `body`: a body is checked and indexed once. `inertia` and `feature` follow. `convex` is [`ConvexPolyhedron`]: `build` makes it (hulls on exact orientations, meshes, offsets), `support`
-//!   finds support points in `O(log n)`, along a `ring` by its angle and around the apex of a `fan`, `excess` bounds how far
-//!   a body reaches beyond one, and `sections` are planar sections across four axes, made when the paper's algorithm first
-//!   asks. [`Body`] is what a kind of body brings.
-//! - `setting`: two placed bodies, and of a cast a direction, in a frame at the moving body's translation. `minkowski` is `M`
-//!   seen along `d`: support points, noise, and on which side of an edge the line passes.
-//! - `answer`: outcomes, ranges, bounds, and `certificate`, which anyone can check.
-//! - `solve`: one cast. `portal` is portal refinement: from any guess to the face of `M` that the line enters, with exact
-//!   decisions; the plane and triangle it ends with are the certificate. `outline` takes bodies with rims for hulls of
-//!   ellipses, `ascent` finds where these meet. `cta` is the paper's algorithm: it minimises `phi(x, y)`, the collision
-//!   translation of two planar sections, by cutting planes in floating point; its result is a guess of the contact normal.
-//!   `nearest` descends to the nearest point of `M` over its simplices, `depth` grows a polytope of points of `M` where the
-//!   origin is nearest. `keep` finds how far until a gap is left, by Newton's method over nearest points. `observe` lets an
-//!   observer hear of every step.
-//! - `cast`: [`Cast`], the query. `derive` has answers of more than one cast, `contact` points and features on request,
-//!   `replay` a query as a file. [`CastBody`] is the trait by which other kinds of bodies are cast.
-//! - `pair`: [`Pair`], what is asked of two placed bodies without a direction, and the checks of its proofs.
-//! - `tracker`: the same questions, each begun from the last answer.
+//! - `body`: convex bodies, checked and indexed once. [`ConvexPolyhedron`] is in `convex`. `build` makes it
+//!   (hulls on exact orientations, meshes, offsets). `support` finds support points in `O(log n)`, with
+//!   bisection by angle along a `ring` and around the apex of a `fan`. `excess` bounds how far a body reaches
+//!   beyond a support point. `sections` are planar sections across four axes, built when the paper's
+//!   algorithm first uses them. The trait [`Body`] describes a kind of body.
+//! - `setting`: two placed bodies and, for a cast, a direction. `minkowski` computes support points of `M` in
+//!   the shadow frame, and on which side of an edge the line passes.
+//! - `answer`: outcomes, ranges and bounds. `certificate` has the proofs and their checks.
+//! - `solve`: the solver of one cast. `portal` is portal refinement with exact decisions: it starts from a
+//!   guess of the contact normal and ends in the face of `M` that the line enters, whose plane and triangle
+//!   are the certificate. `outline` approximates bodies with rims by hulls of ellipses, and `ascent` computes
+//!   where these hulls meet. `cta` is the paper's algorithm: it minimises `phi(x, y)`, the collision
+//!   translation of two planar sections, by cutting planes in floating point, and returns a guess of the
+//!   contact normal. `nearest` descends to the nearest point of `M` over its simplices. `depth` grows a
+//!   polytope of points of `M` where the origin is nearest to its boundary. `keep` solves casts with a
+//!   minimum gap, by Newton's method over nearest points. `observe` reports steps to an observer.
+//! - `cast`: [`Cast`], its derived answers, contact details and files. [`CastBody`] is the trait of bodies
+//!   that can be cast.
+//! - `pair`: [`Pair`], the queries about two placed bodies without a direction, and the checks of their
+//!   proofs.
+//! - `tracker`: [`Tracker`], which starts each query from the last answer.
 //!
-//! Both solvers end in `portal`: `cta` carries the rounding of sections, while the last digits are a combinatorial matter,
-//! which face of `M` the line enters. So there is one finish, one error analysis and one thing to test, and a wrong guess
-//! costs time but never correctness.
+//! Both solvers end in `portal`. The sections of `cta` are rounded, but which face of `M` the line enters is
+//! a combinatorial question. With one common last stage there is one error analysis and one implementation to
+//! test, and a wrong guess costs time but never correctness.
 //!
 //! # Accuracy
 //!
-//! A contact's bounds enclose the true collision translation of the bodies as given, exactly:
-//! [`Certificate::lower`] `<= coll <=` [`Certificate::upper`], where a body is the convex hull of
-//! its [`vertices`](ConvexPolyhedron::vertices), placed by the nine entries of its pose's matrix and
-//! its translation. They enclose that of the points that the bodies were made from, too: what a hull leaves
-//! outside ([`ConvexPolyhedron::hull_error`]) is taken off lower bounds. [`Contact::translation`] is the best
-//! estimate between them.
+//! The bounds of a contact enclose the true collision translation exactly: [`Certificate::lower`]
+//! `<= coll <=` [`Certificate::upper`]. Here a body is the convex hull of its
+//! [`vertices`](ConvexPolyhedron::vertices), placed by the nine entries of its pose's matrix and its
+//! translation. The bounds also hold for the points from which the bodies were built, because lower bounds
+//! are reduced by the distance of these points from the hull ([`ConvexPolyhedron::hull_error`]).
+//! [`Contact::translation`] is the best estimate between the bounds.
 //!
-//! Let `S` be the size of the configuration: the largest distance of a vertex from the origin of
-//! its body frame, for each body, plus the distance `|t_Q - t_P|` of the two frames. The *noise*
-//! `32 u S`, with `u = 2^-53`, bounds the rounding error of a coordinate of a difference of two
-//! points. The bounds differ by at most 15 noises, and what a body may reach beyond a support point
-//! that was found by climbing, divided by `n . d` ([`Certificate::rounding`]); if they do not come
-//! that close, the query returns [`QueryError::NotConverged`], never a number. A displacement of both
-//! bodies together costs the translation nothing. The same input gives the same bits on every run,
-//! thread and platform.
+//! Let `S` be the size of the configuration: the largest distance of a vertex from the origin of its body
+//! frame, for each body, plus the distance `|t_Q - t_P|` of the two frames. The *noise* `32 u S`, with
+//! `u = 2^-53`, bounds the rounding error of a coordinate of a difference of two points.
 //!
-//! # Coherence
+//! The bounds differ by at most [`Certificate::rounding`]. This is 15 noises, plus the bound on how far the
+//! bodies reach beyond the support points of hill climbs, divided by `n . d`. If the search cannot reach this
+//! accuracy, the query returns [`QueryError::NotConverged`]. A common displacement of both bodies does not
+//! reduce the accuracy. The same input gives the same bits on every run, thread and platform.
 //!
-//! A tracker keeps what a cast ended with: three pairs of vertices, or a separating direction. The next cast tries
-//!
-//! 1. *Features* (`portal/follow`): do the three pairs still enclose the line? If it left over an edge, the next
-//!    face is found by gift wrapping; if it is many faces away, slopes and curvatures say where to look.
-//! 2. *Region* (`cta` only; the paper, III-D): the minimisation starts at the last contact points and is
-//!    confined to a square of levels around them, until that fails.
-//! 3. *Scratch*, as a one-off query does.
-//!
-//! Certificates are made anew from today's poses. Nothing numerical is carried over, so a tracked answer is
-//! exactly as tight as a one-off one.
-//!
-//! # Numbers: what is exact, what is rounded
-//!
-//! All bounds are derived in the head of `colltrans_kernel::noise`, in multiples of `u S`: `u = 2^-53`, `S` the size of the
-//! configuration. *Exact*: the orientations that decide what a hull has, and on which side of an edge the line
-//! passes (a rounded determinant where its error allows, whole numbers otherwise; ties as if the line were
-//! moved by `(eps, eps^2)`, consistently). *Rounded with a bound*: everything else. *Only guesses*: sections,
-//! ellipsoids, tables.
-//!
-//! - A body is the convex hull of its `vertices()`, exactly. Points within `64 u r` of a face are dropped, and
-//!   `hull_error` bounds how far from the body any input point was left.
-//! - A plane supports `M` when no support point is deeper below it than one noise, `32 u S`. Projections that
-//!   overlap by less than eight noises are *touching*: the outcome is grazing.
-//! - The lower bound is lowered by one noise over `n . d` and by what bodies may reach beyond support points, the
-//!   upper bound raised by four: `lower <= coll <= upper` holds exactly. A clearance is the lower bound.
-//! - No function of libm but the square root is called, sine and cosine are `colltrans_kernel::angle`: bits are the same on every platform (`crates/colltrans/tests/golden.rs`).
+//! A tracker does not carry over numbers: certificates are computed from the current poses, so a tracked
+//! answer is as accurate as a one-off one. `docs/theory/accuracy.md` lists which steps are exact and which
+//! are rounded.
 
 #![allow(
     rustdoc::private_intra_doc_links,
-    reason = "hidden modules are read with their private parts"
+    reason = "the documentation of hidden modules links to private items"
 )]
 
 #[doc(hidden)]
@@ -88,7 +67,7 @@ pub mod answer;
 pub mod body;
 #[doc(hidden)]
 pub mod cast;
-/// The choices of [`Solver::Cta`], the paper's collision translation algorithm.
+/// Options of [`Solver::Cta`], the paper's collision translation algorithm.
 pub mod cta {
     pub use crate::solve::cta::options::{Cuts, NoUntil, Options, Region, Start, Until};
 }

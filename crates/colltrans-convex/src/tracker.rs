@@ -1,11 +1,13 @@
-//! Coherence: a query that starts from the last one's answer (the paper, section III-D).
+//! Temporal coherence: each query starts from the answer of the previous one (the paper, section III-D).
 //!
-//! Notation. A *warm start* is what a cast leaves behind: the portal it ended with, or the separating
-//! direction. The casts of a tracker have three *sides*, each with a warm start of its own: along the direction,
-//! against it, and between the centres.
+//! A *warm start* is the data that a cast leaves for the next one. Each of three *slots* has its own: casts
+//! along the direction, against it, and between the centres. A cast tries in this order:
+//! 1. *Features*: the last separating direction or portal. If the line has left the portal, gift wrapping
+//!    finds the next face, or slopes and curvatures predict a face farther away.
+//! 2. *Region* (only with [`Solver::Cta`](crate::Solver::Cta)): section levels around the last contact.
+//! 3. *Scratch*: a cast without a warm start.
 //!
-//! Invariant. A warm start only proposes where to begin; every answer is proven by its own certificate,
-//! from the poses and the direction of its own query.
+//! Invariant: every answer is proven by its own certificate, from the poses and the direction of its query.
 
 use glam::DVec3;
 
@@ -22,21 +24,20 @@ use crate::solve::observe::{NoObserver, Observer};
 use crate::solve::options::Focus;
 use crate::solve::{Left, Pace, WarmStart};
 
-/// Queries that follow each other closely, each starting from the answer of the one before.
+/// A sequence of similar queries, each of which starts from the answer of the previous one.
 ///
-/// For motion planning, simulation and disassembly, which ask about the same pair of bodies again
-/// after a small change of pose or direction. Outcomes and certificates are those of the [`Cast`]'s
-/// own methods; where corners or parallel edges meet, the normal and the witness points may be
-/// another choice of several, and so may the contact of a grazing outcome, which is that of bodies
-/// widened by rounding. Poses and direction may jump, the bodies may meet now and pass each other
-/// then, or be other bodies: a poor beginning costs time, never the answer.
+/// Use it in motion planning, simulation and disassembly, where the same pair of bodies is queried again
+/// after a small change of pose or direction. Outcomes and certificates are those of the [`Cast`] methods.
+/// The normal and the witness points may differ if vertices or parallel edges meet, because they are not
+/// unique then. So may the contact of a grazing outcome, which is that of bodies widened by rounding. Poses
+/// and direction may jump, and bodies may change: a poor start costs time, but never correctness.
 ///
-/// A tracker is small (less than 600 bytes), allocates nothing and may be
-/// cloned, to follow several motions from one place. [`Focus`] says what it makes of its last
-/// answer: with [`Solver::Cta`](crate::Solver::Cta) its region, as the paper, else its features. Where these take
-/// more work than casts from scratch (as steps count it), a tracker without a focus of its own casts from scratch
-/// and tries again now and then; with [`with_focus`](Self::with_focus) it always starts as it is told. A body's first query that solves a planar problem makes
-/// its sections, tracked or not: see [`ConvexPolyhedron::prepare_sections`](crate::ConvexPolyhedron::prepare_sections).
+/// A tracker has less than 600 bytes, allocates nothing, and may be cloned to follow several motions from one
+/// state. By default it uses features, and with [`Solver::Cta`](crate::Solver::Cta) the region, as the paper
+/// does. If starts from features take more work than casts from scratch (as [`Steps`] counts it), it casts
+/// from scratch and tries features again at intervals. With [`with_focus`](Self::with_focus) it always uses
+/// the given [`Focus`]. A body's first query that solves a planar problem builds its sections, tracked or
+/// not: see [`ConvexPolyhedron::prepare_sections`](crate::ConvexPolyhedron::prepare_sections).
 ///
 /// ```
 /// use colltrans::glam::{DQuat, DVec3};
@@ -61,45 +62,50 @@ use crate::solve::{Left, Pace, WarmStart};
 pub struct Tracker<'a> {
     /// The bodies of the last query.
     bodies: Option<[&'a ConvexPolyhedron; 2]>,
-    /// What was chosen; if nothing, the solver decides.
+    /// The focus given by the user; if `None`, that of the solver.
     focus: Option<Focus>,
     /// The direction of the last query.
     direction: DVec3,
-    /// Of casts along the direction and against it, or the other way round where it is `turned`, and between the
-    /// centres.
+    /// The slots of casts along the direction and against it (in the opposite order if `swapped`), and
+    /// between the centres.
     slots: [CastSlot; 3],
+    /// Whether the slots of the two directions are exchanged. The value changes whenever the direction turns
+    /// by more than 90 degrees.
     swapped: bool,
-    /// The pairs of vertices that the last distance ended with.
+    /// The pairs of vertices with which the last distance ended.
     nearest: NearestPairs,
-    /// The work of the last query but for the last cast of each side.
+    /// The work of the last query, without the last cast of each slot.
     steps: Steps,
 }
 
-/// The casts of one side. The last one is taken into account when the next begins, from what it has left.
+/// State of the casts of one kind.
+///
+/// The work of the last cast is read from `carry` when the next cast begins.
 #[derive(Debug, Clone, Copy, Default)]
 struct CastSlot {
+    /// Warm start and work of the last cast.
     carry: Left,
-    /// Whether it pays to start from there.
+    /// Decides whether a warm start pays off.
     policy: Pace,
-    /// Whether the last cast did.
+    /// Whether the last cast tried to start from features.
     warm_started: bool,
-    /// Whether it is of the last query.
+    /// Whether the last cast belongs to the last query.
     in_last_query: bool,
 }
 
-/// The side of casts between the centres.
+/// Index of the slot of casts between the centres.
 const BETWEEN_CENTERS: usize = 2;
 
 impl<'a> Tracker<'a> {
-    /// The first query starts from scratch.
+    /// Builds a tracker whose first query starts from scratch.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// With another [`Focus`] than the solver's own: [`Focus::of`].
+    /// Returns the tracker with a given focus instead of the solver's ([`Focus::of`]).
     ///
     /// # Errors
-    /// A half-side of the region that is negative or not a number.
+    /// Returns [`QueryError::RegionFocus`] if the half-side of a fixed region is negative or not a number.
     pub fn with_focus(self, focus: Focus) -> Result<Self, QueryError> {
         match focus.region {
             Region::Fixed(half_side) if half_side.is_nan() || half_side < 0.0 => {
@@ -109,14 +115,14 @@ impl<'a> Tracker<'a> {
         }
     }
 
-    /// Forgets the last answer: the next query starts from scratch.
+    /// Discards the warm starts: the next query starts from scratch.
     pub fn reset(&mut self) {
         self.steps = self.steps();
         self.slots = [CastSlot::default(); 3];
         self.nearest = NearestPairs::default();
     }
 
-    /// The work of the last query: of all its casts together, and of their starts the one with most
+    /// Returns the work of the last query, summed over its casts. `started_from` is the start with the most
     /// work.
     pub fn steps(&self) -> Steps {
         let mut steps = self.steps;
@@ -127,18 +133,18 @@ impl<'a> Tracker<'a> {
         steps
     }
 
-    /// [`Cast::first_contact`], starting from the last answer.
+    /// Computes [`Cast::first_contact`], starting from the last answer.
     ///
     /// # Errors
-    /// As [`Cast::first_contact`].
+    /// Returns the errors of [`Cast::first_contact`].
     pub fn first_contact(&mut self, cast: &Cast<'a>) -> Result<Outcome, QueryError> {
         self.first_contact_observed(cast, &mut NoObserver)
     }
 
-    /// The same, with an observer, as for [`Cast::first_contact_observed`].
+    /// Computes [`Cast::first_contact`], starting from the last answer, and reports each step to an observer.
     ///
     /// # Errors
-    /// As [`Cast::first_contact`].
+    /// Returns the errors of [`Cast::first_contact`].
     pub fn first_contact_observed<O: Observer>(
         &mut self,
         cast: &Cast<'a>,
@@ -148,37 +154,37 @@ impl<'a> Tracker<'a> {
         self.cast_in_slot(cast, usize::from(self.swapped), observer)
     }
 
-    /// [`Cast::contact_range`], starting from the last answer.
+    /// Computes [`Cast::contact_range`], starting from the last answer.
     ///
     /// # Errors
-    /// As [`Cast::first_contact`].
+    /// Returns the errors of [`Cast::contact_range`].
     pub fn contact_range(&mut self, cast: &Cast<'a>) -> Result<ContactRange, QueryError> {
         self.begin_cast_query(cast);
         range_of(cast, |cast| self.cast_either_way(cast))
     }
 
-    /// [`Cast::clearance`], starting from the last answer.
+    /// Computes [`Cast::clearance`], starting from the last answer.
     ///
     /// # Errors
-    /// As [`Cast::first_contact`].
+    /// Returns the errors of [`Cast::clearance`].
     pub fn clearance(&mut self, cast: &Cast<'a>) -> Result<Clearance, QueryError> {
         self.begin_cast_query(cast);
         clearance_of(cast, |cast| self.cast_either_way(cast))
     }
 
-    /// [`Cast::directional_depth`], starting from the last answer.
+    /// Computes [`Cast::directional_depth`], starting from the last answer.
     ///
     /// # Errors
-    /// As [`Cast::first_contact`].
+    /// Returns the errors of [`Cast::directional_depth`].
     pub fn directional_depth(&mut self, cast: &Cast<'a>) -> Result<DirectionalDepth, QueryError> {
         self.begin_cast_query(cast);
         depth_of(cast, |cast| self.cast_either_way(cast))
     }
 
-    /// [`Cast::intersects`], starting from the last answer to the same question.
+    /// Computes [`Cast::intersects`], starting from the last answer of this method.
     ///
     /// # Errors
-    /// As [`Cast::first_contact`].
+    /// Returns the errors of [`Cast::intersects`].
     pub fn intersects(&mut self, cast: &Cast<'a>) -> Result<Intersection, QueryError> {
         self.begin_cast_query(cast);
         intersection_by_casts(cast, |cast| {
@@ -186,11 +192,10 @@ impl<'a> Tracker<'a> {
         })
     }
 
-    /// [`Pair::distance`], starting from the last answer to the same question: the pairs of vertices that
-    /// the nearest points were made of.
+    /// Computes [`Pair::distance`], starting from the vertex pairs of the last nearest points.
     ///
     /// # Errors
-    /// As [`Pair::distance`].
+    /// Returns the errors of [`Pair::distance`].
     ///
     /// ```
     /// # use colltrans::glam::DVec3;
@@ -213,7 +218,7 @@ impl<'a> Tracker<'a> {
         Ok(distance)
     }
 
-    /// A query begins: what was found of other bodies is of no use.
+    /// Begins a query about `bodies`. Resets the tracker if the bodies have changed.
     #[inline]
     fn begin_query(&mut self, bodies: [&'a ConvexPolyhedron; 2]) {
         self.steps = Steps { started_from: StartedFrom::Features, ..Steps::default() };
@@ -229,7 +234,8 @@ impl<'a> Tracker<'a> {
         }
     }
 
-    /// A query of casts begins: sides are exchanged if it looks the other way.
+    /// Begins a query of casts. Exchanges the slots of the two directions if the direction has turned by more
+    /// than 90 degrees.
     #[inline]
     fn begin_cast_query(&mut self, cast: &Cast<'a>) {
         self.begin_query([cast.moving(), cast.fixed()]);
@@ -239,13 +245,13 @@ impl<'a> Tracker<'a> {
         self.direction = cast.direction();
     }
 
-    /// A cast along the direction of the query, or against it.
+    /// Runs a cast along the direction of the query or against it, in the matching slot.
     fn cast_either_way(&mut self, cast: &Cast<'a>) -> Result<Outcome, QueryError> {
         let against = cast.direction().dot(self.direction) < 0.0;
         self.cast_in_slot(cast, usize::from(against != self.swapped), &mut NoObserver)
     }
 
-    /// One cast of a query.
+    /// Runs one cast of a query in a slot, with a warm start if the focus and the slot's policy allow it.
     #[inline]
     fn cast_in_slot<O: Observer>(
         &mut self,

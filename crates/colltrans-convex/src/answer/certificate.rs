@@ -1,17 +1,15 @@
-//! Certificates: proofs of an answer that anyone can check who has the two bodies.
+//! Certificates: proofs of an answer that can be checked with nothing but the two bodies.
 //!
-//! Notation (section 1 of the paper). `P` moves along `d`, `Q` is fixed, both are placed in the
-//! world; `M = {q - p : p in P, q in Q}`. The line `t d` meets `M` for `t` in `[coll, exit]`.
+//! Notation (section 1 of the paper): `P` moves along `d`, `Q` is fixed, and `M = {q - p : p in P, q in Q}`.
+//! The line `t d` intersects `M` for `t` in `[coll, exit]`.
 //!
 //! - Lower bound: for any `n` with `n.d > 0`, `coll >= (min_Q n.q - max_P n.p) / n.d`.
 //! - Upper bound: weights `w_i >= 0` with sum 1 over pairs of vertices `(p_i, q_i)` such that
 //!   `sum w_i (q_i - p_i) = t d`; then `coll <= t`.
 //! - Separation: `n` with `n.d = 0` and `min_Q n.q - max_P n.p > 0`.
 //!
-//! Rounding: see [`noise`]. The two bounds differ by at most [`Certificate::rounding`]. A search lowers
-//! what it computed by more than its rounding can be. The check computes the heights of the vertices
-//! along the normal with hardly any ([`extent`](colltrans_kernel::extent)), so it accepts no lower bound
-//! and no margin beyond what the plane proves, and still each that a search has lowered.
+//! Rounding (see [`noise`]): a search rounds its bounds outwards. A check evaluates the plane nearly without
+//! rounding ([`extent`]), and accepts no lower bound or margin above the one that the plane proves.
 
 use glam::DVec3;
 use thiserror::Error;
@@ -23,20 +21,20 @@ use colltrans_kernel::extent;
 use colltrans_kernel::noise::{self, Noise};
 use colltrans_kernel::pose::STRETCHED;
 
-/// Factor that is more than a few roundings.
+/// Factor that exceeds the rounding errors of a few operations.
 const ROUND_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
 
-/// Both bounds of a collision translation with their proofs (section 1 of the paper).
+/// Lower and upper bound of a collision translation, with their proofs (section 1 of the paper).
 ///
-/// With `P` the moving body, `Q` the fixed one and `d` the direction:
+/// With the moving body `P`, the fixed body `Q` and the direction `d`:
 ///
-/// - `t >= (min_Q n.q - max_P n.p) / n.d` for any `n` with `n.d > 0`: the plane proves `lower`;
-/// - if `sum w_i (q_i - p_i) = t d` with weights `w_i >= 0` of sum 1, the bodies meet at `t`: the
-///   pairs prove `upper`.
+/// - The plane proves `lower`: `t >= (min_Q n.q - max_P n.p) / n.d` for any `n` with `n.d > 0`.
+/// - The pairs prove `upper`: if `sum w_i (q_i - p_i) = t d` with weights `w_i >= 0` of sum 1, the bodies are
+///   in contact at `t`.
 ///
-/// `lower <= collision translation <= upper`, exactly, for the bodies as given: the convex hulls of
-/// their [`vertices`](crate::ConvexPolyhedron::vertices), in poses as their nine entries and their
-/// translations. Both are rounded outwards by what their computation can be off.
+/// `lower <= collision translation <= upper` holds exactly for the bodies as given: the convex hulls of their
+/// [`vertices`](crate::ConvexPolyhedron::vertices), placed by the nine matrix entries and the translation of
+/// their poses. Both bounds are rounded outwards.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -44,31 +42,31 @@ const ROUND_UP: f64 = 1.0 + 8.0 * f64::EPSILON;
     serde(deny_unknown_fields)
 )]
 pub struct Certificate {
-    /// Unit normal of the supporting plane that proves the lower bound, in the world;
-    /// `normal . d > 0`.
+    /// Unit normal, in the world, of the supporting plane that proves the lower bound; `normal . d > 0`.
     pub normal: DVec3,
-    /// The lower bound it proves, in multiples of the direction.
+    /// The lower bound that the plane proves, in multiples of the direction.
     pub lower: f64,
-    /// Three pairs of vertices whose differences `q - p` span a triangle that the line `t d`
-    /// pierces.
+    /// Three pairs of vertices whose differences `q - p` span a triangle that the line `t d` intersects.
     pub pairs: [VertexPair; 3],
-    /// The weights (barycentric coordinates) of the pairs where the line passes: not negative, sum
-    /// 1. The witness points are `sum w_i p_i` and `sum w_i q_i`.
+    /// Barycentric coordinates of the intersection in this triangle, not negative, with sum 1. The witness
+    /// points are `sum w_i p_i` and `sum w_i q_i`.
     pub weights: [f64; 3],
-    /// The upper bound they prove, in multiples of the direction. Infinite in a
-    /// [`Grazing`](crate::Grazing) whose shadows rounding cannot tell to overlap: such a one claims
-    /// `lower` only.
+    /// The upper bound that the pairs prove, in multiples of the direction.
+    ///
+    /// Infinite in a [`Grazing`](crate::Grazing) whose shadows overlap by less than rounding error. Such a
+    /// certificate claims only `lower`.
     #[cfg_attr(feature = "serde", serde(with = "colltrans_kernel::written::or_infinite"))]
     pub upper: f64,
-    /// What rounding alone can make of `upper - lower` at the size of this configuration: fifteen
-    /// noises (see [the crate's introduction](crate#accuracy)) and what the bodies may reach beyond
-    /// their support points, over `normal . d`, in multiples of the direction. Where bodies that only
-    /// touch were widened sideways for an answer, what the widening can make of the translation, too.
+    /// Bound on the part of `upper - lower` that is due to rounding, in multiples of the direction.
+    ///
+    /// It is the sum of fifteen noises (see [the crate's introduction](crate#accuracy)) and of the bound on
+    /// how far the bodies reach beyond their support points, divided by `normal . d`. If bodies that only
+    /// touch were widened laterally, it includes the effect of the widening.
     pub rounding: f64,
 }
 
-/// The proof that two bodies never meet along the direction: a plane parallel to it lies between
-/// them.
+/// Proof that two bodies never meet along the direction: a plane between them that is parallel to the
+/// direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -76,57 +74,61 @@ pub struct Certificate {
     serde(deny_unknown_fields)
 )]
 pub struct Separation {
-    /// Unit normal in the world, orthogonal to the direction, from the moving body to the fixed
-    /// one.
+    /// Unit normal in the world, orthogonal to the direction, pointing from the moving body to the fixed one.
     pub normal: DVec3,
-    /// Lower bound of the distance of the shadows, in world units, and positive: at most `min_Q n'.q - max_P n'.p` over
-    /// `|n'|`, where `n'` is what of the normal `n` is orthogonal to the direction.
+    /// Lower bound of the distance of the shadows, in world units; positive.
+    ///
+    /// It is at most `(min_Q n'.q - max_P n'.p) / |n'|`, where `n'` is the component of the normal orthogonal
+    /// to the direction.
     pub margin: f64,
 }
 
-/// Why a certificate does not prove what it says.
+/// Reason why a certificate is rejected.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum CertificateError {
-    /// The normal is not a unit vector with a component along the direction (contact), or
-    /// orthogonal to it (separation).
-    #[error("the normal {normal} is not a unit vector on the right side of the direction")]
+    /// The normal is not a unit vector, or its angle to the direction is wrong: for a contact it must have a
+    /// positive component along the direction, for a separation it must be orthogonal to it.
+    #[error("the normal {normal} is not a unit vector, or its angle to the direction is wrong")]
     Normal {
         /// The normal.
         normal: DVec3,
     },
-    /// A vertex index does not exist.
+    /// A vertex index is out of range.
     #[error("pair {pair} names a vertex that does not exist")]
     UnknownVertex {
-        /// Index of the pair.
+        /// Position of its pair in the list of pairs.
         pair: usize,
     },
-    /// The weights are negative or their sum is not 1.
-    #[error("the weights {weights:?} are not barycentric coordinates")]
+    /// Weights of three pairs are negative, or their sum is not 1.
+    #[error(
+        "the weights {weights:?} are not barycentric coordinates: one is negative, or the sum is not 1"
+    )]
     Weights {
         /// The weights.
         weights: [f64; 3],
     },
-    /// The weights of two points are negative or their sum is not 1.
-    #[error("the weights {weights:?} are not those of a mean")]
+    /// Weights of four pairs are negative, or their sum is not 1.
+    #[error("the weights {weights:?} do not define a mean: one is negative, or the sum is not 1")]
     PointWeights {
         /// The weights.
         weights: [f64; 4],
     },
-    /// The witness points do not come together.
-    #[error("the witness points miss each other by {residual:e} (tolerated: {tolerance:e})")]
+    /// The witness points do not coincide after the translation.
+    #[error("the distance of the witness points is {residual:e}, accepted: at most {tolerance:e}")]
     Residual {
-        /// Distance of the witness points after the translation.
+        /// Distance of the witness points after the translation, in world units.
         residual: f64,
-        /// What rounding explains.
+        /// The largest accepted distance: a bound on the rounding error or the lateral widening, or the
+        /// minimum gap of the cast.
         tolerance: f64,
     },
-    /// A bound or a margin says more than is proven.
-    #[error("{proven:?} is proven, not {claimed:?}")]
+    /// A claimed bound or margin is stronger than the proven one.
+    #[error("the proof claims {claimed:?}, but proves only {proven:?}")]
     Bound {
-        /// The bound, or margin, that is proven.
+        /// The proven bound or margin.
         proven: f64,
-        /// The one claimed.
+        /// The claimed bound or margin.
         claimed: f64,
     },
     /// The lower bound is above the upper one.
@@ -137,86 +139,87 @@ pub enum CertificateError {
         /// The upper bound.
         upper: f64,
     },
-    /// An estimate that is not between its bounds.
+    /// An estimate is not between its bounds.
     #[error("the translation {value:?} is not between its bounds, {lower:?} and {upper:?}")]
     Value {
         /// The estimate.
         value: f64,
-        /// The lower bound claimed.
+        /// The claimed lower bound.
         lower: f64,
-        /// The upper bound claimed.
+        /// The claimed upper bound.
         upper: f64,
     },
-    /// What is said of rounding is negative, not a number, or more than it explains.
-    #[error("the rounding {claimed:e} is not between 0 and what rounding explains, {derived:e}")]
+    /// The claimed rounding is negative, not a number, or larger than the rounding error of the
+    /// configuration.
+    #[error("the claimed rounding {claimed:e} is not between 0 and {derived:e}")]
     Rounding {
-        /// The one claimed.
+        /// The claimed rounding.
         claimed: f64,
-        /// The largest that rounding explains.
+        /// The largest accepted rounding.
         derived: f64,
     },
-    /// It is about bodies shrunk by another tolerance.
+    /// The proof is for bodies that are shrunk by another tolerance.
     #[error("the proof is for a tolerance of {claimed:?}, not {asked:?}")]
     OtherTolerance {
-        /// The one of the proof.
+        /// Tolerance of the proof.
         claimed: f64,
-        /// The one of the cast.
+        /// Tolerance of the cast.
         asked: f64,
     },
-    /// What it is about cannot be asked.
-    #[error("there is no such query: {0}")]
+    /// The query that the proof is about is invalid.
+    #[error("the query of the proof is invalid: {0}")]
     Query(#[from] QueryError),
-    /// The bodies do not do at the start what it says.
-    #[error("what is said of the bodies where they are does not hold")]
+    /// A claim about the bodies in their given poses does not hold.
+    #[error("the claim about the bodies in their given poses does not hold")]
     Start,
     /// An entry of a cover does not hold, or does not fit the bodies.
     #[error("entry {entry} of the cover does not hold, or does not fit the bodies")]
     Cover {
-        /// Its number; the number of all if the cover ends too early.
+        /// Index of the entry, or the number of entries if the cover ends too early.
         entry: usize,
     },
-    /// Two triangles that do not stop the body.
-    #[error("triangles {moving} and {fixed} do not stop the body")]
+    /// Two triangles do not block the body.
+    #[error("triangles {moving} and {fixed} do not block the body")]
     Facets {
-        /// Of the moving body, by its position in `Solid::triangles`.
+        /// Triangle of the moving body, an index into `Solid::triangles`.
         moving: u32,
-        /// Of the fixed body.
+        /// Triangle of the fixed body, an index into `Solid::triangles`.
         fixed: u32,
     },
-    /// Facets that are said to stop the body, but are not those of the proof.
+    /// The facets that the answer names as blocking are not those of the proof.
     #[error(
-        "facets {moving} and {fixed} of the input are not those that are proven to stop the body"
+        "facets {moving} and {fixed} of the input are not those that are proven to block the body"
     )]
     OtherFacets {
-        /// Of the moving body.
+        /// Facet of the moving body.
         moving: InputFacet,
-        /// Of the fixed body.
+        /// Facet of the fixed body.
         fixed: InputFacet,
     },
-    /// What is said of one body among many does not hold.
-    #[error("of obstacle {obstacle}: {reason}")]
+    /// A claim about one obstacle of a scene does not hold.
+    #[error("obstacle {obstacle}: {reason}")]
     Obstacle {
-        /// Which one.
+        /// The obstacle.
         obstacle: ObstacleId,
-        /// Why not.
+        /// Reason why the claim is rejected.
         reason: Box<Self>,
     },
-    /// A body among many that nothing is proven of: its box is nearer than what is claimed, and no proof
-    /// names it.
-    #[error("nothing is proven of obstacle {obstacle}")]
+    /// The proof does not cover an obstacle whose box is nearer than the claim.
+    #[error("the proof does not cover obstacle {obstacle}")]
     Unproven {
-        /// Which one.
+        /// The obstacle.
         obstacle: ObstacleId,
     },
-    /// A proof names a body that is not there, or is ignored, or names bodies out of order.
-    #[error("obstacle {obstacle} is not there, or ignored, or out of order")]
+    /// The proof names an obstacle that does not exist or is ignored, or names obstacles out of order.
+    #[error("obstacle {obstacle} does not exist, is ignored, or is out of order")]
     UnknownObstacle {
-        /// Which one.
+        /// The obstacle, as named by the proof.
         obstacle: ObstacleId,
     },
 }
 
 impl CertificateError {
+    /// Wraps this error as that of one obstacle.
     #[doc(hidden)]
     #[must_use]
     #[inline]
@@ -224,6 +227,7 @@ impl CertificateError {
         Self::Obstacle { obstacle, reason: Box::new(self) }
     }
 
+    /// Builds [`Self::Facets`] from the triangles of the moving and of the fixed body.
     #[doc(hidden)]
     #[inline]
     pub const fn triangles([moving, fixed]: [u32; 2]) -> Self {
@@ -234,13 +238,13 @@ impl CertificateError {
 /// A proof to check: of a contact, or of a separation.
 #[derive(Debug, Clone, Copy)]
 pub enum Proof<'a> {
-    /// Of both bounds of a collision translation.
+    /// Proof of both bounds of a collision translation.
     Contact(&'a Certificate),
-    /// Of there being none.
+    /// Proof that the bodies never meet.
     Separation(&'a Separation),
 }
 
-/// What can be checked, each kind a reference under the name of its variant.
+/// Implements `From<&T>` for an enum of proofs, for the type `T` of each listed variant.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! checked_as {
@@ -257,20 +261,23 @@ pub use checked_as;
 
 checked_as!(Proof { Contact(Certificate), Separation(Separation) });
 
-/// A bound along a normal, and by how much rounding may have overstated it.
+/// The distance of the bodies along a normal, with its error.
 #[derive(Debug, Clone, Copy)]
 pub struct NormalBound {
-    /// `min_Q n.q - max_P n.p` at the support points.
+    /// `min_Q n.q - max_P n.p` at the support points, in world units.
     pub(crate) distance: f64,
-    /// What the computation, and bodies that reach beyond the support points, may take from it.
+    /// Bound on the amount by which `distance` exceeds the true minimum: rounding, and the reach of the
+    /// bodies beyond the support points.
     pub(crate) error: f64,
 }
 
 impl NormalBound {
-    /// For a unit normal, also in the frames of the moving and of the fixed body, the support points
-    /// along it, and what the bodies reach beyond them.
+    /// Computes the distance of the support points along `normal`, a unit vector.
+    ///
+    /// `normals` is the normal in the frames of the moving and of the fixed body. `beyond` bounds how far the
+    /// bodies reach beyond the support points.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+    #[expect(clippy::inline_always, reason = "a copy through memory stalls its reader")]
     pub(crate) fn new(
         setting: &Setting,
         noise: Noise,
@@ -284,23 +291,24 @@ impl NormalBound {
         Self { distance, error: noise.lowered() + beyond }
     }
 
-    /// The lower bound that it proves, in multiples of the direction, rounded down.
+    /// Returns the lower bound of the collision translation that the normal proves, in multiples of the
+    /// direction, rounded down. `steepness` is `n . d`.
     #[inline]
     pub(crate) fn lower_bound(&self, steepness: f64) -> f64 {
         ((self.distance - self.error) / steepness).next_down()
     }
 }
 
-/// What rounding, and a widening sideways, can make of the difference between the estimates of the
-/// upper and the lower bound for a normal, in multiples of the direction.
+/// Bounds the difference of the estimates of the upper and the lower bound that is due to rounding and to a
+/// lateral widening, in multiples of the direction.
 #[inline]
 pub fn gap_rounding(setting: &Setting, normal: DVec3, noise: Noise, widening: f64) -> f64 {
-    // Unwidened bodies, almost all, need no length.
+    // Without widening, which is the usual case, the lateral part is not needed.
     let across = if widening == 0.0 { 0.0 } else { normal.cross(setting.unit).length() };
     noise.gap(across, widening) / normal.dot(setting.direction)
 }
 
-/// Whether these are weights of a mean: none negative, together 1 to within rounding.
+/// Checks whether numbers are weights of a mean: none is negative, and their sum is 1 to within rounding.
 #[inline]
 pub fn are_weights(weights: &[f64]) -> bool {
     let sum: f64 = weights.iter().sum();
@@ -308,13 +316,13 @@ pub fn are_weights(weights: &[f64]) -> bool {
 }
 
 impl Certificate {
-    /// `upper - lower`: how far apart the proven bounds are, in multiples of the direction.
+    /// Returns `upper - lower`, the difference of the proven bounds, in multiples of the direction.
     pub fn gap(&self) -> f64 {
         self.upper - self.lower
     }
 
-    /// The checks of [`Cast::verify`](crate::Cast::verify) of bodies that are to keep a gap, or none, and how far the
-    /// bounds are apart that are proven.
+    /// Checks the certificate for [`Cast::verify`](crate::Cast::verify), with the minimum gap `keep` or 0.
+    /// Returns the proven difference of the bounds.
     pub(crate) fn verify(&self, setting: &Setting, keep: f64) -> Result<f64, CertificateError> {
         let normal = self.normal;
         let steepness = normal.dot(setting.direction);
@@ -330,11 +338,12 @@ impl Certificate {
         let upper = match gap_bound {
             Some(Ok(upper)) => upper,
             Some(Err(error)) if !noise.is_slight(keep) => return Err(error),
-            // Bodies that meet are as near as any gap; of a slight one that may be all that is proven.
+            // Bodies in contact are within any gap. For a slight gap, contact may be the only provable claim.
             _ => self.proven_upper(setting)? + noise.above_mean() / steepness,
         };
         let lower = proven_lower(setting, normal, keep)?;
-        // Of a slight gap the bounds are those of the bodies as they are, apart by the gap more.
+        // For a slight gap, the upper bound may be that of contact. The bounds then differ by the gap as
+        // well.
         let gap_share = if noise.is_slight(keep) { 2.0 * keep / steepness } else { 0.0 };
         let derived = max_rounding(setting, normal, noise) + gap_share;
         if self.lower.is_nan() || self.lower > lower {
@@ -349,7 +358,8 @@ impl Certificate {
         Ok(upper - lower)
     }
 
-    /// The upper bound, if the witness points are as near there as a gap; infinite, it claims nothing.
+    /// Returns the claimed upper bound if the distance of the witness points is at most `keep` after this
+    /// translation. An infinite bound is accepted.
     fn upper_bound_within_gap(
         &self,
         setting: &Setting,
@@ -358,7 +368,7 @@ impl Certificate {
     ) -> Result<f64, CertificateError> {
         let mean = self.weighted_mean(setting)?;
         let residual = (mean - setting.direction * self.upper).length() + noise.mean_kept();
-        // An infinite one is no distance.
+        // An infinite bound claims nothing. Its residual is not finite.
         if self.upper == f64::INFINITY || residual <= keep {
             Ok(self.upper)
         } else {
@@ -366,13 +376,14 @@ impl Certificate {
         }
     }
 
-    /// The estimate of the upper bound that the witness pairs prove.
+    /// Computes the estimate of the upper bound that the witness pairs prove.
     fn proven_upper(&self, setting: &Setting) -> Result<f64, CertificateError> {
         let mean = self.weighted_mean(setting)?;
         let upper = mean.dot(setting.unit) / setting.length;
         let residual = (mean - setting.direction * upper).length();
         let noise = setting.noise();
-        // Bodies that were widened sideways may miss by that, and claim no upper bound.
+        // Certificates of widened bodies have no upper bound, and their witness points may differ by the
+        // widening.
         let tolerance =
             if self.upper == f64::INFINITY { noise.residual_widened() } else { noise.residual() };
         if residual <= tolerance {
@@ -382,7 +393,9 @@ impl Certificate {
         }
     }
 
-    /// The point of `M` that the weights make of the pairs.
+    /// Computes the weighted mean of the pairs' points of `M`.
+    ///
+    /// Returns an error if the weights are not those of a mean, or if a vertex does not exist.
     fn weighted_mean(&self, setting: &Setting) -> Result<DVec3, CertificateError> {
         let weights = self.weights;
         if !are_weights(&weights) {
@@ -403,18 +416,22 @@ impl Certificate {
     }
 }
 
-/// The lower bound of the translation that the plane with this normal proves, of bodies that keep a gap.
+/// Computes the lower bound of the translation that the plane with this normal proves, for bodies with the
+/// minimum gap `keep`.
+///
+/// Returns [`CertificateError::Normal`] if `n . d` may not be positive.
 fn proven_lower(setting: &Setting, normal: DVec3, keep: f64) -> Result<f64, CertificateError> {
     let [least, most] = extent::dot(normal, setting.direction);
     if least <= 0.0 {
         return Err(CertificateError::Normal { normal });
     }
     let distance = reduced_by_gap(setting.distance_along(normal), normal, keep);
-    // Rounded down, whichever sign.
+    // The larger divisor gives the lower quotient if the distance is positive, the smaller one if it is
+    // negative.
     Ok((distance / if distance < 0.0 { least } else { most }).next_down())
 }
 
-/// At most what a height along a normal is more than a gap at right angles.
+/// Returns a lower bound of `distance - keep * |normal|`.
 fn reduced_by_gap(distance: f64, normal: DVec3, keep: f64) -> f64 {
     if keep == 0.0 {
         return distance;
@@ -423,15 +440,20 @@ fn reduced_by_gap(distance: f64, normal: DVec3, keep: f64) -> f64 {
     (distance - (keep * square.sqrt().next_up()).next_up()).next_down()
 }
 
-/// Returns the largest rounding that a certificate may state, which proves nothing: twice what a search states, of
-/// bodies that reach beyond their support points by no more than vertices may be off the planes of their faces.
+/// Returns the largest rounding that a certificate may state.
+///
+/// The field proves nothing. The limit is twice the amount of a search whose bodies reach beyond their
+/// support points by at most the tolerance for vertices off the planes of their faces.
 fn max_rounding(setting: &Setting, normal: DVec3, noise: Noise) -> f64 {
     let rounding =
         (noise.raised() + noise.lowered() + noise.beyond()) / normal.dot(setting.direction);
     2.0 * (gap_rounding(setting, normal, noise, noise.widest()) + rounding)
 }
 
-/// Checks that a normal is a unit vector, and orthogonal to the direction, to within rounding.
+/// Checks that a normal is a unit vector and orthogonal to the direction, to within rounding.
+///
+/// # Errors
+/// Returns [`CertificateError::Normal`] if the normal is not.
 #[inline]
 pub fn check_lateral_normal(setting: &Setting, normal: DVec3) -> Result<(), CertificateError> {
     let is_unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
@@ -442,10 +464,11 @@ pub fn check_lateral_normal(setting: &Setting, normal: DVec3) -> Result<(), Cert
     }
 }
 
-/// Returns at most the distance of the bodies' shadows, as what of a normal is orthogonal to the direction proves it;
-/// negative if they may overlap, then by no more along that normal.
+/// Returns a lower bound of the distance of the bodies' shadows, in world units, from the lateral component
+/// of a normal. A negative result bounds their overlap along this component.
 ///
-/// What of the normal is along the direction is worth at most its share of the size.
+/// The component of the normal along the direction contributes at most its share of the size `S`, which is
+/// subtracted.
 #[inline]
 pub fn shadow_gap(setting: &Setting, normal: DVec3) -> f64 {
     let [low, high] = extent::dot(normal, setting.direction);
@@ -462,8 +485,8 @@ pub fn shadow_gap(setting: &Setting, normal: DVec3) -> f64 {
 }
 
 impl Separation {
-    /// The checks of [`Cast::verify`](crate::Cast::verify) of bodies that are to keep a gap, or none, and the margin
-    /// proven.
+    /// Checks the separation for [`Cast::verify`](crate::Cast::verify), with the minimum gap `keep` or 0.
+    /// Returns the proven margin.
     pub(crate) fn verify(&self, setting: &Setting, keep: f64) -> Result<f64, CertificateError> {
         check_lateral_normal(setting, self.normal)?;
         let (proven, claimed) = (shadow_gap(setting, self.normal), self.margin);

@@ -1,17 +1,19 @@
-//! How far a body can move from where it is: three cases, told apart for all bodies in the same way.
+//! Clearance: how far a body can move from its current pose. The three cases are the same for all kinds of
+//! bodies.
 
 use super::outcome::{Contact, Grazing, Separated};
 use crate::body::{Body, ConvexPolyhedron};
 use derive_where::derive_where;
 
-/// The answer of [`Cast::clearance`](crate::Cast::clearance): how far the moving body can move *from
-/// where it is* along the direction. One definition for all bodies; what is known of each case, its
-/// proof included, is the body's.
+/// The answer of [`Cast::clearance`](crate::Cast::clearance): how far the moving body can move from its
+/// current pose along the direction.
+///
+/// The cases are the same for all bodies. Their contents depend on the kind of body:
 ///
 /// | | [`ConvexPolyhedron`] | `Solid` |
 /// |---|---|---|
 /// | `Blocked` | [`Contact`] | `SolidContact` |
-/// | `Free` | [`WhyFree`] | `SolidFree`: a separating plane, where one was found |
+/// | `Free` | [`WhyFree`] | `SolidFree`: a separating plane, if one was found |
 /// | `Overlapping` | [`OverlapAhead`] | `SolidOverlap` |
 #[derive(Debug)]
 #[derive_where(Clone, Copy, PartialEq)]
@@ -21,22 +23,24 @@ use derive_where::derive_where;
     serde(rename_all = "snake_case", bound = "")
 )]
 pub enum Clearance<B: Body = ConvexPolyhedron> {
-    /// Until it touches.
+    /// The body can move until it touches the other one.
     Blocked {
-        /// How far it may safely move, in multiples of the direction: the lower bound of where it is
-        /// stopped, and never negative. So it is less than the estimate, [`Contact::translation`] or
-        /// `SolidContact::translation`, by the rounding error.
+        /// Safe translation, in multiples of the direction: the lower bound of the contact, or 0 if that is
+        /// negative.
+        ///
+        /// It is less than the estimate, [`Contact::translation`] or `SolidContact::translation`, by the
+        /// rounding error.
         distance: f64,
-        /// The contact that stops it.
+        /// The blocking contact.
         contact: B::Contact,
     },
-    /// As far as it likes.
+    /// The body can move without limit.
     Free(B::Free),
-    /// The bodies overlap now, by more than is tolerated.
+    /// The bodies overlap in their current poses by more than the tolerance.
     Overlapping(B::Overlap),
 }
 
-/// Why nothing stops a convex body.
+/// Reason why nothing blocks a convex body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -44,27 +48,28 @@ pub enum Clearance<B: Body = ConvexPolyhedron> {
     serde(rename_all = "snake_case")
 )]
 pub enum WhyFree {
-    /// It slides along the other body or past it within the graze tolerance.
+    /// The body slides along the other one or past it, within the graze tolerance.
     Slides(Grazing),
-    /// The last contact, that of the [reversed](crate::Cast::reversed) cast, lies behind, or is where
-    /// it is now and it moves away from it.
+    /// The last contact, that of the [reversed](crate::Cast::reversed) cast, lies behind or at the current
+    /// pose, and the body moves away from it.
     Behind(Contact),
-    /// It never meets the other body along this direction.
+    /// The bodies never meet along this direction.
     Separated(Separated),
 }
 
-/// The overlap of two convex bodies, by the contacts at its ends.
+/// Overlap of two convex bodies, given by the contacts at its ends.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct OverlapAhead {
-    /// The first contact, behind.
+    /// The first contact, which lies behind.
     pub first: Contact,
-    /// The last contact, ahead: that of the reversed cast.
+    /// The last contact, which lies ahead: the first contact of the reversed cast.
     pub last: Contact,
 }
 
 impl Clearance {
-    /// That of a first contact which is ahead, or here to within rounding.
+    /// Returns [`Self::Blocked`] by a first contact. Returns `None` if the contact lies behind by more than
+    /// its rounding.
     #[inline]
     pub(crate) fn blocked_by(first: &Contact) -> Option<Self> {
         let is_ahead = first.translation >= -first.certificate.rounding;
@@ -72,7 +77,10 @@ impl Clearance {
         is_ahead.then_some(Self::Blocked { distance, contact: *first })
     }
 
-    /// That of a first contact which is not.
+    /// Returns the clearance of bodies whose first contact lies behind: an overlap if the last contact lies
+    /// ahead by more than its rounding, otherwise free.
+    ///
+    /// `last` is the first contact of the reversed cast.
     #[inline]
     pub(crate) fn beyond_first(first: Contact, last: Contact) -> Self {
         if last.translation < -last.certificate.rounding {
@@ -84,8 +92,8 @@ impl Clearance {
 }
 
 impl<B: Body> Clearance<B> {
-    /// How far the moving body may safely move, in multiples of the direction: infinite where
-    /// nothing stops it, `None` if the bodies overlap now.
+    /// Returns the safe translation in multiples of the direction. It is infinite if nothing blocks the body,
+    /// and `None` if the bodies overlap now.
     pub fn distance(&self) -> Option<f64> {
         match self {
             Self::Blocked { distance, .. } => Some(*distance),
@@ -94,7 +102,7 @@ impl<B: Body> Clearance<B> {
         }
     }
 
-    /// Whether nothing stops the moving body.
+    /// Checks whether nothing blocks the moving body.
     pub const fn is_free(&self) -> bool {
         matches!(self, Self::Free(_))
     }

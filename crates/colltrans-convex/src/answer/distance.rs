@@ -1,14 +1,13 @@
-//! How far apart two bodies are, how deep they overlap, and whether they are closer than a length: with
-//! bounds on either side, and what proves each.
+//! Distance, penetration depth and proximity of two bodies, with proven bounds.
 //!
-//! Notation. `M = {q - p : p in P, q in Q}`. The distance is that of `M` from the origin; the depth, if `M`
-//! contains the origin, is that of the origin from the outside of `M`.
+//! Notation: `M = {q - p : p in P, q in Q}`. The distance is that of `M` from the origin. If `M` contains the
+//! origin, the depth is the distance of the origin from the boundary of `M`.
 //!
-//! - Distance from below: for any `n`, `|q - p| >= (min_Q n.q - max_P n.p) / |n|`.
-//! - Distance from above: a point of each body.
-//! - Depth from below: a closed surface of triangles between points of `M` that winds around the origin;
-//!   `M` contains each of them and, being convex, all that they enclose.
-//! - Depth from above: moved by `-min_M n.m` against a unit normal `n`, the bodies are parted.
+//! - Distance, lower bound: for any `n`, `|q - p| >= (min_Q n.q - max_P n.p) / |n|`.
+//! - Distance, upper bound: a point of each body.
+//! - Depth, lower bound: a closed triangulated surface around the origin, whose corners are points of `M`.
+//!   `M` contains everything that the surface encloses, because `M` is convex.
+//! - Depth, upper bound: a translation by `-min_M n.m` against a unit normal `n` separates the bodies.
 
 use derive_where::derive_where;
 use glam::DVec3;
@@ -17,44 +16,47 @@ use crate::answer::Steps;
 use crate::body::{Body, ConvexPolyhedron, Features};
 use crate::setting::VertexPair;
 
-/// The answer of [`Pair::distance`](crate::Pair::distance): how far apart the bodies are, and where.
+/// The answer of [`Pair::distance`](crate::Pair::distance): the distance of the bodies, and their nearest
+/// points.
 ///
-/// `lower <= true distance <= upper`, exactly, for the bodies as given, and for the points that they were made from.
+/// `lower <= true distance <= upper` holds exactly, for the bodies as given and for the points that they were
+/// built from.
 #[derive(Debug)]
 #[derive_where(Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]
 pub struct Distance<B: Body = ConvexPolyhedron> {
-    /// The gap of a plane between the bodies, in world units, rounded down; 0 where none was found: they
-    /// overlap, or are less apart than rounding can tell.
+    /// Gap of a plane between the bodies, in world units, rounded down. It is 0 if no plane was found: the
+    /// bodies overlap, or their distance is below the rounding error.
     pub lower: f64,
-    /// The distance of two points of the bodies, rounded up; 0 where they are proven to meet.
+    /// Distance of two points of the bodies, in world units, rounded up; 0 if the bodies are proven to meet.
     pub upper: f64,
-    /// The point of the moving body that is nearest to the fixed one, in the world, rounded. Of bodies
-    /// that overlap a point of both.
+    /// Point of the moving body that is nearest to the fixed one, in the world, rounded. For overlapping
+    /// bodies, a point of both.
     pub on_moving: DVec3,
-    /// The point of the fixed body that is nearest to the moving one.
+    /// Point of the fixed body that is nearest to the moving one, in the world, rounded.
     pub on_fixed: DVec3,
-    /// Unit normal in the world, from the moving body to the fixed one: that of the plane, if there is one.
+    /// Unit normal of the plane, in the world, pointing from the moving body to the fixed one; `None` without
+    /// a plane.
     pub normal: Option<DVec3>,
-    /// The parts of the bodies that lie in the planes across the normal, if there is one.
+    /// Parts of the bodies that lie in the planes perpendicular to the normal; `None` without a plane.
     pub features: Option<Features>,
-    /// What proves the upper bound.
+    /// Proof of the upper bound.
     pub near: B::Near,
-    /// What proves the lower bound, where that is not 0.
+    /// Proof of the lower bound; `None` if that is 0.
     pub gap: Option<B::Gap>,
-    /// How much work it was.
+    /// Work done.
     #[cfg_attr(feature = "serde", serde(default))]
     pub steps: B::Steps,
 }
 
 impl<B: Body> Distance<B> {
-    /// `[lower, upper]`.
+    /// Returns `[lower, upper]`.
     pub const fn bounds(&self) -> [f64; 2] {
         [self.lower, self.upper]
     }
 }
 
-/// The answer of [`Pair::within`](crate::Pair::within): are the bodies closer than a length?
+/// The answer of [`Pair::within`](crate::Pair::within): whether the bodies are closer than a length.
 #[derive(Debug)]
 #[derive_where(Clone, Copy, PartialEq)]
 #[cfg_attr(
@@ -63,16 +65,16 @@ impl<B: Body> Distance<B> {
     serde(rename_all = "snake_case", bound = "")
 )]
 pub enum Within<B: Body = ConvexPolyhedron> {
-    /// They are: two points of them are at most the length apart.
+    /// The bodies are: the distance of two of their points is at most the length.
     Closer(B::Near),
-    /// They are not: the gap of a plane between them is more than the length.
+    /// The bodies are not: the gap of a plane between them exceeds the length.
     Farther(B::Gap),
-    /// The length lies between the bounds that rounding leaves, at most a few noises apart: those of
-    /// [`Pair::distance`](crate::Pair::distance).
+    /// The length lies between the bounds of [`Pair::distance`](crate::Pair::distance), which differ by at
+    /// most a few noises.
     Undecided(Distance<B>),
 }
 
-/// The proof that two convex bodies are not nearer to each other than a number: a plane between them.
+/// Proof that the distance of two convex bodies is at least a number: a plane between them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -82,11 +84,11 @@ pub enum Within<B: Body = ConvexPolyhedron> {
 pub struct PlaneGap {
     /// Unit normal in the world, from the moving body to the fixed one.
     pub normal: DVec3,
-    /// At most `min_Q n.q - max_P n.p`, and so at most the distance; in world units, rounded down.
+    /// Lower bound of `min_Q n.q - max_P n.p` and of the distance, in world units, rounded down.
     pub gap: f64,
 }
 
-/// The proof that two convex bodies are not farther from each other than a number: a point of each.
+/// Proof that the distance of two convex bodies is at most a number: a point of each.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -94,19 +96,23 @@ pub struct PlaneGap {
     serde(deny_unknown_fields)
 )]
 pub struct NearPoints {
-    /// Pairs of vertices.
+    /// Pairs of vertices whose weighted means are the points.
     pub pairs: [VertexPair; 4],
-    /// Their weights, not negative: the points are `sum w_i p_i / sum w_i` and `sum w_i q_i / sum w_i`.
+    /// Weights of the pairs, not negative. The points are `sum w_i p_i / sum w_i` and
+    /// `sum w_i q_i / sum w_i`.
     pub weights: [f64; 4],
-    /// At least the distance of the two points, in world units, rounded up. If 0, the differences of
-    /// the pairs enclose the origin, so that the bodies meet; then the weights prove nothing.
+    /// Upper bound of the distance of the two points, in world units, rounded up.
+    ///
+    /// If it is 0, the differences of the pairs enclose the origin, so the bodies meet. The weights prove
+    /// nothing in this case.
     pub distance: f64,
 }
 
-/// The answer of [`Pair::depth`](crate::Pair::depth): the least translation, over all directions, that
-/// parts two convex bodies.
+/// The answer of [`Pair::depth`](crate::Pair::depth): the length of the shortest translation, in any
+/// direction, that separates two convex bodies.
 ///
-/// `lower <= true depth <= upper`, exactly, for the bodies as given; both are 0 if they are apart.
+/// `lower <= true depth <= upper` holds exactly for the bodies as given. Both bounds are 0 if the bodies are
+/// separated.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -115,32 +121,36 @@ pub struct NearPoints {
 )]
 #[non_exhaustive]
 pub struct Depth {
-    /// The bodies overlap after every shorter translation of the moving body; rounded down.
+    /// Lower bound, in world units, rounded down: the bodies overlap after every shorter translation of the
+    /// moving body.
     pub lower: f64,
-    /// The length of a translation, along `direction`, after which they do not; rounded up.
+    /// Upper bound, in world units, rounded up: a translation of this length along `direction` separates the
+    /// bodies.
     pub upper: f64,
-    /// Unit vector in the world.
+    /// Direction of the separating translation of the moving body, a unit vector in the world. It proves the
+    /// upper bound.
     pub direction: DVec3,
-    /// What proves the lower bound; what proves the upper one is the direction.
+    /// Proof of the lower bound.
     pub enclosure: Enclosure,
-    /// How much work it was. A proof as a file does not say.
+    /// Work done. A proof in a file omits this field.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "Steps::is_zero"))]
     pub steps: Steps,
 }
 
 impl Depth {
-    /// `[lower, upper]`.
+    /// Returns `[lower, upper]`.
     pub const fn bounds(&self) -> [f64; 2] {
         [self.lower, self.upper]
     }
 
-    /// The translation of the moving body that parts the bodies.
+    /// Returns the translation of the moving body that separates the bodies, a vector in the world.
     pub fn translation(&self) -> DVec3 {
         self.direction * self.upper
     }
 }
 
-/// A closed surface of triangles around the origin, between points `q - p`; nothing if no depth is claimed.
+/// A closed triangulated surface around the origin, whose corners are points `q - p`. It is empty if no depth
+/// is claimed.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(
     feature = "serde",
@@ -148,9 +158,9 @@ impl Depth {
     serde(deny_unknown_fields)
 )]
 pub struct Enclosure {
-    /// The pairs of vertices whose differences are its corners.
+    /// Pairs of vertices whose differences are the corners.
     pub pairs: Vec<VertexPair>,
-    /// Its triangles, counter-clockwise as seen from outside, by positions among the pairs.
+    /// Triangles, counter-clockwise as seen from outside, as indices into `pairs`.
     pub triangles: Vec<[u32; 3]>,
     /// For each triangle a unit vector along which all its corners are farther from the origin than the
     /// depth.

@@ -1,4 +1,4 @@
-//! What a query answers, and how anyone checks it.
+//! Answers of queries, and the checks of their proofs.
 
 mod certificate;
 mod clearance;

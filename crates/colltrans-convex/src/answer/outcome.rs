@@ -1,4 +1,4 @@
-//! What a query answers: every case has a name and carries its proof.
+//! The outcome of a cast. Each case carries its proof.
 
 use derive_where::derive_where;
 use glam::DVec3;
@@ -9,11 +9,12 @@ use crate::body::{Body, ConvexPolyhedron};
 use crate::setting::VertexPair;
 use colltrans_kernel::bounded::{Bounded, RangeEnd};
 
-/// The answer of [`Cast::first_contact`](crate::Cast::first_contact): do the bodies meet along the direction, and where.
+/// The answer of [`Cast::first_contact`](crate::Cast::first_contact): whether and where the bodies meet along
+/// the direction.
 ///
-/// Told apart by the bodies' shadows (projections along the direction): they overlap by more than
-/// the graze tolerance, by no more than it, or not at all. Between `Solid`s there is no
-/// grazing: shadows overlap, or do not.
+/// The cases are distinguished by the overlap of the bodies' shadows, their projections along the direction:
+/// more than the graze tolerance, at most the graze tolerance, or none. `Solid`s do not graze; their shadows
+/// overlap or do not.
 #[derive(Debug)]
 #[derive_where(Clone, Copy, PartialEq)]
 #[cfg_attr(
@@ -22,17 +23,16 @@ use colltrans_kernel::bounded::{Bounded, RangeEnd};
     serde(rename_all = "snake_case", bound = "")
 )]
 pub enum Outcome<B: Body = ConvexPolyhedron> {
-    /// The moving body meets the fixed one at some translation (which may be negative).
+    /// The moving body meets the fixed one at some translation, which may be negative.
     Contact(B::Contact),
-    /// The shadows along the direction overlap sideways by no more than the graze tolerance:
-    /// the bodies slide along each other.
+    /// The shadows overlap laterally by at most the graze tolerance: the bodies slide along each other.
     Grazing(B::Grazing),
-    /// The bodies never meet along the direction, however far one moves, forwards or backwards.
+    /// The bodies never meet along the direction, neither forwards nor backwards.
     Separated(B::Separated),
 }
 
 impl Outcome {
-    /// The work done for it.
+    /// Returns the work done for this outcome.
     pub fn steps(&self) -> Steps {
         match self {
             Self::Contact(contact) | Self::Grazing(Grazing { contact, .. }) => contact.steps,
@@ -41,31 +41,32 @@ impl Outcome {
     }
 }
 
-/// Where the bodies first meet along the direction.
+/// The first contact of two convex bodies along the direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Contact {
-    /// The collision translation in multiples of the direction (a length if the direction is a
-    /// unit vector): the smallest `t` at which the moving body, moved by `t * direction`, meets the
-    /// fixed one. Negative: the bodies overlap now, or the contact lies behind. The best estimate,
-    /// between the certificate's bounds.
+    /// The collision translation: the smallest `t` at which the moving body, moved by `t * direction`, meets
+    /// the fixed one. Given in multiples of the direction (a length if the direction is a unit vector).
+    ///
+    /// It is the best estimate, between the certificate's bounds. A negative value means that the bodies
+    /// overlap now, or that the contact lies behind.
     pub translation: f64,
-    /// Unit contact normal in the world, from the moving body to the fixed one;
-    /// `normal . direction > 0`. Where corners meet, or parallel edges, it is one of several.
+    /// Unit contact normal in the world, pointing from the moving body to the fixed one;
+    /// `normal . direction > 0`. It is not unique if vertices or parallel edges meet.
     pub normal: DVec3,
     /// A vertex of each body in the contact plane.
     pub support: VertexPair,
-    /// Lower and upper bound with their proofs.
+    /// Lower and upper bound of the translation, with their proofs.
     pub certificate: Certificate,
-    /// The solver asked for (never `Auto`); what the search began with is [`Steps::started_from`].
+    /// The solver of the query, with `Auto` resolved. [`Steps::started_from`] is the start of the search.
     pub solver: Solver,
     /// Work done.
     pub steps: Steps,
 }
 
 impl Contact {
-    /// Of what an answer tells, in the order of the fields.
+    /// Builds a contact from its fields, in their order.
     #[doc(hidden)]
     pub const fn new(
         translation: f64,
@@ -78,55 +79,54 @@ impl Contact {
         Self { translation, normal, support, certificate, solver, steps }
     }
 
-    /// The translation with its proven bounds. `upper` is infinite where the bodies slide so lightly
-    /// that they may not touch.
+    /// Returns the translation with its proven bounds, in multiples of the direction. `upper` is infinite if
+    /// the bodies slide so closely that they may not touch.
     pub fn bounded(&self) -> Bounded {
         let Certificate { lower, upper, .. } = self.certificate;
         Bounded { value: self.translation, lower, upper }
     }
 
-    /// Of the first contact of a [reversed](crate::Cast::reversed) cast: where the bodies meet last
-    /// along the direction itself, in multiples of it, with its proven bounds. Beyond `upper` they
-    /// never meet.
+    /// Returns where the bodies meet last along the original direction, in multiples of it, if this is the
+    /// first contact of the [reversed](crate::Cast::reversed) cast. The bodies never meet beyond `upper`.
     pub fn exit(&self) -> Bounded {
         self.bounded().negated()
     }
 }
 
-/// The bodies slide along each other: their shadows overlap by no more than the graze tolerance.
+/// Result for bodies that slide along each other: their shadows overlap by at most the graze tolerance.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Grazing {
-    /// Unit vector in the world, orthogonal to the direction, from the moving body's shadow to the
+    /// Unit vector in the world, orthogonal to the direction, pointing from the moving body's shadow to the
     /// fixed one's.
     pub separating_direction: DVec3,
-    /// How far the shadows overlap along `separating_direction`, in world units: at most the graze
-    /// tolerance; negative when they miss each other by less than rounding error can tell.
+    /// Overlap of the shadows along `separating_direction`, in world units, at most the graze tolerance. It
+    /// is negative if the shadows are separated by less than the rounding error.
     pub overlap: f64,
-    /// The contact that results if the overlap is taken for real. Its certificate claims an upper
-    /// bound only where the shadows overlap by more than rounding can tell (a graze tolerance may be
-    /// larger than that): there the line pierces the triangle of its pairs, as of any other contact.
-    /// Else bodies widened sideways were asked, of which nothing is known from above, and `upper` is
-    /// infinite.
+    /// The contact that results if the overlap counts as contact.
+    ///
+    /// Its certificate claims an upper bound only if the overlap exceeds the rounding error, which a graze
+    /// tolerance may allow. Otherwise it is the contact of laterally widened bodies. This proves no upper
+    /// bound of the original ones, and `upper` is infinite.
     pub contact: Contact,
 }
 
-/// The bodies never meet along the direction.
+/// Result for bodies that never meet along the direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Separated {
     /// The proof: a unit normal orthogonal to the direction, and the margin along it.
     pub certificate: Separation,
-    /// The solver that found it.
+    /// The solver that computed the answer, with `Auto` resolved.
     pub solver: Solver,
     /// Work done.
     pub steps: Steps,
 }
 
 impl Separated {
-    /// Of what an answer tells, in the order of the fields.
+    /// Builds a separation result from its fields, in their order.
     #[doc(hidden)]
     pub const fn new(certificate: Separation, solver: Solver, steps: Steps) -> Self {
         Self { certificate, solver, steps }

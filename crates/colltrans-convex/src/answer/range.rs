@@ -1,4 +1,4 @@
-//! Answers that take more than one cast: contact ranges, depths and intersections.
+//! Answers that need more than one cast: contact ranges, depths along a direction and intersections.
 
 use derive_where::derive_where;
 use glam::DVec3;
@@ -8,9 +8,10 @@ use super::outcome::Outcome;
 use crate::body::{Body, ConvexPolyhedron};
 use colltrans_kernel::bounded::{Bounded, RangeEnd};
 
-/// The answer of [`Cast::contact_range`](crate::Cast::contact_range): the translations at which the
-/// bodies meet first and last, with the contact at either end. Convex bodies meet at all between them;
-/// `Solid`s may part and meet again.
+/// The answer of [`Cast::contact_range`](crate::Cast::contact_range): the first and the last contact along
+/// the direction.
+///
+/// Convex bodies meet at all translations between the two. `Solid`s may separate and meet again.
 #[derive(Debug)]
 #[derive_where(Clone, Copy, PartialEq)]
 #[cfg_attr(
@@ -19,20 +20,19 @@ use colltrans_kernel::bounded::{Bounded, RangeEnd};
     serde(rename_all = "snake_case", bound = "")
 )]
 pub enum ContactRange<B: Body = ConvexPolyhedron> {
-    /// The bodies meet at translations in [`ContactRange::interval`] and at no other.
+    /// The bodies meet at translations in [`ContactRange::interval`] only.
     Contact {
         /// First contact along the direction.
         first: B::Contact,
-        /// Last contact along the direction: the first of the [reversed](crate::Cast::reversed)
-        /// cast, as that one gives it (its certificate is for that direction, and its translation
-        /// counts in multiples of it).
+        /// Last contact along the direction: the first one of the [reversed](crate::Cast::reversed) cast. Its
+        /// certificate refers to the reversed direction, and its translation is a multiple of that direction.
         last: B::Contact,
     },
-    /// The shadows overlap by no more than the graze tolerance.
+    /// The shadows overlap by at most the graze tolerance.
     Grazing {
         /// First contact along the direction.
         first: B::Grazing,
-        /// Last contact, of the reversed cast.
+        /// Last contact along the direction: the first one of the reversed cast.
         last: B::Grazing,
     },
     /// The bodies never meet.
@@ -40,13 +40,14 @@ pub enum ContactRange<B: Body = ConvexPolyhedron> {
 }
 
 impl<B: Body> ContactRange<B> {
-    /// `[enter, exit]` in multiples of the direction, `None` if the bodies never meet: best estimates, as
-    /// [`Self::bounds`] encloses them.
+    /// Returns `[enter, exit]` in multiples of the direction, `None` if the bodies never meet. These are best
+    /// estimates, enclosed by [`Self::bounds`].
     pub fn interval(&self) -> Option<[f64; 2]> {
         self.bounds().map(|ends| ends.map(|end| end.value))
     }
 
-    /// Where the bodies meet first and last along the direction, with proven bounds.
+    /// Returns the translations of the first and of the last contact, in multiples of the direction, with
+    /// proven bounds. `None` if the bodies never meet.
     pub fn bounds(&self) -> Option<[Bounded; 2]> {
         match self {
             Self::Contact { first, last } => Some([first.bounded(), last.exit()]),
@@ -57,8 +58,8 @@ impl<B: Body> ContactRange<B> {
 }
 
 impl ContactRange {
-    /// How far the moving body can move from where it is, as [`Cast::clearance`](crate::Cast::clearance)
-    /// says.
+    /// Returns how far the moving body can move from its current pose, as
+    /// [`Cast::clearance`](crate::Cast::clearance) does.
     pub fn clearance(&self) -> Clearance {
         match *self {
             Self::Contact { first, last } => Clearance::blocked_by(&first)
@@ -74,10 +75,10 @@ impl ContactRange {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct DirectionalDepth {
-    /// How far the moving body has to go back, in multiples of the direction, until the overlap has
-    /// ended: never less than the true depth; 0 if the bodies do not overlap.
+    /// Distance by which the moving body must move back until the overlap ends, in multiples of the
+    /// direction. It is never less than the true depth, and 0 if the bodies do not overlap.
     pub depth: f64,
-    /// What it follows from, with its proof.
+    /// The clearance from which the depth is derived, with its proof.
     pub clearance: Clearance,
 }
 
@@ -86,10 +87,10 @@ pub struct DirectionalDepth {
 #[derive_where(Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(bound = ""))]
 pub struct Intersection<B: Body = ConvexPolyhedron> {
-    /// Whether the bodies, as closed sets, have a point in common: of convex ones to within rounding
-    /// error, of solids exactly.
+    /// Whether the bodies, as closed sets, have a common point. Exact for solids, to within rounding error
+    /// for convex bodies.
     pub meets: bool,
-    /// What shows it: a [`CentralCast`] of convex bodies, a `SolidMeeting`.
+    /// The evidence: a [`CentralCast`] of convex bodies, a `SolidMeeting` of solids.
     #[cfg_attr(feature = "serde", serde(flatten))]
     pub evidence: B::Evidence,
 }
@@ -99,8 +100,8 @@ pub struct Intersection<B: Body = ConvexPolyhedron> {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct CentralCast {
-    /// Its direction: between the centres.
+    /// Direction of the cast, the unit vector between the centres.
     pub direction: DVec3,
-    /// What it found: a separation, or a first contact ahead, proves that they do not meet.
+    /// Outcome of the cast. A separation, or a first contact ahead, proves that the bodies do not meet.
     pub outcome: Outcome,
 }

@@ -1,6 +1,6 @@
-//! By whom, and with how much work, an answer was found.
+//! The solver and the work of an answer.
 
-/// How the search is narrowed. The answer, its certificate and its accuracy are the same.
+/// How the search is narrowed. The answer, its certificate and its accuracy do not depend on this choice.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(
     feature = "serde",
@@ -8,19 +8,22 @@
     serde(rename_all = "snake_case")
 )]
 pub enum Solver {
-    /// Whichever was measured to be fastest: at present portal refinement, for all bodies.
+    /// The solver that was fastest in measurements: at present portal refinement, for all bodies.
     #[default]
     Auto,
-    /// The collision translation algorithm (the paper, section III): convex minimisation over pairs
-    /// of planar sections, from the centre of the levels, or in a [`Tracker`](crate::Tracker) from those around the last
-    /// solution, until the features that touch are seen to solve the problem. One portal, the face of `M` over
-    /// these, makes the certificate of it; where the exit is not seen, portal refinement finds the face.
-    /// [`cta::Options`](crate::cta::Options) is what can be chosen. Bodies of lower dimension
-    /// have no sections to speak of: portal refinement does their work alone. A body's first cast
-    /// that solves a planar problem makes its sections
+    /// The collision translation algorithm (the paper, section III): convex minimisation over pairs of planar
+    /// sections.
+    ///
+    /// The search starts at the central section levels, or in a [`Tracker`](crate::Tracker) at the levels
+    /// around the last solution. It ends when the touching features are shown to solve the problem. The face
+    /// of `M` over these features is the portal of the certificate. If this exit test fails, portal
+    /// refinement finds the face. [`cta::Options`](crate::cta::Options) configures the algorithm.
+    ///
+    /// Bodies of lower dimension are solved by portal refinement alone, because their sections are
+    /// degenerate. A body's first cast that solves a planar problem builds its sections
     /// ([`ConvexPolyhedron::prepare_sections`](crate::ConvexPolyhedron::prepare_sections)).
     Cta,
-    /// Portal refinement from scratch, starting from what the contact of two ellipsoids would be.
+    /// Portal refinement from scratch, starting from the contact normal of two ellipsoids.
     Portal,
 }
 
@@ -29,38 +32,39 @@ pub enum Solver {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Steps {
-    /// Planar problems solved (minimisation steps of the collision translation algorithm).
+    /// Number of planar problems solved (minimisation steps of the collision translation algorithm).
     pub planar_problems: u32,
-    /// Supporting planes of the Minkowski difference computed (one support point on each body).
+    /// Number of supporting planes of the Minkowski difference computed (one support point on each body).
     pub supports: u32,
-    /// Portals visited; by `FixedRotations` faces of the Minkowski difference.
+    /// Number of portals visited; for `FixedRotations`, the number of faces of the Minkowski difference.
     pub pivots: u32,
-    /// Iterations of the loops inside planar problems: vertices of sections computed, vertices of
-    /// the bodies climbed over, halvings in searches.
+    /// Number of iterations inside planar problems: section vertices computed, body vertices climbed over,
+    /// and bisection steps.
     pub iterations: u32,
-    /// Sides that the region of section levels had at most, which the collision translation algorithm cuts down; 0 if
-    /// there was none, and missing as data.
+    /// Maximum number of sides of the region of section levels, which the collision translation algorithm
+    /// cuts down. It is 0 if there was no region, and is then omitted in serialised data.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "is_zero_count"))]
     pub region_sides: u32,
-    /// What the search began with; as data it is missing where that was nothing but the bodies.
+    /// Start of the search. [`StartedFrom::Scratch`] is omitted in serialised data.
     #[cfg_attr(feature = "serde", serde(default, skip_serializing_if = "StartedFrom::is_scratch"))]
     pub started_from: StartedFrom,
 }
 
 impl Steps {
-    /// Of a cast that exchanged so many corners.
+    /// Builds the work of a cast that made `pivots` exchanges and nothing else.
     #[doc(hidden)]
     pub fn of_pivots(pivots: u32, started_from: StartedFrom) -> Self {
         Self { pivots, started_from, ..Self::default() }
     }
 
+    /// Checks whether no work was counted.
     #[cfg(feature = "serde")]
     pub(crate) fn is_zero(&self) -> bool {
         *self == Self::default()
     }
 }
 
-/// Counts another cast in; of both starts the one with more work stands, of both regions that with more sides.
+/// Adds the work of another cast. `started_from` and `region_sides` become the larger of both values.
 impl std::ops::AddAssign for Steps {
     fn add_assign(&mut self, other: Self) {
         self.planar_problems += other.planar_problems;
@@ -72,7 +76,7 @@ impl std::ops::AddAssign for Steps {
     }
 }
 
-/// What the search for an answer began with, from the least work to the most.
+/// Start of a search, ordered from the least to the most work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 #[cfg_attr(
     feature = "serde",
@@ -87,7 +91,7 @@ pub enum StartedFrom {
     Features,
     /// The region around the last answer ([`Tracker`](crate::Tracker) only).
     Region,
-    /// Nothing but the bodies.
+    /// Only the bodies.
     #[default]
     Scratch,
 }
@@ -105,14 +109,14 @@ colltrans_kernel::written::named!(
 );
 
 #[cfg(feature = "serde")]
-#[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde calls")]
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "signature required by serde")]
 fn is_zero_count(count: &u32) -> bool {
     *count == 0
 }
 
 #[cfg(feature = "serde")]
 impl StartedFrom {
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde calls")]
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "signature required by serde")]
     fn is_scratch(&self) -> bool {
         *self == Self::Scratch
     }

@@ -1,4 +1,4 @@
-//! What can be asked of a contact: witness points, features, and a pose just before it.
+//! Details of a contact, computed on request: witness points, features, and a pose just before the contact.
 
 use glam::DVec3;
 
@@ -12,19 +12,21 @@ use colltrans_kernel::noise::Noise;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct WitnessPoints {
-    /// On the moving body, at its *start* pose.
+    /// Point on the moving body, in its *start* pose.
     pub on_moving: DVec3,
-    /// On the fixed body: the contact point. It is `on_moving + translation * direction` up to
-    /// rounding. Where an edge or a face lies on the other body, it is one of many.
+    /// Point on the fixed body: the contact point. It equals `on_moving + translation * direction` up to
+    /// rounding, and is not unique if an edge or a face lies on the other body.
     pub on_fixed: DVec3,
 }
 
-/// Steps back from a contact before the pose is left where it was.
+/// Maximum number of steps back from a contact, after which [`Contact::pose_before`] returns the start pose.
 const MAX_STEPS_BACK: u32 = 64;
 
 impl Contact {
-    /// The witness points: where the bodies touch. `cast` is the one that was answered; for the
-    /// `last` contact of a [`ContactRange`](crate::ContactRange), the reversed one.
+    /// Computes the witness points, where the bodies touch.
+    ///
+    /// `cast` is the answered cast, or the reversed one for the `last` contact of a
+    /// [`ContactRange`](crate::ContactRange).
     ///
     /// # Panics
     /// If `cast` is about other bodies, which lack the vertices of the certificate.
@@ -39,7 +41,10 @@ impl Contact {
         }
     }
 
-    /// The parts of the bodies that touch. `cast` as in [`Self::points`].
+    /// Computes the features of the bodies that touch.
+    ///
+    /// `cast` is the answered cast, or the reversed one for the `last` contact of a
+    /// [`ContactRange`](crate::ContactRange).
     ///
     /// # Panics
     /// If `cast` is about other bodies, which lack the vertices of the certificate.
@@ -54,12 +59,14 @@ impl Contact {
         }
     }
 
-    /// The moving body's pose after the motion up to this contact and not beyond, whatever rounding
-    /// makes of the new translation: on the way and there, the contact plane lies between the
-    /// interiors of the bodies. The start pose itself if the contact lies behind.
+    /// Computes the moving body's pose at this contact, or slightly before it.
+    ///
+    /// The contact plane separates the interiors of the bodies along the whole motion and at the pose,
+    /// including the rounding error of the new translation. Returns the start pose if the contact lies
+    /// behind.
     ///
     /// # Errors
-    /// The new translation is out of range.
+    /// Returns an error if the new translation is out of range.
     ///
     /// ```
     /// # use colltrans::glam::DVec3;
@@ -84,7 +91,7 @@ impl Contact {
                 break;
             }
             let to = from + d * t;
-            // What was really moved, towards the contact plane, against what may be.
+            // Compares the rounded displacement along the normal with the proven bound.
             let moved = to - from;
             let rounding = 8.0 * f64::EPSILON * (n.abs().dot(moved.abs()) + along * t);
             let beyond = n.dot(moved) + rounding - along * self.certificate.lower;

@@ -1,8 +1,8 @@
-//! A query as a value: two placed bodies and a direction, checked once.
+//! A cast: two placed bodies and a direction, checked once and queried many times.
 //!
-//! The way: [`Cast`] holds the setting and the choices, `derive` makes the answers
-//! that take more than one cast, `contact` computes what is not needed for an answer but asked of
-//! it; `replay` saves a query as a file (feature `json`).
+//! [`Cast`] holds the setting and the options. `multi_cast` derives the answers that need more than one cast,
+//! `contact` computes details of a contact on request, `sideways` measures overlaps of shadows, and `replay`
+//! saves a query as a file (feature `json`).
 
 mod contact;
 mod multi_cast;
@@ -31,16 +31,18 @@ pub use multi_cast::{clearance_of, common_end, depth_of, intersection_by_casts, 
 pub use replay::{Case, CaseError};
 pub use sideways::verified_overlap;
 
-/// A kind of body that a [`Cast`] is answered for: this crate implements it for convex
-/// polyhedra, `colltrans-solid` for solids. It is not meant to be implemented elsewhere.
+/// A kind of body for which a [`Cast`] can be answered.
+///
+/// This crate implements it for convex polyhedra, `colltrans-solid` for solids. It is not meant to be
+/// implemented elsewhere.
 pub trait CastBody: Body {
-    /// What a cast can be checked against.
+    /// The proofs that a cast can check.
     type CastProof<'p>;
 
-    /// Refuses choices that a cast does not accept.
+    /// Checks the options of a cast.
     #[doc(hidden)]
     fn check_options(cast: &Cast<'_, Self>) -> Result<(), QueryError>;
-    /// The choices with a gap that is to be kept.
+    /// Returns the options with a minimum gap.
     #[doc(hidden)]
     fn keeping(options: Self::Options, gap: f64) -> Self::Options;
     #[doc(hidden)]
@@ -58,13 +60,11 @@ pub trait CastBody: Body {
     ) -> Result<f64, CertificateError>;
 }
 
-/// A moving body, a fixed one, and the direction in which the first is translated: what all queries
-/// are asked of.
+/// A moving body, a fixed body, and the direction in which the moving body is translated.
 ///
-/// The poses place both bodies in the world; the direction is a vector of the world of any length,
-/// and translations count in multiples of it. Made once, asked as often as one likes: nothing is
-/// searched before a question is asked. See [`Tracker`](crate::Tracker) for questions that follow
-/// each other closely.
+/// The poses place both bodies in the world. The direction is a vector of the world of any length, and
+/// translations are multiples of it. A cast is cheap to build, because a search runs only when a query method
+/// is called. For sequences of similar queries, see [`Tracker`](crate::Tracker).
 ///
 /// ```
 /// use colltrans::glam::DVec3;
@@ -100,12 +100,12 @@ pub struct Cast<'a, B: Body = ConvexPolyhedron> {
 }
 
 impl<'a, B: Body> Cast<'a, B> {
-    /// With the default choices.
+    /// Builds a cast with default options.
     ///
     /// # Errors
-    /// A direction that is zero, not finite or out of range.
+    /// Returns [`QueryError::Direction`] if the direction is zero, not finite or out of range.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+    #[expect(clippy::inline_always, reason = "a copy through memory stalls its reader")]
     pub fn new(
         moving: Placed<'a, B>,
         fixed: Placed<'a, B>,
@@ -117,7 +117,7 @@ impl<'a, B: Body> Cast<'a, B> {
         })
     }
 
-    /// The same bodies where they are, and the direction turned round: its first contact is the last
+    /// Returns the cast of the same placed bodies along the opposite direction. Its first contact is the last
     /// one along this direction.
     #[inline]
     #[must_use]
@@ -125,80 +125,91 @@ impl<'a, B: Body> Cast<'a, B> {
         Self { setting: self.setting.reversed(), ..*self }
     }
 
-    /// The same bodies where they are, along another direction.
+    /// Returns the cast of the same placed bodies along another direction.
     ///
     /// # Errors
-    /// A direction that is zero, not finite or out of range.
+    /// Returns [`QueryError::Direction`] if the direction is zero, not finite or out of range.
     pub fn along(&self, direction: DVec3) -> Result<Self, QueryError> {
         Ok(Self { setting: Setting::of(self.setting.bodies, direction)?, ..*self })
     }
 
-    /// The moving body.
+    /// Returns the moving body.
     pub fn moving(&self) -> &'a B {
         self.setting.moving
     }
 
-    /// The fixed body.
+    /// Returns the fixed body.
     pub fn fixed(&self) -> &'a B {
         self.setting.fixed
     }
 
-    /// Where the moving body is.
+    /// Returns the pose of the moving body.
     pub fn moving_pose(&self) -> Pose {
         self.setting.moving_placed().pose
     }
 
-    /// Where the fixed body is.
+    /// Returns the pose of the fixed body.
     pub fn fixed_pose(&self) -> Pose {
         self.setting.fixed_placed().pose
     }
 
-    /// The direction, as given.
+    /// Returns the direction, as given.
     pub fn direction(&self) -> DVec3 {
         self.setting.direction
     }
 
-    /// The choices.
+    /// Returns the options.
     pub fn options(&self) -> B::Options {
         self.options
     }
 }
 
 impl<B: CastBody> Cast<'_, B> {
-    /// With other choices.
+    /// Returns the cast with other options.
     ///
     /// # Errors
-    /// A graze tolerance or a gap that is negative or not finite, a narrowing gap that is negative or not a number. Of
-    /// solids a tolerance that is negative, not finite or so large that it leaves nothing of a closed body
-    /// ([`QueryError::NothingLeft`]).
+    /// Returns an error if the graze tolerance or the minimum gap is negative or not finite, if the minimum
+    /// gap is larger than [`MAX_MAGNITUDE`](crate::MAX_MAGNITUDE), or if the narrowing gap is negative or not
+    /// a number. For solids, returns an error if the tolerance is negative or not finite, or if it leaves
+    /// nothing of a closed body ([`QueryError::NothingLeft`]).
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+    #[expect(clippy::inline_always, reason = "a copy through memory stalls its reader")]
     pub fn with_options(self, options: B::Options) -> Result<Self, QueryError> {
         let cast = Self { options, ..self };
         B::check_options(&cast)?;
         Ok(cast)
     }
 
-    /// With a gap to be kept, in world units: all questions are about how far the bodies are then *as near as the
-    /// gap*, not about when they touch (a shape cast with a target distance, or a skin).
+    /// Returns the cast with a minimum gap, in world units.
     ///
-    /// [`Self::first_contact`] is the first translation at which the distance of the bodies is the gap,
-    /// [`Self::clearance`] how far one may move before it is, [`Self::intersects`] whether it is no more than the gap now,
-    /// and bodies that are nearer at the start are [`Clearance::Overlapping`]. Answers are certified as ever: a
-    /// contact's plane stays the gap away from the fixed body up to `lower`, its points are as near as the gap at `upper`;
-    /// of [`Separated`](crate::Separated) bodies the margin is more than the gap; bodies whose shadows come as
-    /// near as the gap to within the graze tolerance are [`Outcome::Grazing`]. Witness points are those that are
-    /// the gap apart. Where bodies glide over each other at about the gap, bounds are as far apart as a face that is all
-    /// but along the direction needs to come nearer by more than rounding. A gap of 0 is none. The
-    /// solver makes no difference; observers hear of the planes that are laid, one for each look at how near the bodies are,
-    /// and of no portals.
+    /// All queries then determine when the distance of the bodies falls to the gap, instead of when they
+    /// touch (a shape cast with a target distance, or with a skin):
     ///
-    /// Of solids, shrunk by half the tolerance where that counts, no two facets come nearer than the gap up to `lower`, but
-    /// for those that pass each other, or start, at the gap to within eight noises of the size with the gap (`256 u S`),
-    /// which do not block. A gap of no more than eight noises is none.
+    /// - [`Self::first_contact`] finds the first translation at which the distance of the bodies is the gap.
+    /// - [`Self::clearance`] is the translation up to that point. Bodies that are nearer at the start are
+    ///   [`Clearance::Overlapping`].
+    /// - [`Self::intersects`] checks whether the distance is at most the gap now.
+    ///
+    /// A gap of 0 is the cast without a gap. The answers have certificates:
+    ///
+    /// - Contact: up to `lower`, the plane keeps the gap from the fixed body. At `upper`, the distance of the
+    ///   witness points is at most the gap.
+    /// - [`Separated`](crate::Separated): the margin exceeds the gap.
+    /// - [`Outcome::Grazing`]: the distance of the shadows is the gap, to within the graze tolerance.
+    ///
+    /// If the bodies pass each other at about the gap, the bounds are wider: they differ by the translation
+    /// after which a face nearly parallel to the direction has come nearer by more than the rounding error.
+    /// The choice of solver has no effect. Observers receive one plane for each computed distance, and no
+    /// portals.
+    ///
+    /// For solids, shrunk by half of the tolerance where a query uses it, no two facets come nearer than the
+    /// gap up to `lower`. Facets that pass each other, or start, at the gap to within eight noises
+    /// (`256 u S`, where the size includes the gap) are an exception; they do not block. A gap of at most
+    /// eight noises counts as 0.
     ///
     /// # Errors
-    /// A gap that is negative, not finite or more than [`MAX_MAGNITUDE`](crate::MAX_MAGNITUDE).
+    /// Returns [`QueryError::Keep`] if the gap is negative, not finite or larger than
+    /// [`MAX_MAGNITUDE`](crate::MAX_MAGNITUDE).
     ///
     /// ```
     /// # use colltrans::glam::DVec3;
@@ -212,7 +223,7 @@ impl<B: CastBody> Cast<'_, B> {
     /// assert!((contact.translation - 1.75).abs() < 1e-15);
     /// let proof = contact.certificate;
     /// assert!(proof.lower <= 1.75 && 1.75 <= proof.upper && cast.verify(&proof)? < 1e-13);
-    /// // Half a unit aside is near enough for a gap of 0.6, not for one of 0.4.
+    /// // At a lateral distance of 0.5, a gap of 0.6 is reached, but one of 0.4 is not.
     /// let aside = Pose::from_translation(DVec3::new(-3.0, 1.5, 0.0))?;
     /// let aside = Cast::new(cube.at(aside), cube.at(Pose::IDENTITY), DVec3::X)?;
     /// let near = aside.keeping(0.6)?.clearance()?.distance().expect("they are apart");
@@ -225,24 +236,27 @@ impl<B: CastBody> Cast<'_, B> {
         self.with_options(B::keeping(self.options, gap))
     }
 
-    /// At which translation do the bodies first meet, if they do?
+    /// Finds the first translation at which the bodies meet, if any.
     ///
-    /// See [`Contact::translation`](crate::Contact::translation) for negative answers, and
-    /// [`Self::clearance`] for "from here on". Of convex bodies it takes `O(log n)` steps in practice and allocates
-    /// nothing, but for what [`Solver::Cta`] makes of a body once. Of solids the tolerance plays no part.
+    /// [`Contact::translation`](crate::Contact::translation) explains negative answers. For motion that
+    /// starts at the current pose, see [`Self::clearance`]. For convex bodies the search takes `O(log n)`
+    /// steps in practice, and allocates nothing except for data that [`Solver::Cta`] builds once for each
+    /// body. For solids the tolerance has no effect.
     ///
     /// # Errors
-    /// Only a search of convex bodies that ends without an answer: see [`QueryError::NotConverged`].
+    /// Returns [`QueryError::NotConverged`] if a search of convex bodies ends without an answer.
     #[inline]
     pub fn first_contact(&self) -> Result<Outcome<B>, QueryError> {
         B::first_contact(self)
     }
 
-    /// All translations at which the bodies meet, both ends certified. Two casts, along the
-    /// direction and against it. Solids may part and meet again in between; their tolerance plays no part.
+    /// Finds the first and the last contact, both certified.
+    ///
+    /// This takes two casts, along the direction and against it. Solids may separate and meet again in
+    /// between; their tolerance has no effect.
     ///
     /// # Errors
-    /// As [`Self::first_contact`].
+    /// Returns [`QueryError::NotConverged`] if a search of convex bodies ends without an answer.
     ///
     /// ```
     /// # use colltrans::glam::DVec3;
@@ -259,22 +273,22 @@ impl<B: CastBody> Cast<'_, B> {
         B::contact_range(self)
     }
 
-    /// How far the moving body can move from where it is.
+    /// Finds how far the moving body can move from its current pose.
     ///
-    /// Contacts behind and grazing slides do not block. Bodies that touch now, to within rounding,
-    /// block each other if the motion would make them overlap, and do not if it takes them apart. The answer for solids
-    /// does not tell sliding along the other body from moving away from it or never meeting it; where a plane lies between
-    /// the two, it comes with it.
+    /// Contacts behind and grazing slides do not block. Bodies that touch now, to within rounding, block each
+    /// other if the motion would make them overlap, but not if it separates them. The answer for solids does
+    /// not distinguish sliding along the other body, moving away from it and never meeting it. It includes a
+    /// separating plane if the bodies have one.
     ///
     /// # Errors
-    /// As [`Self::first_contact`]; a solid so thin that the default tolerance leaves nothing of it,
-    /// [`QueryError::NothingLeft`].
+    /// Returns [`QueryError::NotConverged`] if a search of convex bodies ends without an answer, and
+    /// [`QueryError::NothingLeft`] if the default tolerance leaves nothing of a thin solid.
     ///
     /// ```
     /// # use colltrans::glam::DVec3;
     /// # use colltrans::{Cast, Clearance, ConvexPolyhedron, Pose, WhyFree};
     /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
-    /// // One cube upon another: it can go up, and aside, but not down.
+    /// // One cube on top of another: it can move up and sideways, but not down.
     /// let (above, world) = (Pose::from_translation(DVec3::Z)?, Pose::IDENTITY);
     /// let toward = |direction| Cast::new(cube.at(above), cube.at(world), direction)?.clearance();
     /// assert!(matches!(toward(DVec3::Z)?, Clearance::Free(WhyFree::Behind(_))));
@@ -287,14 +301,15 @@ impl<B: CastBody> Cast<'_, B> {
         B::clearance(self)
     }
 
-    /// Whether the bodies, as closed sets, have a point in common where they are: of convex ones to within rounding error,
-    /// of solids exactly. The direction plays no part, nor does a tolerance.
+    /// Checks whether the bodies, as closed sets, have a common point in their current poses.
     ///
-    /// A convex body is cast along the line through both centres, which passes the deepest
-    /// part of the Minkowski difference, so the answer is as well conditioned as the question.
+    /// The answer is exact for solids, and holds to within rounding error for convex bodies. It does not
+    /// depend on the direction or a tolerance. A convex body is cast along the line through both centres,
+    /// which passes the deepest part of the Minkowski difference. The answer is therefore as well conditioned
+    /// as the question.
     ///
     /// # Errors
-    /// As [`Self::first_contact`].
+    /// Returns [`QueryError::NotConverged`] if a search of convex bodies ends without an answer.
     ///
     /// ```
     /// # use colltrans::glam::DVec3;
@@ -315,21 +330,25 @@ impl<B: CastBody> Cast<'_, B> {
         B::intersects(self)
     }
 
-    /// Checks a [`Certificate`](crate::Certificate) or a [`Separation`](crate::Separation), or of solids a
-    /// `SolidCertificate`, against the two bodies, and returns the gap, in multiples of
-    /// the direction, or the margin, in world units, that is really proven.
+    /// Checks a proof against the two bodies: a [`Certificate`](crate::Certificate), a
+    /// [`Separation`](crate::Separation), or for solids a `SolidCertificate`.
     ///
-    /// Nothing of the search is used: all vertices are looked at for the lower bound or the margin,
-    /// three pairs of them for the upper bound, so a check takes `O(n)` steps. The cast must be the one
-    /// that was answered; for the `last` contact of a [`ContactRange`] it is the
-    /// [reversed](Self::reversed) one. A lower bound or a margin is refused if it is above what the
-    /// plane proves, by however little; an upper bound if it is not above what the pairs prove by what
-    /// the rounding of their weights explains. An infinite one claims nothing. Of a solid's cover every entry is checked
-    /// by the boxes, slabs and normals of its two nodes, or by its facets.
+    /// Returns the proven difference of the bounds, in multiples of the direction, or for a separation the
+    /// proven margin, in world units. The check is independent of the search. It examines all vertices for a
+    /// lower bound or a margin, and three pairs of vertices for an upper bound, so it takes `O(n)` steps.
+    ///
+    /// The cast must be the one that was answered. For the `last` contact of a [`ContactRange`] it is the
+    /// [reversed](Self::reversed) one.
+    ///
+    /// - A lower bound or a margin is rejected if it exceeds what the plane proves, however slightly.
+    /// - An upper bound is rejected unless it exceeds the bound of the pairs by the rounding error of their
+    ///   weights. An infinite one claims nothing.
+    /// - Each entry of a solid's cover is checked by the boxes, slabs and normals of its two nodes, or by its
+    ///   facets.
     ///
     /// # Errors
-    /// What is not proven, bounds in the wrong order, and a tolerance that is negative or more than
-    /// rounding explains.
+    /// Returns the reason if a claim is not proven, if the bounds are in the wrong order, or if the claimed
+    /// rounding is negative or larger than rounding explains.
     ///
     /// ```
     /// # use colltrans::glam::DVec3;
@@ -355,17 +374,17 @@ impl<B: CastBody> Cast<'_, B> {
 }
 
 impl Cast<'_> {
-    /// With a graze tolerance, in world units: sideways overlaps up to it are
+    /// Returns the cast with a graze tolerance, in world units. Lateral overlaps up to this tolerance are
     /// [`Outcome::Grazing`].
     ///
     /// # Errors
-    /// A tolerance that is negative or not finite.
+    /// Returns [`QueryError::GrazeTolerance`] if the tolerance is negative or not finite.
     ///
     /// ```
     /// # use colltrans::glam::DVec3;
     /// # use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose};
     /// let cube = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE)?;
-    /// // A slide with a thousandth of overlap: contact, or grazing for those who tolerate as much.
+    /// // The overlap is 0.001: contact by default, grazing with a tolerance of 0.01.
     /// let start = Pose::from_translation(DVec3::new(-3.0, 0.999, 0.0))?;
     /// let cast = Cast::new(cube.at(start), cube.at(Pose::IDENTITY), DVec3::X)?;
     /// assert!(matches!(cast.first_contact()?, Outcome::Contact(_)));
@@ -380,17 +399,18 @@ impl Cast<'_> {
         self.with_options(self.options.with_graze_tolerance(tolerance))
     }
 
-    /// With a solver. The answer, its certificate and its accuracy are the same.
+    /// Returns the cast with another solver. The answer, its certificate and its accuracy do not depend on
+    /// it.
     #[must_use]
     pub fn with_solver(self, solver: Solver) -> Self {
         Self { options: self.options.with_solver(solver), ..self }
     }
 
-    /// Computes [`Self::first_contact`] with an observer: a [`Clock`](crate::observe::Clock), a
-    /// [`Recording`](crate::observe::Recording).
+    /// Computes [`Self::first_contact`] and reports each step to an observer, for example a
+    /// [`Clock`](crate::observe::Clock) or a [`Recording`](crate::observe::Recording).
     ///
     /// # Errors
-    /// As [`Self::first_contact`].
+    /// Returns the errors of [`Self::first_contact`].
     #[inline]
     pub fn first_contact_observed<O: Observer>(
         &self,
@@ -400,7 +420,11 @@ impl Cast<'_> {
         self.search(&Focus::NONE, &last, &mut next, observer)
     }
 
-    /// Searches where the bodies first meet or, if the options ask for a gap, where they are first as near as that.
+    /// Searches the first contact or, if the options have a minimum gap, the first translation at which the
+    /// distance is the gap.
+    ///
+    /// The search starts from the result `last` of an earlier cast, as far as `focus` allows. `next` receives
+    /// the start of a later cast.
     #[inline]
     pub(crate) fn search<O: Observer>(
         &self,
@@ -416,10 +440,10 @@ impl Cast<'_> {
         search(setting, options, focus, last, next, observer)
     }
 
-    /// Computes [`Self::contact_range`] with an observer, as for [`Self::first_contact_observed`].
+    /// Computes [`Self::contact_range`] and reports each step to an observer.
     ///
     /// # Errors
-    /// As [`Self::first_contact`].
+    /// Returns the errors of [`Self::contact_range`].
     pub fn contact_range_observed<O: Observer>(
         &self,
         observer: &mut O,
@@ -427,10 +451,10 @@ impl Cast<'_> {
         range_of(self, |cast| cast.first_contact_observed(observer))
     }
 
-    /// Computes [`Self::clearance`] with an observer, as for [`Self::first_contact_observed`].
+    /// Computes [`Self::clearance`] and reports each step to an observer.
     ///
     /// # Errors
-    /// As [`Self::first_contact`].
+    /// Returns the errors of [`Self::clearance`].
     pub fn clearance_observed<O: Observer>(
         &self,
         observer: &mut O,
@@ -438,11 +462,11 @@ impl Cast<'_> {
         clearance_of(self, |cast| cast.first_contact_observed(observer))
     }
 
-    /// How far the moving body, where it overlaps the fixed one, has to go back against the
-    /// direction until they do not.
+    /// Computes how far the moving body must move back, against the direction, until it no longer overlaps
+    /// the fixed one.
     ///
     /// # Errors
-    /// As [`Self::first_contact`].
+    /// Returns [`QueryError::NotConverged`] if the search ends without an answer.
     ///
     /// ```
     /// # use colltrans::glam::DVec3;
@@ -463,7 +487,7 @@ impl CastBody for ConvexPolyhedron {
     type CastProof<'p> = Proof<'p>;
 
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+    #[expect(clippy::inline_always, reason = "a copy through memory stalls its reader")]
     fn check_options(cast: &Cast<'_>) -> Result<(), QueryError> {
         cast.options.check()
     }
@@ -504,11 +528,12 @@ impl fmt::Display for Cast<'_> {
     }
 }
 
-/// How far `moving` can translate along `direction` before it touches `fixed`: short for
-/// [`Cast::new`] and [`Cast::first_contact`].
+/// Finds how far `moving` can translate along `direction` before it touches `fixed`: [`Cast::new`] and
+/// [`Cast::first_contact`] in one call.
 ///
 /// # Errors
-/// A direction that is zero, not finite or out of range.
+/// Returns an error if the direction is zero, not finite or out of range, or if the search ends without an
+/// answer.
 ///
 /// ```
 /// # use colltrans::glam::DVec3;

@@ -1,4 +1,4 @@
-//! Answers that take more than one cast, from whoever runs the casts: one-off, or a tracker.
+//! Answers that need more than one cast. A closure runs the casts, from scratch or by a tracker.
 
 use glam::DVec3;
 
@@ -10,12 +10,15 @@ use crate::answer::{
 use crate::setting::error::QueryError;
 use colltrans_kernel::range::MIN_MAGNITUDE;
 
-/// The contact range, from the casts along a direction and against it.
+/// Computes the contact range from the casts along a direction and against it.
+///
+/// # Errors
+/// Returns the errors of `run`.
 pub fn range_of<'a>(
     cast: &Cast<'a>,
     mut run: impl FnMut(&Cast<'a>) -> Result<Outcome, QueryError>,
 ) -> Result<ContactRange, QueryError> {
-    // Seen backwards the shadows are the same; only the last bits of their overlap may differ.
+    // The shadows do not depend on the sign of the direction; only the last bits of their overlap may differ.
     let mut range: ContactRange = match (run(cast)?, run(&cast.reversed())?) {
         (Outcome::Separated(separated), _) | (_, Outcome::Separated(separated)) => {
             ContactRange::Separated(separated)
@@ -39,8 +42,10 @@ pub fn range_of<'a>(
     Ok(range)
 }
 
-/// Where both ends are one, rounding may have turned the estimates round: then they are one number
-/// between the bounds of either end, which have some in common as both are right.
+/// Returns one translation for both ends of a range if rounding has reversed their order, otherwise `None`.
+///
+/// It is the mean of the estimates, clamped to the intersection of both ends' bounds. This intersection is
+/// not empty, because both are correct bounds of the same translation.
 #[inline]
 pub fn common_end(first: Bounded, last: Bounded) -> Option<f64> {
     (first.value > last.value).then(|| {
@@ -49,13 +54,18 @@ pub fn common_end(first: Bounded, last: Bounded) -> Option<f64> {
     })
 }
 
+/// Replaces estimates in the wrong order by their common translation.
 fn order_range_ends(first: &mut Contact, last: &mut Contact) {
     if let Some(both) = common_end(first.bounded(), last.exit()) {
         (first.translation, last.translation) = (both, -both);
     }
 }
 
-/// The clearance, from the cast along a direction and, if need be, the one against it.
+/// Computes the clearance from the cast along a direction and, if the first contact lies behind, the one
+/// against it.
+///
+/// # Errors
+/// Returns the errors of `run`.
 #[inline]
 pub fn clearance_of<'a>(
     cast: &Cast<'a>,
@@ -71,13 +81,17 @@ pub fn clearance_of<'a>(
     }
     Ok(match run(&cast.reversed())? {
         Outcome::Contact(last) => Clearance::beyond_first(contact, last),
-        // Seen backwards the shadows are the same; only the last bits of their overlap may differ.
+        // The shadows do not depend on the sign of the direction; only the last bits of their overlap may
+        // differ.
         Outcome::Grazing(grazing) => Clearance::Free(WhyFree::Slides(grazing)),
         Outcome::Separated(separated) => Clearance::Free(WhyFree::Separated(separated)),
     })
 }
 
-/// The depth of an overlap, from the clearance.
+/// Computes the depth of an overlap along the direction, from the clearance.
+///
+/// # Errors
+/// Returns the errors of `run`.
 #[inline]
 pub fn depth_of<'a>(
     cast: &Cast<'a>,
@@ -85,14 +99,17 @@ pub fn depth_of<'a>(
 ) -> Result<DirectionalDepth, QueryError> {
     let clearance = clearance_of(cast, run)?;
     let depth = match &clearance {
-        // Safe is what is not less than the true depth.
+        // Safe is a value that is not less than the true depth.
         Clearance::Overlapping(OverlapAhead { first, .. }) => -first.certificate.lower,
         _ => 0.0,
     };
     Ok(DirectionalDepth { depth, clearance })
 }
 
-/// Whether the bodies meet where they are, from a cast along the line through their centres.
+/// Checks whether the bodies meet in their current poses, by a cast along the line through their centres.
+///
+/// # Errors
+/// Returns the errors of `run`.
 #[inline]
 pub fn intersection_by_casts<'a>(
     cast: &Cast<'a>,
@@ -110,13 +127,14 @@ pub fn intersection_by_casts<'a>(
     Ok(Intersection { meets, evidence: CentralCast { direction, outcome } })
 }
 
-/// The unit vector from the moving body's centre to the fixed one's; any if they are one.
+/// Returns the unit vector from the moving body's centre to the fixed one's, or the x axis if the centres
+/// coincide.
 fn direction_between_centers(cast: &Cast) -> DVec3 {
     let setting = &cast.setting;
     let p = setting.moving_matrix * setting.moving.inertia().center;
     let q = setting.fixed_matrix * setting.fixed.inertia().center;
     let between = (q - p) + setting.offset;
-    // Components out of the exact range are rounding noise of zero.
+    // Components below the exact range are rounding errors of zero.
     let significant = |c: f64| if c.abs() < MIN_MAGNITUDE { 0.0 } else { c };
     let unit = between.try_normalize().map(|unit| unit.to_array().map(significant));
     unit.map_or(DVec3::X, DVec3::from_array)

@@ -1,8 +1,9 @@
-//! A query as a file, exact in bits.
+//! A query as a JSON file that preserves every bit.
 //!
-//! Numbers are written as decimals that read back as the same bits. A body is written as it is, with
-//! its faces, not as what it was made from: its vertices and half-edges come back in the same order,
-//! so that the same query takes the same way to the same bits. What is read is checked like a mesh.
+//! - Numbers are decimals that parse to the same bits.
+//! - A body is stored with its own faces, not as the input it was built from. Its vertices and half-edges are
+//!   restored in the same order, so a restored query takes the same steps to the same bits.
+//! - Input is checked like a mesh.
 
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -16,43 +17,43 @@ use crate::solve::options::{Options, OptionsRecord};
 use colltrans_kernel::error::PoseError;
 use colltrans_kernel::pose::PoseRecord;
 
-/// Why a file is no query.
+/// Reason why a file is not a valid query.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum CaseError {
-    /// It is not JSON, or lacks something.
+    /// The file is not JSON, or lacks a field.
     #[error("not a saved query: {}", what_is_wrong(.0))]
     Syntax(#[from] serde_json::Error),
-    /// It was written by another version.
+    /// The file was written by another version.
     #[error("the format is {found:?}, not {known:?}")]
     Format {
         /// The format that the file names.
         found: String,
-        /// The one of this version.
+        /// The format of this version.
         known: &'static str,
     },
-    /// A body is none.
+    /// A body is invalid.
     #[error("{which} body: {error}")]
     Body {
-        /// `"moving"` or `"fixed"`; `"the"` of a body alone.
+        /// `"moving"` or `"fixed"`; `"the"` for a body on its own.
         which: &'static str,
-        /// What is wrong with it: a [`BuildError`] of a convex body, a `SolidError` of a solid.
+        /// The cause: a [`BuildError`] of a convex body, a `SolidError` of a solid.
         error: Box<dyn std::error::Error + Send + Sync>,
     },
-    /// A pose is none.
+    /// A pose is invalid.
     #[error(transparent)]
     Pose(#[from] PoseError),
-    /// The direction or a choice is refused.
+    /// The direction or an option is invalid.
     #[error(transparent)]
     Query(#[from] QueryError),
 }
 
-/// Tells what is wrong in words of the file, not of its parser.
+/// Returns the message of a parser error in terms of the file, with line and column.
 pub fn what_is_wrong(error: &serde_json::Error) -> String {
     use serde_json::error::Category;
     let what = match error.classify() {
         Category::Io => return error.to_string(),
-        // The parser tells it in its words alone.
+        // The parser has no category for this error, only a message.
         Category::Syntax if error.to_string().starts_with("number out of range") => {
             "a number is larger than any double".into()
         }
@@ -67,7 +68,7 @@ pub fn what_is_wrong(error: &serde_json::Error) -> String {
     format!("line {}, column {}: {what}", error.line(), error.column())
 }
 
-/// What a file of this version calls itself.
+/// Name of the format of this version.
 const FORMAT: &str = "colltrans case 1";
 
 /// A query that owns its bodies, read from a file.
@@ -94,10 +95,11 @@ pub struct Case {
 }
 
 impl Case {
-    /// From what [`Cast::to_json`] has written.
+    /// Reads a query that [`Cast::to_json`] has written.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// Returns an error if the text is not JSON, has another format or an unknown field, or if a body, a
+    /// pose, the direction or an option is invalid.
     pub fn from_json(text: &str) -> Result<Self, CaseError> {
         // Some editors begin a file with a byte-order mark.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
@@ -118,10 +120,10 @@ impl Case {
         Ok(case)
     }
 
-    /// The query.
+    /// Returns the query.
     ///
     /// # Errors
-    /// None: it was checked when it was read.
+    /// Never fails in practice, because the query was checked when it was read.
     pub fn cast(&self) -> Result<Cast<'_>, QueryError> {
         let [moving, fixed] = &self.bodies;
         Cast::new(moving.at(self.poses[0]), fixed.at(self.poses[1]), self.direction)?
@@ -130,12 +132,11 @@ impl Case {
 }
 
 impl Cast<'_> {
-    /// The query as a file: bodies, poses, direction and choices, exact in bits.
-    ///
-    /// [`Case::from_json`] reads it. A tracker's memory is not part of it.
+    /// Returns the query as a file: bodies, poses, direction and options, with all bits. [`Case::from_json`]
+    /// reads it. The state of a tracker is not included.
     ///
     /// # Panics
-    /// Never: all numbers can be written.
+    /// Never, because all numbers can be written.
     pub fn to_json(&self) -> String {
         let file = CaseFile {
             format: FORMAT.into(),
@@ -146,12 +147,12 @@ impl Cast<'_> {
             direction: self.direction().to_array(),
             options: self.options().into(),
         };
-        serde_json::to_string(&file).expect("numbers and names")
+        serde_json::to_string(&file).expect("numbers and names are valid JSON")
     }
 }
 
 impl ConvexPolyhedron {
-    /// The body as a file: its vertices and faces in their order, exact in bits.
+    /// Returns the body as a file: its vertices and faces in their order, with all bits.
     ///
     /// ```
     /// use colltrans::ConvexPolyhedron;
@@ -164,21 +165,23 @@ impl ConvexPolyhedron {
     /// ```
     ///
     /// # Panics
-    /// Never: all numbers can be written.
+    /// Never, because all numbers can be written.
     pub fn to_json(&self) -> String {
-        serde_json::to_string(&BodyRecord::of(self)).expect("numbers")
+        serde_json::to_string(&BodyRecord::of(self)).expect("numbers are valid JSON")
     }
 
-    /// From what [`Self::to_json`] has written: answers about it have the same bits.
+    /// Reads a body that [`Self::to_json`] has written. Queries about it give the same bits as those about
+    /// the original.
     ///
     /// # Errors
-    /// What is wrong with it.
+    /// Returns an error if the text is not JSON or has an unknown field, or if the body is invalid.
     pub fn from_json(text: &str) -> Result<Self, CaseError> {
         let record: BodyRecord = serde_json::from_str(text)?;
         record.body().map_err(|error| CaseError::Body { which: "the", error: error.into() })
     }
 }
 
+/// Layout of a file.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct CaseFile {
@@ -191,20 +194,22 @@ struct CaseFile {
     options: OptionsRecord,
 }
 
+/// A body in a file.
 #[derive(Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct BodyRecord {
     vertices: Vec<[f64; 3]>,
-    /// None for a segment or a point; front and back for a flat polygon.
+    /// Empty for a segment or a point; front and back for a flat polygon.
     faces: Vec<Vec<u32>>,
     input_indices: Vec<InputVertex>,
     hull_error: f64,
-    /// Missing if it is 0, and in files of versions whose bounds did not count it.
+    /// Omitted if it is 0, and in files of versions whose bounds did not include it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     input_excess: Option<f64>,
 }
 
 impl BodyRecord {
+    /// Converts a body to its record.
     #[inline]
     pub fn of(body: &ConvexPolyhedron) -> Self {
         Self {
@@ -216,6 +221,10 @@ impl BodyRecord {
         }
     }
 
+    /// Builds the body, with the checks of a mesh.
+    ///
+    /// # Errors
+    /// Returns an error if the faces do not describe a valid body.
     #[inline]
     pub fn body(&self) -> Result<ConvexPolyhedron, BuildError> {
         let vertices: Vec<DVec3> = self.vertices.iter().copied().map(DVec3::from_array).collect();

@@ -1,23 +1,25 @@
-//! How far bodies that slide along each other overlap, seen along the direction.
+//! Overlap of the shadows of bodies that slide along each other.
 
 use glam::DVec3;
 
 use super::Cast;
 use crate::answer::{CertificateError, check_lateral_normal, shadow_gap};
 
-/// Returns at least how far the shadows of two bodies overlap along a normal, with the gap that they are to keep.
+/// Returns an upper bound of the overlap of two bodies' shadows along a normal, in world units. If the cast
+/// has a minimum gap, the gap is added.
 #[inline]
 pub fn proven_overlap(normal: DVec3, cast: &Cast<'_>) -> f64 {
     let gap = shadow_gap(&cast.setting, normal);
     let keep = cast.options().keep;
-    // Without a gap nothing is rounded.
+    // The negation of a gap is exact.
     if keep > 0.0 { (keep - gap).next_up() } else { 0.0 - gap }
 }
 
-/// Returns [`proven_overlap`] along a normal that is claimed to be a unit vector, orthogonal to the direction.
+/// Returns [`proven_overlap`] after a check of the normal, which must be a unit vector orthogonal to the
+/// direction.
 ///
 /// # Errors
-/// The normal is not.
+/// Returns [`CertificateError::Normal`] if it is not.
 #[inline]
 pub fn verified_overlap(normal: DVec3, cast: &Cast<'_>) -> Result<f64, CertificateError> {
     check_lateral_normal(&cast.setting, normal)?;

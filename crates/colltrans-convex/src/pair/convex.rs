@@ -1,4 +1,4 @@
-//! The questions about two convex bodies.
+//! Queries about two placed convex bodies.
 
 use glam::DVec3;
 
@@ -12,17 +12,19 @@ use crate::setting::error::{QueryError, Stalled};
 use crate::setting::{TwoBodies, VertexPair, check_length};
 use crate::solve::nearest::{Difference, Found, NearestPairs, Plane, deepest, nearest};
 
-/// How far apart bounds may be, in noises, besides what the bodies reach beyond support points.
+/// Largest accepted difference of the bounds, in noises, in addition to the reach of the bodies beyond
+/// support points.
 const MAX_BOUND_GAP: f64 = 64.0;
 
 impl Pair<'_> {
-    /// How deep do the bodies overlap: by which least translation, in any direction, are they parted?
+    /// Computes the penetration depth: the length of the shortest translation, in any direction, that
+    /// separates the bodies.
     ///
-    /// The bounds hold exactly, and are a few noises apart. Both are 0 if the bodies are apart; of bodies
-    /// that touch, or are flat in one plane, the lower one is.
+    /// The bounds hold exactly, and differ by a few noises. Both are 0 if the bodies are separated. The lower
+    /// one is 0 if they touch, or are flat in a common plane.
     ///
     /// # Errors
-    /// As [`Self::distance`].
+    /// Returns [`QueryError::NotConverged`] if the search ends without an answer.
     ///
     /// ```
     /// # use colltrans::glam::DVec3;
@@ -40,7 +42,11 @@ impl Pair<'_> {
         self.depth_beyond(f64::INFINITY)
     }
 
-    /// The same with bounds as near to each other as they are when the lower one is more than so much.
+    /// Computes the penetration depth as [`Self::depth`] does, but ends as soon as the lower bound exceeds
+    /// `enough`, in world units. The bounds may differ by any amount then.
+    ///
+    /// # Errors
+    /// Returns [`QueryError::NotConverged`] if the search ends without an answer.
     #[doc(hidden)]
     #[inline]
     pub fn depth_beyond(&self, enough: f64) -> Result<Depth, QueryError> {
@@ -99,7 +105,7 @@ impl PairBody for ConvexPolyhedron {
     }
 }
 
-/// Whether what was found proves that the bodies are closer than a length, or not.
+/// Returns the decision that the search result proves about a length, `None` if it proves none.
 fn decide_within(difference: &Difference, found: &Found, length: f64) -> Option<Within> {
     let near = found.near(difference);
     if near.distance <= length {
@@ -109,7 +115,10 @@ fn decide_within(difference: &Difference, found: &Found, length: f64) -> Option<
     (plane.gap.gap > length).then_some(Within::Farther(plane.gap))
 }
 
-/// The distance, by a search that begins with some pairs, and leaves those that it ends with.
+/// Computes the distance by a search that starts from `pairs`, and stores the pairs that it ends with there.
+///
+/// # Errors
+/// Returns [`QueryError::NotConverged`] if the bounds differ by more than rounding explains.
 #[inline]
 pub fn distance_from(pair: &Pair, pairs: &mut NearestPairs) -> Result<Distance, QueryError> {
     let difference = Difference::new(&pair.bodies);
@@ -123,7 +132,9 @@ pub fn distance_from(pair: &Pair, pairs: &mut NearestPairs) -> Result<Distance, 
     Ok(distance)
 }
 
-/// The distance, by what a search has found.
+/// Builds the answer from a search result.
+///
+/// Returns [`QueryError::NotConverged`] if the bounds differ by more than rounding explains.
 fn distance_of_search(difference: &Difference, found: &Found) -> Result<Distance, QueryError> {
     let bodies = difference.bodies;
     let near = found.near(difference);
@@ -150,7 +161,7 @@ fn distance_of_search(difference: &Difference, found: &Found) -> Result<Distance
     })
 }
 
-/// The points of the moving and of the fixed body that are near, in the world, rounded.
+/// Returns the nearest points of the moving and of the fixed body, in the world, rounded.
 #[inline]
 pub fn points(bodies: &TwoBodies, near: &NearPoints) -> [DVec3; 2] {
     let [p, q] = bodies.weighted(&near.pairs, &near.weights);
@@ -158,7 +169,8 @@ pub fn points(bodies: &TwoBodies, near: &NearPoints) -> [DVec3; 2] {
     [bodies.moving_matrix * p + origin, bodies.fixed_matrix * q + bodies.offset + origin]
 }
 
-/// The parts of the bodies that lie in the planes across a normal.
+/// Returns the features of the bodies in the planes perpendicular to the normal of `plane`. `noise` is the
+/// tolerance of coplanarity, in world units.
 fn facing_features(bodies: &TwoBodies, plane: &Plane, noise: f64) -> Features {
     let normal = plane.gap.normal;
     let VertexPair { moving, fixed } = plane.lowest;

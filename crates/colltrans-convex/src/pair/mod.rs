@@ -1,4 +1,4 @@
-//! Two placed bodies and no direction: how far apart they are, how deep they overlap.
+//! Queries about two placed bodies without a direction: distance, proximity and penetration depth.
 
 mod convex;
 mod verify;
@@ -11,9 +11,10 @@ pub use convex::distance_from;
 pub use convex::points;
 use derive_where::derive_where;
 
-/// A kind of body that a [`Pair`] is answered for. It is not meant to be implemented outside this workspace.
+/// A kind of body for which a [`Pair`] can be answered. It is not meant to be implemented outside this
+/// workspace.
 pub trait PairBody: Body {
-    /// What can be checked about two bodies where they are.
+    /// The proofs that a pair can check.
     type PairProof<'p>;
 
     #[doc(hidden)]
@@ -31,10 +32,10 @@ pub trait PairBody: Body {
     ) -> Result<f64, CertificateError>;
 }
 
-/// A moving body and a fixed one, where they are: what is asked of both and no direction. Nothing moves;
-/// the names tell them apart, as in a [`Cast`](crate::Cast).
+/// A moving body and a fixed one in their poses. Nothing moves; the names only distinguish the bodies, as in
+/// a [`Cast`](crate::Cast).
 ///
-/// Made once, asked as often as one likes: nothing is searched before a question is asked.
+/// A pair is cheap to build, because a search runs only when a query method is called.
 #[derive(Debug)]
 #[derive_where(Clone, Copy)]
 pub struct Pair<'a, B: Body = ConvexPolyhedron> {
@@ -42,66 +43,69 @@ pub struct Pair<'a, B: Body = ConvexPolyhedron> {
     pub bodies: TwoBodies<'a, B>,
 }
 
-/// A proof to check about two convex bodies where they are.
+/// A proof to check about two placed convex bodies.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub enum PairProof<'a> {
-    /// That they are not nearer to each other than a number.
+    /// Proof that the distance is at least a number.
     Gap(&'a PlaneGap),
-    /// That they are not farther from each other than a number.
+    /// Proof that the distance is at most a number.
     Near(&'a NearPoints),
-    /// Both bounds of a depth.
+    /// Proof of both bounds of a depth.
     Depth(&'a Depth),
 }
 
 checked_as!(PairProof { Gap(PlaneGap), Near(NearPoints), Depth(Depth) });
 
 impl<'a, B: Body> Pair<'a, B> {
-    /// Of two placed bodies.
+    /// Builds a pair of two placed bodies.
     ///
     /// # Errors
-    /// None today: what a body and a pose admit, a pair does.
+    /// Never fails at present, because every placed body is admissible.
     #[inline]
     pub fn new(moving: Placed<'a, B>, fixed: Placed<'a, B>) -> Result<Self, QueryError> {
         Ok(Self { bodies: TwoBodies::new(moving, fixed) })
     }
 
-    /// The moving body.
+    /// Returns the moving body.
     pub fn moving(&self) -> &'a B {
         self.bodies.moving
     }
 
-    /// The fixed body.
+    /// Returns the fixed body.
     pub fn fixed(&self) -> &'a B {
         self.bodies.fixed
     }
 
-    /// Where the moving body is.
+    /// Returns the pose of the moving body.
     pub fn moving_pose(&self) -> Pose {
         self.bodies.moving_placed().pose
     }
 
-    /// Where the fixed body is.
+    /// Returns the pose of the fixed body.
     pub fn fixed_pose(&self) -> Pose {
         self.bodies.fixed_placed().pose
     }
 }
 
 impl<B: PairBody> Pair<'_, B> {
-    /// How far apart are the bodies, and where?
+    /// Computes the distance of the bodies and their nearest points.
     ///
-    /// The bounds hold exactly. They are at most four noises apart (`128 u S`, see
-    /// [the crate's introduction](crate#accuracy)), however near the bodies are to each other; of thin and
-    /// uneven ones, rarely, up to 64, and what uneven faces hide; and by what hulls leave outside. Of bodies that overlap the lower one is 0.
-    /// Of bodies that are less than a few noises apart it is, if one shows it, that of a plane whose gap is computed
-    /// nearly without rounding, from all vertices: boxes along the axes that are `1e-60` apart mostly are so for
-    /// certain; where their corners are lined up too, the bounds are 0 and some noises.
+    /// The bounds hold exactly. For convex bodies they differ by at most four noises (`128 u S`, see [the
+    /// crate's introduction](crate#accuracy)), however close the bodies are. The difference may rarely reach
+    /// 64 noises for thin or uneven bodies. In addition it includes the unevenness of faces and the distance
+    /// by which inputs lie outside of their hulls.
     ///
-    /// Of solids the bounds are at most five noises apart (`160 u S`). Solids that meet are 0 apart: if their surfaces
-    /// touch, or one lies inside the other. Of open shells the distance is that of the surface.
+    /// - Overlapping bodies have a lower bound of 0.
+    /// - If the distance is a few noises or less, a plane may still prove a positive lower bound, because its
+    ///   gap is computed from all vertices nearly without rounding. Axis-aligned boxes with a distance of
+    ///   `1e-60` are usually proven to be separated. If their corners are aligned as well, the bounds are 0
+    ///   and a few noises.
+    /// - For solids the bounds differ by at most five noises (`160 u S`). The distance is 0 if their surfaces
+    ///   touch or if one contains the other. The distance of an open shell is that of its surface.
     ///
     /// # Errors
-    /// Only a search of convex bodies that ends without an answer: see [`QueryError::NotConverged`].
+    /// Returns [`QueryError::NotConverged`] if a search of convex bodies ends without an answer.
     ///
     /// ```
     /// use colltrans::glam::DVec3;
@@ -127,11 +131,14 @@ impl<B: PairBody> Pair<'_, B> {
         B::distance(self)
     }
 
-    /// Are the bodies closer than a length, in world units? Ended as soon as that is known: for bodies
-    /// that are far from each other or overlap, after a few steps.
+    /// Decides whether the bodies are closer than a length, in world units.
+    ///
+    /// The search ends as soon as this is decided, which takes a few steps if the bodies are far apart or
+    /// overlap.
     ///
     /// # Errors
-    /// A length that is negative or not a number; and as [`Self::distance`].
+    /// Returns [`QueryError::Length`] if the length is negative or not a number, and the errors of
+    /// [`Self::distance`].
     ///
     /// ```
     /// # use colltrans::glam::DVec3;
@@ -150,34 +157,40 @@ impl<B: PairBody> Pair<'_, B> {
         Ok(B::within(self, length)?.0)
     }
 
-    /// The same, and how much work it was.
+    /// Decides whether the bodies are closer than a length, in world units, and returns the work as well. See
+    /// [`Self::within`].
     ///
     /// # Errors
-    /// As [`Self::within`].
+    /// Returns the errors of [`Self::within`].
     #[inline]
     pub fn within_counted(&self, length: f64) -> Result<(Within<B>, B::Steps), QueryError> {
         B::within(self, length)
     }
 
-    /// The vertex, edge or face of each body that faces the other one: what lies in the planes across the
-    /// shortest way between them. `None` if they overlap, or are less apart than rounding can tell.
+    /// Computes the vertex, edge or face of each body that faces the other one: the features in the planes
+    /// perpendicular to the shortest connection.
+    ///
+    /// Returns `None` if the bodies overlap, or if their distance is below the rounding error.
     ///
     /// # Errors
-    /// As [`Self::distance`].
+    /// Returns the errors of [`Self::distance`].
     #[inline]
     pub fn closest_features(&self) -> Result<Option<Features>, QueryError> {
         Ok(self.distance()?.features)
     }
 
-    /// Checks a proof against the two bodies, and returns what is really proven, in world units: the gap
-    /// of a plane, the distance of two points, or a depth that is not exceeded by the true one; of a certificate of
-    /// solids how far its bounds are apart.
+    /// Checks a proof against the two bodies, and returns the proven value:
     ///
-    /// Nothing of the search is used: all vertices are looked at for a plane, the pairs named for points
-    /// and surfaces.
+    /// - for a plane its gap, in world units,
+    /// - for two points their distance, in world units,
+    /// - for a depth a lower bound of the true depth, in world units,
+    /// - for a certificate of solids the difference of its bounds.
+    ///
+    /// The check is independent of the search. For convex bodies it examines all vertices for a plane, and
+    /// the named pairs for points and surfaces.
     ///
     /// # Errors
-    /// What is not proven.
+    /// Returns the reason if a claim is not proven.
     #[inline]
     pub fn verify<'p>(&self, proof: impl Into<B::PairProof<'p>>) -> Result<f64, CertificateError> {
         B::verify_pair(self, proof.into())

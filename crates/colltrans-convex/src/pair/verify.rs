@@ -1,4 +1,4 @@
-//! Checks of proofs about two placed bodies, from their vertices alone.
+//! Checks of proofs about two placed convex bodies. They use only the vertices.
 
 use glam::DVec3;
 
@@ -7,7 +7,7 @@ use crate::setting::{TwoBodies, VertexPair};
 use crate::solve::nearest::surrounds;
 use colltrans_kernel::{extent, noise, volume};
 
-/// The gap that a plane proves.
+/// Returns the gap that a plane proves. Returns an error if the claimed gap is negative or larger.
 pub(super) fn verify_plane(bodies: &TwoBodies, plane: &PlaneGap) -> Result<f64, CertificateError> {
     let &PlaneGap { normal, gap } = plane;
     check_unit_normal(normal)?;
@@ -19,7 +19,8 @@ pub(super) fn verify_plane(bodies: &TwoBodies, plane: &PlaneGap) -> Result<f64, 
     }
 }
 
-/// The distance that two points prove.
+/// Returns the distance that two points prove. If the claimed distance is 0, checks that the pairs enclose
+/// the origin. Returns an error if the claim is not proven.
 pub(super) fn verify_points(
     bodies: &TwoBodies,
     points: &NearPoints,
@@ -44,7 +45,9 @@ pub(super) fn verify_points(
     }
 }
 
-/// The depth that a surface proves, if the direction proves the upper bound.
+/// Returns the depth that the enclosure proves, 0 if it is empty.
+///
+/// Returns an error if more is claimed, or if the direction does not prove the upper bound.
 pub(super) fn verify_depth(bodies: &TwoBodies, depth: &Depth) -> Result<f64, CertificateError> {
     check_unit_normal(depth.direction)?;
     let [square, _] = extent::dot(depth.direction, depth.direction);
@@ -62,7 +65,9 @@ pub(super) fn verify_depth(bodies: &TwoBodies, depth: &Depth) -> Result<f64, Cer
     }
 }
 
-/// How far the origin is from a surface around it, at least.
+/// Returns a lower bound of the distance of the origin from a surface around it.
+///
+/// Returns an error if the surface is malformed or does not enclose the origin.
 fn enclosed_radius(bodies: &TwoBodies, surface: &Enclosure) -> Result<f64, CertificateError> {
     let Enclosure { pairs, triangles, normals } = surface;
     check_vertices_exist(bodies, pairs)?;
@@ -74,7 +79,7 @@ fn enclosed_radius(bodies: &TwoBodies, surface: &Enclosure) -> Result<f64, Certi
     let mut least = f64::INFINITY;
     for (corners, normal) in triangles.iter().zip(normals) {
         check_unit_normal(*normal)?;
-        // A height counts in lengths of the normal, which may be some roundings more than 1.
+        // The length of the normal may exceed 1 by rounding.
         let [_, square] = extent::dot(*normal, *normal);
         let length = square.sqrt().next_up();
         for corner in corners {
@@ -90,12 +95,13 @@ fn enclosed_radius(bodies: &TwoBodies, surface: &Enclosure) -> Result<f64, Certi
     }
 }
 
+/// Checks that a normal is a unit vector to within rounding.
 fn check_unit_normal(normal: DVec3) -> Result<(), CertificateError> {
     let is_unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
     if is_unit { Ok(()) } else { Err(CertificateError::Normal { normal }) }
 }
 
-/// Whether pairs name vertices that there are.
+/// Checks that all pairs name existing vertices.
 pub(super) fn check_vertices_exist(
     bodies: &TwoBodies,
     pairs: &[VertexPair],

@@ -1,11 +1,11 @@
-//! Why a query has no answer.
+//! Errors of queries.
 
 use glam::DVec3;
 use thiserror::Error;
 
 use crate::body::ObstacleId;
 
-/// Why a query has no answer.
+/// Reason why a query has no answer.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum QueryError {
@@ -16,102 +16,107 @@ pub enum QueryError {
         .direction.to_array()
     )]
     Direction {
-        /// The direction as given.
+        /// The direction, as given.
         direction: DVec3,
     },
     /// The graze tolerance is negative or not finite.
     #[error("the graze tolerance {tolerance} is negative or not finite")]
     GrazeTolerance {
-        /// The tolerance as given.
+        /// The tolerance, as given.
         tolerance: f64,
     },
-    /// The gap that is to be kept is negative, not finite or larger than a coordinate may be; or the library
-    /// was built without its feature `keep`.
+    /// The minimum gap is negative, not finite or larger than 2^200, or is not 0 and the library was built
+    /// without its feature `keep`.
     #[error(
-        "the gap {gap} to be kept is negative, not finite or larger than 2^200{}",
-        if cfg!(feature = "keep") { "" } else { ", or this build keeps none" }
+        "the minimum gap {gap} is negative, not finite or larger than 2^200{}",
+        if cfg!(feature = "keep") { "" } else { "; this build accepts only 0" }
     )]
     Keep {
-        /// The gap as given.
+        /// The gap, as given.
         gap: f64,
     },
-    /// The length that a distance is compared with is negative or not a number.
+    /// The length with which a distance is compared is negative or not a number.
     #[error("the length {length} is negative or not a number")]
     Length {
-        /// The length as given.
+        /// The length, as given.
         length: f64,
     },
     /// The tolerance by which solids are shrunk is negative or not finite.
     #[error("the tolerance {tolerance} is negative or not finite")]
     Tolerance {
-        /// The tolerance as given.
+        /// The tolerance, as given.
         tolerance: f64,
     },
-    /// Nothing is left of a closed body that is shrunk by half the tolerance: each of its points is that
-    /// near to its surface. Nothing follows for the body as it is; a part of which only walls are thinner
-    /// than the tolerance is not refused (`Solid::shrink_report`).
+    /// Shrinking by half of the tolerance removes a closed body completely, because each of its points is
+    /// within that distance of its surface.
+    ///
+    /// This error proves nothing about the nominal body. A body of which only some walls are thinner than the
+    /// tolerance is accepted; see `Solid::shrink_report`.
     #[error(
         "the tolerance {tolerance} leaves nothing of the {which} body, which is {extent} thick: \
-         it has to be less than that"
+         give a tolerance below that"
     )]
     NothingLeft {
         /// `"moving"` or `"fixed"`.
         which: &'static str,
-        /// The tolerance, as given or as chosen.
+        /// The tolerance, as given or as chosen by default.
         tolerance: f64,
-        /// The smallest side of the body's box in its own frame. Any tolerance below leaves something.
+        /// Smallest side of the body's box in its own frame, a length. With any tolerance below it, part of
+        /// the body is left.
         extent: f64,
     },
-    /// A convex body that is no solid.
-    #[error("a convex body is not a solid: {reason}")]
+    /// A convex body cannot be converted to a solid.
+    #[error("the convex body cannot be converted to a solid: {reason}")]
     NoSolid {
-        /// Why it is none.
+        /// Message of the failed conversion.
         reason: String,
     },
-    /// The gap at which narrowing ends is negative or not a number.
+    /// The gap at which narrowing ends is negative or not a number ([`Until::Gap`](crate::cta::Until::Gap)).
     #[error("the gap {gap} at which narrowing ends is negative or not a number")]
     NarrowingGap {
-        /// The gap as given.
+        /// The gap, as given.
         gap: f64,
     },
     /// The half-side of a region focus is negative or not a number.
     #[error("the half-side {half_side} of the region focus is negative or not a number")]
     RegionFocus {
-        /// The half-side as given.
+        /// The half-side, as given.
         half_side: f64,
     },
-    /// The search ended without an answer, and nothing is proven by it. Known only where one body is
-    /// thinner than the rounding error at the size of the configuration (ratios beyond 1e11): please
-    /// report another case (it can be saved as a file).
+    /// The search ended without an answer, and proves nothing.
+    ///
+    /// The known cases have a body that is thinner than the rounding error at the size of the configuration
+    /// (ratios above 1e11). Please report any other case; it can be saved as a file.
     #[error("the search ended without an answer: {reason}; please report this case")]
     NotConverged {
-        /// What went wrong.
+        /// Cause of the failure.
         reason: Stalled,
     },
-    /// A motion goes so far that what computed places may be off is more than the bodies are large, so that nothing can be
-    /// said of when they meet.
+    /// The motion goes so far that the error of computed positions exceeds the size of the bodies. No time of
+    /// contact can be bounded then.
     #[error(
-        "the motion goes so far, or so far away, that its places may be off by {off:e}, more than the bodies are \
-         large, {size:e}"
+        "the motion goes too far: the error of computed positions, up to {off:e}, exceeds the size of the bodies, \
+         {size:e}; use a shorter motion, or poses closer to the origin"
     )]
     Coarse {
-        /// By how much, at most.
+        /// Bound on the error of a position, in world units.
         off: f64,
-        /// How far both reach from their origins, together.
+        /// Sum of the bodies' largest distances from their origins.
         size: f64,
     },
-    /// One of many obstacles has no answer.
+    /// The query about one of many obstacles has no answer.
     #[error("obstacle {obstacle}: {reason}")]
     Obstacle {
-        /// Which one.
+        /// The obstacle.
         obstacle: ObstacleId,
-        /// Why.
+        /// Error of the query about this obstacle.
         #[source]
         reason: Box<Self>,
     },
 }
 
 impl QueryError {
+    /// Wraps this error as that of one obstacle.
     #[doc(hidden)]
     #[must_use]
     #[inline]
@@ -120,46 +125,49 @@ impl QueryError {
     }
 }
 
-/// Why a search ended without an answer.
+/// Reason why a search ended without an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Error)]
 #[non_exhaustive]
 pub enum Stalled {
-    /// No triangle of points of the Minkowski difference around the line was found, and no
-    /// direction that separates.
+    /// The search found neither a triangle of points of the Minkowski difference around the line nor a
+    /// separating direction.
     #[error("no portal was found")]
     NoPortal,
-    /// The search along a motion took its maximum number of steps.
+    /// The search along a motion reached its maximum number of steps.
     #[error(
-        "the search along the motion took its maximum number of steps; the bodies are proven not to meet before \
-         {free_until}, what comes later is open"
+        "the search along the motion reached its maximum number of steps; the bodies are proven not to meet before \
+         {free_until}, later times are undecided"
     )]
     Motion {
-        /// The bodies do not meet before this time.
+        /// Time before which the bodies are proven not to meet.
         free_until: f64,
     },
-    /// Portals followed each other without an end.
-    #[error("portals followed each other in a circle")]
+    /// The exchanges of portals did not end.
+    #[error("the exchanges of portals did not end")]
     Cycle,
-    /// The plane and the points of a distance, or of a depth, are farther apart than rounding explains. In
-    /// world units; both are proven bounds.
-    #[error("the bounds did not meet: {lower} to {upper}, gap tolerated: {tolerance:e}")]
+    /// The bounds of a distance or of a depth differ by more than rounding explains. Both are proven, in
+    /// world units.
+    #[error("the bounds did not converge: {lower} to {upper}, accepted difference: {tolerance:e}")]
     Distance {
         /// The lower bound.
         lower: f64,
         /// The upper bound.
         upper: f64,
-        /// The gap that would have been accepted.
+        /// The largest difference that would have been accepted.
         tolerance: f64,
     },
-    /// The lowest plane found and the portal are farther apart than rounding explains. All in multiples
-    /// of the direction, and as computed: neither number is a proven bound.
-    #[error("the bounds did not meet: {lower} <= t <= {upper}, gap tolerated: {tolerance:e}")]
+    /// The lowest plane that was found and the portal differ by more than rounding explains.
+    ///
+    /// All numbers are estimates in multiples of the direction; neither bound is proven.
+    #[error(
+        "the bounds did not converge: {lower} <= t <= {upper}, accepted difference: {tolerance:e}"
+    )]
     Gap {
-        /// Where the line meets the plane.
+        /// Translation at which the line intersects the plane.
         lower: f64,
-        /// Where it meets the portal.
+        /// Translation at which the line intersects the portal.
         upper: f64,
-        /// The gap that would have been accepted.
+        /// The largest difference that would have been accepted.
         tolerance: f64,
     },
 }

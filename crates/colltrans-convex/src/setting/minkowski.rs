@@ -1,10 +1,13 @@
-//! The Minkowski difference `M = {q - p : p in P, q in Q}`, seen along the direction.
+//! The Minkowski difference `M = {q - p : p in P, q in Q}` in the shadow frame of a cast. `M` is never built.
 //!
-//! Notation. The *shadow frame* has two lateral axes `e1, e2` and `d` at length 1; a point of `M`
-//! has the coordinates `(s1, s2, h)`: its shadow `s` and its height `h`. The line `t d` is the axis
-//! `s = 0`; the collision translation is the lowest height at which it meets `M`.
+//! Notation:
+//! - *Shadow frame*: two lateral axes `e1`, `e2` and the unit vector along `d`. A point of `M` has
+//!   coordinates `(s1, s2, h)`: its shadow `s` and its height `h`.
+//! - *The line* `t d` is the axis `s = 0`. The collision translation is the lowest height at which it
+//!   intersects `M`.
+//! - [`Noise`](colltrans_kernel::noise::Noise) bounds the rounding error of a coordinate.
 //!
-//! Rounding. [`Noise`](colltrans_kernel::noise::Noise) bounds the error of a coordinate.
+//! The shortcuts by balls inside the bodies are derived in `docs/theory/inner-balls.md`.
 
 use std::cell::Cell;
 use std::cmp::Ordering;
@@ -17,58 +20,68 @@ use colltrans_kernel::orientation::{self, Shadow, Terms};
 use colltrans_kernel::predicates::orient2d;
 use colltrans_kernel::symmetric::Symmetric;
 
-/// A vertex of `M`, in the shadow frame, and the pair of vertices it comes from.
+/// A point of `M` in the shadow frame, and the pair of vertices that defines it.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Point {
+    /// Coordinates in the shadow frame, displaced to a corner of the widening rectangle if `M` is widened.
     pub(crate) at: DVec3,
+    /// The pair of vertices whose difference is the point.
     pub(crate) pair: VertexPair,
 }
 
 impl Point {
+    /// Returns the lateral coordinates.
     pub(crate) fn shadow(&self) -> DVec2 {
         self.at.truncate()
     }
 
+    /// Returns the coordinate along `d`, in world units.
     pub(crate) fn height(&self) -> f64 {
         self.at.z
     }
 }
 
-/// Cosine of the largest angle by which bodies turn against each other between queries that have
-/// something in common (measured).
+/// Minimum cosine of the angle between a normal as carried by either body, for which an earlier query is
+/// still used (measured).
 const MIN_COSINE_BETWEEN_QUERIES: f64 = 0.94;
 
-/// How many noises along a normal a point that the line nearly passes may be too low: with those for
-/// its own height, and for dividing by the normal's share, less than an upper bound is raised by.
+/// Maximum height of the line's entry into `M` above a nearby point that is taken as the upper bound, in
+/// noises along a normal.
+///
+/// With the noises of the point's own height, and of the division by the normal's component along `d`, this
+/// is less than the amount by which an upper bound is raised.
 const MAX_RISE: f64 = 3.25;
 
-/// Largest displacement between such queries, as a share of both bodies' radii (measured).
+/// Maximum lateral displacement since an earlier query that is still used, as a share of the sum of both
+/// bodies' radii (measured).
 const MAX_DISPLACEMENT: f64 = 0.1;
 
 /// `M` in the shadow frame: support points and orientations.
 #[derive(Debug, Clone)]
 pub(crate) struct MinkowskiDifference<'a> {
+    /// The placed bodies and the direction.
     pub(crate) setting: &'a Setting<'a>,
-    /// Columns `e1, e2, d` in the setting frame.
+    /// Columns `e1`, `e2` and the unit direction in the setting frame.
     pub(crate) setting_from_shadow: DMat3,
-    /// The same columns in the moving body's frame.
+    /// The columns of `setting_from_shadow` in the moving body's frame.
     moving_from_shadow: DMat3,
-    /// The same columns in the fixed body's frame.
+    /// The columns of `setting_from_shadow` in the fixed body's frame.
     fixed_from_shadow: DMat3,
-    /// `offset` in the shadow frame.
+    /// Offset `t_Q - t_P` in the shadow frame.
     offset: DVec3,
-    /// Bounds on rounding errors.
+    /// Bounds on rounding errors for the size of the configuration.
     pub(crate) noise: Noise,
-    /// Half the longer side of a rectangle by which `M` is widened sideways: 0, or a little more
-    /// than the rounding error when shadows only touch, so that the line passes through the widened
-    /// body.
+    /// Half of the longer side of the rectangle by which `M` is widened laterally; 0 if `M` is not widened.
+    ///
+    /// Bodies whose shadows only touch are widened by slightly more than the rounding error, so that the line
+    /// passes through the widened `M`.
     pub(crate) widening: f64,
-    /// The exact shadow that was needed last.
-    exact_shadow_cache: Cell<Option<(VertexPair, Shadow)>>,
+    /// The shadow that was last computed in twice the working precision, with its pair.
+    shadow_cache: Cell<Option<(VertexPair, Shadow)>>,
 }
 
 impl<'a> MinkowskiDifference<'a> {
-    /// With the lateral axes turned by an angle, given by its cosine and sine.
+    /// Builds `M` with lateral axes rotated about `d` by an angle. `turn` holds its cosine and sine.
     #[cold]
     pub(crate) fn with_rotated_axes(setting: &'a Setting<'a>, turn: DVec2) -> Self {
         let e1 = setting.unit.any_orthonormal_vector();
@@ -78,15 +91,16 @@ impl<'a> MinkowskiDifference<'a> {
         )
     }
 
-    /// With lateral axes along the world's where the direction is.
+    /// Builds `M` with default lateral axes.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+    #[expect(clippy::inline_always, reason = "a copy through memory stalls its reader")]
     pub(crate) fn new(setting: &'a Setting<'a>) -> Self {
         Self::with_lateral_axis(setting, setting.unit.any_orthonormal_vector())
     }
 
+    /// Builds `M` with the first lateral axis `e1`, a unit vector orthogonal to the direction.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+    #[expect(clippy::inline_always, reason = "a copy through memory stalls its reader")]
     fn with_lateral_axis(setting: &'a Setting<'a>, e1: DVec3) -> Self {
         let e2 = setting.unit.cross(e1);
         let axes = DMat3::from_cols(e1, e2, setting.unit);
@@ -98,35 +112,37 @@ impl<'a> MinkowskiDifference<'a> {
             offset: axes.transpose() * setting.offset,
             noise: setting.noise(),
             widening: 0.0,
-            exact_shadow_cache: Cell::new(None),
+            shadow_cache: Cell::new(None),
         }
     }
 
-    /// The same body, widened sideways, if the line misses it, by `margin` more: then the line
-    /// passes clearly inside.
+    /// Returns `M` widened laterally, so that the line passes clearly inside.
+    ///
+    /// `margin` is the distance by which the line misses `M`. It is added to the widening if it is positive.
     pub(crate) fn widened(&self, margin: f64) -> Self {
         Self { widening: self.noise.widening(margin), ..self.clone() }
     }
 
-    /// Sideways distance below which points are not told apart.
+    /// Returns the lateral distance below which points are not distinguished.
     #[inline]
     pub(crate) fn touching(&self) -> f64 {
         self.noise.touching()
     }
 
-    /// The point of `M` that is lowest along `normal` (shadow frame, any length).
+    /// Returns the point of `M` that is lowest along `normal` (shadow frame, any length).
     #[inline]
     pub(crate) fn support(&self, normal: DVec3) -> Point {
         let (p, q) = (self.setting.moving, self.setting.fixed);
         let (in_moving, in_fixed) = (self.in_moving(normal), -self.in_fixed(normal));
-        // Both tables are asked before either climb, so that neither waits for the other's memory.
+        // Both table entries are loaded before either climb, so that their memory accesses overlap.
         let (near_p, near_q) = (p.support_guess(in_moving), q.support_guess(in_fixed));
         let moving = p.support_from_guess(in_moving, near_p);
         let fixed = q.support_from_guess(in_fixed, near_q);
         self.point(VertexPair::of(moving, fixed), normal)
     }
 
-    /// The same, climbing from a pair believed to be near.
+    /// Returns the point of `M` that is lowest along `normal` (shadow frame, any length), by hill climbing
+    /// from the pair `near`.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
     pub(crate) fn support_from(&self, normal: DVec3, near: VertexPair) -> Point {
@@ -135,27 +151,29 @@ impl<'a> MinkowskiDifference<'a> {
         self.point(VertexPair::of(moving, fixed), normal)
     }
 
-    /// A normal of the shadow frame in the moving body's frame.
+    /// Transforms a normal from the shadow frame to the moving body's frame.
     #[inline]
     pub(crate) fn in_moving(&self, normal: DVec3) -> DVec3 {
         self.moving_from_shadow * normal
     }
 
-    /// A normal of the moving body's frame in the shadow frame.
+    /// Transforms a normal from the moving body's frame to the shadow frame.
     #[inline]
     pub(crate) fn shadow_of_moving(&self, normal: DVec3) -> DVec3 {
         transpose_mul(&self.moving_from_shadow, normal)
     }
 
-    /// A normal of the fixed body's frame in the shadow frame.
+    /// Transforms a normal from the fixed body's frame to the shadow frame.
     #[inline]
     pub(crate) fn shadow_of_fixed(&self, normal: DVec3) -> DVec3 {
         transpose_mul(&self.fixed_from_shadow, normal)
     }
 
-    /// One normal of an earlier query, kept in the frames of the moving and of the fixed body, in
-    /// the shadow frame: what each body has made of it since. `None` if the bodies have turned so
-    /// far against each other that nothing follows from it.
+    /// Transforms a normal of an earlier query, stored in the frames of both bodies, to the shadow frame.
+    /// Returns one vector for each body.
+    ///
+    /// Returns `None` if the bodies have rotated relative to each other by more than the limit
+    /// `MIN_COSINE_BETWEEN_QUERIES`.
     pub(crate) fn shadow_from_bodies(
         &self,
         [in_moving, in_fixed]: [DVec3; 2],
@@ -165,38 +183,39 @@ impl<'a> MinkowskiDifference<'a> {
         (p.dot(q) > MIN_COSINE_BETWEEN_QUERIES).then_some([p, q])
     }
 
-    /// Whether points that met in an earlier query, and are a lateral distance apart now, are still
-    /// near each other as bodies of this size go.
+    /// Checks whether points that touched in an earlier query are still close to each other, compared with
+    /// the radii of the bodies. `apart` is their lateral distance now.
     pub(crate) fn is_near(&self, apart: f64) -> bool {
         let size = self.setting.moving.inertia().radius + self.setting.fixed.inertia().radius;
         apart < MAX_DISPLACEMENT * size
     }
 
-    /// A normal of the shadow frame in the fixed body's frame.
+    /// Transforms a normal from the shadow frame to the fixed body's frame.
     #[inline]
     pub(crate) fn in_fixed(&self, normal: DVec3) -> DVec3 {
         self.fixed_from_shadow * normal
     }
 
-    /// The point of `M`, not widened, that a pair of vertices gives.
+    /// Returns the point of `M` for a pair of vertices, without widening.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+    #[expect(clippy::inline_always, reason = "a copy through memory stalls its reader")]
     pub(crate) fn vertex(&self, pair: VertexPair) -> Point {
         let p = self.setting.moving.vertices()[pair.moving.index()];
         let q = self.setting.fixed.vertices()[pair.fixed.index()];
         Point { at: self.difference(p, q), pair }
     }
 
-    /// The difference of a place in the fixed body and one in the moving body, each in its body's frame.
+    /// Computes `q - p` in the shadow frame. Each point is in its body's frame.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+    #[expect(clippy::inline_always, reason = "a copy through memory stalls its reader")]
     pub(crate) fn difference(&self, moving: DVec3, fixed: DVec3) -> DVec3 {
         (transpose_mul(&self.fixed_from_shadow, fixed)
             - transpose_mul(&self.moving_from_shadow, moving))
             + self.offset
     }
 
-    /// The same of `M` as it is widened: the corner that is lowest along a normal.
+    /// Returns the point of the widened `M` for a pair of vertices: the corner of the widening rectangle
+    /// around it that is lowest along `normal`.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
     pub(crate) fn point(&self, pair: VertexPair, normal: DVec3) -> Point {
@@ -209,8 +228,8 @@ impl<'a> MinkowskiDifference<'a> {
         point
     }
 
-    /// The bodies' inertia ellipsoids in the shadow frame: the difference of their centres, and
-    /// their matrices.
+    /// Returns the difference of the bodies' centres, and the matrices of their inertia ellipsoids, in the
+    /// shadow frame.
     #[inline]
     pub(crate) fn ellipsoids(&self) -> (DVec3, [Symmetric; 2]) {
         let (moving, fixed) = (self.setting.moving.inertia(), self.setting.fixed.inertia());
@@ -219,27 +238,25 @@ impl<'a> MinkowskiDifference<'a> {
         (self.center(), [a, b])
     }
 
-    /// The difference of the bodies' centres in the shadow frame.
+    /// Returns the difference of the bodies' centres, in the shadow frame.
     #[inline]
     pub(crate) fn center(&self) -> DVec3 {
         let (moving, fixed) = (self.setting.moving.inertia(), self.setting.fixed.inertia());
         self.difference(moving.center, fixed.center)
     }
 
-    /// Whether balls inside the bodies prove that the shadow of `M` contains all that is nearer to
-    /// the line than `margin`.
+    /// Checks whether balls inside the bodies prove that the shadow of `M` contains all points within
+    /// `margin` of the line.
     #[inline]
     pub(crate) fn shadow_contains_disc(&self, margin: f64) -> bool {
         let radius_left = self.inner_radius() - (margin + self.noise.point());
         radius_left > 0.0 && self.center().truncate().length_squared() < radius_left * radius_left
     }
 
-    /// The same by an edge of `M` as well, which the line passes nearby.
+    /// Checks whether an edge of `M` near the line and balls inside the bodies prove that the shadow of `M`
+    /// contains all points within `margin` of the line.
     ///
-    /// The shadow contains the edge and the points of the disc farthest across it on either side. If these
-    /// are at least `R` beyond the edge, the triangles between them and the edge contain all that is
-    /// nearer to a place on it than `R e / s`, for either end at `e` from the place and `s`, at most,
-    /// from these points.
+    /// See `docs/theory/inner-balls.md`, section "Shadow around an edge".
     #[inline]
     pub(crate) fn shadow_contains_disc_near_edge(&self, edge: [&Point; 2], margin: f64) -> bool {
         let [from, to] = edge.map(Point::shadow);
@@ -256,26 +273,25 @@ impl<'a> MinkowskiDifference<'a> {
         disc_reach > 0.0 && reaches(from, along) && reaches(to, length - along)
     }
 
-    /// How far beyond an edge of this length a disc around the centre, inside the shadow, reaches on
-    /// either side.
+    /// Returns a lower bound of the distance by which the disc inside the shadow, around `center`, reaches
+    /// beyond an edge of this length, on both sides. Not positive if the disc may lie on one side.
     #[inline]
     fn disc_reach_beyond_edge(&self, [from, to]: [DVec2; 2], length: f64, center: DVec2) -> f64 {
         let away = (to - from).perp_dot(center - from).abs() / length;
         self.inner_radius() - (away + self.noise.point())
     }
 
-    /// Radius of a ball around the centre of `M` that it contains.
+    /// Returns the radius of a ball around the centre of `M` that lies inside `M`.
     #[inline]
     fn inner_radius(&self) -> f64 {
         self.setting.moving.inertia().inner + self.setting.fixed.inertia().inner
     }
 
-    /// Whether the line meets `M` not noticeably higher than a point of `M` which it passes within
-    /// `residual`, as measured along `normal`: so the point is an upper bound, up to rounding.
+    /// Checks whether a point of `M` near the line is an upper bound of the contact up to rounding.
     ///
-    /// `M` contains the point, and a level disc around its centre; hence the cone between them. If
-    /// the disc covers the line and `R` around it, the line is in the cone at `residual / R` of the
-    /// way from the point to the disc_reach.
+    /// This holds if the line enters `M` at most `MAX_RISE` noises above the point, measured along `normal`.
+    /// `residual` is the lateral distance of the point from the line. See `docs/theory/inner-balls.md`,
+    /// section "Upper bound at a point".
     pub(crate) fn is_upper_bound(&self, point: DVec3, residual: f64, normal: DVec3) -> bool {
         let noise = self.noise.point();
         let center = self.center();
@@ -285,12 +301,11 @@ impl<'a> MinkowskiDifference<'a> {
             && (residual + self.noise.lateral()) * rise <= MAX_RISE * noise * disc_reach
     }
 
-    /// The same for a point on an edge in a plane across `normal`.
+    /// Checks whether a point on an edge of `M` is an upper bound of the contact up to rounding, where the
+    /// edge lies in a plane with this normal.
     ///
-    /// `M` contains the edge and the disc, hence the two triangles between the edge and the points of
-    /// the disc farthest across it. If these are at least `R` beyond the edge, the line is in one of
-    /// the triangles at `residual / R` of the way from the edge to its third corner, and at most that
-    /// share of the corner's height above the plane; the plane itself rises by the residual at most.
+    /// If the edge does not prove it, [`Self::is_upper_bound`] decides. See `docs/theory/inner-balls.md`,
+    /// section "Upper bound on an edge".
     pub(crate) fn is_upper_bound_on_edge(
         &self,
         edge: [&Point; 2],
@@ -308,7 +323,7 @@ impl<'a> MinkowskiDifference<'a> {
         let rise = (normal.dot(center - point) + radius * normal.truncate().length())
             / normal.length()
             + noise;
-        // The triangle's way across the edge leads along it, too.
+        // Moving towards the apex of the triangle also shifts the point along the edge.
         let along = away * (center.truncate() - point.truncate()).length();
         let inside = (point.truncate() - from).length().min((point.truncate() - to).length());
         let level = disc_reach > 0.0
@@ -317,34 +332,37 @@ impl<'a> MinkowskiDifference<'a> {
         level || self.is_upper_bound(point, residual, normal)
     }
 
-    /// A pair's exact shadow, computed once if it is asked for several times.
-    fn cached_exact_shadow(&self, pair: VertexPair, terms: &Terms) -> Shadow {
-        match self.exact_shadow_cache.get() {
+    /// Computes the shadow of a pair's point in twice the working precision, with an error bound. Returns the
+    /// cached value if the pair is that of the last call. `terms` are those of the pair.
+    fn cached_shadow(&self, pair: VertexPair, terms: &Terms) -> Shadow {
+        match self.shadow_cache.get() {
             Some((cached, shadow)) if cached == pair => shadow,
             _ => {
                 let new = orientation::shadow(terms, self.setting.direction);
-                self.exact_shadow_cache.set(Some((pair, new)));
+                self.shadow_cache.set(Some((pair, new)));
                 new
             }
         }
     }
 
-    /// The shadow of a pair's point of `M`, not widened, with a small error relative to its length;
-    /// zero only if the line passes through the point. `None` if that is not known.
-    pub(crate) fn exact_shadow(&self, pair: VertexPair) -> Option<DVec2> {
+    /// Computes the shadow of a pair's point of `M` with a small error relative to its length. The shadow is
+    /// zero only if the line passes through the point.
+    ///
+    /// Returns `None` if `M` is widened, or if the precision does not suffice.
+    pub(crate) fn precise_shadow(&self, pair: VertexPair) -> Option<DVec2> {
         if self.widening != 0.0 {
             return None;
         }
-        let exact = self.cached_exact_shadow(pair, &self.setting.terms(pair));
+        let exact = self.cached_shadow(pair, &self.setting.terms(pair));
         orientation::rounded(&exact, &self.setting_from_shadow, self.setting.direction)
     }
 
-    /// Whether the line passes to the left (`true`) or to the right of the directed segment between
-    /// two shadows.
+    /// Checks whether the line passes to the left (`true`) or to the right of the directed segment between
+    /// the shadows of two points.
     ///
-    /// Exact: a rounded determinant decides where its error allows, whole numbers otherwise. Where
-    /// the line meets the segment's carrier it is moved, in thought, by `(eps, eps^2)`: so it is
-    /// never *on* a segment, and three consistent answers always mean a triangle that contains it.
+    /// The decision is exact: a rounded determinant if its error allows, otherwise exact arithmetic. Ties are
+    /// broken by simulation of simplicity: the line is displaced symbolically by `(eps, eps^2)`. It is
+    /// therefore never *on* a segment, and three consistent answers always mean a triangle that contains it.
     #[inline]
     pub(crate) fn is_left(&self, from: &Point, to: &Point) -> bool {
         match self.is_left_rounded(from, to) {
@@ -353,7 +371,7 @@ impl<'a> MinkowskiDifference<'a> {
         }
     }
 
-    /// The same, if a rounded determinant decides.
+    /// Returns the answer of [`Self::is_left`] if a rounded determinant decides it, otherwise `None`.
     #[inline]
     pub(crate) fn is_left_rounded(&self, from: &Point, to: &Point) -> Option<bool> {
         let (a, b) = (from.shadow(), to.shadow());
@@ -362,16 +380,17 @@ impl<'a> MinkowskiDifference<'a> {
         (det.abs() > 2.0 * self.noise.point() * (size + self.noise.point())).then_some(det > 0.0)
     }
 
+    /// Decides [`Self::is_left`] exactly. Widened bodies are decided in their rounded coordinates.
     #[cold]
     #[inline(never)]
     fn is_left_exactly(&self, from: &Point, to: &Point) -> bool {
         if self.widening == 0.0 {
             let setting = self.setting;
             let (a, b) = (setting.terms(from.pair), setting.terms(to.pair));
-            // The line passes near one of the two again and again.
+            // Repeated calls share the point near the line, so its shadow is cached.
             let from_is_near = from.shadow().length_squared() < to.shadow().length_squared();
             let (near, terms) = if from_is_near { (from.pair, &a) } else { (to.pair, &b) };
-            let base = || self.cached_exact_shadow(near, terms);
+            let base = || self.cached_shadow(near, terms);
             let segment = to.shadow() - from.shadow();
             if segment.length_squared() > self.touching() * self.touching() {
                 let side = orientation::side(
@@ -387,7 +406,7 @@ impl<'a> MinkowskiDifference<'a> {
             }
             return orientation::orientation(&a, &b, setting.direction, base) == Ordering::Greater;
         }
-        // Widened bodies exist only in rounded coordinates; their determinant is exact for those.
+        // Widened bodies are defined by rounded coordinates, for which `orient2d` is exact.
         let (a, b) = (from.shadow(), to.shadow());
         let det = orient2d(a, b, DVec2::ZERO);
         if det != 0.0 {
@@ -397,7 +416,7 @@ impl<'a> MinkowskiDifference<'a> {
     }
 }
 
-/// `m^T v`.
+/// Computes `m^T v`.
 #[inline]
 fn transpose_mul(m: &DMat3, v: DVec3) -> DVec3 {
     DVec3::new(m.x_axis.dot(v), m.y_axis.dot(v), m.z_axis.dot(v))

@@ -1,5 +1,7 @@
-//! The setting of a query: two placed bodies, and of a cast a direction, in a frame that all solvers
-//! share.
+//! The setting of a query: two placed bodies and, for a cast, a direction.
+//!
+//! Both are given in the *setting frame*, which all solvers share: the axes of the world, the origin at the
+//! moving body's translation.
 
 pub mod error;
 pub(crate) mod minkowski;
@@ -15,7 +17,7 @@ use crate::setting::error::QueryError;
 use colltrans_kernel::range::{MAX_MAGNITUDE, in_exact_range};
 pub use two_bodies::TwoBodies;
 
-/// One vertex of each body.
+/// A vertex of each body.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(
     feature = "serde",
@@ -23,28 +25,32 @@ pub use two_bodies::TwoBodies;
     serde(deny_unknown_fields)
 )]
 pub struct VertexPair {
-    /// Of the moving body.
+    /// Vertex of the moving body.
     pub moving: VertexId,
-    /// Of the fixed body.
+    /// Vertex of the fixed body.
     pub fixed: VertexId,
 }
 
 impl VertexPair {
+    /// Builds a pair from the vertex indices in the moving and in the fixed body.
     #[inline]
     #[doc(hidden)]
     pub const fn of(moving: u32, fixed: u32) -> Self {
         Self { moving: VertexId(moving), fixed: VertexId(fixed) }
     }
 
-    /// As searches walk on: of the moving and of the fixed body.
+    /// Returns the vertex indices: `[moving, fixed]`.
     #[inline]
     pub const fn numbers(self) -> [u32; 2] {
         [self.moving.0, self.fixed.0]
     }
 }
 
+/// Checks that a direction can be cast along.
+///
 /// # Errors
-/// A direction that is zero, not finite or out of range.
+/// Returns [`QueryError::Direction`] if the direction is zero, not finite or has a component outside the
+/// exact range.
 #[inline]
 pub fn check_direction(direction: DVec3) -> Result<(), QueryError> {
     if direction == DVec3::ZERO || !in_exact_range(direction) {
@@ -53,8 +59,10 @@ pub fn check_direction(direction: DVec3) -> Result<(), QueryError> {
     Ok(())
 }
 
+/// Checks a length with which a distance is compared.
+///
 /// # Errors
-/// A length that is negative or not a number.
+/// Returns [`QueryError::Length`] if the length is negative or not a number.
 #[inline]
 pub fn check_length(length: f64) -> Result<(), QueryError> {
     if length.is_nan() || length < 0.0 {
@@ -63,8 +71,11 @@ pub fn check_length(length: f64) -> Result<(), QueryError> {
     Ok(())
 }
 
+/// Checks a minimum gap, in world units.
+///
 /// # Errors
-/// A gap that is negative, not finite or beyond the range of coordinates; any but 0 without the feature.
+/// Returns [`QueryError::Keep`] if the gap is negative, not finite or larger than [`MAX_MAGNITUDE`]. Without
+/// the feature `keep`, any gap except 0 is an error.
 #[inline]
 pub fn check_keep(gap: f64) -> Result<(), QueryError> {
     let most = if cfg!(feature = "keep") { MAX_MAGNITUDE } else { 0.0 };
@@ -75,30 +86,33 @@ pub fn check_keep(gap: f64) -> Result<(), QueryError> {
 #[derive(Debug)]
 #[derive_where(Clone, Copy)]
 pub struct Setting<'a, B = ConvexPolyhedron> {
-    /// The bodies.
+    /// The placed bodies.
     pub bodies: TwoBodies<'a, B>,
     /// The direction as given.
     pub direction: DVec3,
-    /// Its length.
+    /// Length of `direction`.
     pub length: f64,
-    /// `direction` at length 1.
+    /// Unit vector along `direction`.
     pub unit: DVec3,
 }
 
-/// What is of the bodies alone is asked of them.
+/// Gives access to the methods of the two bodies, which do not depend on the direction.
 impl<'a, B> Deref for Setting<'a, B> {
     type Target = TwoBodies<'a, B>;
 
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "it is a field")]
+    #[expect(clippy::inline_always, reason = "returns a field")]
     fn deref(&self) -> &Self::Target {
         &self.bodies
     }
 }
 
 impl<'a, B> Setting<'a, B> {
+    /// Builds the setting of two placed bodies.
+    ///
+    /// Returns the error of [`check_direction`] if the direction is not admissible.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+    #[expect(clippy::inline_always, reason = "a copy through memory stalls its reader")]
     pub(crate) fn new(
         moving: Placed<'a, B>,
         fixed: Placed<'a, B>,
@@ -107,16 +121,19 @@ impl<'a, B> Setting<'a, B> {
         Self::of(TwoBodies::new(moving, fixed), direction)
     }
 
-    /// Of bodies that are placed.
+    /// Builds the setting of two bodies that are already in one frame.
+    ///
+    /// # Errors
+    /// Returns [`QueryError::Direction`] if the direction is zero, not finite or out of range.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+    #[expect(clippy::inline_always, reason = "a copy through memory stalls its reader")]
     pub fn of(bodies: TwoBodies<'a, B>, direction: DVec3) -> Result<Self, QueryError> {
         check_direction(direction)?;
         let length = direction.length();
         Ok(Self { bodies, direction, length, unit: direction * (1.0 / length) })
     }
 
-    /// The same bodies, and the direction turned round.
+    /// Returns the setting with the opposite direction.
     #[inline]
     pub(crate) fn reversed(&self) -> Self {
         Self { direction: -self.direction, unit: -self.unit, ..*self }
@@ -124,8 +141,10 @@ impl<'a, B> Setting<'a, B> {
 }
 
 impl Setting<'_> {
-    /// How far two points, in the frames of the moving and of the fixed body, are apart sideways:
-    /// for those that met in an earlier query, what poses and direction have changed since.
+    /// Returns the distance of two points perpendicular to the direction, in world units.
+    ///
+    /// `p` is in the frame of the moving body, `q` in that of the fixed one. For points that touched in an
+    /// earlier query, this distance measures the change of poses and direction since then.
     pub(crate) fn lateral_displacement(&self, [p, q]: [DVec3; 2]) -> f64 {
         let apart = self.fixed_matrix * q + self.offset - self.moving_matrix * p;
         apart.reject_from_normalized(self.unit).length()

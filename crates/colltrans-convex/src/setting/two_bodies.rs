@@ -1,8 +1,9 @@
-//! Two placed bodies, in the *setting frame*: the axes of the world, the origin at the moving body's
+//! Two placed bodies in the *setting frame*: the axes of the world, the origin at the moving body's
 //! translation.
 //!
-//! `p = R_P v` and `q = R_Q v + offset` with `offset = t_Q - t_P`, so a common displacement of both
-//! bodies, however large, costs no accuracy.
+//! Notation: a vertex `v` of `P` is at `p = R_P v`, a vertex `v` of `Q` at `q = R_Q v + offset`, with
+//! `offset = t_Q - t_P`. A common displacement of both bodies therefore costs no accuracy, however large it
+//! is.
 
 use derive_where::derive_where;
 use glam::{DMat3, DVec3};
@@ -16,29 +17,30 @@ use colltrans_kernel::orientation::Terms;
 use colltrans_kernel::pose::STRETCHED;
 use colltrans_kernel::range::MIN_MAGNITUDE;
 
-/// Two placed bodies.
+/// Two placed bodies in the setting frame.
 #[derive(Debug)]
 #[derive_where(Clone, Copy)]
 pub struct TwoBodies<'a, B = ConvexPolyhedron> {
-    /// The moving body P.
+    /// The moving body `P`.
     pub moving: &'a B,
-    /// Its rotation `R_P`.
+    /// Rotation `R_P` of the moving body.
     pub moving_matrix: DMat3,
-    /// The fixed body Q.
+    /// The fixed body `Q`.
     pub fixed: &'a B,
-    /// Its rotation `R_Q`.
+    /// Rotation `R_Q` of the fixed body.
     pub fixed_matrix: DMat3,
-    /// `t_P` and `t_Q`.
+    /// Translations `[t_P, t_Q]` in the world.
     pub translations: [DVec3; 2],
     /// `t_Q - t_P`, rounded.
     pub offset: DVec3,
-    /// What rounding took from `offset`, exactly.
+    /// Rounding error of `offset`. For unmoved bodies `offset + offset_error` is exactly `t_Q - t_P`.
     offset_error: DVec3,
 }
 
 impl<'a, B> TwoBodies<'a, B> {
+    /// Computes the offset of two placed bodies and its rounding error.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+    #[expect(clippy::inline_always, reason = "a copy through memory stalls its reader")]
     pub fn new(moving: Placed<'a, B>, fixed: Placed<'a, B>) -> Self {
         let translations = [moving.pose.translation(), fixed.pose.translation()];
         let [t_p, t_q] = translations;
@@ -57,21 +59,25 @@ impl<'a, B> TwoBodies<'a, B> {
         }
     }
 
-    /// The moving body where it is.
+    /// Returns the moving body with its pose in the world.
     #[inline]
     pub fn moving_placed(&self) -> Placed<'a, B> {
         let pose = Pose::checked(self.moving_matrix, self.translations[0]);
         Placed { body: self.moving, pose }
     }
 
-    /// The fixed body where it is.
+    /// Returns the fixed body with its pose in the world.
     #[inline]
     pub fn fixed_placed(&self) -> Placed<'a, B> {
         let pose = Pose::checked(self.fixed_matrix, self.translations[1]);
         Placed { body: self.fixed, pose }
     }
 
-    /// The same with the moving body moved by so much: to hardly more than the last digit of the error.
+    /// Returns the bodies after a translation of the moving one by `by`. Only the offset changes, not
+    /// `translations`.
+    ///
+    /// The sum of the new offset and its error is the exact offset up to little more than the last digit of
+    /// the error.
     pub(crate) fn moved_by(&self, by: DVec3) -> Self {
         let [mut offset, mut error] = [self.offset, self.offset_error];
         for k in 0..3 {
@@ -79,13 +85,15 @@ impl<'a, B> TwoBodies<'a, B> {
             let high = offset[k] - by[k];
             offset[k] = high + low;
             let lost = sum_error(high, low, offset[k]);
-            // What is beyond the exact range is nothing beside the rounding of `by`.
+            // A remainder below the exact range is negligible compared with the rounding of `by`.
             error[k] = if lost.abs() < MIN_MAGNITUDE { 0.0 } else { lost };
         }
         Self { offset, offset_error: error, ..*self }
     }
 
-    /// The same bodies with other rotations, displaced by so much from where they are.
+    /// Returns the bodies with new `rotations`, translated by `by`, each for the moving and the fixed body.
+    ///
+    /// A coordinate of the new offset below [`MIN_MAGNITUDE`] becomes 0.
     #[must_use]
     #[inline]
     pub fn carried(&self, rotations: [DMat3; 2], by: [DVec3; 2]) -> Self {
@@ -100,14 +108,14 @@ impl<'a, B> TwoBodies<'a, B> {
         Self { moving_matrix, fixed_matrix, translations: [p + by[0], q + by[1]], ..moved }
     }
 
-    /// Other bodies in their places.
+    /// Returns other bodies in the poses of these.
     #[inline]
     pub fn holding<'b, C>(&self, [moving, fixed]: [&'b C; 2]) -> TwoBodies<'b, C> {
         let Self { moving_matrix, fixed_matrix, translations, offset, offset_error, .. } = *self;
         TwoBodies { moving, moving_matrix, fixed, fixed_matrix, translations, offset, offset_error }
     }
 
-    /// `t_Q - t_P`, and what rounding took from it.
+    /// Returns `t_Q - t_P` as a rounded value and its error.
     #[inline]
     pub fn exact_offset(&self) -> [DVec3; 2] {
         [self.offset, self.offset_error]
@@ -115,19 +123,20 @@ impl<'a, B> TwoBodies<'a, B> {
 }
 
 impl<B: Hull> TwoBodies<'_, B> {
-    /// The size `S` of the configuration: `|q - p|` is at most this for all its points.
+    /// Returns the size `S` of the configuration, a bound on `|q - p|` over all points of the bodies.
     #[inline]
     pub fn scale(&self) -> f64 {
         self.moving.reach() + self.fixed.reach() + self.offset.length()
     }
 
-    /// The bounds on rounding errors that belong to the size.
+    /// Returns the bounds on rounding errors for the size `S`.
     #[inline]
     pub fn noise(&self) -> Noise {
         Noise::of(self.scale())
     }
 
-    /// At most `min_Q n.q - max_P n.p`, and less by hardly more than a rounding: all corners are looked at.
+    /// Returns a lower bound of `min_Q n.q - max_P n.p` for `n = normal`, accurate to little more than one
+    /// rounding. Takes `O(n)` steps, because it examines all corners.
     #[inline]
     pub fn distance_along(&self, normal: DVec3) -> f64 {
         let fixed = (self.fixed.corners(), &self.fixed_matrix);
@@ -135,21 +144,26 @@ impl<B: Hull> TwoBodies<'_, B> {
         extent::distance(normal, fixed, moving, self.exact_offset())
     }
 
-    /// The gap that a plane proves, in world units, rounded down: what a check accepts.
+    /// Returns the gap that the plane with this normal proves between the bodies, in world units, rounded
+    /// down. A check accepts any gap up to this one.
     #[inline]
     pub fn proven_gap(&self, normal: DVec3) -> f64 {
         let [_, square] = extent::dot(normal, normal);
         (self.distance_along(normal) / square.sqrt().next_up()).next_down()
     }
 
-    /// The gap that a plane proves between the points that the bodies were made from: what a search claims.
+    /// Returns the gap that the plane with this normal proves between the inputs of the bodies, in world
+    /// units. A search claims this gap.
+    ///
+    /// It is [`Self::proven_gap`] less [`Self::input_excess`].
     #[inline]
     pub fn input_gap(&self, normal: DVec3) -> f64 {
         let (gap, excess) = (self.proven_gap(normal), self.input_excess());
         if excess == 0.0 { gap } else { (gap - excess).next_down() }
     }
 
-    /// How much nearer to each other points of both inputs may be than the bodies are, in the world.
+    /// Returns a bound on the sum of the distances by which input points lie outside of their bodies, in
+    /// world units.
     #[inline]
     pub fn input_excess(&self) -> f64 {
         (self.moving.input_excess() + self.fixed.input_excess()) * STRETCHED
@@ -157,15 +171,16 @@ impl<B: Hull> TwoBodies<'_, B> {
 }
 
 impl TwoBodies<'_> {
-    /// A pair's vertices, in the frames of the moving and the fixed body.
+    /// Returns the vertices of a pair, in the frames of the moving and of the fixed body.
     #[inline]
     pub(crate) fn vertices(&self, pair: VertexPair) -> [DVec3; 2] {
         [self.moving.vertices()[pair.moving.index()], self.fixed.vertices()[pair.fixed.index()]]
     }
 
-    /// Means of several pairs' vertices by weight, in the frames of the moving and the fixed body.
+    /// Returns the weighted sums of several pairs' vertices, in the frames of the moving and of the fixed
+    /// body. They are means if the weights have sum 1.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory they stall their reader")]
+    #[expect(clippy::inline_always, reason = "a copy through memory stalls its reader")]
     pub fn weighted<const N: usize>(
         &self,
         pairs: &[VertexPair; N],
@@ -179,35 +194,38 @@ impl TwoBodies<'_> {
         means
     }
 
-    /// The point `q - p` of a pair of vertices, off by less than `9 u S`.
+    /// Computes the point `q - p` of a pair of vertices, in the setting frame, with an error below `9 u S`.
     #[inline]
     pub fn difference(&self, pair: VertexPair) -> DVec3 {
         let [p, q] = self.vertices(pair);
         self.fixed_matrix * q - self.moving_matrix * p + self.offset
     }
 
-    /// The way from one such point to another, off by a few `u` of how far the vertices are apart.
+    /// Computes the vector from the point `q - p` of one pair to that of another. Its error is a few `u` of
+    /// the distances between the vertices of each body.
     #[inline]
     pub(crate) fn displacement_between(&self, from: VertexPair, to: VertexPair) -> DVec3 {
         let ([p, q], [r, s]) = (self.vertices(from), self.vertices(to));
         self.fixed_matrix * (s - q) - self.moving_matrix * (r - p)
     }
 
-    /// A normal of the setting frame in the moving body's frame: `n.(R v) = (R^T n).v`.
+    /// Transforms a normal from the setting frame to the moving body's frame: `n.(R v) = (R^T n).v`.
     #[inline]
     pub(crate) fn moving_normal(&self, normal: DVec3) -> DVec3 {
         self.moving_matrix.transpose() * normal
     }
 
-    /// A normal of the setting frame in the fixed body's frame.
+    /// Transforms a normal from the setting frame to the fixed body's frame.
     #[inline]
     pub(crate) fn fixed_normal(&self, normal: DVec3) -> DVec3 {
         self.fixed_matrix.transpose() * normal
     }
 
-    /// A pair of support points along a unit normal, given in both bodies' frames, from one that climbs
-    /// have found; and how far the bodies, and the points that they were made from, may reach towards each
-    /// other beyond it.
+    /// Returns support points along a unit normal, and a bound on how far the bodies and their inputs reach
+    /// towards each other beyond these points.
+    ///
+    /// `normals` holds the normal in the frames of the moving and of the fixed body. `found` is the result of
+    /// a hill climb.
     #[inline]
     pub(crate) fn support_with_excess(
         &self,
@@ -219,7 +237,7 @@ impl TwoBodies<'_> {
         (VertexPair::of(moving, fixed), p + q + self.input_excess())
     }
 
-    /// `q - p` for a pair of vertices, as the sum of products that defines it.
+    /// Returns the sum of products that defines `q - p` for a pair of vertices, for exact evaluation.
     pub(crate) fn terms(&self, pair: VertexPair) -> Terms<'_> {
         let [p, q] = self.vertices(pair);
         Terms {

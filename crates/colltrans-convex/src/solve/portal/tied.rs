@@ -68,7 +68,7 @@ pub(super) fn pointed<O: Observer>(
     {
         return at_corner();
     }
-    let Some(shadow) = context.difference.exact_shadow(vertex.pair) else {
+    let Some(shadow) = context.difference.precise_shadow(vertex.pair) else {
         return Pointed::Unknown;
     };
     if shadow == DVec2::ZERO {

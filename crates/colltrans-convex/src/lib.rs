@@ -16,13 +16,13 @@
 //! - `setting`: two placed bodies and, for a cast, a direction. `minkowski` computes support points of `M` in
 //!   the shadow frame, and on which side of an edge the line passes.
 //! - `answer`: outcomes, ranges and bounds. `certificate` has the proofs and their checks.
-//! - `solve`: the solver of one cast. `portal` is portal refinement with exact decisions: it starts from a
-//!   guess of the contact normal and ends in the face of `M` that the line enters, whose plane and triangle
-//!   are the certificate. `outline` approximates bodies with rims by hulls of ellipses, and `ascent` computes
-//!   where these hulls meet. `cta` is the paper's algorithm: it minimises `phi(x, y)`, the collision
-//!   translation of two planar sections, by cutting planes in floating point, and returns a guess of the
-//!   contact normal. `nearest` descends to the nearest point of `M` over its simplices. `depth` grows a
-//!   polytope of points of `M` where the origin is nearest to its boundary. `keep` solves casts with a
+//! - `solve`: the solver of one cast. `portal` is portal refinement with exact decisions. It starts from a
+//!   guess of the contact normal and ends in the face of `M` that the line enters. The plane and the triangle
+//!   of this face are the certificate. `outline` approximates bodies with rims by hulls of ellipses, and
+//!   `ascent` computes where these hulls meet. `cta` is the paper's algorithm. It minimises `phi(x, y)`, the
+//!   collision translation of two planar sections, by cutting planes in floating point. The result is a guess
+//!   of the contact normal. `nearest` descends to the nearest point of `M` over its simplices. `depth` grows
+//!   a polytope of points of `M` where the origin is nearest to its boundary. `keep` solves casts with a
 //!   minimum gap, by Newton's method over nearest points. `observe` reports steps to an observer.
 //! - `cast`: [`Cast`], its derived answers, contact details and files. [`CastBody`] is the trait of bodies
 //!   that can be cast.

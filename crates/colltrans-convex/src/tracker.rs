@@ -274,6 +274,6 @@ impl<'a> Tracker<'a> {
         let last = if paused { WarmStart::Nothing } else { carry.start };
         *warm_started = focus.features && !matches!(last, WarmStart::Nothing);
         *in_last_query = true;
-        cast.search(&focus, &last, carry, observer)
+        cast.search_first_contact(&focus, &last, carry, observer)
     }
 }

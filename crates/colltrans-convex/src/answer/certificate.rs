@@ -87,8 +87,8 @@ pub struct Separation {
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum CertificateError {
-    /// The normal is not a unit vector, or its angle to the direction is wrong: for a contact it must have a
-    /// positive component along the direction, for a separation it must be orthogonal to it.
+    /// The normal is not a unit vector, or its angle to the direction is wrong. For a contact its component
+    /// along the direction must be positive, for a separation zero.
     #[error("the normal {normal} is not a unit vector, or its angle to the direction is wrong")]
     Normal {
         /// The normal.
@@ -323,7 +323,11 @@ impl Certificate {
 
     /// Checks the certificate for [`Cast::verify`](crate::Cast::verify), with the minimum gap `keep` or 0.
     /// Returns the proven difference of the bounds.
-    pub(crate) fn verify(&self, setting: &Setting, keep: f64) -> Result<f64, CertificateError> {
+    pub(crate) fn verify_with_gap(
+        &self,
+        setting: &Setting,
+        keep: f64,
+    ) -> Result<f64, CertificateError> {
         let normal = self.normal;
         let steepness = normal.dot(setting.direction);
         let unit = (normal.length() - 1.0).abs() <= noise::UNIT_VECTOR;
@@ -440,10 +444,10 @@ fn reduced_by_gap(distance: f64, normal: DVec3, keep: f64) -> f64 {
     (distance - (keep * square.sqrt().next_up()).next_up()).next_down()
 }
 
-/// Returns the largest rounding that a certificate may state.
+/// Returns the largest rounding that a certificate may state. The field proves nothing.
 ///
-/// The field proves nothing. The limit is twice the amount of a search whose bodies reach beyond their
-/// support points by at most the tolerance for vertices off the planes of their faces.
+/// The limit is twice the rounding that a search states. It assumes that the bodies reach beyond their
+/// support points by at most the tolerance of coplanar vertices.
 fn max_rounding(setting: &Setting, normal: DVec3, noise: Noise) -> f64 {
     let rounding =
         (noise.raised() + noise.lowered() + noise.beyond()) / normal.dot(setting.direction);
@@ -487,7 +491,11 @@ pub fn shadow_gap(setting: &Setting, normal: DVec3) -> f64 {
 impl Separation {
     /// Checks the separation for [`Cast::verify`](crate::Cast::verify), with the minimum gap `keep` or 0.
     /// Returns the proven margin.
-    pub(crate) fn verify(&self, setting: &Setting, keep: f64) -> Result<f64, CertificateError> {
+    pub(crate) fn verify_with_gap(
+        &self,
+        setting: &Setting,
+        keep: f64,
+    ) -> Result<f64, CertificateError> {
         check_lateral_normal(setting, self.normal)?;
         let (proven, claimed) = (shadow_gap(setting, self.normal), self.margin);
         if claimed > keep && claimed <= proven {

@@ -1,8 +1,10 @@
 //! A cast: two placed bodies and a direction, checked once and queried many times.
 //!
-//! [`Cast`] holds the setting and the options. `multi_cast` derives the answers that need more than one cast,
-//! `contact` computes details of a contact on request, `sideways` measures overlaps of shadows, and `replay`
-//! saves a query as a file (feature `json`).
+//! - [`Cast`] holds the setting and the options.
+//! - `multi_cast` derives the answers that need more than one cast.
+//! - `contact` computes details of a contact on request.
+//! - `sideways` measures overlaps of shadows.
+//! - `replay` saves a query as a file (feature `json`).
 
 mod contact;
 mod multi_cast;
@@ -168,10 +170,13 @@ impl<B: CastBody> Cast<'_, B> {
     /// Returns the cast with other options.
     ///
     /// # Errors
-    /// Returns an error if the graze tolerance or the minimum gap is negative or not finite, if the minimum
-    /// gap is larger than [`MAX_MAGNITUDE`](crate::MAX_MAGNITUDE), or if the narrowing gap is negative or not
-    /// a number. For solids, returns an error if the tolerance is negative or not finite, or if it leaves
-    /// nothing of a closed body ([`QueryError::NothingLeft`]).
+    /// Returns an error if an option is invalid:
+    ///
+    /// - The graze tolerance is negative or not finite.
+    /// - The minimum gap is negative, not finite or larger than [`MAX_MAGNITUDE`](crate::MAX_MAGNITUDE).
+    /// - The narrowing gap is negative or not a number.
+    /// - The tolerance of solids is negative or not finite, or leaves nothing of a closed body
+    ///   ([`QueryError::NothingLeft`]).
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a copy through memory stalls its reader")]
     pub fn with_options(self, options: B::Options) -> Result<Self, QueryError> {
@@ -182,8 +187,8 @@ impl<B: CastBody> Cast<'_, B> {
 
     /// Returns the cast with a minimum gap, in world units.
     ///
-    /// All queries then determine when the distance of the bodies falls to the gap, instead of when they
-    /// touch (a shape cast with a target distance, or with a skin):
+    /// The queries then use the translation at which the distance of the bodies falls to the gap, instead of
+    /// their contact (a shape cast with a target distance, or with a skin):
     ///
     /// - [`Self::first_contact`] finds the first translation at which the distance of the bodies is the gap.
     /// - [`Self::clearance`] is the translation up to that point. Bodies that are nearer at the start are
@@ -197,10 +202,10 @@ impl<B: CastBody> Cast<'_, B> {
     /// - [`Separated`](crate::Separated): the margin exceeds the gap.
     /// - [`Outcome::Grazing`]: the distance of the shadows is the gap, to within the graze tolerance.
     ///
-    /// If the bodies pass each other at about the gap, the bounds are wider: they differ by the translation
-    /// after which a face nearly parallel to the direction has come nearer by more than the rounding error.
-    /// The choice of solver has no effect. Observers receive one plane for each computed distance, and no
-    /// portals.
+    /// The bounds are wider if the bodies pass each other at about the gap. They then differ by the
+    /// translation after which a face nearly parallel to the direction is nearer by more than the rounding
+    /// error. The choice of solver has no effect. Observers receive one plane for each computed distance, and
+    /// no portals.
     ///
     /// For solids, shrunk by half of the tolerance where a query uses it, no two facets come nearer than the
     /// gap up to `lower`. Facets that pass each other, or start, at the gap to within eight noises
@@ -417,7 +422,7 @@ impl Cast<'_> {
         observer: &mut O,
     ) -> Result<Outcome, QueryError> {
         let (last, mut next) = (WarmStart::Nothing, Left::default());
-        self.search(&Focus::NONE, &last, &mut next, observer)
+        self.search_first_contact(&Focus::NONE, &last, &mut next, observer)
     }
 
     /// Searches the first contact or, if the options have a minimum gap, the first translation at which the
@@ -426,7 +431,7 @@ impl Cast<'_> {
     /// The search starts from the result `last` of an earlier cast, as far as `focus` allows. `next` receives
     /// the start of a later cast.
     #[inline]
-    pub(crate) fn search<O: Observer>(
+    pub(crate) fn search_first_contact<O: Observer>(
         &self,
         focus: &Focus,
         last: &WarmStart,
@@ -515,8 +520,12 @@ impl CastBody for ConvexPolyhedron {
 
     fn verify_cast(cast: &Cast<'_>, proof: Proof<'_>) -> Result<f64, CertificateError> {
         match proof {
-            Proof::Contact(certificate) => certificate.verify(&cast.setting, cast.options.keep),
-            Proof::Separation(separation) => separation.verify(&cast.setting, cast.options.keep),
+            Proof::Contact(certificate) => {
+                certificate.verify_with_gap(&cast.setting, cast.options.keep)
+            }
+            Proof::Separation(separation) => {
+                separation.verify_with_gap(&cast.setting, cast.options.keep)
+            }
         }
     }
 }

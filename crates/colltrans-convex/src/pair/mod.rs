@@ -97,8 +97,8 @@ impl<B: PairBody> Pair<'_, B> {
     /// by which inputs lie outside of their hulls.
     ///
     /// - Overlapping bodies have a lower bound of 0.
-    /// - If the distance is a few noises or less, a plane may still prove a positive lower bound, because its
-    ///   gap is computed from all vertices nearly without rounding. Axis-aligned boxes with a distance of
+    /// - If the distance is a few noises or less, a plane may still prove a positive lower bound. Its gap is
+    ///   computed from all vertices, nearly without rounding. Axis-aligned boxes with a distance of
     ///   `1e-60` are usually proven to be separated. If their corners are aligned as well, the bounds are 0
     ///   and a few noises.
     /// - For solids the bounds differ by at most five noises (`160 u S`). The distance is 0 if their surfaces

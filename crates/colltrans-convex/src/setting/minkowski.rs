@@ -48,8 +48,8 @@ const MIN_COSINE_BETWEEN_QUERIES: f64 = 0.94;
 /// Maximum height of the line's entry into `M` above a nearby point that is taken as the upper bound, in
 /// noises along a normal.
 ///
-/// With the noises of the point's own height, and of the division by the normal's component along `d`, this
-/// is less than the amount by which an upper bound is raised.
+/// The point's own height and the division by the normal's component along `d` add further noises. The sum is
+/// less than the amount by which an upper bound is raised.
 const MAX_RISE: f64 = 3.25;
 
 /// Maximum lateral displacement since an earlier query that is still used, as a share of the sum of both
@@ -119,7 +119,7 @@ impl<'a> MinkowskiDifference<'a> {
     /// Returns `M` widened laterally, so that the line passes clearly inside.
     ///
     /// `margin` is the distance by which the line misses `M`. It is added to the widening if it is positive.
-    pub(crate) fn widened(&self, margin: f64) -> Self {
+    pub(crate) fn widened_by(&self, margin: f64) -> Self {
         Self { widening: self.noise.widening(margin), ..self.clone() }
     }
 
@@ -301,8 +301,8 @@ impl<'a> MinkowskiDifference<'a> {
             && (residual + self.noise.lateral()) * rise <= MAX_RISE * noise * disc_reach
     }
 
-    /// Checks whether a point on an edge of `M` is an upper bound of the contact up to rounding, where the
-    /// edge lies in a plane with this normal.
+    /// Checks whether a point on an edge of `M` is an upper bound of the contact up to rounding. The edge
+    /// lies in a plane with this normal.
     ///
     /// If the edge does not prove it, [`Self::is_upper_bound`] decides. See `docs/theory/inner-balls.md`,
     /// section "Upper bound on an edge".

@@ -461,7 +461,7 @@ impl<O: Observer> Run<'_, '_, '_, O> {
     /// of the bodies widened sideways by a little more than that.
     #[cold]
     fn touching(&mut self, rim: &SeparatingLine) -> Result<Outcome, QueryError> {
-        self.context.difference = self.context.difference.widened(rim.margin);
+        self.context.difference = self.context.difference.widened_by(rim.margin);
         let (portal, Face { plane, weights }) = match self.widened_face() {
             Ok(found) => found,
             Err(reason) => return self.again(reason),
@@ -546,6 +546,6 @@ impl<O: Observer> Run<'_, '_, '_, O> {
     #[inline]
     fn others_agree(&self, certificate: &Separation) -> bool {
         certificate.margin > 2.0 * self.context.difference.noise.touching()
-            || certificate.verify(self.context.difference.setting, 0.0).is_ok()
+            || certificate.verify_with_gap(self.context.difference.setting, 0.0).is_ok()
     }
 }

@@ -257,7 +257,7 @@ impl<'s, 'a, 'o, O: Observer> Kept<'s, 'a, 'o, O> {
         let surely = self.line.keep + CLEARLY * self.line.noise.point();
         let proven = plane.height > surely
             || plane.height > self.line.keep
-                && certificate.verify(self.bodies.setting, self.line.keep).is_ok();
+                && certificate.verify_with_gap(self.bodies.setting, self.line.keep).is_ok();
         proven.then_some(certificate)
     }
 
@@ -382,7 +382,7 @@ fn slightly_apart(setting: &Setting, keep: f64, outcome: Outcome) -> Option<Outc
             ..of
         })),
         Outcome::Separated(of) => {
-            let proven = of.certificate.verify(setting, keep).is_ok();
+            let proven = of.certificate.verify_with_gap(setting, keep).is_ok();
             proven.then_some(Outcome::Separated(of))
         }
     }

@@ -14,7 +14,7 @@
 //! - *Upper.* The points are a weighted mean of vertices; their distance is raised by what it may be off
 //!   ([`Noise::mean_raised`]).
 //! - *Lower.* The height along a rounded unit normal is off by less than one noise, as in a cast; it is
-//!   taken off, and what bodies reach beyond the support points ([`TwoBodies::settled`]).
+//!   taken off, and what bodies reach beyond the support points ([`TwoBodies::support_with_excess`]).
 //!
 //! The descent ends when the bounds are one noise apart as computed. So they are proven to within three
 //! noises and a half, and what the bodies reach beyond support points: half a noise if each vertex is looked

@@ -79,8 +79,8 @@ impl Contact {
         Self { translation, normal, support, certificate, solver, steps }
     }
 
-    /// Returns the translation with its proven bounds, in multiples of the direction. `upper` is infinite if
-    /// the bodies slide so closely that they may not touch.
+    /// Returns the translation with its proven bounds, in multiples of the direction. `upper` is infinite for
+    /// sliding bodies whose overlap is below the rounding error.
     pub fn bounded(&self) -> Bounded {
         let Certificate { lower, upper, .. } = self.certificate;
         Bounded { value: self.translation, lower, upper }

@@ -48,7 +48,8 @@ pub enum CaseError {
     Query(#[from] QueryError),
 }
 
-/// Returns the message of a parser error in terms of the file, with line and column.
+/// Returns the message of a parser error in terms of the file, with line and column. An input error keeps the
+/// parser's message.
 pub fn what_is_wrong(error: &serde_json::Error) -> String {
     use serde_json::error::Category;
     let what = match error.classify() {

@@ -15,10 +15,10 @@ pub mod keep;
 pub mod nearest;
 pub mod observe;
 pub mod options;
-mod pace;
 pub(crate) mod portal;
 mod proof;
 mod warm_start;
+mod warm_start_policy;
 
 use glam::DVec2;
 
@@ -30,13 +30,13 @@ use cta::options::Region;
 use cta::{CtaOptions, Guess, Origin, RegionFocus};
 use observe::{Observer, Phase, ShadowFrame, Support, Watch};
 use options::{Focus, Options};
-pub(crate) use pace::Pace;
 use portal::{
     Context, Enclosure, Face, FirstNormal, Followed, Known, Overlap, Plane, Portal, Refined,
     SeparatingLine,
 };
 use proof::Proven;
 pub(crate) use warm_start::{Left, WarmStart};
+pub(crate) use warm_start_policy::Pace;
 
 /// Casts, starting from the `last` cast as far as `focus` allows, and leaves in `next` where the next one may start
 /// and the work that was done, if there is an answer. No gap is kept.

@@ -20,7 +20,7 @@
 use glam::DVec3;
 
 use super::gjk::unit;
-use super::surround::winds;
+use super::winding::winds;
 use super::{Difference, Found};
 use crate::answer::Enclosure;
 use crate::setting::VertexPair;

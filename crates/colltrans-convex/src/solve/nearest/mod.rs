@@ -23,14 +23,14 @@
 mod depth;
 mod gjk;
 pub mod simplex;
-mod surround;
+mod winding;
 
 use glam::{DMat3, DVec3};
 
 pub(crate) use self::depth::deepest;
 use self::gjk::{Goal, descend, unit};
 use self::simplex::{Corner, Simplex};
-pub(crate) use self::surround::surrounds;
+pub(crate) use self::winding::surrounds;
 use crate::answer::{NearPoints, PlaneGap, Steps};
 use crate::body::Inertia;
 use crate::setting::{TwoBodies, VertexPair};

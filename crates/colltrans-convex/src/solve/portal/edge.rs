@@ -2,8 +2,8 @@
 
 use glam::DVec2;
 
-use super::tied::crossed_or_tied;
-use super::wrap::Tilt;
+use super::gift_wrap::Tilt;
+use super::ties::crossed_or_tied;
 use super::{Context, Known, Line, Portal};
 use crate::setting::minkowski::Point;
 use crate::solve::observe::Observer;

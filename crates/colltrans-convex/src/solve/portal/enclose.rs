@@ -10,7 +10,7 @@
 
 use glam::{DMat2, DVec2, DVec3};
 
-use super::start::{slope_per_shadow, steep};
+use super::normal_guess::{slope_per_shadow, steep};
 use super::{Context, FirstNormal, Known, Plane, Portal, normal_of};
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};

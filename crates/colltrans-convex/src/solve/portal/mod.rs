@@ -5,25 +5,25 @@
 //! the line. With `f(a) = min_M n.m` (concave, piecewise linear) the collision translation is `max
 //! f`; a tangent is a cutting plane of `f`, a portal three of them that bound it.
 //!
-//! The way: [`mod@facing`] answers for parts that stand on each other; else [`mod@start`] guesses a
-//! slope, and [`mod@outline`] a better one of bodies with rims, [`mod@follow`] goes face by face from there to the line,
+//! The way: [`mod@opposed_faces`] answers for parts that stand on each other; else [`mod@normal_guess`] guesses a
+//! slope, and [`mod@outline`] a better one of bodies with rims, [`mod@face_walk`] goes face by face from there to the line,
 //! or [`mod@enclose`] finds a first portal or a separating direction, [`mod@refine`] exchanges one point of the portal
-//! after another until its plane supports `M`, [`mod@graze`] measures how far the shadows overlap. Section 1 of the paper for the
+//! after another until its plane supports `M`, [`mod@overlap`] measures how far the shadows overlap. Section 1 of the paper for the
 //! bounds; the exchange is the dual of the simplex method with two variables.
 
-mod ascent;
+mod coplanar;
 mod edge;
 mod enclose;
-mod facing;
-mod flat;
-mod follow;
-mod graze;
+mod face_walk;
+mod gift_wrap;
+mod normal_guess;
+mod opposed_faces;
 mod outline;
+mod outline_maximum;
+mod overlap;
 mod plane;
 mod refine;
-mod start;
-mod tied;
-mod wrap;
+mod ties;
 
 use glam::{DVec2, DVec3};
 
@@ -31,13 +31,13 @@ use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
 use crate::solve::observe::{Observer, Support, Watch};
 pub(crate) use enclose::{Enclosure, SeparatingLine, around, enclose, upward, widest_margin};
-pub(crate) use facing::facing;
-pub(crate) use follow::{ContactPortal, Followed, OF_ELLIPSOIDS, approach, follow};
-pub(crate) use graze::{Overlap, overlap};
+pub(crate) use face_walk::{ContactPortal, Followed, OF_ELLIPSOIDS, approach, follow};
+pub(crate) use normal_guess::FirstNormal;
+pub(crate) use opposed_faces::facing;
 pub(crate) use outline::between_outlines;
+pub(crate) use overlap::{Overlap, overlap};
 pub(crate) use plane::{Face, Plane};
 pub(crate) use refine::{MAX_PORTALS, Refined, face, refine};
-pub(crate) use start::FirstNormal;
 
 /// Three points of `M` whose shadows, counter-clockwise, contain the line.
 pub(crate) type Portal = [Point; 3];

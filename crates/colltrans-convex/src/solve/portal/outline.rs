@@ -5,15 +5,15 @@
 //! semi-diameters, and that of the body is the lowest one of its rims. `f(a)`, what both come to together, is
 //! greatest where the bodies meet. Either the line goes through a rim while the other body has its lowest point along
 //! the rim's axis: a corner meets a *cap*, whose corners around the line are told by their angles. Or
-//! [`mod@super::ascent`] leads there, and the body's own support point is a corner of a face near the line.
+//! [`mod@super::outline_maximum`] leads there, and the body's own support point is a corner of a face near the line.
 //!
 //! However many corners the rims have, none but those are looked at. It is a guess: what it leads to is proven, or
 //! passed over, as all is that leads to the line.
 
 use glam::{DMat2, DVec2, DVec3};
 
-use super::ascent::{Highest, highest};
-use super::follow::{Followed, OF_RIMS, approach};
+use super::face_walk::{Followed, OF_RIMS, approach};
+use super::outline_maximum::{Highest, highest};
 use super::{Context, FirstNormal, Known, Portal, normal_of};
 use crate::body::{MOST_RIMS, Rim};
 use crate::setting::VertexPair;

@@ -16,7 +16,7 @@
 use glam::DVec3;
 
 use super::enclose::{SeparatingLine, nearest_share};
-use super::graze::{Overlap, overlap};
+use super::overlap::{Overlap, overlap};
 use super::plane::{Face, Plane};
 use super::{Context, Known, Portal};
 use crate::setting::VertexPair;

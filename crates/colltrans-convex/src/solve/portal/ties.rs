@@ -9,8 +9,8 @@
 use glam::{DVec2, DVec3};
 
 use super::enclose::nearest_share;
+use super::gift_wrap::{Tilt, first_met};
 use super::refine::{known_at, largest, plane_normal, weights};
-use super::wrap::{Tilt, first_met};
 use super::{Context, Face, Known, Line, Plane, Portal, normal_of};
 use crate::body::VertexId;
 use crate::setting::VertexPair;

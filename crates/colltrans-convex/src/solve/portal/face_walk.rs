@@ -16,11 +16,11 @@
 
 use glam::{DVec2, DVec3};
 
+use super::coplanar::{Flat, across, has_large_faces};
 use super::edge::{Edge, crossed, left_behind};
-use super::flat::{Flat, across, has_large_faces};
-use super::start::{continued, slope_per_shadow};
-use super::tied::{Beside, Pointed, beside, pointed};
-use super::wrap::first_met;
+use super::gift_wrap::first_met;
+use super::normal_guess::{continued, slope_per_shadow};
+use super::ties::{Beside, Pointed, beside, pointed};
 use super::{Context, FirstNormal, Known, Line, Portal, normal_of};
 use crate::setting::VertexPair;
 use crate::setting::minkowski::MinkowskiDifference;

@@ -12,7 +12,7 @@ use glam::DVec3;
 use super::edge::Edge;
 use super::plane::{Face, Plane};
 use super::refine::{is_wide, weights};
-use super::tied::met_share;
+use super::ties::met_share;
 use super::{Context, Followed, Known, Portal};
 use crate::body::{ConvexPolyhedron, LargeFace};
 use crate::setting::VertexPair;

@@ -22,7 +22,7 @@ use crate::solve::cta::options::Region;
 use crate::solve::nearest::NearestPairs;
 use crate::solve::observe::{NoObserver, Observer};
 use crate::solve::options::Focus;
-use crate::solve::{Left, Pace, WarmStart};
+use crate::solve::{TrackerUpdate, WarmStart, WarmStartPolicy};
 
 /// A sequence of similar queries, each of which starts from the answer of the previous one.
 ///
@@ -84,9 +84,9 @@ pub struct Tracker<'a> {
 #[derive(Debug, Clone, Copy, Default)]
 struct CastSlot {
     /// Warm start and work of the last cast.
-    carry: Left,
+    carry: TrackerUpdate,
     /// Decides whether a warm start pays off.
-    policy: Pace,
+    policy: WarmStartPolicy,
     /// Whether the last cast tried to start from features.
     warm_started: bool,
     /// Whether the last cast belongs to the last query.

@@ -26,7 +26,7 @@ use crate::setting::Setting;
 use crate::setting::error::QueryError;
 use crate::solve::observe::{NoObserver, Observer};
 use crate::solve::options::{Focus, Options};
-use crate::solve::{Left, WarmStart, keep, search};
+use crate::solve::{TrackerUpdate, WarmStart, keep, search};
 pub use contact::WitnessPoints;
 pub use multi_cast::{clearance_of, common_end, depth_of, intersection_by_casts, range_of};
 #[cfg(feature = "json")]
@@ -421,7 +421,7 @@ impl Cast<'_> {
         &self,
         observer: &mut O,
     ) -> Result<Outcome, QueryError> {
-        let (last, mut next) = (WarmStart::Nothing, Left::default());
+        let (last, mut next) = (WarmStart::Nothing, TrackerUpdate::default());
         self.search_first_contact(&Focus::NONE, &last, &mut next, observer)
     }
 
@@ -435,7 +435,7 @@ impl Cast<'_> {
         &self,
         focus: &Focus,
         last: &WarmStart,
-        next: &mut Left,
+        next: &mut TrackerUpdate,
         observer: &mut O,
     ) -> Result<Outcome, QueryError> {
         let Self { setting, options } = self;

@@ -1,14 +1,14 @@
-//! One cast: from a setting, and what is left of the one before, to an outcome.
+//! The solver of one cast: from two placed bodies and a direction to an [`Outcome`].
 //!
-//! The way: *features* (the portal or the separating direction of the last answer, if there is one)
-//! -> *narrowing* (large faces that face each other, or a guess of the normal, from ellipsoids or by
-//! the collision translation algorithm, which may confine itself to the *region* of the last solution)
-//! -> a first portal -> the lowest face. The first two only save work: whatever they propose has to be
-//! proven, or passes through the same enclosure and refinement, so a wrong proposal costs time and
-//! nothing else.
+//! 1. *Features*: starts from the portal or the separating direction of the previous cast.
+//! 2. *Narrowing*: otherwise, tests a pair of large opposed faces, or guesses the contact normal. The guess comes from
+//!    inertia ellipsoids, or from [`cta`], which may be confined to a *region* around the previous solution.
+//! 3. *Enclosure*: finds a first portal or a separating line, unless an earlier stage has found one.
+//! 4. *Refinement*: exchanges corners of the portal until it is in the lowest face of `M` ([`portal`]).
 //!
-//! A proposal is a plane through vertices of `M`. Whether it supports `M` is asked first where it is
-//! ([`Plane::at`], which is also the proof), and a support point is searched only if it does not.
+//! Stages 1 and 2 only save work. Their results are proven, or refined like any other portal, so a wrong one costs
+//! time but never correctness. [`Plane::if_supported_at`] checks a plane through known vertices, which is also its
+//! proof. A support point is searched only if this check fails.
 
 pub(crate) mod cta;
 pub mod keep;
@@ -31,30 +31,35 @@ use cta::{CtaOptions, Guess, Origin, RegionFocus};
 use observe::{Observer, Phase, ShadowFrame, Support, Watch};
 use options::{Focus, Options};
 use portal::{
-    Context, Enclosure, Face, FirstNormal, Followed, Known, Overlap, Plane, Portal, Refined,
-    SeparatingLine,
+    Context, Enclosure, Face, NormalGuess, Overlap, Plane, Portal, PortalStatus, Refined,
+    SeparatingLine, WalkResult,
 };
-use proof::Proven;
-pub(crate) use warm_start::{Left, WarmStart};
-pub(crate) use warm_start_policy::Pace;
+use proof::ProvenFace;
+pub(crate) use warm_start::{TrackerUpdate, WarmStart};
+pub(crate) use warm_start_policy::WarmStartPolicy;
 
-/// Casts, starting from the `last` cast as far as `focus` allows, and leaves in `next` where the next one may start
-/// and the work that was done, if there is an answer. No gap is kept.
+/// Casts the moving body and returns the outcome. Ignores `options.keep`.
+///
+/// The cast starts from the result of the previous one, `last`, as far as `focus` allows. If it
+/// succeeds, `next` holds the start of the following cast and the work counts.
+///
+/// # Errors
+/// [`QueryError::NotConverged`] if rounding prevents a proof in all frames.
 #[inline]
 pub(crate) fn search<O: Observer>(
     setting: &Setting,
     options: &Options,
     focus: &Focus,
     last: &WarmStart,
-    next: &mut Left,
+    next: &mut TrackerUpdate,
     observer: &mut O,
 ) -> Result<Outcome, QueryError> {
     let solver = match options.solver {
         Solver::Auto => Solver::Portal,
         solver => solver,
     };
-    *next = Left::default();
-    let mut run = Run {
+    *next = TrackerUpdate::default();
+    let mut cast = CastState {
         context: Context {
             difference: MinkowskiDifference::new(setting),
             watch: Watch::new(observer),
@@ -62,204 +67,221 @@ pub(crate) fn search<O: Observer>(
         graze_tolerance: options.graze_tolerance,
         solver,
         narrowing: options.narrowing,
-        turn: 0,
+        rotation: 0,
         next,
     };
-    run.run(focus, last)
+    cast.run_stages(focus, last)
 }
 
-/// Turns of the lateral axes, by 0, 0.7 and 2.1: ties that follow each other in a circle in one
-/// frame do not in another. Cosines and sines are stored, because libraries round them differently.
-const TURNS: [DVec2; 3] = [
+/// Rotations of the lateral axes by 0, 0.7 and 2.1 radians, as cosine and sine.
+///
+/// Exchanges that cycle through tied vertices in one frame do not cycle in another. The values are
+/// stored because the sine and cosine of different libraries round differently.
+const LATERAL_ROTATIONS: [DVec2; 3] = [
     DVec2::X,
     DVec2::new(0.764_842_187_284_488_5, 0.644_217_687_237_691),
     DVec2::new(-0.504_846_104_599_857_6, 0.863_209_366_648_873_7),
 ];
 
-/// A followed portal that is this many exchanges from the lowest face was a bad place to start, or
-/// one where ties follow each other.
-const MOST_AFTER_FOLLOWING: usize = 30;
+/// Maximum number of exchanges after a start from features. A cast that needs more began at an
+/// unsuitable portal, or cycles through tied vertices. It is then repeated from scratch.
+const MAX_EXCHANGES_AFTER_WALK: usize = 30;
 
-/// What narrowing leaves to portal refinement.
-enum Start {
+/// Start of portal refinement that narrowing has found.
+enum NarrowedStart {
     /// A guess of the contact normal.
-    Normal(FirstNormal),
-    /// A portal, or a separating direction.
+    Normal(NormalGuess),
+    /// A portal or a separating line.
     Enclosed(Enclosure),
 }
 
-/// One cast under way.
-struct Run<'a, 'o, 'n, O> {
+/// State of one cast.
+struct CastState<'a, 'o, 'n, O> {
     context: Context<'a, 'o, O>,
     graze_tolerance: f64,
     solver: Solver,
     narrowing: cta::options::Options,
-    /// Which of the `TURNS` an attempt from scratch has.
-    turn: usize,
-    /// Written with the answer.
-    next: &'n mut Left,
+    /// Index in `LATERAL_ROTATIONS` of the frame for attempts from scratch.
+    rotation: usize,
+    /// Start of the next cast, written together with the answer.
+    next: &'n mut TrackerUpdate,
 }
 
-/// Whether a line that seemed to pass `M` was found not to, after which its portal is looked for once more.
+/// Attempt to enclose the line. The second one follows if the line seemed to miss `M` but does not.
 #[derive(Clone, Copy, PartialEq)]
 enum Attempt {
     First,
     Second,
 }
 
-/// An answer is made where it is to stay, by the last call of each way there: one that is kept and handed on is
-/// moved through memory, and who moves it waits for what was just written.
-impl<O: Observer> Run<'_, '_, '_, O> {
-    fn run(&mut self, focus: &Focus, last: &WarmStart) -> Result<Outcome, QueryError> {
+/// Each code path constructs the [`Outcome`] in its tail call, so that it is written directly into the
+/// caller's return slot. An intermediate copy stalls on store-to-load forwarding.
+impl<O: Observer> CastState<'_, '_, '_, O> {
+    /// Runs all stages of an attempt.
+    fn run_stages(&mut self, focus: &Focus, last: &WarmStart) -> Result<Outcome, QueryError> {
         self.context.watch.begun(|| ShadowFrame {
             world_from_shadow: self.context.difference.setting_from_shadow,
             noise: self.context.difference.noise.point(),
         });
         if focus.features
-            && let Some(certificate) = self.still_apart(last)
+            && let Some(certificate) = self.separation_from_last(last)
         {
-            return Ok(Outcome::Separated(self.apart(certificate)));
+            return Ok(Outcome::Separated(self.separated_outcome(certificate)));
         }
-        let followed = if focus.features { self.follow(last) } else { None };
-        let enclosure = if followed.is_some() {
+        let from_features = if focus.features { self.enclosure_from_features(last) } else { None };
+        let enclosure = if from_features.is_some() {
             self.context.watch.steps.started_from = StartedFrom::Features;
-            followed
+            from_features
         } else {
-            self.enclosure(focus.region, last)
+            self.enclosure_from_scratch(focus.region, last)
         };
         self.context.watch.ended(Phase::Finish);
-        self.concluded(enclosure, Attempt::First)
+        self.outcome_of(enclosure, Attempt::First)
     }
 
-    /// What follows from a portal, or from a separating direction.
+    /// Computes the outcome from a portal or a separating line. Retries from scratch if there is neither.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory a portal stalls its reader")]
-    fn concluded(
+    #[expect(clippy::inline_always, reason = "a portal copied through memory stalls")]
+    fn outcome_of(
         &mut self,
         enclosure: Option<Enclosure>,
         attempt: Attempt,
     ) -> Result<Outcome, QueryError> {
         match enclosure {
-            None => self.again(Stalled::NoPortal),
-            Some(Enclosure::Portal(mut portal, known)) => {
-                self.contact_or_grazing(&mut portal, known, attempt)
+            None => self.retry_from_scratch(Stalled::NoPortal),
+            Some(Enclosure::Portal(mut portal, status)) => {
+                self.contact_or_grazing(&mut portal, status, attempt)
             }
-            Some(Enclosure::Beside(found)) => self.passed(found, attempt),
+            Some(Enclosure::Separated(found)) => self.separated_or_grazing(found, attempt),
         }
     }
 
-    /// No answer could be proven: tries from scratch, by one turn of the lateral axes after another, until one is, or
-    /// tells why the last was none.
+    /// Repeats a failed cast from scratch, with the next rotation of the lateral axes if the failed
+    /// attempt was itself from scratch.
+    ///
+    /// Returns [`QueryError::NotConverged`] with the last `reason` if no rotation is left.
     #[cold]
-    fn again(&mut self, reason: Stalled) -> Result<Outcome, QueryError> {
+    fn retry_from_scratch(&mut self, reason: Stalled) -> Result<Outcome, QueryError> {
         self.context.watch.ended(Phase::Finish);
         let steps = &mut self.context.watch.steps;
-        self.turn += usize::from(steps.started_from == StartedFrom::Scratch);
+        self.rotation += usize::from(steps.started_from == StartedFrom::Scratch);
         steps.started_from = StartedFrom::Scratch;
-        let Some(&turn) = TURNS.get(self.turn) else {
+        let Some(&rotation) = LATERAL_ROTATIONS.get(self.rotation) else {
             self.context.watch.ended(Phase::Answer);
             return Err(QueryError::NotConverged { reason });
         };
         let setting = self.context.difference.setting;
-        self.context.difference = MinkowskiDifference::with_rotated_axes(setting, turn);
-        self.run(&Focus::NONE, &WarmStart::Nothing)
+        self.context.difference = MinkowskiDifference::with_rotated_axes(setting, rotation);
+        self.run_stages(&Focus::NONE, &WarmStart::Nothing)
     }
 
-    /// The line passes `M`, or its rim: separated if that can be told, else grazing.
-    fn passed(&mut self, found: SeparatingLine, attempt: Attempt) -> Result<Outcome, QueryError> {
-        if let Some(certificate) = self.separated(&found) {
-            return Ok(Outcome::Separated(self.apart(certificate)));
+    /// Decides between separation and grazing for a line that seems to miss `M` or to touch its
+    /// silhouette.
+    fn separated_or_grazing(
+        &mut self,
+        found: SeparatingLine,
+        attempt: Attempt,
+    ) -> Result<Outcome, QueryError> {
+        if let Some(certificate) = self.proven_separation(&found) {
+            return Ok(Outcome::Separated(self.separated_outcome(certificate)));
         }
         let widest = portal::widest_margin(&mut self.context, found);
         if widest.margin < -self.context.difference.touching() {
             return match attempt {
-                Attempt::First => self.enclosed_after_all(&widest),
-                Attempt::Second => self.again(Stalled::NoPortal),
+                Attempt::First => self.enclose_again(&widest),
+                Attempt::Second => self.retry_from_scratch(Stalled::NoPortal),
             };
         }
-        if let Some(certificate) = self.separated(&widest) {
-            return Ok(Outcome::Separated(self.apart(certificate)));
+        if let Some(certificate) = self.proven_separation(&widest) {
+            return Ok(Outcome::Separated(self.separated_outcome(certificate)));
         }
-        self.touching(&widest)
+        self.grazing_by_widening(&widest)
     }
 
-    /// There is an answer, which is only to be written.
+    /// Records the work counts of an answer that is found.
     #[inline]
-    fn answered(&mut self) {
+    fn record_steps(&mut self) {
         self.next.steps = Some(self.context.watch.steps);
         self.context.watch.ended(Phase::Answer);
     }
 
+    /// Returns the outcome of a separation, and records the work counts.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "built where it is to stay")]
-    fn apart(&mut self, certificate: Separation) -> Separated {
-        self.answered();
+    #[expect(clippy::inline_always, reason = "built in the return slot")]
+    fn separated_outcome(&mut self, certificate: Separation) -> Separated {
+        self.record_steps();
         Separated { certificate, solver: self.solver, steps: self.context.watch.steps }
     }
 
-    /// The line does not pass `M`: a climb had stuck. Begins again where it should have ended.
+    /// Encloses the line again after a separating line was refuted, starting at its support point.
+    ///
+    /// Such a line was found because a hill climb had stopped short of the support point.
     #[cold]
-    fn enclosed_after_all(&mut self, refuted: &SeparatingLine) -> Result<Outcome, QueryError> {
+    fn enclose_again(&mut self, refuted: &SeparatingLine) -> Result<Outcome, QueryError> {
         let start =
-            FirstNormal { normal: refuted.normal.extend(0.0), near: Some(refuted.point.pair) };
+            NormalGuess { normal: refuted.normal.extend(0.0), near: Some(refuted.point.pair) };
         let enclosure = portal::enclose(&mut self.context, &start);
-        self.concluded(enclosure, Attempt::Second)
+        self.outcome_of(enclosure, Attempt::Second)
     }
 
-    /// Feature focus: a portal, or a separating direction, from those of the last answer.
-    fn follow(&mut self, last: &WarmStart) -> Option<Enclosure> {
+    /// Computes a portal or a separating line from the features of the previous answer. `None` if they
+    /// yield neither.
+    fn enclosure_from_features(&mut self, last: &WarmStart) -> Option<Enclosure> {
         match last {
-            WarmStart::Nothing | WarmStart::Kept { .. } => None,
+            WarmStart::Nothing | WarmStart::WithMinGap { .. } => None,
             WarmStart::Contact(portal) => {
-                let followed = portal::follow(&mut self.context, portal);
-                self.followed_to(followed)
+                let walk = portal::walk_from_last(&mut self.context, portal);
+                self.enclosure_of_walk(walk)
             }
             WarmStart::Apart { normals, pair } => {
                 let [p, q] = self.context.difference.shadow_from_bodies(*normals)?;
-                self.beside((p + q).truncate(), [*pair; 2])
+                self.confirmed_separation((p + q).truncate(), [*pair; 2])
             }
         }
     }
 
-    /// A portal, or a separating direction, from scratch or from the region of the last solution.
-    fn enclosure(&mut self, region: Region, last: &WarmStart) -> Option<Enclosure> {
+    /// Computes a portal or a separating line from scratch, or, with [`Solver::Cta`], from the region of
+    /// the previous solution.
+    fn enclosure_from_scratch(&mut self, region: Region, last: &WarmStart) -> Option<Enclosure> {
         let setting = self.context.difference.setting;
         let solid = setting.moving.dimension() == 3 && setting.fixed.dimension() == 3;
         if self.solver == Solver::Cta && solid {
-            return self.narrowed(region, last);
+            return self.enclosure_by_cta(region, last);
         }
-        let facing = portal::facing(&mut self.context);
-        let found = self.followed_to(facing);
+        let walk = portal::opposed_face_contact(&mut self.context);
+        let found = self.enclosure_of_walk(walk);
         if found.is_some() {
             return found;
         }
-        self.approach(FirstNormal::new(&self.context.difference))
+        self.enclosure_from_guess(NormalGuess::new(&self.context.difference))
     }
 
-    /// The same by the collision translation algorithm.
+    /// Computes a portal or a separating line with the collision translation algorithm.
     #[inline(never)]
-    fn narrowed(&mut self, region: Region, last: &WarmStart) -> Option<Enclosure> {
-        match self.start(region, last) {
-            Start::Enclosed(found) => Some(found),
-            Start::Normal(start) => self.approach(start),
+    fn enclosure_by_cta(&mut self, region: Region, last: &WarmStart) -> Option<Enclosure> {
+        match self.narrowed_start(region, last) {
+            NarrowedStart::Enclosed(found) => Some(found),
+            NarrowedStart::Normal(start) => self.enclosure_from_guess(start),
         }
     }
 
-    /// A portal, or a separating direction, from a guess: face by face if it is not lateral, or by wide
-    /// portals.
+    /// Computes a portal or a separating line from a guess of the contact normal.
+    ///
+    /// Walks over the faces of `M` if the guess is not lateral. Encloses the line with wide portals if it
+    /// is lateral or the walk fails.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory the guess stalls its reader")]
-    fn approach(&mut self, start: FirstNormal) -> Option<Enclosure> {
+    #[expect(clippy::inline_always, reason = "a guess copied through memory stalls")]
+    fn enclosure_from_guess(&mut self, start: NormalGuess) -> Option<Enclosure> {
         self.context.watch.ended(Phase::Setup);
         if self.has_rims() {
-            return self.by_outlines(&start);
+            return self.enclosure_by_outlines(&start);
         }
         let mut nearest = start;
         if start.normal.z > 0.0 {
-            let (followed, reached) =
-                portal::approach(&mut self.context, &start, &portal::OF_ELLIPSOIDS);
+            let (walk, reached) =
+                portal::walk_from_guess(&mut self.context, &start, &portal::ELLIPSOID_LIMITS);
             nearest = reached;
-            let found = self.followed_to(followed);
+            let found = self.enclosure_of_walk(walk);
             if found.is_some() {
                 return found;
             }
@@ -267,47 +289,55 @@ impl<O: Observer> Run<'_, '_, '_, O> {
         portal::enclose(&mut self.context, &nearest)
     }
 
-    /// The same of bodies with rims: from where their outlines meet, if they are seen to, whatever the guess says.
+    /// Computes a portal or a separating line for bodies with rims, from the maximum over their
+    /// outlines. Walks from the guess `start` if the outlines give no result.
     #[inline(never)]
-    fn by_outlines(&mut self, start: &FirstNormal) -> Option<Enclosure> {
+    fn enclosure_by_outlines(&mut self, start: &NormalGuess) -> Option<Enclosure> {
         let upward;
         let start = if start.normal.z > 0.0 {
             start
         } else {
-            upward = match portal::upward(&mut self.context, start) {
+            upward = match portal::upward_guess(&mut self.context, start) {
                 Ok(upward) => upward,
-                Err(line) => return Some(Enclosure::Beside(line)),
+                Err(line) => return Some(Enclosure::Separated(line)),
             };
             &upward
         };
-        let by_outlines = portal::between_outlines(&mut self.context, start);
-        let (followed, reached) = by_outlines
-            .unwrap_or_else(|| portal::approach(&mut self.context, start, &portal::OF_ELLIPSOIDS));
-        let found = self.followed_to(followed);
+        let by_outlines = portal::walk_from_outlines(&mut self.context, start);
+        let (walk, reached) = by_outlines.unwrap_or_else(|| {
+            portal::walk_from_guess(&mut self.context, start, &portal::ELLIPSOID_LIMITS)
+        });
+        let found = self.enclosure_of_walk(walk);
         found.or_else(|| portal::enclose(&mut self.context, &reached))
     }
 
-    /// What became of a portal that was followed.
+    /// Converts the result of a face walk. A silhouette edge becomes a separating line if it is
+    /// confirmed to be one.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory a portal stalls its reader")]
-    fn followed_to(&mut self, followed: Followed) -> Option<Enclosure> {
-        match followed {
-            Followed::Portal(portal, known) => Some(Enclosure::Portal(portal, known)),
-            Followed::Rim { outward, edge } => self.beside(-outward, edge),
-            Followed::Lost => None,
+    #[expect(clippy::inline_always, reason = "a portal copied through memory stalls")]
+    fn enclosure_of_walk(&mut self, walk: WalkResult) -> Option<Enclosure> {
+        match walk {
+            WalkResult::Portal(portal, status) => Some(Enclosure::Portal(portal, status)),
+            WalkResult::Silhouette { outward, edge } => self.confirmed_separation(-outward, edge),
+            WalkResult::Lost => None,
         }
     }
 
+    /// Checks whether one of the bodies has rims.
     #[inline]
     fn has_rims(&self) -> bool {
         let setting = self.context.difference.setting;
         setting.moving.has_rims() || setting.fixed.has_rims()
     }
 
-    /// Whether all of `M` lies beyond a lateral direction, as an edge of it seems to say.
-    fn beside(&mut self, lateral: DVec2, edge: [VertexPair; 2]) -> Option<Enclosure> {
+    /// Returns a separating line along `lateral` if all of `M` lies on its positive side, up to the
+    /// touching distance.
+    ///
+    /// `edge` holds the ends of the silhouette edge that suggests this line, or one vertex pair twice.
+    /// `None` if a point of `M` lies on the other side, or `lateral` is too short to be normalised.
+    fn confirmed_separation(&mut self, lateral: DVec2, edge: [VertexPair; 2]) -> Option<Enclosure> {
         let [near, other] = edge;
-        // Of a length fit to be normalised: shorter ones lose digits.
+        // Normalising a shorter vector loses digits.
         if lateral.length_squared() <= f64::MIN_POSITIVE {
             return None;
         }
@@ -317,44 +347,46 @@ impl<O: Observer> Run<'_, '_, '_, O> {
             return None;
         }
         let point = self.context.difference.support_from(normal.extend(0.0), near);
-        self.context.watch.support(|| Support::of(normal.extend(0.0), &point));
+        self.context.watch.support(|| Support::from_point(normal.extend(0.0), &point));
         let margin = normal.dot(point.shadow());
         let end = if point.pair == other { near } else { other };
         let line = SeparatingLine { normal, margin, point, end };
-        (margin >= least).then_some(Enclosure::Beside(line))
+        (margin >= least).then_some(Enclosure::Separated(line))
     }
 
-    /// The first guess of the contact normal, or more than a guess.
-    fn start(&mut self, region: Region, last: &WarmStart) -> Start {
-        if let Some(focus) = self.region(region, last) {
+    /// Computes the start of portal refinement, from the region of the previous solution if possible.
+    fn narrowed_start(&mut self, region: Region, last: &WarmStart) -> NarrowedStart {
+        if let Some(focus) = self.region_focus(region, last) {
             self.context.watch.steps.started_from = StartedFrom::Region;
-            return self.narrow(Origin::Region(focus));
+            return self.start_by_cta(Origin::Region(focus));
         }
         match self.narrowing.start {
-            cta::options::Start::Center => self.narrow(Origin::Center),
-            cta::options::Start::Ellipsoids => self.start_at_ellipsoids(),
+            cta::options::Start::Center => self.start_by_cta(Origin::Center),
+            cta::options::Start::Ellipsoids => self.start_from_ellipsoids(),
         }
     }
 
-    /// Where the ellipsoids meet, their normal is the start of portal refinement: a planar problem
-    /// costs more than it saves there (measured). Where they pass each other and the bodies are
-    /// not seen to do so, it is solved.
-    fn start_at_ellipsoids(&mut self) -> Start {
-        let ellipsoids = FirstNormal::from_ellipsoids(&self.context.difference);
+    /// Computes the start from the inertia ellipsoids.
+    ///
+    /// If the line enters their difference, the normal there is the guess. Solving a planar problem
+    /// would cost more than it saves (measured). If the line misses their difference, the lateral normal
+    /// is the guess only if its support point separates the bodies. Otherwise runs [`cta`].
+    fn start_from_ellipsoids(&mut self) -> NarrowedStart {
+        let ellipsoids = NormalGuess::from_ellipsoids(&self.context.difference);
         let normal = ellipsoids.normal;
         if normal.z > 0.0 {
-            return Start::Normal(ellipsoids);
+            return NarrowedStart::Normal(ellipsoids);
         }
         let support = self.context.difference.support(normal);
-        self.context.watch.support(|| Support::of(normal, &support));
+        self.context.watch.support(|| Support::from_point(normal, &support));
         if normal.dot(support.at) > 0.0 {
-            return Start::Normal(FirstNormal::guided(normal, support.pair));
+            return NarrowedStart::Normal(NormalGuess::from_solver(normal, support.pair));
         }
-        self.narrow(Origin::Center)
+        self.start_by_cta(Origin::Center)
     }
 
-    /// By the collision translation algorithm.
-    fn narrow(&mut self, origin: Origin) -> Start {
+    /// Runs the collision translation algorithm and converts its result into a start.
+    fn start_by_cta(&mut self, origin: Origin) -> NarrowedStart {
         self.context.watch.ended(Phase::Setup);
         let cta::options::Options { until, keeps_to_cell, cuts, starts_cold, .. } = self.narrowing;
         let gap = until.gap();
@@ -362,26 +394,32 @@ impl<O: Observer> Run<'_, '_, '_, O> {
         let narrowed =
             cta::minimise(self.context.difference.setting, &options, &mut self.context.watch);
         let corners = narrowed.corners.as_ref();
-        if let Some(portal) = corners.and_then(|c| portal::around(&self.context.difference, c)) {
-            return Start::Enclosed(Enclosure::Portal(portal, Known::Around));
+        if let Some(portal) =
+            corners.and_then(|c| portal::pierced_triangle(&self.context.difference, c))
+        {
+            return NarrowedStart::Enclosed(Enclosure::Portal(portal, PortalStatus::EnclosesLine));
         }
         let [moving, fixed] = narrowed.vertices;
         let near = VertexPair::of(moving[0], fixed[0]);
         let in_shadow = |normal| self.context.difference.setting_from_shadow.transpose() * normal;
-        Start::Normal(match narrowed.guess {
-            Guess::Contact { normal } => FirstNormal::guided(in_shadow(normal), near),
+        NarrowedStart::Normal(match narrowed.guess {
+            Guess::Contact { normal } => NormalGuess::from_solver(in_shadow(normal), near),
             Guess::Separation { direction } => {
-                FirstNormal::guided(in_shadow(direction).with_z(0.0), near)
+                NormalGuess::from_solver(in_shadow(direction).with_z(0.0), near)
             }
-            Guess::Nothing => FirstNormal::from_ellipsoids(&self.context.difference),
+            Guess::Nothing => NormalGuess::from_ellipsoids(&self.context.difference),
         })
     }
 
-    /// Region focus: the last contact points, and the half-side of the square around them.
-    fn region(&self, region: Region, last: &WarmStart) -> Option<RegionFocus> {
+    /// Returns the region for [`cta`]: the last contact points and the half-side of the square around
+    /// them.
+    ///
+    /// `None` for [`Region::Everywhere`], and if the previous cast left no contact or separation. For
+    /// [`Region::Automatic`] also if the bodies have moved or rotated too far.
+    fn region_focus(&self, region: Region, last: &WarmStart) -> Option<RegionFocus> {
         let setting = self.context.difference.setting;
         let (touching, normals, pair) = match last {
-            WarmStart::Nothing | WarmStart::Kept { .. } => return None,
+            WarmStart::Nothing | WarmStart::WithMinGap { .. } => return None,
             WarmStart::Contact(portal) => {
                 let touching = setting.weighted(&portal.pairs, &portal.weights);
                 (touching, portal.normals, portal.pairs[0])
@@ -400,90 +438,110 @@ impl<O: Observer> Run<'_, '_, '_, O> {
         worth.then_some(RegionFocus { touching, half_side, pair, normal: normals[0] })
     }
 
+    /// Refines the portal, and returns a contact, or grazing if the overlap is within the tolerance. If the
+    /// line touches the silhouette, decides between separation and grazing.
     fn contact_or_grazing(
         &mut self,
         portal: &mut Portal,
-        known: Known,
+        status: PortalStatus,
         attempt: Attempt,
     ) -> Result<Outcome, QueryError> {
-        let Face { plane, weights } = if let Some(face) = self.known_face(portal, known) {
+        let Face { plane, weights } = if let Some(face) = self.proven_face(portal, status) {
             face
         } else {
-            match self.refine(portal) {
+            match self.refine_portal(portal) {
                 Some(Refined::Lowest(face)) => face,
-                Some(Refined::Rim(rim)) => return self.passed(rim, attempt),
-                None => return self.again(Stalled::Cycle),
+                Some(Refined::Silhouette(line)) => return self.separated_or_grazing(line, attempt),
+                None => return self.retry_from_scratch(Stalled::Cycle),
             }
         };
         let tolerance = self.graze_tolerance.max(self.context.difference.touching());
         let overlap = portal::overlap(&mut self.context, portal, tolerance);
         self.context.watch.ended(Phase::Finish);
-        let proven = match Proven::new(&self.context.difference, portal, &plane, weights) {
+        let proven = match ProvenFace::new(&self.context.difference, portal, &plane, weights) {
             Ok(proven) => proven,
-            Err(reason) => return self.again(reason),
+            Err(reason) => return self.retry_from_scratch(reason),
         };
         self.next.start = WarmStart::Contact(proven.contact_portal());
-        self.answered();
+        self.record_steps();
         match overlap {
             Overlap::Ample => {
                 Ok(Outcome::Contact(proven.contact(self.solver, self.context.watch.steps)))
             }
             Overlap::Slight { inward, depth, .. } => {
                 let contact = proven.contact(self.solver, self.context.watch.steps);
-                let grazing = proof::grazing(&self.context.difference, inward, depth, contact);
+                let grazing =
+                    proof::grazing_contact(&self.context.difference, inward, depth, contact);
                 Ok(Outcome::Grazing(grazing))
             }
         }
     }
 
-    /// The lowest face, if the start has found it, or it is the portal's own.
+    /// Returns the lowest face, if an earlier stage has proven it or the plane of a portal that a walk
+    /// has reached supports `M`.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
-    fn known_face(&mut self, portal: &Portal, known: Known) -> Option<Face> {
-        match known {
-            Known::Lowest(face) => Some(face),
-            Known::FaceByFace => portal::face(&mut self.context, portal),
-            Known::Around => None,
+    #[expect(clippy::inline_always, reason = "a copy through memory stalls its reader")]
+    fn proven_face(&mut self, portal: &Portal, status: PortalStatus) -> Option<Face> {
+        match status {
+            PortalStatus::Lowest(face) => Some(face),
+            PortalStatus::ReachedByWalk => portal::supported_face(&mut self.context, portal),
+            PortalStatus::EnclosesLine => None,
         }
     }
 
-    /// The lowest face, and its portal in place of the one that leads there.
+    /// Refines `portal` in place and returns the lowest face, or the silhouette if the line touches it.
+    /// `None` if refinement stalls.
     #[inline(never)]
-    fn refine(&mut self, portal: &mut Portal) -> Option<Refined> {
+    fn refine_portal(&mut self, portal: &mut Portal) -> Option<Refined> {
         let most = match self.context.watch.steps.started_from {
-            StartedFrom::Features => MOST_AFTER_FOLLOWING,
+            StartedFrom::Features => MAX_EXCHANGES_AFTER_WALK,
             _ => portal::MAX_PORTALS,
         };
         portal::refine(&mut self.context, portal, most)
     }
 
-    /// The shadow of `M` ends at the line, or misses it by less than rounding can tell: the contact
-    /// of the bodies widened sideways by a little more than that.
+    /// Returns the grazing outcome of a line that touches the silhouette of `M`, or misses it by less
+    /// than rounding can resolve.
+    ///
+    /// Its contact is that of the bodies widened laterally by slightly more than the rounding error.
     #[cold]
-    fn touching(&mut self, rim: &SeparatingLine) -> Result<Outcome, QueryError> {
-        self.context.difference = self.context.difference.widened_by(rim.margin);
+    fn grazing_by_widening(&mut self, silhouette: &SeparatingLine) -> Result<Outcome, QueryError> {
+        self.context.difference = self.context.difference.widened_by(silhouette.margin);
         let (portal, Face { plane, weights }) = match self.widened_face() {
             Ok(found) => found,
-            Err(reason) => return self.again(reason),
+            Err(reason) => return self.retry_from_scratch(reason),
         };
-        let proven = match Proven::new(&self.context.difference, &portal, &plane, weights) {
+        let proven = match ProvenFace::new(&self.context.difference, &portal, &plane, weights) {
             Ok(proven) => proven,
-            Err(reason) => return self.again(reason),
+            Err(reason) => return self.retry_from_scratch(reason),
         };
-        let plane = Plane::of(&self.context.difference, rim.normal.extend(0.0), rim.point.pair);
-        self.next.start = proof::separation(&self.context.difference, &plane, rim.margin).1;
-        self.answered();
+        let plane = Plane::at_support(
+            &self.context.difference,
+            silhouette.normal.extend(0.0),
+            silhouette.point.pair,
+        );
+        self.next.start =
+            proof::plane_separation(&self.context.difference, &plane, silhouette.margin).1;
+        self.record_steps();
         let contact = proven.contact(self.solver, self.context.watch.steps);
-        let grazing = proof::grazing(&self.context.difference, rim.normal, -rim.margin, contact);
+        let grazing = proof::grazing_contact(
+            &self.context.difference,
+            silhouette.normal,
+            -silhouette.margin,
+            contact,
+        );
         Ok(Outcome::Grazing(grazing))
     }
 
-    /// The lowest face of the widened bodies on the line.
+    /// Computes a portal and the lowest face of the widened bodies on the line. Returns the reason as the
+    /// error if none is found.
     fn widened_face(&mut self) -> Result<(Portal, Face), Stalled> {
-        if let Followed::Portal(portal, Known::Lowest(face)) = portal::facing(&mut self.context) {
+        if let WalkResult::Portal(portal, PortalStatus::Lowest(face)) =
+            portal::opposed_face_contact(&mut self.context)
+        {
             return Ok((portal, face));
         }
-        let start = FirstNormal::from_ellipsoids(&self.context.difference);
+        let start = NormalGuess::from_ellipsoids(&self.context.difference);
         let Some(Enclosure::Portal(mut portal, _)) = portal::enclose(&mut self.context, &start)
         else {
             return Err(Stalled::NoPortal);
@@ -494,57 +552,59 @@ impl<O: Observer> Run<'_, '_, '_, O> {
         }
     }
 
-    /// The separation that a line proves; `None` if rounding may have made it.
+    /// Returns the separation that a separating line proves. `None` if its margin may be due to rounding.
     #[inline]
-    fn separated(&mut self, found: &SeparatingLine) -> Option<Separation> {
+    fn proven_separation(&mut self, found: &SeparatingLine) -> Option<Separation> {
         if found.margin <= self.context.difference.noise.lowered() {
             return None;
         }
-        let plane = Plane::of(&self.context.difference, found.normal.extend(0.0), found.point.pair);
+        let plane =
+            Plane::at_support(&self.context.difference, found.normal.extend(0.0), found.point.pair);
         let settled = found.normal.dot(self.context.difference.vertex(plane.lowest).shadow());
-        self.separated_by(&plane, found.margin.min(settled))
+        self.separation_by_plane(&plane, found.margin.min(settled))
     }
 
-    /// The separation that a plane parallel to the direction proves.
+    /// Returns the separation that a plane parallel to the direction proves. `None` if its certified
+    /// margin is not positive or would not pass verification.
     #[inline]
-    fn separated_by(&mut self, plane: &Plane, margin: f64) -> Option<Separation> {
-        let (certificate, start) = proof::separation(&self.context.difference, plane, margin);
-        if certificate.margin <= 0.0 || !self.others_agree(&certificate) {
+    fn separation_by_plane(&mut self, plane: &Plane, margin: f64) -> Option<Separation> {
+        let (certificate, start) = proof::plane_separation(&self.context.difference, plane, margin);
+        if certificate.margin <= 0.0 || !self.passes_verification(&certificate) {
             return None;
         }
         self.next.start = start;
         Some(certificate)
     }
 
-    /// The separation that the plane between the bodies of the last answer proves, turned with them,
-    /// if its pair is still the nearest.
+    /// Returns the separation proven by the separating plane of the previous answer, rotated with the
+    /// bodies. `None` if it proves nothing now, for example because its vertex pair is not a support pair.
     #[inline]
-    fn still_apart(&mut self, last: &WarmStart) -> Option<Separation> {
+    fn separation_from_last(&mut self, last: &WarmStart) -> Option<Separation> {
         let WarmStart::Apart { normals, pair } = last else { return None };
         let [p, q] = self.context.difference.shadow_from_bodies(*normals)?;
         let lateral = (p + q).truncate();
-        // Of a length fit to be squared.
+        // The square of a shorter vector underflows.
         if lateral.length_squared() <= f64::MIN_POSITIVE {
             return None;
         }
         let normal = lateral.extend(0.0);
-        let plane = Plane::at(&self.context.difference, normal, *pair)?;
+        let plane = Plane::if_supported_at(&self.context.difference, normal, *pair)?;
         let point = self.context.difference.vertex(plane.lowest);
-        self.context.watch.support(|| Support::of(normal, &point));
+        self.context.watch.support(|| Support::from_point(normal, &point));
         self.context.watch.steps.started_from = StartedFrom::Features;
-        let found = self.separated_by(&plane, normal.dot(point.at) / lateral.length());
+        let found = self.separation_by_plane(&plane, normal.dot(point.at) / lateral.length());
         if found.is_none() {
             self.context.watch.steps.started_from = StartedFrom::Scratch;
         }
         found
     }
 
-    /// Whether who checks a separation will find it proven, too.
+    /// Checks that a separation passes verification.
     ///
-    /// They round in their own way and may find other support points: together that takes less than
-    /// twice what counts as touching from a margin. A smaller one is checked here, as they will.
+    /// A verifier rounds differently and may find other support points. Both together lower the margin
+    /// by less than twice the touching distance. A smaller margin is verified here.
     #[inline]
-    fn others_agree(&self, certificate: &Separation) -> bool {
+    fn passes_verification(&self, certificate: &Separation) -> bool {
         certificate.margin > 2.0 * self.context.difference.noise.touching()
             || certificate.verify_with_gap(self.context.difference.setting, 0.0).is_ok()
     }

@@ -1,4 +1,4 @@
-//! Choices of a query.
+//! Options of a cast, and the use that a tracker makes of its last answer.
 
 use crate::answer::{
     CentralCast, Contact, Grazing, NearPoints, OverlapAhead, PlaneGap, Separated, Solver, Steps,
@@ -9,7 +9,9 @@ use crate::setting::check_keep;
 use crate::setting::error::QueryError;
 use crate::solve::cta::options as cta;
 
-/// Choices of a query; the default is right for most. More may be added: begin with it.
+/// Options of a cast. The default suits most casts.
+///
+/// Options may be added in later versions. Therefore construct a value from the default.
 ///
 /// ```
 /// # use colltrans::{Options, Solver, cta};
@@ -25,16 +27,17 @@ use crate::solve::cta::options as cta;
 )]
 #[non_exhaustive]
 pub struct Options {
-    /// How the search is narrowed.
+    /// Solver that searches for the contact.
     pub solver: Solver,
-    /// Sideways overlap (world units) up to which a contact counts as grazing. `0`, the default,
-    /// stands for the rounding error of the configuration, which is the least that is ever used:
-    /// eight noises, `256 u S` (see [the crate's introduction](crate#accuracy)).
+    /// Maximum lateral overlap (world units) at which a contact counts as grazing.
+    ///
+    /// The rounding error of the configuration is the minimum that is used: eight noises, `256 u S` (see
+    /// [the crate's introduction](crate#accuracy)). The default is 0, which selects this minimum.
     pub graze_tolerance: f64,
-    /// How [`Solver::Cta`] narrows the search; of no effect on the others.
+    /// Options of [`Solver::Cta`]. Other solvers ignore them.
     pub narrowing: cta::Options,
-    /// How near to each other the bodies may come (world units): see
-    /// [`Cast::keeping`](crate::Cast::keeping). `0`, the default: until they touch.
+    /// Minimum gap between the bodies (world units): the cast ends when their distance falls to this length. See
+    /// [`Cast::keeping`](crate::Cast::keeping). The default is 0, with which the cast ends when the bodies touch.
     pub keep: f64,
 }
 
@@ -52,30 +55,39 @@ impl Body for ConvexPolyhedron {
 }
 
 impl Options {
-    /// With a solver.
+    /// Returns these options with another solver.
     #[must_use]
     pub const fn with_solver(self, solver: Solver) -> Self {
         Self { solver, ..self }
     }
 
-    /// With a graze tolerance, a length. It is checked where it is used.
+    /// Returns these options with another graze tolerance (world units). It is not checked here; a cast rejects an
+    /// invalid one.
     #[must_use]
     pub const fn with_graze_tolerance(self, graze_tolerance: f64) -> Self {
         Self { graze_tolerance, ..self }
     }
 
-    /// With a narrowing.
+    /// Returns these options with other options of [`Solver::Cta`].
     #[must_use]
     pub const fn with_narrowing(self, narrowing: cta::Options) -> Self {
         Self { narrowing, ..self }
     }
 
-    /// With a gap to be kept, a length. It is checked where it is used.
+    /// Returns these options with another minimum gap (world units). It is not checked here; a cast rejects an invalid
+    /// one.
     #[must_use]
     pub const fn with_keep(self, keep: f64) -> Self {
         Self { keep, ..self }
     }
 
+    /// Checks that the lengths are in range.
+    ///
+    /// # Errors
+    /// - [`QueryError::GrazeTolerance`] if the graze tolerance is negative or not finite.
+    /// - [`QueryError::NarrowingGap`] if the gap at which [`Solver::Cta`] ends is negative or not a number.
+    /// - [`QueryError::Keep`] if the minimum gap is negative or beyond the range of coordinates, or not 0 without the
+    ///   feature `keep`.
     #[inline]
     #[doc(hidden)]
     pub fn check(&self) -> Result<(), QueryError> {
@@ -92,38 +104,39 @@ impl Options {
     }
 }
 
-/// What a [`Tracker`](crate::Tracker) makes of its last answer. Answers and certificates do not
-/// depend on it, only the work does.
+/// Use that a [`Tracker`](crate::Tracker) makes of its last answer.
+///
+/// It affects the work only, not the answers and certificates.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Focus {
-    /// Feature focus (the paper, section V-F): try first to end with the last contact features or
-    /// their neighbours, and with the last separating direction.
+    /// Feature focus (the paper, section V-F): whether to try the last contact features and their neighbours first, or
+    /// the last separating direction.
     pub features: bool,
-    /// Region focus (the paper, section III-D), where the collision translation algorithm narrows
-    /// the search ([`Solver::Cta`]): start from the sections through the last contact points.
+    /// Region focus (the paper, section III-D): whether [`Solver::Cta`] starts from the sections through the last
+    /// contact points.
     pub region: cta::Region,
 }
 
 impl Focus {
-    /// Every query from scratch.
+    /// Starts every cast from scratch.
     pub const NONE: Self = Self { features: false, region: cta::Region::Everywhere };
 
-    /// What a [`Tracker`](crate::Tracker) does unless it is told: with [`Solver::Cta`] the paper's, the region
-    /// alone; else the default.
+    /// Returns the focus that a [`Tracker`](crate::Tracker) uses by default: for [`Solver::Cta`] the region alone, as
+    /// in the paper, otherwise features and region.
     pub const fn of(solver: Solver) -> Self {
         let features = !matches!(solver, Solver::Cta);
         Self { features, region: cta::Region::Automatic }
     }
 
-    /// With feature focus, or without.
+    /// Returns this focus with feature focus switched on or off.
     #[must_use]
     pub const fn with_features(self, features: bool) -> Self {
         Self { features, ..self }
     }
 
-    /// With a region.
+    /// Returns this focus with another region.
     #[must_use]
     pub const fn with_region(self, region: cta::Region) -> Self {
         Self { region, ..self }
@@ -131,13 +144,13 @@ impl Focus {
 }
 
 impl Default for Focus {
-    /// Features first, then the region.
+    /// Returns the focus for [`Solver::Auto`]: features first, then the region.
     fn default() -> Self {
         Self::of(Solver::Auto)
     }
 }
 
-/// Choices as they are written; read, they are checked like any others.
+/// Serialised form of [`Options`]. Deserialised options are checked.
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]

@@ -1,4 +1,4 @@
-//! From what a solver found to the answer: bounds, and where they come from, in the world.
+//! Builds answers from the results of a solver: bounds with proofs, in the world frame.
 
 use glam::DVec2;
 
@@ -11,24 +11,31 @@ use crate::solve::WarmStart;
 use crate::solve::portal::{ContactPortal, Plane, Portal};
 use colltrans_kernel::noise::UNIT_VECTOR;
 
-/// The lowest face of `M` on the line and what it proves, in the world. Small and passed by reference:
-/// moved about, an outcome goes through memory.
-pub(crate) struct Proven<'a> {
+/// The lowest face of `M` on the line and the bounds that it proves, in the world.
+///
+/// It is small and refers to the portal and the plane, because copies of an outcome go through memory.
+pub(crate) struct ProvenFace<'a> {
     portal: &'a Portal,
     plane: &'a Plane,
     weights: [f64; 3],
-    /// The estimate of the collision translation.
+    /// Estimate of the collision translation, in multiples of the direction, like the fields below.
     translation: f64,
+    /// ProvenFace lower bound.
     lower: f64,
+    /// ProvenFace upper bound; infinite for widened bodies.
     upper: f64,
+    /// Bound on the part of `upper - lower` that rounding and the excess of the bodies cause.
     rounding: f64,
 }
 
-impl<'a> Proven<'a> {
+impl<'a> ProvenFace<'a> {
+    /// Computes the bounds that a plane and a portal prove.
+    ///
     /// # Errors
-    /// Bounds that rounding alone does not explain.
+    /// [`Stalled::Gap`] if rounding alone does not explain the gap between the bounds, or the plane is nearly parallel
+    /// to the direction.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
+    #[expect(clippy::inline_always, reason = "a copy through memory stalls its reader")]
     pub(crate) fn new(
         difference: &MinkowskiDifference,
         portal: &'a Portal,
@@ -37,23 +44,23 @@ impl<'a> Proven<'a> {
     ) -> Result<Self, Stalled> {
         let setting = difference.setting;
         let noise = difference.noise;
-        let &Plane { normal, ref normals, lowest, beyond } = plane;
+        let &Plane { normal, ref normals, lowest, excess } = plane;
         let steepness = normal.dot(setting.direction);
-        let bound = NormalBound::new(setting, noise, normal, normals, lowest, beyond);
+        let bound = NormalBound::new(setting, noise, normal, normals, lowest, excess);
         let [_, v, w] = weights;
         let [a, b, c] = portal.each_ref().map(Point::height);
-        // Of corners at one height it is theirs, whatever the weights were rounded to.
+        // For corners of equal height this is exactly their height, however the weights are rounded.
         let estimate = (a + (b - a) * v + (c - a) * w) / setting.length;
         let most = gap_rounding(setting, normal, noise, difference.widening);
         let lower = bound.distance / steepness;
         let gap = estimate - lower;
-        // A plane along the direction bounds nothing.
+        // A plane parallel to the direction proves no bound.
         let is_upward = steepness > UNIT_VECTOR * setting.length;
         if !is_upward || gap.is_nan() || gap > most {
             return Err(Stalled::Gap { lower, upper: estimate, tolerance: most });
         }
         let lower = bound.lower_bound(steepness);
-        // Of widened bodies nothing is known from above.
+        // Widened bodies prove no upper bound for the given ones.
         let upper = if difference.widening == 0.0 {
             (estimate + noise.raised() / steepness).next_up()
         } else {
@@ -64,7 +71,7 @@ impl<'a> Proven<'a> {
         Ok(Self { portal, plane, weights, translation, lower, upper, rounding })
     }
 
-    /// What a later query may start from.
+    /// Returns the portal from which a later cast may start.
     #[inline]
     pub(crate) fn contact_portal(&self) -> ContactPortal {
         ContactPortal {
@@ -74,8 +81,9 @@ impl<'a> Proven<'a> {
         }
     }
 
+    /// Builds the contact with its certificate.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "built where it is to stay")]
+    #[expect(clippy::inline_always, reason = "built in the return slot")]
     pub(crate) fn contact(&self, solver: Solver, steps: Steps) -> Contact {
         Contact {
             translation: self.translation,
@@ -95,26 +103,30 @@ impl<'a> Proven<'a> {
     }
 }
 
-pub(crate) fn grazing(
+/// Builds the grazing outcome of a contact.
+///
+/// `inward` is the lateral normal of the silhouette (shadow frame), `overlap` the lateral overlap in world units.
+pub(crate) fn grazing_contact(
     difference: &MinkowskiDifference,
     inward: DVec2,
     overlap: f64,
     contact: Contact,
 ) -> Grazing {
     let separating_direction = (difference.setting_from_shadow * inward.extend(0.0)).normalize();
-    // Of a margin of 0 the overlap is not -0.
+    // Adding 0 turns an overlap of -0 into 0.
     Grazing { separating_direction, overlap: overlap + 0.0, contact }
 }
 
-/// What a plane parallel to the direction proves: the margin along it, less what rounding and bodies
-/// that reach beyond the support points may take from it; and where a later query may begin.
+/// Builds the separation that a plane parallel to the direction proves, and the start of a later cast.
+///
+/// The margin is lowered by its rounding error and by the excess of the bodies beyond the support points.
 #[inline]
-pub(crate) fn separation(
+pub(crate) fn plane_separation(
     difference: &MinkowskiDifference,
     plane: &Plane,
     margin: f64,
 ) -> (Separation, WarmStart) {
-    let margin = margin - difference.noise.lowered() - plane.beyond;
+    let margin = margin - difference.noise.lowered() - plane.excess;
     let start = WarmStart::Apart { normals: plane.normals, pair: plane.lowest };
     (Separation { normal: plane.normal, margin }, start)
 }

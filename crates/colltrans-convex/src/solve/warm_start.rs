@@ -1,4 +1,4 @@
-//! What a cast leaves to the next one: the features it ended with.
+//! Data from which the next cast of a tracker starts: the features with which a cast ended.
 
 use glam::DVec3;
 
@@ -7,36 +7,38 @@ use crate::setting::VertexPair;
 use crate::solve::nearest::NearestPairs;
 use crate::solve::portal::ContactPortal;
 
-/// What a cast leaves besides its answer: all that a tracker reads. An answer that is read before it is handed on is
-/// moved through memory, which costs a tenth of a coherent query.
+/// Result of a cast besides its answer: all that a tracker reads.
+///
+/// It is separate because an answer that is read before it is returned is copied through memory. This costs a tenth of
+/// a coherent query.
 #[derive(Debug, Clone, Copy, Default)]
-pub(crate) struct Left {
-    /// Where the next cast may start.
+pub(crate) struct TrackerUpdate {
+    /// Start of the next cast.
     pub(crate) start: WarmStart,
-    /// The work of the answer, if there is one.
+    /// Work counts of the answer. `None` if the cast failed.
     pub(crate) steps: Option<Steps>,
 }
 
-/// Where the next cast may start.
+/// Start of the next cast, from the result of the previous one.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) enum WarmStart {
-    /// Nothing yet.
+    /// No earlier result: the cast starts from scratch.
     #[default]
     Nothing,
-    /// The bodies met.
+    /// The bodies met at this portal.
     Contact(ContactPortal),
-    /// They passed each other, or grazed.
+    /// The bodies missed each other, or grazed.
     Apart {
-        /// The separating direction, in the frames of the moving and of the fixed body.
+        /// Separating direction, from the moving to the fixed body, in the frames of the moving and of the fixed body.
         normals: [DVec3; 2],
-        /// A pair of vertices extreme along it.
+        /// Vertex pair of `M` that is lowest along it.
         pair: VertexPair,
     },
-    /// They were to keep a gap.
-    Kept {
-        /// Of the plane that bounded the way.
+    /// The cast had a minimum gap.
+    WithMinGap {
+        /// Normal of the plane that bounded the translation (setting frame).
         normal: DVec3,
-        /// Where they were nearest.
+        /// Vertex pairs at which the bodies were nearest.
         pairs: NearestPairs,
     },
 }

@@ -1,97 +1,108 @@
-//! When following the last answer does not pay: a tracker that gives up early.
+//! Decides whether the next cast of a tracker starts from the last answer or from scratch.
 //!
-//! Notation. The *work* of a cast is a count, never a time: supports and portals, weighed as they were
-//! measured. `followed` and `scratch` are running averages of it, of casts that followed the last answer and
-//! of casts from scratch.
+//! The *work* of a cast is a count, never a time: support points and portals with measured weights. `warm_work` and
+//! `scratch_work` are running averages over casts that started from the last answer and over casts from scratch.
 //!
-//! Invariant. As long as `followed` is no more than `scratch`, every cast follows. Else the next `pause` casts
-//! start from scratch, of which the last is measured, and the one after them tries again; every failure doubles
-//! the pause, every clear success halves it. Where `LONGEST` casts followed and were no clear success, one from
-//! scratch is measured. So a sequence without coherence costs one failed attempt in
-//! `LONGEST`, and one that becomes coherent is followed after `LONGEST` casts at most.
+//! - While `warm_work <= scratch_work`, each cast starts from the last answer.
+//! - Otherwise the next `pause` casts start from scratch. The last of them is measured, and the cast after it tries the
+//!   last answer again. Each failure doubles the pause, each clear success halves it.
+//! - After `MAX_PAUSE` warm starts without a clear success, one cast from scratch is measured.
+//!
+//! Therefore a sequence without coherence costs one failed attempt in `MAX_PAUSE` casts. A sequence that becomes
+//! coherent is recognised after `MAX_PAUSE` casts at most.
 
 use crate::answer::{StartedFrom, Steps};
 
-/// Whether the next cast should follow the last answer.
+/// Policy for the start of the next cast, from the work of earlier ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Pace {
-    /// Nothing before the first cast.
-    scratch: Option<f32>,
-    followed: f32,
-    /// Casts from scratch after the next failure, and those still to come of the last one.
+pub(crate) struct WarmStartPolicy {
+    /// Average work of a cast from scratch. `None` before the first cast.
+    scratch_work: Option<f32>,
+    /// Average work of a cast that started from the last answer.
+    warm_work: f32,
+    /// Number of casts from scratch after a failure, before it is doubled.
     pause: u8,
-    left: u8,
-    /// Casts that followed since the last clear success, or since one from scratch was measured.
-    unclear: u8,
+    /// Number of casts from scratch that remain of the current pause.
+    pause_left: u8,
+    /// Number of warm starts since the last clear success, or since a cast from scratch was measured.
+    inconclusive: u8,
 }
 
-impl Default for Pace {
+impl Default for WarmStartPolicy {
     fn default() -> Self {
-        Self { scratch: None, followed: 0.0, pause: 1, left: 0, unclear: 0 }
+        Self { scratch_work: None, warm_work: 0.0, pause: 1, pause_left: 0, inconclusive: 0 }
     }
 }
 
-/// The longest pause.
-const LONGEST: u8 = 32;
+/// Maximum length of a pause, in casts.
+const MAX_PAUSE: u8 = 32;
 
-/// The weights of the newest cast in a running average: of one that followed, of an attempt that was lost, and of the
-/// one cast from scratch that is measured in a pause.
-const WEIGHT: f32 = 0.125;
-const WEIGHT_LOST: f32 = 0.25;
-const WEIGHT_SCRATCH: f32 = 0.5;
+/// Weight of the newest warm start in its running average.
+const WARM_WEIGHT: f32 = 0.125;
+/// Weight of the newest warm start if the cast lost its way and began again from scratch.
+const LOST_WEIGHT: f32 = 0.25;
+/// Weight of the newest measured cast from scratch in its running average.
+const SCRATCH_WEIGHT: f32 = 0.5;
 
-/// The share of the work from scratch that is a clear success; so much following is thought to take until it has
-/// been seen, and one cast with more does not end it.
-const EXPECTED: f32 = 0.75;
+/// Fraction of the work from scratch below which the average of warm starts is a clear success.
+///
+/// The average of warm starts begins at this fraction, so that a single cast with more work does not cause a pause.
+const CLEAR_SUCCESS: f32 = 0.75;
 
-/// A support takes as long as this many portals; the guess that a cast from scratch begins with, and an attempt to follow
-/// that is lost, as long as one (measured on bodies of 2,000 to 200,000 vertices).
-const SUPPORT: f32 = 3.0;
-const GUESS: f32 = 1.0;
-const ATTEMPT: f32 = 1.0;
+/// Work of a support point, in portals (measured on bodies of 2,000 to 200,000 vertices).
+const SUPPORT_WORK: f32 = 3.0;
+/// Work of the guess with which a cast from scratch begins, in portals (measured on the same bodies).
+const GUESS_WORK: f32 = 1.0;
+/// Work of a warm start that is lost, in portals (measured on the same bodies).
+const LOST_ATTEMPT_WORK: f32 = 1.0;
 
-impl Pace {
-    /// Whether the next cast follows the last answer.
+impl WarmStartPolicy {
+    /// Checks whether the next cast should start from the last answer.
     #[inline]
-    pub(crate) fn follows(&self) -> bool {
-        self.left == 0
+    pub(crate) fn should_warm_start(&self) -> bool {
+        self.pause_left == 0
     }
 
-    /// Takes the work of a cast into account, that followed or did not. One that began from scratch after all has
-    /// gained nothing, and cost the attempt.
+    /// Records the work of a cast. `warm_started` states whether the cast started from the last answer.
+    ///
+    /// A warm start that had to begin again from scratch counts as at least the work of a cast from scratch, plus the
+    /// lost attempt.
     #[inline]
-    pub(crate) fn note(&mut self, follows: bool, steps: &Steps) {
-        if self.left > 1 {
-            self.left -= 1;
+    pub(crate) fn record_cast(&mut self, warm_started: bool, steps: &Steps) {
+        if self.pause_left > 1 {
+            self.pause_left -= 1;
             return;
         }
         #[expect(clippy::cast_precision_loss, reason = "a running average of counts")]
-        let work = SUPPORT * steps.supports as f32 + steps.pivots as f32;
-        match &mut self.scratch {
+        let work = SUPPORT_WORK * steps.supports as f32 + steps.pivots as f32;
+        match &mut self.scratch_work {
             None => {
-                self.scratch = Some(work + GUESS);
-                self.followed = EXPECTED * (work + GUESS);
+                self.scratch_work = Some(work + GUESS_WORK);
+                self.warm_work = CLEAR_SUCCESS * (work + GUESS_WORK);
             }
-            Some(scratch) if !follows => {
-                *scratch += WEIGHT_SCRATCH * (work + GUESS - *scratch);
-                (self.left, self.unclear) = (0, 0);
-                // What the next attempt is held against.
-                self.followed = *scratch;
+            Some(scratch) if !warm_started => {
+                *scratch += SCRATCH_WEIGHT * (work + GUESS_WORK - *scratch);
+                (self.pause_left, self.inconclusive) = (0, 0);
+                // The average with which the next attempt begins.
+                self.warm_work = *scratch;
             }
             Some(scratch) => {
                 let lost = steps.started_from == StartedFrom::Scratch;
-                let (work, weight) =
-                    if lost { (work.max(*scratch) + ATTEMPT, WEIGHT_LOST) } else { (work, WEIGHT) };
-                self.followed += weight * (work - self.followed);
-                if self.followed > *scratch {
-                    self.pause = (2 * self.pause).min(LONGEST);
-                    self.left = self.pause;
-                } else if self.followed < EXPECTED * *scratch {
-                    self.pause = (self.pause / 2).max(1);
-                    self.unclear = 0;
+                let (work, weight) = if lost {
+                    (work.max(*scratch) + LOST_ATTEMPT_WORK, LOST_WEIGHT)
                 } else {
-                    self.unclear = (self.unclear + 1) % LONGEST;
-                    self.left = u8::from(self.unclear == 0);
+                    (work, WARM_WEIGHT)
+                };
+                self.warm_work += weight * (work - self.warm_work);
+                if self.warm_work > *scratch {
+                    self.pause = (2 * self.pause).min(MAX_PAUSE);
+                    self.pause_left = self.pause;
+                } else if self.warm_work < CLEAR_SUCCESS * *scratch {
+                    self.pause = (self.pause / 2).max(1);
+                    self.inconclusive = 0;
+                } else {
+                    self.inconclusive = (self.inconclusive + 1) % MAX_PAUSE;
+                    self.pause_left = u8::from(self.inconclusive == 0);
                 }
             }
         }
@@ -106,35 +117,40 @@ mod tests {
         Steps { supports, pivots, started_from, ..Steps::default() }
     }
 
-    /// Attempts that are lost cost no count, but the sequence has no coherence: hardly one cast in `LONGEST` is one.
+    /// Checks a sequence in which each warm start is lost, with counts as low as those from scratch: only about one
+    /// cast in `MAX_PAUSE` is a warm start.
     #[test]
-    fn attempts_that_are_lost_are_failures() {
-        let mut pace = Pace::default();
-        let mut attempts = 0;
+    fn lost_warm_starts_are_retried_after_longest_pause_only() {
+        let mut policy = WarmStartPolicy::default();
+        let mut warm_starts = 0;
         for k in 0..10_000 {
             let steps = steps(2, 1 + k % 3, StartedFrom::Scratch);
-            let follows = k > 0 && pace.follows();
-            attempts += u32::from(follows);
-            pace.note(follows, &steps);
+            let warm_started = k > 0 && policy.should_warm_start();
+            warm_starts += u32::from(warm_started);
+            policy.record_cast(warm_started, &steps);
         }
-        assert!((10_000 / 36..=10_000 / 30).contains(&attempts), "{attempts} attempts");
+        assert!(
+            (10_000 / 36..=10_000 / 30).contains(&warm_starts),
+            "{warm_starts} warm starts, expected one in 30 to 36 casts"
+        );
     }
 
-    /// After casts from scratch that were much work, and are not any more, following is held against what they are now.
+    /// Checks a sequence in which casts from scratch need much work at first and little later: warm starts, which need
+    /// more, are compared with the later work.
     #[test]
-    fn what_casts_from_scratch_take_is_not_that_of_long_ago() {
-        let mut pace = Pace::default();
-        let mut followed = 0;
+    fn warm_starts_end_once_scratch_casts_need_less_work() {
+        let mut policy = WarmStartPolicy::default();
+        let mut warm_starts = 0;
         for k in 0..2_000 {
-            let follows = k > 0 && pace.follows();
-            let steps = match (k < 1_000, follows) {
+            let warm_started = k > 0 && policy.should_warm_start();
+            let steps = match (k < 1_000, warm_started) {
                 (true, _) => steps(6, 1, StartedFrom::Scratch),
                 (false, false) => steps(2, 1, StartedFrom::Scratch),
                 (false, true) => steps(3, 3, StartedFrom::Features),
             };
-            followed += u32::from(follows && k >= 1_000);
-            pace.note(follows, &steps);
+            warm_starts += u32::from(warm_started && k >= 1_000);
+            policy.record_cast(warm_started, &steps);
         }
-        assert!(followed <= 100, "{followed} of 1,000 followed");
+        assert!(warm_starts <= 100, "{warm_starts} of 1,000 casts are warm starts");
     }
 }

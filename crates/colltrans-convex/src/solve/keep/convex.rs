@@ -19,7 +19,7 @@ use crate::setting::{Setting, TwoBodies, VertexPair};
 use crate::solve::nearest::{Difference, NearestPairs, nearest};
 use crate::solve::observe::{NoObserver, Observer, Phase, ShadowFrame, Support};
 use crate::solve::options::{Focus, Options};
-use crate::solve::{Left, WarmStart};
+use crate::solve::{TrackerUpdate, WarmStart};
 use colltrans_kernel::noise::Noise;
 
 /// How far apart, in noises over `n.d`, the bounds of an answer may be.
@@ -130,10 +130,10 @@ pub(crate) fn search<O: Observer>(
     options: &Options,
     focus: &Focus,
     last: &WarmStart,
-    next: &mut Left,
+    next: &mut TrackerUpdate,
     observer: &mut O,
 ) -> Result<Outcome, QueryError> {
-    *next = Left::default();
+    *next = TrackerUpdate::default();
     if Noise::of(setting.scale() + options.keep).is_slight(options.keep) {
         let touching = Options { keep: 0.0, ..*options };
         let outcome = crate::solve::search(setting, &touching, focus, last, next, observer)?;
@@ -150,7 +150,7 @@ fn search_apart<O: Observer>(
     setting: &Setting,
     options: &Options,
     last: &WarmStart,
-    next: &mut Left,
+    next: &mut TrackerUpdate,
     observer: &mut O,
 ) -> Result<Outcome, QueryError> {
     let size = setting.scale();
@@ -164,7 +164,7 @@ fn search_apart<O: Observer>(
     let found = travel(&mut kept.bodies, &line, start, f64::INFINITY);
     kept.bodies.observer.ended(Phase::Finish);
     kept.steps.pivots = found.looks;
-    next.start = WarmStart::Kept { normal: found.plane.normal, pairs: kept.bodies.pairs };
+    next.start = WarmStart::WithMinGap { normal: found.plane.normal, pairs: kept.bodies.pairs };
     let outcome = kept.outcome(&found);
     next.steps = outcome.as_ref().ok().map(Outcome::steps);
     kept.bodies.observer.ended(Phase::Answer);
@@ -190,7 +190,7 @@ impl<'s, 'a, 'o, O: Observer> Kept<'s, 'a, 'o, O> {
     /// The plane to begin with: that of the last search, or one across the line.
     fn start(&mut self, last: &WarmStart) -> Plane<VertexPair> {
         let mut start = self.bodies.lowest(self.line.unit).0;
-        if let WarmStart::Kept { normal, pairs } = last {
+        if let WarmStart::WithMinGap { normal, pairs } = last {
             self.bodies.pairs = *pairs;
             self.steps.started_from = StartedFrom::Features;
             let plane = self.bodies.lowest(*normal).0;
@@ -243,7 +243,7 @@ impl<'s, 'a, 'o, O: Observer> Kept<'s, 'a, 'o, O> {
             return None;
         }
         let plain = Options { keep: 0.0, graze_tolerance: tolerance - keep, ..*self.options };
-        let (last, mut next) = (WarmStart::Nothing, Left::default());
+        let (last, mut next) = (WarmStart::Nothing, TrackerUpdate::default());
         let setting = self.bodies.setting;
         let outcome =
             crate::solve::search(setting, &plain, &Focus::NONE, &last, &mut next, &mut NoObserver);

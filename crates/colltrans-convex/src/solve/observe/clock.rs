@@ -1,11 +1,11 @@
-//! Where the time of a query goes (the paper, table I).
+//! Times the phases of a query (the paper, table I).
 
 use std::time::Instant;
 
 use super::{Observer, Phase, ShadowFrame};
 
 /// Names of the phases, in the order of [`Phase`].
-const NAMES: [&str; 7] = [
+const PHASE_NAMES: [&str; 7] = [
     "setup",
     "planar problems",
     "cell shift",
@@ -15,7 +15,7 @@ const NAMES: [&str; 7] = [
     "answer",
 ];
 
-/// An [`Observer`] that reads a clock where a phase ends.
+/// An [`Observer`] that measures the time of each phase.
 ///
 /// ```
 /// # use colltrans::glam::DVec3;
@@ -32,26 +32,27 @@ const NAMES: [&str; 7] = [
 #[derive(Debug, Clone)]
 pub struct Clock {
     last: Option<Instant>,
-    /// Nanoseconds and readings of each phase.
-    spent: [(f64, u32); NAMES.len()],
+    /// Nanoseconds, and number of measurements, of each phase.
+    spent: [(f64, u32); PHASE_NAMES.len()],
 }
 
-/// Nanoseconds that the phases of one or more queries took.
+/// Time of each phase of one or more queries.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Profile {
-    nanoseconds: [f64; NAMES.len()],
+    nanoseconds: [f64; PHASE_NAMES.len()],
 }
 
 impl Clock {
-    /// Stopped; it runs while a query is answered.
+    /// Builds a stopped clock. It runs while a query is answered.
     pub fn new() -> Self {
-        Self { last: None, spent: [(0.0, 0); NAMES.len()] }
+        Self { last: None, spent: [(0.0, 0); PHASE_NAMES.len()] }
     }
 
-    /// What was measured so far, with the clock's own cost taken off.
+    /// Returns the measured times, reduced by the time that the measurements took.
     pub fn profile(&self) -> Profile {
-        let cost = clock_cost();
-        let nanoseconds = self.spent.map(|(sum, laps)| (sum - f64::from(laps) * cost).max(0.0));
+        let overhead = clock_overhead();
+        let nanoseconds =
+            self.spent.map(|(sum, count)| (sum - f64::from(count) * overhead).max(0.0));
         Profile { nanoseconds }
     }
 }
@@ -69,28 +70,28 @@ impl Observer for Clock {
 
     fn ended(&mut self, phase: Phase) {
         if let Some(last) = self.last {
-            let (sum, laps) = &mut self.spent[phase as usize];
+            let (sum, count) = &mut self.spent[phase as usize];
             *sum += last.elapsed().as_nanos() as f64;
-            *laps += 1;
+            *count += 1;
         }
         self.last = Some(Instant::now());
     }
 }
 
 impl Profile {
-    /// Names of the phases, in the order of the data, and the nanoseconds spent in each.
-    pub fn phases(&self) -> [(&'static str, f64); NAMES.len()] {
-        std::array::from_fn(|i| (NAMES[i], self.nanoseconds[i]))
+    /// Returns the name and the time in nanoseconds of each phase, in the order of [`Phase`].
+    pub fn phases(&self) -> [(&'static str, f64); PHASE_NAMES.len()] {
+        std::array::from_fn(|i| (PHASE_NAMES[i], self.nanoseconds[i]))
     }
 
-    /// Nanoseconds of all phases together.
+    /// Returns the time of all phases in nanoseconds.
     pub fn total(&self) -> f64 {
         self.nanoseconds.iter().sum()
     }
 }
 
-/// The least time between two readings of the clock, in nanoseconds.
-fn clock_cost() -> f64 {
-    let once = |_| Instant::now().elapsed().as_nanos();
-    (0..64).map(once).min().unwrap_or(0) as f64
+/// Measures the shortest time between two readings of the clock, in nanoseconds.
+fn clock_overhead() -> f64 {
+    let reading = |_| Instant::now().elapsed().as_nanos();
+    (0..64).map(reading).min().unwrap_or(0) as f64
 }

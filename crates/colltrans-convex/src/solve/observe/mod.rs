@@ -1,7 +1,7 @@
-//! What a search does, seen from outside: one seam for counting, timing and recording.
+//! Observation of a search: one interface for counting, timing and recording.
 //!
-//! Solvers report to a watch, which counts [`Steps`] and passes everything on to an [`Observer`]. Both are known at compile time: without an observer nothing is left of the reports,
-//! and what they would say is never computed.
+//! Solvers report to a [`Watch`], which counts [`Steps`] and passes all reports on to an [`Observer`]. Both types are
+//! static. Therefore reports to [`NoObserver`] cost nothing, and their arguments are never computed.
 
 mod clock;
 mod recording;
@@ -14,106 +14,107 @@ use crate::setting::minkowski::Point;
 pub use clock::{Clock, Profile};
 pub use recording::{Event, Recording};
 
-/// A part of a query's work, in the order of the data (the paper, table I).
+/// Phase of a query (the paper, table I).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Phase {
-    /// Frames, section axes, and the first guess.
+    /// Computation of frames, section axes, and the first guess.
     Setup,
-    /// Planar problems.
+    /// Solution of planar problems.
     Planar,
-    /// Pieces, cells and the shift to a cell's best point.
+    /// Computation of pieces and cells, and the shift to the best point of a cell.
     Cell,
-    /// Cuts of the region and centroids.
+    /// Cuts of the region, and its centroids.
     Region,
-    /// What all pieces prove together.
+    /// Lower bound that all pieces prove together.
     Bound,
     /// Portal refinement.
     Finish,
-    /// Bounds and witness points of the answer.
+    /// Computation of the answer's bounds and witness points.
     Answer,
 }
 
-/// The frame of a search: shadows, and heights along the direction.
+/// Shadow frame of a search: two lateral axes and the direction.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ShadowFrame {
     /// Columns: two lateral unit vectors and the unit direction, in the world.
     pub world_from_shadow: DMat3,
-    /// The rounding error that coordinates may have.
+    /// Bound on the rounding error of a coordinate (world units).
     pub noise: f64,
 }
 
-/// A support point of the Minkowski difference `{q - p}`.
+/// Support point of the Minkowski difference `{q - p}`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Support {
-    /// The normal along which it is lowest (shadow frame, any length).
+    /// Normal along which the point is lowest (shadow frame, any length).
     pub normal: DVec3,
-    /// Where it is (shadow frame).
+    /// Position of the point (shadow frame).
     pub at: DVec3,
-    /// The vertices of the two bodies that it comes from.
+    /// Vertices of the two bodies whose difference is the point.
     pub pair: VertexPair,
 }
 
 impl Support {
+    /// Builds the report of a point that was found along `normal` (shadow frame).
     #[inline]
-    pub(crate) fn of(normal: DVec3, point: &Point) -> Self {
+    pub(crate) fn from_point(normal: DVec3, point: &Point) -> Self {
         Self { normal, at: point.at, pair: point.pair }
     }
 }
 
-/// The sections of a minimisation: planes across an axis of each body.
+/// Sections of a minimisation: the planes perpendicular to one axis of each body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sections {
-    /// The section axes of P and of Q, in the world. A point `v` of a body, in its own frame, has the
-    /// level `axis . (R v)`.
+    /// Section axes of `P` and of `Q`, in the world. A point `v` in the frame of a body with rotation `R` has the level
+    /// `axis . (R v)`.
     pub axes: [DVec3; 2],
-    /// Lowest and highest level of either body.
+    /// Lowest and highest level of each body.
     pub ranges: [[f64; 2]; 2],
-    /// The centre and the half-side of `N(p)`, the square of levels around the last solution `p`, if the search
-    /// starts there.
+    /// Centre and half-side of `N(p)`, the square of levels around the last solution `p`. `None` if the search does not
+    /// start there.
     pub neighbourhood: Option<(DVec2, f64)>,
 }
 
-/// One planar problem: two sections at a pair of levels.
+/// Planar problem: two sections at a pair of levels.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PlanarProblem {
-    /// The levels of P's and of Q's section, each in its own frame.
+    /// Levels of the sections of `P` and of `Q`, each relative to the origin of its body.
     pub levels: [f64; 2],
-    /// The value there: `phi`, or how far the sections are apart if they never meet; not a number if
-    /// rounding hides a section.
+    /// Value at these levels: `phi`, or the distance of the sections if they never meet. Not a number if rounding
+    /// hides a section.
     pub value: f64,
-    /// How the sections meet.
+    /// Features at which the sections meet.
     pub touch: Touch,
-    /// The change of the value with the two levels.
+    /// Gradient of the value with respect to the two levels.
     pub gradient: DVec2,
-    /// The levels in the cell where the same features stay in contact to which the cell shift goes; those
-    /// of the problem if the sections miss each other.
+    /// Levels that the cell shift reaches, in the cell in which the same features stay in contact. Equal to `levels` if
+    /// the sections miss each other.
     pub best: [f64; 2],
-    /// The value there, the least of the cell.
+    /// Value at the levels `best`, the smallest of the cell.
     pub shifted: f64,
 }
 
-/// How two sections meet: what the same features decide in each cell of the mark (the paper, II-B).
+/// Features at which two sections meet. They are the same in a whole cell of the mark (the paper, section II-B).
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Touch {
-    /// An edge of one section touches an edge of the other: two faces.
+    /// An edge of one section touches an edge of the other; these are a face of each body.
     Edges,
-    /// A corner of one section touches the inside of the other: an edge of a body against a section.
+    /// A corner of one section, which is an edge of a body, touches the other section.
     Vertex,
-    /// They never meet: a line along the direction's shadow lies between them.
+    /// The sections never meet: a line parallel to the projected direction separates them.
     Separated,
     /// Rounding hides a section.
     Hidden,
 }
 
 impl Touch {
-    /// Whether they meet at all.
+    /// Checks whether the sections meet.
     pub fn meets(self) -> bool {
         matches!(self, Self::Edges | Self::Vertex)
     }
 }
 
 impl PlanarProblem {
-    /// Rounding errors of the mesh hide a section: nothing was learnt.
+    /// Builds the result of a problem in which rounding errors of the mesh hide a section.
     pub(crate) fn hidden(levels: [f64; 2]) -> Self {
         Self {
             levels,
@@ -126,78 +127,75 @@ impl PlanarProblem {
     }
 }
 
-/// What was cut from the levels: kept is `gradient . (levels - origin) <= limit`.
+/// Cut of the region of levels. The part with `gradient . (levels - origin) <= limit` remains.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Cut {
-    /// The middle of all levels.
+    /// Centre of the range of levels of both bodies.
     pub origin: DVec2,
-    /// Across the cut line, towards what is lost.
+    /// Vector perpendicular to the cut line, towards the part that is removed.
     pub gradient: DVec2,
-    /// The cut line.
+    /// Position of the cut line along the gradient.
     pub limit: f64,
-    /// The lower bound that all pieces prove with this one, in units of length up to a constant of
-    /// the query.
+    /// Lower bound that all pieces prove together, this cut included (world units, up to a constant of the query).
     pub lower: f64,
-    /// The least value found, on the same scale.
+    /// Smallest value found, in the same unit and up to the same constant as `lower`.
     pub upper: f64,
 }
 
-/// Looks on while a query is answered. Every method does nothing unless it is overridden, and what
-/// it would be told is then never computed.
+/// Receives reports while a query is answered.
 ///
-/// [`Clock`] times the phases, [`Recording`] keeps the events, [`Steps`] counts; a pair of observers
-/// is one.
+/// By default each method does nothing, and its argument is never computed. [`Clock`] times the phases, [`Recording`]
+/// records the events, and [`Steps`] counts. A pair of observers is an observer.
 pub trait Observer {
-    /// A search begins, or begins again in a frame turned about the direction.
+    /// Reports that a search begins, or begins again in a frame rotated about the direction.
     fn begun(&mut self, frame: impl FnOnce() -> ShadowFrame) {
         let _ = frame;
     }
 
-    /// A support point was computed.
+    /// Reports a support point.
     fn support(&mut self, support: impl FnOnce() -> Support) {
         let _ = support;
     }
 
-    /// A portal was reached: three points of the Minkowski difference around the line (shadow
-    /// frame).
+    /// Reports a portal: three points of the Minkowski difference around the line (shadow frame).
     fn portal(&mut self, corners: impl FnOnce() -> [DVec3; 3]) {
         let _ = corners;
     }
 
-    /// A minimisation over pairs of sections begins.
+    /// Reports that a minimisation over pairs of sections begins.
     fn sections(&mut self, sections: impl FnOnce() -> Sections) {
         let _ = sections;
     }
 
-    /// A planar problem was solved.
+    /// Reports a planar problem that was solved.
     fn planar_problem(&mut self, problem: impl FnOnce() -> PlanarProblem) {
         let _ = problem;
     }
 
-    /// The cell of the planar problem before, where the same features stay in contact: its corners, pairs
+    /// Reports the cell of the last planar problem, in which the same features stay in contact. Its corners are pairs
     /// of levels, counter-clockwise and within the levels of the bodies.
     fn cell(&mut self, corners: impl FnOnce() -> Vec<DVec2>) {
         let _ = corners;
     }
 
-    /// The best point of a cell was the best so far: whether the features that touch there were
-    /// seen to solve the problem.
+    /// Reports the exit test at the best point of a cell, if this is the best point of the search until then. `true` if
+    /// the features that touch there are recognised as the solution.
     fn exit_test(&mut self, solved: impl FnOnce() -> bool) {
         let _ = solved;
     }
 
-    /// The region of levels was cut.
+    /// Reports a cut of the region of levels.
     fn cut(&mut self, cut: impl FnOnce() -> Cut) {
         let _ = cut;
     }
 
-    /// A part of the work ended: what was done since the last report belongs to it.
+    /// Reports that a phase ended. The work since the previous report of this kind belongs to the phase.
     fn ended(&mut self, phase: Phase) {
         let _ = phase;
     }
 }
 
-/// Hears everything and does nothing.
+/// An [`Observer`] that ignores all reports.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct NoObserver;
 
@@ -275,15 +273,16 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
     }
 }
 
-/// Counts, and passes on.
+/// Counter of steps that passes all reports on to an observer.
 pub(crate) struct Watch<'o, O> {
-    /// What was counted.
+    /// Counts until now.
     pub(crate) steps: Steps,
-    /// Who looks on.
+    /// Receiver of the reports.
     pub(crate) observer: &'o mut O,
 }
 
 impl<'o, O: Observer> Watch<'o, O> {
+    /// Builds a watch with counts of 0.
     #[inline]
     pub(crate) fn new(observer: &'o mut O) -> Self {
         Self { steps: Steps::default(), observer }

@@ -1,10 +1,10 @@
-//! Everything that a query did, kept for a picture or a replay.
+//! Records all events of a query, for a picture or a replay.
 
 use glam::{DVec2, DVec3};
 
 use super::{Cut, Observer, Phase, PlanarProblem, Sections, ShadowFrame, Support};
 
-/// One thing that happened.
+/// One event of a query.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Event {
@@ -12,23 +12,23 @@ pub enum Event {
     Begun(ShadowFrame),
     /// A support point was computed.
     Support(Support),
-    /// A portal was reached: its corners, in the shadow frame.
+    /// A portal was reached. Contains its corners in the shadow frame.
     Portal([DVec3; 3]),
     /// A minimisation over pairs of sections began.
     Sections(Sections),
     /// A planar problem was solved.
     PlanarProblem(PlanarProblem),
-    /// Its cell: the corners, pairs of levels.
+    /// The cell of the last planar problem was computed. Contains its corners, each a pair of levels.
     Cell(Vec<DVec2>),
-    /// Whether the best point of the cell was seen to solve the problem.
+    /// The exit test was evaluated. `true` if the best point of the cell is recognised as the solution.
     ExitTest(bool),
     /// The region of levels was cut.
     Cut(Cut),
-    /// A part of the work ended.
+    /// A phase ended.
     Ended(Phase),
 }
 
-/// An [`Observer`] that keeps all events, in their order.
+/// An [`Observer`] that records all events in their order.
 ///
 /// ```
 /// # use colltrans::glam::DVec3;
@@ -49,12 +49,12 @@ pub struct Recording {
 }
 
 impl Recording {
-    /// What happened so far.
+    /// Returns the recorded events.
     pub fn events(&self) -> &[Event] {
         &self.events
     }
 
-    /// Forgets everything.
+    /// Removes all events.
     pub fn clear(&mut self) {
         self.events.clear();
     }

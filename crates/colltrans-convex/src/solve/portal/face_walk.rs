@@ -1,74 +1,76 @@
-//! Feature focus: from the portal of an earlier query to one around the line of today's (the
-//! paper's future work, section V-F).
+//! Face walk: from an earlier portal or a guessed normal to the face of `M` that the line pierces. The paper names the
+//! former as future work (section V-F).
 //!
-//! Notation. The three pairs of vertices still give points of `M`, wherever the bodies are now; the
-//! *shift* is where the old point of contact, the same weights over these pairs, has its shadow. It
-//! was on the line, so the shift is what poses and direction have changed.
+//! - *Earlier portal*: its three vertex pairs are still points of `M`, in any poses.
+//! - *Shift*: today's shadow of the earlier contact point, computed with the same weights over the pairs. The contact
+//!   point was on the line; therefore the shift is due to the change of poses and direction.
 //!
-//! Where the line has left the triangle, it went over an edge; on the other side lies the next face
-//! of `M`. That face is found as in gift wrapping: among the neighbours of the edge's vertices, the
-//! one that a plane turning about the edge meets first. If the line is many faces away, the shift
-//! and the curvature of the bodies' inertia ellipsoids tell the slope where to continue, at a
-//! vertex of `M` and the face beside it.
-//!
-//! All this guesses: the old triangle need not be a face of `M` any more. The result is three points
-//! of `M` around the line, whatever way led there; refinement does not ask.
+//! If the line has left the triangle over an edge, gift wrapping finds the face of `M` beyond that edge. If the line
+//! is many faces away, the walk continues at the support point along a slope that the shift and the curvature of the
+//! inertia ellipsoids predict. All this is heuristic, because the earlier triangle need not be a face of `M` any
+//! more. Refinement accepts any three points of `M` around the line.
 
 use glam::{DVec2, DVec3};
 
-use super::coplanar::{Flat, across, has_large_faces};
-use super::edge::{Edge, crossed, left_behind};
-use super::gift_wrap::first_met;
-use super::normal_guess::{continued, slope_per_shadow};
-use super::ties::{Beside, Pointed, beside, pointed};
-use super::{Context, FirstNormal, Known, Line, Portal, normal_of};
+use super::coplanar::{CoplanarStep, cross_face, has_polygonal_faces};
+use super::edge::{Edge, line_position, line_position_after_crossing};
+use super::gift_wrap::first_vertex_met;
+use super::normal_guess::{predicted_slope, slope_per_shadow};
+use super::ties::{AdjacentFace, VertexCase, adjacent_face, classify_vertex};
+use super::{Context, LinePosition, NormalGuess, Portal, PortalStatus, normal_of};
 use crate::setting::VertexPair;
 use crate::setting::minkowski::MinkowskiDifference;
 use crate::solve::observe::Observer;
 
-/// What became of an old portal.
+/// Result of a face walk.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Followed {
-    /// A portal around the line.
-    Portal(Portal, Known),
-    /// Nothing of `M` seems to lie beyond an edge: its outward normal in the shadow plane (any
-    /// length), and its ends, or twice a pair of vertices there.
-    Rim { outward: DVec2, edge: [VertexPair; 2] },
-    /// The line is too far away.
+pub(crate) enum WalkResult {
+    /// A portal around the line, and how much is proven about it.
+    Portal(Portal, PortalStatus),
+    /// Nothing of `M` seems to lie beyond an edge. Contains its outward normal in the shadow plane (any
+    /// length), and the vertex pairs of its ends, or one pair near it twice.
+    Silhouette { outward: DVec2, edge: [VertexPair; 2] },
+    /// No portal was found, for example because the line is too far away.
     Lost,
 }
 
-/// Faces of `M` crossed before wide portals are the shorter way (measured).
-const CROSSINGS: usize = 20;
+/// Maximum number of faces crossed from a guess. Beyond that, wide portals are faster (measured).
+const MAX_CROSSINGS: usize = 20;
 
-/// The same of an earlier portal, beside which a cast from scratch is the shorter way (measured).
-const FOLLOWED: usize = 8;
+/// Maximum number of faces crossed from an earlier portal. Beyond that, a cast from scratch is faster
+/// (measured).
+const MAX_CROSSINGS_FROM_LAST: usize = 8;
 
-/// A line this many widths of the triangle beyond an edge is not reached face by face (measured).
-const FAR: f64 = 1.2;
+/// Distance of the line beyond an edge, in widths of the triangle, above which crossing faces one at a
+/// time does not reach it (measured).
+const MAX_WALK_WIDTHS: f64 = 1.2;
 
-/// From farther than this, in the same widths, the tables of both bodies are asked for the vertex there, which is
-/// sooner than to climb to it (measured).
-const TOO_FAR_TO_CLIMB: f64 = 4.0;
+/// Distance in the same unit above which the support tables of both bodies find the next vertex faster
+/// than a hill climb (measured).
+const MAX_CLIMB_WIDTHS: f64 = 4.0;
 
-/// Where the line met `M` in an earlier query.
+/// Where the line met `M` in an earlier cast.
 ///
-/// In this order in memory: behind the tag of an enum, fields of eight bytes are written once if they
-/// come first, and twice if not.
+/// The order of the fields matters for speed. Behind the tag of an enum, fields of eight bytes are
+/// written once if they are first, and twice if not.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[repr(C)]
 pub(crate) struct ContactPortal {
-    /// The contact normal, in the frames of the moving and of the fixed body.
+    /// Contact normal in the frames of the moving and of the fixed body.
     pub(crate) normals: [DVec3; 2],
-    /// The weights of the contact in the portal.
+    /// Barycentric weights of the contact point in the portal.
     pub(crate) weights: [f64; 3],
-    /// The portal.
+    /// Vertex pairs of the portal.
     pub(crate) pairs: [VertexPair; 3],
 }
 
-/// Follows the line from where it met `M` before.
+/// Walks from the portal of an earlier cast to the line. Returns [`WalkResult::Lost`] if the bodies have moved
+/// too far since.
 #[inline]
-pub(crate) fn follow<O: Observer>(context: &mut Context<O>, last: &ContactPortal) -> Followed {
+pub(crate) fn walk_from_last<O: Observer>(
+    context: &mut Context<O>,
+    last: &ContactPortal,
+) -> WalkResult {
     let [a, b, c] = last.pairs;
     let mut portal =
         [context.difference.vertex(a), context.difference.vertex(b), context.difference.vertex(c)];
@@ -76,128 +78,132 @@ pub(crate) fn follow<O: Observer>(context: &mut Context<O>, last: &ContactPortal
     if (b - a).perp_dot(c - a) < 0.0 {
         portal.swap(0, 1);
     }
-    let mut edge = match crossed(context, &portal) {
-        Line::Beyond(from) => Edge::of(&portal, from),
-        Line::Inside(known) => return Followed::Portal(portal, known),
+    let mut edge = match line_position(context, &portal) {
+        LinePosition::BeyondEdge(from) => Edge::from_corner(&portal, from),
+        LinePosition::Inside(status) => return WalkResult::Portal(portal, status),
     };
     let shift = a * last.weights[0] + b * last.weights[1] + c * last.weights[2];
-    let Some(slopes) = slopes(&context.difference, last, shift) else { return Followed::Lost };
-    if edge.distance() > FAR * edge.width() {
-        let slope = continued(&context.difference, shift, slopes);
-        let climbs = edge.distance() <= TOO_FAR_TO_CLIMB * edge.width();
-        match jump(context, slope, climbs.then_some(last.pairs[0])) {
-            Some(Beside::Edge(there, found)) => {
-                return Followed::Portal(there, Known::Lowest(found));
+    let Some(slopes) = current_slopes(&context.difference, last, shift) else {
+        return WalkResult::Lost;
+    };
+    if edge.scaled_distance() > MAX_WALK_WIDTHS * edge.scaled_width() {
+        let slope = predicted_slope(&context.difference, shift, slopes);
+        let climbs = edge.scaled_distance() <= MAX_CLIMB_WIDTHS * edge.scaled_width();
+        match adjacent_face_along(context, slope, climbs.then_some(last.pairs[0])) {
+            Some(AdjacentFace::Edge(portal, found)) => {
+                return WalkResult::Portal(portal, PortalStatus::Lowest(found));
             }
-            Some(Beside::Face(there)) => portal = there,
-            None => return Followed::Lost,
+            Some(AdjacentFace::Face(adjacent)) => portal = adjacent,
+            None => return WalkResult::Lost,
         }
-        match left_behind(context, &portal) {
-            Line::Beyond(from) => edge = Edge::of(&portal, from),
-            Line::Inside(known) => return Followed::Portal(portal, known),
+        match line_position_after_crossing(context, &portal) {
+            LinePosition::BeyondEdge(from) => edge = Edge::from_corner(&portal, from),
+            LinePosition::Inside(status) => return WalkResult::Portal(portal, status),
         }
     }
-    walk(context, edge, FOLLOWED)
+    walk_to_line(context, edge, MAX_CROSSINGS_FROM_LAST)
 }
 
-/// From a face of `M` to the one that the line pierces, over one edge after another, of which the
-/// first is given.
+/// Walks over the faces of `M` to the one that the line pierces. Starts by crossing `edge`, and crosses
+/// at most `most` edges.
 #[inline(never)]
-fn walk<O: Observer>(context: &mut Context<O>, mut edge: Edge, most: usize) -> Followed {
+fn walk_to_line<O: Observer>(context: &mut Context<O>, mut edge: Edge, most: usize) -> WalkResult {
     for _ in 0..most {
         context.watch.portal(|| [edge.from.at, edge.to.at, edge.third.at]);
-        let Some(tilt) = edge.tilt() else { return Followed::Lost };
-        // The edge that was crossed has the line on its left now.
-        let Some(point) = first_met(&context.difference, &edge.from, &tilt) else {
+        let Some(plane) = edge.rotating_plane() else { return WalkResult::Lost };
+        // The line is on the left of the crossed edge, taken in reverse.
+        let Some(point) = first_vertex_met(&context.difference, &edge.from, &plane) else {
             let ends = [edge.from.pair, edge.to.pair];
-            return Followed::Rim { outward: tilt.outward, edge: ends };
+            return WalkResult::Silhouette { outward: plane.outward, edge: ends };
         };
         let portal = [edge.to, edge.from, point];
-        match left_behind(context, &portal) {
-            Line::Beyond(from) => edge = Edge::of(&portal, from),
-            Line::Inside(known) => return Followed::Portal(portal, known),
+        match line_position_after_crossing(context, &portal) {
+            LinePosition::BeyondEdge(from) => edge = Edge::from_corner(&portal, from),
+            LinePosition::Inside(status) => return WalkResult::Portal(portal, status),
         }
     }
-    Followed::Lost
+    WalkResult::Lost
 }
 
-/// How much is done to get from a guess to the line, face by face.
-pub(crate) struct Patience {
-    /// How often the guess is corrected by the ellipsoids' curvature before the walk begins.
-    corrections: usize,
-    /// A line no farther than this, in widths of the last triangle that is so near, is walked to if
-    /// corrections come no nearer. From farther away wide portals are the shorter way.
-    reach: f64,
-    /// Faces of `M` crossed before wide portals are the shorter way.
-    crossings: usize,
+/// Limits of a face walk from a guess.
+pub(crate) struct WalkLimits {
+    /// Maximum number of corrections of the guess by the curvature of the ellipsoids.
+    max_corrections: usize,
+    /// Maximum distance of the line, in widths of the last triangle that is so near, at which a walk
+    /// begins if corrections come no nearer. From farther away, wide portals are faster.
+    max_widths: f64,
+    /// Maximum number of faces of `M` crossed. Beyond that, wide portals are faster.
+    max_crossings: usize,
 }
 
-/// For a guess from ellipsoids, and for one that is right or wrong (both measured).
-pub(crate) const OF_ELLIPSOIDS: Patience =
-    Patience { corrections: 3, reach: 8.0, crossings: CROSSINGS };
-pub(super) const OF_RIMS: Patience = Patience { corrections: 0, reach: 4.0, crossings: 8 };
+/// Limits for a guess from ellipsoids (measured).
+pub(crate) const ELLIPSOID_LIMITS: WalkLimits =
+    WalkLimits { max_corrections: 3, max_widths: 8.0, max_crossings: MAX_CROSSINGS };
+/// Limits for a guess from outlines, which is either right or wrong (measured).
+pub(super) const OUTLINE_LIMITS: WalkLimits =
+    WalkLimits { max_corrections: 0, max_widths: 4.0, max_crossings: 8 };
 
-/// A correction that leaves more of the distance from the line than this share says that the bodies
-/// are no ellipsoids.
-const PROGRESS: f64 = 0.5;
+/// Maximum ratio of the distances from the line after and before a correction. If a correction exceeds
+/// it, the bodies are not similar to ellipsoids.
+const MAX_REMAINDER: f64 = 0.5;
 
-/// From a guessed normal: the face of `M` beside its support point, and from there to the line.
+/// Walks from a guessed normal to the line, beginning at a face of `M` at the support point.
 ///
-/// Where the support point is itself on the line, or nearly so, its plane may prove that the portal
-/// reached is the lowest. Beside what became of it, the support point that corrections led to, from where
-/// to go on if no portal is reached.
+/// If the support point is on the line, up to the touching distance, its plane may prove that the
+/// portal is the lowest. Also returns the support point that the corrections reached, as a guess from
+/// which the caller continues if there is no portal.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "passed through memory its result stalls its reader")]
-pub(crate) fn approach<O: Observer>(
+#[expect(clippy::inline_always, reason = "a result copied through memory stalls")]
+pub(crate) fn walk_from_guess<O: Observer>(
     context: &mut Context<O>,
-    start: &FirstNormal,
-    patience: &Patience,
-) -> (Followed, FirstNormal) {
-    let reached = |portal, known| (Followed::Portal(portal, known), *start);
+    start: &NormalGuess,
+    limits: &WalkLimits,
+) -> (WalkResult, NormalGuess) {
+    let reached = |portal, status| (WalkResult::Portal(portal, status), *start);
     let mut slope = start.normal.truncate();
     let mut vertex = context.support(normal_of(slope), start.near);
     let mut within_reach = None;
-    // A corner that is farthest in what seems to be a face need not be one, and proves nothing.
+    // The farthest corner of an apparent face need not be a support point; then it proves nothing.
     let mut is_support = true;
     for corrections in 0.. {
         let shadow = vertex.shadow();
         let mut toward_line = -shadow;
         let touching = context.difference.touching();
         if is_support && shadow.length_squared() <= touching * touching {
-            match pointed(context, &vertex, slope) {
-                Pointed::Lowest(portal, known) => return reached(portal, known),
-                Pointed::Toward(line) => toward_line = line,
-                Pointed::Unknown => {}
+            match classify_vertex(context, &vertex, slope) {
+                VertexCase::Lowest(portal, status) => return reached(portal, status),
+                VertexCase::Toward(line) => toward_line = line,
+                VertexCase::Unknown => {}
             }
         }
-        let portal = match beside(context, &vertex, slope, toward_line) {
-            Some(Beside::Face(portal)) => portal,
-            Some(Beside::Edge(portal, found)) => {
-                return reached(portal, Known::Lowest(found));
+        let portal = match adjacent_face(context, &vertex, slope, toward_line) {
+            Some(AdjacentFace::Face(portal)) => portal,
+            Some(AdjacentFace::Edge(portal, found)) => {
+                return reached(portal, PortalStatus::Lowest(found));
             }
             None => break,
         };
-        let from = match left_behind(context, &portal) {
-            Line::Beyond(from) => from,
-            Line::Inside(known) => return reached(portal, known),
+        let from = match line_position_after_crossing(context, &portal) {
+            LinePosition::BeyondEdge(from) => from,
+            LinePosition::Inside(status) => return reached(portal, status),
         };
-        let edge = Edge::of(&portal, from);
-        let [distance, width] = [edge.distance(), edge.width()];
-        if distance <= patience.reach * width {
+        let edge = Edge::from_corner(&portal, from);
+        let [distance, width] = [edge.scaled_distance(), edge.scaled_width()];
+        if distance <= limits.max_widths * width {
             within_reach = Some(edge);
         }
-        if distance <= FAR * width || corrections == patience.corrections {
+        if distance <= MAX_WALK_WIDTHS * width || corrections == limits.max_corrections {
             break;
         }
-        if has_large_faces(&context.difference) {
-            match across(context, portal, from) {
-                Flat::Portal(portal, known) => return reached(portal, known),
-                Flat::Corner(normal, corner) => {
+        if has_polygonal_faces(&context.difference) {
+            match cross_face(context, portal, from) {
+                CoplanarStep::Portal(portal, status) => return reached(portal, status),
+                CoplanarStep::Corner(normal, corner) => {
                     (slope, vertex) = (normal.truncate() / normal.z, corner);
                     is_support = false;
                     continue;
                 }
-                Flat::No => {}
+                CoplanarStep::NotCoplanar => {}
             }
         }
         let corrected = slope + slope_per_shadow(&context.difference, slope) * shadow;
@@ -209,19 +215,19 @@ pub(crate) fn approach<O: Observer>(
         if after <= before {
             (slope, vertex, is_support) = (corrected, next, true);
         }
-        if after > PROGRESS * PROGRESS * before {
+        if after > MAX_REMAINDER * MAX_REMAINDER * before {
             break;
         }
     }
-    let nearest = FirstNormal { normal: normal_of(slope), near: Some(vertex.pair) };
-    let followed =
-        within_reach.map_or(Followed::Lost, |edge| walk(context, edge, patience.crossings));
-    (followed, nearest)
+    let nearest = NormalGuess { normal: normal_of(slope), near: Some(vertex.pair) };
+    let walk = within_reach
+        .map_or(WalkResult::Lost, |edge| walk_to_line(context, edge, limits.max_crossings));
+    (walk, nearest)
 }
 
-/// The slopes that the old contact normal has now, as a normal of either body; `None` if so much has
-/// changed that there is nothing to follow.
-fn slopes(
+/// Returns the slopes of the earlier contact normal today, as a normal of either body. `None` if poses
+/// or direction have changed too much for a walk.
+fn current_slopes(
     difference: &MinkowskiDifference,
     last: &ContactPortal,
     shift: DVec2,
@@ -231,16 +237,17 @@ fn slopes(
     near.then(|| [p, q].map(|n| n.truncate() / n.z))
 }
 
-/// The face of `M` at the support point along a slope, on the side of the line; that point may be known to be near a
-/// pair.
-fn jump<O: Observer>(
+/// Returns the face or edge of `M` at the support point along `slope`, on the side of the line. Starts
+/// the search for this point at `near`, if a nearby pair is known. `None` if there is no such face, or the
+/// slope is not finite.
+fn adjacent_face_along<O: Observer>(
     context: &mut Context<O>,
     slope: DVec2,
     near: Option<VertexPair>,
-) -> Option<Beside> {
+) -> Option<AdjacentFace> {
     if !slope.is_finite() {
         return None;
     }
     let vertex = context.support(normal_of(slope), near);
-    beside(context, &vertex, slope, -vertex.shadow())
+    adjacent_face(context, &vertex, slope, -vertex.shadow())
 }

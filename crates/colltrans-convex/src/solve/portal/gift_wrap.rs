@@ -1,10 +1,11 @@
-//! Gift wrapping: which neighbour a plane meets first that turns about a vertex or an edge of `M`.
+//! Gift wrapping: finds the neighbour that a plane meets first as it rotates about a vertex or an edge
+//! of `M`.
 //!
-//! Seen along the axis of the turn, the edges that leave a vertex are rays on one side of the plane, and
-//! the plane meets them in the order of their angles. In cyclic order of the edges the angle has one
-//! maximum and one minimum, because what the body's cone is seen as is a wedge; so around a vertex with
-//! many neighbours the first is found in `O(log n)`, mostly at once: near the one that rises least, as most planes that
-//! turn support the body.
+//! Projected along the axis of rotation, the edges that leave a vertex are rays on one side of the
+//! plane, which meets them in the order of their angles. In cyclic order of the edges the angle has one
+//! maximum and one minimum, because the body's cone projects to a wedge. Therefore a vertex with many
+//! neighbours is searched in `O(log n)`. Most planes support the body, so the search starts near the
+//! edge that rises least, and mostly ends there.
 
 use std::hint::select_unpredictable;
 
@@ -14,35 +15,39 @@ use crate::body::{ConvexPolyhedron, FAN, greatest_near};
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
 
-/// A plane that turns downwards on one side.
-pub(super) struct Tilt {
-    /// Its normal (shadow frame, any length).
+/// Plane that rotates downwards on one side of an axis.
+pub(super) struct RotatingPlane {
+    /// Normal of the plane (shadow frame, any length).
     pub(super) normal: DVec3,
-    /// Away from the axis of the turn, in the shadow plane, any length.
+    /// Vector away from the axis of rotation, in the shadow plane (any length).
     pub(super) outward: DVec2,
 }
 
-/// Of the neighbours of a vertex of `M` on the axis of the turn, the one with the least rise over
-/// its run.
+/// Returns the point of `M` that the plane meets first: the neighbour of `vertex`, which is on the axis,
+/// with the smallest ratio of rise to run. `None` if no neighbour lies beyond the axis.
 #[inline]
-pub(super) fn first_met(
+pub(super) fn first_vertex_met(
     difference: &MinkowskiDifference,
     vertex: &Point,
-    tilt: &Tilt,
+    plane: &RotatingPlane,
 ) -> Option<Point> {
     let [moving, fixed] = vertex.pair.numbers();
     let setting = difference.setting;
-    let (normal, outward) = (tilt.normal, tilt.outward.extend(0.0));
-    // A neighbour closer to the axis than this is not beyond it.
-    let least = difference.touching() * tilt.outward.length();
-    let turn =
-        Turn { up: -difference.in_moving(normal), out: -difference.in_moving(outward), least };
-    let p = turn.first(setting.moving, moving);
-    let turn = Turn { up: difference.in_fixed(normal), out: difference.in_fixed(outward), least };
-    let q = turn.first(setting.fixed, fixed);
+    let (normal, outward) = (plane.normal, plane.outward.extend(0.0));
+    // A neighbour nearer to the axis than this is not beyond it.
+    let least = difference.touching() * plane.outward.length();
+    let rotation = BodyRotation {
+        up: -difference.in_moving(normal),
+        out: -difference.in_moving(outward),
+        least,
+    };
+    let p = rotation.first_neighbour(setting.moving, moving);
+    let rotation =
+        BodyRotation { up: difference.in_fixed(normal), out: difference.in_fixed(outward), least };
+    let q = rotation.first_neighbour(setting.fixed, fixed);
     let of_fixed = q.rise * p.run < p.rise * q.run;
     let found = if of_fixed { q.vertex } else { p.vertex };
-    if found == NOBODY {
+    if found == NO_VERTEX {
         return None;
     }
     let moving = select_unpredictable(of_fixed, moving, found);
@@ -50,68 +55,74 @@ pub(super) fn first_met(
     Some(difference.vertex(VertexPair::of(moving, fixed)))
 }
 
-/// A turn seen from one body's frame: `up` and `out` measure rise and run.
-struct Turn {
+/// Rotation of a plane in the frame of one body. `up` measures the rise of an edge and `out` its run.
+struct BodyRotation {
     up: DVec3,
     out: DVec3,
-    /// Least run.
+    /// Minimum run.
     least: f64,
 }
 
-/// The neighbour that a turn meets first.
-struct First {
+/// First neighbour that a rotating plane meets.
+struct FirstNeighbour {
     vertex: u32,
     rise: f64,
     run: f64,
 }
 
-/// No neighbour lies beyond the axis.
-const NOBODY: u32 = u32::MAX;
+/// Marks that no neighbour is beyond the axis.
+const NO_VERTEX: u32 = u32::MAX;
 
-impl Turn {
-    /// The first among the neighbours of one body's vertex.
+impl BodyRotation {
+    /// Returns the first of the neighbours of one body's vertex, or `NO_VERTEX` if none lies beyond the axis.
     #[inline]
     #[expect(clippy::needless_bitwise_bool, reason = "a branch here is not predictable")]
-    fn first(&self, body: &ConvexPolyhedron, vertex: u32) -> First {
+    fn first_neighbour(&self, body: &ConvexPolyhedron, vertex: u32) -> FirstNeighbour {
         let here = body.vertices()[vertex as usize];
         let neighbours = body.neighbours(vertex);
         if neighbours.len() > FAN {
-            return self.first_of_many(body, vertex, neighbours);
+            return self.first_of_fan(body, vertex, neighbours);
         }
-        let mut first = First { vertex: NOBODY, rise: f64::INFINITY, run: 1.0 };
+        let mut first = FirstNeighbour { vertex: NO_VERTEX, rise: f64::INFINITY, run: 1.0 };
         for &w in neighbours {
             let edge = body.vertices()[w as usize] - here;
             let (rise, run) = (self.up.dot(edge), self.out.dot(edge));
-            let sooner = (run > self.least) & (rise * first.run < first.rise * run);
-            first.vertex = select_unpredictable(sooner, w, first.vertex);
-            first.rise = select_unpredictable(sooner, rise, first.rise);
-            first.run = select_unpredictable(sooner, run, first.run);
+            let is_earlier = (run > self.least) & (rise * first.run < first.rise * run);
+            first.vertex = select_unpredictable(is_earlier, w, first.vertex);
+            first.rise = select_unpredictable(is_earlier, rise, first.rise);
+            first.run = select_unpredictable(is_earlier, run, first.run);
         }
         first
     }
 
-    /// The same, by a search.
+    /// Returns the first of many neighbours by a search in their cyclic order.
     #[cold]
     #[inline(never)]
-    fn first_of_many(&self, body: &ConvexPolyhedron, vertex: u32, neighbours: &[u32]) -> First {
+    fn first_of_fan(
+        &self,
+        body: &ConvexPolyhedron,
+        vertex: u32,
+        neighbours: &[u32],
+    ) -> FirstNeighbour {
         let here = body.vertices()[vertex as usize];
         let ahead = |i: usize| {
             let edge = body.vertices()[neighbours[i] as usize] - here;
             (self.up.dot(edge), self.out.dot(edge))
         };
-        // Falls as the angle grows; on the axis there is none.
-        let soon = |i: usize| {
+        // Decreases as the angle grows. Edges that are not beyond the axis have values of at most -1, and
+        // an edge on the axis, which has no angle, -2.
+        let precedence = |i: usize| {
             let (rise, run) = ahead(i);
             let size = run.abs() + rise.abs();
             if run > self.least { -rise / size } else { (rise.abs() / size - 2.0).max(-2.0) }
         };
         let near = body.steepest_edge(vertex, -self.up);
-        let i = greatest_near(neighbours.len(), near, soon);
+        let i = greatest_near(neighbours.len(), near, precedence);
         let (rise, run) = ahead(i);
         if run > self.least {
-            First { vertex: neighbours[i], rise, run }
+            FirstNeighbour { vertex: neighbours[i], rise, run }
         } else {
-            First { vertex: NOBODY, rise: f64::INFINITY, run: 1.0 }
+            FirstNeighbour { vertex: NO_VERTEX, rise: f64::INFINITY, run: 1.0 }
         }
     }
 }

@@ -1,15 +1,15 @@
-//! Portal refinement: the exact lowest face of `M` on the line, from a guess of its normal.
+//! Portal refinement: computes the lowest face of `M` on the line `t d` (theory: `docs/theory/portals.md`).
 //!
-//! Notation. A *tangent* is a point of `M` with the slope `a` of the normal `n = (a, 1)` (shadow
-//! frame) along which it is lowest. A *portal* is a triangle of points of `M` whose shadow contains
-//! the line. With `f(a) = min_M n.m` (concave, piecewise linear) the collision translation is `max
-//! f`; a tangent is a cutting plane of `f`, a portal three of them that bound it.
+//! In the shadow frame, in which `d` has length 1:
+//! - A *slope* `a` stands for the normal `n = (a, 1)`. The collision translation is the maximum of the concave
+//!   function `f(a) = min over m in M of n.m`.
+//! - A *tangent* is a point of `M` with a slope along which it is lowest.
+//! - A *portal* is a triangle of points of `M` whose shadow contains the line.
 //!
-//! The way: [`mod@opposed_faces`] answers for parts that stand on each other; else [`mod@normal_guess`] guesses a
-//! slope, and [`mod@outline`] a better one of bodies with rims, [`mod@face_walk`] goes face by face from there to the line,
-//! or [`mod@enclose`] finds a first portal or a separating direction, [`mod@refine`] exchanges one point of the portal
-//! after another until its plane supports `M`, [`mod@overlap`] measures how far the shadows overlap. Section 1 of the paper for the
-//! bounds; the exchange is the dual of the simplex method with two variables.
+//! Stages: [`mod@opposed_faces`] handles parts that rest on each other. Otherwise [`mod@normal_guess`] and, for bodies
+//! with rims, [`mod@outline`] guess a slope. A [`mod@face_walk`] leads from there to the line. If it fails,
+//! [`mod@enclose`] finds a portal or a separating line. [`mod@refine`] exchanges corners until the plane supports `M`
+//! (the dual simplex method in two variables). [`mod@overlap`] measures the overlap of the shadows.
 
 mod coplanar;
 mod edge;
@@ -30,58 +30,62 @@ use glam::{DVec2, DVec3};
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
 use crate::solve::observe::{Observer, Support, Watch};
-pub(crate) use enclose::{Enclosure, SeparatingLine, around, enclose, upward, widest_margin};
-pub(crate) use face_walk::{ContactPortal, Followed, OF_ELLIPSOIDS, approach, follow};
-pub(crate) use normal_guess::FirstNormal;
-pub(crate) use opposed_faces::facing;
-pub(crate) use outline::between_outlines;
+pub(crate) use enclose::{
+    Enclosure, SeparatingLine, enclose, pierced_triangle, upward_guess, widest_margin,
+};
+pub(crate) use face_walk::{
+    ContactPortal, ELLIPSOID_LIMITS, WalkResult, walk_from_guess, walk_from_last,
+};
+pub(crate) use normal_guess::NormalGuess;
+pub(crate) use opposed_faces::opposed_face_contact;
+pub(crate) use outline::walk_from_outlines;
 pub(crate) use overlap::{Overlap, overlap};
 pub(crate) use plane::{Face, Plane};
-pub(crate) use refine::{MAX_PORTALS, Refined, face, refine};
+pub(crate) use refine::{MAX_PORTALS, Refined, refine, supported_face};
 
-/// Three points of `M` whose shadows, counter-clockwise, contain the line.
+/// Three points of `M` whose shadows contain the line, counter-clockwise.
 pub(crate) type Portal = [Point; 3];
 
-/// What all stages of one cast share.
+/// State that all stages of one cast share.
 pub(crate) struct Context<'a, 'o, O> {
     pub(crate) difference: MinkowskiDifference<'a>,
     pub(crate) watch: Watch<'o, O>,
 }
 
 impl<O: Observer> Context<'_, '_, O> {
-    /// The support point along a normal, which may be known to be near a pair.
+    /// Returns the support point along `normal`. Starts the search at `near`, if a nearby pair is known.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
+    #[expect(clippy::inline_always, reason = "a direction in memory stalls the scan")]
     fn support(&mut self, normal: DVec3, near: Option<VertexPair>) -> Point {
         let point = match near {
             Some(near) => self.difference.support_from(normal, near),
             None => self.difference.support(normal),
         };
-        self.watch.support(|| Support::of(normal, &point));
+        self.watch.support(|| Support::from_point(normal, &point));
         point
     }
 }
 
-/// What a stage knows of the portal that it hands on.
+/// How much is proven about a portal that contains the line.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Known {
-    /// It is around the line.
-    Around,
-    /// It was reached face by face, so that it probably is the lowest.
-    FaceByFace,
-    /// A plane that supports `M` is proven to be the lowest where the line passes it.
+pub(crate) enum PortalStatus {
+    /// The portal encloses the line.
+    EnclosesLine,
+    /// The portal was reached by a face walk, or lies in a cap; it is probably in the lowest face.
+    ReachedByWalk,
+    /// This face is proven to be the lowest on the line.
     Lowest(Face),
 }
 
-/// Where the line is, seen from a portal that was reached face by face.
-enum Line {
-    /// It has left the portal over the edge that begins at this corner.
-    Beyond(usize),
-    /// It pierces the portal.
-    Inside(Known),
+/// Position of the line relative to a portal that was reached by a face walk.
+enum LinePosition {
+    /// The line is beyond the edge that begins at this corner.
+    BeyondEdge(usize),
+    /// The line pierces the portal.
+    Inside(PortalStatus),
 }
 
-/// `(a, 1)`.
+/// Returns the normal `(a, 1)` of slope `a`.
 fn normal_of(slope: DVec2) -> DVec3 {
     slope.extend(1.0)
 }

@@ -1,10 +1,9 @@
-//! How far the shadows overlap sideways: the distance from the line to the rim of the shadow of
-//! `M`.
+//! Overlap of the shadows: the distance from the line to the silhouette of `M`.
 //!
-//! Invariant: a polygon of shadows of points of `M` contains the line, so the distance to its
-//! nearest edge is a lower bound of the overlap; the support point beyond that edge gives an upper
-//! bound, and becomes a corner. The polygon is the convex hull of its points. Where balls inside the bodies
-//! tell enough, there is no polygon.
+//! Invariant: the shadows of some points of `M` form a convex polygon that contains the line. The
+//! distance to its nearest edge is a lower bound of the overlap. The support point beyond this edge
+//! yields an upper bound and becomes a corner. If balls inside the bodies already prove an overlap
+//! above the tolerance, no polygon is built.
 
 use glam::DVec2;
 
@@ -13,28 +12,28 @@ use crate::setting::minkowski::Point;
 use crate::solve::observe::{Observer, Support};
 use colltrans_kernel::determinant::accurate_det;
 
-/// The sideways overlap, as far as it had to be known.
+/// Comparison of the overlap with a tolerance.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Overlap {
-    /// More than the tolerance.
+    /// The overlap exceeds the tolerance.
     Ample,
-    /// At most the tolerance: `inward . s >= -depth` for every shadow, with equality up to
-    /// rounding.
+    /// The overlap is at most the tolerance: `inward . s >= -depth` for every shadow `s`, with
+    /// equality up to rounding.
     Slight {
-        /// Unit vector from the rim inwards.
+        /// Unit vector from the silhouette inwards.
         inward: DVec2,
         /// The overlap.
         depth: f64,
-        /// The support point that gives it.
+        /// Support point that attains the overlap.
         point: Point,
     },
 }
 
-/// Corners the polygon can have. A tolerance of rounding size needs a few; a large one on a smooth
-/// body about 20.
+/// Maximum number of corners of the polygon. A tolerance of the size of rounding errors needs a few, a
+/// large one on a smooth body about 20.
 const MAX_CORNERS: usize = 64;
 
-/// Compares the overlap with `tolerance`, from a portal around the line.
+/// Compares the overlap with `tolerance`, starting at a portal around the line.
 #[inline]
 pub(crate) fn overlap<O: Observer>(
     context: &mut Context<O>,
@@ -45,13 +44,13 @@ pub(crate) fn overlap<O: Observer>(
     if context.difference.shadow_contains_disc(tolerance) {
         return Overlap::Ample;
     }
-    beyond_edge(context, portal, edge, tolerance)
+    overlap_near_edge(context, portal, edge, tolerance)
 }
 
-/// The same where the line passes an edge of the portal.
+/// Compares the overlap with `tolerance` if the line is within `tolerance` of an edge of the portal.
 #[cold]
 #[inline(never)]
-fn beyond_edge<O: Observer>(
+fn overlap_near_edge<O: Observer>(
     context: &mut Context<O>,
     portal: &[Point; 3],
     edge: [&Point; 2],
@@ -60,18 +59,22 @@ fn beyond_edge<O: Observer>(
     if context.difference.shadow_contains_disc_near_edge(edge, tolerance) {
         return Overlap::Ample;
     }
-    search(context, portal, tolerance)
+    overlap_by_polygon(context, portal, tolerance)
 }
 
-/// The polygon, grown until it decides.
+/// Compares the overlap with `tolerance` by growing a polygon until it decides.
 #[inline(never)]
-fn search<O: Observer>(context: &mut Context<O>, portal: &[Point; 3], tolerance: f64) -> Overlap {
+fn overlap_by_polygon<O: Observer>(
+    context: &mut Context<O>,
+    portal: &[Point; 3],
+    tolerance: f64,
+) -> Overlap {
     let mut corners = [portal[0]; MAX_CORNERS];
     corners[..3].copy_from_slice(portal);
-    let mut count = first_polygon(&mut corners);
-    let mut slightest = Overlap::Ample;
+    let mut count = order_first_corners(&mut corners);
+    let mut last_slight = Overlap::Ample;
     for _ in 0..MAX_ROUNDS {
-        // All in one place, they have no edge, and any direction will do.
+        // If all corners coincide, there is no edge, and any direction will do.
         let anywhere = (0, DVec2::X, corners[0].shadow().x);
         let (edge, outward, reach) = nearest_edge(&corners[..count]).unwrap_or(anywhere);
         if reach > tolerance {
@@ -81,9 +84,9 @@ fn search<O: Observer>(context: &mut Context<O>, portal: &[Point; 3], tolerance:
         let is_last = |depth: f64| depth - reach <= context.difference.noise.point();
         let mut point = context.difference.support_from(inward, corners[edge].pair);
         if is_last(outward.dot(point.shadow())) {
-            point = Plane::settled(&context.difference, inward, point);
+            point = Plane::verified_support_point(&context.difference, inward, point);
         }
-        context.watch.support(|| Support::of(inward, &point));
+        context.watch.support(|| Support::from_point(inward, &point));
         let depth = outward.dot(point.shadow());
         if is_last(depth) || count == MAX_CORNERS {
             return if depth > tolerance {
@@ -93,20 +96,20 @@ fn search<O: Observer>(context: &mut Context<O>, portal: &[Point; 3], tolerance:
             };
         }
         if depth <= tolerance {
-            slightest = Overlap::Slight { inward: -outward, depth, point };
+            last_slight = Overlap::Slight { inward: -outward, depth, point };
         }
-        count = insert(&mut corners, count, edge, point);
+        count = insert_corner(&mut corners, count, edge, point);
     }
-    slightest
+    last_slight
 }
 
-/// Bound on the rounds: each adds a corner, unless rounding makes them repeat; then the last
-/// overlap found within the tolerance stands.
+/// Maximum number of rounds. Each adds a corner, unless rounding makes them repeat. In that case the
+/// last overlap found within the tolerance is returned.
 const MAX_ROUNDS: usize = 200;
 
-/// Puts the first three corners in counter-clockwise order, or, if they have no area, their outermost
-/// ones in front; returns how many corners there are.
-fn first_polygon(corners: &mut [Point; MAX_CORNERS]) -> usize {
+/// Orders the first three corners counter-clockwise and returns the number of corners. If the three are
+/// collinear, the outermost two, or the only one, are the polygon.
+fn order_first_corners(corners: &mut [Point; MAX_CORNERS]) -> usize {
     let [a, b, c] = [0, 1, 2].map(|k| corners[k].shadow());
     let area = accurate_det(b - a, c - a);
     if area < 0.0 {
@@ -124,12 +127,17 @@ fn first_polygon(corners: &mut [Point; MAX_CORNERS]) -> usize {
     if corners[0].shadow() == corners[1].shadow() { 1 } else { 2 }
 }
 
-/// Adds a corner beyond the edge that follows corner `edge` of a counter-clockwise polygon, takes
-/// away those that are no corners any more, and returns the number left.
-fn insert(corners: &mut [Point; MAX_CORNERS], count: usize, edge: usize, new: Point) -> usize {
+/// Inserts a corner beyond the edge that begins at corner `edge` of a counter-clockwise polygon,
+/// removes those that are no longer corners, and returns the number of corners.
+fn insert_corner(
+    corners: &mut [Point; MAX_CORNERS],
+    count: usize,
+    edge: usize,
+    new: Point,
+) -> usize {
     let new_at = new.shadow();
     let mut count = count;
-    // First the corners after the new one, in a polygon turned so that the edge is the last one.
+    // First the corners after the new one, in a polygon rotated so that the edge is the last one.
     corners[..count].rotate_left(edge + 1);
     let mut skip = 0;
     while count - skip > 2 {
@@ -152,7 +160,7 @@ fn insert(corners: &mut [Point; MAX_CORNERS], count: usize, edge: usize, new: Po
     count + 1
 }
 
-/// The first edge of the portal that is not farther from the line than `tolerance`.
+/// Returns the first edge of the portal within `tolerance` of the line.
 #[inline]
 fn edge_within(portal: &[Point; 3], tolerance: f64) -> Option<[&Point; 2]> {
     let is_within = |i: usize, j: usize| {
@@ -167,8 +175,8 @@ fn edge_within(portal: &[Point; 3], tolerance: f64) -> Option<[&Point; 2]> {
         .find_map(|(i, j)| is_within(i, j).then(|| [&portal[i], &portal[j]]))
 }
 
-/// The edge of a counter-clockwise polygon nearest to the line: its index, outward unit normal and
-/// distance.
+/// Returns the edge of a counter-clockwise polygon nearest to the line: its index, outward unit normal
+/// and distance. `None` if all corners coincide.
 fn nearest_edge(corners: &[Point]) -> Option<(usize, DVec2, f64)> {
     let mut nearest: Option<(usize, DVec2, f64)> = None;
     for (i, corner) in corners.iter().enumerate() {

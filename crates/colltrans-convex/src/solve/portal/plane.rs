@@ -1,8 +1,8 @@
-//! Supporting planes of `M`, with what proves that they are.
+//! Supporting planes of `M`, and their proof.
 //!
-//! Whoever has a plane through vertices of `M` need not search for the support point along its normal:
-//! a look around one of them tells whether it is the support point, and how far beyond the plane the
-//! bodies may reach ([`settled`](crate::body::ConvexPolyhedron::settled)), which a proof has to know in
+//! A plane through known vertices of `M` needs no search for a support point. The neighbourhood of one
+//! of the vertices decides whether it is a support point, and bounds how far the bodies reach beyond
+//! the plane ([`settled`](crate::body::ConvexPolyhedron::settled)). A certificate needs this bound in
 //! any case.
 
 use glam::DVec3;
@@ -11,48 +11,58 @@ use crate::body::LargeFace;
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
 
-/// What may lie beyond faces, in noises: of less flat ones other support points prove more.
-const MOST_BEYOND: f64 = 4.0;
+/// Maximum excess of the bodies beyond two large faces, in noises. For less flat faces, other support
+/// points prove a tighter bound.
+const MAX_EXCESS: f64 = 4.0;
 
 /// A supporting plane of `M`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Plane {
-    /// Its unit normal, in the world.
+    /// Unit normal in the world.
     pub(crate) normal: DVec3,
-    /// The same in the frames of the moving and of the fixed body.
+    /// The unit normal in the frames of the moving and of the fixed body.
     pub(crate) normals: [DVec3; 2],
-    /// A pair that is lowest along it.
+    /// Vertex pair that is lowest along the normal.
     pub(crate) lowest: VertexPair,
-    /// How far the bodies, and the points that they were made from, may reach beyond that.
-    pub(crate) beyond: f64,
+    /// Bound on the distance that the bodies, and the points that they were built from, reach beyond
+    /// this pair along the normal.
+    pub(crate) excess: f64,
 }
 
 /// The lowest face of `M` on the line.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Face {
-    /// Its plane.
+    /// Its supporting plane.
     pub(crate) plane: Plane,
     /// Barycentric weights of the line in the portal.
     pub(crate) weights: [f64; 3],
 }
 
 impl Plane {
-    /// Across a normal (shadow frame, any length), with a pair that was found to be lowest along it.
+    /// Builds the plane perpendicular to `normal` (shadow frame, any length) at the support pair, given the
+    /// pair that a search has found.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
-    pub(crate) fn of(difference: &MinkowskiDifference, normal: DVec3, found: VertexPair) -> Self {
+    #[expect(clippy::inline_always, reason = "a copy through memory stalls its reader")]
+    pub(crate) fn at_support(
+        difference: &MinkowskiDifference,
+        normal: DVec3,
+        found: VertexPair,
+    ) -> Self {
         let setting = difference.setting;
         let normal = (difference.setting_from_shadow * normal).normalize();
         let normals = [setting.moving_normal(normal), setting.fixed_normal(normal)];
-        let (lowest, beyond) = setting.support_with_excess(&normals, found);
-        Self { normal, normals, lowest, beyond }
+        let (lowest, excess) = setting.support_with_excess(&normals, found);
+        Self { normal, normals, lowest, excess }
     }
 
-    /// The same, if a pair is seen to be lowest along it: within half a noise for each of the bodies,
-    /// so that the plane supports `M`.
+    /// Builds the plane perpendicular to `normal` (shadow frame, any length) if the pair `near`, or for
+    /// small bodies a scan of all vertices, shows that it supports `M`.
+    ///
+    /// The plane may be exceeded by half a noise on each body. `None` if more is found, or too many
+    /// vertices would have to be examined.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
-    pub(crate) fn at(
+    #[expect(clippy::inline_always, reason = "a copy through memory stalls its reader")]
+    pub(crate) fn if_supported_at(
         difference: &MinkowskiDifference,
         normal: DVec3,
         near: VertexPair,
@@ -69,14 +79,16 @@ impl Plane {
             normal: normal * to_unit,
             normals: normals.map(|n| n * to_unit),
             lowest: VertexPair::of(moving, fixed),
-            beyond: p + q + setting.input_excess(),
+            excess: p + q + setting.input_excess(),
         })
     }
 
-    /// The same, of two large faces, if it supports both bodies there, and hardly anything may lie
-    /// beyond.
+    /// Builds the plane through the first corners of two large faces, perpendicular to `normal` (shadow
+    /// frame, any length).
+    ///
+    /// `None` unless it supports both bodies in these faces with an excess of at most `MAX_EXCESS` noises.
     #[inline]
-    pub(super) fn of_faces(
+    pub(super) fn from_large_faces(
         difference: &MinkowskiDifference,
         normal: DVec3,
         f: &LargeFace,
@@ -88,22 +100,22 @@ impl Plane {
         let lowest = VertexPair::of(f.corners[0], g.corners[0]);
         let noise = difference.noise.point();
         let most = 0.5 * noise;
-        let beyond = setting.moving.excess_of_face(f, normals[0], 1.0, lowest.moving.0, most)?
+        let excess = setting.moving.excess_of_face(f, normals[0], 1.0, lowest.moving.0, most)?
             + setting.fixed.excess_of_face(g, -normals[1], 1.0, lowest.fixed.0, most)?;
-        (beyond <= MOST_BEYOND * noise).then(|| {
-            let beyond = beyond + setting.input_excess();
-            Self { normal, normals, lowest, beyond }
+        (excess <= MAX_EXCESS * noise).then(|| {
+            let excess = excess + setting.input_excess();
+            Self { normal, normals, lowest, excess }
         })
     }
 
-    /// The point of `M` lowest along a normal, from where a climb has ended: among edges as short as
-    /// rounding errors it may have stuck far away.
-    pub(super) fn settled(
+    /// Returns the support point along `normal`, given the point at which a hill climb stopped. Between
+    /// edges as short as rounding errors a climb may stop far from the support point.
+    pub(super) fn verified_support_point(
         difference: &MinkowskiDifference,
         normal: DVec3,
         climbed: Point,
     ) -> Point {
-        let lowest = Self::of(difference, normal, climbed.pair).lowest;
+        let lowest = Self::at_support(difference, normal, climbed.pair).lowest;
         if lowest == climbed.pair { climbed } else { difference.point(lowest, normal) }
     }
 }

@@ -1,64 +1,68 @@
-//! From a portal to the lowest face of `M` on the line.
+//! Refines a portal to the lowest face of `M` on the line (narrow portals: `docs/theory/portals.md`).
 //!
-//! Invariant: the three shadows, counter-clockwise, contain the line (decided exactly, with ties
-//! broken consistently). Each step asks for the support point along a normal; if it lies below the
-//! portal's plane it replaces one of the three, and the height at which the line passes the portal
-//! falls. The end: no point of `M` is below the plane by more than rounding error; then the plane
-//! proves the lower bound and the portal the upper one.
+//! - *Invariant*: the three shadows contain the line, counter-clockwise. This is decided exactly, with ties broken
+//!   consistently.
+//! - *Step*: a support point along the portal's normal that lies below its plane replaces one of the three points.
+//!   This lowers the height at which the line crosses the portal.
+//! - *End*: no point of `M` lies below the plane by more than rounding error. Then the plane proves the lower bound,
+//!   and the portal the upper one.
 //!
-//! Narrow portals. Shadows within what counts as touching of one straight line (upright faces, ties
-//! within rounding) have a rounded plane that may be far from the exact one, and yet serves: no exact
-//! corner is off it by more than a noise, so the portal proves the upper bound of what this plane
-//! proves the lower one of. Where rounding has turned the portal over, its exact plane is nearly
-//! upright, and what lies beyond the upright one lies below it. In narrow portals the line may pass the
-//! rim of `M`, beyond which there is nothing: that is asked first.
+//! A portal is *narrow* if a straight line passes its three shadows within the touching distance.
 
 use glam::DVec3;
 
-use super::enclose::{SeparatingLine, nearest_share};
+use super::enclose::{SeparatingLine, nearest_parameter};
 use super::overlap::{Overlap, overlap};
 use super::plane::{Face, Plane};
-use super::{Context, Known, Portal};
+use super::{Context, Portal, PortalStatus};
 use crate::setting::VertexPair;
 use crate::setting::minkowski::{MinkowskiDifference, Point};
 use crate::solve::observe::{Observer, Support};
 use colltrans_kernel::determinant::accurate_det;
 use colltrans_kernel::plane::triangle_normal;
 
-/// More portals than any body needs: then ties within rounding error keep following each other, and
-/// points below the plane by less than what counts as touching are taken to lie on it.
-const LONG: usize = 200;
+/// Number of portals after which exchanges are assumed to cycle through ties, more than any body needs.
+/// From then on, points below the plane by at most the touching distance count as lying on it.
+const TIES_AFTER: usize = 200;
 
-/// Bound on the number of portals; reaching it is reported, never hidden.
+/// Maximum number of portals. A refinement that reaches it returns `None`; the cast fails with an error if
+/// this happens in all frames.
 pub(crate) const MAX_PORTALS: usize = 10_000;
 
-/// Bound on the narrow ones, of which five are the most that was seen: more run in a circle, which
-/// another frame breaks.
+/// Maximum number of narrow portals; at most five have been observed. More of them cycle, which another
+/// frame prevents.
 const MAX_NARROW: usize = 32;
 
-/// What following portals ends with.
+/// Result of refinement.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Refined {
-    /// The lowest face.
+    /// The lowest face on the line.
     Lowest(Face),
-    /// The line passes the rim of the shadow of `M`.
-    Rim(SeparatingLine),
+    /// The line touches the silhouette of `M`, or passes outside of it.
+    Silhouette(SeparatingLine),
 }
 
-/// A portal as a face, if it is seen to be in the lowest: as it is after gift wrapping, and mostly if it
-/// was followed.
+/// Returns the face of a portal if its plane is shown to support `M`. This is the case after gift
+/// wrapping, and mostly after a walk from an earlier portal.
+///
+/// `None` if the portal is narrow, or its third corner is not shown to be a support point.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
-pub(crate) fn face<O: Observer>(context: &mut Context<O>, portal: &Portal) -> Option<Face> {
-    let normal = plane_normal(&context.difference, portal)?;
-    let plane = Plane::at(&context.difference, normal, portal[2].pair)?;
+#[expect(clippy::inline_always, reason = "a copy through memory stalls its reader")]
+pub(crate) fn supported_face<O: Observer>(
+    context: &mut Context<O>,
+    portal: &Portal,
+) -> Option<Face> {
+    let normal = portal_normal(&context.difference, portal)?;
+    let plane = Plane::if_supported_at(&context.difference, normal, portal[2].pair)?;
     context.watch.portal(|| portal.map(|p| p.at));
-    context.watch.support(|| Support::of(normal, &context.difference.vertex(plane.lowest)));
-    Some(Face { plane, weights: weights(portal) })
+    context.watch.support(|| Support::from_point(normal, &context.difference.vertex(plane.lowest)));
+    Some(Face { plane, weights: line_weights(portal) })
 }
 
-/// Follows portals down to the optimum, and leaves the last one in place of the first. `None` if
-/// there are more than `most`, for one because rounding makes them run in a circle.
+/// Exchanges corners of `portal` until its plane supports `M`.
+///
+/// `None` after `most` portals or `MAX_NARROW` narrow ones, for example because rounding makes them cycle,
+/// or if the plane that supports `M` is vertical.
 #[inline]
 pub(crate) fn refine<O: Observer>(
     context: &mut Context<O>,
@@ -69,37 +73,40 @@ pub(crate) fn refine<O: Observer>(
     let mut narrow = 0;
     for round in 0..most {
         context.watch.portal(|| portal.map(|p| p.at));
-        let plane = match plane_normal(&context.difference, portal) {
+        let plane = match portal_normal(&context.difference, portal) {
             Some(plane) => plane,
             None if narrow == MAX_NARROW => return None,
             None => {
                 if narrow == 0
-                    && let Some(rim) = rim(context, portal)
+                    && let Some(line) = silhouette(context, portal)
                 {
-                    return Some(Refined::Rim(rim));
+                    return Some(Refined::Silhouette(line));
                 }
                 narrow += 1;
-                narrow_plane_normal(portal)
+                narrow_portal_normal(portal)
             }
         };
         let point = context.difference.support_from(plane, portal[newest].pair);
-        context.watch.support(|| Support::of(plane, &point));
-        let rounding = context.difference.noise.plane(round >= LONG);
-        let below = match lowest(&context.difference, portal, plane, point, rounding) {
+        context.watch.support(|| Support::from_point(plane, &point));
+        let rounding = context.difference.noise.plane(round >= TIES_AFTER);
+        let below = match plane_or_lower_point(&context.difference, portal, plane, point, rounding)
+        {
             Err(point) => point,
-            // An upright plane bounds nothing.
+            // A vertical plane proves no lower bound.
             Ok(_) if plane.z == 0.0 => return None,
-            Ok(plane) => return Some(Refined::Lowest(Face { plane, weights: weights(portal) })),
+            Ok(plane) => {
+                return Some(Refined::Lowest(Face { plane, weights: line_weights(portal) }));
+            }
         };
         newest = exchange(&context.difference, portal, below);
     }
     None
 }
 
-/// The plane of a portal, if no point of `M` lies below it by more than rounding, given the support
-/// point that a climb has found; else a point that does.
+/// Returns the plane of a portal, if no point of `M` lies below it by more than rounding error, or
+/// else such a point as the error. `found` is the support point at which a climb stopped.
 #[inline]
-fn lowest(
+fn plane_or_lower_point(
     difference: &MinkowskiDifference,
     portal: &Portal,
     normal: DVec3,
@@ -109,19 +116,20 @@ fn lowest(
     if is_below(portal, normal, &found, rounding) {
         return Err(found);
     }
-    settled(difference, portal, normal, found.pair, rounding)
+    verified_plane(difference, portal, normal, found.pair, rounding)
 }
 
-/// The same of a support point that does not lie below the portal; the climb to it may have stuck.
+/// Verifies a support point that does not lie below the portal, because the climb to it may have
+/// stopped short. Returns a point below the portal as the error, if there is one.
 #[inline]
-fn settled(
+fn verified_plane(
     difference: &MinkowskiDifference,
     portal: &Portal,
     normal: DVec3,
     found: VertexPair,
     rounding: f64,
 ) -> Result<Plane, Point> {
-    let plane = Plane::of(difference, normal, found);
+    let plane = Plane::at_support(difference, normal, found);
     if plane.lowest == found {
         return Ok(plane);
     }
@@ -129,31 +137,32 @@ fn settled(
     if is_below(portal, normal, &point, rounding) { Err(point) } else { Ok(plane) }
 }
 
-/// What is known of a portal through which the line passes with these weights, and of a plane across
-/// `normal` at a support point: that it is lowest, if nothing lies below it.
+/// Returns how much is proven about a portal that the line passes with these weights. Given the support
+/// pair `found`, it is the lowest if no point of `M` lies below it along `normal`.
 #[inline]
-pub(super) fn known_at(
+pub(super) fn status_at_support(
     difference: &MinkowskiDifference,
     portal: &Portal,
     normal: DVec3,
     found: VertexPair,
     weights: [f64; 3],
-) -> Known {
+) -> PortalStatus {
     let rounding = difference.noise.plane(false);
-    match settled(difference, portal, normal, found, rounding) {
-        Ok(plane) => Known::Lowest(Face { plane, weights }),
-        Err(_) => Known::Around,
+    match verified_plane(difference, portal, normal, found, rounding) {
+        Ok(plane) => PortalStatus::Lowest(Face { plane, weights }),
+        Err(_) => PortalStatus::EnclosesLine,
     }
 }
 
-/// Whether a point lies below a portal by more than rounding.
+/// Checks whether a point lies below a portal along `normal` by more than rounding error.
 #[inline]
 pub(super) fn is_below(portal: &Portal, normal: DVec3, point: &Point, rounding: f64) -> bool {
     depth_below(portal, normal, point) > rounding * normal.length()
 }
 
-/// The rim of the shadow of `M`, if the line passes it.
-fn rim<O: Observer>(context: &mut Context<O>, portal: &Portal) -> Option<SeparatingLine> {
+/// Returns the separating line at the silhouette of `M`, if the line `t d` is within the touching
+/// distance of the silhouette. `None` if the overlap of the shadows exceeds this distance.
+fn silhouette<O: Observer>(context: &mut Context<O>, portal: &Portal) -> Option<SeparatingLine> {
     match overlap(context, portal, context.difference.touching()) {
         Overlap::Slight { inward, depth, point } => {
             Some(SeparatingLine { normal: inward, margin: -depth, point, end: point.pair })
@@ -162,19 +171,20 @@ fn rim<O: Observer>(context: &mut Context<O>, portal: &Portal) -> Option<Separat
     }
 }
 
-/// How far a point lies below all three of the portal's along `normal`, times the normal's length.
+/// Returns the depth of a point below the lowest corner of the portal along `normal`, times the length
+/// of `normal`.
 #[inline]
 pub(super) fn depth_below(portal: &Portal, normal: DVec3, point: &Point) -> f64 {
     let depth = |corner: &Point| normal.dot(corner.at - point.at);
     depth(&portal[0]).min(depth(&portal[1])).min(depth(&portal[2]))
 }
 
-/// Replaces the one point whose exchange keeps the line inside, and says which.
+/// Replaces the corner whose exchange keeps the line inside the portal, and returns its index.
 pub(super) fn exchange(difference: &MinkowskiDifference, portal: &mut Portal, new: Point) -> usize {
     let left = |i: usize| difference.is_left(&portal[i], &new);
     let (first, second) = (left(0), left(1));
-    // Seen from the new point, the line is inside the triangle with the edge `i -> j` where the
-    // sides change from right to left; the third point goes.
+    // Seen from the new point, the line is in the triangle with the edge `i -> j` where the sides
+    // change from right to left. The third point is replaced.
     let gone = match (first, second) {
         (false, true) => Some(2),
         (true, false) => Some(usize::from(!left(2))),
@@ -185,24 +195,24 @@ pub(super) fn exchange(difference: &MinkowskiDifference, portal: &mut Portal, ne
         portal[k] = new;
         return k;
     }
-    // All on one side: the shadows coincide, and the new point takes the place of the one it lies
-    // under.
+    // All are on one side because the shadows coincide. The new point replaces the one above it.
     let distances = portal.map(|p| -p.shadow().distance_squared(new.shadow()));
-    let same = largest(distances);
+    let same = index_of_largest(distances);
     portal[same] = new;
     same
 }
 
-/// The upward normal of the plane through the three points; `None` if the portal is too narrow to
-/// have one.
+/// Returns the upward normal of the plane through the three points. `None` if the portal is too narrow
+/// to have a plane.
 #[inline]
-pub(super) fn plane_normal(difference: &MinkowskiDifference, portal: &Portal) -> Option<DVec3> {
+pub(super) fn portal_normal(difference: &MinkowskiDifference, portal: &Portal) -> Option<DVec3> {
     let normal = triangle_normal(portal.map(|p| p.at));
     is_wide(difference, portal, normal.z).then_some(normal)
 }
 
-/// The same of a narrow portal's rounded corners; lateral if rounding has turned them over.
-fn narrow_plane_normal(portal: &Portal) -> DVec3 {
+/// Returns the normal of a narrow portal from its rounded corners. It is lateral if rounding has
+/// inverted the portal, and `X` if the corners have no plane.
+fn narrow_portal_normal(portal: &Portal) -> DVec3 {
     let own = triangle_normal(portal.map(|p| p.at));
     if own.z > 0.0 {
         own
@@ -213,7 +223,7 @@ fn narrow_plane_normal(portal: &Portal) -> DVec3 {
     }
 }
 
-/// Whether a portal, with twice this area, is wider than what counts as touching.
+/// Checks whether a portal is wider than the touching distance. `area` is twice the area of its shadow.
 #[inline]
 pub(super) fn is_wide(difference: &MinkowskiDifference, portal: &Portal, area: f64) -> bool {
     let [a, b, c] = portal.each_ref().map(Point::shadow);
@@ -223,23 +233,23 @@ pub(super) fn is_wide(difference: &MinkowskiDifference, portal: &Portal, area: f
     area > 0.0 && area * area > least * least * longest
 }
 
-/// Barycentric coordinates of the line in the shadow of the portal.
+/// Returns the barycentric coordinates of the line in the shadow of the portal.
 ///
-/// From determinants without cancellation, so that narrow portals have accurate ones; if the line
-/// is outside in the rounded coordinates, those of the nearest point of the rim.
+/// The coordinates are accurate for narrow portals, because the determinants are computed without cancellation.
+/// If the line is outside in rounded coordinates, returns those of the nearest boundary point.
 #[inline]
-pub(super) fn weights(portal: &Portal) -> [f64; 3] {
+pub(super) fn line_weights(portal: &Portal) -> [f64; 3] {
     let shadows = portal.map(|p| p.shadow());
     let [a, b, c] = shadows;
-    let parts = [accurate_det(b, c), accurate_det(c, a), accurate_det(a, b)];
-    let sum = parts[0] + parts[1] + parts[2];
-    if sum > 0.0 && parts.iter().all(|&part| part >= 0.0) {
-        return parts.map(|part| part / sum);
+    let areas = [accurate_det(b, c), accurate_det(c, a), accurate_det(a, b)];
+    let sum = areas[0] + areas[1] + areas[2];
+    if sum > 0.0 && areas.iter().all(|&area| area >= 0.0) {
+        return areas.map(|area| area / sum);
     }
     let mut nearest = (f64::INFINITY, [1.0, 0.0, 0.0]);
     for (i, j) in [(0, 1), (1, 2), (2, 0)] {
-        let along = shadows[j] - shadows[i];
-        let share = nearest_share([shadows[i], shadows[j]]);
+        let bound = shadows[j] - shadows[i];
+        let share = nearest_parameter([shadows[i], shadows[j]]);
         let distance = (shadows[i] + along * share).length_squared();
         if distance < nearest.0 {
             let mut weights = [0.0; 3];
@@ -250,7 +260,8 @@ pub(super) fn weights(portal: &Portal) -> [f64; 3] {
     nearest.1
 }
 
-pub(super) fn largest(values: [f64; 3]) -> usize {
+/// Returns the index of the largest value, the first one of equal values.
+pub(super) fn index_of_largest(values: [f64; 3]) -> usize {
     if values[0] >= values[1] && values[0] >= values[2] {
         0
     } else if values[1] >= values[2] {

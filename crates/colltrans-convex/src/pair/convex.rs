@@ -10,7 +10,9 @@ use crate::body::{ConvexPolyhedron, Features, feature};
 use crate::pair::{Pair, PairBody};
 use crate::setting::error::{QueryError, Stalled};
 use crate::setting::{TwoBodies, VertexPair, check_length};
-use crate::solve::nearest::{Difference, Found, NearestPairs, Plane, deepest, nearest};
+use crate::solve::nearest::{
+    DescentResult, Difference, GapPlane, NearestPairs, nearest_points, penetration_depth,
+};
 
 /// Largest accepted difference of the bounds, in noises, in addition to the reach of the bodies beyond
 /// support points.
@@ -51,16 +53,16 @@ impl Pair<'_> {
     #[inline]
     pub fn depth_beyond(&self, enough: f64) -> Result<Depth, QueryError> {
         let difference = Difference::new(&self.bodies);
-        let mut found = nearest(&difference, &difference.first_pair(), None);
+        let mut found = nearest_points(&difference, &difference.depth_start(), None);
         found.supports += 1;
         if let Some(plane) = found.plane(&difference).filter(|plane| plane.gap.gap > 0.0) {
             let (direction, enclosure) = (-plane.gap.normal, Enclosure::default());
             let steps = found.steps();
             return Ok(Depth { lower: 0.0, upper: 0.0, direction, enclosure, steps });
         }
-        let best = deepest(&difference, &found, enough);
+        let best = penetration_depth(&difference, &found, enough);
         let (lower, upper) = (best.lower, best.upper);
-        let tolerance = MAX_BOUND_GAP * difference.noise.point() + best.beyond;
+        let tolerance = MAX_BOUND_GAP * difference.noise.point() + best.excess;
         if lower <= enough && upper - lower > tolerance {
             let reason = Stalled::Distance { lower, upper, tolerance };
             return Err(QueryError::NotConverged { reason });
@@ -81,11 +83,11 @@ impl PairBody for ConvexPolyhedron {
     fn within(pair: &Pair<'_>, length: f64) -> Result<(Within, Steps), QueryError> {
         check_length(length)?;
         let difference = Difference::new(&pair.bodies);
-        let mut found = nearest(&difference, &NearestPairs::default(), Some(length));
+        let mut found = nearest_points(&difference, &NearestPairs::default(), Some(length));
         let mut decided = decide_within(&difference, &found, length);
         if decided.is_none() {
             let before = found.supports;
-            found = nearest(&difference, &found.pairs(), None);
+            found = nearest_points(&difference, &found.pairs(), None);
             found.supports += before;
             decided = decide_within(&difference, &found, length);
         }
@@ -106,12 +108,12 @@ impl PairBody for ConvexPolyhedron {
 }
 
 /// Returns the decision that the search result proves about a length, `None` if it proves none.
-fn decide_within(difference: &Difference, found: &Found, length: f64) -> Option<Within> {
-    let near = found.near(difference);
+fn decide_within(difference: &Difference, found: &DescentResult, length: f64) -> Option<Within> {
+    let near = found.near_points(difference);
     if near.distance <= length {
         return Some(Within::Closer(near));
     }
-    let plane = found.best_plane(difference)?;
+    let plane = found.separating_plane(difference)?;
     (plane.gap.gap > length).then_some(Within::Farther(plane.gap))
 }
 
@@ -122,7 +124,7 @@ fn decide_within(difference: &Difference, found: &Found, length: f64) -> Option<
 #[inline]
 pub fn distance_from(pair: &Pair, pairs: &mut NearestPairs) -> Result<Distance, QueryError> {
     let difference = Difference::new(&pair.bodies);
-    let found = nearest(&difference, pairs, None);
+    let found = nearest_points(&difference, pairs, None);
     let is_new = pairs.is_empty();
     *pairs = found.pairs();
     let mut distance = distance_of_search(&difference, &found)?;
@@ -135,11 +137,11 @@ pub fn distance_from(pair: &Pair, pairs: &mut NearestPairs) -> Result<Distance, 
 /// Builds the answer from a search result.
 ///
 /// Returns [`QueryError::NotConverged`] if the bounds differ by more than rounding explains.
-fn distance_of_search(difference: &Difference, found: &Found) -> Result<Distance, QueryError> {
+fn distance_of_search(difference: &Difference, found: &DescentResult) -> Result<Distance, QueryError> {
     let bodies = difference.bodies;
-    let near = found.near(difference);
-    let plane = found.best_plane(difference);
-    let beyond = plane.map_or(0.0, |plane| plane.beyond);
+    let near = found.near_points(difference);
+    let plane = found.separating_plane(difference);
+    let beyond = plane.map_or(0.0, |plane| plane.excess);
     let plane = plane.filter(|plane| plane.gap.gap > 0.0);
     let lower = plane.map_or(0.0, |plane| plane.gap.gap);
     let tolerance = MAX_BOUND_GAP * difference.noise.point() + beyond;
@@ -171,7 +173,7 @@ pub fn points(bodies: &TwoBodies, near: &NearPoints) -> [DVec3; 2] {
 
 /// Returns the features of the bodies in the planes perpendicular to the normal of `plane`. `noise` is the
 /// tolerance of coplanarity, in world units.
-fn facing_features(bodies: &TwoBodies, plane: &Plane, noise: f64) -> Features {
+fn facing_features(bodies: &TwoBodies, plane: &GapPlane, noise: f64) -> Features {
     let normal = plane.gap.normal;
     let VertexPair { moving, fixed } = plane.lowest;
     let [out, back] = [bodies.moving_normal(normal), -bodies.fixed_normal(normal)];

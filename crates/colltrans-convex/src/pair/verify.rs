@@ -4,7 +4,7 @@ use glam::DVec3;
 
 use crate::answer::{CertificateError, Depth, Enclosure, NearPoints, PlaneGap, are_weights};
 use crate::setting::{TwoBodies, VertexPair};
-use crate::solve::nearest::surrounds;
+use crate::solve::nearest::surrounds_origin;
 use colltrans_kernel::{extent, noise, volume};
 
 /// Returns the gap that a plane proves. Returns an error if the claimed gap is negative or larger.
@@ -88,7 +88,7 @@ fn enclosed_radius(bodies: &TwoBodies, surface: &Enclosure) -> Result<f64, Certi
         }
     }
     let proven = least.next_down();
-    if proven > 0.0 && surrounds(bodies, surface) {
+    if proven > 0.0 && surrounds_origin(bodies, surface) {
         Ok(proven)
     } else {
         Err(CertificateError::Start)

@@ -111,11 +111,11 @@ impl Options {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct Focus {
-    /// Feature focus (the paper, section V-F): whether to try the last contact features and their neighbours first, or
-    /// the last separating direction.
+    /// Feature focus (the paper, section V-F): whether to start from the features of the last answer. These are the
+    /// contact features and their neighbours, or the separating direction.
     pub features: bool,
-    /// Region focus (the paper, section III-D): whether [`Solver::Cta`] starts from the sections through the last
-    /// contact points.
+    /// Region focus (the paper, section III-D): the region of sections around the last contact points in which
+    /// [`Solver::Cta`] starts.
     pub region: cta::Region,
 }
 

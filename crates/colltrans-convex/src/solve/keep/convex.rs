@@ -16,7 +16,7 @@ use crate::answer::{
 use crate::setting::error::{QueryError, Stalled};
 use crate::setting::minkowski::MinkowskiDifference;
 use crate::setting::{Setting, TwoBodies, VertexPair};
-use crate::solve::nearest::{Difference, NearestPairs, nearest};
+use crate::solve::nearest::{Difference, NearestPairs, nearest_points};
 use crate::solve::observe::{NoObserver, Observer, Phase, ShadowFrame, Support};
 use crate::solve::options::{Focus, Options};
 use crate::solve::{TrackerUpdate, WarmStart};
@@ -99,16 +99,16 @@ impl<O: Observer> Target for Bodies<'_, '_, '_, O> {
     fn look(&mut self, from: DVec3) -> Look<VertexPair, Spot> {
         let moved = self.setting.bodies.moved_by(from);
         let difference = Difference::new(&moved);
-        let mut found = nearest(&difference, &self.pairs, None);
+        let mut found = nearest_points(&difference, &self.pairs, None);
         self.supports += found.supports;
-        if found.gap() > STUCK * self.noise.point() {
+        if found.computed_gap() > STUCK * self.noise.point() {
             // From pairs on a sliver a descent may get nowhere.
-            found = nearest(&difference, &NearestPairs::default(), None);
+            found = nearest_points(&difference, &NearestPairs::default(), None);
             self.supports += found.supports;
         }
         self.pairs = found.pairs();
         let plane = found.plane(&difference);
-        let plane = plane.map(|plane| self.plane(plane.gap.normal, plane.lowest, plane.beyond));
+        let plane = plane.map(|plane| self.plane(plane.gap.normal, plane.lowest, plane.excess));
         let (pairs, weights) = found.points();
         // In the setting itself: the origin is where the body was.
         let corners = [0, 1, 2].map(|k| self.setting.difference(pairs[k]));

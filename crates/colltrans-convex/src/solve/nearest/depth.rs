@@ -1,145 +1,151 @@
-//! The least translation that parts two bodies, over all directions: the point of the surface of `M` nearest
-//! to the origin (van den Bergen's expanding polytope).
+//! Penetration depth: the shortest translation that separates two bodies, over all directions (expanding polytope
+//! algorithm of van den Bergen). Derivations: `docs/theory/distance.md`.
 //!
-//! A polytope of points of `M` grows where it is nearest to the origin: the lowest point beyond its nearest
-//! face joins it, with a fan of triangles to the rim of all that it sees. It need not contain the origin to
-//! begin with: faces that have the origin outside are the nearest of all, and either grow or part the bodies.
+//! A polytope of points of `M` grows at its face nearest to the origin. The support point beyond this face joins the
+//! polytope, with a fan of triangles to the horizon of the faces that have this point in front. The *height* of a
+//! triangle for a unit vector `n` is the smallest `n.m` of its corners `m`. `n` is the triangle's own outward normal,
+//! or, if the triangle has hardly any area, that of a neighbour.
 //!
-//! Notation. The *height* of a triangle for a unit vector `n` is the least of `n . m` over its corners `m`:
-//! no point of the triangle is nearer to the origin. `n` is the triangle's own normal, outwards, or that of a
-//! neighbour, if it has hardly any area of its own.
-//!
-//! Invariant. The bounds are those of what was proposed, whatever rounding has made of the polytope:
-//!
-//! - *Lower.* The least height, less what rounding can make of it ([`height_lowered`](colltrans_kernel::noise::Noise::height_lowered)). `M` contains each triangle;
-//!   a closed surface of triangles, each counter-clockwise as seen from the origin's other side or without
-//!   area, meets each ray from the origin, so that `M`, being convex, contains a ball as large as the least
-//!   height. That they are so is decided exactly, in the check as well.
-//! - *Upper.* `max_M n.m`, with one noise for rounding and what bodies reach beyond support points.
+//! Invariant: the returned bounds hold, regardless of the errors that rounding causes in the polytope.
+//! - *Lower*: the smallest height, lowered by its rounding error. Proven by a closed surface around the origin.
+//! - *Upper*: `max over m in M of n.m`, raised by one noise and the excess beyond support points.
 
 use glam::DVec3;
 
-use super::gjk::unit;
-use super::winding::winds;
-use super::{Difference, Found};
+use super::gjk::unit_vector;
+use super::winding::winds_around_origin;
+use super::{DescentResult, Difference};
 use crate::answer::Enclosure;
 use crate::setting::VertexPair;
 use colltrans_kernel::plane::triangle_normal;
 
-/// More steps than were ever seen.
-const MOST: usize = 2_000;
+/// Maximum number of steps, above all that were observed.
+const MAX_STEPS: usize = 2_000;
 
-/// How far apart bounds may be, in noises, before another polytope is tried.
-const OPEN: f64 = 8.0;
+/// Difference of the bounds, in noises, above which another polytope is tried.
+const MAX_GAP: f64 = 8.0;
 
-/// Points that there is room for at first: few enough for allocators to be quick.
-const ROOM: usize = 12;
+/// Initial capacity for points; small, so that allocation is fast.
+const INITIAL_CAPACITY: usize = 12;
 
-/// The best plane, and the polytope.
-pub(crate) struct Deepest {
-    /// Outward unit normal of `M`, along which the moving body has to go.
+/// Bounds of the penetration depth, with their proofs.
+pub(crate) struct DepthBounds {
+    /// Outward unit normal of `M` (setting frame). The moving body separates along it.
     pub(crate) outward: DVec3,
-    /// How far, rounded up.
+    /// Upper bound of the depth: the length of the translation along `outward`, rounded up.
     pub(crate) upper: f64,
-    /// What is proven of it from below.
+    /// Proven lower bound of the depth.
     pub(crate) lower: f64,
-    /// What proves that.
+    /// Surface that proves the lower bound; empty if the bound is 0.
     pub(crate) enclosure: Enclosure,
-    /// How far bodies may reach beyond support points along the normal.
-    pub(crate) beyond: f64,
-    /// How many lowest points were looked for, with those of the distance.
+    /// Bound on the distance that the bodies reach beyond the support points along `outward`.
+    pub(crate) excess: f64,
+    /// Number of support points computed, including those of the distance.
     pub(crate) supports: u32,
 }
 
-/// A triangle of the polytope, counter-clockwise as seen from outside.
+/// Triangle of the polytope, counter-clockwise as seen from outside.
 #[derive(Clone, Copy)]
 struct Triangle {
     corners: [u32; 3],
     normal: DVec3,
     height: f64,
-    /// Whether nothing of `M` lies beyond it.
-    done: bool,
-    /// Whether the point that is about to join sees it.
-    seen: bool,
+    /// Whether no point of `M` was found beyond the triangle, or none could be inserted there.
+    is_final: bool,
+    /// Whether the point to be inserted is in front of the triangle.
+    is_visible: bool,
 }
 
-/// A vertex of `M`.
+/// Vertex of `M` with its vertex pair.
 #[derive(Clone, Copy)]
-struct Point {
+struct PolytopeVertex {
     at: DVec3,
     pair: VertexPair,
 }
 
-/// A polytope of points of `M`.
+/// Polytope of points of `M`.
 struct Polytope<'a> {
     difference: &'a Difference<'a>,
     points: Vec<DVec3>,
     pairs: Vec<VertexPair>,
     triangles: Vec<Triangle>,
-    /// Kept for its memory.
-    rim: Vec<[u32; 2]>,
+    /// Buffer for the directed edges of the horizon.
+    horizon: Vec<[u32; 2]>,
 }
 
-/// How deep the bodies overlap, from what was found of their distance: at least, as soon as that is more than `enough`.
-pub(crate) fn deepest(difference: &Difference, found: &Found, enough: f64) -> Deepest {
-    let mut best = Deepest {
+/// Computes bounds of the penetration depth, starting from the result of a distance search.
+///
+/// Stops as soon as the lower bound exceeds `enough`; the upper bound need not be tight then.
+pub(crate) fn penetration_depth(
+    difference: &Difference,
+    found: &DescentResult,
+    enough: f64,
+) -> DepthBounds {
+    let mut best = DepthBounds {
         outward: DVec3::X,
         upper: f64::INFINITY,
         lower: 0.0,
         enclosure: Enclosure::default(),
-        beyond: 0.0,
+        excess: 0.0,
         supports: found.supports,
     };
     if let Some(plane) = found.plane(difference) {
-        best.note(-plane.gap.normal, -plane.gap.gap, plane.beyond);
+        best.record_plane(-plane.gap.normal, -plane.gap.gap, plane.excess);
     }
-    let pairs: Vec<VertexPair> = found.simplex().collect();
+    let pairs: Vec<VertexPair> = found.weighted_pairs().collect();
     grow_from(difference, &pairs, &mut best, enough);
-    if best.lower <= enough && best.upper - best.lower > OPEN * difference.noise.point() {
-        // Slivers may leave no way to grow; from elsewhere there are others.
-        let first = difference.lowest(-best.outward, None).pair;
+    if best.lower <= enough && best.upper - best.lower > MAX_GAP * difference.noise.point() {
+        // Thin triangles may prevent growth. A polytope that starts elsewhere has other triangles.
+        let first = difference.support_point(-best.outward, None).pair;
         best.supports += 1;
         grow_from(difference, &[first], &mut best, enough);
     }
     best
 }
 
-/// Grows a polytope that begins with some pairs, and notes what it proves.
-fn grow_from(difference: &Difference, pairs: &[VertexPair], best: &mut Deepest, enough: f64) {
-    if let Some(mut polytope) = Polytope::begin(difference, pairs, best) {
-        polytope.grow(best, enough);
-        polytope.prove(best);
+/// Grows a polytope from the given pairs, and records the bounds that it proves.
+fn grow_from(difference: &Difference, pairs: &[VertexPair], best: &mut DepthBounds, enough: f64) {
+    if let Some(mut polytope) = Polytope::from_pairs(difference, pairs, best) {
+        polytope.grow_at_nearest(best, enough);
+        polytope.prove_lower_bound(best);
     }
 }
 
-impl Deepest {
-    /// A supporting plane with an outward normal, and how far `M` reaches along it, rounded up.
-    fn note(&mut self, outward: DVec3, reach: f64, beyond: f64) {
-        if reach < self.upper {
-            self.upper = reach.max(0.0);
+impl DepthBounds {
+    /// Records a supporting plane: its outward normal, and the extent of `M` along it, rounded up.
+    fn record_plane(&mut self, outward: DVec3, extent: f64, excess: f64) {
+        if extent < self.upper {
+            self.upper = extent.max(0.0);
             self.outward = outward;
-            self.beyond = beyond;
+            self.excess = excess;
         }
     }
 }
 
 impl<'a> Polytope<'a> {
-    /// A tetrahedron of points of `M`; `None` if that is flat to rounding, as is noted then.
-    fn begin(difference: &'a Difference, pairs: &[VertexPair], best: &mut Deepest) -> Option<Self> {
+    /// Builds a tetrahedron from four given pairs, or, if these are too flat, from the first pair and points far from
+    /// it.
+    ///
+    /// `None` if `M` is flat up to rounding. The planes found are recorded in `best`.
+    fn from_pairs(
+        difference: &'a Difference,
+        pairs: &[VertexPair],
+        best: &mut DepthBounds,
+    ) -> Option<Self> {
         let mut new = Self {
             difference,
-            points: Vec::with_capacity(ROOM),
-            pairs: Vec::with_capacity(ROOM),
-            triangles: Vec::with_capacity(ROOM),
-            rim: Vec::with_capacity(ROOM),
+            points: Vec::with_capacity(INITIAL_CAPACITY),
+            pairs: Vec::with_capacity(INITIAL_CAPACITY),
+            triangles: Vec::with_capacity(INITIAL_CAPACITY),
+            horizon: Vec::with_capacity(INITIAL_CAPACITY),
         };
         for pair in pairs {
-            new.add(Point { at: difference.point(*pair), pair: *pair });
+            new.add_point(PolytopeVertex { at: difference.point(*pair), pair: *pair });
         }
-        if new.points.len() < 4 || new.thickness() <= 8.0 * difference.noise.point() {
+        if new.points.len() < 4 || new.fourth_point_height() <= 8.0 * difference.noise.point() {
             new.points.truncate(1);
             new.pairs.truncate(1);
-            new.widen(best)?;
+            new.add_distant_points(best)?;
         }
         let volume = (new.points[1] - new.points[0])
             .cross(new.points[2] - new.points[0])
@@ -149,106 +155,127 @@ impl<'a> Polytope<'a> {
             new.pairs.swap(0, 1);
         }
         for corners in [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]] {
-            new.push(corners);
+            new.push_triangle(corners);
         }
         Some(new)
     }
 
-    fn add(&mut self, corner: Point) {
+    /// Adds a point, without triangles.
+    fn add_point(&mut self, corner: PolytopeVertex) {
         self.points.push(corner.at);
         self.pairs.push(corner.pair);
     }
 
-    /// The height of the fourth point over the others.
-    fn thickness(&self) -> f64 {
+    /// Returns the distance of the fourth point from the plane of the first three.
+    fn fourth_point_height(&self) -> f64 {
         let [a, b, c, d] = [0, 1, 2, 3].map(|k| self.points[k]);
         let normal = triangle_normal([a, b, c]).normalize_or_zero();
         normal.dot(d - a).abs()
     }
 
-    /// Adds points that are far from each other, a line and a plane, until there are four.
-    fn widen(&mut self, best: &mut Deepest) -> Option<()> {
+    /// Adds points far from the first point, from the line and from the plane of the points, until there are four.
+    /// `None` if `M` has no such point farther than eight noises.
+    fn add_distant_points(&mut self, best: &mut DepthBounds) -> Option<()> {
         for count in 1..4 {
             let first = self.points[0];
-            let across = |k: usize| self.points[k] - first;
+            let offset = |k: usize| self.points[k] - first;
             let axes = match count {
                 1 => vec![DVec3::X, DVec3::Y, DVec3::Z],
                 2 => {
-                    let line = unit(across(1))?;
-                    let aside = line.any_orthonormal_vector();
-                    vec![aside, line.cross(aside)]
+                    let line = unit_vector(offset(1))?;
+                    let perpendicular = line.any_orthonormal_vector();
+                    vec![perpendicular, line.cross(perpendicular)]
                 }
-                _ => vec![unit(triangle_normal([first, self.points[1], self.points[2]]))?],
+                _ => vec![unit_vector(triangle_normal([first, self.points[1], self.points[2]]))?],
             };
-            let (mut farthest, mut most) = (None, 8.0 * self.difference.noise.point());
+            let (mut farthest, mut largest) = (None, 8.0 * self.difference.noise.point());
             for outward in axes.into_iter().flat_map(|axis| [axis, -axis]) {
-                let point = self.support(outward, self.pairs[0], best);
+                let point = self.support_point(outward, self.pairs[0], best);
                 let away = outward.dot(point.at - first);
-                if away > most {
-                    (farthest, most) = (Some(point), away);
+                if away > largest {
+                    (farthest, largest) = (Some(point), away);
                 }
             }
-            self.add(farthest?);
+            self.add_point(farthest?);
         }
         Some(())
     }
 
-    /// The point farthest along a unit vector, from a pair that may be near; how far that is, is noted. A climb
-    /// may have stuck before it, where that makes no difference yet.
-    fn support(&self, outward: DVec3, near: VertexPair, best: &mut Deepest) -> Point {
+    /// Returns the point of `M` farthest along a unit vector, searched from the pair `near`, and records its plane.
+    ///
+    /// If the point at which the climb stopped is at least as far as the best upper bound, it is returned unverified,
+    /// and no plane is recorded.
+    fn support_point(
+        &self,
+        outward: DVec3,
+        near: VertexPair,
+        best: &mut DepthBounds,
+    ) -> PolytopeVertex {
         let noise = self.difference.noise;
         let bodies = self.difference.bodies;
         let normals = [bodies.moving_normal(-outward), bodies.fixed_normal(-outward)];
-        let found = self.difference.climbed(&normals, Some(near));
+        let found = self.difference.climbed_pair(&normals, Some(near));
         best.supports += 1;
         let at = self.difference.point(found);
         if outward.dot(at) >= best.upper {
-            return Point { at, pair: found };
+            return PolytopeVertex { at, pair: found };
         }
-        let (pair, beyond) = bodies.support_with_excess(&normals, found);
+        let (pair, excess) = bodies.support_with_excess(&normals, found);
         let at = if pair == found { at } else { self.difference.point(pair) };
-        let raised = (outward.dot(at) + noise.lowered() + beyond).next_up();
-        best.note(outward, raised, beyond);
-        Point { at, pair }
+        let raised = (outward.dot(at) + noise.lowered() + excess).next_up();
+        best.record_plane(outward, raised, excess);
+        PolytopeVertex { at, pair }
     }
 
-    fn push(&mut self, corners: [u32; 3]) {
+    /// Adds a triangle with its own normal and height.
+    fn push_triangle(&mut self, corners: [u32; 3]) {
         let at = corners.map(|k| self.points[k as usize]);
-        let normal = unit(triangle_normal(at)).unwrap_or(DVec3::ZERO);
-        let height = self.height(corners, normal);
-        self.triangles.push(Triangle { corners, normal, height, done: false, seen: false });
+        let normal = unit_vector(triangle_normal(at)).unwrap_or(DVec3::ZERO);
+        let height = self.triangle_height(corners, normal);
+        self.triangles.push(Triangle {
+            corners,
+            normal,
+            height,
+            is_final: false,
+            is_visible: false,
+        });
     }
 
-    fn height(&self, corners: [u32; 3], normal: DVec3) -> f64 {
+    /// Returns the height of a triangle for a normal.
+    fn triangle_height(&self, corners: [u32; 3], normal: DVec3) -> f64 {
         corners.map(|k| normal.dot(self.points[k as usize])).into_iter().fold(f64::MAX, f64::min)
     }
 
-    /// Grows where the polytope is nearest to the origin, until its faces there are those of `M`, or far enough.
-    fn grow(&mut self, best: &mut Deepest, enough: f64) {
+    /// Grows the polytope at its nearest triangle, until the bounds meet, the height exceeds `enough`, or no triangle
+    /// can grow.
+    fn grow_at_nearest(&mut self, best: &mut DepthBounds, enough: f64) {
         let noise = self.difference.noise.point();
         let enough = enough + 2.0 * self.difference.noise.height_lowered();
-        for _ in 0..MOST {
-            let nearest = self.nearest();
-            let Triangle { corners, normal, height, done, .. } = self.triangles[nearest];
+        for _ in 0..MAX_STEPS {
+            let nearest = self.nearest_triangle();
+            let Triangle { corners, normal, height, is_final, .. } = self.triangles[nearest];
             if best.upper - height <= 2.5 * noise || best.upper == 0.0 || height > enough {
                 return;
             }
-            if done {
+            if is_final {
                 if !self.borrow_normal(nearest) {
                     return;
                 }
                 continue;
             }
-            let point = self.support(normal, self.pairs[corners[0] as usize], best);
+            let point = self.support_point(normal, self.pairs[corners[0] as usize], best);
             let beyond = normal.dot(point.at) - height;
-            if beyond <= noise || self.pairs.contains(&point.pair) || !self.insert(nearest, point) {
-                self.triangles[nearest].done = true;
+            if beyond <= noise
+                || self.pairs.contains(&point.pair)
+                || !self.insert_point(nearest, point)
+            {
+                self.triangles[nearest].is_final = true;
             }
         }
     }
 
-    /// The triangle of the least height, the first of several.
-    fn nearest(&self) -> usize {
+    /// Returns the index of the triangle with the smallest height, the first one of equal heights.
+    fn nearest_triangle(&self) -> usize {
         let (mut nearest, mut least) = (0, f64::INFINITY);
         for (which, triangle) in self.triangles.iter().enumerate() {
             if triangle.height < least {
@@ -258,7 +285,7 @@ impl<'a> Polytope<'a> {
         nearest
     }
 
-    /// Takes for a triangle, whose own normal is of no use, that of a neighbour if it is higher for that.
+    /// Gives a triangle the normal of a neighbour, if that increases its height. Returns whether this is so.
     fn borrow_normal(&mut self, which: usize) -> bool {
         let Triangle { corners, height, .. } = self.triangles[which];
         let shares = |other: &Triangle| {
@@ -266,7 +293,7 @@ impl<'a> Polytope<'a> {
         };
         let normals = self.triangles.iter().filter(|other| shares(other)).map(|other| other.normal);
         let higher = normals
-            .map(|normal| (self.height(corners, normal), normal))
+            .map(|normal| (self.triangle_height(corners, normal), normal))
             .max_by(|a, b| a.0.total_cmp(&b.0));
         match higher {
             Some((other, normal)) if other > height => {
@@ -278,70 +305,73 @@ impl<'a> Polytope<'a> {
         }
     }
 
-    /// Replaces what a new point sees, the triangle it was found for in any case, by a fan. `false`, and
-    /// nothing changes, if that would not be a surface any more.
-    fn insert(&mut self, nearest: usize, point: Point) -> bool {
+    /// Replaces the triangles that have the new point in front by a fan. The triangle `nearest` is always replaced.
+    ///
+    /// Returns `false`, without a change of the triangles, if the result would not be a surface.
+    fn insert_point(&mut self, nearest: usize, point: PolytopeVertex) -> bool {
         let noise = self.difference.noise.point();
         for triangle in &mut self.triangles {
-            triangle.seen = triangle.normal.dot(point.at) - triangle.height > noise;
+            triangle.is_visible = triangle.normal.dot(point.at) - triangle.height > noise;
         }
-        self.triangles[nearest].seen = true;
-        let mut rim = std::mem::take(&mut self.rim);
-        let is_surface = self.widen_rim(point.at, &mut rim);
+        self.triangles[nearest].is_visible = true;
+        let mut horizon = std::mem::take(&mut self.horizon);
+        let is_surface = self.find_horizon(point.at, &mut horizon);
         if is_surface {
-            self.triangles.retain(|triangle| !triangle.seen);
+            self.triangles.retain(|triangle| !triangle.is_visible);
             let new = self.points.len() as u32;
-            self.add(point);
-            for &[x, y] in &rim {
-                self.push([x, y, new]);
+            self.add_point(point);
+            for &[x, y] in &horizon {
+                self.push_triangle([x, y, new]);
             }
         }
-        self.rim = rim;
+        self.horizon = horizon;
         is_surface
     }
 
-    /// The rim of the triangles seen, and more of them where the fan would be without area: the triangle
-    /// beyond goes as well. `false` if the rim is not one polygon.
-    fn widen_rim(&mut self, at: DVec3, rim: &mut Vec<[u32; 2]>) -> bool {
+    /// Computes the horizon of the visible triangles. If the fan would have a triangle without area, marks the triangle
+    /// beyond that edge as visible, too.
+    ///
+    /// Returns `false` if the horizon is not a single polygon.
+    fn find_horizon(&mut self, at: DVec3, horizon: &mut Vec<[u32; 2]>) -> bool {
         loop {
-            self.find_rim(rim);
-            let flat = rim.iter().find(|[x, y]| self.is_flat(*x, *y, at));
-            let Some(&[x, y]) = flat else { break };
+            self.collect_horizon(horizon);
+            let collinear = horizon.iter().find(|[x, y]| self.is_on_line(*x, *y, at));
+            let Some(&[x, y]) = collinear else { break };
             let beyond =
                 |t: &Triangle| (0..3).any(|k| [t.corners[k], t.corners[(k + 1) % 3]] == [y, x]);
             match self.triangles.iter_mut().find(|t| beyond(t)) {
-                Some(other) if !other.seen => other.seen = true,
+                Some(other) if !other.is_visible => other.is_visible = true,
                 _ => return false,
             }
         }
-        let starts_before = |k: usize| rim[..k].iter().any(|edge| edge[0] == rim[k][0]);
-        rim.len() >= 3 && !(0..rim.len()).any(starts_before)
+        let starts_before = |k: usize| horizon[..k].iter().any(|edge| edge[0] == horizon[k][0]);
+        horizon.len() >= 3 && !(0..horizon.len()).any(starts_before)
     }
 
-    /// Directed edges of the triangles seen whose opposite is of none of them.
-    fn find_rim(&self, rim: &mut Vec<[u32; 2]>) {
-        rim.clear();
-        for triangle in self.triangles.iter().filter(|triangle| triangle.seen) {
+    /// Collects the directed edges of visible triangles whose opposite edge belongs to no visible triangle.
+    fn collect_horizon(&self, horizon: &mut Vec<[u32; 2]>) {
+        horizon.clear();
+        for triangle in self.triangles.iter().filter(|triangle| triangle.is_visible) {
             let [a, b, c] = triangle.corners;
             for [x, y] in [[a, b], [b, c], [c, a]] {
-                match rim.iter().position(|edge| *edge == [y, x]) {
-                    Some(opposite) => drop(rim.swap_remove(opposite)),
-                    None => rim.push([x, y]),
+                match horizon.iter().position(|edge| *edge == [y, x]) {
+                    Some(opposite) => drop(horizon.swap_remove(opposite)),
+                    None => horizon.push([x, y]),
                 }
             }
         }
     }
 
-    /// Whether a point is on the line through two, to rounding.
-    fn is_flat(&self, x: u32, y: u32, at: DVec3) -> bool {
+    /// Checks whether a point is on the line through two points, up to rounding.
+    fn is_on_line(&self, x: u32, y: u32, at: DVec3) -> bool {
         let [x, y] = [x, y].map(|k| self.points[k as usize]);
         let edge = y - x;
         let noise = self.difference.noise.point();
         edge.cross(at - x).length_squared() <= noise * noise * edge.length_squared()
     }
 
-    /// The least height as a bound, if the surface is around the origin, exactly.
-    fn prove(self, best: &mut Deepest) {
+    /// Records the smallest height as the lower bound, if the surface is proven to wind around the origin.
+    fn prove_lower_bound(self, best: &mut DepthBounds) {
         let noise = self.difference.noise;
         let least = self.triangles.iter().map(|t| t.height).fold(f64::MAX, f64::min);
         let lower = (least - noise.height_lowered()).next_down();
@@ -353,8 +383,8 @@ impl<'a> Polytope<'a> {
             triangles: self.triangles.iter().map(|t| t.corners).collect(),
             normals: self.triangles.iter().map(|t| t.normal).collect(),
         };
-        // Closed it is: a fan takes the place of what has the same rim.
-        if winds(self.difference.bodies, &self.points, &enclosure) {
+        // The surface is closed, because each fan has the same boundary as the triangles that it replaced.
+        if winds_around_origin(self.difference.bodies, &self.points, &enclosure) {
             best.lower = lower;
             best.enclosure = enclosure;
         }

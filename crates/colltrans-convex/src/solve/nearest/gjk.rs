@@ -1,44 +1,48 @@
-//! The descent (Gilbert, Johnson and Keerthi): from a simplex of points of `M` to the nearest one.
+//! Descent over simplices of points of `M` to the point nearest to the origin (Gilbert, Johnson and Keerthi).
 //!
-//! While the plane across the nearest point of the simplex has points of `M` below it, the lowest joins the
-//! simplex, whose nearest point is found anew.
+//! While points of `M` lie below the plane at the nearest point of the simplex, the lowest of them joins the simplex.
+//! The nearest point of the new simplex follows.
 
 use glam::DVec3;
 
 use super::simplex::{Corner, Simplex};
-use super::{Difference, Found};
+use super::{DescentResult, Difference};
 use crate::setting::VertexPair;
 use colltrans_kernel::real::{Real, Twice, Vector};
 
-/// More steps than were ever seen.
-const MOST: usize = 128;
+/// Maximum number of steps, above all that were observed.
+const MAX_STEPS: usize = 128;
 
-/// When a descent may end.
+/// Conditions at which a descent ends. Any one of them suffices.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Goal {
-    /// As soon as the bounds are so near to each other.
-    pub(super) gap: f64,
-    /// As soon as the lower bound is more than the first, or the upper one less than the second.
-    pub(super) than: Option<[f64; 2]>,
-    /// As soon as they differ by no more than such a share of what the lower one is beyond a length.
-    pub(super) share: Option<[f64; 2]>,
+    /// Maximum difference of the computed bounds.
+    pub(super) max_gap: f64,
+    /// Thresholds: the first one for the lower bound to exceed, the second one for the upper bound to fall below.
+    pub(super) thresholds: Option<[f64; 2]>,
+    /// Fraction and length: the bounds differ by at most this fraction of the lower bound minus the length.
+    pub(super) relative: Option<[f64; 2]>,
 }
 
 impl Goal {
-    pub(super) fn is_reached(&self, found: &Found) -> bool {
-        let decided = |[more, less]: [f64; 2]| found.lower > more || found.upper < less;
+    /// Checks whether the computed bounds fulfil one of the conditions.
+    pub(super) fn is_reached(&self, found: &DescentResult) -> bool {
+        let is_decided = |[above, below]: [f64; 2]| found.lower > above || found.upper < below;
         let gap = found.upper - found.lower.max(0.0);
-        let is_nearly = |[share, beyond]: [f64; 2]| gap <= share * (found.lower - beyond);
-        gap <= self.gap || self.than.is_some_and(decided) || self.share.is_some_and(is_nearly)
+        let is_accurate = |[share, beyond]: [f64; 2]| gap <= share * (found.lower - beyond);
+        gap <= self.max_gap
+            || self.thresholds.is_some_and(is_decided)
+            || self.relative.is_some_and(is_accurate)
     }
 }
 
-/// A number that a point of `M` has coordinates in.
+/// Number type of the coordinates of a point of `M`.
 pub(super) trait Coordinate: Real {
+    /// Computes the point of a vertex pair.
     fn point(difference: &Difference, pair: VertexPair) -> Vector<Self>;
 
-    /// The same of a pair whose point is known as rounded.
-    fn of_corner(difference: &Difference, corner: &Corner<f64>) -> Corner<Self> {
+    /// Converts a corner with rounded coordinates to this number type.
+    fn convert_corner(difference: &Difference, corner: &Corner<f64>) -> Corner<Self> {
         Corner { at: Self::point(difference, corner.pair), pair: corner.pair }
     }
 }
@@ -50,7 +54,7 @@ impl Coordinate for f64 {
     }
 
     #[inline]
-    fn of_corner(_: &Difference, corner: &Corner<f64>) -> Corner<Self> {
+    fn convert_corner(_: &Difference, corner: &Corner<f64>) -> Corner<Self> {
         *corner
     }
 }
@@ -61,18 +65,20 @@ impl Coordinate for Twice {
     }
 }
 
-/// Goes down from a simplex, as far as its numbers tell, and leaves in `found` what is better than what
-/// was there.
+/// Descends from `simplex` to the point of `M` nearest to the origin.
+///
+/// Stores planes and points in `found` that are better than the stored ones. Ends when `goal` is reached, when the
+/// simplex contains the origin up to rounding, or when no step decreases the distance in numbers of type `T`.
 #[inline]
-pub(super) fn descend<T: Coordinate>(
+pub(super) fn descend_to_nearest<T: Coordinate>(
     difference: &Difference,
     mut simplex: Simplex<T>,
     goal: &Goal,
-    found: &mut Found,
+    found: &mut DescentResult,
 ) {
     let noise = difference.noise.point();
     let mut last: Option<T> = None;
-    for _ in 0..MOST {
+    for _ in 0..MAX_STEPS {
         let mut nearest = simplex.reduce();
         if simplex.is_full() && nearest.value().length() > noise {
             nearest = simplex.reduce_to_face();
@@ -83,30 +89,35 @@ pub(super) fn descend<T: Coordinate>(
         }
         last = Some(square);
         let point = nearest.value();
-        found.note_point(point.length(), &simplex);
+        found.record_point(point.length(), &simplex);
         if found.upper <= noise || simplex.is_full() {
             return;
         }
-        let Some(normal) = unit(simplex.normal(&nearest)).or_else(|| unit(point)) else { return };
-        let mut lowest = difference.lowest(normal, found.lowest);
+        let Some(normal) = unit_vector(simplex.normal(&nearest)).or_else(|| unit_vector(point))
+        else {
+            return;
+        };
+        let mut lowest = difference.support_point(normal, found.lowest);
         found.supports += 1;
-        found.note_plane(normal, &lowest);
+        found.record_plane(normal, &lowest);
         if goal.is_reached(found) || simplex.contains(lowest.pair) {
-            // Among edges as short as rounding errors a climb may have stuck far away.
-            found.settle(difference);
-            let settled = found.lowest.unwrap_or_default();
-            if goal.is_reached(found) || simplex.contains(settled) {
+            // Between edges as short as rounding errors a climb may have stopped far from the support point.
+            found.verify_plane(difference);
+            let verified = found.lowest.unwrap_or_default();
+            if goal.is_reached(found) || simplex.contains(verified) {
                 return;
             }
-            lowest = difference.corner(settled);
+            lowest = difference.corner_at(verified);
         }
-        simplex.push(T::of_corner(difference, &lowest));
+        simplex.push(T::convert_corner(difference, &lowest));
     }
 }
 
-/// A vector at length 1, unless it has no length to speak of: divided, so that axes stay axes.
+/// Returns the unit vector along `v`. `None` if the length of `v` is 0 or not finite.
+///
+/// Divides by the length, so that a vector along an axis becomes exactly the axis.
 #[inline]
-pub(super) fn unit(v: DVec3) -> Option<DVec3> {
+pub(super) fn unit_vector(v: DVec3) -> Option<DVec3> {
     let length = v.length();
     (length > 0.0 && length.is_finite()).then(|| v / length)
 }

@@ -1,24 +1,15 @@
-//! The nearest points of two convex bodies, and a plane between them.
+//! Nearest points of two convex bodies, and a plane between the bodies, with proven bounds of the distance.
 //!
-//! Notation. `M = {q - p}` in the setting frame (the axes of the world, the origin at the moving body's
-//! translation); `v` is its point nearest to the origin, `n` a unit normal, `S` the size, `u = 2^-53`.
+//! `M = {q - p}` is in the setting frame: the axes of the world, the origin at the moving body's translation. `v` is
+//! its point nearest to the origin and `n` a unit normal. [`gjk`] descends to `v` over simplices of points of `M`, in
+//! rounded numbers, and again in numbers of twice the precision if the bounds remain apart. `docs/theory/distance.md`
+//! explains the choice of planes and the width of the bounds.
 //!
-//! The way: [`gjk`] descends to `v` over simplices of points of `M`, first in rounded numbers, and where
-//! these leave the bounds apart, once more in numbers of twice their precision. Rounding turns the direction
-//! of a short `v` by `u S / |v|`, which costs a plane across it the size of the bodies times as much: so
-//! planes are across *simplices*, whose edges are not short, and what is still open has ties that only more
-//! digits tell apart. Both are the same descent, and both only propose a plane and two points.
-//!
-//! Invariant. The bounds are those of what was proposed, whatever led there:
-//!
-//! - *Upper.* The points are a weighted mean of vertices; their distance is raised by what it may be off
+//! Invariant: the bounds hold for the plane and the points that are returned, regardless of how these were found.
+//! - *Upper*: the points are weighted means of vertices. Their distance is raised by its rounding error
 //!   ([`Noise::mean_raised`]).
-//! - *Lower.* The height along a rounded unit normal is off by less than one noise, as in a cast; it is
-//!   taken off, and what bodies reach beyond the support points ([`TwoBodies::support_with_excess`]).
-//!
-//! The descent ends when the bounds are one noise apart as computed. So they are proven to within three
-//! noises and a half, and what the bodies reach beyond support points: half a noise if each vertex is looked
-//! at, nothing where no edge lies in the plane.
+//! - *Lower*: the height along a rounded unit normal is lowered by one noise and by the excess of the bodies beyond the
+//!   support points ([`TwoBodies::support_with_excess`]).
 
 mod depth;
 mod gjk;
@@ -27,10 +18,10 @@ mod winding;
 
 use glam::{DMat3, DVec3};
 
-pub(crate) use self::depth::deepest;
-use self::gjk::{Goal, descend, unit};
+pub(crate) use self::depth::penetration_depth;
+use self::gjk::{Goal, descend_to_nearest, unit_vector};
 use self::simplex::{Corner, Simplex};
-pub(crate) use self::winding::surrounds;
+pub(crate) use self::winding::surrounds_origin;
 use crate::answer::{NearPoints, PlaneGap, Steps};
 use crate::body::Inertia;
 use crate::setting::{TwoBodies, VertexPair};
@@ -40,43 +31,46 @@ use colltrans_kernel::real::{Real, Twice, Vector};
 use colltrans_kernel::symmetric::Symmetric;
 use colltrans_kernel::volume::{encloses, weights_of_origin};
 
-/// Bodies that are so many noises apart, as computed, are near contact.
-const NEAR: f64 = 4.0;
+/// Maximum computed distance, in noises, of bodies that are near contact.
+const MAX_NEAR_CONTACT: f64 = 4.0;
 
-/// Steps to a guess (measured), and how far its last point may be off the ellipsoid, as a share.
-const GUESSES: usize = 6;
-const NEARLY: f64 = 0.01;
+/// Maximum number of Newton steps for a guess from ellipsoids (measured).
+const MAX_GUESS_STEPS: usize = 6;
+/// Error `|f(t)^2 - 1|` below which a guess from ellipsoids is accepted.
+const GUESS_TOLERANCE: f64 = 0.01;
 
-/// `M` in the setting frame.
+/// The Minkowski difference `M` in the setting frame.
 pub struct Difference<'a> {
     pub bodies: &'a TwoBodies<'a>,
     pub noise: Noise,
 }
 
 impl<'a> Difference<'a> {
+    /// Builds the difference of two placed bodies, with their noise.
     #[inline]
     pub fn new(bodies: &'a TwoBodies<'a>) -> Self {
         Self { bodies, noise: bodies.noise() }
     }
 
-    /// The point of a pair of vertices.
+    /// Returns the point of `M` of a vertex pair.
     #[inline]
     fn point(&self, pair: VertexPair) -> DVec3 {
         self.bodies.difference(pair)
     }
 
-    /// The lowest point along a normal, from a pair that may be near.
+    /// Returns the point of `M` that is lowest along `normal`. Starts the search at `near`, if given.
     #[inline]
-    fn lowest(&self, normal: DVec3, near: Option<VertexPair>) -> Corner<f64> {
+    fn support_point(&self, normal: DVec3, near: Option<VertexPair>) -> Corner<f64> {
         let bodies = self.bodies;
-        self.corner(
-            self.climbed(&[bodies.moving_normal(normal), bodies.fixed_normal(normal)], near),
+        self.corner_at(
+            self.climbed_pair(&[bodies.moving_normal(normal), bodies.fixed_normal(normal)], near),
         )
     }
 
-    /// The pair of it, along a normal that is given in both bodies' frames.
+    /// Returns the vertex pair at which a climb along a normal stops. The normal is given in the frames of the moving
+    /// and of the fixed body.
     #[inline]
-    fn climbed(&self, normals: &[DVec3; 2], near: Option<VertexPair>) -> VertexPair {
+    fn climbed_pair(&self, normals: &[DVec3; 2], near: Option<VertexPair>) -> VertexPair {
         let bodies = self.bodies;
         let (in_moving, in_fixed) = (normals[0], -normals[1]);
         let (moving, fixed) = match near {
@@ -89,64 +83,68 @@ impl<'a> Difference<'a> {
         VertexPair::of(moving, fixed)
     }
 
-    /// A pair of support points along a normal.
+    /// Returns the vertex pair that is lowest along `normal` (setting frame, any length).
     #[inline]
     pub fn lowest_pair(&self, normal: DVec3) -> VertexPair {
-        self.lowest(normal, None).pair
+        self.support_point(normal, None).pair
     }
 
+    /// Returns the point of `M` of a vertex pair, as a corner of a simplex.
     #[inline]
-    fn corner(&self, pair: VertexPair) -> Corner<f64> {
+    fn corner_at(&self, pair: VertexPair) -> Corner<f64> {
         Corner { at: Vector(self.point(pair).to_array()), pair }
     }
 
-    /// From the centre of the moving body to that of the fixed one.
-    fn center(&self) -> DVec3 {
+    /// Returns the vector from the centre of the moving body to that of the fixed one.
+    fn center_offset(&self) -> DVec3 {
         let bodies = self.bodies;
         let [p, q] = [bodies.moving.inertia().center, bodies.fixed.inertia().center];
         bodies.fixed_matrix * q - bodies.moving_matrix * p + bodies.offset
     }
 
-    /// A pair to begin with where bodies overlap: the polytope that a depth grows from is wide, as one that
-    /// begins near the shortest way out would not be.
-    pub(crate) fn first_pair(&self) -> NearestPairs {
-        let pair = self.lowest(toward(self.center()), None).pair;
+    /// Returns the vertex pair from which to start a search for the depth: the support pair along the line of centres.
+    ///
+    /// The polytope that grows from this pair is wide. It would not be if the search started near the shortest way out.
+    pub(crate) fn depth_start(&self) -> NearestPairs {
+        let pair = self.support_point(direction_or_x(self.center_offset()), None).pair;
         NearestPairs { pairs: [pair; 3], count: 1 }
     }
 
-    /// A direction in which the fixed body may be, of any length: across the shortest way between the
-    /// inertia ellipsoids, nearly, or from centre to centre.
-    fn guess(&self) -> DVec3 {
+    /// Guesses the direction from the moving to the fixed body (setting frame, any length).
+    ///
+    /// The guess approximates the normal of the nearest points of the inertia ellipsoids. For bodies that resemble
+    /// balls it is the line of centres.
+    fn guessed_direction(&self) -> DVec3 {
         let bodies = self.bodies;
         let [p, q] = [bodies.moving.inertia(), bodies.fixed.inertia()];
-        let center = self.center();
+        let center = self.center_offset();
         if bodies.moving.is_like_ball() && bodies.fixed.is_like_ball() {
-            return toward(center);
+            return direction_or_x(center);
         }
-        let of = |inertia: &Inertia, rotation: &DMat3| {
+        let ellipsoid = |inertia: &Inertia, rotation: &DMat3| {
             Symmetric::gram(&inertia.axes_by_factor(&rotation.transpose()))
         };
-        let [a, b] = [of(p, &bodies.moving_matrix), of(q, &bodies.fixed_matrix)];
-        toward(between(&a, &b, center, q.radius / p.radius))
+        let [a, b] = [ellipsoid(p, &bodies.moving_matrix), ellipsoid(q, &bodies.fixed_matrix)];
+        direction_or_x(ellipsoid_gap_normal(&a, &b, center, q.radius / p.radius))
     }
 }
 
-/// A direction, or any where there is none.
+/// Returns `v`, or `X` if `v` is zero or not finite.
 #[inline]
-fn toward(v: DVec3) -> DVec3 {
+fn direction_or_x(v: DVec3) -> DVec3 {
     if v.length_squared() > 0.0 && v.is_finite() { v } else { DVec3::X }
 }
 
-/// The way across the nearest points of two ellipsoids with the matrices `A` and `B` whose centres are `c` apart.
+/// Approximates the normal at the nearest points of two ellipsoids with the matrices `A` and `B`, whose centres
+/// differ by `c`.
 ///
-/// Both are replaced by one, `K = (1 + r) A + (1 + 1/r) B`, which contains their sum, and touches it along `y`
-/// if `r^2 = y.B y / y.A y`. The point of it nearest to the origin is `t y` where `(K + t) y = c` and
-/// `f(t) = sqrt(y.K y)` is 1. `1 / f` is nearly linear, of a ball exactly so: Newton's steps are taken on it,
-/// and `r` follows.
+/// One ellipsoid `K = (1 + r) A + (1 + 1/r) B` replaces both. It contains their sum, and touches it along `y` if
+/// `r^2 = y.B y / y.A y`. Its point nearest to the origin is `t y`, where `(K + t) y = c` and `f(t) = sqrt(y.K y) = 1`.
+/// Newton's method is applied to `1 / f`, which is nearly linear, and exactly linear for a ball. Each step updates `r`.
 #[inline]
-fn between(a: &Symmetric, b: &Symmetric, center: DVec3, mut r: f64) -> DVec3 {
-    let (mut t, mut across) = (0.0_f64, center);
-    for _ in 0..GUESSES {
+fn ellipsoid_gap_normal(a: &Symmetric, b: &Symmetric, center: DVec3, mut r: f64) -> DVec3 {
+    let (mut t, mut normal) = (0.0_f64, center);
+    for _ in 0..MAX_GUESS_STEPS {
         let k = a.combine(1.0 + r, b, 1.0 + 1.0 / r);
         let (inverse, det) = k.plus_diagonal(t).adjugate();
         let y = inverse.apply(center) * (1.0 / det);
@@ -158,15 +156,15 @@ fn between(a: &Symmetric, b: &Symmetric, center: DVec3, mut r: f64) -> DVec3 {
         if !(next.is_finite() && ratio > 0.0 && ratio.is_finite()) {
             break;
         }
-        (t, r, across) = (next.max(0.0), ratio, y);
-        if (square - 1.0).abs() < NEARLY {
+        (t, r, normal) = (next.max(0.0), ratio, y);
+        if (square - 1.0).abs() < GUESS_TOLERANCE {
             break;
         }
     }
-    across
+    normal
 }
 
-/// Up to three pairs of vertices to begin a descent with: those that the last one ended with.
+/// Up to three vertex pairs from which a descent starts: those with which an earlier one ended.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct NearestPairs {
     pairs: [VertexPair; 3],
@@ -174,44 +172,49 @@ pub struct NearestPairs {
 }
 
 impl NearestPairs {
+    /// Checks whether there is no pair, so that a descent starts from scratch.
     #[inline]
     pub fn is_empty(&self) -> bool {
         self.count == 0
     }
 
+    /// Iterates over the pairs.
     fn iter(&self) -> impl Iterator<Item = VertexPair> + '_ {
         self.pairs[..self.count].iter().copied()
     }
 }
 
-/// The best plane and the best points that a descent has seen.
+/// The best plane and the best points of a descent.
 #[derive(Debug, Clone, Copy)]
-pub struct Found {
-    /// The plane's gap as computed, and its normal.
+pub struct DescentResult {
+    /// Computed gap of the plane.
     lower: f64,
+    /// Unit normal of the plane (setting frame).
     normal: DVec3,
-    /// A pair of support points along it, as a climb has found them, or settled.
+    /// Vertex pair lowest along the normal, as a climb has found it, or verified.
     lowest: Option<VertexPair>,
-    /// How far the bodies may reach beyond these, once they are.
-    beyond: Option<f64>,
-    /// The distance of the points as computed.
+    /// Bound on the distance that the bodies reach beyond this pair. `None` until the pair is verified.
+    excess: Option<f64>,
+    /// Computed distance of the points.
     upper: f64,
-    /// Those with a weight come first; the others mean nothing.
+    /// Vertex pairs of the points. Those with a weight are first; the others are not used.
     pairs: [VertexPair; 4],
+    /// Weights of the pairs.
     weights: [f64; 4],
-    /// Whether the pairs are four that seem to enclose the origin.
+    /// Whether four pairs seem to enclose the origin.
     full: bool,
-    /// How many lowest points were looked for.
+    /// Number of support points computed.
     pub supports: u32,
 }
 
-impl Found {
-    fn nothing() -> Self {
+impl DescentResult {
+    /// Returns a result with infinite bounds, without a plane and points.
+    fn unbounded() -> Self {
         Self {
             lower: f64::NEG_INFINITY,
             normal: DVec3::ZERO,
             lowest: None,
-            beyond: None,
+            excess: None,
             upper: f64::INFINITY,
             pairs: [VertexPair::default(); 4],
             weights: [0.0; 4],
@@ -220,118 +223,143 @@ impl Found {
         }
     }
 
+    /// Stores the point of `simplex`, if it is nearer than the stored one.
     #[inline]
-    fn note_point<T: Real>(&mut self, distance: f64, simplex: &Simplex<T>) {
+    fn record_point<T: Real>(&mut self, distance: f64, simplex: &Simplex<T>) {
         if distance < self.upper {
             self.upper = distance;
-            (self.pairs, self.weights) = simplex.weighted();
+            (self.pairs, self.weights) = simplex.pairs_and_weights();
             self.full = simplex.is_full();
         }
     }
 
+    /// Stores the plane perpendicular to the unit vector `normal` at `lowest`, if its gap exceeds the stored one.
     #[inline]
-    fn note_plane(&mut self, normal: DVec3, lowest: &Corner<f64>) {
+    fn record_plane(&mut self, normal: DVec3, lowest: &Corner<f64>) {
         let lower = normal.dot(lowest.at.value());
         if lower > self.lower || self.lowest.is_none() {
             self.lower = lower;
             self.normal = normal;
             self.lowest = Some(lowest.pair);
-            self.beyond = None;
+            self.excess = None;
         }
     }
 
-    /// The lowest point along the normal of the plane, whatever a climb has made of it.
+    /// Verifies the vertex pair of the plane, and replaces it if the climb to it had stopped short. Computes the excess
+    /// beyond the pair.
     #[inline]
-    fn settle(&mut self, difference: &Difference) {
-        let Some(pair) = self.lowest.filter(|_| self.beyond.is_none()) else { return };
+    fn verify_plane(&mut self, difference: &Difference) {
+        let Some(pair) = self.lowest.filter(|_| self.excess.is_none()) else { return };
         let bodies = difference.bodies;
         let normals = [bodies.moving_normal(self.normal), bodies.fixed_normal(self.normal)];
-        let (settled, beyond) = bodies.support_with_excess(&normals, pair);
-        (self.lowest, self.beyond) = (Some(settled), Some(beyond));
-        if settled != pair {
-            self.lower = self.normal.dot(difference.point(settled));
+        let (verified, excess) = bodies.support_with_excess(&normals, pair);
+        (self.lowest, self.excess) = (Some(verified), Some(excess));
+        if verified != pair {
+            self.lower = self.normal.dot(difference.point(verified));
         }
     }
 
-    /// The work done so far.
+    /// Returns the work counts.
     #[inline]
     pub(crate) fn steps(&self) -> Steps {
         Steps { supports: self.supports, ..Steps::default() }
     }
 
-    /// What a later descent may begin with.
+    /// Returns the pairs from which a later descent may start.
     #[inline]
     pub fn pairs(&self) -> NearestPairs {
         let mut pairs = NearestPairs::default();
-        for pair in self.simplex().take(3) {
+        for pair in self.weighted_pairs().take(3) {
             pairs.pairs[pairs.count] = pair;
             pairs.count += 1;
         }
         pairs
     }
 
-    /// The pairs that the nearest point is made of.
-    fn simplex(&self) -> impl Iterator<Item = VertexPair> + '_ {
+    /// Iterates over the pairs with a positive weight, whose mean is the nearest point.
+    fn weighted_pairs(&self) -> impl Iterator<Item = VertexPair> + '_ {
         let weighted = self.pairs.iter().zip(self.weights);
         weighted.filter(|(_, weight)| *weight > 0.0).map(|(pair, _)| *pair)
     }
 }
 
-/// The nearest points and a plane; with a length, until they are known to be nearer or farther. `start`
-/// are pairs to begin with.
+/// Computes nearest points and a plane between the bodies, starting from the pairs `start`.
+///
+/// If `length` is given, ends as soon as the distance is decided to be smaller or larger.
 #[inline]
-pub(crate) fn nearest(difference: &Difference, start: &NearestPairs, than: Option<f64>) -> Found {
+pub(crate) fn nearest_points(
+    difference: &Difference,
+    start: &NearestPairs,
+    length: Option<f64>,
+) -> DescentResult {
     let noise = difference.noise.point();
-    // What is proven is less than what is computed by this, mostly.
-    let than = than.map(|than| [than + 3.0 * noise, than - 1.5 * noise]);
-    reached(difference, start, &Goal { gap: noise, than, share: None })
+    // The proven bounds are mostly weaker than the computed ones by these amounts.
+    let thresholds = length.map(|length| [length + 3.0 * noise, length - 1.5 * noise]);
+    search_until(difference, start, &Goal { max_gap: noise, thresholds, relative: None })
 }
 
-/// The same to such a share of what bodies are farther apart than a length, if they are.
+/// Computes nearest points and a plane to a relative accuracy, for bodies farther apart than the length `beyond`.
+///
+/// Ends as soon as the computed bounds differ by at most the fraction `share` of `lower - beyond`, or by one noise.
 #[inline]
-pub fn nearly(difference: &Difference, start: &NearestPairs, share: f64, beyond: f64) -> Found {
-    let share = Some([share, beyond]);
-    reached(difference, start, &Goal { gap: difference.noise.point(), than: None, share })
+pub fn nearly(
+    difference: &Difference,
+    start: &NearestPairs,
+    share: f64,
+    beyond: f64,
+) -> DescentResult {
+    let relative = Some([share, beyond]);
+    search_until(
+        difference,
+        start,
+        &Goal { max_gap: difference.noise.point(), thresholds: None, relative },
+    )
 }
 
+/// Searches in up to three stages, until `goal` is reached: by a descent in rounded numbers, by the plane of the
+/// simplex, and by a descent in numbers of twice the precision.
 #[inline]
-fn reached(difference: &Difference, start: &NearestPairs, goal: &Goal) -> Found {
-    let mut found = Found { supports: u32::from(start.is_empty()), ..Found::nothing() };
-    let simplex = begin(difference, start);
-    descend::<f64>(difference, simplex, goal, &mut found);
+fn search_until(difference: &Difference, start: &NearestPairs, goal: &Goal) -> DescentResult {
+    let mut found =
+        DescentResult { supports: u32::from(start.is_empty()), ..DescentResult::unbounded() };
+    let simplex = starting_simplex(difference, start);
+    descend_to_nearest::<f64>(difference, simplex, goal, &mut found);
     if !goal.is_reached(&found) {
-        polish(difference, &mut found);
+        try_simplex_plane(difference, &mut found);
     }
     if !goal.is_reached(&found) {
-        descend_with_more_digits(difference, goal, &mut found);
+        descend_in_twice_precision(difference, goal, &mut found);
     }
-    found.settle(difference);
+    found.verify_plane(difference);
     found
 }
 
-/// The simplex of some pairs; of a first support point, if there are none.
-fn begin(difference: &Difference, start: &NearestPairs) -> Simplex<f64> {
-    let corners = start.iter().map(|pair| difference.corner(pair));
-    Simplex::of(corners)
-        .unwrap_or_else(|| Simplex::new(difference.lowest(difference.guess(), None)))
+/// Returns the simplex of the given pairs. If there are none, returns a support point along the guessed direction.
+fn starting_simplex(difference: &Difference, start: &NearestPairs) -> Simplex<f64> {
+    let corners = start.iter().map(|pair| difference.corner_at(pair));
+    Simplex::from_corners(corners).unwrap_or_else(|| {
+        Simplex::new(difference.support_point(difference.guessed_direction(), None))
+    })
 }
 
-/// Tries the plane across the simplex.
-fn polish(difference: &Difference, found: &mut Found) {
-    let Some(normal) = across_simplex(difference, found) else { return };
+/// Computes the plane perpendicular to the simplex, and keeps it if its gap is larger.
+fn try_simplex_plane(difference: &Difference, found: &mut DescentResult) {
+    let Some(normal) = simplex_normal(difference, found) else { return };
     let normal = if normal.dot(found.normal) < 0.0 { -normal } else { normal };
-    let lowest = difference.lowest(normal, found.lowest);
+    let lowest = difference.support_point(normal, found.lowest);
     found.supports += 1;
-    found.note_plane(normal, &lowest);
-    found.settle(difference);
+    found.record_plane(normal, &lowest);
+    found.verify_plane(difference);
 }
 
-/// The normal across a simplex of two or three points by its edges, not by its corners: where both bodies' own
-/// are short, rounding turns it less.
-fn across_simplex(difference: &Difference, found: &Found) -> Option<DVec3> {
+/// Computes the unit normal of a simplex of two or three points from its edges instead of its corners. For short edges
+/// of both bodies rounding changes this normal less.
+///
+/// `None` for other numbers of points, or if the normal has no length.
+fn simplex_normal(difference: &Difference, found: &DescentResult) -> Option<DVec3> {
     let bodies = difference.bodies;
     let NearestPairs { pairs: [a, b, c], count } = found.pairs();
-    let across = match count {
+    let normal = match count {
         2 => {
             let edge = bodies.displacement_between(a, b);
             let nearest =
@@ -345,70 +373,76 @@ fn across_simplex(difference: &Difference, found: &Found) -> Option<DVec3> {
         ]),
         _ => return None,
     };
-    unit(across)
+    unit_vector(normal)
 }
 
-/// The rest of the way, where ties are told apart by digits that rounding has lost.
+/// Continues the descent in numbers of twice the precision, which resolve ties within rounding error.
 #[cold]
 #[inline(never)]
-fn descend_with_more_digits(difference: &Difference, goal: &Goal, found: &mut Found) {
+fn descend_in_twice_precision(difference: &Difference, goal: &Goal, found: &mut DescentResult) {
     let corner = |pair| Corner { at: difference.bodies.terms(pair).twice(), pair };
-    if let Some(simplex) = Simplex::<Twice>::of(found.simplex().take(3).map(corner)) {
-        descend::<Twice>(difference, simplex, goal, found);
+    if let Some(simplex) =
+        Simplex::<Twice>::from_corners(found.weighted_pairs().take(3).map(corner))
+    {
+        descend_to_nearest::<Twice>(difference, simplex, goal, found);
     }
 }
 
 /// A plane between the bodies.
 #[derive(Debug, Clone, Copy)]
-pub struct Plane {
-    /// What it proves, if that is positive.
+pub struct GapPlane {
+    /// Gap that the plane proves, if it is positive.
     pub gap: PlaneGap,
-    /// A pair of support points along it.
+    /// Vertex pair lowest along the normal.
     pub(crate) lowest: VertexPair,
-    /// How far the bodies, and the points that they were made from, may reach beyond these.
-    pub(crate) beyond: f64,
+    /// Bound on the distance that the bodies, and the points that they were built from, reach beyond this pair.
+    pub(crate) excess: f64,
 }
 
-impl Found {
-    /// The best plane, if there is one.
+impl DescentResult {
+    /// Returns the best plane, with a proven gap. `None` if no plane was verified.
     #[inline]
-    pub fn plane(&self, difference: &Difference) -> Option<Plane> {
-        let (normal, lowest, beyond) = (self.normal, self.lowest?, self.beyond?);
-        let gap = (self.lower - difference.noise.lowered() - beyond).next_down();
-        Some(Plane { gap: PlaneGap { normal, gap }, lowest, beyond })
+    pub fn plane(&self, difference: &Difference) -> Option<GapPlane> {
+        let (normal, lowest, excess) = (self.normal, self.lowest?, self.excess?);
+        let gap = (self.lower - difference.noise.lowered() - excess).next_down();
+        Some(GapPlane { gap: PlaneGap { normal, gap }, lowest, excess })
     }
 
-    /// The same, or one that tells bodies apart that are less so than rounding.
+    /// Returns the best plane. If its gap is not positive and the bodies are near contact, tries planes whose gaps are
+    /// computed nearly without rounding ([`Self::sharpest_plane`]).
     #[inline]
-    pub(crate) fn best_plane(&self, difference: &Difference) -> Option<Plane> {
+    pub(crate) fn separating_plane(&self, difference: &Difference) -> Option<GapPlane> {
         let plane = self.plane(difference);
         let is_open = plane.is_none_or(|plane| plane.gap.gap <= 0.0);
-        let is_near = self.upper <= NEAR * difference.noise.point();
-        if is_open && is_near { self.sharp_plane(difference).or(plane) } else { plane }
+        let is_near = self.upper <= MAX_NEAR_CONTACT * difference.noise.point();
+        if is_open && is_near { self.sharpest_plane(difference).or(plane) } else { plane }
     }
 
-    /// A plane across the simplex, or from its only point, with the gap that a check finds, less what the
-    /// inputs may reach beyond the bodies.
+    /// Returns the best of three planes by the gap that verification computes ([`TwoBodies::input_gap`]).
+    ///
+    /// The normals are that of the simplex (or of its first point) in both senses, and that of the stored plane. `None`
+    /// if no gap is positive, or the simplex has no normal.
     #[cold]
     #[inline(never)]
-    fn sharp_plane(&self, difference: &Difference) -> Option<Plane> {
-        let first = self.simplex().next().and_then(|pair| unit(difference.point(pair)));
-        let across = across_simplex(difference, self).or(first)?;
-        let planes = [across, -across, self.normal]
+    fn sharpest_plane(&self, difference: &Difference) -> Option<GapPlane> {
+        let first =
+            self.weighted_pairs().next().and_then(|pair| unit_vector(difference.point(pair)));
+        let normal = simplex_normal(difference, self).or(first)?;
+        let planes = [normal, -normal, self.normal]
             .into_iter()
-            .filter_map(unit)
+            .filter_map(unit_vector)
             .map(|normal| PlaneGap { normal, gap: difference.bodies.input_gap(normal) });
         let gap = planes.max_by(|a, b| a.gap.total_cmp(&b.gap)).filter(|plane| plane.gap > 0.0)?;
-        let lowest = difference.lowest(gap.normal, self.lowest).pair;
-        Some(Plane { gap, lowest, beyond: 0.0 })
+        let lowest = difference.support_point(gap.normal, self.lowest).pair;
+        Some(GapPlane { gap, lowest, excess: 0.0 })
     }
 
-    /// How far the point and the plane are apart, as computed.
-    pub(crate) fn gap(&self) -> f64 {
+    /// Returns the difference of the computed bounds, where the lower bound counts as at least 0.
+    pub(crate) fn computed_gap(&self) -> f64 {
         self.upper - self.lower.max(0.0)
     }
 
-    /// The point, by up to three pairs and their weights.
+    /// Returns the nearest points as up to three vertex pairs and their weights. Unused weights are 0.
     #[inline]
     pub fn points(&self) -> ([VertexPair; 3], [f64; 3]) {
         let mut points = ([self.pairs[0]; 3], [0.0; 3]);
@@ -419,9 +453,10 @@ impl Found {
         points
     }
 
-    /// The points, with what they prove.
+    /// Returns the nearest points with the proven upper bound of the distance. The bound is 0 if four pairs are proven
+    /// to enclose the origin.
     #[inline]
-    pub(crate) fn near(&self, difference: &Difference) -> NearPoints {
+    pub(crate) fn near_points(&self, difference: &Difference) -> NearPoints {
         let Self { mut pairs, weights, .. } = *self;
         for k in 1..4 {
             if weights[k] == 0.0 {
@@ -430,48 +465,56 @@ impl Found {
         }
         let bodies = difference.bodies;
         if self.full && encloses(&pairs.map(|pair| bodies.terms(pair)), bodies.scale()) {
-            return meeting(difference, pairs, weights);
+            return common_point(difference, pairs, weights);
         }
-        let is_near = self.upper <= NEAR * difference.noise.point();
-        let met = if is_near { self.enclosing(difference) } else { None };
-        met.unwrap_or_else(|| {
+        let is_near = self.upper <= MAX_NEAR_CONTACT * difference.noise.point();
+        let common = if is_near { self.points_around_origin(difference) } else { None };
+        common.unwrap_or_else(|| {
             let distance = (self.upper + difference.noise.mean_raised()).next_up();
             NearPoints { pairs, weights, distance }
         })
     }
 
-    /// Four pairs that enclose the origin, where it lies on a simplex of fewer, or beside it by rounding alone,
-    /// as of boxes that are lined up: that simplex, and support points along the axes.
+    /// Completes the simplex to four pairs that enclose the origin, with support points along the axes.
+    ///
+    /// Needed if the origin lies on a simplex of fewer pairs up to rounding, as for aligned boxes. `None` if no
+    /// choice encloses the origin.
     #[cold]
     #[inline(never)]
-    fn enclosing(&self, difference: &Difference) -> Option<NearPoints> {
+    fn points_around_origin(&self, difference: &Difference) -> Option<NearPoints> {
         let bodies = difference.bodies;
         let axes = DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]);
-        let beside: Vec<VertexPair> =
-            axes.map(|normal| difference.lowest(normal, None).pair).collect();
-        let (corners, mut weights) = (self.simplex().count(), [0.0; 4]);
+        let axis_pairs: Vec<VertexPair> =
+            axes.map(|normal| difference.support_point(normal, None).pair).collect();
+        let (corners, mut weights) = (self.weighted_pairs().count(), [0.0; 4]);
         let given = self.weights.iter().filter(|weight| **weight > 0.0);
         weights.iter_mut().zip(given).for_each(|(place, weight)| *place = *weight);
-        // Which of the six are taken, as bits.
+        // Each choice is a set of the six support points, as bits.
         let choices = (0_u32..1 << 6).filter(|bits| corners + bits.count_ones() as usize == 4);
-        let mut made = choices.map(|bits| {
-            let more = (0..6).filter(|k| bits >> k & 1 == 1).map(|k| beside[k]);
+        let mut completions = choices.map(|bits| {
+            let more = (0..6).filter(|k| bits >> k & 1 == 1).map(|k| axis_pairs[k]);
             let mut pairs = [VertexPair::default(); 4];
             pairs
                 .iter_mut()
-                .zip(self.simplex().chain(more))
+                .zip(self.weighted_pairs().chain(more))
                 .for_each(|(place, pair)| *place = pair);
             pairs
         });
-        let pairs =
-            made.find(|pairs| encloses(&pairs.map(|pair| bodies.terms(pair)), bodies.scale()))?;
-        Some(meeting(difference, pairs, weights))
+        let pairs = completions
+            .find(|pairs| encloses(&pairs.map(|pair| bodies.terms(pair)), bodies.scale()))?;
+        Some(common_point(difference, pairs, weights))
     }
 }
 
-/// Points of bodies that meet, by four pairs that enclose the origin. Where these are nearly in a plane, rounding
-/// leaves points apart that are one: exact volumes tell their weights.
-fn meeting(difference: &Difference, pairs: [VertexPair; 4], mut weights: [f64; 4]) -> NearPoints {
+/// Returns the common point of bodies, given four pairs that enclose the origin.
+///
+/// If the pairs are nearly coplanar, rounded weights leave the points of both bodies apart by more than a noise. Then
+/// exact volumes yield the weights.
+fn common_point(
+    difference: &Difference,
+    pairs: [VertexPair; 4],
+    mut weights: [f64; 4],
+) -> NearPoints {
     let apart: DVec3 = pairs.iter().zip(weights).map(|(p, w)| difference.point(*p) * w).sum();
     if apart.length() > difference.noise.point() {
         let corners = pairs.map(|pair| difference.bodies.terms(pair));

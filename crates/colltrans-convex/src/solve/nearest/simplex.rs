@@ -1,32 +1,35 @@
-//! The point of a simplex nearest to the origin, by the regions in which the origin may lie.
+//! Point of a simplex nearest to the origin, by a case distinction over the regions that may contain the origin.
 //!
-//! Corners with a positive weight span the face that the nearest point is an inner point of; the others are
-//! dropped. The way from the origin across that face, its *normal*, is not the nearest point itself: of a
-//! near one rounding turns the direction, of edges and triangles it does not.
+//! Corners with a positive weight span the face whose interior contains the nearest point. The others are removed. The
+//! *normal* is the direction from the origin perpendicular to that face. It is not computed from the nearest point,
+//! because rounding changes the direction of a short vector, but not that of edges and triangles.
 
 use glam::DVec3;
 
 use crate::setting::VertexPair;
 use colltrans_kernel::real::{Real, Vector};
 
-/// A point of `M` and the pair of vertices it comes from.
+/// Point of `M` with its vertex pair.
 #[derive(Debug, Clone, Copy)]
 pub struct Corner<T> {
+    /// Coordinates of the point.
     pub at: Vector<T>,
+    /// Vertices of the moving and of the fixed body.
     pub pair: VertexPair,
 }
 
-/// Up to four points of `M`, each with a weight.
+/// Simplex of up to four points of `M`, each with a weight.
 #[derive(Debug, Clone, Copy)]
 pub struct Simplex<T> {
     at: [Vector<T>; 4],
     pairs: [VertexPair; 4],
-    /// Zero beyond the corners that are there.
+    /// Weights of the nearest point; 0 beyond `count`.
     weights: [T; 4],
     count: usize,
 }
 
 impl<T: Real> Simplex<T> {
+    /// Builds the simplex of one corner, with weight 1.
     #[inline]
     pub fn new(corner: Corner<T>) -> Self {
         let mut weights = [T::ZERO; 4];
@@ -34,14 +37,17 @@ impl<T: Real> Simplex<T> {
         Self { at: [corner.at; 4], pairs: [corner.pair; 4], weights, count: 1 }
     }
 
-    /// Of up to three corners; `None` of none.
-    pub(super) fn of(mut corners: impl Iterator<Item = Corner<T>>) -> Option<Self> {
+    /// Builds the simplex of up to three corners. `None` if there are none.
+    pub(super) fn from_corners(mut corners: impl Iterator<Item = Corner<T>>) -> Option<Self> {
         let mut simplex = Self::new(corners.next()?);
         corners.for_each(|corner| simplex.push(corner));
         Some(simplex)
     }
 
-    /// Adds a corner, to a simplex of fewer than four.
+    /// Adds a corner.
+    ///
+    /// # Panics
+    /// If the simplex already has four corners.
     #[inline]
     pub fn push(&mut self, corner: Corner<T>) {
         self.at[self.count] = corner.at;
@@ -49,46 +55,48 @@ impl<T: Real> Simplex<T> {
         self.count += 1;
     }
 
-    /// Whether it is a tetrahedron, which contains the origin once [`Self::reduce`] has left it so.
+    /// Checks whether the simplex is a tetrahedron. After [`Self::reduce`] such a simplex contains the origin.
     #[inline]
     pub fn is_full(&self) -> bool {
         self.count == 4
     }
 
+    /// Checks whether a corner has this vertex pair.
     #[inline]
     pub(super) fn contains(&self, pair: VertexPair) -> bool {
         self.pairs[..self.count].contains(&pair)
     }
 
-    /// Four pairs and their weights; those without a weight mean nothing.
+    /// Returns four pairs and their weights. Pairs with weight 0 are not used.
     #[inline]
-    pub(super) fn weighted(&self) -> ([VertexPair; 4], [f64; 4]) {
+    pub(super) fn pairs_and_weights(&self) -> ([VertexPair; 4], [f64; 4]) {
         (self.pairs, self.weights.map(T::value))
     }
 
-    /// Drops what the nearest point does without, and returns that point.
+    /// Computes the nearest point, and removes the corners that it does not need.
     #[inline]
     pub fn reduce(&mut self) -> Vector<T> {
         let [a, b, c, d] = &self.at;
         self.weights = match self.count {
             1 => [T::of(1.0), T::ZERO, T::ZERO, T::ZERO],
-            2 => segment(a, b),
-            3 => triangle(a, b, c),
-            _ => tetrahedron([a, b, c, d]),
+            2 => segment_weights(a, b),
+            3 => triangle_weights(a, b, c),
+            _ => tetrahedron_weights([a, b, c, d]),
         };
-        self.keep_weighted()
+        self.drop_unweighted()
     }
 
-    /// The same of a tetrahedron too flat for its volume to tell.
+    /// Computes the nearest point of the faces of a tetrahedron, and removes the other corners. Used for a tetrahedron
+    /// so flat that rounded volumes do not locate the origin.
     #[cold]
     pub(super) fn reduce_to_face(&mut self) -> Vector<T> {
-        self.weights = nearest_face(self.at.each_ref());
-        self.keep_weighted()
+        self.weights = nearest_face_weights(self.at.each_ref());
+        self.drop_unweighted()
     }
 
-    /// Drops corners without a weight, and returns the point that the weights give.
+    /// Removes corners with weight 0, and returns the weighted mean of the others.
     #[inline]
-    fn keep_weighted(&mut self) -> Vector<T> {
+    fn drop_unweighted(&mut self) -> Vector<T> {
         let mut nearest = Vector::ZERO;
         let mut kept = 0;
         for k in 0..self.count {
@@ -106,7 +114,7 @@ impl<T: Real> Simplex<T> {
         nearest
     }
 
-    /// The direction across the simplex from the origin's side, of any length, for its nearest point.
+    /// Returns the direction from the origin perpendicular to the simplex (any length), given its nearest point.
     #[inline]
     pub fn normal(&self, nearest: &Vector<T>) -> DVec3 {
         let [a, b, c, _] = &self.at;
@@ -125,14 +133,14 @@ impl<T: Real> Simplex<T> {
     }
 }
 
-/// Weights of the point of a segment nearest to the origin.
+/// Returns the weights of the point of a segment nearest to the origin.
 #[inline]
-fn segment<T: Real>(a: &Vector<T>, b: &Vector<T>) -> [T; 4] {
+fn segment_weights<T: Real>(a: &Vector<T>, b: &Vector<T>) -> [T; 4] {
     let one = T::of(1.0);
     let edge = b.minus(a);
     let (along, square) = (-a.dot(&edge), edge.dot(&edge));
     if along >= square {
-        // Of two points in one place, too.
+        // This includes coincident points.
         [T::ZERO, one, T::ZERO, T::ZERO]
     } else if along > T::ZERO {
         let t = along / square;
@@ -142,9 +150,10 @@ fn segment<T: Real>(a: &Vector<T>, b: &Vector<T>) -> [T; 4] {
     }
 }
 
-/// The same of a triangle (the regions of Ericson, "Real-Time Collision Detection", 5.1.5).
+/// Returns the weights of the point of a triangle nearest to the origin (Ericson, "Real-Time Collision Detection",
+/// section 5.1.5).
 #[inline]
-fn triangle<T: Real>(a: &Vector<T>, b: &Vector<T>, c: &Vector<T>) -> [T; 4] {
+fn triangle_weights<T: Real>(a: &Vector<T>, b: &Vector<T>, c: &Vector<T>) -> [T; 4] {
     let (zero, one) = (T::ZERO, T::of(1.0));
     let (ab, ac) = (b.minus(a), c.minus(a));
     let (ab_a, ac_a) = (-ab.dot(a), -ac.dot(a));
@@ -159,7 +168,7 @@ fn triangle<T: Real>(a: &Vector<T>, b: &Vector<T>, c: &Vector<T>) -> [T; 4] {
     if ac_c >= zero && ab_c <= ac_c {
         return [zero, zero, one, zero];
     }
-    // Areas along the normal, not products of the sums above: of slivers these would lose twice as much.
+    // Areas along the normal. Products of the sums above would lose twice as many digits for thin triangles.
     let normal = ab.cross(&ac);
     let at_c = normal.dot(&a.cross(b));
     if at_c <= zero && ab_a >= zero && ab_b <= zero {
@@ -181,26 +190,27 @@ fn triangle<T: Real>(a: &Vector<T>, b: &Vector<T>, c: &Vector<T>) -> [T; 4] {
     [at_a / sum, at_b / sum, at_c / sum, zero]
 }
 
-/// The same of a tetrahedron: itself, if the origin is on the inner side of all planes.
+/// Returns the weights of the point of a tetrahedron nearest to the origin. This is the origin itself if it is on the
+/// inner side of all faces.
 #[inline]
-fn tetrahedron<T: Real>(corners: [&Vector<T>; 4]) -> [T; 4] {
+fn tetrahedron_weights<T: Real>(corners: [&Vector<T>; 4]) -> [T; 4] {
     let [a, b, c, d] = corners;
     let volume = |x: &Vector<T>, y: &Vector<T>, z: &Vector<T>| x.dot(&y.cross(z));
-    let parts = [volume(b, c, d), -volume(a, c, d), volume(a, b, d), -volume(a, b, c)];
-    let inside = parts.iter().all(|x| *x > T::ZERO) || parts.iter().all(|x| *x < T::ZERO);
+    let volumes = [volume(b, c, d), -volume(a, c, d), volume(a, b, d), -volume(a, b, c)];
+    let inside = volumes.iter().all(|x| *x > T::ZERO) || volumes.iter().all(|x| *x < T::ZERO);
     if inside {
-        let sum = parts[0] + parts[1] + parts[2] + parts[3];
-        return parts.map(|x| x / sum);
+        let sum = volumes[0] + volumes[1] + volumes[2] + volumes[3];
+        return volumes.map(|x| x / sum);
     }
-    nearest_face(corners)
+    nearest_face_weights(corners)
 }
 
-/// The weights over the face of a tetrahedron that is nearest to the origin.
-fn nearest_face<T: Real>(corners: [&Vector<T>; 4]) -> [T; 4] {
+/// Returns the weights of the point of the faces of a tetrahedron nearest to the origin.
+fn nearest_face_weights<T: Real>(corners: [&Vector<T>; 4]) -> [T; 4] {
     let mut best = ([T::ZERO; 4], None);
     for left_out in 0..4 {
         let [i, j, k] = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]][left_out];
-        let [u, v, w, _] = triangle(corners[i], corners[j], corners[k]);
+        let [u, v, w, _] = triangle_weights(corners[i], corners[j], corners[k]);
         let [x, y, z] = [corners[i].times(u), corners[j].times(v), corners[k].times(w)];
         let point = x.plus(&y).plus(&z);
         let square = point.dot(&point);

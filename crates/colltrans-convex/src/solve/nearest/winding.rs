@@ -1,9 +1,11 @@
-//! Whether a surface of triangles between points of `M` winds around the origin, exactly.
+//! Exact check whether a surface of triangles between points of `M` winds around the origin.
 //!
-//! Each directed edge has exactly one opposite, so the surface is closed. Each triangle is counter-clockwise
-//! as seen from the origin's other side, or without volume over the origin, and none contains it; some have
-//! volume. So the solid angles, none negative, sum to a positive multiple of a whole turn, and each ray from
-//! the origin meets the surface.
+//! - *Closed*: each directed edge has exactly one opposite.
+//! - *Oriented*: each triangle is counter-clockwise as seen from outside, or has no volume with the origin. At least
+//!   one has volume. None contains the origin; the caller ensures this.
+//!
+//! Then the solid angles are not negative and sum to a positive multiple of `4 pi`. Therefore each ray from the origin
+//! intersects the surface.
 
 use std::cmp::Ordering;
 
@@ -13,16 +15,20 @@ use crate::answer::Enclosure;
 use crate::setting::TwoBodies;
 use colltrans_kernel::volume;
 
-/// Whether it does, if no triangle contains the origin.
-pub(crate) fn surrounds(bodies: &TwoBodies, surface: &Enclosure) -> bool {
+/// Checks whether a surface is closed and winds around the origin, provided that no triangle contains the origin.
+pub(crate) fn surrounds_origin(bodies: &TwoBodies, surface: &Enclosure) -> bool {
     let points: Vec<_> = surface.pairs.iter().map(|pair| bodies.difference(*pair)).collect();
-    is_closed(&surface.triangles) && winds(bodies, &points, surface)
+    is_closed(&surface.triangles) && winds_around_origin(bodies, &points, surface)
 }
 
-/// The same of a surface that is closed, with the points of its pairs.
-pub(super) fn winds(bodies: &TwoBodies, points: &[DVec3], surface: &Enclosure) -> bool {
+/// Checks whether a closed surface winds around the origin. `points` are the rounded points of its pairs.
+pub(super) fn winds_around_origin(
+    bodies: &TwoBodies,
+    points: &[DVec3],
+    surface: &Enclosure,
+) -> bool {
     let size = bodies.scale();
-    let mut some = false;
+    let mut has_volume = false;
     for corners in &surface.triangles {
         let rounded = volume::rounded_sign(corners.map(|k| points[k as usize]), size);
         let sign = rounded.unwrap_or_else(|| {
@@ -32,17 +38,18 @@ pub(super) fn winds(bodies: &TwoBodies, points: &[DVec3], surface: &Enclosure) -
         match sign {
             Ordering::Less => return false,
             Ordering::Equal => {}
-            Ordering::Greater => some = true,
+            Ordering::Greater => has_volume = true,
         }
     }
-    some
+    has_volume
 }
 
+/// Checks whether each directed edge of the triangles occurs once, and its opposite once.
 fn is_closed(triangles: &[[u32; 3]]) -> bool {
     let edges = triangles.iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
-    let mut there: Vec<[u32; 2]> = edges.collect();
-    let mut back: Vec<[u32; 2]> = there.iter().map(|&[x, y]| [y, x]).collect();
-    there.sort_unstable();
-    back.sort_unstable();
-    there == back && there.windows(2).all(|pair| pair[0] != pair[1])
+    let mut edges_sorted: Vec<[u32; 2]> = edges.collect();
+    let mut opposites: Vec<[u32; 2]> = edges_sorted.iter().map(|&[x, y]| [y, x]).collect();
+    edges_sorted.sort_unstable();
+    opposites.sort_unstable();
+    edges_sorted == opposites && edges_sorted.windows(2).all(|pair| pair[0] != pair[1])
 }

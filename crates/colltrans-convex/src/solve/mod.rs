@@ -267,8 +267,8 @@ impl<O: Observer> CastState<'_, '_, '_, O> {
 
     /// Computes a portal or a separating line from a guess of the contact normal.
     ///
-    /// Walks over the faces of `M` if the guess is not lateral. Encloses the line with wide portals if it
-    /// is lateral or the walk fails.
+    /// Walks over the faces of `M` if the guess is not lateral. Calls [`portal::enclose`] if it is lateral or the walk
+    /// fails.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a guess copied through memory stalls")]
     fn enclosure_from_guess(&mut self, start: NormalGuess) -> Option<Enclosure> {

@@ -34,7 +34,7 @@ pub(crate) enum WalkResult {
     Lost,
 }
 
-/// Maximum number of faces crossed from a guess. Beyond that, wide portals are faster (measured).
+/// Maximum number of faces crossed from a guess. Beyond that, enclosing the line is faster (measured).
 const MAX_CROSSINGS: usize = 20;
 
 /// Maximum number of faces crossed from an earlier portal. Beyond that, a cast from scratch is faster
@@ -130,9 +130,9 @@ pub(crate) struct WalkLimits {
     /// Maximum number of corrections of the guess by the curvature of the ellipsoids.
     max_corrections: usize,
     /// Maximum distance of the line, in widths of the last triangle that is so near, at which a walk
-    /// begins if corrections come no nearer. From farther away, wide portals are faster.
+    /// begins if corrections come no nearer. From farther away, enclosing the line is faster.
     max_widths: f64,
-    /// Maximum number of faces of `M` crossed. Beyond that, wide portals are faster.
+    /// Maximum number of faces of `M` crossed. Beyond that, enclosing the line is faster.
     max_crossings: usize,
 }
 

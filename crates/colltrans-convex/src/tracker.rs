@@ -263,12 +263,12 @@ impl<'a> Tracker<'a> {
         let adaptive = self.focus.is_none() && solver_focus.features;
         let CastSlot { carry, policy, warm_started, in_last_query } = &mut self.slots[index];
         if let Some(steps) = carry.steps {
-            policy.note(*warm_started, &steps);
+            policy.record_cast(*warm_started, &steps);
             if *in_last_query {
                 self.steps += steps;
             }
         }
-        let paused = adaptive && !policy.follows();
+        let paused = adaptive && !policy.should_warm_start();
         let focus =
             self.focus.unwrap_or(solver_focus.with_features(solver_focus.features && !paused));
         let last = if paused { WarmStart::Nothing } else { carry.start };

@@ -137,7 +137,7 @@ fn farthest_point(
 
 /// Returns the vertex of a feature that is farthest along `direction` (body frame).
 fn farthest_vertex(body: &ConvexPolyhedron, feature: Feature, direction: DVec3) -> u32 {
-    let bound = |v: u32| direction.dot(body.vertices()[v as usize]);
+    let along = |v: u32| direction.dot(body.vertices()[v as usize]);
     match feature {
         Feature::Vertex(v) => v,
         Feature::Edge([v, w]) => {

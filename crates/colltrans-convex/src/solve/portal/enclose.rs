@@ -225,7 +225,7 @@ fn nearest_point_and_slope(edge: &[Tangent; 2]) -> (DVec2, DVec2) {
 /// Returns the parameter of the point of a segment nearest to the line, from 0 at its start to 1 at
 /// its end.
 pub(super) fn nearest_parameter([from, to]: [DVec2; 2]) -> f64 {
-    let bound = to - from;
+    let along = to - from;
     let square = along.length_squared();
     if square > 0.0 { (-from.dot(along) / square).clamp(0.0, 1.0) } else { 0.0 }
 }
@@ -274,7 +274,7 @@ pub(crate) fn widest_margin<O: Observer>(
 /// it between its ends at a distance of no more than `|margin|`. Then no normal has a larger margin.
 fn is_widest_segment(segment: &[Point; 2], found: &SeparatingLine, rounding: f64) -> bool {
     let [a, b] = segment.map(|p| p.shadow());
-    let bound = b - a;
+    let along = b - a;
     let is_between = a.dot(along) < 0.0 && b.dot(along) > 0.0;
     let is_near = || {
         normal_and_distance(segment).is_none_or(|(_, away)| away - found.margin.abs() <= rounding)
@@ -300,7 +300,7 @@ fn verified_line(
 /// There is no cancellation, not even if the line is close to a long segment.
 fn normal_and_distance(segment: &[Point; 2]) -> Option<(DVec2, f64)> {
     let [a, b] = segment.map(|p| p.shadow());
-    let bound = b - a;
+    let along = b - a;
     if a.dot(along) < 0.0 && b.dot(along) > 0.0 {
         let length = along.length();
         let distance = accurate_det(a, b) / length;

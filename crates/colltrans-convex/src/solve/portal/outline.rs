@@ -172,7 +172,7 @@ impl RimInDifference {
         }
         // One point opposite the line, and two whose chord is halfway between the line and the rim.
         let ahead = if distance > 0.0 { place / distance } else { DVec2::X };
-        let bound = 0.5 * (1.0 + distance);
+        let along = 0.5 * (1.0 + distance);
         let aside = ahead.perp() * (1.0 - along * along).sqrt();
         let corners = [ahead * along - aside, ahead * along + aside, -ahead];
         let [of_x, of_y] = [axis.cross(v), u.cross(axis)];

@@ -253,7 +253,7 @@ fn step_on_constraint(
 ) -> (DVec2, [f64; 2]) {
     let square = gradient_difference.length_squared();
     let to_equal = gradient_difference * (height_difference / square);
-    let bound = gradient_difference.perp();
+    let along = gradient_difference.perp();
     let bending = along.dot(curvature * along);
     let ahead = along.dot(gradient - curvature * to_equal);
     let rest = if bending > MIN_CURVATURE_RATIO * square {

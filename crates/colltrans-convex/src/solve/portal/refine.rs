@@ -248,7 +248,7 @@ pub(super) fn line_weights(portal: &Portal) -> [f64; 3] {
     }
     let mut nearest = (f64::INFINITY, [1.0, 0.0, 0.0]);
     for (i, j) in [(0, 1), (1, 2), (2, 0)] {
-        let bound = shadows[j] - shadows[i];
+        let along = shadows[j] - shadows[i];
         let share = nearest_parameter([shadows[i], shadows[j]]);
         let distance = (shadows[i] + along * share).length_squared();
         if distance < nearest.0 {

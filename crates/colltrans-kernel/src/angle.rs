@@ -1,29 +1,25 @@
-//! Sine and cosine of an angle, with the same bits on every platform.
+//! Sine and cosine of an angle, with equal bits on every platform.
 //!
-//! Notation. `u = 2^-53`. The angle is a sum of two numbers, `r` what is left of it beyond `k` quarter turns,
-//! `|r| <= pi/4` and a little.
+//! `docs/theory/exact-arithmetic.md` derives the error bounds. Notation: `u = 2^-53`. The angle is a sum of
+//! two numbers. `r` is the remainder after `k` quarter turns, `|r|` at most slightly above `pi/4`.
 //!
-//! - *Reduction.* `pi/2 = P1 + P2 + P3`, where `P1` and `P2` have at most 33 bits, so that `k P1` and `k P2`
-//!   are exact for all angles admitted (`k < 2^17`). `high - k P1` is exact, as both are nearly the same;
-//!   what rounding takes from the next difference is kept. So `r` is known as a sum of two numbers to within
-//!   `2^-100`.
-//! - *Series.* Taylor's, to `r^17` and `r^18`: what is left out is less than `2^-62`. The last sum is of `r`,
-//!   or of `1 - r^2 / 2` with what rounding took from it, and of a term of at most `0.31`, of which a few
-//!   roundings are less than `u` together.
+//! - *Reduction.* `pi/2` is a sum of three numbers, of which the first two have at most 33 bits (Cody and
+//!   Waite). `r` is a sum of two numbers with an error below `2^-100`.
+//! - *Series.* The Taylor series are used up to `r^17` and `r^18`.
 //!
-//! Both are off by less than `2 u`; of a small angle the sine by `2 u` of itself, and `1 - cos` by `4 u` of
-//! itself.
+//! Sine and cosine have an absolute error below `2 u`. For a small angle, the relative error of the sine is
+//! below `2 u`, and of `1 - cos` at most `4 u`.
 
 use crate::error_free::{difference_error, sum_error};
 
-/// The largest angle admitted, by magnitude.
+/// Maximum magnitude of an accepted angle, in radians.
 pub const MOST: f64 = 1e5;
 
-/// `pi / 2` as a sum.
+/// Terms of a sum for `pi / 2`, the first two with at most 33 bits.
 const QUARTER: [f64; 3] =
     [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
 
-/// `1 / k!` with alternating signs, for `k = 3, 5, ..., 17`.
+/// Coefficients `1 / k!` of the sine with alternating signs, for `k = 3, 5, ..., 17`.
 const SINE: [f64; 8] = [
     -1.0 / 6.0,
     1.0 / 120.0,
@@ -35,7 +31,7 @@ const SINE: [f64; 8] = [
     1.0 / 355_687_428_096_000.0,
 ];
 
-/// The same for `k = 4, 6, ..., 18`.
+/// Coefficients `1 / k!` of the cosine with alternating signs, for `k = 4, 6, ..., 18`.
 const COSINE: [f64; 8] = [
     1.0 / 24.0,
     -1.0 / 720.0,
@@ -47,16 +43,16 @@ const COSINE: [f64; 8] = [
     -1.0 / 6_402_373_705_728_000.0,
 ];
 
-/// An angle's sine and cosine.
+/// Sine and cosine of an angle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Turn {
     pub sin: f64,
     pub cos: f64,
-    /// `1 - cos`.
+    /// The versine `1 - cos`.
     pub versine: f64,
 }
 
-/// Of an angle in radians, of at most [`MOST`], as a sum.
+/// Computes sine, cosine and versine of the angle `high + low` in radians, of magnitude at most [`MOST`].
 #[inline]
 pub fn turn(high: f64, low: f64) -> Turn {
     let k = (high * std::f64::consts::FRAC_2_PI).round();
@@ -90,7 +86,7 @@ mod tests {
         RBig::from(x)
     }
 
-    /// `pi`, by Machin's formula, to within `2^-200`.
+    /// Returns `pi` within `2^-200`, by Machin's formula.
     fn pi() -> RBig {
         let arctan = |n: i64| {
             let (mut sum, mut power) = (RBig::ZERO, RBig::ONE / whole(n));
@@ -105,7 +101,8 @@ mod tests {
         whole(16) * arctan(5) - whole(4) * arctan(239)
     }
 
-    /// Sine and cosine by Taylor's series of what is left of whole turns, cut to some digits on the way.
+    /// Computes sine and cosine by the Taylor series of the remainder after whole turns. Terms are truncated
+    /// to multiples of `2^-200`.
     fn exactly(angle: &RBig) -> [RBig; 2] {
         let turn = whole(2) * pi();
         let turns = (angle.clone() / turn.clone() + RBig::ONE / whole(2)).floor();

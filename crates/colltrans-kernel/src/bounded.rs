@@ -1,7 +1,7 @@
-//! Numbers with proven bounds.
+//! Numbers with proven lower and upper bounds.
 
-/// A number and what is proven of it: `lower <= value <= upper`, and the true one lies between the
-/// same bounds. An infinite bound claims nothing.
+/// An estimate with proven bounds: `lower <= value <= upper`, and the true number lies between the same
+/// bounds. An infinite bound claims nothing.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -11,29 +11,29 @@
 pub struct Bounded {
     /// The best estimate.
     pub value: f64,
-    /// Not more than the true number.
+    /// Proven lower bound of the true number; minus infinity claims nothing.
     #[cfg_attr(feature = "serde", serde(with = "crate::written::or_minus_infinite"))]
     pub lower: f64,
-    /// Not less than the true number.
+    /// Proven upper bound of the true number; infinity claims nothing.
     #[cfg_attr(feature = "serde", serde(with = "crate::written::or_infinite"))]
     pub upper: f64,
 }
 
 impl Bounded {
-    /// `[lower, upper]`.
+    /// Returns the bounds as `[lower, upper]`.
     pub const fn bounds(&self) -> [f64; 2] {
         [self.lower, self.upper]
     }
 
-    /// Of the number with the other sign.
+    /// Returns the bounds of the negated number.
     #[must_use]
     #[inline]
     pub fn negated(self) -> Self {
-        // Not -0.
+        // A subtraction from 0 avoids -0.
         Self { value: 0.0 - self.value, lower: 0.0 - self.upper, upper: 0.0 - self.lower }
     }
 
-    /// Of a number that is not negative whatever was computed.
+    /// Returns the bounds raised to at least 0, for a number that is not negative.
     #[must_use]
     #[inline]
     pub fn clamped(self) -> Self {
@@ -42,13 +42,14 @@ impl Bounded {
     }
 }
 
-/// A contact at an end of a range: where it is, between proven bounds.
+/// A contact at one end of a contact range, with proven bounds.
 #[doc(hidden)]
 pub trait RangeEnd {
-    /// Returns where the bodies meet, in multiples of the direction.
+    /// Returns the translation at the contact with its bounds, in multiples of the direction.
     fn bounded(&self) -> Bounded;
 
-    /// Returns where they part along the direction, of the first contact of the reversed cast.
+    /// Returns the translation at which the bodies separate along the direction, where `self` is the first
+    /// contact of the reversed cast.
     fn exit(&self) -> Bounded {
         self.bounded().negated()
     }

@@ -1,14 +1,16 @@
-//! Down two trees of boxes at once.
+//! Simultaneous descent of two bounding volume trees.
 //!
-//! A pair of nodes stands for all pairs of what is below them. [`node_to_split`] is which node of a pair is replaced by its
-//! children, by the same rule in every search and every proof. [`best_first`] splits the pair with the least bound next, and
-//! goes straight down until something is found, because what is found bounds what has to be kept.
+//! A pair of nodes represents all pairs of items below the two nodes. [`node_to_split`] selects the node of a
+//! pair that is replaced by its children. All searches and all proofs use this rule. [`best_first`] splits
+//! the pair with the least bound next. Until it has a first result, it continues with the better child of the
+//! last pair, because a result limits the number of pairs in the queue.
 
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 use std::ops::Range;
 
-/// Returns which of two nodes is split: the larger one, the first of equal ones, but never a leaf; `None` of two leaves.
+/// Selects the node to split: the larger of two inner nodes (the first of equal ones), or the only inner
+/// node. Returns `None` for two leaves.
 #[inline]
 pub fn node_to_split(are_leaves: [bool; 2], size: impl Fn(usize) -> f64) -> Option<usize> {
     match are_leaves {
@@ -19,7 +21,7 @@ pub fn node_to_split(are_leaves: [bool; 2], size: impl Fn(usize) -> f64) -> Opti
     }
 }
 
-/// Returns a pair with another node in the place of the first (0) or the second one (1).
+/// Returns `pair` with `node` in place of the first (0) or the second element (1).
 #[inline]
 #[must_use]
 pub fn replaced<T>(mut pair: [T; 2], which: usize, node: T) -> [T; 2] {
@@ -27,12 +29,13 @@ pub fn replaced<T>(mut pair: [T; 2], which: usize, node: T) -> [T; 2] {
     pair
 }
 
-/// The nodes of a tree that a search has come to, and what the leaves among them hold: each is in many pairs.
+/// The nodes of one tree that a search has visited, each with data computed by the search (a *view*), and the
+/// items of the visited leaves. Both are cached, because a node occurs in many pairs.
 #[derive(Debug, Clone)]
 pub struct Seen<V, I> {
     views: Vec<V>,
-    /// Where the children of each view are among the views, or what it holds among the items, and how many; once they have
-    /// been asked for.
+    /// For each view, `[first, count]` of its children in `views`, or of its items in `items`; `None` before
+    /// the first request.
     parts: Vec<Option<[u32; 2]>>,
     items: Vec<I>,
 }
@@ -44,7 +47,7 @@ impl<V, I> Default for Seen<V, I> {
 }
 
 impl<V, I> Seen<V, I> {
-    /// Forgets all but the root.
+    /// Clears the cache, except for the root.
     #[inline]
     pub fn start(&mut self, root: V) {
         self.views.clear();
@@ -59,13 +62,14 @@ impl<V, I> Seen<V, I> {
         self.parts.push(None);
     }
 
-    /// Returns a view by its number.
+    /// Returns the view with this number.
     #[inline]
     pub fn view(&self, at: u32) -> &V {
         &self.views[at as usize]
     }
 
-    /// Returns the numbers of the two children of a view, each of which is made when they are first asked for.
+    /// Returns the numbers of the two children of a view. The first call computes both views by
+    /// `child(parent, 0)` and `child(parent, 1)`.
     #[inline]
     pub fn children(&mut self, at: u32, mut child: impl FnMut(&V, usize) -> V) -> [u32; 2] {
         let first = self.parts[at as usize].map_or(self.views.len() as u32, |[first, _]| first);
@@ -79,7 +83,7 @@ impl<V, I> Seen<V, I> {
         [first, first + 1]
     }
 
-    /// Returns which of the items a leaf holds; they are made when they are first asked for.
+    /// Returns the range of the items of a leaf in the cache. The first call computes the items.
     #[inline]
     pub fn leaf<J: Iterator<Item = I>>(
         &mut self,
@@ -96,29 +100,30 @@ impl<V, I> Seen<V, I> {
         first as usize..(first + count) as usize
     }
 
-    /// Returns one of the items.
+    /// Returns the item at a position in the cache.
     #[inline]
     pub fn item(&self, at: usize) -> &I {
         &self.items[at]
     }
 
-    /// Returns some of the items.
+    /// Returns the items at a range of positions in the cache.
     #[inline]
     pub fn items(&self, range: Range<usize>) -> &[I] {
         &self.items[range]
     }
 }
 
-/// A pair in the queue of a search: the least bound comes first, the newest first among equals.
+/// A pair in the queue of a search. The least bound has the highest priority, and among equal bounds the
+/// newest pair.
 #[derive(Debug, Clone, Copy)]
 pub struct Entry<R = ()> {
-    /// What nothing below the pair is less than.
+    /// Lower bound for all pairs of items below this pair of nodes.
     pub bound: f64,
-    /// How many pairs came before.
+    /// Number of pairs that were bounded up to this one.
     pub number: u32,
-    /// Why that is the bound, if it is to be told.
+    /// The reason for the bound, which a proof states.
     pub reason: R,
-    /// Positions among what has been seen.
+    /// Numbers of the two views in [`Seen`], one for each tree.
     pub views: [u32; 2],
 }
 
@@ -142,36 +147,39 @@ impl<R> PartialEq for Entry<R> {
 
 impl<R> Eq for Entry<R> {}
 
-/// The pairs of a search, and what it has found.
+/// The interface of a problem that [`best_first`] solves: bounds, splits and the result.
 pub trait Pairs {
-    /// Why a bound is one.
+    /// The reason for a bound.
     type Reason: Copy;
 
-    /// Whether of two children with the same bound the first one goes on; else the second one does.
+    /// Of two children with equal bounds, the search continues with the first if this is true, else with the
+    /// second.
     const FIRST_OF_EQUALS: bool;
 
-    /// Returns the bound from which on pairs are of no interest.
+    /// Returns the bound from which on pairs are skipped.
     fn limit(&self) -> f64;
 
-    /// Checks whether something has been found.
+    /// Checks whether the search has a result.
     fn is_found(&self) -> bool;
 
-    /// Checks whether what has been found will do.
+    /// Checks whether the result is sufficient, so that the search can stop.
     fn is_enough(&self) -> bool {
         false
     }
 
-    /// Returns the bound of a pair; `None` if the pair is of no interest.
+    /// Returns the bound of a pair with its reason; `None` if the pair can be skipped.
     fn bound(&mut self, views: [u32; 2]) -> Option<(f64, Self::Reason)>;
 
-    /// Returns the two pairs that a pair is split into; of two leaves looks at what they hold, and returns `None`.
+    /// Returns the two pairs into which a pair is split. For two leaves, examines their items and returns
+    /// `None`.
     fn split(&mut self, views: [u32; 2]) -> Option<[[u32; 2]; 2]>;
 
-    /// Takes leave of a pair whose bound is not below the limit.
+    /// Records a pair that is skipped, because its bound is not below the limit.
     fn dismiss(&mut self, entry: &Entry<Self::Reason>);
 }
 
-/// Searches both trees from their roots on, until no bound is below the limit.
+/// Searches both trees from their roots. Stops when no bound is below the limit, or when the result is
+/// sufficient.
 #[inline]
 pub fn best_first<P: Pairs>(pairs: &mut P, queue: &mut BinaryHeap<Entry<P::Reason>>) {
     queue.clear();
@@ -183,7 +191,8 @@ pub fn best_first<P: Pairs>(pairs: &mut P, queue: &mut BinaryHeap<Entry<P::Reaso
     let mut next = judge(pairs, [0, 0]);
     while let Some(entry) = next.take().or_else(|| queue.pop()) {
         if entry.bound >= pairs.limit() {
-            // As are all others: it is the least, or else the limit is below all bounds.
+            // All other pairs can be skipped too: this bound is the least, or else the limit is below all
+            // bounds.
             pairs.dismiss(&entry);
             for rest in queue.drain() {
                 pairs.dismiss(&rest);
@@ -198,7 +207,7 @@ pub fn best_first<P: Pairs>(pairs: &mut P, queue: &mut BinaryHeap<Entry<P::Reaso
         };
         next = match parts.map(|views| judge(pairs, views)) {
             [Some(x), Some(y)] => {
-                // The better child goes on without a detour through the queue.
+                // The search continues with the better child without pushing it to the queue.
                 let is_first = x.bound < y.bound || P::FIRST_OF_EQUALS && x.bound == y.bound;
                 let (better, other) = if is_first { (x, y) } else { (y, x) };
                 queue.push(other);
@@ -219,7 +228,7 @@ pub fn best_first<P: Pairs>(pairs: &mut P, queue: &mut BinaryHeap<Entry<P::Reaso
 mod tests {
     use super::*;
 
-    /// The nearest of two sorted lists of numbers: a view is a range of either list.
+    /// Searches the least distance of two sorted lists of numbers. A view is a range of one list.
     #[derive(Default)]
     struct Nearest {
         lists: [Vec<f64>; 2],

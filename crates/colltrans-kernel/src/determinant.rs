@@ -1,22 +1,22 @@
-//! Determinants without cancellation.
+//! Determinants of 2 x 2 matrices, cross products and triangle areas without cancellation.
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
 
 use super::double::Double;
 use super::error_free::product_error;
 
-/// `a.x b.y - a.y b.x` with an error relative to the result, not to its terms.
+/// Computes `a.x b.y - a.y b.x` with an error relative to the result, not to its terms.
 #[inline]
 pub fn accurate_det(a: DVec2, b: DVec2) -> f64 {
     let (p, q) = (a.x * b.y, a.y * b.x);
     if (p - q).abs() > 0.25 * (p.abs() + q.abs()) {
-        // Little cancels: the roundings of both products are a few of the result's.
+        // There is little cancellation, so both products are rounded by a few roundings of the result.
         return p - q;
     }
     (p - q) + (product_error(a.x, b.y, p) - product_error(a.y, b.x, q))
 }
 
-/// `a x b` with an error relative to each component.
+/// Computes `a x b` with an error relative to each component.
 #[inline]
 pub fn accurate_cross(a: DVec3, b: DVec3) -> DVec3 {
     DVec3::new(
@@ -26,8 +26,9 @@ pub fn accurate_cross(a: DVec3, b: DVec3) -> DVec3 {
     )
 }
 
-/// Twice the area of the triangle `a b c`, positive if counter-clockwise, with an error of some
-/// `2^-100` of the product of its extents: relative to the result for slivers as well.
+/// Computes twice the area of the triangle `a b c`, positive if counter-clockwise. The error is about
+/// `2^-100` times the product of the triangle's extents. Therefore the area of a sliver is accurate relative
+/// to itself.
 #[inline]
 pub fn triangle_area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     let mut sum = Double::ZERO;
@@ -49,7 +50,7 @@ mod tests {
     proptest! {
         #[test]
         fn accurate_determinants_are(a in 0.5..1.0_f64, b in 0.5..1.0_f64, k in 1..1_000_i32) {
-            // Nearly parallel: the terms agree to 10 digits or more.
+            // Nearly parallel vectors: the terms agree in 10 digits or more.
             let tiny = f64::from(k) * 1e-13;
             let (v, w) = (DVec2::new(a, b), DVec2::new(a + tiny, b));
             let exact = rational(v.x) * rational(w.y) - rational(v.y) * rational(w.x);
@@ -61,7 +62,7 @@ mod tests {
         fn areas_of_slivers_are_accurate(
             a in -1.0..1.0_f64, b in -1.0..1.0_f64, k in -30..30_i32, l in -30..30_i32, s in 0.0..2.0_f64,
         ) {
-            // Nearly collinear: a few roundings off the line.
+            // Nearly collinear points: the third is a few roundings off the line.
             let off = DVec2::new(f64::from(k), f64::from(l)) * 2.0_f64.powi(-54);
             let [p, q] = [DVec2::new(a, b), DVec2::new(b, -0.7 * a)];
             let r = p.lerp(q, s) + off;

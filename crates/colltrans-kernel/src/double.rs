@@ -1,32 +1,34 @@
-//! Numbers of twice the usual precision, with a bound on what they lost.
+//! Numbers with twice the usual precision and a bound on the lost error (double-word arithmetic).
 
-#![expect(clippy::inline_always, reason = "these sums are meant to stay in registers")]
+#![expect(clippy::inline_always, reason = "inlining keeps the sums in registers")]
 
 use std::cmp::Ordering;
 
 use super::error_free::{difference_error, product_error, split, sum_error};
 
-/// Products of this size or more have low parts that are not lost.
+/// Minimum magnitude of a product whose rounding error does not underflow.
 pub(crate) const LEAST_PRODUCT: f64 = f64::from_bits((1023 - 900) << 52);
 
-/// The number `high + low`, up to `error`; exact if that is 0.
+/// The number `high + low` with an absolute error of at most `error`; exact if `error` is 0.
 #[derive(Debug, Clone, Copy)]
 pub struct Double {
+    /// The leading part, at least as large as `low` after [`Self::tidy`].
     pub high: f64,
     pub low: f64,
+    /// Bound on the absolute error; infinite if nothing is known.
     pub error: f64,
 }
 
 impl Double {
     pub const ZERO: Self = Self { high: 0.0, low: 0.0, error: 0.0 };
 
-    /// `a - b`, exactly.
+    /// Returns `a - b` exactly.
     #[inline]
     pub fn difference(a: f64, b: f64) -> Self {
         Self { high: a - b, low: difference_error(a, b), error: 0.0 }
     }
 
-    /// The nearest `f64`, up to the error.
+    /// Returns the sum of both parts, rounded to the nearest `f64`.
     #[inline]
     pub fn value(&self) -> f64 {
         self.high + self.low
@@ -39,7 +41,7 @@ impl Double {
         self.high = high;
     }
 
-    /// Adds what is small against the sum.
+    /// Adds a number that is small compared with the sum.
     #[inline(always)]
     pub fn add_low(&mut self, x: f64) {
         let low = self.low + x;
@@ -47,7 +49,7 @@ impl Double {
         self.low = low;
     }
 
-    /// Adds a product of numbers that are not tiny.
+    /// Adds the product `a b` of numbers that are not tiny.
     #[inline(always)]
     pub fn add_product(&mut self, a: f64, b: f64) {
         let p = a * b;
@@ -55,7 +57,7 @@ impl Double {
         self.add_low(product_error(a, b, p));
     }
 
-    /// Adds a product.
+    /// Adds the product `x factor`, with the error of `x`.
     #[inline(always)]
     pub fn add_scaled(&mut self, x: &Self, factor: f64) {
         if x.is_zero() || factor == 0.0 {
@@ -68,7 +70,8 @@ impl Double {
         self.error += x.error * factor.abs();
     }
 
-    /// Adds a product of two, with a sign.
+    /// Adds the product `sign x y`, with the errors of both factors. The error becomes infinite if a partial
+    /// product is below [`LEAST_PRODUCT`].
     #[inline(always)]
     pub fn add_double_product(&mut self, x: &Self, y: &Self, sign: f64) {
         if x.is_zero() || y.is_zero() {
@@ -88,13 +91,13 @@ impl Double {
         }
     }
 
-    /// Whether the number is 0, certainly.
+    /// Checks whether the number is exactly 0.
     #[inline(always)]
     pub fn is_zero(&self) -> bool {
         self.high == 0.0 && self.low == 0.0 && self.error == 0.0
     }
 
-    /// The same with `low` less than a rounding of `high`.
+    /// Returns an equal number whose `low` is less than a rounding of `high`.
     #[inline(always)]
     #[must_use]
     pub fn tidy(self) -> Self {
@@ -102,11 +105,11 @@ impl Double {
         Self { high, low: sum_error(self.high, self.low, high), ..self }
     }
 
-    /// The sign, if it is certain.
+    /// Returns the sign; `None` if the error leaves it uncertain.
     #[inline]
     pub fn sign(&self) -> Option<Ordering> {
         let sum = self.high + self.low;
-        // The rounding of the errors' sum and of this one.
+        // The factor covers the rounding of the accumulated errors and of `sum`.
         if sum.abs() > 1.01 * self.error {
             return sum.partial_cmp(&0.0);
         }
@@ -114,7 +117,7 @@ impl Double {
     }
 }
 
-/// Several sums of the same shape at once, as [`Double`].
+/// `L` sums that have one factor of each product in common, as an array of [`Double`].
 #[derive(Clone, Copy)]
 pub(crate) struct Sums<const L: usize> {
     pub(crate) high: [f64; L],
@@ -125,7 +128,7 @@ pub(crate) struct Sums<const L: usize> {
 impl<const L: usize> Sums<L> {
     pub(crate) const ZERO: Self = Self { high: [0.0; L], low: [0.0; L], error: [0.0; L] };
 
-    /// Adds products with a common factor.
+    /// Adds the products `entries[k] x` to the sums.
     #[inline(always)]
     pub(crate) fn add_products(&mut self, entries: [f64; L], x: f64) {
         let (x_high, x_low) = split(x);
@@ -144,6 +147,7 @@ impl<const L: usize> Sums<L> {
         }
     }
 
+    /// Returns sum number `k`, normalised.
     #[inline(always)]
     pub(crate) fn get(&self, k: usize) -> Double {
         Double { high: self.high[k], low: self.low[k], error: self.error[k] }.tidy()

@@ -1,15 +1,15 @@
-//! A binary tree of boxes that changes.
+//! A dynamic bounding volume tree: a binary tree of axis-aligned boxes with insertion, removal and moves.
 //!
-//! Built from the top ([`split`](mod@crate::split)), each child with a quarter of the items at least.
-//! One that comes goes down to where boxes grow least; one that goes leaves its place to its neighbour; one
-//! that moves within its parent's box stays where it is, and else goes and comes, two changes. Every node is
-//! built anew after as many changes below it as it had items (and [`FEW_CHANGES`] at least).
+//! - The tree is built from the top ([`split`](mod@crate::split)). Each child gets at least a quarter of the
+//!   items.
+//! - A new item descends to the child whose box grows least.
+//! - The sibling of a removed leaf takes the place of the parent.
+//! - An item that moves within its parent's box keeps its leaf. Otherwise it is removed and inserted (two
+//!   changes).
+//! - A node is rebuilt after as many changes below it as it had items, and at least [`FEW_CHANGES`].
 //!
-//! So no node becomes more than twice what it was; a child had three quarters of its items at most, and has
-//! seven eighths at most whatever comes: the height stays below `log n / log (8 / 7)`, that is `5.2 log2 n`, plus
-//! a few. A change costs `O(log^2 n)` on average.
-//!
-//! Invariant. A node's box holds the boxes of all items below it; inner boxes are the joins of their children's.
+//! The height stays below `5.2 log2 n` plus a constant, and a change costs `O(log^2 n)` on average
+//! (`docs/theory/box-trees.md`). Invariant: the box of an inner node is the union of its children's boxes.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -17,35 +17,36 @@ use std::collections::BinaryHeap;
 use crate::aabb::Aabb;
 use crate::split::{Boxed, Rule, halve, split};
 
-/// Items that are halved.
+/// Maximum number of items that are split by count.
 const FEW: usize = 4;
-/// Changes that no node is built anew for.
+/// Minimum number of changes below a node before it is rebuilt.
 const FEW_CHANGES: u32 = 8;
+/// Number of the missing parent of the root.
 const NONE: u32 = u32::MAX;
-/// Queues have room for so many nodes.
+/// Initial capacity of the queue of a search, in nodes.
 const ROOM: usize = 64;
 
-/// A box with an item, or of two nodes.
+/// A leaf with the box of one item, or an inner node with the union of two boxes.
 #[derive(Debug, Clone, Copy)]
 struct Node {
     bounds: Aabb,
     parent: u32,
-    /// The first of two children, side by side; of a leaf its item.
+    /// Number of the first of two adjacent children; number of the item for a leaf.
     first: u32,
-    /// How many items; 1 is a leaf.
+    /// Number of items below; 1 for a leaf.
     count: u32,
-    /// Changes until it is built anew.
+    /// Number of changes below until the node is rebuilt.
     left: u32,
 }
 
-/// Items, numbered from 0 without gaps, and their boxes.
+/// A tree over the boxes of items, which are numbered from 0 without gaps.
 #[derive(Debug, Clone, Default)]
 pub struct DynamicTree {
-    /// The root first, if there are items.
+    /// The nodes, the root first; empty without items.
     nodes: Vec<Node>,
-    /// Pairs of nodes out of use, by the first of them.
+    /// The first nodes of pairs that are not in use.
     free: Vec<u32>,
-    /// Where each item's leaf is.
+    /// Number of the leaf of each item.
     leaves: Vec<u32>,
 }
 
@@ -68,7 +69,7 @@ impl Boxed for Item {
 }
 
 impl DynamicTree {
-    /// Of items with these boxes.
+    /// Builds the tree over boxes. Items are numbered in the order of the boxes.
     pub fn build(boxes: impl IntoIterator<Item = Aabb>) -> Self {
         let number = |(k, bounds)| Item { bounds, number: k as u32 };
         let mut items: Vec<Item> = boxes.into_iter().enumerate().map(number).collect();
@@ -82,19 +83,22 @@ impl DynamicTree {
         tree
     }
 
-    /// The box of an item.
+    /// Returns the box of an item.
+    ///
+    /// # Panics
+    /// If there is no item with this number.
     #[inline]
     pub fn bounds(&self, item: u32) -> &Aabb {
         &self.nodes[self.leaves[item as usize] as usize].bounds
     }
 
-    /// The box of all items.
+    /// Returns the box of all items; `None` if there are no items.
     #[inline]
     pub fn root(&self) -> Option<&Aabb> {
         self.nodes.first().map(|root| &root.bounds)
     }
 
-    /// Makes what is at and below a node, which has its place and its parent.
+    /// Builds the subtree at a node that is already allocated and has its parent.
     fn grow(&mut self, at: u32, items: &mut [Item]) {
         let parent = self.nodes[at as usize].parent;
         if let [item] = items {
@@ -116,7 +120,7 @@ impl DynamicTree {
         self.nodes[at as usize] = Node { bounds, parent, first, count, left: life(count) };
     }
 
-    /// Two places for children of a node.
+    /// Allocates two adjacent children of a node and returns the number of the first.
     fn pair(&mut self, parent: u32) -> u32 {
         let nothing = Node::leaf(Aabb::EMPTY, parent, 0);
         if let Some(first) = self.free.pop() {
@@ -129,7 +133,7 @@ impl DynamicTree {
         first
     }
 
-    /// Puts a node to its place, and tells who is below where that is.
+    /// Stores a node at a position, and updates the position of its item or the parents of its children.
     fn put(&mut self, at: u32, node: Node) {
         self.nodes[at as usize] = node;
         if node.is_leaf() {
@@ -141,17 +145,19 @@ impl DynamicTree {
         }
     }
 
+    /// Returns the union of the boxes of two siblings.
     fn joined(&self, first: u32) -> Aabb {
         let [a, b] = [first, first + 1].map(|child| &self.nodes[child as usize].bounds);
         a.join(b)
     }
 
-    /// A new item, the last one.
+    /// Inserts an item. Its number is the previous number of items.
     pub fn insert(&mut self, bounds: Aabb) {
         self.leaves.push(0);
         self.hang(self.leaves.len() as u32 - 1, bounds);
     }
 
+    /// Inserts the leaf of an item next to the leaf that the descent reaches.
     fn hang(&mut self, item: u32, bounds: Aabb) {
         let Some(mut at) = (!self.nodes.is_empty()).then_some(0_u32) else {
             self.nodes.push(Node::leaf(bounds, NONE, item));
@@ -169,7 +175,8 @@ impl DynamicTree {
         self.change(at, 1);
     }
 
-    /// Which of two nodes grows least by a box, or else is smaller, or has fewer items.
+    /// Selects the sibling whose surface area grows least by a box. Among equal ones, selects the smaller
+    /// joined box, then the one with fewer items.
     fn least_grown(&self, first: u32, bounds: &Aabb) -> u32 {
         let cost = |at: u32| {
             let Node { bounds: there, count, .. } = &self.nodes[at as usize];
@@ -179,7 +186,10 @@ impl DynamicTree {
         if cost(first + 1) < cost(first) { first + 1 } else { first }
     }
 
-    /// Takes an item out; the last one gets its number.
+    /// Removes an item. The last item gets its number.
+    ///
+    /// # Panics
+    /// If there is no item with this number.
     pub fn remove(&mut self, item: u32) {
         self.unhang(item);
         let last = self.leaves.len() as u32 - 1;
@@ -194,7 +204,7 @@ impl DynamicTree {
         }
     }
 
-    /// Its parent becomes its neighbour; nothing happens to an only one.
+    /// Removes the leaf of an item. The sibling of the leaf replaces their parent.
     fn unhang(&mut self, item: u32) {
         let leaf = self.leaves[item as usize];
         let parent = self.nodes[leaf as usize].parent;
@@ -213,7 +223,10 @@ impl DynamicTree {
         }
     }
 
-    /// An item that has another box now.
+    /// Sets the box of an item.
+    ///
+    /// # Panics
+    /// If there is no item with this number.
     pub fn set(&mut self, item: u32, bounds: Aabb) {
         let leaf = self.leaves[item as usize] as usize;
         let parent = self.nodes[leaf].parent;
@@ -228,7 +241,7 @@ impl DynamicTree {
         }
     }
 
-    /// Boxes from a node upwards, as far as they change.
+    /// Recomputes the boxes from a node upwards until a box does not change.
     fn refit(&mut self, mut at: u32) {
         while at != NONE {
             let bounds = self.joined(self.nodes[at as usize].first);
@@ -241,8 +254,8 @@ impl DynamicTree {
         }
     }
 
-    /// So many items more below an inner node: boxes and counts from there upwards; the highest node that
-    /// has changed too much is built anew.
+    /// Updates boxes and numbers of items from an inner node upwards, after `more` items were inserted below
+    /// it. Rebuilds the highest node that has reached its number of changes.
     fn change(&mut self, from: u32, more: i32) {
         let (mut at, mut worn) = (from, None);
         while at != NONE {
@@ -276,12 +289,14 @@ impl DynamicTree {
         self.grow(at, &mut items);
     }
 
-    /// Visits items by their least bounds first, as long as these are not above a limit; `bound` is not
-    /// above that of what a box holds, not negative, and infinite for what is of no interest. `visit` says the new limit.
-    /// How many boxes were looked at.
+    /// Visits items in the order of increasing bounds, until the least bound exceeds the limit. Returns the
+    /// number of boxes for which `bound` was evaluated.
+    ///
+    /// `bound` maps a box to a lower bound for the items that it contains. Bounds are not negative, and
+    /// infinite for boxes to skip. `visit` gets an item with its bound and returns the new limit.
     ///
     /// # Errors
-    /// What `visit` says.
+    /// The error of `visit`.
     pub fn search<E>(
         &self,
         mut limit: f64,
@@ -291,8 +306,8 @@ impl DynamicTree {
         if self.nodes.is_empty() {
             return Ok(0);
         }
-        // The least bound comes first, and among equals the first node: bounds are not negative, so they are in the order
-        // of their bits.
+        // The least bound comes first, and among equal bounds the first node. Bounds are not negative,
+        // therefore the order of their bits is their order.
         let entry =
             |node: u32| Reverse((bound(&self.nodes[node as usize].bounds).abs().to_bits(), node));
         let (mut queue, mut looked) = (BinaryHeap::with_capacity(ROOM), 1);
@@ -313,7 +328,7 @@ impl DynamicTree {
             if f64::from_bits(far.0.0) <= limit {
                 queue.push(far);
             }
-            // Straight down, unless something else is nearer.
+            // Continue with the nearer child, unless another node in the queue is nearer.
             match queue.peek() {
                 Some(top) if *top > near => queue.push(near),
                 _ => next = Some(near),
@@ -322,7 +337,7 @@ impl DynamicTree {
         Ok(looked)
     }
 
-    /// The height of the tree.
+    /// Returns the number of nodes on the longest path from the root.
     #[cfg(test)]
     fn height(&self) -> usize {
         let depth = |leaf: &u32| {
@@ -336,7 +351,7 @@ impl DynamicTree {
     }
 }
 
-/// After how many changes a node of so many items is built anew.
+/// Returns the number of changes after which a node with `count` items is rebuilt.
 fn life(count: u32) -> u32 {
     count.max(FEW_CHANGES)
 }
@@ -365,7 +380,7 @@ mod tests {
         Aabb { low: at, high: at + 1.0 }
     }
 
-    /// Whether the tree is one, with these items.
+    /// Checks the invariants and the height of a tree that contains exactly these boxes.
     fn check(tree: &DynamicTree, boxes: &[Aabb]) {
         assert_eq!(tree.leaves.len(), boxes.len());
         for (item, bounds) in boxes.iter().enumerate() {
@@ -392,6 +407,7 @@ mod tests {
         assert!(tree.height() as f64 <= most, "{} of {}", tree.height(), boxes.len());
     }
 
+    /// Returns the items whose boxes begin at most at `limit` along x.
     fn found(tree: &DynamicTree, limit: f64) -> Vec<u32> {
         let mut all = Vec::new();
         let visit = |item, _| {

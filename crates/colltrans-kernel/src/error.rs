@@ -1,9 +1,9 @@
-//! Why a pose, a motion or a surface was refused.
+//! Errors of poses, motions and surfaces.
 
 use glam::DVec3;
 use thiserror::Error;
 
-/// Why a [`Pose`](crate::Pose) was refused.
+/// The reason why a [`Pose`](crate::Pose) was rejected.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum PoseError {
@@ -18,24 +18,24 @@ pub enum PoseError {
         z: f64,
         /// Component w as given.
         w: f64,
-        /// Its length.
+        /// Length of the quaternion.
         length: f64,
     },
     /// The matrix is not finite or not a rotation.
     #[error(
-        "the matrix with the columns {columns:?} is not a rotation: it is off one by {defect:e} \
-         (tolerated: {tolerance:e})"
+        "the matrix with the columns {columns:?} is not a rotation: its defect is {defect:e} \
+         (accepted: up to {tolerance:e})"
     )]
     NotARotationMatrix {
-        /// The columns as given.
+        /// Columns as given.
         columns: [[f64; 3]; 3],
-        /// The largest entry of `R^T R - I` by magnitude; at least 2 for a reflection, infinite if an
-        /// entry is not finite.
+        /// Largest entry of `R^T R - I` by magnitude; at least 2 for a reflection, infinite if an entry is
+        /// not finite.
         defect: f64,
-        /// The defect that would have been accepted.
+        /// Largest defect that is accepted.
         tolerance: f64,
     },
-    /// The translation is not finite, or beyond the range in which the predicates are exact.
+    /// The translation is not finite, or outside the range in which the predicates are exact.
     #[error(
         "the translation {:?} is not finite or has a component outside the exact range \
          (0, or a magnitude from 2^-200 to 2^200)",
@@ -47,7 +47,7 @@ pub enum PoseError {
     },
 }
 
-/// Why a motion is none.
+/// The reason why a motion was rejected.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum MotionError {
@@ -58,32 +58,32 @@ pub enum MotionError {
         .vector.to_array()
     )]
     Number {
-        /// Which one.
+        /// Name of the vector.
         what: &'static str,
-        /// As given, or as it follows.
+        /// The vector as given or derived.
         vector: DVec3,
     },
-    /// The angle is not finite, or larger than 1e5 in a piece or for a whole unit of time.
+    /// The angle is not a number, or its magnitude exceeds 1e5 in a unit of time.
     #[error("the angle {angle} is not a number from -1e5 to 1e5 (radians)")]
     Angle {
-        /// The angle as given, in a unit of time.
+        /// The angle in a unit of time, in radians.
         angle: f64,
     },
-    /// No poses to go through.
+    /// There are no poses.
     #[error("a motion needs at least one pose")]
     NoPoses,
-    /// A time that is not from 0 to 1, or not in order.
-    #[error("the time {time} is not from 0 to 1, or not after the one before it")]
+    /// A time is not from 0 to 1, or the times do not increase.
+    #[error("the time {time} is not accepted; times must be from 0 to 1 and increase")]
     Time {
         /// The time as given.
         time: f64,
     },
-    /// A pose on the way is none.
-    #[error("a pose on the way is none: {0}")]
+    /// A pose of the motion was rejected.
+    #[error("invalid pose of the motion: {0}")]
     Pose(#[from] PoseError),
 }
 
-/// Why faces do not form the boundary of one body.
+/// The reason why faces do not form the boundary of one body.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum TopologyError {
@@ -95,8 +95,8 @@ pub enum TopologyError {
         /// Number of its vertices.
         count: usize,
     },
-    /// A face names a vertex that does not exist.
-    #[error("face {face} names vertex {vertex}, but there are only {vertices} vertices")]
+    /// A face contains an index of a vertex that does not exist.
+    #[error("face {face} names vertex {vertex}, but the number of vertices is {vertices}")]
     UnknownVertex {
         /// Index of the face.
         face: usize,
@@ -105,12 +105,12 @@ pub enum TopologyError {
         /// Number of vertices.
         vertices: usize,
     },
-    /// A face names the same vertex twice.
-    #[error("face {face} passes twice through vertex {vertex}")]
+    /// A face contains the same vertex twice.
+    #[error("face {face} contains vertex {vertex} twice; the vertices of a face must be distinct")]
     RepeatedVertex {
         /// Index of the face.
         face: usize,
-        /// The vertex it repeats.
+        /// The repeated vertex.
         vertex: usize,
     },
     /// An edge has a face on one side only.
@@ -123,10 +123,10 @@ pub enum TopologyError {
         from: usize,
         /// End of the edge.
         to: usize,
-        /// The face on the side that has one.
+        /// The face that contains the edge.
         face: usize,
     },
-    /// More than two faces meet at an edge, or two run along it in the same direction.
+    /// More than two faces share an edge, or two faces contain it in the same direction.
     #[error(
         "the edge between vertices {from} and {to} is used {count} times, not once in each direction"
     )]
@@ -135,29 +135,31 @@ pub enum TopologyError {
         from: usize,
         /// Its other end.
         to: usize,
-        /// How often faces run along it.
+        /// Number of faces that contain the edge.
         count: usize,
     },
     /// The faces around a vertex form more than one fan.
-    #[error("the faces around vertex {vertex} form more than one fan")]
+    #[error(
+        "the faces around vertex {vertex} form more than one fan; the surface must be manifold"
+    )]
     NonManifoldVertex {
         /// The vertex.
         vertex: usize,
     },
-    /// The faces form several surfaces, or one with holes through it (handles).
+    /// The faces form several surfaces, or a surface with handles.
     #[error(
         "the surface is {}, not one sphere ({vertices} vertices - {edges} edges + {faces} faces = \
          {euler}, not 2)",
         surface_in_words(*euler, *shells)
     )]
     NotASphere {
-        /// Number of vertices in use.
+        /// Number of vertices that faces contain.
         vertices: usize,
         /// Number of edges.
         edges: usize,
         /// Number of faces.
         faces: usize,
-        /// Their alternating sum.
+        /// Euler characteristic: vertices minus edges plus faces.
         euler: i64,
         /// Number of surfaces that share no vertex.
         shells: usize,
@@ -167,8 +169,8 @@ pub enum TopologyError {
     NoFaces,
 }
 
-/// What closed surfaces with this Euler characteristic are: every shell adds 2, every hole through
-/// one takes 2 away.
+/// Describes closed surfaces with an Euler characteristic: each shell adds 2, and each hole through a shell
+/// subtracts 2.
 fn surface_in_words(euler: i64, shells: usize) -> String {
     match (shells, shells as i64 - euler / 2) {
         (1, 1) => "one body with a hole through it".into(),

@@ -1,8 +1,8 @@
-//! What rounding takes from a sum, a difference or a product, as a number of its own.
+//! Error-free transformations: the rounding error of a sum, a difference or a product as an exact number.
 
-#![expect(clippy::inline_always, reason = "these sums are meant to stay in registers")]
+#![expect(clippy::inline_always, reason = "inlining keeps the sums in registers")]
 
-/// The rounding error of the sum `s = fl(a + b)`, exactly (Knuth).
+/// Returns the exact rounding error `a + b - s` of the sum `s = fl(a + b)` (Knuth).
 #[inline(always)]
 pub fn sum_error(a: f64, b: f64, s: f64) -> f64 {
     let b_virtual = s - a;
@@ -10,7 +10,7 @@ pub fn sum_error(a: f64, b: f64, s: f64) -> f64 {
     (a - a_virtual) + (b - b_virtual)
 }
 
-/// The rounding error of `a - b`, exactly: `a - b = fl(a - b) + error`.
+/// Returns the exact rounding error of `a - b`, so that `a - b = fl(a - b) + error`.
 #[inline]
 pub fn difference_error(a: f64, b: f64) -> f64 {
     let difference = a - b;
@@ -19,14 +19,14 @@ pub fn difference_error(a: f64, b: f64) -> f64 {
     (a - a_virtual) + (b_virtual - b)
 }
 
-/// The rounding error of the product `p = fl(a b)`, exactly (Dekker).
+/// Returns the exact rounding error `a b - p` of the product `p = fl(a b)` (Dekker).
 #[inline]
 pub fn product_error(a: f64, b: f64, p: f64) -> f64 {
     let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
     a_low * b_low - (((p - a_high * b_high) - a_low * b_high) - a_high * b_low)
 }
 
-/// `a` as a sum of two numbers with at most 26 significant bits (Veltkamp).
+/// Splits `a` into a sum of two numbers with at most 26 significant bits (Veltkamp).
 #[inline]
 pub fn split(a: f64) -> (f64, f64) {
     const SPLITTER: f64 = ((1_u64 << 27) + 1) as f64;

@@ -1,23 +1,24 @@
-//! How far points reach along a normal, with a bound that is one.
+//! Guaranteed lower bounds of distances along a normal, and enclosures of dot products.
 //!
-//! Notation. `n` is a normal of the world, `R` a body's nine entries, `v` its points; the *height* of
-//! `v` is `n . R v`, a sum of nine products of three numbers. It is first computed in the body's
-//! frame, as `(R^T n) . v`: off by at most `3 u + 3 u` of `sqrt(3) |n| |R v|`, for which
-//! [`HEIGHT`] is a bound with half as much again. Those that may be the highest are computed once
-//! more, in twice the usual precision, with a bound on what that lost.
+//! Notation. `n` is a normal in the world, `R` the nine entries of a body's pose, and `v` a vertex. The
+//! *height* of `v` is `n . R v`, a sum of nine products of three numbers.
+//!
+//! Algorithm. Heights are first computed in the body frame, as `(R^T n) . v`, with an error bounded by
+//! [`HEIGHT`]. Vertices that may be the highest are computed again in twice the usual precision ([`Double`]),
+//! with a bound on the error. `docs/theory/exact-arithmetic.md` derives `HEIGHT`.
 
 use glam::{DMat3, DVec3};
 
 use super::double::{Double, LEAST_PRODUCT};
 
-/// Error of a rounded height, in multiples of the product of the lengths.
+/// Bound on the error of a rounded height, in multiples of the lengths of normal and vertex.
 const HEIGHT: f64 = 16.0 * 0.5 * f64::EPSILON;
 
-/// Points of a body, and where it is.
+/// Vertices of a body in its frame, and the nine entries of its rotation.
 pub type Placed<'a> = (&'a [DVec3], &'a DMat3);
 
-/// At most `min_Q n.q - max_P n.p`, and less by hardly more than a rounding: `Q` is displaced by the
-/// sum of `offset`.
+/// Computes a lower bound of `min_Q n.q - max_P n.p`, where `Q` is displaced by the sum of `offset`. The
+/// bound is below the exact distance by little more than one rounding.
 #[inline]
 pub fn distance(normal: DVec3, fixed: Placed, moving: Placed, offset: [DVec3; 2]) -> f64 {
     let mut sum = Double::ZERO;
@@ -32,7 +33,7 @@ pub fn distance(normal: DVec3, fixed: Placed, moving: Placed, offset: [DVec3; 2]
     enclosed(sum)[0]
 }
 
-/// The numbers between which `a . b` lies.
+/// Computes lower and upper bounds of `a . b`.
 #[inline]
 pub fn dot(a: DVec3, b: DVec3) -> [f64; 2] {
     let mut sum = Double::ZERO;
@@ -40,6 +41,7 @@ pub fn dot(a: DVec3, b: DVec3) -> [f64; 2] {
     enclosed(sum)
 }
 
+/// Adds `a . b` to a sum.
 #[inline]
 fn add_dot(sum: &mut Double, a: DVec3, b: DVec3) {
     for k in 0..3 {
@@ -47,22 +49,22 @@ fn add_dot(sum: &mut Double, a: DVec3, b: DVec3) {
     }
 }
 
-/// Where a sum of products is, whatever of them underflowed.
+/// Returns lower and upper bounds of a sum of products, of which any may have underflowed.
 #[inline]
 fn enclosed(sum: Double) -> [f64; 2] {
     let sum = sum.tidy();
     let error = 1.01 * sum.error + LEAST_PRODUCT;
-    // Half a rounding of `high` is more than `low`, and one more than what these sums lose.
+    // Half a rounding of `high` exceeds `low`, and one more rounding exceeds the errors of these sums.
     let bound = |sign: f64| sum.high + (sum.low + sign * error);
     [bound(-1.0).next_down(), bound(1.0).next_up()]
 }
 
-/// The height of the highest point along `normal`; minus infinity if there are none.
+/// Computes the height of the highest vertex along `normal`; minus infinity if there are no vertices.
 #[inline]
 fn highest((points, matrix): Placed, normal: DVec3) -> Double {
     let in_body = matrix.transpose() * normal;
     let reach = points.iter().map(|v| v.length_squared()).fold(0.0, f64::max).sqrt();
-    // Both the highest one and another may be off.
+    // Twice the bound, because the highest vertex and another one both have errors.
     let tie = 2.0 * HEIGHT * reach * normal.length() + LEAST_PRODUCT;
     let top = points.iter().map(|v| in_body.dot(*v)).fold(f64::NEG_INFINITY, f64::max);
     let mut most = Double { high: f64::NEG_INFINITY, ..Double::ZERO };
@@ -77,7 +79,7 @@ fn highest((points, matrix): Placed, normal: DVec3) -> Double {
     Double { error, ..most }
 }
 
-/// `n . R v`.
+/// Computes the height `n . R v`.
 #[inline]
 fn height(matrix: &DMat3, normal: DVec3, v: DVec3) -> Double {
     let mut sum = Double::ZERO;
@@ -100,12 +102,13 @@ mod tests {
     use super::*;
     use crate::tests::rational;
 
-    /// Coordinates of one size, with ties.
+    /// Points with coordinates of similar magnitude, with ties.
     fn point() -> impl Strategy<Value = DVec3> {
         let coordinate = || prop_oneof![(-3_i32..=3).prop_map(f64::from), -3.0..3.0_f64];
         [coordinate(), coordinate(), coordinate()].prop_map(DVec3::from_array)
     }
 
+    /// Returns the exact height `n . R v`.
     fn exact(matrix: &DMat3, normal: DVec3, v: DVec3) -> RBig {
         let mut sum = RBig::ZERO;
         for row in 0..3 {
@@ -117,6 +120,7 @@ mod tests {
         sum
     }
 
+    /// Returns the rotation of the normalised quaternion with imaginary part `by` and real part 1.
     fn turned(by: DVec3) -> DMat3 {
         DMat3::from_quat(DQuat::from_xyzw(by.x, by.y, by.z, 1.0).normalize())
     }

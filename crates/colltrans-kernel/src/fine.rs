@@ -1,19 +1,12 @@
-//! Points in twice the usual precision and determinants of the ways between them, with what they may be off by.
+//! Points in twice the usual precision and determinants of the displacements between them, with error bounds.
 //!
-//! They tell most signs that rounding cannot at a tenth of what whole numbers cost. What is in doubt after that
-//! is mostly nothing at all: where all digits fit, sums that say what they lost ([`Double`]) tell that.
+//! These determinants decide most signs that rounded numbers leave uncertain, at a tenth of the cost of exact
+//! integers. The remaining cases are mostly exact zeros. If all digits fit, sums that track their error
+//! ([`Double`]) prove them.
 //!
-//! Rounding. A sum of two [`Twice`] is off by at most `3 u^2` of itself (a little more than that in `u^3`),
-//! a product by `7 u^2` (Joldes, Muller and Popescu, "Tight and rigorous error bounds for basic building
-//! blocks of double-word arithmetic", ACM TOMS 44(2), 2017): both by less than [`SMALL`] `= 2^-103`. A point's
-//! coordinates are off by what [`Sums`] says.
-//!
-//! With `l, m, n` the sizes of three ways in the maximum norm and `e, f, g` what their ends are off by, a
-//! determinant is six products of three: exact, each changes by at most `(l + e)(m + f)(n + g) - l m n`. Each
-//! is made of three differences, two products and three sums, which make `6 (1.5 + 5)` of [`SMALL`] of
-//! `l m n`. Of the two products of a [`minor`] each changes by `(l + e)(m + f) - l m`, and they make
-//! `2 (1 + 2)`. The factors below are larger, for the rounding of the bounds themselves. What underflows of
-//! numbers of at least `2^-505` is less than `2^-1070`, and with another factor less than [`TINY`].
+//! Rounding. A sum or a product of two [`Twice`] has a relative error below [`SMALL`] (Joldes, Muller and
+//! Popescu, "Tight and rigorous error bounds for basic building blocks of double-word arithmetic", ACM TOMS
+//! 44(2), 2017). `docs/theory/exact-arithmetic.md` derives the bounds of determinants and minors.
 
 use std::cmp::Ordering;
 
@@ -22,12 +15,12 @@ use glam::{DMat3, DVec3};
 use super::double::{Double, Sums};
 use super::real::{Real, Twice, Vector};
 
-/// What a sum or a product is off by, of itself.
+/// Bound on the relative error of a sum or a product.
 const SMALL: f64 = f64::EPSILON * f64::EPSILON * 2.0;
-/// What underflows.
+/// Bound on the absolute error by underflow.
 const TINY: f64 = f64::from_bits((1023 - 800) << 52);
 
-/// A point, with what each coordinate may be off by.
+/// A point with a bound on the error of each coordinate.
 #[derive(Debug, Clone, Copy)]
 pub struct Fine {
     at: [Double; 3],
@@ -35,16 +28,18 @@ pub struct Fine {
 }
 
 impl Fine {
+    /// The origin, exactly.
     pub const ORIGIN: Self = Self { at: [Double::ZERO; 3], error: 0.0 };
 
-    /// `v`, exactly.
+    /// Returns the point `v` exactly.
     #[inline]
     pub fn exactly(v: DVec3) -> Self {
         let at = v.to_array().map(|high| Double { high, ..Double::ZERO });
         Self { at, error: 0.0 }
     }
 
-    /// The sum of two offsets and of `matrix point` for each point, by weight. Weights are powers of two.
+    /// Computes the sum of two offsets and of `weight * matrix * point` for each pair. Weights are powers of
+    /// two.
     #[inline]
     pub fn placed(matrix: &DMat3, offset: [DVec3; 2], points: &[(f64, DVec3)]) -> Self {
         let [high, low] = offset.map(|part| part.to_array());
@@ -59,31 +54,32 @@ impl Fine {
         Self { at: [0, 1, 2].map(|k| sums.get(k)), error: 1.01 * error }
     }
 
-    /// The way to another point.
+    /// Returns the displacement from this point to another one.
     #[inline]
     pub fn to<'p>(&'p self, end: &'p Self) -> Way<'p> {
         Way([self, end])
     }
 }
 
-/// The way from one point to another.
+/// The displacement from the first point to the second.
 #[derive(Clone, Copy)]
 pub struct Way<'p>([&'p Fine; 2]);
 
 impl Way<'_> {
+    /// Computes the displacement in twice the usual precision.
     #[inline]
     fn twice(&self) -> Vector<Twice> {
         let [from, to] = self.0.map(|point| Vector(point.at.map(|x| Twice::new(x.high, x.low))));
         to.minus(&from)
     }
 
-    /// What each coordinate may be off by, but for the rounding of the difference.
+    /// Returns the bound on the error of each coordinate, without the rounding error of the difference.
     #[inline]
     fn error(&self) -> f64 {
         self.0[0].error + self.0[1].error
     }
 
-    /// With all that it may be off by: nothing, where coordinates have few digits.
+    /// Computes the displacement with complete error bounds, which are 0 if the coordinates have few digits.
     #[inline]
     fn tracked(&self) -> [Double; 3] {
         let [from, to] = self.0.map(|point| point.at);
@@ -96,14 +92,14 @@ impl Way<'_> {
         })
     }
 
-    /// The sign of one coordinate, if it is certain.
+    /// Returns the sign of one coordinate (axis 0, 1 or 2); `None` if it is uncertain.
     #[inline]
     pub fn sign_along(&self, axis: usize) -> Option<Ordering> {
         self.tracked()[axis].sign()
     }
 }
 
-/// A number with a bound of its error.
+/// A number with a bound on its absolute error.
 #[derive(Debug, Clone, Copy)]
 pub struct Doubtful {
     value: Twice,
@@ -111,14 +107,15 @@ pub struct Doubtful {
 }
 
 impl Doubtful {
-    /// The sign, if rounding leaves none in doubt.
+    /// Returns the sign; `None` if the number is within its error of 0.
     #[inline]
     pub fn sign(&self) -> Option<Ordering> {
         let high = self.value.value();
         (high.abs() > self.error).then(|| high.total_cmp(&0.0))
     }
 
-    /// `self / other` to within two roundings, or to within `slack`; `None` if it is not known that well.
+    /// Computes `self / other` within two roundings, or within `slack`; `None` if the errors are too large
+    /// for both.
     #[inline]
     pub fn ratio(&self, other: &Self, slack: f64) -> Option<f64> {
         const ROUNDING: f64 = f64::EPSILON / 4.0;
@@ -129,12 +126,13 @@ impl Doubtful {
     }
 }
 
+/// Returns the maximum norm of a displacement.
 #[inline]
 fn size(way: &Vector<Twice>) -> f64 {
     way.value().abs().max_element()
 }
 
-/// `det[x, y, z]`.
+/// Computes `det[x, y, z]`.
 #[inline]
 pub fn determinant([x, y, z]: [Way; 3]) -> Doubtful {
     let (e, f, g) = (x.error(), y.error(), z.error());
@@ -145,18 +143,20 @@ pub fn determinant([x, y, z]: [Way; 3]) -> Doubtful {
     Doubtful { value: x.dot(&y.cross(&z)), error }
 }
 
-/// The sign of `det[x, y, z]`, if it is certain.
+/// Returns the sign of `det[x, y, z]`; `None` if it is uncertain. Computes the determinant again with tracked
+/// errors if rounding leaves the sign uncertain.
 #[inline]
 pub fn determinant_sign(ways: [Way; 3]) -> Option<Ordering> {
     determinant(ways).sign().or_else(|| tracked_sign(ways))
 }
 
-/// The same of a determinant that rounding leaves in doubt.
+/// Returns the sign of `det[x, y, z]`, computed only with tracked errors; `None` if it is uncertain.
 #[inline]
 pub fn tracked_sign(ways: [Way; 3]) -> Option<Ordering> {
     tracked_determinant(&ways.map(|way| way.tracked())).sign()
 }
 
+/// Computes `det[x, y, z]` with tracked errors.
 #[inline]
 fn tracked_determinant([x, y, z]: &[[Double; 3]; 3]) -> Double {
     let mut sum = Double::ZERO;
@@ -166,6 +166,7 @@ fn tracked_determinant([x, y, z]: &[[Double; 3]; 3]) -> Double {
     sum
 }
 
+/// Computes `x_i y_j - x_j y_i` with tracked errors.
 #[inline]
 fn tracked_minor(x: &[Double; 3], y: &[Double; 3], [i, j]: [usize; 2]) -> Double {
     let mut sum = Double::ZERO;
@@ -174,13 +175,14 @@ fn tracked_minor(x: &[Double; 3], y: &[Double; 3], [i, j]: [usize; 2]) -> Double
     sum.tidy()
 }
 
-/// The sign of `x_i y_j - x_j y_i`, if it is certain.
+/// Returns the sign of `x_i y_j - x_j y_i`; `None` if it is uncertain.
 #[inline]
 pub fn minor_sign([x, y]: [Way; 2], [i, j]: [usize; 2]) -> Option<Ordering> {
     let rough = minor([x, y], [i, j]).sign();
     rough.or_else(|| tracked_minor(&x.tracked(), &y.tracked(), [i, j]).sign())
 }
 
+/// Computes `x_i y_j - x_j y_i`.
 #[inline]
 fn minor([x, y]: [Way; 2], [i, j]: [usize; 2]) -> Doubtful {
     let (e, f) = (x.error(), y.error());
@@ -199,7 +201,7 @@ mod tests {
     use super::*;
     use crate::tests::{rational, vector};
 
-    /// Entries of a matrix, tiny ones and zero among them.
+    /// Matrices: the identity, rotations, and entries that may be tiny or zero.
     fn matrix() -> impl Strategy<Value = DMat3> {
         let turned = [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0, 0.25..1.0]
             .prop_map(|q| DMat3::from_quat(glam::DQuat::from_array(q).normalize()));
@@ -212,7 +214,7 @@ mod tests {
         ]
     }
 
-    /// Points that are all but on one plane, or anywhere.
+    /// Points that are nearly in one plane or on one line, or anywhere.
     fn points() -> impl Strategy<Value = [DVec3; 4]> {
         let like = || [-2.0..2.0_f64, -2.0..2.0, -2.0..2.0].prop_map(DVec3::from_array);
         let (a, s) = (|| [like(), like(), like()], || -60..-20_i32);
@@ -226,6 +228,7 @@ mod tests {
         prop_oneof![[vector(), vector(), vector(), vector()], flat, line]
     }
 
+    /// Returns the exact coordinates of `matrix point` plus two offsets.
     fn exact(matrix: &DMat3, offset: [DVec3; 2], point: DVec3) -> [RBig; 3] {
         [0, 1, 2].map(|row| {
             let products = (0..3).map(|k| rational(matrix.col(k)[row]) * rational(point[k]));
@@ -233,6 +236,7 @@ mod tests {
         })
     }
 
+    /// Returns the exact displacement from `a` to `b`.
     fn from(a: &[RBig; 3], b: &[RBig; 3]) -> [RBig; 3] {
         [0, 1, 2].map(|k| b[k].clone() - a[k].clone())
     }
@@ -242,7 +246,7 @@ mod tests {
         x[i].clone() * y[j].clone() - x[j].clone() * y[i].clone()
     }
 
-    /// Whether a number is known as well as it says.
+    /// Checks whether the error bound and the sign of a number are right.
     fn holds(found: Doubtful, truth: &RBig) -> bool {
         let high = rational(found.value.value());
         let low = rational((found.value - Twice::of(found.value.value())).value());
@@ -296,7 +300,7 @@ mod tests {
             }
         }
 
-        /// Points of few digits in one plane, or on one line, are known to be.
+        /// Points with few digits in one plane, or on one line, have certain zero signs.
         #[test]
         fn ties_of_short_numbers_are_certain(
             a in [-9_i32..9, -9..9, -9..9], b in [-9_i32..9, -9..9, -9..9], c in [-9_i32..9, -9..9, -9..9],

@@ -1,12 +1,13 @@
-//! Numbers of vertices and faces, each kind a type: what a body has kept is numbered anew, and the
-//! input has numbers of its own.
+//! Typed numbers of vertices, faces and obstacles.
 //!
-//! What leads from one numbering to the other, or is told in an answer, has these types. Plain `u32` are the
-//! body's own numbers where nothing else can be meant: lists of corners that bodies are built and drawn from
-//! (`Solid::triangles`, `ConvexPolyhedron::face_vertices`), positions of
-//! triangles in such a list, and walks over a body's edges (`HalfEdge`,
-//! `ConvexPolyhedron::neighbours`): there types would be taken off again at every use.
+//! A body renumbers its vertices and faces, and the input has its own numbers. Mappings between the two
+//! numberings, and answers, use these types. Plain `u32` are numbers of the body where the meaning is
+//! unambiguous:
 //!
+//! - corners that bodies are built and drawn from (`Solid::triangles`, `ConvexPolyhedron::face_vertices`),
+//! - positions of triangles in such a list,
+//! - walks over the edges of a body (`HalfEdge`, `ConvexPolyhedron::neighbours`), where each use would
+//!   convert the types.
 
 use std::fmt;
 
@@ -22,7 +23,7 @@ macro_rules! numbers {
         pub struct $name(pub u32);
 
         impl $name {
-            /// As a position in a slice.
+            /// Returns the number as an index into a slice.
             #[inline]
             pub const fn index(self) -> usize {
                 self.0 as usize
@@ -52,22 +53,20 @@ macro_rules! numbers {
 }
 
 numbers! {
-    /// A vertex that a body has kept: its position in
-    /// `ConvexPolyhedron::vertices` or
-    /// `Solid::vertices`.
+    /// A vertex of a body after construction: its index in `ConvexPolyhedron::vertices` or `Solid::vertices`.
     VertexId;
-    /// A face as a `Feature` names it: of a convex polyhedron its own, of a solid the
-    /// least number of the input's facets that it is made of.
+    /// A face as named by a `Feature`: the number of a face of a convex polyhedron, or the smallest number of
+    /// the input facets that form a face of a solid.
     FaceId;
-    /// A point or mesh vertex of the input, by its number there.
+    /// A point or mesh vertex of the input, by its index there.
     InputVertex;
-    /// A facet of the input mesh of a `Solid`, by its number there: a part of it is a
-    /// triangle of the body, which has a position in `Solid::triangles`.
+    /// A facet of the input mesh of a `Solid`, by its index there. Each triangle of the body
+    /// (`Solid::triangles`) is a part of one facet.
     InputFacet;
 }
 
-/// A body among many (`Obstacles`): the number with which it came, from 0 on. It stays
-/// valid whatever else comes, moves and goes, and is never used again.
+/// A body of `Obstacles`: the number of its insertion, counted from 0. It stays valid after any other
+/// insertion, move or removal, and is never reused.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize), serde(transparent))]
 pub struct ObstacleId(pub u64);

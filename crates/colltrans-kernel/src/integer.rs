@@ -1,33 +1,33 @@
-//! Whole numbers of fixed capacity, for the signs that rounding cannot tell.
+//! Exact integers of fixed capacity, for signs that rounded numbers leave uncertain.
 //!
-//! A number is `limbs 2^(64 base)`: coordinates are dyadic rationals. Input has magnitudes from
-//! `2^-200` to `2^200` with 53 significant bits, so a product of two spans `2^-505..2^400`, and with
-//! barycentric weights that are multiples of `1/64`, a coordinate (eight terms) has at most 917 bits. A
-//! determinant of three differences has at most `3 * 918 + 3 = 2757` bits: 46 limbs, wherever limbs
-//! begin. So [`LARGE`] ones never overflow. Almost all coordinates need a few limbs only, and moving
-//! numbers costs more than multiplying them: [`SMALL`] ones are tried first, which say so if they
-//! overflow. Nothing is allocated.
+//! An [`Integer`] is `limbs 2^(64 base)`. Coordinates are dyadic rationals, so that sums and products of them
+//! are exact. Invariants:
+//!
+//! - Nothing is allocated on the heap.
+//! - [`LARGE`] limbs suffice for every determinant of coordinates (`docs/theory/exact-arithmetic.md`).
+//! - [`SMALL`] limbs suffice for almost all coordinates. Callers try them first, because copying a number
+//!   costs more than multiplying it. A result that does not fit is marked as overflown.
 
 use std::cmp::Ordering;
 
 use crate::work;
 
-/// Limbs of numbers of ordinary size.
+/// Number of limbs for coordinates of usual size.
 pub const SMALL: usize = 15;
-/// Limbs that suffice for all.
+/// Number of limbs that suffices for every determinant.
 pub const LARGE: usize = 48;
-/// Limbs that suffice for the product of two determinants.
+/// Number of limbs that suffices for the product of two determinants.
 pub const TWICE_LARGE: usize = 2 * LARGE;
 
 /// An integer with a sign, times a power of `2^64`.
 #[derive(Clone, Copy)]
 pub struct Integer<const N: usize> {
     negative: bool,
-    /// Whether it did not fit; nothing else holds then.
+    /// Whether the number did not fit; the other fields are meaningless then.
     overflown: bool,
-    /// The exponent of the lowest limb.
+    /// Exponent of the lowest limb, in powers of `2^64`.
     base: i16,
-    /// Limbs in use; the highest and the lowest are not zero.
+    /// Number of limbs in use; the highest and the lowest are not zero.
     len: u16,
     limbs: [u64; N],
 }
@@ -37,7 +37,7 @@ impl<const N: usize> Integer<N> {
         Self { negative: false, overflown: false, base: 0, len: 0, limbs: [0; N] };
     const OVERFLOWN: Self = Self { overflown: true, ..Self::ZERO };
 
-    /// `a b`, exactly.
+    /// Returns `a b` exactly.
     #[inline]
     pub fn product(a: f64, b: f64) -> Self {
         if a == 0.0 || b == 0.0 {
@@ -58,12 +58,13 @@ impl<const N: usize> Integer<N> {
         result
     }
 
-    /// `a`, exactly.
+    /// Returns `a` exactly.
     #[inline]
     pub fn number(a: f64) -> Self {
         Self::product(a, 1.0)
     }
 
+    /// Removes zero limbs at both ends.
     #[inline]
     fn trim(&mut self) {
         while self.len > 0 && self.limbs[usize::from(self.len) - 1] == 0 {
@@ -82,13 +83,13 @@ impl<const N: usize> Integer<N> {
         }
     }
 
-    /// One past the exponent of the highest limb.
+    /// Returns the exponent after the highest limb.
     #[inline]
     fn top(&self) -> i16 {
         self.base + self.len as i16
     }
 
-    /// The limb of an exponent.
+    /// Returns the limb with an exponent; 0 outside of the limbs in use.
     #[inline]
     fn limb(&self, exponent: i16) -> u64 {
         let k = exponent - self.base;
@@ -107,19 +108,21 @@ impl<const N: usize> Integer<N> {
         })
     }
 
+    /// Returns the sum, marked as overflown if it does not fit.
     #[must_use]
     #[inline]
     pub fn add(&self, other: &Self) -> Self {
         self.sum(other, other.negative)
     }
 
+    /// Returns the difference, marked as overflown if it does not fit.
     #[must_use]
     #[inline]
     pub fn subtract(&self, other: &Self) -> Self {
         self.sum(other, !other.negative)
     }
 
-    /// `self` and the magnitude of `other` with a sign.
+    /// Returns `self` plus the magnitude of `other` with the given sign.
     #[inline]
     fn sum(&self, other: &Self, negative: bool) -> Self {
         if self.overflown || other.overflown {
@@ -141,6 +144,7 @@ impl<const N: usize> Integer<N> {
         }
     }
 
+    /// Returns the sum of both magnitudes, with the sign of `self`.
     #[inline]
     fn add_magnitude(&self, other: &Self) -> Self {
         let base = self.base.min(other.base);
@@ -162,7 +166,7 @@ impl<const N: usize> Integer<N> {
         sum
     }
 
-    /// The larger magnitude minus the smaller one.
+    /// Returns the magnitude of `self` minus that of `smaller`, with the given sign.
     #[inline]
     fn subtract_magnitude(&self, smaller: &Self, negative: bool) -> Self {
         let base = self.base.min(smaller.base);
@@ -183,6 +187,7 @@ impl<const N: usize> Integer<N> {
         rest
     }
 
+    /// Returns the product, marked as overflown if it may not fit.
     #[must_use]
     pub fn multiply(&self, other: &Self) -> Self {
         if self.overflown || other.overflown {
@@ -216,7 +221,7 @@ impl<const N: usize> Integer<N> {
         result
     }
 
-    /// `None` if it did not fit.
+    /// Returns the sign; `None` if the number did not fit.
     #[inline]
     pub fn sign(&self) -> Option<Ordering> {
         match (self.overflown, self.len, self.negative) {
@@ -227,7 +232,7 @@ impl<const N: usize> Integer<N> {
         }
     }
 
-    /// `m 2^e` to within `2^-52` of itself.
+    /// Returns `(m, e)` so that `m 2^e` equals the number with a relative error of at most `2^-52`.
     #[inline]
     fn leading(&self) -> (f64, i32) {
         if self.len == 0 {
@@ -239,7 +244,7 @@ impl<const N: usize> Integer<N> {
         (if self.negative { -magnitude } else { magnitude }, 64 * (i32::from(top) - 1))
     }
 
-    /// `self / other`, to within a few roundings of itself; `None` if one of them did not fit.
+    /// Returns `self / other` with a relative error of a few roundings; `None` if one of them did not fit.
     #[inline]
     pub fn ratio(&self, other: &Self) -> Option<f64> {
         if self.overflown || other.overflown {
@@ -252,7 +257,7 @@ impl<const N: usize> Integer<N> {
     }
 }
 
-/// Mantissa and exponent: `|x| = mantissa 2^exponent`.
+/// Decomposes a number into mantissa and exponent: `|x| = mantissa 2^exponent`.
 #[inline]
 fn decode(x: f64) -> (u64, i32) {
     let bits = x.to_bits();
@@ -261,7 +266,7 @@ fn decode(x: f64) -> (u64, i32) {
     if exponent == 0 { (fraction, -1074) } else { (fraction | 1 << 52, exponent - 1075) }
 }
 
-/// `det[a, b, c]`.
+/// Computes `det[a, b, c]`.
 #[inline]
 pub fn determinant<const N: usize>(
     a: &[Integer<N>; 3],
@@ -278,7 +283,7 @@ pub fn determinant<const N: usize>(
     sum
 }
 
-/// `a - b`.
+/// Computes `a - b` for each component.
 #[inline]
 pub fn difference<const N: usize>(a: &[Integer<N>; 3], b: &[Integer<N>; 3]) -> [Integer<N>; 3] {
     std::array::from_fn(|k| a[k].subtract(&b[k]))
@@ -294,7 +299,7 @@ mod tests {
         RBig::try_from(x).unwrap()
     }
 
-    /// Numbers of very different size, zero and ties among them.
+    /// Random numbers of very different magnitudes, with zeros and ties.
     fn number() -> impl Strategy<Value = f64> {
         prop_oneof![
             Just(0.0),

@@ -1,27 +1,30 @@
-//! Lets others keep with a body what they make of it when they first need it. They know what it is, the body does not.
+//! A slot in a body for data that another module derives from the body on first use. The body does not know
+//! the type.
 
 use std::any::Any;
 use std::fmt::Debug;
 use std::panic::{RefUnwindSafe, UnwindSafe};
 use std::sync::{Arc, OnceLock};
 
-/// Something that can be kept.
+/// Derived data that a body can store.
 pub trait Keepable: Any + Debug + Send + Sync + UnwindSafe + RefUnwindSafe {
-    /// Bytes on the heap.
+    /// Returns the number of bytes on the heap.
     fn heap_bytes(&self) -> usize;
 }
 
-/// A place for one such thing; clones of the body share it.
+/// A slot for one value of derived data, which clones of the body share.
 #[derive(Debug, Clone, Default)]
 pub struct Kept(OnceLock<Arc<dyn Keepable>>);
 
 impl Kept {
-    /// What is kept, made if it is not there; `None` if something else is.
+    /// Returns the stored value, or stores `make()` in an empty slot. `None` if the slot contains a value of
+    /// another type.
     pub fn get_or_make<T: Keepable>(&self, make: impl FnOnce() -> T) -> Option<&T> {
         let kept: &dyn Any = &**self.0.get_or_init(|| Arc::new(make()));
         kept.downcast_ref()
     }
 
+    /// Returns the number of bytes of the stored value on the heap; 0 for an empty slot.
     pub fn heap_bytes(&self) -> usize {
         self.0.get().map_or(0, |kept| kept.heap_bytes())
     }

@@ -1,16 +1,16 @@
-//! What every body and every search needs: numbers and the bounds of their rounding errors, decisions that rounding
-//! cannot make, poses and motions, boxes, and how things are numbered and named.
+//! Arithmetic, geometry and data structures that all bodies and all searches use.
 //!
-//! In the order of use: [`range`] (the numbers that are accepted), [`error_free`], [`double`] and [`integer`] (exact
-//! arithmetic), [`predicates`] and [`orientation`] (signs), [`noise`] (bounds of rounding errors), [`fine`] (numbers of
-//! twice the precision with bounds), [`bounded`], [`pose`] and [`motion`], [`aabb`], [`split`], [`dynamic_tree`] and
-//! [`descent`] (boxes, how trees of them are built, one that changes, and searches down two of them), [`plane_tree`],
-//! [`topology`] (half-edges without coordinates), [`kept`] (what is made once with a body), [`id`], [`written`].
+//! - Exact arithmetic: [`range`] (accepted numbers), [`error_free`], [`double`], [`real`], [`integer`],
+//!   [`fine`].
+//! - Signs: [`predicates`], [`orientation`], [`volume`].
+//! - Bounds on rounding errors: [`noise`], [`extent`], [`bounded`].
+//! - Placement: [`angle`], [`pose`], [`motion`].
+//! - Linear algebra: [`determinant`], [`plane`], [`symmetric`].
+//! - Boxes and trees: [`aabb`], [`split`], [`dynamic_tree`], [`descent`], [`plane_tree`].
+//! - Bodies: [`topology`] (half-edges), [`kept`] (cached derived data), [`id`] (typed numbers).
+//! - Text and tests: [`error`], [`written`], [`work`].
 
-#![allow(
-    rustdoc::private_intra_doc_links,
-    reason = "hidden modules are read with their private parts"
-)]
+#![allow(rustdoc::private_intra_doc_links, reason = "hidden modules document their private items")]
 
 pub mod aabb;
 #[doc(hidden)]
@@ -72,7 +72,7 @@ pub use pose::Pose;
 
 #[cfg(test)]
 mod tests {
-    //! Numbers for the tests of this crate.
+    //! Random numbers for the tests of this crate.
 
     use dashu_ratio::RBig;
     use glam::DVec3;
@@ -82,7 +82,7 @@ mod tests {
         RBig::try_from(x).unwrap()
     }
 
-    /// Numbers of very different size, zero and ties among them.
+    /// Numbers of very different magnitudes, with zeros and ties.
     pub(crate) fn number() -> impl Strategy<Value = f64> {
         prop_oneof![
             Just(0.0),

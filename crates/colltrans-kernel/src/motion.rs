@@ -1,16 +1,15 @@
-//! Motions: where a body is at every time from 0 to 1.
+//! Rigid motions: the pose of a body at every time from 0 to 1.
 //!
-//! Notation. In a *piece*, from the time `s` on, the body's frame has the rotation `E(t) R` and the
-//! translation `T + v (t - s) + (E(t) - 1) a`, where `R`, `T` is its pose at `s`, `E(t)` the rotation by `w
-//! (t - s)` about the axis `k`, and `a`, the *arm*, the way from a point of the axis to `T`: so a point of
-//! the axis, and each point that is fixed to the body, moves on a helix about an axis that itself moves along
-//! `v`.
+//! A motion is a sequence of *pieces*. Notation for a piece that starts at the time `s`:
 //!
-//! The numbers `s, R, T, a, k, w, v` *define* a motion, as real numbers: `k` counts as if its length were
-//! exactly 1. `Piece::error` bounds how far what is computed of it is off.
+//! - `R`, `T` are the rotation and the translation of the pose at `s`. `v` is the velocity of an axis along
+//!   `k`.
+//! - `E(t)` is the rotation by `w (t - s)` about `k`. The *arm* `a` leads from a point of the axis to `T`.
+//! - The body frame has the rotation `E(t) R` and the translation `T + v (t - s) + (E(t) - 1) a`.
 //!
-//! A motion of several pieces begins each where the numbers of that piece say, which is where the one before
-//! it ends, to rounding.
+//! The numbers `s, R, T, a, k, w, v` define a motion in exact arithmetic, as if the length of `k` were 1.
+//! [`Piece::error`] bounds the rounding error of computed points. The start of a piece equals the end of the
+//! previous one up to rounding.
 
 use glam::{DMat3, DQuat, DVec3};
 
@@ -21,10 +20,10 @@ use crate::noise;
 use crate::pose::Pose;
 use crate::range::{MIN_MAGNITUDE, in_exact_range};
 
-/// Less than this a rotation between poses is none: the angle is within rounding of 0.
+/// Maximum sine of half the angle of a rotation between two poses that counts as rounding error of 0.
 const NO_TURN: f64 = 1e-15;
 
-/// Where a body is at every time from 0 to 1.
+/// The pose of a body at every time from 0 to 1.
 ///
 /// ```
 /// use colltrans::glam::DVec3;
@@ -44,62 +43,64 @@ const NO_TURN: f64 = 1e-15;
     serde(into = "Vec<PieceRecord>", try_from = "Vec<PieceRecord>")
 )]
 pub struct Motion {
-    /// At least one, the first from time 0.
+    /// The pieces, at least one, in the order of time. The first starts at time 0.
     pieces: Vec<Piece>,
 }
 
-/// A piece of a [`Motion`]: an even turn about an axis that moves evenly, from one time on.
+/// A piece of a [`Motion`]: a rotation at a constant rate about an axis that moves at a constant velocity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Piece {
-    /// The time at which the piece begins.
+    /// Time at which the piece starts.
     pub since: f64,
-    /// The pose at that time.
+    /// Pose at the start.
     pub start: Pose,
-    /// The vector from a point of the axis to the origin of the body's frame, in world units.
+    /// Vector from a point of the axis to the origin of the body frame at the start, in world units.
     pub arm: DVec3,
-    /// The direction of the axis: a unit vector, to rounding.
+    /// Direction of the axis: a unit vector, up to rounding.
     pub axis: DVec3,
-    /// The angular velocity about the axis, in radians in a unit of time.
+    /// Angular velocity about the axis, in radians per unit of time.
     pub rate: f64,
-    /// The velocity of the axis, in world units in a unit of time.
+    /// Velocity of the axis, in world units per unit of time.
     pub velocity: DVec3,
 }
 
-/// Where a piece has brought its body: the rotation, and how far the frame has moved.
+/// The placement of a body at one time of a piece, relative to the start of the piece.
 #[derive(Debug, Clone, Copy)]
 pub struct Moved {
-    /// The rotation.
+    /// Rotation of the body frame.
     pub rotation: DMat3,
-    /// How far the frame has moved.
+    /// Displacement of the origin of the body frame since the start of the piece, in world units.
     pub by: DVec3,
-    /// The arm, turned.
+    /// The rotated arm: the vector from a point of the axis to the origin of the body frame.
     pub arm: DVec3,
 }
 
 impl Motion {
-    /// None: the body rests at a pose.
+    /// Returns the motion of a body that rests at a pose.
     #[inline]
     pub fn still(pose: Pose) -> Self {
         Self { pieces: vec![Piece::resting(pose)] }
     }
 
-    /// A translation by a vector, in world units.
+    /// Returns a translation by a vector, in world units.
     ///
     /// # Errors
-    /// A vector that is not finite or out of range.
+    /// [`MotionError::Number`] if the vector is not finite or out of range.
     #[inline]
     pub fn slide(pose: Pose, by: DVec3) -> Result<Self, MotionError> {
         Self::of(Piece { velocity: by, ..Piece::resting(pose) })
     }
 
-    /// By the numbers that define it: from a point of the axis to the origin of the body's frame leads `arm`; the body
-    /// turns about the axis by `angle` in radians, and the axis moves by `way`, in world units.
+    /// Returns a rotation about a moving axis, by the numbers that define it.
     ///
-    /// The axis counts as if its length were exactly 1, and is one divided by its length here, unless that is 1 to
-    /// rounding.
+    /// - `arm` is the vector from a point of the axis to the origin of the body frame, in world units.
+    /// - `axis` is the direction of the axis. It is divided by its length, unless the length is 1 up to
+    ///   rounding. The motion is defined as if the length were exactly 1.
+    /// - `angle` is the angle of rotation in radians, and `way` the displacement of the axis in world units.
     ///
     /// # Errors
-    /// As [`Self::turn`].
+    /// [`MotionError::Number`] if the axis is zero, or a vector is not finite or out of range.
+    /// [`MotionError::Angle`] if the angle is not a number or exceeds 1e5 by magnitude.
     #[inline]
     pub fn about(
         pose: Pose,
@@ -113,20 +114,23 @@ impl Motion {
         Self::of(Piece { arm, axis, rate: angle, velocity: way, ..Piece::resting(pose) })
     }
 
-    /// A turn about an axis through a point of the world, by an angle in radians, counter-clockwise as seen
-    /// against the axis.
+    /// Returns a rotation about an axis through a point of the world. The angle is in radians,
+    /// counter-clockwise for a viewer whom the axis points at.
     ///
     /// # Errors
-    /// An axis that is zero, numbers that are not finite or out of range, an angle beyond 1e5.
+    /// [`MotionError::Number`] if the axis is zero, or a vector is not finite or out of range.
+    /// [`MotionError::Angle`] if the angle is not a number or exceeds 1e5 by magnitude.
     #[inline]
     pub fn turn(pose: Pose, point: DVec3, axis: DVec3, angle: f64) -> Result<Self, MotionError> {
         Self::screw(pose, point, axis, angle, 0.0)
     }
 
-    /// A turn about an axis, which itself moves along its own direction by `rise`, in world units.
+    /// Returns a rotation about an axis through a point of the world, which moves along its own direction by
+    /// `rise`, in world units.
     ///
     /// # Errors
-    /// As [`Self::turn`].
+    /// [`MotionError::Number`] if the axis is zero, or a vector is not finite or out of range.
+    /// [`MotionError::Angle`] if the angle is not a number or exceeds 1e5 by magnitude.
     #[inline]
     pub fn screw(
         pose: Pose,
@@ -141,12 +145,14 @@ impl Motion {
         Self::of(Piece { arm, axis, rate: angle, velocity: axis * rise, ..Piece::resting(pose) })
     }
 
-    /// A point of the body, given in the world, moves along a straight line by `velocity`, and the body turns
-    /// about it by the angular velocity's length in radians, about its direction: as what is thrown does
-    /// without gravity, in a unit of time.
+    /// Returns the motion of a thrown body without gravity, in a unit of time. `center` is a point of the
+    /// body in the world, and moves along a straight line with `velocity`. The body rotates about it with
+    /// `angular_velocity`, in radians per unit of time.
     ///
     /// # Errors
-    /// As [`Self::turn`]; an angular velocity of zero is none.
+    /// [`MotionError::Number`] if a vector is not finite or out of range. [`MotionError::Angle`] if the
+    /// angular velocity exceeds 1e5. An angular velocity of zero is accepted: the motion is then a
+    /// translation.
     #[inline]
     pub fn thrown(
         pose: Pose,
@@ -164,19 +170,21 @@ impl Motion {
         Self::of(Piece { arm, axis, rate, velocity, ..Piece::resting(pose) })
     }
 
-    /// The screw from one pose to another, by the shorter turn; it ends there to rounding.
+    /// Returns the screw motion from one pose to another by the smaller angle. It ends at `to` up to
+    /// rounding.
     ///
     /// # Errors
-    /// Poses between which the axis is out of range.
+    /// [`MotionError::Number`] if the axis or the displacement is out of range.
     #[inline]
     pub fn between(from: Pose, to: Pose) -> Result<Self, MotionError> {
         Self::through(&[from, to])
     }
 
-    /// Screws from each pose to the next one, in equal times.
+    /// Returns the screw motions from each pose to the next one, each in the same time.
     ///
     /// # Errors
-    /// No poses; as [`Self::between`].
+    /// [`MotionError::NoPoses`] if there are no poses. [`MotionError::Number`] if an axis or a displacement
+    /// is out of range. [`MotionError::Angle`] if a rotation exceeds 1e5 radians per unit of time.
     #[inline]
     pub fn through(poses: &[Pose]) -> Result<Self, MotionError> {
         let [first, ..] = poses else { return Err(MotionError::NoPoses) };
@@ -194,15 +202,17 @@ impl Motion {
         Ok(Self { pieces: pieces.collect::<Result<_, _>>()? })
     }
 
+    /// Returns the motion of one piece, or the error of [`Piece::checked`].
     #[inline]
     fn of(piece: Piece) -> Result<Self, MotionError> {
         Ok(Self { pieces: vec![piece.checked()?] })
     }
 
-    /// Where the body is at a time from 0 to 1, to rounding; the same bits on every platform.
+    /// Computes the pose at a time from 0 to 1, up to rounding, with equal bits on every platform.
     ///
     /// # Errors
-    /// A time beyond, a place out of range.
+    /// [`MotionError::Time`] if the time is not from 0 to 1. [`MotionError::Pose`] if the translation is out
+    /// of range.
     #[inline]
     pub fn at(&self, time: f64) -> Result<Pose, MotionError> {
         if !(0.0..=1.0).contains(&time) {
@@ -213,7 +223,7 @@ impl Motion {
         Ok(Pose::from_matrix(rotation, piece.start.translation() + by)?)
     }
 
-    /// Where the body is at time 0.
+    /// Returns the pose at time 0.
     #[inline]
     pub fn start(&self) -> Pose {
         self.pieces[0].start
@@ -227,12 +237,14 @@ impl Motion {
 }
 
 impl Piece {
+    /// Returns the piece of a body that rests at a pose from time 0 on.
     #[inline]
     fn resting(start: Pose) -> Self {
         let [arm, velocity] = [DVec3::ZERO; 2];
         Self { since: 0.0, start, arm, axis: DVec3::Z, rate: 0.0, velocity }
     }
 
+    /// Checks that arm, velocity and rate are in range.
     #[inline]
     fn checked(self) -> Result<Self, MotionError> {
         check("arm", self.arm)?;
@@ -243,7 +255,7 @@ impl Piece {
         Ok(self)
     }
 
-    /// Where the body is at a time that is not before the piece.
+    /// Computes the placement at a time that is not before the start of the piece.
     #[inline]
     #[doc(hidden)]
     pub fn at(&self, time: f64) -> Moved {
@@ -270,22 +282,23 @@ impl Piece {
         }
     }
 
-    /// `(E - 1) z`.
+    /// Returns the displacement `(E - 1) z` of a vector by the rotation `E`.
     #[inline]
     fn swing(&self, turn: &Turn, z: DVec3) -> DVec3 {
         let across = self.axis.cross(z);
         across * turn.sin + self.axis.cross(across) * turn.versine
     }
 
-    /// The velocity of a point of the body, from where the axis is.
+    /// Returns the velocity of a point of the body. `from_axis` is the vector from a point of the axis to
+    /// this point.
     #[inline]
     #[doc(hidden)]
     pub fn velocity_of(&self, from_axis: DVec3) -> DVec3 {
         self.velocity + self.axis.cross(from_axis) * self.rate
     }
 
-    /// How far points of a body, at most `reach` from the origin of its frame, may be from where the motion's
-    /// numbers have them, as computed up to some time after the piece began.
+    /// Bounds the rounding error of computed points of a body, up to `span` units of time after the start of
+    /// the piece. `reach` is the largest distance of a point from the origin of the body frame.
     #[doc(hidden)]
     #[inline]
     pub fn error(&self, reach: f64, span: f64) -> f64 {
@@ -295,7 +308,8 @@ impl Piece {
     }
 }
 
-/// The screw from one pose to the other in a unit of time, from time 0; a slide, if they hardly turn.
+/// Returns the screw motion from one pose to the other in a unit of time, from time 0 on. Returns a
+/// translation if the angle of rotation is within rounding of 0.
 #[inline]
 fn screw_between(from: &Pose, to: &Pose) -> Piece {
     let resting = Piece::resting(*from);
@@ -311,17 +325,18 @@ fn screw_between(from: &Pose, to: &Pose) -> Piece {
     }
     let axis = imaginary / sine;
     let half = arc_tangent(sine, turn.w);
-    // (E - 1) a is the part of the way across the axis.
+    // `(E - 1) a` is the part of the displacement perpendicular to the axis.
     let rise = axis * axis.dot(way);
     let across = way - rise;
     let arm = (axis.cross(across) * (-turn.w / sine) - across) * 0.5;
     Piece { arm, axis, rate: 2.0 * half, velocity: rise, ..resting }
 }
 
-/// The angle in the first quadrant with this sine and cosine, by Newton's steps on our own sine.
+/// Computes the angle in the first quadrant whose sine and cosine have the ratio `sine : cosine`, by Newton's
+/// method with our own sine.
 #[inline]
 fn arc_tangent(sine: f64, cosine: f64) -> f64 {
-    // Off by less than 0.05 to begin with.
+    // The initial error is below 0.05.
     let mut angle = if sine < cosine { sine / cosine.max(0.5) } else { 1.57 - cosine / sine };
     for _ in 0..8 {
         let t = turn(angle, 0.0);
@@ -330,7 +345,7 @@ fn arc_tangent(sine: f64, cosine: f64) -> f64 {
     angle
 }
 
-/// The direction of a vector.
+/// Returns the unit vector in the direction of `vector`, or an error that names `what`.
 #[inline]
 fn unit(what: &'static str, vector: DVec3) -> Result<DVec3, MotionError> {
     check(what, vector)?;
@@ -340,19 +355,20 @@ fn unit(what: &'static str, vector: DVec3) -> Result<DVec3, MotionError> {
     Ok(vector / vector.length())
 }
 
+/// Checks that a vector is finite and in the exact range. Components below the range count as 0.
 #[inline]
 fn check(what: &'static str, vector: DVec3) -> Result<(), MotionError> {
     if in_exact_range(flushed(vector)) { Ok(()) } else { Err(MotionError::Number { what, vector }) }
 }
 
-/// Components that are nothing beside others become zero.
+/// Returns the vector with components below [`MIN_MAGNITUDE`] replaced by zero.
 #[inline]
 fn flushed(v: DVec3) -> DVec3 {
     let flush = |x: f64| if x.abs() < MIN_MAGNITUDE { 0.0 } else { x };
     DVec3::new(flush(v.x), flush(v.y), flush(v.z))
 }
 
-/// A piece as it is written; read, it is checked like any other.
+/// Serialised form of a piece. A deserialised piece is checked like any other.
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -396,7 +412,7 @@ impl TryFrom<Vec<PieceRecord>> for Motion {
             let after = pieces.last().map_or(0.0, |last| last.since);
             let follows =
                 if pieces.is_empty() { record.since == 0.0 } else { record.since > after };
-            // A piece from the time 1 on would be one of no time that places the body elsewhere then.
+            // A piece from the time 1 on would have no duration and change the pose at the time 1.
             if !follows || record.since >= 1.0 {
                 return Err(MotionError::Time { time: record.since });
             }

@@ -1,21 +1,16 @@
-//! Exact arithmetic for the few decisions that rounding cannot make.
+//! Exact orientation predicate: the side of a segment of the shadow plane on which the line passes.
 //!
-//! Every coordinate, matrix entry and translation is a dyadic rational, so on which side of a
-//! segment the line passes is decided by integers times powers of two: the *exact shadows* of both
-//! points. With `m` the axis along which `d` is largest and `u`, `v` the next two in cyclic order,
-//! the shadow of `x` is `(x_u d_m - x_m d_u, x_v d_m - x_m d_v)`, and `det[a, b, d] d_m` is the
-//! determinant of the shadows of `a` and `b`.
+//! Let `m` be the axis along which `d` is largest, and `u`, `v` the next two in cyclic order. The *exact
+//! shadow* of `x` is `(x_u d_m - x_m d_u, x_v d_m - x_m d_v)`. `det[a, b, d] d_m` is the determinant of the
+//! shadows of `a` and `b`.
 //!
-//! Ties are the rule in designed parts, so three steps are tried, each exact when it answers:
-//! numbers of twice the usual precision with a bound on what they lost ([`Double`]; a bound of 0
-//! means nothing was), whole numbers of the usual size, whole numbers of the largest size.
+//! Ties are frequent in designed parts. Therefore three methods are tried, each exact if it returns a sign:
 //!
-//! Capacity. Input has magnitudes from `2^-200` to `2^200` with 53 significant bits. A
-//! product of two spans `2^-505..2^400`, a coordinate of `M` (eight terms) stays below `2^404`: 909
-//! bits. A component of a shadow spans `2^-757..2^605`: 1362 bits, 23 limbs. Their products have 46
-//! limbs, but numbers of like size need few: an integer keeps only the limbs it has.
+//! 1. numbers of twice the usual precision with an error bound ([`Double`]; exact if the bound is 0),
+//! 2. integers of [`SMALL`] capacity,
+//! 3. integers of [`LARGE`] capacity, which always suffices (`docs/theory/exact-arithmetic.md`).
 
-#![expect(clippy::inline_always, reason = "these sums are meant to stay in registers")]
+#![expect(clippy::inline_always, reason = "inlining keeps the sums in registers")]
 
 use std::cmp::Ordering;
 
@@ -29,13 +24,16 @@ use super::real::{Twice, Vector};
 /// A point of `M` as the sum of products that defines it: `R_Q q - R_P p + high + low`.
 #[derive(Debug, Clone, Copy)]
 pub struct Terms<'a> {
+    /// Rotation `R_Q` of the fixed body, and its vertex `q`.
     pub fixed: (&'a DMat3, DVec3),
+    /// Rotation `R_P` of the moving body, and its vertex `p`.
     pub moving: (&'a DMat3, DVec3),
+    /// The two parts `high`, `low` of the offset between the bodies.
     pub offset: [DVec3; 2],
 }
 
 impl Terms<'_> {
-    /// Factors of the products whose sum is a coordinate.
+    /// Returns the factors of the products whose sum is a coordinate.
     #[inline]
     fn row(&self, row: usize) -> [(f64, f64); 8] {
         let ((f, q), (m, p), [high, low]) = (self.fixed, self.moving, self.offset);
@@ -51,13 +49,13 @@ impl Terms<'_> {
         ]
     }
 
-    /// The point, rounded as if its coordinates had been computed without rounding, or nearly so.
+    /// Returns the point, rounded as if its coordinates had been computed nearly without rounding.
     #[inline]
     pub fn point(&self) -> DVec3 {
         DVec3::from_array(self.rounded([0, 1, 2]).map(|coordinate| coordinate.high))
     }
 
-    /// The point in twice the usual precision.
+    /// Returns the point in twice the usual precision.
     #[inline]
     pub fn twice(&self) -> Vector<Twice> {
         Vector(
@@ -65,18 +63,19 @@ impl Terms<'_> {
         )
     }
 
-    /// The point, exactly.
+    /// Returns the exact coordinates of the point.
     #[inline]
     pub fn coordinates<const N: usize>(&self) -> [Integer<N>; 3] {
         std::array::from_fn(|row| self.coordinate(row))
     }
 
+    /// Returns one exact coordinate of the point.
     #[inline]
     fn coordinate<const N: usize>(&self, row: usize) -> Integer<N> {
         self.row(row).iter().fold(Integer::ZERO, |sum, &(a, b)| sum.add(&Integer::product(a, b)))
     }
 
-    /// The exact shadow.
+    /// Returns the exact shadow for the axes `[m, u, v]`.
     #[inline]
     fn shadow<const N: usize>(&self, d: DVec3, [m, u, v]: [usize; 3]) -> [Integer<N>; 2] {
         let times = |x: &Integer<N>, k: usize| x.multiply(&Integer::number(d[k]));
@@ -85,12 +84,11 @@ impl Terms<'_> {
     }
 }
 
-/// Sign of `det[a - o, b - o, d]` with `o = (eps, eps^2)` on the two world axes along which `d` is
-/// smaller.
+/// Returns the sign of `det[a - o, b - o, d]` with `o = (eps, eps^2)` on the two world axes along which `d`
+/// is smaller (simulation of simplicity). The sign is `Equal` only if `a` and `b` have the same shadow along
+/// `d`.
 ///
-/// Zero only if `a` and `b` have the same shadow along `d`.
-///
-/// `base` is to return the [`shadow`] of `a` or `b`.
+/// `base` computes the [`shadow`] of `a` or `b`.
 #[inline]
 pub fn orientation(a: &Terms, b: &Terms, d: DVec3, base: impl FnOnce() -> Shadow) -> Ordering {
     let axes = axes_of(d);
@@ -100,6 +98,7 @@ pub fn orientation(a: &Terms, b: &Terms, d: DVec3, base: impl FnOnce() -> Shadow
         .unwrap_or(Ordering::Equal)
 }
 
+/// Computes the sign with integers of `N` limbs; `None` if a number did not fit.
 #[inline(never)]
 fn by_integers<const N: usize>(
     a: &Terms,
@@ -112,22 +111,22 @@ fn by_integers<const N: usize>(
     if det != Ordering::Equal {
         return Some(if d[axes[0]] < 0.0 { det.reverse() } else { det });
     }
-    // det[a - o, b - o, d] = det[a, b, d] - o . ((b - a) x d)
+    // The first order of `eps` decides: `det[a - o, b - o, d] = det[a, b, d] - o . ((b - a) x d)`.
     let first = av.subtract(&bv).sign()?;
     if first.is_ne() { Some(first) } else { bu.subtract(&au).sign() }
 }
 
-/// A shadow in numbers of twice the usual precision.
+/// A shadow in twice the usual precision.
 pub type Shadow = [Double; 2];
 
-/// Rows of a matrix's column.
+/// Returns the components of a vector along some axes.
 #[inline(always)]
 fn rows<const L: usize>(column: DVec3, axes: [usize; L]) -> [f64; L] {
     axes.map(|k| column[k])
 }
 
 impl Terms<'_> {
-    /// Coordinates.
+    /// Computes the coordinates along some axes in twice the usual precision.
     #[inline(always)]
     fn rounded<const L: usize>(&self, axes: [usize; L]) -> [Double; L] {
         let mut sums = Sums { high: rows(self.offset[0], axes), ..Sums::ZERO };
@@ -139,7 +138,8 @@ impl Terms<'_> {
         std::array::from_fn(|k| sums.get(k))
     }
 
-    /// Coordinates of the way to `other`: most terms are the same and leave no error.
+    /// Computes the coordinates of the displacement from `self` to `other`. Terms that both have in common
+    /// cancel without error.
     #[inline(always)]
     fn rounded_way<const L: usize>(&self, other: &Self, axes: [usize; L]) -> [Double; L] {
         let mut sums = Sums::ZERO;
@@ -168,7 +168,7 @@ impl Terms<'_> {
     }
 }
 
-/// The shadow of a point with these coordinates along the axes `u`, `v`, `m`.
+/// Computes the shadow of a vector from its coordinates along the axes `u`, `v`, `m` and those of `d`.
 #[inline(always)]
 fn rounded_shadow([along_u, along_v, along_m]: [Double; 3], [u, v, m]: [f64; 3]) -> [Double; 2] {
     [(along_u, u), (along_v, v)].map(|(x, d)| {
@@ -179,15 +179,14 @@ fn rounded_shadow([along_u, along_v, along_m]: [Double; 3], [u, v, m]: [f64; 3])
     })
 }
 
-/// The axis along which `d` is largest, and the next two.
+/// Returns the axis along which `d` is largest, and the next two in cyclic order.
 #[inline]
 fn axes_of(d: DVec3) -> [usize; 3] {
     let main = usize::from(d.abs().max_position() as u8);
     [main, (main + 1) % 3, (main + 2) % 3]
 }
 
-/// The shadow of a point, without the positive or negative factor `d_m` if `d` has no other
-/// component.
+/// Computes the shadow of a point. It lacks the factor `d_m`, of either sign, if `d` has no other component.
 #[inline]
 pub fn shadow(x: &Terms, d: DVec3) -> Shadow {
     let [m, u, v] = axes_of(d);
@@ -197,8 +196,9 @@ pub fn shadow(x: &Terms, d: DVec3) -> Shadow {
     rounded_shadow(x.rounded([u, v, m]), [d[u], d[v], d[m]])
 }
 
-/// A shadow in the coordinates of lateral axes `e1, e2`, with a small error relative to its length;
-/// zero only if it is. `None` if the shadow is not known that well.
+/// Converts a shadow to the lateral axes `e1, e2` in the first two columns of `axes`. The error is small
+/// relative to the length of the result, which is zero only if the shadow is. `None` if the shadow has a
+/// larger error.
 #[inline]
 pub fn rounded(shadow: &Shadow, axes: &DMat3, d: DVec3) -> Option<DVec2> {
     let [u_error, v_error] = [shadow[0].error, shadow[1].error];
@@ -207,19 +207,21 @@ pub fn rounded(shadow: &Shadow, axes: &DMat3, d: DVec3) -> Option<DVec2> {
     if u_error + v_error > RELATIVE_ERROR * size {
         return None;
     }
-    // Lateral vectors are determined by their components across the main axis.
+    // A lateral vector is determined by its components along `u` and `v`.
     let [m, u, v] = axes_of(d);
     let factor = if d[u] == 0.0 && d[v] == 0.0 { 1.0 } else { d[m] };
     let along = |e: DVec3| (e[u] * along_u + e[v] * along_v) / factor;
     Some(DVec2::new(along(axes.x_axis), along(axes.y_axis)))
 }
 
-/// Error that a shadow may have to be of use as a direction.
+/// Maximum relative error of a shadow that is used as a direction.
 const RELATIVE_ERROR: f64 = 1e-9;
 
-/// The side on which a line passes, from the shadow of one of the segment's ends, known well, and
-/// the way between them in the shadow frame, whose coordinates have errors of two noises; if that
-/// is enough, as it is where the end is close to the line and the way is not.
+/// Checks whether the line passes to the left of a segment; `None` if rounding leaves the side uncertain.
+///
+/// `base` is the accurate shadow of one end. `way` is the displacement from the first end to the second in
+/// the shadow frame, with errors of two noises in its coordinates. This suffices if the end is near the line
+/// and the displacement is long.
 #[inline]
 pub fn side(base: &Shadow, way: DVec2, axes: &DMat3, d: DVec3, noise: f64) -> Option<bool> {
     let [m, u, v] = axes_of(d);
@@ -240,7 +242,7 @@ pub fn side(base: &Shadow, way: DVec2, axes: &DMat3, d: DVec3, noise: f64) -> Op
     (det.abs() > 1.01 * error).then_some((det > 0.0) == (d[m] > 0.0))
 }
 
-/// Decides with numbers of twice the usual precision, if that is enough.
+/// Computes the sign with numbers of twice the usual precision; `None` if that leaves it uncertain.
 #[inline]
 fn by_doubles(
     a: &Terms,
@@ -251,7 +253,7 @@ fn by_doubles(
 ) -> Option<Ordering> {
     let sign = if d[m] < 0.0 { Ordering::Less } else { Ordering::Greater };
     if d[u] == 0.0 && d[v] == 0.0 {
-        // Positive factors do not matter.
+        // Positive factors do not change the sign.
         let way = a.rounded_way(b, [u, v]);
         return decide(way, base, [sign, Ordering::Greater]);
     }
@@ -260,8 +262,8 @@ fn by_doubles(
     decide(way, base, [Ordering::Greater, sign])
 }
 
-/// The side, from the shadow of the way and of the point where it begins or ends; `signs` of the shadows'
-/// and of the determinant's factor.
+/// Returns the sign from the shadow of the displacement and the shadow of one of its ends. `signs` are the
+/// signs of the factors of the shadows and of the determinant. `None` if the errors leave it uncertain.
 #[inline(always)]
 fn decide(
     way: [Double; 2],
@@ -281,7 +283,7 @@ fn decide(
     Some(if first.is_ne() { first } else { times(u?, signs[0]) })
 }
 
-/// `a.x b.y - a.y b.x`.
+/// Computes `a.x b.y - a.y b.x`.
 #[inline]
 fn minor(a: &[Double; 2], b: &[Double; 2]) -> Double {
     let mut sum = Double::ZERO;

@@ -1,22 +1,22 @@
-//! Planes through points: normals that stay accurate for slivers and long, narrow faces.
+//! Normals of triangles and polygons that stay accurate for slivers and long, narrow faces.
 
 use glam::DVec3;
 
 use super::determinant::accurate_cross;
 
-/// Sine of the angle below which the product of two edges is formed without cancellation: above, it
-/// loses two bits at most.
+/// Sine of the angle between two edges below which their product is computed without cancellation. Above it,
+/// the product loses at most two bits.
 const NEARLY_PARALLEL: f64 = 0.1;
 
-/// Twice the area times the unit normal of the counter-clockwise triangle `a b c`.
+/// Computes twice the area times the unit normal of the counter-clockwise triangle `a b c`.
 ///
-/// Where the angle at `a` is small, or `a b c` is a sliver, from other edges.
+/// If the angle at `a` is small, or the triangle is a sliver, the product of two other edges is used.
 #[inline]
 pub fn triangle_normal(corners: [DVec3; 3]) -> DVec3 {
     wide_normal(corners).unwrap_or_else(|| normal_of_sliver(corners))
 }
 
-/// The same where the angle at `a` is not small.
+/// Computes twice the area times the unit normal; `None` if the angle at `a` is small.
 #[inline]
 fn wide_normal([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
     let (u, v) = (b - a, c - a);
@@ -25,8 +25,8 @@ fn wide_normal([a, b, c]: [DVec3; 3]) -> Option<DVec3> {
     (normal.length_squared() >= NEARLY_PARALLEL * NEARLY_PARALLEL * size).then_some(normal)
 }
 
-/// From its two shorter edges, which determine it best: the product of two long, nearly parallel
-/// ones would lose the normal to rounding.
+/// Computes the normal from the two shorter edges, which determine it best. The product of two long, nearly
+/// parallel edges would lose the normal to rounding.
 #[inline]
 fn normal_of_sliver([a, b, c]: [DVec3; 3]) -> DVec3 {
     let edges = [b - a, c - b, a - c];
@@ -47,8 +47,8 @@ fn normal_of_sliver([a, b, c]: [DVec3; 3]) -> DVec3 {
     normal
 }
 
-/// Unit normal of a convex polygon, from a triangle of its corners that spans it widely; zero if it
-/// has no area.
+/// Computes the unit normal of a convex polygon from three of its corners that are far apart. Returns zero
+/// for a polygon without area.
 pub fn polygon_normal<I: Iterator<Item = DVec3> + Clone>(mut corners: I) -> DVec3 {
     let all = corners.clone();
     let Some(a) = corners.next() else { return DVec3::ZERO };

@@ -1,11 +1,13 @@
-//! How deep a point lies below the face planes of a hull: the least depth below one of them.
+//! A tree over the face planes of a hull, which finds the least depth of a point below a plane.
 //!
-//! The depth of a point `p` below a plane is `offset - normal . p`, which is linear in normal and offset. So a tree over
-//! the planes bounds their depths by boxes of the normals and by the least offset of each node. Large faces have many
-//! neighbours, and a search that walks from face to face looks at all of them; this search does not.
+//! The depth of a point `p` below a plane is `offset - normal . p`, which is linear in normal and offset.
+//! Therefore a tree over the planes bounds their depths by boxes of the normals and by the least offset of
+//! each node. In contrast to a walk from face to face, the search does not visit all neighbours of a large
+//! face.
 //!
-//! Invariant. A depth is computed from the plane as it is given. Only the bounds use offsets from the centre of the
-//! body, because bounds would be wide far from the origin. They are lowered by more than both can be rounded.
+//! Invariant. A depth is computed from the plane as given. Only the bounds use offsets from the centre of the
+//! body, because bounds would be wide far from the origin. They are lowered by more than the rounding error
+//! of a bound and a depth.
 
 use std::ops::Range;
 
@@ -13,9 +15,10 @@ use glam::DVec3;
 
 use crate::work;
 
-/// Planes of a leaf.
+/// Maximum number of planes of a leaf.
 const LEAF: usize = 8;
-/// Rounding of a bound and a depth, relative to the size of coordinates: some ten roundings of `2^-53` each.
+/// Rounding error of a bound and a depth, relative to the size of coordinates: some ten roundings of `2^-53`
+/// each.
 const ROUNDING: f64 = 1e-14;
 
 /// A tree over planes.
@@ -25,26 +28,26 @@ pub struct PlaneTree {
     slack: f64,
     /// Unit normal and offset from the origin of each plane, leaf by leaf.
     planes: Vec<(DVec3, f64)>,
-    /// Each node before its children, the first child right behind it.
+    /// The nodes. Each node is before its children, and its first child is next.
     nodes: Vec<Node>,
 }
 
-/// Planes that follow each other.
+/// A node: a range of consecutive planes with bounds.
 #[derive(Debug)]
 struct Node {
     planes: Range<usize>,
-    /// Bounds of their normals.
+    /// Componentwise bounds of the normals.
     low: DVec3,
     high: DVec3,
-    /// A lower bound of their offsets from the centre.
+    /// Lower bound of the offsets from the centre of the body.
     least_offset: f64,
-    /// The second child; `None` for a leaf.
+    /// Number of the second child; `None` for a leaf.
     second: Option<usize>,
 }
 
 impl PlaneTree {
-    /// Builds the tree over planes, each with unit normal and offset from the origin, that bound a body with these
-    /// vertices.
+    /// Builds the tree over planes, each with unit normal and offset from the origin. `vertices` are those of
+    /// the body that the planes bound.
     pub fn new(vertices: &[DVec3], planes: Vec<(DVec3, f64)>) -> Self {
         let center = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
         let size = vertices.iter().map(|v| v.abs().element_sum()).fold(0.0, f64::max);
@@ -53,6 +56,7 @@ impl PlaneTree {
         tree
     }
 
+    /// Builds the subtree over a range of planes, and sorts the planes into its leaves.
     fn build(&mut self, range: Range<usize>) {
         let center = self.center;
         let part = &mut self.planes[range.clone()];
@@ -76,9 +80,9 @@ impl PlaneTree {
         self.build(middle..range.end);
     }
 
-    /// Returns the least depth of a point of the body below a plane, or any such depth that is not greater than
-    /// `enough`. `near` is the plane to begin with, and then the one that was found. Planes and nodes that are looked at are
-    /// added to `looks`.
+    /// Returns the least depth of a point of the body below a plane, or any depth not greater than `enough`.
+    /// `near` is the plane to begin with, and is set to the plane with the returned depth. The number of
+    /// visited planes and nodes is added to `looks`.
     pub fn least_depth(&self, p: DVec3, enough: f64, near: &mut usize, looks: &mut usize) -> f64 {
         let depth = |plane: usize| self.planes[plane].1 - self.planes[plane].0.dot(p);
         let ray = p - self.center;

@@ -1,29 +1,32 @@
 //! Poses: a rotation followed by a translation, `x_world = R x_body + t`.
 //!
-//! The nine entries of `R` *define* where a body is: solvers, certificates and the exact
-//! verification all read the same nine numbers, so no rounding lies between them. They are those
-//! given, or computed once from a quaternion. They need not be a rotation to the last digit: a
-//! matrix that is off one by [`TOLERANCE`] places a body that is stretched by as much, which
-//! [`noise`](crate::noise) covers.
+//! Invariants:
+//!
+//! - The nine entries of `R` *define* where a body is. Solvers, certificates and the exact verification read
+//!   the same nine numbers, so that no rounding occurs between them.
+//! - The entries are given, or computed once from a quaternion.
+//! - They may differ from a rotation by [`TOLERANCE`]. Such a matrix stretches the body by the same share,
+//!   which the margins of [`noise`](crate::noise) cover.
 
 use glam::{DMat3, DQuat, DVec3};
 
 use crate::error::PoseError;
 use crate::range::{MIN_MAGNITUDE, in_exact_range};
 
-/// How far the length of a quaternion may be from 1, and an entry of `R^T R` from that of the
-/// identity: single precision passes.
+/// Maximum difference of the length of a quaternion from 1, and of an entry of `R^T R` from that of the
+/// identity. Single precision is accepted.
 const TOLERANCE: f64 = 1e-6;
 
-/// Factor by which a pose stretches a length at most: its nine entries may be off a rotation by [`TOLERANCE`].
+/// Factor by which a pose stretches a length at most, because its entries may differ from a rotation by
+/// [`TOLERANCE`].
 pub const STRETCHED: f64 = 1.0 + 4.0 * TOLERANCE;
 
-/// How far the length of a quaternion, or an entry of `R^T R`, may be off for
-/// [`Pose::from_rounded`] and [`Pose::from_rounded_matrix`]: two written digits pass.
+/// Maximum difference of the length of a quaternion, or of an entry of `R^T R`, that [`Pose::from_rounded`]
+/// and [`Pose::from_rounded_matrix`] accept. Two written digits are sufficient.
 const FEW_DIGITS: f64 = 0.02;
 
-/// Largest number of Newton steps towards the nearest rotation. Each squares the defect, so that
-/// two percent become rounding error in four.
+/// Maximum number of Newton steps towards the nearest rotation. Each step squares the defect, so that four
+/// steps reduce two percent to rounding error.
 const MOST_POLAR_STEPS: usize = 8;
 
 /// A rigid placement of a body in the world: `x_world = R x_body + t`.
@@ -55,13 +58,15 @@ pub struct Pose {
 }
 
 impl Pose {
-    /// The body's own frame is the world's.
+    /// The identity: the body frame is the world frame.
     pub const IDENTITY: Self = Self { matrix: DMat3::IDENTITY, translation: DVec3::ZERO };
 
-    /// Rotation (a quaternion of length 1 to within 1e-6, normalised here), then translation.
+    /// Builds a pose from a quaternion of length 1 within 1e-6, which is normalised, and a translation in
+    /// world units.
     ///
     /// # Errors
-    /// A quaternion that is not a rotation, a translation that is not finite or out of range.
+    /// [`PoseError::NotARotation`] if the quaternion is not a rotation. [`PoseError::Translation`] if the
+    /// translation is not finite or out of range.
     #[inline]
     pub fn new(rotation: DQuat, translation: DVec3) -> Result<Self, PoseError> {
         let length = rotation.length();
@@ -74,11 +79,12 @@ impl Pose {
         Ok(Self { matrix: flush_tiny(matrix_of(rotation)), translation })
     }
 
-    /// The nine entries of a rotation matrix, taken as they are, then translation.
+    /// Builds a pose from the nine entries of a rotation matrix, which are stored unchanged, and a
+    /// translation in world units.
     ///
     /// # Errors
-    /// A matrix that is off a rotation by more than 1e-6, with the measured defect; a translation
-    /// that is not finite or out of range.
+    /// [`PoseError::NotARotationMatrix`] with the defect, if the matrix differs from a rotation by more than
+    /// 1e-6. [`PoseError::Translation`] if the translation is not finite or out of range.
     ///
     /// ```
     /// use colltrans::Pose;
@@ -102,11 +108,13 @@ impl Pose {
         Ok(Self { matrix: flush_tiny(matrix), translation })
     }
 
-    /// Builds a pose from a quaternion that was written with few digits: one whose length is off 1 by more than
-    /// 1e-6 and at most 0.02 is normalised. Returns its defect, `|length - 1|`, in that case.
+    /// Builds a pose from a quaternion that was written with few digits. A quaternion whose length differs
+    /// from 1 by more than 1e-6 and at most 0.02 is normalised. In that case, returns its defect
+    /// `|length - 1|`, otherwise `None`.
     ///
     /// # Errors
-    /// As [`Self::new`], for a quaternion that is off by more.
+    /// [`PoseError::NotARotation`] if the length differs by more than 0.02. [`PoseError::Translation`] if the
+    /// translation is not finite or out of range.
     ///
     /// ```
     /// use colltrans::Pose;
@@ -130,11 +138,13 @@ impl Pose {
         Ok((Self::new(rotation, translation)?, is_rounded.then_some(defect)))
     }
 
-    /// Builds a pose from a matrix that was written with few digits: one that is off a rotation by more than 1e-6
-    /// and at most 0.02 becomes the nearest rotation, its polar factor. Returns its defect in that case.
+    /// Builds a pose from a matrix that was written with few digits. A matrix that differs from a rotation by
+    /// more than 1e-6 and at most 0.02 is replaced by the nearest rotation, its polar factor. In that case,
+    /// returns its defect, otherwise `None`.
     ///
     /// # Errors
-    /// As [`Self::from_matrix`], for a matrix that is off by more than 0.02.
+    /// [`PoseError::NotARotationMatrix`] if the matrix differs by more than 0.02. [`PoseError::Translation`]
+    /// if the translation is not finite or out of range.
     #[inline]
     pub fn from_rounded_matrix(
         matrix: DMat3,
@@ -152,98 +162,101 @@ impl Pose {
         Ok((pose, is_rounded.then_some(defect)))
     }
 
-    /// A translation alone.
+    /// Builds a pose that only translates, in world units.
     ///
     /// # Errors
-    /// A translation that is not finite or out of range.
+    /// [`PoseError::Translation`] if the translation is not finite or out of range.
     #[inline]
     pub fn from_translation(translation: DVec3) -> Result<Self, PoseError> {
         check_translation(translation)?;
         Ok(Self { matrix: DMat3::IDENTITY, translation })
     }
 
-    /// From entries that were those of a pose before.
+    /// Builds a pose from entries that a valid pose contained, without checks.
     #[inline]
     #[doc(hidden)]
     pub fn checked(matrix: DMat3, translation: DVec3) -> Self {
         Self { matrix, translation }
     }
 
-    /// The same rotation somewhere else.
+    /// Returns the pose with the same rotation and another translation, in world units.
     ///
     /// # Errors
-    /// The new translation is out of range.
+    /// [`PoseError::Translation`] if the translation is not finite or out of range.
     #[inline]
     pub fn moved_to(&self, translation: DVec3) -> Result<Self, PoseError> {
         check_translation(translation)?;
         Ok(Self { translation, ..*self })
     }
 
-    /// The rotation as a unit quaternion, to rounding error: the matrix is what counts.
+    /// Returns the rotation as a unit quaternion, up to rounding. The matrix defines the pose.
     #[inline]
     pub fn rotation(&self) -> DQuat {
         DQuat::from_mat3(&self.matrix).normalize()
     }
 
-    /// The rotation matrix `R` that defines the placement.
+    /// Returns the rotation matrix `R`, which defines the pose.
     #[inline]
     pub const fn matrix(&self) -> DMat3 {
         self.matrix
     }
 
-    /// The translation `t`, in world units.
+    /// Returns the translation `t`, in world units.
     #[inline]
     pub const fn translation(&self) -> DVec3 {
         self.translation
     }
 
-    /// A point of the body, in the world.
+    /// Transforms a point from the body frame to the world.
     #[inline]
     pub fn transform_point(&self, point_in_body: DVec3) -> DVec3 {
         self.matrix * point_in_body + self.translation
     }
 
-    /// A vector (difference of points) of the body, in the world.
+    /// Transforms a vector (a difference of points) from the body frame to the world.
     #[inline]
     pub fn transform_vector(&self, vector_in_body: DVec3) -> DVec3 {
         self.matrix * vector_in_body
     }
 
-    /// `self` after `first`: `x -> self(first(x))`.
+    /// Returns the composition `x -> self(first(x))`.
     ///
     /// # Errors
-    /// The composed translation is out of range, or errors of the two matrices have added up.
+    /// [`PoseError::Translation`] if the composed translation is out of range.
+    /// [`PoseError::NotARotationMatrix`] if the errors of the two matrices add up to more than 1e-6.
     #[inline]
     pub fn compose(&self, first: &Self) -> Result<Self, PoseError> {
         Self::from_matrix(self.matrix * first.matrix, self.transform_point(first.translation))
     }
 
-    /// The pose that undoes this one.
+    /// Returns the inverse pose.
     ///
     /// # Errors
-    /// The inverse's translation is out of range, or errors of the matrix have doubled.
+    /// [`PoseError::Translation`] if the translation of the inverse is out of range.
+    /// [`PoseError::NotARotationMatrix`] if the inverse of the matrix differs from a rotation by more than
+    /// 1e-6.
     #[inline]
     pub fn inverse(&self) -> Result<Self, PoseError> {
         let matrix = self.matrix.inverse();
         Self::from_matrix(matrix, -(matrix * self.translation))
     }
 
-    /// This pose moved by `offset` in the world.
+    /// Returns this pose translated by `offset` in the world.
     ///
     /// # Errors
-    /// The new translation is out of range.
+    /// [`PoseError::Translation`] if the new translation is not finite or out of range.
     #[inline]
     pub fn translated(&self, offset: DVec3) -> Result<Self, PoseError> {
         self.moved_to(self.translation + offset)
     }
 }
 
-/// A pose as it is written; read, it is checked like any other.
+/// Serialised form of a pose. A deserialised pose is checked like any other.
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PoseRecord {
-    /// Column by column.
+    /// The nine entries, column by column.
     matrix: [f64; 9],
     translation: [f64; 3],
 }
@@ -274,11 +287,11 @@ impl Default for Pose {
     }
 }
 
-/// The rotation matrix of a quaternion of any length near 1.
+/// Computes the rotation matrix of a quaternion of any length near 1.
 ///
-/// Divided by the square of the length as it is computed, the entries of a quarter turn, or of a
-/// half turn about a diagonal, come out as 0 and 1: the roots of 1/2 that make it are rounded, but
-/// the same rounding is above and below.
+/// The entries are divided by the computed square of the length. Therefore the entries of a quarter turn, or
+/// of a half turn about a diagonal, are exactly 0 and 1: the quaternion contains rounded roots of 1/2, and
+/// the same rounding occurs in numerator and denominator.
 #[inline]
 fn matrix_of(rotation: DQuat) -> DMat3 {
     let [x, y, z, w] = rotation.to_array();
@@ -322,14 +335,14 @@ fn nearest_rotation(matrix: DMat3) -> DMat3 {
     rotation
 }
 
-/// The nine entries of `R^T R - 1`, which are 0 for a rotation.
+/// Returns the nine entries of `R^T R - 1`, which are 0 for a rotation.
 #[inline]
 fn off_rotation(matrix: DMat3) -> [f64; 9] {
     (matrix.transpose() * matrix - DMat3::IDENTITY).to_cols_array()
 }
 
-/// How far lengths may be stretched by a matrix: the square root of the sum of the squares of what it is off
-/// a rotation.
+/// Bounds the relative stretch of lengths by a matrix: the square root of the sum of the squares of the
+/// entries of `R^T R - 1`.
 #[inline]
 pub fn rotation_defect(matrix: DMat3) -> f64 {
     off_rotation(matrix).into_iter().map(|x| x * x).sum::<f64>().sqrt()
@@ -340,8 +353,8 @@ fn check_translation(translation: DVec3) -> Result<(), PoseError> {
     if in_exact_range(translation) { Ok(()) } else { Err(PoseError::Translation { translation }) }
 }
 
-/// Entries of a rotation below `2^-200` are rounding noise of zero: they become zero, so that
-/// products with coordinates stay in the exact range.
+/// Replaces entries of a rotation below `2^-200` by zero, because they are rounding noise of zero. Products
+/// with coordinates then stay in the exact range.
 #[inline]
 fn flush_tiny(m: DMat3) -> DMat3 {
     DMat3::from_cols_array(

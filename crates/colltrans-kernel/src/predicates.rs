@@ -1,26 +1,28 @@
-//! Exact signs of determinants of points as given: the adaptive predicates of `robust`, in this crate's
-//! conventions.
+//! Exact signs of determinants of given points: the adaptive predicates of the crate `robust`, with the
+//! conventions of this project.
 
 use std::cmp::Ordering;
 
 use glam::{DVec2, DVec3};
 use robust::{Coord, Coord3D};
 
-/// Positive if `a b c` turn to the left; exact in sign.
+/// Returns a positive number if `a b c` turn to the left, a negative number for a right turn, 0 for collinear
+/// points. The sign is exact.
 #[inline]
 pub fn orient2d(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     let coord = |p: DVec2| Coord { x: p.x, y: p.y };
     robust::orient2d(coord(a), coord(b), coord(c))
 }
 
-/// Positive if `p` is above the plane of the counter-clockwise triangle `a b c`; exact in sign.
+/// Returns a positive number if `p` is above the plane of the counter-clockwise triangle `a b c`. The sign is
+/// exact.
 #[inline]
 pub fn orient3d(a: DVec3, b: DVec3, c: DVec3, p: DVec3) -> f64 {
     let coord = |v: DVec3| Coord3D { x: v.x, y: v.y, z: v.z };
     -robust::orient3d(coord(a), coord(b), coord(c), coord(p))
 }
 
-/// The sign of a number; that of NaN is `Equal`.
+/// Returns the sign of a number; `Equal` for NaN.
 #[inline]
 pub fn sign(x: f64) -> Ordering {
     x.partial_cmp(&0.0).unwrap_or(Ordering::Equal)

@@ -1,4 +1,4 @@
-//! Numbers that a search computes with: `f64`, or [`Twice`] its precision where that does not tell.
+//! Number types of a search: `f64`, or [`Twice`] its precision if rounding leaves a result uncertain.
 
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -6,7 +6,7 @@ use glam::DVec3;
 
 use super::error_free::{product_error, sum_error};
 
-/// A number to compute with.
+/// A number type with the basic operations.
 pub trait Real:
     Copy
     + PartialOrd
@@ -18,9 +18,10 @@ pub trait Real:
 {
     const ZERO: Self;
 
+    /// Converts an `f64` exactly.
     fn of(x: f64) -> Self;
 
-    /// The nearest `f64`.
+    /// Returns the nearest `f64`.
     fn value(self) -> f64;
 }
 
@@ -38,8 +39,8 @@ impl Real for f64 {
     }
 }
 
-/// The sum of a number and of what rounding took from it: 106 bits, less a few. Of numbers that are not
-/// tiny: what underflows is lost.
+/// A double-word number: the sum of an `f64` and its rounding error, about 106 bits. Underflow is not
+/// detected, so numbers must not be tiny.
 #[derive(Debug, Clone, Copy, PartialEq, PartialOrd)]
 pub struct Twice {
     high: f64,
@@ -47,7 +48,7 @@ pub struct Twice {
 }
 
 impl Twice {
-    /// The sum of two, the second small against the first.
+    /// Returns `high + low`, where `low` is small compared with `high`.
     #[inline]
     pub fn new(high: f64, low: f64) -> Self {
         let sum = high + low;
@@ -121,7 +122,7 @@ impl Div for Twice {
     }
 }
 
-/// A vector of such numbers.
+/// A vector of three numbers of this type.
 #[derive(Debug, Clone, Copy)]
 pub struct Vector<T>(pub [T; 3]);
 
@@ -161,7 +162,7 @@ impl<T: Real> Vector<T> {
         Self([b * z - c * y, c * x - a * z, a * y - b * x])
     }
 
-    /// The nearest one of `f64`.
+    /// Returns the nearest vector of `f64`.
     #[inline]
     pub fn value(&self) -> DVec3 {
         DVec3::from_array(self.0.map(T::value))
@@ -176,7 +177,7 @@ mod tests {
     use super::*;
     use crate::tests::rational;
 
-    /// Numbers of like size, zero among them.
+    /// Numbers of similar magnitude, with zeros.
     fn number() -> impl Strategy<Value = Twice> {
         let high = || prop_oneof![Just(0.0), (-4_i32..=4).prop_map(f64::from), -2.0..2.0_f64];
         (high(), -1.0..1.0_f64).prop_map(|(high, low)| Twice::new(high, low * 1e-17))
@@ -186,7 +187,7 @@ mod tests {
         rational(x.high) + rational(x.low)
     }
 
-    /// Whether two numbers differ by less than `1e-30` of a size.
+    /// Checks whether two numbers differ by at most `1e-30` times a size.
     fn agree(found: Twice, truth: RBig, size: f64) -> bool {
         (exact(found) - truth).to_f64().value().abs() <= 1e-30 * size
     }

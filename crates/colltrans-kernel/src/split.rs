@@ -1,38 +1,41 @@
-//! How the boxes of a node are parted in two: up to 16 bins along each axis and the surface-area heuristic;
-//! halves by count where that finds nothing.
+//! Splits the items of a node of a bounding volume tree: binned surface-area heuristic (Wald, "On fast
+//! construction of SAH-based bounding volume hierarchies", 2007).
+//!
+//! Each axis has up to 16 bins. If no split between bins is accepted, the items are split at the median.
 
 use glam::DVec3;
 
 use super::Aabb;
 
+/// Maximum number of bins along an axis.
 const BINS: usize = 16;
-/// More boxes than this are weighed by as many of them.
+/// Number of items above which the heuristic evaluates a sample of about this size.
 const SAMPLE: usize = 1 << 12;
 
-/// What has a box.
+/// An item with a box.
 pub trait Boxed {
-    /// Its box.
+    /// Returns the box of the item.
     fn bounds(&self) -> &Aabb;
-    /// What tells it from others with the same box.
+    /// Returns the number of the item, which orders items with equal centres.
     fn number(&self) -> u32;
 
-    /// Twice the middle.
+    /// Returns twice the centre of the box.
     #[inline]
     fn center(&self) -> DVec3 {
         self.bounds().low + self.bounds().high
     }
 }
 
-/// What is tried.
+/// Constraints for a split.
 #[derive(Debug, Clone, Copy)]
 pub struct Rule {
-    /// Both children get so many items.
+    /// Minimum number of items of each child.
     pub least: usize,
-    /// Only across the longest way between centres: a third of the work.
+    /// Whether only the axis of the largest extent of the centres is evaluated, a third of the work.
     pub longest: bool,
 }
 
-/// Puts the items of the first child in front; how many they are.
+/// Partitions the items so that those of the first child come first, and returns their number.
 #[inline]
 pub fn split<T: Boxed>(items: &mut [T], rule: Rule) -> usize {
     let least = rule.least;
@@ -47,7 +50,8 @@ pub fn split<T: Boxed>(items: &mut [T], rule: Rule) -> usize {
     halve(items, &centers)
 }
 
-/// The same by count, across the longest way between centres.
+/// Partitions the items at the median along the axis of the largest extent of the centres, and returns the
+/// number of items in front. `centers` is the box of the centres, as [`Boxed::center`] returns them.
 #[inline]
 pub fn halve<T: Boxed>(items: &mut [T], centers: &Aabb) -> usize {
     let axis = centers.size().max_position();
@@ -59,7 +63,7 @@ pub fn halve<T: Boxed>(items: &mut [T], centers: &Aabb) -> usize {
     middle
 }
 
-/// Moves the items that `belongs` to the front; how many they are.
+/// Moves the items for which `belongs` is true to the front, and returns their number.
 #[inline]
 fn partition<T>(items: &mut [T], belongs: impl Fn(&T) -> bool) -> usize {
     let mut middle = 0;
@@ -72,7 +76,7 @@ fn partition<T>(items: &mut [T], belongs: impl Fn(&T) -> bool) -> usize {
     middle
 }
 
-/// Intervals of the centres along an axis.
+/// The bins of the centres along an axis.
 struct Binning {
     axis: usize,
     low: f64,
@@ -81,7 +85,7 @@ struct Binning {
 }
 
 impl Binning {
-    /// For so many items: few need few.
+    /// Returns the bins for a number of items. Few items get fewer bins, at least 4.
     #[inline]
     fn new(centers: &Aabb, axis: usize, items: usize) -> Self {
         let bins = items.clamp(4, BINS);
@@ -91,11 +95,12 @@ impl Binning {
 
     #[inline]
     fn bin(&self, item: &impl Boxed) -> usize {
-        // Out of range, or not a number where all centres are one, ends at either end.
+        // Values out of range, or NaN if all centres are equal, go to the first or the last bin.
         (((item.center()[self.axis] - self.low) * self.scale) as usize).min(self.last)
     }
 }
 
+/// The box and the number of the items of consecutive bins.
 #[derive(Clone, Copy)]
 struct Bin {
     bounds: Aabb,
@@ -110,15 +115,15 @@ impl Bin {
         Self { bounds: self.bounds.join(&other.bounds), count: self.count + other.count }
     }
 
-    /// Half the surface of the box times the count.
+    /// Returns half the surface area of the box times the number of items.
     #[inline]
     fn cost(&self) -> f64 {
         if self.count == 0 { 0.0 } else { self.bounds.half_area() * self.count as f64 }
     }
 }
 
-/// The axis and the last bin of the first child for which the surface-area heuristic is least; of many
-/// items a share is looked at.
+/// Finds the axis and the last bin of the first child with the least cost by the surface-area heuristic. For
+/// many items, evaluates a sample. `None` if no split satisfies the rule.
 #[inline]
 fn cheapest<T: Boxed>(items: &[T], centers: &Aabb, rule: Rule) -> Option<(usize, usize)> {
     let step = items.len().div_ceil(SAMPLE);

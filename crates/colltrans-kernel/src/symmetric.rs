@@ -14,14 +14,14 @@ pub struct Symmetric {
 }
 
 impl Symmetric {
-    /// `w^T w`.
+    /// Computes the Gram matrix `w^T w`.
     #[inline]
     pub fn gram(w: &DMat3) -> Self {
         let (x, y, z) = (w.x_axis, w.y_axis, w.z_axis);
         Self { xx: x.dot(x), xy: x.dot(y), xz: x.dot(z), yy: y.dot(y), yz: y.dot(z), zz: z.dot(z) }
     }
 
-    /// `f self + g other`.
+    /// Computes `f self + g other`.
     #[inline]
     #[must_use]
     pub fn combine(&self, f: f64, other: &Self, g: f64) -> Self {
@@ -35,7 +35,7 @@ impl Symmetric {
         }
     }
 
-    /// `self + t`, of the identity `t` times.
+    /// Computes `self + t I`, with the identity `I`.
     #[inline]
     #[must_use]
     pub fn plus_diagonal(&self, t: f64) -> Self {
@@ -51,13 +51,13 @@ impl Symmetric {
         )
     }
 
-    /// `v^T self v`.
+    /// Computes the quadratic form `v^T self v`.
     #[inline]
     pub fn square(&self, v: DVec3) -> f64 {
         v.dot(self.apply(v))
     }
 
-    /// The adjugate `J`, with `self^-1 = J / det`, and the determinant.
+    /// Computes the adjugate `J`, so that `self^-1 = J / det`, and the determinant `det`.
     #[inline]
     pub fn adjugate(&self) -> (Self, f64) {
         let xx = self.yy * self.zz - self.yz * self.yz;

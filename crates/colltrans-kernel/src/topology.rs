@@ -1,59 +1,63 @@
-//! The topology of a convex polyhedron: half-edges, with no coordinates anywhere.
+//! Topology of a polyhedron: a half-edge structure without coordinates.
 //!
-//! Notation. The half-edges of a face lie one after the other in the order of its boundary,
-//! counter-clockwise as seen from outside, so `next` needs no link. Half-edge `h` runs from
-//! `origin(h)` to `origin(twin(h))`, with its own face on its left.
+//! Notation. The half-edges of a face are consecutive, counter-clockwise as seen from outside. Half-edge `h`
+//! runs from `origin(h)` to `origin(twin(h))`, with its face on its left. Invariants, checked for every
+//! input:
 //!
-//! Invariant (validated on input): every half-edge has exactly one twin, which runs the other way;
-//! the faces around a vertex form one fan. Of a convex body the surface is one sphere, too.
-//! Bodies of lower dimension fit in: a flat polygon is a front and a back face; a segment is
-//! two vertices that are each other's neighbour, a point one vertex, both without faces.
+//! - Every half-edge has exactly one twin of the opposite direction. The faces around a vertex form one fan.
+//! - The surface of a convex body is one sphere. A flat polygon has a front and a back face. A segment has
+//!   two vertices that are neighbours of each other, a point one vertex, both without faces.
 //!
-//! Links, half of the memory, are known once the faces have been checked. Who does without, as support points
-//! do, lets go of them; they are made again when they are next asked for.
+//! [`Links`] use half of the memory. A body that needs only neighbours can drop them, and the next access
+//! rebuilds them.
 
 use std::sync::OnceLock;
 
 use crate::error::TopologyError;
 
-/// A directed edge along the boundary of a face of a polyhedron.
+/// A directed edge of a face of a polyhedron.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct HalfEdge {
-    /// The vertex that it starts from.
+    /// The vertex at the start of the half-edge.
     pub origin: u32,
-    /// The half-edge that runs the other way, along the neighbouring face: it starts where this one ends.
+    /// The half-edge of the opposite direction, in the neighbouring face. It starts at the end of this
+    /// half-edge.
     pub twin: u32,
-    /// The face on its left, as seen from outside.
+    /// The face on the left, as seen from outside.
     pub face: u32,
 }
 
-/// Vertices, half-edges and faces, by index.
+/// Vertices, half-edges and faces, by their numbers.
 #[derive(Debug, Clone)]
 pub struct Topology {
-    /// The vertex that each half-edge starts from: the corners of all faces, one after the other.
+    /// The vertex at the start of each half-edge. These are the corners of all faces.
     origins: Vec<u32>,
-    /// First half-edge of each face, and one entry past the end.
+    /// First half-edge of each face, and the number of half-edges at the end.
     face_start: Vec<u32>,
-    /// First entry of each vertex in `neighbours` and `outgoing`, and one entry past the end.
+    /// First entry of each vertex in `neighbours` and `outgoing`, and the number of entries at the end.
     vertex_start: Vec<u32>,
     /// The neighbours of each vertex, clockwise as seen from outside.
     neighbours: Vec<u32>,
     links: OnceLock<Links>,
 }
 
-/// How the half-edges hang together.
+/// Connections of the half-edges, which can be rebuilt from the faces.
 #[derive(Debug, Clone, Default)]
 struct Links {
     half_edges: Vec<HalfEdge>,
-    /// The half-edges to the neighbours of each vertex, in the same order (empty without faces).
+    /// The half-edges to the neighbours of each vertex, in the order of the neighbours; empty without faces.
     outgoing: Vec<u32>,
 }
 
+/// Number of a missing half-edge or face.
 const NONE: u32 = u32::MAX;
 
 impl Topology {
-    /// One sphere, from faces as in [`Self::from_faces`].
+    /// Builds one closed surface of sphere topology. Parameters as in [`Self::from_faces`].
+    ///
+    /// # Errors
+    /// The errors of [`Self::from_faces`], and [`TopologyError::NotASphere`].
     pub fn sphere(
         vertex_count: usize,
         face_start: Vec<u32>,
@@ -64,10 +68,12 @@ impl Topology {
         Ok(topology)
     }
 
-    /// Closed surfaces, of any number and with any handles, from faces as lists of vertices: face
-    /// `f` is `face_vertices[face_start[f]..face_start[f + 1]]`.
+    /// Builds any number of closed surfaces with any handles. Face `f` has the vertices
+    /// `face_vertices[face_start[f]..face_start[f + 1]]`. Vertices that belong to no face have no neighbours.
     ///
-    /// Vertices that no face uses are allowed here and have no neighbours.
+    /// # Errors
+    /// The defect, if a face is invalid, an edge does not have two faces of opposite directions, or the faces
+    /// around a vertex form several fans.
     pub fn from_faces(
         vertex_count: usize,
         mut face_start: Vec<u32>,
@@ -87,9 +93,12 @@ impl Topology {
         })
     }
 
-    /// A segment (2 vertices) or a point (1 vertex).
+    /// Builds a segment (2 vertices) or a point (1 vertex).
     pub fn without_faces(vertex_count: usize) -> Self {
-        debug_assert!(vertex_count == 1 || vertex_count == 2, "no faces only below dimension 2");
+        debug_assert!(
+            vertex_count == 1 || vertex_count == 2,
+            "a body without faces has one or two vertices"
+        );
         let segment = vertex_count == 2;
         Self {
             origins: Vec::new(),
@@ -100,18 +109,20 @@ impl Topology {
         }
     }
 
-    /// Lets go of what is made again when it is next asked for.
+    /// Drops the links, which the next access rebuilds.
     pub fn let_go_of_links(&mut self) {
         self.links.take();
     }
 
+    /// Returns the links, rebuilt if they were dropped.
+    ///
     /// # Panics
     /// Never: the faces were linked when they were checked.
     #[inline]
     fn links(&self) -> &Links {
         self.links.get_or_init(|| {
             let again = Links::new(self.vertex_count(), &self.face_start, &self.origins);
-            again.expect("faces that were linked once").0
+            again.expect("these faces were linked before").0
         })
     }
 
@@ -135,57 +146,58 @@ impl Topology {
         self.links().half_edges[h as usize]
     }
 
+    /// Returns all half-edges, ordered by face.
     #[inline]
     pub fn half_edges(&self) -> &[HalfEdge] {
         &self.links().half_edges
     }
 
-    /// The vertices that the half-edges start from.
+    /// Returns the start vertices of all half-edges.
     #[inline]
     pub fn origins(&self) -> &[u32] {
         &self.origins
     }
 
-    /// The vertex that a half-edge starts from.
+    /// Returns the start vertex of a half-edge.
     #[inline]
     pub fn origin(&self, h: u32) -> u32 {
         self.origins[h as usize]
     }
 
-    /// The half-edges of a face, in order.
+    /// Returns the range of the half-edges of a face, in order.
     #[inline]
     pub fn face(&self, face: u32) -> std::ops::Range<u32> {
         self.face_start[face as usize]..self.face_start[face as usize + 1]
     }
 
-    /// The vertices of a face, in order.
+    /// Returns the vertices of a face, in order.
     #[inline]
     pub fn face_vertices(&self, face: u32) -> impl ExactSizeIterator<Item = u32> + Clone + '_ {
         let range = self.face(face);
         self.origins[range.start as usize..range.end as usize].iter().copied()
     }
 
-    /// The next half-edge along the same face.
+    /// Returns the next half-edge of the same face.
     #[inline]
     pub fn next(&self, h: u32) -> u32 {
         let range = self.face(self.half_edge(h).face);
         if h + 1 == range.end { range.start } else { h + 1 }
     }
 
-    /// The vertex a half-edge ends at.
+    /// Returns the end vertex of a half-edge.
     #[inline]
     pub fn target(&self, h: u32) -> u32 {
         self.origin(self.half_edge(h).twin)
     }
 
-    /// The neighbours of a vertex, clockwise as seen from outside.
+    /// Returns the neighbours of a vertex, clockwise as seen from outside.
     #[inline]
     pub fn neighbours(&self, vertex: u32) -> &[u32] {
         let (start, end) = self.vertex_range(vertex);
         &self.neighbours[start..end]
     }
 
-    /// The half-edges that leave a vertex, in the order of [`Self::neighbours`].
+    /// Returns the half-edges that start at a vertex, in the order of [`Self::neighbours`].
     #[inline]
     pub fn outgoing(&self, vertex: u32) -> &[u32] {
         let outgoing = &self.links().outgoing;
@@ -196,7 +208,7 @@ impl Topology {
         &outgoing[start..end]
     }
 
-    /// Bytes on the heap.
+    /// Returns the number of bytes on the heap.
     pub fn heap_bytes(&self) -> usize {
         4 * (self.origins.capacity()
             + self.face_start.capacity()
@@ -211,6 +223,7 @@ impl Topology {
         (self.vertex_start[v] as usize, self.vertex_start[v + 1] as usize)
     }
 
+    /// Checks that the surface is one sphere, by its Euler characteristic and its number of components.
     fn check_sphere(&self) -> Result<(), TopologyError> {
         let vertices = self.vertex_start.windows(2).filter(|w| w[0] != w[1]).count();
         let (edges, faces) = (self.edge_count(), self.face_count());
@@ -223,7 +236,7 @@ impl Topology {
         }
     }
 
-    /// Number of connected surfaces.
+    /// Counts the connected surfaces.
     fn count_shells(&self) -> usize {
         let mut seen = vec![false; self.vertex_count()];
         let mut stack = Vec::new();
@@ -247,7 +260,7 @@ impl Topology {
 }
 
 impl Links {
-    /// Those of faces, and where the entries of each vertex start.
+    /// Links the half-edges of faces. Returns the links and the first entry of each vertex.
     fn new(
         vertex_count: usize,
         face_start: &[u32],
@@ -265,13 +278,14 @@ impl Links {
         Ok((links, vertex_start))
     }
 
+    /// Returns the next half-edge of the same face.
     #[inline]
     fn next(&self, face_start: &[u32], h: u32) -> u32 {
         let face = self.half_edges[h as usize].face as usize;
         if h + 1 == face_start[face + 1] { face_start[face] } else { h + 1 }
     }
 
-    /// Finds the twins: edges are bucketed by their smaller vertex, then sorted by the larger.
+    /// Finds the twins: groups edges by their smaller vertex, then sorts each group by the larger vertex.
     fn pair_twins(&mut self, vertex_count: usize, face_start: &[u32]) -> Result<(), TopologyError> {
         let origin = |h: u32| self.half_edges[h as usize].origin;
         let ends: Vec<(u32, u32)> = (0..self.half_edges.len() as u32)
@@ -291,8 +305,7 @@ impl Links {
         Ok(())
     }
 
-    /// Makes twins of the half-edges along one edge, if there are two and they run in opposite
-    /// directions.
+    /// Sets the twins of the half-edges of one edge, if there are two of opposite directions.
     fn pair(&mut self, group: &[u32], (from, to): (u32, u32)) -> Result<(), TopologyError> {
         let at = |h: u32| self.half_edges[h as usize];
         match *group {
@@ -318,8 +331,8 @@ impl Links {
         }
     }
 
-    /// Orders the half-edges around each vertex and checks that they form one fan; where those of each
-    /// vertex start.
+    /// Orders the half-edges around each vertex and checks that they form one fan. Returns the first entry of
+    /// each vertex.
     fn link_vertices(
         &mut self,
         vertex_count: usize,
@@ -350,12 +363,14 @@ impl Links {
         Ok(start)
     }
 
+    /// Returns the number of bytes on the heap.
     fn heap_bytes(&self) -> usize {
         self.half_edges.capacity() * size_of::<HalfEdge>() + 4 * self.outgoing.capacity()
     }
 }
 
-/// Counting sort: the indices of `keys` grouped by key, and where each group starts.
+/// Groups the indices of `keys` by key (counting sort). Returns the first position of each group, and the
+/// grouped indices.
 pub fn bucket(key_count: usize, keys: impl Iterator<Item = u32> + Clone) -> (Vec<u32>, Vec<u32>) {
     let mut start = vec![0_u32; key_count + 1];
     for key in keys.clone() {
@@ -373,6 +388,7 @@ pub fn bucket(key_count: usize, keys: impl Iterator<Item = u32> + Clone) -> (Vec
     (start, order)
 }
 
+/// Checks that faces have at least three vertices, all valid and distinct.
 fn check_faces(
     vertex_count: usize,
     face_start: &[u32],
@@ -381,7 +397,7 @@ fn check_faces(
     if face_start.len() < 2 {
         return Err(TopologyError::NoFaces);
     }
-    // The last face in which each vertex was seen.
+    // The last face that contained each vertex.
     let mut last_face = vec![NONE; vertex_count];
     for (face, bounds) in face_start.windows(2).enumerate() {
         let vertices = &face_vertices[bounds[0] as usize..bounds[1] as usize];
@@ -471,7 +487,7 @@ mod tests {
         let two = build(8, &twice).unwrap_err();
         assert!(matches!(two, TopologyError::NotASphere { euler: 4, shells: 2, .. }));
         assert!(two.to_string().contains("is 2 separate shells, not one sphere"), "{two}");
-        // Three by three squares, closed both ways: a hole through it.
+        // A torus of three by three squares: a surface with one hole.
         let ring = |shift: u32| {
             let vertex = move |i: u32, j: u32| shift + 3 * (i % 3) + j % 3;
             (0..9).map(move |k| {

@@ -1,8 +1,7 @@
-//! On which side of the plane through three points of `M` the origin is: exact signs of determinants.
+//! Side of the origin relative to the plane through three points of `M`: exact signs of determinants.
 //!
-//! A rounded determinant decides where its error allows. Coordinates that were computed in twice the usual
-//! precision are rounded by `2 u` of themselves and `2^-100` of the size, the determinant by `8 u` of the
-//! sum of its terms' magnitudes; whole numbers tell the rest.
+//! Algorithm. A rounded determinant decides if its error allows, otherwise exact integers.
+//! `docs/theory/exact-arithmetic.md` derives the error bounds.
 
 use std::cmp::Ordering;
 
@@ -11,15 +10,16 @@ use glam::DVec3;
 use super::integer::{Integer, LARGE, SMALL, determinant};
 use super::orientation::Terms;
 
-/// Error of a rounded determinant, in its terms' magnitudes, and in the third power of the size.
+/// Bound on the error of a rounded determinant: a multiple of the sum of the magnitudes of its terms, plus a
+/// multiple of the third power of the size.
 const ERROR: [f64; 2] = [64.0 * f64::EPSILON, f64::from_bits((1023 - 90) << 52)];
 
-/// Error of the determinant of rounded points, in the third power of the size: three times `9 u` for the points,
-/// and `8 u` for itself.
+/// Bound on the error of the determinant of rounded points, in the third power of the size: `3 * 9 u` for the
+/// points, and `8 u` for the determinant.
 const ROUNDED: f64 = 32.0 * f64::EPSILON;
 
-/// The sign of `det[a, b, c]`: positive if the three are counter-clockwise as seen from beyond their plane,
-/// from the origin's other side. `size` is that of the configuration.
+/// Returns the exact sign of `det[a, b, c]`. It is positive if the three points are counter-clockwise as seen
+/// from the side of their plane opposite to the origin. `size` is the size of the configuration.
 #[inline]
 pub fn sign(points: [&Terms; 3], size: f64) -> Ordering {
     let [a, b, c] = points.map(Terms::point);
@@ -31,15 +31,15 @@ pub fn sign(points: [&Terms; 3], size: f64) -> Ordering {
     by_integers::<SMALL>(points).or_else(|| by_integers::<LARGE>(points)).unwrap_or(Ordering::Equal)
 }
 
-/// The same of points as `TwoBodies::difference` rounds them, off by less than
-/// `9 u` of the size each: where that and the determinant's own rounding leave it.
+/// Returns the sign of `det[a, b, c]` for points as `TwoBodies::difference` rounds them, with an error below
+/// `9 u size` each. `None` if rounding leaves it uncertain.
 #[inline]
 pub fn rounded_sign([a, b, c]: [DVec3; 3], size: f64) -> Option<Ordering> {
     let det = a.dot(b.cross(c));
     (det.abs() > ROUNDED * (size * size * size)).then(|| det.total_cmp(&0.0))
 }
 
-/// The sum of the magnitudes of the determinant's terms.
+/// Returns the sum of the magnitudes of the terms of the determinant.
 #[inline]
 fn magnitude(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     let [a, b, c] = [a, b, c].map(DVec3::abs);
@@ -47,19 +47,21 @@ fn magnitude(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     a.dot(minors)
 }
 
+/// Computes the sign of the determinant with integers of `N` limbs; `None` if a number did not fit.
 #[inline(never)]
 fn by_integers<const N: usize>(points: [&Terms; 3]) -> Option<Ordering> {
     let [a, b, c] = points.map(Terms::coordinates::<N>);
     determinant(&a, &b, &c).sign()
 }
 
-/// The faces of a tetrahedron, each opposite to a corner.
+/// Returns the faces of a tetrahedron, each opposite to the corner of the same index.
 #[inline]
 fn faces<'a>([a, b, c, d]: &'a [Terms<'a>; 4]) -> [[&'a Terms<'a>; 3]; 4] {
     [[b, c, d], [a, d, c], [a, b, d], [a, c, b]]
 }
 
-/// Whether a tetrahedron with some volume contains the origin, certainly; on its surface does.
+/// Checks exactly whether a tetrahedron contains the origin, in its interior or on its surface. `false` for a
+/// tetrahedron without volume.
 #[inline]
 pub fn encloses(corners: &[Terms; 4], size: f64) -> bool {
     let signs = faces(corners).map(|face| sign(face, size));
@@ -68,13 +70,16 @@ pub fn encloses(corners: &[Terms; 4], size: f64) -> bool {
     some && (none(Ordering::Less) || none(Ordering::Greater))
 }
 
-/// The weights by which the corners of a tetrahedron with some volume have the origin as their mean, to
-/// within a few roundings: the volumes that it spans with the faces, as shares of the whole.
+/// Computes the barycentric coordinates of the origin in a tetrahedron, with errors of a few roundings: the
+/// volumes spanned by the origin and each face, relative to the whole volume. `None` for a tetrahedron
+/// without volume.
 #[inline]
 pub fn weights_of_origin(corners: &[Terms; 4]) -> Option<[f64; 4]> {
     shares::<SMALL>(corners).or_else(|| shares::<LARGE>(corners))
 }
 
+/// Computes the barycentric coordinates with integers of `N` limbs; `None` if a number did not fit or the
+/// volume is 0.
 #[inline(never)]
 fn shares<const N: usize>(corners: &[Terms; 4]) -> Option<[f64; 4]> {
     let volumes = faces(corners).map(|face| {

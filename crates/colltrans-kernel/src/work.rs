@@ -1,10 +1,11 @@
-//! How much is looked at, for tests of how it grows: counted where debug assertions are, nothing in optimised builds.
+//! Counter of visited points, faces and pairs, for tests of asymptotic work.
 //!
-//! Loops whose length depends on the input call [`count`]. No clock, so no machine disturbs a test.
+//! Loops whose length depends on the input call [`count`]. It counts only with debug assertions and does
+//! nothing in optimised builds. The tests use no clock, so that the load of the machine does not affect them.
 
-/// So many points, faces or pairs more have been looked at.
+/// Adds a number of visited points, faces or pairs to the counter.
 #[inline(always)]
-#[expect(clippy::inline_always, reason = "it is nothing")]
+#[expect(clippy::inline_always, reason = "empty in optimised builds")]
 pub fn count(looks: usize) {
     #[cfg(debug_assertions)]
     LOOKS.set(LOOKS.get() + looks);
@@ -17,7 +18,7 @@ thread_local! {
     static LOOKS: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
 }
 
-/// Returns how much is looked at in a run.
+/// Runs a closure and returns the number of visits on this thread.
 #[cfg(debug_assertions)]
 #[inline]
 pub fn looks(run: impl FnOnce()) -> usize {
@@ -26,21 +27,26 @@ pub fn looks(run: impl FnOnce()) -> usize {
     LOOKS.get() - before
 }
 
-/// So many times as much may be looked at for five times the input: `n log n` is 6 to 7, the ears of
-/// jagged polygons 11, quadratic 25.
+/// Maximum factor between the visits of an input and of an input five times as large. `n log n` has a factor
+/// of 6 to 7, the ear clipping of jagged polygons 11, a quadratic algorithm 25.
 #[cfg(debug_assertions)]
 const MOST: f64 = 15.0;
 
-/// Asserts that what is looked at grows hardly faster than its input, from `few` to five times as many.
+/// Asserts that the number of visits is nearly linear in the input, from size `few` to five times that size.
 ///
 /// # Panics
-/// If it does not, or less is looked at than there is.
+/// If the growth is larger, or an input of size `few` has fewer than `few` visits.
 #[cfg(debug_assertions)]
 #[inline]
 pub fn assert_growth(what: &str, few: usize, run: impl Fn(usize)) {
     let [less, more] = [few, 5 * few].map(|count| looks(|| run(count)));
-    assert!(less >= few, "{what}: {less} looks at {few} are not all that there is");
+    assert!(less >= few, "{what}: {less} visits of {few} items; at least {few} are expected");
     let growth = more as f64 / less as f64;
-    println!("{what}: {less} looks at {few}, {growth:.1} times as many at five times as many");
-    assert!(growth < MOST, "{what}: {growth:.1} times as many looks");
+    println!(
+        "{what}: {less} visits of {few} items, {growth:.1} times as many of five times the items"
+    );
+    assert!(
+        growth < MOST,
+        "{what}: {growth:.1} times as many visits of five times the items; limit {MOST}"
+    );
 }

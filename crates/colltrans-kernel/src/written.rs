@@ -1,26 +1,26 @@
-//! How values are written wherever they are: names of choices, and numbers that may be infinite.
+//! Textual forms of values: names of choices, and numbers that may be infinite.
 
 use thiserror::Error;
 
-/// A text that names none of the choices.
+/// A text that is not the name of any choice.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 #[error("there is no {what} {name:?}; there are {}", .known.join(", "))]
 pub struct UnknownName {
-    /// What it should name.
+    /// What the text should name, for example "solver".
     pub what: &'static str,
-    /// The text.
+    /// The text as given.
     pub name: String,
-    /// The names that there are.
+    /// The accepted names.
     pub known: &'static [&'static str],
 }
 
-/// A choice and its names: those that serde writes, as `Display`, and back.
+/// Implements name, `Display` and `FromStr` for an enum, with the names that serde uses.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! named {
     ($what:literal, $choice:ident { $($variant:ident: $name:literal),+ }) => {
         impl $choice {
-            /// As it is written.
+            /// Returns the name of the choice.
             #[inline]
             pub const fn name(self) -> &'static str {
                 match self {
@@ -51,37 +51,40 @@ macro_rules! named {
 #[doc(hidden)]
 pub use named;
 
-/// A number that is infinite where nothing is known or nothing stops: JSON has no such number, so it
-/// is written as nothing (`null`), in every format.
+/// Serde functions for a number that may be plus infinity. Every format stores an infinite number as `null`,
+/// because JSON has no infinity.
 #[cfg(feature = "serde")]
 pub mod or_infinite {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+    /// Writes a finite number, or `null`.
     pub fn serialize<S: Serializer>(value: &f64, to: S) -> Result<S::Ok, S::Error> {
         Some(value).filter(|value| value.is_finite()).serialize(to)
     }
 
+    /// Reads a number, or infinity for `null`.
     #[inline]
     pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
         Ok(Option::deserialize(from)?.unwrap_or(f64::INFINITY))
     }
 }
 
-/// Whether a number is 0, so that it need not be written.
+/// Checks whether a number is 0, so that serde can skip it.
 #[cfg(feature = "serde")]
 #[inline]
 pub fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
 
-/// The same of a count.
+/// Checks whether a count is 0, so that serde can skip it.
 #[cfg(feature = "serde")]
 #[inline]
 pub fn is_none(count: &u64) -> bool {
     *count == 0
 }
 
-/// A value that may be `null`, but has to be there: a field that is missing counts as `null` otherwise.
+/// Reads a value that may be `null` but must be present. Without this function, serde reads a missing field
+/// as `null`.
 #[cfg(feature = "serde")]
 #[inline]
 pub fn given<'de, T, D>(from: D) -> Result<Option<T>, D::Error>
@@ -92,13 +95,14 @@ where
     serde::Deserialize::deserialize(from)
 }
 
-/// The same of a lower bound.
+/// Serde functions for a number that may be minus infinity, which every format stores as `null`.
 #[cfg(feature = "serde")]
 pub mod or_minus_infinite {
     use serde::{Deserialize, Deserializer};
 
     pub use super::or_infinite::serialize;
 
+    /// Reads a number, or minus infinity for `null`.
     pub fn deserialize<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
         Ok(Option::deserialize(from)?.unwrap_or(f64::NEG_INFINITY))
     }

@@ -16,11 +16,11 @@ use crate::error_free::{difference_error, sum_error};
 pub const MOST: f64 = 1e5;
 
 /// Terms of a sum for `pi / 2`, the first two with at most 33 bits.
-const QUARTER: [f64; 3] =
+const QUARTER_TURN: [f64; 3] =
     [1.570_796_326_734_125_6, 6.077_100_506_303_966e-11, 2.022_266_248_795_950_6e-21];
 
 /// Coefficients `1 / k!` of the sine with alternating signs, for `k = 3, 5, ..., 17`.
-const SINE: [f64; 8] = [
+const SINE_COEFFICIENTS: [f64; 8] = [
     -1.0 / 6.0,
     1.0 / 120.0,
     -1.0 / 5_040.0,
@@ -32,7 +32,7 @@ const SINE: [f64; 8] = [
 ];
 
 /// Coefficients `1 / k!` of the cosine with alternating signs, for `k = 4, 6, ..., 18`.
-const COSINE: [f64; 8] = [
+const COSINE_COEFFICIENTS: [f64; 8] = [
     1.0 / 24.0,
     -1.0 / 720.0,
     1.0 / 40_320.0,
@@ -56,16 +56,16 @@ pub struct Turn {
 #[inline]
 pub fn turn(high: f64, low: f64) -> Turn {
     let k = (high * std::f64::consts::FRAC_2_PI).round();
-    let first = high - k * QUARTER[0];
-    let second = first - k * QUARTER[1];
-    let rest = (difference_error(first, k * QUARTER[1]) - k * QUARTER[2]) + low;
+    let first = high - k * QUARTER_TURN[0];
+    let second = first - k * QUARTER_TURN[1];
+    let rest = (difference_error(first, k * QUARTER_TURN[1]) - k * QUARTER_TURN[2]) + low;
     let r = second + rest;
     let tail = sum_error(second, rest, r);
     let square = r * r;
     let series = |terms: &[f64; 8]| terms.iter().rev().fold(0.0, |sum, term| sum * square + term);
     let half = 0.5 * square;
-    let sin = r + (r * (square * series(&SINE)) + tail * (1.0 - half));
-    let beyond = square * square * series(&COSINE) - r * tail;
+    let sin = r + (r * (square * series(&SINE_COEFFICIENTS)) + tail * (1.0 - half));
+    let beyond = square * square * series(&COSINE_COEFFICIENTS) - r * tail;
     let near = 1.0 - half;
     let cos = near + (((1.0 - near) - half) + beyond);
     match (k as i64).rem_euclid(4) {
@@ -82,46 +82,46 @@ mod tests {
     use crate::tests::rational;
     use dashu_ratio::RBig;
 
-    fn whole(x: i64) -> RBig {
+    fn rational_integer(x: i64) -> RBig {
         RBig::from(x)
     }
 
     /// Returns `pi` within `2^-200`, by Machin's formula.
-    fn pi() -> RBig {
+    fn rational_pi() -> RBig {
         let arctan = |n: i64| {
-            let (mut sum, mut power) = (RBig::ZERO, RBig::ONE / whole(n));
-            let square = whole(n * n);
+            let (mut sum, mut power) = (RBig::ZERO, RBig::ONE / rational_integer(n));
+            let square = rational_integer(n * n);
             for k in 0..80_i64 {
-                let term = power.clone() / whole(2 * k + 1);
+                let term = power.clone() / rational_integer(2 * k + 1);
                 sum = if k % 2 == 0 { sum + term } else { sum - term };
                 power /= square.clone();
             }
             sum
         };
-        whole(16) * arctan(5) - whole(4) * arctan(239)
+        rational_integer(16) * arctan(5) - rational_integer(4) * arctan(239)
     }
 
     /// Computes sine and cosine by the Taylor series of the remainder after whole turns. Terms are truncated
     /// to multiples of `2^-200`.
-    fn exactly(angle: &RBig) -> [RBig; 2] {
-        let turn = whole(2) * pi();
-        let turns = (angle.clone() / turn.clone() + RBig::ONE / whole(2)).floor();
+    fn exact_sine_cosine(angle: &RBig) -> [RBig; 2] {
+        let turn = rational_integer(2) * rational_pi();
+        let turns = (angle.clone() / turn.clone() + RBig::ONE / rational_integer(2)).floor();
         let r = angle.clone() - RBig::from(turns) * turn;
         let cut = |x: RBig| {
-            let scale = (0..4).fold(RBig::ONE, |scale, _| scale * whole(1 << 50));
+            let scale = (0..4).fold(RBig::ONE, |scale, _| scale * rational_integer(1 << 50));
             RBig::from((x * scale.clone()).floor()) / scale
         };
         let (mut sums, mut term) = ([RBig::ZERO, RBig::ZERO], RBig::ONE);
         for k in 0..60_i64 {
             let signed = if k % 4 < 2 { term.clone() } else { -term.clone() };
             sums[(1 - k % 2) as usize] += signed;
-            term = cut(term * r.clone() / whole(k + 1));
+            term = cut(term * r.clone() / rational_integer(k + 1));
         }
         sums
     }
 
     #[test]
-    fn errors_are_as_stated() {
+    fn sine_and_cosine_are_within_stated_errors() {
         let u = rational(0.5 * f64::EPSILON);
         let size = |x: &RBig| if *x < RBig::ZERO { -x.clone() } else { x.clone() };
         let quarter = std::f64::consts::FRAC_PI_2;
@@ -134,15 +134,15 @@ mod tests {
         for high in angles {
             for low in [0.0, high * 3e-17, -high * 5e-17] {
                 let found = turn(high, low);
-                let [sin, cos] = exactly(&(rational(high) + rational(low)));
+                let [sin, cos] = exact_sine_cosine(&(rational(high) + rational(low)));
                 let off = |x: f64, exact: &RBig| size(&(rational(x) - exact.clone()));
-                assert!(off(found.sin, &sin) < whole(2) * u.clone(), "sine of {high}");
-                assert!(off(found.cos, &cos) < whole(2) * u.clone(), "cosine of {high}");
+                assert!(off(found.sin, &sin) < rational_integer(2) * u.clone(), "sine of {high}");
+                assert!(off(found.cos, &cos) < rational_integer(2) * u.clone(), "cosine of {high}");
                 let versine = RBig::ONE - cos;
-                assert!(off(found.versine, &versine) < whole(3) * u.clone());
+                assert!(off(found.versine, &versine) < rational_integer(3) * u.clone());
                 if high.abs() < 0.7 && high.abs() > 1e-100 {
-                    assert!(off(found.sin, &sin) < whole(2) * u.clone() * size(&sin));
-                    let most = whole(4) * u.clone() * versine.clone();
+                    assert!(off(found.sin, &sin) < rational_integer(2) * u.clone() * size(&sin));
+                    let most = rational_integer(4) * u.clone() * versine.clone();
                     assert!(off(found.versine, &versine) <= most, "{high}");
                 }
             }
@@ -150,12 +150,12 @@ mod tests {
     }
 
     #[test]
-    fn quarters_are_split_exactly() {
-        for part in &QUARTER[..2] {
+    fn quarter_turn_parts_are_short_and_sum_to_half_pi() {
+        for part in &QUARTER_TURN[..2] {
             assert_eq!(part.to_bits() << 44 >> 44, 0, "at most 33 bits");
         }
-        let sum = QUARTER.iter().fold(RBig::ZERO, |sum, x| sum + rational(*x));
-        let off = sum * whole(2) - pi();
+        let sum = QUARTER_TURN.iter().fold(RBig::ZERO, |sum, x| sum + rational(*x));
+        let off = sum * rational_integer(2) - rational_pi();
         let size = if off < RBig::ZERO { -off } else { off };
         assert!(size < rational(2.0_f64.powi(-115)));
     }

@@ -36,13 +36,13 @@ pub struct Seen<V, I> {
     views: Vec<V>,
     /// For each view, `[first, count]` of its children in `views`, or of its items in `items`; `None` before
     /// the first request.
-    parts: Vec<Option<[u32; 2]>>,
+    ranges: Vec<Option<[u32; 2]>>,
     items: Vec<I>,
 }
 
 impl<V, I> Default for Seen<V, I> {
     fn default() -> Self {
-        Self { views: Vec::new(), parts: Vec::new(), items: Vec::new() }
+        Self { views: Vec::new(), ranges: Vec::new(), items: Vec::new() }
     }
 }
 
@@ -51,7 +51,7 @@ impl<V, I> Seen<V, I> {
     #[inline]
     pub fn start(&mut self, root: V) {
         self.views.clear();
-        self.parts.clear();
+        self.ranges.clear();
         self.items.clear();
         self.push(root);
     }
@@ -59,7 +59,7 @@ impl<V, I> Seen<V, I> {
     #[inline]
     fn push(&mut self, view: V) {
         self.views.push(view);
-        self.parts.push(None);
+        self.ranges.push(None);
     }
 
     /// Returns the view with this number.
@@ -72,13 +72,13 @@ impl<V, I> Seen<V, I> {
     /// `child(parent, 0)` and `child(parent, 1)`.
     #[inline]
     pub fn children(&mut self, at: u32, mut child: impl FnMut(&V, usize) -> V) -> [u32; 2] {
-        let first = self.parts[at as usize].map_or(self.views.len() as u32, |[first, _]| first);
-        if self.parts[at as usize].is_none() {
+        let first = self.ranges[at as usize].map_or(self.views.len() as u32, |[first, _]| first);
+        if self.ranges[at as usize].is_none() {
             for k in 0..2 {
                 let view = child(self.view(at), k);
                 self.push(view);
             }
-            self.parts[at as usize] = Some([first, 2]);
+            self.ranges[at as usize] = Some([first, 2]);
         }
         [first, first + 1]
     }
@@ -90,12 +90,12 @@ impl<V, I> Seen<V, I> {
         at: u32,
         items: impl FnOnce(&V) -> J,
     ) -> Range<usize> {
-        let [first, count] = self.parts[at as usize].unwrap_or_else(|| {
+        let [first, count] = self.ranges[at as usize].unwrap_or_else(|| {
             let first = self.items.len();
             self.items.extend(items(&self.views[at as usize]));
-            let parts = [first as u32, (self.items.len() - first) as u32];
-            self.parts[at as usize] = Some(parts);
-            parts
+            let range = [first as u32, (self.items.len() - first) as u32];
+            self.ranges[at as usize] = Some(range);
+            range
         });
         first as usize..(first + count) as usize
     }
@@ -184,11 +184,11 @@ pub trait Pairs {
 pub fn best_first<P: Pairs>(pairs: &mut P, queue: &mut BinaryHeap<Entry<P::Reason>>) {
     queue.clear();
     let mut number = 0;
-    let mut judge = |pairs: &mut P, views: [u32; 2]| {
+    let mut bounded_entry = |pairs: &mut P, views: [u32; 2]| {
         number += 1;
         pairs.bound(views).map(|(bound, reason)| Entry { bound, number, reason, views })
     };
-    let mut next = judge(pairs, [0, 0]);
+    let mut next = bounded_entry(pairs, [0, 0]);
     while let Some(entry) = next.take().or_else(|| queue.pop()) {
         if entry.bound >= pairs.limit() {
             // All other pairs can be skipped too: this bound is the least, or else the limit is below all
@@ -199,13 +199,13 @@ pub fn best_first<P: Pairs>(pairs: &mut P, queue: &mut BinaryHeap<Entry<P::Reaso
             }
             return;
         }
-        let Some(parts) = pairs.split(entry.views) else {
+        let Some(children) = pairs.split(entry.views) else {
             if pairs.is_enough() {
                 return;
             }
             continue;
         };
-        next = match parts.map(|views| judge(pairs, views)) {
+        next = match children.map(|views| bounded_entry(pairs, views)) {
             [Some(x), Some(y)] => {
                 // The search continues with the better child without pushing it to the queue.
                 let is_first = x.bound < y.bound || P::FIRST_OF_EQUALS && x.bound == y.bound;
@@ -234,7 +234,7 @@ mod tests {
         lists: [Vec<f64>; 2],
         seen: [Seen<Range<usize>, f64>; 2],
         found: Option<f64>,
-        judged: usize,
+        bound_calls: usize,
     }
 
     impl Pairs for Nearest {
@@ -250,7 +250,7 @@ mod tests {
         }
 
         fn bound(&mut self, views: [u32; 2]) -> Option<(f64, ())> {
-            self.judged += 1;
+            self.bound_calls += 1;
             let [p, q] = [0, 1].map(|k| &self.lists[k][self.seen[k].view(views[k]).clone()]);
             let bound = (q[0] - p[p.len() - 1]).max(p[0] - q[q.len() - 1]).max(0.0);
             (bound < self.limit()).then_some((bound, ()))
@@ -267,11 +267,11 @@ mod tests {
                 self.found = Some(self.limit().min((x - y).abs()));
                 return None;
             };
-            let parts = self.seen[which].children(views[which], |range, k| {
+            let children = self.seen[which].children(views[which], |range, k| {
                 let middle = range.start + range.len() / 2;
                 [range.start..middle, middle..range.end][k].clone()
             });
-            Some(parts.map(|part| replaced(views, which, part)))
+            Some(children.map(|child| replaced(views, which, child)))
         }
 
         fn dismiss(&mut self, entry: &Entry) {
@@ -280,7 +280,7 @@ mod tests {
     }
 
     #[test]
-    fn best_first_finds_the_nearest_without_judging_all_pairs() {
+    fn best_first_finds_nearest_pair_without_bounding_all_pairs() {
         let lists = [(0.618_033_988_75, 150), (0.414_213_562_37, 110)].map(|(factor, count)| {
             let mut list: Vec<f64> = (1..=count).map(|k| (f64::from(k) * factor).fract()).collect();
             list.sort_by(f64::total_cmp);
@@ -294,11 +294,11 @@ mod tests {
         }
         best_first(&mut search, &mut BinaryHeap::new());
         assert_eq!(search.found, brute);
-        assert!(search.judged < 150 * 110 / 4, "{} pairs", search.judged);
+        assert!(search.bound_calls < 150 * 110 / 4, "{} pairs", search.bound_calls);
     }
 
     #[test]
-    fn larger_node_is_split_and_never_a_leaf() {
+    fn node_to_split_is_the_larger_inner_node() {
         let split = |are_leaves, sizes: [f64; 2]| node_to_split(are_leaves, |k| sizes[k]);
         let inner = [[1.0, 1.0], [1.0, 2.0]].map(|sizes| split([false; 2], sizes));
         let leaves = [[false, true], [true, false], [true; 2]].map(|leaf| split(leaf, [1.0, 1.0]));

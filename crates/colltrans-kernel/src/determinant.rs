@@ -33,12 +33,12 @@ pub fn accurate_cross(a: DVec3, b: DVec3) -> DVec3 {
 pub fn triangle_area(a: DVec2, b: DVec2, c: DVec2) -> f64 {
     let mut sum = Double::ZERO;
     for (to_b, to_c, sign) in [
-        (Double::difference(b.x, a.x), Double::difference(c.y, a.y), 1.0),
-        (Double::difference(b.y, a.y), Double::difference(c.x, a.x), -1.0),
+        (Double::exact_difference(b.x, a.x), Double::exact_difference(c.y, a.y), 1.0),
+        (Double::exact_difference(b.y, a.y), Double::exact_difference(c.x, a.x), -1.0),
     ] {
         sum.add_double_product(&to_b, &to_c, sign);
     }
-    sum.value()
+    sum.rounded_value()
 }
 
 #[cfg(test)]
@@ -49,7 +49,9 @@ mod tests {
 
     proptest! {
         #[test]
-        fn accurate_determinants_are(a in 0.5..1.0_f64, b in 0.5..1.0_f64, k in 1..1_000_i32) {
+        fn determinants_of_nearly_parallel_vectors_are_accurate(
+            a in 0.5..1.0_f64, b in 0.5..1.0_f64, k in 1..1_000_i32,
+        ) {
             // Nearly parallel vectors: the terms agree in 10 digits or more.
             let tiny = f64::from(k) * 1e-13;
             let (v, w) = (DVec2::new(a, b), DVec2::new(a + tiny, b));
@@ -59,7 +61,7 @@ mod tests {
         }
 
         #[test]
-        fn areas_of_slivers_are_accurate(
+        fn sliver_areas_are_accurate(
             a in -1.0..1.0_f64, b in -1.0..1.0_f64, k in -30..30_i32, l in -30..30_i32, s in 0.0..2.0_f64,
         ) {
             // Nearly collinear points: the third is a few roundings off the line.

@@ -7,12 +7,12 @@ use std::cmp::Ordering;
 use super::error_free::{difference_error, product_error, split, sum_error};
 
 /// Minimum magnitude of a product whose rounding error does not underflow.
-pub(crate) const LEAST_PRODUCT: f64 = f64::from_bits((1023 - 900) << 52);
+pub(crate) const MIN_PRODUCT: f64 = f64::from_bits((1023 - 900) << 52);
 
 /// The number `high + low` with an absolute error of at most `error`; exact if `error` is 0.
 #[derive(Debug, Clone, Copy)]
 pub struct Double {
-    /// The leading part, at least as large as `low` after [`Self::tidy`].
+    /// The leading part, at least as large as `low` after [`Self::normalized`].
     pub high: f64,
     pub low: f64,
     /// Bound on the absolute error; infinite if nothing is known.
@@ -24,18 +24,18 @@ impl Double {
 
     /// Returns `a - b` exactly.
     #[inline]
-    pub fn difference(a: f64, b: f64) -> Self {
+    pub fn exact_difference(a: f64, b: f64) -> Self {
         Self { high: a - b, low: difference_error(a, b), error: 0.0 }
     }
 
     /// Returns the sum of both parts, rounded to the nearest `f64`.
     #[inline]
-    pub fn value(&self) -> f64 {
+    pub fn rounded_value(&self) -> f64 {
         self.high + self.low
     }
 
     #[inline(always)]
-    pub fn add(&mut self, x: f64) {
+    pub fn add_number(&mut self, x: f64) {
         let high = self.high + x;
         self.add_low(sum_error(self.high, x, high));
         self.high = high;
@@ -53,14 +53,14 @@ impl Double {
     #[inline(always)]
     pub fn add_product(&mut self, a: f64, b: f64) {
         let p = a * b;
-        self.add(p);
+        self.add_number(p);
         self.add_low(product_error(a, b, p));
     }
 
     /// Adds the product `x factor`, with the error of `x`.
     #[inline(always)]
     pub fn add_scaled(&mut self, x: &Self, factor: f64) {
-        if x.is_zero() || factor == 0.0 {
+        if x.is_exactly_zero() || factor == 0.0 {
             return;
         }
         self.add_product(x.high, factor);
@@ -71,15 +71,15 @@ impl Double {
     }
 
     /// Adds the product `sign x y`, with the errors of both factors. The error becomes infinite if a partial
-    /// product is below [`LEAST_PRODUCT`].
+    /// product is below [`MIN_PRODUCT`].
     #[inline(always)]
     pub fn add_double_product(&mut self, x: &Self, y: &Self, sign: f64) {
-        if x.is_zero() || y.is_zero() {
+        if x.is_exactly_zero() || y.is_exactly_zero() {
             return;
         }
         for (a, b) in [(x.high, y.high), (x.low, y.high), (x.high, y.low), (x.low, y.low)] {
             if a != 0.0 && b != 0.0 {
-                if (a * b).abs() < LEAST_PRODUCT {
+                if (a * b).abs() < MIN_PRODUCT {
                     self.error = f64::INFINITY;
                 }
                 self.add_product(sign * a, b);
@@ -87,27 +87,27 @@ impl Double {
         }
         if x.error + y.error != 0.0 {
             let (a, b) = (1.01 * x.high.abs(), 1.01 * y.high.abs());
-            self.error += x.error * (b + y.error) + y.error * a + LEAST_PRODUCT;
+            self.error += x.error * (b + y.error) + y.error * a + MIN_PRODUCT;
         }
     }
 
     /// Checks whether the number is exactly 0.
     #[inline(always)]
-    pub fn is_zero(&self) -> bool {
+    pub fn is_exactly_zero(&self) -> bool {
         self.high == 0.0 && self.low == 0.0 && self.error == 0.0
     }
 
     /// Returns an equal number whose `low` is less than a rounding of `high`.
     #[inline(always)]
     #[must_use]
-    pub fn tidy(self) -> Self {
+    pub fn normalized(self) -> Self {
         let high = self.high + self.low;
         Self { high, low: sum_error(self.high, self.low, high), ..self }
     }
 
     /// Returns the sign; `None` if the error leaves it uncertain.
     #[inline]
-    pub fn sign(&self) -> Option<Ordering> {
+    pub fn certain_sign(&self) -> Option<Ordering> {
         let sum = self.high + self.low;
         // The factor covers the rounding of the accumulated errors and of `sum`.
         if sum.abs() > 1.01 * self.error {
@@ -119,13 +119,13 @@ impl Double {
 
 /// `L` sums that have one factor of each product in common, as an array of [`Double`].
 #[derive(Clone, Copy)]
-pub(crate) struct Sums<const L: usize> {
+pub(crate) struct ParallelSums<const L: usize> {
     pub(crate) high: [f64; L],
     pub(crate) low: [f64; L],
     pub(crate) error: [f64; L],
 }
 
-impl<const L: usize> Sums<L> {
+impl<const L: usize> ParallelSums<L> {
     pub(crate) const ZERO: Self = Self { high: [0.0; L], low: [0.0; L], error: [0.0; L] };
 
     /// Adds the products `entries[k] x` to the sums.
@@ -150,6 +150,6 @@ impl<const L: usize> Sums<L> {
     /// Returns sum number `k`, normalised.
     #[inline(always)]
     pub(crate) fn get(&self, k: usize) -> Double {
-        Double { high: self.high[k], low: self.low[k], error: self.error[k] }.tidy()
+        Double { high: self.high[k], low: self.low[k], error: self.error[k] }.normalized()
     }
 }

@@ -6,7 +6,7 @@
 //! - The sibling of a removed leaf takes the place of the parent.
 //! - An item that moves within its parent's box keeps its leaf. Otherwise it is removed and inserted (two
 //!   changes).
-//! - A node is rebuilt after as many changes below it as it had items, and at least [`FEW_CHANGES`].
+//! - A node is rebuilt after as many changes below it as it had items, and at least [`MIN_CHANGES`].
 //!
 //! The height stays below `5.2 log2 n` plus a constant, and a change costs `O(log^2 n)` on average
 //! (`docs/theory/box-trees.md`). Invariant: the box of an inner node is the union of its children's boxes.
@@ -18,13 +18,13 @@ use crate::aabb::Aabb;
 use crate::split::{Boxed, Rule, halve, split};
 
 /// Maximum number of items that are split by count.
-const FEW: usize = 4;
+const MAX_HALVED: usize = 4;
 /// Minimum number of changes below a node before it is rebuilt.
-const FEW_CHANGES: u32 = 8;
+const MIN_CHANGES: u32 = 8;
 /// Number of the missing parent of the root.
-const NONE: u32 = u32::MAX;
+const NO_NODE: u32 = u32::MAX;
 /// Initial capacity of the queue of a search, in nodes.
-const ROOM: usize = 64;
+const QUEUE_CAPACITY: usize = 64;
 
 /// A leaf with the box of one item, or an inner node with the union of two boxes.
 #[derive(Debug, Clone, Copy)]
@@ -36,7 +36,7 @@ struct Node {
     /// Number of items below; 1 for a leaf.
     count: u32,
     /// Number of changes below until the node is rebuilt.
-    left: u32,
+    changes_left: u32,
 }
 
 /// A tree over the boxes of items, which are numbered from 0 without gaps.
@@ -45,9 +45,9 @@ pub struct DynamicTree {
     /// The nodes, the root first; empty without items.
     nodes: Vec<Node>,
     /// The first nodes of pairs that are not in use.
-    free: Vec<u32>,
+    free_pairs: Vec<u32>,
     /// Number of the leaf of each item.
-    leaves: Vec<u32>,
+    leaf_of_item: Vec<u32>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -74,11 +74,11 @@ impl DynamicTree {
         let number = |(k, bounds)| Item { bounds, number: k as u32 };
         let mut items: Vec<Item> = boxes.into_iter().enumerate().map(number).collect();
         let mut tree = Self::default();
-        tree.leaves.resize(items.len(), 0);
+        tree.leaf_of_item.resize(items.len(), 0);
         if !items.is_empty() {
             tree.nodes.reserve(2 * items.len() - 1);
-            tree.nodes.push(Node::leaf(Aabb::EMPTY, NONE, 0));
-            tree.grow(0, &mut items);
+            tree.nodes.push(Node::new_leaf(Aabb::EMPTY, NO_NODE, 0));
+            tree.build_subtree(0, &mut items);
         }
         tree
     }
@@ -89,7 +89,7 @@ impl DynamicTree {
     /// If there is no item with this number.
     #[inline]
     pub fn bounds(&self, item: u32) -> &Aabb {
-        &self.nodes[self.leaves[item as usize] as usize].bounds
+        &self.nodes[self.leaf_of_item[item as usize] as usize].bounds
     }
 
     /// Returns the box of all items; `None` if there are no items.
@@ -99,31 +99,32 @@ impl DynamicTree {
     }
 
     /// Builds the subtree at a node that is already allocated and has its parent.
-    fn grow(&mut self, at: u32, items: &mut [Item]) {
-        let parent = self.nodes[at as usize].parent;
+    fn build_subtree(&mut self, index: u32, items: &mut [Item]) {
+        let parent = self.nodes[index as usize].parent;
         if let [item] = items {
-            self.put(at, Node::leaf(item.bounds, parent, item.number));
+            self.store_node(index, Node::new_leaf(item.bounds, parent, item.number));
             return;
         }
-        let middle = if items.len() <= FEW {
+        let middle = if items.len() <= MAX_HALVED {
             let centers = Aabb::of_points(items.iter().map(Boxed::center));
             halve(items, &centers)
         } else {
             split(items, Rule { least: items.len() / 4, longest: true })
         };
         let (left, right) = items.split_at_mut(middle);
-        let first = self.pair(at);
-        self.grow(first, left);
-        self.grow(first + 1, right);
-        let bounds = self.joined(first);
+        let first = self.allocate_children(index);
+        self.build_subtree(first, left);
+        self.build_subtree(first + 1, right);
+        let bounds = self.union_of_siblings(first);
         let count = (left.len() + right.len()) as u32;
-        self.nodes[at as usize] = Node { bounds, parent, first, count, left: life(count) };
+        self.nodes[index as usize] =
+            Node { bounds, parent, first, count, changes_left: changes_until_rebuild(count) };
     }
 
     /// Allocates two adjacent children of a node and returns the number of the first.
-    fn pair(&mut self, parent: u32) -> u32 {
-        let nothing = Node::leaf(Aabb::EMPTY, parent, 0);
-        if let Some(first) = self.free.pop() {
+    fn allocate_children(&mut self, parent: u32) -> u32 {
+        let nothing = Node::new_leaf(Aabb::EMPTY, parent, 0);
+        if let Some(first) = self.free_pairs.pop() {
             self.nodes[first as usize] = nothing;
             self.nodes[first as usize + 1] = nothing;
             return first;
@@ -134,54 +135,55 @@ impl DynamicTree {
     }
 
     /// Stores a node at a position, and updates the position of its item or the parents of its children.
-    fn put(&mut self, at: u32, node: Node) {
-        self.nodes[at as usize] = node;
+    fn store_node(&mut self, index: u32, node: Node) {
+        self.nodes[index as usize] = node;
         if node.is_leaf() {
-            self.leaves[node.first as usize] = at;
+            self.leaf_of_item[node.first as usize] = index;
         } else {
             for child in [node.first, node.first + 1] {
-                self.nodes[child as usize].parent = at;
+                self.nodes[child as usize].parent = index;
             }
         }
     }
 
     /// Returns the union of the boxes of two siblings.
-    fn joined(&self, first: u32) -> Aabb {
+    fn union_of_siblings(&self, first: u32) -> Aabb {
         let [a, b] = [first, first + 1].map(|child| &self.nodes[child as usize].bounds);
         a.join(b)
     }
 
     /// Inserts an item. Its number is the previous number of items.
     pub fn insert(&mut self, bounds: Aabb) {
-        self.leaves.push(0);
-        self.hang(self.leaves.len() as u32 - 1, bounds);
+        self.leaf_of_item.push(0);
+        self.insert_leaf(self.leaf_of_item.len() as u32 - 1, bounds);
     }
 
     /// Inserts the leaf of an item next to the leaf that the descent reaches.
-    fn hang(&mut self, item: u32, bounds: Aabb) {
-        let Some(mut at) = (!self.nodes.is_empty()).then_some(0_u32) else {
-            self.nodes.push(Node::leaf(bounds, NONE, item));
-            self.leaves[item as usize] = 0;
+    fn insert_leaf(&mut self, item: u32, bounds: Aabb) {
+        let Some(mut index) = (!self.nodes.is_empty()).then_some(0_u32) else {
+            self.nodes.push(Node::new_leaf(bounds, NO_NODE, item));
+            self.leaf_of_item[item as usize] = 0;
             return;
         };
-        while !self.nodes[at as usize].is_leaf() {
-            at = self.least_grown(self.nodes[at as usize].first, &bounds);
+        while !self.nodes[index as usize].is_leaf() {
+            index = self.cheaper_sibling(self.nodes[index as usize].first, &bounds);
         }
-        let there = self.nodes[at as usize];
-        let first = self.pair(at);
-        self.put(first, Node { parent: at, ..there });
-        self.put(first + 1, Node::leaf(bounds, at, item));
-        self.nodes[at as usize] = Node { first, count: 1, left: life(2), ..there };
-        self.change(at, 1);
+        let reached = self.nodes[index as usize];
+        let first = self.allocate_children(index);
+        self.store_node(first, Node { parent: index, ..reached });
+        self.store_node(first + 1, Node::new_leaf(bounds, index, item));
+        self.nodes[index as usize] =
+            Node { first, count: 1, changes_left: changes_until_rebuild(2), ..reached };
+        self.update_ancestors(index, 1);
     }
 
     /// Selects the sibling whose surface area grows least by a box. Among equal ones, selects the smaller
     /// joined box, then the one with fewer items.
-    fn least_grown(&self, first: u32, bounds: &Aabb) -> u32 {
-        let cost = |at: u32| {
-            let Node { bounds: there, count, .. } = &self.nodes[at as usize];
-            let area = there.join(bounds).half_area();
-            (area - there.half_area(), area, *count)
+    fn cheaper_sibling(&self, first: u32, bounds: &Aabb) -> u32 {
+        let cost = |index: u32| {
+            let Node { bounds: node_bounds, count, .. } = &self.nodes[index as usize];
+            let area = node_bounds.join(bounds).half_area();
+            (area - node_bounds.half_area(), area, *count)
         };
         if cost(first + 1) < cost(first) { first + 1 } else { first }
     }
@@ -191,35 +193,36 @@ impl DynamicTree {
     /// # Panics
     /// If there is no item with this number.
     pub fn remove(&mut self, item: u32) {
-        self.unhang(item);
-        let last = self.leaves.len() as u32 - 1;
+        self.remove_leaf(item);
+        let last = self.leaf_of_item.len() as u32 - 1;
         if item != last {
-            let leaf = self.leaves[last as usize];
-            self.leaves[item as usize] = leaf;
+            let leaf = self.leaf_of_item[last as usize];
+            self.leaf_of_item[item as usize] = leaf;
             self.nodes[leaf as usize].first = item;
         }
-        self.leaves.pop();
-        if self.leaves.is_empty() {
+        self.leaf_of_item.pop();
+        if self.leaf_of_item.is_empty() {
             *self = Self::default();
         }
     }
 
-    /// Removes the leaf of an item. The sibling of the leaf replaces their parent.
-    fn unhang(&mut self, item: u32) {
-        let leaf = self.leaves[item as usize];
+    /// Removes the leaf of an item. The sibling of the leaf replaces their parent. A tree of one item becomes
+    /// empty.
+    fn remove_leaf(&mut self, item: u32) {
+        let leaf = self.leaf_of_item[item as usize];
         let parent = self.nodes[leaf as usize].parent;
-        if parent == NONE {
+        if parent == NO_NODE {
             self.nodes.clear();
-            self.free.clear();
+            self.free_pairs.clear();
             return;
         }
-        let Node { parent: above, first, .. } = self.nodes[parent as usize];
-        let other = if leaf == first { first + 1 } else { first };
-        let kept = self.nodes[other as usize];
-        self.put(parent, Node { parent: above, ..kept });
-        self.free.push(first);
-        if above != NONE {
-            self.change(above, -1);
+        let Node { parent: grandparent, first, .. } = self.nodes[parent as usize];
+        let sibling = if leaf == first { first + 1 } else { first };
+        let sibling_node = self.nodes[sibling as usize];
+        self.store_node(parent, Node { parent: grandparent, ..sibling_node });
+        self.free_pairs.push(first);
+        if grandparent != NO_NODE {
+            self.update_ancestors(grandparent, -1);
         }
     }
 
@@ -228,65 +231,65 @@ impl DynamicTree {
     /// # Panics
     /// If there is no item with this number.
     pub fn set(&mut self, item: u32, bounds: Aabb) {
-        let leaf = self.leaves[item as usize] as usize;
+        let leaf = self.leaf_of_item[item as usize] as usize;
         let parent = self.nodes[leaf].parent;
-        if parent == NONE {
+        if parent == NO_NODE {
             self.nodes[leaf].bounds = bounds;
         } else if self.nodes[parent as usize].bounds.holds(&bounds) {
             self.nodes[leaf].bounds = bounds;
-            self.refit(parent);
+            self.refit_ancestors(parent);
         } else {
-            self.unhang(item);
-            self.hang(item, bounds);
+            self.remove_leaf(item);
+            self.insert_leaf(item, bounds);
         }
     }
 
     /// Recomputes the boxes from a node upwards until a box does not change.
-    fn refit(&mut self, mut at: u32) {
-        while at != NONE {
-            let bounds = self.joined(self.nodes[at as usize].first);
-            let node = &mut self.nodes[at as usize];
+    fn refit_ancestors(&mut self, mut index: u32) {
+        while index != NO_NODE {
+            let bounds = self.union_of_siblings(self.nodes[index as usize].first);
+            let node = &mut self.nodes[index as usize];
             if node.bounds == bounds {
                 return;
             }
             node.bounds = bounds;
-            at = node.parent;
+            index = node.parent;
         }
     }
 
-    /// Updates boxes and numbers of items from an inner node upwards, after `more` items were inserted below
-    /// it. Rebuilds the highest node that has reached its number of changes.
-    fn change(&mut self, from: u32, more: i32) {
-        let (mut at, mut worn) = (from, None);
-        while at != NONE {
-            let bounds = self.joined(self.nodes[at as usize].first);
-            let node = &mut self.nodes[at as usize];
+    /// Updates boxes and numbers of items from an inner node upwards, after `added` items were inserted below it
+    /// (removed, if negative). Rebuilds the highest node that has reached its number of changes.
+    fn update_ancestors(&mut self, from: u32, added: i32) {
+        let (mut index, mut exhausted) = (from, None);
+        while index != NO_NODE {
+            let bounds = self.union_of_siblings(self.nodes[index as usize].first);
+            let node = &mut self.nodes[index as usize];
             node.bounds = bounds;
-            node.count = node.count.wrapping_add_signed(more);
-            node.left -= 1;
-            if node.left == 0 {
-                worn = Some(at);
+            node.count = node.count.wrapping_add_signed(added);
+            node.changes_left -= 1;
+            if node.changes_left == 0 {
+                exhausted = Some(index);
             }
-            at = node.parent;
+            index = node.parent;
         }
-        if let Some(at) = worn {
-            self.rebuild(at);
+        if let Some(index) = exhausted {
+            self.rebuild_subtree(index);
         }
     }
 
-    fn rebuild(&mut self, at: u32) {
-        let mut items = Vec::with_capacity(self.nodes[at as usize].count as usize);
-        let mut stack = vec![at];
+    fn rebuild_subtree(&mut self, index: u32) {
+        let mut items = Vec::with_capacity(self.nodes[index as usize].count as usize);
+        let mut stack = vec![index];
         while let Some(node) = stack.pop() {
             let Node { bounds, first, .. } = self.nodes[node as usize];
             if self.nodes[node as usize].is_leaf() {
                 items.push(Item { bounds, number: first });
             } else {
                 stack.extend([first, first + 1]);
-                self.free.push(first);
+                self.free_pairs.push(first);
             }
         }
-        self.grow(at, &mut items);
+        self.build_subtree(index, &mut items);
     }
 
     /// Visits items in the order of increasing bounds, until the least bound exceeds the limit. Returns the
@@ -310,19 +313,19 @@ impl DynamicTree {
         // therefore the order of their bits is their order.
         let entry =
             |node: u32| Reverse((bound(&self.nodes[node as usize].bounds).abs().to_bits(), node));
-        let (mut queue, mut looked) = (BinaryHeap::with_capacity(ROOM), 1);
+        let (mut queue, mut evaluated) = (BinaryHeap::with_capacity(QUEUE_CAPACITY), 1);
         let mut next = Some(entry(0));
-        while let Some(Reverse((bits, at))) = next.take().or_else(|| queue.pop()) {
+        while let Some(Reverse((bits, index))) = next.take().or_else(|| queue.pop()) {
             let least = f64::from_bits(bits);
             if least > limit || least == f64::INFINITY {
                 break;
             }
-            let node = &self.nodes[at as usize];
+            let node = &self.nodes[index as usize];
             if node.is_leaf() {
                 limit = visit(node.first, least)?;
                 continue;
             }
-            looked += 2;
+            evaluated += 2;
             let [a, b] = [node.first, node.first + 1].map(entry);
             let (near, far) = if a > b { (a, b) } else { (b, a) };
             if f64::from_bits(far.0.0) <= limit {
@@ -334,31 +337,31 @@ impl DynamicTree {
                 _ => next = Some(near),
             }
         }
-        Ok(looked)
+        Ok(evaluated)
     }
 
     /// Returns the number of nodes on the longest path from the root.
     #[cfg(test)]
-    fn height(&self) -> usize {
+    fn tree_height(&self) -> usize {
         let depth = |leaf: &u32| {
-            std::iter::successors(Some(*leaf), |at| {
-                let parent = self.nodes[*at as usize].parent;
-                (parent != NONE).then_some(parent)
+            std::iter::successors(Some(*leaf), |index| {
+                let parent = self.nodes[*index as usize].parent;
+                (parent != NO_NODE).then_some(parent)
             })
             .count()
         };
-        self.leaves.iter().map(depth).max().unwrap_or(0)
+        self.leaf_of_item.iter().map(depth).max().unwrap_or(0)
     }
 }
 
 /// Returns the number of changes after which a node with `count` items is rebuilt.
-fn life(count: u32) -> u32 {
-    count.max(FEW_CHANGES)
+fn changes_until_rebuild(count: u32) -> u32 {
+    count.max(MIN_CHANGES)
 }
 
 impl Node {
-    fn leaf(bounds: Aabb, parent: u32, item: u32) -> Self {
-        Self { bounds, parent, first: item, count: 1, left: 0 }
+    fn new_leaf(bounds: Aabb, parent: u32, item: u32) -> Self {
+        Self { bounds, parent, first: item, count: 1, changes_left: 0 }
     }
 
     fn is_leaf(&self) -> bool {
@@ -375,40 +378,45 @@ mod tests {
 
     use super::*;
 
-    fn cube(x: f64, y: f64, z: f64) -> Aabb {
-        let at = DVec3::new(x, y, z);
-        Aabb { low: at, high: at + 1.0 }
+    fn unit_cube(x: f64, y: f64, z: f64) -> Aabb {
+        let low = DVec3::new(x, y, z);
+        Aabb { low, high: low + 1.0 }
     }
 
     /// Checks the invariants and the height of a tree that contains exactly these boxes.
-    fn check(tree: &DynamicTree, boxes: &[Aabb]) {
-        assert_eq!(tree.leaves.len(), boxes.len());
+    fn assert_valid_tree(tree: &DynamicTree, boxes: &[Aabb]) {
+        assert_eq!(tree.leaf_of_item.len(), boxes.len());
         for (item, bounds) in boxes.iter().enumerate() {
             assert_eq!(tree.bounds(item as u32), bounds);
-            assert_eq!(tree.nodes[tree.leaves[item] as usize].first, item as u32);
+            assert_eq!(tree.nodes[tree.leaf_of_item[item] as usize].first, item as u32);
         }
         let mut inner = 0;
         let mut stack: Vec<u32> = tree.root().map(|_| 0).into_iter().collect();
-        while let Some(at) = stack.pop() {
-            let node = tree.nodes[at as usize];
+        while let Some(index) = stack.pop() {
+            let node = tree.nodes[index as usize];
             if node.is_leaf() {
                 continue;
             }
             inner += 1;
             let children = [node.first, node.first + 1];
-            assert_eq!(node.bounds, tree.joined(node.first));
+            assert_eq!(node.bounds, tree.union_of_siblings(node.first));
             let counts = children.map(|child| tree.nodes[child as usize].count);
             assert_eq!(node.count, counts[0] + counts[1]);
-            assert!(children.iter().all(|child| tree.nodes[*child as usize].parent == at));
+            assert!(children.iter().all(|child| tree.nodes[*child as usize].parent == index));
             stack.extend(children);
         }
         assert_eq!(inner, boxes.len().saturating_sub(1));
-        let most = 5.2 * (boxes.len().max(1) as f64).log2() + 8.0;
-        assert!(tree.height() as f64 <= most, "{} of {}", tree.height(), boxes.len());
+        let max_height = 5.2 * (boxes.len().max(1) as f64).log2() + 8.0;
+        assert!(
+            tree.tree_height() as f64 <= max_height,
+            "{} of {}",
+            tree.tree_height(),
+            boxes.len()
+        );
     }
 
     /// Returns the items whose boxes begin at most at `limit` along x.
-    fn found(tree: &DynamicTree, limit: f64) -> Vec<u32> {
+    fn items_within(tree: &DynamicTree, limit: f64) -> Vec<u32> {
         let mut all = Vec::new();
         let visit = |item, _| {
             all.push(item);
@@ -421,15 +429,15 @@ mod tests {
 
     proptest! {
         #[test]
-        fn it_stays_a_tree_whatever_comes_moves_and_goes(
+        fn random_changes_keep_tree_valid(
             start in prop::collection::vec([0..9_i32, 0..9, 0..9], 0..40),
             changes in prop::collection::vec((0..4_u8, any::<prop::sample::Index>(), [0..9_i32, 0..9, 0..9]), 0..200),
         ) {
-            let of = |[x, y, z]: [i32; 3]| cube(f64::from(x), f64::from(y), f64::from(z));
-            let mut boxes: Vec<Aabb> = start.into_iter().map(of).collect();
+            let cube_of = |[x, y, z]: [i32; 3]| unit_cube(f64::from(x), f64::from(y), f64::from(z));
+            let mut boxes: Vec<Aabb> = start.into_iter().map(cube_of).collect();
             let mut tree = DynamicTree::build(boxes.iter().copied());
-            for (kind, which, at) in changes {
-                let bounds = of(at);
+            for (kind, which, low) in changes {
+                let bounds = cube_of(low);
                 if kind == 0 || boxes.is_empty() {
                     boxes.push(bounds);
                     tree.insert(bounds);
@@ -442,27 +450,27 @@ mod tests {
                     boxes[which] = bounds;
                     tree.set(which as u32, bounds);
                 }
-                check(&tree, &boxes);
+                assert_valid_tree(&tree, &boxes);
             }
             let near: Vec<u32> =
                 (0..boxes.len() as u32).filter(|k| boxes[*k as usize].low.x <= 4.0).collect();
-            prop_assert_eq!(found(&tree, 4.0), near);
+            prop_assert_eq!(items_within(&tree, 4.0), near);
         }
     }
 
     #[test]
-    fn one_after_the_other_makes_no_list() {
+    fn sequential_insertions_keep_height_logarithmic() {
         let mut tree = DynamicTree::default();
         let mut boxes = Vec::new();
         for k in 0..3_000 {
-            boxes.push(cube(2.0 * f64::from(k), 0.0, 0.0));
+            boxes.push(unit_cube(2.0 * f64::from(k), 0.0, 0.0));
             tree.insert(boxes[k as usize]);
         }
-        check(&tree, &boxes);
+        assert_valid_tree(&tree, &boxes);
         while boxes.len() > 10 {
             boxes.swap_remove(0);
             tree.remove(0);
         }
-        check(&tree, &boxes);
+        assert_valid_tree(&tree, &boxes);
     }
 }

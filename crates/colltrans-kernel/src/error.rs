@@ -150,7 +150,7 @@ pub enum TopologyError {
     #[error(
         "the surface is {}, not one sphere ({vertices} vertices - {edges} edges + {faces} faces = \
          {euler}, not 2)",
-        surface_in_words(*euler, *shells)
+        describe_surface(*euler, *shells)
     )]
     NotASphere {
         /// Number of vertices that faces contain.
@@ -171,7 +171,7 @@ pub enum TopologyError {
 
 /// Describes closed surfaces with an Euler characteristic: each shell adds 2, and each hole through a shell
 /// subtracts 2.
-fn surface_in_words(euler: i64, shells: usize) -> String {
+fn describe_surface(euler: i64, shells: usize) -> String {
     match (shells, shells as i64 - euler / 2) {
         (1, 1) => "one body with a hole through it".into(),
         (1, holes) => format!("one body with {holes} holes through it"),

@@ -4,7 +4,7 @@
 //! integers. The remaining cases are mostly exact zeros. If all digits fit, sums that track their error
 //! ([`Double`]) prove them.
 //!
-//! Rounding. A sum or a product of two [`Twice`] has a relative error below [`SMALL`] (Joldes, Muller and
+//! Rounding. A sum or a product of two [`Twice`] has a relative error below [`RELATIVE_ERROR`] (Joldes, Muller and
 //! Popescu, "Tight and rigorous error bounds for basic building blocks of double-word arithmetic", ACM TOMS
 //! 44(2), 2017). `docs/theory/exact-arithmetic.md` derives the bounds of determinants and minors.
 
@@ -12,30 +12,30 @@ use std::cmp::Ordering;
 
 use glam::{DMat3, DVec3};
 
-use super::double::{Double, Sums};
+use super::double::{Double, ParallelSums};
 use super::real::{Real, Twice, Vector};
 
 /// Bound on the relative error of a sum or a product.
-const SMALL: f64 = f64::EPSILON * f64::EPSILON * 2.0;
+const RELATIVE_ERROR: f64 = f64::EPSILON * f64::EPSILON * 2.0;
 /// Bound on the absolute error by underflow.
-const TINY: f64 = f64::from_bits((1023 - 800) << 52);
+const UNDERFLOW_ERROR: f64 = f64::from_bits((1023 - 800) << 52);
 
 /// A point with a bound on the error of each coordinate.
 #[derive(Debug, Clone, Copy)]
 pub struct Fine {
-    at: [Double; 3],
+    coordinates: [Double; 3],
     error: f64,
 }
 
 impl Fine {
     /// The origin, exactly.
-    pub const ORIGIN: Self = Self { at: [Double::ZERO; 3], error: 0.0 };
+    pub const ORIGIN: Self = Self { coordinates: [Double::ZERO; 3], error: 0.0 };
 
     /// Returns the point `v` exactly.
     #[inline]
     pub fn exactly(v: DVec3) -> Self {
-        let at = v.to_array().map(|high| Double { high, ..Double::ZERO });
-        Self { at, error: 0.0 }
+        let coordinates = v.to_array().map(|high| Double { high, ..Double::ZERO });
+        Self { coordinates, error: 0.0 }
     }
 
     /// Computes the sum of two offsets and of `weight * matrix * point` for each pair. Weights are powers of
@@ -43,7 +43,7 @@ impl Fine {
     #[inline]
     pub fn placed(matrix: &DMat3, offset: [DVec3; 2], points: &[(f64, DVec3)]) -> Self {
         let [high, low] = offset.map(|part| part.to_array());
-        let mut sums = Sums { high, low, ..Sums::ZERO };
+        let mut sums = ParallelSums { high, low, ..ParallelSums::ZERO };
         for (weight, point) in points {
             for column in 0..3 {
                 let entries = matrix.col(column) * *weight;
@@ -51,7 +51,7 @@ impl Fine {
             }
         }
         let error = sums.error.into_iter().fold(0.0, f64::max);
-        Self { at: [0, 1, 2].map(|k| sums.get(k)), error: 1.01 * error }
+        Self { coordinates: [0, 1, 2].map(|k| sums.get(k)), error: 1.01 * error }
     }
 
     /// Returns the displacement from this point to another one.
@@ -68,45 +68,46 @@ pub struct Way<'p>([&'p Fine; 2]);
 impl Way<'_> {
     /// Computes the displacement in twice the usual precision.
     #[inline]
-    fn twice(&self) -> Vector<Twice> {
-        let [from, to] = self.0.map(|point| Vector(point.at.map(|x| Twice::new(x.high, x.low))));
+    fn to_twice(&self) -> Vector<Twice> {
+        let [from, to] =
+            self.0.map(|point| Vector(point.coordinates.map(|x| Twice::new(x.high, x.low))));
         to.minus(&from)
     }
 
     /// Returns the bound on the error of each coordinate, without the rounding error of the difference.
     #[inline]
-    fn error(&self) -> f64 {
+    fn coordinate_error(&self) -> f64 {
         self.0[0].error + self.0[1].error
     }
 
     /// Computes the displacement with complete error bounds, which are 0 if the coordinates have few digits.
     #[inline]
-    fn tracked(&self) -> [Double; 3] {
-        let [from, to] = self.0.map(|point| point.at);
+    fn tracked_coordinates(&self) -> [Double; 3] {
+        let [from, to] = self.0.map(|point| point.coordinates);
         [0, 1, 2].map(|k| {
             let mut sum = to[k];
-            sum.add(-from[k].high);
-            sum.add(-from[k].low);
+            sum.add_number(-from[k].high);
+            sum.add_number(-from[k].low);
             sum.error += from[k].error;
-            sum.tidy()
+            sum.normalized()
         })
     }
 
     /// Returns the sign of one coordinate (axis 0, 1 or 2); `None` if it is uncertain.
     #[inline]
     pub fn sign_along(&self, axis: usize) -> Option<Ordering> {
-        self.tracked()[axis].sign()
+        self.tracked_coordinates()[axis].certain_sign()
     }
 }
 
 /// A number with a bound on its absolute error.
 #[derive(Debug, Clone, Copy)]
-pub struct Doubtful {
+pub struct NumberWithError {
     value: Twice,
     error: f64,
 }
 
-impl Doubtful {
+impl NumberWithError {
     /// Returns the sign; `None` if the number is within its error of 0.
     #[inline]
     pub fn sign(&self) -> Option<Ordering> {
@@ -128,19 +129,19 @@ impl Doubtful {
 
 /// Returns the maximum norm of a displacement.
 #[inline]
-fn size(way: &Vector<Twice>) -> f64 {
+fn max_norm(way: &Vector<Twice>) -> f64 {
     way.value().abs().max_element()
 }
 
 /// Computes `det[x, y, z]`.
 #[inline]
-pub fn determinant([x, y, z]: [Way; 3]) -> Doubtful {
-    let (e, f, g) = (x.error(), y.error(), z.error());
-    let (x, y, z) = (x.twice(), y.twice(), z.twice());
-    let (l, m, n) = (size(&x), size(&y), size(&z));
+pub fn determinant([x, y, z]: [Way; 3]) -> NumberWithError {
+    let (e, f, g) = (x.coordinate_error(), y.coordinate_error(), z.coordinate_error());
+    let (x, y, z) = (x.to_twice(), y.to_twice(), z.to_twice());
+    let (l, m, n) = (max_norm(&x), max_norm(&y), max_norm(&z));
     let change = e * (m + f) * (n + g) + l * (f * (n + g) + m * g);
-    let error = 8.0 * change + 48.0 * SMALL * (l * m * n) + TINY;
-    Doubtful { value: x.dot(&y.cross(&z)), error }
+    let error = 8.0 * change + 48.0 * RELATIVE_ERROR * (l * m * n) + UNDERFLOW_ERROR;
+    NumberWithError { value: x.dot(&y.cross(&z)), error }
 }
 
 /// Returns the sign of `det[x, y, z]`; `None` if it is uncertain. Computes the determinant again with tracked
@@ -153,7 +154,7 @@ pub fn determinant_sign(ways: [Way; 3]) -> Option<Ordering> {
 /// Returns the sign of `det[x, y, z]`, computed only with tracked errors; `None` if it is uncertain.
 #[inline]
 pub fn tracked_sign(ways: [Way; 3]) -> Option<Ordering> {
-    tracked_determinant(&ways.map(|way| way.tracked())).sign()
+    tracked_determinant(&ways.map(|way| way.tracked_coordinates())).certain_sign()
 }
 
 /// Computes `det[x, y, z]` with tracked errors.
@@ -172,25 +173,27 @@ fn tracked_minor(x: &[Double; 3], y: &[Double; 3], [i, j]: [usize; 2]) -> Double
     let mut sum = Double::ZERO;
     sum.add_double_product(&x[i], &y[j], 1.0);
     sum.add_double_product(&x[j], &y[i], -1.0);
-    sum.tidy()
+    sum.normalized()
 }
 
 /// Returns the sign of `x_i y_j - x_j y_i`; `None` if it is uncertain.
 #[inline]
 pub fn minor_sign([x, y]: [Way; 2], [i, j]: [usize; 2]) -> Option<Ordering> {
-    let rough = minor([x, y], [i, j]).sign();
-    rough.or_else(|| tracked_minor(&x.tracked(), &y.tracked(), [i, j]).sign())
+    let rough = rounded_minor([x, y], [i, j]).sign();
+    rough.or_else(|| {
+        tracked_minor(&x.tracked_coordinates(), &y.tracked_coordinates(), [i, j]).certain_sign()
+    })
 }
 
 /// Computes `x_i y_j - x_j y_i`.
 #[inline]
-fn minor([x, y]: [Way; 2], [i, j]: [usize; 2]) -> Doubtful {
-    let (e, f) = (x.error(), y.error());
-    let (x, y) = (x.twice(), y.twice());
-    let (l, m) = (size(&x), size(&y));
-    let error = 4.0 * (e * (m + f) + l * f) + 8.0 * SMALL * (l * m) + TINY;
+fn rounded_minor([x, y]: [Way; 2], [i, j]: [usize; 2]) -> NumberWithError {
+    let (e, f) = (x.coordinate_error(), y.coordinate_error());
+    let (x, y) = (x.to_twice(), y.to_twice());
+    let (l, m) = (max_norm(&x), max_norm(&y));
+    let error = 4.0 * (e * (m + f) + l * f) + 8.0 * RELATIVE_ERROR * (l * m) + UNDERFLOW_ERROR;
     let (Vector(x), Vector(y)) = (x, y);
-    Doubtful { value: x[i] * y[j] - x[j] * y[i], error }
+    NumberWithError { value: x[i] * y[j] - x[j] * y[i], error }
 }
 
 #[cfg(test)]
@@ -199,13 +202,13 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::tests::{rational, vector};
+    use crate::tests::{any_vector, rational};
 
     /// Matrices: the identity, rotations, and entries that may be tiny or zero.
-    fn matrix() -> impl Strategy<Value = DMat3> {
+    fn any_matrix() -> impl Strategy<Value = DMat3> {
         let turned = [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0, 0.25..1.0]
             .prop_map(|q| DMat3::from_quat(glam::DQuat::from_array(q).normalize()));
-        let column = || vector().prop_map(|v| v.clamp(DVec3::NEG_ONE, DVec3::ONE));
+        let column = || any_vector().prop_map(|v| v.clamp(DVec3::NEG_ONE, DVec3::ONE));
         let any = [column(), column(), column()];
         prop_oneof![
             Just(DMat3::IDENTITY),
@@ -215,7 +218,7 @@ mod tests {
     }
 
     /// Points that are nearly in one plane or on one line, or anywhere.
-    fn points() -> impl Strategy<Value = [DVec3; 4]> {
+    fn nearly_flat_points() -> impl Strategy<Value = [DVec3; 4]> {
         let like = || [-2.0..2.0_f64, -2.0..2.0, -2.0..2.0].prop_map(DVec3::from_array);
         let (a, s) = (|| [like(), like(), like()], || -60..-20_i32);
         let flat = (a(), -1.0..1.0_f64, -1.0..1.0_f64, like(), s()).prop_map(
@@ -225,11 +228,11 @@ mod tests {
         );
         let line = (a(), s())
             .prop_map(|([a, b, off], k)| [a, b, a.lerp(b, 0.3) + off * 2.0_f64.powi(k), b]);
-        prop_oneof![[vector(), vector(), vector(), vector()], flat, line]
+        prop_oneof![[any_vector(), any_vector(), any_vector(), any_vector()], flat, line]
     }
 
     /// Returns the exact coordinates of `matrix point` plus two offsets.
-    fn exact(matrix: &DMat3, offset: [DVec3; 2], point: DVec3) -> [RBig; 3] {
+    fn exact_point(matrix: &DMat3, offset: [DVec3; 2], point: DVec3) -> [RBig; 3] {
         [0, 1, 2].map(|row| {
             let products = (0..3).map(|k| rational(matrix.col(k)[row]) * rational(point[k]));
             products.fold(rational(offset[0][row]) + rational(offset[1][row]), |sum, x| sum + x)
@@ -237,17 +240,17 @@ mod tests {
     }
 
     /// Returns the exact displacement from `a` to `b`.
-    fn from(a: &[RBig; 3], b: &[RBig; 3]) -> [RBig; 3] {
+    fn exact_displacement(a: &[RBig; 3], b: &[RBig; 3]) -> [RBig; 3] {
         [0, 1, 2].map(|k| b[k].clone() - a[k].clone())
     }
 
-    fn cross(x: &[RBig; 3], y: &[RBig; 3], k: usize) -> RBig {
+    fn exact_cross_component(x: &[RBig; 3], y: &[RBig; 3], k: usize) -> RBig {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
         x[i].clone() * y[j].clone() - x[j].clone() * y[i].clone()
     }
 
     /// Checks whether the error bound and the sign of a number are right.
-    fn holds(found: Doubtful, truth: &RBig) -> bool {
+    fn is_within_error(found: NumberWithError, truth: &RBig) -> bool {
         let high = rational(found.value.value());
         let low = rational((found.value - Twice::of(found.value.value())).value());
         let off = high + low - truth.clone();
@@ -259,12 +262,13 @@ mod tests {
         #![proptest_config(ProptestConfig::with_cases(2_000))]
 
         #[test]
-        fn bounds_of_fine_numbers_hold(
-            m in matrix(), high in vector(), low in -1.0..1.0_f64, corners in points(), d in vector(),
+        fn signs_and_bounds_agree_with_rationals(
+            m in any_matrix(), high in any_vector(), low in -1.0..1.0_f64,
+            corners in nearly_flat_points(), d in any_vector(),
         ) {
             let offset = [high, high * (low * 2.0_f64.powi(-54))];
             let fine = corners.map(|v| Fine::placed(&m, offset, &[(1.0, v)]));
-            let right = corners.map(|v| exact(&m, offset, v));
+            let right = corners.map(|v| exact_point(&m, offset, v));
             for (x, y) in fine.iter().zip(&right) {
                 for (k, exact) in y.iter().enumerate() {
                     let found = Fine::ORIGIN.to(x).sign_along(k);
@@ -272,23 +276,26 @@ mod tests {
                 }
             }
             let ways = [1, 2, 3].map(|k| fine[0].to(&fine[k]));
-            let truth = [1, 2, 3].map(|k| from(&right[0], &right[k]));
+            let truth = [1, 2, 3].map(|k| exact_displacement(&right[0], &right[k]));
             let det = |z: &[RBig; 3]| {
-                (0..3).fold(RBig::ZERO, |sum, k| sum + z[k].clone() * cross(&truth[0], &truth[1], k))
+                (0..3).fold(RBig::ZERO, |sum, k| {
+                    sum + z[k].clone() * exact_cross_component(&truth[0], &truth[1], k)
+                })
             };
             let d_fine = Fine::exactly(d);
             let [volume, area] = [ways[2], Fine::ORIGIN.to(&d_fine)].map(|z| [ways[0], ways[1], z]);
             let (right_volume, right_area) = (det(&truth[2]), det(&d.to_array().map(rational)));
             for (ways, right) in [(volume, &right_volume), (area, &right_area)] {
                 let found = determinant(ways);
-                prop_assert!(holds(found, right), "{found:?} {right}");
+                prop_assert!(is_within_error(found, right), "{found:?} {right}");
                 let sign = determinant_sign(ways);
                 prop_assert!(sign.is_none_or(|s| s == right.cmp(&RBig::ZERO)), "{sign:?} {right}");
             }
             for k in 0..3 {
                 let axes = [(k + 1) % 3, (k + 2) % 3];
-                let (ways, right) = ([ways[0], ways[1]], cross(&truth[0], &truth[1], k));
-                prop_assert!(holds(minor(ways, axes), &right), "{:?} {right}", minor(ways, axes));
+                let (ways, right) = ([ways[0], ways[1]], exact_cross_component(&truth[0], &truth[1], k));
+                let found = rounded_minor(ways, axes);
+                prop_assert!(is_within_error(found, &right), "{found:?} {right}");
                 let sign = minor_sign(ways, axes);
                 prop_assert!(sign.is_none_or(|s| s == right.cmp(&RBig::ZERO)), "{sign:?} {right}");
             }
@@ -302,7 +309,7 @@ mod tests {
 
         /// Points with few digits in one plane, or on one line, have certain zero signs.
         #[test]
-        fn ties_of_short_numbers_are_certain(
+        fn ties_of_short_numbers_have_certain_zero_sign(
             a in [-9_i32..9, -9..9, -9..9], b in [-9_i32..9, -9..9, -9..9], c in [-9_i32..9, -9..9, -9..9],
             s in -4_i32..4, t in -4_i32..4, off in -1.0..1.0_f64,
         ) {

@@ -11,7 +11,7 @@
 
 use std::fmt;
 
-macro_rules! numbers {
+macro_rules! typed_numbers {
     ($($(#[$doc:meta])* $name:ident;)+) => {$(
         $(#[$doc])*
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
@@ -52,7 +52,7 @@ macro_rules! numbers {
     )+};
 }
 
-numbers! {
+typed_numbers! {
     /// A vertex of a body after construction: its index in `ConvexPolyhedron::vertices` or `Solid::vertices`.
     VertexId;
     /// A face as named by a `Feature`: the number of a face of a convex polyhedron, or the smallest number of

@@ -6,7 +6,7 @@
 //! - Nothing is allocated on the heap.
 //! - [`LARGE`] limbs suffice for every determinant of coordinates (`docs/theory/exact-arithmetic.md`).
 //! - [`SMALL`] limbs suffice for almost all coordinates. Callers try them first, because copying a number
-//!   costs more than multiplying it. A result that does not fit is marked as overflown.
+//!   costs more than multiplying it. A result that may not fit is marked as overflown.
 
 use std::cmp::Ordering;
 
@@ -43,7 +43,7 @@ impl<const N: usize> Integer<N> {
         if a == 0.0 || b == 0.0 {
             return Self::ZERO;
         }
-        let ((m, e), (n, f)) = (decode(a), decode(b));
+        let ((m, e), (n, f)) = (mantissa_and_exponent(a), mantissa_and_exponent(b));
         let negative = a.is_sign_negative() != b.is_sign_negative();
         let bits = u128::from(m) * u128::from(n);
         let exponent = e + f;
@@ -54,7 +54,7 @@ impl<const N: usize> Integer<N> {
         let high = (u128::from((bits >> 64) as u64) << bit) + (low >> 64);
         (result.limbs[0], result.limbs[1], result.limbs[2]) =
             (low as u64, high as u64, (high >> 64) as u64);
-        result.trim();
+        result.remove_zero_limbs();
         result
     }
 
@@ -66,7 +66,7 @@ impl<const N: usize> Integer<N> {
 
     /// Removes zero limbs at both ends.
     #[inline]
-    fn trim(&mut self) {
+    fn remove_zero_limbs(&mut self) {
         while self.len > 0 && self.limbs[usize::from(self.len) - 1] == 0 {
             self.len -= 1;
         }
@@ -85,13 +85,13 @@ impl<const N: usize> Integer<N> {
 
     /// Returns the exponent after the highest limb.
     #[inline]
-    fn top(&self) -> i16 {
+    fn exponent_end(&self) -> i16 {
         self.base + self.len as i16
     }
 
     /// Returns the limb with an exponent; 0 outside of the limbs in use.
     #[inline]
-    fn limb(&self, exponent: i16) -> u64 {
+    fn limb_at(&self, exponent: i16) -> u64 {
         let k = exponent - self.base;
         if k >= 0 && k < self.len as i16 { self.limbs[k as usize] } else { 0 }
     }
@@ -99,32 +99,32 @@ impl<const N: usize> Integer<N> {
     #[inline]
     fn compare_magnitude(&self, other: &Self) -> Ordering {
         let low = self.base.min(other.base);
-        self.top().cmp(&other.top()).then_with(|| {
-            let exponents = (low..self.top()).rev();
+        self.exponent_end().cmp(&other.exponent_end()).then_with(|| {
+            let exponents = (low..self.exponent_end()).rev();
             exponents
-                .map(|e| self.limb(e).cmp(&other.limb(e)))
+                .map(|e| self.limb_at(e).cmp(&other.limb_at(e)))
                 .find(|o| o.is_ne())
                 .unwrap_or(Ordering::Equal)
         })
     }
 
-    /// Returns the sum, marked as overflown if it does not fit.
+    /// Returns the sum, marked as overflown if it may not fit.
     #[must_use]
     #[inline]
     pub fn add(&self, other: &Self) -> Self {
-        self.sum(other, other.negative)
+        self.add_with_sign(other, other.negative)
     }
 
-    /// Returns the difference, marked as overflown if it does not fit.
+    /// Returns the difference, marked as overflown if it may not fit.
     #[must_use]
     #[inline]
     pub fn subtract(&self, other: &Self) -> Self {
-        self.sum(other, !other.negative)
+        self.add_with_sign(other, !other.negative)
     }
 
     /// Returns `self` plus the magnitude of `other` with the given sign.
     #[inline]
-    fn sum(&self, other: &Self, negative: bool) -> Self {
+    fn add_with_sign(&self, other: &Self, negative: bool) -> Self {
         if self.overflown || other.overflown {
             return Self::OVERFLOWN;
         }
@@ -148,7 +148,7 @@ impl<const N: usize> Integer<N> {
     #[inline]
     fn add_magnitude(&self, other: &Self) -> Self {
         let base = self.base.min(other.base);
-        let count = (self.top().max(other.top()) - base) as usize;
+        let count = (self.exponent_end().max(other.exponent_end()) - base) as usize;
         if count + 1 > N {
             return Self::OVERFLOWN;
         }
@@ -156,13 +156,13 @@ impl<const N: usize> Integer<N> {
         let mut carry = false;
         for (k, limb) in sum.limbs[..count].iter_mut().enumerate() {
             let e = base + k as i16;
-            let (s, c) = self.limb(e).overflowing_add(other.limb(e));
+            let (s, c) = self.limb_at(e).overflowing_add(other.limb_at(e));
             let (s, d) = s.overflowing_add(u64::from(carry));
             *limb = s;
             carry = c || d;
         }
         sum.limbs[count] = u64::from(carry);
-        sum.trim();
+        sum.remove_zero_limbs();
         sum
     }
 
@@ -170,7 +170,7 @@ impl<const N: usize> Integer<N> {
     #[inline]
     fn subtract_magnitude(&self, smaller: &Self, negative: bool) -> Self {
         let base = self.base.min(smaller.base);
-        let count = (self.top() - base) as usize;
+        let count = (self.exponent_end() - base) as usize;
         if count > N {
             return Self::OVERFLOWN;
         }
@@ -178,12 +178,12 @@ impl<const N: usize> Integer<N> {
         let mut borrow = false;
         for (k, limb) in rest.limbs[..count].iter_mut().enumerate() {
             let e = base + k as i16;
-            let (s, c) = self.limb(e).overflowing_sub(smaller.limb(e));
+            let (s, c) = self.limb_at(e).overflowing_sub(smaller.limb_at(e));
             let (s, d) = s.overflowing_sub(u64::from(borrow));
             *limb = s;
             borrow = c || d;
         }
-        rest.trim();
+        rest.remove_zero_limbs();
         rest
     }
 
@@ -217,7 +217,7 @@ impl<const N: usize> Integer<N> {
             }
             result.limbs[i + n] = carry as u64;
         }
-        result.trim();
+        result.remove_zero_limbs();
         result
     }
 
@@ -234,12 +234,12 @@ impl<const N: usize> Integer<N> {
 
     /// Returns `(m, e)` so that `m 2^e` equals the number with a relative error of at most `2^-52`.
     #[inline]
-    fn leading(&self) -> (f64, i32) {
+    fn leading_bits(&self) -> (f64, i32) {
         if self.len == 0 {
             return (0.0, 0);
         }
-        let top = self.top() - 1;
-        let bits = u128::from(self.limb(top)) << 64 | u128::from(self.limb(top - 1));
+        let top = self.exponent_end() - 1;
+        let bits = u128::from(self.limb_at(top)) << 64 | u128::from(self.limb_at(top - 1));
         let magnitude = bits as f64;
         (if self.negative { -magnitude } else { magnitude }, 64 * (i32::from(top) - 1))
     }
@@ -250,7 +250,7 @@ impl<const N: usize> Integer<N> {
         if self.overflown || other.overflown {
             return None;
         }
-        let ((n, i), (d, j)) = (self.leading(), other.leading());
+        let ((n, i), (d, j)) = (self.leading_bits(), other.leading_bits());
         let (quotient, exponent) = (n / d, i - j);
         let half = exponent / 2;
         Some(quotient * 2.0_f64.powi(half) * 2.0_f64.powi(exponent - half))
@@ -259,7 +259,7 @@ impl<const N: usize> Integer<N> {
 
 /// Decomposes a number into mantissa and exponent: `|x| = mantissa 2^exponent`.
 #[inline]
-fn decode(x: f64) -> (u64, i32) {
+fn mantissa_and_exponent(x: f64) -> (u64, i32) {
     let bits = x.to_bits();
     let fraction = bits & ((1 << 52) - 1);
     let exponent = (bits >> 52 & 0x7ff) as i32;
@@ -300,7 +300,7 @@ mod tests {
     }
 
     /// Random numbers of very different magnitudes, with zeros and ties.
-    fn number() -> impl Strategy<Value = f64> {
+    fn any_number() -> impl Strategy<Value = f64> {
         prop_oneof![
             Just(0.0),
             (-4_i32..=4).prop_map(f64::from),
@@ -311,7 +311,9 @@ mod tests {
 
     proptest! {
         #[test]
-        fn sums_of_products_agree_with_rationals(a in number(), b in number(), c in number(), d in number()) {
+        fn sums_of_products_agree_with_rationals(
+            a in any_number(), b in any_number(), c in any_number(), d in any_number(),
+        ) {
             let expected = rational(a) * rational(b) + rational(c) * rational(d);
             let sign = Some(expected.cmp(&RBig::ZERO));
             let large = Integer::<LARGE>::product(a, b).add(&Integer::product(c, d));
@@ -321,7 +323,9 @@ mod tests {
         }
 
         #[test]
-        fn determinants_and_ratios_agree_with_rationals(numbers in prop::array::uniform9(number()), w in number(), z in number()) {
+        fn determinants_and_ratios_agree_with_rationals(
+            numbers in prop::array::uniform9(any_number()), w in any_number(), z in any_number(),
+        ) {
             let coordinate = |k: usize| Integer::<LARGE>::product(numbers[k], w).add(&Integer::number(z));
             let small = |k: usize| Integer::<SMALL>::product(numbers[k], w).add(&Integer::number(z));
             let exact = |k: usize| rational(numbers[k]) * rational(w) + rational(z);

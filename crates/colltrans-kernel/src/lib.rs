@@ -83,7 +83,7 @@ mod tests {
     }
 
     /// Numbers of very different magnitudes, with zeros and ties.
-    pub(crate) fn number() -> impl Strategy<Value = f64> {
+    pub(crate) fn any_number() -> impl Strategy<Value = f64> {
         prop_oneof![
             Just(0.0),
             (-4_i32..=4).prop_map(f64::from),
@@ -92,7 +92,7 @@ mod tests {
         ]
     }
 
-    pub(crate) fn vector() -> impl Strategy<Value = DVec3> {
-        [number(), number(), number()].prop_map(DVec3::from_array)
+    pub(crate) fn any_vector() -> impl Strategy<Value = DVec3> {
+        [any_number(), any_number(), any_number()].prop_map(DVec3::from_array)
     }
 }

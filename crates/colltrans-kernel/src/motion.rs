@@ -21,7 +21,7 @@ use crate::pose::Pose;
 use crate::range::{MIN_MAGNITUDE, in_exact_range};
 
 /// Maximum sine of half the angle of a rotation between two poses that counts as rounding error of 0.
-const NO_TURN: f64 = 1e-15;
+const NO_ROTATION: f64 = 1e-15;
 
 /// The pose of a body at every time from 0 to 1.
 ///
@@ -79,7 +79,7 @@ impl Motion {
     /// Returns the motion of a body that rests at a pose.
     #[inline]
     pub fn still(pose: Pose) -> Self {
-        Self { pieces: vec![Piece::resting(pose)] }
+        Self { pieces: vec![Piece::at_rest(pose)] }
     }
 
     /// Returns a translation by a vector, in world units.
@@ -87,8 +87,8 @@ impl Motion {
     /// # Errors
     /// [`MotionError::Number`] if the vector is not finite or out of range.
     #[inline]
-    pub fn slide(pose: Pose, by: DVec3) -> Result<Self, MotionError> {
-        Self::of(Piece { velocity: by, ..Piece::resting(pose) })
+    pub fn slide(pose: Pose, displacement: DVec3) -> Result<Self, MotionError> {
+        Self::from_piece(Piece { velocity: displacement, ..Piece::at_rest(pose) })
     }
 
     /// Returns a rotation about a moving axis, by the numbers that define it.
@@ -96,7 +96,7 @@ impl Motion {
     /// - `arm` is the vector from a point of the axis to the origin of the body frame, in world units.
     /// - `axis` is the direction of the axis. It is divided by its length, unless the length is 1 up to
     ///   rounding. The motion is defined as if the length were exactly 1.
-    /// - `angle` is the angle of rotation in radians, and `way` the displacement of the axis in world units.
+    /// - `angle` is the angle of rotation in radians, and `displacement` that of the axis in world units.
     ///
     /// # Errors
     /// [`MotionError::Number`] if the axis is zero, or a vector is not finite or out of range.
@@ -107,11 +107,17 @@ impl Motion {
         arm: DVec3,
         axis: DVec3,
         angle: f64,
-        way: DVec3,
+        displacement: DVec3,
     ) -> Result<Self, MotionError> {
         let is_unit = (axis.length() - 1.0).abs() <= noise::UNIT_VECTOR;
-        let axis = if is_unit { axis } else { unit("axis", axis)? };
-        Self::of(Piece { arm, axis, rate: angle, velocity: way, ..Piece::resting(pose) })
+        let axis = if is_unit { axis } else { unit_vector("axis", axis)? };
+        Self::from_piece(Piece {
+            arm,
+            axis,
+            rate: angle,
+            velocity: displacement,
+            ..Piece::at_rest(pose)
+        })
     }
 
     /// Returns a rotation about an axis through a point of the world. The angle is in radians,
@@ -139,10 +145,16 @@ impl Motion {
         angle: f64,
         rise: f64,
     ) -> Result<Self, MotionError> {
-        let axis = unit("axis", axis)?;
-        check("point", point)?;
+        let axis = unit_vector("axis", axis)?;
+        check_vector("point", point)?;
         let arm = pose.translation() - point;
-        Self::of(Piece { arm, axis, rate: angle, velocity: axis * rise, ..Piece::resting(pose) })
+        Self::from_piece(Piece {
+            arm,
+            axis,
+            rate: angle,
+            velocity: axis * rise,
+            ..Piece::at_rest(pose)
+        })
     }
 
     /// Returns the motion of a thrown body without gravity, in a unit of time. `center` is a point of the
@@ -163,11 +175,11 @@ impl Motion {
         if angular_velocity == DVec3::ZERO {
             return Self::slide(pose, velocity);
         }
-        check("center", center)?;
-        let axis = unit("angular velocity", angular_velocity)?;
+        check_vector("center", center)?;
+        let axis = unit_vector("angular velocity", angular_velocity)?;
         let rate = angular_velocity.length();
         let arm = pose.translation() - center;
-        Self::of(Piece { arm, axis, rate, velocity, ..Piece::resting(pose) })
+        Self::from_piece(Piece { arm, axis, rate, velocity, ..Piece::at_rest(pose) })
     }
 
     /// Returns the screw motion from one pose to another by the smaller angle. It ends at `to` up to
@@ -197,15 +209,15 @@ impl Motion {
             let span = time(k + 1) - time(k);
             let whole = screw_between(&pair[0], &pair[1]);
             let [rate, velocity] = [DVec3::splat(whole.rate / span), whole.velocity / span];
-            Piece { since: time(k), rate: rate.x, velocity, ..whole }.checked()
+            Piece { since: time(k), rate: rate.x, velocity, ..whole }.validated()
         });
         Ok(Self { pieces: pieces.collect::<Result<_, _>>()? })
     }
 
-    /// Returns the motion of one piece, or the error of [`Piece::checked`].
+    /// Returns the motion of one piece, or the error of [`Piece::validated`].
     #[inline]
-    fn of(piece: Piece) -> Result<Self, MotionError> {
-        Ok(Self { pieces: vec![piece.checked()?] })
+    fn from_piece(piece: Piece) -> Result<Self, MotionError> {
+        Ok(Self { pieces: vec![piece.validated()?] })
     }
 
     /// Computes the pose at a time from 0 to 1, up to rounding, with equal bits on every platform.
@@ -239,16 +251,16 @@ impl Motion {
 impl Piece {
     /// Returns the piece of a body that rests at a pose from time 0 on.
     #[inline]
-    fn resting(start: Pose) -> Self {
+    fn at_rest(start: Pose) -> Self {
         let [arm, velocity] = [DVec3::ZERO; 2];
         Self { since: 0.0, start, arm, axis: DVec3::Z, rate: 0.0, velocity }
     }
 
     /// Checks that arm, velocity and rate are in range.
     #[inline]
-    fn checked(self) -> Result<Self, MotionError> {
-        check("arm", self.arm)?;
-        check("displacement", self.velocity)?;
+    fn validated(self) -> Result<Self, MotionError> {
+        check_vector("arm", self.arm)?;
+        check_vector("displacement", self.velocity)?;
         if self.rate.is_nan() || self.rate.abs() > angle::MOST {
             return Err(MotionError::Angle { angle: self.rate });
         }
@@ -260,31 +272,35 @@ impl Piece {
     #[doc(hidden)]
     pub fn at(&self, time: f64) -> Moved {
         let span = time - self.since;
-        let way = self.velocity * span;
+        let displacement = self.velocity * span;
         if self.rate == 0.0 {
-            return Moved { rotation: self.start.matrix(), by: flushed(way), arm: self.arm };
+            return Moved {
+                rotation: self.start.matrix(),
+                by: flush_tiny(displacement),
+                arm: self.arm,
+            };
         }
         let angle = self.rate * span;
         let low =
             product_error(self.rate, span, angle) + self.rate * difference_error(time, self.since);
         let turn = turn(angle, if low.is_finite() { low } else { 0.0 });
-        let swung = self.swing(&turn, self.arm);
+        let arm_displacement = self.rotation_displacement(&turn, self.arm);
         let start = self.start.matrix();
-        let turned = |column: DVec3| flushed(column + self.swing(&turn, column));
+        let turned = |column: DVec3| flush_tiny(column + self.rotation_displacement(&turn, column));
         Moved {
             rotation: DMat3::from_cols(
                 turned(start.x_axis),
                 turned(start.y_axis),
                 turned(start.z_axis),
             ),
-            by: flushed(way + swung),
-            arm: self.arm + swung,
+            by: flush_tiny(displacement + arm_displacement),
+            arm: self.arm + arm_displacement,
         }
     }
 
     /// Returns the displacement `(E - 1) z` of a vector by the rotation `E`.
     #[inline]
-    fn swing(&self, turn: &Turn, z: DVec3) -> DVec3 {
+    fn rotation_displacement(&self, turn: &Turn, z: DVec3) -> DVec3 {
         let across = self.axis.cross(z);
         across * turn.sin + self.axis.cross(across) * turn.versine
     }
@@ -303,8 +319,8 @@ impl Piece {
     #[inline]
     pub fn error(&self, reach: f64, span: f64) -> f64 {
         let turned = if self.rate == 0.0 { 0.0 } else { reach };
-        let swung = self.arm.length() * (self.rate.abs() * span).min(1.0);
-        noise::POSE * (turned + swung) + noise::WAY * self.velocity.length() * span
+        let arm_displacement = self.arm.length() * (self.rate.abs() * span).min(1.0);
+        noise::POSE * (turned + arm_displacement) + noise::WAY * self.velocity.length() * span
     }
 }
 
@@ -312,24 +328,24 @@ impl Piece {
 /// translation if the angle of rotation is within rounding of 0.
 #[inline]
 fn screw_between(from: &Pose, to: &Pose) -> Piece {
-    let resting = Piece::resting(*from);
-    let way = to.translation() - from.translation();
+    let at_rest = Piece::at_rest(*from);
+    let displacement = to.translation() - from.translation();
     let mut turn = DQuat::from_mat3(&(to.matrix() * from.matrix().transpose())).normalize();
     if turn.w < 0.0 {
         turn = -turn;
     }
     let imaginary = turn.xyz();
     let sine = imaginary.length();
-    if sine <= NO_TURN {
-        return Piece { velocity: way, ..resting };
+    if sine <= NO_ROTATION {
+        return Piece { velocity: displacement, ..at_rest };
     }
     let axis = imaginary / sine;
     let half = arc_tangent(sine, turn.w);
     // `(E - 1) a` is the part of the displacement perpendicular to the axis.
-    let rise = axis * axis.dot(way);
-    let across = way - rise;
+    let rise = axis * axis.dot(displacement);
+    let across = displacement - rise;
     let arm = (axis.cross(across) * (-turn.w / sine) - across) * 0.5;
-    Piece { arm, axis, rate: 2.0 * half, velocity: rise, ..resting }
+    Piece { arm, axis, rate: 2.0 * half, velocity: rise, ..at_rest }
 }
 
 /// Computes the angle in the first quadrant whose sine and cosine have the ratio `sine : cosine`, by Newton's
@@ -347,9 +363,9 @@ fn arc_tangent(sine: f64, cosine: f64) -> f64 {
 
 /// Returns the unit vector in the direction of `vector`, or an error that names `what`.
 #[inline]
-fn unit(what: &'static str, vector: DVec3) -> Result<DVec3, MotionError> {
-    check(what, vector)?;
-    if flushed(vector) == DVec3::ZERO {
+fn unit_vector(what: &'static str, vector: DVec3) -> Result<DVec3, MotionError> {
+    check_vector(what, vector)?;
+    if flush_tiny(vector) == DVec3::ZERO {
         return Err(MotionError::Number { what, vector });
     }
     Ok(vector / vector.length())
@@ -357,13 +373,17 @@ fn unit(what: &'static str, vector: DVec3) -> Result<DVec3, MotionError> {
 
 /// Checks that a vector is finite and in the exact range. Components below the range count as 0.
 #[inline]
-fn check(what: &'static str, vector: DVec3) -> Result<(), MotionError> {
-    if in_exact_range(flushed(vector)) { Ok(()) } else { Err(MotionError::Number { what, vector }) }
+fn check_vector(what: &'static str, vector: DVec3) -> Result<(), MotionError> {
+    if in_exact_range(flush_tiny(vector)) {
+        Ok(())
+    } else {
+        Err(MotionError::Number { what, vector })
+    }
 }
 
 /// Returns the vector with components below [`MIN_MAGNITUDE`] replaced by zero.
 #[inline]
-fn flushed(v: DVec3) -> DVec3 {
+fn flush_tiny(v: DVec3) -> DVec3 {
     let flush = |x: f64| if x.abs() < MIN_MAGNITUDE { 0.0 } else { x };
     DVec3::new(flush(v.x), flush(v.y), flush(v.z))
 }
@@ -424,7 +444,7 @@ impl TryFrom<Vec<PieceRecord>> for Motion {
                 rate: record.rate,
                 velocity: DVec3::from_array(record.velocity),
             };
-            pieces.push(piece.checked()?);
+            pieces.push(piece.validated()?);
         }
         if pieces.is_empty() { Err(MotionError::NoPoses) } else { Ok(Self { pieces }) }
     }
@@ -435,7 +455,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn axes_too_short_to_have_a_direction_are_refused() {
+    fn axis_below_exact_range_is_rejected() {
         let short = DVec3::new(0.0, 1e-170, 0.0);
         assert!(Motion::turn(Pose::IDENTITY, DVec3::ZERO, short, 1.0).is_err());
         assert!(Motion::thrown(Pose::IDENTITY, DVec3::ZERO, DVec3::X, short).is_err());
@@ -444,7 +464,7 @@ mod tests {
     }
 
     #[test]
-    fn screws_between_poses_end_there() {
+    fn screw_between_poses_ends_at_second_pose() {
         for k in 0..200 {
             let x = f64::from(k);
             let pose = |x: f64| {
@@ -464,7 +484,7 @@ mod tests {
     }
 
     #[test]
-    fn points_of_the_axis_stay_on_it() {
+    fn axis_point_moves_only_along_axis() {
         let pose = Pose::new(DQuat::from_rotation_x(0.3), DVec3::new(3.0, 4.0, 5.0)).unwrap();
         let point = DVec3::new(1.0, -1.0, 2.0);
         let motion = Motion::screw(pose, point, DVec3::new(1.0, 2.0, 2.0), 40.0, 6.0).unwrap();
@@ -476,7 +496,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_that_are_none_are_refused() {
+    fn invalid_motions_and_times_are_rejected() {
         let pose = Pose::IDENTITY;
         assert!(Motion::turn(pose, DVec3::ZERO, DVec3::ZERO, 1.0).is_err());
         assert!(Motion::turn(pose, DVec3::ZERO, DVec3::Z, f64::NAN).is_err());

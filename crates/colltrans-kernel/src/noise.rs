@@ -14,20 +14,20 @@
 use crate::range::MIN_MAGNITUDE;
 
 /// Unit roundoff `u`.
-const ROUNDING: f64 = 0.5 * f64::EPSILON;
+const UNIT_ROUNDOFF: f64 = 0.5 * f64::EPSILON;
 
 /// Size of a noise, in `u S`.
-const POINT: f64 = 32.0;
+const NOISE_IN_ROUNDOFFS: f64 = 32.0;
 
 /// Bound on the length of two coordinate errors of `18 u S` each, in noises.
-const LATERAL: f64 = 0.8;
+const LATERAL_ERROR: f64 = 0.8;
 
 /// Length of a touching distance, in noises.
-const TOUCHING: f64 = 8.0;
+const TOUCHING_NOISES: f64 = 8.0;
 
 /// Part of the longer half-side of the widening rectangle that does not depend on the margin, in touching
 /// distances.
-const WIDER: f64 = 4.0;
+const WIDENING_TOUCHES: f64 = 4.0;
 
 /// Half-sides of the widening rectangle, relative to the longer one. They differ, because a diagonal of a
 /// square would often be parallel to an edge.
@@ -37,57 +37,57 @@ pub const WIDENING: [f64; 2] = [1.0, 0.8];
 const WIDENING_CORNER: f64 = 1.3;
 
 /// Rounding error of the two bounds of an optimum together, in noises.
-const BOUNDS: f64 = 2.0;
+const BOUND_NOISES: f64 = 2.0;
 
 /// Maximum excess of both bodies beyond their support points, in noises.
-const BEYOND: f64 = 8.0 * COPLANAR / (POINT * ROUNDING);
+const EXCESS_NOISES: f64 = 8.0 * COPLANAR / (NOISE_IN_ROUNDOFFS * UNIT_ROUNDOFF);
 
 /// Margin by which an upper bound is raised, in noises.
-const RAISED: f64 = 4.0;
+const UPPER_BOUND_NOISES: f64 = 4.0;
 
 /// Maximum distance of the witness points of a certificate, in noises.
-const RESIDUAL: f64 = 3.0;
+const RESIDUAL_NOISES: f64 = 3.0;
 
 /// Margin by which the length of a weighted mean of points of `M` is raised to an upper bound, in noises. The
 /// second entry is the part that is demanded if the points are computed nearly without rounding.
-const MEAN: [f64; 2] = [1.5, 0.375];
+const MEAN_NOISES: [f64; 2] = [1.5, 0.375];
 
 /// Part of a minimum gap that is not claimed if points are computed nearly without rounding, in noises.
-const KEPT: f64 = 0.5;
+const GAP_NOISES: f64 = 0.5;
 
 /// Maximum size of a minimum gap that leaves no room for rounding, in noises.
-const SLIGHT: f64 = 8.0;
+const MAX_SLIGHT_NOISES: f64 = 8.0;
 
 /// Margin by which a height in the setting frame is lowered to a lower bound, in noises. The second entry is
 /// the part that is demanded if the points are computed nearly without rounding.
-const HEIGHT: [f64; 2] = [0.75, 0.25];
+const HEIGHT_NOISES: [f64; 2] = [0.75, 0.25];
 
 /// Tolerance for the length of a unit vector, and for its product with a vector that it should be orthogonal
 /// to.
-pub const UNIT_VECTOR: f64 = 32.0 * ROUNDING;
+pub const UNIT_VECTOR: f64 = 32.0 * UNIT_ROUNDOFF;
 
 /// Relative rounding error of a gain along an edge. A hill climb demands a larger gain.
-pub const GAIN: f64 = 8.0 * ROUNDING;
+pub const GAIN: f64 = 8.0 * UNIT_ROUNDOFF;
 
 /// Distance from a face within which points are taken to lie on it, in multiples of the largest coordinate.
-pub const COPLANAR: f64 = 64.0 * ROUNDING;
+pub const COPLANAR: f64 = 64.0 * UNIT_ROUNDOFF;
 
 /// Bound on the error of the distance between a point and a point of a triangle, in multiples of the largest
 /// coordinate.
-pub const WITNESS: f64 = 32.0 * ROUNDING;
+pub const WITNESS: f64 = 32.0 * UNIT_ROUNDOFF;
 
 /// Bound on the error of a rotated point, in multiples of its distance from the origin of its frame.
-pub const POSE: f64 = 96.0 * ROUNDING;
+pub const POSE: f64 = 96.0 * UNIT_ROUNDOFF;
 
 /// Bound on the distance by which points of two moving bodies are displaced because coordinates of poses
 /// below the exact range count as 0.
 pub const FLUSHED: f64 = 8.0 * MIN_MAGNITUDE;
 
 /// Bound on the error of a displacement, in multiples of its length.
-pub const WAY: f64 = 8.0 * ROUNDING;
+pub const WAY: f64 = 8.0 * UNIT_ROUNDOFF;
 
 /// Relative rounding error of sums in section coordinates.
-pub const SECTION: f64 = 128.0 * ROUNDING;
+pub const SECTION: f64 = 128.0 * UNIT_ROUNDOFF;
 
 /// Bounds on the rounding errors of a configuration of one size.
 #[derive(Debug, Clone, Copy)]
@@ -98,7 +98,7 @@ impl Noise {
     #[inline]
     pub fn of(size: f64) -> Self {
         // Two coincident points have size 0. The smallest nonzero magnitude replaces it.
-        Self(POINT * ROUNDING * size.max(MIN_MAGNITUDE))
+        Self(NOISE_IN_ROUNDOFFS * UNIT_ROUNDOFF * size.max(MIN_MAGNITUDE))
     }
 
     /// Returns the bound on the error of a coordinate of a point of `M`, and on the error of comparing two
@@ -111,20 +111,20 @@ impl Noise {
     /// Returns the bound on the lateral error of the shadow of a point of `M`.
     #[inline]
     pub fn lateral(self) -> f64 {
-        LATERAL * self.0
+        LATERAL_ERROR * self.0
     }
 
     /// Returns the touching distance, below which lateral distances are not distinguished.
     #[inline]
     pub fn touching(self) -> f64 {
-        TOUCHING * self.0
+        TOUCHING_NOISES * self.0
     }
 
     /// Returns the bound on the excess of both bodies beyond their support points: twice four tolerances of
     /// [`COPLANAR`] of their size.
     #[inline]
     pub fn beyond(self) -> f64 {
-        BEYOND * self.0
+        EXCESS_NOISES * self.0
     }
 
     /// Returns the depth below a plane at which a point still counts as lying on the plane. `late` is true
@@ -137,7 +137,7 @@ impl Noise {
     /// Returns the longer half-side of the widening rectangle for bodies whose shadows are `margin` apart.
     #[inline]
     pub fn widening(self, margin: f64) -> f64 {
-        margin.max(0.0) + WIDER * self.touching()
+        margin.max(0.0) + WIDENING_TOUCHES * self.touching()
     }
 
     /// Returns the largest half-side of a widening rectangle. Its margin is at most one noise, because shadows that
@@ -153,7 +153,7 @@ impl Noise {
     #[inline]
     pub fn gap(self, across: f64, widening: f64) -> f64 {
         // Depth at which the plane was accepted among ties.
-        let bounds = self.plane(true) + BOUNDS * self.0;
+        let bounds = self.plane(true) + BOUND_NOISES * self.0;
         if widening == 0.0 { bounds } else { bounds + across * (2.0 * WIDENING_CORNER * widening) }
     }
 
@@ -166,67 +166,67 @@ impl Noise {
     /// Returns the margin by which an estimate of an upper bound along `n` is raised.
     #[inline]
     pub fn raised(self) -> f64 {
-        RAISED * self.0
+        UPPER_BOUND_NOISES * self.0
     }
 
     /// Returns the margin by which the length of a weighted mean of points of `M` is raised to an upper
     /// bound.
     #[inline]
     pub fn mean_raised(self) -> f64 {
-        MEAN[0] * self.0
+        MEAN_NOISES[0] * self.0
     }
 
     /// Returns the margin by which a check raises the length of a weighted mean of points of `M`, which it
     /// computes nearly without rounding.
     #[inline]
     pub fn mean_checked(self) -> f64 {
-        MEAN[1] * self.0
+        MEAN_NOISES[1] * self.0
     }
 
     /// Checks whether a minimum gap is so small that rounding leaves no room for points that are provably as
     /// near. The size of this configuration includes the gap.
     #[inline]
-    pub fn is_slight(self, keep: f64) -> bool {
-        keep <= SLIGHT * self.0
+    pub fn is_slight(self, min_gap: f64) -> bool {
+        min_gap <= MAX_SLIGHT_NOISES * self.0
     }
 
     /// Returns the margin by which a check raises the length of a weighted mean of points of `M` minus a
     /// translation, before it compares the length with a minimum gap.
     #[inline]
     pub fn mean_kept(self) -> f64 {
-        KEPT * self.0
+        GAP_NOISES * self.0
     }
 
     /// Returns the margin by which the height of a point of `M` is lowered to a lower bound.
     #[inline]
     pub fn height_lowered(self) -> f64 {
-        HEIGHT[0] * self.0
+        HEIGHT_NOISES[0] * self.0
     }
 
     /// Returns the margin by which a check lowers the height of a point of `M`, which it computes nearly
     /// without rounding.
     #[inline]
     pub fn height_checked(self) -> f64 {
-        HEIGHT[1] * self.0
+        HEIGHT_NOISES[1] * self.0
     }
 
     /// Returns the minimum distance of an upper bound along `n` above the weighted mean of the corners, if a
     /// check computes the mean without rounding.
     #[inline]
     pub fn above_mean(self) -> f64 {
-        (RAISED - 1.0) * self.0
+        (UPPER_BOUND_NOISES - 1.0) * self.0
     }
 
     /// Returns the maximum distance of the witness points of a certificate that claims an upper bound.
     #[inline]
     pub fn residual(self) -> f64 {
-        RESIDUAL * self.0
+        RESIDUAL_NOISES * self.0
     }
 
     /// Returns the maximum distance of the witness points of a certificate for bodies that were widened
     /// laterally.
     #[inline]
     pub fn residual_widened(self) -> f64 {
-        WIDENING_CORNER * self.widest() + BOUNDS * self.0
+        WIDENING_CORNER * self.widest() + BOUND_NOISES * self.0
     }
 }

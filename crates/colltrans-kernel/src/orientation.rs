@@ -16,7 +16,7 @@ use std::cmp::Ordering;
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::double::{Double, Sums};
+use super::double::{Double, ParallelSums};
 use super::error_free::{difference_error, sum_error};
 use super::integer::{Integer, LARGE, SMALL};
 use super::real::{Twice, Vector};
@@ -35,7 +35,7 @@ pub struct Terms<'a> {
 impl Terms<'_> {
     /// Returns the factors of the products whose sum is a coordinate.
     #[inline]
-    fn row(&self, row: usize) -> [(f64, f64); 8] {
+    fn coordinate_factors(&self, row: usize) -> [(f64, f64); 8] {
         let ((f, q), (m, p), [high, low]) = (self.fixed, self.moving, self.offset);
         [
             (f.x_axis[row], q.x),
@@ -49,38 +49,41 @@ impl Terms<'_> {
         ]
     }
 
-    /// Returns the point, rounded as if its coordinates had been computed nearly without rounding.
+    /// Returns the point, computed nearly without rounding and then rounded.
     #[inline]
     pub fn point(&self) -> DVec3 {
-        DVec3::from_array(self.rounded([0, 1, 2]).map(|coordinate| coordinate.high))
+        DVec3::from_array(self.double_coordinates([0, 1, 2]).map(|coordinate| coordinate.high))
     }
 
     /// Returns the point in twice the usual precision.
     #[inline]
     pub fn twice(&self) -> Vector<Twice> {
         Vector(
-            self.rounded([0, 1, 2]).map(|coordinate| Twice::new(coordinate.high, coordinate.low)),
+            self.double_coordinates([0, 1, 2])
+                .map(|coordinate| Twice::new(coordinate.high, coordinate.low)),
         )
     }
 
     /// Returns the exact coordinates of the point.
     #[inline]
     pub fn coordinates<const N: usize>(&self) -> [Integer<N>; 3] {
-        std::array::from_fn(|row| self.coordinate(row))
+        std::array::from_fn(|row| self.exact_coordinate(row))
     }
 
     /// Returns one exact coordinate of the point.
     #[inline]
-    fn coordinate<const N: usize>(&self, row: usize) -> Integer<N> {
-        self.row(row).iter().fold(Integer::ZERO, |sum, &(a, b)| sum.add(&Integer::product(a, b)))
+    fn exact_coordinate<const N: usize>(&self, row: usize) -> Integer<N> {
+        self.coordinate_factors(row)
+            .iter()
+            .fold(Integer::ZERO, |sum, &(a, b)| sum.add(&Integer::product(a, b)))
     }
 
     /// Returns the exact shadow for the axes `[m, u, v]`.
     #[inline]
-    fn shadow<const N: usize>(&self, d: DVec3, [m, u, v]: [usize; 3]) -> [Integer<N>; 2] {
+    fn exact_shadow<const N: usize>(&self, d: DVec3, [m, u, v]: [usize; 3]) -> [Integer<N>; 2] {
         let times = |x: &Integer<N>, k: usize| x.multiply(&Integer::number(d[k]));
-        let along_m = self.coordinate(m);
-        [u, v].map(|k| times(&self.coordinate(k), m).subtract(&times(&along_m, k)))
+        let along_m = self.exact_coordinate(m);
+        [u, v].map(|k| times(&self.exact_coordinate(k), m).subtract(&times(&along_m, k)))
     }
 }
 
@@ -91,22 +94,22 @@ impl Terms<'_> {
 /// `base` computes the [`shadow`] of `a` or `b`.
 #[inline]
 pub fn orientation(a: &Terms, b: &Terms, d: DVec3, base: impl FnOnce() -> Shadow) -> Ordering {
-    let axes = axes_of(d);
-    by_doubles(a, b, d, axes, base)
-        .or_else(|| by_integers::<SMALL>(a, b, d, axes))
-        .or_else(|| by_integers::<LARGE>(a, b, d, axes))
+    let axes = ordered_axes(d);
+    sign_by_doubles(a, b, d, axes, base)
+        .or_else(|| sign_by_integers::<SMALL>(a, b, d, axes))
+        .or_else(|| sign_by_integers::<LARGE>(a, b, d, axes))
         .unwrap_or(Ordering::Equal)
 }
 
 /// Computes the sign with integers of `N` limbs; `None` if a number did not fit.
 #[inline(never)]
-fn by_integers<const N: usize>(
+fn sign_by_integers<const N: usize>(
     a: &Terms,
     b: &Terms,
     d: DVec3,
     axes: [usize; 3],
 ) -> Option<Ordering> {
-    let ([au, av], [bu, bv]) = (a.shadow::<N>(d, axes), b.shadow::<N>(d, axes));
+    let ([au, av], [bu, bv]) = (a.exact_shadow::<N>(d, axes), b.exact_shadow::<N>(d, axes));
     let det = au.multiply(&bv).subtract(&av.multiply(&bu)).sign()?;
     if det != Ordering::Equal {
         return Some(if d[axes[0]] < 0.0 { det.reverse() } else { det });
@@ -121,19 +124,20 @@ pub type Shadow = [Double; 2];
 
 /// Returns the components of a vector along some axes.
 #[inline(always)]
-fn rows<const L: usize>(column: DVec3, axes: [usize; L]) -> [f64; L] {
+fn components<const L: usize>(column: DVec3, axes: [usize; L]) -> [f64; L] {
     axes.map(|k| column[k])
 }
 
 impl Terms<'_> {
     /// Computes the coordinates along some axes in twice the usual precision.
     #[inline(always)]
-    fn rounded<const L: usize>(&self, axes: [usize; L]) -> [Double; L] {
-        let mut sums = Sums { high: rows(self.offset[0], axes), ..Sums::ZERO };
-        sums.low = rows(self.offset[1], axes);
+    fn double_coordinates<const L: usize>(&self, axes: [usize; L]) -> [Double; L] {
+        let mut sums =
+            ParallelSums { high: components(self.offset[0], axes), ..ParallelSums::ZERO };
+        sums.low = components(self.offset[1], axes);
         for column in 0..3 {
-            sums.add_products(rows(self.fixed.0.col(column), axes), self.fixed.1[column]);
-            sums.add_products(rows(self.moving.0.col(column), axes), -self.moving.1[column]);
+            sums.add_products(components(self.fixed.0.col(column), axes), self.fixed.1[column]);
+            sums.add_products(components(self.moving.0.col(column), axes), -self.moving.1[column]);
         }
         std::array::from_fn(|k| sums.get(k))
     }
@@ -141,16 +145,16 @@ impl Terms<'_> {
     /// Computes the coordinates of the displacement from `self` to `other`. Terms that both have in common
     /// cancel without error.
     #[inline(always)]
-    fn rounded_way<const L: usize>(&self, other: &Self, axes: [usize; L]) -> [Double; L] {
-        let mut sums = Sums::ZERO;
+    fn double_displacement<const L: usize>(&self, other: &Self, axes: [usize; L]) -> [Double; L] {
+        let mut sums = ParallelSums::ZERO;
         for ((matrix, from), to, sign) in
             [(self.fixed, other.fixed.1, 1.0), (self.moving, other.moving.1, -1.0)]
         {
             for column in 0..3 {
-                let way = sign * (to[column] - from[column]);
-                if way != 0.0 {
-                    let entries = rows(matrix.col(column), axes);
-                    sums.add_products(entries, way);
+                let displacement = sign * (to[column] - from[column]);
+                if displacement != 0.0 {
+                    let entries = components(matrix.col(column), axes);
+                    sums.add_products(entries, displacement);
                     let rest = sign * difference_error(to[column], from[column]);
                     if rest != 0.0 {
                         for (k, e) in entries.into_iter().enumerate() {
@@ -170,18 +174,18 @@ impl Terms<'_> {
 
 /// Computes the shadow of a vector from its coordinates along the axes `u`, `v`, `m` and those of `d`.
 #[inline(always)]
-fn rounded_shadow([along_u, along_v, along_m]: [Double; 3], [u, v, m]: [f64; 3]) -> [Double; 2] {
+fn double_shadow([along_u, along_v, along_m]: [Double; 3], [u, v, m]: [f64; 3]) -> [Double; 2] {
     [(along_u, u), (along_v, v)].map(|(x, d)| {
         let mut sum = Double::ZERO;
         sum.add_scaled(&x, m);
         sum.add_scaled(&along_m, -d);
-        sum.tidy()
+        sum.normalized()
     })
 }
 
 /// Returns the axis along which `d` is largest, and the next two in cyclic order.
 #[inline]
-fn axes_of(d: DVec3) -> [usize; 3] {
+fn ordered_axes(d: DVec3) -> [usize; 3] {
     let main = usize::from(d.abs().max_position() as u8);
     [main, (main + 1) % 3, (main + 2) % 3]
 }
@@ -189,11 +193,11 @@ fn axes_of(d: DVec3) -> [usize; 3] {
 /// Computes the shadow of a point. It lacks the factor `d_m`, of either sign, if `d` has no other component.
 #[inline]
 pub fn shadow(x: &Terms, d: DVec3) -> Shadow {
-    let [m, u, v] = axes_of(d);
+    let [m, u, v] = ordered_axes(d);
     if d[u] == 0.0 && d[v] == 0.0 {
-        return x.rounded([u, v]);
+        return x.double_coordinates([u, v]);
     }
-    rounded_shadow(x.rounded([u, v, m]), [d[u], d[v], d[m]])
+    double_shadow(x.double_coordinates([u, v, m]), [d[u], d[v], d[m]])
 }
 
 /// Converts a shadow to the lateral axes `e1, e2` in the first two columns of `axes`. The error is small
@@ -204,47 +208,54 @@ pub fn rounded(shadow: &Shadow, axes: &DMat3, d: DVec3) -> Option<DVec2> {
     let [u_error, v_error] = [shadow[0].error, shadow[1].error];
     let [along_u, along_v] = [&shadow[0], &shadow[1]].map(|x| x.high + x.low);
     let size = along_u.abs().max(along_v.abs());
-    if u_error + v_error > RELATIVE_ERROR * size {
+    if u_error + v_error > MAX_RELATIVE_ERROR * size {
         return None;
     }
     // A lateral vector is determined by its components along `u` and `v`.
-    let [m, u, v] = axes_of(d);
+    let [m, u, v] = ordered_axes(d);
     let factor = if d[u] == 0.0 && d[v] == 0.0 { 1.0 } else { d[m] };
     let along = |e: DVec3| (e[u] * along_u + e[v] * along_v) / factor;
     Some(DVec2::new(along(axes.x_axis), along(axes.y_axis)))
 }
 
 /// Maximum relative error of a shadow that is used as a direction.
-const RELATIVE_ERROR: f64 = 1e-9;
+const MAX_RELATIVE_ERROR: f64 = 1e-9;
 
 /// Checks whether the line passes to the left of a segment; `None` if rounding leaves the side uncertain.
 ///
-/// `base` is the accurate shadow of one end. `way` is the displacement from the first end to the second in
-/// the shadow frame, with errors of two noises in its coordinates. This suffices if the end is near the line
-/// and the displacement is long.
+/// `base` is the accurate shadow of one end. `displacement` leads from the first end to the second in the
+/// shadow frame, with errors of two noises in its coordinates. This suffices if the end is near the line and
+/// the displacement is long.
 #[inline]
-pub fn side(base: &Shadow, way: DVec2, axes: &DMat3, d: DVec3, noise: f64) -> Option<bool> {
-    let [m, u, v] = axes_of(d);
+pub fn side(
+    base: &Shadow,
+    displacement: DVec2,
+    axes: &DMat3,
+    d: DVec3,
+    noise: f64,
+) -> Option<bool> {
+    let [m, u, v] = ordered_axes(d);
     let bare = d[u] == 0.0 && d[v] == 0.0;
     let factor = if bare { 1.0 } else { d[m] };
     let component = |k: usize| {
         let along = |e: DVec3| factor * e[k] - d[k] * e[m];
-        along(axes.x_axis) * way.x + along(axes.y_axis) * way.y
+        along(axes.x_axis) * displacement.x + along(axes.y_axis) * displacement.y
     };
-    let way = [component(u), component(v)];
-    let way_error = 9.0 * noise * (factor.abs() + d[u].abs() + d[v].abs());
-    let det = base[0].high * way[1] - base[1].high * way[0];
+    let displacement = [component(u), component(v)];
+    let displacement_error = 9.0 * noise * (factor.abs() + d[u].abs() + d[v].abs());
+    let det = base[0].high * displacement[1] - base[1].high * displacement[0];
     let size = |x: &Double| (x.high.abs(), x.low.abs() + x.error);
     let ((a, a_error), (b, b_error)) = (size(&base[0]), size(&base[1]));
-    let error = (a + b) * way_error
-        + (a_error + b_error) * (way[0].abs() + way[1].abs() + way_error)
+    let error = (a + b) * displacement_error
+        + (a_error + b_error)
+            * (displacement[0].abs() + displacement[1].abs() + displacement_error)
         + f64::MIN_POSITIVE;
     (det.abs() > 1.01 * error).then_some((det > 0.0) == (d[m] > 0.0))
 }
 
 /// Computes the sign with numbers of twice the usual precision; `None` if that leaves it uncertain.
 #[inline]
-fn by_doubles(
+fn sign_by_doubles(
     a: &Terms,
     b: &Terms,
     d: DVec3,
@@ -254,28 +265,28 @@ fn by_doubles(
     let sign = if d[m] < 0.0 { Ordering::Less } else { Ordering::Greater };
     if d[u] == 0.0 && d[v] == 0.0 {
         // Positive factors do not change the sign.
-        let way = a.rounded_way(b, [u, v]);
-        return decide(way, base, [sign, Ordering::Greater]);
+        let displacement = a.double_displacement(b, [u, v]);
+        return sign_from_shadows(displacement, base, [sign, Ordering::Greater]);
     }
     let along = [d[u], d[v], d[m]];
-    let way = rounded_shadow(a.rounded_way(b, [u, v, m]), along);
-    decide(way, base, [Ordering::Greater, sign])
+    let displacement = double_shadow(a.double_displacement(b, [u, v, m]), along);
+    sign_from_shadows(displacement, base, [Ordering::Greater, sign])
 }
 
 /// Returns the sign from the shadow of the displacement and the shadow of one of its ends. `signs` are the
 /// signs of the factors of the shadows and of the determinant. `None` if the errors leave it uncertain.
 #[inline(always)]
-fn decide(
-    way: [Double; 2],
+fn sign_from_shadows(
+    displacement: [Double; 2],
     start: impl FnOnce() -> [Double; 2],
     signs: [Ordering; 2],
 ) -> Option<Ordering> {
     let times = |x: Ordering, sign: Ordering| if sign == Ordering::Less { x.reverse() } else { x };
-    let [u, v] = [way[0].sign(), way[1].sign()];
+    let [u, v] = [displacement[0].certain_sign(), displacement[1].certain_sign()];
     if u == Some(Ordering::Equal) && v == u {
         return u;
     }
-    let det = minor(&start(), &way).sign()?;
+    let det = cross_product(&start(), &displacement).certain_sign()?;
     if det != Ordering::Equal {
         return Some(times(times(det, signs[0]), signs[1]));
     }
@@ -285,7 +296,7 @@ fn decide(
 
 /// Computes `a.x b.y - a.y b.x`.
 #[inline]
-fn minor(a: &[Double; 2], b: &[Double; 2]) -> Double {
+fn cross_product(a: &[Double; 2], b: &[Double; 2]) -> Double {
     let mut sum = Double::ZERO;
     sum.add_double_product(&a[0], &b[1], 1.0);
     sum.add_double_product(&a[1], &b[0], -1.0);
@@ -295,13 +306,16 @@ fn minor(a: &[Double; 2], b: &[Double; 2]) -> Double {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tests::{number, rational, vector};
+    use crate::tests::{any_number, any_vector, rational};
     use dashu_ratio::RBig;
     use proptest::prelude::*;
 
     proptest! {
         #[test]
-        fn orientation_agrees_with_rationals(q in vector(), p in vector(), r in vector(), t in vector(), d in vector(), s in number()) {
+        fn orientation_agrees_with_rationals(
+            q in any_vector(), p in any_vector(), r in any_vector(),
+            t in any_vector(), d in any_vector(), s in any_number(),
+        ) {
             let m = DMat3::from_diagonal(DVec3::new(s, 1.0, -s));
             let exact = |q, p| Terms {
                 fixed: (&m, q),

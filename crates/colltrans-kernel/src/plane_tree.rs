@@ -16,10 +16,10 @@ use glam::DVec3;
 use crate::work;
 
 /// Maximum number of planes of a leaf.
-const LEAF: usize = 8;
+const MAX_LEAF_PLANES: usize = 8;
 /// Rounding error of a bound and a depth, relative to the size of coordinates: some ten roundings of `2^-53`
 /// each.
-const ROUNDING: f64 = 1e-14;
+const RELATIVE_ROUNDING: f64 = 1e-14;
 
 /// A tree over planes.
 #[derive(Debug)]
@@ -51,13 +51,13 @@ impl PlaneTree {
     pub fn new(vertices: &[DVec3], planes: Vec<(DVec3, f64)>) -> Self {
         let center = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
         let size = vertices.iter().map(|v| v.abs().element_sum()).fold(0.0, f64::max);
-        let mut tree = Self { center, slack: ROUNDING * size, planes, nodes: Vec::new() };
-        tree.build(0..tree.planes.len());
+        let mut tree = Self { center, slack: RELATIVE_ROUNDING * size, planes, nodes: Vec::new() };
+        tree.build_node(0..tree.planes.len());
         tree
     }
 
     /// Builds the subtree over a range of planes, and sorts the planes into its leaves.
-    fn build(&mut self, range: Range<usize>) {
+    fn build_node(&mut self, range: Range<usize>) {
         let center = self.center;
         let part = &mut self.planes[range.clone()];
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
@@ -68,16 +68,16 @@ impl PlaneTree {
         }
         let number = self.nodes.len();
         self.nodes.push(Node { planes: range.clone(), low, high, least_offset, second: None });
-        if range.len() <= LEAF {
+        if range.len() <= MAX_LEAF_PLANES {
             return;
         }
         let axis = (high - low).max_position();
         let half = range.len() / 2;
         part.select_nth_unstable_by(half, |a, b| a.0[axis].total_cmp(&b.0[axis]));
         let middle = range.start + half;
-        self.build(range.start..middle);
+        self.build_node(range.start..middle);
         self.nodes[number].second = Some(self.nodes.len());
-        self.build(middle..range.end);
+        self.build_node(middle..range.end);
     }
 
     /// Returns the least depth of a point of the body below a plane, or any depth not greater than `enough`.
@@ -92,15 +92,15 @@ impl PlaneTree {
             node.least_offset - highest - self.slack
         };
         let mut least = depth(*near);
-        let (mut stack, mut looked) = (vec![0], 1);
+        let (mut stack, mut visits) = (vec![0], 1);
         while let Some(number) = stack.pop().filter(|_| least > enough) {
-            looked += 1;
+            visits += 1;
             if bound(number) >= least {
                 continue;
             }
             let node = &self.nodes[number];
             let Some(second) = node.second else {
-                looked += node.planes.len();
+                visits += node.planes.len();
                 for plane in node.planes.clone() {
                     let depth = depth(plane);
                     if depth < least {
@@ -113,8 +113,8 @@ impl PlaneTree {
             let is_second_deeper = bound(second) > bound(number + 1);
             stack.extend(if is_second_deeper { children } else { [number + 1, second] });
         }
-        work::count(looked);
-        *looks += looked;
+        work::count(visits);
+        *looks += visits;
         least
     }
 }
@@ -125,7 +125,7 @@ mod tests {
     use colltrans_testkit::random::Random;
 
     #[test]
-    fn the_tree_finds_the_least_depth_of_all_planes() {
+    fn least_depth_is_the_minimum_over_all_planes() {
         let mut random = Random::new(3);
         for at in [0.0, 1e3, 5e6] {
             let center = random.vector() * at;

@@ -23,11 +23,11 @@ pub const STRETCHED: f64 = 1.0 + 4.0 * TOLERANCE;
 
 /// Maximum difference of the length of a quaternion, or of an entry of `R^T R`, that [`Pose::from_rounded`]
 /// and [`Pose::from_rounded_matrix`] accept. Two written digits are sufficient.
-const FEW_DIGITS: f64 = 0.02;
+const ROUNDED_TOLERANCE: f64 = 0.02;
 
 /// Maximum number of Newton steps towards the nearest rotation. Each step squares the defect, so that four
 /// steps reduce two percent to rounding error.
-const MOST_POLAR_STEPS: usize = 8;
+const MAX_POLAR_STEPS: usize = 8;
 
 /// A rigid placement of a body in the world: `x_world = R x_body + t`.
 ///
@@ -76,7 +76,7 @@ impl Pose {
         }
         check_translation(translation)?;
         let rotation = if length == 1.0 { rotation } else { rotation * (1.0 / length) };
-        Ok(Self { matrix: flush_tiny(matrix_of(rotation)), translation })
+        Ok(Self { matrix: flush_tiny(matrix_from_quaternion(rotation)), translation })
     }
 
     /// Builds a pose from the nine entries of a rotation matrix, which are stored unchanged, and a
@@ -133,7 +133,7 @@ impl Pose {
         translation: DVec3,
     ) -> Result<(Self, Option<f64>), PoseError> {
         let defect = (rotation.length() - 1.0).abs();
-        let is_rounded = defect > TOLERANCE && defect <= FEW_DIGITS;
+        let is_rounded = defect > TOLERANCE && defect <= ROUNDED_TOLERANCE;
         let rotation = if is_rounded { rotation.normalize() } else { rotation };
         Ok((Self::new(rotation, translation)?, is_rounded.then_some(defect)))
     }
@@ -151,11 +151,11 @@ impl Pose {
         translation: DVec3,
     ) -> Result<(Self, Option<f64>), PoseError> {
         let defect = largest_defect(matrix);
-        let is_rounded = defect > TOLERANCE && defect <= FEW_DIGITS;
+        let is_rounded = defect > TOLERANCE && defect <= ROUNDED_TOLERANCE;
         let matrix = if is_rounded { nearest_rotation(matrix) } else { matrix };
         let pose = Self::from_matrix(matrix, translation).map_err(|error| match error {
             PoseError::NotARotationMatrix { columns, defect, .. } => {
-                PoseError::NotARotationMatrix { columns, defect, tolerance: FEW_DIGITS }
+                PoseError::NotARotationMatrix { columns, defect, tolerance: ROUNDED_TOLERANCE }
             }
             other => other,
         })?;
@@ -293,7 +293,7 @@ impl Default for Pose {
 /// of a half turn about a diagonal, are exactly 0 and 1: the quaternion contains rounded roots of 1/2, and
 /// the same rounding occurs in numerator and denominator.
 #[inline]
-fn matrix_of(rotation: DQuat) -> DMat3 {
+fn matrix_from_quaternion(rotation: DQuat) -> DMat3 {
     let [x, y, z, w] = rotation.to_array();
     let scale = 2.0 / ((x * x + y * y) + (z * z + w * w));
     let off = |a: f64, b: f64| (a + b) * scale;
@@ -309,7 +309,7 @@ fn matrix_of(rotation: DQuat) -> DMat3 {
 /// finite.
 #[inline]
 fn largest_defect(matrix: DMat3) -> f64 {
-    let defect = off_rotation(matrix).into_iter().map(f64::abs).fold(0.0, f64::max);
+    let defect = orthogonality_defect(matrix).into_iter().map(f64::abs).fold(0.0, f64::max);
     if !matrix.is_finite() {
         f64::INFINITY
     } else if matrix.determinant() < 0.0 {
@@ -324,7 +324,7 @@ fn largest_defect(matrix: DMat3) -> f64 {
 #[inline]
 fn nearest_rotation(matrix: DMat3) -> DMat3 {
     let mut rotation = matrix;
-    for _ in 0..MOST_POLAR_STEPS {
+    for _ in 0..MAX_POLAR_STEPS {
         let next = (rotation + rotation.inverse().transpose()) * 0.5;
         let step = (next - rotation).to_cols_array().map(f64::abs).into_iter().fold(0.0, f64::max);
         rotation = next;
@@ -337,7 +337,7 @@ fn nearest_rotation(matrix: DMat3) -> DMat3 {
 
 /// Returns the nine entries of `R^T R - 1`, which are 0 for a rotation.
 #[inline]
-fn off_rotation(matrix: DMat3) -> [f64; 9] {
+fn orthogonality_defect(matrix: DMat3) -> [f64; 9] {
     (matrix.transpose() * matrix - DMat3::IDENTITY).to_cols_array()
 }
 
@@ -345,7 +345,7 @@ fn off_rotation(matrix: DMat3) -> [f64; 9] {
 /// entries of `R^T R - 1`.
 #[inline]
 pub fn rotation_defect(matrix: DMat3) -> f64 {
-    off_rotation(matrix).into_iter().map(|x| x * x).sum::<f64>().sqrt()
+    orthogonality_defect(matrix).into_iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
 #[inline]
@@ -367,7 +367,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn turns_that_map_the_axes_to_each_other_are_exact() {
+    fn rotations_between_axes_are_exact() {
         let axes = DVec3::AXES.into_iter().flat_map(|axis| [axis, -axis]);
         let mut count = 0;
         for x in axes.clone() {
@@ -382,7 +382,7 @@ mod tests {
     }
 
     #[test]
-    fn the_matrix_is_that_of_the_quaternion() {
+    fn matrix_agrees_with_quaternion() {
         for k in 0..100 {
             let angle = f64::from(k);
             let q = DQuat::from_euler(glam::EulerRot::ZYX, angle, 2.0 * angle, 3.0 * angle);

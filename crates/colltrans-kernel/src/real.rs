@@ -178,28 +178,28 @@ mod tests {
     use crate::tests::rational;
 
     /// Numbers of similar magnitude, with zeros.
-    fn number() -> impl Strategy<Value = Twice> {
+    fn any_twice() -> impl Strategy<Value = Twice> {
         let high = || prop_oneof![Just(0.0), (-4_i32..=4).prop_map(f64::from), -2.0..2.0_f64];
         (high(), -1.0..1.0_f64).prop_map(|(high, low)| Twice::new(high, low * 1e-17))
     }
 
-    fn exact(x: Twice) -> RBig {
+    fn exact_value(x: Twice) -> RBig {
         rational(x.high) + rational(x.low)
     }
 
     /// Checks whether two numbers differ by at most `1e-30` times a size.
-    fn agree(found: Twice, truth: RBig, size: f64) -> bool {
-        (exact(found) - truth).to_f64().value().abs() <= 1e-30 * size
+    fn agrees_within(found: Twice, truth: RBig, size: f64) -> bool {
+        (exact_value(found) - truth).to_f64().value().abs() <= 1e-30 * size
     }
 
     proptest! {
         #[test]
-        fn twice_the_digits_are_right(a in number(), b in number()) {
-            prop_assert!(agree(a + b, exact(a) + exact(b), a.high.abs() + b.high.abs()));
-            prop_assert!(agree(a - b, exact(a) - exact(b), a.high.abs() + b.high.abs()));
-            prop_assert!(agree(a * b, exact(a) * exact(b), (a.high * b.high).abs()));
+        fn operations_are_accurate_to_twice_the_digits(a in any_twice(), b in any_twice()) {
+            prop_assert!(agrees_within(a + b, exact_value(a) + exact_value(b), a.high.abs() + b.high.abs()));
+            prop_assert!(agrees_within(a - b, exact_value(a) - exact_value(b), a.high.abs() + b.high.abs()));
+            prop_assert!(agrees_within(a * b, exact_value(a) * exact_value(b), (a.high * b.high).abs()));
             if b.high.abs() > 1e-10 {
-                prop_assert!(agree(a / b, exact(a) / exact(b), (a.high / b.high).abs()));
+                prop_assert!(agrees_within(a / b, exact_value(a) / exact_value(b), (a.high / b.high).abs()));
             }
         }
     }

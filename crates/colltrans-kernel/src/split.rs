@@ -8,9 +8,9 @@ use glam::DVec3;
 use super::Aabb;
 
 /// Maximum number of bins along an axis.
-const BINS: usize = 16;
+const MAX_BINS: usize = 16;
 /// Number of items above which the heuristic evaluates a sample of about this size.
-const SAMPLE: usize = 1 << 12;
+const SAMPLE_SIZE: usize = 1 << 12;
 
 /// An item with a box.
 pub trait Boxed {
@@ -40,9 +40,9 @@ pub struct Rule {
 pub fn split<T: Boxed>(items: &mut [T], rule: Rule) -> usize {
     let least = rule.least;
     let centers = Aabb::of_points(items.iter().map(Boxed::center));
-    if let Some((axis, bin)) = cheapest(items, &centers, rule) {
+    if let Some((axis, bin)) = least_cost_split(items, &centers, rule) {
         let key = Binning::new(&centers, axis, items.len());
-        let middle = partition(items, |item| key.bin(item) <= bin);
+        let middle = move_to_front(items, |item| key.bin_of(item) <= bin);
         if middle >= least && middle + least <= items.len() {
             return middle;
         }
@@ -65,7 +65,7 @@ pub fn halve<T: Boxed>(items: &mut [T], centers: &Aabb) -> usize {
 
 /// Moves the items for which `belongs` is true to the front, and returns their number.
 #[inline]
-fn partition<T>(items: &mut [T], belongs: impl Fn(&T) -> bool) -> usize {
+fn move_to_front<T>(items: &mut [T], belongs: impl Fn(&T) -> bool) -> usize {
     let mut middle = 0;
     for k in 0..items.len() {
         if belongs(&items[k]) {
@@ -88,13 +88,13 @@ impl Binning {
     /// Returns the bins for a number of items. Few items get fewer bins, at least 4.
     #[inline]
     fn new(centers: &Aabb, axis: usize, items: usize) -> Self {
-        let bins = items.clamp(4, BINS);
+        let bins = items.clamp(4, MAX_BINS);
         let scale = bins as f64 / centers.size()[axis];
         Self { axis, low: centers.low[axis], scale, last: bins - 1 }
     }
 
     #[inline]
-    fn bin(&self, item: &impl Boxed) -> usize {
+    fn bin_of(&self, item: &impl Boxed) -> usize {
         // Values out of range, or NaN if all centres are equal, go to the first or the last bin.
         (((item.center()[self.axis] - self.low) * self.scale) as usize).min(self.last)
     }
@@ -117,7 +117,7 @@ impl Bin {
 
     /// Returns half the surface area of the box times the number of items.
     #[inline]
-    fn cost(&self) -> f64 {
+    fn weighted_area(&self) -> f64 {
         if self.count == 0 { 0.0 } else { self.bounds.half_area() * self.count as f64 }
     }
 }
@@ -125,34 +125,35 @@ impl Bin {
 /// Finds the axis and the last bin of the first child with the least cost by the surface-area heuristic. For
 /// many items, evaluates a sample. `None` if no split satisfies the rule.
 #[inline]
-fn cheapest<T: Boxed>(items: &[T], centers: &Aabb, rule: Rule) -> Option<(usize, usize)> {
-    let step = items.len().div_ceil(SAMPLE);
+fn least_cost_split<T: Boxed>(items: &[T], centers: &Aabb, rule: Rule) -> Option<(usize, usize)> {
+    let step = items.len().div_ceil(SAMPLE_SIZE);
     let counted = items.len().div_ceil(step);
     let least = (rule.least * counted).div_ceil(items.len());
     let mut best: Option<(f64, usize, usize)> = None;
     for axis in 0..3 {
-        let is_asked = !rule.longest || axis == centers.size().max_position();
-        if !is_asked || centers.high[axis] <= centers.low[axis] {
+        let is_evaluated = !rule.longest || axis == centers.size().max_position();
+        if !is_evaluated || centers.high[axis] <= centers.low[axis] {
             continue;
         }
         let binning = Binning::new(centers, axis, items.len());
-        let mut bins = [Bin::EMPTY; BINS];
+        let mut bins = [Bin::EMPTY; MAX_BINS];
         for item in items.iter().step_by(step) {
-            let bin = &mut bins[binning.bin(item)];
+            let bin = &mut bins[binning.bin_of(item)];
             *bin = bin.join(Bin { bounds: *item.bounds(), count: 1 });
         }
-        let mut behind = [0.0; BINS];
+        let mut costs_behind = [0.0; MAX_BINS];
         let mut all = Bin::EMPTY;
         for k in (1..=binning.last).rev() {
             all = all.join(bins[k]);
-            behind[k] = all.cost();
+            costs_behind[k] = all.weighted_area();
         }
         let mut front = Bin::EMPTY;
         for k in 0..binning.last {
             front = front.join(bins[k]);
-            let cost = front.cost() + behind[k + 1];
-            let both = (least..=counted - least).contains(&front.count) && behind[k + 1] > 0.0;
-            if both && best.is_none_or(|b| cost < b.0) {
+            let cost = front.weighted_area() + costs_behind[k + 1];
+            let is_valid =
+                (least..=counted - least).contains(&front.count) && costs_behind[k + 1] > 0.0;
+            if is_valid && best.is_none_or(|b| cost < b.0) {
                 best = Some((cost, axis, k));
             }
         }

@@ -51,7 +51,7 @@ struct Links {
 }
 
 /// Number of a missing half-edge or face.
-const NONE: u32 = u32::MAX;
+const MISSING: u32 = u32::MAX;
 
 impl Topology {
     /// Builds one closed surface of sphere topology. Parameters as in [`Self::from_faces`].
@@ -269,11 +269,11 @@ impl Links {
         let mut half_edges = Vec::with_capacity(origins.len());
         for (face, bounds) in face_start.windows(2).enumerate() {
             for &origin in &origins[bounds[0] as usize..bounds[1] as usize] {
-                half_edges.push(HalfEdge { origin, twin: NONE, face: face as u32 });
+                half_edges.push(HalfEdge { origin, twin: MISSING, face: face as u32 });
             }
         }
         let mut links = Self { half_edges, outgoing: Vec::new() };
-        links.pair_twins(vertex_count, face_start)?;
+        links.find_twins(vertex_count, face_start)?;
         let vertex_start = links.link_vertices(vertex_count, face_start)?;
         Ok((links, vertex_start))
     }
@@ -286,7 +286,7 @@ impl Links {
     }
 
     /// Finds the twins: groups edges by their smaller vertex, then sorts each group by the larger vertex.
-    fn pair_twins(&mut self, vertex_count: usize, face_start: &[u32]) -> Result<(), TopologyError> {
+    fn find_twins(&mut self, vertex_count: usize, face_start: &[u32]) -> Result<(), TopologyError> {
         let origin = |h: u32| self.half_edges[h as usize].origin;
         let ends: Vec<(u32, u32)> = (0..self.half_edges.len() as u32)
             .map(|h| {
@@ -299,14 +299,14 @@ impl Links {
             let run = &mut order[start[v] as usize..start[v + 1] as usize];
             run.sort_unstable_by_key(|&h| ends[h as usize].1);
             for group in run.chunk_by(|&g, &h| ends[g as usize].1 == ends[h as usize].1) {
-                self.pair(group, ends[group[0] as usize])?;
+                self.set_twins(group, ends[group[0] as usize])?;
             }
         }
         Ok(())
     }
 
     /// Sets the twins of the half-edges of one edge, if there are two of opposite directions.
-    fn pair(&mut self, group: &[u32], (from, to): (u32, u32)) -> Result<(), TopologyError> {
+    fn set_twins(&mut self, group: &[u32], (from, to): (u32, u32)) -> Result<(), TopologyError> {
         let at = |h: u32| self.half_edges[h as usize];
         match *group {
             [g, h] if at(g).origin != at(h).origin => {
@@ -398,7 +398,7 @@ fn check_faces(
         return Err(TopologyError::NoFaces);
     }
     // The last face that contained each vertex.
-    let mut last_face = vec![NONE; vertex_count];
+    let mut last_face = vec![MISSING; vertex_count];
     for (face, bounds) in face_start.windows(2).enumerate() {
         let vertices = &face_vertices[bounds[0] as usize..bounds[1] as usize];
         if vertices.len() < 3 {
@@ -421,7 +421,7 @@ fn check_faces(
 mod tests {
     use super::*;
 
-    fn build(vertex_count: usize, faces: &[&[u32]]) -> Result<Topology, TopologyError> {
+    fn build_sphere(vertex_count: usize, faces: &[&[u32]]) -> Result<Topology, TopologyError> {
         let mut start = vec![0];
         let mut vertices = Vec::new();
         for face in faces {
@@ -435,7 +435,7 @@ mod tests {
 
     #[test]
     fn tetrahedron_is_a_sphere_with_consistent_links() {
-        let t = build(4, &TETRAHEDRON).unwrap();
+        let t = build_sphere(4, &TETRAHEDRON).unwrap();
         assert_eq!((t.vertex_count(), t.edge_count(), t.face_count()), (4, 6, 4));
         for h in 0..12 {
             let twin = t.half_edge(h).twin;
@@ -452,30 +452,33 @@ mod tests {
 
     #[test]
     fn flat_polygon_has_two_faces() {
-        let t = build(3, &[&[0, 1, 2], &[0, 2, 1]]).unwrap();
+        let t = build_sphere(3, &[&[0, 1, 2], &[0, 2, 1]]).unwrap();
         assert_eq!((t.vertex_count(), t.edge_count(), t.face_count()), (3, 3, 2));
     }
 
     #[test]
-    fn defects_are_named() {
-        assert_eq!(build(4, &[]).unwrap_err(), TopologyError::NoFaces);
+    fn invalid_faces_report_their_defect() {
+        assert_eq!(build_sphere(4, &[]).unwrap_err(), TopologyError::NoFaces);
         assert_eq!(
-            build(4, &TETRAHEDRON[..3]).unwrap_err(),
+            build_sphere(4, &TETRAHEDRON[..3]).unwrap_err(),
             TopologyError::OpenEdge { from: 0, to: 2, face: 0 }
         );
         let mut flipped = TETRAHEDRON;
         flipped[0] = &[0, 1, 2];
-        assert!(matches!(build(4, &flipped), Err(TopologyError::NonManifoldEdge { count: 2, .. })));
+        assert!(matches!(
+            build_sphere(4, &flipped),
+            Err(TopologyError::NonManifoldEdge { count: 2, .. })
+        ));
         let mut repeated = TETRAHEDRON;
         repeated[0] = &[0, 2, 2];
         assert_eq!(
-            build(4, &repeated).unwrap_err(),
+            build_sphere(4, &repeated).unwrap_err(),
             TopologyError::RepeatedVertex { face: 0, vertex: 2 }
         );
         let mut unknown = TETRAHEDRON;
         unknown[0] = &[0, 2, 9];
         assert_eq!(
-            build(4, &unknown).unwrap_err(),
+            build_sphere(4, &unknown).unwrap_err(),
             TopologyError::UnknownVertex { face: 0, vertex: 9, vertices: 4 }
         );
         let twice: Vec<Vec<u32>> = TETRAHEDRON
@@ -484,7 +487,7 @@ mod tests {
             .chain(TETRAHEDRON.iter().map(|f| f.iter().map(|v| v + 4).collect()))
             .collect();
         let twice: Vec<&[u32]> = twice.iter().map(Vec::as_slice).collect();
-        let two = build(8, &twice).unwrap_err();
+        let two = build_sphere(8, &twice).unwrap_err();
         assert!(matches!(two, TopologyError::NotASphere { euler: 4, shells: 2, .. }));
         assert!(two.to_string().contains("is 2 separate shells, not one sphere"), "{two}");
         // A torus of three by three squares: a surface with one hole.
@@ -497,9 +500,9 @@ mod tests {
         };
         let rings: Vec<[u32; 4]> = ring(0).chain(ring(9)).collect();
         let faces: Vec<&[u32]> = rings.iter().map(<[u32; 4]>::as_slice).collect();
-        let one = build(9, &faces[..9]).unwrap_err().to_string();
+        let one = build_sphere(9, &faces[..9]).unwrap_err().to_string();
         assert!(one.contains("is one body with a hole through it, not one sphere"), "{one}");
-        let both = build(18, &faces).unwrap_err().to_string();
+        let both = build_sphere(18, &faces).unwrap_err().to_string();
         assert!(both.contains("is 2 separate shells with 2 holes in all, not"), "{both}");
         // Two tetrahedra that share one vertex.
         let pinched: Vec<Vec<u32>> = TETRAHEDRON
@@ -508,6 +511,9 @@ mod tests {
             .chain(TETRAHEDRON.iter().map(|f| f.iter().map(|v| v + 3).collect()))
             .collect();
         let pinched: Vec<&[u32]> = pinched.iter().map(Vec::as_slice).collect();
-        assert_eq!(build(7, &pinched).unwrap_err(), TopologyError::NonManifoldVertex { vertex: 3 });
+        assert_eq!(
+            build_sphere(7, &pinched).unwrap_err(),
+            TopologyError::NonManifoldVertex { vertex: 3 }
+        );
     }
 }

@@ -12,11 +12,11 @@ use super::orientation::Terms;
 
 /// Bound on the error of a rounded determinant: a multiple of the sum of the magnitudes of its terms, plus a
 /// multiple of the third power of the size.
-const ERROR: [f64; 2] = [64.0 * f64::EPSILON, f64::from_bits((1023 - 90) << 52)];
+const DETERMINANT_ERROR: [f64; 2] = [64.0 * f64::EPSILON, f64::from_bits((1023 - 90) << 52)];
 
 /// Bound on the error of the determinant of rounded points, in the third power of the size: `3 * 9 u` for the
 /// points, and `8 u` for the determinant.
-const ROUNDED: f64 = 32.0 * f64::EPSILON;
+const ROUNDED_POINT_ERROR: f64 = 32.0 * f64::EPSILON;
 
 /// Returns the exact sign of `det[a, b, c]`. It is positive if the three points are counter-clockwise as seen
 /// from the side of their plane opposite to the origin. `size` is the size of the configuration.
@@ -24,11 +24,13 @@ const ROUNDED: f64 = 32.0 * f64::EPSILON;
 pub fn sign(points: [&Terms; 3], size: f64) -> Ordering {
     let [a, b, c] = points.map(Terms::point);
     let det = a.dot(b.cross(c));
-    let [relative, absolute] = ERROR;
-    if det.abs() > relative * magnitude(a, b, c) + absolute * (size * size * size) {
+    let [relative, absolute] = DETERMINANT_ERROR;
+    if det.abs() > relative * term_magnitude(a, b, c) + absolute * (size * size * size) {
         return det.total_cmp(&0.0);
     }
-    by_integers::<SMALL>(points).or_else(|| by_integers::<LARGE>(points)).unwrap_or(Ordering::Equal)
+    sign_by_integers::<SMALL>(points)
+        .or_else(|| sign_by_integers::<LARGE>(points))
+        .unwrap_or(Ordering::Equal)
 }
 
 /// Returns the sign of `det[a, b, c]` for points as `TwoBodies::difference` rounds them, with an error below
@@ -36,12 +38,12 @@ pub fn sign(points: [&Terms; 3], size: f64) -> Ordering {
 #[inline]
 pub fn rounded_sign([a, b, c]: [DVec3; 3], size: f64) -> Option<Ordering> {
     let det = a.dot(b.cross(c));
-    (det.abs() > ROUNDED * (size * size * size)).then(|| det.total_cmp(&0.0))
+    (det.abs() > ROUNDED_POINT_ERROR * (size * size * size)).then(|| det.total_cmp(&0.0))
 }
 
 /// Returns the sum of the magnitudes of the terms of the determinant.
 #[inline]
-fn magnitude(a: DVec3, b: DVec3, c: DVec3) -> f64 {
+fn term_magnitude(a: DVec3, b: DVec3, c: DVec3) -> f64 {
     let [a, b, c] = [a, b, c].map(DVec3::abs);
     let minors = DVec3::new(b.y * c.z + b.z * c.y, b.z * c.x + b.x * c.z, b.x * c.y + b.y * c.x);
     a.dot(minors)
@@ -49,14 +51,14 @@ fn magnitude(a: DVec3, b: DVec3, c: DVec3) -> f64 {
 
 /// Computes the sign of the determinant with integers of `N` limbs; `None` if a number did not fit.
 #[inline(never)]
-fn by_integers<const N: usize>(points: [&Terms; 3]) -> Option<Ordering> {
+fn sign_by_integers<const N: usize>(points: [&Terms; 3]) -> Option<Ordering> {
     let [a, b, c] = points.map(Terms::coordinates::<N>);
     determinant(&a, &b, &c).sign()
 }
 
 /// Returns the faces of a tetrahedron, each opposite to the corner of the same index.
 #[inline]
-fn faces<'a>([a, b, c, d]: &'a [Terms<'a>; 4]) -> [[&'a Terms<'a>; 3]; 4] {
+fn tetrahedron_faces<'a>([a, b, c, d]: &'a [Terms<'a>; 4]) -> [[&'a Terms<'a>; 3]; 4] {
     [[b, c, d], [a, d, c], [a, b, d], [a, c, b]]
 }
 
@@ -64,7 +66,7 @@ fn faces<'a>([a, b, c, d]: &'a [Terms<'a>; 4]) -> [[&'a Terms<'a>; 3]; 4] {
 /// tetrahedron without volume.
 #[inline]
 pub fn encloses(corners: &[Terms; 4], size: f64) -> bool {
-    let signs = faces(corners).map(|face| sign(face, size));
+    let signs = tetrahedron_faces(corners).map(|face| sign(face, size));
     let none = |unwanted| signs.iter().all(|sign| *sign != unwanted);
     let some = signs.iter().any(|sign| sign.is_ne());
     some && (none(Ordering::Less) || none(Ordering::Greater))
@@ -75,14 +77,14 @@ pub fn encloses(corners: &[Terms; 4], size: f64) -> bool {
 /// without volume.
 #[inline]
 pub fn weights_of_origin(corners: &[Terms; 4]) -> Option<[f64; 4]> {
-    shares::<SMALL>(corners).or_else(|| shares::<LARGE>(corners))
+    weights_by_integers::<SMALL>(corners).or_else(|| weights_by_integers::<LARGE>(corners))
 }
 
 /// Computes the barycentric coordinates with integers of `N` limbs; `None` if a number did not fit or the
 /// volume is 0.
 #[inline(never)]
-fn shares<const N: usize>(corners: &[Terms; 4]) -> Option<[f64; 4]> {
-    let volumes = faces(corners).map(|face| {
+fn weights_by_integers<const N: usize>(corners: &[Terms; 4]) -> Option<[f64; 4]> {
+    let volumes = tetrahedron_faces(corners).map(|face| {
         let [a, b, c] = face.map(Terms::coordinates::<N>);
         determinant(&a, &b, &c)
     });

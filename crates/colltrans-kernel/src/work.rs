@@ -6,33 +6,34 @@
 /// Adds a number of visited points, faces or pairs to the counter.
 #[inline(always)]
 #[expect(clippy::inline_always, reason = "empty in optimised builds")]
-pub fn count(looks: usize) {
+pub fn count(visits: usize) {
     #[cfg(debug_assertions)]
-    LOOKS.set(LOOKS.get() + looks);
+    VISITS.set(VISITS.get() + visits);
     #[cfg(not(debug_assertions))]
-    let _ = looks;
+    let _ = visits;
 }
 
 #[cfg(debug_assertions)]
 thread_local! {
-    static LOOKS: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
+    static VISITS: std::cell::Cell<usize> = const { std::cell::Cell::new(0) };
 }
 
 /// Runs a closure and returns the number of visits on this thread.
 #[cfg(debug_assertions)]
 #[inline]
 pub fn looks(run: impl FnOnce()) -> usize {
-    let before = LOOKS.get();
+    let before = VISITS.get();
     run();
-    LOOKS.get() - before
+    VISITS.get() - before
 }
 
 /// Maximum factor between the visits of an input and of an input five times as large. `n log n` has a factor
 /// of 6 to 7, the ear clipping of jagged polygons 11, a quadratic algorithm 25.
 #[cfg(debug_assertions)]
-const MOST: f64 = 15.0;
+const MAX_GROWTH: f64 = 15.0;
 
-/// Asserts that the number of visits is nearly linear in the input, from size `few` to five times that size.
+/// Asserts that the number of visits grows by a factor below 15 from inputs of size `few` to inputs of five times
+/// that size.
 ///
 /// # Panics
 /// If the growth is larger, or an input of size `few` has fewer than `few` visits.
@@ -46,7 +47,7 @@ pub fn assert_growth(what: &str, few: usize, run: impl Fn(usize)) {
         "{what}: {less} visits of {few} items, {growth:.1} times as many of five times the items"
     );
     assert!(
-        growth < MOST,
-        "{what}: {growth:.1} times as many visits of five times the items; limit {MOST}"
+        growth < MAX_GROWTH,
+        "{what}: {growth:.1} times as many visits of five times the items; limit {MAX_GROWTH}"
     );
 }

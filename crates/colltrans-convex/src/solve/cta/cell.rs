@@ -14,7 +14,7 @@ use super::crossing::{Bracket, Crossing, is_horizontal};
 use super::piece::{Affine, contact_motion, unit};
 use super::planar::Planar;
 use super::section::FACE_SIDES;
-use super::side::{Point, Side};
+use super::sectioned_body::{Point, Side};
 use colltrans_kernel::noise;
 
 /// At most so many half-planes bound a cell: those of a vertex contact.

@@ -18,7 +18,7 @@ use glam::{DMat3, DVec2, DVec3};
 use super::cell::{End, Ends, face_of};
 use super::planar::Planar;
 use super::region::Region;
-use super::side::Side;
+use super::sectioned_body::Side;
 use crate::setting::{Setting, TwoBodies, VertexPair};
 use colltrans_kernel::topology::Topology;
 

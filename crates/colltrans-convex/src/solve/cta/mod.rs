@@ -9,8 +9,8 @@
 //! `phi(x, y) = y/(b.d) - x/(a.d) + psi(x, y)`, `psi` the least `h` common to both sections'
 //! shadows.
 //!
-//! Data flow: [`pair`] (a setting in section coordinates), [`start`] (the first levels) ->
-//! [`side`] and [`section`] (a body's sections in the shadow plane) -> [`planar`] (one `psi`) ->
+//! Data flow: [`section_pair`] (a setting in section coordinates), [`start`] (the first levels) ->
+//! [`sectioned_body`] and [`section`] (a body's sections in the shadow plane) -> [`planar`] (one `psi`) ->
 //! [`piece`] (a linear bound) and [`cell`] (where it is `phi`) -> [`exit`] (whether the cell's best
 //! point solves the problem), else [`region`] (what is left of the levels) and [`bound`] (what the
 //! pieces prove together) -> [`mod@minimise`]. The result is a guess of the contact normal and
@@ -22,12 +22,12 @@ mod crossing;
 mod exit;
 mod minimise;
 pub(crate) mod options;
-mod pair;
 mod piece;
 mod planar;
 mod region;
 mod section;
-mod side;
+mod section_pair;
+mod sectioned_body;
 mod start;
 #[cfg(test)]
 mod tests;

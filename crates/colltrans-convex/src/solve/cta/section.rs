@@ -6,7 +6,7 @@
 use glam::DVec2;
 
 use super::crossing::{Bracket, Chain, Crossing, is_horizontal};
-use super::side::Side;
+use super::sectioned_body::Side;
 use crate::body::convex::sections::{Turn, next_clockwise, next_counter_clockwise};
 
 /// Steps of a walk before the body's chains, if it has some, tell where it leads, and between two such

@@ -2,10 +2,10 @@
 
 use glam::{DVec2, DVec3};
 
-use super::pair::SectionPair;
 use super::piece::Piece;
 use super::planar::{Hint, Last};
 use super::region::Square;
+use super::section_pair::SectionPair;
 use crate::body::convex::sections::AXIS_LENGTH;
 use crate::setting::VertexPair;
 

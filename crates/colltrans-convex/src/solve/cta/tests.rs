@@ -6,10 +6,10 @@ use super::cell::face_of;
 use super::crossing::{Chain, Crossing};
 use super::minimise::{Narrowed, minimise};
 use super::options::Cuts;
-use super::pair::SectionPair;
 use super::planar::{self, Hint, Last, Planar};
 use super::section::Section;
-use super::side::Side;
+use super::section_pair::SectionPair;
+use super::sectioned_body::Side;
 use super::{CtaOptions, Guess, Origin};
 use crate::answer::Steps;
 use crate::body::ConvexPolyhedron;
@@ -389,14 +389,14 @@ fn steps_take_no_square_roots() {
         include_str!("crossing.rs"),
         include_str!("exit.rs"),
         include_str!("minimise.rs"),
-        include_str!("pair.rs"),
+        include_str!("section_pair.rs"),
         include_str!("piece.rs"),
         include_str!("planar/mod.rs"),
-        include_str!("planar/sketch.rs"),
-        include_str!("planar/slide.rs"),
+        include_str!("planar/snapshot_guess.rs"),
+        include_str!("planar/chain_walk.rs"),
         include_str!("region.rs"),
         include_str!("section.rs"),
-        include_str!("side.rs"),
+        include_str!("sectioned_body.rs"),
         include_str!("start.rs"),
         include_str!("../../body/convex/sections/chains.rs"),
         include_str!("../../body/convex/sections/walk.rs"),

@@ -11,16 +11,16 @@
 //! guessed: those of the problem before, if its levels are near and they are, else those of a
 //! [`sketch()`].
 
-mod sketch;
-mod slide;
+mod chain_walk;
+mod snapshot_guess;
 
 use glam::DVec2;
 
 use super::crossing::{Bracket, Chain, Crossing};
 use super::section::{Bottom, Located, Section};
-use super::side::Side;
-use sketch::sketch;
-use slide::{Slid, Slide, crossing_edges};
+use super::sectioned_body::Side;
+use chain_walk::{Slid, Slide, crossing_edges};
+use snapshot_guess::sketch;
 
 /// Steps of a walk from the answer of the problem before.
 const STEPS_NEAR: usize = 8;

@@ -4,7 +4,7 @@ use glam::{DMat3, DVec2, DVec3};
 
 use super::piece::Frame;
 use super::region::Square;
-use super::side::Side;
+use super::sectioned_body::Side;
 use crate::body::ConvexPolyhedron;
 use crate::body::convex::sections::AxisPair;
 use crate::setting::Setting;

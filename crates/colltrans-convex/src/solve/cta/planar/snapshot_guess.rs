@@ -13,7 +13,7 @@ use super::Last;
 use crate::body::convex::sections::{Snapshot, Turn};
 use crate::solve::cta::crossing::Chain;
 use crate::solve::cta::section::Section;
-use crate::solve::cta::side::Side;
+use crate::solve::cta::sectioned_body::Side;
 
 /// What a sketch tells, and at what height.
 pub(super) fn sketch(sections: &[Section; 2]) -> Option<(Last, f64)> {

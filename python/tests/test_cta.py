@@ -60,7 +60,7 @@ def test_choices_are_values_and_wrong_ones_are_refused() -> None:
     with pytest.raises(QueryError, match='there is no start "rim"'):
         Cta(start="rim")  # type: ignore[arg-type]
     for until in ("end", -1.0, float("nan")):
-        with pytest.raises(QueryError, match="is neither `exit` nor a number"):
+        with pytest.raises(QueryError, match="accepted: `exit`, or a number"):
             Cta(until=until)  # type: ignore[arg-type]
     with pytest.raises(QueryError, match='no region "near"'):
         Tracker(region="near")  # type: ignore[arg-type]

@@ -32,7 +32,7 @@ fn the_papers_algorithm_starts_and_ends_where_it_is_told() {
     assert_eq!(problems(&["--solver", "cta", "--start", "ellipsoids"]), 0);
     assert_error(&asked(&["--until", "exit"]), 2, &["--start and --until are of --solver cta"]);
     let wrong = asked(&["--solver", "cta", "--until", "soon"]);
-    assert_error(&wrong, 2, &["neither `exit` nor a number"]);
+    assert_error(&wrong, 2, &["accepted: `exit`, or a number"]);
     let lines = r#"{"id":1,"moving":M,"fixed":M,"moving_pose":{"translation":[0.2,0.1,5]},"direction":[0,0,-1],"solver":"cta"}
 {"id":2,"moving":M,"fixed":M,"moving_pose":{"translation":[0.2,0.1,5]},"direction":[0,0,-1],"solver":"cta","start":"ellipsoids","until":0.2}
 {"id":3,"moving":M,"fixed":M,"direction":[0,0,-1],"until":0.2}

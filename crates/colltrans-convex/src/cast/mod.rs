@@ -440,7 +440,7 @@ impl Cast<'_> {
     ) -> Result<Outcome, QueryError> {
         let Self { setting, options } = self;
         if cfg!(feature = "keep") && options.keep != 0.0 {
-            return keep::convex::search(setting, options, focus, last, next, observer);
+            return keep::convex::cast_with_min_gap(setting, options, focus, last, next, observer);
         }
         search(setting, options, focus, last, next, observer)
     }

@@ -117,7 +117,8 @@ fn names_are_those_that_serde_writes() {
     }
     for wrong in ["end", "-1", "NaN", ""] {
         let error = wrong.parse::<cta::Until>().expect_err(wrong).to_string();
-        assert_eq!(error, format!("{wrong:?} is neither `exit` nor a number that is not negative"));
+        let accepted = "`exit`, or a number that is not negative";
+        assert_eq!(error, format!("invalid end {wrong:?}; accepted: {accepted}"));
     }
     named(&[Question::Contact, Question::Clearance]);
     named(&[StartOverlap::Refuse, StartOverlap::Ignore]);

@@ -1,119 +1,133 @@
-//! The lower bound: the linear programme over all pieces found so far.
+//! The lower bound of `phi`: a linear programme over all pieces found so far, solved by the dual simplex
+//! method.
 //!
-//! Notation. Minimise `t` over `(X, Y, t)` subject to `weight_i t >= value_i + gradient_i . (X,
-//! Y)`. The dual multipliers `lambda_i >= 0` satisfy `sum lambda_i (weight_i, gradient_i) = (1, 0,
-//! 0)`. Three pieces are the *basis*: their planes meet in the optimum, and `sum lambda_i normal_i`
-//! is the normal of a supporting plane of the bodies that proves the bound `t`, whatever the
-//! section levels are. A new piece that cuts off the optimum enters the basis in a pivot of the
-//! dual simplex method; if none can leave, the pieces contradict each other: the bodies are
-//! separated.
+//! The programme minimises `t` over `(X, Y, t)` subject to `weight_i t >= value_i + gradient_i . (X, Y)`.
+//!
+//! - *Multipliers*: `lambda_i >= 0` with `sum lambda_i (weight_i, gradient_i) = (1, 0, 0)`.
+//! - *Basis*: the three pieces whose planes meet in the optimum. The normal `sum lambda_i normal_i` proves the
+//!   bound `t` for all section levels.
+//! - *Pivot*: a new piece that cuts off the optimum enters the basis. If no piece can leave the basis, the
+//!   pieces contradict each other, and the bodies are separated.
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::piece::{Affine, Piece};
+use super::piece::{Affine, LinearPiece};
 use colltrans_kernel::noise;
 
-/// The sides of the rectangle of levels, the artificial bound, and one piece per step.
-const CAPACITY: usize = super::MAX_STEPS as usize + 5;
+/// Maximum number of pieces: the floor, the four sides of the rectangle of levels, and one piece for each
+/// planar problem.
+const MAX_PIECES: usize = super::MAX_STEPS as usize + 5;
 
+/// The linear programme and its optimum. Levels are relative to the middle of all levels.
 #[derive(Debug, Clone)]
 pub(super) struct LowerBound {
-    pieces: [Piece; CAPACITY],
+    pieces: [LinearPiece; MAX_PIECES],
     count: usize,
     basis: [usize; 3],
     /// Inverse of the matrix with the columns `(weight_i, gradient_i)` of the basis.
     inverse: DMat3,
-    /// The optimum.
-    pub(super) at: DVec2,
-    pub(super) t: f64,
+    /// Levels of the optimum.
+    pub(super) optimum: DVec2,
+    /// Least feasible `t`: the lower bound of `phi`, without the constant of the section pair.
+    pub(super) least_t: f64,
 }
 
-/// What adding a piece showed.
+/// State of the programme after a piece was added.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Progress {
+pub(super) enum BoundStatus {
+    /// The programme has a finite optimum.
     Bounded,
-    /// A combination of pieces of weight 0 is positive everywhere: its normal separates the bodies.
+    /// The constraints have no solution: a combination of pieces of weight 0 is positive at all levels. Its
+    /// normal separates the bodies.
     Contradiction(DVec3),
 }
 
 impl LowerBound {
-    /// Over the rectangle from `low` to `high`, with a constant piece to begin with.
-    pub(super) fn new([low, high]: [DVec2; 2], floor: Piece) -> Self {
-        let side = |value, gradient| Piece {
+    /// Builds the programme over the rectangle from `low` to `high`, with the constant piece `floor`. Its first
+    /// optimum is at `low`.
+    pub(super) fn new([low, high]: [DVec2; 2], floor: LinearPiece) -> Self {
+        let half_plane = |value, gradient| LinearPiece {
             bound: Affine { value, gradient },
             weight: 0.0,
             normal: DVec3::ZERO,
         };
-        let mut pieces = [Piece::default(); CAPACITY];
+        let mut pieces = [LinearPiece::default(); MAX_PIECES];
         pieces[0] = floor;
-        pieces[1] = side(low.x, DVec2::NEG_X);
-        pieces[2] = side(low.y, DVec2::NEG_Y);
-        pieces[3] = side(-high.x, DVec2::X);
-        pieces[4] = side(-high.y, DVec2::Y);
+        pieces[1] = half_plane(low.x, DVec2::NEG_X);
+        pieces[2] = half_plane(low.y, DVec2::NEG_Y);
+        pieces[3] = half_plane(-high.x, DVec2::X);
+        pieces[4] = half_plane(-high.y, DVec2::Y);
         let mut bound = Self {
             pieces,
             count: 5,
             basis: [0, 1, 2],
             inverse: DMat3::IDENTITY,
-            at: low,
-            t: floor.bound.value,
+            optimum: low,
+            least_t: floor.bound.value,
         };
         bound.inverse = bound.basis_matrix().inverse();
         bound
     }
 
-    /// Adds a piece, relative to the same origin as the rectangle.
-    pub(super) fn add(&mut self, piece: Piece) -> Progress {
+    /// Adds a piece and pivots until no piece cuts off the optimum. The levels of the piece have the same
+    /// origin as the rectangle.
+    pub(super) fn add_piece(&mut self, piece: LinearPiece) -> BoundStatus {
         self.pieces[self.count] = piece;
         self.count += 1;
-        // Each pivot raises `t` or, in a tie, leaves it: the limit ends a cycle of ties.
+        // Each pivot raises `t` or, in a tie, leaves it. The limit ends a cycle of ties.
         for _ in 0..2 * self.count {
-            let Some(entering) = self.most_violated() else { break };
-            if let Err(normal) = self.pivot(entering) {
-                return Progress::Contradiction(normal);
+            let Some(entering) = self.most_violated_piece() else { break };
+            if let Err(normal) = self.pivot_into_basis(entering) {
+                return BoundStatus::Contradiction(normal);
             }
         }
-        Progress::Bounded
+        BoundStatus::Bounded
     }
 
-    /// The greatest lower bound of `phi` at a point that a piece gives.
-    pub(super) fn below(&self, at: DVec2) -> f64 {
+    /// Returns the greatest value of the pieces of positive weight at the levels `at`: a lower bound of `phi`
+    /// there.
+    pub(super) fn lower_bound_at(&self, at: DVec2) -> f64 {
         let pieces = self.pieces[..self.count].iter().filter(|piece| piece.weight > 0.0);
         pieces
             .map(|piece| piece.bound.value + piece.bound.gradient.dot(at))
             .fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// The normal that proves the bound; of no use while the floor is in the basis.
-    pub(super) fn normal(&self) -> DVec3 {
+    /// Returns the normal that proves the bound. It is meaningless while the floor, whose normal is zero, is in
+    /// the basis.
+    pub(super) fn proven_normal(&self) -> DVec3 {
         let multipliers = self.inverse * DVec3::X;
-        self.combine(multipliers)
+        self.weighted_normal(multipliers)
     }
 
-    fn combine(&self, multipliers: DVec3) -> DVec3 {
+    /// Returns the sum of the basis' normals with these multipliers.
+    fn weighted_normal(&self, multipliers: DVec3) -> DVec3 {
         let terms = self.basis.iter().zip(multipliers.to_array());
         terms.map(|(&i, m)| self.pieces[i].normal * m).sum()
     }
 
+    /// Returns the matrix with the columns `(weight_i, gradient_i)` of the basis.
     fn basis_matrix(&self) -> DMat3 {
-        let [i, j, k] = self.basis.map(|i| column(&self.pieces[i]));
+        let [i, j, k] = self.basis.map(|i| constraint_column(&self.pieces[i]));
         DMat3::from_cols(i, j, k)
     }
 
-    fn violation(&self, piece: &Piece) -> f64 {
-        piece.bound.value + piece.bound.gradient.dot(self.at) - piece.weight * self.t
+    /// Returns the difference of a piece and the optimum; positive if the piece cuts it off.
+    fn piece_violation(&self, piece: &LinearPiece) -> f64 {
+        piece.bound.value + piece.bound.gradient.dot(self.optimum) - piece.weight * self.least_t
     }
 
-    /// The piece that cuts off the optimum by most, if any does by more than rounding.
-    fn most_violated(&self) -> Option<usize> {
+    /// Finds the piece outside the basis that cuts off the most. `None` if no piece does so by more than
+    /// rounding.
+    fn most_violated_piece(&self) -> Option<usize> {
         let mut worst = None;
         let mut most = 0.0;
         for (index, piece) in self.pieces[..self.count].iter().enumerate() {
-            let violation = self.violation(piece);
+            let violation = self.piece_violation(piece);
             if violation > most && !self.basis.contains(&index) {
                 let size = piece.bound.value.abs()
-                    + piece.bound.gradient.abs().dot(self.at.abs())
-                    + (piece.weight * self.t).abs();
+                    + piece.bound.gradient.abs().dot(self.optimum.abs())
+                    + (piece.weight * self.least_t).abs();
                 if violation > noise::SECTION * size {
                     (worst, most) = (Some(index), violation);
                 }
@@ -122,13 +136,16 @@ impl LowerBound {
         worst
     }
 
-    /// Exchanges a piece of the basis for `entering`. An error if none can leave: the normal of the
-    /// contradiction.
-    fn pivot(&mut self, entering: usize) -> Result<(), DVec3> {
+    /// Exchanges a piece of the basis for `entering`.
+    ///
+    /// # Errors
+    ///
+    /// Returns the normal of the contradiction if no piece can leave the basis.
+    fn pivot_into_basis(&mut self, entering: usize) -> Result<(), DVec3> {
         let multipliers = self.inverse * DVec3::X;
-        let entering_column = column(&self.pieces[entering]);
+        let entering_column = constraint_column(&self.pieces[entering]);
         let rates = self.inverse * entering_column;
-        // What the terms of a rate could have been rounded by.
+        // Bound on the rounding error of a rate.
         let noise = |slot| noise::SECTION * self.inverse.row(slot).abs().dot(entering_column.abs());
         let mut leaving = None;
         let mut least = f64::INFINITY;
@@ -141,20 +158,20 @@ impl LowerBound {
             }
         }
         let Some(slot) = leaving else {
-            return Err(self.pieces[entering].normal - self.combine(rates));
+            return Err(self.pieces[entering].normal - self.weighted_normal(rates));
         };
         self.basis[slot] = entering;
-        self.exchange(slot, rates);
+        self.replace_inverse_column(slot, rates);
         let values = DVec3::from_array(self.basis.map(|i| self.pieces[i].bound.value));
-        let optimum = self.inverse.transpose() * values;
-        self.t = optimum.x;
-        self.at = -DVec2::new(optimum.y, optimum.z);
+        let dual_values = self.inverse.transpose() * values;
+        self.least_t = dual_values.x;
+        self.optimum = -DVec2::new(dual_values.y, dual_values.z);
         Ok(())
     }
 
-    /// Gauss-Jordan: the inverse after the column with the coordinates `rates` has replaced that of
-    /// `slot`.
-    fn exchange(&mut self, slot: usize, rates: DVec3) {
+    /// Updates the inverse by a Gauss-Jordan step: the column with the coordinates `rates` replaces the column
+    /// of `slot`.
+    fn replace_inverse_column(&mut self, slot: usize, rates: DVec3) {
         let pivot_row = self.inverse.row(slot) / rates[slot];
         let mut others = rates;
         others[slot] = 0.0;
@@ -168,6 +185,7 @@ impl LowerBound {
     }
 }
 
-fn column(piece: &Piece) -> DVec3 {
+/// Returns `(weight, gradient)` of a piece.
+fn constraint_column(piece: &LinearPiece) -> DVec3 {
     DVec3::new(piece.weight, piece.bound.gradient.x, piece.bound.gradient.y)
 }

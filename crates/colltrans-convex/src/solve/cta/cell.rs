@@ -1,67 +1,75 @@
-//! Cells: where a piece is `phi` itself, and what ends at their sides (the paper, section III-C).
+//! Cells: the levels at which a piece equals `phi` (the paper, section III-C).
 //!
-//! Notation. `(X, Y)` as in [`super::piece`]. A cell is an intersection of half-planes around the
-//! origin. A section edge lies on a face of its body, whatever the level; in the plane of the
-//! position along the edge and the level that face is a convex polygon, and the cell is where the
-//! contact stays in it. So it does not end where the section edge passes a mesh vertex, and each
-//! side is tagged with the mesh edge over which the contact leaves. Cells only guess: a face of many
-//! sides, or one that the contact seems to have left by rounding, is replaced by the part between
-//! the two mesh edges that cross, within their levels.
+//! A cell is an intersection of half-planes in `(X, Y)`, see [`super::piece`], that contains the origin.
+//!
+//! - A section edge lies on a face of its body at every level. In the plane of the position along the edge and
+//!   the level, the face is a convex polygon, and the cell is where the contact stays in it. Therefore the cell
+//!   does not end where the section edge passes a mesh vertex.
+//! - Each side of a cell is tagged with its feature change, for example the mesh edge over which the contact
+//!   leaves the face.
+//! - Cells are only guesses. A face with more than [`MAX_FACE_SIDES`] sides, or one that the contact seems to
+//!   have left by rounding, is replaced by the part between the two mesh edges that cross the level, within
+//!   their levels.
 
 use glam::DVec2;
 
-use super::crossing::{Bracket, Crossing, is_horizontal};
-use super::piece::{Affine, contact_motion, unit};
-use super::planar::Planar;
-use super::section::FACE_SIDES;
-use super::sectioned_body::{Point, Side};
+use super::crossing::{Crossing, SectionEdge, is_horizontal};
+use super::piece::{Affine, contact_motion, level_axis};
+use super::planar::PlanarAnswer;
+use super::section::MAX_FACE_SIDES;
+use super::sectioned_body::{LevelPoint, SectionedBody};
 use colltrans_kernel::noise;
 
-/// At most so many half-planes bound a cell: those of a vertex contact.
-const CELL_SIDES: usize = 2 + 2 * (1 + FACE_SIDES);
+/// Maximum number of half-planes of a cell, reached by a vertex contact.
+const MAX_CELL_SIDES: usize = 2 + 2 * (1 + MAX_FACE_SIDES);
 
-/// What ends at a side of a cell, for a body by its index.
+/// Change of the touching features at a side of a cell. The first number is the index of the body.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub(super) enum End {
-    /// Nothing that has a name.
+pub(super) enum FeatureChange {
+    /// A change that names no feature.
     #[default]
-    Level,
+    Unnamed,
     /// The contact leaves a face over this half-edge.
     Edge(usize, u32),
-    /// The contact reaches the end of a mesh edge.
+    /// The contact reaches this vertex, an end of its mesh edge.
     Vertex(usize, u32),
     /// The contact reaches the face of this half-edge.
     Face(usize, u32),
 }
 
-/// An intersection of half-planes `value + gradient . (X, Y) >= 0` around the origin.
+/// An intersection of half-planes `value + gradient . (X, Y) >= 0` that contains the origin.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Cell {
-    sides: [Affine; CELL_SIDES],
-    ends: [End; CELL_SIDES],
+pub(super) struct ContactCell {
+    sides: [Affine; MAX_CELL_SIDES],
+    changes: [FeatureChange; MAX_CELL_SIDES],
     count: usize,
 }
 
-/// The best point of a cell.
+/// The point of a cell at which a piece is least.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Best {
-    /// Where it is.
-    pub(super) at: DVec2,
-    /// The change of the piece's value up to there.
+pub(super) struct BestPoint {
+    /// Levels relative to the origin of the cell.
+    pub(super) offset: DVec2,
+    /// Change of the piece's value from the origin to this point; not positive.
     pub(super) change: f64,
-    /// The sides on which the simplex method ended.
-    on: [Option<usize>; 2],
+    /// Sides on which the simplex method ended.
+    sides: [Option<usize>; 2],
 }
 
-impl Cell {
+impl ContactCell {
     fn new() -> Self {
-        Self { sides: [Affine::default(); CELL_SIDES], ends: [End::Level; CELL_SIDES], count: 0 }
+        Self {
+            sides: [Affine::default(); MAX_CELL_SIDES],
+            changes: [FeatureChange::Unnamed; MAX_CELL_SIDES],
+            count: 0,
+        }
     }
 
-    /// Rounding may put the origin outside by a little: it counts as on the boundary.
-    fn keep(&mut self, value: f64, gradient: DVec2, end: End) {
+    /// Adds a half-plane. A negative `value` becomes 0: rounding may put the origin slightly outside, and the
+    /// origin then counts as on the boundary.
+    fn add_half_plane(&mut self, value: f64, gradient: DVec2, change: FeatureChange) {
         self.sides[self.count] = Affine { value: value.max(0.0), gradient };
-        self.ends[self.count] = end;
+        self.changes[self.count] = change;
         self.count += 1;
     }
 
@@ -69,37 +77,46 @@ impl Cell {
         &self.sides[..self.count]
     }
 
-    /// The best point for a gradient: the simplex method in the plane, from the inside.
-    pub(super) fn best(&self, gradient: DVec2) -> Best {
-        let mut best = Best { at: DVec2::ZERO, change: 0.0, on: [None; 2] };
-        let mut way = -gradient;
+    /// Finds the point at which a function with this gradient is least, by the simplex method in the plane from
+    /// the origin.
+    pub(super) fn best_point(&self, gradient: DVec2) -> BestPoint {
+        let mut best = BestPoint { offset: DVec2::ZERO, change: 0.0, sides: [None; 2] };
+        let mut direction = -gradient;
         let mut on: Option<usize> = None;
         // A vertex where more than two sides meet may be visited more than once, hence the limit.
         for _ in 0..=self.count {
-            let Some((side, step)) = self.ray(best.at, way, on) else { break };
-            best.at += way * step;
-            best.on = [on, Some(side)];
+            let Some((side, step)) = self.first_side_on_ray(best.offset, direction, on) else {
+                break;
+            };
+            best.offset += direction * step;
+            best.sides = [on, Some(side)];
             let along = self.sides[side].gradient.perp();
             let descent = -gradient.dot(along);
-            way = if descent < 0.0 { -along } else { along };
-            let leaves = on.is_some_and(|side| self.sides[side].gradient.dot(way) < 0.0);
+            direction = if descent < 0.0 { -along } else { along };
+            let leaves = on.is_some_and(|side| self.sides[side].gradient.dot(direction) < 0.0);
             if descent == 0.0 || leaves {
                 break;
             }
             on = Some(side);
         }
-        best.change = gradient.dot(best.at);
+        best.change = gradient.dot(best.offset);
         best
     }
 
-    /// The side that a ray hits first, and after which multiple of `way`.
-    fn ray(&self, at: DVec2, way: DVec2, on: Option<usize>) -> Option<(usize, f64)> {
+    /// Finds the first side that a ray from `at` hits, other than `on`, and the multiple of `direction` up to
+    /// it. `None` if the ray hits no side.
+    fn first_side_on_ray(
+        &self,
+        at: DVec2,
+        direction: DVec2,
+        on: Option<usize>,
+    ) -> Option<(usize, f64)> {
         let (mut nearest, mut least) = (0, f64::INFINITY);
         for (index, side) in self.sides[..self.count].iter().enumerate() {
-            let rate = -side.gradient.dot(way);
+            let rate = -side.gradient.dot(direction);
             let slack = (side.value + side.gradient.dot(at)).max(0.0);
             let ahead = rate > 0.0 && on != Some(index);
-            // Without branches: they would be unpredictable.
+            // Branch-free because the branches would be unpredictable.
             let step = if ahead { slack / rate } else { f64::INFINITY };
             nearest = if step < least { index } else { nearest };
             least = least.min(step);
@@ -107,48 +124,49 @@ impl Cell {
         (least < f64::INFINITY).then_some((nearest, least))
     }
 
-    /// What ends at the sides that meet in the best point, up to rounding.
-    pub(super) fn ends_at(&self, best: &Best) -> Ends<'_> {
-        let far = best.at.abs().element_sum();
-        let mut meet = 0;
+    /// Returns the feature changes of the sides that meet in the best point, up to rounding.
+    pub(super) fn changes_at(&self, best: &BestPoint) -> SideChanges<'_> {
+        let far = best.offset.abs().element_sum();
+        let mut active = 0;
         for (index, side) in self.sides[..self.count].iter().enumerate() {
-            let slack = side.value + side.gradient.dot(best.at);
+            let slack = side.value + side.gradient.dot(best.offset);
             let size = side.value + side.gradient.abs().element_sum() * far;
-            meet |= u32::from(slack <= noise::SECTION * size) << index;
+            active |= u32::from(slack <= noise::SECTION * size) << index;
         }
-        for index in best.on.into_iter().flatten() {
-            meet |= 1 << index;
+        for index in best.sides.into_iter().flatten() {
+            active |= 1 << index;
         }
-        Ends { cell: self, meet }
+        SideChanges { cell: self, active }
     }
 }
 
-/// What ends at some sides of a cell.
+/// Iterator over the feature changes of some sides of a cell.
 #[derive(Debug, Clone)]
-pub(super) struct Ends<'a> {
-    cell: &'a Cell,
-    /// One bit for each side.
-    meet: u32,
+pub(super) struct SideChanges<'a> {
+    cell: &'a ContactCell,
+    /// Set of the remaining sides, one bit each.
+    active: u32,
 }
 
-impl Iterator for Ends<'_> {
-    type Item = End;
+impl Iterator for SideChanges<'_> {
+    type Item = FeatureChange;
 
-    fn next(&mut self) -> Option<End> {
-        let index = self.meet.trailing_zeros();
-        let end = *self.cell.ends.get(index as usize)?;
-        self.meet &= self.meet - 1;
-        Some(end)
+    fn next(&mut self) -> Option<FeatureChange> {
+        let index = self.active.trailing_zeros();
+        let change = *self.cell.changes.get(index as usize)?;
+        self.active &= self.active - 1;
+        Some(change)
     }
 }
 
-/// The face that an edge of a section lies on, by a half-edge, and the sense of its boundary in the
-/// plane of the position along the edge and the level: 1 counter-clockwise.
-pub(super) fn face_of(side: &Side, edge: &Bracket) -> Option<(u32, f64)> {
+/// Finds the face on which a section edge lies. Returns a half-edge of the face, and the orientation of its
+/// boundary in the plane of the position along the edge and the level: 1 if counter-clockwise, else -1. `None`
+/// if the mesh edges at the ends of the section edge do not bound a common face.
+pub(super) fn face_of_edge(side: &SectionedBody, edge: &SectionEdge) -> Option<(u32, f64)> {
     let topology = side.topology;
     let face = |h: u32| topology.half_edge(h).face;
     let twin = |h: u32| topology.half_edge(h).twin;
-    let (low, high) = (edge.low.up, edge.high.up);
+    let (low, high) = (edge.low.half_edge, edge.high.half_edge);
     if face(high) == face(twin(low)) {
         Some((high, 1.0))
     } else if face(low) == face(twin(high)) {
@@ -158,32 +176,39 @@ pub(super) fn face_of(side: &Side, edge: &Bracket) -> Option<(u32, f64)> {
     }
 }
 
-/// Where the contact is on a section edge: its position as measured by a covector, and how that
-/// changes with the levels.
+/// A contact on a section edge of one body.
 #[derive(Debug, Clone, Copy)]
-struct OnEdge<'a> {
+struct EdgeContact<'a> {
+    /// Index of the body.
     body: usize,
-    edge: &'a Bracket,
+    edge: &'a SectionEdge,
+    /// Level of the section.
     level: f64,
+    /// Covector of the shadow plane that measures positions along the edge.
     measure: DVec2,
+    /// Position of the contact.
     position: f64,
+    /// Gradient of the position with respect to both levels.
     motion: DVec2,
 }
 
-/// A corner of a face, relative to the contact: its position along the edge and its level, and what
-/// rounding can make of either.
+/// A corner of a face, relative to the contact.
 #[derive(Debug, Clone, Copy)]
-struct Corner {
+struct FaceCorner {
+    /// Position along the edge.
     along: f64,
+    /// Level.
     rise: f64,
+    /// Bounds on the rounding errors of the position and of the level.
     slack: [f64; 2],
 }
 
-impl OnEdge<'_> {
-    fn corner(&self, side: &Side, vertex: u32) -> Corner {
-        let Point { level, shadow } = side.point(vertex);
+impl EdgeContact<'_> {
+    /// Returns a vertex of the body relative to the contact.
+    fn face_corner(&self, side: &SectionedBody, vertex: u32) -> FaceCorner {
+        let LevelPoint { level, shadow } = side.level_point(vertex);
         let [h, g] = (self.measure * shadow).to_array();
-        Corner {
+        FaceCorner {
             along: h + g - self.position,
             rise: level - self.level,
             slack: [
@@ -193,91 +218,113 @@ impl OnEdge<'_> {
         }
     }
 
-    /// The edge of its face between two corners as a half-plane; `None` if the contact is beyond it
-    /// by more than rounding, or it has no direction.
-    fn side(&self, [from, to]: [&Corner; 2], sense: f64) -> Option<Affine> {
+    /// Returns the half-plane of levels at which the contact is on the inner side of the face's edge between
+    /// two corners. `None` if the contact is outside by more than rounding, or if rounding hides the edge's
+    /// direction.
+    fn half_plane(&self, [from, to]: [&FaceCorner; 2], sense: f64) -> Option<Affine> {
         let (along, rise) = (to.along - from.along, to.rise - from.rise);
         let value = sense * (from.along * to.rise - to.along * from.rise);
         let error = along.abs() * from.slack[1] + rise.abs() * from.slack[0];
-        let gradient = (unit(self.body) * along - self.motion * rise) * sense;
+        let gradient = (level_axis(self.body) * along - self.motion * rise) * sense;
         let directed =
             along.abs() > from.slack[0] + to.slack[0] || rise.abs() > from.slack[1] + to.slack[1];
         (value >= -error && directed).then_some(Affine { value, gradient })
     }
 }
 
-impl Cell {
-    /// The contact stays on the face of an edge.
-    fn keep_on(&mut self, on: &OnEdge, side: &Side) {
-        let kept = self.count;
-        if self.keep_face(on, side).is_none() {
-            self.count = kept;
-            self.keep_between(on);
+impl ContactCell {
+    /// Adds the sides within which the contact stays on the face of a section edge. Replaces the face by the
+    /// part between the two mesh edges if [`Self::add_face`] returns `None`.
+    fn add_edge_contact(&mut self, contact: &EdgeContact, side: &SectionedBody) {
+        let count = self.count;
+        if self.add_face(contact, side).is_none() {
+            self.count = count;
+            self.add_mesh_edges(contact);
         }
     }
 
-    fn keep_face(&mut self, on: &OnEdge, side: &Side) -> Option<()> {
-        let [bottom, top] = side.range();
-        if on.edge.steeper().span() <= noise::SECTION * (top - bottom) {
+    /// Adds one side for each edge of the face. `None`, possibly after some sides were added, if the face has
+    /// more than [`MAX_FACE_SIDES`] sides, cannot be found, or does not contain the contact, or if rounding
+    /// alone lifts the mesh edges across the level.
+    fn add_face(&mut self, contact: &EdgeContact, side: &SectionedBody) -> Option<()> {
+        let [bottom, top] = side.level_range();
+        if contact.edge.longer_end().level_span() <= noise::SECTION * (top - bottom) {
             return None;
         }
-        let (half_edge, sense) = face_of(side, on.edge)?;
+        let (half_edge, sense) = face_of_edge(side, contact.edge)?;
         let topology = side.topology;
         let boundary = topology.face(topology.half_edge(half_edge).face);
-        if boundary.len() > FACE_SIDES {
+        if boundary.len() > MAX_FACE_SIDES {
             return None;
         }
-        let corner = |h: u32| on.corner(side, topology.origin(h));
+        let corner = |h: u32| contact.face_corner(side, topology.origin(h));
         let first = corner(boundary.start);
         let mut from = first;
         for h in boundary.clone() {
             let to = if h + 1 < boundary.end { corner(h + 1) } else { first };
-            let Affine { value, gradient } = on.side([&from, &to], sense)?;
-            self.keep(value, gradient, End::Edge(on.body, h));
+            let Affine { value, gradient } = contact.half_plane([&from, &to], sense)?;
+            self.add_half_plane(value, gradient, FeatureChange::Edge(contact.body, h));
             from = to;
         }
         Some(())
     }
 
-    /// The contact stays between the ends of an edge, and these on their mesh edges.
-    fn keep_between(&mut self, on: &OnEdge) {
-        let Bracket { low, high, .. } = on.edge;
-        let own = unit(on.body);
-        self.keep(on.level - low.levels[0].max(high.levels[0]), own, End::Level);
-        self.keep(low.levels[1].min(high.levels[1]) - on.level, -own, End::Level);
+    /// Adds the sides within which the contact stays between the ends of a section edge, and these ends on
+    /// their mesh edges.
+    fn add_mesh_edges(&mut self, contact: &EdgeContact) {
+        let SectionEdge { low, high, .. } = contact.edge;
+        let own = level_axis(contact.body);
+        self.add_half_plane(
+            contact.level - low.levels[0].max(high.levels[0]),
+            own,
+            FeatureChange::Unnamed,
+        );
+        self.add_half_plane(
+            low.levels[1].min(high.levels[1]) - contact.level,
+            -own,
+            FeatureChange::Unnamed,
+        );
         for (end, sign) in [(low, 1.0), (high, -1.0)] {
-            self.keep(
-                sign * (on.position - on.measure.dot(end.w)),
-                sign * (on.motion - own * on.measure.dot(end.drift)),
-                End::Edge(on.body, end.up),
+            self.add_half_plane(
+                sign * (contact.position - contact.measure.dot(end.w)),
+                sign * (contact.motion - own * contact.measure.dot(end.drift)),
+                FeatureChange::Edge(contact.body, end.half_edge),
             );
         }
     }
 
-    /// A vertex of section `upper` stays in the other section: on its mesh edge, and between two
-    /// edges at its height.
-    fn keep_inside(
+    /// Adds the sides of a vertex contact: the vertex of section `upper` stays on its mesh edge, and between
+    /// the edges `left` and `right` of the other section at its height.
+    fn add_vertex_contact(
         &mut self,
         (upper, vertex): (usize, &Crossing),
-        [left, right]: [&Bracket; 2],
-        sides: &[Side; 2],
+        [left, right]: [&SectionEdge; 2],
+        sides: &[SectionedBody; 2],
         levels: [f64; 2],
     ) {
         let lower = 1 - upper;
-        let (own, other) = (unit(upper), unit(lower));
+        let (own, other) = (level_axis(upper), level_axis(lower));
         let [bottom, top] = vertex.levels;
-        self.keep(levels[upper] - bottom, own, End::Vertex(upper, vertex.vertices[0]));
-        self.keep(top - levels[upper], -own, End::Vertex(upper, vertex.vertices[1]));
+        self.add_half_plane(
+            levels[upper] - bottom,
+            own,
+            FeatureChange::Vertex(upper, vertex.vertices[0]),
+        );
+        self.add_half_plane(
+            top - levels[upper],
+            -own,
+            FeatureChange::Vertex(upper, vertex.vertices[1]),
+        );
         for (edge, inward) in [(left, 1.0), (right, -1.0)] {
             let normal = edge.direction.perp() * inward;
-            let face = face_of(&sides[lower], edge);
-            let end = edge.steeper();
-            self.keep(
+            let face = face_of_edge(&sides[lower], edge);
+            let end = edge.longer_end();
+            self.add_half_plane(
                 normal.dot(vertex.w - end.w),
                 own * normal.dot(vertex.drift) - other * normal.dot(end.drift),
-                face.map_or(End::Level, |(h, _)| End::Face(lower, h)),
+                face.map_or(FeatureChange::Unnamed, |(h, _)| FeatureChange::Face(lower, h)),
             );
-            let on = OnEdge {
+            let contact = EdgeContact {
                 body: lower,
                 edge,
                 level: levels[lower],
@@ -286,27 +333,31 @@ impl Cell {
                 motion: own * vertex.drift.x,
             };
             if is_horizontal(edge.direction) {
-                self.keep_between(&on);
+                self.add_mesh_edges(&contact);
             } else {
-                self.keep_on(&on, &sides[lower]);
+                self.add_edge_contact(&contact, &sides[lower]);
             }
         }
     }
 }
 
-impl Planar {
-    /// The cell of a contact.
-    pub(super) fn cell(&self, sides: &[Side; 2], levels: [f64; 2]) -> Option<Cell> {
-        let mut cell = Cell::new();
+impl PlanarAnswer {
+    /// Returns the cell of a contact. `None` if the sections are separated.
+    pub(super) fn contact_cell(
+        &self,
+        sides: &[SectionedBody; 2],
+        levels: [f64; 2],
+    ) -> Option<ContactCell> {
+        let mut cell = ContactCell::new();
         match self {
             Self::Vertex { upper, vertex, left, right } => {
-                cell.keep_inside((*upper, vertex), [left, right], sides, levels);
+                cell.add_vertex_contact((*upper, vertex), [left, right], sides, levels);
             }
             Self::Edges { edges, contact } => {
                 let motion = contact_motion(edges);
                 for (body, edge) in edges.iter().enumerate() {
                     let measure = edge.direction;
-                    let on = OnEdge {
+                    let contact = EdgeContact {
                         body,
                         edge,
                         level: levels[body],
@@ -314,7 +365,7 @@ impl Planar {
                         position: measure.dot(*contact),
                         motion: DVec2::new(measure.dot(motion[0]), measure.dot(motion[1])),
                     };
-                    cell.keep_on(&on, &sides[body]);
+                    cell.add_edge_contact(&contact, &sides[body]);
                 }
             }
             Self::Separated { .. } => return None,

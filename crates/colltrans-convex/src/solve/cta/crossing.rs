@@ -1,24 +1,26 @@
-//! The parts of a section in the shadow plane: vertices, edges and chains.
+//! Vertices, edges and chains of a section in the shadow plane.
 //!
-//! Notation. `w = (h, g)` are shadow coordinates. The *left* chain of a section runs from its lowest
-//! point (least `h`) to its highest one where `g` is smaller, the *right* chain where `g` is
-//! greater. The *drift* of a crossing edge is how its section vertex moves per unit of level.
+//! - *Shadow coordinates* `w = (h, g)`. `h` is the height.
+//! - *Left chain*: the boundary of a section from its lowest to its highest point on the side of smaller `g`.
+//!   *Right chain*: the boundary on the side of greater `g`.
+//! - *Drift* of a section vertex: its change in the shadow plane per unit of level.
 
 use glam::DVec2;
 
 use colltrans_kernel::noise;
 
-/// A vertex of a section: a mesh edge that crosses the level.
+/// A vertex of a section: the point where a mesh edge crosses the level.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Crossing {
-    /// The half-edge that runs upwards.
-    pub(super) up: u32,
-    /// The mesh vertices of the edge, the one below first.
+    /// Half-edge of the mesh edge in the direction of increasing level.
+    pub(super) half_edge: u32,
+    /// Ends of the mesh edge, the lower one first.
     pub(super) vertices: [u32; 2],
-    /// Their levels.
+    /// Levels of both ends.
     pub(super) levels: [f64; 2],
-    /// The section vertex in the shadow plane.
+    /// Position in the shadow plane.
     pub(super) w: DVec2,
+    /// Change of `w` per unit of level.
     pub(super) drift: DVec2,
 }
 
@@ -31,14 +33,15 @@ impl Crossing {
         self.w.y
     }
 
-    /// The levels that the mesh edge spans.
-    pub(super) fn span(&self) -> f64 {
+    /// Returns the length of the interval of levels that the mesh edge spans.
+    pub(super) fn level_span(&self) -> f64 {
         self.levels[1] - self.levels[0]
     }
 
-    /// Direction of the polygon edge to its neighbour `next`, of any length: exact even where a
-    /// mesh vertex that both edges share makes the polygon edge vanish.
-    pub(super) fn towards(&self, next: &Self) -> DVec2 {
+    /// Returns the direction of the polygon edge to the neighbour `next`, of any length. For two mesh edges
+    /// with a common vertex it follows from the drifts, so that it is valid even if the polygon edge has length
+    /// zero.
+    pub(super) fn edge_direction_to(&self, next: &Self) -> DVec2 {
         if self.vertices[0] == next.vertices[0] {
             next.drift - self.drift
         } else if self.vertices[1] == next.vertices[1] {
@@ -57,8 +60,8 @@ pub(super) enum Chain {
 }
 
 impl Chain {
-    /// The sign of `g` towards this chain.
-    pub(super) fn sign(self) -> f64 {
+    /// Returns the sign of `g` towards this chain.
+    pub(super) fn g_sign(self) -> f64 {
         match self {
             Self::Left => -1.0,
             Self::Right => 1.0,
@@ -72,52 +75,56 @@ impl Chain {
         }
     }
 
-    /// Whether `direction` leads up this chain; the horizontal edge at the bottom belongs to the
-    /// chain that starts along it, the one at the top to none.
-    pub(super) fn ascends(self, direction: DVec2) -> bool {
-        if is_horizontal(direction) { self.sign() * direction.y > 0.0 } else { direction.x > 0.0 }
+    /// Checks whether `direction` leads up this chain. A horizontal edge at the bottom belongs to the chain
+    /// that starts along it. A horizontal edge at the top belongs to neither chain.
+    pub(super) fn is_ascending(self, direction: DVec2) -> bool {
+        if is_horizontal(direction) { self.g_sign() * direction.y > 0.0 } else { direction.x > 0.0 }
     }
 }
 
-/// Whether an edge is horizontal up to rounding.
+/// Checks whether a direction is horizontal (constant `h`) up to rounding.
 pub(super) fn is_horizontal(direction: DVec2) -> bool {
     direction.x.abs() <= noise::SECTION * direction.y.abs()
 }
 
-/// An edge of a section on one of its chains.
+/// An edge of a section, directed up its chain.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Bracket {
+pub(super) struct SectionEdge {
+    /// Lower end.
     pub(super) low: Crossing,
+    /// Upper end.
     pub(super) high: Crossing,
+    /// Direction from the lower to the upper end, of any length.
     pub(super) direction: DVec2,
 }
 
-impl Bracket {
+impl SectionEdge {
+    /// Builds the edge between two neighbours.
     pub(super) fn new(low: Crossing, high: Crossing) -> Self {
-        Self { low, high, direction: low.towards(&high) }
+        Self { low, high, direction: low.edge_direction_to(&high) }
     }
 
-    /// The end whose mesh edge spans more levels: the drift of one that rounding alone lifts across
-    /// the level has no digits.
-    pub(super) fn steeper(&self) -> &Crossing {
-        if self.low.span() > self.high.span() { &self.low } else { &self.high }
+    /// Returns the end whose mesh edge spans more levels. The drift of a mesh edge that only rounding lifts
+    /// across the level has no significant digits.
+    pub(super) fn longer_end(&self) -> &Crossing {
+        if self.low.level_span() > self.high.level_span() { &self.low } else { &self.high }
     }
 
-    /// `dg/dh` along the edge.
-    pub(super) fn slope(&self) -> f64 {
+    /// Returns `dg/dh` along the edge.
+    pub(super) fn g_slope(&self) -> f64 {
         self.direction.y / self.direction.x
     }
 
-    /// `g` at height `h` on the edge; its ends bound it, since on a nearly horizontal edge the
-    /// quotient has no digits.
+    /// Returns `g` at height `h`, limited to the range of the edge's ends because the quotient has no
+    /// significant digits on a nearly horizontal edge.
     pub(super) fn g_at(&self, h: f64) -> f64 {
         let (low, high) = (self.low.g(), self.high.g());
-        let g = low + (h - self.low.h()) * self.slope();
+        let g = low + (h - self.low.h()) * self.g_slope();
         if low < high { g.clamp(low, high) } else { g.clamp(high, low) }
     }
 
-    /// Positive where a point lies to the side of greater `g`.
-    pub(super) fn side_of(&self, w: DVec2) -> f64 {
+    /// Returns a positive number if `w` lies on the side of greater `g`, a negative one on the other side.
+    pub(super) fn signed_side(&self, w: DVec2) -> f64 {
         self.direction.perp_dot(w - self.low.w)
     }
 }

@@ -1,89 +1,89 @@
-//! The exit test: whether the best point of a cell solves the problem (line 6 of the paper's
-//! algorithm).
+//! The exit test: checks whether the best point of a cell solves the problem (line 6 of the paper's algorithm).
 //!
-//! Notation. The sides of a cell that meet in its best point `q` name the *features* that touch
-//! there, of P and of Q: a vertex, an edge or a face. `q` minimises `phi` exactly if these features
-//! have a common normal `n`, `n . d > 0`, that supports P outward and Q inward: zero is then in the
-//! convex hull of the gradients of all cells at `q`. A face or two crossing edges leave one normal,
-//! which is held against the neighbours of the features; anything else is a linear programme in
-//! the two lateral parts of `n`. Where that one normal does not support a body, the faces are told on
-//! which it leads beyond: `phi` falls where the contact passes on to them.
+//! The sides of a cell that meet in its best point `q` name the *features* of P and Q that touch there: a
+//! vertex, an edge or a face. `q` minimises `phi` exactly if these features have a common normal `n`, `n . d >
+//! 0`, that supports P outward and Q inward (`docs/theory/section-minimisation.md`).
 //!
-//! Local support of a convex body is support. So a hit is a proof up to rounding, at the height
-//! where the plane meets: if that is not `q`'s, ties have named features that do not touch, and the
-//! test misses. A miss costs a step, and the finish proves whatever a hit claims.
+//! - A face or two crossing edges leave one normal, which is compared with the neighbours of the features. If
+//!   it does not support a body, the result names the faces that extend beyond its plane: `phi` falls where the
+//!   contact passes on to them.
+//! - Other features leave a linear programme in the two lateral parts of `n`.
+//! - A hit is a proof up to rounding if the height of the plane is that of `q`. If it is not, ties have named
+//!   features that do not touch, and the test misses. A miss costs a step. Portal refinement proves the result
+//!   of a hit.
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::cell::{End, Ends, face_of};
-use super::planar::Planar;
-use super::region::Region;
-use super::sectioned_body::Side;
+use super::cell::{FeatureChange, SideChanges, face_of_edge};
+use super::planar::PlanarAnswer;
+use super::region::LevelRegion;
+use super::sectioned_body::SectionedBody;
 use crate::setting::{Setting, TwoBodies, VertexPair};
 use colltrans_kernel::topology::Topology;
 
-/// The height of a supporting plane is that of the best point if they differ by less than this
-/// share of the extent along the direction.
-///
-/// Section coordinates are off by [`noise::SECTION`](colltrans_kernel::noise::SECTION), `1.4e-14` of
-/// the extent. The best point is found by crossing two lines, of section edges and then of a cell's
-/// sides, of which each divides that error by the sine between them: the share leaves room for
-/// sines that multiply to `1.4e-4`. Where they are smaller the test misses, which costs a step. A
-/// plane so near that does not touch is no error either: the finish looks for what lies below it.
-pub(super) const SAME_HEIGHT: f64 = 1e-10;
+/// Maximum difference between the heights of the supporting plane and of the best point, as a share of the
+/// bodies' extent along the direction. A plane with a smaller difference that does not touch is not an error:
+/// portal refinement searches below it. The derivation is in `docs/theory/section-minimisation.md`.
+pub(super) const HEIGHT_TOLERANCE: f64 = 1e-10;
 
-/// Ways out of the features that are compared; vertices with more are not decided.
-const MOST_WAYS: usize = 40;
+/// Maximum number of steps out of both features for which the linear programme is solved.
+const MAX_FEATURE_STEPS: usize = 40;
 
-/// The greatest lateral part of a normal with `n . d = 1` that the linear programme finds.
-const STEEPEST: f64 = 1e3;
+/// Maximum absolute value of each lateral part of a normal with `n . d = 1` in the linear programme.
+const MAX_LATERAL_PART: f64 = 1e3;
 
-/// Two edges with a smaller sine between them count as parallel.
-const PARALLEL: f64 = 1e-8;
+/// Sine of the angle between two edges up to which they count as parallel.
+const MIN_SINE: f64 = 1e-8;
 
-/// Three or four corners of a face of the difference of the bodies, in order; of three the last twice.
+/// Three or four corners of a face of the Minkowski difference, in order. A triangle repeats its last corner.
 pub(crate) type Corners = [VertexPair; 4];
 
-/// The contact, as the features that touch prove it.
+/// The contact that the touching features prove.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Solved {
-    /// The contact normal, with `n . d = 1`.
+pub(super) struct SolvedContact {
+    /// Contact normal, with `n . d = 1`.
     pub(super) normal: DVec3,
-    /// The features of each body, as two pairs of vertices.
+    /// Feature of each body, as two pairs of vertices.
     pub(super) vertices: [[u32; 4]; 2],
-    /// A part of the face of the difference that the line passes.
+    /// Part of the face of the Minkowski difference that contains the line. `None` for features other than two
+    /// edges, or a vertex and a face.
     pub(super) corners: Option<Corners>,
 }
 
-/// What normal the features that touch have in common.
+/// Result of the search for a common normal of the touching features.
 #[derive(Debug, Clone, Copy)]
-enum Common {
+enum CommonNormal {
+    /// A normal with `n . d = 1` that supports both bodies.
     Normal(DVec3),
-    /// None: the only one that there could be does not support a body, which leads beyond its plane
-    /// on the faces of these half-edges, or on one of them.
-    Beyond([u32; 2]),
+    /// The only possible normal does not support a body. Faces of both bodies, by half-edges, on at least one
+    /// of which the body extends beyond the plane.
+    Unsupported([u32; 2]),
+    /// The features do not decide.
     Undecided,
 }
 
-/// What the exit test found.
+/// Result of the exit test.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Exit {
-    Solved(Solved),
-    /// The best point is none of the problem, and `phi` falls beyond it.
-    Falls(Beyond),
-    /// The features tell nothing.
+pub(super) enum ExitResult {
+    /// The best point solves the problem.
+    Solved(SolvedContact),
+    /// The best point does not solve the problem: `phi` falls beyond it.
+    Falls(Descent),
+    /// The features do not decide.
     Missed,
 }
 
-/// Where `phi` falls: at these levels the contact is at the rim of these faces, by half-edges, and
-/// goes on there.
+/// Place where `phi` falls: at these levels the contact is on the boundary of these faces, and continues on
+/// them.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Beyond {
+pub(super) struct Descent {
+    /// Face of each body, by a half-edge.
     pub(super) faces: [u32; 2],
+    /// Level of each body.
     pub(super) levels: [f64; 2],
 }
 
-/// What of a body touches; edges and faces by a half-edge.
+/// Touching feature of a body. Edges and faces are given by a half-edge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Feature {
     Vertex(u32),
@@ -91,93 +91,113 @@ enum Feature {
     Face(u32),
 }
 
-/// The bodies of a query, in the setting frame.
+/// The exit test for the bodies of a query, in the setting frame.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ExitTest<'q, 'a> {
-    pub(super) sides: &'q [Side<'a>; 2],
+    pub(super) sides: &'q [SectionedBody<'a>; 2],
     pub(super) setting: &'q Setting<'a>,
-    /// Of both bodies along the direction.
+    /// Extent of both bodies together along the direction.
     pub(super) extent: f64,
 }
 
 impl ExitTest<'_, '_> {
-    /// Whether the best point of a cell, at these levels and where these sides meet, solves the
-    /// problem, at height `upper` along the direction.
-    pub(super) fn solves(
+    /// Tests whether the best point of a cell, at `levels` and on the cell sides with these feature changes,
+    /// solves the problem. `upper` is the value of `phi` there, a length.
+    pub(super) fn test_best_point(
         &self,
-        answer: &Planar,
-        (levels, ends): ([f64; 2], &Ends),
+        answer: &PlanarAnswer,
+        (levels, changes): ([f64; 2], &SideChanges),
         upper: f64,
-    ) -> Exit {
-        let Some(features) = self.features(answer, ends) else { return Exit::Missed };
-        let normal = match self.common_normal(features) {
-            Common::Normal(normal) => normal,
-            Common::Beyond(faces) => return Exit::Falls(self.beyond(features, faces, levels)),
-            Common::Undecided => return Exit::Missed,
+    ) -> ExitResult {
+        let Some(features) = self.touching_features(answer, changes) else {
+            return ExitResult::Missed;
         };
-        let [p, q] = [0, 1].map(|body| self.at(body, self.vertex_of(body, features[body])));
+        let normal = match self.common_normal(features) {
+            CommonNormal::Normal(normal) => normal,
+            CommonNormal::Unsupported(faces) => {
+                return ExitResult::Falls(self.descent_over(features, faces, levels));
+            }
+            CommonNormal::Undecided => return ExitResult::Missed,
+        };
+        let [p, q] =
+            [0, 1].map(|body| self.vertex_position(body, self.first_vertex(body, features[body])));
         let height = normal.dot(q + self.setting.offset - p);
-        if (upper - height).abs() > SAME_HEIGHT * self.extent {
-            return Exit::Missed;
+        if (upper - height).abs() > HEIGHT_TOLERANCE * self.extent {
+            return ExitResult::Missed;
         }
-        let vertices = [0, 1].map(|body| self.named(body, features[body]));
-        Exit::Solved(Solved { normal, vertices, corners: self.corners(features) })
+        let vertices = [0, 1].map(|body| self.vertex_pairs(body, features[body]));
+        ExitResult::Solved(SolvedContact {
+            normal,
+            vertices,
+            corners: self.difference_corners(features),
+        })
     }
 
-    /// The contact goes on at these half-edges, from features at some levels: where one is a vertex,
-    /// just above or below it.
-    fn beyond(&self, features: [Feature; 2], faces: [u32; 2], at: [f64; 2]) -> Beyond {
+    /// Returns where the contact continues on the faces of these half-edges. The level of a vertex is replaced
+    /// by one just above or just below it, on the side of the face.
+    fn descent_over(&self, features: [Feature; 2], faces: [u32; 2], levels: [f64; 2]) -> Descent {
         let level = |body: usize| match features[body] {
             Feature::Vertex(v) => {
                 let side = &self.sides[body];
-                let level = side.level(v);
-                let is_up = side.level(side.topology.target(faces[body])) > level;
+                let level = side.vertex_level(v);
+                let is_up = side.vertex_level(side.topology.target(faces[body])) > level;
                 if is_up { level } else { level.next_down() }
             }
-            Feature::Edge(_) | Feature::Face(_) => at[body],
+            Feature::Edge(_) | Feature::Face(_) => levels[body],
         };
-        Beyond { faces, levels: [level(0), level(1)] }
+        Descent { faces, levels: [level(0), level(1)] }
     }
 
-    /// The features that touch in the best point.
-    fn features(&self, answer: &Planar, ends: &Ends) -> Option<[Feature; 2]> {
+    /// Finds the features that touch in the best point. `None` for separated sections, for an edge without a
+    /// known face, and for a vertex contact that does not end at a face of the other body.
+    fn touching_features(
+        &self,
+        answer: &PlanarAnswer,
+        changes: &SideChanges,
+    ) -> Option<[Feature; 2]> {
         match answer {
-            Planar::Edges { edges, .. } => {
+            PlanarAnswer::Edges { edges, .. } => {
                 let of = |body: usize| {
-                    let (face, _) = face_of(&self.sides[body], &edges[body])?;
-                    Some(self.narrowed(body, Feature::Face(face), ends.clone()))
+                    let (face, _) = face_of_edge(&self.sides[body], &edges[body])?;
+                    Some(self.narrow_feature(body, Feature::Face(face), changes.clone()))
                 };
                 Some([of(0)?, of(1)?])
             }
-            Planar::Vertex { upper, vertex, .. } => {
+            PlanarAnswer::Vertex { upper, vertex, .. } => {
                 let lower = 1 - upper;
-                let own = self.narrowed(*upper, Feature::Edge(vertex.up), ends.clone());
-                let face = ends.clone().find_map(|end| match end {
-                    End::Face(_, h) => Some(h),
+                let own =
+                    self.narrow_feature(*upper, Feature::Edge(vertex.half_edge), changes.clone());
+                let face = changes.clone().find_map(|change| match change {
+                    FeatureChange::Face(_, h) => Some(h),
                     _ => None,
                 })?;
                 let topology = self.sides[lower].topology;
-                let on_face = ends.clone().filter(|end| match end {
-                    End::Edge(_, h) => bounds(topology, *h, face),
+                let on_face = changes.clone().filter(|change| match change {
+                    FeatureChange::Edge(_, h) => edge_bounds_face(topology, *h, face),
                     _ => true,
                 });
-                let other = self.narrowed(lower, Feature::Face(face), on_face);
+                let other = self.narrow_feature(lower, Feature::Face(face), on_face);
                 Some(if *upper == 0 { [own, other] } else { [other, own] })
             }
-            Planar::Separated { .. } => None,
+            PlanarAnswer::Separated { .. } => None,
         }
     }
 
-    /// A feature of a body, narrowed to what ends there.
-    fn narrowed(&self, body: usize, from: Feature, ends: impl Iterator<Item = End>) -> Feature {
+    /// Narrows a feature of a body by the feature changes of this body: a face to an edge, an edge to a vertex.
+    fn narrow_feature(
+        &self,
+        body: usize,
+        from: Feature,
+        changes: impl Iterator<Item = FeatureChange>,
+    ) -> Feature {
         let topology = self.sides[body].topology;
         let mut feature = from;
-        for end in ends {
-            feature = match (end, feature) {
-                (End::Vertex(b, v), _) if b == body => Feature::Vertex(v),
-                (End::Edge(b, h), Feature::Face(_)) if b == body => Feature::Edge(h),
-                (End::Edge(b, h), Feature::Edge(e)) if b == body => {
-                    shared(topology, e, h).map_or(feature, Feature::Vertex)
+        for change in changes {
+            feature = match (change, feature) {
+                (FeatureChange::Vertex(b, v), _) if b == body => Feature::Vertex(v),
+                (FeatureChange::Edge(b, h), Feature::Face(_)) if b == body => Feature::Edge(h),
+                (FeatureChange::Edge(b, h), Feature::Edge(e)) if b == body => {
+                    shared_vertex(topology, e, h).map_or(feature, Feature::Vertex)
                 }
                 _ => feature,
             };
@@ -185,20 +205,22 @@ impl ExitTest<'_, '_> {
         feature
     }
 
-    /// A normal with `n . d = 1` that supports both bodies where the features touch.
-    fn common_normal(&self, features: [Feature; 2]) -> Common {
+    /// Finds a normal with `n . d = 1` that supports both bodies where the features touch.
+    fn common_normal(&self, features: [Feature; 2]) -> CommonNormal {
         let unit = self.setting.unit;
         let single = match features {
             [Feature::Face(f), _] => Some(self.face_normal(0, f)),
             [_, Feature::Face(f)] => Some(self.face_normal(1, f)),
-            [Feature::Edge(e), Feature::Edge(f)] => self.across(e, f),
+            [Feature::Edge(e), Feature::Edge(f)] => self.edge_pair_normal(e, f),
             _ => None,
         };
         let Some(single) = single else {
-            return self.any_normal(features).map_or(Common::Undecided, Common::Normal);
+            return self
+                .clip_normals(features)
+                .map_or(CommonNormal::Undecided, CommonNormal::Normal);
         };
         let along = single.dot(unit);
-        // A face has an outside; two edges do not.
+        // A face has an outward normal. The normal of two edges has either sense.
         let outward = match features {
             [Feature::Face(_), _] => along > 0.0,
             [_, Feature::Face(_)] => along < 0.0,
@@ -206,80 +228,85 @@ impl ExitTest<'_, '_> {
         };
         let normal = single / along;
         if !(outward && normal.is_finite()) {
-            return Common::Undecided;
+            return CommonNormal::Undecided;
         }
-        // Of the normal's length at most its coordinates' sum: no square root (the paper, V-A).
+        // The sum of the coordinates bounds the length of the normal without a square root (the paper, V-A).
         let noise = self.setting.noise().point() * normal.abs().element_sum();
         let farthest = [0, 1].map(|body| {
-            let outward = self.in_body(body, if body == 0 { normal } else { -normal });
-            self.farthest(body, outward, features[body])
+            let outward = self.to_body_frame(body, if body == 0 { normal } else { -normal });
+            self.farthest_step(body, outward, features[body])
         });
         if farthest.iter().all(|(distance, _)| *distance <= noise) {
-            return Common::Normal(normal);
+            return CommonNormal::Normal(normal);
         }
-        Common::Beyond([0, 1].map(|body| match (farthest[body], features[body]) {
+        CommonNormal::Unsupported([0, 1].map(|body| match (farthest[body], features[body]) {
             ((distance, _), Feature::Face(h) | Feature::Edge(h)) if distance <= noise => h,
             ((_, h), _) => h,
         }))
     }
 
-    /// The normal of two edges, of either sense; `None` if they are parallel.
-    fn across(&self, e: u32, f: u32) -> Option<DVec3> {
+    /// Returns the cross product of two edges. `None` if they are parallel.
+    fn edge_pair_normal(&self, e: u32, f: u32) -> Option<DVec3> {
         let along = |body: usize, h: u32| {
             let topology = self.sides[body].topology;
-            let way = self.way(body, topology.origin(h), topology.target(h));
-            *self.matrix(body) * way
+            let step = self.vertex_difference(body, topology.origin(h), topology.target(h));
+            *self.rotation_matrix(body) * step
         };
         let (p, q) = (along(0, e), along(1, f));
         let normal = p.cross(q);
         let sizes = p.length_squared() * q.length_squared();
-        (normal.length_squared() > PARALLEL * PARALLEL * sizes).then_some(normal)
+        (normal.length_squared() > MIN_SINE * MIN_SINE * sizes).then_some(normal)
     }
 
-    /// The outward normal of a face, of any length.
+    /// Returns the outward normal of a face in the setting frame, of any length.
     fn face_normal(&self, body: usize, half_edge: u32) -> DVec3 {
         let topology = self.sides[body].topology;
         let third = topology.target(topology.next(half_edge));
         let first = topology.origin(half_edge);
-        let along = self.way(body, first, topology.target(half_edge));
-        *self.matrix(body) * along.cross(self.way(body, first, third))
+        let along = self.vertex_difference(body, first, topology.target(half_edge));
+        *self.rotation_matrix(body) * along.cross(self.vertex_difference(body, first, third))
     }
 
-    /// How far the ways out of a feature lead along a normal of the body's frame, and the half-edge
-    /// at whose face is the one that leads farthest.
-    fn farthest(&self, body: usize, outward: DVec3, feature: Feature) -> (f64, u32) {
+    /// Finds the step out of a feature that leads farthest along `outward`, a normal in the body frame. Returns
+    /// its distance, and a half-edge of the face that contains it.
+    fn farthest_step(&self, body: usize, outward: DVec3, feature: Feature) -> (f64, u32) {
         let mut farthest = (f64::NEG_INFINITY, 0);
-        self.for_ways(body, feature, |way, h| {
-            let distance = outward.dot(way);
+        self.for_each_step(body, feature, |step, h| {
+            let distance = outward.dot(step);
             farthest = if distance > farthest.0 { (distance, h) } else { farthest };
         });
         farthest
     }
 
-    /// By clipping the plane of normals `d + s1 e1 + s2 e2` with all ways out of both features,
-    /// each by as much too little as rounding may hide.
-    fn any_normal(&self, features: [Feature; 2]) -> Option<DVec3> {
+    /// Finds a common normal of features that leave more than one. Clips the plane of normals `d + s1 e1 + s2
+    /// e2` by all steps out of both features, each relaxed by rounding, and takes the centroid. `None` if
+    /// nothing remains or if there are more than [`MAX_FEATURE_STEPS`] steps.
+    fn clip_normals(&self, features: [Feature; 2]) -> Option<DVec3> {
         let unit = self.setting.unit;
         let e1 = unit.any_orthonormal_vector();
         let e2 = unit.cross(e1);
-        let ways = |body: usize| self.count_ways(body, features[body]);
-        if ways(0) + ways(1) > MOST_WAYS {
+        let steps = |body: usize| self.count_steps(body, features[body]);
+        if steps(0) + steps(1) > MAX_FEATURE_STEPS {
             return None;
         }
         let noise = self.setting.noise().point();
-        let mut normals = Region::rectangle(DVec2::splat(-STEEPEST), DVec2::splat(STEEPEST));
+        let mut normals = LevelRegion::from_rectangle(
+            DVec2::splat(-MAX_LATERAL_PART),
+            DVec2::splat(MAX_LATERAL_PART),
+        );
         for (body, feature) in features.into_iter().enumerate() {
             let sign = if body == 0 { 1.0 } else { -1.0 };
-            let [d, e1, e2] = [unit, e1, e2].map(|v| self.in_body(body, v * sign));
-            self.for_ways(body, feature, |way, _| {
-                normals.cut(DVec2::new(e1.dot(way), e2.dot(way)), noise - d.dot(way));
+            let [d, e1, e2] = [unit, e1, e2].map(|v| self.to_body_frame(body, v * sign));
+            self.for_each_step(body, feature, |step, _| {
+                normals.cut_by(DVec2::new(e1.dot(step), e2.dot(step)), noise - d.dot(step));
             });
         }
         let slope = normals.centroid()?;
         Some(unit + e1 * slope.x + e2 * slope.y)
     }
 
-    fn count_ways(&self, body: usize, feature: Feature) -> usize {
+    /// Returns the number of steps out of a feature.
+    fn count_steps(&self, body: usize, feature: Feature) -> usize {
         match feature {
             Feature::Vertex(v) => self.sides[body].topology.neighbours(v).len(),
             Feature::Edge(_) => 4,
@@ -287,69 +314,72 @@ impl ExitTest<'_, '_> {
         }
     }
 
-    /// The ways out of a feature along the surface, and both ways along it, in the body's frame, each
-    /// with a half-edge of the face where it is.
-    fn for_ways(&self, body: usize, feature: Feature, mut visit: impl FnMut(DVec3, u32)) {
+    /// Visits the steps out of a feature along the surface, and the steps along the feature in both senses. A
+    /// step is a vector in the body frame, with a half-edge of the face that contains it.
+    fn for_each_step(&self, body: usize, feature: Feature, mut visit: impl FnMut(DVec3, u32)) {
         let topology = self.sides[body].topology;
-        let here = self.vertex_of(body, feature);
+        let here = self.first_vertex(body, feature);
         match feature {
             Feature::Vertex(v) => {
-                let ways = topology.neighbours(v).iter().zip(topology.outgoing(v));
-                ways.for_each(|(&to, &h)| visit(self.way(body, here, to), h));
+                let steps = topology.neighbours(v).iter().zip(topology.outgoing(v));
+                steps.for_each(|(&to, &h)| visit(self.vertex_difference(body, here, to), h));
             }
             Feature::Edge(h) => {
                 let twin = topology.half_edge(h).twin;
                 let end = topology.target(h);
-                visit(self.way(body, here, end), h);
-                visit(self.way(body, here, topology.target(topology.next(h))), h);
-                visit(self.way(body, here, topology.target(topology.next(twin))), twin);
-                visit(self.way(body, end, here), twin);
+                visit(self.vertex_difference(body, here, end), h);
+                visit(self.vertex_difference(body, here, topology.target(topology.next(h))), h);
+                visit(
+                    self.vertex_difference(body, here, topology.target(topology.next(twin))),
+                    twin,
+                );
+                visit(self.vertex_difference(body, end, here), twin);
             }
             Feature::Face(h) => {
                 let next = topology.next(h);
                 let [back, third] = [topology.target(h), topology.target(next)];
-                visit(self.way(body, here, back), h);
-                visit(self.way(body, here, third), h);
-                visit(self.way(body, back, here), h);
-                visit(self.way(body, third, here), h);
+                visit(self.vertex_difference(body, here, back), h);
+                visit(self.vertex_difference(body, here, third), h);
+                visit(self.vertex_difference(body, back, here), h);
+                visit(self.vertex_difference(body, third, here), h);
             }
         }
     }
 
-    /// A vertex of the body in the setting frame, up to Q's offset.
-    fn at(&self, body: usize, vertex: u32) -> DVec3 {
-        *self.matrix(body) * self.sides[body].vertices[vertex as usize]
+    /// Returns a vertex of a body in the setting frame, without Q's offset.
+    fn vertex_position(&self, body: usize, vertex: u32) -> DVec3 {
+        *self.rotation_matrix(body) * self.sides[body].vertices[vertex as usize]
     }
 
-    /// From a vertex to another in the body's frame.
-    fn way(&self, body: usize, from: u32, to: u32) -> DVec3 {
+    /// Returns the vector from one vertex to another in the body frame.
+    fn vertex_difference(&self, body: usize, from: u32, to: u32) -> DVec3 {
         let vertices = self.sides[body].vertices;
         vertices[to as usize] - vertices[from as usize]
     }
 
-    /// A covector of the setting frame in the body's frame.
-    fn in_body(&self, body: usize, covector: DVec3) -> DVec3 {
-        self.matrix(body).transpose() * covector
+    /// Rotates a covector of the setting frame into the body frame.
+    fn to_body_frame(&self, body: usize, covector: DVec3) -> DVec3 {
+        self.rotation_matrix(body).transpose() * covector
     }
 
-    /// The rotation of the body.
-    fn matrix(&self, body: usize) -> &DMat3 {
+    /// Returns the rotation of a body.
+    fn rotation_matrix(&self, body: usize) -> &DMat3 {
         let TwoBodies { moving_matrix, fixed_matrix, .. } = &self.setting.bodies;
         if body == 0 { moving_matrix } else { fixed_matrix }
     }
 
-    /// A vertex of a feature.
-    fn vertex_of(&self, body: usize, feature: Feature) -> u32 {
+    /// Returns a vertex of a feature.
+    fn first_vertex(&self, body: usize, feature: Feature) -> u32 {
         match feature {
             Feature::Vertex(v) => v,
             Feature::Edge(h) | Feature::Face(h) => self.sides[body].topology.origin(h),
         }
     }
 
-    /// A feature as two pairs of its vertices.
-    fn named(&self, body: usize, feature: Feature) -> [u32; 4] {
+    /// Returns vertices of a feature as two pairs.
+    fn vertex_pairs(&self, body: usize, feature: Feature) -> [u32; 4] {
         let topology = self.sides[body].topology;
-        let first = self.vertex_of(body, feature);
+        let first = self.first_vertex(body, feature);
         match feature {
             Feature::Vertex(_) => [first; 4],
             Feature::Edge(h) => [first, topology.target(h), first, topology.target(h)],
@@ -360,8 +390,9 @@ impl ExitTest<'_, '_> {
         }
     }
 
-    /// Corners of the features' difference around the line: all of them if they are at most four.
-    fn corners(&self, features: [Feature; 2]) -> Option<Corners> {
+    /// Returns corners of the features' Minkowski difference around the line. `None` for features other than
+    /// two edges, or a vertex and a face.
+    fn difference_corners(&self, features: [Feature; 2]) -> Option<Corners> {
         match features {
             [Feature::Edge(e), Feature::Edge(f)] => {
                 let ends = |body: usize, h: u32| {
@@ -373,20 +404,21 @@ impl ExitTest<'_, '_> {
                 Some([pair(0, 0), pair(1, 0), pair(1, 1), pair(0, 1)])
             }
             [Feature::Vertex(moving), Feature::Face(h)] => {
-                let at = self.at(0, moving) - self.setting.offset;
-                Some(self.around(1, h, at).map(|fixed| VertexPair::of(moving, fixed)))
+                let at = self.vertex_position(0, moving) - self.setting.offset;
+                Some(self.face_corners_around(1, h, at).map(|fixed| VertexPair::of(moving, fixed)))
             }
             [Feature::Face(h), Feature::Vertex(fixed)] => {
-                let at = self.at(1, fixed) + self.setting.offset;
-                Some(self.around(0, h, at).map(|moving| VertexPair::of(moving, fixed)))
+                let at = self.vertex_position(1, fixed) + self.setting.offset;
+                Some(self.face_corners_around(0, h, at).map(|moving| VertexPair::of(moving, fixed)))
             }
             _ => None,
         }
     }
 
-    /// Three or four corners of a face, in order, around where the line through a point passes it:
-    /// the first and two or three in succession, found by halving. Only up to rounding.
-    fn around(&self, body: usize, half_edge: u32, point: DVec3) -> [u32; 4] {
+    /// Finds three or four corners of a face, in order, around the intersection with the line through `point`:
+    /// the first corner, and two or three consecutive ones that bisection finds. Rounding may make them miss
+    /// the line.
+    fn face_corners_around(&self, body: usize, half_edge: u32, point: DVec3) -> [u32; 4] {
         let topology = self.sides[body].topology;
         let boundary = topology.face(topology.half_edge(half_edge).face);
         let corner = |i: u32| topology.origin(boundary.start + i);
@@ -394,14 +426,16 @@ impl ExitTest<'_, '_> {
         if count == 3 {
             return [corner(0), corner(1), corner(2), corner(2)];
         }
-        // The faces that touch look along the direction on P and against it on Q.
+        // The outward normal of a touching face has a positive component along the direction on P, a negative
+        // one on Q.
         let outward = if body == 0 { self.setting.unit } else { -self.setting.unit };
-        let first = self.at(body, corner(0));
+        let first = self.vertex_position(body, corner(0));
         let is_left = |i: u32| {
-            let along = self.at(body, corner(i)) - first;
+            let along = self.vertex_position(body, corner(i)) - first;
             along.cross(point - first).dot(outward) > 0.0
         };
-        // The point is to the left of the diagonal to `low` and not of that to `high`.
+        // Invariant: the point is to the left of the diagonal to `low`, and not to the left of the diagonal to
+        // `high`.
         let (mut low, mut high) = (1, count - 1);
         while high - low > 1 {
             let middle = low.midpoint(high);
@@ -412,15 +446,15 @@ impl ExitTest<'_, '_> {
     }
 }
 
-/// Whether an edge bounds the face of another half-edge.
-fn bounds(topology: &Topology, edge: u32, of_face: u32) -> bool {
+/// Checks whether an edge bounds the face of another half-edge.
+fn edge_bounds_face(topology: &Topology, edge: u32, of_face: u32) -> bool {
     let face = |h: u32| topology.half_edge(h).face;
     let twin = topology.half_edge(edge).twin;
     face(edge) == face(of_face) || face(twin) == face(of_face)
 }
 
-/// The vertex that two different edges share.
-fn shared(topology: &Topology, e: u32, f: u32) -> Option<u32> {
+/// Finds the vertex that two different edges share. `None` if they are the same edge or share no vertex.
+fn shared_vertex(topology: &Topology, e: u32, f: u32) -> Option<u32> {
     let ends = |h: u32| [topology.origin(h), topology.target(h)];
     let (of_e, of_f) = (ends(e), ends(f));
     if f == e || f == topology.half_edge(e).twin {

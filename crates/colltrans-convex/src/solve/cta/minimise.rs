@@ -1,89 +1,89 @@
-//! The minimisation: solve the planar problem at the centroid, shift to the cell's best point, end
-//! if that solves the problem, else cut and repeat.
+//! The loop of the minimisation (figure 7 of the paper): solve the planar problem at the centroid, shift to the
+//! best point of the cell, end if this point solves the problem, else cut the region and repeat.
 //!
-//! The paper's shift ends in its cell. Here, where a few edges' width of levels is left, it goes on:
-//! the exit test names the faces to which the contact passes on where `phi` falls, so the neighbouring
-//! cell is known without a search. Its best point is below, so no cell is crossed twice.
+//! The paper's shift ends in its cell. Here a shift can continue into neighbouring cells if the remaining
+//! levels are a few edges wide and [`CtaOptions::keeps_to_cell`] is not set. The exit test names the faces to
+//! which the contact passes on where `phi` falls, so that the neighbouring cell is known without a search. Its
+//! best point is lower, therefore no cell is crossed twice.
 
 use glam::{DVec2, DVec3};
 
 use super::MAX_STEPS;
-use super::bound::{LowerBound, Progress};
-use super::cell::{Best, Cell};
+use super::bound::{BoundStatus, LowerBound};
+use super::cell::{BestPoint, ContactCell};
 use super::crossing::Crossing;
-use super::exit::{Beyond, Corners, Exit, ExitTest, SAME_HEIGHT, Solved};
+use super::exit::{Corners, Descent, ExitResult, ExitTest, HEIGHT_TOLERANCE, SolvedContact};
 use super::options::Cuts;
-use super::piece::{Affine, Piece};
-use super::planar::{self, Hint, Planar};
-use super::region::{Region, Square};
+use super::piece::{Affine, LinearPiece};
+use super::planar::{self, PlanarAnswer, PlanarHint};
+use super::region::{LevelRegion, Neighbourhood};
 use super::section_pair::SectionPair;
 use super::start::Origin;
 use crate::setting::Setting;
 use crate::solve::observe::{Cut, Observer, Phase, PlanarProblem, Touch, Watch};
 
-/// Levels to search that are together at most so many times as wide as near ones are apart are
-/// crossed from cell to cell: at most so many cells before the next planar problem (both measured).
-const NARROW: f64 = 8.0;
-const MOST_CELLS: u32 = 16;
+/// Extent of the remaining levels, in multiples of `SectionedBody::near_distance`, up to which a shift
+/// continues into neighbouring cells (measured).
+const NARROW_FACTOR: f64 = 8.0;
+/// Maximum number of cells that a shift crosses before the next planar problem (measured).
+const MAX_CELLS: u32 = 16;
 
-/// Choices of a minimisation.
+/// Options of a minimisation.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct CtaOptions {
-    /// Where to start.
+    /// First levels.
     pub(crate) start: Origin,
-    /// Stops when upper minus lower bound is at most this part of the extent of both bodies along
-    /// the direction.
+    /// Difference of the upper and the lower bound at which the minimisation ends, as a share of the extent of
+    /// both bodies along the direction.
     pub(crate) gap: f64,
-    /// The shift ends in its cell.
+    /// Whether a shift ends in its cell.
     pub(crate) keeps_to_cell: bool,
-    /// Where cuts go.
+    /// Level of `phi` at which the region is cut.
     pub(crate) cuts: Cuts,
-    /// Planar problems begin with nothing.
+    /// Whether planar problems start without a hint.
     pub(crate) starts_cold: bool,
 }
 
-/// Where the search was narrowed to.
+/// Result of a minimisation.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Guess {
-    /// The bodies seem to meet: the contact normal `n`, not of unit length, with `n . d = 1`, in
-    /// the setting frame.
+    /// The bodies seem to meet. The contact normal `n` is in the setting frame, with `n . d = 1` instead of
+    /// length 1.
     Contact { normal: DVec3 },
-    /// The bodies seem never to meet: a direction from P to Q with `u . d = 0` up to rounding.
+    /// The bodies seem never to meet. The direction `u` leads from P to Q, with `u . d = 0` up to rounding.
     Separation { direction: DVec3 },
-    /// Nothing was learnt: rounding hides the sections of a nearly flat body.
+    /// No guess: rounding hides the sections of a nearly flat body.
     Nothing,
 }
 
 /// Two mesh edges of each body, as two pairs of vertices.
-type Features = [[u32; 4]; 2];
+type FeatureVertices = [[u32; 4]; 2];
 
-/// The result of a minimisation.
+/// Result of a minimisation, with its bounds.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Narrowed {
+pub(crate) struct NarrowedSearch {
     pub(crate) guess: Guess,
-    /// The two mesh edges of each body nearest to the contact or the separating plane, as two pairs
-    /// of vertices.
-    pub(crate) vertices: Features,
-    /// The face of the difference that the line passes, if the exit test ended the search.
+    /// The two mesh edges of each body nearest to the contact or to the separating plane.
+    pub(crate) vertices: FeatureVertices,
+    /// Part of the face of the Minkowski difference that contains the line, if the exit test ended the search.
     pub(crate) corners: Option<Corners>,
-    /// Least `phi` found, an upper bound of the collision translation in units of length; infinite
-    /// without a contact.
+    /// Least `phi` found, a length: an upper bound of the collision translation. Infinite without a contact.
     #[cfg_attr(
         not(test),
         expect(dead_code, reason = "the finish proves its own bounds; the tests compare")
     )]
     pub(crate) upper: f64,
-    /// Lower bound, in units of length.
+    /// Lower bound of the collision translation, a length.
     #[cfg_attr(not(test), expect(dead_code, reason = "as `upper`"))]
     pub(crate) lower: f64,
 }
 
-impl Narrowed {
-    /// No section could be found.
-    fn nothing() -> Self {
+impl NarrowedSearch {
+    /// Returns the result of a search for which no section was found.
+    fn without_sections() -> Self {
         Self {
             guess: Guess::Nothing,
-            vertices: Features::default(),
+            vertices: FeatureVertices::default(),
             corners: None,
             upper: f64::INFINITY,
             lower: f64::NEG_INFINITY,
@@ -91,41 +91,46 @@ impl Narrowed {
     }
 }
 
-/// Narrows the search for the contact of two bodies of dimension 3.
+/// Minimises `phi` for two bodies of dimension 3. Adds the iterations of the planar problems to `watch`.
 pub(crate) fn minimise<O: Observer>(
     setting: &Setting,
     options: &CtaOptions,
     watch: &mut Watch<O>,
-) -> Narrowed {
+) -> NarrowedSearch {
     let sections = SectionPair::new(setting);
     watch.ended(Phase::Setup);
-    let narrowed = sections.minimise(options, watch);
+    let narrowed = sections.minimise_phi(options, watch);
     let inner = sections.sides.each_ref().map(|side| side.iterations.get());
     watch.steps.iterations += inner[0] + inner[1];
     narrowed
 }
 
 impl SectionPair<'_> {
-    fn minimise<O: Observer>(&self, options: &CtaOptions, watch: &mut Watch<O>) -> Narrowed {
-        let begin = self.begin(&options.start);
-        watch.sections(|| self.told(begin.square));
-        let levels = begin.at.to_array();
-        let hint = if options.starts_cold { Hint::NONE } else { begin.hint };
-        let first = planar::solve(&self.sides, levels, &hint);
+    /// Solves the first planar problem, and further ones unless it solves the problem.
+    fn minimise_phi<O: Observer>(
+        &self,
+        options: &CtaOptions,
+        watch: &mut Watch<O>,
+    ) -> NarrowedSearch {
+        let initial = self.initial_state(&options.start);
+        watch.sections(|| self.observed_sections(initial.neighbourhood));
+        let levels = initial.levels.to_array();
+        let hint = if options.starts_cold { PlanarHint::NONE } else { initial.hint };
+        let first = planar::solve_planar(&self.sides, levels, &hint);
         watch.ended(Phase::Planar);
         let Some(first) = first else {
             watch.planar_problem(|| PlanarProblem::hidden(levels));
-            return Narrowed::nothing();
+            return NarrowedSearch::without_sections();
         };
         let gap = options.gap * self.extent;
         let mut search = Minimisation {
             sections: self,
-            region: Region::rectangle(-self.half, self.half),
-            square: begin.square,
+            region: LevelRegion::from_rectangle(-self.half, self.half),
+            neighbourhood: initial.neighbourhood,
             keeps_to_cell: options.keeps_to_cell,
             cuts: options.cuts,
             starts_cold: options.starts_cold,
-            floor: begin.floor,
+            floor: initial.floor,
             bound: None,
             upper: f64::INFINITY,
             best: None,
@@ -136,109 +141,120 @@ impl SectionPair<'_> {
             watch,
             steps: 1,
         };
-        if search.learn(begin.at - self.origin, levels, &first) {
-            search.run(gap);
+        if search.apply_answer(initial.levels - self.origin, levels, &first) {
+            search.solve_planar_problems(gap);
         }
-        search.result()
+        search.narrowed_search()
     }
 }
 
-/// The state of a minimisation; levels are relative to the middle of all.
+/// State of a minimisation. Levels are relative to the middle of all levels.
 struct Minimisation<'q, 'a, 'o, O> {
     sections: &'q SectionPair<'a>,
-    region: Region,
-    /// The levels searched first, until cuts leave nothing of them on the way to the centroid.
-    square: Option<Square>,
+    region: LevelRegion,
+    /// Levels that are searched first, until the way from their centre to the centroid no longer leaves them
+    /// within the region.
+    neighbourhood: Option<Neighbourhood>,
     keeps_to_cell: bool,
     cuts: Cuts,
     starts_cold: bool,
-    /// Over all levels; nothing before the first cut: a query that ends in its first step does without.
+    /// Lower bound over all levels. `None` before the first cut, because a query that ends in its first step
+    /// does not need it.
     bound: Option<LowerBound>,
-    /// What it begins with.
-    floor: Piece,
+    /// First piece of the lower bound.
+    floor: LinearPiece,
+    /// Least `phi` found, without the constant of the section pair.
     upper: f64,
     /// Features of the best contact.
-    best: Option<Features>,
-    /// What the exit test found.
-    solved: Option<Solved>,
-    last_separation: Option<(Features, DVec3)>,
+    best: Option<FeatureVertices>,
+    /// Contact that the exit test has proven.
+    solved: Option<SolvedContact>,
+    /// Features and normal of the last separated sections.
+    last_separation: Option<(FeatureVertices, DVec3)>,
+    /// Normal of the contradiction that ended the search.
     contradiction: Option<DVec3>,
-    /// The last planar problem: its levels and answer.
-    last: ([f64; 2], Planar),
+    /// Levels and answer of the last planar problem.
+    last: ([f64; 2], PlanarAnswer),
     watch: &'q mut Watch<'o, O>,
-    /// Planar problems solved.
+    /// Number of planar problems solved.
     steps: u32,
 }
 
 impl SectionPair<'_> {
-    /// The corners of a cell around these levels, for those who look on.
-    fn corners(&self, cell: &Cell, levels: [f64; 2]) -> Vec<DVec2> {
+    /// Returns the corners of a cell around `levels`, for an observer.
+    fn cell_corners(&self, cell: &ContactCell, levels: [f64; 2]) -> Vec<DVec2> {
         let at = DVec2::from_array(levels);
         let low = self.origin - self.half - at;
-        let mut shape = Region::rectangle(low, low + 2.0 * self.half);
+        let mut shape = LevelRegion::from_rectangle(low, low + 2.0 * self.half);
         for side in cell.half_planes() {
-            shape.cut(-side.gradient, side.value);
+            shape.cut_by(-side.gradient, side.value);
         }
         shape.corners().iter().map(|&corner| at + corner).collect()
     }
 }
 
 impl<O: Observer> Minimisation<'_, '_, '_, O> {
-    /// One planar problem after the other, at the centroid of what is left or on the way there.
-    fn run(&mut self, gap: f64) {
-        while self.steps < MAX_STEPS && self.upper - self.lower() > gap {
-            let Some(at) = self.next() else { break };
+    /// Solves planar problems until the bounds differ by at most `gap`, the search is over, or [`MAX_STEPS`]
+    /// are solved.
+    fn solve_planar_problems(&mut self, gap: f64) {
+        while self.steps < MAX_STEPS && self.upper - self.lower_bound() > gap {
+            let Some(at) = self.next_cut_point() else { break };
             self.watch.ended(Phase::Region);
             let levels = (self.sections.origin + at).to_array();
-            let below = self.bound.as_ref().map_or(f64::NEG_INFINITY, |bound| bound.below(at));
-            let height = below - self.sections.frame.base(levels);
+            let below =
+                self.bound.as_ref().map_or(f64::NEG_INFINITY, |bound| bound.lower_bound_at(at));
+            let height = below - self.sections.frame.base_height(levels);
             self.steps += 1;
             self.watch.ended(Phase::Bound);
             let sides = &self.sections.sides;
             let (at_last, last) = &self.last;
-            let hint =
-                if self.starts_cold { Hint::NONE } else { last.hint(*at_last, levels, height) };
-            let answer = planar::solve(sides, levels, &hint);
+            let hint = if self.starts_cold {
+                PlanarHint::NONE
+            } else {
+                last.hint_for_levels(*at_last, levels, height)
+            };
+            let answer = planar::solve_planar(sides, levels, &hint);
             self.watch.ended(Phase::Planar);
             let Some(answer) = answer else {
                 self.watch.planar_problem(|| PlanarProblem::hidden(levels));
                 break;
             };
             self.last = (levels, answer);
-            if !self.learn(at, levels, &answer) {
+            if !self.apply_answer(at, levels, &answer) {
                 break;
             }
         }
     }
 
-    /// What all pieces prove.
-    fn lower(&self) -> f64 {
-        self.bound.as_ref().map_or(self.floor.bound.value, |bound| bound.t)
+    /// Returns the lower bound that all pieces prove, or the value of the floor before the first cut.
+    fn lower_bound(&self) -> f64 {
+        self.bound.as_ref().map_or(self.floor.bound.value, |bound| bound.least_t)
     }
 
-    /// The normal that proves it.
-    fn normal(&self) -> DVec3 {
-        self.bound.as_ref().map_or(DVec3::ZERO, LowerBound::normal)
+    /// Returns the normal that proves the lower bound; zero before the first cut.
+    fn lower_bound_normal(&self) -> DVec3 {
+        self.bound.as_ref().map_or(DVec3::ZERO, LowerBound::proven_normal)
     }
 
-    /// Where to cut next: at the centroid `c` if it is in the square; where the way to it leaves the
-    /// square if that point, `c*`, is still in the region; else at `c`, and without the square from
-    /// now on.
-    fn next(&mut self) -> Option<DVec2> {
+    /// Returns the next levels to cut at (the paper, figure 10): the centroid `c` if it is in the
+    /// neighbourhood; the point `c*` where the way from the neighbourhood's centre to `c` leaves it, if `c*` is
+    /// in the region; else `c`, from then on without the neighbourhood. `None` if the region has no area.
+    fn next_cut_point(&mut self) -> Option<DVec2> {
         let centroid = self.region.centroid()?;
-        let Some(square) = self.square else { return Some(centroid) };
-        let entry = square.entry(centroid);
+        let Some(neighbourhood) = self.neighbourhood else { return Some(centroid) };
+        let entry = neighbourhood.entry_point(centroid);
         if self.region.contains(entry) {
             return Some(entry);
         }
-        self.square = None;
+        self.neighbourhood = None;
         Some(centroid)
     }
 
-    /// Cuts the region and raises the bound; `false` if there is nothing more to learn.
-    fn learn(&mut self, at: DVec2, levels: [f64; 2], answer: &Planar) -> bool {
-        let local = answer.piece(&self.sections.frame, levels);
-        self.shift(levels, answer, &local);
+    /// Shifts to the best point of the answer's cell, cuts the region and raises the bound. Returns `false` if
+    /// the search has ended: the exit test has solved the problem, or the pieces contradict each other.
+    fn apply_answer(&mut self, at: DVec2, levels: [f64; 2], answer: &PlanarAnswer) -> bool {
+        let local = answer.linear_piece(&self.sections.frame, levels);
+        self.shift_to_best_point(levels, answer, &local);
         self.watch.ended(Phase::Cell);
         if self.solved.is_some() {
             return false;
@@ -252,14 +268,14 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
             Cuts::Shifted => self.upper,
             Cuts::Centroid => local.bound.value,
         };
-        self.region.cut(bound.gradient, limit - bound.value);
+        self.region.cut_by(bound.gradient, limit - bound.value);
         let sides = &mut self.watch.steps.region_sides;
-        *sides = self.region.sides().max(*sides);
+        *sides = self.region.side_count().max(*sides);
         self.watch.ended(Phase::Region);
         let half = self.sections.half;
         let all = self.bound.get_or_insert_with(|| LowerBound::new([-half, half], self.floor));
-        let progress = all.add(Piece { bound, ..local });
-        let lower = all.t;
+        let progress = all.add_piece(LinearPiece { bound, ..local });
+        let lower = all.least_t;
         let constant = self.sections.constant;
         self.watch.cut(|| Cut {
             origin: self.sections.origin,
@@ -269,76 +285,83 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
             upper: self.upper + constant,
         });
         self.watch.ended(Phase::Bound);
-        if let Progress::Contradiction(normal) = progress {
+        if let BoundStatus::Contradiction(normal) = progress {
             self.contradiction = Some(normal);
             return false;
         }
         true
     }
 
-    /// Goes to the best point of the cell, and looks whether it solves the problem. Where little is left
-    /// to search, it goes on from cell to cell while the exit test tells where `phi` falls.
-    fn shift(&mut self, levels: [f64; 2], answer: &Planar, local: &Piece) {
+    /// Goes to the best point of the cell and tests it. If the remaining levels are narrow, continues from cell
+    /// to cell while the exit test names the faces on which `phi` falls.
+    fn shift_to_best_point(
+        &mut self,
+        levels: [f64; 2],
+        answer: &PlanarAnswer,
+        local: &LinearPiece,
+    ) {
         let sides = &self.sections.sides;
-        let Some(cell) = answer.cell(sides, levels) else {
-            self.last_separation = Some((answer.features(), local.normal));
-            return self.report(levels, answer, local, &Best::default());
+        let Some(cell) = answer.contact_cell(sides, levels) else {
+            self.last_separation = Some((answer.feature_vertices(), local.normal));
+            return self.report_planar_problem(levels, answer, local, &BestPoint::default());
         };
-        let best = cell.best(local.bound.gradient);
-        self.report(levels, answer, local, &best);
-        self.watch.cell(|| self.sections.corners(&cell, levels));
-        let mut exit = self.improve((levels, answer), local, (&cell, &best));
-        let most = if !self.keeps_to_cell && self.is_narrow() { MOST_CELLS } else { 0 };
-        for _ in 0..most {
-            let Exit::Falls(beyond) = exit else { break };
-            let Some(next) = self.cross(&beyond) else { break };
+        let best = cell.best_point(local.bound.gradient);
+        self.report_planar_problem(levels, answer, local, &best);
+        self.watch.cell(|| self.sections.cell_corners(&cell, levels));
+        let mut exit = self.test_improvement((levels, answer), local, (&cell, &best));
+        let max_cells =
+            if !self.keeps_to_cell && self.is_remainder_narrow() { MAX_CELLS } else { 0 };
+        for _ in 0..max_cells {
+            let ExitResult::Falls(descent) = exit else { break };
+            let Some(next) = self.enter_next_cell(&descent) else { break };
             exit = next;
         }
     }
 
-    /// Whether the levels to search are a few edges wide.
-    fn is_narrow(&self) -> bool {
-        let size = match self.square {
-            Some(square) => DVec2::splat(2.0 * square.half),
-            None => self.region.size(),
+    /// Checks whether the levels still to be searched are a few edges wide.
+    fn is_remainder_narrow(&self) -> bool {
+        let size = match self.neighbourhood {
+            Some(neighbourhood) => DVec2::splat(2.0 * neighbourhood.half),
+            None => self.region.level_extent(),
         };
-        let near = DVec2::from_array(self.sections.sides.each_ref().map(|side| side.near));
-        size.cmple(near * NARROW).all()
+        let near = DVec2::from_array(self.sections.sides.each_ref().map(|side| side.near_distance));
+        size.cmple(near * NARROW_FACTOR).all()
     }
 
-    /// Crosses a cell from its rim, where the best point of its neighbour is; `None` if the sections
-    /// do not meet there as told.
-    fn cross(&mut self, beyond: &Beyond) -> Option<Exit> {
+    /// Goes from the boundary of a cell to the best point of its neighbour. `None` if the edges of the sections
+    /// on the named faces do not cross there at the height of the best point found.
+    fn enter_next_cell(&mut self, descent: &Descent) -> Option<ExitResult> {
         let SectionPair { sides, frame, extent, .. } = self.sections;
-        let answer = planar::on_faces(sides, beyond.levels, beyond.faces)?;
-        let local = answer.piece(frame, beyond.levels);
-        let is_there = (local.bound.value - self.upper).abs() <= SAME_HEIGHT * extent;
+        let answer = planar::solve_on_faces(sides, descent.levels, descent.faces)?;
+        let local = answer.linear_piece(frame, descent.levels);
+        let is_there = (local.bound.value - self.upper).abs() <= HEIGHT_TOLERANCE * extent;
         if !is_there {
             return None;
         }
-        let cell = answer.cell(sides, beyond.levels)?;
-        let best = cell.best(local.bound.gradient);
-        Some(self.improve((beyond.levels, &answer), &local, (&cell, &best)))
+        let cell = answer.contact_cell(sides, descent.levels)?;
+        let best = cell.best_point(local.bound.gradient);
+        Some(self.test_improvement((descent.levels, &answer), &local, (&cell, &best)))
     }
 
-    /// What the exit test says at the best point of the cell of a contact, if it is the least so far.
-    fn improve(
+    /// Runs the exit test at the best point of a cell, and stores it, if it is lower than all before. Returns
+    /// [`ExitResult::Missed`] otherwise.
+    fn test_improvement(
         &mut self,
-        (levels, answer): ([f64; 2], &Planar),
-        local: &Piece,
-        (cell, best): (&Cell, &Best),
-    ) -> Exit {
+        (levels, answer): ([f64; 2], &PlanarAnswer),
+        local: &LinearPiece,
+        (cell, best): (&ContactCell, &BestPoint),
+    ) -> ExitResult {
         let SectionPair { sides, setting, extent, constant, .. } = self.sections;
         let least = local.bound.value + best.change;
         if least.is_nan() || least >= self.upper {
-            return Exit::Missed;
+            return ExitResult::Missed;
         }
         self.upper = least;
-        self.best = Some(answer.features());
+        self.best = Some(answer.feature_vertices());
         let test = ExitTest { sides, setting, extent: *extent };
-        let at = (DVec2::from_array(levels) + best.at).to_array();
-        let exit = test.solves(answer, (at, &cell.ends_at(best)), least + constant);
-        if let Exit::Solved(solved) = exit {
+        let at = (DVec2::from_array(levels) + best.offset).to_array();
+        let exit = test.test_best_point(answer, (at, &cell.changes_at(best)), least + constant);
+        if let ExitResult::Solved(solved) = exit {
             self.solved = Some(solved);
         }
         let hit = self.solved.is_some();
@@ -346,13 +369,19 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
         exit
     }
 
-    fn report(&mut self, levels: [f64; 2], answer: &Planar, local: &Piece, best: &Best) {
+    fn report_planar_problem(
+        &mut self,
+        levels: [f64; 2],
+        answer: &PlanarAnswer,
+        local: &LinearPiece,
+        best: &BestPoint,
+    ) {
         let constant = self.sections.constant;
         self.watch.planar_problem(|| {
-            let touch = answer.touch();
-            // Lines between sections are of any length: a distance needs its unit.
+            let touch = answer.touch_kind();
+            // The separating direction has any length. A distance needs length 1.
             let (unit, constant) = match answer {
-                Planar::Separated { u, .. } => (1.0 / u.length(), 0.0),
+                PlanarAnswer::Separated { u, .. } => (1.0 / u.length(), 0.0),
                 _ => (1.0, constant),
             };
             let value = local.bound.value * unit + constant;
@@ -361,34 +390,34 @@ impl<O: Observer> Minimisation<'_, '_, '_, O> {
                 value,
                 touch,
                 gradient: local.bound.gradient * unit,
-                best: (DVec2::from_array(levels) + best.at).to_array(),
+                best: (DVec2::from_array(levels) + best.offset).to_array(),
                 shifted: value + best.change,
             }
         });
     }
 
-    fn result(&self) -> Narrowed {
+    fn narrowed_search(&self) -> NarrowedSearch {
         let constant = self.sections.constant;
         let upper = self.upper + constant;
-        if let Some(Solved { normal, vertices, corners }) = self.solved {
+        if let Some(SolvedContact { normal, vertices, corners }) = self.solved {
             let guess = Guess::Contact { normal };
-            return Narrowed { guess, vertices, corners, upper, lower: upper };
+            return NarrowedSearch { guess, vertices, corners, upper, lower: upper };
         }
         let (guess, vertices) = match (self.best, self.last_separation) {
-            (Some(best), _) => (Guess::Contact { normal: self.normal() }, best),
+            (Some(best), _) => (Guess::Contact { normal: self.lower_bound_normal() }, best),
             (None, Some((features, normal))) => {
                 let direction = self.contradiction.unwrap_or(normal);
                 (Guess::Separation { direction }, features)
             }
-            (None, None) => (Guess::Nothing, Features::default()),
+            (None, None) => (Guess::Nothing, FeatureVertices::default()),
         };
-        let lower = self.lower() + constant;
-        Narrowed { guess, vertices, corners: None, upper, lower }
+        let lower = self.lower_bound() + constant;
+        NarrowedSearch { guess, vertices, corners: None, upper, lower }
     }
 }
 
-impl Planar {
-    fn touch(&self) -> Touch {
+impl PlanarAnswer {
+    fn touch_kind(&self) -> Touch {
         match self {
             Self::Edges { .. } => Touch::Edges,
             Self::Vertex { .. } => Touch::Vertex,
@@ -396,8 +425,8 @@ impl Planar {
         }
     }
 
-    /// The two mesh edges of each body that the answer rests on.
-    fn features(&self) -> Features {
+    /// Returns the two mesh edges of each body that determine the answer.
+    fn feature_vertices(&self) -> FeatureVertices {
         let pair = |p: &Crossing, q: &Crossing| {
             [p.vertices[0], p.vertices[1], q.vertices[0], q.vertices[1]]
         };

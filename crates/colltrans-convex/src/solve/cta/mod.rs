@@ -1,20 +1,15 @@
-//! The collision translation algorithm: convex minimisation over pairs of planar sections (the
-//! paper, section III).
+//! The collision translation algorithm of the paper (section III): minimises a convex function over pairs of
+//! planar sections of the bodies.
 //!
-//! Notation. P moves along the unit direction `d`, Q is fixed. For a section axis `a` of P and `b`
-//! of Q, `phi(x, y)` is the collision translation of P's section at level `x` and Q's at level `y`;
-//! it is convex and piecewise linear, and its minimum is the collision translation of P and Q. With
-//! `c = a/(a.d) - b/(b.d)` and the shadow coordinates `h = c . w`, `g = (d x c) . w`,
+//! - `phi(x, y)` is the collision translation of P's section at level `x` and Q's section at level `y`. It is
+//!   convex and piecewise linear. Its minimum is the collision translation of the bodies.
+//! - The *shadow plane* has the coordinates `h` (height) and `g`, in which two sections touch at their lowest
+//!   common point.
 //!
-//! `phi(x, y) = y/(b.d) - x/(a.d) + psi(x, y)`, `psi` the least `h` common to both sections'
-//! shadows.
-//!
-//! Data flow: [`section_pair`] (a setting in section coordinates), [`start`] (the first levels) ->
-//! [`sectioned_body`] and [`section`] (a body's sections in the shadow plane) -> [`planar`] (one `psi`) ->
-//! [`piece`] (a linear bound) and [`cell`] (where it is `phi`) -> [`exit`] (whether the cell's best
-//! point solves the problem), else [`region`] (what is left of the levels) and [`bound`] (what the
-//! pieces prove together) -> [`mod@minimise`]. The result is a guess of the contact normal and
-//! features, in floating point: portal refinement makes it exact.
+//! Formulas and proofs are in `docs/theory/section-minimisation.md`; `docs/paper.md` compares each line with
+//! the paper. Data flow: [`section_pair`], [`start`] -> [`planar`] (by [`section`], [`sectioned_body`]) ->
+//! [`piece`], [`cell`] -> [`exit`], else [`region`], [`bound`]; [`mod@minimise`] is the loop. Its result is a
+//! floating-point guess of the contact normal and the features. Portal refinement certifies it.
 
 mod bound;
 mod cell;
@@ -35,6 +30,6 @@ mod tests;
 pub(crate) use minimise::{CtaOptions, Guess, minimise};
 pub(crate) use start::{Origin, RegionFocus};
 
-/// Planar problems per query at most; the cuts leave less than `(1 - 1/e)^40 < 2e-8` of the region
-/// by then.
+/// Maximum number of planar problems in a query. 40 cuts through centroids leave less than `(1 - 1/e)^40 <
+/// 2e-8` of the region.
 pub(crate) const MAX_STEPS: u32 = 40;

@@ -1,53 +1,54 @@
-//! Choices of the collision translation algorithm.
+//! Options of the collision translation algorithm.
 
-/// From where, and how far, [`Solver::Cta`](crate::Solver::Cta) narrows the search by planar problems. Answers do not depend on it.
+/// Start and end of the minimisation with which [`Solver::Cta`](crate::Solver::Cta) narrows the search. Answers
+/// do not depend on them.
 ///
-/// The default is the paper's algorithm: from the centre of the levels, or in a tracker from `N(p)`, until the
-/// features that touch are seen to solve the problem. A certificate is made of its result by
-/// one portal, the face of `M` that the exit test has found.
+/// The default is the algorithm of the paper. It starts at the centre of the levels, or in a tracker in the
+/// neighbourhood `N(p)` of the last solution. It ends when the exit test proves that the touching features
+/// solve the problem. Portal refinement certifies the result from one portal, the face of `M` that the exit
+/// test has found.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct Options {
-    /// Where the minimisation starts, if not in the region of a [`Tracker`](crate::Tracker)'s last
-    /// solution.
+    /// Start of the minimisation, unless a [`Tracker`](crate::Tracker) starts it at its last solution.
     pub start: Start,
-    /// Where it ends; portal refinement goes on from there.
+    /// End of the minimisation; portal refinement continues from there.
     pub until: Until,
-    /// Whether a cell shift ends in its cell, as the paper's does, so that planar problems are the
-    /// paper's steps. If not, it goes on from cell to cell where little of the region is left: fewer
-    /// planar problems and less time.
+    /// Whether a cell shift ends in its cell. If it does, planar problems are the paper's steps. If not, a
+    /// shift continues into neighbouring cells where little of the region is left, which takes fewer planar
+    /// problems and less time.
     pub keeps_to_cell: bool,
-    /// Where the region of levels is cut.
+    /// Value of `phi` at which the region of levels is cut.
     pub cuts: Cuts,
-    /// Whether each planar problem is searched from nothing, as the paper's are (its section V-F says what that
-    /// costs). If not, from the edges that the one before ended with, also that of the last query.
+    /// Whether each planar problem is searched without a hint, as in the paper (its section V-F states the
+    /// cost). If not, the search starts at the edges of the preceding answer, also that of the last query.
     pub starts_cold: bool,
 }
 
 impl Options {
-    /// A first guess and rough: from the ellipsoids to a fifth of the extent, from cell to cell. Portal refinement
-    /// does nearly all of the work; planar problems are solved only if the ellipsoids pass each other and the
-    /// bodies may not.
+    /// Rough guess: starts at the ellipsoids, ends at a gap of a fifth of the extent, and shifts from cell to
+    /// cell. Portal refinement does nearly all of the work. Planar problems are solved only if the ellipsoids
+    /// miss each other and the bodies may not.
     pub const ROUGH: Self = Self::new(Start::Ellipsoids, Until::Gap(0.2)).with_keeps_to_cell(false);
 
-    /// From a start to an end, each shift within its cell.
+    /// Creates options with a start and an end. Shifts end in their cells.
     pub const fn new(start: Start, until: Until) -> Self {
         Self { start, until, keeps_to_cell: true, cuts: Cuts::Shifted, starts_cold: false }
     }
 
-    /// With cell shifts that end in their cells, or not.
+    /// Sets whether cell shifts end in their cells.
     #[must_use]
     pub const fn with_keeps_to_cell(self, keeps_to_cell: bool) -> Self {
         Self { keeps_to_cell, ..self }
     }
 
-    /// With cuts through other levels.
+    /// Sets the value of `phi` at which the region is cut.
     #[must_use]
     pub const fn with_cuts(self, cuts: Cuts) -> Self {
         Self { cuts, ..self }
     }
 
-    /// With planar problems that are searched from nothing, or not.
+    /// Sets whether planar problems are searched without a hint.
     #[must_use]
     pub const fn with_starts_cold(self, starts_cold: bool) -> Self {
         Self { starts_cold, ..self }
@@ -55,13 +56,13 @@ impl Options {
 }
 
 impl Default for Options {
-    /// The paper: the centre, until the exit test, each shift within its cell.
+    /// Returns the options of the paper: the centre, until the exit test, each shift within its cell.
     fn default() -> Self {
         Self::new(Start::default(), Until::default())
     }
 }
 
-/// Where a minimisation starts.
+/// Start of a minimisation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(
     feature = "serde",
@@ -69,15 +70,15 @@ impl Default for Options {
     serde(rename_all = "snake_case")
 )]
 pub enum Start {
-    /// At the centre of all section levels (the paper, section III-A).
+    /// The centre of all section levels (the paper, section III-A).
     #[default]
     Center,
-    /// Where the bodies would meet if they were ellipsoids: portal refinement begins there, and
-    /// planar problems are solved only if the ellipsoids pass each other and the bodies may not.
+    /// The contact of the bodies' inertia ellipsoids. Portal refinement starts there. Planar problems are
+    /// solved only if the ellipsoids miss each other and the bodies may not.
     Ellipsoids,
 }
 
-/// Where a minimisation cuts the region of levels.
+/// Value of `phi` at which a minimisation cuts the region of levels.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(
     feature = "serde",
@@ -85,41 +86,43 @@ pub enum Start {
     serde(rename_all = "snake_case")
 )]
 pub enum Cuts {
-    /// Shifted to the best point of the cell in which the same features touch (the paper, line 5).
+    /// The least value found, after the shift to the best point of the cell (the paper, line 5).
     #[default]
     Shifted,
-    /// Through the levels of the planar problem themselves, as the method before the paper's cuts, its reference
-    /// \[3\], which knows no cells. More steps, and only to compare with.
+    /// The value at the levels of the planar problem, as in the earlier method (reference \[3\] of the paper),
+    /// which has no cells. It takes more steps; for comparison only.
     Centroid,
 }
 
 #[cfg(feature = "serde")]
 impl Cuts {
-    #[expect(clippy::trivially_copy_pass_by_ref, reason = "what serde calls")]
+    /// Checks for the default.
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde passes a reference")]
     pub(crate) fn is_shifted(&self) -> bool {
         *self == Self::Shifted
     }
 }
 
-/// Where a minimisation ends. As text `exit`, or a number.
+/// End of a minimisation. Its text is `exit`, or a number.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(into = "UntilRecord", try_from = "UntilRecord"))]
 pub enum Until {
-    /// Where the features that touch are seen to solve the problem (the paper, line 6 of its algorithm), or rounding
-    /// hides what is left.
+    /// The exit test proves that the touching features solve the problem (the paper, line 6), or rounding hides
+    /// the remainder.
     #[default]
     Exit,
-    /// There, or before: where its upper and lower bound are apart by no more than this share of the extent of both
-    /// bodies along the direction.
+    /// As [`Self::Exit`], or earlier: the upper and the lower bound differ by at most this share of the bodies'
+    /// extent along the direction.
     Gap(f64),
 }
 
 impl Until {
-    /// Less than what tells the best features of large bodies apart, more than the rounding of `phi`.
+    /// Least share. It is smaller than the differences between the best features of large bodies, and larger
+    /// than the rounding error of `phi`.
     const ROUNDING: f64 = 1e-9;
 
-    /// The share at which it ends at the latest.
+    /// Returns the share at which the minimisation ends at the latest.
     pub(crate) fn gap(self) -> f64 {
         match self {
             Self::Exit => Self::ROUNDING,
@@ -128,8 +131,8 @@ impl Until {
     }
 }
 
-/// The neighbourhood `N(p)` of the last solution `p`, a square in the plane of the two section
-/// levels, to which the minimisation is confined while nothing speaks against it.
+/// The neighbourhood `N(p)` of the last solution `p`: a square in the plane of the two section levels. The
+/// minimisation is confined to it until the cuts exclude it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(
     feature = "serde",
@@ -139,15 +142,16 @@ impl Until {
 pub enum Region {
     /// All levels: no focus.
     Everywhere,
-    /// Half-side by what changed: how far the last contact points have moved apart sideways. If that
-    /// is a large part of the bodies, or they have turned far against each other, all levels.
+    /// Half-side from the change since the last query: the lateral distance by which the last contact points
+    /// have moved apart. All levels if this is a large part of the bodies, or if the bodies have rotated far
+    /// relative to each other.
     #[default]
     Automatic,
     /// This half-side `delta`, in world units along the section axes.
     Fixed(f64),
 }
 
-/// A share as it is written, nothing if it is infinite; or `exit`.
+/// Serialised [`Until`]: a share, `null` if it is infinite, or the name `exit`.
 #[cfg(feature = "serde")]
 #[derive(serde::Serialize, serde::Deserialize)]
 #[serde(untagged)]
@@ -180,11 +184,11 @@ impl TryFrom<UntilRecord> for Until {
 
 colltrans_kernel::written::named!("start", Start { Center: "center", Ellipsoids: "ellipsoids" });
 
-/// A text that says no end of a minimisation.
+/// Error for a text that is not a valid [`Until`].
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
-#[error("{text:?} is neither `exit` nor a number that is not negative")]
+#[error("invalid end {text:?}; accepted: `exit`, or a number that is not negative")]
 pub struct NoUntil {
-    /// The text.
+    /// The rejected text.
     pub text: String,
 }
 

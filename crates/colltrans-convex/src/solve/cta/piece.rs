@@ -1,66 +1,63 @@
-//! Pieces: where the features in contact stay the same, `phi` is linear (the paper, section III-C).
-//!
-//! Notation. `(X, Y) = (x - x0, y - y0)` around the levels `(x0, y0)` of a planar problem. A
-//! *piece* is an affine function that bounds `phi` from below (weight 1), or that is positive only
-//! where the sections miss each other (weight 0). The covector of a piece, in the shadow plane's
-//! terms, is what the supporting plane of the sections contributes to the contact normal.
+// - weight 0: positive only where the sections have no point in common.
+//
+// Its normal is that of a supporting plane of both bodies.
 
 use glam::{DVec2, DVec3};
 
-use super::crossing::Bracket;
-use super::planar::Planar;
+use super::crossing::SectionEdge;
+use super::planar::PlanarAnswer;
 
-/// An affine function of `(X, Y)`.
+/// An affine function `value + gradient . (X, Y)`.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Affine {
     pub(super) value: f64,
     pub(super) gradient: DVec2,
 }
 
-/// The directions of a query in the setting frame.
+/// Covectors of a query in the setting frame, for section axes `a` of P and `b` of Q.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Frame {
+pub(super) struct SectionFrame {
     /// `a / (a . d)` and `b / (b . d)`.
     pub(super) axes: [DVec3; 2],
     /// `a . d` and `b . d`.
     pub(super) along: [f64; 2],
-    /// The covectors of the shadow coordinates `h` and `g`.
+    /// Covectors of the shadow coordinates `h` and `g`.
     pub(super) shadow: [DVec3; 2],
 }
 
-impl Frame {
-    /// What the levels add to the height of the contact in `phi`.
-    pub(super) fn base(&self, levels: [f64; 2]) -> f64 {
+impl SectionFrame {
+    /// Returns the part of `phi` that depends on the levels alone, `y/(b.d) - x/(a.d)`.
+    pub(super) fn base_height(&self, levels: [f64; 2]) -> f64 {
         levels[1] / self.along[1] - levels[0] / self.along[0]
     }
 }
 
-/// An affine bound with its weight and normal: `weight * t >= value + gradient . (X, Y)` and
-/// `normal . d = weight`.
+/// An affine bound with its weight and normal: `weight * t >= value + gradient . (X, Y)` and `normal . d =
+/// weight`.
 #[derive(Debug, Clone, Copy, Default)]
-pub(super) struct Piece {
+pub(super) struct LinearPiece {
     pub(super) bound: Affine,
     pub(super) weight: f64,
     pub(super) normal: DVec3,
 }
 
-impl Piece {
-    /// A supporting plane of the bodies: a bound that holds for all levels.
-    pub(super) fn constant(t: f64, normal: DVec3) -> Self {
+impl LinearPiece {
+    /// Builds the bound `t` that a supporting plane of the bodies proves for all levels.
+    pub(super) fn from_supporting_plane(t: f64, normal: DVec3) -> Self {
         Self { bound: Affine { value: t, gradient: DVec2::ZERO }, weight: 1.0, normal }
     }
 }
 
-impl Planar {
-    /// The piece that the answer at `levels` gives, up to the constant of `t`.
-    pub(super) fn piece(&self, frame: &Frame, levels: [f64; 2]) -> Piece {
-        let base = frame.base(levels);
+impl PlanarAnswer {
+    /// Returns the piece of the answer at `levels`, without the constant of the section pair.
+    pub(super) fn linear_piece(&self, frame: &SectionFrame, levels: [f64; 2]) -> LinearPiece {
+        let base = frame.base_height(levels);
         let slope = DVec2::new(-1.0 / frame.along[0], 1.0 / frame.along[1]);
         match self {
-            Self::Vertex { upper, vertex, .. } => Piece {
+            Self::Vertex { upper, vertex, .. } => LinearPiece {
                 bound: Affine {
                     value: base + vertex.h(),
-                    gradient: slope + unit(*upper) * vertex.drift.x,
+                    gradient: slope + level_axis(*upper) * vertex.drift.x,
                 },
                 weight: 1.0,
                 normal: frame.axes[1 - upper],
@@ -69,7 +66,7 @@ impl Planar {
                 let motion = contact_motion(edges);
                 let [r, s] = edges.each_ref().map(|edge| edge.direction);
                 let [c, g] = frame.shadow;
-                Piece {
+                LinearPiece {
                     bound: Affine {
                         value: base + contact.x,
                         gradient: slope + DVec2::new(motion[0].x, motion[1].x),
@@ -78,7 +75,7 @@ impl Planar {
                     normal: frame.axes[0] + (c * r.y - g * r.x) * (s.x / r.perp_dot(s)),
                 }
             }
-            Self::Separated { u, supports } => Piece {
+            Self::Separated { u, supports } => LinearPiece {
                 bound: Affine {
                     value: u.dot(supports[1].w - supports[0].w),
                     gradient: DVec2::new(-u.dot(supports[0].drift), u.dot(supports[1].drift)),
@@ -90,18 +87,19 @@ impl Planar {
     }
 }
 
-/// The unit vector of a body's level.
-pub(super) fn unit(body: usize) -> DVec2 {
+/// Returns the unit vector of a body's level in the plane of levels.
+pub(super) fn level_axis(body: usize) -> DVec2 {
     if body == 0 { DVec2::X } else { DVec2::Y }
 }
 
-/// How the point where two moving lines cross moves per unit of each level.
-pub(super) fn contact_motion(edges: &[Bracket; 2]) -> [DVec2; 2] {
+/// Returns the derivatives of the point where the lines of two section edges intersect, with respect to each
+/// level.
+pub(super) fn contact_motion(edges: &[SectionEdge; 2]) -> [DVec2; 2] {
     let [r, s] = edges.each_ref().map(|edge| edge.direction);
     let cross = r.perp_dot(s);
     // A line moves across itself by `direction x drift`.
     [
-        s * (r.perp_dot(edges[0].steeper().drift) / cross),
-        r * (s.perp_dot(edges[1].steeper().drift) / cross) * -1.0,
+        s * (r.perp_dot(edges[0].longer_end().drift) / cross),
+        r * (s.perp_dot(edges[1].longer_end().drift) / cross) * -1.0,
     ]
 }

@@ -1,165 +1,175 @@
 //! The section of a body at one level, walked on the mesh.
 //!
-//! Every walk has a limit, the section's: how many mesh vertices it may pass, or edges of the
-//! section. Where a walk begins is a guess, and where it ends does not depend on it.
+//! Each walk has a maximum number of steps: mesh vertices or section edges that it may pass. It starts at a
+//! guess. Its result does not depend on the start.
 
 use glam::DVec2;
 
-use super::crossing::{Bracket, Chain, Crossing, is_horizontal};
-use super::sectioned_body::Side;
+use super::crossing::{Chain, Crossing, SectionEdge, is_horizontal};
+use super::sectioned_body::SectionedBody;
 use crate::body::convex::sections::{Turn, next_clockwise, next_counter_clockwise};
 
-/// Steps of a walk before the body's chains, if it has some, tell where it leads, and between two such
-/// questions.
-pub(super) const PATIENCE: usize = 2;
-const AGAIN: usize = 8;
+/// Number of steps of a walk before its first search in the body's chains, if the body has chains.
+pub(super) const STEPS_BEFORE_SEARCH: usize = 2;
+/// Number of steps of a walk from one search in the body's chains to the next.
+const STEPS_BETWEEN_SEARCHES: usize = 8;
 
-/// A vertex of more edges is not looked around for the best one, if there are chains.
-const FAN: usize = 16;
+/// Maximum number of edges of a vertex that are compared for the best one if the body has chains.
+const MAX_FAN: usize = 16;
 
-/// A face with more vertices is replaced by the part between two mesh edges.
-pub(super) const FACE_SIDES: usize = 6;
+/// Maximum number of sides of a face that cells use. Larger faces are replaced by the part between two mesh
+/// edges.
+pub(super) const MAX_FACE_SIDES: usize = 6;
 
-/// Where a height was found on a chain.
+/// Result of the search for a height on a chain.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Located {
-    /// On this edge, or below it if that is the chain's first.
-    Edge(Bracket),
-    /// The chain ends below: its topmost edge.
-    Beyond(Bracket),
+pub(super) enum LocatedEdge {
+    /// The edge at this height, or the first edge of the chain if the height is below the chain.
+    Edge(SectionEdge),
+    /// The topmost edge: the chain ends below the height.
+    AboveTop(SectionEdge),
 }
 
-impl Located {
-    /// The edge there, or the nearest.
-    pub(super) fn edge(self) -> Bracket {
+impl LocatedEdge {
+    /// Returns the edge at the height, or the nearest one.
+    pub(super) fn nearest_edge(self) -> SectionEdge {
         match self {
-            Self::Edge(edge) | Self::Beyond(edge) => edge,
+            Self::Edge(edge) | Self::AboveTop(edge) => edge,
         }
     }
 }
 
-/// The lowest vertex of a section and the directions of its polygon edges up both chains.
+/// The lowest vertex of a section.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Bottom {
+pub(super) struct SectionBottom {
     pub(super) vertex: Crossing,
+    /// Directions from the vertex to its neighbours up the left and the right chain.
     pub(super) directions: [DVec2; 2],
 }
 
 /// The section of a body at one level.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Section<'a> {
-    pub(super) side: &'a Side<'a>,
-    pub(super) x: f64,
-    /// Steps of a walk at most.
-    pub(super) limit: usize,
+    pub(super) side: &'a SectionedBody<'a>,
+    pub(super) level: f64,
+    /// Maximum number of steps of a walk.
+    pub(super) max_steps: usize,
 }
 
 impl Section<'_> {
-    fn crossing(&self, up: u32) -> Crossing {
-        self.side.count(1);
+    /// Computes the section vertex on a mesh edge, given by its half-edge upwards.
+    fn section_vertex(&self, half_edge: u32) -> Crossing {
+        self.side.count_iterations(1);
         let topology = self.side.topology;
-        let vertices = [topology.origin(up), topology.target(up)];
-        let (low, high) = (self.side.point(vertices[0]), self.side.point(vertices[1]));
+        let vertices = [topology.origin(half_edge), topology.target(half_edge)];
+        let (low, high) = (self.side.level_point(vertices[0]), self.side.level_point(vertices[1]));
         let drift = (high.shadow - low.shadow) * (1.0 / (high.level - low.level));
         Crossing {
-            up,
+            half_edge,
             vertices,
             levels: [low.level, high.level],
-            w: low.shadow + drift * (self.x - low.level),
+            w: low.shadow + drift * (self.level - low.level),
             drift,
         }
     }
 
-    /// The neighbour up (or, past the top, down) the section in the direction of `chain`.
-    pub(super) fn up(&self, chain: Chain, from: &Crossing) -> Crossing {
+    /// Returns the neighbour of `from` in the direction of `chain`: up the section and, past the top, down
+    /// again.
+    pub(super) fn next_vertex(&self, chain: Chain, from: &Crossing) -> Crossing {
         let topology = self.side.topology;
-        let above = |v: u32| self.side.level(v) > self.x;
-        self.crossing(match self.side.turn_up(chain) {
-            Turn::CounterClockwise => next_counter_clockwise(topology, from.up, above),
-            Turn::Clockwise => next_clockwise(topology, from.up, above),
+        let above = |v: u32| self.side.vertex_level(v) > self.level;
+        self.section_vertex(match self.side.turn_up_chain(chain) {
+            Turn::CounterClockwise => next_counter_clockwise(topology, from.half_edge, above),
+            Turn::Clockwise => next_clockwise(topology, from.half_edge, above),
         })
     }
 
-    /// The neighbour against the direction of `chain`.
-    pub(super) fn down(&self, chain: Chain, from: &Crossing) -> Crossing {
-        self.up(chain.opposite(), from)
+    /// Returns the neighbour of `from` against the direction of `chain`.
+    pub(super) fn previous_vertex(&self, chain: Chain, from: &Crossing) -> Crossing {
+        self.next_vertex(chain.opposite(), from)
     }
 
-    /// The direction of the polygon edge from `from` to its neighbour in the direction of `chain`,
-    /// from one more vertex of the face.
-    fn direction(&self, chain: Chain, from: &Crossing) -> DVec2 {
+    /// Returns the direction of the polygon edge from `from` to its neighbour in the direction of `chain`, of
+    /// any length. Computes it from one more vertex of the face, without the neighbour.
+    fn edge_direction(&self, chain: Chain, from: &Crossing) -> DVec2 {
         let topology = self.side.topology;
-        let along = match self.side.turn_up(chain) {
-            Turn::CounterClockwise => topology.half_edge(from.up).twin,
-            Turn::Clockwise => from.up,
+        let along = match self.side.turn_up_chain(chain) {
+            Turn::CounterClockwise => topology.half_edge(from.half_edge).twin,
+            Turn::Clockwise => from.half_edge,
         };
         let third = topology.target(topology.next(along));
-        let third = self.side.point(third);
-        // The part of the way to the third vertex that keeps the level.
-        let base = from.w - from.drift * (self.x - from.levels[0]);
+        let third = self.side.level_point(third);
+        // The component of the vector to the third vertex that keeps the level.
+        let base = from.w - from.drift * (self.level - from.levels[0]);
         (third.shadow - base) - from.drift * (third.level - from.levels[0])
     }
 
-    /// From an edge upwards along the mesh to one that crosses the level, at each vertex by the edge
-    /// whose line has the least `score` at the level. `None` if that is too far, or if rounding hides
-    /// the way.
-    fn reach(&self, from: u32, score: impl Fn(f64) -> f64) -> Option<u32> {
+    /// Walks along the mesh from the half-edge `from`, which leads upwards, to an edge that crosses the level.
+    /// At each vertex takes the edge whose line has the least `score` of its height at the level. `None` after
+    /// [`Self::max_steps`], or if rounding hides the way.
+    fn walk_to_level(&self, from: u32, score: impl Fn(f64) -> f64) -> Option<u32> {
         let topology = self.side.topology;
         let mut up = from;
-        for step in 0..=self.limit {
+        for step in 0..=self.max_steps {
             let (low, high) = (topology.origin(up), topology.target(up));
-            let (vertex, sign) = if self.side.level(high) <= self.x {
+            let (vertex, sign) = if self.side.vertex_level(high) <= self.level {
                 (high, 1.0)
-            } else if self.side.level(low) > self.x {
+            } else if self.side.vertex_level(low) > self.level {
                 (low, -1.0)
             } else {
                 return Some(up);
             };
-            if let Some(search) = self.side.search(self.x) {
+            if let Some(search) = self.side.chain_search(self.level) {
                 if let Some(found) = search.along_faces(up) {
                     return Some(found);
                 }
-                if step == PATIENCE || topology.outgoing(vertex).len() > FAN {
+                if step == STEPS_BEFORE_SEARCH || topology.outgoing(vertex).len() > MAX_FAN {
                     return search.near(up);
                 }
             }
-            let h = self.best_edge(vertex, sign, &score)?;
+            let h = self.best_edge_toward_level(vertex, sign, &score)?;
             up = if sign > 0.0 { h } else { topology.half_edge(h).twin };
         }
         None
     }
 
-    /// The half-edge from a vertex towards the level, which is above it for a `sign` of 1 and below
-    /// it for -1, whose line has the least `score` there.
-    fn best_edge(&self, vertex: u32, sign: f64, score: impl Fn(f64) -> f64) -> Option<u32> {
-        self.side.count(1);
+    /// Finds the half-edge from a vertex towards the level whose line has the least `score` there. The level is
+    /// above the vertex for a `sign` of 1, below it for -1. `None` if no edge leads towards the level.
+    fn best_edge_toward_level(
+        &self,
+        vertex: u32,
+        sign: f64,
+        score: impl Fn(f64) -> f64,
+    ) -> Option<u32> {
+        self.side.count_iterations(1);
         let topology = self.side.topology;
-        let start = self.side.point(vertex);
+        let start = self.side.level_point(vertex);
         let mut best = f64::INFINITY;
         let mut found = None;
         for (&h, &neighbour) in topology.outgoing(vertex).iter().zip(topology.neighbours(vertex)) {
-            let end = self.side.point(neighbour);
+            let end = self.side.level_point(neighbour);
             let rise = end.level - start.level;
             let drift = (end.shadow.x - start.shadow.x) / rise;
-            let candidate = score(start.shadow.x + drift * (self.x - start.level));
+            let candidate = score(start.shadow.x + drift * (self.level - start.level));
             let better = sign * rise > 0.0 && (found.is_none() || candidate < best);
             (best, found) = if better { (candidate, Some(h)) } else { (best, found) };
         }
         found
     }
 
-    /// The last vertex in the direction of `chain` for which `holds`, by the body's chains: it does for
-    /// `from`, for those after it up to some vertex, and for none beyond on the way around.
-    pub(super) fn skip(
+    /// Finds the last vertex in the direction of `chain` for which `holds`, by a search in the body's chains.
+    /// `holds` must be true for `from` and the vertices after it up to some vertex, and false for all others.
+    /// `None` if the body has no chains or the search fails.
+    pub(super) fn last_vertex_where(
         &self,
         chain: Chain,
         from: &Crossing,
         mut holds: impl FnMut(&Crossing) -> bool,
     ) -> Option<Crossing> {
-        let search = self.side.search(self.x)?;
+        let search = self.side.chain_search(self.level)?;
         let mut last = *from;
-        search.last(from.up, self.side.turn_up(chain), |up| {
-            let crossing = self.crossing(up);
+        search.last(from.half_edge, self.side.turn_up_chain(chain), |up| {
+            let crossing = self.section_vertex(up);
             let found = holds(&crossing);
             last = if found { crossing } else { last };
             found
@@ -167,52 +177,59 @@ impl Section<'_> {
         Some(last)
     }
 
-    /// Down the chain opposite to `chain` and up it, if the polygon falls towards it at `from`: the last
-    /// vertex from which it does.
-    fn skip_down(&self, chain: Chain, from: &Crossing) -> Option<Crossing> {
-        self.skip(chain, from, |v| v.h() <= from.h() && !chain.ascends(self.direction(chain, v)))
-    }
-
-    /// Up a chain: the last vertex not above height `h` from which it ascends.
-    fn skip_up_to(&self, chain: Chain, from: &Crossing, h: f64) -> Option<Crossing> {
-        self.skip(chain, from, |v| {
-            (from.h()..=h).contains(&v.h()) && chain.ascends(self.direction(chain, v))
+    /// Finds the last vertex in the direction of `chain` from which the section still falls, starting at
+    /// `from`, where it falls. `None` as for [`Self::last_vertex_where`].
+    fn skip_to_bottom(&self, chain: Chain, from: &Crossing) -> Option<Crossing> {
+        self.last_vertex_where(chain, from, |v| {
+            v.h() <= from.h() && !chain.is_ascending(self.edge_direction(chain, v))
         })
     }
 
-    /// Down a chain: the last vertex above height `h` to which it ascends.
-    fn skip_down_to(&self, chain: Chain, from: &Crossing, h: f64) -> Option<Crossing> {
+    /// Finds the last vertex up a chain that is not above height `h` and from which the chain ascends. `None`
+    /// as for [`Self::last_vertex_where`].
+    fn skip_up_to_height(&self, chain: Chain, from: &Crossing, h: f64) -> Option<Crossing> {
+        self.last_vertex_where(chain, from, |v| {
+            (from.h()..=h).contains(&v.h()) && chain.is_ascending(self.edge_direction(chain, v))
+        })
+    }
+
+    /// Finds the last vertex down a chain that is above height `h` and to which the chain ascends. `None` as
+    /// for [`Self::last_vertex_where`].
+    fn skip_down_to_height(&self, chain: Chain, from: &Crossing, h: f64) -> Option<Crossing> {
         let other = chain.opposite();
-        self.skip(other, from, |v| {
-            let below = -self.direction(other, v);
-            v.h() > h && v.h() <= from.h() && chain.ascends(below) && !is_horizontal(below)
+        self.last_vertex_where(other, from, |v| {
+            let below = -self.edge_direction(other, v);
+            v.h() > h && v.h() <= from.h() && chain.is_ascending(below) && !is_horizontal(below)
         })
     }
 
-    /// The lowest vertex, from an edge upwards that crosses a level nearby.
-    pub(super) fn bottom(&self, from: u32) -> Option<Bottom> {
-        let vertex = self.crossing(self.reach(from, |h| h)?);
-        let directions = [Chain::Left, Chain::Right].map(|chain| self.direction(chain, &vertex));
-        let mut bottom = Bottom { vertex, directions };
-        for step in 0..self.limit {
+    /// Finds the lowest vertex, from a half-edge upwards that crosses a level nearby. `None` after
+    /// [`Self::max_steps`], or if rounding hides the way.
+    pub(super) fn find_bottom(&self, from: u32) -> Option<SectionBottom> {
+        let vertex = self.section_vertex(self.walk_to_level(from, |h| h)?);
+        let directions =
+            [Chain::Left, Chain::Right].map(|chain| self.edge_direction(chain, &vertex));
+        let mut bottom = SectionBottom { vertex, directions };
+        for step in 0..self.max_steps {
             let [left, right] = bottom.directions;
-            let falls = if Chain::Left.ascends(left) { Chain::Right } else { Chain::Left };
-            if step % AGAIN == PATIENCE
-                && !falls.ascends(bottom.directions[usize::from(falls == Chain::Right)])
-                && let Some(vertex) = self.skip_down(falls, &bottom.vertex)
+            let falls = if Chain::Left.is_ascending(left) { Chain::Right } else { Chain::Left };
+            if step % STEPS_BETWEEN_SEARCHES == STEPS_BEFORE_SEARCH
+                && !falls.is_ascending(bottom.directions[usize::from(falls == Chain::Right)])
+                && let Some(vertex) = self.skip_to_bottom(falls, &bottom.vertex)
             {
-                let directions = [Chain::Left, Chain::Right].map(|c| self.direction(c, &vertex));
-                bottom = Bottom { vertex, directions };
+                let directions =
+                    [Chain::Left, Chain::Right].map(|c| self.edge_direction(c, &vertex));
+                bottom = SectionBottom { vertex, directions };
                 continue;
             }
-            if !Chain::Left.ascends(left) {
-                let vertex = self.up(Chain::Left, &bottom.vertex);
-                let ahead = self.direction(Chain::Left, &vertex);
-                bottom = Bottom { vertex, directions: [ahead, -left] };
-            } else if !Chain::Right.ascends(right) {
-                let vertex = self.up(Chain::Right, &bottom.vertex);
-                let ahead = self.direction(Chain::Right, &vertex);
-                bottom = Bottom { vertex, directions: [-right, ahead] };
+            if !Chain::Left.is_ascending(left) {
+                let vertex = self.next_vertex(Chain::Left, &bottom.vertex);
+                let ahead = self.edge_direction(Chain::Left, &vertex);
+                bottom = SectionBottom { vertex, directions: [ahead, -left] };
+            } else if !Chain::Right.is_ascending(right) {
+                let vertex = self.next_vertex(Chain::Right, &bottom.vertex);
+                let ahead = self.edge_direction(Chain::Right, &vertex);
+                bottom = SectionBottom { vertex, directions: [-right, ahead] };
             } else {
                 return Some(bottom);
             }
@@ -220,94 +237,102 @@ impl Section<'_> {
         None
     }
 
-    /// The end towards `chain` of the lowest edge if that is horizontal, else the lowest vertex.
-    pub(super) fn bottom_end(&self, bottom: &Bottom, chain: Chain) -> Crossing {
+    /// Returns the end towards `chain` of the lowest edge if this edge is horizontal, else the lowest vertex.
+    pub(super) fn bottom_end(&self, bottom: &SectionBottom, chain: Chain) -> Crossing {
         if is_horizontal(bottom.directions[usize::from(chain == Chain::Right)]) {
-            self.up(chain, &bottom.vertex)
+            self.next_vertex(chain, &bottom.vertex)
         } else {
             bottom.vertex
         }
     }
 
-    /// The edge of a chain at height `h`, from an edge upwards that crosses a level nearby.
-    pub(super) fn locate(&self, chain: Chain, h: f64, from: u32) -> Option<Located> {
-        let start = self.crossing(self.reach(from, |height| (height - h).abs())?);
-        let mut bracket = self.edge_toward(chain, start, h);
-        if !chain.ascends(bracket.direction) {
-            bracket = self.any_edge(chain, start)?;
+    /// Finds the edge of a chain at height `h`, from a half-edge upwards that crosses a level nearby. `None`
+    /// after [`Self::max_steps`], or if rounding hides the way.
+    pub(super) fn edge_at_height(&self, chain: Chain, h: f64, from: u32) -> Option<LocatedEdge> {
+        let start = self.section_vertex(self.walk_to_level(from, |height| (height - h).abs())?);
+        let mut edge = self.edge_toward_height(chain, start, h);
+        if !chain.is_ascending(edge.direction) {
+            edge = self.any_chain_edge(chain, start)?;
         }
-        self.move_to(chain, h, bracket)
+        self.walk_to_height(chain, h, edge)
     }
 
-    /// The edge of a chain at height `h`, from another of its edges.
-    pub(super) fn move_to(&self, chain: Chain, h: f64, from: Bracket) -> Option<Located> {
-        let mut bracket = from;
-        for step in 0..self.limit {
-            if bracket.low.h() <= h {
-                return self.climb(chain, bracket, h);
+    /// Walks along a chain from its edge `from` to the edge at height `h`. `None` after [`Self::max_steps`].
+    pub(super) fn walk_to_height(
+        &self,
+        chain: Chain,
+        h: f64,
+        from: SectionEdge,
+    ) -> Option<LocatedEdge> {
+        let mut edge = from;
+        for step in 0..self.max_steps {
+            if edge.low.h() <= h {
+                return self.climb_to_height(chain, edge, h);
             }
-            if step % AGAIN == PATIENCE
-                && let Some(low) = self.skip_down_to(chain, &bracket.low, h)
+            if step % STEPS_BETWEEN_SEARCHES == STEPS_BEFORE_SEARCH
+                && let Some(low) = self.skip_down_to_height(chain, &edge.low, h)
             {
-                bracket = Bracket::new(low, self.up(chain, &low));
+                edge = SectionEdge::new(low, self.next_vertex(chain, &low));
             }
-            match self.retreat(chain, &bracket) {
-                Some(below) => bracket = below,
-                None => return self.climb(chain, bracket, h),
+            match self.edge_below(chain, &edge) {
+                Some(below) => edge = below,
+                None => return self.climb_to_height(chain, edge, h),
             }
         }
         None
     }
 
-    /// From an edge that is not above height `h`, or the chain's first, up to the one there.
-    fn climb(&self, chain: Chain, from: Bracket, h: f64) -> Option<Located> {
-        let mut bracket = from;
-        for step in 0..self.limit {
-            if step % AGAIN == PATIENCE
-                && let Some(low) = self.skip_up_to(chain, &bracket.low, h)
+    /// Walks up a chain to the edge at height `h`, from an edge that is not above this height or is the chain's
+    /// first. `None` after [`Self::max_steps`].
+    fn climb_to_height(&self, chain: Chain, from: SectionEdge, h: f64) -> Option<LocatedEdge> {
+        let mut edge = from;
+        for step in 0..self.max_steps {
+            if step % STEPS_BETWEEN_SEARCHES == STEPS_BEFORE_SEARCH
+                && let Some(low) = self.skip_up_to_height(chain, &edge.low, h)
             {
-                bracket = Bracket::new(low, self.up(chain, &low));
+                edge = SectionEdge::new(low, self.next_vertex(chain, &low));
             }
-            if bracket.high.h() > h && !is_horizontal(bracket.direction) {
-                return Some(Located::Edge(bracket));
+            if edge.high.h() > h && !is_horizontal(edge.direction) {
+                return Some(LocatedEdge::Edge(edge));
             }
-            match self.proceed(chain, &bracket) {
-                Some(above) => bracket = above,
-                None if bracket.high.h() >= h => return Some(Located::Edge(bracket)),
-                None => return Some(Located::Beyond(bracket)),
+            match self.edge_above(chain, &edge) {
+                Some(above) => edge = above,
+                None if edge.high.h() >= h => return Some(LocatedEdge::Edge(edge)),
+                None => return Some(LocatedEdge::AboveTop(edge)),
             }
         }
         None
     }
 
-    /// The edge at a vertex of the section that leads towards height `h`, on a chain or past its ends.
-    fn edge_toward(&self, chain: Chain, start: Crossing, h: f64) -> Bracket {
+    /// Returns the section edge at the vertex `start` that leads along `chain` towards height `h`. It may lie
+    /// past the ends of the chain.
+    fn edge_toward_height(&self, chain: Chain, start: Crossing, h: f64) -> SectionEdge {
         if start.h() <= h {
-            Bracket::new(start, self.up(chain, &start))
+            SectionEdge::new(start, self.next_vertex(chain, &start))
         } else {
-            Bracket::new(self.down(chain, &start), start)
+            SectionEdge::new(self.previous_vertex(chain, &start), start)
         }
     }
 
-    /// An edge of the chain near `start`, which lies at its top or bottom, or on the opposite
-    /// chain.
-    fn any_edge(&self, chain: Chain, start: Crossing) -> Option<Bracket> {
-        // Around the bottom or back over the top: whichever is shorter.
+    /// Finds an edge of the chain near `start`, which is at its top or bottom, or on the opposite chain. `None`
+    /// after [`Self::max_steps`].
+    fn any_chain_edge(&self, chain: Chain, start: Crossing) -> Option<SectionEdge> {
+        // Walks around the bottom and back over the top at once; the shorter way ends first.
         let (mut ahead, mut back) = (start, start);
-        for step in 0..self.limit {
-            if step % AGAIN == PATIENCE
-                && let Some(last) = self.skip_down(chain, &ahead)
+        for step in 0..self.max_steps {
+            if step % STEPS_BETWEEN_SEARCHES == STEPS_BEFORE_SEARCH
+                && let Some(last) = self.skip_to_bottom(chain, &ahead)
             {
-                // On the opposite chain: past its bottom.
-                ahead = self.up(chain, &last);
+                // `last` is on the opposite chain; its neighbour is past the bottom.
+                ahead = self.next_vertex(chain, &last);
             }
-            let below = Bracket::new(self.down(chain, &back), back);
-            if chain.ascends(below.direction) {
+            let below = SectionEdge::new(self.previous_vertex(chain, &back), back);
+            if chain.is_ascending(below.direction) {
                 return Some(below);
             }
             back = below.low;
-            let above = Bracket::new(ahead, self.up(chain, &ahead));
-            if chain.ascends(above.direction) {
+            let above = SectionEdge::new(ahead, self.next_vertex(chain, &ahead));
+            if chain.is_ascending(above.direction) {
                 return Some(above);
             }
             ahead = above.high;
@@ -315,15 +340,15 @@ impl Section<'_> {
         None
     }
 
-    /// The edge of the section on the face of a half-edge, and its chain; `None` for a face of many
-    /// sides, one that the level does not cut, or a horizontal edge.
-    pub(super) fn on_face(&self, half_edge: u32) -> Option<(Chain, Bracket)> {
+    /// Returns the edge of the section on the face of a half-edge, and its chain. `None` for a face with more
+    /// than [`MAX_FACE_SIDES`] sides, a face that the level does not cut, or a horizontal edge.
+    pub(super) fn edge_on_face(&self, half_edge: u32) -> Option<(Chain, SectionEdge)> {
         let topology = self.side.topology;
         let boundary = topology.face(topology.half_edge(half_edge).face);
-        if boundary.len() > FACE_SIDES {
+        if boundary.len() > MAX_FACE_SIDES {
             return None;
         }
-        let above = |h: u32| self.side.level(topology.origin(h)) > self.x;
+        let above = |h: u32| self.side.vertex_level(topology.origin(h)) > self.level;
         let (mut from, mut to) = (None, None);
         let mut last = boundary.end - 1;
         for h in boundary {
@@ -334,33 +359,34 @@ impl Section<'_> {
             }
             last = h;
         }
-        // Counter-clockwise.
-        let (from, to) = (self.crossing(from?), self.crossing(to?));
-        let chain = match self.side.turn_up(Chain::Left) {
+        // The face's boundary is traversed counter-clockwise.
+        let (from, to) = (self.section_vertex(from?), self.section_vertex(to?));
+        let chain = match self.side.turn_up_chain(Chain::Left) {
             Turn::CounterClockwise => Chain::Left,
             Turn::Clockwise => Chain::Right,
         };
-        let ahead = Bracket::new(from, to);
+        let ahead = SectionEdge::new(from, to);
         if is_horizontal(ahead.direction) {
             return None;
         }
-        Some(if chain.ascends(ahead.direction) {
+        Some(if chain.is_ascending(ahead.direction) {
             (chain, ahead)
         } else {
-            (chain.opposite(), Bracket::new(to, from))
+            (chain.opposite(), SectionEdge::new(to, from))
         })
     }
 
-    /// The edge above `bracket` on its chain, if there is one.
-    pub(super) fn proceed(&self, chain: Chain, bracket: &Bracket) -> Option<Bracket> {
-        let above = Bracket::new(bracket.high, self.up(chain, &bracket.high));
-        chain.ascends(above.direction).then_some(above)
+    /// Returns the edge above `edge` on its chain. `None` at the top of the chain.
+    pub(super) fn edge_above(&self, chain: Chain, edge: &SectionEdge) -> Option<SectionEdge> {
+        let above = SectionEdge::new(edge.high, self.next_vertex(chain, &edge.high));
+        chain.is_ascending(above.direction).then_some(above)
     }
 
-    /// The edge below `bracket` on its chain, if there is one; a horizontal one is none.
-    pub(super) fn retreat(&self, chain: Chain, bracket: &Bracket) -> Option<Bracket> {
-        let below = Bracket::new(self.down(chain, &bracket.low), bracket.low);
-        let rises = chain.ascends(below.direction) && !is_horizontal(below.direction);
+    /// Returns the edge below `edge` on its chain. `None` at the bottom of the chain, or if that edge is
+    /// horizontal.
+    pub(super) fn edge_below(&self, chain: Chain, edge: &SectionEdge) -> Option<SectionEdge> {
+        let below = SectionEdge::new(self.previous_vertex(chain, &edge.low), edge.low);
+        let rises = chain.is_ascending(below.direction) && !is_horizontal(below.direction);
         rises.then_some(below)
     }
 }

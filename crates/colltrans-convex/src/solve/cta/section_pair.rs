@@ -2,55 +2,63 @@
 
 use glam::{DMat3, DVec2, DVec3};
 
-use super::piece::Frame;
-use super::region::Square;
-use super::sectioned_body::Side;
+use super::piece::SectionFrame;
+use super::region::Neighbourhood;
+use super::sectioned_body::SectionedBody;
 use crate::body::ConvexPolyhedron;
 use crate::body::convex::sections::AxisPair;
 use crate::setting::Setting;
 use crate::solve::observe::Sections;
 
-/// Two placed bodies across the section axes that suit the direction.
+/// Two placed bodies with the pair of section axes that suits the direction.
 pub(super) struct SectionPair<'a> {
     pub(super) setting: &'a Setting<'a>,
-    pub(super) sides: [Side<'a>; 2],
-    pub(super) frame: Frame,
-    /// `t` at the origin of both levels and `h = 0`.
+    /// The bodies, P first.
+    pub(super) sides: [SectionedBody<'a>; 2],
+    pub(super) frame: SectionFrame,
+    /// Value of `t` at level 0 of both bodies and `h = 0`.
     pub(super) constant: f64,
-    /// The middle of all levels, and half their extent.
+    /// Middle of all levels.
     pub(super) origin: DVec2,
+    /// Half the extent of the levels.
     pub(super) half: DVec2,
-    /// Of both bodies along the direction.
+    /// Extent of both bodies together along the direction.
     pub(super) extent: f64,
 }
 
 impl<'a> SectionPair<'a> {
+    /// Chooses the section axes, and places both bodies in section coordinates.
     pub(super) fn new(setting: &'a Setting<'a>) -> Self {
         let d = setting.unit;
         let pair = AxisPair::choose(&setting.moving_matrix, &setting.fixed_matrix, d);
         let along = [pair.moving.1.dot(d), pair.fixed.1.dot(d)];
         let axes = [pair.moving.1 / along[0], pair.fixed.1 / along[1]];
         let c = axes[0] - axes[1];
-        let frame = Frame { axes, along, shadow: [c, d.cross(c)] };
+        let frame = SectionFrame { axes, along, shadow: [c, d.cross(c)] };
         let side = |body: &'a ConvexPolyhedron, matrix: DMat3, axis: usize, along: f64, offset| {
             let to_body = matrix.transpose();
             let shadow = frame.shadow.map(|covector| to_body * covector);
             let constant = DVec2::from_array(frame.shadow.map(|covector| covector.dot(offset)));
             let sections = body.sections().axis(axis);
-            Side::new((body.vertices(), body.topology(), sections), along, shadow, constant)
+            SectionedBody::new(
+                (body.vertices(), body.topology(), sections),
+                along,
+                shadow,
+                constant,
+            )
         };
         let (p, q) = (setting.moving_matrix, setting.fixed_matrix);
         let sides = [
             side(setting.moving, p, pair.moving.0, along[0], DVec3::ZERO),
             side(setting.fixed, q, pair.fixed.0, along[1], setting.offset),
         ];
-        let ranges = [sides[0].range(), sides[1].range()];
+        let ranges = [sides[0].level_range(), sides[1].level_range()];
         let half = DVec2::from_array(ranges.map(|r| 0.5 * (r[1] - r[0])));
         Self {
             setting,
             sides,
             frame,
-            // Q's levels are measured in its own frame.
+            // Levels of Q are measured in its own frame.
             constant: axes[1].dot(setting.offset),
             origin: DVec2::from_array(ranges.map(|r| f64::midpoint(r[0], r[1]))),
             half,
@@ -58,13 +66,14 @@ impl<'a> SectionPair<'a> {
         }
     }
 
-    /// For those who look on.
-    pub(super) fn told(&self, square: Option<Square>) -> Sections {
+    /// Returns the axes, the ranges of levels and the neighbourhood, for an observer.
+    pub(super) fn observed_sections(&self, neighbourhood: Option<Neighbourhood>) -> Sections {
         let frame = &self.frame;
         Sections {
-            neighbourhood: square.map(|Square { center, half }| (self.origin + center, half)),
+            neighbourhood: neighbourhood
+                .map(|Neighbourhood { center, half }| (self.origin + center, half)),
             axes: [0, 1].map(|body| frame.axes[body] * frame.along[body]),
-            ranges: [0, 1].map(|body| self.sides[body].range()),
+            ranges: [0, 1].map(|body| self.sides[body].level_range()),
         }
     }
 }

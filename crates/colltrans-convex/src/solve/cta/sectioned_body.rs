@@ -1,7 +1,7 @@
-//! One body as the planar problem sees it: levels and shadow coordinates.
+//! A body in section coordinates.
 //!
-//! Notation. A point of the body has a *level* (`x` for the moving, `y` for the fixed body) and
-//! shadow coordinates `w = (h, g)`; all three are affine in the body frame.
+//! Each point of the body has a *level* (`x` for the moving, `y` for the fixed body) and shadow coordinates `w
+//! = (h, g)`. All three are affine functions in the body frame.
 
 use std::cell::Cell;
 
@@ -11,39 +11,40 @@ use super::crossing::Chain;
 use crate::body::convex::sections::{AxisSections, Search, SectionMap, Turn};
 use colltrans_kernel::topology::Topology;
 
-/// Levels that are this many mean edges apart are near (measured).
-const NEAR: f64 = 4.0;
+/// Distance between two levels that count as near, in mean edges (measured).
+const NEAR_EDGES: f64 = 4.0;
 
-/// A mesh vertex: its level and its shadow.
+/// Level and shadow coordinates of a mesh vertex.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Point {
+pub(super) struct LevelPoint {
     pub(super) level: f64,
     pub(super) shadow: DVec2,
 }
 
 /// A body with its section axis and shadow coordinates.
 #[derive(Debug)]
-pub(super) struct Side<'a> {
+pub(super) struct SectionedBody<'a> {
     pub(super) vertices: &'a [DVec3],
     pub(super) topology: &'a Topology,
     pub(super) sections: &'a AxisSections,
     axis: DVec3,
+    /// Covectors of `h` and `g` in the body frame.
     pub(super) shadow: [DVec3; 2],
     constant: DVec2,
-    /// Of the sections onto the shadow plane.
-    pub(super) map: SectionMap,
-    /// Levels closer than this are a few vertices apart, if these are spread evenly.
-    pub(super) near: f64,
-    /// The turn that leads up the left chain.
+    /// Map of the stored sections onto the shadow plane.
+    pub(super) section_map: SectionMap,
+    /// Distance of levels below which they are a few vertices apart, if the vertices are spread evenly.
+    pub(super) near_distance: f64,
+    /// Turn that leads up the left chain.
     left_turn: Turn,
-    /// Iterations of the loops of planar problems so far: section vertices computed, mesh vertices
-    /// climbed over, halvings of a snapshot.
+    /// Number of iterations in the loops of planar problems: section vertices computed, mesh vertices climbed
+    /// over, bisections of a snapshot.
     pub(super) iterations: Cell<u32>,
 }
 
-impl<'a> Side<'a> {
-    /// The two covectors of the shadow are in the body frame, `constant` is the shadow of its
-    /// origin. `along` is the axis' component along the direction.
+impl<'a> SectionedBody<'a> {
+    /// Builds the section coordinates. The covectors `shadow` are in the body frame, `constant` is the shadow
+    /// of its origin. `along` is the component of the section axis along the direction.
     pub(super) fn new(
         (vertices, topology, sections): (&'a [DVec3], &'a Topology, &'a AxisSections),
         along: f64,
@@ -53,74 +54,84 @@ impl<'a> Side<'a> {
         Self {
             vertices,
             topology,
-            near: NEAR * sections.of_an_edge,
+            near_distance: NEAR_EDGES * sections.of_an_edge,
             sections,
             axis: sections.axis,
             shadow,
             constant,
-            map: sections.map(shadow, constant),
-            // (level, h, g) is right-handed if the axis points along the direction; then
-            // counter-clockwise leads from +h to +g, and from the bottom, at -h, to -g: up the left
-            // chain.
+            section_map: sections.map(shadow, constant),
+            // (level, h, g) is right-handed if the axis points along the direction. Then the counter-clockwise
+            // sense leads from +h to +g, and from the bottom, at -h, to -g: up the left chain.
             left_turn: if along > 0.0 { Turn::CounterClockwise } else { Turn::Clockwise },
             iterations: Cell::new(0),
         }
     }
 
-    pub(super) fn count(&self, iterations: u32) {
+    pub(super) fn count_iterations(&self, iterations: u32) {
         self.iterations.set(self.iterations.get() + iterations);
     }
 
-    /// A search in the chains at a level, if the body has some.
-    pub(super) fn search(&self, x: f64) -> Option<Search<'a, impl Fn(u32) -> f64, impl Fn(u32)>> {
+    /// Returns a search in the chains at level `x`. `None` if the body has no chains.
+    pub(super) fn chain_search(
+        &self,
+        x: f64,
+    ) -> Option<Search<'a, impl Fn(u32) -> f64, impl Fn(u32)>> {
         let chains = self.sections.chains()?;
         let topology = self.topology;
-        Some(Search { chains, topology, x, level: |v| self.level(v), count: |n| self.count(n) })
+        Some(Search {
+            chains,
+            topology,
+            x,
+            level: |v| self.vertex_level(v),
+            count: |n| self.count_iterations(n),
+        })
     }
 
-    /// Lowest and highest level.
-    pub(super) fn range(&self) -> [f64; 2] {
+    /// Returns the lowest and the highest level.
+    pub(super) fn level_range(&self) -> [f64; 2] {
         self.sections.range
     }
 
-    /// No point of the body has a smaller `h`.
-    pub(super) fn least_height(&self) -> f64 {
-        let any = self.point(0).shadow.x;
-        // The covector's length is at most the sum of its coordinates.
+    /// Returns a lower bound of `h` over the body.
+    pub(super) fn height_lower_bound(&self) -> f64 {
+        let any = self.level_point(0).shadow.x;
+        // The sum of its coordinates bounds the length of the covector.
         any - self.shadow[0].abs().element_sum() * self.sections.diameter
     }
 
-    pub(super) fn level(&self, vertex: u32) -> f64 {
-        self.level_of(self.vertices[vertex as usize])
+    pub(super) fn vertex_level(&self, vertex: u32) -> f64 {
+        self.point_level(self.vertices[vertex as usize])
     }
 
-    /// The level of a point of the body frame.
-    pub(super) fn level_of(&self, point: DVec3) -> f64 {
+    /// Returns the level of a point of the body frame.
+    pub(super) fn point_level(&self, point: DVec3) -> f64 {
         self.axis.dot(point)
     }
 
-    /// The height of a point of the body frame.
-    pub(super) fn height_of(&self, point: DVec3) -> f64 {
+    /// Returns the height of a point of the body frame.
+    pub(super) fn point_height(&self, point: DVec3) -> f64 {
         self.shadow[0].dot(point) + self.constant.x
     }
 
-    /// An edge at a vertex, by its half-edge upwards.
-    pub(super) fn edge_at(&self, vertex: u32) -> u32 {
+    /// Returns a half-edge upwards of some edge at a vertex.
+    pub(super) fn upward_edge_at(&self, vertex: u32) -> u32 {
         let h = self.topology.outgoing(vertex)[0];
-        let is_up = self.level(self.topology.target(h)) > self.level(vertex);
+        let is_up = self.vertex_level(self.topology.target(h)) > self.vertex_level(vertex);
         if is_up { h } else { self.topology.half_edge(h).twin }
     }
 
+    /// Returns the level and the shadow coordinates of a vertex.
     #[inline]
-    pub(super) fn point(&self, vertex: u32) -> Point {
+    pub(super) fn level_point(&self, vertex: u32) -> LevelPoint {
         let v = self.vertices[vertex as usize];
-        Point {
+        LevelPoint {
             level: self.axis.dot(v),
             shadow: DVec2::new(self.shadow[0].dot(v), self.shadow[1].dot(v)) + self.constant,
         }
     }
 
-    pub(super) fn turn_up(&self, chain: Chain) -> Turn {
+    /// Returns the turn that leads up a chain.
+    pub(super) fn turn_up_chain(&self, chain: Chain) -> Turn {
         match chain {
             Chain::Left => self.left_turn,
             Chain::Right => self.left_turn.reversed(),

@@ -1,18 +1,18 @@
-//! Where a minimisation starts.
+//! The start of a minimisation.
 
 use glam::{DVec2, DVec3};
 
-use super::piece::Piece;
-use super::planar::{Hint, Last};
-use super::region::Square;
+use super::piece::LinearPiece;
+use super::planar::{LastAnswer, PlanarHint};
+use super::region::Neighbourhood;
 use super::section_pair::SectionPair;
 use crate::body::convex::sections::AXIS_LENGTH;
 use crate::setting::VertexPair;
 
-/// What a minimisation starts from.
+/// Choice of the first levels of a minimisation.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum Origin {
-    /// Nothing: the centre of the levels.
+    /// The middle of the levels.
     Center,
     /// The solution of an earlier query.
     Region(RegionFocus),
@@ -21,70 +21,79 @@ pub(crate) enum Origin {
 /// The solution of an earlier query.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct RegionFocus {
-    /// The points of contact, in the frames of P and of Q.
+    /// Points of contact, in the frames of P and of Q.
     pub(crate) touching: [DVec3; 2],
-    /// Half-side `delta` of the square around it that is searched first, in units of length.
+    /// Half-side `delta` of the square around the solution that is searched first, a length.
     pub(crate) half_side: f64,
-    /// The normal of contact or separation, in the frame of P.
+    /// Normal of the contact or of the separating plane, in the frame of P.
     pub(crate) normal: DVec3,
     /// Vertices near the points of contact.
     pub(crate) pair: VertexPair,
 }
 
-/// A search does not start nearer to the ends of the levels than this share of their range: a
-/// section has to have an area.
-const MARGIN: f64 = 0.005;
+/// Distance of the first levels from the ends of their range, as a share of the range: the section needs an
+/// area.
+const LEVEL_MARGIN: f64 = 0.005;
 
-/// What a minimisation begins with.
-pub(super) struct Begin {
-    pub(super) floor: Piece,
-    /// The first levels.
-    pub(super) at: DVec2,
-    /// The levels to search first.
-    pub(super) square: Option<Square>,
-    /// What is known of the first planar problem.
-    pub(super) hint: Hint,
+/// First state of a minimisation.
+pub(super) struct InitialState {
+    pub(super) floor: LinearPiece,
+    /// First levels.
+    pub(super) levels: DVec2,
+    /// Levels that are searched first.
+    pub(super) neighbourhood: Option<Neighbourhood>,
+    /// Hint for the first planar problem.
+    pub(super) hint: PlanarHint,
 }
 
 impl SectionPair<'_> {
-    pub(super) fn begin(&self, origin: &Origin) -> Begin {
+    /// Returns the first state for an origin.
+    pub(super) fn initial_state(&self, origin: &Origin) -> InitialState {
         match origin {
-            Origin::Center => {
-                Begin { floor: self.nothing(), at: self.origin, square: None, hint: Hint::NONE }
-            }
+            Origin::Center => InitialState {
+                floor: self.trivial_bound(),
+                levels: self.origin,
+                neighbourhood: None,
+                hint: PlanarHint::NONE,
+            },
             Origin::Region(focus) => {
-                let at = self.inner_levels(focus.touching);
+                let levels = self.inner_levels(focus.touching);
                 let half = focus.half_side * AXIS_LENGTH;
-                let square = Some(Square { center: at - self.origin, half });
-                let hint = self.hint(focus, at.to_array());
-                Begin { floor: self.nothing(), at, square, hint }
+                let neighbourhood = Some(Neighbourhood { center: levels - self.origin, half });
+                let hint = self.facing_hint(focus, levels.to_array());
+                InitialState { floor: self.trivial_bound(), levels, neighbourhood, hint }
             }
         }
     }
 
-    /// The sections face each other as the bodies did, at the points of contact.
-    fn hint(&self, focus: &RegionFocus, levels: [f64; 2]) -> Hint {
+    /// Builds a hint from an earlier solution: the sections face each other along its normal, at the height of
+    /// its points of contact.
+    fn facing_hint(&self, focus: &RegionFocus, levels: [f64; 2]) -> PlanarHint {
         let normal = self.setting.moving_matrix * focus.normal;
         let lateral = normal - self.frame.axes[0] * normal.dot(self.setting.unit);
         let right = usize::from(lateral.dot(self.frame.shadow[1]) > 0.0);
         let vertices = focus.pair.numbers();
-        let [p, q] = [0, 1].map(|body| self.sides[body].height_of(focus.touching[body]));
-        let edges = [0, 1].map(|body| self.sides[body].edge_at(vertices[body]));
-        Hint { height: p.max(q), levels, last: Last::Facing { right, edges } }
+        let [p, q] = [0, 1].map(|body| self.sides[body].point_height(focus.touching[body]));
+        let edges = [0, 1].map(|body| self.sides[body].upward_edge_at(vertices[body]));
+        PlanarHint { height: p.max(q), levels, last: LastAnswer::Facing { right, edges } }
     }
 
-    /// A bound that says nothing.
-    fn nothing(&self) -> Piece {
-        let base = self.frame.base(self.origin.to_array());
-        Piece::constant(base + self.sides[0].least_height() - self.extent, DVec3::ZERO)
+    /// Returns a constant below all values of `phi`, with a zero normal.
+    fn trivial_bound(&self) -> LinearPiece {
+        let base = self.frame.base_height(self.origin.to_array());
+        LinearPiece::from_supporting_plane(
+            base + self.sides[0].height_lower_bound() - self.extent,
+            DVec3::ZERO,
+        )
     }
 
-    /// The levels of two points in the bodies' frames, or the nearest where a section has an area.
+    /// Returns the levels of two points in the bodies' frames, moved away from the ends of the ranges by
+    /// [`LEVEL_MARGIN`].
     fn inner_levels(&self, points: [DVec3; 2]) -> DVec2 {
         DVec2::from_array([0, 1].map(|body| {
-            let [low, high] = self.sides[body].range();
-            let margin = MARGIN * (high - low);
-            self.sides[body].level_of(points[body]).clamp(low + margin, high - margin)
+            let [low, high] = self.sides[body].level_range();
+            let margin = LEVEL_MARGIN * (high - low);
+            self.sides[body].point_level(points[body]).clamp(low + margin, high - margin)
         }))
     }
 }

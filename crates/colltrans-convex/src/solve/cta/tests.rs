@@ -1,15 +1,15 @@
-//! The minimisation against brute force.
+//! Compares the minimisation with brute force.
 
 use glam::{DQuat, DVec2, DVec3};
 
-use super::cell::face_of;
+use super::cell::face_of_edge;
 use super::crossing::{Chain, Crossing};
-use super::minimise::{Narrowed, minimise};
+use super::minimise::{NarrowedSearch, minimise};
 use super::options::Cuts;
-use super::planar::{self, Hint, Last, Planar};
+use super::planar::{self, LastAnswer, PlanarAnswer, PlanarHint};
 use super::section::Section;
 use super::section_pair::SectionPair;
-use super::sectioned_body::Side;
+use super::sectioned_body::SectionedBody;
 use super::{CtaOptions, Guess, Origin};
 use crate::answer::Steps;
 use crate::body::ConvexPolyhedron;
@@ -20,44 +20,44 @@ use crate::setting::minkowski::MinkowskiDifference;
 use crate::solve::observe::{NoObserver, Observer, Watch};
 use crate::solve::portal;
 
-/// Exit tests, and how many of them ended a search.
+/// Number of exit tests, and of those that ended a search.
 #[derive(Debug, Default)]
-struct Exits {
+struct ExitCounter {
     tests: u32,
     hits: u32,
 }
 
-impl Observer for Exits {
+impl Observer for ExitCounter {
     fn exit_test(&mut self, solved: impl FnOnce() -> bool) {
         self.tests += 1;
         self.hits += u32::from(solved());
     }
 }
 
-/// The result of a minimisation, and the work it took.
-fn minimised(setting: &Setting, options: &CtaOptions) -> (Narrowed, Steps) {
+/// Returns the result of a minimisation and the work that it took.
+fn minimise_counting_steps(setting: &Setting, options: &CtaOptions) -> (NarrowedSearch, Steps) {
     let mut none = NoObserver;
     let mut watch = Watch::new(&mut none);
     let narrowed = minimise(setting, options, &mut watch);
     (narrowed, watch.steps)
 }
 
-/// What is to be found.
+/// Result of the brute-force search.
 #[derive(Debug)]
-enum Truth {
+enum BruteForce {
     Contact(f64),
     Separated,
     /// The shadows only touch: rounding decides.
     Grazing,
 }
 
-struct Placed {
+struct PlacedMesh {
     vertices: Vec<DVec3>,
     normals: Vec<DVec3>,
     edges: Vec<DVec3>,
 }
 
-impl Placed {
+impl PlacedMesh {
     fn new(body: &ConvexPolyhedron, pose: &Pose) -> Self {
         let vertices: Vec<DVec3> =
             body.vertices().iter().map(|&v| pose.transform_point(v)).collect();
@@ -79,8 +79,9 @@ impl Placed {
     }
 }
 
-/// The greatest lower bound over all normals that can be optimal: of faces and of pairs of edges.
-fn brute_force(p: &Placed, q: &Placed, d: DVec3) -> Truth {
+/// Computes the greatest lower bound over all normals that can be optimal: those of faces and of pairs of
+/// edges.
+fn brute_force_contact(p: &PlacedMesh, q: &PlacedMesh, d: DVec3) -> BruteForce {
     let margin = |n: DVec3| {
         let of_p = p.vertices.iter().map(|v| n.dot(*v)).fold(f64::NEG_INFINITY, f64::max);
         q.vertices.iter().map(|v| n.dot(*v)).fold(f64::INFINITY, f64::min) - of_p
@@ -94,10 +95,10 @@ fn brute_force(p: &Placed, q: &Placed, d: DVec3) -> Truth {
         }
     }
     if apart.abs() < 1e-12 {
-        return Truth::Grazing;
+        return BruteForce::Grazing;
     }
     if apart > 0.0 {
-        return Truth::Separated;
+        return BruteForce::Separated;
     }
     let mut candidates: Vec<DVec3> = p.normals.clone();
     candidates.extend(&q.normals);
@@ -109,7 +110,7 @@ fn brute_force(p: &Placed, q: &Placed, d: DVec3) -> Truth {
         let n = if n.dot(d) < 0.0 { -n } else { n };
         (n.dot(d) > 1e-9).then(|| margin(n) / n.dot(d))
     });
-    Truth::Contact(bounds.fold(f64::NEG_INFINITY, f64::max))
+    BruteForce::Contact(bounds.fold(f64::NEG_INFINITY, f64::max))
 }
 
 const EXACT: CtaOptions = CtaOptions {
@@ -120,25 +121,26 @@ const EXACT: CtaOptions = CtaOptions {
     starts_cold: false,
 };
 
-/// Compares with brute force to `tolerance`; returns the result.
-fn check(
+/// Compares a minimisation with brute force to `tolerance`, and returns its result.
+fn check_against_brute_force(
     (p, p_pose): (&ConvexPolyhedron, &Pose),
     (q, q_pose): (&ConvexPolyhedron, &Pose),
     d: DVec3,
     tolerance: f64,
     name: &str,
-) -> Narrowed {
+) -> NarrowedSearch {
     let setting = Setting::new(p.at(*p_pose), q.at(*q_pose), d).unwrap();
-    let narrowed = minimised(&setting, &EXACT).0;
-    let truth = brute_force(&Placed::new(p, p_pose), &Placed::new(q, q_pose), setting.unit);
+    let narrowed = minimise_counting_steps(&setting, &EXACT).0;
+    let truth =
+        brute_force_contact(&PlacedMesh::new(p, p_pose), &PlacedMesh::new(q, q_pose), setting.unit);
     match (&truth, narrowed.guess) {
-        (Truth::Contact(t), Guess::Contact { normal }) => {
+        (BruteForce::Contact(t), Guess::Contact { normal }) => {
             assert!((narrowed.upper - t).abs() <= tolerance, "{name}: {truth:?} {narrowed:?}");
             assert!((narrowed.lower - t).abs() <= tolerance, "{name}: {truth:?} {narrowed:?}");
             assert!((normal.dot(setting.unit) - 1.0).abs() < 1e-6, "{name}: {narrowed:?}");
             // The normal proves the lower bound.
-            let world = Placed::new(p, p_pose);
-            let fixed = Placed::new(q, q_pose);
+            let world = PlacedMesh::new(p, p_pose);
+            let fixed = PlacedMesh::new(q, q_pose);
             let of_p =
                 world.vertices.iter().map(|v| normal.dot(*v)).fold(f64::NEG_INFINITY, f64::max);
             let of_q = fixed.vertices.iter().map(|v| normal.dot(*v)).fold(f64::INFINITY, f64::min);
@@ -148,7 +150,7 @@ fn check(
                 of_q - of_p
             );
         }
-        (Truth::Separated, Guess::Separation { .. }) | (Truth::Grazing, _) => {}
+        (BruteForce::Separated, Guess::Separation { .. }) | (BruteForce::Grazing, _) => {}
         _ => panic!("{name}: {truth:?} {narrowed:?}"),
     }
     narrowed
@@ -179,12 +181,12 @@ fn random_bodies_agree_with_brute_force() {
         let (p, q) = (body(), body());
         let (p_pose, q_pose) = (random_pose(&mut random, 1.0), random_pose(&mut random, 1.0));
         let d = random.unit();
-        check((&p, &p_pose), (&q, &q_pose), d, 1e-8, &format!("round {round}"));
+        check_against_brute_force((&p, &p_pose), (&q, &q_pose), d, 1e-8, &format!("round {round}"));
     }
 }
 
 #[test]
-fn tied_bodies_agree_with_brute_force() {
+fn bodies_with_ties_agree_with_brute_force() {
     let mut random = Random(13);
     let bodies = [
         cuboid(DVec3::ZERO, DVec3::ONE),
@@ -218,7 +220,7 @@ fn tied_bodies_agree_with_brute_force() {
                         let name = format!("bodies {i} {j} {d} {rotation} {shift}");
                         let setting = Setting::new(p.at(Pose::IDENTITY), q.at(pose), d).unwrap();
                         check_planar(&setting, &mut random, &name);
-                        check((p, &Pose::IDENTITY), (q, &pose), d, 1e-8, &name);
+                        check_against_brute_force((p, &Pose::IDENTITY), (q, &pose), d, 1e-8, &name);
                     }
                 }
             }
@@ -226,15 +228,15 @@ fn tied_bodies_agree_with_brute_force() {
     }
 }
 
-/// Lower bound of the collision translation that a normal proves, by a scan of all vertices.
-fn bound_by(normal: DVec3, p: &Placed, q: &Placed, d: DVec3) -> f64 {
+/// Computes the lower bound of the collision translation that a normal proves, by a scan of all vertices.
+fn bound_proven_by(normal: DVec3, p: &PlacedMesh, q: &PlacedMesh, d: DVec3) -> f64 {
     let of_p = p.vertices.iter().map(|v| normal.dot(*v)).fold(f64::NEG_INFINITY, f64::max);
     let of_q = q.vertices.iter().map(|v| normal.dot(*v)).fold(f64::INFINITY, f64::min);
     (of_q - of_p) / normal.dot(d)
 }
 
 #[test]
-fn needles_plates_and_large_caps_are_narrowed_to_a_certified_gap() {
+fn needles_plates_and_large_caps_have_certified_bounds() {
     let mut random = Random(17);
     let bodies = [
         ellipsoid(3000, DVec3::ONE),
@@ -250,14 +252,14 @@ fn needles_plates_and_large_caps_are_narrowed_to_a_certified_gap() {
         let d = random.unit();
         let poses = [0.0, 3.0].map(|t| Pose::new(random.rotation(), d * t).unwrap());
         let setting = Setting::new(p.at(poses[0]), q.at(poses[1]), d).unwrap();
-        let narrowed = minimised(&setting, &EXACT).0;
-        let (p, q) = (Placed::new(p, &poses[0]), Placed::new(q, &poses[1]));
+        let narrowed = minimise_counting_steps(&setting, &EXACT).0;
+        let (p, q) = (PlacedMesh::new(p, &poses[0]), PlacedMesh::new(q, &poses[1]));
         let size = p.vertices.iter().chain(&q.vertices).map(|v| v.length()).fold(0.0, f64::max);
-        // Both centres lie on the line: they meet.
+        // Both centres are on the line, therefore the bodies meet.
         let Guess::Contact { normal } = narrowed.guess else {
             panic!("round {round}: {narrowed:?}")
         };
-        let proven = bound_by(normal, &p, &q, setting.unit);
+        let proven = bound_proven_by(normal, &p, &q, setting.unit);
         let (lower, upper) = (narrowed.lower, narrowed.upper);
         assert!((proven - lower).abs() < 1e-9 * size, "round {round}: {narrowed:?} {proven}");
         assert!(upper - lower < 1e-6 * size, "round {round}: {narrowed:?}");
@@ -266,7 +268,7 @@ fn needles_plates_and_large_caps_are_narrowed_to_a_certified_gap() {
 }
 
 #[test]
-fn the_exit_test_ends_nearly_every_search_at_the_contact() {
+fn exit_test_ends_99_percent_of_contact_searches() {
     let mut random = Random(23);
     let bodies = [
         ellipsoid(30, DVec3::ONE),
@@ -276,21 +278,24 @@ fn the_exit_test_ends_nearly_every_search_at_the_contact() {
         cone(6, DVec3::ONE),
         cuboid(DVec3::ZERO, DVec3::ONE),
     ];
-    let mut counted = Exits::default();
+    let mut counted = ExitCounter::default();
     let mut contacts = 0;
     for round in 0..500 {
         let (p, q) = (&bodies[random.index(bodies.len())], &bodies[random.index(bodies.len())]);
-        let Example { poses, d } = colliding(&mut random);
+        let Example { poses, d } = colliding_setting(&mut random);
         let setting = Setting::new(p.at(poses[0]), q.at(poses[1]), d).unwrap();
-        let mut exits = Exits::default();
+        let mut exits = ExitCounter::default();
         let narrowed = minimise(&setting, &EXACT, &mut Watch::new(&mut exits));
-        let truth =
-            brute_force(&Placed::new(p, &poses[0]), &Placed::new(q, &poses[1]), setting.unit);
-        let Truth::Contact(t) = truth else { continue };
+        let truth = brute_force_contact(
+            &PlacedMesh::new(p, &poses[0]),
+            &PlacedMesh::new(q, &poses[1]),
+            setting.unit,
+        );
+        let BruteForce::Contact(t) = truth else { continue };
         contacts += 1;
         counted.tests += exits.tests;
         counted.hits += exits.hits;
-        // No search goes on after a hit, and none is wrong.
+        // No search continues after a hit, and no hit is wrong.
         assert!(exits.hits <= 1, "round {round}");
         assert!(
             exits.hits == 0 || (narrowed.lower - t).abs() < 1e-7,
@@ -298,18 +303,18 @@ fn the_exit_test_ends_nearly_every_search_at_the_contact() {
         );
     }
     assert!(contacts > 250 && counted.hits * 100 >= contacts * 99, "{contacts} {counted:?}");
-    // The test is not asked so often that it could not but hit.
+    // Fewer than half of the tests hit, so a hit is not the only possible result.
     assert!(counted.tests > 2 * counted.hits, "{counted:?}");
 }
 
 #[test]
-fn a_hit_on_a_large_face_names_the_portal() {
+fn exit_on_many_sided_face_gives_corners_around_the_line() {
     let mut random = Random(37);
     let point = ellipsoid(200, DVec3::splat(0.2));
     let mut hits = 0;
     for round in 0..600 {
         let face = prism(4 + random.index(60), DVec3::ONE);
-        // Onto a cap, from either side and as either body.
+        // The bodies meet at a cap, from either side and with either body moving.
         let along = DVec3::new(0.3 * random.signed(), 0.3 * random.signed(), 1.0);
         let cap = if random.index(2) == 0 { -along } else { along };
         let aside = DVec3::new(random.signed(), random.signed(), 0.0) * 0.6;
@@ -320,7 +325,7 @@ fn a_hit_on_a_large_face_names_the_portal() {
         } else {
             Setting::new(face.at(rest), point.at(start), -cap).unwrap()
         };
-        let mut exits = Exits::default();
+        let mut exits = ExitCounter::default();
         let narrowed = minimise(&setting, &EXACT, &mut Watch::new(&mut exits));
         let Some(corners) = narrowed.corners else { continue };
         hits += exits.hits;
@@ -334,39 +339,40 @@ fn a_hit_on_a_large_face_names_the_portal() {
 }
 
 #[test]
-fn a_shift_that_keeps_to_its_cell_takes_more_planar_problems() {
+fn shifts_within_cells_need_a_quarter_more_planar_problems() {
     let one_by_one = CtaOptions { keeps_to_cell: true, ..EXACT };
     let mut random = Random(47);
-    let bodies = similar(2000, false);
-    let (mut kept, mut crossed) = (0, 0);
+    let bodies = ellipsoid_pair(2000, false);
+    let (mut within, mut crossed) = (0, 0);
     for round in 0..300 {
-        let e = colliding(&mut random);
+        let e = colliding_setting(&mut random);
         let [p, q] = &bodies;
         let setting = Setting::new(p.at(e.poses[0]), q.at(e.poses[1]), e.d).unwrap();
-        let [(a, one), (b, more)] = [&one_by_one, &EXACT].map(|o| minimised(&setting, o));
-        // Both end in the same place, or both pass.
+        let [(a, one), (b, more)] =
+            [&one_by_one, &EXACT].map(|o| minimise_counting_steps(&setting, o));
+        // Both end at the same contact, or both find none.
         let same = a.upper == b.upper || (a.upper - b.upper).abs() < 1e-8;
         assert!(same, "round {round}: {} {}", a.upper, b.upper);
-        kept += one.planar_problems;
+        within += one.planar_problems;
         crossed += more.planar_problems;
     }
-    assert!(kept * 4 > crossed * 5, "{kept} {crossed}");
+    assert!(within * 4 > crossed * 5, "{within} {crossed}");
 }
 
-/// Cuts that are not shifted and planar problems from nothing lead to the same place, with more work.
+/// Cuts through the planar problem's value and cold starts find the same contact with more work.
 #[test]
-fn other_cuts_and_cold_starts_end_in_the_same_place() {
+fn centroid_cuts_and_cold_starts_reach_same_contact_with_more_work() {
     let paper = CtaOptions { keeps_to_cell: true, ..EXACT };
     let centroid = CtaOptions { cuts: Cuts::Centroid, ..paper };
     let cold = CtaOptions { starts_cold: true, ..paper };
     let mut random = Random(53);
-    let bodies = similar(500, false);
+    let bodies = ellipsoid_pair(500, false);
     let mut work = [Steps::default(); 3];
     for round in 0..200 {
-        let e = colliding(&mut random);
+        let e = colliding_setting(&mut random);
         let [p, q] = &bodies;
         let setting = Setting::new(p.at(e.poses[0]), q.at(e.poses[1]), e.d).unwrap();
-        let found = [&paper, &centroid, &cold].map(|o| minimised(&setting, o));
+        let found = [&paper, &centroid, &cold].map(|o| minimise_counting_steps(&setting, o));
         for (narrowed, _) in &found[1..] {
             let [a, b] = [found[0].0.upper, narrowed.upper];
             assert!(a == b || (a - b).abs() < 1e-8, "round {round}: {a} {b}");
@@ -379,8 +385,8 @@ fn other_cuts_and_cold_starts_end_in_the_same_place() {
     assert!(4 * cold.iterations > 5 * paper.iterations, "{cold:?} {paper:?}");
 }
 
-/// The steps of a minimisation take no square root (the paper, V-A), by this name or another, and neither does
-/// what prepares them.
+/// The steps of a minimisation and their preparation take no square root (the paper, V-A), by this name or
+/// another.
 #[test]
 fn steps_take_no_square_roots() {
     let sources = [
@@ -404,7 +410,7 @@ fn steps_take_no_square_roots() {
     for source in sources {
         let code = source.split("#[cfg(test)]").next().unwrap();
         for (k, line) in code.lines().enumerate() {
-            // What only an observer asks for.
+            // The exception computes a value for observers alone.
             if line.contains("(1.0 / u.length(), 0.0)") {
                 continue;
             }
@@ -416,7 +422,7 @@ fn steps_take_no_square_roots() {
 }
 
 #[test]
-fn steps_do_not_grow_with_the_bodies() {
+fn ten_planar_problems_suffice_on_average_up_to_20000_vertices() {
     for count in [8, 128, 2000, 20_000] {
         let mut random = Random(19);
         let [p, q] = [0, 1].map(|_| {
@@ -426,9 +432,9 @@ fn steps_do_not_grow_with_the_bodies() {
         let mut steps = 0;
         let options = CtaOptions { gap: 2.5e-3, ..EXACT };
         for _ in 0..300 {
-            let e = colliding(&mut random);
+            let e = colliding_setting(&mut random);
             let setting = Setting::new(p.at(e.poses[0]), q.at(e.poses[1]), e.d).unwrap();
-            steps += minimised(&setting, &options).1.planar_problems;
+            steps += minimise_counting_steps(&setting, &options).1.planar_problems;
         }
         assert!(
             steps <= 300 * 10,
@@ -438,13 +444,14 @@ fn steps_do_not_grow_with_the_bodies() {
     }
 }
 
-/// A colliding setting of two ellipsoids of `count` vertices.
+/// Poses and direction of a setting.
 struct Example {
     poses: [Pose; 2],
     d: DVec3,
 }
 
-fn colliding(random: &mut Random) -> Example {
+/// Returns random poses. The origin of the fixed body is 5 ahead along `d`, and at most 1 off the line.
+fn colliding_setting(random: &mut Random) -> Example {
     let d = random.unit();
     let across = random.unit().cross(d).normalize() * random.within(0.0, 1.0);
     let poses = [DVec3::ZERO, d * 5.0 + across]
@@ -452,18 +459,19 @@ fn colliding(random: &mut Random) -> Example {
     Example { poses, d }
 }
 
-/// All vertices of a section in order, from the bottom up the left chain.
-fn polygon(side: &Side, x: f64) -> Vec<Crossing> {
-    let section = Section { side, x, limit: side.topology.edge_count() };
+/// Returns all vertices of a section in order, from the bottom up the left chain.
+fn section_polygon(side: &SectionedBody, level: f64) -> Vec<Crossing> {
+    let section = Section { side, level, max_steps: side.topology.edge_count() };
     let above = |h: &u32| {
-        side.level(side.topology.origin(*h)) <= x && side.level(side.topology.target(*h)) > x
+        side.vertex_level(side.topology.origin(*h)) <= level
+            && side.vertex_level(side.topology.target(*h)) > level
     };
     let crossing = (0..side.topology.half_edges().len() as u32).find(above).unwrap();
-    let first = section.bottom(crossing).unwrap().vertex;
+    let first = section.find_bottom(crossing).unwrap().vertex;
     let mut all = vec![first];
     loop {
-        let next = section.up(Chain::Left, &all[all.len() - 1]);
-        if next.up == first.up {
+        let next = section.next_vertex(Chain::Left, &all[all.len() - 1]);
+        if next.half_edge == first.half_edge {
             return all;
         }
         all.push(next);
@@ -487,9 +495,9 @@ fn planar_problems_agree_with_brute_force() {
     }
 }
 
-/// Sections of so many edges that their bodies have chains.
+/// The bodies have chains because their sections have many edges.
 #[test]
-fn planar_problems_of_rings_agree_with_brute_force() {
+fn planar_problems_with_chains_agree_with_brute_force() {
     let mut random = Random(6);
     let (p, q) = (&cone(800, DVec3::ONE), &cone(700, DVec3::new(1.0, 0.7, 1.3)));
     for round in 0..5 {
@@ -499,8 +507,8 @@ fn planar_problems_of_rings_agree_with_brute_force() {
     }
 }
 
-/// The least height common to two polygons, by all vertices and all pairs of edges; infinite if
-/// they have nothing in common.
+/// Computes the least height common to two polygons, from all vertices and all pairs of edges. Infinite if the
+/// polygons are disjoint.
 fn least_common_height(polygons: &[Vec<Crossing>; 2]) -> f64 {
     let edges = |i: usize| {
         let of: &Vec<Crossing> = &polygons[i];
@@ -532,61 +540,67 @@ fn least_common_height(polygons: &[Vec<Crossing>; 2]) -> f64 {
     least
 }
 
+/// Compares the answer of a planar problem with brute force, for several hints.
 fn check_planar(setting: &Setting, random: &mut Random, name: &str) {
     let query = SectionPair::new(setting);
     let levels = [0, 1].map(|i| {
-        let [low, high] = query.sides[i].range();
+        let [low, high] = query.sides[i].level_range();
         random.within(low, high)
     });
-    let polygons = [0, 1].map(|i| polygon(&query.sides[i], levels[i]));
+    let polygons = [0, 1].map(|i| section_polygon(&query.sides[i], levels[i]));
     for (i, polygon) in polygons.iter().enumerate() {
         let least = polygon.iter().map(Crossing::h).fold(f64::INFINITY, f64::min);
         assert!(polygon[0].h() - least < 1e-12, "{name}, side {i}");
     }
     let least = least_common_height(&polygons);
-    let check = |hint: &Hint, name: &str| {
-        let answer = planar::solve(&query.sides, levels, hint).unwrap();
-        check_answer(&answer, &polygons, least, name);
+    let check = |hint: &PlanarHint, name: &str| {
+        let answer = planar::solve_planar(&query.sides, levels, hint).unwrap();
+        check_planar_answer(&answer, &polygons, least, name);
     };
-    // A bound from below and a guess, right or wrong, change the way, not the answer.
-    check(&Hint::NONE, name);
-    let edges = [0, 1].map(|i| polygons[i][random.index(polygons[i].len())].up);
-    let between = [polygons[1][0].up, edges[1]];
+    // A lower bound and a guess, right or wrong, change the path of the search but not the answer.
+    check(&PlanarHint::NONE, name);
+    let edges = [0, 1].map(|i| polygons[i][random.index(polygons[i].len())].half_edge);
+    let between = [polygons[1][0].half_edge, edges[1]];
     let lasts = [
-        Last::Nothing,
-        Last::Facing { right: 0, edges },
-        Last::Facing { right: 1, edges },
-        Last::Bottom { upper: 0, vertex: edges[0], between },
+        LastAnswer::Nothing,
+        LastAnswer::Facing { right: 0, edges },
+        LastAnswer::Facing { right: 1, edges },
+        LastAnswer::Bottom { upper: 0, vertex: edges[0], between },
     ];
     for known in [1e-6, 1e-2, 1.0] {
         for last in lasts {
-            let hint = Hint { height: least.min(10.0) - known, levels, last };
+            let hint = PlanarHint { height: least.min(10.0) - known, levels, last };
             check(&hint, &format!("{name}, {hint:?}"));
         }
     }
-    // So does an answer at other levels, near or far.
+    // The same holds for hints from an answer at other levels, near or far.
     for share in [1e-9, 1e-3, 0.1, 1.0] {
         let others = [0, 1].map(|i| {
-            let [low, high] = query.sides[i].range();
+            let [low, high] = query.sides[i].level_range();
             levels[i] + (random.within(low, high) - levels[i]) * share
         });
-        let other = planar::solve(&query.sides, others, &Hint::NONE).unwrap();
-        let hint = other.hint(others, levels, least.min(10.0) - share);
+        let other = planar::solve_planar(&query.sides, others, &PlanarHint::NONE).unwrap();
+        let hint = other.hint_for_levels(others, levels, least.min(10.0) - share);
         check(&hint, &format!("{name}, from {share}"));
     }
 }
 
-/// An answer against the least common height of two sections, infinite if there is none.
-fn check_answer(answer: &Planar, polygons: &[Vec<Crossing>; 2], least: f64, name: &str) {
+/// Compares an answer with the least common height of two sections, which is infinite if they are disjoint.
+fn check_planar_answer(
+    answer: &PlanarAnswer,
+    polygons: &[Vec<Crossing>; 2],
+    least: f64,
+    name: &str,
+) {
     match answer {
-        Planar::Vertex { vertex, .. } => {
+        PlanarAnswer::Vertex { vertex, .. } => {
             assert!((vertex.h() - least).abs() < 1e-9, "{name}: {least} {}", vertex.h());
         }
-        Planar::Edges { contact, .. } => {
+        PlanarAnswer::Edges { contact, .. } => {
             assert!((contact.x - least).abs() < 1e-9, "{name}: {least} {contact}");
         }
-        Planar::Separated { u, supports } => {
-            // Sections that touch each other may be taken for either.
+        PlanarAnswer::Separated { u, supports } => {
+            // Sections that touch each other may count as separated or in contact.
             let apart = u.dot(supports[1].w - supports[0].w);
             assert!(apart >= -1e-12 && (least == f64::INFINITY || apart < 1e-12), "{name}");
             let beyond = |c: &Crossing, body: usize| u.dot(c.w - supports[body].w);
@@ -596,48 +610,48 @@ fn check_answer(answer: &Planar, polygons: &[Vec<Crossing>; 2], least: f64, name
     }
 }
 
-/// Levels of both bodies, within their ranges.
+/// Returns random levels within the ranges of both bodies.
 fn random_levels(random: &mut Random, query: &SectionPair) -> [f64; 2] {
     query.sides.each_ref().map(|side| {
-        let [low, high] = side.range();
+        let [low, high] = side.level_range();
         random.within(low, high)
     })
 }
 
 #[test]
-fn the_faces_of_a_contact_tell_it_again() {
+fn faces_of_edge_contact_reproduce_it() {
     let mut random = Random(43);
     let (p, q) = (ellipsoid(200, DVec3::ONE), ellipsoid(60, DVec3::new(1.0, 0.7, 1.3)));
-    let (mut contacts, mut told) = (0, 0);
+    let (mut contacts, mut reproduced) = (0, 0);
     for round in 0..3000 {
         let poses = [random_pose(&mut random, 0.7), random_pose(&mut random, 0.7)];
         let setting = Setting::new(p.at(poses[0]), q.at(poses[1]), random.unit()).unwrap();
         let query = SectionPair::new(&setting);
         let levels = random_levels(&mut random, &query);
-        let found = planar::solve(&query.sides, levels, &Hint::NONE).unwrap();
-        let Planar::Edges { edges, contact } = found else { continue };
+        let found = planar::solve_planar(&query.sides, levels, &PlanarHint::NONE).unwrap();
+        let PlanarAnswer::Edges { edges, contact } = found else { continue };
         contacts += 1;
-        let faces = [0, 1].map(|i| face_of(&query.sides[i], &edges[i]).unwrap().0);
-        let again = planar::on_faces(&query.sides, levels, faces);
-        let Some(Planar::Edges { contact: other, .. }) = again else { continue };
-        told += 1;
+        let faces = [0, 1].map(|i| face_of_edge(&query.sides[i], &edges[i]).unwrap().0);
+        let again = planar::solve_on_faces(&query.sides, levels, faces);
+        let Some(PlanarAnswer::Edges { contact: other, .. }) = again else { continue };
+        reproduced += 1;
         assert!(contact.distance(other) < 1e-9, "round {round}: {contact} {other}");
     }
-    assert!(contacts > 500 && told * 100 >= contacts * 99, "{told} of {contacts}");
+    assert!(contacts > 500 && reproduced * 100 >= contacts * 99, "{reproduced} of {contacts}");
 }
 
-/// Iterations of all loops per planar problem, and planar problems per search, of searches from the
-/// centre to the end.
+/// Measures searches from the centre to the end. Returns the mean number of iterations in a planar problem, and
+/// of planar problems in a search.
 fn work_per_problem(bodies: &[ConvexPolyhedron; 2], aside: f64, rounds: usize) -> [f64; 2] {
     let mut random = Random(29);
     let (mut problems, mut iterations) = (0, 0);
     for _ in 0..rounds {
-        let mut e = colliding(&mut random);
+        let mut e = colliding_setting(&mut random);
         let shift = random.unit().cross(e.d).normalize() * aside;
         e.poses[1] = Pose::new(e.poses[1].rotation(), e.poses[1].translation() + shift).unwrap();
         let [p, q] = bodies;
         let setting = Setting::new(p.at(e.poses[0]), q.at(e.poses[1]), e.d).unwrap();
-        let steps = minimised(&setting, &EXACT).1;
+        let steps = minimise_counting_steps(&setting, &EXACT).1;
         problems += steps.planar_problems;
         iterations += steps.iterations;
     }
@@ -646,38 +660,38 @@ fn work_per_problem(bodies: &[ConvexPolyhedron; 2], aside: f64, rounds: usize) -
 }
 
 #[test]
-fn planar_problems_do_not_walk_along_sections() {
+fn warm_planar_problems_take_few_iterations() {
     for (count, thin) in [(2000, false), (20_000, false), (2000, true), (20_000, true)] {
-        let bodies = similar(count, thin);
+        let bodies = ellipsoid_pair(count, thin);
         for aside in [0.0, 1.5, 3.0] {
             let [iterations, problems] = work_per_problem(&bodies, aside, 200);
             println!(
                 "{count} thin {thin} aside {aside}: {iterations:.1} iterations a problem, \
                  {problems:.1} problems"
             );
-            let most = if thin { 100.0 } else { 80.0 };
-            assert!(iterations < most, "{count} {thin} {aside}: {iterations}");
+            let limit = if thin { 100.0 } else { 80.0 };
+            assert!(iterations < limit, "{count} {thin} {aside}: {iterations}");
         }
     }
 }
 
-/// Sections of about as many edges as the body: chains, not walks.
+/// Sections with about as many edges as the body use chains instead of walks.
 #[test]
-fn planar_problems_of_rings_grow_as_the_logarithm_of_the_vertices() {
+fn prisms_and_cones_take_few_times_the_iterations_of_ellipsoids() {
     for count in [3200, 12_800, 51_200] {
-        let ellipsoids = work_per_problem(&similar(count, false), 0.0, 100)[0];
-        for (name, body, most) in
+        let ellipsoids = work_per_problem(&ellipsoid_pair(count, false), 0.0, 100)[0];
+        for (name, body, limit) in
             [("prism", prism(count / 2, DVec3::ONE), 2.6), ("cone", cone(count, DVec3::ONE), 3.2)]
         {
             let work = work_per_problem(&[body.clone(), body], 0.0, 100)[0];
             println!("{name} of {count}: {work:.1} iterations, ellipsoids {ellipsoids:.1}");
-            assert!(work < most * ellipsoids, "{name} of {count}: {work} {ellipsoids}");
+            assert!(work < limit * ellipsoids, "{name} of {count}: {work} {ellipsoids}");
         }
     }
 }
 
-/// Two ellipsoids with faces as long as wide, or a hundred times as long.
-fn similar(count: usize, thin: bool) -> [ConvexPolyhedron; 2] {
+/// Returns two ellipsoids with faces about as long as wide, or a hundred times as long.
+fn ellipsoid_pair(count: usize, thin: bool) -> [ConvexPolyhedron; 2] {
     let mut random = Random(31);
     [0, 1].map(|_| {
         let axes = DVec3::from_array([0, 1, 2].map(|_| random.within(0.6, 1.4)));
@@ -685,8 +699,8 @@ fn similar(count: usize, thin: bool) -> [ConvexPolyhedron; 2] {
     })
 }
 
-/// Mean iterations of planar problems at random levels of nothing known: of contacts, of sections
-/// that pass each other sideways, and by height.
+/// Measures planar problems at random levels without a hint. Returns the mean number of iterations for
+/// contacts, for separations sideways and for separations by height.
 fn work_from_nothing(bodies: &[ConvexPolyhedron; 2], rounds: usize) -> [f64; 3] {
     let mut random = Random(41);
     let (mut problems, mut iterations) = ([0_u32; 3], [0_u32; 3]);
@@ -696,10 +710,10 @@ fn work_from_nothing(bodies: &[ConvexPolyhedron; 2], rounds: usize) -> [f64; 3] 
         let setting = Setting::new(p.at(poses[0]), q.at(poses[1]), random.unit()).unwrap();
         let query = SectionPair::new(&setting);
         let levels = random_levels(&mut random, &query);
-        let kind = match planar::solve(&query.sides, levels, &Hint::NONE).unwrap() {
-            Planar::Separated { u, .. } if u.y == 0.0 => 2,
-            Planar::Separated { .. } => 1,
-            Planar::Vertex { .. } | Planar::Edges { .. } => 0,
+        let kind = match planar::solve_planar(&query.sides, levels, &PlanarHint::NONE).unwrap() {
+            PlanarAnswer::Separated { u, .. } if u.y == 0.0 => 2,
+            PlanarAnswer::Separated { .. } => 1,
+            PlanarAnswer::Vertex { .. } | PlanarAnswer::Edges { .. } => 0,
         };
         problems[kind] += 1;
         iterations[kind] += query.sides.iter().map(|side| side.iterations.get()).sum::<u32>();
@@ -709,13 +723,13 @@ fn work_from_nothing(bodies: &[ConvexPolyhedron; 2], rounds: usize) -> [f64; 3] 
 }
 
 #[test]
-fn planar_problems_grow_as_the_logarithm_of_the_vertices() {
+fn cold_planar_problems_take_logarithmically_many_iterations() {
     for thin in [false, true] {
         for count in [200, 2000, 20_000, 200_000] {
-            let work = work_from_nothing(&similar(count, thin), 2000);
+            let work = work_from_nothing(&ellipsoid_pair(count, thin), 2000);
             println!("{count} thin {thin}: {work:.1?}");
-            let most = 6.0 * f64::from(count as u32).log2();
-            assert!(work.iter().all(|&steps| steps < most), "{count} thin {thin}: {work:.1?}");
+            let limit = 6.0 * f64::from(count as u32).log2();
+            assert!(work.iter().all(|&steps| steps < limit), "{count} thin {thin}: {work:.1?}");
         }
     }
 }

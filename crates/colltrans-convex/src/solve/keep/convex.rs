@@ -1,11 +1,15 @@
-//! Convex bodies that are to keep a gap: from a setting to an outcome.
+//! Casts of convex bodies with a minimum gap: from a setting to an outcome. Notation as in [`super`].
 //!
-//! Notation as in [`super`]. The outcome is that of a cast of a point at `M` grown by a ball of the gap, told apart by
-//! the shadows: with `o = g - m`, what the gap takes of the shadow beyond the line, they are *apart* for `o < 0`, for
-//! certain; else the bodies *graze* up to the graze tolerance.
+//! The outcome is that of a cast of a point against `M` grown by a ball of radius `g`. With the distance `m` of
+//! the whole line from `M`, the shadows overlap by `o = g - m`:
 //!
-//! A *slight* gap, of less than eight noises, leaves no room for a point that is as near for certain. There the bodies are cast as
-//! they are: their own contact is an upper bound, and the plane, lowered by the gap, the lower one.
+//! - *separated* if `o < 0` for certain,
+//! - *grazing* if `o` is at most the graze tolerance,
+//! - else *contact*.
+//!
+//! A *slight* gap, of less than eight noises, leaves no room for a point that is as near for certain. In this
+//! case the bodies are cast without the gap. Their contact is an upper bound, and its plane, lowered by the
+//! gap, proves the lower one.
 
 use glam::{DMat3, DVec3};
 
@@ -22,52 +26,60 @@ use crate::solve::options::{Focus, Options};
 use crate::solve::{TrackerUpdate, WarmStart};
 use colltrans_kernel::noise::Noise;
 
-/// How far apart, in noises over `n.d`, the bounds of an answer may be.
-const WIDEST: f64 = 15.0;
+/// Maximum difference of the bounds of an answer, in noises over `n.d`.
+const MAX_WIDTH: f64 = 15.0;
 
-/// The same of bodies that glide: what a check takes for rounding is more.
-const WIDEST_GLIDING: f64 = 24.0;
+/// Maximum difference of the bounds of bodies that glide, in noises over `n.d`. Larger because a check allows
+/// more for rounding there.
+const MAX_WIDTH_GLIDING: f64 = 24.0;
 
-/// By how many noises points are looked for that are nearer than the gap, where those at the gap are not near enough
-/// for certain; shadows that overlap by more than grazing do by eight.
-const DEEPER: [f64; 4] = [4.0, 2.0, 6.0, 8.0];
+/// Reductions of the gap, in noises, with which nearer points are searched if those at the gap are not near
+/// enough for certain. Shadows that overlap by more than grazing do so by eight.
+const GAP_REDUCTIONS: [f64; 4] = [4.0, 2.0, 6.0, 8.0];
 
-/// How far behind such a plane a point is looked for, in noises over `n.d`.
-const MOST_BEHIND: u8 = 10;
+/// Maximum distance behind the plane of gliding bodies, in noises over `n.d`, at which a point is searched.
+const MAX_STEPS_BEHIND: u8 = 10;
 
-/// Nearest points and a plane that are so many noises apart are looked for once more.
-const STUCK: f64 = 2.0;
+/// Maximum difference of the bounds of nearest points, in noises. Above it they are searched again from
+/// scratch.
+const MAX_NEAREST_GAP: f64 = 2.0;
 
-/// By how many noises a margin has to be larger than the gap to be proven without being looked at as a check does.
-const CLEARLY: f64 = 2.0;
+/// Difference of a margin and the gap, in noises, above which the margin is proven without a check.
+const CLEAR_MARGIN: f64 = 2.0;
 
-/// `M`, what was found last, and who hears of it.
-struct Bodies<'s, 'a, 'o, O> {
+/// `M` of two convex bodies, with the last nearest points and the observer.
+struct ConvexDifference<'s, 'a, 'o, O> {
     setting: &'s Setting<'a>,
     noise: Noise,
     pairs: NearestPairs,
     observer: &'o mut O,
-    /// Support points computed.
+    /// Number of support points computed.
     supports: u32,
 }
 
 /// Three pairs of vertices and their weights.
-type Spot = ([VertexPair; 3], [f64; 3]);
+type WeightedPairs = ([VertexPair; 3], [f64; 3]);
 
-/// The shadow frame, for observers.
+/// Returns the shadow frame, for observers.
 fn setting_from_shadow(setting: &Setting) -> DMat3 {
     MinkowskiDifference::new(setting).setting_from_shadow
 }
 
-impl<O: Observer> Bodies<'_, '_, '_, O> {
-    fn begun(&mut self) {
+impl<O: Observer> ConvexDifference<'_, '_, '_, O> {
+    fn report_begin(&mut self) {
         let (setting, noise) = (self.setting, self.noise.point());
         let frame = || ShadowFrame { world_from_shadow: setting_from_shadow(setting), noise };
         self.observer.begun(frame);
     }
 
-    /// The plane across a support point, which the observer hears of.
-    fn plane(&mut self, normal: DVec3, support: VertexPair, beyond: f64) -> Plane<VertexPair> {
+    /// Builds the plane with this normal through a support point, and reports the support point to the
+    /// observer.
+    fn report_plane(
+        &mut self,
+        normal: DVec3,
+        support: VertexPair,
+        beyond: f64,
+    ) -> Plane<VertexPair> {
         let setting = self.setting;
         self.observer.support(|| {
             let to_shadow = setting_from_shadow(setting).transpose();
@@ -80,9 +92,9 @@ impl<O: Observer> Bodies<'_, '_, '_, O> {
     }
 }
 
-impl<O: Observer> Target for Bodies<'_, '_, '_, O> {
+impl<O: Observer> Target for ConvexDifference<'_, '_, '_, O> {
     type Support = VertexPair;
-    type Spot = Spot;
+    type Spot = WeightedPairs;
 
     fn lowest(&mut self, normal: DVec3) -> (Plane<VertexPair>, DVec3) {
         self.supports += 1;
@@ -93,39 +105,45 @@ impl<O: Observer> Target for Bodies<'_, '_, '_, O> {
             fixed: bodies.fixed.support(-normals[1]),
         };
         let (support, beyond) = bodies.support_with_excess(&normals, found);
-        (self.plane(normal, support, beyond), bodies.difference(support))
+        (self.report_plane(normal, support, beyond), bodies.difference(support))
     }
 
-    fn look(&mut self, from: DVec3) -> Look<VertexPair, Spot> {
+    fn look(&mut self, from: DVec3) -> Look<VertexPair, WeightedPairs> {
         let moved = self.setting.bodies.moved_by(from);
         let difference = Difference::new(&moved);
         let mut found = nearest_points(&difference, &self.pairs, None);
         self.supports += found.supports;
-        if found.computed_gap() > STUCK * self.noise.point() {
-            // From pairs on a sliver a descent may get nowhere.
+        if found.computed_gap() > MAX_NEAREST_GAP * self.noise.point() {
+            // A descent from pairs on a sliver may stall.
             found = nearest_points(&difference, &NearestPairs::default(), None);
             self.supports += found.supports;
         }
         self.pairs = found.pairs();
         let plane = found.plane(&difference);
-        let plane = plane.map(|plane| self.plane(plane.gap.normal, plane.lowest, plane.excess));
+        let plane =
+            plane.map(|plane| self.report_plane(plane.gap.normal, plane.lowest, plane.excess));
         let (pairs, weights) = found.points();
-        // In the setting itself: the origin is where the body was.
+        // In the frame of the setting, where the origin is the unmoved body.
         let corners = [0, 1, 2].map(|k| self.setting.difference(pairs[k]));
         let count = weights.iter().filter(|weight| **weight > 0.0).count();
-        let point = mean(&corners, &weights);
+        let point = weighted_mean(&corners, &weights);
         Look { plane, point, spot: (pairs, weights), corners, count }
     }
 }
 
-fn mean(corners: &[DVec3; 3], weights: &[f64; 3]) -> DVec3 {
+fn weighted_mean(corners: &[DVec3; 3], weights: &[f64; 3]) -> DVec3 {
     let sum: f64 = weights.iter().sum();
     corners.iter().zip(weights).map(|(corner, weight)| *corner * (weight / sum)).sum()
 }
 
-/// Casts bodies that are to keep a gap, as [`crate::solve::search`] does those that are not.
+/// Casts bodies with a minimum gap. [`crate::solve::search`] casts bodies without one.
+///
+/// # Errors
+///
+/// Returns [`QueryError::NotConverged`] if the bounds are farther apart than rounding explains, or if no plane
+/// along the line was found.
 #[cold]
-pub(crate) fn search<O: Observer>(
+pub(crate) fn cast_with_min_gap<O: Observer>(
     setting: &Setting,
     options: &Options,
     focus: &Focus,
@@ -137,16 +155,17 @@ pub(crate) fn search<O: Observer>(
     if Noise::of(setting.scale() + options.keep).is_slight(options.keep) {
         let touching = Options { keep: 0.0, ..*options };
         let outcome = crate::solve::search(setting, &touching, focus, last, next, observer)?;
-        if let Some(outcome) = slightly_apart(setting, options.keep, outcome) {
+        if let Some(outcome) = lower_by_slight_gap(setting, options.keep, outcome) {
             return Ok(outcome);
         }
     }
     let last = if focus.features { *last } else { WarmStart::Nothing };
-    search_apart(setting, options, &last, next, observer)
+    find_gap_crossing(setting, options, &last, next, observer)
 }
 
-/// Where bodies that are to keep a gap are first as near as that; leaves in `next` where a later search may start.
-fn search_apart<O: Observer>(
+/// Finds where the distance of the bodies first falls to the gap. Stores in `next` where a later search may
+/// start.
+fn find_gap_crossing<O: Observer>(
     setting: &Setting,
     options: &Options,
     last: &WarmStart,
@@ -156,59 +175,63 @@ fn search_apart<O: Observer>(
     let size = setting.scale();
     let line = Line::new(setting.unit, options.keep, size);
     let pairs = NearestPairs::default();
-    let bodies = Bodies { setting, noise: line.noise, pairs, observer, supports: 0 };
-    let mut kept = Kept { options, line, bodies, steps: Steps::default() };
-    kept.bodies.begun();
-    let start = kept.start(last);
-    kept.bodies.observer.ended(Phase::Setup);
-    let found = travel(&mut kept.bodies, &line, start, f64::INFINITY);
-    kept.bodies.observer.ended(Phase::Finish);
-    kept.steps.pivots = found.looks;
-    next.start = WarmStart::WithMinGap { normal: found.plane.normal, pairs: kept.bodies.pairs };
-    let outcome = kept.outcome(&found);
+    let bodies = ConvexDifference { setting, noise: line.noise, pairs, observer, supports: 0 };
+    let mut search = GapSearch { options, line, bodies, steps: Steps::default() };
+    search.bodies.report_begin();
+    let start = search.first_plane(last);
+    search.bodies.observer.ended(Phase::Setup);
+    let found = travel(&mut search.bodies, &line, start, f64::INFINITY);
+    search.bodies.observer.ended(Phase::Finish);
+    search.steps.pivots = found.samples;
+    next.start = WarmStart::WithMinGap { normal: found.plane.normal, pairs: search.bodies.pairs };
+    let outcome = search.classify_outcome(&found);
     next.steps = outcome.as_ref().ok().map(Outcome::steps);
-    kept.bodies.observer.ended(Phase::Answer);
+    search.bodies.observer.ended(Phase::Answer);
     outcome
 }
 
-/// One search under way.
-struct Kept<'s, 'a, 'o, O> {
+struct GapSearch<'s, 'a, 'o, O> {
     options: &'s Options,
     line: Line,
-    bodies: Bodies<'s, 'a, 'o, O>,
+    bodies: ConvexDifference<'s, 'a, 'o, O>,
     steps: Steps,
 }
 
-type Found<'s, 'a, 'o, O> = Travel<Bodies<'s, 'a, 'o, O>>;
+type FoundBounds<'s, 'a, 'o, O> = Travel<ConvexDifference<'s, 'a, 'o, O>>;
 
-impl<'s, 'a, 'o, O: Observer> Kept<'s, 'a, 'o, O> {
-    /// The work done so far.
-    fn steps(&self) -> Steps {
+impl<'s, 'a, 'o, O: Observer> GapSearch<'s, 'a, 'o, O> {
+    /// Returns the work done, with the number of support points.
+    fn total_steps(&self) -> Steps {
         Steps { supports: self.bodies.supports, ..self.steps }
     }
 
-    /// The plane to begin with: that of the last search, or one across the line.
-    fn start(&mut self, last: &WarmStart) -> Plane<VertexPair> {
+    /// Returns the plane to start with: that of the last search or the one perpendicular to the line, whichever
+    /// has the greater lower bound.
+    fn first_plane(&mut self, last: &WarmStart) -> Plane<VertexPair> {
         let mut start = self.bodies.lowest(self.line.unit).0;
         if let WarmStart::WithMinGap { normal, pairs } = last {
             self.bodies.pairs = *pairs;
             self.steps.started_from = StartedFrom::Features;
             let plane = self.bodies.lowest(*normal).0;
-            if self.line.lower(&plane) > self.line.lower(&start) {
+            if self.line.lower_bound(&plane) > self.line.lower_bound(&start) {
                 start = plane;
             }
         }
         start
     }
 
-    /// What was found, by how far the shadows are in each other's way.
-    fn outcome(&mut self, found: &Found<'s, 'a, 'o, O>) -> Result<Outcome, QueryError> {
+    /// Returns the outcome, by the overlap of the shadows.
+    fn classify_outcome(
+        &mut self,
+        found: &FoundBounds<'s, 'a, 'o, O>,
+    ) -> Result<Outcome, QueryError> {
         let keep = self.line.keep;
-        let least = 8.0 * self.line.noise.point();
-        let tolerance = self.options.graze_tolerance.max(least);
-        let aside = |near: &Near<Spot>| near.point.reject_from_normalized(self.line.unit).length();
-        if found.near.as_ref().is_some_and(|near| keep - aside(near) > tolerance) {
-            return self.contact(found).map(Outcome::Contact);
+        let min_tolerance = 8.0 * self.line.noise.point();
+        let tolerance = self.options.graze_tolerance.max(min_tolerance);
+        let lateral_distance =
+            |near: &Near<WeightedPairs>| near.point.reject_from_normalized(self.line.unit).length();
+        if found.near.as_ref().is_some_and(|near| keep - lateral_distance(near) > tolerance) {
+            return self.proven_contact(found).map(Outcome::Contact);
         }
         let center = |of: DVec3| self.line.unit.cross(of).cross(self.line.unit);
         let setting = self.bodies.setting;
@@ -216,28 +239,33 @@ impl<'s, 'a, 'o, O: Observer> Kept<'s, 'a, 'o, O> {
             - setting.moving_matrix * setting.moving.inertia().center
             + setting.offset;
         let Some(shadow) = shadow(&mut self.bodies, &self.line, center(between)) else {
-            return Err(stalled(Stalled::NoPortal));
+            return Err(not_converged(Stalled::NoPortal));
         };
-        if let Some(certificate) = self.separation(&shadow.plane) {
-            let (solver, steps) = (self.solver(), self.steps());
+        if let Some(certificate) = self.proven_separation(&shadow.plane) {
+            let (solver, steps) = (self.reported_solver(), self.total_steps());
             return Ok(Outcome::Separated(Separated { certificate, solver, steps }));
         }
         let overlap = keep - if shadow.distance > 0.0 { shadow.plane.height } else { 0.0 };
         if shadow.distance == 0.0
-            && let Some(grazing) = self.slides(found, tolerance)
+            && let Some(grazing) = self.grazing_without_gap(found, tolerance)
         {
             return Ok(Outcome::Grazing(grazing));
         }
         if overlap > tolerance || shadow.distance == 0.0 {
-            return self.contact(found).map(Outcome::Contact);
+            return self.proven_contact(found).map(Outcome::Contact);
         }
         let separating_direction = shadow.plane.normal;
-        let contact = self.grazed(found);
+        let contact = self.grazing_contact(found);
         Ok(Outcome::Grazing(Grazing { separating_direction, overlap, contact }))
     }
 
-    /// Whether the bodies graze although their shadows overlap: by less than the tolerance, with the gap.
-    fn slides(&self, found: &Found<'s, 'a, 'o, O>, tolerance: f64) -> Option<Grazing> {
+    /// Casts the bodies without the gap, with a graze tolerance that is smaller by the gap. Returns the grazing
+    /// contact that this finds. `None` if it finds none, or if the gap is not below the tolerance.
+    fn grazing_without_gap(
+        &self,
+        found: &FoundBounds<'s, 'a, 'o, O>,
+        tolerance: f64,
+    ) -> Option<Grazing> {
         let keep = self.line.keep;
         if keep >= tolerance {
             return None;
@@ -248,86 +276,98 @@ impl<'s, 'a, 'o, O: Observer> Kept<'s, 'a, 'o, O> {
         let outcome =
             crate::solve::search(setting, &plain, &Focus::NONE, &last, &mut next, &mut NoObserver);
         let Ok(Outcome::Grazing(of)) = outcome else { return None };
-        Some(Grazing { overlap: of.overlap + keep, contact: self.grazed(found), ..of })
+        Some(Grazing { overlap: of.overlap + keep, contact: self.grazing_contact(found), ..of })
     }
 
-    /// The separation that a plane along the line proves.
-    fn separation(&self, plane: &Plane<VertexPair>) -> Option<Separation> {
+    /// Returns the separation that a plane along the line proves. `None` if its margin is not proven to be
+    /// larger than the gap.
+    fn proven_separation(&self, plane: &Plane<VertexPair>) -> Option<Separation> {
         let certificate = Separation { normal: plane.normal, margin: plane.height };
-        let surely = self.line.keep + CLEARLY * self.line.noise.point();
-        let proven = plane.height > surely
+        let clear_height = self.line.keep + CLEAR_MARGIN * self.line.noise.point();
+        let proven = plane.height > clear_height
             || plane.height > self.line.keep
                 && certificate.verify_with_gap(self.bodies.setting, self.line.keep).is_ok();
         proven.then_some(certificate)
     }
 
-    fn solver(&self) -> Solver {
+    fn reported_solver(&self) -> Solver {
         match self.options.solver {
             Solver::Auto => Solver::Portal,
             solver => solver,
         }
     }
 
-    /// The contact, if its bounds are no farther apart than rounding explains.
-    fn contact(&mut self, found: &Found<'s, 'a, 'o, O>) -> Result<Contact, QueryError> {
-        let tolerance = self.line.rounding(&found.plane, WIDEST);
+    /// Returns the contact if rounding explains the difference of its bounds.
+    fn proven_contact(
+        &mut self,
+        found: &FoundBounds<'s, 'a, 'o, O>,
+    ) -> Result<Contact, QueryError> {
+        let tolerance = self.line.bound_width(&found.plane, MAX_WIDTH);
         let upper = found.near.map_or(f64::INFINITY, |near| near.upper);
         if upper - found.lower <= tolerance {
-            return Ok(self.contact_of(found, tolerance));
+            return Ok(self.build_contact(found, tolerance));
         }
-        if let Some(contact) = self.glided(found) {
+        if let Some(contact) = self.gliding_contact(found) {
             return Ok(contact);
         }
         let length = self.bodies.setting.length;
         let [lower, upper, tolerance] = [found.lower, upper, tolerance].map(|s| s / length);
-        Err(stalled(Stalled::Gap { lower, upper, tolerance }))
+        Err(not_converged(Stalled::Gap { lower, upper, tolerance }))
     }
 
-    /// The contact of bodies that glide at about the gap: a face that is all but along the direction comes nearer by so
-    /// little that points are as near for certain only far behind its front edge. That face says how far: its
-    /// plane is met where a smaller gap is asked for, and the bounds are as far apart as it is slanting. The best
-    /// estimate is still where the front edge is met.
+    /// Finds the contact of bodies that glide at about the gap. A face that is nearly along the direction comes
+    /// nearer so slowly that points are near enough for certain only far behind its front edge. Its plane is
+    /// reached at a slightly smaller gap, and the bounds differ as the face is slanted. The best estimate
+    /// remains the front edge. `None` if rounding does not explain the bounds.
     #[cold]
-    fn glided(&mut self, found: &Found<'s, 'a, 'o, O>) -> Option<Contact> {
-        let contact = DEEPER.iter().find_map(|deeper| self.behind_edge(found, *deeper))?;
+    fn gliding_contact(&mut self, found: &FoundBounds<'s, 'a, 'o, O>) -> Option<Contact> {
+        let contact = GAP_REDUCTIONS
+            .iter()
+            .find_map(|reduction| self.contact_behind_edge(found, *reduction))?;
         let Certificate { lower, upper, .. } = contact.certificate;
         let translation = (found.lower / self.bodies.setting.length).min(upper).max(lower);
         Some(Contact { translation, ..contact })
     }
 
-    /// The same by a plane that is met at a gap that is so many noises smaller.
-    fn behind_edge(&mut self, found: &Found<'s, 'a, 'o, O>, deeper: f64) -> Option<Contact> {
-        let line = Line { keep: self.line.keep - deeper * self.line.noise.point(), ..self.line };
+    /// Finds the contact by a plane that is reached at a gap smaller by `reduction` noises. `None` if no point
+    /// is near enough, or if rounding does not explain the difference of the bounds.
+    fn contact_behind_edge(
+        &mut self,
+        found: &FoundBounds<'s, 'a, 'o, O>,
+        reduction: f64,
+    ) -> Option<Contact> {
+        let line = Line { keep: self.line.keep - reduction * self.line.noise.point(), ..self.line };
         let start = self.bodies.lowest(found.plane.normal).0;
         let mut behind = travel(&mut self.bodies, &line, start, f64::INFINITY);
-        self.steps.pivots += behind.looks;
+        self.steps.pivots += behind.samples;
         let (met, plane) = (behind.lower, behind.plane);
-        behind.lower = self.line.lower(&plane)?;
-        for ahead in 1..=MOST_BEHIND {
+        behind.lower = self.line.lower_bound(&plane)?;
+        for step in 1..=MAX_STEPS_BEHIND {
             if behind.near.is_some() {
                 break;
             }
-            let from = met + self.line.rounding(&plane, f64::from(ahead));
+            let from = met + self.line.bound_width(&plane, f64::from(step));
             let look = self.bodies.look(self.line.unit * from);
             self.steps.pivots += 1;
-            behind.note_point(&self.line, &look);
+            behind.record_point(&self.line, &look);
         }
         let width = behind.near?.upper - behind.lower;
-        let is_explained = width <= self.line.rounding(&plane, WIDEST_GLIDING);
-        is_explained.then(|| self.contact_of(&behind, width))
+        let is_explained = width <= self.line.bound_width(&plane, MAX_WIDTH_GLIDING);
+        is_explained.then(|| self.build_contact(&behind, width))
     }
 
-    /// The contact of bodies that graze, whatever its bounds.
-    fn grazed(&self, found: &Found<'s, 'a, 'o, O>) -> Contact {
-        self.contact_of(found, self.line.rounding(&found.plane, WIDEST))
+    /// Returns the contact of bodies that graze, with any difference of its bounds.
+    fn grazing_contact(&self, found: &FoundBounds<'s, 'a, 'o, O>) -> Contact {
+        self.build_contact(found, self.line.bound_width(&found.plane, MAX_WIDTH))
     }
 
-    fn contact_of(&self, found: &Found<'s, 'a, 'o, O>, rounding: f64) -> Contact {
+    /// Builds the contact from a plane and, if it was found, a point.
+    fn build_contact(&self, found: &FoundBounds<'s, 'a, 'o, O>, rounding: f64) -> Contact {
         let setting = self.bodies.setting;
         let plane = &found.plane;
         let steepness = plane.normal.dot(setting.direction);
         let lower = ((plane.height - self.line.keep) / steepness).next_down();
-        let certain = found.near.and_then(|near| Some((self.upper(&near)?, near)));
+        let certain = found.near.and_then(|near| Some((self.certified_upper_bound(&near)?, near)));
         let (upper, value, (pairs, weights)) = match certain {
             Some((upper, near)) => {
                 let value = self.line.estimate(near.point).map(|s| s / setting.length);
@@ -347,25 +387,27 @@ impl<'s, 'a, 'o, O: Observer> Kept<'s, 'a, 'o, O> {
                 upper,
                 rounding: rounding / setting.length,
             },
-            solver: self.solver(),
-            steps: self.steps(),
+            solver: self.reported_solver(),
+            steps: self.total_steps(),
         }
     }
 
-    /// The upper bound in multiples of the direction, once more as near as the gap.
-    fn upper(&self, near: &Near<Spot>) -> Option<f64> {
+    /// Returns the upper bound in multiples of the direction. `None` if, rounded up, it is no longer as near as
+    /// the gap.
+    fn certified_upper_bound(&self, near: &Near<WeightedPairs>) -> Option<f64> {
         let setting = self.bodies.setting;
         let upper = (near.upper / setting.length).next_up();
-        self.line.is_near(near.point - setting.direction * upper).then_some(upper)
+        self.line.is_within_gap(near.point - setting.direction * upper).then_some(upper)
     }
 }
 
-fn stalled(reason: Stalled) -> QueryError {
+fn not_converged(reason: Stalled) -> QueryError {
     QueryError::NotConverged { reason }
 }
 
-/// The outcome of bodies that keep a slight gap, from that of the bodies as they are; `None` if only a search for the gap can tell.
-fn slightly_apart(setting: &Setting, keep: f64, outcome: Outcome) -> Option<Outcome> {
+/// Lowers the outcome of bodies without a gap by a slight gap. `None` for separated bodies whose margin does
+/// not prove the gap: only a search with the gap decides.
+fn lower_by_slight_gap(setting: &Setting, keep: f64, outcome: Outcome) -> Option<Outcome> {
     let nearer = |contact: Contact| {
         let certificate = contact.certificate;
         let back = keep / contact.normal.dot(setting.direction);

@@ -1,35 +1,17 @@
-//! How far a body goes until it is as near to another as a gap that is to be kept.
+//! Casts with a minimum gap: finds the first position on a line at which a convex set is as near as the gap.
 //!
-//! Notation. `M = {q - p}`, a convex set in the setting frame; `d` the direction as a unit vector, `g > 0` the
-//! gap, `f(s)` the distance of `s d` from `M`, a convex function. The bodies are nearer than `g` where `f < g`:
-//! between two numbers, of which the first is asked. `m` is the least `f`, the distance of the whole line from `M`:
-//! that of their shadows along `d`. `S` is the size of the configuration, `u = 2^-53`.
+//! - `M = {q - p}`: a convex set in the setting frame. `d`: the direction with length 1. `g > 0`: the gap.
+//! - `f(s)`: the distance of `s d` from `M`, a convex function. The *crossing* is the first `s` with `f(s) =
+//!   g`.
+//! - Lower bound: a plane with the unit normal `n`, `n.d > 0`, and all of `M` above the height `h` proves `s >=
+//!   (h - g) / n.d`.
+//! - Upper bound: a point `c` of `M` with `|c - s d| <= g` proves that the crossing is at most `s`.
+//! - No crossing: a plane with `n.d = 0` and `h > g`.
 //!
-//! - *From below.* A plane with the unit normal `n`, `n.d > 0`, and all of `M` above the height `h`: where the bodies
-//!   are nearer than `g`, `s >= (h - g) / n.d`.
-//! - *From above.* A point `c` of `M`: where `|c - s d| <= g` they are.
-//! - *Never.* A plane with `n.d = 0` and `h > g`.
-//!
-//! [`travel`] is Newton's method for `f(s) = g`, which comes from below: a *look* at `s` finds the point of `M` nearest
-//! to `s d` and the plane across the way there, and the plane says where to look next. As `f` is convex, no such plane
-//! leads too far, and each bound is one whatever led there: planes and points are only proposed by looks. In
-//! between it looks where the edge or the corner that is nearest would be reached if it were all of `M`: if the
-//! nearest feature is no other one there, that look is the last.
-//!
-//! A line that passes `M` by more than the gap has no such number; one that all but does has one that rounding
-//! moves far along. [`shadow`] tells: it descends to the point of the shadow of `M` nearest to the line, over
-//! simplices, in the plane.
-//!
-//! Rounding. All is measured in noises of the size `S + g` (`32 u (S + g)`), as `|s| <= S + g` where bodies are that near.
-//!
-//! - *Planes.* Heights come with their errors taken off. The product `|n| g` is off by `5 u g` for the length of
-//!   `n`, its sum with the height by `u (S + g)`, and dividing by a rounded `n.d` costs `3 u (S + g)` more, as `n.d` is off by
-//!   `2 u`. A height along a rounded unit normal is off by `18 u S` at most: together less than the one noise that
-//!   is taken off.
-//! - *Points.* A mean of points of `M` as computed is off by `16 u S` ([`Noise::mean_raised`]), `s d` by `2 u |s|`, the length of
-//!   their difference by `2 u` of it: less than one noise and a half, which is kept from the gap. Who checks demands
-//!   half a noise.
-//! - Where a bound is not computed from these lines to the last digit (features, shadows), it only proposes.
+//! [`travel`] is Newton's method for `f(s) = g` from below. Each sample at `s` finds the point of `M` nearest
+//! to `s d` and a plane between them. [`shadow`] computes the distance of the whole line from `M`. Samples only
+//! propose planes and points, which prove the bounds. Rounding errors are analysed in
+//! `docs/theory/minimum-gap.md`.
 
 pub(crate) mod convex;
 
@@ -37,155 +19,172 @@ use glam::{DVec2, DVec3};
 
 use colltrans_kernel::noise::{Noise, UNIT_VECTOR};
 
-/// Looks after which nothing more is expected; more than were ever seen.
-const MOST_LOOKS: usize = 96;
+/// Maximum number of samples; more than were ever observed.
+const MAX_SAMPLES: usize = 96;
 
-/// How far apart, in noises over `n.d`, bounds may be to be left at that.
-const ENOUGH: f64 = 5.0;
+/// Difference of the bounds, in noises over `n.d`, at which the search ends.
+const SUFFICIENT_WIDTH: f64 = 5.0;
 
-/// A step of the lower bound, in noises over `n.d`, that is none.
-const LEAST_STEP: f64 = 0.125;
+/// Minimum step of the lower bound, in noises over `n.d`, that counts as progress.
+const MIN_BOUND_STEP: f64 = 0.125;
 
-/// How far ahead of the lower bound, in noises over `n.d`, a point is looked for where none was near enough, at first
-/// and at last.
-const AHEAD: f64 = 5.5;
-const MOST_AHEAD: f64 = 11.0;
+/// First distance ahead of the lower bound, in noises over `n.d`, of a sample that searches a point near
+/// enough.
+const FIRST_STEP_AHEAD: f64 = 5.5;
+/// Maximum distance ahead of the lower bound, in noises over `n.d`, of such a sample.
+const MAX_STEP_AHEAD: f64 = 11.0;
 
-/// What is taken from the gap, in noises, where a point is solved for; a little more than is checked.
-const SOLVED: f64 = 2.0;
+/// Reduction of the gap, in noises, for which an upper bound is solved; slightly more than its check needs.
+const GAP_MARGIN: f64 = 2.0;
 
-/// Rounds of the descent in the shadow.
-const MOST_ROUNDS: usize = 64;
+/// Maximum number of rounds of the descent in the shadow.
+const MAX_ROUNDS: usize = 64;
 
-/// A convex set, seen from a line.
+/// A convex set whose distance from the points of a line is sampled.
 pub trait Target {
-    /// What says of a plane where it is.
+    /// Identification of a plane's support.
     type Support: Copy;
-    /// What says of a point which it is.
+    /// Identification of a point.
     type Spot: Copy;
 
-    /// The plane with a unit normal below all of it, and a point there.
+    /// Returns the supporting plane with the unit normal `normal` below the set, and a point of the set on it.
     fn lowest(&mut self, normal: DVec3) -> (Plane<Self::Support>, DVec3);
 
-    /// The point nearest to a place, and a plane between.
+    /// Finds the point of the set nearest to `from`, and a plane between them.
     fn look(&mut self, from: DVec3) -> Look<Self::Support, Self::Spot>;
 }
 
-/// All of the set is above it.
+/// A plane below a convex set.
 #[derive(Debug, Clone, Copy)]
 pub struct Plane<S> {
-    /// Of length 1, but for rounding.
+    /// Unit normal, up to rounding.
     pub normal: DVec3,
-    /// At most `normal . m` for all `m`, its error taken off.
+    /// Lower bound of `normal . m` for all points `m` of the set; errors are subtracted.
     pub height: f64,
-    /// What was taken off besides rounding.
+    /// Part of the subtracted errors that is not rounding: a bound on how far the set extends beyond the
+    /// support.
     pub beyond: f64,
+    /// Support of the plane.
     pub support: S,
 }
 
-/// What is seen from a place.
+/// Sample of the distance of a set from a point.
 pub struct Look<S, P> {
-    /// Between the place and the set; `None` if there is none that rounding can tell.
+    /// Plane between the point and the set. `None` if rounding hides it.
     pub plane: Option<Plane<S>>,
-    /// The nearest point, rounded.
+    /// Nearest point of the set, rounded.
     pub point: DVec3,
+    /// Identification of the nearest point.
     pub spot: P,
-    /// The corners of the feature that it is an inner point of, and how many.
+    /// Corners of the feature that has the nearest point in its interior, at most three of them.
     pub corners: [DVec3; 3],
+    /// Number of corners of the feature.
     pub count: usize,
 }
 
-/// A line and the gap that is kept from it.
+/// A line through the origin and the minimum gap.
 #[derive(Debug, Clone, Copy)]
 pub struct Line {
-    /// The direction, at length 1.
+    /// Direction, with length 1.
     pub unit: DVec3,
+    /// Minimum gap.
     pub keep: f64,
-    /// Of the size with the gap.
+    /// Noise of the configuration's size plus the gap.
     pub noise: Noise,
-    /// Nothing is as near as the gap beyond this.
-    pub(crate) reach: f64,
+    /// Greatest distance from the origin at which the set can be as near as the gap.
+    pub(crate) max_distance: f64,
 }
 
-/// How near to each other bounds have come.
+/// Bounds of a crossing.
 pub struct Travel<T: Target> {
-    /// The plane that the lower bound is of, and the bound as a length.
+    /// Plane that proves the lower bound.
     pub(crate) plane: Plane<T::Support>,
+    /// Lower bound, a length.
     pub lower: f64,
-    /// The upper bound, the point that it is of, and which.
+    /// Point that proves the upper bound. `None` if no point is near enough.
     pub near: Option<Near<T::Spot>>,
-    pub(crate) looks: u32,
-    /// Whether a plane showed that the line passes, or all but passes.
-    pub(crate) passes: bool,
+    /// Number of samples.
+    pub(crate) samples: u32,
+    /// Whether a plane has shown that the line does not cross the gap, or hardly does.
+    pub(crate) is_passing: bool,
 }
 
 /// A point of the set that is as near as the gap.
 #[derive(Debug, Clone, Copy)]
 pub struct Near<P> {
+    /// Upper bound of the crossing that the point proves, a length.
     pub(crate) upper: f64,
+    /// Position of the point.
     pub point: DVec3,
+    /// Identification of the point.
     pub(crate) spot: P,
 }
 
 impl Line {
+    /// Creates the line for a configuration of the size `size`.
     #[inline]
     pub fn new(unit: DVec3, keep: f64, size: f64) -> Self {
         let noise = Noise::of(size + keep);
-        Self { unit, keep, noise, reach: size + keep + noise.point() }
+        Self { unit, keep, noise, max_distance: size + keep + noise.point() }
     }
 
-    /// How far a plane is off the direction: what bounds from below are divided by.
+    /// Returns `n.d` for a unit normal: the divisor of lower bounds.
     #[inline]
     pub fn slope(&self, normal: DVec3) -> f64 {
         normal.dot(self.unit)
     }
 
-    /// No point above a plane is as near as the gap before; `None` if it lies along the direction.
-    pub(crate) fn lower<S>(&self, plane: &Plane<S>) -> Option<f64> {
+    /// Returns the lower bound of the crossing that a plane proves. `None` if `n.d` is not positive by more
+    /// than rounding.
+    pub(crate) fn lower_bound<S>(&self, plane: &Plane<S>) -> Option<f64> {
         let slope = self.slope(plane.normal);
         (slope > UNIT_VECTOR).then(|| (plane.height - self.keep) / slope)
     }
 
-    /// Where a point is as near as a gap.
-    fn root(&self, point: DVec3, gap: f64) -> Option<f64> {
+    /// Returns the first `s` at which a point is as near as `gap` to `s d`. `None` if there is no such `s`.
+    fn gap_crossing(&self, point: DVec3, gap: f64) -> Option<f64> {
         let along = point.dot(self.unit);
-        let aside = (point - self.unit * along).length();
-        let square = (gap - aside) * (gap + aside);
+        let lateral_distance = (point - self.unit * along).length();
+        let square = (gap - lateral_distance) * (gap + lateral_distance);
         (gap >= 0.0 && square >= 0.0).then(|| along - square.sqrt())
     }
 
-    /// The same with the gap as it is: an estimate.
+    /// Estimates the crossing of a point without a margin for rounding. `None` if the point is never as near as
+    /// the gap.
     #[inline]
     pub fn estimate(&self, point: DVec3) -> Option<f64> {
-        self.root(point, self.keep)
+        self.gap_crossing(point, self.keep)
     }
 
-    /// Where a point is so near for certain.
+    /// Returns an upper bound of the crossing that a point proves. `None` if the point is not as near as the
+    /// gap for certain.
     #[inline]
     pub fn upper(&self, point: DVec3) -> Option<f64> {
-        let s = self.root(point, self.keep - SOLVED * self.noise.point())?;
-        self.is_near(point - self.unit * s).then_some(s)
+        let s = self.gap_crossing(point, self.keep - GAP_MARGIN * self.noise.point())?;
+        self.is_within_gap(point - self.unit * s).then_some(s)
     }
 
-    /// Whether what is so far away, as computed, is as near as the gap.
-    pub(crate) fn is_near(&self, way: DVec3) -> bool {
+    /// Checks whether a vector, as computed, is for certain not longer than the gap.
+    pub(crate) fn is_within_gap(&self, way: DVec3) -> bool {
         way.length() + self.noise.mean_raised() <= self.keep
     }
 
-    /// How far apart bounds may be, for a plane: so many noises, and what the set may reach beyond.
-    pub(crate) fn rounding<S>(&self, plane: &Plane<S>, noises: f64) -> f64 {
+    /// Returns the distance of the bounds that `noises` noises, and the plane's error beyond its support,
+    /// explain.
+    pub(crate) fn bound_width<S>(&self, plane: &Plane<S>, noises: f64) -> f64 {
         (noises * self.noise.point() + 2.0 * plane.beyond) / self.slope(plane.normal)
     }
 
-    /// How far beyond `s` a feature would be reached.
-    fn ahead_to_feature<S, P>(&self, look: &Look<S, P>, s: f64) -> Option<f64> {
-        let seen = |k: usize| look.corners[k] - self.unit * s;
+    /// Returns the distance from `s` to the crossing of the nearest vertex or edge alone. `None` for a larger
+    /// feature, or if the feature has no crossing.
+    fn distance_to_feature<S, P>(&self, look: &Look<S, P>, s: f64) -> Option<f64> {
+        let from_sample = |k: usize| look.corners[k] - self.unit * s;
         match look.count {
-            1 => self.root(seen(0), self.keep),
+            1 => self.gap_crossing(from_sample(0), self.keep),
             2 => {
-                let edge = (seen(1) - seen(0)).try_normalize()?;
+                let edge = (from_sample(1) - from_sample(0)).try_normalize()?;
                 let across = |v: DVec3| v - edge * v.dot(edge);
-                let (d, a) = (across(self.unit), across(seen(0)));
+                let (d, a) = (across(self.unit), across(from_sample(0)));
                 let [dd, da, aa] = [d.dot(d), d.dot(a), a.dot(a) - self.keep * self.keep];
                 let square = da * da - dd * aa;
                 (square >= 0.0 && dd > 0.0).then(|| (da - square.sqrt()) / dd)
@@ -195,125 +194,148 @@ impl Line {
     }
 }
 
-/// Looks along the line until the bounds are as near to each other as rounding lets them, beginning with a plane
-/// that is not along it; no farther than to a limit.
+/// Samples the distance along the line until the bounds are as near to each other as rounding lets them, or
+/// until the lower bound reaches `limit`. Starts at the lower bound of the plane `start`, which must not be
+/// along the direction.
 pub fn travel<T: Target>(
     target: &mut T,
     line: &Line,
     start: Plane<T::Support>,
     limit: f64,
 ) -> Travel<T> {
-    let lower = line.lower(&start).unwrap_or(f64::NEG_INFINITY);
-    let mut best = Travel { plane: start, lower, near: None, looks: 0, passes: false };
-    let mut course = Course::from(lower);
-    for _ in 0..MOST_LOOKS {
+    let lower = line.lower_bound(&start).unwrap_or(f64::NEG_INFINITY);
+    let mut best = Travel { plane: start, lower, near: None, samples: 0, is_passing: false };
+    let mut plan = SamplePlan::from_bound(lower);
+    for _ in 0..MAX_SAMPLES {
         if best.lower >= limit {
             break;
         }
-        course.s = course.s.clamp(-line.reach, line.reach);
-        let look = target.look(line.unit * course.s);
-        best.looks += 1;
-        best.note_point(line, &look);
-        best.note_plane(line, &look, &mut course);
-        if best.passes || best.is_enough(line) || !course.goes_on(line, &best, &look) {
+        plan.s = plan.s.clamp(-line.max_distance, line.max_distance);
+        let look = target.look(line.unit * plan.s);
+        best.samples += 1;
+        best.record_point(line, &look);
+        best.record_plane(line, &look, &mut plan);
+        if best.is_passing || best.is_converged(line) || !plan.plan_next(line, &best, &look) {
             break;
         }
     }
     best
 }
 
-/// Where to look next.
-struct Course {
+/// Position of the next sample, and the state that determines it.
+struct SamplePlan {
+    /// Position of the next sample.
     s: f64,
-    /// The last lower bound that was looked at, and whether that was the last look.
-    looked: f64,
-    of_bound: bool,
-    /// How far ahead of it, in noises over `n.d`, the next look may be.
-    ahead: f64,
-    /// Beyond this all is farther away than the gap, or nothing was looked at.
+    /// Last lower bound at which a sample was taken.
+    sampled_bound: f64,
+    /// Whether the sample is at a lower bound.
+    is_at_bound: bool,
+    /// Distance of the next sample ahead of the lower bound, in noises over `n.d`.
+    step_ahead: f64,
+    /// Position from which on all of the set is farther away than the gap. Infinite if unknown.
     end: f64,
 }
 
-impl Course {
-    fn from(lower: f64) -> Self {
-        Self { s: lower, looked: lower, of_bound: true, ahead: AHEAD, end: f64::INFINITY }
+impl SamplePlan {
+    /// Creates the plan whose first sample is at a lower bound.
+    fn from_bound(lower: f64) -> Self {
+        Self {
+            s: lower,
+            sampled_bound: lower,
+            is_at_bound: true,
+            step_ahead: FIRST_STEP_AHEAD,
+            end: f64::INFINITY,
+        }
     }
 
-    /// Goes on, if there is somewhere to look: every other look is Newton's own.
-    fn goes_on<T: Target>(
+    /// Chooses the position of the next sample: at the crossing of the nearest feature after a sample at a
+    /// lower bound, else at the lower bound if it has risen, else slightly ahead of it. Returns `false` if the
+    /// search is over.
+    fn plan_next<T: Target>(
         &mut self,
         line: &Line,
         best: &Travel<T>,
         look: &Look<T::Support, T::Spot>,
     ) -> bool {
-        let upper = best.near.map_or(self.end.min(line.reach), |near| near.upper);
-        let feature = line.ahead_to_feature(look, self.s).map(|by| self.s + by);
+        let upper = best.near.map_or(self.end.min(line.max_distance), |near| near.upper);
+        let feature = line.distance_to_feature(look, self.s).map(|by| self.s + by);
         let is_new = |next: &f64| *next > best.lower && *next <= upper && *next != self.s;
-        if let (true, Some(next)) = (self.of_bound, feature.filter(is_new)) {
-            (self.s, self.of_bound) = (next, false);
+        if let (true, Some(next)) = (self.is_at_bound, feature.filter(is_new)) {
+            (self.s, self.is_at_bound) = (next, false);
             return true;
         }
-        if best.lower - self.looked > line.rounding(&best.plane, LEAST_STEP) {
-            (self.s, self.looked, self.of_bound) = (best.lower, best.lower, true);
+        if best.lower - self.sampled_bound > line.bound_width(&best.plane, MIN_BOUND_STEP) {
+            (self.s, self.sampled_bound, self.is_at_bound) = (best.lower, best.lower, true);
             return true;
         }
-        // The nearest point is known to a noise: a little ahead it is near enough.
-        self.s = best.lower + line.rounding(&best.plane, self.ahead);
-        self.of_bound = false;
-        self.ahead *= 2.0;
-        self.ahead <= 2.0 * MOST_AHEAD
+        // The nearest point is accurate to a noise. Slightly ahead of the bound it is near enough.
+        self.s = best.lower + line.bound_width(&best.plane, self.step_ahead);
+        self.is_at_bound = false;
+        self.step_ahead *= 2.0;
+        self.step_ahead <= 2.0 * MAX_STEP_AHEAD
     }
 }
 
 impl<T: Target> Travel<T> {
-    pub(crate) fn note_point(&mut self, line: &Line, look: &Look<T::Support, T::Spot>) {
+    /// Stores the point of a sample if it proves a smaller upper bound.
+    pub(crate) fn record_point(&mut self, line: &Line, look: &Look<T::Support, T::Spot>) {
         let Some(upper) = line.upper(look.point) else { return };
         if self.near.is_none_or(|near| upper < near.upper) {
             self.near = Some(Near { upper, point: look.point, spot: look.spot });
         }
     }
 
-    fn note_plane(&mut self, line: &Line, look: &Look<T::Support, T::Spot>, course: &mut Course) {
+    /// Stores the plane of a sample if it proves a greater lower bound, or notes that nothing ahead is as near
+    /// as the gap.
+    fn record_plane(
+        &mut self,
+        line: &Line,
+        look: &Look<T::Support, T::Spot>,
+        plan: &mut SamplePlan,
+    ) {
         let Some(plane) = look.plane else { return };
-        if let Some(lower) = line.lower(&plane) {
+        if let Some(lower) = line.lower_bound(&plane) {
             if lower > self.lower {
                 (self.plane, self.lower) = (plane, lower);
-                self.passes |= lower > line.reach;
+                self.is_passing |= lower > line.max_distance;
             }
         } else {
-            // All that is ahead is farther away than the gap.
-            let gap = plane.height - course.s * line.slope(plane.normal);
+            // All points ahead are farther away than the gap.
+            let gap = plane.height - plan.s * line.slope(plane.normal);
             if self.near.is_none() && gap > line.keep {
-                // From a bound, before which all is farther away as well, none is left; from a guess there may be.
-                self.passes |= course.of_bound;
-                course.end = course.s;
+                // If the sample is at a lower bound, all points before it are farther away too: there is no
+                // crossing. Otherwise there may be one before it.
+                self.is_passing |= plan.is_at_bound;
+                plan.end = plan.s;
             }
         }
     }
 
-    fn is_enough(&self, line: &Line) -> bool {
+    /// Checks whether the bounds differ by no more than [`SUFFICIENT_WIDTH`].
+    fn is_converged(&self, line: &Line) -> bool {
         let gap = self.near.map(|near| near.upper - self.lower);
-        gap.is_some_and(|gap| gap <= line.rounding(&self.plane, ENOUGH))
+        gap.is_some_and(|gap| gap <= line.bound_width(&self.plane, SUFFICIENT_WIDTH))
     }
 }
 
-/// How far a line passes from a set.
+/// Distance of a line from a set.
 pub struct Shadow<S> {
-    /// The best plane along the line.
+    /// Plane along the line with the greatest height found.
     pub plane: Plane<S>,
-    /// A point of the shadow is no farther from it, but for rounding; 0 if the line passes through.
+    /// Upper bound of the distance, up to rounding; 0 if the line intersects the set.
     pub(crate) distance: f64,
 }
 
-/// Descends to the point of the shadow nearest to the line, from a direction to begin with.
+/// Finds the point of the set's shadow nearest to the line, by descent over simplices from the direction
+/// `toward`. Evaluates at least one plane, therefore the result is never `None`.
 pub fn shadow<T: Target>(target: &mut T, line: &Line, toward: DVec3) -> Option<Shadow<T::Support>> {
     let x = line.unit.any_orthonormal_vector();
     let y = line.unit.cross(x);
-    let flat = |v: DVec3| DVec2::new(v.dot(x), v.dot(y));
-    let mut simplex = Flat::default();
-    let mut axis = flat(toward).try_normalize().unwrap_or(DVec2::X);
+    let to_plane = |v: DVec3| DVec2::new(v.dot(x), v.dot(y));
+    let mut simplex = ShadowSimplex::default();
+    let mut axis = to_plane(toward).try_normalize().unwrap_or(DVec2::X);
     let mut best: Option<Shadow<T::Support>> = None;
-    for _ in 0..MOST_ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         let normal = (x * axis.x + y * axis.y).normalize_or(x);
         let (plane, lowest) = target.lowest(normal);
         let distance = best.as_ref().map_or(f64::INFINITY, |best| best.distance);
@@ -321,12 +343,12 @@ pub fn shadow<T: Target>(target: &mut T, line: &Line, toward: DVec3) -> Option<S
             best = Some(Shadow { plane, distance });
         }
         let best = best.as_mut()?;
-        let lowest = flat(lowest);
+        let lowest = to_plane(lowest);
         // No point is nearer than those of the simplex.
         if simplex.count > 0 && axis.dot(lowest) >= distance - line.noise.point() {
             break;
         }
-        match simplex.add(lowest) {
+        match simplex.add_point(lowest) {
             Some((next, distance)) if distance < best.distance => {
                 best.distance = distance;
                 axis = next;
@@ -343,37 +365,43 @@ pub fn shadow<T: Target>(target: &mut T, line: &Line, toward: DVec3) -> Option<S
 
 /// Up to three points of a shadow.
 #[derive(Default)]
-struct Flat {
+struct ShadowSimplex {
     points: [DVec2; 3],
     count: usize,
 }
 
-impl Flat {
-    /// Adds a point, and drops what the one nearest to the origin does without: the direction to that one, across
-    /// an edge where it is on one, and how far it is; `None` if the origin is inside.
-    fn add(&mut self, point: DVec2) -> Option<(DVec2, f64)> {
+impl ShadowSimplex {
+    /// Adds a point, and drops points that the nearest feature does not need. Returns the direction to the
+    /// point nearest to the origin, perpendicular to an edge that contains it, and its distance. `None` if the
+    /// simplex contains the origin.
+    fn add_point(&mut self, point: DVec2) -> Option<(DVec2, f64)> {
         self.points[self.count] = point;
         self.count += 1;
         let [a, b, c] = self.points;
         match self.count {
-            1 => self.keep(Self::on_edge(a, a)),
-            2 => self.keep(Self::on_edge(a, b)),
+            1 => self.reduce_to(Self::nearest_on_edge(a, a)),
+            2 => self.reduce_to(Self::nearest_on_edge(a, b)),
             _ => {
                 let area = (b - a).perp_dot(c - a);
                 let inside = |p: DVec2, q: DVec2| p.perp_dot(q) * area >= 0.0;
                 if area != 0.0 && inside(a, b) && inside(b, c) && inside(c, a) {
                     return None;
                 }
-                // The last one is of the nearest edge.
-                let [one, other] = [Self::on_edge(a, c), Self::on_edge(b, c)];
+                // The nearest edge contains the last point.
+                let [one, other] = [Self::nearest_on_edge(a, c), Self::nearest_on_edge(b, c)];
                 let nearer =
                     if one.2.length_squared() <= other.2.length_squared() { one } else { other };
-                self.keep(nearer)
+                self.reduce_to(nearer)
             }
         }
     }
 
-    fn keep(&mut self, (points, count, at): ([DVec2; 2], usize, DVec2)) -> Option<(DVec2, f64)> {
+    /// Keeps the ends of the nearest feature. Returns the direction to its nearest point and the distance.
+    /// `None` if this point is the origin.
+    fn reduce_to(
+        &mut self,
+        (points, count, at): ([DVec2; 2], usize, DVec2),
+    ) -> Option<(DVec2, f64)> {
         let [a, b] = points;
         (self.points, self.count) = ([a, b, DVec2::ZERO], count);
         let across = if count == 2 { (b - a).perp() } else { at };
@@ -383,8 +411,9 @@ impl Flat {
         Some((axis, distance))
     }
 
-    /// The point of a segment nearest to the origin, and the ends that it needs.
-    fn on_edge(a: DVec2, b: DVec2) -> ([DVec2; 2], usize, DVec2) {
+    /// Finds the point of a segment nearest to the origin. Returns the ends of the feature that contains it,
+    /// their number, and the point.
+    fn nearest_on_edge(a: DVec2, b: DVec2) -> ([DVec2; 2], usize, DVec2) {
         let along = b - a;
         let share = -a.dot(along) / along.length_squared();
         if share > 0.0 && share < 1.0 {

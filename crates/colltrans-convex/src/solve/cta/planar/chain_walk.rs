@@ -1,93 +1,101 @@
-//! Steps along two chains that face each other, edge by edge, to where the gap closes or is least.
+//! Walks along two facing chains, edge by edge, to where the gap closes or is least.
 //!
-//! With the left chain `l` of the section on the right (convex) and the right chain `r` of the one
-//! on the left (concave) `gap(h) = l(h) - r(h)` is convex. Where it is positive and falls, the answer
-//! is above; where it is not positive, or grows, below. So the answer is known from the edges that
-//! meet there, wherever the steps began: the first pair that crosses coming from below, or a vertex
-//! past which the gap grows.
+//! The left chain `l` of the section on the right is convex, the right chain `r` of the section on the left is
+//! concave. Therefore `gap(h) = l(h) - r(h)` is convex:
+//!
+//! - where the gap is positive and falls, the answer is above,
+//! - where it is not positive, or grows, the answer is below.
+//!
+//! The edges that meet in the answer prove it, regardless of the start: they are the first pair that crosses
+//! coming from below, or the gap grows past their vertex.
 
 use glam::DVec2;
 
-use super::{Crossing, Planar};
-use crate::solve::cta::crossing::{Bracket, Chain};
-use crate::solve::cta::section::{Located, PATIENCE, Section};
+use super::{Crossing, PlanarAnswer};
+use crate::solve::cta::crossing::{Chain, SectionEdge};
+use crate::solve::cta::section::{LocatedEdge, STEPS_BEFORE_SEARCH, Section};
 use colltrans_kernel::noise;
 
-/// Steps of Newton's method at most.
+/// Maximum number of steps of Newton's method.
 const NEWTON_STEPS: usize = 4;
 
-/// Two edges that cross, and where.
-pub(super) fn crossing_edges(edges: &[Bracket; 2]) -> Planar {
-    Planar::Edges { edges: *edges, contact: crossing_of(edges) }
+/// Returns the contact of two crossing edges.
+pub(super) fn edge_contact(edges: &[SectionEdge; 2]) -> PlanarAnswer {
+    PlanarAnswer::Edges { edges: *edges, contact: line_intersection(edges) }
 }
 
-/// The body whose edge begins higher.
-fn higher(edges: &[Bracket; 2]) -> usize {
+/// Returns the body whose edge begins higher.
+fn higher_start(edges: &[SectionEdge; 2]) -> usize {
     usize::from(edges[1].low.h() > edges[0].low.h())
 }
 
-/// Where the lines of two edges cross.
-fn crossing_of([r, s]: &[Bracket; 2]) -> DVec2 {
+fn line_intersection([r, s]: &[SectionEdge; 2]) -> DVec2 {
     let step = (s.low.w - r.low.w).perp_dot(s.direction) / r.direction.perp_dot(s.direction);
     r.low.w + r.direction * step
 }
 
-/// Two chains that face each other.
-pub(super) struct Slide<'a, 'b> {
+/// Two facing chains.
+pub(super) struct FacingChains<'a, 'b> {
     sections: &'a [Section<'b>; 2],
-    /// The chain that each body shows to the other.
+    /// Chain of each body that faces the other body.
     chains: [Chain; 2],
-    /// The body on the right.
+    /// Body on the right.
     right: usize,
 }
 
-/// Where steps along two chains led.
-pub(super) enum Slid {
-    Solved(Planar),
-    /// The bottom of this body's section, from which this edge begins, is not beyond the other's
-    /// edge.
-    Within(usize, [Bracket; 2]),
+/// Result of a walk along two chains.
+pub(super) enum ChainWalk {
+    /// The answer.
+    Solved(PlanarAnswer),
+    /// The bottom of this body's section, at which its edge begins, is not beyond the edge of the other body.
+    Within(usize, [SectionEdge; 2]),
 }
 
-impl<'a, 'b> Slide<'a, 'b> {
+impl<'a, 'b> FacingChains<'a, 'b> {
+    /// Chooses the facing chains if body `right` is on the right.
     pub(super) fn new(sections: &'a [Section<'b>; 2], right: usize) -> Self {
         let mut chains = [Chain::Right; 2];
         chains[right] = Chain::Left;
         Self { sections, chains, right }
     }
 
-    /// The edges at a height, or where the chains are nearest to it, sought from edges upwards.
-    pub(super) fn edges_at(&self, height: f64, from: [u32; 2]) -> Option<[Bracket; 2]> {
+    /// Finds the edges at a height, or the nearest ones, from half-edges upwards. `None` if a walk fails.
+    pub(super) fn edges_at_height(&self, height: f64, from: [u32; 2]) -> Option<[SectionEdge; 2]> {
         let edge = |body: usize| {
             let section = &self.sections[body];
-            Some(section.locate(self.chains[body], height, from[body])?.edge())
+            Some(section.edge_at_height(self.chains[body], height, from[body])?.nearest_edge())
         };
         Some([edge(0)?, edge(1)?])
     }
 
-    /// From two edges towards where the gap closes, by Newton's method: on a convex gap steps come from
-    /// below but for the first. Only for bodies with chains, where a walk may be long.
-    fn approach(&self, from: &[Bracket; 2]) -> [Bracket; 2] {
+    /// Goes from two edges towards the height at which the gap closes, by Newton's method. Because the gap is
+    /// convex, all steps but the first come from below. Only for bodies with chains, on which a walk may be
+    /// long.
+    fn approach_by_newton(&self, from: &[SectionEdge; 2]) -> [SectionEdge; 2] {
         let mut edges = *from;
         if !self.has_chains() {
             return edges;
         }
         for _ in 0..NEWTON_STEPS {
-            let h = crossing_of(&edges).x;
+            let h = line_intersection(&edges).x;
             let is_there = edges.iter().all(|edge| edge.low.h() <= h && h <= edge.high.h());
-            if is_there || !self.closes(&edges) {
+            if is_there || !self.gap_closes(&edges) {
                 break;
             }
-            let Some(next) = self.at(h, &edges) else { break };
+            let Some(next) = self.move_to_height(h, &edges) else { break };
             edges = next;
         }
         edges
     }
 
-    /// The edges at a height, from others on the same chains.
-    fn at(&self, h: f64, from: &[Bracket; 2]) -> Option<[Bracket; 2]> {
+    /// Finds the edges at a height from others on the same chains. `None` if a walk fails.
+    fn move_to_height(&self, h: f64, from: &[SectionEdge; 2]) -> Option<[SectionEdge; 2]> {
         let edge = |body: usize| {
-            Some(self.sections[body].move_to(self.chains[body], h, from[body])?.edge())
+            Some(
+                self.sections[body]
+                    .walk_to_height(self.chains[body], h, from[body])?
+                    .nearest_edge(),
+            )
         };
         Some([edge(0)?, edge(1)?])
     }
@@ -96,114 +104,128 @@ impl<'a, 'b> Slide<'a, 'b> {
         self.sections.iter().any(|section| section.side.sections.chains().is_some())
     }
 
-    /// Far along the chain of a body, up it or down: to its last vertex where the gap is still positive and
-    /// falls, or still does not, and the other chain's edge at that height.
-    fn skip(&self, body: usize, is_up: bool, from: &[Bracket; 2]) -> Option<[Bracket; 2]> {
+    /// Skips edges along the chain of a body by a search: up to the last vertex at which the gap is positive
+    /// and falls, or down to the last vertex at which it is not positive or does not fall. Returns the edge
+    /// there and the other chain's edge at its height. `None` if the body has no chains or no edge is skipped.
+    fn skip_along_chain(
+        &self,
+        body: usize,
+        is_up: bool,
+        from: &[SectionEdge; 2],
+    ) -> Option<[SectionEdge; 2]> {
         let section = &self.sections[body];
         let chain = self.chains[body];
         let mut other = from[1 - body];
         let along = if is_up { chain } else { chain.opposite() };
         let start = from[body].low.h();
-        let last = section.skip(along, &from[body].low, |v| {
+        let last = section.last_vertex_where(along, &from[body].low, |v| {
             if if is_up { v.h() < start } else { v.h() > start } {
                 return false;
             }
-            let edge = Bracket::new(*v, section.up(chain, v));
-            let Some(Located::Edge(beside)) =
-                self.sections[1 - body].move_to(self.chains[1 - body], v.h(), other)
+            let edge = SectionEdge::new(*v, section.next_vertex(chain, v));
+            let Some(LocatedEdge::Edge(beside)) =
+                self.sections[1 - body].walk_to_height(self.chains[1 - body], v.h(), other)
             else {
                 return false;
             };
             let mut edges = [edge; 2];
             edges[1 - body] = beside;
             let falls = beside.low.h() > v.h()
-                || chain.ascends(edge.direction)
-                    && self.is_beyond(body, v, &edges)
-                    && self.closes(&edges);
-            let ahead = if is_up { falls } else { !falls && self.retreat(body, &edge).is_some() };
+                || chain.is_ascending(edge.direction)
+                    && self.is_on_own_side(body, v, &edges)
+                    && self.gap_closes(&edges);
+            let ahead =
+                if is_up { falls } else { !falls && self.edge_below(body, &edge).is_some() };
             other = if ahead { beside } else { other };
             ahead
         })?;
-        if last.up == from[body].low.up {
+        if last.half_edge == from[body].low.half_edge {
             return None;
         }
-        let mut edges = [Bracket::new(last, section.up(chain, &last)); 2];
+        let mut edges = [SectionEdge::new(last, section.next_vertex(chain, &last)); 2];
         let before = &from[1 - body];
         edges[1 - body] = if is_up && other.low.h() < before.low.h() { *before } else { other };
         Some(edges)
     }
 
-    /// From any edges, down to where the gap is positive and falls, and up from there.
-    pub(super) fn settle(&self, from: &[Bracket; 2]) -> Option<Slid> {
-        let mut edges = self.approach(from);
-        for step in 1..=self.limit() {
-            let upper = higher(&edges);
+    /// Walks from any edges down to where the gap is positive and falls, and up from there. `None` if a walk
+    /// fails.
+    pub(super) fn walk_to_answer(&self, from: &[SectionEdge; 2]) -> Option<ChainWalk> {
+        let mut edges = self.approach_by_newton(from);
+        for step in 1..=self.max_steps() {
+            let upper = higher_start(&edges);
             let lower = 1 - upper;
-            if step % PATIENCE == 0 {
+            if step % STEPS_BEFORE_SEARCH == 0 {
                 let top = edges[lower].high.h();
                 if edges[upper].low.h() <= top {
-                    edges = self.skip(upper, false, &edges).unwrap_or(edges);
+                    edges = self.skip_along_chain(upper, false, &edges).unwrap_or(edges);
                 } else if self.has_chains() {
                     let section = &self.sections[upper];
-                    edges[upper] = section.move_to(self.chains[upper], top, edges[upper])?.edge();
+                    edges[upper] = section
+                        .walk_to_height(self.chains[upper], top, edges[upper])?
+                        .nearest_edge();
                 }
-                if higher(&edges) != upper {
+                if higher_start(&edges) != upper {
                     continue;
                 }
             }
             if edges[upper].low.h() > edges[lower].high.h() {
-                if let Some(below) = self.retreat(upper, &edges[upper]) {
+                if let Some(below) = self.edge_below(upper, &edges[upper]) {
                     edges[upper] = below;
-                } else if let Some(above) = self.proceed(lower, &edges[lower]) {
+                } else if let Some(above) = self.edge_above(lower, &edges[lower]) {
                     edges[lower] = above;
                 } else {
                     let [bottom, top] = [&edges[upper].low, &edges[lower].high];
-                    return Some(Slid::Solved(Planar::by_height(upper, bottom, top)));
+                    return Some(ChainWalk::Solved(PlanarAnswer::separated_by_height(
+                        upper, bottom, top,
+                    )));
                 }
                 continue;
             }
-            let apart = self.is_beyond(upper, &edges[upper].low, &edges);
-            if apart && self.closes(&edges) {
-                return self.rise(&edges).map(Slid::Solved);
+            let is_apart = self.is_on_own_side(upper, &edges[upper].low, &edges);
+            if is_apart && self.gap_closes(&edges) {
+                return self.walk_up(&edges).map(ChainWalk::Solved);
             }
-            let Some(below) = self.retreat(upper, &edges[upper]) else {
-                return Some(if apart {
-                    Slid::Solved(self.separated(&edges[lower], edges.map(|edge| edge.low)))
+            let Some(below) = self.edge_below(upper, &edges[upper]) else {
+                return Some(if is_apart {
+                    ChainWalk::Solved(
+                        self.separation_along(&edges[lower], edges.map(|edge| edge.low)),
+                    )
                 } else {
-                    Slid::Within(upper, edges)
+                    ChainWalk::Within(upper, edges)
                 });
             };
             let supports = edges.map(|edge| edge.low);
             edges[upper] = below;
-            if apart && self.closes(&edges) {
-                return Some(Slid::Solved(self.separated(&edges[lower], supports)));
+            if is_apart && self.gap_closes(&edges) {
+                return Some(ChainWalk::Solved(self.separation_along(&edges[lower], supports)));
             }
         }
         None
     }
 
-    /// From edges where the gap is positive, upwards.
-    pub(super) fn rise(&self, from: &[Bracket; 2]) -> Option<Planar> {
+    /// Walks up from edges where the gap is positive. `None` after the maximum number of steps.
+    pub(super) fn walk_up(&self, from: &[SectionEdge; 2]) -> Option<PlanarAnswer> {
         let mut edges = *from;
-        // The body whose vertex was passed last.
-        let mut passed = higher(&edges);
-        for step in 1..=self.limit() {
-            if step % PATIENCE == 0 {
+        // Body whose vertex was passed last.
+        let mut passed = higher_start(&edges);
+        for step in 1..=self.max_steps() {
+            if step % STEPS_BEFORE_SEARCH == 0 {
                 let ending = usize::from(edges[1].high.h() < edges[0].high.h());
-                edges = self.skip(ending, true, &edges).unwrap_or(edges);
+                edges = self.skip_along_chain(ending, true, &edges).unwrap_or(edges);
             }
-            if !self.closes(&edges) {
-                return Some(self.separated(&edges[1 - passed], edges.map(|edge| edge.low)));
+            if !self.gap_closes(&edges) {
+                return Some(self.separation_along(&edges[1 - passed], edges.map(|edge| edge.low)));
             }
-            // The edge that ends first decides whether they have met, without a quotient.
+            // The edge that ends first decides without a quotient whether the edges meet.
             let ending = usize::from(edges[1].high.h() < edges[0].high.h());
-            if !self.is_beyond(ending, &edges[ending].high, &edges) {
-                return Some(crossing_edges(&edges));
+            if !self.is_on_own_side(ending, &edges[ending].high, &edges) {
+                return Some(edge_contact(&edges));
             }
-            let Some(above) = self.proceed(ending, &edges[ending]) else {
+            let Some(above) = self.edge_above(ending, &edges[ending]) else {
                 let mut supports = edges.map(|edge| edge.low);
                 supports[ending] = edges[ending].high;
-                return Some(self.separated(&edges[1 - ending], supports));
+                return Some(self.separation_along(&edges[1 - ending], supports));
             };
             edges[ending] = above;
             passed = ending;
@@ -211,18 +233,18 @@ impl<'a, 'b> Slide<'a, 'b> {
         None
     }
 
-    fn limit(&self) -> usize {
-        self.sections[0].limit.saturating_add(self.sections[1].limit)
+    fn max_steps(&self) -> usize {
+        self.sections[0].max_steps.saturating_add(self.sections[1].max_steps)
     }
 
-    /// Whether a vertex of a body's chain is on its own side of the other's edge.
-    fn is_beyond(&self, body: usize, vertex: &Crossing, edges: &[Bracket; 2]) -> bool {
-        let side = edges[1 - body].side_of(vertex.w);
+    /// Checks whether a vertex of a body's chain is on its own side of the other body's edge.
+    fn is_on_own_side(&self, body: usize, vertex: &Crossing, edges: &[SectionEdge; 2]) -> bool {
+        let side = edges[1 - body].signed_side(vertex.w);
         if body == self.right { side > 0.0 } else { side < 0.0 }
     }
 
-    /// Whether the gap falls along these edges.
-    pub(super) fn closes(&self, edges: &[Bracket; 2]) -> bool {
+    /// Checks whether the gap falls along these edges, by more than rounding.
+    pub(super) fn gap_closes(&self, edges: &[SectionEdge; 2]) -> bool {
         let [r, s] = [&edges[1 - self.right].direction, &edges[self.right].direction];
         let sine = r.perp_dot(*s);
         sine < 0.0
@@ -230,21 +252,27 @@ impl<'a, 'b> Slide<'a, 'b> {
                 > noise::SECTION * noise::SECTION * r.length_squared() * s.length_squared()
     }
 
-    fn proceed(&self, body: usize, edge: &Bracket) -> Option<Bracket> {
-        self.sections[body].proceed(self.chains[body], edge)
+    /// Returns the edge above `edge` on the chain of a body. `None` at its top.
+    fn edge_above(&self, body: usize, edge: &SectionEdge) -> Option<SectionEdge> {
+        self.sections[body].edge_above(self.chains[body], edge)
     }
 
-    fn retreat(&self, body: usize, edge: &Bracket) -> Option<Bracket> {
-        self.sections[body].retreat(self.chains[body], edge)
+    /// Returns the edge below `edge` on the chain of a body. `None` at its bottom.
+    fn edge_below(&self, body: usize, edge: &SectionEdge) -> Option<SectionEdge> {
+        self.sections[body].edge_below(self.chains[body], edge)
     }
 
-    /// A vertex of one chain and an edge of the other, along which a line separates.
-    pub(super) fn separated(&self, along: &Bracket, supports: [Crossing; 2]) -> Planar {
+    /// Returns the separation by a line along the edge `along`, with these closest vertices.
+    pub(super) fn separation_along(
+        &self,
+        along: &SectionEdge,
+        supports: [Crossing; 2],
+    ) -> PlanarAnswer {
         // Points to the right, where g grows, and from body 0 to body 1.
         let sign = if self.right == 1 { 1.0 } else { -1.0 };
-        // Nothing depends on its length, which is kept in range.
+        // Its length is arbitrary, and is kept in range.
         let across = DVec2::new(-along.direction.y, along.direction.x);
         let u = across * (sign / across.abs().element_sum());
-        Planar::Separated { u, supports }
+        PlanarAnswer::Separated { u, supports }
     }
 }

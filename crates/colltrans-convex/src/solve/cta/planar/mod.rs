@@ -1,192 +1,208 @@
-//! The planar problem: the lowest point of the intersection of two convex polygons, or a line that
-//! separates them (the paper, section III-B).
+//! The planar problem: the lowest point of the intersection of two convex polygons, or a line that separates
+//! them (the paper, section III-B).
 //!
-//! Notation. Body 0 is P with its section at `x`, body 1 is Q with its section at `y`, in the
-//! shadow plane `w = (h, g)`. The *upper* section is the one with the higher bottom, at height
-//! `h0`. If that bottom lies in the other section it is the answer. Otherwise one section is to the
-//! left of the other at `h0`, and the answer is where the two chains that face each other meet
-//! first, or where the gap between them is least.
+//! - *Section* 0 is that of P at level `x`, section 1 that of Q at level `y`, in the shadow plane `w = (h, g)`.
+//! - The *upper* section has the higher bottom, at height `h0`.
+//! - If this bottom lies in the other section, it is the answer. Otherwise one section is to the left of the
+//!   other at `h0`. The answer is where the two facing chains first meet, or where the gap between them is
+//!   least.
 //!
-//! An answer can be told from the edges that it rests on, so it is sought near edges that are
-//! guessed: those of the problem before, if its levels are near and they are, else those of a
-//! [`sketch()`].
+//! The edges that determine an answer prove it. Therefore the search starts near guessed edges: those of the
+//! preceding problem if its levels are near, else those of [`guess_from_snapshots()`].
 
 mod chain_walk;
 mod snapshot_guess;
 
 use glam::DVec2;
 
-use super::crossing::{Bracket, Chain, Crossing};
-use super::section::{Bottom, Located, Section};
-use super::sectioned_body::Side;
-use chain_walk::{Slid, Slide, crossing_edges};
-use snapshot_guess::sketch;
+use super::crossing::{Chain, Crossing, SectionEdge};
+use super::section::{LocatedEdge, Section, SectionBottom};
+use super::sectioned_body::SectionedBody;
+use chain_walk::{ChainWalk, FacingChains, edge_contact};
+use snapshot_guess::guess_from_snapshots;
 
-/// Steps of a walk from the answer of the problem before.
-const STEPS_NEAR: usize = 8;
+/// Maximum number of steps of a walk from the answer of the preceding problem.
+const MAX_STEPS_FROM_HINT: usize = 8;
 
-/// What the planar problem found.
+/// Answer of the planar problem. Bodies are given by index.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Planar {
-    /// The bottom of one section lies in the other, between two edges of it.
-    Vertex { upper: usize, vertex: Crossing, left: Bracket, right: Bracket },
-    /// Two edges cross at the lowest common point.
-    Edges { edges: [Bracket; 2], contact: DVec2 },
-    /// Nothing in common: along `u` every point of section 1 is beyond every point of section 0;
-    /// `supports` are the closest.
+pub(super) enum PlanarAnswer {
+    /// The bottom `vertex` of section `upper` lies in the other section, between the edges `left` and `right`.
+    Vertex { upper: usize, vertex: Crossing, left: SectionEdge, right: SectionEdge },
+    /// Two edges cross in the lowest common point.
+    Edges { edges: [SectionEdge; 2], contact: DVec2 },
+    /// The sections have no point in common: along `u`, each point of section 1 is beyond each point of section
+    /// 0. `supports` are the closest vertices along `u`.
     Separated { u: DVec2, supports: [Crossing; 2] },
 }
 
-/// What pieces and the planar problem before tell about an answer.
+/// Guess of an answer from pieces and from the preceding problem.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Hint {
-    /// Where the answer probably is, or below it.
+pub(super) struct PlanarHint {
+    /// Height at which the answer probably is, or a height below it.
     pub(super) height: f64,
-    /// The levels of the problem before.
+    /// Levels of the preceding problem.
     pub(super) levels: [f64; 2],
-    pub(super) last: Last,
+    pub(super) last: LastAnswer,
 }
 
-/// The answer of the problem before, by edges upwards that cross its levels.
+/// Answer of the preceding problem. Edges are half-edges upwards that cross its levels.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum Last {
+pub(super) enum LastAnswer {
+    /// No answer is known.
     Nothing,
-    /// The sections faced each other, with `right` on the right.
-    Facing {
-        right: usize,
-        edges: [u32; 2],
-    },
-    /// The bottom of one section lay in the other, between two edges.
-    Bottom {
-        upper: usize,
-        vertex: u32,
-        between: [u32; 2],
-    },
+    /// The sections faced each other, with section `right` on the right.
+    Facing { right: usize, edges: [u32; 2] },
+    /// The bottom of section `upper` lay in the other section, between two edges.
+    Bottom { upper: usize, vertex: u32, between: [u32; 2] },
 }
 
-impl Hint {
-    /// Nothing is known.
+impl PlanarHint {
+    /// The hint without any knowledge.
     pub(super) const NONE: Self =
-        Self { height: f64::NEG_INFINITY, levels: [f64::NAN; 2], last: Last::Nothing };
+        Self { height: f64::NEG_INFINITY, levels: [f64::NAN; 2], last: LastAnswer::Nothing };
 }
 
-/// Solves the planar problem for the sections at `levels`, each in its body's range. `None` if
-/// rounding errors of the mesh hide a section.
-pub(super) fn solve(sides: &[Side; 2], levels: [f64; 2], hint: &Hint) -> Option<Planar> {
-    let problem = |limit: usize| {
-        let section = |body: usize| Section { side: &sides[body], x: levels[body], limit };
-        Problem { sections: [section(0), section(1)] }
+/// Solves the planar problem for the sections at `levels`, each in the range of its body. `None` if rounding
+/// errors of the mesh hide a section.
+pub(super) fn solve_planar(
+    sides: &[SectionedBody; 2],
+    levels: [f64; 2],
+    hint: &PlanarHint,
+) -> Option<PlanarAnswer> {
+    let problem = |max_steps: usize| {
+        let section = |body: usize| Section { side: &sides[body], level: levels[body], max_steps };
+        SectionProblem { sections: [section(0), section(1)] }
     };
-    let near = |body: usize| (levels[body] - hint.levels[body]).abs() <= sides[body].near;
+    let near = |body: usize| (levels[body] - hint.levels[body]).abs() <= sides[body].near_distance;
     if near(0)
         && near(1)
-        && let Some(found) = problem(STEPS_NEAR).solve(&hint.last, hint.height)
+        && let Some(found) = problem(MAX_STEPS_FROM_HINT).solve_from_guess(&hint.last, hint.height)
     {
         return Some(found);
     }
-    // More steps than this along one section are a walk in circles.
+    // A walk with more steps along one section runs in circles.
     let [p, q] = sides.each_ref().map(|side| side.topology.edge_count());
     let problem = problem(p + q);
-    let (guess, height) = sketch(&problem.sections)?;
-    problem.solve(&guess, height)
+    let (guess, height) = guess_from_snapshots(&problem.sections)?;
+    problem.solve_from_guess(&guess, height)
 }
 
-/// The answer for sections at `levels` if it is where their edges on two faces, by half-edges, cross.
-pub(super) fn on_faces(sides: &[Side; 2], levels: [f64; 2], faces: [u32; 2]) -> Option<Planar> {
-    let section = |body: usize| Section { side: &sides[body], x: levels[body], limit: 0 };
+/// Returns the edge contact in which the section edges on two faces, given by half-edges, cross. Does not check
+/// that their lines cross within the edges. `None` if a face has no such edge, or if the edges do not approach
+/// each other.
+pub(super) fn solve_on_faces(
+    sides: &[SectionedBody; 2],
+    levels: [f64; 2],
+    faces: [u32; 2],
+) -> Option<PlanarAnswer> {
+    let section = |body: usize| Section { side: &sides[body], level: levels[body], max_steps: 0 };
     let sections = [section(0), section(1)];
-    let (of_p, p) = sections[0].on_face(faces[0])?;
-    let (of_q, q) = sections[1].on_face(faces[1])?;
-    let slide = Slide::new(&sections, usize::from(of_q == Chain::Left));
+    let (of_p, p) = sections[0].edge_on_face(faces[0])?;
+    let (of_q, q) = sections[1].edge_on_face(faces[1])?;
+    let chains = FacingChains::new(&sections, usize::from(of_q == Chain::Left));
     let edges = [p, q];
-    (of_p != of_q && slide.closes(&edges)).then(|| crossing_edges(&edges))
+    (of_p != of_q && chains.gap_closes(&edges)).then(|| edge_contact(&edges))
 }
 
-struct Problem<'a> {
+/// Two sections, and the maximum number of steps along them.
+struct SectionProblem<'a> {
     sections: [Section<'a>; 2],
 }
 
-impl Problem<'_> {
-    /// From edges that the answer may rest on, at some height.
-    fn solve(&self, guess: &Last, height: f64) -> Option<Planar> {
+impl SectionProblem<'_> {
+    /// Solves the problem from edges that may determine the answer, at the guessed height. `None` if there is
+    /// no guess or a walk fails.
+    fn solve_from_guess(&self, guess: &LastAnswer, height: f64) -> Option<PlanarAnswer> {
         match *guess {
-            Last::Nothing => None,
-            Last::Facing { right, edges } => {
-                let slide = Slide::new(&self.sections, right);
-                match slide.settle(&slide.edges_at(height, edges)?)? {
-                    Slid::Solved(found) => Some(found),
-                    Slid::Within(upper, edges) => {
-                        let between = [edges[1 - upper].low.up; 2];
-                        self.at_bottom(upper, edges[upper].low.up, between, true)
+            LastAnswer::Nothing => None,
+            LastAnswer::Facing { right, edges } => {
+                let chains = FacingChains::new(&self.sections, right);
+                match chains.walk_to_answer(&chains.edges_at_height(height, edges)?)? {
+                    ChainWalk::Solved(found) => Some(found),
+                    ChainWalk::Within(upper, edges) => {
+                        let between = [edges[1 - upper].low.half_edge; 2];
+                        self.solve_at_bottom(upper, edges[upper].low.half_edge, between, true)
                     }
                 }
             }
-            Last::Bottom { upper, vertex, between } => {
-                self.at_bottom(upper, vertex, between, false)
+            LastAnswer::Bottom { upper, vertex, between } => {
+                self.solve_at_bottom(upper, vertex, between, false)
             }
         }
     }
 
-    /// The bottom of one section, and the edges of the other at its height; if the other bottom turns
-    /// out to be higher, the other way round, unless that was said to be `known`.
-    fn at_bottom(
+    /// Solves the problem from the bottom of section `upper`, near `vertex`, and the edges of the other section
+    /// at its height, near `between`. If the other bottom is higher, exchanges the sections unless
+    /// `is_upper_known`. `None` if a walk fails.
+    fn solve_at_bottom(
         &self,
         upper: usize,
         vertex: u32,
         between: [u32; 2],
-        known: bool,
-    ) -> Option<Planar> {
+        is_upper_known: bool,
+    ) -> Option<PlanarAnswer> {
         let lower = &self.sections[1 - upper];
-        let bottom = self.sections[upper].bottom(vertex)?;
+        let bottom = self.sections[upper].find_bottom(vertex)?;
         let h0 = bottom.vertex.h();
-        let ends = self.ends(upper, &bottom);
-        let mut found = [None; 2];
+        let ends = self.bottom_ends(upper, &bottom);
+        let mut edges = [None; 2];
         for (chain, from) in [Chain::Left, Chain::Right].into_iter().zip(between) {
-            match lower.locate(chain, h0, from)? {
-                Located::Beyond(topmost) => {
-                    return Some(Planar::by_height(upper, &bottom.vertex, &topmost.high));
+            match lower.edge_at_height(chain, h0, from)? {
+                LocatedEdge::AboveTop(topmost) => {
+                    return Some(PlanarAnswer::separated_by_height(
+                        upper,
+                        &bottom.vertex,
+                        &topmost.high,
+                    ));
                 }
-                Located::Edge(edge) if edge.low.h() > h0 && !known => {
-                    return self.at_bottom(1 - upper, edge.low.up, [vertex; 2], true);
+                LocatedEdge::Edge(edge) if edge.low.h() > h0 && !is_upper_known => {
+                    return self.solve_at_bottom(1 - upper, edge.low.half_edge, [vertex; 2], true);
                 }
-                Located::Edge(edge) => {
-                    if let Some(end) = beyond(chain, &edge, h0, &ends) {
-                        return self.slide(upper, *end, chain, edge);
+                LocatedEdge::Edge(edge) => {
+                    if let Some(end) = end_beyond_chain(chain, &edge, h0, &ends) {
+                        return self.solve_facing(upper, *end, chain, edge);
                     }
-                    found[usize::from(chain == Chain::Right)] = Some(edge);
+                    edges[usize::from(chain == Chain::Right)] = Some(edge);
                 }
             }
         }
-        Some(inside(upper, &ends, [found[0]?, found[1]?], h0))
+        Some(bottom_contact(upper, &ends, [edges[0]?, edges[1]?], h0))
     }
 
-    /// Both ends of a section's bottom, from left to right.
-    fn ends(&self, upper: usize, bottom: &Bottom) -> [Crossing; 2] {
+    /// Returns both ends of a section's bottom, from left to right.
+    fn bottom_ends(&self, upper: usize, bottom: &SectionBottom) -> [Crossing; 2] {
         [Chain::Left, Chain::Right].map(|chain| self.sections[upper].bottom_end(bottom, chain))
     }
 
-    /// The upper section's bottom, with its end `end`, is beyond `chain` of the lower one, whose
-    /// edge at its height is `edge`.
-    fn slide(&self, upper: usize, end: Crossing, chain: Chain, edge: Bracket) -> Option<Planar> {
+    /// Solves the problem if the upper section's bottom is beyond `chain` of the lower one. `end` is the end of
+    /// the bottom that faces this chain, `edge` the chain's edge at its height.
+    fn solve_facing(
+        &self,
+        upper: usize,
+        end: Crossing,
+        chain: Chain,
+        edge: SectionEdge,
+    ) -> Option<PlanarAnswer> {
         let facing = chain.opposite();
-        let first = Bracket::new(end, self.sections[upper].up(facing, &end));
-        // The body that shows its left chain is the one on the right.
+        let first = SectionEdge::new(end, self.sections[upper].next_vertex(facing, &end));
+        // The body whose left chain faces the other body is on the right.
         let right = if chain == Chain::Left { 1 - upper } else { upper };
-        let slide = Slide::new(&self.sections, right);
-        let edges = by_body(upper, first, edge);
-        if slide.closes(&edges) {
-            slide.rise(&edges)
+        let chains = FacingChains::new(&self.sections, right);
+        let edges = order_by_body(upper, first, edge);
+        if chains.gap_closes(&edges) {
+            chains.walk_up(&edges)
         } else {
-            Some(slide.separated(&edge, by_body(upper, end, edge.low)))
+            Some(chains.separation_along(&edge, order_by_body(upper, end, edge.low)))
         }
     }
 }
 
-/// The end of the upper section's bottom that faces a chain of the lower one, if all of it is
-/// beyond.
-fn beyond<'c>(
+/// Returns the end of the upper section's bottom that faces `chain` of the lower section. `None` if this end is
+/// not beyond the chain.
+fn end_beyond_chain<'c>(
     chain: Chain,
-    edge: &Bracket,
+    edge: &SectionEdge,
     h0: f64,
     [left, right]: &'c [Crossing; 2],
 ) -> Option<&'c Crossing> {
@@ -197,53 +213,65 @@ fn beyond<'c>(
     }
 }
 
-/// The upper section's bottom lies between two edges of the lower one, or reaches beyond both.
-fn inside(upper: usize, ends: &[Crossing; 2], [left, right]: [Bracket; 2], h0: f64) -> Planar {
+/// Returns the answer if the upper section's bottom lies between two edges of the lower one, or extends beyond
+/// both.
+fn bottom_contact(
+    upper: usize,
+    ends: &[Crossing; 2],
+    [left, right]: [SectionEdge; 2],
+    h0: f64,
+) -> PlanarAnswer {
     let inside = |end: &&Crossing| left.g_at(h0) <= end.g() && end.g() <= right.g_at(h0);
     if let Some(&vertex) = ends.iter().find(inside) {
-        return Planar::Vertex { upper, vertex, left, right };
+        return PlanarAnswer::Vertex { upper, vertex, left, right };
     }
     // The lower section is narrower than the flat bottom of the upper one.
-    let flat = Bracket::new(ends[0], ends[1]);
-    crossing_edges(&by_body(upper, flat, left))
+    let flat = SectionEdge::new(ends[0], ends[1]);
+    edge_contact(&order_by_body(upper, flat, left))
 }
 
-/// What belongs to the upper and to the lower section, by body.
-fn by_body<T>(upper: usize, of_upper: T, of_lower: T) -> [T; 2] {
+/// Orders the values of the upper and the lower section by body.
+fn order_by_body<T>(upper: usize, of_upper: T, of_lower: T) -> [T; 2] {
     if upper == 0 { [of_upper, of_lower] } else { [of_lower, of_upper] }
 }
 
-impl Planar {
-    /// The bottom of the upper section is above the top of the lower one.
-    fn by_height(upper: usize, bottom: &Crossing, top: &Crossing) -> Self {
+impl PlanarAnswer {
+    /// Returns the separation of an upper section whose bottom is above the top of the lower one.
+    fn separated_by_height(upper: usize, bottom: &Crossing, top: &Crossing) -> Self {
         let sign = if upper == 1 { 1.0 } else { -1.0 };
-        let supports = by_body(upper, *bottom, *top);
+        let supports = order_by_body(upper, *bottom, *top);
         Self::Separated { u: DVec2::new(sign, 0.0), supports }
     }
 
-    /// What this answer, at levels `at`, tells about that at others, which is not below `height`.
-    pub(super) fn hint(&self, at: [f64; 2], levels: [f64; 2], height: f64) -> Hint {
+    /// Returns a hint for the problem at `levels` from this answer at `own_levels`. `height` is a lower bound
+    /// of the next answer's height.
+    pub(super) fn hint_for_levels(
+        &self,
+        own_levels: [f64; 2],
+        levels: [f64; 2],
+        height: f64,
+    ) -> PlanarHint {
         match self {
             Self::Vertex { upper, vertex, left, right } => {
-                let between = [left.low.up, right.low.up];
-                let last = Last::Bottom { upper: *upper, vertex: vertex.up, between };
-                Hint { height, levels: at, last }
+                let between = [left.low.half_edge, right.low.half_edge];
+                let last = LastAnswer::Bottom { upper: *upper, vertex: vertex.half_edge, between };
+                PlanarHint { height, levels: own_levels, last }
             }
             Self::Edges { edges, .. } => {
                 let [p, q] = edges.each_ref().map(|edge| edge.direction);
-                // The gap falls: the edges turn towards each other.
+                // The gap falls because the edges turn towards each other.
                 let right = usize::from(p.perp_dot(q) < 0.0);
-                let edges = edges.each_ref().map(|edge| edge.low.up);
-                Hint { height, levels: at, last: Last::Facing { right, edges } }
+                let edges = edges.each_ref().map(|edge| edge.low.half_edge);
+                PlanarHint { height, levels: own_levels, last: LastAnswer::Facing { right, edges } }
             }
             Self::Separated { u, supports } => {
                 let moved = [0, 1].map(|body| {
                     let Crossing { w, drift, .. } = supports[body];
-                    w.x + drift.x * (levels[body] - at[body])
+                    w.x + drift.x * (levels[body] - own_levels[body])
                 });
-                let edges = supports.each_ref().map(|support| support.up);
-                let last = Last::Facing { right: usize::from(u.y > 0.0), edges };
-                Hint { height: moved[0].max(moved[1]), levels: at, last }
+                let edges = supports.each_ref().map(|support| support.half_edge);
+                let last = LastAnswer::Facing { right: usize::from(u.y > 0.0), edges };
+                PlanarHint { height: moved[0].max(moved[1]), levels: own_levels, last }
             }
         }
     }

@@ -1,8 +1,8 @@
 //! The exit test: checks whether the best point of a cell solves the problem (line 6 of the paper's algorithm).
 //!
 //! The sides of a cell that meet in its best point `q` name the *features* of P and Q that touch there: a
-//! vertex, an edge or a face. `q` minimises `phi` exactly if these features have a common normal `n`, `n . d >
-//! 0`, that supports P outward and Q inward (`docs/theory/section-minimisation.md`).
+//! vertex, an edge or a face. `q` minimises `phi` exactly if these features have a common normal `n`,
+//! `n . d > 0`, that supports P outward and Q inward (`docs/theory/section-minimisation.md`).
 //!
 //! - A face or two crossing edges leave one normal, which is compared with the neighbours of the features. If
 //!   it does not support a body, the result names the faces that extend beyond its plane: `phi` falls where the
@@ -278,9 +278,9 @@ impl ExitTest<'_, '_> {
         farthest
     }
 
-    /// Finds a common normal of features that leave more than one. Clips the plane of normals `d + s1 e1 + s2
-    /// e2` by all steps out of both features, each relaxed by rounding, and takes the centroid. `None` if
-    /// nothing remains or if there are more than [`MAX_FEATURE_STEPS`] steps.
+    /// Finds a common normal of features that leave more than one. Clips the plane of normals
+    /// `d + s1 e1 + s2 e2` by all steps out of both features, each relaxed by rounding, and takes the centroid.
+    /// `None` if nothing remains or if there are more than [`MAX_FEATURE_STEPS`] steps.
     fn clip_normals(&self, features: [Feature; 2]) -> Option<DVec3> {
         let unit = self.setting.unit;
         let e1 = unit.any_orthonormal_vector();

@@ -30,6 +30,6 @@ mod tests;
 pub(crate) use minimise::{CtaOptions, Guess, minimise};
 pub(crate) use start::{Origin, RegionFocus};
 
-/// Maximum number of planar problems in a query. 40 cuts through centroids leave less than `(1 - 1/e)^40 <
-/// 2e-8` of the region.
+/// Maximum number of planar problems in a query. 40 cuts through centroids leave less than
+/// `(1 - 1/e)^40 < 2e-8` of the region.
 pub(crate) const MAX_STEPS: u32 = 40;

@@ -32,8 +32,8 @@ impl SectionFrame {
     }
 }
 
-/// An affine bound with its weight and normal: `weight * t >= value + gradient . (X, Y)` and `normal . d =
-/// weight`.
+/// An affine bound with its weight and normal: `weight * t >= value + gradient . (X, Y)` and
+/// `normal . d = weight`.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct LinearPiece {
     pub(super) bound: Affine,

@@ -1,7 +1,7 @@
 //! A body in section coordinates.
 //!
-//! Each point of the body has a *level* (`x` for the moving, `y` for the fixed body) and shadow coordinates `w
-//! = (h, g)`. All three are affine functions in the body frame.
+//! Each point of the body has a *level* (`x` for the moving, `y` for the fixed body) and shadow coordinates
+//! `w = (h, g)`. All three are affine functions in the body frame.
 
 use std::cell::Cell;
 

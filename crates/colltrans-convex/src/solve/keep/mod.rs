@@ -1,17 +1,16 @@
 //! Casts with a minimum gap: finds the first position on a line at which a convex set is as near as the gap.
 //!
 //! - `M = {q - p}`: a convex set in the setting frame. `d`: the direction with length 1. `g > 0`: the gap.
-//! - `f(s)`: the distance of `s d` from `M`, a convex function. The *crossing* is the first `s` with `f(s) =
-//!   g`.
-//! - Lower bound: a plane with the unit normal `n`, `n.d > 0`, and all of `M` above the height `h` proves `s >=
-//!   (h - g) / n.d`.
+//! - `f(s)`: the distance of `s d` from `M`, a convex function. The *crossing* is the first `s` with
+//!   `f(s) = g`.
+//! - Lower bound: a plane with the unit normal `n`, `n.d > 0`, and all of `M` above the height `h` proves
+//!   `s >= (h - g) / n.d`.
 //! - Upper bound: a point `c` of `M` with `|c - s d| <= g` proves that the crossing is at most `s`.
 //! - No crossing: a plane with `n.d = 0` and `h > g`.
 //!
 //! [`travel`] is Newton's method for `f(s) = g` from below. Each sample at `s` finds the point of `M` nearest
-//! to `s d` and a plane between them. [`shadow`] computes the distance of the whole line from `M`. Samples only
-//! propose planes and points, which prove the bounds. Rounding errors are analysed in
-//! `docs/theory/minimum-gap.md`.
+//! to `s d` and a plane between them. [`shadow`] computes the distance of the whole line from `M`. Rounding
+//! errors are analysed in `docs/theory/minimum-gap.md`.
 
 pub(crate) mod convex;
 

@@ -89,7 +89,7 @@ pub use answer::{
 pub use body::error::{BuildError, TopologyError};
 pub use body::{
     Aabb, Body, ConvexPolyhedron, ConvexityDefect, FaceId, Feature, Features, HalfEdge, InputFacet,
-    InputVertex, ObstacleId, OffsetReport, Placed, Pose, VertexId, convexity_defect,
+    InputVertex, Moving, ObstacleId, OffsetReport, Placed, Pose, VertexId, convexity_defect,
 };
 #[cfg(feature = "json")]
 pub use cast::{Case, CaseError};

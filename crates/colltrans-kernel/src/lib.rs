@@ -15,7 +15,6 @@
 pub mod aabb;
 #[doc(hidden)]
 pub mod angle;
-#[doc(hidden)]
 pub mod bounded;
 #[doc(hidden)]
 pub mod descent;
@@ -62,7 +61,6 @@ pub mod topology;
 pub mod volume;
 #[doc(hidden)]
 pub mod work;
-#[doc(hidden)]
 pub mod written;
 
 pub use aabb::Aabb;

@@ -54,6 +54,7 @@ pub use named;
 /// Serde functions for a number that may be plus infinity. Every format stores an infinite number as `null`,
 /// because JSON has no infinity.
 #[cfg(feature = "serde")]
+#[doc(hidden)]
 pub mod or_infinite {
     use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
@@ -72,6 +73,7 @@ pub mod or_infinite {
 /// Checks whether a number is 0, so that serde can skip it.
 #[cfg(feature = "serde")]
 #[inline]
+#[doc(hidden)]
 pub fn is_zero(value: &f64) -> bool {
     *value == 0.0
 }
@@ -79,6 +81,7 @@ pub fn is_zero(value: &f64) -> bool {
 /// Checks whether a count is 0, so that serde can skip it.
 #[cfg(feature = "serde")]
 #[inline]
+#[doc(hidden)]
 pub fn is_none(count: &u64) -> bool {
     *count == 0
 }
@@ -87,6 +90,7 @@ pub fn is_none(count: &u64) -> bool {
 /// as `null`.
 #[cfg(feature = "serde")]
 #[inline]
+#[doc(hidden)]
 pub fn given<'de, T, D>(from: D) -> Result<Option<T>, D::Error>
 where
     T: serde::Deserialize<'de>,
@@ -97,6 +101,7 @@ where
 
 /// Serde functions for a number that may be minus infinity, which every format stores as `null`.
 #[cfg(feature = "serde")]
+#[doc(hidden)]
 pub mod or_minus_infinite {
     use serde::{Deserialize, Deserializer};
 

@@ -307,7 +307,7 @@ pub enum Answer {
 pub enum PairQuestion {
     /// [`Pair::distance`].
     Distance,
-    /// [`Pair::depth`]; of solids [`Pair::overlap_depth`].
+    /// [`Pair::depth`]; of solids `SolidPair::overlap_depth`.
     Depth,
     /// [`Pair::within`] a length.
     Within(f64),
@@ -553,7 +553,7 @@ impl Record {
         record.keeping(cast.options().keep)
     }
 
-    /// Of [`Cast::clearance`] between solids; `exit` as [`Cast::exit`] says.
+    /// Of [`Cast::clearance`] between solids; `exit` as `SolidCast::exit` says.
     pub fn of_solids(
         clearance: &Clearance<Solid>,
         exit: Option<Bounded>,
@@ -626,7 +626,7 @@ impl Record {
         }
     }
 
-    /// Of [`Pair::overlap_depth`].
+    /// Of `SolidPair::overlap_depth`.
     pub fn of_overlap_depth(depth: OverlapDepth) -> Self {
         let OverlapDepth { meets, least_tolerance, .. } = depth;
         let outcome = match (least_tolerance, meets) {

@@ -1,6 +1,6 @@
 //! One body among many placed ones: which is nearest, which are closer than a length, which is hit first.
 //!
-//! The bodies lie in a [tree that changes](colltrans_kernel::dynamic_tree) of [`boxes`]. A search asks about single bodies, with the questions that a
+//! The bodies lie in a dynamic tree of [`boxes`]. A search asks about single bodies, with the questions that a
 //! [`Pair`] and a [`Cast`] answer, by the bounds of their boxes, the least first; what a box
 //! proves to be of no interest is not asked about.
 //!

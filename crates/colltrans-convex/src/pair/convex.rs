@@ -137,7 +137,10 @@ pub fn distance_from(pair: &Pair, pairs: &mut NearestPairs) -> Result<Distance, 
 /// Builds the answer from a search result.
 ///
 /// Returns [`QueryError::NotConverged`] if the bounds differ by more than rounding explains.
-fn distance_of_search(difference: &Difference, found: &DescentResult) -> Result<Distance, QueryError> {
+fn distance_of_search(
+    difference: &Difference,
+    found: &DescentResult,
+) -> Result<Distance, QueryError> {
     let bodies = difference.bodies;
     let near = found.near_points(difference);
     let plane = found.separating_plane(difference);

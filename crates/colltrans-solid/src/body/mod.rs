@@ -552,6 +552,7 @@ impl Solid {
     }
 }
 
+#[doc(hidden)]
 impl Hull for Solid {
     fn corners(&self) -> &[DVec3] {
         self.vertices()

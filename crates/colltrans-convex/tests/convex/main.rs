@@ -1,18 +1,17 @@
-//! Convex bodies and what is asked of them, in one program: each is linked for itself.
+//! Convex bodies, in one program: each program is linked for itself.
 
-#[path = "../common/mod.rs"]
-mod common;
-
-mod among;
+mod allocation;
 mod api;
-mod bulk;
+mod common;
 mod degenerate;
 mod distance;
 mod fuzz_corpus;
+mod golden;
 mod hull;
 mod input;
 mod keep;
 mod offset;
+mod oracle;
 mod paper;
 mod properties;
 mod published_distances;
@@ -21,4 +20,4 @@ mod replay;
 mod rims;
 mod sliding;
 mod tracker;
-mod written;
+mod work;

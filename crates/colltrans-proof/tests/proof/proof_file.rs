@@ -15,9 +15,7 @@ use colltrans_testkit::solids::{bolt, turned, washer};
 use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
 
-use self::common::solid;
-
-mod common;
+use crate::common::solid;
 
 /// Written, read, checked.
 fn holds(proof: &ProofFile, of: &str) -> Value {

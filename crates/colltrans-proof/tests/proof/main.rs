@@ -1,0 +1,7 @@
+//! Answers and proofs as files, in one program: each program is linked for itself.
+
+mod claims;
+mod common;
+mod forged;
+mod proof_file;
+mod written;

@@ -1,0 +1,4 @@
+//! Free directions and ways out, in one program: each program is linked for itself.
+
+mod free;
+mod ways;

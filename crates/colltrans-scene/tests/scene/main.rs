@@ -1,0 +1,4 @@
+//! One body among many, and one pair many times, in one program: each program is linked for itself.
+
+mod among;
+mod bulk;

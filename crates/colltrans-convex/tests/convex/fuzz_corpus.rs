@@ -18,18 +18,8 @@ fn cast_corpus() {
 }
 
 #[test]
-fn solids_corpus() {
-    fuzz::corpus("solids", 12).for_each(|bytes| fuzz::solids(&bytes));
-}
-
-#[test]
 fn track_corpus() {
     fuzz::corpus("track", 24).for_each(|bytes| fuzz::track(&bytes));
-}
-
-#[test]
-fn bulk_corpus() {
-    fuzz::corpus("bulk", 24).for_each(|bytes| fuzz::bulk(&bytes));
 }
 
 #[test]
@@ -50,14 +40,4 @@ fn within_corpus() {
 #[test]
 fn keep_corpus() {
     fuzz::corpus("keep", 24).for_each(|bytes| fuzz::keep(&bytes));
-}
-
-#[test]
-fn motion_corpus() {
-    fuzz::corpus("motion", 12).for_each(|bytes| fuzz::motion(&bytes));
-}
-
-#[test]
-fn among_corpus() {
-    fuzz::corpus("among", 6).for_each(|bytes| fuzz::among(&bytes));
 }

@@ -300,30 +300,6 @@ fn trackers_answer_as_one_off_queries() {
     assert!(looks[0] <= looks[1], "{looks:?}");
 }
 
-#[cfg(feature = "json")]
-#[test]
-fn files_hold_the_gap() {
-    use colltrans::{Case, ProofFile};
-    let cube = cube();
-    let cast = Cast::new(cube.at(at(-3.0, 0.9, 0.0)), cube.at(Pose::IDENTITY), DVec3::X);
-    let cast = cast.expect("a query");
-    assert!(!cast.to_json().contains("keep\""));
-    let kept = cast.keeping(0.25).expect("a gap");
-    let case = Case::from_json(&kept.to_json()).expect("a case");
-    assert_eq!(case.cast().expect("a query").first_contact(), kept.first_contact());
-    for gap in [0.25, 1.0, 2.5] {
-        let kept = cast.keeping(gap).expect("a gap");
-        let clearance = kept.clearance().expect("an answer");
-        let saved = ProofFile::of_clearance(&kept, &clearance).to_json();
-        let proof = ProofFile::from_json(&saved).expect("a proof");
-        proof.check().expect("a right proof");
-        assert!(proof.to_string().contains(&format!("{gap:?} apart or nearer")), "{proof}");
-        let more =
-            saved.replace(&format!("\"keep\":{gap:?}"), &format!("\"keep\":{:?}", gap * 1.01));
-        assert!(more != saved && ProofFile::from_json(&more).expect("a proof").check().is_err());
-    }
-}
-
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(cases(300)))]
 
@@ -360,22 +336,6 @@ proptest! {
         prop_assert!(travel(gap + more) <= travel(gap) + 1e-12);
         prop_assert!(travel(gap + more) >= travel(gap) - more * 1e6);
     }
-}
-
-/// One that is asked among many keeps the gap from all: also from those whose boxes it passes.
-#[test]
-fn among_many_the_gap_is_kept_from_all() {
-    use colltrans::{Among, Obstacles, Options};
-    let cube = cube();
-    let mut obstacles = Obstacles::default();
-    obstacles.insert(cube.clone(), at(3.0, 1.2, 0.0));
-    obstacles.insert(cube.clone(), at(9.0, 0.0, 0.0));
-    let among = Among::new(cube.at(Pose::IDENTITY), &obstacles).expect("a question");
-    let plain = among.clearance(DVec3::X).expect("an answer").distance().expect("apart");
-    assert!((plain - 8.0).abs() < 1e-12);
-    let kept = among.with_options(Options::default().with_keep(0.5)).expect("a gap");
-    let kept = kept.clearance(DVec3::X).expect("an answer").distance().expect("apart");
-    assert!((kept - (2.0 - 0.21_f64.sqrt())).abs() < 1e-12, "{kept}");
 }
 
 /// A gap of some roundings, and bodies that pass each other without it but not with it.

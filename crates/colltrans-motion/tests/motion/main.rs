@@ -2,6 +2,7 @@
 
 mod casts;
 mod clearance;
+mod fuzz_corpus;
 mod path;
 mod play;
 mod properties;

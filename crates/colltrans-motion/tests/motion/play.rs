@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use colltrans::motion::path::PathOutcome;
-use colltrans::motion::{Motion, MotionCase, MotionCast, MotionOutcome};
-use colltrans::{ConvexPolyhedron, Pose, ProofFile};
+use colltrans::motion::{Motion, MotionCast, MotionOutcome};
+use colltrans::{ConvexPolyhedron, Pose};
 use colltrans_testkit::oracle::play::{KINDS, Screw, chain, slider};
 use glam::DVec3;
 
@@ -50,37 +50,6 @@ fn a_plane_is_carried_along_while_one_body_slides_along_the_axis() {
     assert!(matches!(outcome, MotionOutcome::Free(_)), "{outcome:?}");
 }
 
-/// In a file of several pairs, a proof about the bodies as solids is written as one of solids, which `check.py` can read.
-#[test]
-fn a_file_of_several_pairs_has_proofs_of_solids() {
-    let cube = ConvexPolyhedron::cuboid(DVec3::splat(-0.5), DVec3::splat(0.5)).unwrap();
-    let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 0.5).unwrap();
-    let rest = Motion::still(Pose::from_translation(DVec3::X * 1.5).unwrap());
-    let cast = MotionCast::new(cube.along(&turn), cube.along(&rest)).unwrap();
-    let solids = MotionCast::between(cube.along(&turn), cube.along(&rest)).unwrap();
-    let solids = solids.tolerating(0.0).unwrap().certified_first_contact().unwrap();
-    let convex = cast.first_contact().unwrap();
-    let MotionOutcome::Free(mut free) = convex.clone() else { panic!("{convex:?}") };
-    // As of a pair whose planes run out.
-    free.proof.spans.clear();
-    free.proof.solids = Some(Box::new(solids.proof().clone()));
-    let files = [MotionOutcome::Free(free), convex].map(|of| ProofFile::of_motion(&cast, &of));
-    let bounds = files.iter().map(|file| file.check().unwrap().time().unwrap());
-    let bounds = bounds.fold([1.0, f64::INFINITY], |all, [lower, upper]| {
-        [f64::min(all[0], lower), f64::min(all[1], upper)]
-    });
-    let saved = ProofFile::of_motions(files.to_vec()).unwrap().to_json();
-    for kind in ["\"solids\":{\"parts\"", "\"convex\":{\"spans\""] {
-        assert_eq!(saved.matches(kind).count(), 1, "{kind}");
-    }
-    let read = ProofFile::from_json(&saved).unwrap();
-    assert_eq!(read.check().unwrap().time(), Some(bounds));
-    assert_eq!(read.to_json(), saved);
-    assert!(read.to_string().starts_with("of 2 pairs of bodies "), "{read}");
-    let other = saved.replace("\"solids\":", "\"path\":");
-    assert!(other != saved && ProofFile::from_json(&other).is_err());
-}
-
 /// A proof about the bodies as solids counts for the same question alone: not with a gap, a depth, or planes beside it.
 #[test]
 fn a_changed_proof_of_solids_is_refused() {
@@ -102,24 +71,4 @@ fn a_changed_proof_of_solids_is_refused() {
     let mut changed = proof.clone();
     changed.spans = vec![Vec::new()];
     assert!(cast.verify(&changed).is_err());
-}
-
-/// A block slides past a cube at a distance of 5e-4. The same question about bodies that leave out 1e-3 of what they
-/// were made of, which only a file can say of such bodies, is not answered by the facets alone.
-#[test]
-fn a_proof_of_solids_leaves_what_hulls_leave_out() {
-    let block = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).unwrap();
-    let beside = Pose::from_translation(DVec3::new(1.0 + 5e-4, -3.0, 0.0)).unwrap();
-    let (rest, slide) = (Motion::still(Pose::IDENTITY), Motion::slide(beside, DVec3::Y * 6.0));
-    let slide = slide.unwrap();
-    let cast = MotionCast::new(block.along(&slide), block.along(&rest)).unwrap();
-    let solids = MotionCast::between(block.along(&slide), block.along(&rest)).unwrap();
-    let solids = solids.tolerating(0.0).unwrap().certified_first_contact().unwrap();
-    let mut proof = cast.first_contact().unwrap().proof().clone();
-    (proof.spans, proof.meeting) = (Vec::new(), None);
-    proof.solids = Some(Box::new(solids.proof().clone()));
-    assert_eq!(cast.verify(&proof).unwrap(), [1.0, f64::INFINITY]);
-    let text = MotionCase::of(&cast).to_json().replace("\"hull_error\":0.0", "\"hull_error\":1e-3");
-    let case = MotionCase::from_json(&text).unwrap();
-    assert!(case.cast().verify(&proof).is_err(), "{text}");
 }

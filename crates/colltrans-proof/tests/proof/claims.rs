@@ -1,5 +1,4 @@
 //! Claims of proof files about motions and paths that are weaker, or other, than what the file proves.
-#![cfg(feature = "json")]
 
 use colltrans::motion::path::{Frame, Joint, JointPath, Mechanism, PathBody, PathCast};
 use colltrans::motion::{Motion, MotionCast};

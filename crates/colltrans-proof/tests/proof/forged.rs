@@ -1,5 +1,4 @@
 //! Forged proofs: what both checkers accept of them is true (`campaign --proofs` does this at length).
-#![cfg(feature = "json")]
 
 use colltrans::solid::{AsSolid, SolidOptions, StartOverlap};
 use colltrans::{

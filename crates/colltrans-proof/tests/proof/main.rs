@@ -3,5 +3,7 @@
 mod claims;
 mod common;
 mod forged;
+mod keep;
+mod motions;
 mod proof_file;
 mod written;

@@ -1,5 +1,4 @@
 //! Proofs as files: they hold, and whatever number of what is claimed is changed, they do not.
-#![cfg(feature = "json")]
 
 use colltrans::motion::path::{Frame, Joint, JointPath, Mechanism, PathBody, PathCast};
 use colltrans::solid::{AsSolid, SolidCast, SolidOptions, SolidPair, StartOverlap};

@@ -1,5 +1,4 @@
 //! What serde writes of an answer comes back in bits, and what is not one is refused.
-#![cfg(feature = "json")]
 
 use colltrans::record::{Ending, Question};
 use colltrans::solid::{SolidCast, SolidCertificate, SolidOptions, StartOverlap};

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use colltrans::glam::{DQuat, DVec3};
 use colltrans::{
-    Among, ByKind, CertificateError, ConvexPolyhedron, ObstacleId, Obstacles, Pose, QueryError,
-    Solid,
+    Among, ByKind, CertificateError, ConvexPolyhedron, ObstacleId, Obstacles, Options, Pose,
+    QueryError, Solid,
 };
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::among::{FAMILIES, Setting};
@@ -237,4 +237,19 @@ fn far_from_the_origin() {
     assert_eq!(nearest.obstacle, ObstacleId(3));
     assert!(nearest.distance.upper() - nearest.lower < 1e-7, "{nearest:?}");
     assert!(asked.verify(&proof).expect("a proof") < 1e-7);
+}
+
+/// One that is asked among many keeps the gap from all: also from those whose boxes it passes.
+#[test]
+fn among_many_the_gap_is_kept_from_all() {
+    let cube = cuboid(DVec3::splat(-0.5), DVec3::splat(0.5));
+    let mut obstacles = Obstacles::default();
+    obstacles.insert(cube.clone(), at(3.0, 1.2, 0.0));
+    obstacles.insert(cube.clone(), at(9.0, 0.0, 0.0));
+    let among = Among::new(cube.at(Pose::IDENTITY), &obstacles).expect("a question");
+    let plain = among.clearance(DVec3::X).expect("an answer").distance().expect("apart");
+    assert!((plain - 8.0).abs() < 1e-12);
+    let kept = among.with_options(Options::default().with_keep(0.5)).expect("a gap");
+    let kept = kept.clearance(DVec3::X).expect("an answer").distance().expect("apart");
+    assert!((kept - (2.0 - 0.21_f64.sqrt())).abs() < 1e-12, "{kept}");
 }

@@ -2,3 +2,4 @@
 
 mod among;
 mod bulk;
+mod fuzz_corpus;

@@ -1,13 +1,17 @@
 //! Solids, in one program: each program is linked for itself.
 
+mod allocation;
 mod casts;
 mod common;
 mod convex;
 mod distance;
 mod features;
+mod fuzz_corpus;
+mod golden;
 mod keep;
 mod oracle;
 mod points;
 mod proof;
 mod properties;
 mod sheets;
+mod work;

@@ -167,7 +167,6 @@ fn proofs_are_small() {
     assert_eq!((rests.lower, rests.cover.len()), (0.0, 1));
 }
 
-#[cfg(feature = "json")]
 #[test]
 fn proofs_as_files() {
     let (bolt, plate) = blocked();

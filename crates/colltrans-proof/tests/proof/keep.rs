@@ -1,0 +1,60 @@
+//! Files about casts that keep a gap: they hold, and not with a larger gap.
+
+use colltrans::glam::DVec3;
+use colltrans::solid::SolidCast;
+use colltrans::{Case, Cast, ConvexPolyhedron, Pose, ProofFile, Solid};
+
+fn cuboid(low: DVec3, high: DVec3) -> ConvexPolyhedron {
+    ConvexPolyhedron::cuboid(low, high).expect("a box")
+}
+
+fn cube() -> ConvexPolyhedron {
+    cuboid(DVec3::splat(-0.5), DVec3::splat(0.5))
+}
+
+/// A floor with a wall at its end, as one body.
+fn corner() -> Solid {
+    let floor = cuboid(DVec3::new(-4.0, -2.0, -1.0), DVec3::new(4.0, 2.0, 0.0));
+    let wall = cuboid(DVec3::new(3.0, -2.0, 0.0), DVec3::new(4.0, 2.0, 5.0));
+    Solid::from_pieces([&floor, &wall]).expect("pieces")
+}
+
+fn at(x: f64, y: f64, z: f64) -> Pose {
+    Pose::from_translation(DVec3::new(x, y, z)).expect("a pose")
+}
+
+#[test]
+fn files_about_convex_bodies_hold_the_gap() {
+    let cube = cube();
+    let cast = Cast::new(cube.at(at(-3.0, 0.9, 0.0)), cube.at(Pose::IDENTITY), DVec3::X);
+    let cast = cast.expect("a query");
+    assert!(!cast.to_json().contains("keep\""));
+    let kept = cast.keeping(0.25).expect("a gap");
+    let case = Case::from_json(&kept.to_json()).expect("a case");
+    assert_eq!(case.cast().expect("a query").first_contact(), kept.first_contact());
+    for gap in [0.25, 1.0, 2.5] {
+        let kept = cast.keeping(gap).expect("a gap");
+        let clearance = kept.clearance().expect("an answer");
+        let saved = ProofFile::of_clearance(&kept, &clearance).to_json();
+        let proof = ProofFile::from_json(&saved).expect("a proof");
+        proof.check().expect("a right proof");
+        assert!(proof.to_string().contains(&format!("{gap:?} apart or nearer")), "{proof}");
+        let more =
+            saved.replace(&format!("\"keep\":{gap:?}"), &format!("\"keep\":{:?}", gap * 1.01));
+        assert!(more != saved && ProofFile::from_json(&more).expect("a proof").check().is_err());
+    }
+}
+
+#[test]
+fn files_about_solids_hold_the_gap() {
+    let (corner, cube) = (corner(), cuboid(DVec3::ZERO, DVec3::ONE));
+    let cube = Solid::from_convex(&cube).expect("a box");
+    let cast = Cast::new(cube.at(at(-3.0, 0.5, 1.0)), corner.at(Pose::IDENTITY), DVec3::X);
+    let kept = cast.expect("a query").keeping(0.25).expect("a gap");
+    let saved = ProofFile::of_solids(&kept, [&[&cube], &[&corner]]).expect("a proof").to_json();
+    let proof = ProofFile::from_json(&saved).expect("a proof");
+    proof.check().expect("a right proof");
+    assert!(proof.keep() == 0.25 && proof.to_string().contains("0.25 apart or nearer"), "{proof}");
+    let more = saved.replace("\"keep\":0.25", "\"keep\":0.26");
+    assert!(more != saved && ProofFile::from_json(&more).expect("a proof").check().is_err());
+}

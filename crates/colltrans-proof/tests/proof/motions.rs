@@ -1,0 +1,116 @@
+//! Motions as files: queries come back as the same bits, and proofs of several pairs or of solids hold.
+
+use colltrans::motion::{Motion, MotionCase, MotionCast, MotionOutcome};
+use colltrans::{ConvexPolyhedron, Pose, ProofFile};
+use colltrans_testkit::oracle::settings::{FAMILIES, setting};
+use glam::DVec3;
+
+#[test]
+fn motions_come_back_in_bits() {
+    for (family, ..) in FAMILIES {
+        for seed in 0..10 {
+            let setting = setting(family, seed);
+            let bodies = setting.bodies().expect("bodies");
+            let cast = setting.query(&bodies).expect("a query");
+            let (a, b) = (cast.moving_pose(), cast.fixed_pose());
+            let x = 0.1 + seed as f64;
+            let Ok(turn) = Motion::turn(a, b.translation(), cast.direction(), x) else { continue };
+            let Ok(back) = Motion::between(b, a) else { continue };
+            let asked = MotionCast::new(cast.moving().along(&turn), cast.fixed().along(&back));
+            let asked = asked.expect("a cast");
+            let asked = match seed % 3 {
+                0 => asked,
+                1 => asked.keeping(0.25).expect("a gap"),
+                _ => asked.tolerating(0.25).expect("a depth"),
+            };
+            let saved = MotionCase::of(&asked).to_json();
+            let case = MotionCase::from_json(&saved).unwrap_or_else(|e| panic!("{setting}: {e}"));
+            let again = case.cast();
+            assert_eq!(MotionCase::of(&again).to_json(), saved, "{setting}");
+            assert_eq!([again.keep(), again.tolerance()], [asked.keep(), asked.tolerance()]);
+            let answers = [&asked, &again].map(|cast| format!("{:?}", cast.first_contact()));
+            assert_eq!(answers[0], answers[1], "{setting}");
+        }
+    }
+}
+
+#[test]
+fn what_is_no_motion_is_refused() {
+    let setting = setting("boxes", 3);
+    let bodies = setting.bodies().expect("bodies");
+    let cast = setting.query(&bodies).expect("a query");
+    let slide = Motion::slide(cast.moving_pose(), cast.direction()).expect("a motion");
+    let asked = MotionCast::new(cast.moving().along(&slide), cast.fixed().at(cast.fixed_pose()));
+    let asked = asked.expect("a cast");
+    let good = MotionCase::of(&asked).to_json();
+    let proof = ProofFile::of_motion(&asked, &asked.first_contact().expect("an answer")).to_json();
+    for (wrong, why) in [
+        ("{}".to_owned(), "not a saved query"),
+        (cast.to_json(), "the format is"),
+        (proof.clone(), "the format is"),
+        (proof.replace("colltrans proof", "colltrans motion case 1"), "unknown field `version`"),
+        (good.replace("\"since\":0.0", "\"since\":0.5"), "time"),
+        (good.replace("\"rate\":0.0", "\"rate\":1e9"), "angle"),
+        (good.replace("\"format\"", "\"keep\":1e70,\"format\""), "gap"),
+        (good.replace("\"format\"", "\"keep\":-1e70,\"format\""), "tolerance"),
+        (good.replace("\"format\"", "\"keep\":1e999,\"format\""), "larger than any double"),
+        (good.replace("\"moving_motion\"", "\"motion\""), "unknown field `motion`"),
+    ] {
+        let error = MotionCase::from_json(&wrong).expect_err(why).to_string();
+        assert!(error.contains(why), "{error}, not {why}");
+    }
+    let other = good.replace("colltrans motion case 1", "colltrans proof");
+    let error = ProofFile::from_json(&other).expect_err("no proof").to_string();
+    assert_eq!(error, "the version of the format is missing, not 2");
+}
+
+/// In a file of several pairs, a proof about the bodies as solids is written as one of solids, which `check.py` can read.
+#[test]
+fn a_file_of_several_pairs_has_proofs_of_solids() {
+    let cube = ConvexPolyhedron::cuboid(DVec3::splat(-0.5), DVec3::splat(0.5)).unwrap();
+    let turn = Motion::turn(Pose::IDENTITY, DVec3::ZERO, DVec3::Z, 0.5).unwrap();
+    let rest = Motion::still(Pose::from_translation(DVec3::X * 1.5).unwrap());
+    let cast = MotionCast::new(cube.along(&turn), cube.along(&rest)).unwrap();
+    let solids = MotionCast::between(cube.along(&turn), cube.along(&rest)).unwrap();
+    let solids = solids.tolerating(0.0).unwrap().certified_first_contact().unwrap();
+    let convex = cast.first_contact().unwrap();
+    let MotionOutcome::Free(mut free) = convex.clone() else { panic!("{convex:?}") };
+    // As of a pair whose planes run out.
+    free.proof.spans.clear();
+    free.proof.solids = Some(Box::new(solids.proof().clone()));
+    let files = [MotionOutcome::Free(free), convex].map(|of| ProofFile::of_motion(&cast, &of));
+    let bounds = files.iter().map(|file| file.check().unwrap().time().unwrap());
+    let bounds = bounds.fold([1.0, f64::INFINITY], |all, [lower, upper]| {
+        [f64::min(all[0], lower), f64::min(all[1], upper)]
+    });
+    let saved = ProofFile::of_motions(files.to_vec()).unwrap().to_json();
+    for kind in ["\"solids\":{\"parts\"", "\"convex\":{\"spans\""] {
+        assert_eq!(saved.matches(kind).count(), 1, "{kind}");
+    }
+    let read = ProofFile::from_json(&saved).unwrap();
+    assert_eq!(read.check().unwrap().time(), Some(bounds));
+    assert_eq!(read.to_json(), saved);
+    assert!(read.to_string().starts_with("of 2 pairs of bodies "), "{read}");
+    let other = saved.replace("\"solids\":", "\"path\":");
+    assert!(other != saved && ProofFile::from_json(&other).is_err());
+}
+
+/// A block slides past a cube at a distance of 5e-4. The same question about bodies that leave out 1e-3 of what they
+/// were made of, which only a file can say of such bodies, is not answered by the facets alone.
+#[test]
+fn a_proof_of_solids_leaves_what_hulls_leave_out() {
+    let block = ConvexPolyhedron::cuboid(DVec3::ZERO, DVec3::ONE).unwrap();
+    let beside = Pose::from_translation(DVec3::new(1.0 + 5e-4, -3.0, 0.0)).unwrap();
+    let (rest, slide) = (Motion::still(Pose::IDENTITY), Motion::slide(beside, DVec3::Y * 6.0));
+    let slide = slide.unwrap();
+    let cast = MotionCast::new(block.along(&slide), block.along(&rest)).unwrap();
+    let solids = MotionCast::between(block.along(&slide), block.along(&rest)).unwrap();
+    let solids = solids.tolerating(0.0).unwrap().certified_first_contact().unwrap();
+    let mut proof = cast.first_contact().unwrap().proof().clone();
+    (proof.spans, proof.meeting) = (Vec::new(), None);
+    proof.solids = Some(Box::new(solids.proof().clone()));
+    assert_eq!(cast.verify(&proof).unwrap(), [1.0, f64::INFINITY]);
+    let text = MotionCase::of(&cast).to_json().replace("\"hull_error\":0.0", "\"hull_error\":1e-3");
+    let case = MotionCase::from_json(&text).unwrap();
+    assert!(case.cast().verify(&proof).is_err(), "{text}");
+}

@@ -1,0 +1,13 @@
+//! The corpora of the fuzz targets as ordinary tests. A finding becomes one more file.
+
+use colltrans_testkit::oracle::fuzz;
+
+#[test]
+fn bulk_corpus() {
+    fuzz::corpus("bulk", 24).for_each(|bytes| fuzz::bulk(&bytes));
+}
+
+#[test]
+fn among_corpus() {
+    fuzz::corpus("among", 6).for_each(|bytes| fuzz::among(&bytes));
+}

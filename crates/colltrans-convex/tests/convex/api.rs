@@ -1,14 +1,15 @@
 //! The public interface: what it refuses, and what it promises to the type system.
 
-use colltrans::glam::{DMat3, DQuat, DVec3};
-use colltrans::{
+use colltrans_convex::cast;
+use colltrans_convex::{
     BuildError, Cast, Certificate, CertificateError, Clearance, ContactRange, ConvexPolyhedron,
     HalfEdge, MAX_MAGNITUDE, MIN_MAGNITUDE, Options, Outcome, OverlapAhead, Pose, PoseError,
-    QueryError, Separation, TopologyError, VertexId, WhyFree, cast, cta,
+    QueryError, Separation, TopologyError, VertexId, WhyFree, cta,
 };
 use colltrans_testkit::oracle::exact::Vector;
 use colltrans_testkit::oracle::settings::{FAMILIES, Setting, setting};
 use colltrans_testkit::shapes::{Mesh, block, cuboid};
+use glam::{DMat3, DQuat, DVec3};
 
 use crate::common::{at, body};
 

@@ -1,6 +1,6 @@
 //! Bodies and poses of the tests.
 
-use colltrans::{ConvexPolyhedron, Pose};
+use colltrans_convex::{ConvexPolyhedron, Pose};
 use glam::DVec3;
 
 /// Returns the hull of points.

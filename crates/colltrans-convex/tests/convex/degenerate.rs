@@ -2,12 +2,12 @@
 
 use std::mem::discriminant;
 
-use colltrans::glam::{DQuat, DVec3};
-use colltrans::{Cast, Outcome, Pose, Solver};
+use colltrans_convex::{Cast, Outcome, Pose, Solver};
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::check::Judge;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::cuboid;
+use glam::{DQuat, DVec3};
 
 use crate::common::body;
 

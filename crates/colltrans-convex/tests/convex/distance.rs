@@ -1,7 +1,6 @@
 //! Distances: what is known in closed form, named cases, degenerate bodies, proofs and changed ones.
 
-use colltrans::glam::{DMat3, DQuat, DVec3};
-use colltrans::{
+use colltrans_convex::{
     ConvexPolyhedron, Distance, NearPoints, Pair, PlaneGap, Pose, QueryError, VertexId, Within,
 };
 use colltrans_testkit::cases;
@@ -9,6 +8,7 @@ use colltrans_testkit::oracle::nearest::Judge;
 use colltrans_testkit::oracle::settings::{FAMILIES, near_contact, setting};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::random_hull;
+use glam::{DMat3, DQuat, DVec3};
 
 fn body(points: &[DVec3]) -> ConvexPolyhedron {
     ConvexPolyhedron::from_points(points).expect("points")
@@ -305,7 +305,7 @@ fn tracked_distances_are_as_tight() {
     let mut random = Random::new(8);
     for vertices in [4, 12, 60, 300] {
         let [p, q] = [0, 1].map(|_| body(&random_hull(vertices, &mut random).vertices));
-        let mut tracker = colltrans::Tracker::new();
+        let mut tracker = colltrans_convex::Tracker::new();
         let rotation = random.rotation();
         for step in 0..60 {
             let angle = 0.05 * f64::from(step);

@@ -7,10 +7,10 @@
 //!
 //! After a change that is meant to change bits, the test prints the new lines.
 
-use colltrans::glam::{DMat3, DVec3};
-use colltrans::{Cast, Contact, ConvexPolyhedron, Outcome, Pose, Solver, Tracker, VertexId};
+use colltrans_convex::{Cast, Contact, ConvexPolyhedron, Outcome, Pose, Solver, Tracker, VertexId};
 use colltrans_testkit::golden::{Hash, assert_unchanged};
 use colltrans_testkit::oracle::settings::{FAMILIES, NEARLY_FLAT, Setting, setting};
+use glam::{DMat3, DVec3};
 
 /// Settings of each family.
 const SETTINGS: u64 = 60;

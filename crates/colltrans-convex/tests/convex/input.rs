@@ -1,16 +1,15 @@
 //! Bounds hold for the points that bodies were made from, also where a hull leaves some of them out.
 
-use colltrans::glam::DVec3;
 use colltrans::motion::{Motion, MotionCast, MotionOutcome};
-use colltrans::{
-    Among, Cast, ConvexPolyhedron, FixedRotations, Obstacles, Outcome, Pair, Pose, Solver, Within,
-};
+use colltrans::{Among, FixedRotations, Obstacles};
+use colltrans_convex::{Cast, ConvexPolyhedron, Outcome, Pair, Pose, Solver, Within};
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::check::Judge;
 use colltrans_testkit::oracle::distance::distance;
 use colltrans_testkit::oracle::exact::{Dyadic, Ratio, Vector};
 use colltrans_testkit::oracle::input;
 use colltrans_testkit::random::Random;
+use glam::DVec3;
 
 /// Points of a thin plate far from the origin, `bulge` roundings of its place uneven: its rim, and more
 /// points on the side toward the other plate (`sign`), near its face and near its edges.

@@ -1,8 +1,7 @@
 //! Casts that keep a gap: what is known in closed form, every family, degenerate bodies, proofs and changed ones.
 
-use colltrans::glam::{DQuat, DVec3};
-use colltrans::observe::{Event, Recording};
-use colltrans::{
+use colltrans_convex::observe::{Event, Recording};
+use colltrans_convex::{
     Cast, Clearance, Contact, ConvexPolyhedron, Outcome, Pose, QueryError, Solver, StartedFrom,
     Tracker, WhyFree,
 };
@@ -11,6 +10,7 @@ use colltrans_testkit::oracle::keep::Judge;
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::random_hull;
+use glam::{DQuat, DVec3};
 use proptest::prelude::*;
 
 fn body(points: &[DVec3]) -> ConvexPolyhedron {
@@ -244,7 +244,7 @@ fn changed_proofs_are_refused() {
         let proven = kept.verify(&proof).expect("a proof");
         assert!(proven >= 0.0);
         let noise = 1e-13 / proof.normal.dot(way);
-        let refused = |what: &str, change: &dyn Fn(&mut colltrans::Certificate)| {
+        let refused = |what: &str, change: &dyn Fn(&mut colltrans_convex::Certificate)| {
             let mut changed = proof;
             change(&mut changed);
             assert!(kept.verify(&changed).is_err(), "{what} of {round}");

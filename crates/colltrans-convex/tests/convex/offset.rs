@@ -2,8 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use colltrans::Solid;
 use colltrans::solid::SolidCast;
-use colltrans::{BuildError, Cast, Clearance, ConvexPolyhedron, InputVertex, Pose, Solid};
+use colltrans_convex::{BuildError, Cast, Clearance, ConvexPolyhedron, InputVertex, Pose};
 use colltrans_testkit::cases;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{

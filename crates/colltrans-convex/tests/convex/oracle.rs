@@ -1,6 +1,6 @@
 //! Random and tied settings against exact arithmetic, of the input points: a sample of the long campaign.
 
-use colltrans::{Outcome, Solver};
+use colltrans_convex::{Outcome, Solver};
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 

@@ -1,8 +1,7 @@
 //! Who asks for `cta` gets the paper: planar problems from the centre of the levels, or from `N(p)`, to the exit
 //! test, and then the one portal that makes the certificate. Work is counted, never timed.
 
-use colltrans::glam::{DQuat, DVec3};
-use colltrans::{
+use colltrans_convex::{
     Cast, Contact, ConvexPolyhedron, Focus, Options, Outcome, Pose, Solver, StartedFrom, Tracker,
     cta,
 };
@@ -10,6 +9,7 @@ use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{
     Mesh, cone, even_rings, half_sphere, prism, random_hull, ring_sphere, superellipsoid,
 };
+use glam::{DQuat, DVec3};
 
 /// Settings of each kind of bodies.
 const SETTINGS: usize = 100;

@@ -2,8 +2,7 @@
 
 use std::thread;
 
-use colltrans::glam::DVec3;
-use colltrans::{
+use colltrans_convex::{
     Clearance, ConvexPolyhedron, Outcome, OverlapAhead, Pose, QueryError, Solver, WhyFree,
 };
 use colltrans_testkit::cases;
@@ -12,6 +11,7 @@ use colltrans_testkit::oracle::settings::{Bodies, FAMILIES, Setting, setting};
 use colltrans_testkit::oracle::shadow::sideways_overlap;
 use colltrans_testkit::oracle::simplex::collision_translation;
 use colltrans_testkit::random::Random;
+use glam::DVec3;
 use proptest::prelude::*;
 
 /// Any setting of any family.

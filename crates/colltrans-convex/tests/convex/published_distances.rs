@@ -1,10 +1,10 @@
 //! Distances and overlaps that published libraries are known to answer wrongly.
 
-use colltrans::glam::{DMat3, DQuat, DVec3};
-use colltrans::{ConvexPolyhedron, Depth, Distance, Pair, Pose, Within};
+use colltrans_convex::{ConvexPolyhedron, Depth, Distance, Pair, Pose, Within};
 use colltrans_testkit::oracle::nearest::Judge;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{cuboid, random_hull};
+use glam::{DMat3, DQuat, DVec3};
 
 use crate::common::{at, body};
 

@@ -2,10 +2,10 @@
 
 use std::collections::HashMap;
 
-use colltrans::glam::{DQuat, DVec3};
-use colltrans::{Cast, Contact, ConvexPolyhedron, Outcome, Pose, Solver};
+use colltrans_convex::{Cast, Contact, ConvexPolyhedron, Outcome, Pose, Solver};
 use colltrans_testkit::oracle::check::Judge;
 use colltrans_testkit::shapes::{cone, cuboid};
+use glam::{DQuat, DVec3};
 
 use crate::common::{at, body};
 

@@ -1,6 +1,6 @@
 //! Queries as files: the same bits again, and no file that is not one.
 
-use colltrans::{Case, CaseError, Options, Solver, cta};
+use colltrans_convex::{Case, CaseError, Options, Solver, cta};
 use colltrans_testkit::oracle::settings::{FAMILIES, NEARLY_FLAT, setting};
 
 #[test]

@@ -1,7 +1,7 @@
 //! Bodies with rims of many corners, in random and in tied placements: every answer's proof, looked at by all vertices,
 //! how near its bounds are, and the answer of the paper's algorithm.
 
-use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose, Solver};
+use colltrans_convex::{Cast, ConvexPolyhedron, Outcome, Pose, Solver};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{cuboid, ring};
 use glam::{DQuat, DVec3};

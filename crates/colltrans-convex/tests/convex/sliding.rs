@@ -1,10 +1,10 @@
 //! Unit cubes that slide past each other with a small lateral gap never count as contact.
 
-use colltrans::glam::{DQuat, DVec3};
-use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, Solver, WhyFree};
+use colltrans_convex::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, Solver, WhyFree};
 use colltrans_testkit::oracle::check::Judge;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::cuboid;
+use glam::{DQuat, DVec3};
 
 /// Cubes one above the other along x with a gap beside them, turned as a whole by `rotation`.
 fn slide(gap: f64, rotation: DQuat, start: DVec3, origin: DVec3) {
@@ -70,7 +70,7 @@ fn cubes_without_a_gap_graze() {
     let cube = ConvexPolyhedron::from_points(&cuboid(DVec3::splat(0.5)).vertices).expect("a body");
     let pose = Pose::from_translation(DVec3::new(-3.0, 1.0, 0.25)).expect("a pose");
     let world = Pose::IDENTITY;
-    let outcome = colltrans::cast(&cube, &pose, &cube, &world, DVec3::X).expect("an answer");
+    let outcome = colltrans_convex::cast(&cube, &pose, &cube, &world, DVec3::X).expect("an answer");
     let Outcome::Grazing(grazing) = outcome else { panic!("{outcome:?}") };
     assert!((grazing.contact.translation - 2.0).abs() <= grazing.contact.certificate.rounding);
     assert!(grazing.separating_direction.distance(DVec3::NEG_Y) < 1e-12);

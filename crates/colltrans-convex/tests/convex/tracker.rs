@@ -1,7 +1,6 @@
 //! Trackers give the answers of one-off queries, whatever they have been asked before.
 
-use colltrans::glam::{DQuat, DVec3};
-use colltrans::{
+use colltrans_convex::{
     Cast, Clearance, ContactRange, ConvexPolyhedron, Focus, Options, Outcome, OverlapAhead, Pair,
     Pose, QueryError, Solver, StartedFrom, Steps, Tracker, cta,
 };
@@ -13,6 +12,7 @@ use colltrans_testkit::oracle::shadow::sideways_overlap;
 use colltrans_testkit::oracle::tracked::{Lanes, track, without_steps};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{self, cuboid};
+use glam::{DQuat, DVec3};
 use proptest::prelude::*;
 
 /// Walks of every family, each asked of every lane; one step in so many is solved by the oracle.

@@ -1,9 +1,9 @@
 //! How much is looked at for an answer: support points, which no machine disturbs.
 
-use colltrans::glam::DVec3;
-use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose};
+use colltrans_convex::{Cast, ConvexPolyhedron, Outcome, Pose};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{Mesh, cuboid, ring, ring_sphere};
+use glam::DVec3;
 
 const CASTS: u32 = 400;
 

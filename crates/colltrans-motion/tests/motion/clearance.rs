@@ -3,13 +3,13 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use colltrans::glam::{DMat3, DVec3};
-use colltrans::motion::{Motion, MotionCast, MotionClearance, MotionOutcome, MotionStop};
-use colltrans::solid::{SolidCast, StartOverlap};
-use colltrans::{Cast, Clearance, ConvexPolyhedron, Pose, Solid};
+use colltrans_convex::{Cast, Clearance, ConvexPolyhedron, Pose};
+use colltrans_motion::{Motion, MotionCast, MotionClearance, MotionOutcome, MotionStop};
+use colltrans_solid::{Solid, SolidCast, StartOverlap};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{Mesh, block, random_hull};
 use colltrans_testkit::solids::{pin, washer};
+use glam::{DMat3, DVec3};
 
 fn solid(mesh: &Mesh) -> Solid {
     Solid::from_mesh(&mesh.vertices, &mesh.faces).expect("a solid")

@@ -2,16 +2,17 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use colltrans::glam::{DQuat, DVec3};
-use colltrans::motion::path::{
+use colltrans_convex::{ConvexPolyhedron, Pose};
+use colltrans_motion::path::{
     Frame, How, Joint, JointPath, Mechanism, PathBody, PathCast, PathContact, PathError,
     PathMeeting, PathOutcome, PathProof, PathProofError, Place, Step,
 };
-use colltrans::motion::{Motion, MotionCast, MotionOutcome};
-use colltrans::{ConvexPolyhedron, Pose, Solid};
+use colltrans_motion::{Motion, MotionCast, MotionOutcome};
+use colltrans_solid::Solid;
 use colltrans_testkit::oracle::path::Arm;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{block, random_hull};
+use glam::{DQuat, DVec3};
 
 fn at(x: f64, y: f64, z: f64) -> Pose {
     Pose::from_translation(DVec3::new(x, y, z)).expect("a pose")
@@ -274,7 +275,7 @@ fn a_path_of_one_row_is_a_place() {
 }
 
 /// All planes of a proof.
-fn planes(proof: &mut PathProof) -> Vec<&mut colltrans::motion::PlaneAt> {
+fn planes(proof: &mut PathProof) -> Vec<&mut colltrans_motion::PlaneAt> {
     let steps = proof.covers.iter_mut().flat_map(|cover| &mut cover.steps);
     let stretches = steps.flat_map(|step| match step {
         Step::Planes(stretches) => stretches.iter_mut(),

@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use colltrans::motion::path::PathOutcome;
-use colltrans::motion::{Motion, MotionCast, MotionOutcome};
-use colltrans::{ConvexPolyhedron, Pose};
+use colltrans_convex::{ConvexPolyhedron, Pose};
+use colltrans_motion::path::PathOutcome;
+use colltrans_motion::{Motion, MotionCast, MotionOutcome};
 use colltrans_testkit::oracle::play::{KINDS, Screw, chain, slider};
 use glam::DVec3;
 

@@ -3,11 +3,11 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use colltrans::glam::{DMat3, DQuat, DVec3};
-use colltrans::motion::{Motion, MotionCast, MotionContact, MotionOutcome};
-use colltrans::{ConvexPolyhedron, Pose};
+use colltrans_convex::{ConvexPolyhedron, Pose};
+use colltrans_motion::{Motion, MotionCast, MotionContact, MotionOutcome};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::random_hull;
+use glam::{DMat3, DQuat, DVec3};
 
 fn hull(n: usize, random: &mut Random) -> ConvexPolyhedron {
     ConvexPolyhedron::from_points(&random_hull(n, random).vertices).expect("a body")

@@ -3,9 +3,10 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use colltrans::glam::{DQuat, DVec3};
-use colltrans::motion::{Motion, MotionCast, MotionContact, MotionOutcome};
-use colltrans::{ConvexPolyhedron, Pair, Pose, Solid};
+use colltrans_convex::{ConvexPolyhedron, Pair, Pose};
+use colltrans_motion::{Motion, MotionCast, MotionContact, MotionOutcome};
+use colltrans_solid::Solid;
+use glam::{DQuat, DVec3};
 
 fn cuboid(half: [f64; 3]) -> ConvexPolyhedron {
     let half = DVec3::from_array(half);

@@ -3,18 +3,18 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use colltrans::glam::{DQuat, DVec3};
-use colltrans::motion::{
+use colltrans_convex::{Cast, ConvexPolyhedron, Outcome, Pose};
+use colltrans_motion::{
     FacetsMeeting, FacetsMet, Motion, MotionCast, MotionContact, MotionCover, MotionOutcome,
     SolidMotionProof,
 };
-use colltrans::solid::SolidCast;
-use colltrans::{Cast, ConvexPolyhedron, Outcome, Pose, Solid};
+use colltrans_solid::{Solid, SolidCast};
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::solids::turning;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{Mesh, block, random_hull};
 use colltrans_testkit::solids::{pin, thread, washer};
+use glam::{DQuat, DVec3};
 
 fn solid(mesh: &Mesh) -> Solid {
     Solid::from_mesh(&mesh.vertices, &mesh.faces).expect("a solid")

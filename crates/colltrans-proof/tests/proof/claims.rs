@@ -1,9 +1,10 @@
 //! Claims of proof files about motions and paths that are weaker, or other, than what the file proves.
 
-use colltrans::motion::path::{Frame, Joint, JointPath, Mechanism, PathBody, PathCast};
-use colltrans::motion::{Motion, MotionCast};
-use colltrans::solid::AsSolid;
-use colltrans::{ConvexPolyhedron, Pose, ProofFile, ProofFileError, Solid};
+use colltrans_convex::{ConvexPolyhedron, Pose};
+use colltrans_motion::path::{Frame, Joint, JointPath, Mechanism, PathBody, PathCast};
+use colltrans_motion::{Motion, MotionCast};
+use colltrans_proof::{ProofFile, ProofFileError};
+use colltrans_solid::{AsSolid, Solid};
 use colltrans_testkit::shapes::Mesh;
 use colltrans_testkit::solids::turned;
 use glam::{DMat3, DQuat, DVec3};

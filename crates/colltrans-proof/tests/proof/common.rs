@@ -1,6 +1,6 @@
 //! Bodies of the tests, from the test kit's meshes.
 
-use colltrans::Solid;
+use colltrans_solid::Solid;
 use colltrans_testkit::shapes::Mesh;
 
 pub(crate) fn solid(mesh: &Mesh) -> Solid {

@@ -1,9 +1,10 @@
 //! Forged proofs: what both checkers accept of them is true (`campaign --proofs` does this at length).
 
-use colltrans::solid::{AsSolid, SolidOptions, StartOverlap};
-use colltrans::{
-    Cast, CertificateError, Clearance, ConvexPolyhedron, Pair, Pose, ProofFile, Separation, Solid,
+use colltrans_convex::{
+    Cast, CertificateError, Clearance, ConvexPolyhedron, Pair, Pose, Separation,
 };
+use colltrans_proof::ProofFile;
+use colltrans_solid::{AsSolid, Solid, SolidOptions, StartOverlap};
 use colltrans_testkit::oracle::proofs::checkers::{Fractions, Verdict, verify};
 use colltrans_testkit::oracle::proofs::{Campaign, KINDS, Tally};
 use colltrans_testkit::random::Random;

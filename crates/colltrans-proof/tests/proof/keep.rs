@@ -1,8 +1,9 @@
 //! Files about casts that keep a gap: they hold, and not with a larger gap.
 
-use colltrans::glam::DVec3;
-use colltrans::solid::SolidCast;
-use colltrans::{Case, Cast, ConvexPolyhedron, Pose, ProofFile, Solid};
+use colltrans_convex::{Case, Cast, ConvexPolyhedron, Pose};
+use colltrans_proof::ProofFile;
+use colltrans_solid::{Solid, SolidCast};
+use glam::DVec3;
 
 fn cuboid(low: DVec3, high: DVec3) -> ConvexPolyhedron {
     ConvexPolyhedron::cuboid(low, high).expect("a box")

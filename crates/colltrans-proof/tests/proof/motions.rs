@@ -1,7 +1,8 @@
 //! Motions as files: queries come back as the same bits, and proofs of several pairs or of solids hold.
 
-use colltrans::motion::{Motion, MotionCase, MotionCast, MotionOutcome};
-use colltrans::{ConvexPolyhedron, Pose, ProofFile};
+use colltrans_convex::{ConvexPolyhedron, Pose};
+use colltrans_motion::{Motion, MotionCast, MotionOutcome};
+use colltrans_proof::{MotionCase, ProofFile};
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use glam::DVec3;
 

@@ -1,11 +1,12 @@
 //! Proofs as files: they hold, and whatever number of what is claimed is changed, they do not.
 
-use colltrans::motion::path::{Frame, Joint, JointPath, Mechanism, PathBody, PathCast};
-use colltrans::solid::{AsSolid, SolidCast, SolidOptions, SolidPair, StartOverlap};
-use colltrans::{
-    Among, Cast, CertificateError, ConvexPolyhedron, ObstacleId, Obstacles, Pair, Pose, ProofError,
-    ProofFile, ProofFileError, QueryError, Solid, Statement,
+use colltrans_convex::{
+    Cast, CertificateError, ConvexPolyhedron, ObstacleId, Pair, Pose, QueryError,
 };
+use colltrans_motion::path::{Frame, Joint, JointPath, Mechanism, PathBody, PathCast};
+use colltrans_proof::{ProofError, ProofFile, ProofFileError, Statement};
+use colltrans_scene::{Among, Obstacles};
+use colltrans_solid::{AsSolid, Solid, SolidCast, SolidOptions, SolidPair, StartOverlap};
 use colltrans_testkit::oracle::among;
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::random::Random;
@@ -386,7 +387,7 @@ fn of_parts([a, b]: &[Solid; 2], at: DVec3, direction: DVec3, tolerance: f64) ->
     let Statement::Clearance(said) = proof.statement() else { panic!("solids") };
     assert_eq!(
         said.stop.is_some(),
-        matches!(cast.clearance(), Ok(colltrans::Clearance::Blocked { .. }))
+        matches!(cast.clearance(), Ok(colltrans_convex::Clearance::Blocked { .. }))
     );
     holds(&proof, "parts")
 }
@@ -566,7 +567,8 @@ fn convex_bodies_as_solids_are_proven_with_the_default_tolerance() {
         let cast = Cast::new(a.at(start), b.at(target), DVec3::NEG_Z).expect("a query");
         let proof = ProofFile::of_solids(&cast, [&[&a], &[&b]]).expect("a proof");
         holds(&proof, "convex bodies");
-        blocked += i32::from(matches!(cast.clearance(), Ok(colltrans::Clearance::Blocked { .. })));
+        blocked +=
+            i32::from(matches!(cast.clearance(), Ok(colltrans_convex::Clearance::Blocked { .. })));
     }
     assert!(blocked > 100, "{blocked} contacts");
 }

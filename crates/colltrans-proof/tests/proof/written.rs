@@ -1,11 +1,12 @@
 //! What serde writes of an answer comes back in bits, and what is not one is refused.
 
-use colltrans::record::{Ending, Question};
-use colltrans::solid::{SolidCast, SolidCertificate, SolidOptions, StartOverlap};
-use colltrans::{
+use colltrans_convex::{
     Bounded, Cast, Clearance, ContactRange, FaceId, Feature, InputVertex, Intersection, Options,
-    Outcome, Pose, Solid, Solver, StartedFrom, VertexId, cta,
+    Outcome, Pose, Solver, StartedFrom, VertexId, cta,
 };
+use colltrans_proof::record::{Ending, Question};
+use colltrans_solid::proof::SolidCertificate;
+use colltrans_solid::{Solid, SolidCast, SolidOptions, StartOverlap};
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::solids::{bolt, washer};
 use glam::{DQuat, DVec3};

@@ -3,18 +3,18 @@
 
 use std::f64::consts::{PI, TAU};
 
-use colltrans::free::{
+use colltrans_convex::{Cast, ConvexPolyhedron, Pose};
+use colltrans_removal::free::{
     CellKind, CellProof, FreeDirections, FreeError, FreeOptions, FreeProof, InnerBox, Verdict,
 };
-use colltrans::glam::{DMat3, DQuat, DVec3};
-use colltrans::solid::{SolidCast, StartOverlap};
-use colltrans::{Cast, ConvexPolyhedron, Pose, Solid};
+use colltrans_solid::{Solid, SolidCast, StartOverlap};
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::solids::free::{
     FAMILIES, Judged, examine, is_free_of_all, thin::judge,
 };
 use colltrans_testkit::random::Random;
 use colltrans_testkit::solids::thread;
+use glam::{DMat3, DQuat, DVec3};
 
 const EXACT: FreeOptions = FreeOptions::DEFAULT.with_no_tolerance();
 
@@ -209,7 +209,7 @@ fn casts_and_fractions_agree_and_changed_proofs_are_refused() {
 
 #[test]
 fn bodies_turned_together_say_the_same() {
-    let q = DQuat::from_euler(colltrans::glam::EulerRot::XYZ, 0.3, 0.5, 0.9);
+    let q = DQuat::from_euler(glam::EulerRot::XYZ, 0.3, 0.5, 0.9);
     let turned = Pose::new(q, DVec3::new(1.0, 2.0, 3.0)).unwrap();
     let cube = cuboid([0.0; 3], [1.0; 3]);
     let wall = joined(&[

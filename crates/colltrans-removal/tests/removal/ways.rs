@@ -1,12 +1,12 @@
 //! Ways out in several moves: closed forms, proofs that are checked and refused, counts of work.
 
-use colltrans::free::FreeError;
-use colltrans::glam::{DMat3, DVec3, EulerRot};
-use colltrans::solid::SolidCast;
-use colltrans::ways::{NoWay, Order, WayOptions, WayOut, WaysOut};
-use colltrans::{Cast, ConvexPolyhedron, Placed, Pose, Solid};
+use colltrans_convex::{Cast, ConvexPolyhedron, Placed, Pose};
+use colltrans_removal::free::FreeError;
+use colltrans_removal::ways::{NoWay, Order, WayOptions, WayOut, WaysOut};
+use colltrans_solid::{Solid, SolidCast};
 use colltrans_testkit::oracle::cubes::Cubes;
 use colltrans_testkit::random::Random;
+use glam::{DMat3, DVec3, EulerRot};
 
 fn solid(blocks: &[[[f64; 3]; 2]]) -> Solid {
     let block = |[low, high]: &[[f64; 3]; 2]| {

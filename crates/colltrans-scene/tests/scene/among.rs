@@ -2,14 +2,13 @@
 
 use std::sync::Arc;
 
-use colltrans::glam::{DQuat, DVec3};
-use colltrans::{
-    Among, ByKind, CertificateError, ConvexPolyhedron, ObstacleId, Obstacles, Options, Pose,
-    QueryError, Solid,
-};
+use colltrans_convex::{CertificateError, ConvexPolyhedron, ObstacleId, Options, Pose, QueryError};
+use colltrans_scene::{Among, Obstacles};
+use colltrans_solid::{ByKind, Solid};
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::among::{FAMILIES, Setting};
 use colltrans_testkit::random::Random;
+use glam::{DQuat, DVec3};
 
 fn cuboid(low: DVec3, high: DVec3) -> ConvexPolyhedron {
     ConvexPolyhedron::cuboid(low, high).expect("a box")
@@ -77,7 +76,7 @@ fn a_slanting_obstacle_stops_before_a_wall_behind_it() {
     let ramp = solid(&ConvexPolyhedron::from_points(&points).expect("a body"));
     let mut scene = Obstacles::new();
     let [_, ramp] = [wall, ramp].map(|body| scene.insert(body, Pose::IDENTITY));
-    let options = colltrans::solid::SolidOptions::default().with_tolerance(0.02);
+    let options = colltrans_solid::SolidOptions::default().with_tolerance(0.02);
     let asked = Among::new(cube.at(Pose::IDENTITY), &scene).expect("solids");
     let asked = asked.with_solid_options(options);
     let found = asked.clearance(DVec3::X).expect("an answer");

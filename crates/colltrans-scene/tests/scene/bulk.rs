@@ -1,10 +1,10 @@
 //! Bodies that do not turn, asked in bulk by the faces of their difference: against the ordinary cast and the exact
 //! judge, random and tied; proofs, changed ones; how much is looked at.
 
-use colltrans::{
-    Cast, Clearance, ContactRange, ConvexPolyhedron, FixedRotations, Outcome, Pose, Solver,
-    StartedFrom,
+use colltrans_convex::{
+    Cast, Clearance, ContactRange, ConvexPolyhedron, Outcome, Pose, Solver, StartedFrom,
 };
+use colltrans_scene::FixedRotations;
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::oracle::still;

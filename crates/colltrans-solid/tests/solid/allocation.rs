@@ -1,7 +1,7 @@
 //! A query between solids allocates its queue on the heap, and nothing else.
 
-use colltrans::solid::{AsSolid, SolidCast, Workspace};
-use colltrans::{Cast, Solid};
+use colltrans_convex::Cast;
+use colltrans_solid::{AsSolid, Solid, SolidCast, Workspace};
 use colltrans_testkit::oracle::settings::setting;
 use colltrans_testkit::oracle::solids::settings as solids;
 

@@ -1,11 +1,11 @@
 //! Solids in the situations that people have names for.
 
-use colltrans::solid::{
-    Overlap, SolidCast, SolidError, SolidOptions, SolidOverlap, SolidPair, StartOverlap,
-};
-use colltrans::{
+use colltrans_convex::{
     Bounded, Cast, Clearance, ContactRange, ConvexPolyhedron, InputFacet, Outcome, Pair, Pose,
-    QueryError, Solid,
+    QueryError,
+};
+use colltrans_solid::{
+    Overlap, Solid, SolidCast, SolidError, SolidOptions, SolidOverlap, SolidPair, StartOverlap,
 };
 use colltrans_testkit::shapes::{Mesh, extruded, ring};
 use colltrans_testkit::solids::{bolt, pin, slab, turned, washer};

@@ -1,6 +1,7 @@
 //! Bodies and poses of the tests, from the test kit's meshes.
 
-use colltrans::{Pose, Solid};
+use colltrans_convex::Pose;
+use colltrans_solid::Solid;
 use colltrans_testkit::shapes::{self, Mesh};
 use glam::DVec3;
 

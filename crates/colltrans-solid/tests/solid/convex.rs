@@ -2,13 +2,13 @@
 //!
 //! The judge is the same body twice, as two shells in one place: it is no convex solid, so it is searched.
 
-use colltrans::glam::{DQuat, DVec3};
-use colltrans::solid::{SolidCast, SolidFree, SolidOptions, StartOverlap};
-use colltrans::{Bounded, Cast, Clearance, ConvexPolyhedron, Pose, Solid};
+use colltrans_convex::{Bounded, Cast, Clearance, ConvexPolyhedron, Pose};
+use colltrans_solid::{Solid, SolidCast, SolidFree, SolidOptions, StartOverlap};
 use colltrans_testkit::cases;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{Mesh, prism, ring_sphere};
 use colltrans_testkit::solids::slab;
+use glam::{DQuat, DVec3};
 
 fn solid(mesh: &Mesh) -> Solid {
     Solid::from_mesh(&mesh.vertices, &mesh.faces).expect("a closed mesh")

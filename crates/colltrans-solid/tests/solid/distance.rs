@@ -1,7 +1,8 @@
 //! Distances of solids against exact arithmetic, and their proofs.
 
-use colltrans::solid::{Apart, Cover, DistanceCertificate, SolidNear, SolidPair};
-use colltrans::{ConvexPolyhedron, Pair, Pose, QueryError, Solid, Within};
+use colltrans_convex::{ConvexPolyhedron, Pair, Pose, QueryError, Within};
+use colltrans_solid::proof::{Apart, Cover, DistanceCertificate};
+use colltrans_solid::{Solid, SolidNear, SolidPair};
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::settings;
 use colltrans_testkit::oracle::solids::nearest::{MESHES, Seen, Setting};

@@ -1,10 +1,10 @@
 //! What of a solid is named where it is stopped: faces, edges and corners of the part, not of its
 //! triangulation, by the numbers of the input.
 
-use colltrans::solid::{SolidCast, SolidContact};
-use colltrans::{
-    Cast, Clearance, ConvexPolyhedron, FaceId, Feature, InputVertex, Outcome, Pose, Solid,
+use colltrans_convex::{
+    Cast, Clearance, ConvexPolyhedron, FaceId, Feature, InputVertex, Outcome, Pose,
 };
+use colltrans_solid::{Solid, SolidCast, SolidContact};
 use colltrans_testkit::shapes;
 use colltrans_testkit::solids::{bolt, pin, slab, washer};
 use glam::{DQuat, DVec3};

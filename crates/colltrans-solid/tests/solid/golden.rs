@@ -3,8 +3,8 @@
 //!
 //! After a change that is meant to change bits, the test prints the new lines.
 
-use colltrans::solid::SolidCast;
-use colltrans::{Cast, Clearance, Solid};
+use colltrans_convex::{Cast, Clearance};
+use colltrans_solid::{Solid, SolidCast};
 use colltrans_testkit::golden::{Hash, assert_unchanged};
 use colltrans_testkit::oracle::solids::settings::Setting;
 

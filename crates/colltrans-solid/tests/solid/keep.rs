@@ -1,14 +1,15 @@
 //! Solids that keep a gap: families judged over all pairs of facets, what is known in closed form, proofs.
 
-use colltrans::glam::{DQuat, DVec3};
-use colltrans::solid::{SolidCast, SolidCertificate, StartOverlap};
-use colltrans::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, QueryError, Solid};
+use colltrans_convex::{Cast, Clearance, ConvexPolyhedron, Outcome, Pose, QueryError};
+use colltrans_solid::proof::SolidCertificate;
+use colltrans_solid::{Solid, SolidCast, StartOverlap};
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::settings;
 use colltrans_testkit::oracle::solids::keep::{Seen, examine};
 use colltrans_testkit::oracle::solids::nearest::MESHES;
 use colltrans_testkit::oracle::solids::settings::FAMILIES;
 use colltrans_testkit::oracle::solids::sheets;
+use glam::{DQuat, DVec3};
 
 fn cuboid(low: DVec3, high: DVec3) -> ConvexPolyhedron {
     ConvexPolyhedron::cuboid(low, high).expect("a box")

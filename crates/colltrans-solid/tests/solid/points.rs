@@ -5,16 +5,16 @@
 //! random diagonals and sheared by a whole matrix, so that points hit vertices, run along edges and lie in planes of
 //! facets.
 
-use colltrans::glam::{DQuat, DVec3};
 use colltrans::motion::{FacetsMeeting, FacetsMet, Motion, MotionCast, MotionOutcome};
-use colltrans::solid::{AsSolid, SolidCast, SolidError, SolidPair};
-use colltrans::{
-    Among, Cast, Clearance, ConvexPolyhedron, Feature, InputVertex, Obstacles, Outcome, Pair, Pose,
-    Solid, Within,
+use colltrans::{Among, Obstacles};
+use colltrans_convex::{
+    Cast, Clearance, ConvexPolyhedron, Feature, InputVertex, Outcome, Pair, Pose, Within,
 };
+use colltrans_solid::{AsSolid, Solid, SolidCast, SolidError, SolidPair};
 use colltrans_testkit::cases;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{self, Mesh};
+use glam::{DQuat, DVec3};
 
 type Point = [i128; 3];
 

@@ -1,9 +1,8 @@
 //! Proofs between solids: they hold, and what is changed in them is refused.
 
-use colltrans::solid::{
-    Overlap, Reason, SolidCast, SolidCertificate, SolidFree, SolidOptions, StartOverlap, StartProof,
-};
-use colltrans::{Cast, CertificateError, Clearance, Pose, Solid};
+use colltrans_convex::{Cast, CertificateError, Clearance, Pose};
+use colltrans_solid::proof::{Reason, SolidCertificate, StartProof};
+use colltrans_solid::{Overlap, Solid, SolidCast, SolidFree, SolidOptions, StartOverlap};
 use colltrans_testkit::oracle::solids::proof::approve;
 use colltrans_testkit::solids::{bolt, bumpy_ball, slab, washer};
 use glam::{DQuat, DVec3};

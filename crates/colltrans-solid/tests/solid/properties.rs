@@ -1,7 +1,7 @@
 //! What holds between solids for every setting, random or tied.
 
-use colltrans::solid::{ShellKind, SolidCast, SolidOptions};
-use colltrans::{Cast, Clearance, Pose, Solid};
+use colltrans_convex::{Cast, Clearance, Pose};
+use colltrans_solid::{ShellKind, Solid, SolidCast, SolidOptions};
 use colltrans_testkit::oracle::solids::settings::{FAMILIES, Setting};
 use colltrans_testkit::oracle::solids::sheets;
 use glam::DVec3;

@@ -1,9 +1,9 @@
 //! Open surfaces in situations with names: what a sheet blocks, and what blocks it.
 
-use colltrans::glam::{DQuat, DVec3};
-use colltrans::solid::{ShellKind, SolidCast, SolidFree, SolidOptions, StartOverlap};
-use colltrans::{Aabb, Bounded, Cast, Clearance, Pose, Solid};
+use colltrans_convex::{Aabb, Bounded, Cast, Clearance, Pose};
+use colltrans_solid::{ShellKind, Solid, SolidCast, SolidFree, SolidOptions, StartOverlap};
 use colltrans_testkit::shapes::{self, Mesh};
+use glam::{DQuat, DVec3};
 
 use crate::common::cuboid;
 

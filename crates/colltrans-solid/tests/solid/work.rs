@@ -1,11 +1,11 @@
 //! How much is looked at for an answer about solids: pairs of nodes, which no machine disturbs.
 
-use colltrans::glam::{DQuat, DVec3};
-use colltrans::solid::SolidCast;
-use colltrans::{Cast, Clearance, Pose, Solid};
+use colltrans_convex::{Cast, Clearance, Pose};
+use colltrans_solid::{Solid, SolidCast};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{Mesh, ring_sphere};
 use colltrans_testkit::solids::{bumpy_ball, comb, slab};
+use glam::{DQuat, DVec3};
 
 /// The pairs of nodes that an answer about solids took.
 fn nodes(clearance: &Clearance<Solid>) -> u32 {

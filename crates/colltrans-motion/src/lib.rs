@@ -47,7 +47,7 @@
 //!
 //! `solid` is of solids: down both trees and through time, two facets as convex bodies are. [`path`] is bodies that joints
 //! carry: `mechanism` has frames and rows of values, `chain` bounds how joints move a body, `couple` is two of them, `follow`
-//! and `cover` search over rows and down trees of boxes.
+//! and `search` search over rows and down trees of boxes.
 
 #![allow(
     rustdoc::private_intra_doc_links,

@@ -17,7 +17,7 @@
 //! The modules: `boxes` (rounded outwards, and what they prove), `obstacles` (who is kept);
 //! then the questions, `nearest` and `clearance`, best first by boxes, and `proof`, whose checks take all bodies one by one.
 //! `bulk` is one pair asked many times while neither body turns: `faces` of `M`, made once, each with its bound; `star`
-//! guesses where a line enters, `sight` walks there, `approach` has a map for one direction.
+//! guesses where a line enters, `search` walks there, `approach` has a map for one direction.
 
 #![allow(
     rustdoc::private_intra_doc_links,

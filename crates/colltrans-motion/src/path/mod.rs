@@ -50,14 +50,14 @@
 //! bodies do not begin one inside the other is decided exactly; later their surfaces would have met.
 //!
 //! The modules, each using only those before it: `mechanism`, `chain`, `shape`, `couple`, `answer`, `follow`,
-//! `cover`, `verify`.
+//! `search`, `verify`.
 
 mod answer;
 mod chain;
 mod couple;
-mod cover;
 mod follow;
 mod mechanism;
+mod search;
 mod shape;
 mod verify;
 
@@ -77,8 +77,8 @@ pub use self::answer::{
 };
 use self::chain::Chain;
 use self::couple::Couple;
-use self::cover::{Search, Stop};
 pub use self::mechanism::{Frame, Joint, JointPath, Mechanism, PathError, Place};
+use self::search::{Search, Stop};
 use self::shape::Shape;
 pub use self::verify::PathProofError;
 use super::answer::{MotionFree, MotionSteps};

@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 use super::FixedRotations;
 use super::faces::Faces;
 use super::proof::{Clear, Line, Rim, axes, contact, separated};
-use super::sight::{ENTERED, Reached, Seen, axes_of, steps, walk};
+use super::search::{ENTERED, Reached, Seen, axes_of, steps, walk};
 use colltrans_convex::answer::{Clearance, ContactRange, Outcome};
 use colltrans_convex::cast::{Cast, clearance_of, range_of};
 use colltrans_convex::setting::check_direction;

@@ -2,7 +2,7 @@
 //!
 //! Notation. `M0` is `M` for frames in one place: `M = M0 + offset`, `offset = t_Q - t_P`. While the rotations stay,
 //! `M0` stays, so its faces are made once ([`faces`]) and a cast is a line through a polytope that is known:
-//! [`sight`] goes from a guess ([`star`]) over the faces that the line may enter to the one that it does enter, or
+//! [`search`] goes from a guess ([`star`]) over the faces that the line may enter to the one that it does enter, or
 //! over the rim of its shadow; [`approach`] has a map of the shadow for one direction. [`proof`] makes the answer.
 //!
 //! Invariant. The faces only propose: a plane's bound was computed from all vertices of both bodies, the pairs of a
@@ -12,7 +12,7 @@
 mod approach;
 mod faces;
 mod proof;
-mod sight;
+mod search;
 mod star;
 
 use glam::DVec3;
@@ -25,7 +25,7 @@ use colltrans_convex::setting::TwoBodies;
 use colltrans_convex::setting::error::QueryError;
 use faces::Faces;
 use proof::Line;
-use sight::Sight;
+use search::Sight;
 
 /// More pairs of vertices than this are no bulk: making the faces of `M` takes as long as thousands of casts.
 const MOST_PAIRS: usize = 1 << 14;

@@ -5,7 +5,7 @@
 use glam::{DVec2, DVec3};
 
 use super::faces::{Faces, Plane};
-use super::sight::{ENTERED, Seen};
+use super::search::{ENTERED, Seen};
 use colltrans_convex::answer::{Certificate, Contact, Separated, Separation, Solver, Steps};
 use colltrans_convex::cast::Cast;
 use colltrans_convex::setting::Setting;

@@ -1,7 +1,7 @@
 //! A query allocates nothing on the heap, whatever its outcome and however tied it is. What the paper's
 //! algorithm makes of a body, it makes once.
 
-use colltrans_convex::{Cast, Focus, Solver, Tracker, cta};
+use colltrans_convex::{Focus, Solver, Tracker, cta};
 use colltrans_testkit::oracle::sequences::Walk;
 use colltrans_testkit::oracle::settings::{Bodies, FAMILIES, Setting, setting};
 

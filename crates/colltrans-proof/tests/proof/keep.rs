@@ -2,7 +2,7 @@
 
 use colltrans_convex::{Case, Cast, ConvexPolyhedron, Pose};
 use colltrans_proof::ProofFile;
-use colltrans_solid::{Solid, SolidCast};
+use colltrans_solid::Solid;
 use glam::DVec3;
 
 fn cuboid(low: DVec3, high: DVec3) -> ConvexPolyhedron {

@@ -4,8 +4,9 @@
 //! is pushed. That comes after the time at which the same bodies meet *in their true place*, as they are: from the last
 //! time before at which they are seen apart on, that is searched as any contact is.
 
-use super::answer::{MotionContact, MotionFree, MotionOutcome, MotionProof};
+use super::answer::{MotionContact, MotionFree, MotionOutcome};
 use super::look::{ConvexLooker, Look, Looker};
+use super::proof::MotionProof;
 use super::search::{Advanced, End, advance};
 use super::span::{Span, spans};
 use super::{MotionCast, check_fine, stalled, usual_tolerance};

@@ -5,9 +5,9 @@
 
 use glam::DVec3;
 
-use super::answer::PlaneAt;
 use super::arc;
 use super::bend::{SPARE, Supports, across, bend, most_bend, usual};
+use super::proof::PlaneAt;
 use super::span::{Instant, Span};
 use colltrans_convex::body::Hull;
 use colltrans_kernel::motion::Moved;

@@ -42,7 +42,7 @@
 //! conservative advancement (Mirtich) with a bound of second order: a rotation is a translation to first
 //! order only, so that steps shrink with the square root of what is left, not with what is left.
 //!
-//! The modules, each using only those before it: `answer`, `span`, `bend` and `arc`, `course`,
+//! The modules, each using only those before it: `proof`, `answer`, `span`, `bend` and `arc`, `course`,
 //! `look`, `search`, `verify`, `clearance`.
 //!
 //! `solid` is of solids: down both trees and through time, two facets as convex bodies are. [`path`] is bodies that joints
@@ -61,6 +61,7 @@ mod clearance;
 mod course;
 mod look;
 pub mod path;
+mod proof;
 mod search;
 mod solid;
 mod soon;
@@ -71,12 +72,10 @@ use std::borrow::Cow;
 
 use derive_where::derive_where;
 
-pub use self::answer::{
-    Meeting, Met, MotionContact, MotionFree, MotionOutcome, MotionProof, MotionSteps, PlaneAt,
-    Proven,
-};
+pub use self::answer::{MotionContact, MotionFree, MotionOutcome, MotionSteps, Proven};
 pub use self::clearance::{MotionClearance, MotionOverlap, MotionStop};
 use self::look::ConvexLooker;
+pub use self::proof::{Meeting, Met, MotionProof, PlaneAt};
 use self::search::{Advanced, End, advance};
 #[cfg(feature = "json")]
 pub use self::solid::Parts;

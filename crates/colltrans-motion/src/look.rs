@@ -3,9 +3,10 @@
 use derive_where::derive_where;
 use glam::DVec3;
 
-use super::answer::{Met, MotionSteps};
+use super::answer::MotionSteps;
 use super::bend::{Climbing, Supports};
 use super::course::{At, Course};
+use super::proof::Met;
 use super::span::Instant;
 use colltrans_convex::answer::{Distance, PlaneGap};
 use colltrans_convex::body::{ConvexPolyhedron, Hull};

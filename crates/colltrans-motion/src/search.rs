@@ -15,10 +15,10 @@
 
 use glam::DVec3;
 
-use super::answer::PlaneAt;
 use super::bend::{SPARE, most_bend};
 use super::course::Course;
 use super::look::{Look, LookAt, Looker};
+use super::proof::PlaneAt;
 
 /// Maximum number of steps of a search, and how many more for each radian by which the bodies turn.
 const MOST: usize = 20_000;

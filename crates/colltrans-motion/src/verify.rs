@@ -5,10 +5,10 @@
 //! where they are then, and has to hold with as much to spare.
 
 use super::MotionCast;
-use super::answer::{Meeting, Met, MotionProof, PlaneAt};
 use super::bend::Looking;
 use super::course::{At, Course};
 use super::look::deep_enough;
+use super::proof::{Meeting, Met, MotionProof, PlaneAt};
 use super::span::spans;
 use colltrans_convex::answer::CertificateError;
 use colltrans_convex::body::ConvexPolyhedron;

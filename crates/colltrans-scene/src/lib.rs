@@ -15,7 +15,7 @@
 //! - the least lower bound of those that were asked about is one of all.
 //!
 //! The modules: `boxes` (rounded outwards, and what they prove), `obstacles` (who is kept);
-//! then the questions, `nearest` and `clearance`, best first by boxes, and `proof`, whose checks take all bodies one by one.
+//! then the questions: `answer`, `search`, best first by boxes, `proof`, and `verify`, whose checks take all bodies one by one.
 //! `bulk` is one pair asked many times while neither body turns: `faces` of `M`, made once, each with its bound; `star`
 //! guesses where a line enters, `search` walks there, `approach` has a map for one direction.
 
@@ -24,19 +24,20 @@
     reason = "hidden modules are read with their private parts"
 )]
 
+mod answer;
 mod boxes;
 mod bulk;
-mod clearance;
-mod nearest;
 mod obstacles;
 mod proof;
+mod search;
+mod verify;
 
 use std::fmt;
 
 use glam::DVec3;
 
+pub use answer::{ClearanceAmong, Nearby, Nearest};
 pub use bulk::{Approach, FixedRotations};
-pub use clearance::ClearanceAmong;
 use colltrans_convex::ConvexPolyhedron;
 use colltrans_convex::body::{Aabb, ObstacleId, Pose};
 use colltrans_convex::cast::Cast;
@@ -48,7 +49,6 @@ use colltrans_solid::body::AsSolid;
 use colltrans_solid::cast::SolidOptions;
 use colltrans_solid::kinds::{AnyBody, AnyPlaced, ByKind};
 use colltrans_solid::{SolidCast, SolidPair};
-pub use nearest::{Nearby, Nearest};
 use obstacles::Obstacle;
 pub use obstacles::{Obstacles, UnknownObstacle};
 pub use proof::{AmongProof, ApartProof, ClearanceProof, NearbyProof, NearestProof, PassedProof};

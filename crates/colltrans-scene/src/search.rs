@@ -1,42 +1,22 @@
-//! Which obstacle is nearest, and which are closer than a length.
+//! Which obstacle is nearest, which are closer than a length, and which stops the moving body first.
+
+use glam::DVec3;
 
 use super::boxes;
+use super::boxes::Sweep;
 use super::obstacles::Obstacle;
-use super::{Among, AmongSteps, ByKind};
-use colltrans_convex::answer::Within;
+use super::{Among, AmongSteps, ByKind, ClearanceAmong, Nearby, Nearest};
+use colltrans_convex::answer::{Clearance, Within};
 use colltrans_convex::body::ObstacleId;
-use colltrans_convex::setting::check_length;
+use colltrans_convex::cast::Cast;
 use colltrans_convex::setting::error::QueryError;
-use colltrans_solid::kinds::{AnyDistance, AnyNear};
+use colltrans_convex::setting::{check_direction, check_length};
+use colltrans_solid::Solid;
+use colltrans_solid::kinds::{AnyClearance, AnyDistance, AnyNear};
+use colltrans_solid::{SolidCast, SolidScene};
 
-/// The answer of [`Among::nearest`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub struct Nearest {
-    /// The one whose distance has the least upper bound; of equal ones, of those that overlap the moving
-    /// body, say, the one that came first.
-    pub obstacle: ObstacleId,
-    /// How far it is, and where; its upper bound is one of the least distance of all.
-    pub distance: AnyDistance,
-    /// No obstacle is nearer; rounded down, and at most the lower bound of the distance.
-    pub lower: f64,
-    /// Work done.
-    pub steps: AmongSteps,
-}
-
-/// The answer of [`Among::within`], in the order in which obstacles came.
-#[derive(Debug, Clone, PartialEq, Default)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[non_exhaustive]
-pub struct Nearby {
-    /// Those that are closer, each with two points of the bodies.
-    pub closer: Vec<(ObstacleId, AnyNear)>,
-    /// Those of which rounding cannot tell: the length lies between their bounds.
-    pub undecided: Vec<(ObstacleId, AnyDistance)>,
-    /// Work done.
-    pub steps: AmongSteps,
-}
+/// Searches between solids end so many noises beyond the best answer: more than their bounds are off.
+const BEYOND: f64 = 64.0;
 
 impl Among<'_> {
     /// Which obstacle is nearest, and how far is it? `None` if there are none.
@@ -147,4 +127,81 @@ impl Nearby {
             Closeness::Farther => {}
         }
     }
+}
+
+impl Among<'_> {
+    /// How far can the moving body move from where it is, along a direction of any length, and what stops it?
+    ///
+    /// As [`Cast::clearance`] of each obstacle: what is behind does not stop it, nor what it slides along
+    /// within the graze tolerance; obstacles whose boxes are never met ahead do not at all. For "the first
+    /// that is hit within a way" see [`Self::clearance_before`].
+    ///
+    /// # Errors
+    /// A direction that is zero, not finite or out of range; and as [`Cast::clearance`] of an obstacle that
+    /// is asked about.
+    pub fn clearance(&self, direction: DVec3) -> Result<ClearanceAmong, QueryError> {
+        self.clearance_before(direction, f64::INFINITY)
+    }
+
+    /// The same up to an end, in multiples of the direction: what is not met before it for certain, by its
+    /// upper bound, is of no interest.
+    ///
+    /// # Errors
+    /// An end that is negative or not a number; and as [`Self::clearance`].
+    pub fn clearance_before(
+        &self,
+        direction: DVec3,
+        end: f64,
+    ) -> Result<ClearanceAmong, QueryError> {
+        check_direction(direction)?;
+        check_length(end)?;
+        let sweep = Sweep::new(self.swept(), direction);
+        let mut stop: Option<(ObstacleId, AnyClearance)> = None;
+        let (mut lower, mut upper, mut bodies) = (end, end, 0);
+        let entry = |other: &_| sweep.entry(other);
+        let boxes = self.obstacles.tree().search(end, entry, |item, bound| {
+            let obstacle = self.obstacle(item);
+            let (id, first) = (obstacle.id, stop.map_or(ObstacleId(0), |(first, _)| first));
+            // A bound of 0 says nothing: the bodies may overlap.
+            let is_no_better = upper == f64::NEG_INFINITY || (bound > 0.0 && bound == upper);
+            if (is_no_better && id > first) || self.is_ignored(id) {
+                return Ok(upper.max(0.0));
+            }
+            bodies += 1;
+            let found = self.clearance_of(obstacle, direction, upper.max(0.0));
+            let found = found.map_err(|e| e.of_obstacle(id))?;
+            lower = lower.min(found.distance().unwrap_or(0.0));
+            if (found.upper(), id) < (upper, first) {
+                (stop, upper) = (Some((id, found)), found.upper());
+            }
+            Ok::<_, QueryError>(upper.max(0.0))
+        })?;
+        Ok(ClearanceAmong { lower, stop, steps: AmongSteps { boxes, bodies } })
+    }
+
+    /// The clearance of one obstacle, of interest if it is below a limit.
+    fn clearance_of(
+        &self,
+        obstacle: &Obstacle,
+        direction: DVec3,
+        limit: f64,
+    ) -> Result<AnyClearance, QueryError> {
+        Ok(match self.cast(obstacle, direction)? {
+            ByKind::Convex(cast) => ByKind::Convex(cast.clearance()?),
+            ByKind::Solid(cast) => ByKind::Solid(clearance_below(&cast, limit)?),
+        })
+    }
+}
+
+/// The clearance of two solids, or that they are free where it is clearly not below a limit.
+///
+/// Searches end by where shrunk bodies meet. Those that meet in their true place before the limit may do so, shrunk, any
+/// way behind it, if their facets are all but along the direction: the limit is of use without a tolerance only.
+fn clearance_below(cast: &Cast<'_, Solid>, limit: f64) -> Result<Clearance<Solid>, QueryError> {
+    if limit == f64::INFINITY || cast.tolerance() > 0.0 {
+        return cast.clearance();
+    }
+    let beyond = BEYOND * cast.scene(0.0).noise / cast.setting.length;
+    let before = cast.options().before.unwrap_or(f64::INFINITY).min(limit + beyond);
+    cast.with_options(cast.options().with_before(before))?.clearance()
 }

@@ -3,12 +3,12 @@
 //! Far from each other they are looked at from time to time, over many rows; near each other the search for two
 //! bodies that move evenly goes from row to row.
 
-use super::super::answer::{Met, PlaneAt};
 use super::super::look::{ConvexLooker, Looker};
+use super::super::proof::{Met, PlaneAt};
 use super::super::search::{Advanced, End, advance};
-use super::answer::Stretch;
 use super::couple::Couple;
 use super::mechanism::Place;
+use super::proof::Stretch;
 use colltrans_convex::body::ConvexPolyhedron;
 
 /// The next look is where both may have moved by so much of the gap; and, if that is too far, by so much.

@@ -49,7 +49,7 @@
 //! bodies move. Bodies that are not convex are taken apart into boxes and facets, where they come near. That closed
 //! bodies do not begin one inside the other is decided exactly; later their surfaces would have met.
 //!
-//! The modules, each using only those before it: `mechanism`, `chain`, `shape`, `couple`, `answer`, `follow`,
+//! The modules, each using only those before it: `mechanism`, `chain`, `shape`, `couple`, `proof`, `answer`, `follow`,
 //! `search`, `verify`.
 
 mod answer;
@@ -57,6 +57,7 @@ mod chain;
 mod couple;
 mod follow;
 mod mechanism;
+mod proof;
 mod search;
 mod shape;
 mod verify;
@@ -72,12 +73,11 @@ use colltrans_solid::Solid;
 use colltrans_solid::kinds::{AnyPlaced, ByKind};
 use colltrans_solid::{AsSolid, SolidPairSearch};
 
-pub use self::answer::{
-    Cover, How, PathContact, PathMeeting, PathOutcome, PathProof, Step, Stretch,
-};
+pub use self::answer::{PathContact, PathOutcome};
 use self::chain::Chain;
 use self::couple::Couple;
 pub use self::mechanism::{Frame, Joint, JointPath, Mechanism, PathError, Place};
+pub use self::proof::{Cover, How, PathMeeting, PathProof, Step, Stretch};
 use self::search::{Search, Stop};
 use self::shape::Shape;
 pub use self::verify::PathProofError;

@@ -7,16 +7,16 @@
 //! Invariant. Up to where a cover ends, no two points of the pieces meet; it ends where it is to, or where two of
 //! the bodies' own pieces meet, or may.
 
-use super::super::answer::PlaneAt;
 use super::super::bend::Climbing;
 use super::super::course::Course;
 use super::super::look::ConvexLooker;
+use super::super::proof::PlaneAt;
 use super::super::solid::inside::Guesses;
 use super::super::soon::{Seen, soon};
-use super::answer::{Cover, How, Step};
 use super::couple::Couple;
 use super::follow::{Fate, Pieces, Way};
 use super::mechanism::Place;
+use super::proof::{Cover, How, Step};
 use super::shape::Shape;
 use colltrans_convex::body::ConvexPolyhedron;
 use colltrans_convex::setting::TwoBodies;

@@ -7,12 +7,12 @@
 use glam::DVec3;
 use thiserror::Error;
 
-use super::super::answer::PlaneAt;
+use super::super::proof::PlaneAt;
 use super::super::solid::inside;
 use super::super::verify::{Broken, chain, is_met};
-use super::answer::{Cover, How, PathMeeting, PathProof, Step, Stretch};
 use super::couple::Couple;
 use super::mechanism::Place;
+use super::proof::{Cover, How, PathMeeting, PathProof, Step, Stretch};
 use super::shape::Shape;
 use super::{PathCast, nested};
 use colltrans_convex::answer::CertificateError;

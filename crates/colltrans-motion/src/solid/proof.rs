@@ -4,7 +4,7 @@
 //! whole span on: split, in time or one of the parts, or parted throughout, by a plane that has a name or by a
 //! list of planes of its own. Read to its end it covers all pairs of facets at all times.
 
-use super::super::answer::PlaneAt;
+use super::super::proof::PlaneAt;
 use super::window::Plane;
 use colltrans_solid::cast::StartProof;
 

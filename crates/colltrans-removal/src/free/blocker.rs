@@ -7,8 +7,9 @@ use super::bodies::Bodies;
 use super::cell::Cell;
 use super::error::FreeError;
 use super::options::FreeOptions;
-use super::proof::{Fate, holds, names_exist};
+use super::proof::Fate;
 use super::search::{Memory, Search};
+use super::verify::{holds, names_exist};
 use colltrans_convex::body::Placed;
 use colltrans_solid::body::AsSolid;
 

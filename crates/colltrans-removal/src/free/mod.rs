@@ -8,7 +8,7 @@
 //!
 //! Data flow: `bodies` (vertices, and trees down to single facets) -> `line` (great circles and exact signs) ->
 //! `cone`, `window` (which pairs of nodes miss a rectangle of directions), `rest`, `inner` -> `proof` (what is said of a
-//! cell, and its check) -> `search` -> [`FreeDirections`]; `region` joins what is free in
+//! cell), `verify` (its check) -> `search` -> [`FreeDirections`]; `region` joins what is free in
 //! pieces, `thin` what is so without an area; `blocker` tells of single cells.
 
 mod answer;
@@ -25,6 +25,7 @@ mod region;
 mod rest;
 mod search;
 mod thin;
+mod verify;
 mod window;
 
 pub(crate) use bodies::{Bodies, View};

@@ -1,20 +1,7 @@
-//! What is proven of each cell, and the check of it without a search.
-//!
-//! *Blocked*: the cone of one pair of facets holds the four corners of the cell. *Open*: it is blocked where the cones
-//! of some pairs are, and no other pair meets what they leave. The cones are taken from the cell again, and both trees are gone down
-//! for each piece that is left: a pair of nodes ends there, or its parts are looked at, down to single facets.
-//! *Inner*: a box inside the moving and one inside the fixed body block all of it; that they are inside is checked
-//! once for each box. *Undecided*: it is blocked where the cones are, and nothing is said of the rest.
+//! What is proven of each cell, and how it is listed.
 
-use glam::DVec3;
-
-use super::bodies::Bodies;
-use super::cell::{Cell, DEEPEST};
-use super::cone::Cone;
-use super::inner::{InnerBox, cover};
-use super::rest::{Piece, Rest, TooMuch};
-use super::search::PIECES;
-use super::window::Window;
+use super::cell::DEEPEST;
+use super::inner::InnerBox;
 use colltrans_solid::cast::StartOverlap;
 
 /// What became of a cell; pairs are positions in [`Solid::triangles`](colltrans_solid::Solid::triangles) of the moving and of
@@ -120,92 +107,4 @@ pub(super) fn cells(fates: &[Fate]) -> Vec<CellProof> {
         });
     }
     cells
-}
-
-/// What pairs of facets leave of a cell.
-pub(super) fn rest_of(bodies: &Bodies, cell: Cell, pairs: &[[u32; 2]]) -> Result<Rest, TooMuch> {
-    let mut rest = Rest::whole(cell);
-    for &pair in pairs {
-        rest.cut(bodies, &Cone::new(bodies, pair), PIECES)?;
-    }
-    Ok(rest)
-}
-
-/// Whether what is said of a cell holds; its facets and boxes [exist](names_exist), and the boxes are inside.
-pub(super) fn holds(bodies: &Bodies, boxes: &[Vec<InnerBox>; 2], cell: &Cell, fate: &Fate) -> bool {
-    match fate {
-        Fate::Cut(_) | Fate::Undecided(_) => true,
-        Fate::Blocked(pair) => Cone::new(bodies, *pair).covers(bodies, &cell.corners()),
-        Fate::Inner([a, b]) => {
-            cover([&boxes[0][*a as usize], &boxes[1][*b as usize]], &cell.corners())
-        }
-        Fate::Open(pairs) => rest_of(bodies, *cell, pairs).is_ok_and(|rest| is_free(bodies, &rest)),
-    }
-}
-
-/// Whether all facets and boxes that are named exist.
-pub(super) fn names_exist(bodies: &Bodies, boxes: &[Vec<InnerBox>; 2], fate: &Fate) -> bool {
-    match fate {
-        Fate::Cut(_) => true,
-        Fate::Inner(pair) => (0..2).all(|k| (pair[k] as usize) < boxes[k].len()),
-        Fate::Blocked(pair) => exists(bodies, *pair),
-        Fate::Undecided(pairs) | Fate::Open(pairs) => {
-            pairs.iter().all(|pair| exists(bodies, *pair))
-        }
-    }
-}
-
-fn exists(bodies: &Bodies, pair: [u32; 2]) -> bool {
-    let count = |moving| bodies.scene.side(moving).solid.triangles().len() as u32;
-    pair[0] < count(true) && pair[1] < count(false)
-}
-
-/// A pair of facets that blocks a direction of a cell, exactly, if there is one: over all pairs of nodes.
-pub(super) fn blocking_pair(bodies: &Bodies, cell: &Cell, d: DVec3) -> Option<[u32; 2]> {
-    let [k, i, j] = cell.side.axes();
-    let around = |axis: usize| {
-        let at = d[axis] / d[k].abs();
-        [at.next_down(), at.next_up()]
-    };
-    let window = Window::new(cell.side, around(i), around(j));
-    let mut stack = vec![[0, 0]];
-    while let Some(pair) = stack.pop() {
-        let [p, q] = bodies.views_of(pair);
-        if window.is_missed(bodies, p, q) {
-            continue;
-        }
-        if let Some(parts) = bodies.parts(pair) {
-            stack.extend(parts);
-            continue;
-        }
-        let facets = [bodies.triangle(true, pair[0]), bodies.triangle(false, pair[1])];
-        if Cone::new(bodies, facets).holds(bodies, d) {
-            return Some(facets);
-        }
-    }
-    None
-}
-
-/// Whether no pair of facets meets any piece of what is left of a cell: each pair is looked at once, for all of them.
-fn is_free(bodies: &Bodies, rest: &Rest) -> bool {
-    let alone = |piece: &Piece| (rest.window(piece), rest.only(piece));
-    let mut pieces: Vec<(Window, Rest)> = rest.pieces.iter().map(alone).collect();
-    let mut stack = vec![[0, 0]];
-    while let Some(pair) = stack.pop() {
-        let [p, q] = bodies.views_of(pair);
-        let mut met = pieces.iter_mut().filter(|(window, _)| !window.is_missed(bodies, p, q));
-        let Some((_, first)) = met.next() else { continue };
-        if let Some(parts) = bodies.parts(pair) {
-            stack.extend(parts);
-            continue;
-        }
-        let facets = [bodies.triangle(true, pair[0]), bodies.triangle(false, pair[1])];
-        let cone = Cone::new(bodies, facets);
-        let mut others = met.map(|(_, alone)| alone);
-        let cuts = |alone: &mut Rest| !matches!(alone.cut(bodies, &cone, PIECES), Ok(false));
-        if cuts(first) || others.any(cuts) {
-            return false;
-        }
-    }
-    true
 }

@@ -19,8 +19,9 @@ use super::bodies::Bodies;
 use super::cell::Cell;
 use super::cone::Cone;
 use super::line::{Line, PlaneVertex, Ray, orientation};
-use super::proof::{Fate, rest_of};
+use super::proof::Fate;
 use super::rest::{Outline, Turn};
+use super::verify::rest_of;
 
 /// By how much boxes of directions are made larger, as corners are rounded.
 const SLACK: f64 = 1e-9;

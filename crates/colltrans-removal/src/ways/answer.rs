@@ -1,4 +1,4 @@
-//! The answer: legs with their proofs, and their check.
+//! The answer: legs with their proofs.
 
 use std::sync::atomic::AtomicBool;
 
@@ -7,23 +7,20 @@ use glam::DVec3;
 use super::candidates::{directions, of_walls};
 use super::enclosed::{Cells, Enclosure, NoWay, axes_of};
 use super::options::{Order, Searched, WayOptions};
-use super::pairs::{Pair, around, displaced};
-use super::search::{Group, Move, Run, Scale, Search, border};
+use super::pairs::{Pair, around};
+use super::proof::{LegProof, certified};
+use super::search::{Group, Move, Run, Scale, Search};
 use crate::free::FreeError;
-use colltrans_convex::answer::CertificateError;
 use colltrans_convex::body::{Aabb, Placed};
 use colltrans_convex::cast::Cast;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_solid::SolidCast;
 use colltrans_solid::body::{AsSolid, Solid};
-use colltrans_solid::cast::{SolidCertificate, SolidOptions, StartProof};
 
 /// The share of the tolerance that is planned with.
 const SLACK: f64 = 0.8;
-/// Where casts of legs that end do, in multiples of their motion: beyond 1, so that rounding leaves it proven to 1.
-const END: f64 = 1.0 + 1.0 / (1 << 30) as f64;
 /// Bodies that are searched together, at most.
-const MOST_BODIES: usize = Group::BITS as usize - 1;
+pub(super) const MOST_BODIES: usize = Group::BITS as usize - 1;
 
 /// Moves one after another, the last without an end.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,15 +46,6 @@ pub struct Leg {
     pub motion: DVec3,
     /// For each body that moves and each that stays.
     pub proofs: Vec<LegProof>,
-}
-
-/// Why a body does not hit another on a leg.
-#[derive(Debug, Clone, PartialEq)]
-pub struct LegProof {
-    /// The one that moves, and the other.
-    pub bodies: [usize; 2],
-    /// Of the cast along the motion, before a little more than 1, or without an end.
-    pub certificate: SolidCertificate,
 }
 
 /// Is there a way out in several moves?
@@ -211,102 +199,6 @@ impl WaysOut {
             None => Self::NotFound { searched },
         })
     }
-}
-
-impl WayOut {
-    /// Checks all legs against the bodies, placed as they were asked about; no search plays a part. A place is a pose
-    /// displaced by the sum of the motions so far, rounded where the pose itself is no whole multiple of their grid.
-    ///
-    /// # Errors
-    /// What is not proven.
-    pub fn verify(&self, bodies: &[Placed<'_, Solid>]) -> Result<(), FreeError> {
-        if self.legs.is_empty() {
-            return Err(CertificateError::Cover { entry: 0 }.into());
-        }
-        let mut at = vec![DVec3::ZERO; bodies.len()];
-        for (k, leg) in self.legs.iter().enumerate() {
-            let last = k + 1 == self.legs.len();
-            let travel = if last { f64::INFINITY } else { leg.motion.length() };
-            let told_well = leg.travel == travel && leg.direction == leg.motion.normalize();
-            let all = (1..=MOST_BODIES).contains(&bodies.len());
-            let own = leg.bodies.iter().filter(|&&b| all && b < bodies.len());
-            let group = own.fold(0, |mask, &b| mask | 1 << b);
-            let pairs = border(group, bodies.len());
-            let told: Vec<[usize; 2]> = leg.proofs.iter().map(|proof| proof.bodies).collect();
-            if pairs.is_empty() || told != pairs || !told_well || leg.bodies != members(group) {
-                return Err(CertificateError::Cover { entry: 0 }.into());
-            }
-            for LegProof { bodies: [i, j], certificate } in &leg.proofs {
-                let by = at[*i] - at[*j];
-                let cast = of_leg([bodies[*i], bodies[*j]], by, leg.motion, last, self.tolerance)?;
-                cast.verify(certificate)?;
-                if !passes(certificate, last) {
-                    let claimed = if last { f64::INFINITY } else { 1.0 };
-                    let proven = certificate.lower;
-                    return Err(CertificateError::Bound { proven, claimed }.into());
-                }
-            }
-            for &b in &leg.bodies {
-                at[b] += leg.motion;
-            }
-        }
-        Ok(())
-    }
-}
-
-/// The bodies of a group.
-fn members(group: Group) -> Vec<usize> {
-    (0..MOST_BODIES).filter(|k| group >> k & 1 == 1).collect()
-}
-
-/// The cast of a leg.
-fn of_leg(
-    pair: [Placed<'_, Solid>; 2],
-    by: DVec3,
-    motion: DVec3,
-    last: bool,
-    tolerance: f64,
-) -> Result<Cast<'_, Solid>, QueryError> {
-    let end = (!last).then_some(END);
-    let options = SolidOptions::default().with_tolerance(tolerance).with_before(end);
-    displaced(pair, by, motion)?.with_options(options)
-}
-
-/// Whether nothing is overlapped at the start, and nothing hit on the way.
-fn passes(certificate: &SolidCertificate, last: bool) -> bool {
-    let end = if last { f64::INFINITY } else { 1.0 };
-    matches!(certificate.start, StartProof::Apart(_))
-        && certificate.stop.is_none()
-        && certificate.lower >= end
-}
-
-/// The legs of a plan, if all of them can be proven.
-fn certified(
-    bodies: &[Placed<'_, Solid>],
-    moves: &[Move],
-    tolerance: f64,
-) -> Result<Option<Vec<Leg>>, FreeError> {
-    let mut at = vec![DVec3::ZERO; bodies.len()];
-    let mut legs = Vec::new();
-    for (k, &Move { group, motion }) in moves.iter().enumerate() {
-        let last = k + 1 == moves.len();
-        let mut proofs = Vec::new();
-        for [i, j] in border(group, bodies.len()) {
-            let cast = of_leg([bodies[i], bodies[j]], at[i] - at[j], motion, last, tolerance)?;
-            let certificate = cast.certified_clearance()?.1;
-            if !passes(&certificate, last) {
-                return Ok(None);
-            }
-            proofs.push(LegProof { bodies: [i, j], certificate });
-        }
-        let own = members(group);
-        for &b in &own {
-            at[b] += motion;
-        }
-        let travel = if last { f64::INFINITY } else { motion.length() };
-        legs.push(Leg { bodies: own, direction: motion.normalize(), travel, motion, proofs });
-    }
-    Ok(Some(legs))
 }
 
 /// That of all casts: the one given, or the largest default one.

@@ -15,10 +15,13 @@ mod enclosed;
 mod openings;
 mod options;
 mod pairs;
+mod proof;
 mod search;
+mod verify;
 
-pub use answer::{Leg, LegProof, WayOut, WaysOut};
+pub use answer::{Leg, WayOut, WaysOut};
 pub use candidates::of_large_facets;
 pub use cells::{Crossing, Room, RoomCell};
 pub use enclosed::NoWay;
 pub use options::{Order, Searched, WayOptions};
+pub use proof::LegProof;

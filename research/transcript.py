@@ -54,8 +54,8 @@ FILES = {
     "sheet.obj": "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 0 4 0\nf 1 2 3\nf 1 3 4\n",
     "ways.txt": "x\n-y\n1,1,0\n# none\n0,0,0\n",
     "bad.jsonl": '{"moving": "data/cube.off", "fixed": 3}\nnot JSON\n{"direction": [0, 0, "x"]}\n\n',
-    "scene.jsonl": '{"body": "data/cube.off", "pose": [9, 0, 0]}\n'
-    '{"body": "data/dodecahedron.off", "pose": [0, 9, 0], "name": "d"}\n',
+    "scene.jsonl": '{"body": {"mesh": "data/cube.off"}, "pose": {"translation": [9, 0, 0]}}\n'
+    '{"body": {"mesh": "data/dodecahedron.off"}, "pose": {"translation": [0, 9, 0]}, "name": "d"}\n',
     "poses.json": "[[0, 0, 9, 0, 0, 0, 1], [3, 0, 5, 0, 0, 0, 1]]",
     "bad.json": '{"format": "colltrans proof", "version": 2, "bodies": []}',
 }

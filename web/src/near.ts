@@ -1,7 +1,7 @@
 // How far the bodies are apart where they are, and how deep they overlap: asked of a library of its own, said and drawn.
 
 import { MeshBasicMaterial, type Object3D } from "three";
-import type { Answer, PageDistance } from "./answers";
+import type { DepthAnswer, DistanceAnswer, PageDistance } from "./answers";
 import { Engine, type Pair, type Slot } from "./engine";
 import { type Vec, add, short, shown, times } from "./math";
 import { Placing, type Source } from "./placing";
@@ -27,7 +27,7 @@ export class Near {
   }
 }
 
-const proven = ({ lower, upper }: Answer) => `${short(lower ?? 0, 15)} to ${short(upper ?? 0, 15)}`;
+const proven = ({ lower, upper }: DistanceAnswer | DepthAnswer) => `${short(lower ?? 0, 15)} to ${short(upper ?? 0, 15)}`;
 
 function say({ distance, depth }: PageDistance): Pick<Nearness, "sentence" | "rows"> {
   if (!depth) {

@@ -237,7 +237,8 @@ export class AnswerPanel {
       this.said.replaceChildren(h("h2", {}, "…"), h("p", {}, "Reading."));
     } else {
       const { kind, headline, sentence } = say(answer, state);
-      const { steps, translation, outcome } = answer.record;
+      const { translation, outcome } = answer.record;
+      const steps = answer.kind === "convex" && answer.record.steps;
       const work = steps
         ? `${counts([[steps.planar_problems, "planar problem"], [steps.supports, "supporting plane"], [steps.pivots, "portal"]])}; `
         : "";

@@ -96,8 +96,9 @@ export class Shadow {
     picture: SVGSVGElement, state: State, bodies: Record<Slot, Drawn>, answer: PageCast | undefined,
     flatten: (v: Vec) => Flat, scale: number, colours: Palette,
   ): string {
-    const [first, between, overlap] = [touch(answer), plane(answer), answer?.record.overlap ?? 0];
-    const sideways = between?.normal ?? answer?.record.sideways;
+    const grazing = answer?.kind === "convex" ? answer.record : undefined;
+    const [first, between, overlap] = [touch(answer), plane(answer), grazing?.overlap ?? 0];
+    const sideways = between?.normal ?? grazing?.sideways;
     if (sideways) {
       // The line through the end of the moving body's shadow, and the one through the fixed one's.
       const gap = between?.margin ?? -overlap;

@@ -59,7 +59,7 @@ impl<'a> Request<'a> {
         let cast = |direction| Cast::new(moving, fixed, direction)?.with_options(options);
         let ask = |cast: &Cast<'_>| -> Result<(Answer, Line), Failure> {
             let answer = question.ask(cast).map_err(|error| case::failure(error, cast))?;
-            Ok((answer, Line::of_parts(answer.record(cast), parts)))
+            Ok((answer, Line::from(answer.record(cast)).with_parts(parts)))
         };
         let all = match directions {
             Directions::Many(all) => all,
@@ -87,9 +87,7 @@ impl<'a> Request<'a> {
             }
         }
         let ask = |direction| Ok(ask(&cast(direction)?)?.1);
-        answer_directions(targets.json, all, ask, |record, of| {
-            report::scan_line(record, question, of)
-        })
+        answer_directions(targets.json, all, ask, report::scan_line)
     }
 }
 

@@ -6,7 +6,6 @@
 use std::path::{Path, PathBuf};
 
 use colltrans::glam::DVec3;
-use colltrans::record::Record;
 use serde::Serialize;
 
 use crate::failure::{Code, Failure, print, print_json};
@@ -85,15 +84,15 @@ pub(crate) fn answer_directions(
     as_json: bool,
     directions: Vec<DVec3>,
     mut ask: impl FnMut(DVec3) -> Result<Line, Failure>,
-    words: impl Fn(&Record, DVec3) -> String,
+    words: impl Fn(&Line, DVec3) -> String,
 ) -> Result<(), Failure> {
     let (count, mut failed) = (directions.len(), 0);
     for direction in directions {
         let answered = ask(direction);
         let mut line = answered.unwrap_or_else(|failure| Line::error(failure.into_message()));
         failed += usize::from(line.is_error());
-        line.record.direction = Some(direction.to_array());
-        print(&if as_json { record::json(&line) } else { words(&line.record, direction) })?;
+        line.record = line.record.with_direction(direction.to_array());
+        print(&if as_json { record::json(&line) } else { words(&line, direction) })?;
     }
     if failed > 0 {
         let message = format!("{failed} of {count} directions have no answer");

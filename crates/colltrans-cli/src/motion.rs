@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use colltrans::glam::DVec3;
 use colltrans::motion::{Motion, MotionCast, MotionOutcome};
-use colltrans::record::{Ending, Record, TimeRecord};
+use colltrans::record::{Ending, MotionRecord, TimeRecord};
 use colltrans::{Pose, ProofFile, QueryError, Stalled};
 
 use crate::args::MotionArguments;
@@ -79,7 +79,7 @@ fn parts(
     load::report_notes(&arguments.places, loaded.iter().flat_map(|body| &body.notes));
     let (bodies, clears) = (loaded.each_ref(), arguments.clearance);
     let asked = PartsMotion { bodies, motions, tolerance, clears, ignore_start_overlaps, keep };
-    let told = Line::from(asked.ask().map_err(|error| solid::refused(error, bodies, tolerance))?);
+    let told = Line::of(asked.ask().map_err(|error| solid::refused(error, bodies, tolerance))?);
     let proof = || {
         let proof = ProofFile::with_solid_motion(&asked.cast()?);
         let (_, proof) = proof.map_err(|error| Failure::new(Code::Query, error.to_string()))?;
@@ -97,7 +97,7 @@ fn parts(
 /// Writes the answer of either kind of bodies.
 fn write_answer(
     targets: OutputTargets<'_>,
-    told: &Line,
+    told: &Line<MotionRecord>,
     motions: &[Motion; 2],
     proof: impl FnOnce() -> Result<Option<String>, Failure>,
     surface: &dyn Fn(usize, &Pose, DVec3) -> Surface,
@@ -118,7 +118,7 @@ pub(crate) fn stalled(free_until: f64) -> QueryError {
 
 /// The answer of two of the meshes.
 struct Found {
-    told: Line,
+    told: Line<MotionRecord>,
     /// Which ones.
     pair: [usize; 2],
     /// Why the answer proves less than was asked.
@@ -148,7 +148,7 @@ fn first_of_all(
             let mut undecided = None;
             let record = if arguments.clearance {
                 let mut record =
-                    Record::of_motion_clearance(&cast.clearance().map_err(failed)?, &cast);
+                    MotionRecord::of_clearance(&cast.clearance().map_err(failed)?, &cast);
                 for overlap in &mut record.start_overlaps {
                     overlap.moving = Some(files[0][i].display().to_string());
                     overlap.fixed = Some(files[1][j].display().to_string());
@@ -162,9 +162,9 @@ fn first_of_all(
                 if arguments.save_proof.is_some() {
                     proofs.push(ProofFile::of_motion(&cast, &outcome));
                 }
-                Record::of_motion(&outcome, &cast)
+                MotionRecord::of(&outcome, &cast)
             };
-            let told = Line::of_parts(record, [moving, fixed]);
+            let told = Line::of(record).with_parts([moving, fixed]);
             let found = Found { told, pair: [i, j], undecided };
             let upper = found.told.record.time.and_then(|time| time.upper);
             if let Some(upper) = upper.filter(|upper| meets.is_none_or(|least| *upper < least.0)) {
@@ -200,7 +200,7 @@ impl Found {
 }
 
 /// The readable answer; `motions` are those of both bodies.
-pub(crate) fn words(told: &Line, motions: [&Motion; 2]) -> String {
+pub(crate) fn words(told: &Line<MotionRecord>, motions: [&Motion; 2]) -> String {
     let record = &told.record;
     let mut text = match record.outcome {
         Ending::Contact => "contact\n".into(),
@@ -247,19 +247,19 @@ pub(crate) fn words(told: &Line, motions: [&Motion; 2]) -> String {
     if let Some(normal) = record.normal {
         line(&mut text, "normal", &unit_vector(DVec3::from_array(normal)));
     }
-    features(&mut text, record, [None; 2]);
-    if let (Some(planes), Some(looks)) = (record.planes, record.looks) {
+    features(&mut text, record.features.as_ref(), [None; 2]);
+    if let Some(planes) = record.planes {
         let [planes, looks] =
-            [counted(planes, "plane", "planes"), counted(looks as usize, "look", "looks")];
+            [counted(planes, "plane", "planes"), counted(record.looks as usize, "look", "looks")];
         line(&mut text, "proof", &format!("{planes}, found in {looks}"));
     }
     if let Some(tolerance) = record.tolerance {
         line(&mut text, "tolerance", &number(tolerance));
     }
     let is_overlap = record.outcome == Ending::Overlapping;
-    overlaps(&mut text, record, if is_overlap { "overlap" } else { "ignored" });
+    overlaps(&mut text, &record.start_overlaps, if is_overlap { "overlap" } else { "ignored" });
     kept(&mut text, record.keep);
-    hulls(&mut text, told);
+    hulls(&mut text, told.hull, record.outcome, false);
     text
 }
 

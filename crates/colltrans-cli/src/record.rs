@@ -1,7 +1,7 @@
 //! A result as a line of JSON, in the fields that `batch --help` documents: the library's record, and
 //! what only files have.
 
-use colltrans::record::{Dents, Ending, Record};
+use colltrans::record::{Dents, Ending, ErrorRecord, Record};
 use colltrans_mesh::body::Excess;
 use serde::Serialize;
 use serde_json::value::RawValue;
@@ -11,10 +11,16 @@ use crate::numbers::{six_digits, unit_vector};
 use crate::terminal::plain_json;
 
 /// One result.
-#[derive(Debug, Default, Serialize)]
-pub(crate) struct Line {
+#[derive(Debug, Serialize)]
+pub(crate) struct Line<R = Record> {
     #[serde(flatten)]
-    pub(crate) record: Record,
+    pub(crate) record: R,
+    /// Depths of the dents of meshes that are convex only to within the tolerance.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) dents: Option<Dents>,
+    /// For people: what is wrong.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) message: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) hull: Option<Hulls>,
     /// What was done to the meshes, in a batch; other commands say it on standard error.
@@ -51,29 +57,37 @@ impl Hulls {
 
 impl From<Record> for Line {
     /// A contact that is none for certain says so.
-    fn from(mut record: Record) -> Self {
-        if let (Some(overlap), Some(sideways)) = (record.overlap, record.sideways) {
-            let (overlap, along) = (six_digits(overlap), unit_vector(sideways.into()));
-            record.message = Some(format!("the shadows overlap by {overlap} along [{along}]"));
-        }
-        Self { record, ..Self::default() }
+    fn from(record: Record) -> Self {
+        let message = record.contact().and_then(|contact| {
+            let (overlap, along) = (six_digits(contact.overlap?), contact.sideways?);
+            let along = unit_vector(along.into());
+            Some(format!("the shadows overlap by {overlap} along [{along}]"))
+        });
+        Self { message, ..Self::of(record) }
+    }
+}
+
+impl<R> Line<R> {
+    /// Returns the line of a record and nothing else.
+    pub(crate) const fn of(record: R) -> Self {
+        Self { record, dents: None, message: None, hull: None, notes: Vec::new() }
+    }
+
+    /// Adds the dents and the hulls of two convex bodies.
+    pub(crate) fn with_parts(self, parts: [&Part; 2]) -> Self {
+        let dents = Dents::of(parts.map(|part| part.dent));
+        Self { dents, hull: Hulls::of(parts), ..self }
     }
 }
 
 impl Line {
-    /// The line of an answer about two convex bodies.
-    pub(crate) fn of_parts(mut record: Record, parts: [&Part; 2]) -> Self {
-        record.dents = Dents::of(parts.map(|part| part.dent));
-        Self { hull: Hulls::of(parts), ..record.into() }
-    }
-
     /// That there is no answer, and why.
     pub(crate) fn error(message: String) -> Self {
-        Record::error(message).into()
+        Self { message: Some(message), ..Self::of(ErrorRecord::default().into()) }
     }
 
     pub(crate) fn is_error(&self) -> bool {
-        self.record.outcome == Ending::Error
+        self.record.outcome() == Ending::Error
     }
 
     /// Appends the line of a batch, with its end; the id comes first.
@@ -112,13 +126,22 @@ fn write(record: &impl Serialize, text: &mut Vec<u8>) {
 
 #[cfg(test)]
 mod tests {
+    use std::collections::BTreeSet;
+
+    use colltrans::record::{
+        CastRecord, ClearanceRecord, DepthRecord, DistanceRecord, FreeRecord, MotionRecord,
+        NearbyRecord, NearestRecord, PathRecord, SceneClearanceRecord, SceneWithinRecord,
+        SolidClearanceRecord, TimeRecord,
+    };
+
     use super::*;
 
     #[test]
     fn what_is_not_there_is_not_written() {
-        assert_eq!(json(&Line::default()), "{\"outcome\":\"error\"}\n");
+        let line = Line::<Record>::of(ErrorRecord::default().into());
+        assert_eq!(json(&line), "{\"outcome\":\"error\"}\n");
         let mut text = b"before\n".to_vec();
-        Line::default().write_with(None, &mut text);
+        line.write_with(None, &mut text);
         assert_eq!(text, b"before\n{\"id\":null,\"outcome\":\"error\"}\n");
     }
 
@@ -140,8 +163,41 @@ mod tests {
         let excess =
             Excess { hull_volume: 0.1, part_volume: None, is_closed: false, depth: Some(2.0) };
         let hull = Some(Hulls { moving: None, fixed: Some(excess), dropped: 0.0 });
-        let text = json(&Line { hull, notes: vec!["a".into()], ..Line::default() });
+        let text =
+            json(&Line { hull, notes: vec!["a".into()], ..Line::of(ErrorRecord::default()) });
         let hull = r#""hull":{"fixed":{"hull_volume":0.1,"depth":2.0}},"notes":["a"]"#;
         assert_eq!(text, format!("{{\"outcome\":\"error\",{hull}}}\n"));
+    }
+
+    #[test]
+    fn the_schema_has_the_fields_of_each_record() {
+        let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/answers.schema.json");
+        let schema = std::fs::read_to_string(file).unwrap();
+        let schema: serde_json::Value = serde_json::from_str(&schema).unwrap();
+        // Those of lines, and of the parts of an assembly.
+        let others = ["id", "dents", "message", "hull", "notes", "parts"];
+        for (name, fields) in [
+            ("cast_answer", CastRecord::fields()),
+            ("clearance_answer", ClearanceRecord::fields()),
+            ("solid_clearance_answer", SolidClearanceRecord::fields()),
+            ("distance_answer", DistanceRecord::fields()),
+            ("depth_answer", DepthRecord::fields()),
+            ("error_answer", ErrorRecord::fields()),
+            ("nearest_answer", NearestRecord::fields()),
+            ("scene_within_answer", SceneWithinRecord::fields()),
+            ("scene_clearance_answer", SceneClearanceRecord::fields()),
+            ("near_obstacle", NearbyRecord::fields()),
+            ("motion", MotionRecord::fields()),
+            ("time", TimeRecord::fields()),
+            ("path", PathRecord::fields()),
+            ("directions", FreeRecord::fields()),
+        ] {
+            let known = schema["$defs"][name]["properties"].as_object().unwrap().keys();
+            let known: BTreeSet<_> = known
+                .map(String::as_str)
+                .filter(|field| fields.contains(field) || !others.contains(field))
+                .collect();
+            assert_eq!(known, fields.iter().copied().collect(), "{name}");
+        }
     }
 }

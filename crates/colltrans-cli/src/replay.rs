@@ -1,7 +1,7 @@
 //! `colltrans replay`: a saved query once more.
 
 use colltrans::motion::{MotionCase, MotionOutcome};
-use colltrans::record::{Question, Record};
+use colltrans::record::{MotionRecord, Question};
 use colltrans::{Case, CaseError};
 
 use crate::args::ReplayArguments;
@@ -35,7 +35,7 @@ fn of_cast(case: &Case, as_json: bool) -> Result<String, Failure> {
 fn of_motion(case: &MotionCase, as_json: bool) -> Result<String, Failure> {
     let cast = case.cast();
     let found = cast.first_contact()?;
-    let told = Line::from(Record::of_motion(&found, &cast));
+    let told = Line::of(MotionRecord::of(&found, &cast));
     let told = if as_json { record::json(&told) } else { motion::words(&told, cast.motions()) };
     if let MotionOutcome::Undecided(open) = &found {
         print(&told)?;

@@ -3,7 +3,10 @@
 use std::fmt::Write as _;
 
 use colltrans::glam::DVec3;
-use colltrans::record::{Answer, Ending, FeatureRecord, FeaturesRecord, Question, Record};
+use colltrans::record::{
+    Answer, CastRecord, ContactRecord, Ending, FeatureRecord, FeaturesRecord, MotionRecord,
+    Question, Record,
+};
 use colltrans::{
     Bounded, Clearance, Contact, ContactRange, Grazing, OverlapAhead, Separated, Solver, Steps,
     WhyFree,
@@ -18,15 +21,20 @@ const LISTED: usize = 12;
 
 /// The readable answer.
 pub(crate) fn answer(answer: &Answer, told: &Line, direction: DVec3) -> String {
-    match answer {
-        Answer::Contact(range) => cast(range, told, direction),
-        Answer::Clearance(far) => clearance(far, told, direction),
-    }
+    let nothing = ContactRecord::default();
+    let record = told.record.contact().unwrap_or(&nothing);
+    let mut text = match answer {
+        Answer::Contact(range) => cast(range, record, direction),
+        Answer::Clearance(far) => clearance(far, record, direction),
+    };
+    kept(&mut text, record.keep);
+    hulls(&mut text, told.hull, told.record.outcome(), false);
+    text
 }
 
 /// The readable answer of `colltrans cast`.
-pub(crate) fn cast(answer: &ContactRange, told: &Line, direction: DVec3) -> String {
-    let (mut text, record) = (String::new(), &told.record);
+fn cast(answer: &ContactRange, record: &ContactRecord, direction: DVec3) -> String {
+    let mut text = String::new();
     match answer {
         ContactRange::Contact { first, last } => {
             text.push_str("contact\n");
@@ -44,14 +52,12 @@ pub(crate) fn cast(answer: &ContactRange, told: &Line, direction: DVec3) -> Stri
             separated(&mut text, answer);
         }
     }
-    kept(&mut text, record.keep);
-    hulls(&mut text, told);
     text
 }
 
 /// The readable answer of `colltrans clearance`.
-fn clearance(answer: &Clearance, told: &Line, direction: DVec3) -> String {
-    let (mut text, record) = (String::new(), &told.record);
+fn clearance(answer: &Clearance, record: &ContactRecord, direction: DVec3) -> String {
+    let mut text = String::new();
     match answer {
         Clearance::Blocked { distance, contact: first } => {
             text.push_str("blocked\n");
@@ -90,24 +96,26 @@ fn clearance(answer: &Clearance, told: &Line, direction: DVec3) -> String {
             }
         }
     }
-    kept(&mut text, record.keep);
-    hulls(&mut text, told);
     text
 }
 
 /// One line of a scan, under [`scan_head`].
-pub(crate) fn scan_line(record: &Record, question: Question, direction: DVec3) -> String {
-    let (length, error) = (direction.length(), record.rounding.unwrap_or_default());
-    let mut columns = vec![record.outcome.name().to_owned()];
-    match (record.outcome, question) {
-        (Ending::Error, _) => columns.push(record.message.clone().unwrap_or_default()),
-        (_, Question::Clearance) => columns.extend(safe(record.distance, direction)),
-        (_, Question::Contact) => columns.extend(match record.translation {
-            Some(t) => [known(t, error), known(t * length, error * length)],
-            None => ["-", "-"].map(str::to_owned),
-        }),
+pub(crate) fn scan_line(told: &Line, direction: DVec3) -> String {
+    let mut columns = vec![told.record.outcome().name().to_owned()];
+    match &told.record {
+        Record::Clearance(of) => columns.extend(safe(of.distance, direction)),
+        Record::Cast(CastRecord {
+            contact: ContactRecord { translation, rounding, .. }, ..
+        }) => {
+            let (length, error) = (direction.length(), rounding.unwrap_or_default());
+            columns.extend(match *translation {
+                Some(t) => [known(t, error), known(t * length, error * length)],
+                None => ["-", "-"].map(str::to_owned),
+            });
+        }
+        _ => columns.push(told.message.clone().unwrap_or_default()),
     }
-    if let Some(normal) = record.normal {
+    if let Some(normal) = told.record.contact().and_then(|contact| contact.normal) {
         columns.push(unit_vector(DVec3::from_array(normal)));
     }
     let d = known_vector(direction, 0.0);
@@ -190,14 +198,14 @@ fn range(text: &mut String, first: &Contact, last: &Contact, direction: DVec3) {
     line(text, "exit", &exit(last, direction));
 }
 
-fn contact(text: &mut String, first: &Contact, record: &Record, direction: DVec3) {
+fn contact(text: &mut String, first: &Contact, record: &ContactRecord, direction: DVec3) {
     let proof = &first.certificate;
     line(text, "normal", &unit_vector(first.normal));
     if let Some(point) = record.point {
         let point = DVec3::from_array(point);
         line(text, "point", &known_vector(point, proof.rounding * direction.length()));
     }
-    features(text, record, [None; 2]);
+    features(text, record.features.as_ref(), [None; 2]);
     let bounds = if proof.upper.is_finite() {
         format!(
             "{} to {}, gap {} (rounding alone: up to {})",
@@ -234,7 +242,7 @@ pub(crate) fn meet(keep: Option<f64>) -> String {
 }
 
 /// What bodies that are free never do: with a tolerance they may be in each other all the time.
-pub(crate) fn never(record: &Record) -> String {
+pub(crate) fn never(record: &MotionRecord) -> String {
     let meet = meet(record.keep);
     match record.tolerance {
         None => format!("the bodies never {meet}"),
@@ -255,8 +263,8 @@ pub(crate) fn kept(text: &mut String, keep: Option<f64>) {
 }
 
 /// By how much hulls exceed their parts, and what the answer then means.
-pub(crate) fn hulls(text: &mut String, told: &Line) {
-    let Some(hulls) = &told.hull else { return };
+pub(crate) fn hulls(text: &mut String, hulls: Option<Hulls>, outcome: Ending, is_depth: bool) {
+    let Some(hulls) = hulls else { return };
     for (name, excess) in hulls.named() {
         line(text, name, &excess.to_string());
     }
@@ -266,13 +274,13 @@ pub(crate) fn hulls(text: &mut String, told: &Line) {
         (Some(_), None) => "the moving part itself",
         _ => "the fixed part itself",
     };
-    let meaning = match told.record.outcome {
+    let meaning = match outcome {
         Ending::Separated | Ending::Farther => format!("proven for {whose} too"),
         Ending::Behind => format!("proven for {whose} too: free ahead"),
         Ending::Grazing | Ending::Slides => {
             format!("a bound for {whose}: no more overlap sideways, perhaps none")
         }
-        Ending::Overlapping if told.record.upper.is_some() => {
+        Ending::Overlapping if is_depth => {
             format!("a bound for {whose}: parted by this translation, perhaps by a shorter one")
         }
         Ending::Overlapping => {
@@ -290,9 +298,9 @@ pub(crate) fn hulls(text: &mut String, told: &Line) {
         }
     };
     line(text, "so this is", &meaning);
-    if *dropped > 0.0 {
+    if dropped > 0.0 {
         let near =
-            format!("that is {} beyond a hull at most, and was dropped", six_digits(*dropped));
+            format!("that is {} beyond a hull at most, and was dropped", six_digits(dropped));
         line(text, "but for", &format!("what of {whose} {near}"));
     }
 }
@@ -302,8 +310,12 @@ pub(crate) fn line(text: &mut String, name: &str, value: &str) {
 }
 
 /// Writes a line for each feature in contact, with the name of its file if there is one.
-pub(crate) fn features(text: &mut String, record: &Record, files: [Option<&str>; 2]) {
-    let Some(FeaturesRecord { moving, fixed }) = &record.features else { return };
+pub(crate) fn features(
+    text: &mut String,
+    features: Option<&FeaturesRecord>,
+    files: [Option<&str>; 2],
+) {
+    let Some(FeaturesRecord { moving, fixed }) = features else { return };
     for (name, what, file) in [("moving", moving, files[0]), ("fixed", fixed, files[1])] {
         let file = file.map_or(String::new(), |file| format!(" of {}", shown(file)));
         line(text, name, &format!("{}{file}", feature(what)));

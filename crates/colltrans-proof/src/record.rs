@@ -1,177 +1,147 @@
 //! Answers as the command line, batches, Python and the page write them: one flat object of JSON,
 //! described by `docs/answers.schema.json`.
 //!
-//! A [`Record`] says what people and programs ask of an answer: numbers with their proven bounds, points
-//! and normals in the world, features by the numbers of the input. What checks a proof is not in it: for
+//! A record, one struct for each question, holds what people and programs want of an answer: numbers with their proven
+//! bounds, points and normals in the world, features by the numbers of the input. What checks a proof is not in it: for
 //! that there are the answers themselves, which the feature `serde` writes whole, and `ProofFile`.
 
+mod cast;
 mod free;
 mod motion;
 mod path;
+mod placed;
+mod scene;
 mod ways;
+
+use std::collections::BTreeMap;
 
 use derive_where::derive_where;
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
-use colltrans_convex::answer::{
-    Bounded, Clearance, Contact, ContactRange, Depth, Distance, Grazing, Outcome, OverlapAhead,
-    Separated, Solver, Steps, WhyFree, Within,
-};
+use colltrans_convex::answer::{Clearance, ContactRange, Depth, Distance, Within};
 use colltrans_convex::body::{Body, ConvexPolyhedron, Feature, Features, InputVertex, ObstacleId};
 use colltrans_convex::cast::Cast;
-use colltrans_convex::pair::{Pair, points};
+use colltrans_convex::pair::Pair;
 use colltrans_convex::setting::error::QueryError;
 use colltrans_convex::solve::observe::{NoObserver, Observer};
 use colltrans_kernel::written::named;
-use colltrans_scene::{Among, ClearanceAmong, Nearby, Nearest};
+use colltrans_solid::SolidPair;
 use colltrans_solid::body::Solid;
-use colltrans_solid::kinds::{AnyClearance, AnyNear, ByKind};
 use colltrans_solid::pair::OverlapDepth;
-use colltrans_solid::{SolidCast, SolidPair, SolidPairSearch};
+
+pub use cast::{CastRecord, ClearanceRecord, ContactRecord, SolidClearanceRecord};
 pub use free::{BlockedByRecord, FreeRecord, FreeRegionRecord};
-pub use motion::TimeRecord;
+pub use motion::{MotionRecord, TimeRecord};
 pub use path::PathRecord;
+pub use placed::{DepthRecord, DistanceRecord};
+pub use scene::{NearestRecord, SceneClearanceRecord, SceneWithinRecord};
 pub use ways::{LegRecord, WaysRecord};
 
-/// An answer; fields that do not apply are left out, numbers that are infinite are `null`.
-///
-/// Translations, the `distance` of a clearance and their bounds are in multiples of the direction, other
-/// lengths in the unit of the bodies.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
-#[non_exhaustive]
-pub struct Record {
-    /// How the query ended.
-    pub outcome: Ending,
-    /// Of one query among several directions: the direction as it was read. Of a depth: the unit vector
-    /// along which the moving body leaves the fixed one by the shortest way.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub direction: Option<[f64; 3]>,
-    /// Blocked: how far it is safe to move.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub distance: Option<f64>,
-    /// Overlapping: how far to go back to be free for certain.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub back: Option<f64>,
-    /// Overlapping: how far to go on to be free for certain.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub on: Option<f64>,
-    /// First contact; of solids, where the facets that stop them meet in their true place.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub translation: Option<f64>,
-    /// Proven.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub translation_bounds: Option<[f64; 2]>,
-    /// Of solids: how far they go, shrunk by half the tolerance each.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub shrunk_distance: Option<f64>,
-    /// Proven.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub shrunk_distance_bounds: Option<[f64; 2]>,
-    /// Last contact.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub exit: Option<f64>,
-    /// Proven: beyond the second they never meet.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub exit_bounds: Option<[f64; 2]>,
-    /// Of a motion: when they first meet, in parts of it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub time: Option<TimeRecord>,
-    /// Of the clearance of a motion: when they do as the tolerance leaves them.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub shrunk_time: Option<TimeRecord>,
-    /// Of bodies where they are: a length that their distance, or depth, is not below. Proven.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub lower: Option<f64>,
-    /// One that it is not above. Proven.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub upper: Option<f64>,
-    /// Points of the moving and of the fixed body that are `upper` apart, in the world, rounded.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub points: Option<[[f64; 3]; 2]>,
-    /// The name of what touches, or overlaps deepest, of a moving body that has several.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub moving: Option<String>,
-    /// The same of the fixed body.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub fixed: Option<String>,
-    /// One body among many: the number of the one that is told of, the nearest or the first.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub obstacle: Option<ObstacleId>,
-    /// One body among many: how many were asked about.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub obstacles: Option<usize>,
-    /// One body among many: those that are at most the length away, in the order in which they came.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub closer: Option<Vec<NearbyRecord>>,
-    /// One body among many: those of which rounding cannot tell.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub undecided: Vec<NearbyRecord>,
-    /// Unit normal from the moving to the fixed body: of the contact plane, of the separating one, or along
-    /// the shortest way.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub normal: Option<[f64; 3]>,
-    /// The contact point on the fixed body, in the world.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub point: Option<[f64; 3]>,
-    /// Of convex bodies: what rounding alone can make of the bounds' difference.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub rounding: Option<f64>,
-    /// Of solids: the one that was used, a length. Of a motion of convex bodies: the depth that is tolerated.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub tolerance: Option<f64>,
-    /// The gap that is kept, a length: the bodies count as meeting where they are as near as that.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub keep: Option<f64>,
-    /// Of solids: what overlaps now.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub start_overlaps: Vec<StartOverlapRecord>,
-    /// Of solids: which are open, at least in part.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub surfaces: Vec<&'static str>,
-    /// What touches.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub features: Option<FeaturesRecord>,
-    /// Separated: the gap between the shadows along the normal.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub margin: Option<f64>,
-    /// Grazing, slides: by how much the shadows overlap; negative where they may not.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub overlap: Option<f64>,
-    /// Grazing, slides: the unit vector along which they do, across the direction, from the moving
-    /// body's shadow to the fixed one's.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub sideways: Option<[f64; 3]>,
-    /// Of convex bodies.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub solver: Option<Solver>,
-    /// Of convex bodies: how much work it was.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub steps: Option<Steps>,
-    /// Of a motion: how many times of it were looked at.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub looks: Option<u32>,
-    /// Of a motion: how many planes the proof has.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub planes: Option<usize>,
-    /// Depths of the dents of meshes that are convex only to within the tolerance.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub dents: Option<Dents>,
-    /// For people: what is wrong.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub message: Option<String>,
+/// Defines a record. Its fields are those of the JSON, in this order; values that are absent ([`Field::is_absent`]) are
+/// left out. The last field, after `..`, is a record whose own fields follow.
+macro_rules! record {
+    ($(#[$about:meta])* pub struct $name:ident {
+        $($(#[$doc:meta])* pub $field:ident: $type:ty,)*
+        $(.. $(#[$more:meta])* pub $rest:ident: $rest_type:ty,)?
+    }) => {
+        $(#[$about])*
+        #[derive(Debug, Clone, PartialEq, Default, serde::Serialize)]
+        pub struct $name {
+            $(
+                $(#[$doc])*
+                #[serde(skip_serializing_if = "crate::record::Field::is_absent")]
+                pub $field: $type,
+            )*
+            $($(#[$more])* #[serde(flatten)] pub $rest: $rest_type,)?
+        }
+
+        impl $name {
+            /// Returns the names of all fields, in the order of the JSON.
+            pub fn fields() -> Vec<&'static str> {
+                let own: &[_] = &[$(stringify!($field)),*];
+                [own, $(&<$rest_type>::fields())?].concat()
+            }
+        }
+    };
+}
+use record;
+
+/// A value of a field that may be absent.
+trait Field {
+    /// Checks whether the field is left out.
+    fn is_absent(&self) -> bool {
+        false
+    }
 }
 
-/// Depths to which the surfaces of meshes that are convex only to within the tolerance lie below their hulls, which
-/// stand for these meshes in the answer.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Dents {
-    /// Depth of the moving body's dent, a length; `None` where the precision of its file explains it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub moving: Option<f64>,
-    /// Depth of the fixed body's dent, a length; `None` where the precision of its file explains it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub fixed: Option<f64>,
+impl<T> Field for Option<T> {
+    fn is_absent(&self) -> bool {
+        self.is_none()
+    }
+}
+
+impl<T> Field for Vec<T> {
+    fn is_absent(&self) -> bool {
+        self.is_empty()
+    }
+}
+
+impl<K, V> Field for BTreeMap<K, V> {
+    fn is_absent(&self) -> bool {
+        self.is_empty()
+    }
+}
+
+macro_rules! always_there {
+    ($($type:ty),*) => { $(impl Field for $type {})* };
+}
+always_there!(Ending, ObstacleId, f64, u32, usize, &str);
+
+/// The answer of any question about two bodies: a line of a batch.
+///
+/// Fields that do not apply are left out, numbers that are infinite are `null`. Translations, the `distance` of a
+/// clearance and their bounds are in multiples of the direction, other lengths in the unit of the bodies.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Record {
+    /// Where convex bodies meet along a direction.
+    Cast(CastRecord),
+    /// How far a convex body can move.
+    Clearance(ClearanceRecord),
+    /// How far a solid can move.
+    SolidClearance(SolidClearanceRecord),
+    /// How far bodies are apart, or whether they are closer than a length.
+    Distance(DistanceRecord),
+    /// How deep bodies overlap.
+    Depth(DepthRecord),
+    /// When bodies that turn first meet, or how far they can go.
+    Motion(MotionRecord),
+    /// No answer.
+    Error(ErrorRecord),
+}
+
+record! {
+    /// A query that has no answer.
+    #[non_exhaustive]
+    pub struct ErrorRecord {
+        /// `error`.
+        pub outcome: Ending,
+        /// Of one query among several directions: the direction as it was read.
+        pub direction: Option<[f64; 3]>,
+    }
+}
+
+record! {
+    /// Depths to which the surfaces of meshes that are convex only to within the tolerance lie below their hulls, which
+    /// stand for these meshes in the answer.
+    #[derive(Copy)]
+    pub struct Dents {
+        /// Depth of the moving body's dent, a length; `None` where the precision of its file explains it.
+        pub moving: Option<f64>,
+        /// Depth of the fixed body's dent, a length; `None` where the precision of its file explains it.
+        pub fixed: Option<f64>,
+    }
 }
 
 impl Dents {
@@ -219,39 +189,41 @@ pub enum Ending {
     Error,
 }
 
-/// Two solids that overlap where they are, or two pieces of them by their names.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct StartOverlapRecord {
-    /// The name of the moving piece.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub moving: Option<String>,
-    /// The name of the fixed piece.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub fixed: Option<String>,
-    /// The least tolerance with which they would not overlap, if there is one.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub least_tolerance: Option<f64>,
+record! {
+    /// Two solids that overlap where they are, or two pieces of them by their names.
+    pub struct StartOverlapRecord {
+        /// The name of the moving piece.
+        pub moving: Option<String>,
+        /// The name of the fixed piece.
+        pub fixed: Option<String>,
+        /// The least tolerance with which they would not overlap, if there is one.
+        pub least_tolerance: Option<f64>,
+    }
 }
 
-/// One of many bodies, and how far it is.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct NearbyRecord {
-    /// Its number.
-    pub obstacle: ObstacleId,
-    /// Its name.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub fixed: Option<String>,
-    /// A length that the distance is not below, where it was looked for.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub lower: Option<f64>,
-    /// One that it is not above.
-    pub upper: f64,
-    /// Points of the moving and of this body that are so far apart, in the world, rounded.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub points: Option<[[f64; 3]; 2]>,
-    /// Depth of this body's dent, a length, where its mesh is convex only to within the tolerance.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub dent: Option<f64>,
+impl StartOverlapRecord {
+    /// Returns the overlap of two bodies as a list, without names.
+    fn parted_by(least_tolerance: Option<f64>) -> Vec<Self> {
+        vec![Self { least_tolerance, ..Self::default() }]
+    }
+}
+
+record! {
+    /// One of many bodies, and how far it is.
+    pub struct NearbyRecord {
+        /// Its number.
+        pub obstacle: ObstacleId,
+        /// Its name.
+        pub fixed: Option<String>,
+        /// A length that the distance is not below, where it was looked for.
+        pub lower: Option<f64>,
+        /// One that it is not above.
+        pub upper: f64,
+        /// Points of the moving and of this body that are so far apart, in the world, rounded.
+        pub points: Option<[[f64; 3]; 2]>,
+        /// Depth of this body's dent, a length, where its mesh is convex only to within the tolerance.
+        pub dent: Option<f64>,
+    }
 }
 
 /// The features of both bodies in the contact plane.
@@ -384,8 +356,8 @@ impl Answer {
     /// As front ends write it; `cast` is the one that was asked.
     pub fn record(&self, cast: &Cast) -> Record {
         match self {
-            Self::Contact(range) => Record::of_contact_range(range, cast),
-            Self::Clearance(clearance) => Record::of_clearance(clearance, cast),
+            Self::Contact(range) => CastRecord::of_range(range, cast).into(),
+            Self::Clearance(clearance) => ClearanceRecord::of(clearance, cast).into(),
         }
     }
 
@@ -460,11 +432,11 @@ impl PairAnswer {
     /// As front ends write it; `pair` is the one that was asked.
     pub fn record(&self, pair: &Pair) -> Record {
         match self {
-            Self::Distance(distance) => Record::of_convex_distance(distance, pair),
-            Self::Depth(depth) => Record::of_depth(depth),
-            Self::OverlapDepth(depth) => Record::of_overlap_depth(*depth),
+            Self::Distance(distance) => DistanceRecord::of(distance, pair).into(),
+            Self::Depth(depth) => DepthRecord::of(depth).into(),
+            Self::OverlapDepth(depth) => DepthRecord::of_overlap(*depth, Vec::new()).into(),
             Self::Within { answer, steps } => {
-                Record { steps: Some(*steps), ..Record::of_within(answer, pair) }
+                DistanceRecord::of_within(answer, *steps, pair).into()
             }
         }
     }
@@ -487,325 +459,77 @@ impl PairAnswer<Solid> {
     /// # Errors
     /// As the question itself.
     pub fn record(&self, pair: &Pair<'_, Solid>) -> Result<Record, QueryError> {
-        let record = match self {
-            Self::Distance(distance) => Record::of_distance(distance, pair),
-            Self::Depth(depth) => Record::of_depth(depth),
-            Self::OverlapDepth(depth) => Record::of_overlap_depth(*depth),
-            Self::Within { answer, .. } => Record::of_solids_within(answer, pair)?,
-        };
-        Ok(Record { surfaces: open_ones(pair.moving(), pair.fixed()), ..record })
+        let surfaces = open_ones(pair.moving(), pair.fixed());
+        Ok(match self {
+            Self::Distance(distance) => DistanceRecord::of_solids(distance, pair).into(),
+            Self::Depth(depth) => DepthRecord { surfaces, ..DepthRecord::of(depth) }.into(),
+            Self::OverlapDepth(depth) => DepthRecord::of_overlap(*depth, surfaces).into(),
+            Self::Within { answer, .. } => DistanceRecord::of_solids_within(answer, pair)?.into(),
+        })
     }
 }
 
 impl Record {
-    /// Of a query that has no answer, and why.
-    pub fn error(message: String) -> Self {
-        Self { message: Some(message), ..Self::default() }
-    }
-
-    /// Of [`Cast::first_contact`].
-    pub fn of_outcome(outcome: &Outcome, cast: &Cast) -> Self {
-        let record = match outcome {
-            Outcome::Contact(first) => Self::contact(Ending::Contact, first, cast),
-            Outcome::Grazing(grazing) => Self::grazing(Ending::Grazing, grazing, cast),
-            Outcome::Separated(separated) => Self::separated(separated),
-        };
-        record.keeping(cast.options().keep)
-    }
-
-    /// Of [`Cast::contact_range`].
-    pub fn of_contact_range(range: &ContactRange, cast: &Cast) -> Self {
-        let record = match range {
-            ContactRange::Contact { first, last } => {
-                Self::contact(Ending::Contact, first, cast).with_exit(last.exit())
-            }
-            ContactRange::Grazing { first, last } => {
-                Self::grazing(Ending::Grazing, first, cast).with_exit(last.contact.exit())
-            }
-            ContactRange::Separated(separated) => Self::separated(separated),
-        };
-        record.keeping(cast.options().keep)
-    }
-
-    /// Of [`Cast::clearance`] between convex bodies.
-    pub fn of_clearance(clearance: &Clearance, cast: &Cast) -> Self {
-        let record = match clearance {
-            Clearance::Blocked { distance, contact } => {
-                let record = Self::contact(Ending::Blocked, contact, cast);
-                Self { distance: Some(*distance), ..record }
-            }
-            Clearance::Free(WhyFree::Slides(grazing)) => {
-                Self::grazing(Ending::Slides, grazing, cast)
-            }
-            // The last contact is the first one of the way back.
-            Clearance::Free(WhyFree::Behind(last)) => {
-                let record = Self::contact(Ending::Behind, last, &cast.reversed());
-                let record = Self { translation: None, translation_bounds: None, ..record };
-                record.with_exit(last.exit())
-            }
-            Clearance::Free(WhyFree::Separated(separated)) => Self::separated(separated),
-            Clearance::Overlapping(OverlapAhead { first, last }) => {
-                let record = Self::contact(Ending::Overlapping, first, cast);
-                let [back, on] = [first, last].map(|contact| Some(-contact.certificate.lower));
-                Self { back, on, ..record }.with_exit(last.exit())
-            }
-        };
-        record.keeping(cast.options().keep)
-    }
-
-    /// Of [`Cast::clearance`] between solids; `exit` as `SolidCast::exit` says.
-    pub fn of_solids(
-        clearance: &Clearance<Solid>,
-        exit: Option<Bounded>,
-        cast: &Cast<'_, Solid>,
-    ) -> Self {
-        let record = match clearance {
-            Clearance::Free(_) => Self { outcome: Ending::Free, ..Self::default() },
-            Clearance::Overlapping(overlap) => {
-                let least_tolerance = overlap.least_tolerance;
-                let overlap = StartOverlapRecord { least_tolerance, ..Default::default() };
-                let start_overlaps = vec![overlap];
-                Self { outcome: Ending::Overlapping, start_overlaps, ..Self::default() }
-            }
-            Clearance::Blocked { distance, contact } => Self {
-                outcome: Ending::Blocked,
-                distance: Some(*distance),
-                shrunk_distance: Some(contact.shrunk_distance.value),
-                shrunk_distance_bounds: Some(contact.shrunk_distance.bounds()),
-                normal: Some(coordinates(contact.normal)),
-                point: Some(coordinates(contact.point_on_fixed)),
-                features: Some(FeaturesRecord {
-                    moving: FeatureRecord::of(contact.moving_feature, cast.moving()),
-                    fixed: FeatureRecord::of(contact.fixed_feature, cast.fixed()),
-                }),
-                ..Self::default()
-            }
-            .with_translation(contact.translation),
-        };
-        let surfaces = open_ones(cast.moving(), cast.fixed());
-        let record = Self { tolerance: Some(cast.tolerance()), surfaces, ..record };
-        let record = record.keeping(cast.options().keep);
-        exit.into_iter().fold(record, Self::with_exit)
-    }
-
-    /// Of [`Pair::distance`].
-    pub fn of_distance<B: Body>(distance: &Distance<B>, pair: &Pair<'_, B>) -> Self {
-        let outcome = if distance.lower > 0.0 { Ending::Apart } else { Ending::Meeting };
-        Self {
-            outcome,
-            lower: Some(distance.lower),
-            upper: Some(distance.upper),
-            points: Some([coordinates(distance.on_moving), coordinates(distance.on_fixed)]),
-            normal: distance.normal.map(coordinates),
-            features: distance
-                .features
-                .map(|features| FeaturesRecord::of(features, [pair.moving(), pair.fixed()])),
-            ..Self::default()
+    /// Returns how the query ended.
+    pub const fn outcome(&self) -> Ending {
+        match self {
+            Self::Cast(of) => of.outcome,
+            Self::Clearance(of) => of.outcome,
+            Self::SolidClearance(of) => of.outcome,
+            Self::Distance(of) => of.outcome,
+            Self::Depth(of) => of.outcome,
+            Self::Motion(of) => of.outcome,
+            Self::Error(of) => of.outcome,
         }
     }
 
-    fn of_convex_distance(distance: &Distance, pair: &Pair<'_>) -> Self {
-        Self { steps: Some(distance.steps), ..Self::of_distance(distance, pair) }
-    }
-
-    /// Of [`Pair::depth`].
-    pub fn of_depth(depth: &Depth) -> Self {
-        let outcome = match (depth.lower > 0.0, depth.upper > 0.0) {
-            (true, _) => Ending::Overlapping,
-            (false, true) => Ending::Touching,
-            (false, false) => Ending::Apart,
-        };
-        let direction = depth.upper > 0.0;
-        Self {
-            outcome,
-            direction: direction.then(|| coordinates(depth.direction)),
-            lower: Some(depth.lower),
-            upper: Some(depth.upper),
-            steps: Some(depth.steps),
-            ..Self::default()
+    /// Returns the contact of convex bodies along a direction; `None` for other questions.
+    pub const fn contact(&self) -> Option<&ContactRecord> {
+        match self {
+            Self::Cast(CastRecord { contact, .. })
+            | Self::Clearance(ClearanceRecord { contact, .. }) => Some(contact),
+            _ => None,
         }
     }
 
-    /// Of `SolidPair::overlap_depth`.
-    pub fn of_overlap_depth(depth: OverlapDepth) -> Self {
-        let OverlapDepth { meets, least_tolerance, .. } = depth;
-        let outcome = match (least_tolerance, meets) {
-            (Some(0.0), false) => Ending::Apart,
-            (Some(0.0), true) => Ending::Touching,
-            _ => {
-                let overlap = StartOverlapRecord { least_tolerance, ..Default::default() };
-                let start_overlaps = vec![overlap];
-                return Self { outcome: Ending::Overlapping, start_overlaps, ..Self::default() };
-            }
-        };
-        Self { outcome, lower: Some(0.0), upper: Some(0.0), ..Self::default() }
-    }
-
-    /// Of [`Pair::within`] between convex bodies.
-    pub fn of_within(within: &Within, pair: &Pair) -> Self {
-        match within {
-            Within::Closer(near) => Self::closer(near.distance, points(&pair.bodies, near)),
-            Within::Farther(gap) => {
-                Self { normal: Some(coordinates(gap.normal)), ..Self::farther(gap.gap) }
-            }
-            Within::Undecided(distance) => {
-                Self { outcome: Ending::Undecided, ..Self::of_distance(distance, pair) }
-            }
+    /// Adds the direction, one among several; questions without a direction stay as they are.
+    #[must_use]
+    pub fn with_direction(mut self, along: [f64; 3]) -> Self {
+        match &mut self {
+            Self::Cast(CastRecord { direction, .. })
+            | Self::Clearance(ClearanceRecord { direction, .. })
+            | Self::SolidClearance(SolidClearanceRecord { direction, .. })
+            | Self::Error(ErrorRecord { direction, .. }) => *direction = Some(along),
+            Self::Distance(_) | Self::Depth(_) | Self::Motion(_) => {}
         }
-    }
-
-    /// Of [`Pair::within`] between solids.
-    ///
-    /// # Errors
-    /// None at present.
-    pub fn of_solids_within(
-        within: &Within<Solid>,
-        pair: &Pair<'_, Solid>,
-    ) -> Result<Self, QueryError> {
-        Ok(match within {
-            Within::Closer(near) => Self::closer(near.distance(), pair.points(near)?),
-            Within::Farther(gap) => Self::farther(gap.gap),
-            Within::Undecided(distance) => {
-                Self { outcome: Ending::Undecided, ..Self::of_distance(distance, pair) }
-            }
-        })
-    }
-
-    /// Of [`Among::nearest`]; `among` is what was asked.
-    pub fn of_nearest(nearest: &Nearest, among: &Among<'_>) -> Self {
-        let Nearest { obstacle, ref distance, lower, .. } = *nearest;
-        let record = match (among.pair_with(obstacle), distance) {
-            (Some(ByKind::Convex(pair)), ByKind::Convex(of)) => Self::of_convex_distance(of, &pair),
-            (Some(ByKind::Solid(pair)), ByKind::Solid(of)) => Self::of_distance(of, &pair),
-            // It has gone since.
-            _ => Self { upper: Some(distance.upper()), ..Self::default() },
-        };
-        let outcome = if lower > 0.0 { Ending::Apart } else { Ending::Meeting };
-        Self { outcome, lower: Some(lower), ..record }.among(Some(obstacle), among)
-    }
-
-    /// Of [`Among::within`]: *closer* if one is, *undecided* if rounding cannot tell of one, else *farther*.
-    pub fn of_nearby(nearby: &Nearby, among: &Among<'_>) -> Self {
-        let outcome = match (nearby.closer.is_empty(), nearby.undecided.is_empty()) {
-            (false, _) => Ending::Closer,
-            (true, false) => Ending::Undecided,
-            (true, true) => Ending::Farther,
-        };
-        let closer = nearby.closer.iter().map(|(obstacle, near)| NearbyRecord {
-            obstacle: *obstacle,
-            upper: near.distance(),
-            points: points_of(*obstacle, near, among),
-            ..NearbyRecord::default()
-        });
-        let undecided = nearby.undecided.iter().map(|(obstacle, distance)| NearbyRecord {
-            obstacle: *obstacle,
-            lower: Some(distance.lower()),
-            upper: distance.upper(),
-            points: Some([distance.on_moving(), distance.on_fixed()].map(coordinates)),
-            ..NearbyRecord::default()
-        });
-        let (closer, undecided) = (Some(closer.collect()), undecided.collect());
-        Self { outcome, closer, undecided, ..Self::default() }.among(None, among)
-    }
-
-    /// Of [`Among::clearance`]; `among` is what was asked. The distance is that of all obstacles together, the
-    /// contact that of the one which stops the body.
-    pub fn of_clearance_among(found: &ClearanceAmong, among: &Among<'_>, direction: DVec3) -> Self {
-        let obstacle = found.stop.map(|(id, _)| id);
-        let record = found.stop.and_then(|(id, stop)| {
-            Some(match (among.cast_at(id, direction)?, stop) {
-                (ByKind::Convex(cast), AnyClearance::Convex(of)) => Self::of_clearance(&of, &cast),
-                (ByKind::Solid(cast), AnyClearance::Solid(of)) => Self::of_solids(&of, None, &cast),
-                _ => return None,
-            })
-        });
-        let keep = among.options().keep;
-        let free = || Self { outcome: Ending::Free, ..Self::default() }.keeping(keep);
-        let record = record.unwrap_or_else(free);
-        let distance = found.distance().filter(|distance| distance.is_finite());
-        Self { distance, ..record }.among(obstacle, among)
-    }
-
-    fn among(self, obstacle: Option<ObstacleId>, among: &Among<'_>) -> Self {
-        Self { obstacle, obstacles: Some(among.count()), ..self }
-    }
-
-    fn closer(upper: f64, points: [DVec3; 2]) -> Self {
-        let points = Some(points.map(coordinates));
-        Self { outcome: Ending::Closer, upper: Some(upper), points, ..Self::default() }
-    }
-
-    fn farther(lower: f64) -> Self {
-        Self { outcome: Ending::Farther, lower: Some(lower), ..Self::default() }
-    }
-
-    /// With the gap that is kept, if there is one.
-    fn keeping(self, gap: f64) -> Self {
-        Self { keep: (gap > 0.0).then_some(gap), ..self }
-    }
-
-    fn separated(separated: &Separated) -> Self {
-        let Separated { certificate, solver, steps, .. } = separated;
-        Self {
-            outcome: Ending::Separated,
-            normal: Some(coordinates(certificate.normal)),
-            margin: Some(certificate.margin),
-            solver: Some(*solver),
-            steps: Some(*steps),
-            ..Self::default()
-        }
-    }
-
-    fn grazing(outcome: Ending, grazing: &Grazing, cast: &Cast) -> Self {
-        Self {
-            overlap: Some(grazing.overlap),
-            sideways: Some(coordinates(grazing.separating_direction)),
-            ..Self::contact(outcome, &grazing.contact, cast)
-        }
-    }
-
-    fn contact(outcome: Ending, contact: &Contact, cast: &Cast) -> Self {
-        let Features { moving, fixed } = contact.features(cast);
-        Self {
-            outcome,
-            normal: Some(coordinates(contact.normal)),
-            point: Some(coordinates(contact.points(cast).on_fixed)),
-            rounding: Some(contact.certificate.rounding),
-            features: Some(FeaturesRecord {
-                moving: FeatureRecord::of(moving, cast.moving()),
-                fixed: FeatureRecord::of(fixed, cast.fixed()),
-            }),
-            solver: Some(contact.solver),
-            steps: Some(contact.steps),
-            ..Self::default()
-        }
-        .with_translation(contact.bounded())
-    }
-
-    fn with_translation(self, t: Bounded) -> Self {
-        Self { translation: Some(t.value), translation_bounds: Some(t.bounds()), ..self }
-    }
-
-    fn with_exit(self, exit: Bounded) -> Self {
-        Self { exit: Some(exit.value), exit_bounds: Some(exit.bounds()), ..self }
+        self
     }
 }
+
+macro_rules! records {
+    ($($case:ident($record:ident)),*) => {$(
+        impl From<$record> for Record {
+            fn from(record: $record) -> Self {
+                Self::$case(record)
+            }
+        }
+    )*};
+}
+records!(
+    Cast(CastRecord),
+    Clearance(ClearanceRecord),
+    SolidClearance(SolidClearanceRecord),
+    Distance(DistanceRecord),
+    Depth(DepthRecord),
+    Motion(MotionRecord),
+    Error(ErrorRecord)
+);
 
 impl FeatureRecord {
     /// A feature of a body.
     pub fn of<B: Body>(feature: Feature, body: &B) -> Self {
         Self { kind: feature.kind(), vertices: feature.vertices(body) }
     }
-}
-
-/// Two points that are near, in the world; `None` if the obstacle has gone since.
-fn points_of(obstacle: ObstacleId, near: &AnyNear, among: &Among<'_>) -> Option<[[f64; 3]; 2]> {
-    let found = match (among.pair_with(obstacle)?, near) {
-        (ByKind::Convex(pair), ByKind::Convex(near)) => points(&pair.bodies, near),
-        (ByKind::Solid(pair), ByKind::Solid(near)) => pair.points(near).ok()?,
-        _ => return None,
-    };
-    Some(found.map(coordinates))
 }
 
 /// Which of two solids are open, at least in part.
@@ -817,4 +541,9 @@ fn open_ones(moving: &Solid, fixed: &Solid) -> Vec<&'static str> {
 /// Without -0.
 fn coordinates(v: DVec3) -> [f64; 3] {
     v.to_array().map(|c| c + 0.0)
+}
+
+/// Returns the gap that is kept, if there is one.
+fn kept(gap: f64) -> Option<f64> {
+    (gap > 0.0).then_some(gap)
 }

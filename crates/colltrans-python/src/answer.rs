@@ -6,7 +6,7 @@
 use std::fs;
 use std::path::Path;
 
-use colltrans::record::Record;
+use colltrans::record::{Dents, Record};
 use pyo3::PyClass;
 use pyo3::exceptions::PyOSError;
 use pyo3::prelude::*;
@@ -26,6 +26,15 @@ pub(crate) trait Answer: Serialize + DeserializeOwned + Send {
 
     /// Its proof, as a file.
     fn proof(&self, query: &Bound<'_, Self::Query>) -> PyResult<String>;
+}
+
+/// A record with the dents of both bodies.
+#[derive(Serialize)]
+pub(crate) struct WithDents {
+    #[serde(flatten)]
+    pub(crate) record: Record,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(crate) dents: Option<Dents>,
 }
 
 /// An object of a class of Python.
@@ -79,10 +88,10 @@ macro_rules! answer {
             /// dict
             fn to_dict<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
                 let $it = self;
-                let mut record =
+                let record =
                     <$of as $crate::answer::Answer>::record(&$again, self.query.bind(py))?;
-                record.dents = self.query.get().dents();
-                $crate::frozen::plain(py, &record)
+                let dents = self.query.get().dents();
+                $crate::frozen::plain(py, &$crate::answer::WithDents { record, dents })
             }
 
             /// The proof, with all that it is about, as text: the file of ``--save-proof``, which

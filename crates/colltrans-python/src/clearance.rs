@@ -1,7 +1,7 @@
 //! Answers about where the moving body is now: how far it can go, how deep it is, whether it meets.
 
 use colltrans::glam::DVec3;
-use colltrans::record::Record;
+use colltrans::record::{ClearanceRecord, Record};
 use colltrans::{CentralCast, Clearance, Outcome, OverlapAhead, ProofFile, WhyFree};
 use pyo3::prelude::*;
 
@@ -190,7 +190,7 @@ impl Answer for Clearance {
     }
 
     fn record(&self, query: &Bound<'_, Cast>) -> PyResult<Record> {
-        query.get().with(|cast| Record::of_clearance(self, cast))
+        query.get().with(|cast| ClearanceRecord::of(self, cast).into())
     }
 
     fn proof(&self, query: &Bound<'_, Cast>) -> PyResult<String> {
@@ -223,9 +223,8 @@ impl Answer for colltrans::Intersection {
 
     fn record(&self, query: &Bound<'_, Cast>) -> PyResult<Record> {
         let CentralCast { direction, outcome, .. } = self.evidence;
-        let mut record = outcome.record(&along(query, direction)?)?;
-        record.direction = Some(coordinates(direction));
-        Ok(record)
+        let record = outcome.record(&along(query, direction)?)?;
+        Ok(record.with_direction(coordinates(direction)))
     }
 
     fn proof(&self, query: &Bound<'_, Cast>) -> PyResult<String> {

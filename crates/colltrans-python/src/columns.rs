@@ -2,7 +2,9 @@
 //!
 //! Which columns a question has is listed in Python, by the classes of its answers (`colltrans.columns`, ...).
 
-use colltrans::record::{FeatureRecord, Record};
+use colltrans::record::{
+    Ending, FeatureRecord, FeaturesRecord, MotionRecord, Record, StartOverlapRecord,
+};
 use colltrans::{
     Cast, Clearance, Contact, ContactRange, Features, InputVertex, Outcome, OverlapAhead, WhyFree,
 };
@@ -165,32 +167,57 @@ impl Row {
 
     /// Of bodies where they are.
     pub(crate) fn of_record(question: Question, record: &Record) -> Self {
-        let name = record.outcome.name();
-        let outcome = question.outcomes().iter().position(|known| *known == name);
-        let mut row = Self { outcome: outcome.unwrap_or_default() as u8, ..Self::NONE };
-        let overlap = record.start_overlaps.first().and_then(|overlap| overlap.least_tolerance);
-        let lower = record.lower.or(record.time.map(|time| time.lower));
-        let upper = record.upper.or(record.time.and_then(|time| time.upper));
-        let numbers = [(AT_LEAST, lower), (AT_MOST, upper), (LEAST_TOLERANCE, overlap)];
-        for (which, number) in numbers {
-            row = number.map_or(row, |number| row.with(which, number));
+        let row = Self::ended(question, record.outcome());
+        match record {
+            Record::Distance(of) => row
+                .bounded(of.lower, of.upper)
+                .at(NORMAL, of.normal)
+                .at(ON_MOVING, of.points.map(|points| points[0]))
+                .at(ON_FIXED, of.points.map(|points| points[1]))
+                .featured(of.features.as_ref()),
+            Record::Depth(of) => row
+                .bounded(of.lower, of.upper)
+                .parted_by(&of.start_overlaps)
+                .at(DIRECTION, of.direction),
+            // Asked of other rows.
+            _ => row,
         }
-        let [from, to] = [0, 1].map(|k| record.points.map(|points| points[k]));
-        let vectors = [
-            (NORMAL, record.normal),
-            (POINT, record.point),
-            (ON_MOVING, from),
-            (ON_FIXED, to),
-            (DIRECTION, record.direction),
-        ];
-        for (which, vector) in vectors {
-            row = vector.map_or(row, |vector| row.along(which, vector));
-        }
-        if let Some(features) = &record.features {
+    }
+
+    /// Of bodies that move.
+    pub(crate) fn of_motion(question: Question, of: &MotionRecord) -> Self {
+        Self::ended(question, of.outcome)
+            .bounded(of.time.map(|time| time.lower), of.time.and_then(|time| time.upper))
+            .parted_by(&of.start_overlaps)
+            .at(NORMAL, of.normal)
+            .at(POINT, of.point)
+            .featured(of.features.as_ref())
+    }
+
+    fn ended(question: Question, outcome: Ending) -> Self {
+        let found = question.outcomes().iter().position(|known| *known == outcome.name());
+        Self { outcome: found.unwrap_or_default() as u8, ..Self::NONE }
+    }
+
+    fn bounded(self, lower: Option<f64>, upper: Option<f64>) -> Self {
+        self.with(AT_LEAST, lower.unwrap_or(f64::NAN)).with(AT_MOST, upper.unwrap_or(f64::NAN))
+    }
+
+    fn parted_by(self, overlaps: &[StartOverlapRecord]) -> Self {
+        let least = overlaps.first().and_then(|overlap| overlap.least_tolerance);
+        self.with(LEAST_TOLERANCE, least.unwrap_or(f64::NAN))
+    }
+
+    fn at(self, which: usize, vector: Option<[f64; 3]>) -> Self {
+        vector.map_or(self, |vector| self.along(which, vector))
+    }
+
+    fn featured(mut self, features: Option<&FeaturesRecord>) -> Self {
+        if let Some(FeaturesRecord { moving, fixed }) = features {
             let of = |feature: &FeatureRecord| corners(feature.vertices.iter().copied());
-            row.features = [of(&features.moving), of(&features.fixed)];
+            self.features = [of(moving), of(fixed)];
         }
-        row
+        self
     }
 
     fn with_exit(self, last: &Contact) -> Self {

@@ -1,7 +1,7 @@
 //! Answers about bodies where they are: how far apart, how deep, whether closer than a length.
 
 use colltrans::glam::DVec3;
-use colltrans::record::{PairAnswer, PairQuestion, Record};
+use colltrans::record::{DistanceRecord, PairAnswer, PairQuestion, Record};
 use colltrans::solid::SolidPair as _;
 use colltrans::solid::SolidSteps;
 use colltrans::{ProofFile, Solid};
@@ -174,8 +174,8 @@ pub(crate) struct Within {
 answer!(Within("closer", "lower", "upper") of WithinOf, Pair, |it| it.found);
 
 impl Within {
-    fn record(&self, py: Python<'_>) -> PyResult<Record> {
-        self.found.record(self.query.bind(py))
+    fn told(&self, py: Python<'_>) -> PyResult<DistanceRecord> {
+        self.found.told(self.query.bind(py))
     }
 }
 
@@ -193,13 +193,13 @@ getters!(Within, |it| {
         })
     };
     /// float or None: The bodies are not nearer, where that was found out.
-    lower(py): PyResult<Option<f64>> = Ok(it.record(py)?.lower);
+    lower(py): PyResult<Option<f64>> = Ok(it.told(py)?.lower);
     /// float or None: They are not farther, where that was found out.
-    upper(py): PyResult<Option<f64>> = Ok(it.record(py)?.upper);
+    upper(py): PyResult<Option<f64>> = Ok(it.told(py)?.upper);
     /// tuple of (ndarray, ndarray) or None: Points of the moving and of the fixed body, in the world, that
     /// are ``upper`` apart.
     points(py): PyResult<Option<[Vector<'py>; 2]>> = {
-        let points = it.record(py)?.points;
+        let points = it.told(py)?.points;
         Ok(points.map(|points| points.map(|point| row(py, DVec3::from_array(point)))))
     };
     /// Steps or None: Work done; None of solids.
@@ -259,11 +259,9 @@ impl Answer for DistanceOf {
 
     fn record(&self, query: &Bound<'_, Pair>) -> PyResult<Record> {
         match (self, query.get().asked()?) {
-            (Self::Convex(found), Of::Convex(pair)) => {
-                Ok(PairAnswer::Distance(*found).record(&pair))
-            }
+            (Self::Convex(found), Of::Convex(pair)) => Ok(DistanceRecord::of(found, &pair).into()),
             (Self::Solids(found), Of::Solids(pair)) => {
-                PairAnswer::<Solid>::Distance(*found).record(&pair).or_raise()
+                Ok(DistanceRecord::of_solids(found, &pair).into())
             }
             _ => Err(other_bodies()),
         }
@@ -271,6 +269,20 @@ impl Answer for DistanceOf {
 
     fn proof(&self, query: &Bound<'_, Pair>) -> PyResult<String> {
         Ok(proof_of(self, query)?.to_json())
+    }
+}
+
+impl WithinOf {
+    fn told(&self, query: &Bound<'_, Pair>) -> PyResult<DistanceRecord> {
+        match (&self.found, query.get().asked()?) {
+            (Of::Convex((answer, steps)), Of::Convex(pair)) => {
+                Ok(DistanceRecord::of_within(answer, *steps, &pair))
+            }
+            (Of::Solids((answer, _)), Of::Solids(pair)) => {
+                DistanceRecord::of_solids_within(answer, &pair).or_raise()
+            }
+            _ => Err(other_bodies()),
+        }
     }
 }
 
@@ -282,15 +294,7 @@ impl Answer for WithinOf {
     }
 
     fn record(&self, query: &Bound<'_, Pair>) -> PyResult<Record> {
-        match (&self.found, query.get().asked()?) {
-            (&Of::Convex((answer, steps)), Of::Convex(pair)) => {
-                Ok(PairAnswer::Within { answer, steps }.record(&pair))
-            }
-            (&Of::Solids((answer, steps)), Of::Solids(pair)) => {
-                PairAnswer::<Solid>::Within { answer, steps }.record(&pair).or_raise()
-            }
-            _ => Err(other_bodies()),
-        }
+        Ok(self.told(query)?.into())
     }
 
     fn proof(&self, query: &Bound<'_, Pair>) -> PyResult<String> {

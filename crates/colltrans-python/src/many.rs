@@ -7,7 +7,7 @@ use std::collections::HashMap;
 
 use colltrans::glam::DVec3;
 use colltrans::motion::Motion;
-use colltrans::record::{PairQuestion, Record};
+use colltrans::record::{MotionRecord, PairQuestion};
 use colltrans::{Cast, Options, Pair, Placed, Pose, Solver};
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
 use pyo3::exceptions::PyValueError;
@@ -157,9 +157,9 @@ fn moved(
         }
         convex_cast([p, q], motions, keep, tolerance).and_then(|cast| {
             Ok(if clears {
-                Record::of_motion_clearance(&cast.clearance()?, &cast)
+                MotionRecord::of_clearance(&cast.clearance()?, &cast)
             } else {
-                Record::of_motion(&cast.first_contact()?, &cast)
+                MotionRecord::of(&cast.first_contact()?, &cast)
             })
         })
     } else {
@@ -167,13 +167,13 @@ fn moved(
         let precisions = bodies.map(AnyBody::precision);
         solid_cast(solids, motions, precisions, keep, tolerance).and_then(|cast| {
             Ok(if clears {
-                Record::of_solid_motion_clearance(&cast.clearance()?, &cast)
+                MotionRecord::of_solid_clearance(&cast.clearance()?, &cast)
             } else {
-                Record::of_solid_motion(&cast.first_contact()?, &cast)
+                MotionRecord::of_solids(&cast.first_contact()?, &cast)
             })
         })
     };
-    record.map(|record| Row::of_record(question, &record)).map_err(|what| what.to_string())
+    record.map(|record| Row::of_motion(question, &record)).map_err(|what| what.to_string())
 }
 
 /// The bodies of a list; exceptions in it stand for bodies that could not be built.

@@ -2,7 +2,7 @@
 
 use colltrans::glam::DVec3;
 use colltrans::motion::{self, MotionCase, MotionOutcome};
-use colltrans::record::{Dents, Record};
+use colltrans::record::{Dents, MotionRecord, Record};
 use colltrans::solid::StartOverlap;
 use colltrans::{ConvexPolyhedron, ProofFile, QueryError, Solid};
 use colltrans_mesh::body::between_motions;
@@ -592,7 +592,7 @@ impl FirstContact {
 
 getters!(FirstContact, |it| {
     /// str: ``"contact"``, ``"grazing"``, ``"free"``, ``"overlapping"`` or ``"undecided"``.
-    outcome(py): PyResult<&'static str> = Ok(it.told(py)?.outcome.name());
+    outcome(py): PyResult<&'static str> = Ok(it.told(py)?.outcome().name());
     /// float: The bodies do not meet before: 1 if they never do, 0 if they overlap when the motion begins.
     lower: f64 = {
         let free = matches!(
@@ -690,8 +690,10 @@ impl Answer for Found {
 
     fn record(&self, query: &Bound<'_, MotionCast>) -> PyResult<Record> {
         match (self, query.get().asked()?) {
-            (Self::Convex(found), Of::Convex(cast)) => Ok(Record::of_motion(found, &cast)),
-            (Self::Solids(found), Of::Solids(cast)) => Ok(Record::of_solid_motion(found, &cast)),
+            (Self::Convex(found), Of::Convex(cast)) => Ok(MotionRecord::of(found, &cast).into()),
+            (Self::Solids(found), Of::Solids(cast)) => {
+                Ok(MotionRecord::of_solids(found, &cast).into())
+            }
             _ => Err(other_bodies()),
         }
     }
@@ -852,10 +854,10 @@ impl Answer for Cleared {
     fn record(&self, query: &Bound<'_, MotionCast>) -> PyResult<Record> {
         match (self, query.get().asked()?) {
             (Self::Convex(found), Of::Convex(cast)) => {
-                Ok(Record::of_motion_clearance(found, &cast))
+                Ok(MotionRecord::of_clearance(found, &cast).into())
             }
             (Self::Solids(found), Of::Solids(cast)) => {
-                Ok(Record::of_solid_motion_clearance(found, &cast))
+                Ok(MotionRecord::of_solid_clearance(found, &cast).into())
             }
             _ => Err(other_bodies()),
         }

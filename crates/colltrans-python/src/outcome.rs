@@ -1,6 +1,6 @@
 //! Answers about all translations: where bodies meet first, or last, or never.
 
-use colltrans::record::Record;
+use colltrans::record::{CastRecord, Record};
 use colltrans::{ContactRange as Range, Outcome, ProofFile};
 use pyo3::prelude::*;
 
@@ -257,7 +257,7 @@ impl Answer for Outcome {
     }
 
     fn record(&self, query: &Bound<'_, Cast>) -> PyResult<Record> {
-        query.get().with(|cast| Record::of_outcome(self, cast))
+        query.get().with(|cast| CastRecord::of_outcome(self, cast).into())
     }
 
     fn proof(&self, query: &Bound<'_, Cast>) -> PyResult<String> {
@@ -276,7 +276,7 @@ impl Answer for Range {
     }
 
     fn record(&self, query: &Bound<'_, Cast>) -> PyResult<Record> {
-        query.get().with(|cast| Record::of_contact_range(self, cast))
+        query.get().with(|cast| CastRecord::of_range(self, cast).into())
     }
 
     fn proof(&self, query: &Bound<'_, Cast>) -> PyResult<String> {

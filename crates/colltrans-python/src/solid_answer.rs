@@ -1,6 +1,6 @@
 //! Answers of queries about solids.
 
-use colltrans::record::{Record, StartOverlapRecord};
+use colltrans::record::{Record, SolidClearanceRecord, StartOverlapRecord};
 use colltrans::solid::SolidCast as _;
 use colltrans::solid::{Overlap, SolidOverlap, StartOverlap};
 use colltrans::{Clearance, ProofFile};
@@ -205,7 +205,7 @@ impl Answer for SolidClearance {
     fn record(&self, query: &Bound<'_, SolidCast>) -> PyResult<Record> {
         let clearance = *self;
         SolidCast::ask(query, move |cast| {
-            let mut record = Record::of_solids(&clearance, cast.exit(), cast);
+            let mut record = SolidClearanceRecord::of(&clearance, cast.exit(), cast);
             if cast.options().start_overlap == StartOverlap::Ignore {
                 record.start_overlaps = cast
                     .start_overlap()
@@ -216,7 +216,7 @@ impl Answer for SolidClearance {
                     .into_iter()
                     .collect();
             }
-            record
+            record.into()
         })
     }
 

@@ -111,7 +111,7 @@
 //! holds), choices by the names that they print and parse, a pose column by column, an infinite bound as
 //! nothing (`null`). Numbers come back as the same bits. What is read is checked where it is a pose or a
 //! choice of a cast; a proof is read, and believed by nobody before [`Cast::verify`]. An answer as front
-//! ends write it, for people and programs that do not check it, is a `record::Record`. The feature
+//! ends write it, for people and programs that do not check it, is a struct of `record`. The feature
 //! `json` adds whole queries and proofs as files (`Case`, `ProofFile`).
 //!
 //! # What may change

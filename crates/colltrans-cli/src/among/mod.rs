@@ -7,9 +7,12 @@ mod words;
 use std::path::PathBuf;
 use std::slice;
 
-use colltrans::record::{Dents, PairQuestion, Record};
+use colltrans::record::{
+    Dents, NearestRecord, PairQuestion, SceneClearanceRecord, SceneWithinRecord,
+};
 use colltrans::solid::{SolidOptions, StartOverlap};
 use colltrans::{Among, ObstacleId, Options, Pose, ProofFile, ProofFileError};
+use serde::Serialize;
 
 use crate::args::{ClearanceArguments, PlaceArguments, PlacedArguments};
 use crate::driver::{AnswerOutputs, OutputTargets, no_picture};
@@ -50,16 +53,23 @@ pub(crate) fn placed(arguments: &PlacedArguments, question: PairQuestion) -> Res
     let (scene, targets) = asked.load(&arguments.places)?;
     let among = Among::new(scene.moving.body.at(asked.pose), &scene.obstacles)?;
     if let PairQuestion::Within(length) = question {
-        let record = scene.with_obstacles(Record::of_nearby(&among.within(length)?, &among));
+        let mut record = SceneWithinRecord::of(&among.within(length)?, &among);
+        for one in record.closer.iter_mut().flatten().chain(&mut record.undecided) {
+            one.fixed = scene.name(one.obstacle);
+            one.dent = scene.dent(one.obstacle);
+        }
         let prove = || ProofFile::of_within(&among, length).map(Some);
-        return write_answer(targets, record, |told| words::within(told, length), prove);
+        let told = scene.told(record, None);
+        return write_answer(targets, &told, |record| words::within(record, length), prove);
     }
     // There is a file, and so an obstacle.
     let found = among.nearest()?.ok_or(Failure::new(Code::Input, "no obstacles"))?;
     let error = scene.error(asked.pose, found.obstacle);
-    let record = scene.with_obstacles(Record::of_nearest(&found, &among));
+    let mut record = NearestRecord::of(&found, &among);
+    record.fixed = scene.name(found.obstacle);
     let prove = || ProofFile::of_nearest(&among);
-    write_answer(targets, record, |told| words::nearest(told, error), prove)
+    let told = scene.told(record, Some(found.obstacle));
+    write_answer(targets, &told, |record| words::nearest(record, error), prove)
 }
 
 /// `colltrans clearance`.
@@ -89,15 +99,16 @@ pub(crate) fn clearance(arguments: &ClearanceArguments) -> Result<(), Failure> {
     };
     let among = choose(&scene, &asked, arguments, tolerance)?;
     let found = among.clearance(direction)?;
-    let mut record = Record::of_clearance_among(&found, &among, direction);
-    record.tolerance = tolerance;
-    let error = record.obstacle.map_or(0.0, |obstacle| scene.error(asked.pose, obstacle));
+    let mut record = SceneClearanceRecord::of(&found, &among, direction);
+    let obstacle = record.obstacle;
+    (record.tolerance, record.fixed) = (tolerance, obstacle.and_then(|id| scene.name(id)));
+    let error = obstacle.map_or(0.0, |obstacle| scene.error(asked.pose, obstacle));
     let is_default = arguments.tolerance.is_none();
     let graze = arguments.pair.graze_tolerance;
     let in_words =
-        |told: &Line| words::clearance(told, direction, error, is_default) + &words::grazed(graze);
+        |record: &_| words::clearance(record, direction, error, is_default) + &words::grazed(graze);
     let prove = || ProofFile::of_scene_clearance(&among, direction).map(Some);
-    write_answer(targets, scene.with_obstacles(record), in_words, prove)
+    write_answer(targets, &scene.told(record, obstacle), in_words, prove)
 }
 
 /// The body among the others, asked as the arguments say.
@@ -135,31 +146,27 @@ impl<'a> Request<'a> {
 }
 
 impl Scene {
-    /// Returns the record with the names and the dents of obstacles.
-    fn with_obstacles(&self, mut record: Record) -> Record {
-        let name = |id: ObstacleId| self.names.get(id.0 as usize).cloned();
-        record.fixed = record.obstacle.and_then(name);
-        let fixed = record.obstacle.and_then(|obstacle| self.dent(obstacle));
-        record.dents = Dents::of([self.moving.dent, fixed]);
-        for one in record.closer.iter_mut().flatten().chain(&mut record.undecided) {
-            one.fixed = name(one.obstacle);
-            one.dent = self.dent(one.obstacle);
-        }
-        record
+    fn name(&self, obstacle: ObstacleId) -> Option<String> {
+        self.names.get(obstacle.0 as usize).cloned()
+    }
+
+    /// Returns the line of a record, with the dents of the moving body and of an obstacle.
+    fn told<R>(&self, record: R, obstacle: Option<ObstacleId>) -> Line<R> {
+        let fixed = obstacle.and_then(|obstacle| self.dent(obstacle));
+        Line { dents: Dents::of([self.moving.dent, fixed]), ..Line::of(record) }
     }
 }
 
 /// Writes the answer, and the proof that `prove` makes.
-fn write_answer(
+fn write_answer<R: Serialize>(
     targets: OutputTargets<'_>,
-    record: Record,
-    in_words: impl FnOnce(&Line) -> String,
+    told: &Line<R>,
+    in_words: impl FnOnce(&R) -> String,
     prove: impl FnOnce() -> Result<Option<ProofFile>, ProofFileError>,
 ) -> Result<(), Failure> {
-    let told = Line::from(record);
     targets.write_answer(AnswerOutputs {
-        record: &told,
-        words: || in_words(&told),
+        record: told,
+        words: || in_words(&told.record),
         proof: || {
             let proof = prove().map_err(|error| Failure::new(Code::Query, error.to_string()))?;
             Ok(proof.map(|proof| proof.to_json()))

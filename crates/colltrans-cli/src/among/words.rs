@@ -1,27 +1,29 @@
 //! The answers in words.
 
+use colltrans::ObstacleId;
 use colltrans::glam::DVec3;
-use colltrans::record::{Ending, NearbyRecord, PairQuestion, Record};
+use colltrans::record::{
+    Ending, NearbyRecord, NearestRecord, PairQuestion, SceneClearanceRecord, SceneWithinRecord,
+};
 
 use crate::distance;
 use crate::numbers::{known_vector, number, unit_vector};
-use crate::record::Line;
 use crate::report::{features, kept, line, safe};
 use crate::terminal::shown;
 
 /// Which obstacle is nearest.
-pub(super) fn nearest(told: &Line, error: f64) -> String {
-    let text = distance::answer(PairQuestion::Distance, told, error);
+pub(super) fn nearest(record: &NearestRecord, error: f64) -> String {
+    let text = distance::distance(PairQuestion::Distance, &record.into(), error);
     let (headline, rest) = text.split_once('\n').unwrap_or((&text, ""));
     let mut text = format!("{headline}\n");
-    line(&mut text, "nearest", &which(&told.record));
+    let name = record.fixed.as_deref();
+    line(&mut text, "nearest", &which(name, record.obstacle, record.obstacles));
     text + rest
 }
 
 /// Which ones are closer than a length.
-pub(super) fn within(told: &Line, length: f64) -> String {
-    let record = &told.record;
-    let (length, all) = (number(length), record.obstacles.unwrap_or_default());
+pub(super) fn within(record: &SceneWithinRecord, length: f64) -> String {
+    let (length, all) = (number(length), record.obstacles);
     let closer = record.closer.as_deref().unwrap_or_default();
     let mut text = match record.outcome {
         Ending::Closer => {
@@ -49,18 +51,22 @@ pub(super) fn within(told: &Line, length: f64) -> String {
 }
 
 /// Which one the body meets first.
-pub(super) fn clearance(told: &Line, direction: DVec3, error: f64, is_default: bool) -> String {
-    let record = &told.record;
+pub(super) fn clearance(
+    record: &SceneClearanceRecord,
+    direction: DVec3,
+    error: f64,
+    is_default: bool,
+) -> String {
     let mut text = match record.outcome {
         Ending::Blocked => "blocked\n".to_owned(),
         Ending::Overlapping => "overlapping: the body overlaps an obstacle now\n".to_owned(),
         _ => {
-            let all = record.obstacles.unwrap_or_default();
+            let all = record.obstacles;
             format!("free: none of {all} stops it along this direction\n")
         }
     };
-    if record.obstacle.is_some() {
-        line(&mut text, "by", &which(record));
+    if let Some(obstacle) = record.obstacle {
+        line(&mut text, "by", &which(record.fixed.as_deref(), obstacle, record.obstacles));
     }
     if record.outcome == Ending::Blocked {
         blocked(&mut text, record, direction, error);
@@ -87,13 +93,13 @@ pub(super) fn grazed(tolerance: f64) -> String {
     text
 }
 
-fn blocked(text: &mut String, record: &Record, direction: DVec3, error: f64) {
+fn blocked(text: &mut String, record: &SceneClearanceRecord, direction: DVec3, error: f64) {
     let [far, length] = safe(record.distance, direction);
     line(text, "distance", &format!("{far} times the direction, a length of {length}"));
     if let Some([lower, upper]) = record.translation_bounds {
         line(text, "bounds", &format!("{} to {}", number(lower), number(upper)));
     }
-    features(text, record, [None, record.fixed.as_deref()]);
+    features(text, record.features.as_ref(), [None, record.fixed.as_deref()]);
     if let (Some(normal), Some(point)) = (record.normal, record.point) {
         let rounding = 1e-14 * point.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
         line(text, "normal", &unit_vector(normal.into()));
@@ -102,10 +108,8 @@ fn blocked(text: &mut String, record: &Record, direction: DVec3, error: f64) {
 }
 
 /// The obstacle that is told of.
-fn which(record: &Record) -> String {
-    let name = named(record.fixed.as_deref());
-    let number = record.obstacle.map_or(0, |obstacle| obstacle.0);
-    format!("{name}, number {number} of {}, from 0 on", record.obstacles.unwrap_or_default())
+fn which(name: Option<&str>, obstacle: ObstacleId, obstacles: usize) -> String {
+    format!("{}, number {obstacle} of {obstacles}, from 0 on", named(name))
 }
 
 fn named(name: Option<&str>) -> String {

@@ -5,7 +5,7 @@ use std::fmt;
 
 use colltrans::glam::DVec3;
 use colltrans::motion::{Motion, MotionCast};
-use colltrans::record::Record;
+use colltrans::record::MotionRecord;
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{Deserialize, Deserializer, IgnoredAny, MapAccess, Visitor};
 
@@ -148,7 +148,7 @@ pub(super) fn of_convex<B>(
     [moving, fixed]: [&Part; 2],
     motions: &[Motion; 2],
     clears: bool,
-) -> Result<Record, String> {
+) -> Result<MotionRecord, String> {
     if query.ignore_start_overlaps.is_some() {
         return Err("`ignore_start_overlaps` is for solids".into());
     }
@@ -161,8 +161,8 @@ pub(super) fn of_convex<B>(
     let cast = cast.map_err(|error| error.to_string())?;
     let failed = |error| case::motion_failure(error, &cast).into_message();
     Ok(if clears {
-        Record::of_motion_clearance(&cast.clearance().map_err(failed)?, &cast)
+        MotionRecord::of_clearance(&cast.clearance().map_err(failed)?, &cast)
     } else {
-        Record::of_motion(&cast.first_contact().map_err(failed)?, &cast)
+        MotionRecord::of(&cast.first_contact().map_err(failed)?, &cast)
     })
 }

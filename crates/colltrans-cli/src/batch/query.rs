@@ -216,7 +216,8 @@ fn answer<B>(query: &Query<'_, B>, [moving, fixed]: [Built; 2]) -> Result<Answer
         (Ask::Pair(question), shapes) => of_pair(question, shapes, poses),
         (Ask::Motion(motions, clears), [Shape::Convex(moving), Shape::Convex(fixed)]) => {
             let parts = [moving, fixed];
-            Ok(of_parts(motion::of_convex(query, parts, &motions, clears)?, parts))
+            let record = motion::of_convex(query, parts, &motions, clears)?;
+            Ok(of_parts(record.into(), parts))
         }
         (Ask::Motion(motions, clears), shapes) => {
             let [moving, fixed] = as_solids(shapes)?;
@@ -226,7 +227,7 @@ fn answer<B>(query: &Query<'_, B>, [moving, fixed]: [Built; 2]) -> Result<Answer
             let tolerance = query.tolerance;
             let asked =
                 PartsMotion { bodies, motions, tolerance, clears, ignore_start_overlaps, keep };
-            Ok(of_bodies(asked.ask().map_err(|e| e.to_string())?, bodies))
+            Ok(of_bodies(asked.ask().map_err(|e| e.to_string())?.into(), bodies))
         }
         (Ask::Cast(direction), [Shape::Convex(moving), Shape::Convex(fixed)]) => {
             query.of_convex([moving, fixed], poses, direction)
@@ -368,7 +369,7 @@ impl<B> Query<'_, B> {
         let answer = question.ask(|| ()).map_err(|e| e.to_string())?;
         let notes = question.bodies.into_iter().flat_map(|body| &body.notes).chain(&answer.notes);
         let notes = notes.cloned().collect();
-        Ok(AnswerLine { notes, ..without_names(answer.record).into() })
+        Ok(AnswerLine { notes, ..AnswerLine::of(without_names(answer.record.into())) })
     }
 }
 
@@ -405,19 +406,26 @@ fn of_pair(
 /// The line of an answer about solids.
 fn of_bodies(record: Record, bodies: [&solid::Body; 2]) -> AnswerLine {
     let notes = bodies.into_iter().flat_map(|body| body.notes.clone()).collect();
-    AnswerLine { notes, ..without_names(record).into() }
+    AnswerLine { notes, ..AnswerLine::of(without_names(record)) }
 }
 
 /// The line of an answer about convex bodies.
 fn of_parts(record: Record, parts: [&Part; 2]) -> AnswerLine {
     let notes = parts.into_iter().flat_map(|part| part.notes.clone()).collect();
-    AnswerLine { notes, ..AnswerLine::of_parts(record, parts) }
+    AnswerLine { notes, ..AnswerLine::from(record).with_parts(parts) }
 }
 
 /// Without the names of files: a body is one.
 fn without_names(mut record: Record) -> Record {
-    (record.moving, record.fixed) = (None, None);
-    for overlap in &mut record.start_overlaps {
+    let (moving, fixed, overlaps) = match &mut record {
+        Record::SolidClearance(of) => (&mut of.moving, &mut of.fixed, &mut of.start_overlaps),
+        Record::Depth(of) => (&mut of.moving, &mut of.fixed, &mut of.start_overlaps),
+        Record::Motion(of) => (&mut of.moving, &mut of.fixed, &mut of.start_overlaps),
+        Record::Distance(of) => (&mut of.moving, &mut of.fixed, &mut Vec::new()),
+        Record::Cast(_) | Record::Clearance(_) | Record::Error(_) => return record,
+    };
+    (*moving, *fixed) = (None, None);
+    for overlap in overlaps {
         (overlap.moving, overlap.fixed) = (None, None);
     }
     record

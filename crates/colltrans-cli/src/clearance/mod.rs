@@ -53,7 +53,7 @@ fn parts(
             bar.finish_and_clear();
             let answer = answer.map_err(|error| solid::refused(error, bodies, tolerance))?;
             answer.notes.iter().for_each(|text| note(text));
-            let told = Line { notes: answer.notes.clone(), ..answer.record.clone().into() };
+            let told = Line { notes: answer.notes.clone(), ..Line::of(answer.record.clone()) };
             let prove = || question.prove(answer.record.tolerance.unwrap_or_default());
             return targets.write_answer(AnswerOutputs {
                 record: &told,
@@ -74,7 +74,7 @@ fn parts(
             answer.notes.iter().for_each(|text| note(text));
             noted = true;
         }
-        Ok(answer.record.into())
+        Ok(Line::of(answer.record.into()))
     };
-    answer_directions(targets.json, all, ask, |record, _| words::scan_line(record))
+    answer_directions(targets.json, all, ask, words::scan_line)
 }

@@ -4,6 +4,7 @@ use colltrans::glam::DVec3;
 use colltrans::record::{Ending, Record, StartOverlapRecord};
 
 use crate::numbers::{decade, known_vector, number, unit_vector};
+use crate::record::Line;
 use crate::report::{features, kept, line, safely, times};
 use crate::solid::Answer;
 use crate::terminal::shown;
@@ -35,7 +36,7 @@ pub(super) fn answer(answer: &Answer, direction: DVec3, is_default: bool) -> Str
     }
     let ignored = record.outcome != Ending::Overlapping;
     let name = if ignored { "ignored" } else { "overlap" };
-    overlaps(&mut text, record, name);
+    overlaps(&mut text, &record.start_overlaps, name);
     if !ignored {
         line(&mut text, "", remedy(&record.start_overlaps));
     }
@@ -59,13 +60,13 @@ pub(super) fn scan_head() -> String {
 }
 
 /// The answer for one of many directions.
-pub(super) fn scan_line(record: &Record) -> String {
-    let vector = |v: [f64; 3]| v.map(number).join(",");
-    let direction = record.direction.map_or_else(String::new, vector);
-    let outcome = record.outcome.name().to_owned();
-    if let Some(message) = &record.message {
-        return columns(&direction, [outcome, message.clone(), String::new(), String::new()]);
-    }
+pub(super) fn scan_line(told: &Line, direction: DVec3) -> String {
+    let direction = direction.to_array().map(number).join(",");
+    let outcome = told.record.outcome().name().to_owned();
+    let Record::SolidClearance(record) = &told.record else {
+        let message = told.message.clone().unwrap_or_default();
+        return columns(&direction, [outcome, message, String::new(), String::new()]);
+    };
     let shrunk = record.shrunk_distance_bounds.map(|[lower, _]| lower);
     let exit = record.exit_bounds.map(|[_, upper]| upper);
     let or_none = |t: Option<f64>| t.map_or_else(|| "-".into(), number);
@@ -96,7 +97,7 @@ fn blocked(text: &mut String, answer: &Answer, direction: DVec3) {
             line(text, "shrunk", &format!("{}, for the shrunk bodies", times(shrunk)));
         }
     }
-    features(text, record, [record.moving.as_deref(), record.fixed.as_deref()]);
+    features(text, record.features.as_ref(), [record.moving.as_deref(), record.fixed.as_deref()]);
     if let (Some(normal), Some(point)) = (record.normal, record.point) {
         line(text, "normal", &unit_vector(normal.into()));
         line(text, "point", &known_vector(point.into(), answer.error));
@@ -113,8 +114,8 @@ pub(crate) fn remedy(overlaps: &[StartOverlapRecord]) -> &'static str {
 }
 
 /// What overlaps what, a line each.
-pub(crate) fn overlaps(text: &mut String, record: &Record, name: &str) {
-    for StartOverlapRecord { moving, fixed, least_tolerance } in &record.start_overlaps {
+pub(crate) fn overlaps(text: &mut String, overlaps: &[StartOverlapRecord], name: &str) {
+    for StartOverlapRecord { moving, fixed, least_tolerance } in overlaps {
         let [moving, fixed] =
             [moving, fixed].map(|name| shown(name.as_deref().unwrap_or_default()));
         let remedy = match least_tolerance {

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use colltrans::free::FreeArc;
 use colltrans::glam::DVec3;
-use colltrans::record::{BlockedByRecord, Ending, FreeRecord, FreeRegionRecord, Record};
+use colltrans::record::{BlockedByRecord, Ending, FreeRecord, FreeRegionRecord};
 
 use crate::clearance;
 use crate::numbers::{counted, number, six_digits, unit_vector};
@@ -26,9 +26,7 @@ pub(super) fn answer(record: &FreeRecord) -> String {
     .to_owned();
     told(&mut text, record);
     if record.outcome == Ending::Overlapping {
-        let mut overlaps = Record::default();
-        overlaps.start_overlaps.clone_from(&record.start_overlaps);
-        clearance::overlaps(&mut text, &overlaps, "overlap");
+        clearance::overlaps(&mut text, &record.start_overlaps, "overlap");
         line(&mut text, "", clearance::remedy(&record.start_overlaps));
     }
     if let Some(tolerance) = record.tolerance {

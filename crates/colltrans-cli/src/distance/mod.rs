@@ -14,10 +14,10 @@ use crate::body::Part;
 use crate::driver::{AnswerOutputs, OutputTargets};
 use crate::failure::{Code, Failure};
 use crate::load;
-use crate::picture::{Shown, draw_pair};
+use crate::picture::draw_pair;
 use crate::record::Line;
 use crate::solid::{PartsPair, surface_of};
-pub(crate) use words::answer;
+pub(crate) use words::distance;
 
 pub(crate) fn run(arguments: &PlacedArguments, question: PairQuestion) -> Result<(), Failure> {
     if !arguments.among.is_empty() {
@@ -44,13 +44,13 @@ fn convex(
     let [moving, fixed] = [0, 1].map(|k| bodies[k].body.at(poses[k]));
     let pair = Pair::new(moving, fixed)?;
     let answer = question.ask(&pair)?;
-    let told = Line::of_parts(answer.record(&pair), bodies);
+    let told = Line::of(answer.record(&pair)).with_parts(bodies);
     let surface = |k: usize, origin| surface_of(&bodies[k].body, &poses[k], origin);
     targets.write_answer(AnswerOutputs {
         record: &told,
         words: || words::answer(question, &told, 0.0),
         proof: || Ok(answer.proof(&pair).map(|proof| proof.to_json())),
-        picture: || Ok(draw_pair(Shown { question, record: &told.record, surface: &surface })),
+        picture: || Ok(draw_pair(&told.record, &surface)),
     })
 }
 
@@ -71,12 +71,12 @@ fn parts(
     let asked = PartsPair { bodies: bodies.each_ref(), poses };
     let (record, proof) =
         if proves { asked.prove(question)? } else { (asked.ask(question)?, Ok(None)) };
-    let told = Line::from(record);
+    let told = Line::of(record);
     let surface = |k: usize, origin| bodies[k].surface(&poses[k], origin);
     targets.write_answer(AnswerOutputs {
         record: &told,
         words: || words::answer(question, &told, asked.error()),
         proof: || Ok(proof?.map(|proof| proof.to_json())),
-        picture: || Ok(draw_pair(Shown { question, record: &told.record, surface: &surface })),
+        picture: || Ok(draw_pair(&told.record, &surface)),
     })
 }

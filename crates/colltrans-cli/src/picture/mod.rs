@@ -35,7 +35,7 @@ use colltrans_picture::{FIXED, FIXED_MARK, MOVING, MOVING_MARK, Page, View};
 use layout::Layout;
 pub(crate) use motion::{Moved, draw_motion};
 use notes::Notes;
-pub(crate) use pair::{Shown, draw_pair};
+pub(crate) use pair::draw_pair;
 pub(crate) use parts::draw_solids;
 use solid::Solid;
 use subject::Subject;

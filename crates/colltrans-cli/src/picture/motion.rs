@@ -4,7 +4,7 @@
 use colltrans::Pose;
 use colltrans::glam::DVec3;
 use colltrans::motion::Motion;
-use colltrans::record::{Ending, FeaturesRecord, Record, TimeRecord};
+use colltrans::record::{Ending, FeaturesRecord, MotionRecord, TimeRecord};
 use colltrans_picture::{MOVING, Stroke};
 
 use super::parts::draw_seen;
@@ -19,7 +19,7 @@ const WAY: u32 = 480;
 /// What is drawn.
 #[derive(Clone, Copy)]
 pub(crate) struct Moved<'a> {
-    pub(crate) record: &'a Record,
+    pub(crate) record: &'a MotionRecord,
     /// Of the moving body (0) and of the fixed one (1).
     pub(crate) motions: [&'a Motion; 2],
     pub(crate) surface: &'a dyn Fn(usize, &Pose, DVec3) -> Surface,
@@ -95,7 +95,7 @@ fn subject(moved: &Moved<'_>, fixed: Pose) -> Subject {
     }
 }
 
-fn headline(record: &Record) -> String {
+fn headline(record: &MotionRecord) -> String {
     match (record.outcome, record.time) {
         (Ending::Contact, Some(time)) => format!("Contact at {} of the motion", short(time.lower)),
         (Ending::Blocked, Some(time)) => format!("Free to go {} of the motion", short(time.lower)),
@@ -110,7 +110,7 @@ fn headline(record: &Record) -> String {
     }
 }
 
-fn details(record: &Record) -> Vec<String> {
+fn details(record: &MotionRecord) -> Vec<String> {
     let mut details = Vec::new();
     if let (Some(FeaturesRecord { moving, fixed }), Some(normal)) =
         (&record.features, record.normal)

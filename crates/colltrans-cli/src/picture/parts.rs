@@ -10,7 +10,7 @@ use std::borrow::Cow;
 use std::path::Path;
 
 use colltrans::glam::{DVec2, DVec3};
-use colltrans::record::{Ending, FeaturesRecord, Record};
+use colltrans::record::{Ending, FeaturesRecord, SolidClearanceRecord};
 use colltrans_picture::{
     Edge, FIXED, MOVING, Page, Paint, Raster, SHADES, SMOOTH, Stroke, View, edges,
 };
@@ -104,7 +104,7 @@ fn subject(question: &PartsQuery<'_>, answer: &Answer) -> Subject {
 }
 
 /// What touches what.
-fn touching(record: &Record) -> Option<String> {
+fn touching(record: &SolidClearanceRecord) -> Option<String> {
     let FeaturesRecord { moving, fixed } = record.features.as_ref()?;
     let normal = components(record.normal?.into());
     let moving = format!("{} of {}", moving.kind, name(record.moving.as_deref()?));

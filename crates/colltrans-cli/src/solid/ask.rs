@@ -1,12 +1,12 @@
 //! The question between two placed bodies, and its answer.
 
 use colltrans::glam::DVec3;
-use colltrans::record::{Ending, FeatureRecord, FeaturesRecord, Record, StartOverlapRecord};
+use colltrans::record::{Ending, FeatureRecord, SolidClearanceRecord, StartOverlapRecord};
 use colltrans::solid::{SolidCast, SolidOverlap, StartOverlap};
 use colltrans::{Cast, Pose, ProofFile, QueryError, Solid};
 use colltrans_mesh::body::between;
 
-use super::{Body, Piece};
+use super::{Body, Piece, name_features};
 use crate::failure::{Code, Failure};
 
 /// What rounding alone can do to a length, as a part of the scene's size.
@@ -29,7 +29,7 @@ pub(crate) struct PartsQuery<'a> {
 pub(crate) struct Answer {
     /// With the names of files, and all that overlaps at the start, the deepest first; that is looked
     /// at where it matters.
-    pub(crate) record: Record,
+    pub(crate) record: SolidClearanceRecord,
     /// What could not be shrunk as the tolerance asks for.
     pub(crate) notes: Vec<String>,
     /// How far lengths may be off by the precision of the files and by rounding.
@@ -57,11 +57,8 @@ impl<'a> PartsQuery<'a> {
         let cast = self.of_bodies()?;
         let tolerance = cast.tolerance();
         let clearance = cast.clearance()?;
-        let mut record = Record::of_solids(&clearance, cast.exit(), &cast);
-        if let Some(FeaturesRecord { moving, fixed }) = &mut record.features {
-            record.moving = Some(self.bodies[0].renumber(moving));
-            record.fixed = Some(self.bodies[1].renumber(fixed));
-        }
+        let mut record = SolidClearanceRecord::of(&clearance, cast.exit(), &cast);
+        [record.moving, record.fixed] = name_features(self.bodies, &mut record.features);
         if self.ignore_start_overlaps || record.outcome == Ending::Overlapping {
             record.start_overlaps = self.overlaps(tolerance, done)?;
         }

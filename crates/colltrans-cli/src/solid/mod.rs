@@ -15,6 +15,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 
 use colltrans::glam::DVec3;
+use colltrans::record::FeaturesRecord;
 use colltrans::solid::{AsSolid, SolidReport};
 use colltrans::{ConvexPolyhedron, Pose, QueryError, Solid};
 use colltrans_mesh::Mesh;
@@ -193,6 +194,12 @@ fn shells(report: &SolidReport) -> String {
         let _ = write!(text, " (not counted in {shells} that touch themselves)");
     }
     text
+}
+
+/// Renumbers features as the files do; returns the names of the files that they are of.
+fn name_features(bodies: [&Body; 2], features: &mut Option<FeaturesRecord>) -> [Option<String>; 2] {
+    let Some(FeaturesRecord { moving, fixed }) = features else { return [None, None] };
+    [Some(bodies[0].renumber(moving)), Some(bodies[1].renumber(fixed))]
 }
 
 #[cfg(test)]

@@ -1,12 +1,12 @@
 //! The question between two bodies made of parts that turn.
 
 use colltrans::motion::{Motion, MotionCast};
-use colltrans::record::{Ending, FeaturesRecord, Record};
+use colltrans::record::{Ending, MotionRecord};
 use colltrans::solid::StartOverlap;
 use colltrans::{QueryError, Solid};
 use colltrans_mesh::body::between_motions;
 
-use super::{Body, PartsQuery};
+use super::{Body, PartsQuery, name_features};
 
 /// Two bodies and what they do.
 #[derive(Clone, Copy)]
@@ -25,25 +25,22 @@ pub(crate) struct PartsMotion<'a> {
 impl PartsMotion<'_> {
     /// The answer, with the names of files: the first contact, or how far they can go; that too where what overlaps when
     /// the motion begins is ignored, and what that is.
-    pub(crate) fn ask(&self) -> Result<Record, QueryError> {
+    pub(crate) fn ask(&self) -> Result<MotionRecord, QueryError> {
         let cast = self.cast()?;
         let mut record = if self.clears || self.ignore_start_overlaps {
             self.clearance(cast)?
         } else {
-            Record::of_solid_motion(&cast.first_contact()?, &cast)
+            MotionRecord::of_solids(&cast.first_contact()?, &cast)
         };
-        if let Some(FeaturesRecord { moving, fixed }) = &mut record.features {
-            record.moving = Some(self.bodies[0].renumber(moving));
-            record.fixed = Some(self.bodies[1].renumber(fixed));
-        }
+        [record.moving, record.fixed] = name_features(self.bodies, &mut record.features);
         Ok(record)
     }
 
-    fn clearance(&self, cast: MotionCast<'_, Solid>) -> Result<Record, QueryError> {
+    fn clearance(&self, cast: MotionCast<'_, Solid>) -> Result<MotionRecord, QueryError> {
         let ignores = self.ignore_start_overlaps;
         let start = if ignores { StartOverlap::Ignore } else { StartOverlap::Refuse };
         let cast = cast.with_start_overlap(start);
-        let mut record = Record::of_solid_motion_clearance(&cast.clearance()?, &cast);
+        let mut record = MotionRecord::of_solid_clearance(&cast.clearance()?, &cast);
         if record.outcome == Ending::Blocked && !self.clears {
             let is_proven = record.time.is_some_and(|time| time.upper.is_some());
             record.outcome = if is_proven { Ending::Contact } else { Ending::Grazing };

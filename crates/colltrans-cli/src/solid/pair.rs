@@ -1,9 +1,9 @@
 //! The questions about two placed bodies without a direction.
 
-use colltrans::record::{Ending, FeaturesRecord, PairQuestion, Record};
+use colltrans::record::{Ending, PairQuestion, Record};
 use colltrans::{Pair, Pose, ProofFile, ProofFileError, QueryError, Solid};
 
-use super::{Body, PartsQuery};
+use super::{Body, PartsQuery, name_features};
 use crate::failure::{Code, Failure};
 
 /// A proof, where there is one; or why none could be made.
@@ -38,15 +38,17 @@ impl<'a> PartsPair<'a> {
     }
 
     fn named(&self, mut record: Record) -> Result<Record, QueryError> {
-        if let Some(FeaturesRecord { moving, fixed }) = &mut record.features {
-            record.moving = Some(self.bodies[0].renumber(moving));
-            record.fixed = Some(self.bodies[1].renumber(fixed));
-        }
-        if record.outcome == Ending::Overlapping {
-            record.start_overlaps = self.clearance().overlaps(0.0, || ())?;
-            let deepest = record.start_overlaps.first();
-            (record.moving, record.fixed) =
-                deepest.map_or((None, None), |of| (of.moving.clone(), of.fixed.clone()));
+        match &mut record {
+            Record::Distance(of) => {
+                [of.moving, of.fixed] = name_features(self.bodies, &mut of.features);
+            }
+            Record::Depth(of) if of.outcome == Ending::Overlapping => {
+                of.start_overlaps = self.clearance().overlaps(0.0, || ())?;
+                let deepest = of.start_overlaps.first();
+                (of.moving, of.fixed) =
+                    deepest.map_or((None, None), |of| (of.moving.clone(), of.fixed.clone()));
+            }
+            _ => {}
         }
         Ok(record)
     }

@@ -6,53 +6,42 @@ use std::f64::consts::PI;
 use glam::DVec3;
 use serde::Serialize;
 
-use super::{Ending, StartOverlapRecord, coordinates};
+use super::{Ending, StartOverlapRecord, coordinates, record};
 use colltrans_removal::free::{CellKind, FreeArc, FreeDirections, FreePoint, FreeRegion};
 
-/// All directions along which a body leaves another one; directions as fractions of the sphere are *shares*, from 0
-/// to 1. Fields that do not apply are left out.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
-#[non_exhaustive]
-pub struct FreeRecord {
-    /// `free`: some directions are; `blocked`: none is, which is proven; `undecided`: none is known to be, and not
-    /// all is known; `overlapping`: nothing is told, as the bodies overlap where they are.
-    pub outcome: Ending,
-    /// The share that is free, at least and at most, without what is undecided.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub free_share: Option<[f64; 2]>,
-    /// The share of which nothing is known, at most.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub undecided_share: Option<f64>,
-    /// Connected regions of free directions, the largest first.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub regions: Vec<FreeRegionRecord>,
-    /// Arcs of free directions beside which there is no region.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub arcs: Vec<FreeArc>,
-    /// Free directions with no other beside them.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub points: Vec<FreePoint>,
-    /// Free directions in cells that are undecided, found by ordinary casts: there may be more around them.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub also_free: Vec<[f64; 3]>,
-    /// What blocks, the largest share first.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub blocked_by: Vec<BlockedByRecord>,
-    /// The one that was used, a length.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub tolerance: Option<f64>,
-    /// Cells of the sphere in the proof.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub cells: Option<u64>,
-    /// How many of them are undecided.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub undecided_cells: Option<u64>,
-    /// What overlaps now.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub start_overlaps: Vec<StartOverlapRecord>,
-    /// For people: what is wrong.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub message: Option<String>,
+record! {
+    /// All directions along which a body leaves another one; directions as fractions of the sphere are *shares*, from 0
+    /// to 1. Fields that do not apply are left out.
+    #[non_exhaustive]
+    pub struct FreeRecord {
+        /// `free`: some directions are; `blocked`: none is, which is proven; `undecided`: none is known to be, and not
+        /// all is known; `overlapping`: nothing is told, as the bodies overlap where they are.
+        pub outcome: Ending,
+        /// The share that is free, at least and at most, without what is undecided.
+        pub free_share: Option<[f64; 2]>,
+        /// The share of which nothing is known, at most.
+        pub undecided_share: Option<f64>,
+        /// Connected regions of free directions, the largest first.
+        pub regions: Vec<FreeRegionRecord>,
+        /// Arcs of free directions beside which there is no region.
+        pub arcs: Vec<FreeArc>,
+        /// Free directions with no other beside them.
+        pub points: Vec<FreePoint>,
+        /// Free directions in cells that are undecided, found by ordinary casts: there may be more around them.
+        pub also_free: Vec<[f64; 3]>,
+        /// What blocks, the largest share first.
+        pub blocked_by: Vec<BlockedByRecord>,
+        /// The one that was used, a length.
+        pub tolerance: Option<f64>,
+        /// Cells of the sphere in the proof.
+        pub cells: Option<u64>,
+        /// How many of them are undecided.
+        pub undecided_cells: Option<u64>,
+        /// What overlaps now.
+        pub start_overlaps: Vec<StartOverlapRecord>,
+        /// For people: what is wrong.
+        pub message: Option<String>,
+    }
 }
 
 /// A connected region of free directions. All directions but the center have a largest component of 1 (or -1).
@@ -70,18 +59,17 @@ pub struct FreeRegionRecord {
     pub pieces: Vec<Vec<[f64; 3]>>,
 }
 
-/// What blocks a share of the sphere.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct BlockedByRecord {
-    /// The name of what is stopped, of a moving body that has several parts.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub moving: Option<String>,
-    /// The name of what stops it, of a fixed body that has several.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub fixed: Option<String>,
-    /// The share of the sphere in the cells that pairs of their facets were found to block wholly: they block at least
-    /// that, and may block more.
-    pub share: f64,
+record! {
+    /// What blocks a share of the sphere.
+    pub struct BlockedByRecord {
+        /// The name of what is stopped, of a moving body that has several parts.
+        pub moving: Option<String>,
+        /// The name of what stops it, of a fixed body that has several.
+        pub fixed: Option<String>,
+        /// The share of the sphere in the cells that pairs of their facets were found to block wholly: they block at
+        /// least that, and may block more.
+        pub share: f64,
+    }
 }
 
 impl FreeRecord {

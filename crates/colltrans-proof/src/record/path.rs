@@ -2,58 +2,46 @@
 
 use std::collections::{BTreeMap, HashSet};
 
-use serde::Serialize;
-
-use super::{Ending, TimeRecord, coordinates};
+use super::{Ending, TimeRecord, coordinates, record};
 use colltrans_motion::path::{PathCast, PathContact, PathOutcome, Place};
 
-/// Which two bodies first meet on a path, and when. Fields that do not apply are left out.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
-#[non_exhaustive]
-pub struct PathRecord {
-    /// `contact`; `grazing`: nearer than rounding can tell; `free` throughout; `overlapping` where the path begins;
-    /// `undecided`: the search took its maximum number of steps, and `time.lower` is up to when none meet.
-    pub outcome: Ending,
-    /// Of a contact, in the times of the path; of a grazing one the upper bound is missing.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub time: Option<TimeRecord>,
-    /// Where that is between two rows.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub place: Option<Place>,
-    /// The names of the two bodies.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub pair: Option<[String; 2]>,
-    /// Where the first one is nearest to the second then, in the world.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub point: Option<[f64; 3]>,
-    /// Unit vector in the world, from the first to the second.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub normal: Option<[f64; 3]>,
-    /// The gap that is kept, a length: two bodies count as meeting where they are as near as that.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub keep: Option<f64>,
-    /// How many pairs of bodies were asked about.
-    pub pairs: usize,
-    /// The names of those that were not, though a joint may move one against the other: nothing is said of them.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub left_out: Vec<[String; 2]>,
-    /// Where the path begins with overlaps: the names of all pairs that overlap there, or are as near as `keep`.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub overlaps: Vec<[String; 2]>,
-    /// Links for whose meshes their convex hulls stand: a contact of one is that of its hull.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub hulls: Vec<String>,
-    /// Names of bodies whose meshes are convex only to within the tolerance, each with the largest depth of its
-    /// surface below the hull that stands for it, a length.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub dents: BTreeMap<String, f64>,
-    /// For people: in what the answer is about less than the input.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub notes: Vec<String>,
-    /// How often two bodies were looked at.
-    pub looks: u32,
-    /// Planes in the proof.
-    pub planes: usize,
+record! {
+    /// Which two bodies first meet on a path, and when. Fields that do not apply are left out.
+    #[non_exhaustive]
+    pub struct PathRecord {
+        /// `contact`; `grazing`: nearer than rounding can tell; `free` throughout; `overlapping` where the path begins;
+        /// `undecided`: the search took its maximum number of steps, and `time.lower` is up to when none meet.
+        pub outcome: Ending,
+        /// Of a contact, in the times of the path; of a grazing one the upper bound is missing.
+        pub time: Option<TimeRecord>,
+        /// Where that is between two rows.
+        pub place: Option<Place>,
+        /// The names of the two bodies.
+        pub pair: Option<[String; 2]>,
+        /// Where the first one is nearest to the second then, in the world.
+        pub point: Option<[f64; 3]>,
+        /// Unit vector in the world, from the first to the second.
+        pub normal: Option<[f64; 3]>,
+        /// The gap that is kept, a length: two bodies count as meeting where they are as near as that.
+        pub keep: Option<f64>,
+        /// How many pairs of bodies were asked about.
+        pub pairs: usize,
+        /// The names of those that were not, though a joint may move one against the other: nothing is said of them.
+        pub left_out: Vec<[String; 2]>,
+        /// Where the path begins with overlaps: the names of all pairs that overlap there, or are as near as `keep`.
+        pub overlaps: Vec<[String; 2]>,
+        /// Links for whose meshes their convex hulls stand: a contact of one is that of its hull.
+        pub hulls: Vec<String>,
+        /// Names of bodies whose meshes are convex only to within the tolerance, each with the largest depth of its
+        /// surface below the hull that stands for it, a length.
+        pub dents: BTreeMap<String, f64>,
+        /// For people: in what the answer is about less than the input.
+        pub notes: Vec<String>,
+        /// How often two bodies were looked at.
+        pub looks: u32,
+        /// Planes in the proof.
+        pub planes: usize,
+    }
 }
 
 impl PathRecord {

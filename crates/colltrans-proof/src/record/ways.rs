@@ -2,26 +2,24 @@
 
 use serde::Serialize;
 
+use super::record;
 use colltrans_removal::ways::{Searched, WaysOut};
 
-/// A way out in several moves, that there is none, or what was searched. Fields that do not apply are left out.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[non_exhaustive]
-pub struct WaysRecord {
-    /// `found`; `none`: there is none by translations, which is proven; `not_found`, which proves nothing.
-    pub outcome: &'static str,
-    /// What to do, in order.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub legs: Vec<LegRecord>,
-    /// The tolerance that was used, a length.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub tolerance: Option<f64>,
-    /// Cells of displacements that prove that there is none.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub cells: Option<usize>,
-    /// What was searched.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub searched: Option<Searched>,
+record! {
+    /// A way out in several moves, that there is none, or what was searched. Fields that do not apply are left out.
+    #[non_exhaustive]
+    pub struct WaysRecord {
+        /// `found`; `none`: there is none by translations, which is proven; `not_found`, which proves nothing.
+        pub outcome: &'static str,
+        /// What to do, in order.
+        pub legs: Vec<LegRecord>,
+        /// The tolerance that was used, a length.
+        pub tolerance: Option<f64>,
+        /// Cells of displacements that prove that there is none.
+        pub cells: Option<usize>,
+        /// What was searched.
+        pub searched: Option<Searched>,
+    }
 }
 
 /// A straight move.
@@ -37,13 +35,6 @@ pub struct LegRecord {
 impl WaysRecord {
     /// Of two bodies.
     pub fn of(ways: &WaysOut) -> Self {
-        let none = Self {
-            outcome: "not_found",
-            legs: Vec::new(),
-            tolerance: None,
-            cells: None,
-            searched: None,
-        };
         match ways {
             WaysOut::Found(way) => {
                 let leg = |leg: &colltrans_removal::ways::Leg| LegRecord {
@@ -52,13 +43,16 @@ impl WaysRecord {
                 };
                 let legs = way.legs.iter().map(leg).collect();
                 let (tolerance, searched) = (Some(way.tolerance), Some(way.searched));
-                Self { outcome: "found", legs, tolerance, searched, ..none }
+                Self { outcome: "found", legs, tolerance, searched, ..Self::default() }
             }
             WaysOut::Proven(proof) => {
                 let (tolerance, cells) = (Some(proof.tolerance), Some(proof.cells()));
-                Self { outcome: "none", tolerance, cells, ..none }
+                Self { outcome: "none", tolerance, cells, ..Self::default() }
             }
-            WaysOut::NotFound { searched } => Self { searched: Some(*searched), ..none },
+            WaysOut::NotFound { searched } => {
+                let (outcome, searched) = ("not_found", Some(*searched));
+                Self { outcome, searched, ..Self::default() }
+            }
         }
     }
 }

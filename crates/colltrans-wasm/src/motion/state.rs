@@ -1,7 +1,7 @@
 //! The bodies in use, and when they first meet.
 
 use colltrans::motion::{Motion, MotionCast, MotionContact, MotionOutcome, MotionProofError};
-use colltrans::record::Record;
+use colltrans::record::MotionRecord;
 use colltrans::{Body, Features, Pose, QueryError, Solid};
 use colltrans_mesh::body::between_motions;
 use glam::DVec3;
@@ -73,7 +73,7 @@ pub struct State(Places);
 struct MotionAnswer {
     /// How the bodies were taken: `convex` or `solid`.
     kind: &'static str,
-    record: Record,
+    record: MotionRecord,
     /// The pose of the moving body at the lower bound.
     #[serde(skip_serializing_if = "Option::is_none")]
     pose: Option<[f64; 7]>,
@@ -168,18 +168,18 @@ fn first_contact(query: &Query<'_>) -> Result<Answer, String> {
     Ok(Answer::of(&match query {
         Query::Convex(cast) => {
             let outcome = cast.first_contact().map_err(said)?;
-            told("convex", Record::of_motion(&outcome, cast), &outcome, cast.bodies())
+            told("convex", MotionRecord::of(&outcome, cast), &outcome, cast.bodies())
         }
         Query::Solid(cast) => {
             let outcome = cast.first_contact().map_err(said)?;
-            told("solid", Record::of_solid_motion(&outcome, cast), &outcome, cast.bodies())
+            told("solid", MotionRecord::of_solids(&outcome, cast), &outcome, cast.bodies())
         }
     }))
 }
 
 fn told<P, B: Body>(
     kind: &'static str,
-    record: Record,
+    record: MotionRecord,
     outcome: &MotionOutcome<P>,
     bodies: [&B; 2],
 ) -> MotionAnswer {

@@ -1,6 +1,6 @@
 //! Casts between convex bodies, and the check of their proofs.
 
-use colltrans::record::Record;
+use colltrans::record::{CastRecord, ClearanceRecord};
 use colltrans::{Cast, CertificateError, ContactRange, Features, Options};
 use glam::DVec3;
 use serde_json::json;
@@ -35,8 +35,8 @@ pub(crate) fn cast(bodies: [&Hull; 2], pair: &Pair) -> Result<Answer, Refusal> {
     };
     Ok(Answer::of(&CastAnswer {
         kind: "convex",
-        record: Record::of_contact_range(&range, &cast),
-        clearance: Some(Record::of_clearance(&clearance, &cast)),
+        record: CastRecord::of_range(&range, &cast).into(),
+        clearance: Some(ClearanceRecord::of(&clearance, &cast)),
         lit: first.ok().map(|contact| {
             let Features { moving, fixed } = contact.features(&cast);
             Touching { moving: Lit::of(moving, cast.moving()), fixed: Lit::of(fixed, cast.fixed()) }

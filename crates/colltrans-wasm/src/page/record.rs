@@ -1,6 +1,6 @@
 //! The record of a cast as the page takes it: that of the library, and what only a page needs.
 
-use colltrans::record::Record;
+use colltrans::record::{ClearanceRecord, Record};
 use colltrans::solid::SolidCertificate;
 use colltrans::{Certificate, Separation};
 use serde::{Deserialize, Serialize};
@@ -16,7 +16,7 @@ pub(crate) struct CastAnswer {
     pub(crate) record: Record,
     /// Between convex bodies: how far the moving one can go.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(crate) clearance: Option<Record>,
+    pub(crate) clearance: Option<ClearanceRecord>,
     /// What touches.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) lit: Option<Touching>,

@@ -1,6 +1,6 @@
 //! Casts between bodies of which at least one need not be convex.
 
-use colltrans::record::Record;
+use colltrans::record::SolidClearanceRecord;
 use colltrans::solid::{SolidCast, StartOverlap};
 use colltrans::{Cast, Clearance, Solid};
 use colltrans_mesh::body::between;
@@ -30,7 +30,7 @@ pub(crate) fn cast([moving, fixed]: [&Part; 2], pair: &Pair) -> Result<Answer, R
     }
     Ok(Answer::of(&CastAnswer {
         kind: "solid",
-        record: Record::of_solids(&clearance, cast.exit(), &cast),
+        record: SolidClearanceRecord::of(&clearance, cast.exit(), &cast).into(),
         clearance: None,
         lit,
         proof,

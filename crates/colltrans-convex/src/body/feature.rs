@@ -50,13 +50,13 @@ pub struct Features {
 
 /// A feature of a convex body by its own numbers.
 #[derive(Debug, Clone, Copy)]
-pub(crate) enum Own {
+pub(crate) enum OwnFeature {
     Vertex(u32),
     Edge([u32; 2]),
     Face(u32),
 }
 
-impl Own {
+impl OwnFeature {
     /// By the numbers of the input.
     pub(crate) fn named(self, body: &ConvexPolyhedron) -> Feature {
         let input = |v: u32| body.input_indices()[v as usize];
@@ -71,7 +71,12 @@ impl Own {
 /// The vertex, edge or face of a body in its supporting plane along the unit vector `outward` (body
 /// frame).
 #[inline]
-pub(crate) fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, noise: f64) -> Own {
+pub(crate) fn feature(
+    body: &ConvexPolyhedron,
+    outward: DVec3,
+    vertex: u32,
+    noise: f64,
+) -> OwnFeature {
     let vertices = body.vertices();
     let height = outward.dot(vertices[vertex as usize]);
     let slack = noise + body.hull_error();
@@ -81,49 +86,50 @@ pub(crate) fn feature(body: &ConvexPolyhedron, outward: DVec3, vertex: u32, nois
     let (first, count) = body.plane_candidates(vertex, outward);
     let wrapped = |i: usize| if i >= neighbours.len() { i - neighbours.len() } else { i };
     // Bit `k`: whether the candidate `k` is in the plane. Without branches: none is predictable.
-    let (mut hits, mut bit) = (0_u32, 0);
+    let (mut in_plane_mask, mut bit) = (0_u32, 0);
     let (before, from_first) = neighbours.split_at(first);
     for part in [from_first, before] {
         for &w in part.iter().take(count - bit) {
-            hits |= u32::from(in_plane(w)) << bit;
+            in_plane_mask |= u32::from(in_plane(w)) << bit;
             bit += 1;
         }
     }
-    if hits == 0 {
-        return Own::Vertex(vertex);
+    if in_plane_mask == 0 {
+        return OwnFeature::Vertex(vertex);
     }
     let outgoing = topology.outgoing(vertex);
-    let all_round = count == neighbours.len() && count > 1;
-    let followed = hits & ((hits >> 1) | ((u32::from(all_round) * (hits & 1)) << (count - 1)));
-    let mut corners = if outgoing.is_empty() { 0 } else { followed };
-    while corners != 0 {
+    let is_closed = count == neighbours.len() && count > 1;
+    let paired = in_plane_mask
+        & ((in_plane_mask >> 1) | ((u32::from(is_closed) * (in_plane_mask & 1)) << (count - 1)));
+    let mut paired_left = if outgoing.is_empty() { 0 } else { paired };
+    while paired_left != 0 {
         // The face between a neighbour and the next one is on the left of the half-edge to the next.
-        let next = wrapped(wrapped(first + corners.trailing_zeros() as usize) + 1);
+        let next = wrapped(wrapped(first + paired_left.trailing_zeros() as usize) + 1);
         let face = topology.half_edge(outgoing[next]).face;
         // Of the two faces of a flat polygon, the one that looks there.
-        let looks = body.dimension() == 3 || body.face_normal(face).dot(outward) >= 0.0;
+        let is_facing = body.dimension() == 3 || body.face_normal(face).dot(outward) >= 0.0;
         // A face that is flat only nearly may have corners above the plane, too.
         let near_plane = |w: u32| (outward.dot(vertices[w as usize]) - height).abs() <= slack;
-        if looks && spread(topology.face_vertices(face), near_plane) {
-            return Own::Face(face);
+        if is_facing && holds_for_samples(topology.face_vertices(face), near_plane) {
+            return OwnFeature::Face(face);
         }
-        corners &= corners - 1;
+        paired_left &= paired_left - 1;
     }
-    Own::Edge([vertex, neighbours[wrapped(first + hits.trailing_zeros() as usize)]])
+    OwnFeature::Edge([vertex, neighbours[wrapped(first + in_plane_mask.trailing_zeros() as usize)]])
 }
 
 /// Whether something holds for up to [`SAMPLES`] vertices, spread over a face: those near a vertex
 /// may lie in a plane that the others do not.
-fn spread(
+fn holds_for_samples(
     mut vertices: impl ExactSizeIterator<Item = u32>,
     holds: impl FnMut(u32) -> bool,
 ) -> bool {
-    if vertices.len() <= SAMPLES {
+    if vertices.len() <= MAX_SAMPLES {
         return vertices.all(holds);
     }
-    let stride = vertices.len().div_ceil(SAMPLES);
+    let stride = vertices.len().div_ceil(MAX_SAMPLES);
     vertices.step_by(stride).all(holds)
 }
 
 /// How many vertices of a face must lie in the contact plane for the face to do.
-const SAMPLES: usize = 16;
+const MAX_SAMPLES: usize = 16;

@@ -31,10 +31,10 @@ pub struct Inertia {
 }
 
 /// Least ratio of the ellipsoid's axes: keeps `S` positive definite for flat bodies.
-const LEAST_AXIS_RATIO: f64 = 1e-6;
+const MIN_AXIS_RATIO: f64 = 1e-6;
 
 /// Least ratio of the geometric to the arithmetic mean of a round ellipsoid's squared semi-axes.
-const ROUND: f64 = 0.6;
+const MIN_ROUNDNESS: f64 = 0.6;
 
 impl Inertia {
     pub(crate) fn new(vertices: &[DVec3], topology: &Topology, dimension: u8) -> Self {
@@ -42,13 +42,13 @@ impl Inertia {
         let mean = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
         let solid = if dimension == 3 { solid_moments(vertices, topology, mean) } else { None };
         let (volume, center, covariance) = solid.unwrap_or_else(|| {
-            let spread = |v: &DVec3| outer(*v - mean, *v - mean);
+            let spread = |v: &DVec3| outer_product(*v - mean, *v - mean);
             let sum = vertices.iter().map(spread).fold(DMat3::ZERO, |a, b| a + b);
             (0.0, mean, sum * (1.0 / vertices.len() as f64))
         });
         // A one-point body of size zero still needs a positive matrix.
         let trace = covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z;
-        let floor = (trace * LEAST_AXIS_RATIO * LEAST_AXIS_RATIO).max(f64::MIN_POSITIVE.sqrt());
+        let floor = (trace * MIN_AXIS_RATIO * MIN_AXIS_RATIO).max(f64::MIN_POSITIVE.sqrt());
         let shape = (covariance + DMat3::from_diagonal(DVec3::splat(floor))) * 5.0;
         let radius = (0..3).map(|i| shape.col(i)[i]).sum::<f64>().sqrt();
         let factor = cholesky(&shape);
@@ -56,7 +56,8 @@ impl Inertia {
         // differently, and no overflow.
         let axes = (factor.x_axis.x / radius) * (factor.y_axis.y / radius);
         let geometric = axes * (factor.z_axis.z / radius);
-        let round = geometric * geometric > (ROUND / 3.0) * (ROUND / 3.0) * (ROUND / 3.0);
+        let round = geometric * geometric
+            > (MIN_ROUNDNESS / 3.0) * (MIN_ROUNDNESS / 3.0) * (MIN_ROUNDNESS / 3.0);
         let inner = if volume > 0.0 { inner_radius(vertices, topology, center) } else { 0.0 };
         Self { reach, center, factor, radius, round, inner, volume }
     }
@@ -92,7 +93,7 @@ impl Inertia {
 
 /// Share of the inner radius that is kept: what is lost covers rounding, and rotations that are off
 /// by as much as is admitted.
-const CERTAIN: f64 = 1.0 - 1e-5;
+const INNER_SHARE: f64 = 1.0 - 1e-5;
 
 /// Radius of a ball around `center` inside a closed surface.
 ///
@@ -106,10 +107,11 @@ fn inner_radius(vertices: &[DVec3], topology: &Topology, center: DVec3) -> f64 {
         let normal = polygon_normal(corners(face));
         corners(face).map(|corner| normal.dot(corner)).fold(f64::INFINITY, f64::min)
     };
-    let least = (0..topology.face_count() as u32).map(distance).fold(f64::INFINITY, f64::min);
+    let min_distance =
+        (0..topology.face_count() as u32).map(distance).fold(f64::INFINITY, f64::min);
     // Rounding is relative to the coordinates, not to the distance.
     let rounding = 16.0 * f64::EPSILON * vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
-    if least.is_finite() { (CERTAIN * least - rounding).max(0.0) } else { 0.0 }
+    if min_distance.is_finite() { (INNER_SHARE * min_distance - rounding).max(0.0) } else { 0.0 }
 }
 
 /// Lower triangular `L` with `s = L L^T`.
@@ -128,7 +130,7 @@ fn cholesky(s: &DMat3) -> DMat3 {
 }
 
 /// `a b^T`.
-fn outer(a: DVec3, b: DVec3) -> DMat3 {
+fn outer_product(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
@@ -144,17 +146,20 @@ fn solid_moments(
         let mut corners = topology.face_vertices(face).map(|v| vertices[v as usize] - apex);
         let (Some(a), Some(mut b)) = (corners.next(), corners.next()) else { continue };
         for c in corners {
-            let six = a.dot(b.cross(c));
+            let six_volumes = a.dot(b.cross(c));
             let sum = a + b + c;
-            volume += six / 6.0;
-            first += sum * (six / 24.0);
-            let squares = outer(a, a) + outer(b, b) + outer(c, c) + outer(sum, sum);
-            second += squares * (six / 120.0);
+            volume += six_volumes / 6.0;
+            first += sum * (six_volumes / 24.0);
+            let squares = outer_product(a, a)
+                + outer_product(b, b)
+                + outer_product(c, c)
+                + outer_product(sum, sum);
+            second += squares * (six_volumes / 120.0);
             b = c;
         }
     }
     let mean = first / volume;
-    let covariance = second * (1.0 / volume) - outer(mean, mean);
+    let covariance = second * (1.0 / volume) - outer_product(mean, mean);
     let sound = volume > 0.0 && (0..3).all(|i| covariance.col(i)[i] >= 0.0);
     (sound && covariance.is_finite()).then_some((volume, apex + mean, covariance))
 }
@@ -166,7 +171,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_box_has_its_known_moments() {
+    fn box_moments_match_closed_form() {
         let Mesh { vertices, faces } = block(DVec3::ZERO, DVec3::new(2.0, 4.0, 6.0));
         let topology =
             Topology::sphere(8, (0..=6).map(|f| 4 * f).collect(), faces.concat()).unwrap();

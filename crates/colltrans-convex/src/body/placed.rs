@@ -54,7 +54,7 @@ impl Feature {
     /// # Panics
     /// If the feature is not one of `body`.
     pub fn own_vertices<B: Body>(self, body: &B) -> Vec<VertexId> {
-        vertices_of(body, self)
+        feature_vertices(body, self)
     }
 }
 
@@ -85,7 +85,7 @@ pub trait Numbered {
 }
 
 /// The vertices of a feature, as positions among the body's vertices.
-fn vertices_of<B: Numbered>(body: &B, feature: Feature) -> Vec<VertexId> {
+fn feature_vertices<B: Numbered>(body: &B, feature: Feature) -> Vec<VertexId> {
     let position = |v: InputVertex| {
         let found = body.inputs().iter().position(|input| *input == v);
         VertexId(found.expect("a feature of this body") as u32)

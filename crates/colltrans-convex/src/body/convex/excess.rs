@@ -25,34 +25,34 @@
 use glam::DVec3;
 
 use super::ConvexPolyhedron;
-use super::fan::{Above, FAN, MANY};
+use super::fan::{AboveQuery, FAN, MAX_UNMEASURED_CORNERS};
 use colltrans_kernel::noise;
 use colltrans_kernel::plane::polygon_normal;
 use colltrans_kernel::work;
 
 /// Vertices of a plateau that are visited one by one; a larger one is taken to be the whole body.
-const VISITED: usize = 16;
+const MAX_VISITED: usize = 16;
 
 /// Of a body with up to this many vertices each is looked at then.
-const SMALL: usize = 48;
+const MAX_SCANNED_VERTICES: usize = 48;
 
 /// What may be hidden by measuring at three corners, in `GAIN reach`: an exactly flat face hides half of it.
-const ENOUGH: f64 = 32.0;
+const MAX_HIDDEN_GAINS: f64 = 32.0;
 
 /// A face with more corners is measured at three even if that hides more.
-const SCANNED: usize = 64;
+const MAX_SCANNED_CORNERS: usize = 64;
 
 /// Of bodies with up to this many such faces each may be looked at.
-const MOST_LARGE: usize = 8;
+const MAX_LARGE_FACES: usize = 8;
 
 /// Cosine of the largest angle between a normal and that of a face which is looked at for it.
-const ACROSS: f64 = 0.9;
+const MIN_NORMAL_COSINE: f64 = 0.9;
 
 /// Sum of the magnitudes of the weights over three corners.
-const WEIGHTS: f64 = 7.0;
+const WEIGHT_SUM: f64 = 7.0;
 
 /// The highest vertex of a plateau, and how far the body may reach beyond the one it was seen from.
-struct Summit {
+struct MaxExcess {
     vertex: u32,
     excess: f64,
 }
@@ -78,14 +78,14 @@ impl LargeFace {
     /// Whether it counts as large only because there are few others.
     #[inline]
     pub(crate) fn has_few_corners(&self) -> bool {
-        self.corner_count <= MANY as u32
+        self.corner_count <= MAX_UNMEASURED_CORNERS as u32
     }
 }
 
 /// The vertices of a plateau, as far as they were found.
 struct Plateau {
     /// In place of those not found yet, the first one.
-    vertices: [u32; VISITED],
+    vertices: [u32; MAX_VISITED],
     count: usize,
 }
 
@@ -94,11 +94,11 @@ impl Plateau {
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
     #[expect(clippy::needless_bitwise_bool, reason = "all compared at once is faster than a loop")]
-    fn add(&mut self, vertex: u32) -> bool {
+    fn insert_vertex(&mut self, vertex: u32) -> bool {
         if self.vertices.iter().fold(false, |found, &v| found | (v == vertex)) {
             return true;
         }
-        let has_room = self.count < VISITED;
+        let has_room = self.count < MAX_VISITED;
         if has_room {
             self.vertices[self.count] = vertex;
             self.count += 1;
@@ -114,17 +114,17 @@ impl ConvexPolyhedron {
     #[inline]
     pub fn settled(&self, normal: DVec3, vertex: u32) -> (u32, f64) {
         if self.support.is_scanned() {
-            return (vertex, self.excess_of_scan());
+            return (vertex, self.scan_excess());
         }
         // Each vertex on the way is higher than the one before by more than rounding.
         let mut at = vertex;
         loop {
-            let found = self.summit(normal, 1.0, at, f64::INFINITY);
-            let summit = found.unwrap_or_else(|| self.summit_of_all(normal, 1.0, at));
-            if summit.excess <= 3.0 * noise::GAIN * self.inertia.reach || summit.vertex == at {
-                return (at, summit.excess);
+            let found = self.max_excess(normal, 1.0, at, f64::INFINITY);
+            let highest = found.unwrap_or_else(|| self.max_excess_of_all(normal, 1.0, at));
+            if highest.excess <= 3.0 * noise::GAIN * self.inertia.reach || highest.vertex == at {
+                return (at, highest.excess);
             }
-            at = summit.vertex;
+            at = highest.vertex;
         }
     }
 
@@ -144,7 +144,7 @@ impl ConvexPolyhedron {
         if self.support.is_scanned() {
             let found = self.support_from(normal, near);
             let gain = normal.dot(self.vertices[found as usize] - self.vertices[near as usize]);
-            return (gain <= most * length).then(|| (found, self.excess_of_scan()));
+            return (gain <= most * length).then(|| (found, self.scan_excess()));
         }
         self.excess_up_to(normal, length, near, most).map(|excess| (near, excess))
     }
@@ -152,42 +152,45 @@ impl ConvexPolyhedron {
     /// Of a support point that was found by a look at each vertex: the largest of the rounded
     /// products was taken, and both may be off.
     #[inline]
-    fn excess_of_scan(&self) -> f64 {
+    fn scan_excess(&self) -> f64 {
         2.0 * noise::GAIN * self.inertia.reach
     }
 
     /// The excess beyond a vertex; `None` if something gains more than `most`, or the plateau is
     /// larger than can be visited.
     fn excess_up_to(&self, normal: DVec3, length: f64, vertex: u32, most: f64) -> Option<f64> {
-        self.summit(normal, length, vertex, most).map(|summit| summit.excess)
+        self.max_excess(normal, length, vertex, most).map(|found| found.excess)
     }
 
     /// The same with the summit of the plateau.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "who does not need the summit does not look for it")]
-    fn summit(&self, normal: DVec3, length: f64, vertex: u32, most: f64) -> Option<Summit> {
+    #[expect(
+        clippy::inline_always,
+        reason = "who does not need the highest vertex does not look for it"
+    )]
+    fn max_excess(&self, normal: DVec3, length: f64, vertex: u32, most: f64) -> Option<MaxExcess> {
         let here = self.vertices[vertex as usize];
         let [least, limit] = [-self.plateau_depth(), most].map(|limit| limit * length);
-        let mut plateau = Plateau { vertices: [vertex; VISITED], count: 1 };
-        let (mut next, mut highest, mut summit) = (0, 0.0, vertex);
+        let mut plateau = Plateau { vertices: [vertex; MAX_VISITED], count: 1 };
+        let (mut next, mut highest, mut highest_vertex) = (0, 0.0, vertex);
         while next < plateau.count {
             let from = plateau.vertices[next];
             let neighbours = self.neighbours(from);
             if neighbours.len() > FAN {
                 let reach = self.inertia.reach;
-                let above = Above { normal, length, here, least, reach };
-                match self.seen_in_fan(from, &above, &mut plateau, (summit, highest)) {
-                    Some(seen) => (summit, highest) = seen,
-                    None => return self.summit_of_many(normal, length, vertex, most),
+                let above = AboveQuery { normal, length, here, least, reach };
+                match self.visit_fan(from, &above, &mut plateau, (highest_vertex, highest)) {
+                    Some(found) => (highest_vertex, highest) = found,
+                    None => return self.max_excess_of_large_plateau(normal, length, vertex, most),
                 }
             } else {
                 work::count(neighbours.len());
                 for &w in neighbours {
                     let gained = normal.dot(self.vertices[w as usize] - here);
-                    summit = if gained > highest { w } else { summit };
+                    highest_vertex = if gained > highest { w } else { highest_vertex };
                     highest = if gained > highest { gained } else { highest };
-                    if gained > least && !plateau.add(w) {
-                        return self.summit_of_many(normal, length, vertex, most);
+                    if gained > least && !plateau.insert_vertex(w) {
+                        return self.max_excess_of_large_plateau(normal, length, vertex, most);
                     }
                 }
             }
@@ -198,49 +201,55 @@ impl ConvexPolyhedron {
             if next == 1
                 && plateau.count > 1
                 && !self.large_faces.is_empty()
-                && let Some(summit) = self.summit_of_many(normal, length, vertex, most)
+                && let Some(found) = self.max_excess_of_large_plateau(normal, length, vertex, most)
             {
-                return Some(summit);
+                return Some(found);
             }
         }
         if plateau.count == 1 {
-            return Some(Summit { vertex, excess: 0.0 });
+            return Some(MaxExcess { vertex, excess: 0.0 });
         }
         let excess = highest / length + noise::GAIN * self.inertia.reach;
-        Some(Summit { vertex: summit, excess })
+        Some(MaxExcess { vertex: highest_vertex, excess })
     }
 
     /// The highest and how high it is, after a look at those of many neighbours that may belong to the plateau;
     /// `None` if these are too many.
     #[cold]
     #[inline(never)]
-    fn seen_in_fan(
+    fn visit_fan(
         &self,
         from: u32,
-        above: &Above,
+        above: &AboveQuery,
         plateau: &mut Plateau,
-        (mut summit, mut highest): (u32, f64),
+        (mut highest_vertex, mut highest): (u32, f64),
     ) -> Option<(u32, f64)> {
-        let mut look = |w: u32| {
+        let mut visit = |w: u32| {
             let gained = above.normal.dot(self.vertices[w as usize] - above.here);
             if gained > highest {
-                (summit, highest) = (w, gained);
+                (highest_vertex, highest) = (w, gained);
             }
-            gained <= above.least || plateau.add(w)
+            gained <= above.least || plateau.insert_vertex(w)
         };
-        let fan = self.support.fan(from);
-        let fits = fan.look_above(&self.vertices, &self.topology, above, &mut look);
-        fits.then_some((summit, highest))
+        let fan = self.support.fan_of_vertex(from);
+        let fits = fan.visit_above(&self.vertices, &self.topology, above, &mut visit);
+        fits.then_some((highest_vertex, highest))
     }
 
     /// The same where more may be in the plateau than is worth visiting.
     #[inline(never)]
-    fn summit_of_many(&self, normal: DVec3, length: f64, vertex: u32, most: f64) -> Option<Summit> {
-        if self.vertices.len() > SMALL {
-            return self.summit_of_large_face(normal, length, vertex, most);
+    fn max_excess_of_large_plateau(
+        &self,
+        normal: DVec3,
+        length: f64,
+        vertex: u32,
+        most: f64,
+    ) -> Option<MaxExcess> {
+        if self.vertices.len() > MAX_SCANNED_VERTICES {
+            return self.max_excess_on_large_face(normal, length, vertex, most);
         }
-        let summit = self.summit_of_all(normal, length, vertex);
-        (summit.excess <= most).then_some(summit)
+        let found = self.max_excess_of_all(normal, length, vertex);
+        (found.excess <= most).then_some(found)
     }
 
     /// How far below a vertex its plateau is visited.
@@ -250,57 +259,64 @@ impl ConvexPolyhedron {
     }
 
     /// The same by a look at all vertices.
-    fn summit_of_all(&self, normal: DVec3, length: f64, vertex: u32) -> Summit {
-        self.highest(0..self.vertices.len() as u32, normal, length, vertex)
+    fn max_excess_of_all(&self, normal: DVec3, length: f64, vertex: u32) -> MaxExcess {
+        self.max_excess_among(0..self.vertices.len() as u32, normal, length, vertex)
     }
 
     /// The highest of some vertices, which contain the plateau.
-    fn highest(
+    fn max_excess_among(
         &self,
         vertices: impl Iterator<Item = u32>,
         normal: DVec3,
         length: f64,
         vertex: u32,
-    ) -> Summit {
+    ) -> MaxExcess {
         let here = self.vertices[vertex as usize];
-        let (mut highest, mut summit) = (0.0, vertex);
+        let (mut highest, mut highest_vertex) = (0.0, vertex);
         for w in vertices {
             let gain = normal.dot(self.vertices[w as usize] - here);
-            summit = if gain > highest { w } else { summit };
+            highest_vertex = if gain > highest { w } else { highest_vertex };
             highest = if gain > highest { gain } else { highest };
         }
-        Summit { vertex: summit, excess: highest / length + noise::GAIN * self.inertia.reach }
+        MaxExcess {
+            vertex: highest_vertex,
+            excess: highest / length + noise::GAIN * self.inertia.reach,
+        }
     }
 
     /// The same where the plateau is, at most, one face with many corners: they are looked at one by
     /// one where three do not tell enough.
-    fn summit_of_large_face(
+    fn max_excess_on_large_face(
         &self,
         normal: DVec3,
         length: f64,
         vertex: u32,
         most: f64,
-    ) -> Option<Summit> {
+    ) -> Option<MaxExcess> {
         let outgoing = self.topology.outgoing(vertex);
         let excess_of = |face: u32| {
             let found = self.large_faces.binary_search_by_key(&face, |large| large.face).ok()?;
             let large = &self.large_faces[found];
             let excess = || self.excess_of_face(large, normal, length, vertex, most);
-            let is_across = normal.dot(large.normal) > ACROSS * length;
+            let is_across = normal.dot(large.normal) > MIN_NORMAL_COSINE * length;
             is_across.then(excess).flatten().map(|excess| (face, excess))
         };
         let (face, excess) = if outgoing.len() > FAN {
-            self.support.fan(vertex).wide().iter().find_map(|&face| excess_of(face))?
+            self.support
+                .fan_of_vertex(vertex)
+                .wide_faces()
+                .iter()
+                .find_map(|&face| excess_of(face))?
         } else {
             outgoing.iter().find_map(|&h| excess_of(self.topology.half_edge(h).face))?
         };
         let corners = self.face_vertices(face);
         let gain = noise::GAIN * self.inertia.reach;
-        if excess <= ENOUGH * gain || corners.len() > SCANNED {
-            return Some(Summit { vertex, excess });
+        if excess <= MAX_HIDDEN_GAINS * gain || corners.len() > MAX_SCANNED_CORNERS {
+            return Some(MaxExcess { vertex, excess });
         }
-        let summit = self.highest(corners, normal, length, vertex);
-        (summit.excess <= most + gain).then_some(summit)
+        let found = self.max_excess_among(corners, normal, length, vertex);
+        (found.excess <= most + gain).then_some(found)
     }
 
     /// The same where the plateau is, at most, this face.
@@ -318,15 +334,15 @@ impl ConvexPolyhedron {
         let [a, b, c] = large.corners;
         let highest = gain(a).max(gain(b)).max(gain(c)) / length;
         let reached = highest + noise::GAIN * self.inertia.reach;
-        let only = 8.0 * reached < large.descent * large.height;
-        (only && highest <= self.plateau_depth() && WEIGHTS * highest <= most)
-            .then_some(WEIGHTS * reached + 8.0 * self.flatness)
+        let is_confined = 8.0 * reached < large.descent * large.height;
+        (is_confined && highest <= self.plateau_depth() && WEIGHT_SUM * highest <= most)
+            .then_some(WEIGHT_SUM * reached + 8.0 * self.flatness)
     }
 
     /// Whether there are large faces, but few.
     #[inline]
     pub(crate) fn has_large_faces(&self) -> bool {
-        (1..=MOST_LARGE).contains(&self.large_faces.len())
+        (1..=MAX_LARGE_FACES).contains(&self.large_faces.len())
     }
 
     /// Of the large faces, the one most nearly across a direction (body frame, any
@@ -347,23 +363,23 @@ impl ConvexPolyhedron {
         let polygons: Vec<u32> = (0..self.face_count() as u32)
             .filter(|&face| self.face_vertices(face).len() > 3)
             .collect();
-        let all = self.support.is_scanned() && polygons.len() <= MOST_LARGE;
+        let all = self.support.is_scanned() && polygons.len() <= MAX_LARGE_FACES;
         for face in polygons {
             let at = |v: u32| self.vertices[v as usize];
             let corners = self.face_vertices(face).map(at);
             let normal = polygon_normal(corners.clone());
             // From the plane through one corner: another parallel one is at most as far from all.
             let first = corners.clone().next().unwrap_or_default();
-            let is_large = all || corners.len() > MANY;
+            let is_large = all || corners.len() > MAX_UNMEASURED_CORNERS;
             let off = corners.map(|p| normal.dot(p - first).abs()).fold(0.0, f64::max);
             self.flatness = self.flatness.max(off + noise::GAIN * self.inertia.reach);
             if is_large {
-                self.large_faces.push(self.large_face(face, normal));
+                self.large_faces.push(self.measure_large_face(face, normal));
             }
         }
     }
 
-    fn large_face(&self, face: u32, normal: DVec3) -> LargeFace {
+    fn measure_large_face(&self, face: u32, normal: DVec3) -> LargeFace {
         let at = |v: u32| self.vertices[v as usize];
         let corners: Vec<u32> = self.face_vertices(face).collect();
         let farthest = |measure: &dyn Fn(DVec3) -> f64| {

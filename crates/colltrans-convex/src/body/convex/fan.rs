@@ -17,11 +17,11 @@ use colltrans_kernel::work;
 pub(crate) const FAN: usize = 32;
 
 /// A face with more corners is measured at three.
-pub(super) const MANY: usize = 8;
+pub(super) const MAX_UNMEASURED_CORNERS: usize = 8;
 
 /// By how much slopes that are compared may be off together, in `GAIN` times the square of what edges are longer than
 /// inwards; and what is gained over the least length inwards, in `GAIN reach` over that.
-const DOUBT: f64 = 8.0;
+const SLOPE_DOUBT: f64 = 8.0;
 
 #[derive(Debug, Clone)]
 pub(super) struct Fan {
@@ -40,7 +40,7 @@ pub(super) struct Fan {
 }
 
 /// What is asked for: neighbours more than `least` above a place along a normal of this length.
-pub(super) struct Above {
+pub(super) struct AboveQuery {
     pub(super) normal: DVec3,
     pub(super) length: f64,
     pub(super) here: DVec3,
@@ -65,7 +65,8 @@ impl Fan {
         let (ring, dent) = Ring::new((Cycle::Fan(vertex), neighbours[0]), inward, corners, cut);
         let dent = if least > 0.0 { dent } else { f64::INFINITY };
         let faces = topology.outgoing(vertex).iter().map(|&h| topology.half_edge(h).face);
-        let wide = faces.filter(|&face| topology.face(face).len() > MANY).collect();
+        let wide =
+            faces.filter(|&face| topology.face(face).len() > MAX_UNMEASURED_CORNERS).collect();
         Self { vertex, inward, least, longest, ring, dent, wide }
     }
 
@@ -74,25 +75,25 @@ impl Fan {
     }
 
     /// The faces around the vertex with more than [`MANY`] corners.
-    pub(super) fn wide(&self) -> &[u32] {
+    pub(super) fn wide_faces(&self) -> &[u32] {
         &self.wide
     }
 
     /// Position among the neighbours of the steepest edge along a direction.
-    pub(super) fn steepest(
+    pub(super) fn steepest_edge(
         &self,
         vertices: &[DVec3],
         topology: &Topology,
         direction: DVec3,
     ) -> usize {
-        let slope = self.slopes(vertices, topology, direction);
-        let near = self.ring.near(direction) as usize;
+        let slope = self.slope_function(vertices, topology, direction);
+        let near = self.ring.first_candidate(direction) as usize;
         greatest_near(topology.neighbours(self.vertex).len(), near, slope)
     }
 
     /// How steep edges are along a direction: what they rise over their lengths inwards.
     #[inline]
-    fn slopes<'a>(
+    fn slope_function<'a>(
         &'a self,
         vertices: &'a [DVec3],
         topology: &'a Topology,
@@ -110,37 +111,37 @@ impl Fan {
     ///
     /// From the steepest edge on to either side, until one is less steep than that and than any asked for: those
     /// beyond are less steep still, up to what is in doubt.
-    pub(super) fn look_above(
+    pub(super) fn visit_above(
         &self,
         vertices: &[DVec3],
         topology: &Topology,
-        above: &Above,
-        look: &mut impl FnMut(u32) -> bool,
+        above: &AboveQuery,
+        visit: &mut impl FnMut(u32) -> bool,
     ) -> bool {
         let neighbours = topology.neighbours(self.vertex);
-        let slope = self.slopes(vertices, topology, above.normal);
-        let steepest = self.steepest(vertices, topology, above.normal);
-        let asked = above.least - above.normal.dot(vertices[self.vertex as usize] - above.here);
+        let slope = self.slope_function(vertices, topology, above.normal);
+        let steepest = self.steepest_edge(vertices, topology, above.normal);
+        let min_gain = above.least - above.normal.dot(vertices[self.vertex as usize] - above.here);
         // Lengths inwards are rounded, too.
-        let over = self.longest / self.least;
-        let rounding = DOUBT * noise::GAIN * (above.reach / self.least + over * over);
+        let aspect = self.longest / self.least;
+        let rounding = SLOPE_DOUBT * noise::GAIN * (above.reach / self.least + aspect * aspect);
         let doubt = above.length * (rounding + self.dent);
-        let enough = slope(steepest).min(asked.min(0.0) / self.least) - doubt;
+        let stop_slope = slope(steepest).min(min_gain.min(0.0) / self.least) - doubt;
         let count = neighbours.len();
-        let (mut is_seen, mut looks) = (look(neighbours[steepest]), 1);
-        for way in [1, count - 1] {
+        let (mut goes_on, mut visited) = (visit(neighbours[steepest]), 1);
+        for step in [1, count - 1] {
             let mut k = steepest;
-            while is_seen && looks < count {
-                k = wrapped(k + way, count);
-                is_seen = look(neighbours[k]);
-                looks += 1;
-                if slope(k) < enough {
+            while goes_on && visited < count {
+                k = wrapped_index(k + step, count);
+                goes_on = visit(neighbours[k]);
+                visited += 1;
+                if slope(k) < stop_slope {
                     break;
                 }
             }
         }
-        work::count(looks);
-        is_seen
+        work::count(visited);
+        goes_on
     }
 
     /// Bytes on the heap.
@@ -156,9 +157,9 @@ impl Fan {
 pub(crate) fn greatest_near(count: usize, near: usize, value: impl Fn(usize) -> f64) -> usize {
     let mut best = (near, value(near));
     work::count(1);
-    let mut rises = |way: usize| {
+    let mut rises = |step: usize| {
         work::count(1);
-        let there = wrapped(best.0 + way, count);
+        let there = wrapped_index(best.0 + step, count);
         let value = value(there);
         let higher = value > best.1;
         if higher {
@@ -168,14 +169,14 @@ pub(crate) fn greatest_near(count: usize, near: usize, value: impl Fn(usize) -> 
     };
     let ahead = rises(1);
     if ahead || rises(count - 1) {
-        let way = |stride: usize| if ahead { stride } else { count - stride };
+        let step = |stride: usize| if ahead { stride } else { count - stride };
         let mut stride = 1;
-        while rises(way(stride)) {
+        while rises(step(stride)) {
             stride *= if 4 * stride <= count { 2 } else { 1 };
         }
         while stride > 1 {
             stride /= 2;
-            let _ = rises(way(stride)) || rises(count - way(stride));
+            let _ = rises(step(stride)) || rises(count - step(stride));
         }
     }
     best.0
@@ -183,6 +184,6 @@ pub(crate) fn greatest_near(count: usize, near: usize, value: impl Fn(usize) -> 
 
 /// A place on a cycle, counted on over its end at most once.
 #[inline]
-fn wrapped(i: usize, count: usize) -> usize {
+fn wrapped_index(i: usize, count: usize) -> usize {
     if i >= count { i - count } else { i }
 }

@@ -62,7 +62,7 @@ pub struct ConvexPolyhedron {
 }
 
 /// Bodies with more vertices than this are worth the better guess from ellipsoids (measured).
-const FEW: usize = 20;
+const MAX_BALL_VERTICES: usize = 20;
 
 impl ConvexPolyhedron {
     /// The vertices, in the body frame.
@@ -222,32 +222,32 @@ impl ConvexPolyhedron {
     /// ```
     #[inline]
     pub fn support(&self, direction: DVec3) -> VertexId {
-        VertexId(self.support.extreme(&self.vertices, &self.topology, direction))
+        VertexId(self.support.farthest_vertex(&self.vertices, &self.topology, direction))
     }
 
     /// A vertex near the support point.
     #[inline]
     pub(crate) fn support_guess(&self, direction: DVec3) -> u32 {
-        self.support.guess(direction)
+        self.support.table_guess(direction)
     }
 
     /// The support point, from a guess.
     #[inline]
     pub(crate) fn support_from_guess(&self, direction: DVec3, guess: u32) -> u32 {
-        self.support.extreme_from_guess(&self.vertices, &self.topology, direction, guess)
+        self.support.farthest_vertex_from_guess(&self.vertices, &self.topology, direction, guess)
     }
 
     /// The same as [`Self::support`], faster if `near` is a vertex near the answer.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
     pub(crate) fn support_from(&self, direction: DVec3, near: u32) -> u32 {
-        self.support.extreme_from(&self.vertices, &self.topology, direction, near)
+        self.support.farthest_vertex_near(&self.vertices, &self.topology, direction, near)
     }
 
     /// Whether a guess from its inertia ellipsoid is hardly better than one from a ball.
     #[inline]
     pub(crate) fn is_like_ball(&self) -> bool {
-        self.vertices.len() <= FEW && self.inertia.round
+        self.vertices.len() <= MAX_BALL_VERTICES && self.inertia.round
     }
 
     /// Whether the body has faces with so many corners, or vertices with so many neighbours, that these lie on a
@@ -263,7 +263,7 @@ impl ConvexPolyhedron {
         let known = self.support.outline();
         let few = known.is_empty() && self.vertices.len() <= MOST_RIMS;
         let count = if few { self.vertices.len() } else { known.len() };
-        let point = |k: usize| Rim::point(k as u32, self.vertices[k]);
+        let point = |k: usize| Rim::from_vertex(k as u32, self.vertices[k]);
         (0..count).map(move |k| if few { point(k) } else { known[k] })
     }
 
@@ -274,7 +274,7 @@ impl ConvexPolyhedron {
 
     /// Position among the neighbours of a vertex, which has many, of the steepest edge along `direction`.
     pub(crate) fn steepest_edge(&self, vertex: u32, direction: DVec3) -> usize {
-        self.support.fan(vertex).steepest(&self.vertices, &self.topology, direction)
+        self.support.fan_of_vertex(vertex).steepest_edge(&self.vertices, &self.topology, direction)
     }
 
     /// Positions among the neighbours of `vertex` that may lie in its supporting plane along

@@ -18,7 +18,7 @@ use colltrans_kernel::topology::Topology;
 use colltrans_kernel::work;
 
 /// Corners this near an ellipse, as a share of its size, are taken to lie on it.
-const NEARLY: f64 = 0.02;
+const MAX_RIM_DEVIATION: f64 = 0.02;
 
 /// Whose corners a ring has.
 #[derive(Debug, Clone, Copy)]
@@ -26,7 +26,7 @@ pub(super) enum Cycle {
     /// Those of a face, from this half-edge on.
     Face(u32),
     /// Those that the edges which leave a face from its corners lead to, from this half-edge on.
-    Beside(u32),
+    AdjacentToFace(u32),
     /// A vertex's neighbours.
     Fan(u32),
 }
@@ -59,10 +59,10 @@ pub(super) struct Ring {
 
 impl Cycle {
     #[inline]
-    fn corner(self, topology: &Topology, k: u32) -> u32 {
+    fn vertex_at(self, topology: &Topology, k: u32) -> u32 {
         match self {
             Self::Face(start) => topology.origin(start + k),
-            Self::Beside(start) => {
+            Self::AdjacentToFace(start) => {
                 let twin = topology.half_edge(start + k).twin;
                 topology.target(topology.next(twin))
             }
@@ -72,7 +72,7 @@ impl Cycle {
 }
 
 impl Rim {
-    pub(super) fn point(vertex: u32, center: DVec3) -> Self {
+    pub(super) fn from_vertex(vertex: u32, center: DVec3) -> Self {
         Self { center, semi_axes: [DVec3::ZERO; 2], vertex, ends: [false; 2] }
     }
 
@@ -81,21 +81,23 @@ impl Rim {
     }
 
     /// How far it reaches along a direction, times the direction's length.
-    fn reach(&self, direction: DVec3) -> f64 {
+    fn support_value(&self, direction: DVec3) -> f64 {
         let [u, v] = self.semi_axes.map(|axis| axis.dot(direction));
         self.center.dot(direction) + (u * u + v * v).sqrt()
     }
 
     /// The same rim, knowing where the hull of it and others ends.
-    pub(super) fn among(self, others: &[Self]) -> Self {
+    pub(super) fn with_ends_among(self, outline: &[Self]) -> Self {
         let [u, v] = self.semi_axes;
-        let ends = |out: DVec3| others.iter().all(|rim| rim.reach(out) <= self.reach(out));
+        let ends = |out: DVec3| {
+            outline.iter().all(|rim| rim.support_value(out) <= self.support_value(out))
+        };
         let axis = u.cross(v);
         Self { ends: [axis, -axis].map(|out| !self.is_point() && ends(out)), ..self }
     }
 
     /// The ellipse with the mean and the moments of corners, across an axis; and whether it is near all of them.
-    fn around(
+    fn fit_ellipse(
         vertex: u32,
         axes: [DVec3; 2],
         corners: impl Iterator<Item = DVec3> + Clone,
@@ -110,18 +112,19 @@ impl Rim {
         // Of corners spread evenly over an ellipse the moments are half of its squared semi-axes.
         let [xx, xy, yy] = [xx, xy, yy].map(|moment| 2.0 * moment / count);
         let first = xx.sqrt();
-        let slant = if first > 0.0 { xy / first } else { 0.0 };
-        let second = (yy - slant * slant).max(0.0).sqrt();
+        let shear = if first > 0.0 { xy / first } else { 0.0 };
+        let second = (yy - shear * shear).max(0.0).sqrt();
         let axis = axes[0].cross(axes[1]);
         let is_near = |corner: DVec3| {
             let off = corner - center;
             let [x, y] = axes.map(|axis| axis.dot(off));
             let along = x / first;
-            let across = (y - along * slant) / second;
+            let across = (y - along * shear) / second;
             let square = along * along + across * across;
-            (square - 1.0).abs() < NEARLY && axis.dot(off).abs() < NEARLY * second
+            (square - 1.0).abs() < MAX_RIM_DEVIATION
+                && axis.dot(off).abs() < MAX_RIM_DEVIATION * second
         };
-        let semi_axes = [axes[0] * first + axes[1] * slant, axes[1] * second];
+        let semi_axes = [axes[0] * first + axes[1] * shear, axes[1] * second];
         (
             Self { center, semi_axes, vertex, ends: [false; 2] },
             corners.map(is_near).fold(true, |all, near| all & near),
@@ -131,23 +134,28 @@ impl Rim {
 
 impl Ring {
     /// The ring of a face.
-    pub(super) fn of_face(vertices: &[DVec3], topology: &Topology, face: u32) -> Self {
+    pub(super) fn from_face(vertices: &[DVec3], topology: &Topology, face: u32) -> Self {
         let range = topology.face(face);
-        Self::around(vertices, topology, Cycle::Face(range.start), range.len() as u32)
+        Self::from_cycle(vertices, topology, Cycle::Face(range.start), range.len() as u32)
     }
 
     /// That beside a face, if it is not one vertex over and over.
-    pub(super) fn beside(vertices: &[DVec3], topology: &Topology, face: u32) -> Option<Self> {
+    pub(super) fn from_adjacent_corners(
+        vertices: &[DVec3],
+        topology: &Topology,
+        face: u32,
+    ) -> Option<Self> {
         let range = topology.face(face);
-        let (cycle, count) = (Cycle::Beside(range.start), range.len() as u32);
-        let follows = |k| cycle.corner(topology, k) == cycle.corner(topology, (k + 1) % count);
-        (!(0..count).any(follows)).then(|| Self::around(vertices, topology, cycle, count))
+        let (cycle, count) = (Cycle::AdjacentToFace(range.start), range.len() as u32);
+        let repeats =
+            |k| cycle.vertex_at(topology, k) == cycle.vertex_at(topology, (k + 1) % count);
+        (!(0..count).any(repeats)).then(|| Self::from_cycle(vertices, topology, cycle, count))
     }
 
-    fn around(vertices: &[DVec3], topology: &Topology, cycle: Cycle, count: u32) -> Self {
-        let corners = (0..count).map(|k| vertices[cycle.corner(topology, k) as usize]);
+    fn from_cycle(vertices: &[DVec3], topology: &Topology, cycle: Cycle, count: u32) -> Self {
+        let corners = (0..count).map(|k| vertices[cycle.vertex_at(topology, k) as usize]);
         let axis = polygon_normal(corners.clone());
-        Self::new((cycle, cycle.corner(topology, 0)), axis, corners.clone(), corners).0
+        Self::new((cycle, cycle.vertex_at(topology, 0)), axis, corners.clone(), corners).0
     }
 
     /// A ring, counter-clockwise about an axis, any length, with the polygon that it is seen as; and the [`dent`] of this.
@@ -155,16 +163,17 @@ impl Ring {
         (cycle, vertex): (Cycle, u32),
         axis: DVec3,
         corners: impl Iterator<Item = DVec3> + Clone,
-        seen: impl Iterator<Item = DVec3>,
+        projected_from: impl Iterator<Item = DVec3>,
     ) -> (Self, f64) {
         let axis = axis.try_normalize().unwrap_or(DVec3::Z);
         let x = axis.any_orthonormal_vector();
         let axes = [x, axis.cross(x)];
-        let (rim, is_round) = Rim::around(vertex, axes, corners);
-        let polygon: Vec<DVec2> = seen.map(|p| DVec2::from(axes.map(|a| a.dot(p)))).collect();
+        let (rim, is_round) = Rim::fit_ellipse(vertex, axes, corners);
+        let polygon: Vec<DVec2> =
+            projected_from.map(|p| DVec2::from(axes.map(|a| a.dot(p)))).collect();
         let next = polygon.iter().cycle().skip(1);
         let angles: Vec<f64> =
-            polygon.iter().zip(next).map(|(p, q)| turn(-(q - p).perp())).collect();
+            polygon.iter().zip(next).map(|(p, q)| pseudo_angle(-(q - p).perp())).collect();
         let count = angles.len();
         let least = |best: usize, k: usize| if angles[k] < angles[best] { k } else { best };
         let first = (0..count).fold(0, least);
@@ -179,7 +188,7 @@ impl Ring {
             })
             .collect();
         cells.push(count as u32);
-        let dent = dent(&polygon, &angles);
+        let dent = polygon_dent(&polygon, &angles);
         (Self { cycle, rim, is_round, axes, first: first as u32, cells }, dent)
     }
 
@@ -194,65 +203,70 @@ impl Ring {
     }
 
     /// The number of corners.
-    pub(super) fn count(&self) -> u32 {
+    pub(super) fn corner_count(&self) -> u32 {
         self.cells.len() as u32 - 1
     }
 
     /// The vertex of a corner.
-    pub(super) fn corner(&self, topology: &Topology, k: u32) -> u32 {
-        self.cycle.corner(topology, k)
+    pub(super) fn corner_vertex(&self, topology: &Topology, k: u32) -> u32 {
+        self.cycle.vertex_at(topology, k)
     }
 
     /// The corner farthest along a direction, any length, if the edge from one corner to the next is told to rise
     /// along it or not.
     #[inline]
-    fn farthest(&self, direction: DVec3, rises: impl Fn(u32, u32) -> bool) -> u32 {
-        let (mut low, mut high) = self.cell(direction);
+    fn farthest_corner(&self, direction: DVec3, rises: impl Fn(u32, u32) -> bool) -> u32 {
+        let (mut low, mut high) = self.candidate_range(direction);
         while low < high {
             work::count(1);
             let middle = u32::midpoint(low, high);
-            if rises(self.counted(middle), self.counted(middle + 1)) {
+            if rises(self.corner_number(middle), self.corner_number(middle + 1)) {
                 low = middle + 1;
             } else {
                 high = middle;
             }
         }
-        self.counted(low)
+        self.corner_number(low)
     }
 
     /// A corner near that one: none before it in its cell.
     #[inline]
-    pub(super) fn near(&self, direction: DVec3) -> u32 {
-        self.counted(self.cell(direction).0)
+    pub(super) fn first_candidate(&self, direction: DVec3) -> u32 {
+        self.corner_number(self.candidate_range(direction).0)
     }
 
     /// The first and the last corner that a direction, any length, may ask for.
     #[inline]
-    fn cell(&self, direction: DVec3) -> (u32, u32) {
-        let count = self.count();
+    fn candidate_range(&self, direction: DVec3) -> (u32, u32) {
+        let count = self.corner_count();
         let along = DVec2::from(self.axes.map(|axis| axis.dot(direction)));
         // Casts saturate, so that along the axis, where it is not a number, it is cell 0.
-        let cell = (turn(along) * (0.25 * f64::from(count))) as usize;
+        let cell = (pseudo_angle(along) * (0.25 * f64::from(count))) as usize;
         let cell = cell.min(count as usize - 1);
         (self.cells[cell], self.cells[cell + 1])
     }
 
     /// The corner that is counted so, from the first one on and once over the end at most.
     #[inline]
-    fn counted(&self, k: u32) -> u32 {
-        let (k, count) = (self.first + k, self.count());
+    fn corner_number(&self, k: u32) -> u32 {
+        let (k, count) = (self.first + k, self.corner_count());
         if k >= count { k - count } else { k }
     }
 
     /// The vertex farthest along a direction, any length.
     #[inline]
-    pub(super) fn vertex(&self, vertices: &[DVec3], topology: &Topology, direction: DVec3) -> u32 {
-        let corner = |k: u32| self.cycle.corner(topology, k);
+    pub(super) fn farthest_vertex(
+        &self,
+        vertices: &[DVec3],
+        topology: &Topology,
+        direction: DVec3,
+    ) -> u32 {
+        let corner = |k: u32| self.cycle.vertex_at(topology, k);
         let rises = |from: u32, to: u32| {
             let edge = vertices[corner(to) as usize] - vertices[corner(from) as usize];
             direction.dot(edge) > 0.0
         };
-        corner(self.farthest(direction, rises))
+        corner(self.farthest_corner(direction, rises))
     }
 
     /// Bytes on the heap.
@@ -266,25 +280,25 @@ impl Ring {
 ///
 /// If edges pointed no less far round than those before them, it would not. By as much as one does, times its length, it
 /// may.
-fn dent(polygon: &[DVec2], angles: &[f64]) -> f64 {
+fn polygon_dent(polygon: &[DVec2], angles: &[f64]) -> f64 {
     let count = angles.len();
-    let (mut turned, mut most, mut turns, mut dent) = (0.0_f64, 0.0_f64, 0.0, 0.0);
+    let (mut angle, mut max_angle, mut turns, mut dent) = (0.0_f64, 0.0_f64, 0.0, 0.0);
     for k in 0..count {
         let next = (k + 1) % count;
-        most = most.max(turned).min(4.0);
+        max_angle = max_angle.max(angle).min(4.0);
         // Twice, as a radian is at least half of what `turn` counts.
-        let off = 2.0 * (most - turned).abs() + 32.0 * f64::EPSILON;
+        let off = 2.0 * (max_angle - angle).abs() + 32.0 * f64::EPSILON;
         dent += off * polygon[next].distance(polygon[k]);
         let step = angles[next] - angles[k];
         turns += f64::from(u8::from(step < -2.0)) - f64::from(u8::from(step > 2.0));
-        turned = angles[next] - angles[0] + 4.0 * turns;
+        angle = angles[next] - angles[0] + 4.0 * turns;
     }
     if turns == 1.0 { dent } else { f64::INFINITY }
 }
 
 /// How far round a vector points, from 0 along `x` to 4: alike on every machine, and rising with the angle.
 #[inline]
-fn turn(v: DVec2) -> f64 {
+fn pseudo_angle(v: DVec2) -> f64 {
     let along = v.y / (v.x.abs() + v.y.abs());
     if v.x < 0.0 {
         2.0 - along

@@ -34,17 +34,17 @@ const SCAN_LIMIT: usize = 20;
 const DIVIDED: u32 = 1 << 31;
 
 /// A cell whose corners are farther than this many climbing steps from its centre is divided.
-const NEAR_STEPS: usize = 3;
+const MAX_CELL_STEPS: usize = 3;
 
 /// After this many steps a climb from a guess asks the table (measured).
-const PATIENCE: usize = 2;
+const MAX_GUESS_STEPS: usize = 2;
 
 /// Divisions of one cell of the cube map: `2^-20` of its side is below any spread that
 /// single-precision models have.
-const MAX_DEPTH: u32 = 20;
+const MAX_DIVISIONS: u32 = 20;
 
 /// Steps after which a climb looks whether it goes along a ring.
-const STRIDE: usize = 3;
+const RING_CHECK_STEPS: usize = 3;
 
 /// Rims and points that a body may be taken to be the hull of.
 pub(crate) const MOST_RIMS: usize = 8;
@@ -62,7 +62,7 @@ pub(crate) struct SupportIndex {
     /// Entries of the base cells, then groups of four.
     cells: Vec<u32>,
     /// The vertices of a body small enough to scan.
-    groups: Vec<Group>,
+    groups: Vec<VertexGroup>,
     /// Vertices with many neighbours, ascending.
     fans: Vec<Fan>,
     /// The rings of faces with many corners, and those beside them.
@@ -80,18 +80,18 @@ impl SupportIndex {
             resolution: 0,
             cells: Vec::new(),
             groups: Vec::new(),
-            fans: fans(vertices, topology),
-            rings: rings(vertices, topology),
+            fans: build_fans(vertices, topology),
+            rings: build_rings(vertices, topology),
             ring_of: Vec::new(),
             outline: Vec::new(),
         };
-        index.ring_of = index.rings_of_vertices(topology);
-        index.outline = index.outline_of(vertices).unwrap_or_default();
+        index.ring_of = index.number_rings(topology);
+        index.outline = index.compute_outline(vertices).unwrap_or_default();
         if vertices.len() <= SCAN_LIMIT {
-            index.groups = groups(vertices);
+            index.groups = vertex_groups(vertices);
         } else {
             index.resolution = ((vertices.len() as f64 / 3.0).sqrt() as u32).max(5);
-            index.fill(vertices, topology);
+            index.fill_table(vertices, topology);
         }
         index
     }
@@ -99,17 +99,22 @@ impl SupportIndex {
     /// The vertex farthest along `direction` (body frame, any length).
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
-    pub(crate) fn extreme(&self, vertices: &[DVec3], topology: &Topology, direction: DVec3) -> u32 {
+    pub(crate) fn farthest_vertex(
+        &self,
+        vertices: &[DVec3],
+        topology: &Topology,
+        direction: DVec3,
+    ) -> u32 {
         if self.resolution == 0 {
-            return scan(&self.groups, direction);
+            return scan_vertices(&self.groups, direction);
         }
-        self.ascend(vertices, topology, direction, self.look_up(direction))
+        self.climb_to_support(vertices, topology, direction, self.table_entry(direction))
     }
 
     /// The same, starting from a vertex believed to be near; if it is not, the table helps out.
     #[inline(always)]
     #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
-    pub(crate) fn extreme_from(
+    pub(crate) fn farthest_vertex_near(
         &self,
         vertices: &[DVec3],
         topology: &Topology,
@@ -117,9 +122,9 @@ impl SupportIndex {
         start: u32,
     ) -> u32 {
         if self.resolution == 0 {
-            return scan(&self.groups, direction);
+            return scan_vertices(&self.groups, direction);
         }
-        self.climb_from(vertices, topology, direction, start)
+        self.climb_from_near(vertices, topology, direction, start)
     }
 
     /// Whether the body is small enough to look at each vertex.
@@ -130,13 +135,13 @@ impl SupportIndex {
 
     /// Where a climb along `direction` may start; of no use to a body that is scanned.
     #[inline]
-    pub(crate) fn guess(&self, direction: DVec3) -> u32 {
-        if self.resolution == 0 { 0 } else { self.look_up(direction) }
+    pub(crate) fn table_guess(&self, direction: DVec3) -> u32 {
+        if self.resolution == 0 { 0 } else { self.table_entry(direction) }
     }
 
     /// [`Self::extreme`] from a guess.
     #[inline]
-    pub(crate) fn extreme_from_guess(
+    pub(crate) fn farthest_vertex_from_guess(
         &self,
         vertices: &[DVec3],
         topology: &Topology,
@@ -144,34 +149,35 @@ impl SupportIndex {
         guess: u32,
     ) -> u32 {
         if self.resolution == 0 {
-            return scan(&self.groups, direction);
+            return scan_vertices(&self.groups, direction);
         }
-        self.ascend(vertices, topology, direction, guess)
+        self.climb_to_support(vertices, topology, direction, guess)
     }
 
-    fn climb_from(
+    fn climb_from_near(
         &self,
         vertices: &[DVec3],
         topology: &Topology,
         direction: DVec3,
         start: u32,
     ) -> u32 {
-        let start = self.along_ring(vertices, topology, direction, start);
-        let (reached, steps) = self.climb(vertices, topology, direction, start, PATIENCE);
-        if steps < PATIENCE {
+        let start = self.jump_along_ring(vertices, topology, direction, start);
+        let (reached, steps) =
+            self.climb_edges(vertices, topology, direction, start, MAX_GUESS_STEPS);
+        if steps < MAX_GUESS_STEPS {
             return reached;
         }
-        let other = self.look_up(direction);
+        let other = self.table_entry(direction);
         let ahead = direction.dot(vertices[other as usize] - vertices[reached as usize]) > 0.0;
         let start = if ahead { other } else { reached };
-        self.ascend(vertices, topology, direction, start)
+        self.climb_to_support(vertices, topology, direction, start)
     }
 
     /// Steepest ascent along edges, at most `limit` steps, and the number of steps it took.
     ///
     /// Gains are taken from edge vectors, not from differences of dot products, so their rounding
     /// error is relative to the edge and not to the body.
-    fn climb(
+    fn climb_edges(
         &self,
         vertices: &[DVec3],
         topology: &Topology,
@@ -182,18 +188,19 @@ impl SupportIndex {
         let mut at = start;
         for steps in 0..limit {
             work::count(1);
-            let here = vertices[at as usize];
+            let origin = vertices[at as usize];
             let neighbours = topology.neighbours(at);
             let (best, gain) = if neighbours.len() <= FAN {
-                steepest(vertices, neighbours, here, direction)
+                steepest_neighbour(vertices, neighbours, origin, direction)
             } else {
-                let best = neighbours[self.fan(at).steepest(vertices, topology, direction)];
-                (best, direction.dot(vertices[best as usize] - here))
+                let best =
+                    neighbours[self.fan_of_vertex(at).steepest_edge(vertices, topology, direction)];
+                (best, direction.dot(vertices[best as usize] - origin))
             };
             if gain <= 0.0 {
                 return (at, steps);
             }
-            let edge = vertices[best as usize] - here;
+            let edge = vertices[best as usize] - origin;
             // Demanding more than rounding makes every climb strictly ascending, so it ends.
             if gain <= noise::GAIN * direction.abs().dot(edge.abs()) {
                 return (at, steps);
@@ -205,16 +212,22 @@ impl SupportIndex {
 
     /// Steepest ascent from a vertex to the support point.
     #[inline]
-    fn ascend(&self, vertices: &[DVec3], topology: &Topology, direction: DVec3, start: u32) -> u32 {
+    fn climb_to_support(
+        &self,
+        vertices: &[DVec3],
+        topology: &Topology,
+        direction: DVec3,
+        start: u32,
+    ) -> u32 {
         if self.ring_of.is_empty() {
-            return self.climb(vertices, topology, direction, start, usize::MAX).0;
+            return self.climb_edges(vertices, topology, direction, start, usize::MAX).0;
         }
-        self.ascend_by_rings(vertices, topology, direction, start)
+        self.climb_along_rings(vertices, topology, direction, start)
     }
 
     /// The same, along rings at once.
     #[inline(never)]
-    fn ascend_by_rings(
+    fn climb_along_rings(
         &self,
         vertices: &[DVec3],
         topology: &Topology,
@@ -223,9 +236,10 @@ impl SupportIndex {
     ) -> u32 {
         let mut at = start;
         loop {
-            at = self.along_ring(vertices, topology, direction, at);
-            let (reached, steps) = self.climb(vertices, topology, direction, at, STRIDE);
-            if steps < STRIDE {
+            at = self.jump_along_ring(vertices, topology, direction, at);
+            let (reached, steps) =
+                self.climb_edges(vertices, topology, direction, at, RING_CHECK_STEPS);
+            if steps < RING_CHECK_STEPS {
                 return reached;
             }
             at = reached;
@@ -235,7 +249,7 @@ impl SupportIndex {
     /// The farthest vertex of the ring that a vertex is on, if it is on one and that is farther by more than
     /// rounding.
     #[inline]
-    fn along_ring(
+    fn jump_along_ring(
         &self,
         vertices: &[DVec3],
         topology: &Topology,
@@ -252,12 +266,12 @@ impl SupportIndex {
 
     /// The ring that a vertex is on, if it is on one.
     #[inline]
-    fn ring_at(&self, vertex: u32) -> Option<&Ring> {
+    fn ring_of_vertex(&self, vertex: u32) -> Option<&Ring> {
         let number = self.ring_of.get(vertex as usize).filter(|&&number| number != NO_RING)?;
-        Some(self.ring(*number))
+        Some(self.ring_by_number(*number))
     }
 
-    fn ring(&self, number: u16) -> &Ring {
+    fn ring_by_number(&self, number: u16) -> &Ring {
         let number = usize::from(number);
         self.rings.get(number).unwrap_or_else(|| self.fans[number - self.rings.len()].ring())
     }
@@ -275,14 +289,14 @@ impl SupportIndex {
     }
 
     /// The same, measured.
-    fn outline_of(&self, vertices: &[DVec3]) -> Option<Vec<Rim>> {
+    fn compute_outline(&self, vertices: &[DVec3]) -> Option<Vec<Rim>> {
         let mut outline = Vec::new();
         let mut is_known = vec![false; self.rings.len() + self.fans.len()];
         for (vertex, &number) in self.ring_of.iter().enumerate() {
             if number == NO_RING {
-                outline.push(Rim::point(vertex as u32, vertices[vertex]));
+                outline.push(Rim::from_vertex(vertex as u32, vertices[vertex]));
             } else if !std::mem::replace(&mut is_known[usize::from(number)], true) {
-                let ring = self.ring(number);
+                let ring = self.ring_by_number(number);
                 outline.push(*ring.rim());
                 if !ring.is_round() {
                     return None;
@@ -292,7 +306,7 @@ impl SupportIndex {
                 return None;
             }
         }
-        Some(outline.iter().map(|rim| rim.among(&outline)).collect())
+        Some(outline.iter().map(|rim| rim.with_ends_among(&outline)).collect())
     }
 
     /// The farthest vertex of the ring that a vertex is on, or that vertex.
@@ -304,19 +318,22 @@ impl SupportIndex {
         direction: DVec3,
         at: u32,
     ) -> u32 {
-        self.ring_at(at).map_or(at, |ring| ring.vertex(vertices, topology, direction))
+        self.ring_of_vertex(at)
+            .map_or(at, |ring| ring.farthest_vertex(vertices, topology, direction))
     }
 
     /// For each vertex the number of its ring, the one with the most corners.
-    fn rings_of_vertices(&self, topology: &Topology) -> Vec<u16> {
+    fn number_rings(&self, topology: &Topology) -> Vec<u16> {
         let count = (self.rings.len() + self.fans.len()).min(usize::from(NO_RING));
         let mut ring_of =
             if count > 0 { vec![NO_RING; topology.vertex_count()] } else { Vec::new() };
         for number in 0..count as u16 {
-            let ring = self.ring(number);
-            for k in 0..ring.count() {
-                let known = &mut ring_of[ring.corner(topology, k) as usize];
-                if *known == NO_RING || self.ring(*known).count() < ring.count() {
+            let ring = self.ring_by_number(number);
+            for k in 0..ring.corner_count() {
+                let known = &mut ring_of[ring.corner_vertex(topology, k) as usize];
+                if *known == NO_RING
+                    || self.ring_by_number(*known).corner_count() < ring.corner_count()
+                {
                     *known = number;
                 }
             }
@@ -325,7 +342,7 @@ impl SupportIndex {
     }
 
     /// That of a vertex with many neighbours.
-    pub(super) fn fan(&self, vertex: u32) -> &Fan {
+    pub(super) fn fan_of_vertex(&self, vertex: u32) -> &Fan {
         let found = self.fans.binary_search_by_key(&vertex, |fan| fan.vertex);
         &self.fans[found.unwrap_or_default()]
     }
@@ -345,14 +362,14 @@ impl SupportIndex {
         if count <= FAN {
             return (0, count);
         }
-        let best = self.fan(vertex).steepest(vertices, topology, direction);
+        let best = self.fan_of_vertex(vertex).steepest_edge(vertices, topology, direction);
         ((best + count - 1) % count, 3)
     }
 
     /// Bytes on the heap.
     pub(crate) fn heap_bytes(&self) -> usize {
         self.cells.capacity() * size_of::<u32>()
-            + self.groups.capacity() * size_of::<Group>()
+            + self.groups.capacity() * size_of::<VertexGroup>()
             + self.ring_of.capacity() * size_of::<u16>()
             + self.outline.capacity() * size_of::<Rim>()
             + self.fans.capacity() * size_of::<Fan>()
@@ -362,9 +379,9 @@ impl SupportIndex {
     }
 
     /// The entry of the cell that a direction falls into.
-    fn look_up(&self, direction: DVec3) -> u32 {
+    fn table_entry(&self, direction: DVec3) -> u32 {
         let half = 0.5 * f64::from(self.resolution);
-        let place = octahedral(self.normalise * direction) * half + half;
+        let place = octahedral_point(self.normalise * direction) * half + half;
         // Casts saturate, so that a NaN from a zero direction is cell 0.
         let (mut fs, mut ft) = (place.x, place.y);
         let last = self.resolution - 1;
@@ -386,11 +403,11 @@ impl SupportIndex {
         entry
     }
 
-    fn fill(&mut self, vertices: &[DVec3], topology: &Topology) {
+    fn fill_table(&mut self, vertices: &[DVec3], topology: &Topology) {
         let r = self.resolution;
         let base = r * r;
         let mut cells = vec![0; base as usize];
-        let builder = Builder {
+        let builder = TableBuilder {
             index: self,
             vertices,
             topology,
@@ -401,9 +418,9 @@ impl SupportIndex {
         let mut near = 0;
         for j in 0..r {
             for i in 0..r {
-                let cell = Cell { side: 2.0 / f64::from(r), i, j, depth: 0 };
-                near = builder.support(cell.direction(0.5, 0.5), near);
-                let entry = builder.entry(cell, near, &mut cells);
+                let cell = MapCell { side: 2.0 / f64::from(r), i, j, depth: 0 };
+                near = builder.support_point(cell.direction_at(0.5, 0.5), near);
+                let entry = builder.cell_entry(cell, near, &mut cells);
                 cells[(j * r + i) as usize] = entry;
             }
         }
@@ -414,24 +431,24 @@ impl SupportIndex {
 
 /// A square of the map `[-1, 1]^2`.
 #[derive(Clone, Copy)]
-struct Cell {
+struct MapCell {
     side: f64,
     i: u32,
     j: u32,
     depth: u32,
 }
 
-impl Cell {
+impl MapCell {
     /// The normalised direction at relative position `(s, t)` in the cell.
-    fn direction(&self, s: f64, t: f64) -> DVec3 {
+    fn direction_at(&self, s: f64, t: f64) -> DVec3 {
         let s = (f64::from(self.i) + s) * self.side - 1.0;
         let t = (f64::from(self.j) + t) * self.side - 1.0;
         let along = 1.0 - s.abs() - t.abs();
-        let [s, t] = if along < 0.0 { folded(s, t) } else { [s, t] };
+        let [s, t] = if along < 0.0 { fold_about_diamond(s, t) } else { [s, t] };
         DVec3::new(s, t, along)
     }
 
-    fn quarter(&self, i: u32, j: u32) -> Self {
+    fn quarter_cell(&self, i: u32, j: u32) -> Self {
         Self { side: self.side * 0.5, i: 2 * self.i + i, j: 2 * self.j + j, depth: self.depth + 1 }
     }
 }
@@ -439,20 +456,20 @@ impl Cell {
 /// Where a direction meets the octahedron `|x| + |y| + |z| = 1`, in `x` and `y`, with the lower half
 /// folded outwards onto the square around the upper one.
 #[inline]
-fn octahedral(w: DVec3) -> DVec2 {
+fn octahedral_point(w: DVec3) -> DVec2 {
     let a = w.abs();
     let w = w * (1.0 / (a.x + a.y + a.z));
-    let [s, t] = folded(w.x, w.y);
+    let [s, t] = fold_about_diamond(w.x, w.y);
     let below = w.z < 0.0;
     DVec2::new(select_unpredictable(below, s, w.x), select_unpredictable(below, t, w.y))
 }
 
 /// The fold about the edges of the diamond `|s| + |t| = 1`.
-fn folded(s: f64, t: f64) -> [f64; 2] {
+fn fold_about_diamond(s: f64, t: f64) -> [f64; 2] {
     [(1.0 - t.abs()).copysign(s), (1.0 - s.abs()).copysign(t)]
 }
 
-struct Builder<'a> {
+struct TableBuilder<'a> {
     index: &'a SupportIndex,
     vertices: &'a [DVec3],
     topology: &'a Topology,
@@ -461,35 +478,35 @@ struct Builder<'a> {
     limit: usize,
 }
 
-impl Builder<'_> {
-    fn support(&self, normalised: DVec3, start: u32) -> u32 {
+impl TableBuilder<'_> {
+    fn support_point(&self, normalised: DVec3, start: u32) -> u32 {
         let direction = self.to_body * normalised;
-        self.index.ascend(self.vertices, self.topology, direction, start)
+        self.index.climb_to_support(self.vertices, self.topology, direction, start)
     }
 
     /// Whether the support point is a few climbing steps from a vertex.
     fn is_near(&self, normalised: DVec3, start: u32) -> bool {
         let direction = self.to_body * normalised;
-        let start = self.index.along_ring(self.vertices, self.topology, direction, start);
-        let most = NEAR_STEPS + 1;
-        self.index.climb(self.vertices, self.topology, direction, start, most).1 < most
+        let start = self.index.jump_along_ring(self.vertices, self.topology, direction, start);
+        let most = MAX_CELL_STEPS + 1;
+        self.index.climb_edges(self.vertices, self.topology, direction, start, most).1 < most
     }
 
     /// The entry of a cell whose centre has the support point `center`: divided while its corners
     /// are far.
-    fn entry(&self, cell: Cell, center: u32, cells: &mut Vec<u32>) -> u32 {
+    fn cell_entry(&self, cell: MapCell, center: u32, cells: &mut Vec<u32>) -> u32 {
         let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)];
-        let is_near = |(s, t)| self.is_near(cell.direction(s, t), center);
+        let is_near = |(s, t)| self.is_near(cell.direction_at(s, t), center);
         let full = cells.len() + 4 > self.limit;
-        if cell.depth == MAX_DEPTH || full || corners.into_iter().all(is_near) {
+        if cell.depth == MAX_DIVISIONS || full || corners.into_iter().all(is_near) {
             return center;
         }
         let first = cells.len();
         cells.extend([center; 4]);
         for (k, (i, j)) in [(0, 0), (1, 0), (0, 1), (1, 1)].into_iter().enumerate() {
-            let quarter = cell.quarter(i, j);
-            let near = self.support(quarter.direction(0.5, 0.5), center);
-            cells[first + k] = self.entry(quarter, near, cells);
+            let quarter = cell.quarter_cell(i, j);
+            let near = self.support_point(quarter.direction_at(0.5, 0.5), center);
+            cells[first + k] = self.cell_entry(quarter, near, cells);
         }
         first as u32 | DIVIDED
     }
@@ -497,7 +514,7 @@ impl Builder<'_> {
 
 /// The coordinates of a small body, in groups of four for a scan without branches.
 #[derive(Debug, Clone, Copy)]
-struct Group {
+struct VertexGroup {
     x: [f64; LANES],
     y: [f64; LANES],
     z: [f64; LANES],
@@ -506,9 +523,9 @@ struct Group {
 const LANES: usize = 4;
 
 /// Groups of a body's vertices; the last one is filled up with copies of vertex 0.
-fn groups(vertices: &[DVec3]) -> Vec<Group> {
+fn vertex_groups(vertices: &[DVec3]) -> Vec<VertexGroup> {
     let padded = |chunk: &[DVec3], k: usize| *chunk.get(k).unwrap_or(&vertices[0]);
-    let group = |chunk: &[DVec3]| Group {
+    let group = |chunk: &[DVec3]| VertexGroup {
         x: std::array::from_fn(|k| padded(chunk, k).x),
         y: std::array::from_fn(|k| padded(chunk, k).y),
         z: std::array::from_fn(|k| padded(chunk, k).z),
@@ -521,12 +538,12 @@ fn groups(vertices: &[DVec3]) -> Vec<Group> {
 ///
 /// In one place for all, so that a query meets it in the cache; what it takes fits into registers.
 #[inline]
-fn scan(groups: &[Group], direction: DVec3) -> u32 {
+fn scan_vertices(groups: &[VertexGroup], direction: DVec3) -> u32 {
     scan_along(groups, direction.x, direction.y, direction.z)
 }
 
 #[inline(never)]
-fn scan_along(groups: &[Group], x: f64, y: f64, z: f64) -> u32 {
+fn scan_along(groups: &[VertexGroup], x: f64, y: f64, z: f64) -> u32 {
     let mut reach = [f64::NEG_INFINITY; LANES];
     // Group numbers as f64, so that number and reach are selected by the same mask.
     let mut best = [0.0; LANES];
@@ -552,10 +569,15 @@ fn scan_along(groups: &[Group], x: f64, y: f64, z: f64) -> u32 {
 
 /// The steepest neighbour and what it gains.
 #[inline]
-fn steepest(vertices: &[DVec3], neighbours: &[u32], here: DVec3, direction: DVec3) -> (u32, f64) {
+fn steepest_neighbour(
+    vertices: &[DVec3],
+    neighbours: &[u32],
+    origin: DVec3,
+    direction: DVec3,
+) -> (u32, f64) {
     let (mut best, mut gain) = (u32::MAX, f64::NEG_INFINITY);
     for &w in neighbours {
-        let along = direction.dot(vertices[w as usize] - here);
+        let along = direction.dot(vertices[w as usize] - origin);
         let higher = along > gain;
         best = select_unpredictable(higher, w, best);
         gain = select_unpredictable(higher, along, gain);
@@ -564,7 +586,7 @@ fn steepest(vertices: &[DVec3], neighbours: &[u32], here: DVec3, direction: DVec
 }
 
 /// The vertices with more than [`FAN`] neighbours.
-fn fans(vertices: &[DVec3], topology: &Topology) -> Vec<Fan> {
+fn build_fans(vertices: &[DVec3], topology: &Topology) -> Vec<Fan> {
     (0..topology.vertex_count() as u32)
         .filter(|&v| topology.neighbours(v).len() > FAN)
         .map(|v| Fan::new(vertices, topology, v))
@@ -572,17 +594,22 @@ fn fans(vertices: &[DVec3], topology: &Topology) -> Vec<Fan> {
 }
 
 /// The rings of faces with more than [`FAN`] corners, then those beside them that are no rings of faces.
-fn rings(vertices: &[DVec3], topology: &Topology) -> Vec<Ring> {
-    let wide = || (0..topology.face_count() as u32).filter(|&f| topology.face(f).len() > FAN);
-    let mut rings: Vec<Ring> = wide().map(|f| Ring::of_face(vertices, topology, f)).collect();
+fn build_rings(vertices: &[DVec3], topology: &Topology) -> Vec<Ring> {
+    let large_faces =
+        || (0..topology.face_count() as u32).filter(|&f| topology.face(f).len() > FAN);
+    let mut rings: Vec<Ring> =
+        large_faces().map(|f| Ring::from_face(vertices, topology, f)).collect();
     if rings.is_empty() {
         return rings;
     }
     let mut is_known = vec![false; vertices.len()];
-    wide().flat_map(|f| topology.face_vertices(f)).for_each(|v| is_known[v as usize] = true);
-    let is_new =
-        |ring: &Ring| (0..ring.count()).any(|k| !is_known[ring.corner(topology, k) as usize]);
-    let beside = wide().filter_map(|face| Ring::beside(vertices, topology, face)).filter(is_new);
-    rings.extend(beside);
+    large_faces().flat_map(|f| topology.face_vertices(f)).for_each(|v| is_known[v as usize] = true);
+    let is_new = |ring: &Ring| {
+        (0..ring.corner_count()).any(|k| !is_known[ring.corner_vertex(topology, k) as usize])
+    };
+    let adjacent = large_faces()
+        .filter_map(|face| Ring::from_adjacent_corners(vertices, topology, face))
+        .filter(is_new);
+    rings.extend(adjacent);
     rings
 }

@@ -8,7 +8,7 @@ use std::cell::OnceCell;
 
 use glam::DVec3;
 
-use super::hull::{self, Hull, Locator};
+use super::hull::{self, IndexedHull, Locator};
 use crate::body::error::{BuildError, TopologyError};
 use crate::body::{ConvexPolyhedron, Inertia, InputVertex};
 use colltrans_kernel::plane::polygon_normal;
@@ -50,7 +50,7 @@ pub fn convexity_defect<F: AsRef<[u32]>>(
     faces: &[F],
 ) -> Result<ConvexityDefect, BuildError> {
     let surface = Surface::new(vertices, faces)?;
-    Ok(surface.defect(&surface.hull()))
+    Ok(surface.convexity_defect(&surface.convex_hull()))
 }
 
 pub(super) fn from_mesh<F: AsRef<[u32]>>(
@@ -63,15 +63,15 @@ pub(super) fn from_mesh<F: AsRef<[u32]>>(
     if tolerance.is_nan() || tolerance < 0.0 {
         return Err(BuildError::Tolerance { tolerance });
     }
-    let hull = surface.hull();
-    let ConvexityDefect { face, depth } = surface.defect(&hull);
-    let rounding = hull::tolerance(&surface.points);
+    let hull = surface.convex_hull();
+    let ConvexityDefect { face, depth } = surface.convexity_defect(&hull);
+    let rounding = hull::coplanar_tolerance(&surface.points);
     let tolerance = rounding.max(tolerance);
     if depth > tolerance {
         return Err(BuildError::NotConvex { face, depth, tolerance });
     }
     let dent = if depth > rounding { depth } else { 0.0 };
-    Ok(ConvexPolyhedron { dent, ..surface.body(hull) })
+    Ok(ConvexPolyhedron { dent, ..surface.build_body(hull) })
 }
 
 /// The topology of a body's own faces, checked to be convex.
@@ -81,9 +81,9 @@ pub(super) fn own_faces(vertices: &[DVec3], faces: &[Vec<u32>]) -> Result<Topolo
     if surface.points.len() < vertices.len() {
         return Err(BuildError::NotABody { vertices: vertices.len(), faces: faces.len() });
     }
-    let ConvexityDefect { face, depth } = surface.defect(&surface.hull());
+    let ConvexityDefect { face, depth } = surface.convexity_defect(&surface.convex_hull());
     // Its polygons were merged within the tolerance of a hull of other points.
-    let tolerance = 4.0 * hull::tolerance(vertices);
+    let tolerance = 4.0 * hull::coplanar_tolerance(vertices);
     if depth > tolerance {
         return Err(BuildError::NotConvex { face, depth, tolerance });
     }
@@ -125,14 +125,14 @@ impl Surface {
                 topology,
             }
         } else {
-            Self::compact(vertices, &used, &topology)?
+            Self::without_unused_vertices(vertices, &used, &topology)?
         };
         surface.check_orientation()?;
         Ok(surface)
     }
 
     /// The same surface over the vertices in use alone.
-    fn compact(
+    fn without_unused_vertices(
         vertices: &[DVec3],
         used: &[bool],
         topology: &Topology,
@@ -154,18 +154,18 @@ impl Surface {
     fn check_orientation(&self) -> Result<(), BuildError> {
         let signed_volume = Inertia::signed_volume(&self.points, &self.topology);
         let extent = self.points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
-        let thickness = hull::tolerance(&self.points);
+        let thickness = hull::coplanar_tolerance(&self.points);
         if signed_volume < -thickness * extent * extent {
             return Err(BuildError::InsideOut { signed_volume });
         }
         Ok(())
     }
 
-    fn hull(&self) -> Hull {
+    fn convex_hull(&self) -> IndexedHull {
         hull::hull_of_mesh(&self.points, &self.topology)
     }
 
-    fn body(&self, hull: Hull) -> ConvexPolyhedron {
+    fn build_body(&self, hull: IndexedHull) -> ConvexPolyhedron {
         let mut body = ConvexPolyhedron::from_hull(&self.points, hull);
         for v in &mut body.input_index {
             *v = InputVertex(self.index[v.index()]);
@@ -173,12 +173,12 @@ impl Surface {
         body
     }
 
-    fn defect(&self, hull: &Hull) -> ConvexityDefect {
+    fn convexity_defect(&self, hull: &IndexedHull) -> ConvexityDefect {
         let depths = Depths::new(self, hull);
         let mut worst = ConvexityDefect { face: 0, depth: 0.0 };
         let mut near = 0;
         for face in 0..self.topology.face_count() as u32 {
-            let depth = depths.of_face(face, worst.depth, &mut near);
+            let depth = depths.face_depth(face, worst.depth, &mut near);
             if depth > worst.depth {
                 worst = ConvexityDefect { face: face as usize, depth };
             }
@@ -190,7 +190,7 @@ impl Surface {
 /// Depths below the faces of a hull; for a flat one, behind the edges of its polygon.
 struct Depths<'a> {
     surface: &'a Surface,
-    hull: &'a Hull,
+    hull: &'a IndexedHull,
     /// The planes to measure from, made when the first face is found off the hull: most meshes have none.
     planes: OnceCell<PlaneTree>,
     /// For each vertex of the surface, its number in the hull, if it is one of its vertices.
@@ -198,7 +198,7 @@ struct Depths<'a> {
 }
 
 impl<'a> Depths<'a> {
-    fn new(surface: &'a Surface, hull: &'a Hull) -> Self {
+    fn new(surface: &'a Surface, hull: &'a IndexedHull) -> Self {
         let mut in_hull = vec![None; surface.points.len()];
         for (k, &v) in hull.vertices.iter().enumerate() {
             in_hull[v as usize] = Some(k as u32);
@@ -206,7 +206,7 @@ impl<'a> Depths<'a> {
         Self { surface, hull, planes: OnceCell::new(), in_hull }
     }
 
-    fn planes(&self) -> &PlaneTree {
+    fn hull_planes(&self) -> &PlaneTree {
         self.planes.get_or_init(|| {
             let (hull, points) = (self.hull, &self.surface.points);
             let vertices: Vec<DVec3> = hull.vertices.iter().map(|&v| points[v as usize]).collect();
@@ -223,7 +223,7 @@ impl<'a> Depths<'a> {
     /// if it is not greater than that; 0 if the corners lie on one face of the hull.
     ///
     /// A flat surface covers its inside twice; its edges are where it turns back.
-    fn of_face(&self, face: u32, known: f64, near: &mut usize) -> f64 {
+    fn face_depth(&self, face: u32, known: f64, near: &mut usize) -> f64 {
         let topology = &self.surface.topology;
         let at = |v: u32| self.surface.points[v as usize];
         let middle = |h: u32| (at(topology.origin(h)) + at(topology.target(h))) * 0.5;
@@ -232,23 +232,23 @@ impl<'a> Depths<'a> {
             2 => {
                 let rim = topology.face(face).filter(|&h| self.turns_back(h));
                 let points = rim.flat_map(|h| [at(topology.origin(h)), middle(h)]);
-                self.of_points(points, known, near)
+                self.max_depth(points, known, near)
             }
             _ if self.lies_on_hull(face) => 0.0,
             _ => {
                 let corners = topology.face_vertices(face).map(at);
                 let center = corners.clone().sum::<DVec3>() / corners.len() as f64;
                 let points = corners.chain(topology.face(face).map(middle)).chain([center]);
-                self.of_points(points, known, near)
+                self.max_depth(points, known, near)
             }
         }
     }
 
     /// Returns the greatest depth of some points, or any number up to `known` if it is not greater than that.
-    fn of_points(&self, points: impl Iterator<Item = DVec3>, known: f64, near: &mut usize) -> f64 {
+    fn max_depth(&self, points: impl Iterator<Item = DVec3>, known: f64, near: &mut usize) -> f64 {
         // A smaller depth changes nothing.
         points.fold(0.0, |worst, p| {
-            worst.max(self.planes().least_depth(p, worst.max(known), near, &mut 0))
+            worst.max(self.hull_planes().least_depth(p, worst.max(known), near, &mut 0))
         })
     }
 

@@ -14,7 +14,7 @@ use crate::body::error::BuildError;
 use crate::body::{Inertia, InputVertex};
 #[cfg(any(test, feature = "json"))]
 use colltrans_kernel::topology::Topology;
-use hull::Hull;
+use hull::IndexedHull;
 pub use mesh::{ConvexityDefect, convexity_defect};
 pub use offset::OffsetReport;
 
@@ -164,7 +164,7 @@ impl ConvexPolyhedron {
             2 => 2,
             _ => 3,
         };
-        let is_own = |hull: &Hull| hull.vertices.len() == vertex_count;
+        let is_own = |hull: &IndexedHull| hull.vertices.len() == vertex_count;
         let like = hull::convex_hull(vertices);
         // A body hardly thicker than the tolerance may be flat without the points that it left out, or
         // have all corners of the exact hull.
@@ -181,15 +181,20 @@ impl ConvexPolyhedron {
             mesh::own_faces(vertices, faces)?
         };
         let in_order = (0..vertex_count as u32).collect();
-        let hull =
-            Hull { dimension, vertices: in_order, topology, violation: hull_error, input_excess };
+        let hull = IndexedHull {
+            dimension,
+            vertices: in_order,
+            topology,
+            violation: hull_error,
+            input_excess,
+        };
         let mut body = Self::from_hull(vertices, hull);
         body.input_index = input_indices.to_vec();
         Ok(body)
     }
 
-    fn from_hull(points: &[DVec3], hull: Hull) -> Self {
-        let Hull { dimension, vertices: input, topology, violation, input_excess } = hull;
+    fn from_hull(points: &[DVec3], hull: IndexedHull) -> Self {
+        let IndexedHull { dimension, vertices: input, topology, violation, input_excess } = hull;
         let vertices: Vec<DVec3> = input.iter().map(|&i| points[i as usize]).collect();
         let inertia = Inertia::new(&vertices, &topology, dimension);
         let support = SupportIndex::build(&vertices, &topology, &inertia);
@@ -210,7 +215,7 @@ impl ConvexPolyhedron {
         };
         body.measure_faces();
         // Queries go by them around the faces of small bodies, and along the rims of large faces.
-        if body.vertices.len() > hull::LARGE && body.large_faces.is_empty() {
+        if body.vertices.len() > hull::MAX_INPUT_ORDER && body.large_faces.is_empty() {
             body.topology.let_go_of_links();
         }
         body
@@ -227,7 +232,7 @@ impl ConvexPolyhedron {
         }
         let topology = Topology::sphere(vertices.len(), face_start, face_vertices).unwrap();
         let vertices_in_order = (0..vertices.len() as u32).collect();
-        let hull = Hull {
+        let hull = IndexedHull {
             dimension: 3,
             vertices: vertices_in_order,
             topology,

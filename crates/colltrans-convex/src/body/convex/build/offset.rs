@@ -14,7 +14,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::hull::{self, Hull};
+use super::hull::{self, IndexedHull};
 use crate::body::error::BuildError;
 use crate::body::{ConvexPolyhedron, Inertia};
 use colltrans_kernel::plane::polygon_normal;
@@ -22,11 +22,11 @@ use colltrans_kernel::range::without_traces;
 
 /// A result whose farthest corner is so many times farther away than its nearest plane, in `z`, is
 /// computed anew, about itself.
-const ROUND: f64 = 16.0;
+const MAX_ASPECT: f64 = 16.0;
 /// How often, at most: once is enough but for needles.
-const MOST_ROUNDINGS: usize = 4;
+const MAX_RENORMALISATIONS: usize = 4;
 /// Steps inwards, at most; each takes at least half of the depth of the centroid.
-const MOST_STEPS: usize = 128;
+const MAX_STEPS: usize = 128;
 
 /// What became of a convex body whose faces were moved.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -72,7 +72,7 @@ impl ConvexPolyhedron {
     /// # Ok::<(), BuildError>(())
     /// ```
     pub fn shrunk(&self, amount: f64) -> Result<(Self, OffsetReport), BuildError> {
-        self.moved(amount, amount)
+        self.with_moved_faces(amount, amount)
     }
 
     /// What lies at most `amount` outside every face plane: every face plane moves outwards by
@@ -98,10 +98,14 @@ impl ConvexPolyhedron {
     /// # Ok::<(), colltrans::BuildError>(())
     /// ```
     pub fn grown(&self, amount: f64) -> Result<(Self, OffsetReport), BuildError> {
-        self.moved(amount, -amount)
+        self.with_moved_faces(amount, -amount)
     }
 
-    fn moved(&self, amount: f64, inwards: f64) -> Result<(Self, OffsetReport), BuildError> {
+    fn with_moved_faces(
+        &self,
+        amount: f64,
+        inwards: f64,
+    ) -> Result<(Self, OffsetReport), BuildError> {
         if !(amount.is_finite() && amount >= 0.0) {
             return Err(BuildError::Amount { amount });
         }
@@ -114,14 +118,14 @@ impl ConvexPolyhedron {
         if self.dimension < 2 {
             return Err(BuildError::NothingToMove { dimension: self.dimension });
         }
-        let planes = planes_of(self);
-        let near = Near::first(&self.inertia, inwards);
-        let cell = approach(&planes, near, inwards)?;
-        Ok(self.body_of(&planes, cell))
+        let planes = face_planes(self);
+        let normalisation = Normalisation::for_first_step(&self.inertia, inwards);
+        let cell = offset_cell(&planes, normalisation, inwards)?;
+        Ok(self.body_of_cell(&planes, cell))
     }
 
     /// The body, with the numbers of this one, and what became of it.
-    fn body_of(&self, planes: &[Plane], cell: Cell) -> (Self, OffsetReport) {
+    fn body_of_cell(&self, planes: &[HalfSpace], cell: OffsetCell) -> (Self, OffsetReport) {
         let mut body = Self::from_hull(&cell.corners, cell.hull);
         let mut farthest = 0.0_f64;
         for k in 0..body.vertices.len() {
@@ -143,24 +147,24 @@ impl ConvexPolyhedron {
 }
 
 /// A half-space: its outward unit normal, and a point in its plane.
-struct Plane {
+struct HalfSpace {
     normal: DVec3,
-    on: DVec3,
+    point: DVec3,
 }
 
-impl Plane {
-    fn depth(&self, point: DVec3) -> f64 {
-        self.normal.dot(self.on - point)
+impl HalfSpace {
+    fn depth_of(&self, point: DVec3) -> f64 {
+        self.normal.dot(self.point - point)
     }
 }
 
 /// The planes of all faces, each through the body's farthest vertex along its normal; of a flat
 /// polygon also those that stand on its edges.
-fn planes_of(body: &ConvexPolyhedron) -> Vec<Plane> {
+fn face_planes(body: &ConvexPolyhedron) -> Vec<HalfSpace> {
     let at = |v: u32| body.vertices[v as usize];
-    let supporting = |normal: DVec3| Plane { normal, on: at(body.support(normal).0) };
+    let supporting = |normal: DVec3| HalfSpace { normal, point: at(body.support(normal).0) };
     let faces = (0..body.face_count() as u32).map(|face| body.face_normal(face));
-    let mut planes: Vec<Plane> = faces.map(supporting).collect();
+    let mut planes: Vec<HalfSpace> = faces.map(supporting).collect();
     if body.dimension == 2 {
         let up = planes[0].normal;
         let edges = body.topology.face(0).map(|h| {
@@ -173,67 +177,72 @@ fn planes_of(body: &ConvexPolyhedron) -> Vec<Plane> {
 }
 
 /// A body near the result: where it is, and an ellipsoid that it resembles.
-struct Near {
+struct Normalisation {
     center: DVec3,
     factor: DMat3,
 }
 
-impl Near {
+impl Normalisation {
     fn new(inertia: &Inertia) -> Self {
         Self { center: inertia.center, factor: inertia.factor }
     }
 
     /// The body itself, and larger by what it grows.
-    fn first(inertia: &Inertia, inwards: f64) -> Self {
+    fn for_first_step(inertia: &Inertia, inwards: f64) -> Self {
         let grows = DVec3::splat((-inwards).max(0.0));
         Self { factor: inertia.factor + DMat3::from_diagonal(grows), ..Self::new(inertia) }
     }
 }
 
 /// The intersection of the moved half-spaces.
-struct Cell {
+struct OffsetCell {
     corners: Vec<DVec3>,
     /// The hull of the corners.
-    hull: Hull,
+    hull: IndexedHull,
     /// The polar polytope: a vertex for each plane that stays, a face for each corner.
-    polar: Hull,
+    polar: IndexedHull,
     /// How far the farthest corner is, in the distance of the nearest plane.
     aspect: f64,
 }
 
 /// The cell of planes moved inwards by an amount, in steps; see the module's head.
-fn approach(planes: &[Plane], mut near: Near, inwards: f64) -> Result<Cell, BuildError> {
-    let (mut taken, mut roundings, mut fits) = (0.0, 0, 0.0_f64);
-    for _ in 0..MOST_STEPS {
-        let room = planes.iter().map(|p| p.depth(near.center)).fold(f64::INFINITY, f64::min);
-        fits = fits.max(room);
-        if inwards > taken + 2.0 * (room - taken) {
+fn offset_cell(
+    planes: &[HalfSpace],
+    mut normalisation: Normalisation,
+    inwards: f64,
+) -> Result<OffsetCell, BuildError> {
+    let (mut taken, mut renormalisations, mut fits) = (0.0, 0, 0.0_f64);
+    for _ in 0..MAX_STEPS {
+        let depth =
+            planes.iter().map(|p| p.depth_of(normalisation.center)).fold(f64::INFINITY, f64::min);
+        fits = fits.max(depth);
+        if inwards > taken + 2.0 * (depth - taken) {
             break;
         }
-        let step = inwards.min(0.5 * (taken + room));
-        if step >= room {
+        let step = inwards.min(0.5 * (taken + depth));
+        if step >= depth {
             break;
         }
-        let Some(cell) = Cell::new(planes, &near, step) else { break };
+        let Some(cell) = OffsetCell::new(planes, &normalisation, step) else { break };
         if step == inwards {
-            if cell.aspect <= ROUND || roundings == MOST_ROUNDINGS {
+            if cell.aspect <= MAX_ASPECT || renormalisations == MAX_RENORMALISATIONS {
                 return if cell.hull.dimension == 3 {
-                    in_range(cell, inwards)
+                    check_range(cell, inwards)
                 } else {
-                    Err(nothing_left(inwards, fits))
+                    Err(offset_error(inwards, fits))
                 };
             }
-            roundings += 1;
+            renormalisations += 1;
         }
-        near = Near::new(&cell.inertia());
+        normalisation = Normalisation::new(&cell.hull_inertia());
         taken = step;
     }
-    Err(nothing_left(inwards, fits))
+    Err(offset_error(inwards, fits))
 }
 
 /// Why there is no body: too thin to shrink so far, or grown beyond all numbers, so that the polar points
 /// are one to them.
-fn nothing_left(inwards: f64, fits: f64) -> BuildError {
+fn offset_error(inwards: f64, fits: f64) -> BuildError {
     if inwards > 0.0 {
         BuildError::TooThin { amount: inwards, fits }
     } else {
@@ -241,18 +250,18 @@ fn nothing_left(inwards: f64, fits: f64) -> BuildError {
     }
 }
 
-fn in_range(cell: Cell, inwards: f64) -> Result<Cell, BuildError> {
+fn check_range(cell: OffsetCell, inwards: f64) -> Result<OffsetCell, BuildError> {
     let checked = hull::check_points(&cell.corners);
     checked.map_err(|_| BuildError::Amount { amount: inwards.abs() })?;
     Ok(cell)
 }
 
-impl Cell {
+impl OffsetCell {
     /// `None` if rounding leaves no volume around the centre.
-    fn new(planes: &[Plane], near: &Near, step: f64) -> Option<Self> {
-        let turned = near.factor.transpose();
-        let polar_point = |p: &Plane| {
-            let depth = p.depth(near.center) - step;
+    fn new(planes: &[HalfSpace], normalisation: &Normalisation, step: f64) -> Option<Self> {
+        let turned = normalisation.factor.transpose();
+        let polar_point = |p: &HalfSpace| {
+            let depth = p.depth_of(normalisation.center) - step;
             without_traces(turned * p.normal / depth)
         };
         let points: Vec<DVec3> = planes.iter().map(polar_point).collect();
@@ -273,14 +282,14 @@ impl Cell {
             }
             let corner = normal / height;
             reach = reach.max(corner.length());
-            corners.push(without_traces(near.center + near.factor * corner));
+            corners.push(without_traces(normalisation.center + normalisation.factor * corner));
         }
         let nearest = points.iter().map(|p| p.length()).fold(0.0, f64::max);
         let hull = hull::convex_hull(&corners);
         Some(Self { corners, hull, polar, aspect: nearest * reach })
     }
 
-    fn inertia(&self) -> Inertia {
+    fn hull_inertia(&self) -> Inertia {
         let corners = &self.corners;
         let vertices: Vec<DVec3> =
             self.hull.vertices.iter().map(|&v| corners[v as usize]).collect();

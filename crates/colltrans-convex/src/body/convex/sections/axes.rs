@@ -57,7 +57,7 @@ mod tests {
     use glam::DQuat;
 
     #[test]
-    fn some_pair_is_always_in_general_configuration() {
+    fn chosen_axis_pair_is_in_general_configuration() {
         let mut worst = f64::INFINITY;
         let mut check = |moving: DMat3, fixed: DMat3, d: DVec3| {
             let pair = AxisPair::choose(&moving, &fixed, d);

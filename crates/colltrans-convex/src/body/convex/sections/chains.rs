@@ -16,11 +16,11 @@
 //! between the two: one look halves the ranks that are left. Rounding in the levels may hide it: then
 //! there is no answer, and a walk has to do.
 
-use super::snapshots::{Mesh, Turn};
+use super::snapshots::{LeveledMesh, Turn};
 use colltrans_kernel::topology::Topology;
 
 /// A face of more sides is searched along its boundary.
-const MANY_SIDES: u32 = 8;
+const MAX_WALKED_SIDES: u32 = 8;
 
 /// No rank yet.
 const NONE: u32 = u32::MAX;
@@ -51,9 +51,9 @@ pub(crate) struct Search<'a, L, C> {
 
 impl Chains {
     /// For vertices from the lowest, and the edge from each that leads highest.
-    pub(super) fn build(mesh: &Mesh, order: &[(f64, u32)], highest: &[Option<u32>]) -> Self {
-        let cut = cut(mesh, order[0].1, highest);
-        let ranks = ranks(mesh, &cut);
+    pub(super) fn build(mesh: &LeveledMesh, order: &[(f64, u32)], highest: &[Option<u32>]) -> Self {
+        let cut = cut_edges(mesh, order[0].1, highest);
+        let ranks = face_ranks(mesh, &cut);
         let count = ranks.len();
         let mut chains = Self { ranks, starts: vec![0; count + 2], edges: Vec::new(), cut };
         let mut is_cut = vec![false; mesh.topology.half_edges().len()];
@@ -84,15 +84,15 @@ impl Chains {
     }
 
     /// The rank of the face on the clockwise side of an edge, and on the other.
-    fn beside(&self, topology: &Topology, up: u32) -> [u32; 2] {
+    fn adjacent_ranks(&self, topology: &Topology, up: u32) -> [u32; 2] {
         let edge = topology.half_edge(up);
         [edge.face, topology.half_edge(edge.twin).face].map(|face| self.ranks[face as usize])
     }
 
     fn node_of(&self, topology: &Topology, up: u32) -> Option<u32> {
-        let [left, right] = self.beside(topology, up);
+        let [left, right] = self.adjacent_ranks(topology, up);
         // Rounding may have left a cycle.
-        (left < right).then(|| node(left, right))
+        (left < right).then(|| separating_node(left, right))
     }
 
     pub(super) fn heap_bytes(&self) -> usize {
@@ -103,20 +103,20 @@ impl Chains {
 }
 
 /// The node that parts two ranks, the lesser first.
-fn node(left: u32, right: u32) -> u32 {
+fn separating_node(left: u32, right: u32) -> u32 {
     let bits = (left ^ right).ilog2();
     right >> bits << bits
 }
 
 /// A climb from the lowest vertex, by the edges that lead highest.
-fn cut(mesh: &Mesh, lowest: u32, highest: &[Option<u32>]) -> Vec<u32> {
+fn cut_edges(mesh: &LeveledMesh, lowest: u32, highest: &[Option<u32>]) -> Vec<u32> {
     let ahead = |&up: &u32| highest[mesh.topology.target(up) as usize];
     std::iter::successors(highest[lowest as usize], ahead).collect()
 }
 
 /// The ranks of all faces: each after those beside it on its clockwise side. First come, first served, so
 /// that neighbours of neighbours have ranks as near as may be.
-fn ranks(mesh: &Mesh, cut: &[u32]) -> Vec<u32> {
+fn face_ranks(mesh: &LeveledMesh, cut: &[u32]) -> Vec<u32> {
     let topology = mesh.topology;
     let faces = topology.face_count() as u32;
     let mut is_cut = vec![false; topology.half_edges().len()];
@@ -129,10 +129,10 @@ fn ranks(mesh: &Mesh, cut: &[u32]) -> Vec<u32> {
         (0..faces).map(|face| topology.face(face).filter(is_down).count() as u32).collect();
     let mut ranks = vec![NONE; faces as usize];
     let mut queue: Vec<u32> = (0..faces).filter(|&face| waiting[face as usize] == 0).collect();
-    let mut served = 0;
-    while let Some(&face) = queue.get(served) {
-        ranks[face as usize] = served as u32;
-        served += 1;
+    let mut ranked = 0;
+    while let Some(&face) = queue.get(ranked) {
+        ranks[face as usize] = ranked as u32;
+        ranked += 1;
         for h in topology.face(face).filter(|&h| mesh.is_up(h) && !is_cut[h as usize]) {
             let next = topology.half_edge(topology.half_edge(h).twin).face as usize;
             waiting[next] -= 1;
@@ -143,20 +143,20 @@ fn ranks(mesh: &Mesh, cut: &[u32]) -> Vec<u32> {
     }
     // What rounding has left in a cycle comes last.
     let rest = ranks.iter_mut().filter(|rank| **rank == NONE);
-    rest.zip(served as u32..).for_each(|(rank, last)| *rank = last);
+    rest.zip(ranked as u32..).for_each(|(rank, last)| *rank = last);
     ranks
 }
 
 impl<L: Fn(u32) -> f64, C: Fn(u32)> Search<'_, L, C> {
     /// The edge of a node that crosses the level.
-    fn of_node(&self, node: u32) -> Option<u32> {
+    fn crossing_edge_of_node(&self, node: u32) -> Option<u32> {
         let Chains { starts, edges, .. } = self.chains;
         let [from, to] = [node, node + 1].map(|k| starts[k as usize] as usize);
-        self.crossing(&edges[from..to])
+        self.crossing_edge(&edges[from..to])
     }
 
     /// The one of a chain's edges that crosses the level.
-    fn crossing(&self, edges: &[u32]) -> Option<u32> {
+    fn crossing_edge(&self, edges: &[u32]) -> Option<u32> {
         (self.count)(edges.len().checked_ilog2().unwrap_or(0));
         let below = |up: &u32| (self.level)(self.topology.origin(*up)) <= self.x;
         let last = edges[..edges.partition_point(below)].last();
@@ -178,7 +178,7 @@ impl<L: Fn(u32) -> f64, C: Fn(u32)> Search<'_, L, C> {
         let topology = self.topology;
         let face = topology.face(topology.half_edge(from).face);
         let sides = face.len() as u32;
-        if sides <= MANY_SIDES {
+        if sides <= MAX_WALKED_SIDES {
             return None;
         }
         let level = |h: u32| (self.level)(topology.origin(h));
@@ -213,8 +213,8 @@ impl<L: Fn(u32) -> f64, C: Fn(u32)> Search<'_, L, C> {
     }
 
     /// Ranks of the faces behind and ahead of an edge.
-    fn beside(&self, up: u32, turn: Turn) -> [u32; 2] {
-        let [left, right] = self.chains.beside(self.topology, up);
+    fn ranks_along(&self, up: u32, turn: Turn) -> [u32; 2] {
+        let [left, right] = self.chains.adjacent_ranks(self.topology, up);
         match turn {
             Turn::CounterClockwise => [left, right],
             Turn::Clockwise => [right, left],
@@ -223,11 +223,12 @@ impl<L: Fn(u32) -> f64, C: Fn(u32)> Search<'_, L, C> {
 
     /// An edge that crosses the level near one that crosses another.
     pub(crate) fn near(&self, up: u32) -> Option<u32> {
-        let [face, _] = self.beside(up, Turn::CounterClockwise);
+        let [face, _] = self.ranks_along(up, Turn::CounterClockwise);
         let faces = self.chains.ranks.len() as u32;
         let above = (0..=faces.ilog2()).map(|bits| (face >> bits | 1) << bits);
-        let found = above.filter(|&node| node < faces).find_map(|node| self.of_node(node));
-        found.or_else(|| self.crossing(&self.chains.cut))
+        let found =
+            above.filter(|&node| node < faces).find_map(|node| self.crossing_edge_of_node(node));
+        found.or_else(|| self.crossing_edge(&self.chains.cut))
     }
 
     /// The last edge from `start` on for which `holds`: it does for `start`, for those after it up to some
@@ -238,49 +239,50 @@ impl<L: Fn(u32) -> f64, C: Fn(u32)> Search<'_, L, C> {
         turn: Turn,
         mut holds: impl FnMut(u32) -> bool,
     ) -> Option<u32> {
-        let end = self.beside(start, turn)[0];
+        let end = self.ranks_along(start, turn)[0];
         let mut last = start;
-        let mut ahead = self.beside(start, turn)[1];
+        let mut ahead = self.ranks_along(start, turn)[1];
         // Larger and larger parts of the section, up to an edge for which it does not hold.
         let mut behind = None;
         for bits in 0..=self.chains.ranks.len().ilog2() {
-            let node = self.beyond(ahead, bits, turn);
-            let Some(up) = node.and_then(|node| self.of_node(node)) else { continue };
+            let node = self.node_ahead(ahead, bits, turn);
+            let Some(up) = node.and_then(|node| self.crossing_edge_of_node(node)) else { continue };
             if !holds(up) {
-                behind = Some(self.beside(up, turn)[0]);
+                behind = Some(self.ranks_along(up, turn)[0]);
                 break;
             }
             last = up;
-            ahead = self.beside(up, turn)[1];
+            ahead = self.ranks_along(up, turn)[1];
         }
         if behind.is_none() {
             // Over the cut, and at most to where the search began.
-            let cut = self.crossing(&self.chains.cut)?;
+            let cut = self.crossing_edge(&self.chains.cut)?;
             behind = Some(if cut == start {
                 end
             } else if holds(cut) {
                 last = cut;
-                ahead = self.beside(cut, turn)[1];
+                ahead = self.ranks_along(cut, turn)[1];
                 end
             } else {
-                self.beside(cut, turn)[0]
+                self.ranks_along(cut, turn)[0]
             });
         }
         let mut behind = behind?;
         while ahead != behind {
-            let up = self.of_node(node(ahead.min(behind), ahead.max(behind)))?;
+            let up =
+                self.crossing_edge_of_node(separating_node(ahead.min(behind), ahead.max(behind)))?;
             if holds(up) {
                 last = up;
-                ahead = self.beside(up, turn)[1];
+                ahead = self.ranks_along(up, turn)[1];
             } else {
-                behind = self.beside(up, turn)[0];
+                behind = self.ranks_along(up, turn)[0];
             }
         }
         Some(last)
     }
 
     /// The node of height `bits` over a rank, if it is ahead of it.
-    fn beyond(&self, rank: u32, bits: u32, turn: Turn) -> Option<u32> {
+    fn node_ahead(&self, rank: u32, bits: u32, turn: Turn) -> Option<u32> {
         let node = (rank >> bits | 1) << bits;
         let is_ahead = (rank >> bits & 1 == 0) == (turn == Turn::CounterClockwise);
         (is_ahead && (node as usize) < self.chains.ranks.len()).then_some(node)

@@ -22,7 +22,7 @@ use glam::DVec3;
 pub(crate) use axes::{AXES, AXIS_LENGTH, AxisPair};
 pub(crate) use chains::Search;
 use colltrans_kernel::topology::Topology;
-use snapshots::RING;
+use snapshots::CHAIN_THRESHOLD;
 pub(crate) use snapshots::{AxisSections, SectionMap, Snapshot, Turn};
 pub(crate) use walk::{next_clockwise, next_counter_clockwise};
 
@@ -35,7 +35,7 @@ pub(crate) struct SectionIndex {
 impl SectionIndex {
     /// For the vertices of a body of dimension 3 and its topology.
     pub(crate) fn build(vertices: &[DVec3], topology: &Topology) -> Self {
-        let build = |&a| AxisSections::build(vertices, topology, a, RING);
+        let build = |&a| AxisSections::build(vertices, topology, a, CHAIN_THRESHOLD);
         Self { axes: AXES.iter().map(build).collect() }
     }
 

@@ -29,12 +29,12 @@ const EDGES_PER_ENTRY: usize = 4;
 
 /// A snapshot holds every `s`-th edge of the section, `s` being this share of the root of how many
 /// there are (measured).
-const STRIDE: f64 = 1.0 / 3.0;
+const STRIDE_PER_ROOT: f64 = 1.0 / 3.0;
 
 /// Bodies with a section of more edges than so many times the root of all vertices have chains. With 8,
 /// ellipsoids of 20,000 vertices and 16 meridians had them too, and took 103 iterations a planar problem in
 /// place of 63.
-pub(super) const RING: f64 = 24.0;
+pub(super) const CHAIN_THRESHOLD: f64 = 24.0;
 
 /// Candidates of one round of the search for an extreme entry.
 const CANDIDATES: usize = 16;
@@ -47,27 +47,27 @@ struct Entry {
     /// Where it crosses, in the scaled coordinates of the section plane.
     position: [f32; 2],
     /// How a climb from there moves per level.
-    way: [f32; 2],
+    drift: [f32; 2],
 }
 
 impl Entry {
     /// Where it seems to be, so many levels above the snapshot.
     #[inline]
-    fn at(&self, above: f32) -> [f32; 2] {
-        [0, 1].map(|i| self.position[i] + self.way[i] * above)
+    fn position_at(&self, above: f32) -> [f32; 2] {
+        [0, 1].map(|i| self.position[i] + self.drift[i] * above)
     }
 }
 
 /// What sections are built from.
 #[derive(Clone, Copy)]
-pub(super) struct Mesh<'a> {
+pub(super) struct LeveledMesh<'a> {
     vertices: &'a [DVec3],
     pub(super) topology: &'a Topology,
     /// Level of each vertex.
     levels: &'a [f64],
 }
 
-impl Mesh<'_> {
+impl LeveledMesh<'_> {
     /// Whether a half-edge runs upwards.
     pub(super) fn is_up(&self, h: u32) -> bool {
         let [from, to] = [self.topology.origin(h), self.topology.target(h)];
@@ -75,7 +75,7 @@ impl Mesh<'_> {
     }
 
     /// How many edges a section has at most, of vertices from the lowest.
-    fn widest(&self, order: &[(f64, u32)]) -> usize {
+    fn max_section_edges(&self, order: &[(f64, u32)]) -> usize {
         let widths = order.iter().scan(0, |width: &mut usize, &(level, v)| {
             for &end in self.topology.neighbours(v) {
                 let other = self.levels[end as usize];
@@ -88,7 +88,7 @@ impl Mesh<'_> {
     }
 
     /// Where a mesh edge, by a half-edge upwards, crosses a level.
-    fn crossing(&self, up: u32, level: f64) -> DVec3 {
+    fn crossing_point(&self, up: u32, level: f64) -> DVec3 {
         let [low, high] = [self.topology.origin(up), self.topology.target(up)];
         let [from, to] = [low, high].map(|v| self.levels[v as usize]);
         let share = ((level - from) / (to - from)).min(1.0);
@@ -111,21 +111,21 @@ impl Mesh<'_> {
 /// Climbs to one level after the other, each along the edges that lead highest. A vertex passes on to
 /// later climbs where the one before arrived, so all climbs to a level visit it once.
 struct Climbs<'a> {
-    mesh: &'a Mesh<'a>,
+    mesh: &'a LeveledMesh<'a>,
     highest: Vec<Option<u32>>,
     /// For which climb a vertex knows the edge of arrival, and that edge.
-    known: Vec<(u32, u32)>,
+    arrivals: Vec<(u32, u32)>,
     passed: Vec<u32>,
 }
 
 impl<'a> Climbs<'a> {
-    fn new(mesh: &'a Mesh<'a>, highest: Vec<Option<u32>>) -> Self {
-        let known = vec![(u32::MAX, 0); mesh.vertices.len()];
-        Self { mesh, highest, known, passed: Vec::new() }
+    fn new(mesh: &'a LeveledMesh<'a>, highest: Vec<Option<u32>>) -> Self {
+        let arrivals = vec![(u32::MAX, 0); mesh.vertices.len()];
+        Self { mesh, highest, arrivals, passed: Vec::new() }
     }
 
     /// The edge that crosses `to`, or the last one below it, on climb number `number`.
-    fn from(&mut self, mut up: u32, (number, to): (u32, f64)) -> u32 {
+    fn climb(&mut self, mut up: u32, (number, to): (u32, f64)) -> u32 {
         self.passed.clear();
         loop {
             let end = self.mesh.topology.target(up) as usize;
@@ -133,15 +133,15 @@ impl<'a> Climbs<'a> {
             if self.mesh.levels[end] > to {
                 break;
             }
-            if self.known[end].0 == number {
-                up = self.known[end].1;
+            if self.arrivals[end].0 == number {
+                up = self.arrivals[end].1;
                 break;
             }
             self.passed.push(end as u32);
             up = ahead;
         }
         for &vertex in &self.passed {
-            self.known[vertex as usize] = (number, up);
+            self.arrivals[vertex as usize] = (number, up);
         }
         up
     }
@@ -196,13 +196,13 @@ impl AxisSections {
             entries: Vec::new(),
             chains: None,
         };
-        let mesh = Mesh { vertices, topology, levels: &vertex_levels };
+        let mesh = LeveledMesh { vertices, topology, levels: &vertex_levels };
         let highest = mesh.highest_edges();
-        if mesh.widest(&order) as f64 > ring * (vertices.len() as f64).sqrt() {
+        if mesh.max_section_edges(&order) as f64 > ring * (vertices.len() as f64).sqrt() {
             sections.chains = Some(Box::new(Chains::build(&mesh, &order, &highest)));
         }
         sections.take_snapshots(&mesh, &order);
-        sections.find_ways(Climbs::new(&mesh, highest));
+        sections.compute_drifts(Climbs::new(&mesh, highest));
         sections.halfway.shrink_to_fit();
         sections.levels.shrink_to_fit();
         sections.starts.shrink_to_fit();
@@ -210,8 +210,8 @@ impl AxisSections {
         sections
     }
 
-    fn take_snapshots(&mut self, mesh: &Mesh, order: &[(f64, u32)]) {
-        let Mesh { topology, levels: vertex_levels, .. } = *mesh;
+    fn take_snapshots(&mut self, mesh: &LeveledMesh, order: &[(f64, u32)]) {
+        let LeveledMesh { topology, levels: vertex_levels, .. } = *mesh;
         let mut edges_passed = 0;
         let mut edges_due = 0;
         // The edges of one section.
@@ -241,7 +241,7 @@ impl AxisSections {
     /// crosses.
     fn take_snapshot(
         &mut self,
-        mesh: &Mesh,
+        mesh: &LeveledMesh,
         first: u32,
         [level, next_level]: [f64; 2],
         ring: &mut Vec<u32>,
@@ -260,10 +260,10 @@ impl AxisSections {
                 break;
             }
         }
-        let stride = ((ring.len() as f64).sqrt() * STRIDE).max(1.0) as usize;
+        let stride = ((ring.len() as f64).sqrt() * STRIDE_PER_ROOT).max(1.0) as usize;
         for &up in ring.iter().step_by(stride) {
-            let position = self.position(mesh.crossing(up, halfway));
-            self.entries.push(Entry { up, position, way: [0.0; 2] });
+            let position = self.plane_position(mesh.crossing_point(up, halfway));
+            self.entries.push(Entry { up, position, drift: [0.0; 2] });
         }
         self.levels.push(level);
         self.halfway.push(halfway);
@@ -271,22 +271,22 @@ impl AxisSections {
     }
 
     /// Climbs from every entry to the next snapshot, or the top.
-    fn find_ways(&mut self, mut climbs: Climbs) {
+    fn compute_drifts(&mut self, mut climbs: Climbs) {
         let mesh = climbs.mesh;
         for index in 0..self.halfway.len() {
             let from = self.halfway[index];
             let to = self.halfway.get(index + 1).map_or(self.range[1], |&next| next);
             for i in self.starts[index] as usize..self.starts[index + 1] as usize {
                 let Entry { up, position, .. } = self.entries[i];
-                let arrival = climbs.from(up, (index as u32, to));
-                let there = self.position(mesh.crossing(arrival, to));
-                let way = [0, 1].map(|k| f64::from(there[k] - position[k]) / (to - from));
-                self.entries[i].way = way.map(|w| if w.is_finite() { w as f32 } else { 0.0 });
+                let arrival = climbs.climb(up, (index as u32, to));
+                let there = self.plane_position(mesh.crossing_point(arrival, to));
+                let drift = [0, 1].map(|k| f64::from(there[k] - position[k]) / (to - from));
+                self.entries[i].drift = drift.map(|w| if w.is_finite() { w as f32 } else { 0.0 });
             }
         }
     }
 
-    fn position(&self, v: DVec3) -> [f32; 2] {
+    fn plane_position(&self, v: DVec3) -> [f32; 2] {
         [0, 1].map(|i| (self.plane[i].dot(v) - self.origin[i]) as f32)
     }
 
@@ -403,7 +403,7 @@ impl Snapshot<'_> {
     /// Where entry `index` seems to be.
     #[inline]
     pub(crate) fn point(&self, index: usize) -> DVec2 {
-        let [u, v] = self.entries[index].at(self.above);
+        let [u, v] = self.entries[index].position_at(self.above);
         self.base + self.map.slopes[0] * f64::from(u) + self.map.slopes[1] * f64::from(v)
     }
 
@@ -416,7 +416,7 @@ impl Snapshot<'_> {
         let count = self.entries.len();
         let slope = self.map.height.map(|s| sign * s);
         let value = |i: usize| {
-            let [u, v] = self.entries[i].at(self.above);
+            let [u, v] = self.entries[i].position_at(self.above);
             slope[0] * u + slope[1] * v
         };
         let mut stride = 1;

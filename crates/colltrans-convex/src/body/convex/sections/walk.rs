@@ -8,7 +8,7 @@ use colltrans_kernel::topology::Topology;
 
 /// Vertices of a face tried one by one before galloping: most faces are triangles or
 /// quadrilaterals.
-const TRIED_IN_TURN: u32 = 4;
+const MAX_LINEAR_STEPS: u32 = 4;
 
 /// The crossing edge that follows `up` counter-clockwise.
 #[inline]
@@ -50,7 +50,8 @@ fn run_end(topology: &Topology, from: u32, inside: impl Fn(u32) -> bool) -> u32 
     let mut returned = 2;
     while returned < count && !is_inside(returned) {
         outside = returned;
-        returned = if returned <= TRIED_IN_TURN { returned + 1 } else { (2 * returned).min(count) };
+        returned =
+            if returned <= MAX_LINEAR_STEPS { returned + 1 } else { (2 * returned).min(count) };
     }
     while returned - outside > 1 {
         let middle = u32::midpoint(outside, returned);

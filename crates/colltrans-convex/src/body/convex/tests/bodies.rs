@@ -44,15 +44,19 @@ impl Random {
 /// About `count` vertices (at least 8) on an ellipsoid: two poles and rings between them.
 pub(crate) fn ellipsoid(count: usize, semi_axes: DVec3) -> ConvexPolyhedron {
     let around = ((2.0 * count as f64).sqrt().round() as usize).clamp(3, count - 2);
-    ellipsoid_around(count, around, semi_axes)
+    ellipsoid_with_meridians(count, around, semi_axes)
 }
 
 /// The same with faces a hundred times as long as wide.
 pub(crate) fn thin_ellipsoid(count: usize, semi_axes: DVec3) -> ConvexPolyhedron {
-    ellipsoid_around(count, ((0.0127 * count as f64).sqrt().round() as usize).max(8), semi_axes)
+    ellipsoid_with_meridians(
+        count,
+        ((0.0127 * count as f64).sqrt().round() as usize).max(8),
+        semi_axes,
+    )
 }
 
-fn ellipsoid_around(count: usize, around: usize, semi_axes: DVec3) -> ConvexPolyhedron {
+fn ellipsoid_with_meridians(count: usize, around: usize, semi_axes: DVec3) -> ConvexPolyhedron {
     let rings = ((count - 2) / around).max(1);
     rings_body(rings, around, semi_axes, |ring| {
         let polar = 0.5 * TAU * (ring + 1) as f64 / (rings + 1) as f64;

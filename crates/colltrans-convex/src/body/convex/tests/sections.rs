@@ -6,7 +6,7 @@ use crate::body::convex::sections::{
     Search, SectionIndex, Turn, next_clockwise, next_counter_clockwise,
 };
 
-fn bodies() -> Vec<ConvexPolyhedron> {
+fn test_bodies() -> Vec<ConvexPolyhedron> {
     vec![
         cuboid(DVec3::ZERO, DVec3::ONE),
         cuboid(DVec3::new(5.0, -3.0, 100.0), DVec3::new(1.0, 2.0, 3.0)),
@@ -35,7 +35,7 @@ fn levels(body: &ConvexPolyhedron, axis: DVec3, random: &mut Random) -> Vec<f64>
 }
 
 /// All half-edges that cross level `x` upwards.
-fn crossing(body: &ConvexPolyhedron, axis: DVec3, x: f64) -> Vec<u32> {
+fn crossing_edges(body: &ConvexPolyhedron, axis: DVec3, x: f64) -> Vec<u32> {
     let topology = body.topology();
     let above = |v: u32| axis.dot(body.vertices()[v as usize]) > x;
     let half_edges = 0..topology.half_edges().len() as u32;
@@ -43,14 +43,14 @@ fn crossing(body: &ConvexPolyhedron, axis: DVec3, x: f64) -> Vec<u32> {
 }
 
 #[test]
-fn walks_visit_the_whole_section_once_in_either_direction() {
+fn section_walk_visits_each_crossing_edge_once() {
     let mut random = Random(1);
-    for body in bodies() {
+    for body in test_bodies() {
         let topology = body.topology();
         for axis in crate::body::convex::sections::AXES {
             for x in levels(&body, axis, &mut random) {
                 let above = |v: u32| axis.dot(body.vertices()[v as usize]) > x;
-                let expected = crossing(&body, axis, x);
+                let expected = crossing_edges(&body, axis, x);
                 let mut visited = vec![expected[0]];
                 loop {
                     let last = visited[visited.len() - 1];
@@ -70,8 +70,8 @@ fn walks_visit_the_whole_section_once_in_either_direction() {
 }
 
 #[test]
-fn walks_are_counter_clockwise_from_the_tip_of_the_axis() {
-    for body in bodies() {
+fn section_walk_is_counter_clockwise_seen_from_axis_tip() {
+    for body in test_bodies() {
         for axis in crate::body::convex::sections::AXES {
             let centre = body.vertices().iter().sum::<DVec3>() / body.vertices().len() as f64;
             let x = axis.dot(centre);
@@ -81,7 +81,7 @@ fn walks_are_counter_clockwise_from_the_tip_of_the_axis() {
                 let high = body.vertices()[body.topology().target(h) as usize];
                 low + (high - low) * ((x - axis.dot(low)) / axis.dot(high - low)) - centre
             };
-            let first = crossing(&body, axis, x)[0];
+            let first = crossing_edges(&body, axis, x)[0];
             let mut doubled_area = 0.0;
             let mut up = first;
             loop {
@@ -98,9 +98,9 @@ fn walks_are_counter_clockwise_from_the_tip_of_the_axis() {
 }
 
 #[test]
-fn snapshots_hold_crossing_edges_in_order_at_even_strides_in_linear_space() {
+fn snapshot_entries_are_ordered_and_equally_spaced_in_linear_space() {
     let mut random = Random(2);
-    for body in bodies() {
+    for body in test_bodies() {
         let topology = body.topology();
         let index = SectionIndex::build(body.vertices(), topology);
         let per_vertex = index.heap_bytes() as f64 / body.vertices().len() as f64;
@@ -114,7 +114,7 @@ fn snapshots_hold_crossing_edges_in_order_at_even_strides_in_linear_space() {
                 let mut strides = Vec::new();
                 let mut stride = 0;
                 let mut up = entries[0];
-                for k in 0..crossing(&body, axis, level).len() {
+                for k in 0..crossing_edges(&body, axis, level).len() {
                     if up == entries[(strides.len() + 1) % entries.len()] && k > 0 {
                         strides.push(stride);
                         stride = 0;
@@ -131,9 +131,9 @@ fn snapshots_hold_crossing_edges_in_order_at_even_strides_in_linear_space() {
 }
 
 #[test]
-fn the_extremes_of_a_snapshot_agree_with_a_scan() {
+fn snapshot_extremes_match_scan() {
     let mut random = Random(3);
-    for body in bodies() {
+    for body in test_bodies() {
         let index = SectionIndex::build(body.vertices(), body.topology());
         for (i, axis) in crate::body::convex::sections::AXES.into_iter().enumerate() {
             for x in levels(&body, axis, &mut random) {
@@ -155,9 +155,9 @@ fn the_extremes_of_a_snapshot_agree_with_a_scan() {
 }
 
 #[test]
-fn snapshots_show_the_points_of_their_own_level() {
+fn snapshot_points_lie_on_section_halfway_to_next_vertex() {
     let mut random = Random(4);
-    for body in bodies() {
+    for body in test_bodies() {
         let index = SectionIndex::build(body.vertices(), body.topology());
         let size = body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
         for (i, axis) in crate::body::convex::sections::AXES.into_iter().enumerate() {
@@ -188,22 +188,22 @@ fn snapshots_show_the_points_of_their_own_level() {
 }
 
 /// The section at a level, counter-clockwise.
-fn ring(body: &ConvexPolyhedron, axis: DVec3, x: f64) -> Vec<u32> {
+fn section_ring(body: &ConvexPolyhedron, axis: DVec3, x: f64) -> Vec<u32> {
     let above = |v: u32| axis.dot(body.vertices()[v as usize]) > x;
-    let first = crossing(body, axis, x)[0];
+    let first = crossing_edges(body, axis, x)[0];
     let next = |&up: &u32| Some(next_counter_clockwise(body.topology(), up, above));
     let rest = std::iter::successors(next(&first), next).take_while(|&up| up != first);
     std::iter::once(first).chain(rest).collect()
 }
 
 #[test]
-fn searches_in_chains_agree_with_walks() {
+fn chain_searches_match_section_walks() {
     let mut random = Random(5);
-    for body in bodies() {
+    for body in test_bodies() {
         let index = SectionIndex::with_chains(body.vertices(), body.topology());
         for (i, axis) in crate::body::convex::sections::AXES.into_iter().enumerate() {
             for x in levels(&body, axis, &mut random) {
-                let ring = ring(&body, axis, x);
+                let ring = section_ring(&body, axis, x);
                 let search = Search {
                     chains: index.axis(i).chains().expect("chains"),
                     topology: body.topology(),

@@ -7,7 +7,7 @@ use glam::DVec3;
 
 use super::bodies::{Random, cone, prism};
 use crate::body::ConvexPolyhedron;
-use crate::body::convex::fan::{Above, greatest_near};
+use crate::body::convex::fan::{AboveQuery, greatest_near};
 
 /// A frustum over a polygon with its corners anywhere on an ellipse, most of them close together.
 fn crowded_frustum(around: usize, random: &mut Random) -> ConvexPolyhedron {
@@ -24,7 +24,7 @@ fn crowded_frustum(around: usize, random: &mut Random) -> ConvexPolyhedron {
 
 /// Along the axis, across it, and by ever less beside the axis, where a small change of the direction
 /// leads around the whole base.
-fn direction(random: &mut Random, k: usize) -> DVec3 {
+fn sample_direction(random: &mut Random, k: usize) -> DVec3 {
     let lateral = random.unit().with_z(0.0);
     let up = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
     match k / 2 % 4 {
@@ -36,7 +36,7 @@ fn direction(random: &mut Random, k: usize) -> DVec3 {
 }
 
 #[test]
-fn no_vertex_is_farther_than_the_support_point() {
+fn support_point_on_rims_is_farthest_vertex() {
     let mut random = Random(41);
     let scales = [DVec3::ONE, DVec3::new(1.0, 4.0, 0.01), DVec3::new(0.1, 0.2, 30.0)];
     let mut bodies = Vec::new();
@@ -49,7 +49,7 @@ fn no_vertex_is_farther_than_the_support_point() {
         let vertices = body.vertices();
         let size = vertices.iter().fold(DVec3::ZERO, |m, v| m.max(v.abs()));
         for k in 0..400 {
-            let d = direction(&mut random, k);
+            let d = sample_direction(&mut random, k);
             let farthest = vertices.iter().map(|v| d.dot(*v)).fold(f64::NEG_INFINITY, f64::max);
             let near = random.index(vertices.len()) as u32;
             for found in [body.support(d).0, body.support_from(d, near)] {
@@ -65,7 +65,7 @@ fn no_vertex_is_farther_than_the_support_point() {
 /// No neighbour of an apex that a proof asks for is passed over, be the cone round, flat, tall, of rounded corners or
 /// far from where it counts from; and of many few are looked at.
 #[test]
-fn all_neighbours_above_are_seen() {
+fn fan_visits_all_neighbours_above_level() {
     let mut random = Random(43);
     let mut asked = 0;
     // Looks and planes, at tips that are not flat: of corners that are rounded by nothing, and by more and more.
@@ -97,14 +97,14 @@ fn all_neighbours_above_are_seen() {
                     let tilt = random.unit() * 10_f64.powf(random.within(-17.0, -3.0));
                     let normal = (b.cross(a).normalize() + tilt * f64::from(k % 3)).normalize();
                     let least = -[0.0, 1e-15, 1e-9, 1e-3][random.index(4)];
-                    let above = Above { normal, length: 1.0, here, least, reach: 60.0 + far };
+                    let above = AboveQuery { normal, length: 1.0, here, least, reach: 60.0 + far };
                     let mut seen = Vec::new();
-                    let fan = body.support.fan(apex);
+                    let fan = body.support.fan_of_vertex(apex);
                     let mut look = |w: u32| {
                         seen.push(w);
                         true
                     };
-                    assert!(fan.look_above(&body.vertices, &body.topology, &above, &mut look));
+                    assert!(fan.visit_above(&body.vertices, &body.topology, &above, &mut look));
                     let is_above = |w: &&u32| normal.dot(edge(**w)) > least;
                     for w in neighbours.iter().filter(is_above) {
                         assert!(seen.contains(w), "{around}, {height}, {rounding}: {w}");
@@ -128,7 +128,7 @@ fn all_neighbours_above_are_seen() {
 
 /// From everywhere on a cycle with one maximum, in strides.
 #[test]
-fn the_greatest_on_a_cycle_is_reached() {
+fn greatest_near_finds_maximum_from_any_start() {
     let mut random = Random(44);
     for count in [33, 34, 100, 4_097] {
         for _ in 0..200 {

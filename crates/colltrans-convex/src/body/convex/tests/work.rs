@@ -20,7 +20,7 @@ fn rotation() -> DQuat {
 }
 
 #[test]
-fn hulls_of_spheres() {
+fn hull_work_on_spheres_is_subquadratic() {
     let random = |count: usize| {
         let mut random = Random::new(7);
         (0..count).map(|_| random.direction()).collect::<Vec<_>>()
@@ -44,7 +44,7 @@ fn hulls_of_spheres() {
 }
 
 #[test]
-fn hulls_of_flat_circles() {
+fn hull_work_on_flat_circles_is_subquadratic() {
     assert_growth("circle", 4_000, |count| {
         let points: Vec<DVec3> = ring(count, 1.0, 0.0).map(|p| rotation() * p).collect();
         let body = hull(&points);
@@ -55,7 +55,7 @@ fn hulls_of_flat_circles() {
 /// Prisms over stars, whose two large faces have all others as neighbours; regular, and with points of any
 /// depth. The surface is measured against its hull, and refused or taken by the tolerance.
 #[test]
-fn convexity_of_stars() {
+fn convexity_defect_work_on_stars_is_subquadratic() {
     let mut random = Random::new(9);
     let depths: Vec<f64> = (0..10_000).map(|_| random.range(0.2, 0.9)).collect();
     for (what, depth) in [("regular", None), ("any depth", Some(depths))] {
@@ -88,7 +88,7 @@ fn convexity_of_stars() {
 /// Two rings, as of a prism, a frustum or a bottle: quadratic where one ring is finished before the
 /// other is begun.
 #[test]
-fn hulls_of_large_rings() {
+fn hull_work_on_large_rings_is_subquadratic() {
     let apex = DVec3::Z * 1.5;
     for (what, top, apex) in
         [("prism", 1.0, None), ("frustum", 0.7, None), ("bottle", 0.9, Some(apex))]
@@ -106,7 +106,7 @@ fn hulls_of_large_rings() {
 /// Four rings, two and two close together: where the sagitta of a patch is about the chamfer, one ring of
 /// a pair is finished before the other, and each point of that sees a fan over the patch.
 #[test]
-fn hulls_of_rims_with_chamfers() {
+fn hull_work_on_chamfered_rims_is_bounded() {
     for chamfer in [1e-2, 1e-3, 1e-4] {
         for (how, turn) in [("upright", DQuat::IDENTITY), ("turned", rotation())] {
             let points = |count: usize| -> Vec<DVec3> {
@@ -125,7 +125,7 @@ fn hulls_of_rims_with_chamfers() {
 /// Neither a climb along a rim nor what is asked around an apex, for a climb, a turn or a proof, looks at each of its
 /// corners.
 #[test]
-fn casts_of_bodies_with_rims() {
+fn cast_work_on_rims_does_not_scale_with_corners() {
     type Turned = (&'static str, &'static [[f64; 2]], &'static [f64]);
     let rims: [Turned; 4] = [
         ("cylinder", &[[1.0, -1.0], [1.0, 1.0]], &[]),
@@ -157,7 +157,7 @@ fn casts_of_bodies_with_rims() {
 
 /// Of what is dropped as lying on a face, how far it is from the body is measured.
 #[test]
-fn hulls_of_grids() {
+fn hull_work_on_grid_faces_is_subquadratic() {
     assert_growth("faces of a grid", 2_000, |count| {
         let side = (count / 6).isqrt() as i32;
         let along = |k: i32| f64::from(k) / f64::from(side);
@@ -173,7 +173,7 @@ fn hulls_of_grids() {
 }
 
 #[test]
-fn bodies_that_shrink_and_grow() {
+fn offset_work_is_subquadratic() {
     assert_growth("offset", 2_000, |count| {
         let body = hull(&random_hull(count, &mut Random::new(9)).vertices);
         body.shrunk(0.1).expect("it fits");

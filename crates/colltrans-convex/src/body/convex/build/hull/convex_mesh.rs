@@ -10,79 +10,79 @@
 
 use glam::DVec3;
 
-use super::quickhull::{Simplicial, Triangle, side};
+use super::quickhull::{Simplicial, Triangle, orientation};
 use colltrans_kernel::plane::triangle_normal;
 use colltrans_kernel::topology::Topology;
 
 /// The mesh as a simplicial hull, if its faces are triangles and it is convex, every vertex a
 /// corner.
-pub(super) fn simplicial(points: &[DVec3], topology: &Topology) -> Option<Simplicial> {
-    let mesh = Mesh { points, topology };
+pub(super) fn simplicial_of_mesh(points: &[DVec3], topology: &Topology) -> Option<Simplicial> {
+    let mesh = TriangleMesh { points, topology };
     let count = topology.face_count() as u32;
     if !(0..count).all(|f| topology.face(f).len() == 3) {
         return None;
     }
     let middle = points.iter().sum::<DVec3>() / points.len() as f64;
     let convex = (0..count).all(|f| mesh.is_below(f, middle) && mesh.bends_outwards(f));
-    if !convex || mesh.times_covered(middle) != 1 {
+    if !convex || mesh.ray_crossings(middle) != 1 {
         return None;
     }
-    let triangles = (0..count).map(|f| mesh.triangle(f)).collect();
+    let triangles = (0..count).map(|f| mesh.simplicial_triangle(f)).collect();
     Some(Simplicial { triangles, near: Vec::new() })
 }
 
-struct Mesh<'a> {
+struct TriangleMesh<'a> {
     points: &'a [DVec3],
     topology: &'a Topology,
 }
 
-impl Mesh<'_> {
-    fn corners(&self, face: u32) -> [u32; 3] {
+impl TriangleMesh<'_> {
+    fn corner_vertices(&self, face: u32) -> [u32; 3] {
         let first = self.topology.face(face).start;
         [first, first + 1, first + 2].map(|h| self.topology.origin(h))
     }
 
-    fn at(&self, face: u32) -> [DVec3; 3] {
-        self.corners(face).map(|v| self.points[v as usize])
+    fn corner_points(&self, face: u32) -> [DVec3; 3] {
+        self.corner_vertices(face).map(|v| self.points[v as usize])
     }
 
     /// Whether a point is strictly below a triangle's plane; never below one without area.
     fn is_below(&self, face: u32, p: DVec3) -> bool {
-        let [a, b, c] = self.at(face);
-        side(a, b, c, p) < 0.0
+        let [a, b, c] = self.corner_points(face);
+        orientation(a, b, c, p) < 0.0
     }
 
     /// Whether no neighbour's third corner is above a triangle's plane; that of a neighbour with a smaller
     /// number has said so of both.
     fn bends_outwards(&self, face: u32) -> bool {
-        let [a, b, c] = self.at(face);
+        let [a, b, c] = self.corner_points(face);
         self.topology.face(face).all(|h| {
             let twin = self.topology.half_edge(h).twin;
             if twin < h {
                 return true;
             }
             let third = self.topology.target(self.topology.next(twin));
-            side(a, b, c, self.points[third as usize]) <= 0.0
+            orientation(a, b, c, self.points[third as usize]) <= 0.0
         })
     }
 
     /// How many triangles a ray from a point inside passes, in their interior or on their border.
-    fn times_covered(&self, from: DVec3) -> usize {
-        let through = self.at(0).into_iter().sum::<DVec3>() / 3.0;
+    fn ray_crossings(&self, from: DVec3) -> usize {
+        let through = self.corner_points(0).into_iter().sum::<DVec3>() / 3.0;
         let passes = |f: u32| {
-            let [a, b, c] = self.at(f);
-            side(from, b, a, through) <= 0.0
-                && side(from, c, b, through) <= 0.0
-                && side(from, a, c, through) <= 0.0
+            let [a, b, c] = self.corner_points(f);
+            orientation(from, b, a, through) <= 0.0
+                && orientation(from, c, b, through) <= 0.0
+                && orientation(from, a, c, through) <= 0.0
         };
         (0..self.topology.face_count() as u32).filter(|&f| passes(f)).count()
     }
 
-    fn triangle(&self, face: u32) -> Triangle {
+    fn simplicial_triangle(&self, face: u32) -> Triangle {
         let neighbour = |h: u32| self.topology.half_edge(self.topology.half_edge(h).twin).face;
         let first = self.topology.face(face).start;
         let neighbours = [first, first + 1, first + 2].map(neighbour);
-        let normal = triangle_normal(self.at(face)).normalize_or_zero();
-        Triangle { corners: self.corners(face), neighbours, normal }
+        let normal = triangle_normal(self.corner_points(face)).normalize_or_zero();
+        Triangle { corners: self.corner_vertices(face), neighbours, normal }
     }
 }

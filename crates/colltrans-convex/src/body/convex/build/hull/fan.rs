@@ -10,7 +10,7 @@
 use glam::DVec3;
 
 /// A cone of triangles by the angles at which they begin.
-pub(super) struct Fan {
+pub(super) struct ConeSectors {
     apex: DVec3,
     /// Two axes across the one inside.
     across: [DVec3; 2],
@@ -18,28 +18,28 @@ pub(super) struct Fan {
     starts: Vec<(f64, u32)>,
 }
 
-impl Fan {
+impl ConeSectors {
     /// From where each rim edge starts, with its triangle.
     pub(super) fn new(apex: DVec3, rim: impl Iterator<Item = (DVec3, u32)> + Clone) -> Self {
         let inside: DVec3 = rim.clone().map(|(p, _)| (p - apex).normalize_or_zero()).sum();
         let axis = inside.try_normalize().unwrap_or(DVec3::Z);
         let x = axis.any_orthonormal_vector();
-        let mut fan = Self { apex, across: [x, axis.cross(x)], starts: Vec::new() };
-        fan.starts = rim.map(|(p, triangle)| (fan.angle(p), triangle)).collect();
-        fan.starts.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
-        fan
+        let mut sectors = Self { apex, across: [x, axis.cross(x)], starts: Vec::new() };
+        sectors.starts = rim.map(|(p, triangle)| (sectors.pseudo_angle(p), triangle)).collect();
+        sectors.starts.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        sectors
     }
 
     /// The triangle of a point's sector, and the two beside it.
-    pub(super) fn near(&self, p: DVec3) -> [u32; 3] {
+    pub(super) fn candidates(&self, p: DVec3) -> [u32; 3] {
         let count = self.starts.len();
-        let angle = self.angle(p);
+        let angle = self.pseudo_angle(p);
         let after = self.starts.partition_point(|start| start.0 <= angle);
         [count - 1, 0, count - 2].map(|k| self.starts[(after + k) % count].1)
     }
 
     /// What grows with the angle around the axis, from -1 to 3.
-    fn angle(&self, p: DVec3) -> f64 {
+    fn pseudo_angle(&self, p: DVec3) -> f64 {
         let [x, y] = self.across.map(|axis| axis.dot(p - self.apex));
         let slope = y / (x.abs() + y.abs());
         if x >= 0.0 { slope } else { 2.0 - slope }
@@ -57,7 +57,7 @@ mod tests {
     /// Cones of all widths around an apex, points on all sides, those behind it too: what lies outside of a
     /// triangle lies outside of one that is named.
     #[test]
-    fn a_point_that_sees_a_triangle_sees_one_that_is_near() {
+    fn candidates_contain_a_visible_triangle() {
         let mut random = Random::new(11);
         let (mut outside, mut inside) = (0, 0);
         for round in 0..200 {
@@ -68,7 +68,7 @@ mod tests {
             let rim: Vec<DVec3> = ring(sides, 1.0, -depth)
                 .map(|p| apex + rotation * (p * DVec3::new(narrow, 1.0, 1.0)))
                 .collect();
-            let fan = Fan::new(apex, rim.iter().copied().zip(0..));
+            let sectors = ConeSectors::new(apex, rim.iter().copied().zip(0..));
             for _ in 0..100 {
                 let p = apex + random.direction();
                 let sees = |k: u32| {
@@ -76,7 +76,7 @@ mod tests {
                     orient3d(rim[k as usize], next, apex, p) > 0.0
                 };
                 let is_outside = (0..sides as u32).any(sees);
-                assert_eq!(fan.near(p).into_iter().any(sees), is_outside, "{round}");
+                assert_eq!(sectors.candidates(p).into_iter().any(sees), is_outside, "{round}");
                 *(if is_outside { &mut outside } else { &mut inside }) += 1;
             }
         }

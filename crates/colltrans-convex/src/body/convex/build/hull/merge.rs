@@ -15,7 +15,7 @@ const NONE: u32 = u32::MAX;
 /// For each triangle, the number of its region.
 #[derive(Debug)]
 pub(super) struct Regions {
-    of: Vec<u32>,
+    region_of: Vec<u32>,
     count: u32,
     /// For each region, the triangle whose plane it lies in.
     seed: Vec<u32>,
@@ -23,32 +23,38 @@ pub(super) struct Regions {
 
 impl Regions {
     /// Every triangle by itself.
-    pub(super) fn triangles(simplicial: &Simplicial) -> Self {
+    pub(super) fn single_triangles(simplicial: &Simplicial) -> Self {
         let count = simplicial.triangles.len() as u32;
-        Self { of: (0..count).collect(), count, seed: (0..count).collect() }
+        Self { region_of: (0..count).collect(), count, seed: (0..count).collect() }
     }
 }
 
 /// Grows regions from the largest triangles.
-pub(super) fn regions(points: &[DVec3], simplicial: &Simplicial, tolerance: f64) -> Regions {
+pub(super) fn coplanar_regions(
+    points: &[DVec3],
+    simplicial: &Simplicial,
+    tolerance: f64,
+) -> Regions {
     let triangles = &simplicial.triangles;
     let area = |t: u32| {
         let [a, b, c] = triangles[t as usize].corners.map(|i| points[i as usize]);
         (b - a).cross(c - a).length_squared()
     };
-    if !(0..triangles.len() as u32).any(|t| grows(points, triangles, t, tolerance)) {
-        return Regions::triangles(simplicial);
+    if !(0..triangles.len() as u32).any(|t| has_coplanar_neighbour(points, triangles, t, tolerance))
+    {
+        return Regions::single_triangles(simplicial);
     }
     let mut seeds: Vec<(f64, u32)> = (0..triangles.len() as u32).map(|t| (area(t), t)).collect();
     seeds.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    let mut regions = Regions { of: vec![NONE; triangles.len()], count: 0, seed: Vec::new() };
+    let mut regions =
+        Regions { region_of: vec![NONE; triangles.len()], count: 0, seed: Vec::new() };
     let mut members = Vec::new();
     for (_, seed) in seeds {
-        if regions.of[seed as usize] == NONE {
+        if regions.region_of[seed as usize] == NONE {
             members.clear();
-            grow(points, simplicial, tolerance, seed, &mut regions, &mut members);
+            grow_region(points, simplicial, tolerance, seed, &mut regions, &mut members);
             if members.len() > 1 && !is_polygon(points, simplicial, &regions, &members, tolerance) {
-                split(&mut regions, &members);
+                split_region(&mut regions, &members);
             }
         }
     }
@@ -56,19 +62,27 @@ pub(super) fn regions(points: &[DVec3], simplicial: &Simplicial, tolerance: f64)
 }
 
 /// Whether a triangle's plane contains a neighbour.
-fn grows(points: &[DVec3], triangles: &[Triangle], t: u32, tolerance: f64) -> bool {
+fn has_coplanar_neighbour(
+    points: &[DVec3],
+    triangles: &[Triangle],
+    t: u32,
+    tolerance: f64,
+) -> bool {
     let plane = &triangles[t as usize];
-    plane.neighbours.into_iter().any(|n| lies_in(points, &triangles[n as usize], plane, tolerance))
+    plane
+        .neighbours
+        .into_iter()
+        .any(|n| lies_in_plane(points, &triangles[n as usize], plane, tolerance))
 }
 
 /// Whether all corners of a triangle lie within the tolerance of the plane of another one.
-fn lies_in(points: &[DVec3], inner: &Triangle, plane: &Triangle, tolerance: f64) -> bool {
+fn lies_in_plane(points: &[DVec3], inner: &Triangle, plane: &Triangle, tolerance: f64) -> bool {
     let origin = points[plane.corners[0] as usize];
     let on_plane = |i: u32| plane.normal.dot(points[i as usize] - origin).abs() <= tolerance;
     inner.corners.into_iter().all(on_plane)
 }
 
-fn grow(
+fn grow_region(
     points: &[DVec3],
     simplicial: &Simplicial,
     tolerance: f64,
@@ -78,16 +92,16 @@ fn grow(
 ) {
     let triangles = &simplicial.triangles;
     let plane = &triangles[seed as usize];
-    regions.of[seed as usize] = regions.count;
+    regions.region_of[seed as usize] = regions.count;
     regions.seed.push(seed);
     members.push(seed);
     let mut k = 0;
     while k < members.len() {
         work::count(1);
         for n in triangles[members[k] as usize].neighbours {
-            let free = regions.of[n as usize] == NONE;
-            if free && lies_in(points, &triangles[n as usize], plane, tolerance) {
-                regions.of[n as usize] = regions.count;
+            let free = regions.region_of[n as usize] == NONE;
+            if free && lies_in_plane(points, &triangles[n as usize], plane, tolerance) {
+                regions.region_of[n as usize] = regions.count;
                 members.push(n);
             }
         }
@@ -107,37 +121,37 @@ fn is_polygon(
     tolerance: f64,
 ) -> bool {
     let rim = rim_edges(simplicial, regions, members);
-    let Some(corners) = rim.first().and_then(|&start| trace(simplicial, regions, start)) else {
+    let Some(corners) = rim.first().and_then(|&start| trace_rim(simplicial, regions, start)) else {
         return false;
     };
     let normal = simplicial.triangles[members[0] as usize].normal;
     let at = |k: usize| points[corners[k % corners.len()] as usize];
-    let is_inward = |k: usize| {
+    let is_reflex = |k: usize| {
         let [from, corner, to] = [at(k), at(k + 1), at(k + 2)];
         let chord = to - from;
         normal.dot(chord.cross(corner - from)) > tolerance * chord.length()
     };
-    corners.len() >= 3 && corners.len() == rim.len() && !(0..corners.len()).any(is_inward)
+    corners.len() >= 3 && corners.len() == rim.len() && !(0..corners.len()).any(is_reflex)
 }
 
 /// The edges `(triangle, side)` of a region across which another region lies.
 fn rim_edges(simplicial: &Simplicial, regions: &Regions, members: &[u32]) -> Vec<(u32, usize)> {
-    let region = regions.of[members[0] as usize];
+    let region = regions.region_of[members[0] as usize];
     members
         .iter()
         .flat_map(|&t| (0..3).map(move |side| (t, side)))
         .filter(|&(t, side)| {
             let other = simplicial.triangles[t as usize].neighbours[side];
-            regions.of[other as usize] != region
+            regions.region_of[other as usize] != region
         })
         .collect()
 }
 
 /// The corners along a region's rim from one of its edges; `None` if they pass through a corner
 /// twice.
-fn trace(simplicial: &Simplicial, regions: &Regions, start: (u32, usize)) -> Option<Vec<u32>> {
+fn trace_rim(simplicial: &Simplicial, regions: &Regions, start: (u32, usize)) -> Option<Vec<u32>> {
     let triangles = &simplicial.triangles;
-    let region = regions.of[start.0 as usize];
+    let region = regions.region_of[start.0 as usize];
     let (mut t, mut side) = start;
     let mut corners = Vec::new();
     loop {
@@ -147,7 +161,7 @@ fn trace(simplicial: &Simplicial, regions: &Regions, start: (u32, usize)) -> Opt
         side = (side + 1) % 3;
         loop {
             let other = triangles[t as usize].neighbours[side];
-            if regions.of[other as usize] != region {
+            if regions.region_of[other as usize] != region {
                 break;
             }
             work::count(1);
@@ -168,9 +182,9 @@ fn trace(simplicial: &Simplicial, regions: &Regions, start: (u32, usize)) -> Opt
 }
 
 /// Makes every triangle of a region a region by itself.
-fn split(regions: &mut Regions, members: &[u32]) {
+fn split_region(regions: &mut Regions, members: &[u32]) {
     for &t in &members[1..] {
-        regions.of[t as usize] = regions.count;
+        regions.region_of[t as usize] = regions.count;
         regions.seed.push(t);
         regions.count += 1;
     }
@@ -179,7 +193,7 @@ fn split(regions: &mut Regions, members: &[u32]) {
 /// The corners around which fewer than three planes meet, ascending, without those in `forced`.
 ///
 /// Two regions in one plane count once: slivers along an edge can keep the parts of a face apart.
-pub(super) fn redundant(
+pub(super) fn redundant_corners(
     points: &[DVec3],
     simplicial: &Simplicial,
     regions: &Regions,
@@ -189,21 +203,21 @@ pub(super) fn redundant(
     let size = simplicial.triangles.iter().flat_map(|t| t.corners).max().unwrap_or(0) as usize + 1;
     // Up to three regions in different planes seen at each corner.
     let mut planes = vec![[NONE; 3]; size];
-    for (triangle, &region) in simplicial.triangles.iter().zip(&regions.of) {
+    for (triangle, &region) in simplicial.triangles.iter().zip(&regions.region_of) {
         for v in triangle.corners {
-            let seen = &mut planes[v as usize];
+            let found = &mut planes[v as usize];
             let is_same = |&r: &u32| {
                 r == region
-                    || coplanar(
+                    || are_coplanar(
                         points,
                         simplicial,
                         [r, region].map(|r| regions.seed[r as usize]),
                         tolerance,
                     )
             };
-            let count = seen.iter().take_while(|&&r| r != NONE).count();
-            if count < 3 && !seen[..count].iter().any(is_same) {
-                seen[count] = region;
+            let count = found.iter().take_while(|&&r| r != NONE).count();
+            if count < 3 && !found[..count].iter().any(is_same) {
+                found[count] = region;
             }
         }
     }
@@ -214,16 +228,26 @@ pub(super) fn redundant(
 }
 
 /// Whether each of two triangles lies in the other's plane.
-fn coplanar(points: &[DVec3], simplicial: &Simplicial, [a, b]: [u32; 2], tolerance: f64) -> bool {
+fn are_coplanar(
+    points: &[DVec3],
+    simplicial: &Simplicial,
+    [a, b]: [u32; 2],
+    tolerance: f64,
+) -> bool {
     let [a, b] = [a, b].map(|t| &simplicial.triangles[t as usize]);
     a.normal.dot(b.normal) > 0.0
-        && lies_in(points, a, b, tolerance)
-        && lies_in(points, b, a, tolerance)
+        && lies_in_plane(points, a, b, tolerance)
+        && lies_in_plane(points, b, a, tolerance)
 }
 
 /// Which of the `dropped` points lie outside the hull of the `kept` ones by more than the
 /// tolerance.
-pub(super) fn lost(points: &[DVec3], kept: &[u32], dropped: &[u32], tolerance: f64) -> Vec<u32> {
+pub(super) fn points_outside(
+    points: &[DVec3],
+    kept: &[u32],
+    dropped: &[u32],
+    tolerance: f64,
+) -> Vec<u32> {
     if kept.len() < 4 {
         return dropped.to_vec();
     }
@@ -233,29 +257,29 @@ pub(super) fn lost(points: &[DVec3], kept: &[u32], dropped: &[u32], tolerance: f
     dropped
         .iter()
         .copied()
-        .filter(|&v| locator.outside(points[v as usize], &mut near) > 2.0 * tolerance)
+        .filter(|&v| locator.distance_outside(points[v as usize], &mut near) > 2.0 * tolerance)
         .collect()
 }
 
 /// The regions' rims: first corner of each, and the corners (point numbers).
-pub(super) fn polygons(simplicial: &Simplicial, regions: &Regions) -> (Vec<u32>, Vec<u32>) {
+pub(super) fn region_polygons(simplicial: &Simplicial, regions: &Regions) -> (Vec<u32>, Vec<u32>) {
     let mut start = vec![0];
     let mut corners = Vec::new();
     let mut done = vec![false; regions.count as usize];
     for (t, triangle) in simplicial.triangles.iter().enumerate() {
-        let region = regions.of[t];
+        let region = regions.region_of[t];
         if done[region as usize] {
             continue;
         }
-        let rim = (0..3).find(|&k| regions.of[triangle.neighbours[k] as usize] != region);
+        let rim = (0..3).find(|&k| regions.region_of[triangle.neighbours[k] as usize] != region);
         let Some(side) = rim else { continue };
         done[region as usize] = true;
-        if triangle.neighbours.iter().all(|&n| regions.of[n as usize] != region) {
+        if triangle.neighbours.iter().all(|&n| regions.region_of[n as usize] != region) {
             corners.extend(triangle.corners);
             start.push(corners.len() as u32);
             continue;
         }
-        if let Some(loop_) = trace(simplicial, regions, (t as u32, side)) {
+        if let Some(loop_) = trace_rim(simplicial, regions, (t as u32, side)) {
             corners.extend(loop_);
             start.push(corners.len() as u32);
         }

@@ -35,7 +35,7 @@ pub(super) use violation::Locator;
 
 /// Which input points are vertices, and the faces over them.
 #[derive(Debug, Clone)]
-pub(crate) struct Hull {
+pub(crate) struct IndexedHull {
     /// Affine dimension of the points, 0 to 3.
     pub(crate) dimension: u8,
     /// Indices of the vertices in the input.
@@ -54,7 +54,7 @@ const MAX_ROUNDS: usize = 16;
 /// A point within the tolerance of two planes is far beyond the edge where they meet if that is as
 /// sharp as a knife's, and of a body that is hardly thicker than the tolerance all is such an edge.
 /// So many tolerances away from the finished body, it is made a vertex.
-const BEYOND: f64 = 16.0;
+const MAX_DISTANCE_FACTOR: f64 = 16.0;
 
 /// Most points: vertex and half-edge numbers must fit 31 bits.
 const MAX_POINTS: usize = (u32::MAX / 16) as usize;
@@ -79,25 +79,25 @@ pub(super) fn check_points(points: &[DVec3]) -> Result<(), BuildError> {
 }
 
 /// Distance from a face within which points of this size are taken to lie on it.
-pub(super) fn tolerance(points: &[DVec3]) -> f64 {
+pub(super) fn coplanar_tolerance(points: &[DVec3]) -> f64 {
     let largest = points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
     noise::COPLANAR * largest
 }
 
 /// The convex hull of points that [`check_points`] has passed.
-pub(super) fn convex_hull(points: &[DVec3]) -> Hull {
+pub(super) fn convex_hull(points: &[DVec3]) -> IndexedHull {
     reduced_hull(points, None)
 }
 
 /// The convex hull of a closed surface's vertices, all in use: quicker where the surface is that
 /// hull already.
-pub(super) fn hull_of_mesh(points: &[DVec3], topology: &Topology) -> Hull {
-    reduced_hull(points, convex_mesh::simplicial(points, topology))
+pub(super) fn hull_of_mesh(points: &[DVec3], topology: &Topology) -> IndexedHull {
+    reduced_hull(points, convex_mesh::simplicial_of_mesh(points, topology))
 }
 
 /// The hull without what is no corner, from a simplicial hull of all points if there is one.
-fn reduced_hull(points: &[DVec3], mut known: Option<Simplicial>) -> Hull {
-    let tolerance = tolerance(points);
+fn reduced_hull(points: &[DVec3], mut known: Option<Simplicial>) -> IndexedHull {
+    let tolerance = coplanar_tolerance(points);
     let mut kept: Vec<u32> = (0..points.len() as u32).collect();
     // Points near the surface: they are what the violation is measured on.
     let mut near: Vec<u32> = Vec::new();
@@ -109,14 +109,15 @@ fn reduced_hull(points: &[DVec3], mut known: Option<Simplicial>) -> Hull {
                 Ok(simplicial) => simplicial,
                 // What is left may be flat where the whole is not.
                 Err(_) if kept.len() < points.len() => break,
-                Err(flat) => return planar::hull(points, &kept, flat, tolerance),
+                Err(flat) => return planar::flat_hull(points, &kept, flat, tolerance),
             },
         };
         near.extend(&simplicial.near);
-        let regions = merge::regions(points, &simplicial, tolerance);
-        let redundant = merge::redundant(points, &simplicial, &regions, tolerance, &forced);
+        let regions = merge::coplanar_regions(points, &simplicial, tolerance);
+        let redundant = merge::redundant_corners(points, &simplicial, &regions, tolerance, &forced);
         if redundant.is_empty() {
-            let (hull, mut beyond) = finish(points, &simplicial, &regions, &near, tolerance);
+            let (hull, mut beyond) =
+                hull_of_regions(points, &simplicial, &regions, &near, tolerance);
             if beyond.is_empty() {
                 return hull;
             }
@@ -125,7 +126,7 @@ fn reduced_hull(points: &[DVec3], mut known: Option<Simplicial>) -> Hull {
                 // Merging swallows what was forced.
                 break;
             }
-            kept = simplicial.vertices();
+            kept = simplicial.sorted_vertices();
             for list in [&mut kept, &mut forced] {
                 list.extend(&beyond);
                 list.sort_unstable();
@@ -133,12 +134,12 @@ fn reduced_hull(points: &[DVec3], mut known: Option<Simplicial>) -> Hull {
             }
             continue;
         }
-        let mut rest: Vec<u32> = simplicial.vertices();
+        let mut rest: Vec<u32> = simplicial.sorted_vertices();
         rest.retain(|v| redundant.binary_search(v).is_err());
         near.extend(&redundant);
         kept = rest;
         // What is dropped must lie on the hull of the rest; what does not is kept for good.
-        let lost = merge::lost(points, &kept, &redundant, tolerance);
+        let lost = merge::points_outside(points, &kept, &redundant, tolerance);
         forced.extend(&lost);
         forced.sort_unstable();
         kept.extend(lost);
@@ -149,15 +150,15 @@ fn reduced_hull(points: &[DVec3], mut known: Option<Simplicial>) -> Hull {
 
 /// The hull with every point that is a corner in exact arithmetic, unless all points are within the
 /// tolerance of a plane; its faces are triangles.
-pub(super) fn exact_hull(points: &[DVec3]) -> Hull {
-    let tolerance = tolerance(points);
+pub(super) fn exact_hull(points: &[DVec3]) -> IndexedHull {
+    let tolerance = coplanar_tolerance(points);
     let all: Vec<u32> = (0..points.len() as u32).collect();
     match quickhull::simplicial_hull(points, &all, &all, tolerance) {
         Ok(simplicial) => {
-            let regions = merge::Regions::triangles(&simplicial);
-            finish(points, &simplicial, &regions, &[], tolerance).0
+            let regions = merge::Regions::single_triangles(&simplicial);
+            hull_of_regions(points, &simplicial, &regions, &[], tolerance).0
         }
-        Err(flat) => planar::hull(points, &all, flat, tolerance),
+        Err(flat) => planar::flat_hull(points, &all, flat, tolerance),
     }
 }
 
@@ -170,33 +171,34 @@ pub(super) fn are_distinct(points: &[DVec3]) -> bool {
 }
 
 /// Polygons, vertex numbers and the measured violation; and which points are too far away, ascending.
-fn finish(
+fn hull_of_regions(
     points: &[DVec3],
     simplicial: &Simplicial,
     regions: &merge::Regions,
     near: &[u32],
     tolerance: f64,
-) -> (Hull, Vec<u32>) {
-    let (vertices, topology) = faces(points, simplicial, regions).unwrap_or_else(|_| {
-        // Rounding can make coplanar regions that do not fit together; the triangles always do.
-        faces(points, simplicial, &merge::Regions::triangles(simplicial))
-            .expect("the triangles of a simplicial hull are a closed surface")
-    });
+) -> (IndexedHull, Vec<u32>) {
+    let (vertices, topology) =
+        vertices_and_faces(points, simplicial, regions).unwrap_or_else(|_| {
+            // Rounding can make coplanar regions that do not fit together; the triangles always do.
+            vertices_and_faces(points, simplicial, &merge::Regions::single_triangles(simplicial))
+                .expect("the triangles of a simplicial hull are a closed surface")
+        });
     // A corner of triangles that have become one polygon may be none of its corners.
-    let others = near.iter().copied().chain(simplicial.vertices());
-    let hull = Hull { dimension: 3, vertices, topology, violation: 0.0, input_excess: 0.0 };
-    measured(points, hull, others, tolerance)
+    let others = near.iter().copied().chain(simplicial.sorted_vertices());
+    let hull = IndexedHull { dimension: 3, vertices, topology, violation: 0.0, input_excess: 0.0 };
+    with_violation(points, hull, others, tolerance)
 }
 
 /// A hull with faces and its violation, and those of the `others` that are too far away, ascending.
-fn measured(
+fn with_violation(
     points: &[DVec3],
-    hull: Hull,
+    hull: IndexedHull,
     others: impl Iterator<Item = u32>,
     tolerance: f64,
-) -> (Hull, Vec<u32>) {
+) -> (IndexedHull, Vec<u32>) {
     let corners: Vec<DVec3> = hull.vertices.iter().map(|&i| points[i as usize]).collect();
-    let mut gauge = Gauge::new(&corners, &hull.topology, points.len(), rounding(tolerance));
+    let mut gauge = Gauge::new(&corners, &hull.topology, points.len(), witness_rounding(tolerance));
     let mut beyond = Vec::new();
     let mut face = 0;
     let mut is_vertex = vec![false; points.len()];
@@ -204,33 +206,35 @@ fn measured(
         is_vertex[v as usize] = true;
     }
     for v in others.filter(|&v| !is_vertex[v as usize]) {
-        if gauge.distance(points[v as usize], BEYOND * tolerance, &mut face) > BEYOND * tolerance {
+        if gauge.distance_bound(points[v as usize], MAX_DISTANCE_FACTOR * tolerance, &mut face)
+            > MAX_DISTANCE_FACTOR * tolerance
+        {
             beyond.push(v);
         }
     }
     beyond.sort_unstable();
     beyond.dedup();
     let Gauge { violation, input_excess, .. } = gauge;
-    (Hull { violation, input_excess, ..hull }, beyond)
+    (IndexedHull { violation, input_excess, ..hull }, beyond)
 }
 
 /// The rounding error of a witness, for points of which this is the tolerance.
-fn rounding(tolerance: f64) -> f64 {
+fn witness_rounding(tolerance: f64) -> f64 {
     noise::WITNESS / noise::COPLANAR * tolerance
 }
 
 /// The vertices, in the order of the input because whoever wrote it kept neighbours together, and
 /// the faces over them.
-fn faces(
+fn vertices_and_faces(
     points: &[DVec3],
     simplicial: &Simplicial,
     regions: &merge::Regions,
 ) -> Result<(Vec<u32>, Topology), TopologyError> {
-    let (face_start, corners) = merge::polygons(simplicial, regions);
-    let mut vertices = each_once(corners.iter().copied());
-    let large = vertices.len() > LARGE;
+    let (face_start, corners) = merge::region_polygons(simplicial, regions);
+    let mut vertices = distinct_sorted(corners.iter().copied());
+    let large = vertices.len() > MAX_INPUT_ORDER;
     if large {
-        sort_by_place(points, &mut vertices);
+        sort_along_curve(points, &mut vertices);
     }
     let mut position = vec![0; points.len()];
     for (k, &v) in vertices.iter().enumerate() {
@@ -246,7 +250,7 @@ fn faces(
 }
 
 /// The numbers that occur, ascending.
-fn each_once(numbers: impl Iterator<Item = u32> + Clone) -> Vec<u32> {
+fn distinct_sorted(numbers: impl Iterator<Item = u32> + Clone) -> Vec<u32> {
     let mut occurs = vec![false; numbers.clone().max().map_or(0, |most| most as usize + 1)];
     numbers.for_each(|k| occurs[k as usize] = true);
     (0..occurs.len() as u32).filter(|&k| occurs[k as usize]).collect()
@@ -254,23 +258,25 @@ fn each_once(numbers: impl Iterator<Item = u32> + Clone) -> Vec<u32> {
 
 /// More vertices than this are numbered by place: what a query visits one after the other is then
 /// near in memory. Smaller bodies fit in the fastest cache in any order.
-pub(super) const LARGE: usize = 500;
+pub(super) const MAX_INPUT_ORDER: usize = 500;
 
 /// Sorts points along a space-filling curve (Morton's).
-fn sort_by_place(points: &[DVec3], vertices: &mut [u32]) {
+fn sort_along_curve(points: &[DVec3], vertices: &mut [u32]) {
     let at = |v: u32| points[v as usize];
     let bounds = Aabb::of_points(vertices.iter().map(|&v| at(v)));
     let scale = f64::from(1 << 20) / bounds.size();
     // Casts saturate: an axis without extent is all zeros.
     let key = |&v: &u32| {
         let cell = (at(v) - bounds.low) * scale;
-        spread(cell.x as u32) | spread(cell.y as u32) << 1 | spread(cell.z as u32) << 2
+        spread_bits(cell.x as u32)
+            | spread_bits(cell.y as u32) << 1
+            | spread_bits(cell.z as u32) << 2
     };
     vertices.sort_by_cached_key(key);
 }
 
 /// The lowest 21 bits, two places apart.
-fn spread(bits: u32) -> u64 {
+fn spread_bits(bits: u32) -> u64 {
     let mut x = u64::from(bits) & 0x1f_ffff;
     x = (x | x << 32) & 0x1f_0000_0000_ffff;
     x = (x | x << 16) & 0x1f_0000_ff00_00ff;

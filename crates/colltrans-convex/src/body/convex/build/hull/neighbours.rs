@@ -13,32 +13,32 @@ use glam::DVec3;
 use colltrans_kernel::work;
 
 /// Maximum number of neighbours that are looked at one by one.
-const FEW: usize = 32;
+const MAX_SCANNED: usize = 32;
 /// Neighbours of a leaf.
-const LEAF: usize = 8;
+const LEAF_SIZE: usize = 8;
 
 /// The faces around each face.
 pub(super) struct Neighbours {
     start: Vec<u32>,
     faces: Vec<u32>,
     /// The trees of faces with many neighbours, each node before its children.
-    trees: HashMap<usize, Vec<Node>>,
+    trees: HashMap<usize, Vec<PlaneNode>>,
 }
 
 /// Neighbours that follow each other, and bounds of their planes.
-pub(super) struct Node {
+pub(super) struct PlaneNode {
     range: Range<usize>,
     low: DVec3,
     high: DVec3,
-    pub(super) least_offset: f64,
-    pub(super) most_offset: f64,
+    pub(super) min_offset: f64,
+    pub(super) max_offset: f64,
     /// The position of the first node that is not below this one.
     end: usize,
 }
 
-impl Node {
+impl PlaneNode {
     /// Returns an upper bound of the products of the normals with a vector.
-    pub(super) fn highest(&self, ray: DVec3) -> f64 {
+    pub(super) fn max_product(&self, ray: DVec3) -> f64 {
         DVec3::select(ray.cmpge(DVec3::ZERO), self.high, self.low).dot(ray)
     }
 }
@@ -49,9 +49,9 @@ impl Neighbours {
         let mut trees = HashMap::new();
         for (face, ends) in start.windows(2).enumerate() {
             let range = ends[0] as usize..ends[1] as usize;
-            if range.len() > FEW {
+            if range.len() > MAX_SCANNED {
                 let mut nodes = Vec::new();
-                build(&mut nodes, range, &faces, planes);
+                build_nodes(&mut nodes, range, &faces, planes);
                 trees.insert(face, nodes);
             }
         }
@@ -60,14 +60,14 @@ impl Neighbours {
 
     /// Returns the first neighbour of a face with the greatest value, and this value, if that is greater than
     /// `best`, else `best`. `bound` is an upper bound of the values of a node.
-    pub(super) fn best(
+    pub(super) fn best_neighbour(
         &self,
         face: usize,
         mut best: (f64, usize),
         value: impl Fn(usize) -> f64,
-        bound: impl Fn(&Node) -> f64,
+        bound: impl Fn(&PlaneNode) -> f64,
     ) -> (f64, usize) {
-        let take = |range: Range<usize>, best: &mut (f64, usize)| {
+        let scan = |range: Range<usize>, best: &mut (f64, usize)| {
             work::count(range.len());
             for &neighbour in &self.faces[range] {
                 let value = value(neighbour as usize);
@@ -77,8 +77,8 @@ impl Neighbours {
             }
         };
         let range = self.start[face] as usize..self.start[face + 1] as usize;
-        if range.len() <= FEW {
-            take(range, &mut best);
+        if range.len() <= MAX_SCANNED {
+            scan(range, &mut best);
             return best;
         }
         let nodes = &self.trees[&face];
@@ -89,8 +89,8 @@ impl Neighbours {
                 next = node.end;
                 continue;
             }
-            if node.range.len() <= LEAF {
-                take(node.range.clone(), &mut best);
+            if node.range.len() <= LEAF_SIZE {
+                scan(node.range.clone(), &mut best);
             }
             next += 1;
         }
@@ -98,27 +98,32 @@ impl Neighbours {
     }
 }
 
-fn build(nodes: &mut Vec<Node>, range: Range<usize>, faces: &[u32], planes: &[(DVec3, f64)]) {
+fn build_nodes(
+    nodes: &mut Vec<PlaneNode>,
+    range: Range<usize>,
+    faces: &[u32],
+    planes: &[(DVec3, f64)],
+) {
     let number = nodes.len();
-    let mut node = Node {
+    let mut node = PlaneNode {
         range: range.clone(),
         low: DVec3::INFINITY,
         high: DVec3::NEG_INFINITY,
-        least_offset: f64::INFINITY,
-        most_offset: f64::NEG_INFINITY,
+        min_offset: f64::INFINITY,
+        max_offset: f64::NEG_INFINITY,
         end: 0,
     };
     for &face in &faces[range.clone()] {
         let (normal, offset) = planes[face as usize];
         (node.low, node.high) = (node.low.min(normal), node.high.max(normal));
-        node.least_offset = node.least_offset.min(offset);
-        node.most_offset = node.most_offset.max(offset);
+        node.min_offset = node.min_offset.min(offset);
+        node.max_offset = node.max_offset.max(offset);
     }
     nodes.push(node);
-    if range.len() > LEAF {
+    if range.len() > LEAF_SIZE {
         let middle = range.start.midpoint(range.end);
-        build(nodes, range.start..middle, faces, planes);
-        build(nodes, middle..range.end, faces, planes);
+        build_nodes(nodes, range.start..middle, faces, planes);
+        build_nodes(nodes, middle..range.end, faces, planes);
     }
     nodes[number].end = nodes.len();
 }

@@ -3,36 +3,36 @@
 use glam::{DVec2, DVec3, Vec3Swizzles};
 
 use super::quickhull::Flat;
-use super::violation::{Projection, to_segment};
-use super::{BEYOND, Hull, measured, rounding};
-use colltrans_kernel::predicates::orient2d as turn;
+use super::violation::{Projection, distance_to_segment};
+use super::{IndexedHull, MAX_DISTANCE_FACTOR, with_violation, witness_rounding};
+use colltrans_kernel::predicates::orient2d as orientation;
 use colltrans_kernel::topology::Topology;
 use colltrans_kernel::work;
 
-pub(super) fn hull(points: &[DVec3], kept: &[u32], flat: Flat, tolerance: f64) -> Hull {
+pub(super) fn flat_hull(points: &[DVec3], kept: &[u32], flat: Flat, tolerance: f64) -> IndexedHull {
     match flat {
         Flat::Point(a) => without_faces(points, kept, &[a], tolerance),
         Flat::Segment(ends) => without_faces(points, kept, &ends, tolerance),
-        Flat::Plane(normal) => polygon(points, kept, normal, tolerance),
+        Flat::Plane(normal) => polygon_hull(points, kept, normal, tolerance),
     }
 }
 
 /// A point, or a segment between two.
-fn without_faces(points: &[DVec3], kept: &[u32], vertices: &[u32], tolerance: f64) -> Hull {
+fn without_faces(points: &[DVec3], kept: &[u32], vertices: &[u32], tolerance: f64) -> IndexedHull {
     let mut vertices = vertices.to_vec();
     vertices.sort_unstable();
     let at = |i: u32| points[i as usize];
     let [a, b] = [vertices[0], vertices[vertices.len() - 1]].map(at);
-    let away = |&i: &u32| match at(i) {
+    let distance = |&i: &u32| match at(i) {
         p if p == a || p == b => 0.0,
-        p => to_segment(p, a, b) + rounding(tolerance),
+        p => distance_to_segment(p, a, b) + witness_rounding(tolerance),
     };
-    let is_beside = |i: &&u32| !is_on_segment(at(**i), a, b);
-    Hull {
+    let is_off_segment = |i: &&u32| !is_on_segment(at(**i), a, b);
+    IndexedHull {
         dimension: vertices.len() as u8 - 1,
         topology: Topology::without_faces(vertices.len()),
-        violation: kept.iter().map(away).fold(0.0, f64::max),
-        input_excess: kept.iter().filter(is_beside).map(away).fold(0.0, f64::max),
+        violation: kept.iter().map(distance).fold(0.0, f64::max),
+        input_excess: kept.iter().filter(is_off_segment).map(distance).fold(0.0, f64::max),
         vertices,
     }
 }
@@ -40,35 +40,39 @@ fn without_faces(points: &[DVec3], kept: &[u32], vertices: &[u32], tolerance: f6
 /// Whether a point lies on a segment, exactly.
 fn is_on_segment(p: DVec3, a: DVec3, b: DVec3) -> bool {
     let is_between = p.cmpge(a.min(b)).all() && p.cmple(a.max(b)).all();
-    let in_line = |q: &dyn Fn(DVec3) -> DVec2| turn(q(a), q(b), q(p)) == 0.0;
+    let in_line = |q: &dyn Fn(DVec3) -> DVec2| orientation(q(a), q(b), q(p)) == 0.0;
     is_between && in_line(&|v| v.xy()) && in_line(&|v| v.yz()) && in_line(&|v| v.zx())
 }
 
 /// A polygon without corners that are within the tolerance of an edge, unless that leaves some far away.
-fn polygon(points: &[DVec3], kept: &[u32], normal: DVec3, tolerance: f64) -> Hull {
-    let plane = Plane { points, projection: Projection::along(normal) };
-    let chain = plane.chain(kept);
-    let hull = plane.hull(kept, &plane.drop_collinear(&chain, tolerance), tolerance);
-    if hull.violation <= BEYOND * tolerance { hull } else { plane.hull(kept, &chain, tolerance) }
+fn polygon_hull(points: &[DVec3], kept: &[u32], normal: DVec3, tolerance: f64) -> IndexedHull {
+    let plane = PlanarPoints { points, projection: Projection::for_normal(normal) };
+    let chain = plane.corner_chain(kept);
+    let hull = plane.hull_of_corners(kept, &plane.drop_collinear(&chain, tolerance), tolerance);
+    if hull.violation <= MAX_DISTANCE_FACTOR * tolerance {
+        hull
+    } else {
+        plane.hull_of_corners(kept, &chain, tolerance)
+    }
 }
 
 /// Points in a plane, by their projections.
-struct Plane<'a> {
+struct PlanarPoints<'a> {
     points: &'a [DVec3],
     projection: Projection,
 }
 
-impl Plane<'_> {
-    fn at(&self, i: u32) -> DVec3 {
+impl PlanarPoints<'_> {
+    fn point_at(&self, i: u32) -> DVec3 {
         self.points[i as usize]
     }
 
-    fn project(&self, i: u32) -> DVec2 {
-        self.projection.of(self.at(i))
+    fn projected_point(&self, i: u32) -> DVec2 {
+        self.projection.project(self.point_at(i))
     }
 
     /// The polygon of these corners as a front and a back face; a segment if there are two.
-    fn hull(&self, kept: &[u32], corners: &[u32], tolerance: f64) -> Hull {
+    fn hull_of_corners(&self, kept: &[u32], corners: &[u32], tolerance: f64) -> IndexedHull {
         if corners.len() < 3 {
             return without_faces(self.points, kept, corners, tolerance);
         }
@@ -81,14 +85,15 @@ impl Plane<'_> {
         let count = corners.len() as u32;
         let topology = Topology::sphere(vertices.len(), vec![0, count, 2 * count], face_vertices)
             .expect("the front and the back of a polygon are a closed surface");
-        let hull = Hull { dimension: 2, vertices, topology, violation: 0.0, input_excess: 0.0 };
-        measured(self.points, hull, kept.iter().copied(), tolerance).0
+        let hull =
+            IndexedHull { dimension: 2, vertices, topology, violation: 0.0, input_excess: 0.0 };
+        with_violation(self.points, hull, kept.iter().copied(), tolerance).0
     }
 
     /// The corners, counter-clockwise around the normal from the one with least `x`: a monotone
     /// chain on exact orientations.
-    fn chain(&self, kept: &[u32]) -> Vec<u32> {
-        let project = |i: u32| self.project(i);
+    fn corner_chain(&self, kept: &[u32]) -> Vec<u32> {
+        let project = |i: u32| self.projected_point(i);
         let mut order = kept.to_vec();
         order.sort_unstable_by(|&a, &b| {
             let (p, q) = (project(a), project(b));
@@ -105,8 +110,9 @@ impl Plane<'_> {
     /// Without corners within the tolerance of the edge between their neighbours.
     fn drop_collinear(&self, chain: &[u32], tolerance: f64) -> Vec<u32> {
         // Not of its line: the tip of a needle is near that of its neighbours.
-        let is_on_edge =
-            |a: u32, b: u32, c: u32| to_segment(self.at(b), self.at(a), self.at(c)) <= tolerance;
+        let is_on_edge = |a: u32, b: u32, c: u32| {
+            distance_to_segment(self.point_at(b), self.point_at(a), self.point_at(c)) <= tolerance
+        };
         let mut corners: Vec<u32> = Vec::with_capacity(chain.len());
         for &c in chain {
             while let [.., a, b] = corners[..] {
@@ -139,7 +145,7 @@ fn half_chain(order: impl Iterator<Item = u32>, project: &dyn Fn(u32) -> DVec2) 
     for i in order {
         while let [.., a, b] = chain[..] {
             work::count(1);
-            if turn(project(a), project(b), project(i)) > 0.0 {
+            if orientation(project(a), project(b), project(i)) > 0.0 {
                 break;
             }
             chain.pop();

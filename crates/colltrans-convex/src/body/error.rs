@@ -1,23 +1,23 @@
-//! Why bodies and poses are refused: each error says what is wrong, where, and by how much.
+//! Errors of the construction of bodies. Each states what is wrong, where, and the measured value.
 
 use glam::DVec3;
 use thiserror::Error;
 
 pub use colltrans_kernel::error::TopologyError;
 
-/// Why no [`ConvexPolyhedron`](crate::ConvexPolyhedron) could be built.
+/// Error of the construction of a [`ConvexPolyhedron`](crate::ConvexPolyhedron).
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum BuildError {
-    /// The list of points was empty.
-    #[error("no points were given")]
+    /// The list of points is empty.
+    #[error("no points given; a body needs at least one")]
     NoPoints,
-    /// More points than 32-bit indices can number.
-    #[error("{count} points were given; at most {limit} are supported")]
+    /// There are more points than the limit, which keeps vertex and half-edge numbers within 31 bits.
+    #[error("{count} points given; at most {limit} are supported")]
     TooManyPoints {
         /// Number of points given.
         count: usize,
-        /// Number of points supported.
+        /// Maximum number of points.
         limit: usize,
     },
     /// A coordinate is NaN or infinite.
@@ -40,8 +40,8 @@ pub enum BuildError {
         /// The point as given.
         point: DVec3,
     },
-    /// Vertices and faces of a saved body that do not belong together.
-    #[error("{vertices} vertices and {faces} faces are not those of a convex body")]
+    /// Vertices and faces of a saved body do not belong to one convex body.
+    #[error("{vertices} vertices and {faces} faces do not belong to one convex body")]
     NotABody {
         /// Number of vertices.
         vertices: usize,
@@ -54,7 +54,7 @@ pub enum BuildError {
     /// The mesh is closed but its faces are oriented inwards.
     #[error("the faces are oriented inwards (signed volume {signed_volume:e}); reverse them")]
     InsideOut {
-        /// The signed volume that the orientation implies.
+        /// Signed volume for the given orientation, in the cube of the input's unit.
         signed_volume: f64,
     },
     /// The mesh is closed but not convex.
@@ -63,39 +63,43 @@ pub enum BuildError {
          (tolerated: {tolerance:?})"
     )]
     NotConvex {
-        /// The face that lies deepest below the convex hull.
+        /// Index of the face that lies deepest below the convex hull.
         face: usize,
-        /// How deep, in the units of the input.
+        /// Depth of this face below the convex hull, in the unit of the input.
         depth: f64,
-        /// The depth that would have been tolerated.
+        /// Maximum depth that is tolerated, in the unit of the input.
         tolerance: f64,
     },
-    /// An amount to shrink or grow by that is negative, not finite, or takes coordinates out of range.
-    #[error("the amount {amount} to shrink or grow by is negative, not finite or out of range")]
+    /// The amount to shrink or grow by is negative, not finite, or takes coordinates out of range.
+    #[error(
+        "invalid amount {amount} to shrink or grow by; accepted: finite, not negative, in range"
+    )]
     Amount {
         /// The amount as given.
         amount: f64,
     },
-    /// A body to be shrunk of which nothing with a volume would be left.
+    /// Nothing with a volume would remain of the shrunk body.
     #[error(
-        "shrunk by {amount} nothing is left of the body: it holds no ball of this radius, one of \
-         radius {fits} it does"
+        "nothing remains of the body shrunk by {amount}: it contains no ball of this radius, but one \
+         of radius {fits}"
     )]
     TooThin {
         /// The amount as given.
         amount: f64,
-        /// The radius of a ball that the body holds, at least half of the largest one's, to within
-        /// rounding; 0 for a body of lower dimension.
+        /// Radius of a ball that the body contains, at least half of the largest such radius, up to rounding. It is
+        /// 0 for a body of lower dimension.
         fits: f64,
     },
-    /// A segment or a point to be grown.
-    #[error("a body of dimension {dimension} has no faces to be moved outwards")]
+    /// A segment or a point cannot be grown because it has no faces.
+    #[error(
+        "a body of dimension {dimension} has no faces to move outwards; grow a polygon or a solid"
+    )]
     NothingToMove {
-        /// Its dimension.
+        /// Dimension of the body.
         dimension: u8,
     },
-    /// The depth to be tolerated is negative or not a number.
-    #[error("the tolerance {tolerance} is negative or not a number")]
+    /// The tolerated depth is negative or not a number.
+    #[error("invalid tolerance {tolerance}; accepted: not negative")]
     Tolerance {
         /// The tolerance as given.
         tolerance: f64,

@@ -1,15 +1,14 @@
-//! Vertices, edges and faces, and which of them lies in a supporting plane.
+//! Features of a body (vertices, edges and faces), and the feature that lies in a supporting plane.
 
 use glam::DVec3;
 
 use super::{ConvexPolyhedron, FaceId, InputVertex};
 
-/// A vertex, an edge or a face of a body, as an answer names it: **by the numbers of the input**, that
-/// is, of the points or mesh vertices that the body was made from, for bodies of either kind.
+/// A vertex, an edge or a face of a body in an answer, given **by input numbers**: the numbers of the points or
+/// mesh vertices from which the body was made. This holds for convex bodies and for solids.
 ///
-/// Of vertices with the same coordinates the first one counts. An edge of a
-/// `Solid` runs from corner to corner, however finely its mesh divides it, and a face
-/// is the whole polygon that its coplanar facets make up.
+/// Among vertices with the same coordinates, the first one counts. An edge of a `Solid` runs from corner to corner,
+/// even if its mesh subdivides the edge. A face is the whole polygon that its coplanar facets form.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[cfg_attr(
     feature = "serde",
@@ -19,16 +18,15 @@ use super::{ConvexPolyhedron, FaceId, InputVertex};
 pub enum Feature {
     /// A vertex.
     Vertex(InputVertex),
-    /// An edge, by its two ends.
+    /// An edge, given by its two ends.
     Edge([InputVertex; 2]),
-    /// A face: of a `Solid` the least number of the input's facets that it is made of,
-    /// of a [`ConvexPolyhedron`], whose faces are those of a hull, that of
-    /// [`ConvexPolyhedron::face_vertices`].
+    /// A face. For a `Solid` this is the smallest number of an input facet that belongs to the face. For a
+    /// [`ConvexPolyhedron`] it is the face of the hull in the numbering of [`ConvexPolyhedron::face_vertices`].
     Face(FaceId),
 }
 
 impl Feature {
-    /// `"vertex"`, `"edge"` or `"face"`.
+    /// Returns `"vertex"`, `"edge"` or `"face"`.
     pub fn kind(self) -> &'static str {
         match self {
             Self::Vertex(_) => "vertex",
@@ -38,17 +36,17 @@ impl Feature {
     }
 }
 
-/// The vertex, edge or face of each body that lies in the contact plane, to within rounding error.
+/// The vertex, edge or face of each body that lies in the contact plane, up to rounding error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Features {
-    /// Of the moving body.
+    /// Feature of the moving body.
     pub moving: Feature,
-    /// Of the fixed body.
+    /// Feature of the fixed body.
     pub fixed: Feature,
 }
 
-/// A feature of a convex body by its own numbers.
+/// A feature of a convex body, given by the body's own numbers.
 #[derive(Debug, Clone, Copy)]
 pub(crate) enum OwnFeature {
     Vertex(u32),
@@ -57,7 +55,7 @@ pub(crate) enum OwnFeature {
 }
 
 impl OwnFeature {
-    /// By the numbers of the input.
+    /// Returns the feature with input numbers in place of the body's own vertex numbers.
     pub(crate) fn named(self, body: &ConvexPolyhedron) -> Feature {
         let input = |v: u32| body.input_indices()[v as usize];
         match self {
@@ -68,8 +66,11 @@ impl OwnFeature {
     }
 }
 
-/// The vertex, edge or face of a body in its supporting plane along the unit vector `outward` (body
-/// frame).
+/// Finds the vertex, edge or face of a body in its supporting plane along `outward`.
+///
+/// - `outward`: a unit vector in the body frame.
+/// - `vertex`: a support point along `outward`.
+/// - `noise`: the distance up to which a vertex counts as in the plane, in addition to the hull error.
 #[inline]
 pub(crate) fn feature(
     body: &ConvexPolyhedron,
@@ -85,7 +86,8 @@ pub(crate) fn feature(
     let neighbours = topology.neighbours(vertex);
     let (first, count) = body.plane_candidates(vertex, outward);
     let wrapped = |i: usize| if i >= neighbours.len() { i - neighbours.len() } else { i };
-    // Bit `k`: whether the candidate `k` is in the plane. Without branches: none is predictable.
+    // Bit `k` is set if candidate `k` is in the plane. The loop is written without branches because the outcomes are
+    // unpredictable.
     let (mut in_plane_mask, mut bit) = (0_u32, 0);
     let (before, from_first) = neighbours.split_at(first);
     for part in [from_first, before] {
@@ -103,12 +105,12 @@ pub(crate) fn feature(
         & ((in_plane_mask >> 1) | ((u32::from(is_closed) * (in_plane_mask & 1)) << (count - 1)));
     let mut paired_left = if outgoing.is_empty() { 0 } else { paired };
     while paired_left != 0 {
-        // The face between a neighbour and the next one is on the left of the half-edge to the next.
+        // The face between a neighbour and the next one is to the left of the half-edge to the next one.
         let next = wrapped(wrapped(first + paired_left.trailing_zeros() as usize) + 1);
         let face = topology.half_edge(outgoing[next]).face;
-        // Of the two faces of a flat polygon, the one that looks there.
+        // Of the two faces of a flat polygon, take the one that faces `outward`.
         let is_facing = body.dimension() == 3 || body.face_normal(face).dot(outward) >= 0.0;
-        // A face that is flat only nearly may have corners above the plane, too.
+        // A face that is only approximately flat may also have corners above the plane.
         let near_plane = |w: u32| (outward.dot(vertices[w as usize]) - height).abs() <= slack;
         if is_facing && holds_for_samples(topology.face_vertices(face), near_plane) {
             return OwnFeature::Face(face);
@@ -118,8 +120,8 @@ pub(crate) fn feature(
     OwnFeature::Edge([vertex, neighbours[wrapped(first + in_plane_mask.trailing_zeros() as usize)]])
 }
 
-/// Whether something holds for up to [`SAMPLES`] vertices, spread over a face: those near a vertex
-/// may lie in a plane that the others do not.
+/// Checks whether a predicate holds for at most [`MAX_SAMPLES`] vertices, spread over a face. Vertices near a given
+/// one may lie in a plane that does not contain the others.
 fn holds_for_samples(
     mut vertices: impl ExactSizeIterator<Item = u32>,
     holds: impl FnMut(u32) -> bool,
@@ -131,5 +133,5 @@ fn holds_for_samples(
     vertices.step_by(stride).all(holds)
 }
 
-/// How many vertices of a face must lie in the contact plane for the face to do.
+/// Maximum number of vertices of a face that are tested for lying in the contact plane.
 const MAX_SAMPLES: usize = 16;

@@ -1,18 +1,18 @@
-//! What a plane is held against: the corners that a body is the convex hull of, or lies within the hull of.
+//! The trait [`Hull`]: vertices whose convex hull is, or contains, a body. Planes are checked against them.
 
 use glam::DVec3;
 
 use super::ConvexPolyhedron;
 
-/// A body, or a part of one, by its corners.
+/// Vertices whose convex hull is, or contains, a body or a part of one.
 pub trait Hull {
-    /// In the body's frame; at least one.
+    /// Returns the vertices, in the body frame; at least one.
     fn corners(&self) -> &[DVec3];
 
-    /// The largest distance of a corner from the origin of that frame, or more.
+    /// Returns an upper bound of the distances of the vertices from the origin of the body frame.
     fn reach(&self) -> f64;
 
-    /// How far a point of the input may lie outside the hull of the corners.
+    /// Returns an upper bound of the distance of an input point from the hull of the vertices.
     #[inline]
     fn input_excess(&self) -> f64 {
         0.0

@@ -1,42 +1,42 @@
-//! The size of a body: how large its coordinates are, and the ellipsoid it resembles.
+//! Size, volume and inertia ellipsoid of a body.
 //!
-//! The *inertia ellipsoid* `{c + x : x^T S^-1 x <= 1}` has the body's centroid `c` and `S = 5 cov`,
-//! where `cov` is the covariance of the body's volume; a solid ellipsoid is its own. It is only
-//! ever a guess: for the first normal of a query and for directions in which the body's normals
-//! spread evenly.
+//! The *inertia ellipsoid* is `{c + x : x^T S^-1 x <= 1}`. Its centre `c` is the body's centroid, and `S = 5 cov`
+//! with the covariance `cov` of the body's volume. The inertia ellipsoid of a solid ellipsoid is this ellipsoid
+//! itself. It only provides guesses: for the first normal of a query, and for directions over which the body's
+//! normals spread evenly.
 
 use glam::{DMat3, DVec3};
 
 use colltrans_kernel::plane::polygon_normal;
 use colltrans_kernel::topology::Topology;
 
-/// Size and resemblance of a body, in its own frame.
+/// Size, volume and inertia ellipsoid of a body, in its own frame.
 #[derive(Debug, Clone, Copy)]
 pub struct Inertia {
     /// Largest distance of a vertex from the frame's origin.
     pub reach: f64,
-    /// Centroid of the volume (of the vertices, for a body of lower dimension).
+    /// Centroid of the volume; of the vertices if the body has no volume.
     pub center: DVec3,
-    /// Lower triangular `L` with `S = L L^T` positive definite: the inertia ellipsoid is
-    /// `c + L (unit ball)`.
+    /// Lower triangular `L` with `S = L L^T` positive definite. The inertia ellipsoid is `c + L (unit ball)`.
     pub factor: DMat3,
-    /// Root of the trace of `S`: the ellipsoid's mean size.
+    /// Square root of the trace of `S`, the mean size of the ellipsoid.
     pub(crate) radius: f64,
-    /// Whether the ellipsoid is nearly a ball.
+    /// Whether the semi-axes of the ellipsoid are nearly equal.
     pub(crate) round: bool,
-    /// Radius of a ball around the centre that the body contains, certainly; 0 if it has no volume.
+    /// Radius of a ball around the centre that the body certainly contains; 0 if the body has no volume.
     pub(crate) inner: f64,
-    /// Volume.
+    /// Volume; 0 for a body of lower dimension.
     pub(crate) volume: f64,
 }
 
-/// Least ratio of the ellipsoid's axes: keeps `S` positive definite for flat bodies.
+/// Minimum ratio of the ellipsoid's axes. It keeps `S` positive definite for flat bodies.
 const MIN_AXIS_RATIO: f64 = 1e-6;
 
-/// Least ratio of the geometric to the arithmetic mean of a round ellipsoid's squared semi-axes.
+/// Minimum ratio of the geometric to the arithmetic mean of the squared semi-axes of a round ellipsoid.
 const MIN_ROUNDNESS: f64 = 0.6;
 
 impl Inertia {
+    /// Computes the moments of a body from its vertices, its faces and its dimension.
     pub(crate) fn new(vertices: &[DVec3], topology: &Topology, dimension: u8) -> Self {
         let reach = vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
         let mean = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
@@ -46,14 +46,14 @@ impl Inertia {
             let sum = vertices.iter().map(spread).fold(DMat3::ZERO, |a, b| a + b);
             (0.0, mean, sum * (1.0 / vertices.len() as f64))
         });
-        // A one-point body of size zero still needs a positive matrix.
+        // A body of one point has a covariance of zero; the matrix must still be positive definite.
         let trace = covariance.x_axis.x + covariance.y_axis.y + covariance.z_axis.z;
         let floor = (trace * MIN_AXIS_RATIO * MIN_AXIS_RATIO).max(f64::MIN_POSITIVE.sqrt());
         let shape = (covariance + DMat3::from_diagonal(DVec3::splat(floor))) * 5.0;
         let radius = (0..3).map(|i| shape.col(i)[i]).sum::<f64>().sqrt();
         let factor = cholesky(&shape);
-        // Both means to the third power, as shares of the radius: no root, which platforms round
-        // differently, and no overflow.
+        // Both means are cubed and divided by powers of the radius. This needs no root, which platforms round
+        // differently, and cannot overflow.
         let axes = (factor.x_axis.x / radius) * (factor.y_axis.y / radius);
         let geometric = axes * (factor.z_axis.z / radius);
         let round = geometric * geometric
@@ -62,8 +62,8 @@ impl Inertia {
         Self { reach, center, factor, radius, round, inner, volume }
     }
 
-    /// The volume that a closed surface encloses: positive if its faces are counter-clockwise from
-    /// outside.
+    /// Returns the signed volume that a closed surface encloses. It is positive if the faces are counter-clockwise
+    /// as seen from outside.
     pub(crate) fn signed_volume(vertices: &[DVec3], topology: &Topology) -> f64 {
         let apex = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
         (0..topology.face_count() as u32)
@@ -80,7 +80,7 @@ impl Inertia {
             .sum()
     }
 
-    /// `L^T m`.
+    /// Returns the product `L^T m`.
     #[inline]
     pub(crate) fn axes_by_factor(&self, m: &DMat3) -> DMat3 {
         let l = &self.factor;
@@ -91,16 +91,16 @@ impl Inertia {
     }
 }
 
-/// Share of the inner radius that is kept: what is lost covers rounding, and rotations that are off
-/// by as much as is admitted.
+/// Factor of the computed inner radius that is kept. The margin covers rounding errors, and rotations that deviate
+/// from orthogonality by the admitted amount.
 const INNER_SHARE: f64 = 1.0 - 1e-5;
 
-/// Radius of a ball around `center` inside a closed surface.
+/// Returns the radius of a ball around `center` inside a closed convex surface, or 0 if rounding leaves none.
 ///
-/// No corner of a face is nearer to the centre along the face's normal than the smallest such
-/// distance, so no point of any triangle between corners of a face is nearer, whether the face is
-/// flat or nearly so. These triangles are a closed surface around the centre, and the body, being
-/// convex, contains what they enclose.
+/// For each face, the smallest distance of a corner from `center` along the face's normal is a lower bound of the
+/// distance of every triangle between corners of the face. This also holds for faces that are not exactly flat.
+/// These triangles form a closed surface around the centre, and the body, which is convex, contains the volume that
+/// they enclose.
 fn inner_radius(vertices: &[DVec3], topology: &Topology, center: DVec3) -> f64 {
     let corners = |face| topology.face_vertices(face).map(|v| vertices[v as usize] - center);
     let distance = |face| {
@@ -109,12 +109,12 @@ fn inner_radius(vertices: &[DVec3], topology: &Topology, center: DVec3) -> f64 {
     };
     let min_distance =
         (0..topology.face_count() as u32).map(distance).fold(f64::INFINITY, f64::min);
-    // Rounding is relative to the coordinates, not to the distance.
+    // The rounding error is relative to the coordinates, not to the distance.
     let rounding = 16.0 * f64::EPSILON * vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
     if min_distance.is_finite() { (INNER_SHARE * min_distance - rounding).max(0.0) } else { 0.0 }
 }
 
-/// Lower triangular `L` with `s = L L^T`.
+/// Computes the lower triangular Cholesky factor `L` with `s = L L^T`.
 fn cholesky(s: &DMat3) -> DMat3 {
     let floor = f64::MIN_POSITIVE;
     let l00 = s.x_axis.x.max(floor).sqrt();
@@ -129,13 +129,13 @@ fn cholesky(s: &DMat3) -> DMat3 {
     )
 }
 
-/// `a b^T`.
+/// Returns the matrix `a b^T`.
 fn outer_product(a: DVec3, b: DVec3) -> DMat3 {
     DMat3::from_cols(a * b.x, a * b.y, a * b.z)
 }
 
-/// Volume, centroid and covariance by the tetrahedra between `apex` and the triangles of a fan of
-/// each face. `None` if rounding leaves no positive volume.
+/// Computes volume, centroid and covariance from the tetrahedra between `apex` and a triangle fan of each face.
+/// Returns `None` if rounding leaves no positive volume.
 fn solid_moments(
     vertices: &[DVec3],
     topology: &Topology,

@@ -1,4 +1,4 @@
-//! Bodies, checked and indexed once, and where they stand.
+//! Convex bodies, validated and indexed at construction, and bodies with a pose or a motion.
 
 pub(crate) mod convex;
 pub mod error;

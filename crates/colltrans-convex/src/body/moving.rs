@@ -1,4 +1,4 @@
-//! A body that moves.
+//! A body with its motion.
 
 use std::borrow::Cow;
 
@@ -13,12 +13,12 @@ use colltrans_kernel::motion::Motion;
 pub struct Moving<'a, B = crate::ConvexPolyhedron> {
     /// The body.
     pub body: &'a B,
-    /// What it does.
+    /// The motion of the body frame.
     pub motion: Cow<'a, Motion>,
 }
 
 impl ConvexPolyhedron {
-    /// This body and a motion, for a cast of bodies that turn.
+    /// Pairs this body with a motion, for a cast of bodies that turn.
     pub fn along<'a>(&'a self, motion: &'a Motion) -> Moving<'a> {
         Moving { body: self, motion: Cow::Borrowed(motion) }
     }

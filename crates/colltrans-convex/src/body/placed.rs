@@ -1,4 +1,4 @@
-//! A body and where it stands.
+//! A body with its pose, and the traits that connect bodies with queries.
 
 use derive_where::derive_where;
 use std::fmt::Debug;
@@ -6,37 +6,37 @@ use std::fmt::Debug;
 use super::{ConvexPolyhedron, Feature, InputVertex, Pose, VertexId};
 use crate::answer::RangeEnd;
 
-/// A kind of body that queries can be asked about, and what their answers consist of: a [`ConvexPolyhedron`] or a
+/// A kind of body that queries accept, with the types of their options and answers: a [`ConvexPolyhedron`] or a
 /// `Solid`.
 pub trait Body: Numbered + Clone + Debug {
-    /// The choices of a query about two such bodies.
+    /// Options of a query about two such bodies.
     type Options: Copy + Default + Debug;
-    /// What is said of a contact.
+    /// Answer for bodies that come into contact.
     type Contact: Told + RangeEnd;
-    /// What is said of bodies that slide along each other, where a query tells.
+    /// Answer for bodies that slide along each other, where a query distinguishes this case.
     type Grazing: Told + RangeEnd;
-    /// What is said of bodies that never meet.
+    /// Answer for bodies that never come into contact.
     type Separated: Told;
-    /// What is said where nothing stops it.
+    /// Answer for a motion that nothing stops.
     type Free: Told;
-    /// What is said of an overlap.
+    /// Answer for bodies that overlap.
     type Overlap: Told;
-    /// What shows whether the bodies meet where they are.
+    /// Evidence for or against an intersection of the bodies in their poses.
     type Evidence: Told;
-    /// What proves that two bodies are not farther from each other than a number.
+    /// Proof of an upper bound of the distance of two bodies.
     type Near: Told;
-    /// What proves that they are not nearer to each other.
+    /// Proof of a lower bound of the distance of two bodies.
     type Gap: Told;
-    /// How much work an answer was.
+    /// Amount of work that an answer took.
     type Steps: Told + Default;
 }
 
 impl Feature {
-    /// The vertices of the feature, by their numbers in the input; those of a face are its corners, one
-    /// loop after the other, the outer one first.
+    /// Returns the vertices of the feature by their input numbers. Those of a face are its corners, one loop after
+    /// the other, the outer loop first.
     ///
     /// # Panics
-    /// If the feature is not one of `body`.
+    /// If the feature is a face that `body` does not have.
     pub fn vertices<B: Body>(self, body: &B) -> Vec<InputVertex> {
         match self {
             Self::Vertex(v) => vec![v],
@@ -48,17 +48,17 @@ impl Feature {
         }
     }
 
-    /// The same vertices, as positions among the vertices that the body has kept:
-    /// [`ConvexPolyhedron::vertices`] or `Solid::vertices`.
+    /// Returns the vertices of the feature as positions in [`ConvexPolyhedron::vertices`] or `Solid::vertices`.
+    /// Their order is that of [`Self::vertices`].
     ///
     /// # Panics
-    /// If the feature is not one of `body`.
+    /// If `body` does not have the feature.
     pub fn own_vertices<B: Body>(self, body: &B) -> Vec<VertexId> {
         feature_vertices(body, self)
     }
 }
 
-/// A part of an answer.
+/// Type of a part of an answer.
 #[cfg(not(feature = "serde"))]
 #[doc(hidden)]
 pub trait Told: Copy + Debug + PartialEq {}
@@ -66,7 +66,7 @@ pub trait Told: Copy + Debug + PartialEq {}
 #[cfg(not(feature = "serde"))]
 impl<T: Copy + Debug + PartialEq> Told for T {}
 
-/// A part of an answer.
+/// Type of a part of an answer, which can be serialised.
 #[cfg(feature = "serde")]
 #[doc(hidden)]
 pub trait Told: Copy + Debug + PartialEq + serde::Serialize + serde::de::DeserializeOwned {}
@@ -75,20 +75,20 @@ pub trait Told: Copy + Debug + PartialEq + serde::Serialize + serde::de::Deseria
 impl<T> Told for T where T: Copy + Debug + PartialEq + serde::Serialize + serde::de::DeserializeOwned
 {}
 
-/// Names the vertices of a body's features as the input does.
+/// A body that maps its vertices and faces to input numbers.
 #[doc(hidden)]
 pub trait Numbered {
-    /// For each vertex of the body its number in the input.
+    /// Returns the input number of each vertex of the body.
     fn inputs(&self) -> &[InputVertex];
-    /// The corners of a face, as positions among the body's vertices.
+    /// Returns the corners of a face as positions among the body's vertices.
     fn corners_of_face(&self, face: u32) -> Vec<u32>;
 }
 
-/// The vertices of a feature, as positions among the body's vertices.
+/// Returns the vertices of a feature as positions among the body's vertices.
 fn feature_vertices<B: Numbered>(body: &B, feature: Feature) -> Vec<VertexId> {
     let position = |v: InputVertex| {
         let found = body.inputs().iter().position(|input| *input == v);
-        VertexId(found.expect("a feature of this body") as u32)
+        VertexId(found.expect("the feature belongs to this body") as u32)
     };
     match feature {
         Feature::Vertex(v) => vec![position(v)],
@@ -113,12 +113,12 @@ impl Numbered for ConvexPolyhedron {
 pub struct Placed<'a, B = ConvexPolyhedron> {
     /// The body.
     pub body: &'a B,
-    /// Where it is.
+    /// Pose of the body frame in the world.
     pub pose: Pose,
 }
 
 impl ConvexPolyhedron {
-    /// This body in a pose, for a [`Cast`](crate::Cast).
+    /// Pairs this body with a pose, for a [`Cast`](crate::Cast).
     #[inline]
     pub fn at(&self, pose: Pose) -> Placed<'_> {
         Placed { body: self, pose }

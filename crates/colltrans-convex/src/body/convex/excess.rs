@@ -1,26 +1,14 @@
-//! How far a body can reach beyond a support point that a climb has found.
+//! Bounds on how far a body reaches beyond a support point that a climb has found.
 //!
-//! A climb ends where no neighbour gains more than rounding can tell. On the exact convex hull of the
-//! vertices a path along its edges leads from any vertex `v` to the support point without ever going
-//! down, so the support point is found by visiting, from `v`, all that may not be lower than `v`: the
-//! *plateau*. What is gained there is computed from differences of vertices, up to `GAIN reach`.
+//! - *reach*: the largest distance of a vertex from the origin of the body frame.
+//! - *flatness* `f`: a bound of the distance of a corner from its polygon's plane.
+//! - *plateau* of a vertex `v`: the vertices connected with `v` by edges that are at most `h = 2 GAIN reach + 4 f`
+//!   below `v` along the normal. It contains the support point. Mostly it is `v` alone, or the corners of an edge
+//!   or a face.
+//! - *excess* of `v`: an upper bound of the height above `v` that the body reaches along the normal.
 //!
-//! Edges of the exact hull may be diagonals of the body's polygons, which are flat only up to the
-//! *flatness* `f`. One of the two ways round a polygon stays as high as its diagonal, up to `4 f`; so
-//! the plateau is visited down to `h = 2 GAIN reach + 4 f` below `v`. Mostly it is `v` alone, or the
-//! corners of an edge or a face.
-//!
-//! A face with many corners has its plateau measured at three that span it widely, `a`, `b` the one
-//! farthest from `a`, and `c` the one farthest from the line through both. Any corner is `l_a a + l_b
-//! b + l_c c` with `|l_c| <= 1`, `|l_b| <= 2`, `|l_a| <= 4`, up to `8 f`, so it gains at most 7 times
-//! what one of the three does; and where all edges that leave the face go down more steeply than the
-//! normal can be tilted, nothing off the face belongs to the plateau. Where the face is so uneven that
-//! this says too little, its corners are looked at one by one.
-//!
-//! All this holds for any vertex, so it also tells whether one that was not found by a climb is a
-//! support point: if nothing gains more than is asked for. And a climb may stick: next to edges as short
-//! as `f` a vertex can be higher than its neighbours and yet lower than the support point, by `f` times
-//! as much as the body is longer than they are. It is seen on the plateau, and goes on from there.
+//! Faces with many corners are measured at three corners, with a bound for the others. The bounds hold for any
+//! vertex, so they also verify vertices that no climb has found. Derivations: `docs/theory/supports.md`.
 
 use glam::DVec3;
 
@@ -30,70 +18,73 @@ use colltrans_kernel::noise;
 use colltrans_kernel::plane::polygon_normal;
 use colltrans_kernel::work;
 
-/// Vertices of a plateau that are visited one by one; a larger one is taken to be the whole body.
+/// Maximum number of vertices of a plateau that are visited one by one. A larger plateau is bounded by a large face
+/// or by a scan of the whole body.
 const MAX_VISITED: usize = 16;
 
-/// Of a body with up to this many vertices each is looked at then.
+/// Maximum number of vertices of a body that is scanned if the plateau is too large to visit.
 const MAX_SCANNED_VERTICES: usize = 48;
 
-/// What may be hidden by measuring at three corners, in `GAIN reach`: an exactly flat face hides half of it.
+/// Maximum excess of a face measured at three corners that is accepted without a scan of its corners, in multiples
+/// of `GAIN reach`. An exactly flat face has half of this.
 const MAX_HIDDEN_GAINS: f64 = 32.0;
 
-/// A face with more corners is measured at three even if that hides more.
+/// Maximum number of corners of a face that are scanned if three corners give too large an excess.
 const MAX_SCANNED_CORNERS: usize = 64;
 
-/// Of bodies with up to this many such faces each may be looked at.
+/// Maximum number of large faces of a body that queries treat one by one.
 const MAX_LARGE_FACES: usize = 8;
 
-/// Cosine of the largest angle between a normal and that of a face which is looked at for it.
+/// Minimum cosine of the angle between a normal and the normal of a large face that is considered for it.
 const MIN_NORMAL_COSINE: f64 = 0.9;
 
-/// Sum of the magnitudes of the weights over three corners.
+/// Sum of the maximum magnitudes of the weights over three corners.
 const WEIGHT_SUM: f64 = 7.0;
 
-/// The highest vertex of a plateau, and how far the body may reach beyond the one it was seen from.
+/// The highest vertex that was visited, and a bound on how far the body reaches beyond the vertex where the visits
+/// began.
 struct MaxExcess {
     vertex: u32,
     excess: f64,
 }
 
-/// A face with many corners, or one of few polygons.
+/// A face with many corners, or one of the polygons of a body that has few.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct LargeFace {
     face: u32,
     corner_count: u32,
-    /// Three that span it.
+    /// Three corners that span the face.
     pub(crate) corners: [u32; 3],
-    /// The half-edges that leave these along the face.
+    /// The half-edges of the face that leave these corners.
     pub(crate) half_edges: [u32; 3],
-    /// Its unit normal, outwards.
+    /// Unit normal, outwards.
     pub(crate) normal: DVec3,
-    /// Of the triangle of the three.
+    /// Height of the triangle of the three corners, over the side between the first two.
     height: f64,
-    /// The least slope, downwards, of the edges that leave the face.
+    /// The smallest downward slope of an edge that leaves the face, as a sine.
     descent: f64,
 }
 
 impl LargeFace {
-    /// Whether it counts as large only because there are few others.
+    /// Checks whether the face counts as large only because the body has few polygons.
     #[inline]
     pub(crate) fn has_few_corners(&self) -> bool {
         self.corner_count <= MAX_UNMEASURED_CORNERS as u32
     }
 }
 
-/// The vertices of a plateau, as far as they were found.
+/// The vertices of a plateau that have been found.
 struct Plateau {
-    /// In place of those not found yet, the first one.
+    /// Unused positions hold the first vertex.
     vertices: [u32; MAX_VISITED],
     count: usize,
 }
 
 impl Plateau {
-    /// Adds a vertex unless it is known. `false` if there are too many.
+    /// Inserts a vertex unless it is present. Returns `false` if there is no space for it.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "passed through memory it stalls its reader")]
-    #[expect(clippy::needless_bitwise_bool, reason = "all compared at once is faster than a loop")]
+    #[expect(clippy::inline_always, reason = "a plateau in memory stalls its reader")]
+    #[expect(clippy::needless_bitwise_bool, reason = "comparing all at once is faster than a loop")]
     fn insert_vertex(&mut self, vertex: u32) -> bool {
         if self.vertices.iter().fold(false, |found, &v| found | (v == vertex)) {
             return true;
@@ -108,15 +99,15 @@ impl Plateau {
 }
 
 impl ConvexPolyhedron {
-    /// The support point along the unit vector `normal` (body frame), given the one that a climb has
-    /// found, and a bound on how far the body reaches beyond it.
+    /// Returns a support point along the unit vector `normal` (body frame), and a bound on how far the body reaches
+    /// beyond it. `vertex` is the vertex that a climb has found.
     #[doc(hidden)]
     #[inline]
     pub fn settled(&self, normal: DVec3, vertex: u32) -> (u32, f64) {
         if self.support.is_scanned() {
             return (vertex, self.scan_excess());
         }
-        // Each vertex on the way is higher than the one before by more than rounding.
+        // The loop ends because each vertex is higher than the last one by more than rounding error.
         let mut at = vertex;
         loop {
             let found = self.max_excess(normal, 1.0, at, f64::INFINITY);
@@ -128,12 +119,12 @@ impl ConvexPolyhedron {
         }
     }
 
-    /// A support point along `normal`, of this length, and the excess beyond it, if `near` is one as
-    /// well: if nothing is seen to gain more than `most` beyond it.
+    /// Returns a support point along `normal`, and a bound on how far the body reaches beyond it. Returns `None` if
+    /// a vertex is found that gains more than `most` over `near`, or if no bound up to `most` is found.
     ///
-    /// Lengths are compared with that of the normal, so that nothing waits for it.
+    /// `length` is the length of `normal`. Comparisons are scaled by it, so that they need not wait for a division.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
+    #[expect(clippy::inline_always, reason = "a direction in memory stalls the scan")]
     pub(crate) fn support_at(
         &self,
         normal: DVec3,
@@ -149,25 +140,23 @@ impl ConvexPolyhedron {
         self.excess_up_to(normal, length, near, most).map(|excess| (near, excess))
     }
 
-    /// Of a support point that was found by a look at each vertex: the largest of the rounded
-    /// products was taken, and both may be off.
+    /// Returns the excess beyond a support point that a scan has found. The scan selects the largest rounded
+    /// product, and the compared products may both be off.
     #[inline]
     fn scan_excess(&self) -> f64 {
         2.0 * noise::GAIN * self.inertia.reach
     }
 
-    /// The excess beyond a vertex; `None` if something gains more than `most`, or the plateau is
-    /// larger than can be visited.
+    /// Computes the excess beyond a vertex. Returns `None` if a vertex gains more than `most`, or if the plateau is
+    /// too large to visit and no bound up to `most` is found.
     fn excess_up_to(&self, normal: DVec3, length: f64, vertex: u32, most: f64) -> Option<f64> {
         self.max_excess(normal, length, vertex, most).map(|found| found.excess)
     }
 
-    /// The same with the summit of the plateau.
+    /// Computes the highest vertex of the plateau of `vertex`, and the excess. Returns `None` as
+    /// [`Self::excess_up_to`] does.
     #[inline(always)]
-    #[expect(
-        clippy::inline_always,
-        reason = "who does not need the highest vertex does not look for it"
-    )]
+    #[expect(clippy::inline_always, reason = "callers skip an unused highest vertex")]
     fn max_excess(&self, normal: DVec3, length: f64, vertex: u32, most: f64) -> Option<MaxExcess> {
         let here = self.vertices[vertex as usize];
         let [least, limit] = [-self.plateau_depth(), most].map(|limit| limit * length);
@@ -213,8 +202,8 @@ impl ConvexPolyhedron {
         Some(MaxExcess { vertex: highest_vertex, excess })
     }
 
-    /// The highest and how high it is, after a look at those of many neighbours that may belong to the plateau;
-    /// `None` if these are too many.
+    /// Visits the neighbours of a fan that may belong to the plateau. Returns the highest vertex and its gain, or
+    /// `None` if the plateau has no space for them.
     #[cold]
     #[inline(never)]
     fn visit_fan(
@@ -236,7 +225,8 @@ impl ConvexPolyhedron {
         fits.then_some((highest_vertex, highest))
     }
 
-    /// The same where more may be in the plateau than is worth visiting.
+    /// Computes the excess of a plateau that is too large to visit vertex by vertex. Small bodies are scanned; for
+    /// others the plateau must be within a large face. Returns `None` if no bound up to `most` is found.
     #[inline(never)]
     fn max_excess_of_large_plateau(
         &self,
@@ -252,18 +242,18 @@ impl ConvexPolyhedron {
         (found.excess <= most).then_some(found)
     }
 
-    /// How far below a vertex its plateau is visited.
+    /// Returns the depth below a vertex down to which its plateau is visited.
     #[inline]
     pub fn plateau_depth(&self) -> f64 {
         2.0 * noise::GAIN * self.inertia.reach + 4.0 * self.flatness
     }
 
-    /// The same by a look at all vertices.
+    /// Computes the excess beyond a vertex by a scan of all vertices.
     fn max_excess_of_all(&self, normal: DVec3, length: f64, vertex: u32) -> MaxExcess {
         self.max_excess_among(0..self.vertices.len() as u32, normal, length, vertex)
     }
 
-    /// The highest of some vertices, which contain the plateau.
+    /// Computes the excess beyond a vertex from a set of vertices that contains its plateau.
     fn max_excess_among(
         &self,
         vertices: impl Iterator<Item = u32>,
@@ -284,8 +274,9 @@ impl ConvexPolyhedron {
         }
     }
 
-    /// The same where the plateau is, at most, one face with many corners: they are looked at one by
-    /// one where three do not tell enough.
+    /// Computes the excess beyond a vertex whose plateau is within a large face. The corners are scanned if three of
+    /// them give too large a bound. Returns `None` if no large face contains the plateau, or the excess exceeds
+    /// `most`.
     fn max_excess_on_large_face(
         &self,
         normal: DVec3,
@@ -319,7 +310,8 @@ impl ConvexPolyhedron {
         (found.excess <= most + gain).then_some(found)
     }
 
-    /// The same where the plateau is, at most, this face.
+    /// Computes the excess beyond a vertex from three corners of a large face. Returns `None` if the plateau may
+    /// leave the face, or the excess may exceed `most`.
     #[inline]
     pub(crate) fn excess_of_face(
         &self,
@@ -339,14 +331,14 @@ impl ConvexPolyhedron {
             .then_some(WEIGHT_SUM * reached + 8.0 * self.flatness)
     }
 
-    /// Whether there are large faces, but few.
+    /// Checks whether the body has large faces, and at most [`MAX_LARGE_FACES`].
     #[inline]
     pub(crate) fn has_large_faces(&self) -> bool {
         (1..=MAX_LARGE_FACES).contains(&self.large_faces.len())
     }
 
-    /// Of the large faces, the one most nearly across a direction (body frame, any
-    /// length), outwards.
+    /// Returns the large face whose outward normal has the largest product with `direction` (body frame, any
+    /// length); `None` if there are no large faces.
     #[inline]
     pub(crate) fn large_face_toward(&self, direction: DVec3) -> Option<&LargeFace> {
         let (first, others) = self.large_faces.split_first()?;
@@ -355,10 +347,10 @@ impl ConvexPolyhedron {
         Some(others.iter().fold(first, farther))
     }
 
-    /// Measures how flat the polygons are, and those that are large.
+    /// Measures the flatness of the polygons, and selects the large faces.
     ///
-    /// All polygons count as large, triangles apart, where they are few on a body that is looked at vertex by
-    /// vertex, as those of boxes are: parts stand on them.
+    /// On a body that is scanned and has few polygons, all polygons count as large, but not its triangles. This
+    /// covers boxes, which often rest on their faces.
     pub(super) fn measure_faces(&mut self) {
         let polygons: Vec<u32> = (0..self.face_count() as u32)
             .filter(|&face| self.face_vertices(face).len() > 3)
@@ -368,7 +360,8 @@ impl ConvexPolyhedron {
             let at = |v: u32| self.vertices[v as usize];
             let corners = self.face_vertices(face).map(at);
             let normal = polygon_normal(corners.clone());
-            // From the plane through one corner: another parallel one is at most as far from all.
+            // Measured from the plane through one corner. The best parallel plane is at most as far from all
+            // corners.
             let first = corners.clone().next().unwrap_or_default();
             let is_large = all || corners.len() > MAX_UNMEASURED_CORNERS;
             let off = corners.map(|p| normal.dot(p - first).abs()).fold(0.0, f64::max);
@@ -379,6 +372,7 @@ impl ConvexPolyhedron {
         }
     }
 
+    /// Selects three corners that span a face, and measures the slopes of the edges that leave it.
     fn measure_large_face(&self, face: u32, normal: DVec3) -> LargeFace {
         let at = |v: u32| self.vertices[v as usize];
         let corners: Vec<u32> = self.face_vertices(face).collect();

@@ -1,10 +1,11 @@
-//! Vertices with many neighbours, as the apex of a cone.
+//! Vertices with many neighbours, for example the apex of a cone.
 //!
-//! Cut by a plane, the edges of such a vertex are the corners of a convex polygon, a [`Ring`], over which the
-//! slope along a direction, a linear function, has one maximum and one minimum.
+//! A plane that cuts all edges of such a vertex cuts them in the corners of a convex polygon, a [`Ring`]. The slope
+//! of the edges along a direction is a linear function on this polygon, with one maximum and one minimum.
 //!
-//! A proof has to know all neighbours above some level. Of a convex polygon these are next to each other, and nothing has
-//! to be known of the others; as corners are rounded, up to the polygon's *dent*.
+//! Proofs need all neighbours above some level. On a convex polygon these are consecutive, so the other neighbours
+//! need not be visited. For rounded corners this holds up to the polygon's *dent*. Derivation:
+//! `docs/theory/supports.md`.
 
 use glam::DVec3;
 
@@ -13,39 +14,43 @@ use colltrans_kernel::noise;
 use colltrans_kernel::topology::Topology;
 use colltrans_kernel::work;
 
-/// A vertex with more neighbours than this is searched, not scanned; a face with more corners has a ring.
+/// Maximum number of neighbours of a vertex that is scanned; a vertex with more is searched as a [`Fan`]. Faces
+/// with more corners have a ring.
 pub(crate) const FAN: usize = 32;
 
-/// A face with more corners is measured at three.
+/// Maximum number of corners of a face that is not measured at three corners.
 pub(super) const MAX_UNMEASURED_CORNERS: usize = 8;
 
-/// By how much slopes that are compared may be off together, in `GAIN` times the square of what edges are longer than
-/// inwards; and what is gained over the least length inwards, in `GAIN reach` over that.
+/// Factor of the bound of the rounding error of two compared slopes, which is
+/// `GAIN (reach / least + (longest / least)^2)`.
 const SLOPE_DOUBT: f64 = 8.0;
 
+/// A vertex with many neighbours, with the ring of its neighbours.
 #[derive(Debug, Clone)]
 pub(super) struct Fan {
     pub(super) vertex: u32,
-    /// A unit vector that has a positive product with all edges.
+    /// A unit vector that has a positive product with all edges, unless `dent` is infinite.
     inward: DVec3,
-    /// The least of these.
+    /// The smallest product of an edge with `inward`.
     least: f64,
     /// The length of the longest edge.
     longest: f64,
     ring: Ring,
-    /// How far from convex the polygon may be: by so much slopes may rise once they fall, times the normal's length.
+    /// Bound of the polygon's deviation from convexity: the amount by which slopes may rise after they have begun to
+    /// fall, relative to the normal's length.
     dent: f64,
-    /// The faces with many corners around the vertex.
+    /// Faces around the vertex with many corners.
     wide: Vec<u32>,
 }
 
-/// What is asked for: neighbours more than `least` above a place along a normal of this length.
+/// Query for the neighbours that lie more than `least`, which may be negative, above the point `here` along `normal`. `length` is the
+/// length of `normal`.
 pub(super) struct AboveQuery {
     pub(super) normal: DVec3,
     pub(super) length: f64,
     pub(super) here: DVec3,
     pub(super) least: f64,
-    /// The body's reach.
+    /// The largest distance of a vertex from the origin of the body frame.
     pub(super) reach: f64,
 }
 
@@ -54,7 +59,8 @@ impl Fan {
         let here = vertices[vertex as usize];
         let neighbours = topology.neighbours(vertex);
         let edges = || neighbours.iter().map(|&w| vertices[w as usize] - here);
-        // Neighbours are clockwise from outside, so the product of two consecutive edges points inwards.
+        // Neighbours are clockwise as seen from outside. Therefore the product of two consecutive edges points
+        // inwards.
         let consecutive = edges().zip(edges().cycle().skip(1));
         let inward = consecutive.map(|(a, b)| a.cross(b).normalize_or_zero()).sum::<DVec3>();
         let inward = inward.normalize_or_zero();
@@ -74,12 +80,12 @@ impl Fan {
         &self.ring
     }
 
-    /// The faces around the vertex with more than [`MANY`] corners.
+    /// Returns the faces around the vertex with more than [`MAX_UNMEASURED_CORNERS`] corners.
     pub(super) fn wide_faces(&self) -> &[u32] {
         &self.wide
     }
 
-    /// Position among the neighbours of the steepest edge along a direction.
+    /// Finds the steepest edge along `direction`, as a position among the neighbours.
     pub(super) fn steepest_edge(
         &self,
         vertices: &[DVec3],
@@ -91,7 +97,8 @@ impl Fan {
         greatest_near(topology.neighbours(self.vertex).len(), near, slope)
     }
 
-    /// How steep edges are along a direction: what they rise over their lengths inwards.
+    /// Returns the function that computes the slope of an edge along `direction`: its gain along `direction` divided
+    /// by its length along `inward`.
     #[inline]
     fn slope_function<'a>(
         &'a self,
@@ -107,10 +114,12 @@ impl Fan {
         }
     }
 
-    /// Looks at all neighbours that are asked for, and at some others, until a look says `false`.
+    /// Visits all neighbours that a query selects, and possibly others, until `visit` returns `false`. Returns
+    /// whether all visits returned `true`.
     ///
-    /// From the steepest edge on to either side, until one is less steep than that and than any asked for: those
-    /// beyond are less steep still, up to what is in doubt.
+    /// The visits begin at the steepest edge and proceed to either side. A side ends at a slope that is lower, by
+    /// more than the error bound, than both the steepest slope and any slope that the query selects. All slopes
+    /// beyond are lower still, up to this error.
     pub(super) fn visit_above(
         &self,
         vertices: &[DVec3],
@@ -122,7 +131,7 @@ impl Fan {
         let slope = self.slope_function(vertices, topology, above.normal);
         let steepest = self.steepest_edge(vertices, topology, above.normal);
         let min_gain = above.least - above.normal.dot(vertices[self.vertex as usize] - above.here);
-        // Lengths inwards are rounded, too.
+        // Lengths along `inward` are rounded, too.
         let aspect = self.longest / self.least;
         let rounding = SLOPE_DOUBT * noise::GAIN * (above.reach / self.least + aspect * aspect);
         let doubt = above.length * (rounding + self.dent);
@@ -144,15 +153,17 @@ impl Fan {
         goes_on
     }
 
-    /// Bytes on the heap.
+    /// Returns the number of bytes on the heap.
     pub(super) fn heap_bytes(&self) -> usize {
         self.ring.heap_bytes() + self.wide.capacity() * size_of::<u32>()
     }
 }
 
-/// Where a function on a cycle with one maximum and one minimum is greatest, from near there.
+/// Finds the position of the maximum of a function on a cycle of `count` positions, starting at `near`. The
+/// function must have one maximum and one minimum.
 ///
-/// On to the side that leads up, with strides that grow as long as they do; then between the two that are lower.
+/// The search proceeds uphill with strides that double while the value increases. Then it halves the stride and
+/// tests both sides.
 #[inline]
 pub(crate) fn greatest_near(count: usize, near: usize, value: impl Fn(usize) -> f64) -> usize {
     let mut best = (near, value(near));
@@ -182,7 +193,7 @@ pub(crate) fn greatest_near(count: usize, near: usize, value: impl Fn(usize) -> 
     best.0
 }
 
-/// A place on a cycle, counted on over its end at most once.
+/// Returns a position on a cycle, which may be given beyond its end, by less than one round.
 #[inline]
 fn wrapped_index(i: usize, count: usize) -> usize {
     if i >= count { i - count } else { i }

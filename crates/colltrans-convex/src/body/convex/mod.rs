@@ -1,8 +1,10 @@
-//! Convex polyhedra, validated on input.
+//! Convex polyhedra, validated at construction.
 //!
-//! Data flow: points, a mesh or two corners -> [`build`] (which vertices, which faces) ->
-//! [`topology`](crate::body::topology) (half-edges, no coordinates) -> the indices built on both
-//! ([`support`] points at once, [`sections`] when the paper's algorithm first asks for them).
+//! Data flow:
+//! 1. [`build`] selects vertices and faces from points, a mesh or two opposite corners.
+//! 2. [`topology`](crate::body::topology) stores the half-edges, without coordinates.
+//! 3. [`support`] indexes both for support point queries, at construction.
+//! 4. [`sections`] indexes both for planar sections, when the paper's algorithm first needs them.
 
 mod build;
 mod excess;
@@ -31,93 +33,92 @@ use support::SupportIndex;
 
 /// A convex polyhedron in its own frame: the convex hull of finitely many points.
 ///
-/// It may be of lower dimension: a flat polygon, a segment, a point. Immutable, `Send` and `Sync`;
-/// everything a query needs is built once, here, in `O(n)` space. Two things are made when they are
-/// first asked for, once, and kept: planar sections for [`Solver::Cta`](crate::Solver::Cta)
-/// ([`Self::prepare_sections`] makes them beforehand), and the body as a `Solid`. A clone copies what
-/// there is.
+/// It may have a lower dimension: a flat polygon, a segment, a point. It is immutable, `Send` and `Sync`. The
+/// indices that queries need are built at construction, in `O(n)` space. Two structures are built lazily, once, and
+/// cached: planar sections for [`Solver::Cta`](crate::Solver::Cta) (built ahead by [`Self::prepare_sections`]), and
+/// the body as a `Solid`. A clone copies the structures that exist.
 ///
-/// Vertices and faces are numbered from 0; [`Self::input_indices`] leads back to the input.
+/// Vertices and faces are numbered from 0. [`Self::input_indices`] maps vertices to the input.
 #[derive(Debug, Clone)]
 pub struct ConvexPolyhedron {
     vertices: Vec<DVec3>,
     input_index: Vec<InputVertex>,
     dimension: u8,
     hull_error: f64,
-    /// Bound on the distance of an input point from the body: the hull error without uneven faces.
+    /// Upper bound of the distance of an input point from the body. In contrast to the hull error it does not
+    /// include uneven faces.
     input_excess: f64,
-    /// How deep the mesh that the body was made of lies below it, where that is more than rounding.
+    /// Depth of the source mesh below the body, if it exceeds rounding error; else 0.
     dent: f64,
-    /// The largest distance of a corner from its polygon's plane.
+    /// Upper bound of the distance of a corner from the plane of its polygon.
     flatness: f64,
-    /// Faces with many corners, or all polygons where they are few, ascending.
+    /// Faces with many corners, or all polygons of a body that has few, in ascending order.
     large_faces: Vec<LargeFace>,
     topology: Topology,
     inertia: Inertia,
     support: SupportIndex,
-    /// Made when [`crate::Solver::Cta`] first asks for them: portal refinement does without.
+    /// Built when [`crate::Solver::Cta`] first needs them. Portal refinement does not use them.
     sections: OnceLock<SectionIndex>,
-    /// The same body as a solid, made when it is first asked for.
+    /// The body as a solid, built when it is first needed.
     kept: Kept,
 }
 
-/// Bodies with more vertices than this are worth the better guess from ellipsoids (measured).
+/// Maximum number of vertices of a body for which a ball gives a guess that is good enough (measured).
 const MAX_BALL_VERTICES: usize = 20;
 
 impl ConvexPolyhedron {
-    /// The vertices, in the body frame.
+    /// Returns the vertices, in the body frame.
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices
     }
 
-    /// For each vertex, its number in the points or mesh vertices the polyhedron was made from.
+    /// Returns for each vertex its number among the points or mesh vertices from which the polyhedron was made.
     pub fn input_indices(&self) -> &[InputVertex] {
         &self.input_index
     }
 
-    /// 3 for a solid, 2 for a flat polygon (with a front and a back face), 1 for a segment, 0 for a
-    /// point.
+    /// Returns the dimension: 3 for a solid, 2 for a flat polygon (with a front and a back face), 1 for a segment, 0
+    /// for a point.
     pub fn dimension(&self) -> u8 {
         self.dimension
     }
 
-    /// Number of faces: 2 for a flat polygon, 0 for a segment or a point.
+    /// Returns the number of faces: 2 for a flat polygon, 0 for a segment or a point.
     pub fn face_count(&self) -> usize {
         self.topology.face_count()
     }
 
-    /// Number of edges.
+    /// Returns the number of edges.
     pub fn edge_count(&self) -> usize {
         self.topology.edge_count()
     }
 
-    /// The vertices of a face, counter-clockwise as seen from outside.
+    /// Returns the vertices of a face, counter-clockwise as seen from outside.
     ///
     /// # Panics
-    /// If there is no such face.
+    /// If `face` is not below [`Self::face_count`].
     pub fn face_vertices(&self, face: u32) -> impl ExactSizeIterator<Item = u32> + Clone + '_ {
         self.topology.face_vertices(face)
     }
 
-    /// Unit normal of a face, outwards, in the body frame, rounded.
+    /// Computes the outward unit normal of a face, in the body frame, rounded.
     ///
     /// # Panics
-    /// If there is no such face.
+    /// If `face` is not below [`Self::face_count`].
     pub fn face_normal(&self, face: u32) -> DVec3 {
         polygon_normal(self.face_vertices(face).map(|v| self.vertices[v as usize]))
     }
 
-    /// The vertices joined to `vertex` by an edge, clockwise as seen from outside.
+    /// Returns the vertices that share an edge with `vertex`, clockwise as seen from outside.
     ///
     /// # Panics
-    /// If there is no such vertex.
+    /// If `vertex` is not below the number of vertices.
     pub fn neighbours(&self, vertex: u32) -> &[u32] {
         self.topology.neighbours(vertex)
     }
 
-    /// The directed edges, two for each edge: those of face 0 first, each face's one after the other,
-    /// counter-clockwise as seen from outside. Indices of half-edges are indices of this slice, which is
-    /// empty for a segment or a point.
+    /// Returns the half-edges, two for each edge. They are ordered by face, and counter-clockwise within a face as
+    /// seen from outside. Half-edge numbers are positions in this slice, which is empty for a segment or a point.
     ///
     /// ```
     /// use colltrans::ConvexPolyhedron;
@@ -134,40 +135,43 @@ impl ConvexPolyhedron {
         self.topology.half_edges()
     }
 
-    /// The half-edges around a face: those from its [`Self::face_vertices`], in their order.
+    /// Returns the half-edges around a face, in the order of [`Self::face_vertices`]. The origin of each is the face
+    /// vertex at its position.
     ///
     /// # Panics
-    /// If there is no such face.
+    /// If `face` is not below [`Self::face_count`].
     pub fn face_half_edges(&self, face: u32) -> Range<u32> {
         self.topology.face(face)
     }
 
-    /// The half-edges that leave `vertex`, in the order of its [`Self::neighbours`]; none for an end of a
-    /// segment.
+    /// Returns the half-edges that leave `vertex`, in the order of its [`Self::neighbours`]. An end of a segment has
+    /// none.
     ///
     /// # Panics
-    /// If there is no such vertex.
+    /// If `vertex` is not below the number of vertices.
     pub fn outgoing(&self, vertex: u32) -> &[u32] {
         self.topology.outgoing(vertex)
     }
 
-    /// No input point is farther than this from the body (the convex hull of [`Self::vertices`]), nor a
-    /// vertex outside a face plane: the hull's own error, in the unit of the input.
+    /// Returns the hull error, an upper bound of two distances, in the unit of the input:
+    /// - the distance of an input point from the body, which is the convex hull of [`Self::vertices`];
+    /// - the distance of a vertex outside the plane of a face.
     ///
-    /// It has the size of rounding, whatever the shape: the most seen is `1024 u`, `1.2e-13`, of the
-    /// largest coordinate. Bounds of answers count how far input points are outside, so they hold for the
-    /// convex hull of the input as well: lower bounds of distances, translations and gaps are lowered by that
-    /// distance of both bodies (over `n . d` along a direction), and the upper bound of a depth is raised by it.
-    /// Certificates are checked against the vertices alone.
+    /// It has the size of rounding errors, independent of the shape. The largest observed value is `1024 u`, that is
+    /// `1.2e-13`, relative to the largest coordinate.
+    ///
+    /// Bounds of answers account for input points outside the bodies, so they hold for the convex hulls of the input
+    /// as well. Lower bounds of distances, translations and gaps are lowered by the first distance of both bodies
+    /// (divided by `n . d` along a direction). The upper bound of a depth is raised by it. Certificates are checked
+    /// against the vertices alone.
     pub fn hull_error(&self) -> f64 {
         self.hull_error
     }
 
-    /// How deep the surface of the mesh that the body was made of lies below the body: its largest dent, in
-    /// the unit of the input.
+    /// Returns the largest depth of the source mesh's surface below the body, in the unit of the input.
     ///
-    /// 0 for a mesh that is convex to rounding error, and for a body that is not made of a mesh. With a larger
-    /// dent the mesh is convex only to within the tolerance of [`Self::from_mesh`], and answers are about the hull
+    /// It is 0 for a mesh that is convex up to rounding error, and for a body that was not made from a mesh. A mesh
+    /// with a larger value is convex only within the tolerance of [`Self::from_mesh`], and answers refer to the hull
     /// of its vertices.
     ///
     /// ```
@@ -188,27 +192,28 @@ impl ConvexPolyhedron {
         self.dent
     }
 
-    /// Bound on the distance of an input point from the body; 0 if none is outside.
+    /// Returns an upper bound of the distance of an input point from the body; 0 if no input point is outside.
     #[inline]
     #[doc(hidden)]
     pub fn input_excess(&self) -> f64 {
         self.input_excess
     }
 
-    /// The body as the hull of its vertices alone, for a caller that counts itself what those lack.
+    /// Returns the body with an input excess of 0, that is, as the hull of its vertices alone. The caller must
+    /// account for input points outside this hull.
     #[must_use]
     #[inline]
     pub fn without_input_excess(self) -> Self {
         Self { input_excess: 0.0, ..self }
     }
 
-    /// The volume, in the cube of the input's unit; 0 for a body of lower dimension.
+    /// Returns the volume, in the cube of the input's unit; 0 for a body of lower dimension.
     pub fn volume(&self) -> f64 {
         self.inertia.volume
     }
 
-    /// The vertex farthest along `direction` (body frame, any length): a support point, in
-    /// `O(log n)`. One of the farthest, to within rounding error, if there are several.
+    /// Finds the support point, the vertex farthest along `direction` (body frame, any length), in `O(log n)`. If
+    /// several vertices are equally far up to rounding error, it returns one of them.
     ///
     /// ```
     /// use colltrans::glam::DVec3;
@@ -225,39 +230,42 @@ impl ConvexPolyhedron {
         VertexId(self.support.farthest_vertex(&self.vertices, &self.topology, direction))
     }
 
-    /// A vertex near the support point.
+    /// Returns a vertex near the support point along `direction`, for [`Self::support_from_guess`].
     #[inline]
     pub(crate) fn support_guess(&self, direction: DVec3) -> u32 {
         self.support.table_guess(direction)
     }
 
-    /// The support point, from a guess.
+    /// Finds the support point along `direction`, starting from the vertex `guess`.
     #[inline]
     pub(crate) fn support_from_guess(&self, direction: DVec3, guess: u32) -> u32 {
         self.support.farthest_vertex_from_guess(&self.vertices, &self.topology, direction, guess)
     }
 
-    /// The same as [`Self::support`], faster if `near` is a vertex near the answer.
+    /// Finds the support point along `direction`. In contrast to [`Self::support`], the search is faster if the
+    /// vertex `near` is near the result.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
+    #[expect(clippy::inline_always, reason = "a direction in memory stalls the scan")]
     pub(crate) fn support_from(&self, direction: DVec3, near: u32) -> u32 {
         self.support.farthest_vertex_near(&self.vertices, &self.topology, direction, near)
     }
 
-    /// Whether a guess from its inertia ellipsoid is hardly better than one from a ball.
+    /// Checks whether the body is so small and round that a guess from its inertia ellipsoid is hardly better than
+    /// one from a ball.
     #[inline]
     pub(crate) fn is_like_ball(&self) -> bool {
         self.vertices.len() <= MAX_BALL_VERTICES && self.inertia.round
     }
 
-    /// Whether the body has faces with so many corners, or vertices with so many neighbours, that these lie on a
-    /// rim.
+    /// Checks whether the body may have rims: faces with many corners or vertices with many neighbours, to which a
+    /// ring of vertices belongs.
     #[inline]
     pub(crate) fn has_rims(&self) -> bool {
         self.support.has_rings()
     }
 
-    /// At most [`MOST_RIMS`] rims and points that the body is nearly the hull of; none if it is no such body.
+    /// Returns at most [`MOST_RIMS`] rims and points whose hull approximates the body. The iterator is empty if
+    /// there is no such approximation.
     #[inline]
     pub(crate) fn outline(&self) -> impl ExactSizeIterator<Item = Rim> {
         let known = self.support.outline();
@@ -267,27 +275,30 @@ impl ConvexPolyhedron {
         (0..count).map(move |k| if few { point(k) } else { known[k] })
     }
 
-    /// The vertex farthest along `direction` of the rim that a vertex is on; that vertex if it is on none.
+    /// Finds the farthest vertex along `direction` on the rim that contains `vertex`. Returns `vertex` if it is on
+    /// no rim.
     pub(crate) fn farthest_on_rim(&self, direction: DVec3, vertex: u32) -> u32 {
         self.support.farthest_on_ring(&self.vertices, &self.topology, direction, vertex)
     }
 
-    /// Position among the neighbours of a vertex, which has many, of the steepest edge along `direction`.
+    /// Finds the edge of `vertex` that is steepest along `direction`, as a position among its neighbours. The vertex
+    /// must have more than [`FAN`] neighbours.
     pub(crate) fn steepest_edge(&self, vertex: u32, direction: DVec3) -> usize {
         self.support.fan_of_vertex(vertex).steepest_edge(&self.vertices, &self.topology, direction)
     }
 
-    /// Positions among the neighbours of `vertex` that may lie in its supporting plane along
-    /// `direction`: the first and how many.
+    /// Returns a range of positions among the neighbours of `vertex`, as first position and count, cyclic. It
+    /// contains the neighbours that may lie in the supporting plane at `vertex` along `direction`.
     pub(crate) fn plane_candidates(&self, vertex: u32, direction: DVec3) -> (usize, usize) {
         self.support.plane_candidates(&self.vertices, &self.topology, vertex, direction)
     }
 
-    /// Makes the planar sections that [`Solver::Cta`](crate::Solver::Cta) works on, unless they are there.
+    /// Builds the planar sections that [`Solver::Cta`](crate::Solver::Cta) needs, unless they exist.
     ///
-    /// Otherwise the body's first cast with that solver that solves a planar problem makes them, in
-    /// `O(n log n)`, on one thread while others that need them wait: who times queries, or answers within a
-    /// deadline, pays here. No other solver needs them; a body of lower dimension has none.
+    /// Without this call, the body's first cast with that solver that solves a planar problem builds them. This
+    /// takes `O(n log n)` time on one thread, while other threads that need them wait. Therefore a program that
+    /// measures queries or answers within a deadline should call this method first. Other solvers do not use
+    /// sections, and a body of lower dimension has none.
     ///
     /// ```
     /// use colltrans::ConvexPolyhedron;
@@ -303,8 +314,8 @@ impl ConvexPolyhedron {
         self.sections();
     }
 
-    /// Bytes of memory that the polyhedron occupies now, on the heap and in itself: sections, and the
-    /// body as a solid, count once they are made.
+    /// Returns the number of bytes that the polyhedron occupies, including its heap memory. Sections and the body as
+    /// a solid count once they are built.
     pub fn memory_bytes(&self) -> usize {
         size_of::<Self>()
             + self.vertices.capacity() * size_of::<DVec3>()
@@ -316,22 +327,25 @@ impl ConvexPolyhedron {
             + self.kept.heap_bytes()
     }
 
-    /// What others have made of the body.
+    /// Returns the cache for structures that other crates derive from the body.
     #[doc(hidden)]
     pub fn kept(&self) -> &Kept {
         &self.kept
     }
 
+    /// Returns size, volume and inertia ellipsoid of the body.
     #[doc(hidden)]
     #[inline]
     pub fn inertia(&self) -> &Inertia {
         &self.inertia
     }
 
+    /// Returns the half-edges and faces.
     pub(crate) fn topology(&self) -> &Topology {
         &self.topology
     }
 
+    /// Returns the planar sections, which are built by the first call. They are empty for a body of lower dimension.
     pub(crate) fn sections(&self) -> &SectionIndex {
         self.sections.get_or_init(|| match self.dimension {
             3 => SectionIndex::build(&self.vertices, &self.topology),

@@ -1,15 +1,15 @@
-//! Rings: the corners around a face with many, those beside them, and the neighbours of a vertex with many, by
-//! their angle.
+//! Rings: cyclic vertex lists that are searched by angle. They are the corners of a face with many corners, the
+//! corners adjacent to such a face, or the neighbours of a vertex with many neighbours.
 //!
-//! Notation. Seen along its *axis*, the normal of the face or that of a plane which cuts all edges of the
-//! vertex, a ring is a convex polygon. Its corner farthest along a direction is the one between whose edges'
-//! outward normals the direction lies: so the turn is divided into as many *cells* as there are corners, each
-//! with the first corner that a direction in it may ask for, and among those of one cell the edges that rise
-//! are counted by bisection. Along the rim of a cylinder that is one look or two, however many corners it has.
+//! - *axis*: the normal of the face, or of a plane that cuts all edges of the vertex. Projected along it, a ring is
+//!   a convex polygon.
+//! - *cells*: as many equal parts of the full turn as there are corners. Each stores the range of corners that may
+//!   be farthest along a direction in it.
+//! - *rim*: the ellipse that approximates the corners, a smooth body for guesses.
 //!
-//! What is found is where a climb goes on: of a ring that is not quite flat it need not be the farthest.
-//!
-//! The *rim* of a ring is the ellipse that its corners lie on, nearly: a smooth body to guess with.
+//! The farthest corner is the one between whose edge normals the direction lies. It is found by bisection within a
+//! cell; on the rim of a cylinder this takes one or two tests for any number of corners. The result only continues
+//! a climb: on a ring that is not exactly flat it need not be the farthest corner.
 
 use glam::{DVec2, DVec3};
 
@@ -17,43 +17,46 @@ use colltrans_kernel::plane::polygon_normal;
 use colltrans_kernel::topology::Topology;
 use colltrans_kernel::work;
 
-/// Corners this near an ellipse, as a share of its size, are taken to lie on it.
+/// Maximum deviation of a corner from an ellipse, relative to its size, up to which the ring counts as round.
 const MAX_RIM_DEVIATION: f64 = 0.02;
 
-/// Whose corners a ring has.
+/// Definition of the corners of a ring.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Cycle {
-    /// Those of a face, from this half-edge on.
+    /// The corners of a face, starting with the origin of this half-edge.
     Face(u32),
-    /// Those that the edges which leave a face from its corners lead to, from this half-edge on.
+    /// The vertices next to the corners of a face, starting with the corner of this half-edge. Each is the end of
+    /// the edge that leaves its corner and follows the half-edge's twin.
     AdjacentToFace(u32),
-    /// A vertex's neighbours.
+    /// The neighbours of this vertex.
     Fan(u32),
 }
 
-/// An ellipse, or a point, in the place of corners of a body.
+/// An ellipse that approximates corners of a body, or a point.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Rim {
     pub(crate) center: DVec3,
-    /// Conjugate semi-diameters; zero of a point.
+    /// Conjugate semi-diameters; zero for a point.
     pub(crate) semi_axes: [DVec3; 2],
     /// One of the corners.
     pub(crate) vertex: u32,
-    /// Whether the body ends at its plane, towards the product of the semi-diameters and away from it.
+    /// Whether the outline of the body ends at the rim's plane, along the cross product of the semi-diameters and
+    /// along its opposite.
     pub(crate) ends: [bool; 2],
 }
 
+/// A cyclic list of vertices, indexed by angle.
 #[derive(Debug, Clone)]
 pub(super) struct Ring {
     cycle: Cycle,
     rim: Rim,
     /// Whether all corners are near the rim.
     is_round: bool,
-    /// Two vectors across the axis, so that the corners run counter-clockwise.
+    /// Two orthogonal unit vectors across the axis, about which the corners are counter-clockwise.
     axes: [DVec3; 2],
-    /// The corner from which corners are counted: its edge's normal has the least angle.
+    /// The corner at which numbering starts. The normal of the edge that starts there has the smallest angle.
     first: u32,
-    /// For each cell the number of corners before those that it may ask for, and the number of all.
+    /// For each cell the number of corners before its first candidate, followed by the number of corners.
     cells: Vec<u32>,
 }
 
@@ -72,6 +75,7 @@ impl Cycle {
 }
 
 impl Rim {
+    /// Returns the rim that consists of one point.
     pub(super) fn from_vertex(vertex: u32, center: DVec3) -> Self {
         Self { center, semi_axes: [DVec3::ZERO; 2], vertex, ends: [false; 2] }
     }
@@ -80,13 +84,13 @@ impl Rim {
         self.semi_axes == [DVec3::ZERO; 2]
     }
 
-    /// How far it reaches along a direction, times the direction's length.
+    /// Returns the largest product of a point of the rim with `direction`.
     fn support_value(&self, direction: DVec3) -> f64 {
         let [u, v] = self.semi_axes.map(|axis| axis.dot(direction));
         self.center.dot(direction) + (u * u + v * v).sqrt()
     }
 
-    /// The same rim, knowing where the hull of it and others ends.
+    /// Returns this rim with `ends` computed for a body whose outline is given.
     pub(super) fn with_ends_among(self, outline: &[Self]) -> Self {
         let [u, v] = self.semi_axes;
         let ends = |out: DVec3| {
@@ -96,7 +100,8 @@ impl Rim {
         Self { ends: [axis, -axis].map(|out| !self.is_point() && ends(out)), ..self }
     }
 
-    /// The ellipse with the mean and the moments of corners, across an axis; and whether it is near all of them.
+    /// Fits an ellipse to the mean and the second moments of the corners, projected along the axis. Returns the
+    /// ellipse, and whether all corners are near it.
     fn fit_ellipse(
         vertex: u32,
         axes: [DVec3; 2],
@@ -109,7 +114,7 @@ impl Rim {
             let [x, y] = axes.map(|axis| axis.dot(corner - center));
             (xx, xy, yy) = (xx + x * x, xy + x * y, yy + y * y);
         }
-        // Of corners spread evenly over an ellipse the moments are half of its squared semi-axes.
+        // For corners spread evenly over an ellipse, the moments are half of its squared semi-axes.
         let [xx, xy, yy] = [xx, xy, yy].map(|moment| 2.0 * moment / count);
         let first = xx.sqrt();
         let shear = if first > 0.0 { xy / first } else { 0.0 };
@@ -133,13 +138,13 @@ impl Rim {
 }
 
 impl Ring {
-    /// The ring of a face.
+    /// Builds the ring of a face's corners.
     pub(super) fn from_face(vertices: &[DVec3], topology: &Topology, face: u32) -> Self {
         let range = topology.face(face);
         Self::from_cycle(vertices, topology, Cycle::Face(range.start), range.len() as u32)
     }
 
-    /// That beside a face, if it is not one vertex over and over.
+    /// Builds the ring adjacent to a face. Returns `None` if two consecutive corners are the same vertex.
     pub(super) fn from_adjacent_corners(
         vertices: &[DVec3],
         topology: &Topology,
@@ -152,13 +157,19 @@ impl Ring {
         (!(0..count).any(repeats)).then(|| Self::from_cycle(vertices, topology, cycle, count))
     }
 
+    /// Builds a ring whose axis is the normal of its own polygon.
     fn from_cycle(vertices: &[DVec3], topology: &Topology, cycle: Cycle, count: u32) -> Self {
         let corners = (0..count).map(|k| vertices[cycle.vertex_at(topology, k) as usize]);
         let axis = polygon_normal(corners.clone());
         Self::new((cycle, cycle.vertex_at(topology, 0)), axis, corners.clone(), corners).0
     }
 
-    /// A ring, counter-clockwise about an axis, any length, with the polygon that it is seen as; and the [`dent`] of this.
+    /// Builds a ring and computes its [dent](polygon_dent).
+    ///
+    /// - `vertex`: the first corner.
+    /// - `axis`: any length; the corners are counter-clockwise about it.
+    /// - `corners`: the positions for the rim.
+    /// - `projected_from`: the positions whose projection along the axis is the polygon.
     pub(super) fn new(
         (cycle, vertex): (Cycle, u32),
         axis: DVec3,
@@ -192,28 +203,27 @@ impl Ring {
         (Self { cycle, rim, is_round, axes, first: first as u32, cells }, dent)
     }
 
-    /// The ellipse that the corners lie on, nearly.
+    /// Returns the ellipse that approximates the corners.
     pub(super) fn rim(&self) -> &Rim {
         &self.rim
     }
 
-    /// Whether they do, all of them.
+    /// Checks whether all corners are near the rim.
     pub(super) fn is_round(&self) -> bool {
         self.is_round
     }
 
-    /// The number of corners.
+    /// Returns the number of corners.
     pub(super) fn corner_count(&self) -> u32 {
         self.cells.len() as u32 - 1
     }
 
-    /// The vertex of a corner.
     pub(super) fn corner_vertex(&self, topology: &Topology, k: u32) -> u32 {
         self.cycle.vertex_at(topology, k)
     }
 
-    /// The corner farthest along a direction, any length, if the edge from one corner to the next is told to rise
-    /// along it or not.
+    /// Finds the corner farthest along `direction` (any length). `rises(from, to)` reports whether the edge between
+    /// two consecutive corners rises along it.
     #[inline]
     fn farthest_corner(&self, direction: DVec3, rises: impl Fn(u32, u32) -> bool) -> u32 {
         let (mut low, mut high) = self.candidate_range(direction);
@@ -229,31 +239,32 @@ impl Ring {
         self.corner_number(low)
     }
 
-    /// A corner near that one: none before it in its cell.
+    /// Returns the first candidate for the corner farthest along `direction`.
     #[inline]
     pub(super) fn first_candidate(&self, direction: DVec3) -> u32 {
         self.corner_number(self.candidate_range(direction).0)
     }
 
-    /// The first and the last corner that a direction, any length, may ask for.
+    /// Returns the numbers of the first and the last candidate for the corner farthest along `direction` (any
+    /// length), counted from `first`.
     #[inline]
     fn candidate_range(&self, direction: DVec3) -> (u32, u32) {
         let count = self.corner_count();
         let along = DVec2::from(self.axes.map(|axis| axis.dot(direction)));
-        // Casts saturate, so that along the axis, where it is not a number, it is cell 0.
+        // Casts saturate: a NaN from a direction along the axis selects cell 0.
         let cell = (pseudo_angle(along) * (0.25 * f64::from(count))) as usize;
         let cell = cell.min(count as usize - 1);
         (self.cells[cell], self.cells[cell + 1])
     }
 
-    /// The corner that is counted so, from the first one on and once over the end at most.
+    /// Returns the corner with number `k`, counted from `first`, at most once beyond the end.
     #[inline]
     fn corner_number(&self, k: u32) -> u32 {
         let (k, count) = (self.first + k, self.corner_count());
         if k >= count { k - count } else { k }
     }
 
-    /// The vertex farthest along a direction, any length.
+    /// Finds the vertex farthest along `direction` (any length).
     #[inline]
     pub(super) fn farthest_vertex(
         &self,
@@ -269,24 +280,25 @@ impl Ring {
         corner(self.farthest_corner(direction, rises))
     }
 
-    /// Bytes on the heap.
+    /// Returns the number of bytes on the heap.
     pub(super) fn heap_bytes(&self) -> usize {
         self.cells.capacity() * size_of::<u32>()
     }
 }
 
-/// By how much a linear function of slope 1 may rise along a polygon on its way down from the greatest value to the least,
-/// or fall on the way up: nothing, up to rounding, if the polygon is convex. `angles` are those of its edges.
+/// Bounds the deviation of a polygon from convexity. The bound applies to linear functions with a gradient of
+/// length 1. It limits the increase of such a function along the polygon from its maximum to its minimum, and the
+/// decrease on the way back.
 ///
-/// If edges pointed no less far round than those before them, it would not. By as much as one does, times its length, it
-/// may.
+/// `angles` are the pseudo-angles of the edges' outward normals. The result has the size of rounding errors for a
+/// convex polygon. It is infinite if the polygon does not turn exactly once. Derivation: `docs/theory/supports.md`.
 fn polygon_dent(polygon: &[DVec2], angles: &[f64]) -> f64 {
     let count = angles.len();
     let (mut angle, mut max_angle, mut turns, mut dent) = (0.0_f64, 0.0_f64, 0.0, 0.0);
     for k in 0..count {
         let next = (k + 1) % count;
         max_angle = max_angle.max(angle).min(4.0);
-        // Twice, as a radian is at least half of what `turn` counts.
+        // Twice the difference bounds it in radians, because the pseudo-angle changes by at least half of the angle.
         let off = 2.0 * (max_angle - angle).abs() + 32.0 * f64::EPSILON;
         dent += off * polygon[next].distance(polygon[k]);
         let step = angles[next] - angles[k];
@@ -296,7 +308,8 @@ fn polygon_dent(polygon: &[DVec2], angles: &[f64]) -> f64 {
     if turns == 1.0 { dent } else { f64::INFINITY }
 }
 
-/// How far round a vector points, from 0 along `x` to 4: alike on every machine, and rising with the angle.
+/// Computes a pseudo-angle of a vector: from 0 along `x` to 4, increasing with the angle, and equal on all
+/// platforms.
 #[inline]
 fn pseudo_angle(v: DVec2) -> f64 {
     let along = v.y / (v.x.abs() + v.y.abs());

@@ -1,20 +1,14 @@
 //! Support points: the vertex of a body farthest along a direction, in `O(log n)`.
 //!
-//! Two steps. A *table* over directions gives a vertex that is right for a direction nearby; from
-//! there a *climb* along edges, always to the steepest neighbour, ends at the support point,
-//! because on a convex body a local maximum is global. Solvers that already know a vertex nearby
-//! climb from it and leave the table out.
+//! 1. A *table* over directions returns a vertex that is the support point of a nearby direction. It is an
+//!    octahedral map of the normalised directions `L^T n`, where `L L^T` is the matrix of the inertia ellipsoid.
+//! 2. A *climb* along edges, always to the steepest neighbour, ends at the support point, because on a convex body
+//!    each local maximum is global. Solvers that know a vertex nearby start there, without the table.
+//! 3. Faces with many corners and vertices with many neighbours are searched by angle ([`ring`](super::ring),
+//!    [`fan`](super::fan)). A climb along them would take linear time.
 //!
-//! The table is an octahedral map of *normalised* directions `L^T n`, where `L L^T` is the shape of the
-//! body's inertia ellipsoid: a support point of an affine image `L u` of a round body in direction
-//! `n` is that of the round body in direction `L^T n`, so needles and plates spread over the table
-//! as evenly as balls. Where vertices still crowd (the rim of a prism with many sides, a rounded
-//! corner), a cell is divided in four, and again, until its centre and its corners are a few edges
-//! apart. The number of cells is at most proportional to the number of vertices.
-//!
-//! A vertex with many neighbours (the apex of a cone) would make one step linear, and along the boundary of
-//! a face with many corners (the base of a cylinder), or along what is beside it, a climb would take a step
-//! for each: there the place is found by its angle ([`ring`](super::ring), [`fan`](super::fan)).
+//! The number of table entries is at most proportional to the number of vertices. Details:
+//! `docs/theory/supports.md`.
 
 use std::hint::select_unpredictable;
 
@@ -27,53 +21,56 @@ use colltrans_kernel::noise;
 use colltrans_kernel::topology::Topology;
 use colltrans_kernel::work;
 
-/// Up to this many vertices, looking at each is fastest (measured).
+/// Maximum number of vertices of a body whose support points are found by a scan (measured).
 const SCAN_LIMIT: usize = 20;
 
-/// An entry of the table is a vertex, or, with this bit, the first of four finer cells.
+/// Flag of a table entry. An entry with this bit is the index of the first of four finer cells, else it is a
+/// vertex.
 const DIVIDED: u32 = 1 << 31;
 
-/// A cell whose corners are farther than this many climbing steps from its centre is divided.
+/// Maximum number of climbing steps from the centre of a cell to its corners; otherwise the cell is divided.
 const MAX_CELL_STEPS: usize = 3;
 
-/// After this many steps a climb from a guess asks the table (measured).
+/// Number of steps after which a climb from a guess consults the table (measured).
 const MAX_GUESS_STEPS: usize = 2;
 
-/// Divisions of one cell of the cube map: `2^-20` of its side is below any spread that
-/// single-precision models have.
+/// Maximum number of divisions of one cell of the map. A side of `2^-20` is below any spread that single-precision
+/// models have.
 const MAX_DIVISIONS: u32 = 20;
 
-/// Steps after which a climb looks whether it goes along a ring.
+/// Number of steps after which a climb tests for a ring to follow.
 const RING_CHECK_STEPS: usize = 3;
 
-/// Rims and points that a body may be taken to be the hull of.
+/// Maximum number of rims and points in the outline of a body.
 pub(crate) const MOST_RIMS: usize = 8;
 
-/// No ring.
+/// Marks a vertex without a ring.
 const NO_RING: u16 = u16::MAX;
 
-/// The table over directions.
+/// The table over directions, with the rings and fans of the body.
 #[derive(Debug, Clone)]
 pub(crate) struct SupportIndex {
     /// `L^T`.
     normalise: DMat3,
-    /// Cells along a side of the map; 0 if the body is small enough to scan.
+    /// Number of cells along a side of the map; 0 if the body is small enough to scan.
     resolution: u32,
-    /// Entries of the base cells, then groups of four.
+    /// Entries of the base cells, followed by groups of four.
     cells: Vec<u32>,
-    /// The vertices of a body small enough to scan.
+    /// Vertices of a body that is small enough to scan.
     groups: Vec<VertexGroup>,
     /// Vertices with many neighbours, ascending.
     fans: Vec<Fan>,
-    /// The rings of faces with many corners, and those beside them.
+    /// Rings of faces with many corners, followed by rings adjacent to them.
     rings: Vec<Ring>,
-    /// For each vertex its ring: a number in `rings`, or beyond these in `fans`. Empty without any.
+    /// Ring number of each vertex: a position in `rings` or, beyond its end, in `fans`. Empty if the body has
+    /// neither.
     ring_of: Vec<u16>,
-    /// The rims and points that the body is nearly the hull of, if these are few.
+    /// Rims and points whose hull approximates the body; empty unless there are few.
     outline: Vec<Rim>,
 }
 
 impl SupportIndex {
+    /// Builds the table, rings and fans of a body.
     pub(crate) fn build(vertices: &[DVec3], topology: &Topology, inertia: &Inertia) -> Self {
         let mut index = Self {
             normalise: inertia.factor.transpose(),
@@ -96,9 +93,9 @@ impl SupportIndex {
         index
     }
 
-    /// The vertex farthest along `direction` (body frame, any length).
+    /// Finds the vertex farthest along `direction` (body frame, any length).
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
+    #[expect(clippy::inline_always, reason = "a direction in memory stalls the scan")]
     pub(crate) fn farthest_vertex(
         &self,
         vertices: &[DVec3],
@@ -111,9 +108,10 @@ impl SupportIndex {
         self.climb_to_support(vertices, topology, direction, self.table_entry(direction))
     }
 
-    /// The same, starting from a vertex believed to be near; if it is not, the table helps out.
+    /// Finds the vertex farthest along `direction` (body frame, any length), starting at a vertex that is expected
+    /// to be near. If the climb takes too many steps, it consults the table.
     #[inline(always)]
-    #[expect(clippy::inline_always, reason = "a direction passed through memory stalls the scan")]
+    #[expect(clippy::inline_always, reason = "a direction in memory stalls the scan")]
     pub(crate) fn farthest_vertex_near(
         &self,
         vertices: &[DVec3],
@@ -127,19 +125,20 @@ impl SupportIndex {
         self.climb_from_near(vertices, topology, direction, start)
     }
 
-    /// Whether the body is small enough to look at each vertex.
+    /// Checks whether the body is small enough to scan all vertices.
     #[inline]
     pub(crate) fn is_scanned(&self) -> bool {
         self.resolution == 0
     }
 
-    /// Where a climb along `direction` may start; of no use to a body that is scanned.
+    /// Returns the table's vertex for a climb along `direction`, or 0 for a body that is scanned.
     #[inline]
     pub(crate) fn table_guess(&self, direction: DVec3) -> u32 {
         if self.resolution == 0 { 0 } else { self.table_entry(direction) }
     }
 
-    /// [`Self::extreme`] from a guess.
+    /// Finds the vertex farthest along `direction` (body frame, any length), starting at a vertex from
+    /// [`Self::table_guess`].
     #[inline]
     pub(crate) fn farthest_vertex_from_guess(
         &self,
@@ -154,6 +153,7 @@ impl SupportIndex {
         self.climb_to_support(vertices, topology, direction, guess)
     }
 
+    /// Climbs from a vertex, and restarts at the table's vertex if the climb is long and that vertex is higher.
     fn climb_from_near(
         &self,
         vertices: &[DVec3],
@@ -173,10 +173,11 @@ impl SupportIndex {
         self.climb_to_support(vertices, topology, direction, start)
     }
 
-    /// Steepest ascent along edges, at most `limit` steps, and the number of steps it took.
+    /// Climbs along edges by steepest ascent, at most `limit` steps. Returns the last vertex and the number of
+    /// steps.
     ///
-    /// Gains are taken from edge vectors, not from differences of dot products, so their rounding
-    /// error is relative to the edge and not to the body.
+    /// Gains are computed from edge vectors, not from differences of dot products. Therefore their rounding error is
+    /// relative to the edge and not to the body.
     fn climb_edges(
         &self,
         vertices: &[DVec3],
@@ -201,7 +202,7 @@ impl SupportIndex {
                 return (at, steps);
             }
             let edge = vertices[best as usize] - origin;
-            // Demanding more than rounding makes every climb strictly ascending, so it ends.
+            // Each step must gain more than the rounding error. Therefore the climb strictly ascends and ends.
             if gain <= noise::GAIN * direction.abs().dot(edge.abs()) {
                 return (at, steps);
             }
@@ -210,7 +211,7 @@ impl SupportIndex {
         (at, limit)
     }
 
-    /// Steepest ascent from a vertex to the support point.
+    /// Climbs from a vertex to the support point.
     #[inline]
     fn climb_to_support(
         &self,
@@ -225,7 +226,7 @@ impl SupportIndex {
         self.climb_along_rings(vertices, topology, direction, start)
     }
 
-    /// The same, along rings at once.
+    /// Climbs from a vertex to the support point, and jumps along rings on the way.
     #[inline(never)]
     fn climb_along_rings(
         &self,
@@ -246,8 +247,8 @@ impl SupportIndex {
         }
     }
 
-    /// The farthest vertex of the ring that a vertex is on, if it is on one and that is farther by more than
-    /// rounding.
+    /// Returns the farthest vertex of the ring that contains `at`. Returns `at` if it is on no ring, or if the gain
+    /// does not exceed the rounding error.
     #[inline]
     fn jump_along_ring(
         &self,
@@ -264,31 +265,34 @@ impl SupportIndex {
         if direction.dot(way) > noise::GAIN * direction.abs().dot(way.abs()) { there } else { at }
     }
 
-    /// The ring that a vertex is on, if it is on one.
+    /// Returns the ring of a vertex; `None` if the vertex is on no ring.
     #[inline]
     fn ring_of_vertex(&self, vertex: u32) -> Option<&Ring> {
         let number = self.ring_of.get(vertex as usize).filter(|&&number| number != NO_RING)?;
         Some(self.ring_by_number(*number))
     }
 
+    /// Returns the ring with a number of `ring_of`.
     fn ring_by_number(&self, number: u16) -> &Ring {
         let number = usize::from(number);
         self.rings.get(number).unwrap_or_else(|| self.fans[number - self.rings.len()].ring())
     }
 
-    /// Whether a vertex may be on a ring.
+    /// Checks whether any vertex may be on a ring.
     #[inline]
     pub(super) fn has_rings(&self) -> bool {
         !self.ring_of.is_empty()
     }
 
-    /// The rims and points that the body is nearly the hull of, if it has rims and these are few.
+    /// Returns the rims and points whose hull approximates the body. The slice is empty if the body has no rims, too
+    /// many of them, or some that are not round.
     #[inline]
     pub(super) fn outline(&self) -> &[Rim] {
         &self.outline
     }
 
-    /// The same, measured.
+    /// Computes the outline. Returns `None` if a ring is not nearly an ellipse, or if there are more than
+    /// [`MOST_RIMS`] rims and points.
     fn compute_outline(&self, vertices: &[DVec3]) -> Option<Vec<Rim>> {
         let mut outline = Vec::new();
         let mut is_known = vec![false; self.rings.len() + self.fans.len()];
@@ -309,7 +313,7 @@ impl SupportIndex {
         Some(outline.iter().map(|rim| rim.with_ends_among(&outline)).collect())
     }
 
-    /// The farthest vertex of the ring that a vertex is on, or that vertex.
+    /// Returns the farthest vertex of the ring that contains `at`; `at` itself if it is on no ring.
     #[inline]
     pub(super) fn farthest_on_ring(
         &self,
@@ -322,7 +326,7 @@ impl SupportIndex {
             .map_or(at, |ring| ring.farthest_vertex(vertices, topology, direction))
     }
 
-    /// For each vertex the number of its ring, the one with the most corners.
+    /// Computes the ring number of each vertex. Of several rings, the one with the most corners counts.
     fn number_rings(&self, topology: &Topology) -> Vec<u16> {
         let count = (self.rings.len() + self.fans.len()).min(usize::from(NO_RING));
         let mut ring_of =
@@ -341,15 +345,15 @@ impl SupportIndex {
         ring_of
     }
 
-    /// That of a vertex with many neighbours.
+    /// Returns the fan of a vertex, which must have more than [`FAN`] neighbours.
     pub(super) fn fan_of_vertex(&self, vertex: u32) -> &Fan {
         let found = self.fans.binary_search_by_key(&vertex, |fan| fan.vertex);
         &self.fans[found.unwrap_or_default()]
     }
 
-    /// Candidates for neighbours in the supporting plane at `vertex`: positions of consecutive
-    /// neighbours, as first position and count, that contain all of them if the vertex has few, and
-    /// the three steepest if it has many.
+    /// Returns the positions of candidates for neighbours in the supporting plane at `vertex`, as first position and
+    /// count, cyclic. A vertex with at most [`FAN`] neighbours yields all of them, any other the steepest neighbour
+    /// and the two next to it.
     #[inline]
     pub(crate) fn plane_candidates(
         &self,
@@ -366,7 +370,7 @@ impl SupportIndex {
         ((best + count - 1) % count, 3)
     }
 
-    /// Bytes on the heap.
+    /// Returns the number of bytes on the heap.
     pub(crate) fn heap_bytes(&self) -> usize {
         self.cells.capacity() * size_of::<u32>()
             + self.groups.capacity() * size_of::<VertexGroup>()
@@ -378,11 +382,11 @@ impl SupportIndex {
             + self.rings.iter().map(Ring::heap_bytes).sum::<usize>()
     }
 
-    /// The entry of the cell that a direction falls into.
+    /// Returns the table entry of the cell that contains a direction.
     fn table_entry(&self, direction: DVec3) -> u32 {
         let half = 0.5 * f64::from(self.resolution);
         let place = octahedral_point(self.normalise * direction) * half + half;
-        // Casts saturate, so that a NaN from a zero direction is cell 0.
+        // Casts saturate: a NaN from a zero direction selects cell 0.
         let (mut fs, mut ft) = (place.x, place.y);
         let last = self.resolution - 1;
         let (i, j) = ((fs as u32).min(last), (ft as u32).min(last));
@@ -403,6 +407,7 @@ impl SupportIndex {
         entry
     }
 
+    /// Computes all entries of the table.
     fn fill_table(&mut self, vertices: &[DVec3], topology: &Topology) {
         let r = self.resolution;
         let base = r * r;
@@ -411,7 +416,7 @@ impl SupportIndex {
             index: self,
             vertices,
             topology,
-            // Directions of the table to directions of the body: the inverse of `normalise`.
+            // Maps directions of the table to directions of the body: the inverse of `normalise`.
             to_body: self.normalise.inverse(),
             limit: base as usize + vertices.len(),
         };
@@ -439,7 +444,7 @@ struct MapCell {
 }
 
 impl MapCell {
-    /// The normalised direction at relative position `(s, t)` in the cell.
+    /// Computes the normalised direction at the relative position `(s, t)` in the cell.
     fn direction_at(&self, s: f64, t: f64) -> DVec3 {
         let s = (f64::from(self.i) + s) * self.side - 1.0;
         let t = (f64::from(self.j) + t) * self.side - 1.0;
@@ -453,8 +458,8 @@ impl MapCell {
     }
 }
 
-/// Where a direction meets the octahedron `|x| + |y| + |z| = 1`, in `x` and `y`, with the lower half
-/// folded outwards onto the square around the upper one.
+/// Projects a direction onto the octahedron `|x| + |y| + |z| = 1`. Returns `x` and `y`, where the lower half is
+/// folded outwards onto the square around the upper half.
 #[inline]
 fn octahedral_point(w: DVec3) -> DVec2 {
     let a = w.abs();
@@ -464,7 +469,7 @@ fn octahedral_point(w: DVec3) -> DVec2 {
     DVec2::new(select_unpredictable(below, s, w.x), select_unpredictable(below, t, w.y))
 }
 
-/// The fold about the edges of the diamond `|s| + |t| = 1`.
+/// Folds a point about the edges of the diamond `|s| + |t| = 1`.
 fn fold_about_diamond(s: f64, t: f64) -> [f64; 2] {
     [(1.0 - t.abs()).copysign(s), (1.0 - s.abs()).copysign(t)]
 }
@@ -474,17 +479,18 @@ struct TableBuilder<'a> {
     vertices: &'a [DVec3],
     topology: &'a Topology,
     to_body: DMat3,
-    /// Most entries the table may have.
+    /// Maximum number of entries of the table.
     limit: usize,
 }
 
 impl TableBuilder<'_> {
+    /// Finds the support point along a normalised direction, starting at a vertex.
     fn support_point(&self, normalised: DVec3, start: u32) -> u32 {
         let direction = self.to_body * normalised;
         self.index.climb_to_support(self.vertices, self.topology, direction, start)
     }
 
-    /// Whether the support point is a few climbing steps from a vertex.
+    /// Checks whether a climb from `start` to the support point takes at most [`MAX_CELL_STEPS`] steps.
     fn is_near(&self, normalised: DVec3, start: u32) -> bool {
         let direction = self.to_body * normalised;
         let start = self.index.jump_along_ring(self.vertices, self.topology, direction, start);
@@ -492,8 +498,8 @@ impl TableBuilder<'_> {
         self.index.climb_edges(self.vertices, self.topology, direction, start, most).1 < most
     }
 
-    /// The entry of a cell whose centre has the support point `center`: divided while its corners
-    /// are far.
+    /// Computes the entry of a cell, where `center` is the support point of its centre. The cell is divided while a
+    /// corner is too many climbing steps away.
     fn cell_entry(&self, cell: MapCell, center: u32, cells: &mut Vec<u32>) -> u32 {
         let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)];
         let is_near = |(s, t)| self.is_near(cell.direction_at(s, t), center);
@@ -512,7 +518,7 @@ impl TableBuilder<'_> {
     }
 }
 
-/// The coordinates of a small body, in groups of four for a scan without branches.
+/// Coordinates of [`LANES`] vertices, for a scan without branches.
 #[derive(Debug, Clone, Copy)]
 struct VertexGroup {
     x: [f64; LANES],
@@ -520,9 +526,10 @@ struct VertexGroup {
     z: [f64; LANES],
 }
 
+/// Number of vertices that a scan compares at a time.
 const LANES: usize = 4;
 
-/// Groups of a body's vertices; the last one is filled up with copies of vertex 0.
+/// Returns the vertices of a body in groups. The last group is padded with copies of vertex 0.
 fn vertex_groups(vertices: &[DVec3]) -> Vec<VertexGroup> {
     let padded = |chunk: &[DVec3], k: usize| *chunk.get(k).unwrap_or(&vertices[0]);
     let group = |chunk: &[DVec3]| VertexGroup {
@@ -533,19 +540,21 @@ fn vertex_groups(vertices: &[DVec3]) -> Vec<VertexGroup> {
     vertices.chunks(LANES).map(group).collect()
 }
 
-/// Looks at every vertex. Of equals, one is chosen by position alone, so the answer does not depend
-/// on where a search starts.
+/// Scans all vertices for the one farthest along `direction`. Ties are broken by position alone, so the result does
+/// not depend on the start of a search.
 ///
-/// In one place for all, so that a query meets it in the cache; what it takes fits into registers.
+/// All callers share [`scan_along`], which keeps its code in the instruction cache. Its arguments fit into
+/// registers.
 #[inline]
 fn scan_vertices(groups: &[VertexGroup], direction: DVec3) -> u32 {
     scan_along(groups, direction.x, direction.y, direction.z)
 }
 
+/// Scans all vertices for the one farthest along `(x, y, z)`.
 #[inline(never)]
 fn scan_along(groups: &[VertexGroup], x: f64, y: f64, z: f64) -> u32 {
     let mut reach = [f64::NEG_INFINITY; LANES];
-    // Group numbers as f64, so that number and reach are selected by the same mask.
+    // Group numbers are stored as f64, so that one mask selects both the number and the reach.
     let mut best = [0.0; LANES];
     let mut number = 0.0;
     for group in groups {
@@ -567,7 +576,7 @@ fn scan_along(groups: &[VertexGroup], x: f64, y: f64, z: f64) -> u32 {
     pick(low, high).1 as u32
 }
 
-/// The steepest neighbour and what it gains.
+/// Returns the steepest neighbour and its gain along `direction`.
 #[inline]
 fn steepest_neighbour(
     vertices: &[DVec3],
@@ -585,7 +594,7 @@ fn steepest_neighbour(
     (best, gain)
 }
 
-/// The vertices with more than [`FAN`] neighbours.
+/// Builds the fans of all vertices with more than [`FAN`] neighbours.
 fn build_fans(vertices: &[DVec3], topology: &Topology) -> Vec<Fan> {
     (0..topology.vertex_count() as u32)
         .filter(|&v| topology.neighbours(v).len() > FAN)
@@ -593,7 +602,8 @@ fn build_fans(vertices: &[DVec3], topology: &Topology) -> Vec<Fan> {
         .collect()
 }
 
-/// The rings of faces with more than [`FAN`] corners, then those beside them that are no rings of faces.
+/// Builds the rings of all faces with more than [`FAN`] corners, followed by the rings adjacent to such faces that
+/// have a vertex outside them.
 fn build_rings(vertices: &[DVec3], topology: &Topology) -> Vec<Ring> {
     let large_faces =
         || (0..topology.face_count() as u32).filter(|&f| topology.face(f).len() > FAN);

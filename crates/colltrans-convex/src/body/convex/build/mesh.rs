@@ -1,8 +1,8 @@
-//! Bodies from meshes: closed, oriented, one sphere, convex.
+//! Bodies from closed, oriented, convex meshes that form a single sphere.
 //!
-//! Convexity is judged by the *defect*: how deep the surface lies below its convex hull. A face
-//! whose vertices lie on one face of the hull has none. Unlike a face's own plane, depth does not
-//! depend on the normals of slivers, which rounding makes arbitrary.
+//! Convexity is measured by the *defect*: the depth of the surface below its convex hull. A face whose vertices lie
+//! on one face of the hull has a defect of 0. In contrast to a test by the face's own plane, the depth does not
+//! depend on normals of slivers, which rounding makes arbitrary.
 
 use std::cell::OnceCell;
 
@@ -15,22 +15,22 @@ use colltrans_kernel::plane::polygon_normal;
 use colltrans_kernel::plane_tree::PlaneTree;
 use colltrans_kernel::topology::Topology;
 
-/// How far a mesh is from convex.
+/// Deviation of a mesh from convexity.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ConvexityDefect {
-    /// The face that lies deepest below the convex hull.
+    /// Index of the face that lies deepest below the convex hull.
     pub face: usize,
-    /// How deep, in the units of the mesh; 0 if every face lies on the hull.
+    /// Depth of this face, in the unit of the mesh; 0 if every face lies on the hull.
     pub depth: f64,
 }
 
-/// How deep the surface of a closed mesh lies below its convex hull.
+/// Computes the depth of a closed mesh's surface below its convex hull.
 ///
-/// Vertices in any frame and unit, faces as in [`ConvexPolyhedron::from_mesh`], which refuses a
-/// mesh when this depth exceeds its tolerance.
+/// Vertices are in any frame and unit, faces as in [`ConvexPolyhedron::from_mesh`]. That function rejects a mesh
+/// whose depth exceeds its tolerance.
 ///
 /// # Errors
-/// What is wrong with the points, the topology or the orientation.
+/// Invalid points, topology or orientation.
 ///
 /// ```
 /// use colltrans::convexity_defect;
@@ -53,13 +53,17 @@ pub fn convexity_defect<F: AsRef<[u32]>>(
     Ok(surface.convexity_defect(&surface.convex_hull()))
 }
 
+/// Builds the hull of a mesh, if the mesh is convex within `tolerance` or rounding error.
+///
+/// # Errors
+/// The errors of [`ConvexPolyhedron::from_mesh`].
 pub(super) fn from_mesh<F: AsRef<[u32]>>(
     vertices: &[DVec3],
     faces: &[F],
     tolerance: f64,
 ) -> Result<ConvexPolyhedron, BuildError> {
     let surface = Surface::new(vertices, faces)?;
-    // After the vertices, whose extent it may be a share of.
+    // Checked after the vertices because the caller may compute it from their extent.
     if tolerance.is_nan() || tolerance < 0.0 {
         return Err(BuildError::Tolerance { tolerance });
     }
@@ -74,7 +78,7 @@ pub(super) fn from_mesh<F: AsRef<[u32]>>(
     Ok(ConvexPolyhedron { dent, ..surface.build_body(hull) })
 }
 
-/// The topology of a body's own faces, checked to be convex.
+/// Builds the topology of a body's own faces, and checks that they are convex.
 #[cfg(feature = "json")]
 pub(super) fn own_faces(vertices: &[DVec3], faces: &[Vec<u32>]) -> Result<Topology, BuildError> {
     let surface = Surface::new(vertices, faces)?;
@@ -82,7 +86,7 @@ pub(super) fn own_faces(vertices: &[DVec3], faces: &[Vec<u32>]) -> Result<Topolo
         return Err(BuildError::NotABody { vertices: vertices.len(), faces: faces.len() });
     }
     let ConvexityDefect { face, depth } = surface.convexity_defect(&surface.convex_hull());
-    // Its polygons were merged within the tolerance of a hull of other points.
+    // The polygons of the body were merged within the tolerance of a hull of other points.
     let tolerance = 4.0 * hull::coplanar_tolerance(vertices);
     if depth > tolerance {
         return Err(BuildError::NotConvex { face, depth, tolerance });
@@ -100,6 +104,7 @@ struct Surface {
 }
 
 impl Surface {
+    /// Builds the surface, and checks points, topology and orientation.
     fn new<F: AsRef<[u32]>>(vertices: &[DVec3], faces: &[F]) -> Result<Self, BuildError> {
         hull::check_points(vertices)?;
         let mut face_start = vec![0];
@@ -131,7 +136,7 @@ impl Surface {
         Ok(surface)
     }
 
-    /// The same surface over the vertices in use alone.
+    /// Builds the surface over the vertices in use, without the others.
     fn without_unused_vertices(
         vertices: &[DVec3],
         used: &[bool],
@@ -149,8 +154,7 @@ impl Surface {
         Ok(Self { points: index.iter().map(|&v| vertices[v as usize]).collect(), index, topology })
     }
 
-    /// Refuses a surface that encloses a negative volume, beyond what rounding can make of a flat
-    /// one.
+    /// Rejects a surface that encloses a negative volume, beyond the rounding error of a flat surface.
     fn check_orientation(&self) -> Result<(), BuildError> {
         let signed_volume = Inertia::signed_volume(&self.points, &self.topology);
         let extent = self.points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
@@ -165,6 +169,7 @@ impl Surface {
         hull::hull_of_mesh(&self.points, &self.topology)
     }
 
+    /// Builds a body from the hull, with the indices of the mesh.
     fn build_body(&self, hull: IndexedHull) -> ConvexPolyhedron {
         let mut body = ConvexPolyhedron::from_hull(&self.points, hull);
         for v in &mut body.input_index {
@@ -173,6 +178,7 @@ impl Surface {
         body
     }
 
+    /// Computes the face that lies deepest below the hull.
     fn convexity_defect(&self, hull: &IndexedHull) -> ConvexityDefect {
         let depths = Depths::new(self, hull);
         let mut worst = ConvexityDefect { face: 0, depth: 0.0 };
@@ -187,13 +193,14 @@ impl Surface {
     }
 }
 
-/// Depths below the faces of a hull; for a flat one, behind the edges of its polygon.
+/// Measures depths below the faces of a hull; for a flat hull, behind the edges of its polygon.
 struct Depths<'a> {
     surface: &'a Surface,
     hull: &'a IndexedHull,
-    /// The planes to measure from, made when the first face is found off the hull: most meshes have none.
+    /// Planes to measure from. They are built for the first face that is not on the hull, because most meshes have
+    /// none.
     planes: OnceCell<PlaneTree>,
-    /// For each vertex of the surface, its number in the hull, if it is one of its vertices.
+    /// For each vertex of the surface its number in the hull; `None` if the hull lacks it.
     in_hull: Vec<Option<u32>>,
 }
 
@@ -206,6 +213,7 @@ impl<'a> Depths<'a> {
         Self { surface, hull, planes: OnceCell::new(), in_hull }
     }
 
+    /// Returns the planes to measure from, which the first call builds.
     fn hull_planes(&self) -> &PlaneTree {
         self.planes.get_or_init(|| {
             let (hull, points) = (self.hull, &self.surface.points);
@@ -219,8 +227,8 @@ impl<'a> Depths<'a> {
         })
     }
 
-    /// Greatest depth of a face's corners, edge midpoints and centre, or any number up to `known`
-    /// if it is not greater than that; 0 if the corners lie on one face of the hull.
+    /// Returns the largest depth of a face's corners, edge midpoints and centre. If this depth is at most `known`,
+    /// any number up to `known` may be returned. It is 0 if the corners lie on one face of the hull.
     ///
     /// A flat surface covers its inside twice; its edges are where it turns back.
     fn face_depth(&self, face: u32, known: f64, near: &mut usize) -> f64 {
@@ -244,15 +252,16 @@ impl<'a> Depths<'a> {
         }
     }
 
-    /// Returns the greatest depth of some points, or any number up to `known` if it is not greater than that.
+    /// Returns the largest depth of some points. If this depth is at most `known`, any number up to `known` may be
+    /// returned.
     fn max_depth(&self, points: impl Iterator<Item = DVec3>, known: f64, near: &mut usize) -> f64 {
-        // A smaller depth changes nothing.
+        // The search may stop at a depth that does not change the maximum.
         points.fold(0.0, |worst, p| {
             worst.max(self.hull_planes().least_depth(p, worst.max(known), near, &mut 0))
         })
     }
 
-    /// Whether the faces at an edge of a flat surface look to opposite sides.
+    /// Checks whether the faces at an edge of a flat surface face opposite sides.
     fn turns_back(&self, h: u32) -> bool {
         let topology = &self.surface.topology;
         let normal = |h: u32| {
@@ -262,6 +271,7 @@ impl<'a> Depths<'a> {
         normal(h).dot(normal(topology.half_edge(h).twin)) < 0.0
     }
 
+    /// Checks whether all corners of a face are vertices of one face of the hull.
     fn lies_on_hull(&self, face: u32) -> bool {
         let topology = &self.hull.topology;
         let corners = self.surface.topology.face_vertices(face);
@@ -274,8 +284,7 @@ impl<'a> Depths<'a> {
             return false;
         };
         let face_of = |h: &u32| topology.half_edge(*h).face;
-        // Whichever is shorter: the faces at a vertex (not at an apex) or the vertices of a face
-        // (not of a cap).
+        // Search the shorter list: the faces at a vertex (not at an apex) or the vertices of a face (not of a cap).
         let contains = |f: u32, v: u32| {
             if topology.outgoing(v).len() <= topology.face(f).len() {
                 topology.outgoing(v).iter().any(|h| face_of(h) == f)
@@ -288,7 +297,7 @@ impl<'a> Depths<'a> {
     }
 }
 
-/// The half-planes of a flat polygon, by its front face.
+/// Returns the half-planes of a flat polygon, as planes through the edges of its front face.
 fn edge_planes(vertices: &[DVec3], topology: &Topology) -> Vec<(DVec3, f64)> {
     let corners: Vec<DVec3> = topology.face_vertices(0).map(|v| vertices[v as usize]).collect();
     let up = polygon_normal(corners.iter().copied());
@@ -300,7 +309,7 @@ fn edge_planes(vertices: &[DVec3], topology: &Topology) -> Vec<(DVec3, f64)> {
     corners.iter().zip(next).map(plane).collect()
 }
 
-/// Twice the area of a polygon times its unit normal, also of one that is not convex.
+/// Computes twice the area of a polygon times its unit normal. The polygon need not be convex.
 fn area_vector(corners: impl Iterator<Item = DVec3> + Clone) -> DVec3 {
     let Some(first) = corners.clone().next() else { return DVec3::ZERO };
     let rest = corners.map(|c| c - first);

@@ -1,4 +1,4 @@
-//! Construction: bodies from points, from meshes and from corners.
+//! Construction of bodies from points, from meshes and from corners of a box.
 
 mod hull;
 mod mesh;
@@ -19,15 +19,15 @@ pub use mesh::{ConvexityDefect, convexity_defect};
 pub use offset::OffsetReport;
 
 impl ConvexPolyhedron {
-    /// The convex hull of `points` (body frame, any unit).
+    /// Builds the convex hull of `points` (body frame, any unit).
     ///
-    /// Coplanar triangles are merged into polygons and points within rounding error of a face
-    /// or an edge are no vertices; [`Self::hull_error`] says how far from the body any
-    /// input point was left. Takes `O(n log n)` for points in general.
+    /// Coplanar triangles are merged into polygons. Points within rounding error of a face or an edge are not
+    /// vertices. [`Self::hull_error`] bounds the distance of an input point from the body. It takes `O(n log n)`
+    /// time for points in general position.
     ///
     /// # Errors
-    /// No points, more than 32-bit indices can number, a point that is not finite, a coordinate
-    /// out of the exact range.
+    /// An empty list of points, more points than the limit, a point that is not finite, a coordinate outside the
+    /// exact range.
     ///
     /// ```
     /// use colltrans::ConvexPolyhedron;
@@ -49,12 +49,12 @@ impl ConvexPolyhedron {
         Ok(Self::from_hull(points, hull::convex_hull(points)))
     }
 
-    /// Returns the [hull](Self::from_points) of points that are some of an input, each with its number there.
+    /// Builds the [hull](Self::from_points) of points that are a selection of an input, each with its number there.
     ///
-    /// Features of answers, and `input_indices`, name the points by these numbers.
+    /// Features of answers and `input_indices` name the points by these numbers.
     ///
     /// # Errors
-    /// As of [`Self::from_points`]; they name a point by its number, too.
+    /// The errors of [`Self::from_points`], which also name a point by its number.
     ///
     /// ```
     /// use colltrans::glam::DVec3;
@@ -87,8 +87,8 @@ impl ConvexPolyhedron {
         Ok(body)
     }
 
-    /// The box between two opposite corners, of 8 vertices and 6 faces; a flat one if they have a
-    /// coordinate in common. Which corner is which does not matter.
+    /// Builds the box between two opposite corners, with 8 vertices and 6 faces. It is flat if the corners have a
+    /// coordinate in common. The order of the corners is irrelevant.
     ///
     /// # Errors
     /// A corner that is not finite or out of range.
@@ -108,16 +108,16 @@ impl ConvexPolyhedron {
         Self::from_points(&std::array::from_fn::<DVec3, 8, _>(corner))
     }
 
-    /// A closed convex surface: vertices (body frame, any unit) and polygonal faces as lists of
+    /// Builds a body from a closed convex surface: vertices (body frame, any unit) and polygonal faces as lists of
     /// vertex indices, counter-clockwise as seen from outside.
     ///
-    /// The surface must be closed, consistently oriented, one sphere, and nowhere more than
-    /// `tolerance` (a length; rounding error is tolerated in any case) below its convex hull; the
-    /// hull is what is kept. Vertices that no face uses are ignored.
+    /// The surface must be closed, consistently oriented and a single sphere. It must lie at most `tolerance` (a
+    /// length) below its convex hull; rounding error is always tolerated. The body is this hull. Vertices that no
+    /// face uses are ignored.
     ///
     /// # Errors
-    /// What is wrong with the points, the topology, the orientation, or the convexity (with the
-    /// worst face and its depth); a tolerance that is negative or not a number.
+    /// Invalid points, topology or orientation; a surface that is not convex (with the worst face and its depth); a
+    /// tolerance that is negative or not a number.
     ///
     /// ```
     /// use colltrans::glam::DVec3;
@@ -142,12 +142,12 @@ impl ConvexPolyhedron {
         mesh::from_mesh(vertices, faces, tolerance)
     }
 
-    /// A body from what another one was: its vertices, its faces in their order, the indices of its
-    /// input, its hull error and how far its input reaches beyond it, checked to be convex.
+    /// Rebuilds a body from its stored data: its vertices, its faces in their order, its input indices, its hull
+    /// error and its input excess. It checks that the faces are convex.
     ///
     /// # Errors
-    /// As [`Self::from_mesh`]; [`BuildError::NotABody`] if there are no faces and not one or two
-    /// vertices, or vertices that the hull of all does not have.
+    /// The errors of [`Self::from_mesh`]. [`BuildError::NotABody`] if the counts or the stored errors are
+    /// inconsistent, or if the hull of the vertices lacks some of them.
     #[cfg(feature = "json")]
     pub(crate) fn from_own_faces(
         vertices: &[DVec3],
@@ -166,8 +166,8 @@ impl ConvexPolyhedron {
         };
         let is_own = |hull: &IndexedHull| hull.vertices.len() == vertex_count;
         let like = hull::convex_hull(vertices);
-        // A body hardly thicker than the tolerance may be flat without the points that it left out, or
-        // have all corners of the exact hull.
+        // A body hardly thicker than the tolerance may be flat without the points that it left out. It may also have
+        // all corners of the exact hull.
         let same = is_own(&like)
             || like.dimension < dimension && hull::are_distinct(vertices)
             || is_own(&hull::exact_hull(vertices));
@@ -193,6 +193,7 @@ impl ConvexPolyhedron {
         Ok(body)
     }
 
+    /// Builds a body and its indices from a hull of `points`.
     fn from_hull(points: &[DVec3], hull: IndexedHull) -> Self {
         let IndexedHull { dimension, vertices: input, topology, violation, input_excess } = hull;
         let vertices: Vec<DVec3> = input.iter().map(|&i| points[i as usize]).collect();
@@ -214,14 +215,15 @@ impl ConvexPolyhedron {
             kept: crate::body::Kept::default(),
         };
         body.measure_faces();
-        // Queries go by them around the faces of small bodies, and along the rims of large faces.
+        // Queries use the links to walk around faces of small bodies and along rims of large faces. Other bodies
+        // drop them.
         if body.vertices.len() > hull::MAX_INPUT_ORDER && body.large_faces.is_empty() {
             body.topology.let_go_of_links();
         }
         body
     }
 
-    /// A body of dimension 3 from its faces, which the caller knows to be convex.
+    /// Builds a body of dimension 3 from faces that the caller guarantees to be convex.
     #[cfg(test)]
     pub(crate) fn from_convex_faces(vertices: &[DVec3], faces: &[Vec<u32>]) -> Self {
         let mut face_start = vec![0];

@@ -1,16 +1,13 @@
-//! Bodies whose face planes have all moved by one amount, inwards or outwards.
+//! Offset bodies: all face planes of a convex body move inwards or outwards by one amount.
 //!
-//! The planes `n.x <= c` become `n.x <= c - e` (`e < 0`: outwards). About a point `o` inside all of them,
-//! with `x = o + L z` and `d = c - e - n.o`, they are the points `L^T n / d` of the polar polytope: the
-//! faces of their hull, on planes `m.p = h`, are the corners `z = m / h` of what is left. The corners'
-//! own hull is the body.
+//! 1. The planes `n . x <= c` become `n . x <= c - e`, where `e < 0` moves outwards.
+//! 2. For a point `o` inside them all and `x = o + L z`, they are the points `L^T n / (c - e - n . o)` of the polar
+//!    polytope.
+//! 3. The faces of the hull of these points, on planes `m . p = h`, are the corners `z = m / h` of the offset body.
 //!
-//! `o` and `L` are the centroid and the inertia ellipsoid of a body near the result, so that in `z` it
-//! is round and no plane's rounding outweighs another's. Near is first the body itself. The centroid
-//! of a convex body lies at least a quarter of its width below each face: with `r` that depth, the
-//! planes may move by another `r / 2` and leave `o` well inside, and by more than `2 r` they leave
-//! nothing. What is beyond that is gone in steps, each about the centroid of what the one before has
-//! left, and always from the planes of the body as given: nothing adds up.
+//! `o` and `L` are centroid and inertia ellipsoid of a body near the result, so that the result is nearly round in
+//! `z`. Large amounts are approached in steps, each about the centroid of the result of the last step, and always
+//! from the given planes. Derivation: `docs/theory/hulls.md`.
 
 use glam::{DMat3, DVec3};
 
@@ -20,40 +17,44 @@ use crate::body::{ConvexPolyhedron, Inertia};
 use colltrans_kernel::plane::polygon_normal;
 use colltrans_kernel::range::without_traces;
 
-/// A result whose farthest corner is so many times farther away than its nearest plane, in `z`, is
-/// computed anew, about itself.
+/// Maximum ratio of the farthest corner's distance to the nearest plane's distance, in `z`. A result with a larger
+/// ratio is recomputed about its own centroid.
 const MAX_ASPECT: f64 = 16.0;
-/// How often, at most: once is enough but for needles.
+/// Maximum number of such recomputations. One is enough except for needles.
 const MAX_RENORMALISATIONS: usize = 4;
-/// Steps inwards, at most; each takes at least half of the depth of the centroid.
+/// Maximum number of steps inwards. Each but the last takes at least half of the depth of the centroid.
 const MAX_STEPS: usize = 128;
 
-/// What became of a convex body whose faces were moved.
+/// Changes to a convex body by an offset of its faces.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct OffsetReport {
-    /// The largest distance of a vertex of the result from the one that it comes from, in the units of
-    /// the body.
+    /// Largest distance of a vertex of the result from its source vertex, in the unit of the body.
     pub farthest: f64,
-    /// Faces of which nothing is left, in increasing order.
+    /// Faces that do not occur in the result, in ascending order.
     pub vanished: Vec<u32>,
 }
 
 impl ConvexPolyhedron {
-    /// What lies at least `amount` deep below every face plane, in the units of the body: the centres
-    /// of all balls of that radius in the body. Every face plane moves inwards by `amount`; where a
-    /// face is too small to stay, the planes around it meet without it.
+    /// Shrinks the body: returns the points at least `amount` (unit of the body) below every face plane, that is,
+    /// the centres of all balls of this radius in the body. Every face plane moves inwards by `amount`. A face that
+    /// is too small vanishes, and the planes around it meet.
     ///
-    /// Vertices are numbered anew; [`Self::input_indices`] gives for each the input of the one that it
-    /// comes from, which is the farthest along its faces' normals. Planes are off by less than `2^-40`
-    /// of the largest coordinate. `Solid::shrunk` moves each vertex the shortest
-    /// way: to the same places in boxes and prisms, but farther below some of the planes where a way
-    /// between two of them is shorter, and one vertex stays one. Takes `O(n log n)`,
-    /// some times as often where the amount is nearly all there is.
+    /// Vertices are renumbered. [`Self::input_indices`] contains for each the input number of its source vertex,
+    /// which is the farthest one along the sum of the normals of its faces. Planes deviate by less than `2^-40` of
+    /// the largest coordinate.
+    ///
+    /// In contrast, `Solid::shrunk` moves each vertex the shortest way, and one vertex remains one. In boxes and
+    /// prisms the result is the same. In other bodies a vertex may move farther below some planes, where a way
+    /// between two of them is shorter.
+    ///
+    /// It takes `O(n log n)` time, repeated several times if nearly nothing remains.
     ///
     /// # Errors
-    /// [`BuildError::TooThin`] for a body that holds no ball of this radius, or nothing that rounding
-    /// leaves a volume of: also a flat polygon, a segment, a point. An amount that is negative or not
-    /// finite. 0 is the body itself, whatever it is.
+    /// - [`BuildError::TooThin`] if the body contains no ball of this radius, or if rounding leaves no volume. This
+    ///   includes a flat polygon, a segment and a point.
+    /// - [`BuildError::Amount`] if the amount is negative or not finite.
+    ///
+    /// An amount of 0 returns any body unchanged.
     ///
     /// ```
     /// use colltrans::{BuildError, ConvexPolyhedron};
@@ -75,16 +76,18 @@ impl ConvexPolyhedron {
         self.with_moved_faces(amount, amount)
     }
 
-    /// What lies at most `amount` outside every face plane: every face plane moves outwards by
-    /// `amount`, and edges and corners stay as sharp as they are, so all points within `amount` of the
-    /// body are in it, and beyond sharp corners more. For a margin to be kept.
+    /// Grows the body: returns the points at most `amount` outside every face plane. Every face plane moves outwards
+    /// by `amount`, and edges and corners stay sharp. The result contains all points within `amount` of the body,
+    /// and more beyond sharp corners. This gives a safety margin.
     ///
-    /// A flat polygon becomes a plate `2 amount` thick, its sides moved outwards by `amount`. Numbers
-    /// and rounding are those of [`Self::shrunk`].
+    /// A flat polygon becomes a plate of thickness `2 amount`, and its sides move outwards by `amount`. Numbering
+    /// and rounding are as for [`Self::shrunk`].
     ///
     /// # Errors
-    /// [`BuildError::NothingToMove`] for a segment or a point, which have no faces. An amount that is
-    /// negative, not finite, or so large that coordinates leave the exact range.
+    /// - [`BuildError::NothingToMove`] for a segment or a point, which have no faces.
+    /// - [`BuildError::Amount`] if the amount is negative or not finite, or if coordinates leave the exact range.
+    ///
+    /// An amount of 0 returns any body unchanged.
     ///
     /// ```
     /// use colltrans::ConvexPolyhedron;
@@ -101,6 +104,7 @@ impl ConvexPolyhedron {
         self.with_moved_faces(amount, -amount)
     }
 
+    /// Moves all face planes inwards by `inwards`, which is `amount` or its negative.
     fn with_moved_faces(
         &self,
         amount: f64,
@@ -124,7 +128,7 @@ impl ConvexPolyhedron {
         Ok(self.body_of_cell(&planes, cell))
     }
 
-    /// The body, with the numbers of this one, and what became of it.
+    /// Builds the body of a cell, with input numbers of this body, and the report.
     fn body_of_cell(&self, planes: &[HalfSpace], cell: OffsetCell) -> (Self, OffsetReport) {
         let mut body = Self::from_hull(&cell.corners, cell.hull);
         let mut farthest = 0.0_f64;
@@ -153,13 +157,14 @@ struct HalfSpace {
 }
 
 impl HalfSpace {
+    /// Returns the signed depth of a point below the plane.
     fn depth_of(&self, point: DVec3) -> f64 {
         self.normal.dot(self.point - point)
     }
 }
 
-/// The planes of all faces, each through the body's farthest vertex along its normal; of a flat
-/// polygon also those that stand on its edges.
+/// Returns the planes of all faces, each through the farthest vertex along its normal. For a flat polygon, the
+/// planes perpendicular to it through its edges follow.
 fn face_planes(body: &ConvexPolyhedron) -> Vec<HalfSpace> {
     let at = |v: u32| body.vertices[v as usize];
     let supporting = |normal: DVec3| HalfSpace { normal, point: at(body.support(normal).0) };
@@ -176,7 +181,7 @@ fn face_planes(body: &ConvexPolyhedron) -> Vec<HalfSpace> {
     planes
 }
 
-/// A body near the result: where it is, and an ellipsoid that it resembles.
+/// A centre and an ellipsoid that normalise a body near the result.
 struct Normalisation {
     center: DVec3,
     factor: DMat3,
@@ -187,7 +192,7 @@ impl Normalisation {
         Self { center: inertia.center, factor: inertia.factor }
     }
 
-    /// The body itself, and larger by what it grows.
+    /// Uses those of the original body, with the ellipsoid enlarged by the amount of growth.
     fn for_first_step(inertia: &Inertia, inwards: f64) -> Self {
         let grows = DVec3::splat((-inwards).max(0.0));
         Self { factor: inertia.factor + DMat3::from_diagonal(grows), ..Self::new(inertia) }
@@ -199,13 +204,16 @@ struct OffsetCell {
     corners: Vec<DVec3>,
     /// The hull of the corners.
     hull: IndexedHull,
-    /// The polar polytope: a vertex for each plane that stays, a face for each corner.
+    /// The polar polytope: a vertex for each plane that remains, a face for each corner.
     polar: IndexedHull,
-    /// How far the farthest corner is, in the distance of the nearest plane.
+    /// Ratio of the farthest corner's distance to the nearest plane's distance, in `z`.
     aspect: f64,
 }
 
-/// The cell of planes moved inwards by an amount, in steps; see the module's head.
+/// Computes the cell of all planes moved inwards by an amount, in steps.
+///
+/// # Errors
+/// Those of [`offset_error`] and [`check_range`].
 fn offset_cell(
     planes: &[HalfSpace],
     mut normalisation: Normalisation,
@@ -240,8 +248,8 @@ fn offset_cell(
     Err(offset_error(inwards, fits))
 }
 
-/// Why there is no body: too thin to shrink so far, or grown beyond all numbers, so that the polar points
-/// are one to them.
+/// Returns the error for a failed offset: the body is too thin to shrink by this amount, or it was grown so far
+/// that its polar points coincide numerically.
 fn offset_error(inwards: f64, fits: f64) -> BuildError {
     if inwards > 0.0 {
         BuildError::TooThin { amount: inwards, fits }
@@ -250,6 +258,7 @@ fn offset_error(inwards: f64, fits: f64) -> BuildError {
     }
 }
 
+/// Returns the cell, or an error if a corner is outside the exact range.
 fn check_range(cell: OffsetCell, inwards: f64) -> Result<OffsetCell, BuildError> {
     let checked = hull::check_points(&cell.corners);
     checked.map_err(|_| BuildError::Amount { amount: inwards.abs() })?;
@@ -257,7 +266,8 @@ fn check_range(cell: OffsetCell, inwards: f64) -> Result<OffsetCell, BuildError>
 }
 
 impl OffsetCell {
-    /// `None` if rounding leaves no volume around the centre.
+    /// Computes the cell of all planes moved inwards by `step`. Returns `None` if rounding leaves no volume around
+    /// the centre.
     fn new(planes: &[HalfSpace], normalisation: &Normalisation, step: f64) -> Option<Self> {
         let turned = normalisation.factor.transpose();
         let polar_point = |p: &HalfSpace| {

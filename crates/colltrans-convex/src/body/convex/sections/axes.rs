@@ -1,15 +1,11 @@
-//! The four section axes of a body, and the choice of one for each of two bodies.
+//! The four section axes of a body, and the selection of one axis for each of two bodies.
 //!
-//! Two axes `a`, `b` and the direction `d` are in general configuration if `a . d != 0`, `b . d !=
-//! 0` and `a x b != 0`. No three of the four tetrahedral axes are coplanar, so `d` is orthogonal to
-//! at most two of them: at least two of each body have a component along `d`, and of these pairs at
-//! least one is not parallel. Over all rotations and directions the best pair has `min(|a.d|,
-//! |b.d|, |a x b|) >= 1/3` for unit vectors (found by numerical minimisation; it is met when the
-//! frames agree and `d` is a coordinate axis).
+//! Two axes `a`, `b` and the direction `d` are in general configuration if `a . d != 0`, `b . d != 0` and
+//! `a x b != 0`. Some pair of the axes always is, with a margin of `1/3`; see `docs/theory/sections.md`.
 
 use glam::{DMat3, DVec3};
 
-/// The section axes in the body frame, of length `sqrt 3` so that a level is a sum of coordinates.
+/// The section axes in the body frame. Their length is `sqrt 3`, so that a level is a sum of signed coordinates.
 pub(crate) const AXES: [DVec3; 4] = [
     DVec3::new(1.0, 1.0, 1.0),
     DVec3::new(1.0, -1.0, -1.0),
@@ -17,20 +13,21 @@ pub(crate) const AXES: [DVec3; 4] = [
     DVec3::new(-1.0, -1.0, 1.0),
 ];
 
-/// The length of a section axis: levels are this many times as far apart as their planes.
+/// Length of a section axis: the factor between a distance along it and the difference of levels.
 pub(crate) const AXIS_LENGTH: f64 = 1.732_050_807_568_877_2;
 
-/// One section axis of each body, by index into [`AXES`] and in the setting frame.
+/// One section axis of each body: its index in [`AXES`], and its direction in the frame of the setting.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct AxisPair {
-    /// Of the moving body.
+    /// Axis of the moving body.
     pub(crate) moving: (usize, DVec3),
-    /// Of the fixed body.
+    /// Axis of the fixed body.
     pub(crate) fixed: (usize, DVec3),
 }
 
 impl AxisPair {
-    /// The pair in the most general configuration with the unit direction `unit`.
+    /// Selects the pair that is farthest from a degenerate configuration with the unit direction `unit`. `moving`
+    /// and `fixed` map the body frames to the frame of the setting.
     pub(crate) fn choose(moving: &DMat3, fixed: &DMat3, unit: DVec3) -> Self {
         let a = AXES.map(|axis| *moving * axis);
         let b = AXES.map(|axis| *fixed * axis);
@@ -39,7 +36,7 @@ impl AxisPair {
         let (mut best, mut quality) = ((0, 0), -1.0);
         for i in 0..4 {
             for j in 0..4 {
-                // Squares of the three quantities for vectors of length sqrt 3, times 9.
+                // The squares of the three quantities for vectors of length `sqrt 3`, times a common factor 9.
                 let cosine = a[i].dot(b[j]);
                 let q = a_along[i].min(b_along[j]).min(9.0 - cosine * cosine);
                 if q > quality {

@@ -1,56 +1,53 @@
-//! Chains: the faces of a body from left to right, and a tree over the edges between them. Of a section
-//! whose edges are many they tell one in a part of it at once, where snapshots would let a walk pass
-//! hundreds.
+//! Chains: an order of a body's faces from left to right, and a binary tree over the edges between them. In
+//! sections with many edges, one test finds an edge in a given part of the section.
 //!
-//! Every section is cut where the *cut* passes it, a climb from the lowest vertex to the top; what is left
-//! is a row of faces, counter-clockwise. One order of all faces, their *ranks*, holds for the rows of all
-//! levels (faces are monotone, so the relation "beside it, to the left" has no cycle once the cut is made). For each
-//! number `k` the edges between faces of ranks below `k` and others form a chain, which is monotone too:
-//! each level crosses one edge of it. Over ranks stands a binary tree, whose nodes are the numbers that
-//! halve it: `node(l, r)` of two ranks, the one with the most trailing zeros in `l + 1..=r`. An edge between
-//! faces of ranks `l < r` is kept in that one node alone, so all take `O(n)`; the spans of a node's edges
-//! are disjoint, as they are of one chain (Lee and Preparata's search in a planar subdivision, 1977).
+//! - *cut*: a climb from the lowest to the highest vertex, always along the edge that leads highest. Each section,
+//!   cut open there, is a row of faces, counter-clockwise.
+//! - *rank* of a face: its position in one order of all faces that holds for the rows of all levels.
+//! - *chain* `k`: the edges between faces of ranks below `k` and other faces. Each level crosses one edge of it.
+//! - *node* of two ranks `l < r`: the number with the most trailing zeros in `l + 1..=r`. An edge is stored only at
+//!   the node of its two faces, so the tree takes `O(n)` space.
 //!
-//! Invariant of a search: between two edges of a section the faces have ranks from `l` to `r`, those
-//! next to either edge. If `l < r`, then `node(l, r)` keeps an edge that the level crosses, and it is
-//! between the two: one look halves the ranks that are left. Rounding in the levels may hide it: then
-//! there is no answer, and a walk has to do.
+//! Invariant of a search: between two edges of a section, the faces have ranks from `l` to `r`. If `l < r`, their
+//! node stores an edge that crosses the level between the two edges. Rounding of levels may hide it; then the
+//! search returns `None` and the caller walks. Derivation: `docs/theory/sections.md`.
 
 use super::snapshots::{LeveledMesh, Turn};
 use colltrans_kernel::topology::Topology;
 
-/// A face of more sides is searched along its boundary.
+/// Maximum number of sides of a face that is not searched along its boundary.
 const MAX_WALKED_SIDES: u32 = 8;
 
-/// No rank yet.
+/// Marks a face without a rank.
 const NONE: u32 = u32::MAX;
 
 /// The chains across one axis.
 #[derive(Debug, Clone)]
 pub(crate) struct Chains {
-    /// Of each face.
+    /// Rank of each face.
     ranks: Vec<u32>,
-    /// First edge of each node, and one past the end.
+    /// First edge of each node, followed by the number of all edges.
     starts: Vec<u32>,
-    /// The half-edges upwards of each node, from the lowest.
+    /// Half-edges that run upwards, grouped by node and ascending by origin within a node.
     edges: Vec<u32>,
-    /// Those of the cut.
+    /// Half-edges of the cut, upwards.
     cut: Vec<u32>,
 }
 
-/// One level's search in the chains.
+/// The search of one level in the chains.
 pub(crate) struct Search<'a, L, C> {
     pub(crate) chains: &'a Chains,
     pub(crate) topology: &'a Topology,
     pub(crate) x: f64,
-    /// The level of a vertex.
+    /// Returns the level of a vertex.
     pub(crate) level: L,
-    /// Is told of so many steps.
+    /// Receives numbers of steps to count.
     pub(crate) count: C,
 }
 
 impl Chains {
-    /// For vertices from the lowest, and the edge from each that leads highest.
+    /// Builds the chains. `order` lists the vertices from the lowest, and `highest` contains for each vertex the
+    /// edge that leads highest.
     pub(super) fn build(mesh: &LeveledMesh, order: &[(f64, u32)], highest: &[Option<u32>]) -> Self {
         let cut = cut_edges(mesh, order[0].1, highest);
         let ranks = face_ranks(mesh, &cut);
@@ -61,7 +58,8 @@ impl Chains {
         let of_vertex = |&(_, v): &(f64, u32)| mesh.topology.outgoing(v).iter().copied();
         let ups =
             || order.iter().flat_map(of_vertex).filter(|&h| mesh.is_up(h) && !is_cut[h as usize]);
-        // How many each node has; then where its next one goes.
+        // First pass: count the edges of each node. Second pass: store them, with `starts` as the next free
+        // positions.
         for up in ups() {
             if let Some(node) = chains.node_of(mesh.topology, up) {
                 chains.starts[node as usize + 1] += 1;
@@ -77,24 +75,26 @@ impl Chains {
                 chains.starts[node as usize] += 1;
             }
         }
-        // Each start is where the node ended, which is where the next one begins.
+        // Each start is now the end of its node, which is the start of the next node.
         chains.starts.rotate_right(1);
         chains.starts[0] = 0;
         chains
     }
 
-    /// The rank of the face on the clockwise side of an edge, and on the other.
+    /// Returns the ranks of the faces at an edge, on its clockwise side and on its counter-clockwise side.
     fn adjacent_ranks(&self, topology: &Topology, up: u32) -> [u32; 2] {
         let edge = topology.half_edge(up);
         [edge.face, topology.half_edge(edge.twin).face].map(|face| self.ranks[face as usize])
     }
 
+    /// Returns the node of an edge. Returns `None` if the ranks are not in order.
     fn node_of(&self, topology: &Topology, up: u32) -> Option<u32> {
         let [left, right] = self.adjacent_ranks(topology, up);
         // Rounding may have left a cycle.
         (left < right).then(|| separating_node(left, right))
     }
 
+    /// Returns the number of bytes on the heap.
     pub(super) fn heap_bytes(&self) -> usize {
         let Self { ranks, starts, edges, cut } = self;
         let counts = [ranks, starts, edges, cut].map(Vec::capacity);
@@ -102,20 +102,20 @@ impl Chains {
     }
 }
 
-/// The node that parts two ranks, the lesser first.
+/// Returns the node that separates two ranks, given in ascending order.
 fn separating_node(left: u32, right: u32) -> u32 {
     let bits = (left ^ right).ilog2();
     right >> bits << bits
 }
 
-/// A climb from the lowest vertex, by the edges that lead highest.
+/// Climbs from the lowest vertex along the edges that lead highest. Returns these edges.
 fn cut_edges(mesh: &LeveledMesh, lowest: u32, highest: &[Option<u32>]) -> Vec<u32> {
     let ahead = |&up: &u32| highest[mesh.topology.target(up) as usize];
     std::iter::successors(highest[lowest as usize], ahead).collect()
 }
 
-/// The ranks of all faces: each after those beside it on its clockwise side. First come, first served, so
-/// that neighbours of neighbours have ranks as near as may be.
+/// Computes the ranks of all faces. Each rank is above those of the faces adjacent on the clockwise side. Faces are
+/// ranked in the order in which they become available, so that faces near each other have close ranks.
 fn face_ranks(mesh: &LeveledMesh, cut: &[u32]) -> Vec<u32> {
     let topology = mesh.topology;
     let faces = topology.face_count() as u32;
@@ -141,39 +141,41 @@ fn face_ranks(mesh: &LeveledMesh, cut: &[u32]) -> Vec<u32> {
             }
         }
     }
-    // What rounding has left in a cycle comes last.
+    // Faces that rounding has left in a cycle come last.
     let rest = ranks.iter_mut().filter(|rank| **rank == NONE);
     rest.zip(ranked as u32..).for_each(|(rank, last)| *rank = last);
     ranks
 }
 
 impl<L: Fn(u32) -> f64, C: Fn(u32)> Search<'_, L, C> {
-    /// The edge of a node that crosses the level.
+    /// Returns the edge of a node that crosses the level, if there is one.
     fn crossing_edge_of_node(&self, node: u32) -> Option<u32> {
         let Chains { starts, edges, .. } = self.chains;
         let [from, to] = [node, node + 1].map(|k| starts[k as usize] as usize);
         self.crossing_edge(&edges[from..to])
     }
 
-    /// The one of a chain's edges that crosses the level.
+    /// Finds the edge among the edges of a chain that crosses the level. Returns `None` if rounding hides it.
     fn crossing_edge(&self, edges: &[u32]) -> Option<u32> {
         (self.count)(edges.len().checked_ilog2().unwrap_or(0));
         let below = |up: &u32| (self.level)(self.topology.origin(*up)) <= self.x;
         let last = edges[..edges.partition_point(below)].last();
         let found = last.filter(|&&up| (self.level)(self.topology.target(up)) > self.x);
-        // Who looks at a crossing counts it.
+        // If an edge is found, the caller counts its test.
         (self.count)(u32::from(found.is_none()));
         found.copied()
     }
 
-    /// An edge that crosses the level on a face of many sides beside one that does not.
+    /// Finds an edge that crosses the level on a face with many sides, next to the edge `up`, which does not cross
+    /// it. Returns `None` if neither face has many sides, or the search does not reach the level.
     pub(crate) fn along_faces(&self, up: u32) -> Option<u32> {
         let beside = [up, self.topology.half_edge(up).twin];
         beside.into_iter().find_map(|h| self.along_face(h))
     }
 
-    /// Along the boundary of a face of many sides, whose levels rise once and fall once: steps of growing
-    /// length towards the level, then halving.
+    /// Searches the boundary of a face with many sides, on which levels rise once and fall once. Steps towards the
+    /// level double in length; bisection follows. Returns `None` if the face has few sides or the search does not
+    /// reach the level.
     fn along_face(&self, from: u32) -> Option<u32> {
         let topology = self.topology;
         let face = topology.face(topology.half_edge(from).face);
@@ -184,7 +186,7 @@ impl<L: Fn(u32) -> f64, C: Fn(u32)> Search<'_, L, C> {
         let level = |h: u32| (self.level)(topology.origin(h));
         let is_below = level(from) <= self.x;
         let next = topology.next(from);
-        // On and on in the turn in which levels come nearer.
+        // Step in the direction in which levels approach `x`.
         let is_forward = (level(from) < level(next)) == is_below;
         let first = if is_forward { from } else { next };
         let at = |steps: u32| {
@@ -212,7 +214,7 @@ impl<L: Fn(u32) -> f64, C: Fn(u32)> Search<'_, L, C> {
         Some(if is_up { edge } else { topology.half_edge(edge).twin })
     }
 
-    /// Ranks of the faces behind and ahead of an edge.
+    /// Returns the ranks of the faces behind and ahead of an edge.
     fn ranks_along(&self, up: u32, turn: Turn) -> [u32; 2] {
         let [left, right] = self.chains.adjacent_ranks(self.topology, up);
         match turn {
@@ -221,7 +223,8 @@ impl<L: Fn(u32) -> f64, C: Fn(u32)> Search<'_, L, C> {
         }
     }
 
-    /// An edge that crosses the level near one that crosses another.
+    /// Finds an edge that crosses the level, starting at an edge `up` that may cross another level. Returns `None`
+    /// if rounding hides all candidates.
     pub(crate) fn near(&self, up: u32) -> Option<u32> {
         let [face, _] = self.ranks_along(up, Turn::CounterClockwise);
         let faces = self.chains.ranks.len() as u32;
@@ -231,8 +234,9 @@ impl<L: Fn(u32) -> f64, C: Fn(u32)> Search<'_, L, C> {
         found.or_else(|| self.crossing_edge(&self.chains.cut))
     }
 
-    /// The last edge from `start` on for which `holds`: it does for `start`, for those after it up to some
-    /// edge, and for none beyond that on the way around.
+    /// Finds the last edge of the section from `start` on for which `holds` is true. It must be true for `start` and
+    /// the edges after it up to some edge, and false for the remaining ones. Returns `None` if rounding hides an
+    /// edge.
     pub(crate) fn last(
         &self,
         start: u32,
@@ -242,7 +246,7 @@ impl<L: Fn(u32) -> f64, C: Fn(u32)> Search<'_, L, C> {
         let end = self.ranks_along(start, turn)[0];
         let mut last = start;
         let mut ahead = self.ranks_along(start, turn)[1];
-        // Larger and larger parts of the section, up to an edge for which it does not hold.
+        // Test larger and larger parts of the section, up to an edge for which the predicate is false.
         let mut behind = None;
         for bits in 0..=self.chains.ranks.len().ilog2() {
             let node = self.node_ahead(ahead, bits, turn);
@@ -255,7 +259,7 @@ impl<L: Fn(u32) -> f64, C: Fn(u32)> Search<'_, L, C> {
             ahead = self.ranks_along(up, turn)[1];
         }
         if behind.is_none() {
-            // Over the cut, and at most to where the search began.
+            // Continue across the cut, at most to where the search began.
             let cut = self.crossing_edge(&self.chains.cut)?;
             behind = Some(if cut == start {
                 end
@@ -281,7 +285,7 @@ impl<L: Fn(u32) -> f64, C: Fn(u32)> Search<'_, L, C> {
         Some(last)
     }
 
-    /// The node of height `bits` over a rank, if it is ahead of it.
+    /// Returns the node of height `bits` over a rank; `None` if it is not ahead of the rank.
     fn node_ahead(&self, rank: u32, bits: u32, turn: Turn) -> Option<u32> {
         let node = (rank >> bits | 1) << bits;
         let is_ahead = (rank >> bits & 1 == 0) == (turn == Turn::CounterClockwise);

@@ -1,21 +1,14 @@
-//! Snapshots: edges of the section, in cyclic order, at chosen levels.
+//! Snapshots: edges of the section at selected levels, in cyclic order.
 //!
-//! The first snapshot is at the lowest level. The next one comes after the vertices passed have as
-//! many edges as [`EDGES_PER_ENTRY`] times its entries, so all snapshots together have `O(n)`
-//! entries, and a vertex of very many edges (the apex of a cone) gets a snapshot of its own. A query
-//! at level `x` starts from the last snapshot at or below `x`: no such vertex lies between.
+//! The first snapshot is at the lowest level. The next one follows when the vertices passed have
+//! [`EDGES_PER_ENTRY`] edges for each of its entries. Therefore all snapshots together have `O(n)` entries, and a
+//! vertex with very many edges gets its own snapshot. A query at level `x` starts from the last snapshot at or
+//! below `x`, and no such vertex lies between.
 //!
-//! A walk from a snapshot passes the vertices between its level and `x`, and the edges between two
-//! entries. A snapshot of every `s`-th edge makes the next one come `s` times as soon: the first
-//! become fewer and the second more, in the same space. Where the faces are round, a section of `m`
-//! edges passes few vertices until the next one; where they are thin or large, a corner of the
-//! section passes a share of `m`. A stride `s` in proportion to the root of `m` suits both.
-//!
-//! An entry holds a crossing edge and, as `f32`, where it crosses, and its *way*: how a climb from
-//! it, at each vertex along the edge that leads highest, moves per level up to the next snapshot.
-//! Where faces are thin, corners of the section pass many vertices between two snapshots, so that only
-//! the way tells where they are. Positions and ways only guide a search, whose end is decided on the
-//! mesh.
+//! An entry stores a crossing edge, its position and its *drift*: the change of position per level along a climb to
+//! the next snapshot. Positions and drifts are `f32` and only guide a search, which the mesh decides. A snapshot
+//! stores every `s`-th edge, where `s` is proportional to the square root of the number of edges. Rationale:
+//! `docs/theory/sections.md`.
 
 use glam::{DVec2, DVec3};
 
@@ -23,42 +16,40 @@ use super::chains::Chains;
 use super::walk::next_counter_clockwise;
 use colltrans_kernel::topology::Topology;
 
-/// Edges of vertices passed per entry of a snapshot: about a vertex's worth of upward and downward
-/// edges.
+/// Number of edges of passed vertices per entry of a snapshot: about the edges of one vertex.
 const EDGES_PER_ENTRY: usize = 4;
 
-/// A snapshot holds every `s`-th edge of the section, `s` being this share of the root of how many
-/// there are (measured).
+/// Ratio of the stride `s` of a snapshot to the square root of the number of edges of its section (measured).
 const STRIDE_PER_ROOT: f64 = 1.0 / 3.0;
 
-/// Bodies with a section of more edges than so many times the root of all vertices have chains. With 8,
-/// ellipsoids of 20,000 vertices and 16 meridians had them too, and took 103 iterations a planar problem in
-/// place of 63.
+/// Ratio of the edges of a section to the square root of the number of vertices above which a body has chains. With
+/// 8, ellipsoids of 20,000 vertices and 16 meridians had chains too, and took 103 instead of 63
+/// iterations per planar problem.
 pub(super) const CHAIN_THRESHOLD: f64 = 24.0;
 
-/// Candidates of one round of the search for an extreme entry.
+/// Number of candidates that one round of the search for an extreme entry compares, approximately.
 const CANDIDATES: usize = 16;
 
 /// A crossing edge of a snapshot.
 #[derive(Debug, Clone, Copy)]
 struct Entry {
-    /// The half-edge that runs upwards.
+    /// Half-edge that runs upwards.
     up: u32,
-    /// Where it crosses, in the scaled coordinates of the section plane.
+    /// Point where the edge crosses, in the scaled coordinates of the section plane.
     position: [f32; 2],
-    /// How a climb from there moves per level.
+    /// Change of position per level along a climb from the edge.
     drift: [f32; 2],
 }
 
 impl Entry {
-    /// Where it seems to be, so many levels above the snapshot.
+    /// Extrapolates the position to a level that is `above` levels above the snapshot's positions.
     #[inline]
     fn position_at(&self, above: f32) -> [f32; 2] {
         [0, 1].map(|i| self.position[i] + self.drift[i] * above)
     }
 }
 
-/// What sections are built from.
+/// Vertices, topology and levels from which sections are built.
 #[derive(Clone, Copy)]
 pub(super) struct LeveledMesh<'a> {
     vertices: &'a [DVec3],
@@ -68,13 +59,13 @@ pub(super) struct LeveledMesh<'a> {
 }
 
 impl LeveledMesh<'_> {
-    /// Whether a half-edge runs upwards.
+    /// Checks whether a half-edge runs upwards.
     pub(super) fn is_up(&self, h: u32) -> bool {
         let [from, to] = [self.topology.origin(h), self.topology.target(h)];
         self.levels[from as usize] < self.levels[to as usize]
     }
 
-    /// How many edges a section has at most, of vertices from the lowest.
+    /// Returns the largest number of edges of a section. `order` lists the vertices from the lowest.
     fn max_section_edges(&self, order: &[(f64, u32)]) -> usize {
         let widths = order.iter().scan(0, |width: &mut usize, &(level, v)| {
             for &end in self.topology.neighbours(v) {
@@ -87,7 +78,7 @@ impl LeveledMesh<'_> {
         widths.max().unwrap_or(0)
     }
 
-    /// Where a mesh edge, by a half-edge upwards, crosses a level.
+    /// Computes the point where a mesh edge crosses a level. `up` is its half-edge upwards.
     fn crossing_point(&self, up: u32, level: f64) -> DVec3 {
         let [low, high] = [self.topology.origin(up), self.topology.target(up)];
         let [from, to] = [low, high].map(|v| self.levels[v as usize]);
@@ -96,7 +87,7 @@ impl LeveledMesh<'_> {
         low + (high - low) * share
     }
 
-    /// The edge from each vertex that leads highest, if one leads up.
+    /// Returns for each vertex the edge that leads highest; `None` if no edge leads up.
     fn highest_edges(&self) -> Vec<Option<u32>> {
         let level = |v: u32| self.levels[v as usize];
         let highest = |v: u32| {
@@ -108,12 +99,12 @@ impl LeveledMesh<'_> {
     }
 }
 
-/// Climbs to one level after the other, each along the edges that lead highest. A vertex passes on to
-/// later climbs where the one before arrived, so all climbs to a level visit it once.
+/// Climbs from all entries to one level, then to the next one, along the edges that lead highest. Each vertex
+/// stores where the last climb through it arrived. Therefore all climbs to one level visit a vertex once.
 struct Climbs<'a> {
     mesh: &'a LeveledMesh<'a>,
     highest: Vec<Option<u32>>,
-    /// For which climb a vertex knows the edge of arrival, and that edge.
+    /// For each vertex the number of the climb for which its edge of arrival is valid, and that edge.
     arrivals: Vec<(u32, u32)>,
     passed: Vec<u32>,
 }
@@ -124,7 +115,8 @@ impl<'a> Climbs<'a> {
         Self { mesh, highest, arrivals, passed: Vec::new() }
     }
 
-    /// The edge that crosses `to`, or the last one below it, on climb number `number`.
+    /// Climbs from the edge `up`. Returns the edge that crosses level `to`, or the last edge of the climb if none
+    /// does. `number` identifies the level.
     fn climb(&mut self, mut up: u32, (number, to): (u32, f64)) -> u32 {
         self.passed.clear();
         loop {
@@ -155,30 +147,32 @@ pub(crate) struct AxisSections {
     pub(crate) axis: DVec3,
     /// An upper bound of the body's diameter.
     pub(crate) diameter: f64,
-    /// The range over the square root of the number of vertices: about what an edge spans.
+    /// The difference of `range` divided by the square root of the number of vertices, approximately the range of
+    /// one edge.
     pub(crate) of_an_edge: f64,
     /// Scaled coordinates of the section plane: `position_i = plane_i . v - origin_i`.
     plane: [DVec3; 2],
     origin: [f64; 2],
     /// Level of each snapshot, ascending.
     levels: Vec<f64>,
-    /// The level at which positions of each snapshot are meant, between that of the snapshot and
-    /// the next one of a vertex.
+    /// For each snapshot the level of its positions, halfway between its own level and the next level of a vertex.
     halfway: Vec<f64>,
-    /// First entry of each snapshot, and one past the end.
+    /// First entry of each snapshot, followed by the number of entries.
     starts: Vec<u32>,
-    /// Each snapshot counter-clockwise.
+    /// Entries of all snapshots, each snapshot counter-clockwise.
     entries: Vec<Entry>,
-    /// For sections of many edges.
+    /// Chains, if the sections have many edges.
     chains: Option<Box<Chains>>,
 }
 
 impl AxisSections {
+    /// Builds the sections across `axis`, with chains if a section has more than `ring` times as many edges as the
+    /// square root of the number of vertices.
     pub(super) fn build(vertices: &[DVec3], topology: &Topology, axis: DVec3, ring: f64) -> Self {
         let vertex_levels: Vec<f64> = vertices.iter().map(|&v| axis.dot(v)).collect();
         let mut order: Vec<(f64, u32)> =
             vertex_levels.iter().zip(0..).map(|(&level, v)| (level, v)).collect();
-        // Total: the same snapshots wherever it runs.
+        // A total order, so that the snapshots are the same on all platforms.
         order.sort_unstable_by(|p, q| p.0.total_cmp(&q.0).then(p.1.cmp(&q.1)));
         let (plane, origin) = scaled_plane(vertices, axis);
         let range = [order[0].0, order[order.len() - 1].0];
@@ -210,6 +204,7 @@ impl AxisSections {
         sections
     }
 
+    /// Selects the levels of the snapshots, and stores their entries.
     fn take_snapshots(&mut self, mesh: &LeveledMesh, order: &[(f64, u32)]) {
         let LeveledMesh { topology, levels: vertex_levels, .. } = *mesh;
         let mut edges_passed = 0;
@@ -222,8 +217,7 @@ impl AxisSections {
             if edges_passed < edges_due || next_level == level {
                 continue;
             }
-            // A vertex below the top has an edge upwards; rounding may hide it, then its
-            // predecessor serves.
+            // A vertex below the top has an edge upwards. If rounding hides it, use one of the vertices before it.
             let first = order[..=rank].iter().rev().find_map(|&(_, v)| {
                 let mut outgoing = topology.outgoing(v).iter().copied();
                 outgoing.find(|&h| vertex_levels[topology.target(h) as usize] > level)
@@ -237,8 +231,8 @@ impl AxisSections {
         }
     }
 
-    /// Appends a snapshot of the section between two successive levels of vertices, which `first`
-    /// crosses.
+    /// Appends a snapshot of the section between two successive levels of vertices. `first` is one of its edges, and
+    /// `ring` is scratch space.
     fn take_snapshot(
         &mut self,
         mesh: &LeveledMesh,
@@ -247,12 +241,12 @@ impl AxisSections {
         ring: &mut Vec<u32>,
     ) {
         let topology = mesh.topology;
-        // Halfway no two of its vertices coincide.
+        // Halfway between the levels, no two vertices of the section coincide.
         let halfway = f64::midpoint(level, next_level);
         let mut up = first;
         ring.clear();
-        // A section has no more entries than there are edges; rounding in the levels could make the
-        // walk miss its start.
+        // A section has no more entries than there are edges. Because of rounding of levels, the walk might miss its
+        // start.
         for _ in 0..topology.edge_count() {
             ring.push(up);
             up = next_counter_clockwise(topology, up, |v| mesh.levels[v as usize] > level);
@@ -270,7 +264,7 @@ impl AxisSections {
         self.starts.push(self.entries.len() as u32);
     }
 
-    /// Climbs from every entry to the next snapshot, or the top.
+    /// Computes the drifts by climbs from every entry to the next snapshot, or to the top.
     fn compute_drifts(&mut self, mut climbs: Climbs) {
         let mesh = climbs.mesh;
         for index in 0..self.halfway.len() {
@@ -286,11 +280,12 @@ impl AxisSections {
         }
     }
 
+    /// Returns a point in the scaled coordinates of the section plane.
     fn plane_position(&self, v: DVec3) -> [f32; 2] {
         [0, 1].map(|i| (self.plane[i].dot(v) - self.origin[i]) as f32)
     }
 
-    /// The last snapshot at or below level `x >= range[0]`, as a map shows it at that level.
+    /// Returns the last snapshot at or below level `x >= range[0]`, extrapolated to this level and mapped by `map`.
     pub(crate) fn snapshot<'a>(&'a self, map: &'a SectionMap, x: f64) -> Snapshot<'a> {
         let index = self.levels.partition_point(|&level| level <= x).max(1) - 1;
         let end = self.starts.get(index + 1).map_or(0, |&end| end as usize);
@@ -302,9 +297,10 @@ impl AxisSections {
         }
     }
 
-    /// The affine map `(covectors . v) + constants` of the body frame, on this axis' sections.
+    /// Returns the affine map `(covectors . v) + constants` of the body frame, as a function on the sections across
+    /// this axis.
     pub(crate) fn map(&self, covectors: [DVec3; 2], constants: DVec2) -> SectionMap {
-        // The plane's coordinate vectors are orthogonal and equally long.
+        // The coordinate vectors of the plane are orthogonal and have equal length.
         let scale_squared = self.plane[0].length_squared();
         let of = |v: DVec3| DVec2::from_array(covectors.map(|covector| covector.dot(v)));
         let slopes = self.plane.map(|p| of(p) / scale_squared);
@@ -318,6 +314,7 @@ impl AxisSections {
         }
     }
 
+    /// Returns the number of bytes on the heap.
     pub(crate) fn heap_bytes(&self) -> usize {
         size_of::<f64>() * (self.levels.capacity() + self.halfway.capacity())
             + size_of::<u32>() * self.starts.capacity()
@@ -325,14 +322,14 @@ impl AxisSections {
             + self.chains.as_ref().map_or(0, |chains| size_of::<Chains>() + chains.heap_bytes())
     }
 
-    /// The chains, if sections have many edges.
+    /// Returns the chains; `None` if no section has many edges.
     pub(crate) fn chains(&self) -> Option<&Chains> {
         self.chains.as_deref()
     }
 }
 
-/// Coordinates of the planes across `axis` in which the body has about unit size, right-handed with
-/// the axis.
+/// Computes coordinates of the planes across `axis`, right-handed with the axis, in which the body has about unit
+/// size. Returns the coordinate vectors and the origin.
 fn scaled_plane(vertices: &[DVec3], axis: DVec3) -> ([DVec3; 2], [f64; 2]) {
     let first = axis.normalize().any_orthonormal_vector();
     let second = axis.normalize().cross(first);
@@ -354,15 +351,17 @@ fn scaled_plane(vertices: &[DVec3], axis: DVec3) -> ([DVec3; 2], [f64; 2]) {
 /// An affine map of the sections across one axis to a plane.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct SectionMap {
-    /// Per unit of either position, and of the level.
+    /// Derivatives by the two positions.
     slopes: [DVec2; 2],
+    /// Derivative by the level.
     per_level: DVec2,
+    /// Value at level 0 and positions 0.
     constant: DVec2,
-    /// The slopes of the first coordinate, scaled so that `f32` can hold them.
+    /// Derivatives of the first coordinate by the two positions, scaled to the range of `f32`.
     height: [f32; 2],
 }
 
-/// The two ways along a section.
+/// The two directions around a section.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Turn {
     CounterClockwise,
@@ -378,40 +377,39 @@ impl Turn {
     }
 }
 
-/// One snapshot as it seems to be at a level: its entries in cyclic order, and points of a plane.
+/// A snapshot extrapolated to a level: its entries in cyclic order, mapped to points of a plane.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Snapshot<'a> {
     entries: &'a [Entry],
     map: &'a SectionMap,
-    /// How far the level in question is above it.
+    /// Difference of the level from that of the snapshot's positions.
     above: f32,
-    /// What the level adds to every point.
+    /// Contribution of the level to every point.
     base: DVec2,
 }
 
 impl Snapshot<'_> {
-    /// How many entries it has.
+    /// Returns the number of entries.
     pub(crate) fn len(&self) -> usize {
         self.entries.len()
     }
 
-    /// The crossing edge of entry `index`.
+    /// Returns the crossing edge of entry `index`.
     pub(crate) fn up(&self, index: usize) -> u32 {
         self.entries[index].up
     }
 
-    /// Where entry `index` seems to be.
+    /// Computes the extrapolated point of entry `index`.
     #[inline]
     pub(crate) fn point(&self, index: usize) -> DVec2 {
         let [u, v] = self.entries[index].position_at(self.above);
         self.base + self.map.slopes[0] * f64::from(u) + self.map.slopes[1] * f64::from(v)
     }
 
-    /// The entry whose point's first coordinate, times `sign`, is least; `sign` is 1 or -1.
+    /// Finds the entry whose point has the smallest first coordinate times `sign`, which is 1 or -1.
     ///
-    /// On a convex polygon the minimum lies within one stride of the best of every `stride`-th
-    /// entry. All candidates of a round are compared, without branches that hardware could not
-    /// predict.
+    /// On a convex polygon, the minimum lies within one stride of the best of every `stride`-th entry. Each round
+    /// compares all its candidates without branches, because their outcomes are unpredictable.
     pub(crate) fn extreme(&self, sign: f32) -> usize {
         let count = self.entries.len();
         let slope = self.map.height.map(|s| sign * s);
@@ -451,7 +449,7 @@ impl Snapshot<'_> {
 
 #[cfg(test)]
 impl AxisSections {
-    /// Level and crossing edges of the snapshot for `x`.
+    /// Returns the level and the crossing edges of the snapshot for `x`.
     pub(crate) fn snapshot_for_test(&self, x: f64) -> (f64, Vec<u32>) {
         let index = self.levels.partition_point(|&level| level <= x) - 1;
         let of = self.starts[index] as usize..self.starts[index + 1] as usize;

@@ -1,35 +1,36 @@
 //! Steps around a section, face by face.
 //!
-//! A convex face is cut by a level in one segment: along its boundary the vertices that are above
-//! form one run, those below the other. From the half-edge at one change of runs, the other change
-//! is found by galloping and bisection, so a face with `k` vertices costs `O(log k)`.
+//! A level cuts a convex face in one segment. Therefore the vertices of the face above the level form one run of
+//! its boundary, those below the other. A half-edge leads from one run to the other; galloping and bisection find
+//! the half-edge back. A face with `k` vertices takes `O(log k)` time.
 
 use colltrans_kernel::topology::Topology;
 
-/// Vertices of a face tried one by one before galloping: most faces are triangles or
+/// Number of vertices of a face that are tested one by one before galloping. Most faces are triangles or
 /// quadrilaterals.
 const MAX_LINEAR_STEPS: u32 = 4;
 
-/// The crossing edge that follows `up` counter-clockwise.
+/// Returns the crossing edge that follows `up` counter-clockwise. `above` reports whether a vertex is above the
+/// level.
 #[inline]
 pub(crate) fn next_counter_clockwise(
     topology: &Topology,
     up: u32,
     above: impl Fn(u32) -> bool,
 ) -> u32 {
-    // The face on the right of `up` is the one of its twin, which runs downwards.
+    // The face to the right of `up` is that of its twin, which runs downwards.
     run_end(topology, topology.half_edge(up).twin, above)
 }
 
-/// The crossing edge that follows `up` clockwise.
+/// Returns the crossing edge that follows `up` clockwise. `above` reports whether a vertex is above the level.
 #[inline]
 pub(crate) fn next_clockwise(topology: &Topology, up: u32, above: impl Fn(u32) -> bool) -> u32 {
     let down = run_end(topology, up, |vertex| !above(vertex));
     topology.half_edge(down).twin
 }
 
-/// The half-edge of the same face that leads back to the run of vertices that `from` leaves:
-/// `inside` holds for the origin of `from`, not for its target.
+/// Returns the half-edge of the same face that leads back to the run of vertices that `from` leaves. `inside` must
+/// be true for the origin of `from`, and false for its target.
 #[inline]
 fn run_end(topology: &Topology, from: u32, inside: impl Fn(u32) -> bool) -> u32 {
     let face = topology.face(topology.half_edge(from).face);
@@ -40,12 +41,12 @@ fn run_end(topology: &Topology, from: u32, inside: impl Fn(u32) -> bool) -> u32 
     };
     let is_inside = |offset: u32| inside(topology.origin(wrap(offset)));
     if count <= 4 {
-        // Without branches, which would be unpredictable. The fourth corner of three is the first,
-        // which is inside.
+        // Without branches, which would be unpredictable. For a triangle, the fourth corner is the first one, which
+        // is inside.
         let outside = !is_inside(2);
         return wrap(1 + u32::from(outside) + u32::from(outside & !is_inside(3)));
     }
-    // Invariant: the origin at `outside` is not inside, the one at `returned` is.
+    // Invariant: the origin at `outside` is not inside, the origin at `returned` is.
     let mut outside = 1;
     let mut returned = 2;
     while returned < count && !is_inside(returned) {

@@ -1,4 +1,4 @@
-//! Bodies for the tests of sections and of the minimisation, built without a hull.
+//! Bodies for the tests of sections, support points and the minimisation, constructed without a hull.
 
 use std::f64::consts::TAU;
 
@@ -10,7 +10,7 @@ use crate::body::ConvexPolyhedron;
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
-    /// In `[-1, 1)`.
+    /// Returns a number in `[-1, 1)`.
     pub(crate) fn signed(&mut self) -> f64 {
         self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
         let mut z = self.0;
@@ -41,13 +41,13 @@ impl Random {
     }
 }
 
-/// About `count` vertices (at least 8) on an ellipsoid: two poles and rings between them.
+/// Builds an ellipsoid with about `count` vertices (at least 8): two poles and rings between them.
 pub(crate) fn ellipsoid(count: usize, semi_axes: DVec3) -> ConvexPolyhedron {
     let around = ((2.0 * count as f64).sqrt().round() as usize).clamp(3, count - 2);
     ellipsoid_with_meridians(count, around, semi_axes)
 }
 
-/// The same with faces a hundred times as long as wide.
+/// Builds an ellipsoid with about `count` vertices, whose faces are a hundred times as long as wide.
 pub(crate) fn thin_ellipsoid(count: usize, semi_axes: DVec3) -> ConvexPolyhedron {
     ellipsoid_with_meridians(
         count,
@@ -64,7 +64,8 @@ fn ellipsoid_with_meridians(count: usize, around: usize, semi_axes: DVec3) -> Co
     })
 }
 
-/// Poles at `z = 1` and `z = -1` and rings of `(radius, z)` from top to bottom, scaled by `scale`.
+/// Builds a body from poles at `z = 1` and `z = -1` and rings of `(radius, z)` from top to bottom, scaled by
+/// `scale`.
 fn rings_body(
     rings: usize,
     around: usize,
@@ -93,7 +94,7 @@ fn rings_body(
     ConvexPolyhedron::from_convex_faces(&vertices, &faces)
 }
 
-/// A right prism over a regular polygon, along z.
+/// Builds a right prism over a regular polygon, along z.
 pub(crate) fn prism(around: usize, scale: DVec3) -> ConvexPolyhedron {
     let mut vertices = Vec::new();
     for z in [-1.0, 1.0] {
@@ -108,7 +109,7 @@ pub(crate) fn prism(around: usize, scale: DVec3) -> ConvexPolyhedron {
     ConvexPolyhedron::from_convex_faces(&vertices, &faces)
 }
 
-/// A cone over a regular polygon: apex at z = 1, base at z = -1.
+/// Builds a cone over a regular polygon, with the apex at z = 1 and the base at z = -1.
 pub(crate) fn cone(around: usize, scale: DVec3) -> ConvexPolyhedron {
     let mut vertices = vec![DVec3::Z * scale];
     for i in 0..around {
@@ -121,7 +122,7 @@ pub(crate) fn cone(around: usize, scale: DVec3) -> ConvexPolyhedron {
     ConvexPolyhedron::from_convex_faces(&vertices, &faces)
 }
 
-/// A box with the given half extents around `centre`.
+/// Builds a box with the given half extents around `centre`.
 pub(crate) fn cuboid(centre: DVec3, half: DVec3) -> ConvexPolyhedron {
     let corner = |i: u32| {
         let sign = |bit: u32| if i >> bit & 1 == 1 { 1.0 } else { -1.0 };

@@ -1,4 +1,4 @@
-//! Sections and bodies, tested together.
+//! Tests of sections and support points on constructed bodies.
 
 pub(crate) mod bodies;
 mod sections;

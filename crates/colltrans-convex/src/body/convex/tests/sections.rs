@@ -20,7 +20,7 @@ fn test_bodies() -> Vec<ConvexPolyhedron> {
     ]
 }
 
-/// Levels between and at the vertices.
+/// Returns levels between the vertices, and levels of vertices.
 fn levels(body: &ConvexPolyhedron, axis: DVec3, random: &mut Random) -> Vec<f64> {
     let of_vertices: Vec<f64> = body.vertices().iter().map(|&v| axis.dot(v)).collect();
     let low = of_vertices.iter().copied().fold(f64::INFINITY, f64::min);
@@ -34,7 +34,7 @@ fn levels(body: &ConvexPolyhedron, axis: DVec3, random: &mut Random) -> Vec<f64>
     levels
 }
 
-/// All half-edges that cross level `x` upwards.
+/// Returns all half-edges that cross level `x` upwards.
 fn crossing_edges(body: &ConvexPolyhedron, axis: DVec3, x: f64) -> Vec<u32> {
     let topology = body.topology();
     let above = |v: u32| axis.dot(body.vertices()[v as usize]) > x;
@@ -122,7 +122,7 @@ fn snapshot_entries_are_ordered_and_equally_spaced_in_linear_space() {
                     up = next_counter_clockwise(topology, up, above);
                     stride += 1;
                 }
-                // All entries were met in order, and the walk is where it began.
+                // All entries were found in order, and the walk is back at its start.
                 assert_eq!((strides.len() + 1, up), (entries.len(), entries[0]));
                 assert!(strides.iter().all(|&other| other == strides[0] && other >= stride));
             }
@@ -144,8 +144,8 @@ fn snapshot_extremes_match_scan() {
                 let heights: Vec<f64> = (0..snapshot.len()).map(height).collect();
                 let least = heights.iter().copied().fold(f64::INFINITY, f64::min);
                 let greatest = heights.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-                // Positions are rounded to f32, so neighbours of the extreme may seem to rise
-                // again.
+                // Positions are rounded to f32. Therefore points next to the extreme may deviate from a convex
+                // polygon.
                 let size = body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
                 assert!(height(snapshot.extreme(1.0)) <= least + 1e-5 * size);
                 assert!(height(snapshot.extreme(-1.0)) >= greatest - 1e-5 * size);
@@ -168,7 +168,7 @@ fn snapshot_points_lie_on_section_halfway_to_next_vertex() {
                 let map = index.axis(i).map(covectors, constants);
                 let above = body.vertices().iter().map(|v| axis.dot(*v)).filter(|&l| l > level);
                 let next = above.fold(f64::INFINITY, f64::min);
-                // Between levels that rounding alone tells apart edges have no points.
+                // Between levels that differ only by rounding, edges have no points.
                 if next - level < 1e-6 * size {
                     continue;
                 }
@@ -187,7 +187,7 @@ fn snapshot_points_lie_on_section_halfway_to_next_vertex() {
     }
 }
 
-/// The section at a level, counter-clockwise.
+/// Returns the section at a level, counter-clockwise.
 fn section_ring(body: &ConvexPolyhedron, axis: DVec3, x: f64) -> Vec<u32> {
     let above = |v: u32| axis.dot(body.vertices()[v as usize]) > x;
     let first = crossing_edges(body, axis, x)[0];
@@ -211,7 +211,7 @@ fn chain_searches_match_section_walks() {
                     level: |v| axis.dot(body.vertices()[v as usize]),
                     count: |_| {},
                 };
-                // An edge that crosses the level, from any.
+                // From any edge, the search finds an edge that crosses the level.
                 let any = random.index(body.topology().half_edges().len()) as u32;
                 assert!(ring.contains(&search.near(any).expect("an edge")));
                 for _ in 0..20 {

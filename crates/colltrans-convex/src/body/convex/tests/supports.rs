@@ -1,4 +1,4 @@
-//! Support points where faces have many corners, against a look at every vertex.
+//! Support points of bodies whose faces or vertices have many neighbours, compared with a scan of every vertex.
 
 use std::cell::Cell;
 use std::f64::consts::TAU;
@@ -9,7 +9,7 @@ use super::bodies::{Random, cone, prism};
 use crate::body::ConvexPolyhedron;
 use crate::body::convex::fan::{AboveQuery, greatest_near};
 
-/// A frustum over a polygon with its corners anywhere on an ellipse, most of them close together.
+/// Builds a frustum over a polygon with its corners on an ellipse, most of them close together.
 fn crowded_frustum(around: usize, random: &mut Random) -> ConvexPolyhedron {
     let mut angles: Vec<f64> =
         (0..around).map(|_| random.within(0.0, 1.0).powi(8) * 0.999 * TAU).collect();
@@ -22,8 +22,8 @@ fn crowded_frustum(around: usize, random: &mut Random) -> ConvexPolyhedron {
     ConvexPolyhedron::from_points(&[ring(1.0, -1.0), ring(0.7, 1.0)].concat()).unwrap()
 }
 
-/// Along the axis, across it, and by ever less beside the axis, where a small change of the direction
-/// leads around the whole base.
+/// Returns a direction: any, across the axis, along it, or near it. Near the axis, a small change of the direction
+/// moves the support point around the whole base.
 fn sample_direction(random: &mut Random, k: usize) -> DVec3 {
     let lateral = random.unit().with_z(0.0);
     let up = if k.is_multiple_of(2) { 1.0 } else { -1.0 };
@@ -54,21 +54,24 @@ fn support_point_on_rims_is_farthest_vertex() {
             let near = random.index(vertices.len()) as u32;
             for found in [body.support(d).0, body.support_from(d, near)] {
                 let short = farthest - d.dot(vertices[found as usize]);
-                // Corners are rounded, so the boundary may rise and fall by as much.
+                // Corners are rounded. Therefore coordinates along the boundary may deviate by this amount.
                 let rounding = 64.0 * f64::EPSILON * d.abs().dot(size);
-                assert!(short <= rounding, "body {i}, along {d}: short by {short:e}, {rounding:e}");
+                assert!(
+                    short <= rounding,
+                    "body {i}, along {d}: shortfall {short:e}, tolerated {rounding:e}"
+                );
             }
         }
     }
 }
 
-/// No neighbour of an apex that a proof asks for is passed over, be the cone round, flat, tall, of rounded corners or
-/// far from where it counts from; and of many few are looked at.
+/// The fan visits every neighbour above the level of a query. The cones are round, flat, tall, rounded at the base
+/// or far from the origin. For steep tips, it visits only a few neighbours more.
 #[test]
 fn fan_visits_all_neighbours_above_level() {
     let mut random = Random(43);
     let mut asked = 0;
-    // Looks and planes, at tips that are not flat: of corners that are rounded by nothing, and by more and more.
+    // Visits and queries at steep tips, for base corners rounded by 0 and by increasing amounts.
     let mut few = [[0; 2]; 4];
     for around in [40, 300, 3_000] {
         for height in [1e-6, 1e-2, 1.0, 50.0] {
@@ -90,7 +93,7 @@ fn fan_visits_all_neighbours_above_level() {
                 }
                 let here = body.vertices()[apex as usize];
                 for k in 0..60 {
-                    // Planes through two neighbours, or only beside one.
+                    // Planes through two neighbours, or near one.
                     let edge = |w: u32| body.vertices()[w as usize] - here;
                     let at = random.index(neighbours.len());
                     let [a, b] = [at, at + 1].map(|k| edge(neighbours[k % neighbours.len()]));
@@ -114,19 +117,19 @@ fn fan_visits_all_neighbours_above_level() {
                         few[0] += seen.len();
                         few[1] += 1;
                     }
-                    assert!(seen.len() <= neighbours.len() + 1, "{} looks", seen.len());
+                    assert!(seen.len() <= neighbours.len() + 1, "{} visits", seen.len());
                 }
             }
         }
     }
-    assert!(asked > 1_000, "{asked} neighbours were asked for");
-    println!("{asked} asked for; looks and planes {few:?}");
+    assert!(asked > 1_000, "only {asked} neighbours above the level");
+    println!("{asked} neighbours above; visits and queries {few:?}");
     for [looks, planes] in few {
-        assert!(looks < 16 * planes, "{looks} looks for {planes} planes");
+        assert!(looks < 16 * planes, "{looks} visits for {planes} queries");
     }
 }
 
-/// From everywhere on a cycle with one maximum, in strides.
+/// The search finds the maximum from every start, with a number of evaluations that is logarithmic in its distance.
 #[test]
 fn greatest_near_finds_maximum_from_any_start() {
     let mut random = Random(44);
@@ -143,7 +146,7 @@ fn greatest_near_finds_maximum_from_any_start() {
             assert_eq!(greatest_near(count, near, value), top, "of {count} from {near}");
             let looks = looks.get();
             let most = 3 + 8 * (away(near) as f64 + 1.0).log2() as usize;
-            assert!(looks <= most, "{looks} looks from {} away", away(near));
+            assert!(looks <= most, "{looks} evaluations at distance {}", away(near));
         }
     }
 }

@@ -1,4 +1,4 @@
-//! How much is looked at of convex bodies, and how that grows.
+//! Work of hulls, casts and offsets of convex bodies, and its growth with the input.
 
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{even_rings, random_hull, ring, ring_points};
@@ -52,8 +52,8 @@ fn hull_work_on_flat_circles_is_subquadratic() {
     });
 }
 
-/// Prisms over stars, whose two large faces have all others as neighbours; regular, and with points of any
-/// depth. The surface is measured against its hull, and refused or taken by the tolerance.
+/// Prisms over stars have two large faces that are adjacent to all others. The stars are regular or have random
+/// depths. Their convexity defect is measured.
 #[test]
 fn convexity_defect_work_on_stars_is_subquadratic() {
     let mut random = Random::new(9);
@@ -85,8 +85,8 @@ fn convexity_defect_work_on_stars_is_subquadratic() {
     }
 }
 
-/// Two rings, as of a prism, a frustum or a bottle: quadratic where one ring is finished before the
-/// other is begun.
+/// Two rings, as in a prism, a frustum or a bottle. The work would be quadratic if one ring were completed before
+/// the other one is begun.
 #[test]
 fn hull_work_on_large_rings_is_subquadratic() {
     let apex = DVec3::Z * 1.5;
@@ -103,8 +103,8 @@ fn hull_work_on_large_rings_is_subquadratic() {
     }
 }
 
-/// Four rings, two and two close together: where the sagitta of a patch is about the chamfer, one ring of
-/// a pair is finished before the other, and each point of that sees a fan over the patch.
+/// Four rings, in two close pairs. Where the sagitta of a patch is about the size of the chamfer, one ring of a
+/// pair is completed before the other. Then each point of the other ring sees a fan over the patch.
 #[test]
 fn hull_work_on_chamfered_rims_is_bounded() {
     for chamfer in [1e-2, 1e-3, 1e-4] {
@@ -122,8 +122,7 @@ fn hull_work_on_chamfered_rims_is_bounded() {
     }
 }
 
-/// Neither a climb along a rim nor what is asked around an apex, for a climb, a turn or a proof, looks at each of its
-/// corners.
+/// Neither a climb along a rim nor a search around an apex, for a climb, a rotation or a proof, visits each corner.
 #[test]
 fn cast_work_on_rims_does_not_scale_with_corners() {
     type Turned = (&'static str, &'static [[f64; 2]], &'static [f64]);
@@ -155,7 +154,7 @@ fn cast_work_on_rims_does_not_scale_with_corners() {
     }
 }
 
-/// Of what is dropped as lying on a face, how far it is from the body is measured.
+/// Points that are dropped because they lie on a face are measured by their distance from the body.
 #[test]
 fn hull_work_on_grid_faces_is_subquadratic() {
     assert_growth("faces of a grid", 2_000, |count| {

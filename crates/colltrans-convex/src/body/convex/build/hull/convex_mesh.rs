@@ -1,12 +1,14 @@
-//! Meshes that already are their own convex hull, recognised exactly.
+//! Recognises meshes that are their own convex hull, exactly.
 //!
-//! A closed, oriented surface of triangles is the boundary of a convex body if it is nowhere bent
-//! inwards at an edge, a point is strictly inside all its planes, and one ray from that point passes
-//! one triangle only (Mehlhorn, Naeher, Seel, Seidel, Schilz, Schirra, Uhrig, "Checking geometric
-//! programs or verification of geometric structures", Computational Geometry 12, 1999: bent outwards
-//! everywhere, it covers the sphere around the point a whole number of times; one ray tells that
-//! number). All signs are exact. Where one of them fails nothing is claimed, and the hull is made
-//! from the points.
+//! A closed, oriented surface of triangles is the boundary of a convex body under three conditions:
+//! - no edge is bent inwards;
+//! - a point is strictly inside all planes;
+//! - one ray from that point passes one triangle only.
+//!
+//! Under the first two, the surface covers the sphere around the point a whole number of times, which the ray
+//! counts (Mehlhorn, Naeher, Seel, Seidel, Schilz, Schirra, Uhrig, "Checking geometric programs or verification of
+//! geometric structures", Computational Geometry 12, 1999). All signs are exact. If a condition fails, the hull is
+//! computed from the points.
 
 use glam::DVec3;
 
@@ -14,8 +16,8 @@ use super::quickhull::{Simplicial, Triangle, orientation};
 use colltrans_kernel::plane::triangle_normal;
 use colltrans_kernel::topology::Topology;
 
-/// The mesh as a simplicial hull, if its faces are triangles and it is convex, every vertex a
-/// corner.
+/// Returns the mesh as a simplicial hull. Returns `None` unless all faces are triangles and the mesh is convex with
+/// every vertex a corner.
 pub(super) fn simplicial_of_mesh(points: &[DVec3], topology: &Topology) -> Option<Simplicial> {
     let mesh = TriangleMesh { points, topology };
     let count = topology.face_count() as u32;
@@ -46,14 +48,14 @@ impl TriangleMesh<'_> {
         self.corner_vertices(face).map(|v| self.points[v as usize])
     }
 
-    /// Whether a point is strictly below a triangle's plane; never below one without area.
+    /// Checks whether a point is strictly below a triangle's plane, which must have an area.
     fn is_below(&self, face: u32, p: DVec3) -> bool {
         let [a, b, c] = self.corner_points(face);
         orientation(a, b, c, p) < 0.0
     }
 
-    /// Whether no neighbour's third corner is above a triangle's plane; that of a neighbour with a smaller
-    /// number has said so of both.
+    /// Checks that no neighbour's third corner is above a triangle's plane. Each edge is tested once, for the
+    /// half-edge with the smaller number.
     fn bends_outwards(&self, face: u32) -> bool {
         let [a, b, c] = self.corner_points(face);
         self.topology.face(face).all(|h| {
@@ -66,7 +68,7 @@ impl TriangleMesh<'_> {
         })
     }
 
-    /// How many triangles a ray from a point inside passes, in their interior or on their border.
+    /// Counts the triangles that a ray from an inner point passes, including their borders.
     fn ray_crossings(&self, from: DVec3) -> usize {
         let through = self.corner_points(0).into_iter().sum::<DVec3>() / 3.0;
         let passes = |f: u32| {
@@ -78,6 +80,7 @@ impl TriangleMesh<'_> {
         (0..self.topology.face_count() as u32).filter(|&f| passes(f)).count()
     }
 
+    /// Returns a face as a triangle of a simplicial hull.
     fn simplicial_triangle(&self, face: u32) -> Triangle {
         let neighbour = |h: u32| self.topology.half_edge(self.topology.half_edge(h).twin).face;
         let first = self.topology.face(face).start;

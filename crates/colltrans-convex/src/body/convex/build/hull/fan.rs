@@ -1,25 +1,25 @@
-//! Which triangle around an apex a point sees, found without a look at each of them.
+//! Finds the triangle of a cone around an apex that is visible from a point, without a test of each triangle.
 //!
-//! The triangles from a rim to an apex bound a convex cone. Seen from the apex along an axis inside the cone its
-//! sides are sectors, in the order of the angles of the rim. A half-plane from the axis through a point
-//! passes one of them, and of the half-circle of directions that it holds, from the axis on, those beyond that
-//! side are outside of it: a point that sees a triangle sees the one of its sector.
+//! The triangles from a rim to an apex bound a convex cone. Seen from the apex along an axis inside the cone, its
+//! sides are sectors, ordered by the angles of the rim. A half-plane from the axis through a point passes one of
+//! them. In this half-plane, the directions beyond that side are outside the cone. Therefore, if any triangle is
+//! visible from a point, the one of its sector is.
 //!
-//! Rounded, so only a guess: who asks checks that the point sees it, and looks at all triangles if not.
+//! The result is rounded, so it is a guess. The caller tests its visibility, and tests all triangles if it fails.
 
 use glam::DVec3;
 
-/// A cone of triangles by the angles at which they begin.
+/// The triangles of a cone, ordered by the angles at which they begin.
 pub(super) struct ConeSectors {
     apex: DVec3,
-    /// Two axes across the one inside.
+    /// Two axes orthogonal to the one inside.
     across: [DVec3; 2],
-    /// Ascending: an angle, and the triangle whose rim edge starts there.
+    /// Ascending pairs of an angle and the triangle whose rim edge starts there.
     starts: Vec<(f64, u32)>,
 }
 
 impl ConeSectors {
-    /// From where each rim edge starts, with its triangle.
+    /// Builds the sectors from the start of each rim edge, with its triangle.
     pub(super) fn new(apex: DVec3, rim: impl Iterator<Item = (DVec3, u32)> + Clone) -> Self {
         let inside: DVec3 = rim.clone().map(|(p, _)| (p - apex).normalize_or_zero()).sum();
         let axis = inside.try_normalize().unwrap_or(DVec3::Z);
@@ -30,7 +30,7 @@ impl ConeSectors {
         sectors
     }
 
-    /// The triangle of a point's sector, and the two beside it.
+    /// Returns the triangle of a point's sector and the two next to it.
     pub(super) fn candidates(&self, p: DVec3) -> [u32; 3] {
         let count = self.starts.len();
         let angle = self.pseudo_angle(p);
@@ -38,7 +38,7 @@ impl ConeSectors {
         [count - 1, 0, count - 2].map(|k| self.starts[(after + k) % count].1)
     }
 
-    /// What grows with the angle around the axis, from -1 to 3.
+    /// Returns a pseudo-angle around the axis, from -1 to 3, which increases with the angle.
     fn pseudo_angle(&self, p: DVec3) -> f64 {
         let [x, y] = self.across.map(|axis| axis.dot(p - self.apex));
         let slope = y / (x.abs() + y.abs());
@@ -54,8 +54,8 @@ mod tests {
     use super::*;
     use colltrans_kernel::predicates::orient3d;
 
-    /// Cones of all widths around an apex, points on all sides, those behind it too: what lies outside of a
-    /// triangle lies outside of one that is named.
+    /// Cones of all widths, and points on all sides, also behind the cone: if a point is outside a triangle, it is
+    /// outside a candidate.
     #[test]
     fn candidates_contain_a_visible_triangle() {
         let mut random = Random::new(11);

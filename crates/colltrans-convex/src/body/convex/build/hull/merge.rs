@@ -1,35 +1,36 @@
-//! Coplanar triangles become polygons.
+//! Merges coplanar triangles into polygons.
 //!
-//! A *region* is a connected set of triangles whose corners all lie within the tolerance of one
-//! plane, the plane of its largest triangle: slivers among them are taken in whatever their own
-//! normals say, for those mean nothing. A point at which fewer than three planes of regions meet
-//! lies inside a face or inside an edge: it is *redundant*.
+//! - *region*: a connected set of triangles whose corners all lie within the tolerance of one plane, that of its
+//!   largest triangle. Slivers among them are included without regard to their own normals, which are meaningless.
+//! - *redundant* point: fewer than three planes of regions meet there, so it lies inside a face or inside an edge.
 
 use glam::DVec3;
 
 use super::quickhull::{Simplicial, Triangle, simplicial_hull};
 use colltrans_kernel::work;
 
+/// Marks a triangle without a region, and an unused entry.
 const NONE: u32 = u32::MAX;
 
-/// For each triangle, the number of its region.
+/// The partition of the triangles into regions; `region_of` has a number for each triangle.
 #[derive(Debug)]
 pub(super) struct Regions {
     region_of: Vec<u32>,
     count: u32,
-    /// For each region, the triangle whose plane it lies in.
+    /// For each region the triangle that defines its plane.
     seed: Vec<u32>,
 }
 
 impl Regions {
-    /// Every triangle by itself.
+    /// Returns the partition in which every triangle is a region.
     pub(super) fn single_triangles(simplicial: &Simplicial) -> Self {
         let count = simplicial.triangles.len() as u32;
         Self { region_of: (0..count).collect(), count, seed: (0..count).collect() }
     }
 }
 
-/// Grows regions from the largest triangles.
+/// Computes the regions by growing them from the largest triangles. Regions that are not polygons are split into
+/// triangles.
 pub(super) fn coplanar_regions(
     points: &[DVec3],
     simplicial: &Simplicial,
@@ -61,7 +62,7 @@ pub(super) fn coplanar_regions(
     regions
 }
 
-/// Whether a triangle's plane contains a neighbour.
+/// Checks whether a triangle's plane contains a neighbour.
 fn has_coplanar_neighbour(
     points: &[DVec3],
     triangles: &[Triangle],
@@ -75,13 +76,14 @@ fn has_coplanar_neighbour(
         .any(|n| lies_in_plane(points, &triangles[n as usize], plane, tolerance))
 }
 
-/// Whether all corners of a triangle lie within the tolerance of the plane of another one.
+/// Checks whether all corners of a triangle lie within the tolerance of another triangle's plane.
 fn lies_in_plane(points: &[DVec3], inner: &Triangle, plane: &Triangle, tolerance: f64) -> bool {
     let origin = points[plane.corners[0] as usize];
     let on_plane = |i: u32| plane.normal.dot(points[i as usize] - origin).abs() <= tolerance;
     inner.corners.into_iter().all(on_plane)
 }
 
+/// Grows a region from a seed triangle, and lists its triangles in `members`.
 fn grow_region(
     points: &[DVec3],
     simplicial: &Simplicial,
@@ -110,9 +112,9 @@ fn grow_region(
     regions.count += 1;
 }
 
-/// Whether triangles form one disk, their Euler characteristic 1 and their rim one loop, without a
-/// corner that points inwards by more than the tolerance: a climb would end there, for the edges that
-/// lead on are inside.
+/// Checks whether connected triangles form one disk that is a polygon: their rim is one loop of at least three
+/// corners, and no corner points inwards by more than the tolerance. A climb would end at such a corner because the
+/// edges that continue it are inside.
 fn is_polygon(
     points: &[DVec3],
     simplicial: &Simplicial,
@@ -134,7 +136,7 @@ fn is_polygon(
     corners.len() >= 3 && corners.len() == rim.len() && !(0..corners.len()).any(is_reflex)
 }
 
-/// The edges `(triangle, side)` of a region across which another region lies.
+/// Returns the edges `(triangle, side)` of a region that border on another region.
 fn rim_edges(simplicial: &Simplicial, regions: &Regions, members: &[u32]) -> Vec<(u32, usize)> {
     let region = regions.region_of[members[0] as usize];
     members
@@ -147,8 +149,8 @@ fn rim_edges(simplicial: &Simplicial, regions: &Regions, members: &[u32]) -> Vec
         .collect()
 }
 
-/// The corners along a region's rim from one of its edges; `None` if they pass through a corner
-/// twice.
+/// Returns the corners along a region's rim, starting at one of its edges. Returns `None` if the rim passes a
+/// corner twice.
 fn trace_rim(simplicial: &Simplicial, regions: &Regions, start: (u32, usize)) -> Option<Vec<u32>> {
     let triangles = &simplicial.triangles;
     let region = regions.region_of[start.0 as usize];
@@ -157,7 +159,7 @@ fn trace_rim(simplicial: &Simplicial, regions: &Regions, start: (u32, usize)) ->
     loop {
         corners.push(triangles[t as usize].corners[side]);
         work::count(1);
-        // Around the edge's end, triangle by triangle, to the next edge of the rim.
+        // Rotate around the end of the edge, triangle by triangle, to the next edge of the rim.
         side = (side + 1) % 3;
         loop {
             let other = triangles[t as usize].neighbours[side];
@@ -181,7 +183,7 @@ fn trace_rim(simplicial: &Simplicial, regions: &Regions, start: (u32, usize)) ->
     sorted.windows(2).all(|w| w[0] != w[1]).then_some(corners)
 }
 
-/// Makes every triangle of a region a region by itself.
+/// Makes every triangle of a region a region of its own.
 fn split_region(regions: &mut Regions, members: &[u32]) {
     for &t in &members[1..] {
         regions.region_of[t as usize] = regions.count;
@@ -190,9 +192,9 @@ fn split_region(regions: &mut Regions, members: &[u32]) {
     }
 }
 
-/// The corners around which fewer than three planes meet, ascending, without those in `forced`.
+/// Returns the corners around which fewer than three planes meet, in ascending order, without those in `forced`.
 ///
-/// Two regions in one plane count once: slivers along an edge can keep the parts of a face apart.
+/// Two regions in one plane count once, because slivers along an edge can separate the parts of a face.
 pub(super) fn redundant_corners(
     points: &[DVec3],
     simplicial: &Simplicial,
@@ -201,7 +203,7 @@ pub(super) fn redundant_corners(
     forced: &[u32],
 ) -> Vec<u32> {
     let size = simplicial.triangles.iter().flat_map(|t| t.corners).max().unwrap_or(0) as usize + 1;
-    // Up to three regions in different planes seen at each corner.
+    // At most three regions in different planes found at each corner.
     let mut planes = vec![[NONE; 3]; size];
     for (triangle, &region) in simplicial.triangles.iter().zip(&regions.region_of) {
         for v in triangle.corners {
@@ -227,7 +229,7 @@ pub(super) fn redundant_corners(
         .collect()
 }
 
-/// Whether each of two triangles lies in the other's plane.
+/// Checks whether each of two triangles lies in the other's plane, with normals on the same side.
 fn are_coplanar(
     points: &[DVec3],
     simplicial: &Simplicial,
@@ -240,8 +242,8 @@ fn are_coplanar(
         && lies_in_plane(points, b, a, tolerance)
 }
 
-/// Which of the `dropped` points lie outside the hull of the `kept` ones by more than the
-/// tolerance.
+/// Returns the `dropped` points that lie outside the hull of the `kept` points by more than twice the tolerance.
+/// Returns all of them if the `kept` points span no volume.
 pub(super) fn points_outside(
     points: &[DVec3],
     kept: &[u32],
@@ -261,7 +263,7 @@ pub(super) fn points_outside(
         .collect()
 }
 
-/// The regions' rims: first corner of each, and the corners (point numbers).
+/// Returns the rims of the regions: the position of the first corner of each, and the corners as point numbers.
 pub(super) fn region_polygons(simplicial: &Simplicial, regions: &Regions) -> (Vec<u32>, Vec<u32>) {
     let mut start = vec![0];
     let mut corners = Vec::new();

@@ -1,18 +1,14 @@
-//! The convex hull of a point cloud, of any dimension, with coplanar faces as polygons.
+//! Convex hull of a point set of any dimension, with coplanar faces as polygons.
 //!
-//! The way: [`quickhull`] makes a simplicial hull on exact decisions, of the points that are
-//! outside by more than the tolerance (a mesh that is convex already is one: [`convex_mesh`]); [`merge`] joins its coplanar triangles and names the
-//! vertices that are then no corners; the hull is made again without those, until none is left;
-//! [`planar`] does the same for points in a plane.
+//! 1. [`quickhull`] builds a simplicial hull with exact decisions, from the points that are outside by more than
+//!    the tolerance. A mesh that is already convex replaces this step ([`convex_mesh`]).
+//! 2. [`merge`] joins coplanar triangles, and finds the vertices that are then redundant.
+//! 3. Both steps are repeated without these vertices, until none is redundant. [`planar`] treats points in a plane.
+//! 4. [`violation`] bounds the distances of dropped points from the *body*. A point that is too far away is kept
+//!    permanently. If that does not help, all corners are kept, and nothing is merged ([`exact_hull`]).
 //!
-//! Tolerance. Points within [`noise::COPLANAR`] of the largest coordinate of a face are taken to lie
-//! on it.
-//!
-//! What was left out is within [`BEYOND`] tolerances of the body, and [`violation`] bounds how far:
-//! whatever is dropped is measured in the end, by its distance from the *body*. Points that
-//! [`quickhull`] drops as inside are in the hull of the others, exactly, and the distance from a
-//! convex body is greatest at one of those. A point that is too far away is kept for good; where that
-//! does not help, all corners are, and nothing is merged ([`exact_hull`]).
+//! The tolerance is [`noise::COPLANAR`] times the largest coordinate; points within it of a face count as on the
+//! face. Dropped points are within [`MAX_DISTANCE_FACTOR`] tolerances of the body. Details: `docs/theory/hulls.md`.
 
 mod convex_mesh;
 mod fan;
@@ -33,33 +29,36 @@ use quickhull::Simplicial;
 use violation::Gauge;
 pub(super) use violation::Locator;
 
-/// Which input points are vertices, and the faces over them.
+/// A selection of input points as vertices, with the faces over them.
 #[derive(Debug, Clone)]
 pub(crate) struct IndexedHull {
     /// Affine dimension of the points, 0 to 3.
     pub(crate) dimension: u8,
     /// Indices of the vertices in the input.
     pub(crate) vertices: Vec<u32>,
-    /// The faces over positions in `vertices`. A flat polygon has a front and a back face.
+    /// Faces, over positions in `vertices`. A flat polygon has a front and a back face.
     pub(crate) topology: Topology,
-    /// Bound on the distance of an input point from the body, and of a vertex outside a face plane.
+    /// Upper bound of the distance of an input point from the body, and of a vertex outside a face plane.
     pub(crate) violation: f64,
-    /// Bound on the distance of an input point from the body.
+    /// Upper bound of the distance of an input point from the body.
     pub(crate) input_excess: f64,
 }
 
-/// Rounds of dropping vertices that are no corners; each is a hull of fewer points.
+/// Maximum number of rounds, each of which builds a hull of fewer points or of more forced points.
 const MAX_ROUNDS: usize = 16;
 
-/// A point within the tolerance of two planes is far beyond the edge where they meet if that is as
-/// sharp as a knife's, and of a body that is hardly thicker than the tolerance all is such an edge.
-/// So many tolerances away from the finished body, it is made a vertex.
+/// Distance from the finished body, in tolerances, beyond which a point is made a vertex. A point within the
+/// tolerance of two planes can be this far beyond a sharp edge between them. A body that is hardly thicker than the
+/// tolerance has only such edges.
 const MAX_DISTANCE_FACTOR: f64 = 16.0;
 
-/// Most points: vertex and half-edge numbers must fit 31 bits.
+/// Maximum number of points. It keeps vertex and half-edge numbers within 31 bits.
 const MAX_POINTS: usize = (u32::MAX / 16) as usize;
 
 /// Checks that points are finite, in range, and not too many.
+///
+/// # Errors
+/// [`BuildError::NoPoints`], [`BuildError::TooManyPoints`], [`BuildError::NotFinite`], [`BuildError::OutOfRange`].
 pub(super) fn check_points(points: &[DVec3]) -> Result<(), BuildError> {
     if points.is_empty() {
         return Err(BuildError::NoPoints);
@@ -78,28 +77,28 @@ pub(super) fn check_points(points: &[DVec3]) -> Result<(), BuildError> {
     Ok(())
 }
 
-/// Distance from a face within which points of this size are taken to lie on it.
+/// Returns the distance from a face within which points of this size count as on it.
 pub(super) fn coplanar_tolerance(points: &[DVec3]) -> f64 {
     let largest = points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
     noise::COPLANAR * largest
 }
 
-/// The convex hull of points that [`check_points`] has passed.
+/// Computes the convex hull of points that [`check_points`] has accepted.
 pub(super) fn convex_hull(points: &[DVec3]) -> IndexedHull {
     reduced_hull(points, None)
 }
 
-/// The convex hull of a closed surface's vertices, all in use: quicker where the surface is that
-/// hull already.
+/// Computes the convex hull of a closed surface's vertices, all of which must be in use. It is faster if the
+/// surface is this hull already.
 pub(super) fn hull_of_mesh(points: &[DVec3], topology: &Topology) -> IndexedHull {
     reduced_hull(points, convex_mesh::simplicial_of_mesh(points, topology))
 }
 
-/// The hull without what is no corner, from a simplicial hull of all points if there is one.
+/// Computes the hull without redundant vertices. `known` is a simplicial hull of all points, if there is one.
 fn reduced_hull(points: &[DVec3], mut known: Option<Simplicial>) -> IndexedHull {
     let tolerance = coplanar_tolerance(points);
     let mut kept: Vec<u32> = (0..points.len() as u32).collect();
-    // Points near the surface: they are what the violation is measured on.
+    // Points near the surface, for which the violation is measured.
     let mut near: Vec<u32> = Vec::new();
     let mut forced: Vec<u32> = Vec::new();
     for _ in 0..MAX_ROUNDS {
@@ -107,7 +106,7 @@ fn reduced_hull(points: &[DVec3], mut known: Option<Simplicial>) -> IndexedHull 
             Some(simplicial) => simplicial,
             None => match quickhull::simplicial_hull(points, &kept, &forced, tolerance) {
                 Ok(simplicial) => simplicial,
-                // What is left may be flat where the whole is not.
+                // The remaining points may be flat although all points are not.
                 Err(_) if kept.len() < points.len() => break,
                 Err(flat) => return planar::flat_hull(points, &kept, flat, tolerance),
             },
@@ -123,7 +122,7 @@ fn reduced_hull(points: &[DVec3], mut known: Option<Simplicial>) -> IndexedHull 
             }
             beyond.retain(|v| forced.binary_search(v).is_err());
             if beyond.is_empty() {
-                // Merging swallows what was forced.
+                // Merging removes the forced points.
                 break;
             }
             kept = simplicial.sorted_vertices();
@@ -138,7 +137,7 @@ fn reduced_hull(points: &[DVec3], mut known: Option<Simplicial>) -> IndexedHull 
         rest.retain(|v| redundant.binary_search(v).is_err());
         near.extend(&redundant);
         kept = rest;
-        // What is dropped must lie on the hull of the rest; what does not is kept for good.
+        // A dropped point must lie on the hull of the others, otherwise it is kept permanently.
         let lost = merge::points_outside(points, &kept, &redundant, tolerance);
         forced.extend(&lost);
         forced.sort_unstable();
@@ -148,8 +147,8 @@ fn reduced_hull(points: &[DVec3], mut known: Option<Simplicial>) -> IndexedHull 
     exact_hull(points)
 }
 
-/// The hull with every point that is a corner in exact arithmetic, unless all points are within the
-/// tolerance of a plane; its faces are triangles.
+/// Computes the hull with every point that is a corner in exact arithmetic, unless all points are within the
+/// tolerance of a plane. Its faces are triangles.
 pub(super) fn exact_hull(points: &[DVec3]) -> IndexedHull {
     let tolerance = coplanar_tolerance(points);
     let all: Vec<u32> = (0..points.len() as u32).collect();
@@ -162,7 +161,7 @@ pub(super) fn exact_hull(points: &[DVec3]) -> IndexedHull {
     }
 }
 
-/// Whether no two points are the same.
+/// Checks whether all points are distinct.
 #[cfg(feature = "json")]
 pub(super) fn are_distinct(points: &[DVec3]) -> bool {
     let mut all: Vec<_> = points.iter().map(|p| (*p + 0.0).to_array().map(f64::to_bits)).collect();
@@ -170,7 +169,8 @@ pub(super) fn are_distinct(points: &[DVec3]) -> bool {
     all.windows(2).all(|pair| pair[0] != pair[1])
 }
 
-/// Polygons, vertex numbers and the measured violation; and which points are too far away, ascending.
+/// Computes polygons, vertex numbers and the measured violation. Returns also the points that are too far away, in
+/// ascending order.
 fn hull_of_regions(
     points: &[DVec3],
     simplicial: &Simplicial,
@@ -180,17 +180,18 @@ fn hull_of_regions(
 ) -> (IndexedHull, Vec<u32>) {
     let (vertices, topology) =
         vertices_and_faces(points, simplicial, regions).unwrap_or_else(|_| {
-            // Rounding can make coplanar regions that do not fit together; the triangles always do.
+            // Because of rounding, coplanar regions may not fit together; the triangles always do.
             vertices_and_faces(points, simplicial, &merge::Regions::single_triangles(simplicial))
                 .expect("the triangles of a simplicial hull are a closed surface")
         });
-    // A corner of triangles that have become one polygon may be none of its corners.
+    // A corner of triangles that have become one polygon may not be a corner of this polygon.
     let others = near.iter().copied().chain(simplicial.sorted_vertices());
     let hull = IndexedHull { dimension: 3, vertices, topology, violation: 0.0, input_excess: 0.0 };
     with_violation(points, hull, others, tolerance)
 }
 
-/// A hull with faces and its violation, and those of the `others` that are too far away, ascending.
+/// Adds the measured violation to a hull with faces. Returns also those of the `others` that are too far away, in
+/// ascending order.
 fn with_violation(
     points: &[DVec3],
     hull: IndexedHull,
@@ -218,13 +219,13 @@ fn with_violation(
     (IndexedHull { violation, input_excess, ..hull }, beyond)
 }
 
-/// The rounding error of a witness, for points of which this is the tolerance.
+/// Returns the rounding error of a witness, for points with this tolerance.
 fn witness_rounding(tolerance: f64) -> f64 {
     noise::WITNESS / noise::COPLANAR * tolerance
 }
 
-/// The vertices, in the order of the input because whoever wrote it kept neighbours together, and
-/// the faces over them.
+/// Returns the vertices and the faces over them. Small hulls keep the order of the input, because a file usually
+/// stores neighbours together.
 fn vertices_and_faces(
     points: &[DVec3],
     simplicial: &Simplicial,
@@ -249,23 +250,23 @@ fn vertices_and_faces(
     Ok((vertices, topology))
 }
 
-/// The numbers that occur, ascending.
+/// Returns the distinct numbers, in ascending order.
 fn distinct_sorted(numbers: impl Iterator<Item = u32> + Clone) -> Vec<u32> {
     let mut occurs = vec![false; numbers.clone().max().map_or(0, |most| most as usize + 1)];
     numbers.for_each(|k| occurs[k as usize] = true);
     (0..occurs.len() as u32).filter(|&k| occurs[k as usize]).collect()
 }
 
-/// More vertices than this are numbered by place: what a query visits one after the other is then
-/// near in memory. Smaller bodies fit in the fastest cache in any order.
+/// Maximum number of vertices in the order of the input. More vertices are sorted by place, so that vertices that a
+/// query visits successively are near in memory. Smaller bodies fit into the fastest cache in any order.
 pub(super) const MAX_INPUT_ORDER: usize = 500;
 
-/// Sorts points along a space-filling curve (Morton's).
+/// Sorts points along a space-filling curve (the Morton curve).
 fn sort_along_curve(points: &[DVec3], vertices: &mut [u32]) {
     let at = |v: u32| points[v as usize];
     let bounds = Aabb::of_points(vertices.iter().map(|&v| at(v)));
     let scale = f64::from(1 << 20) / bounds.size();
-    // Casts saturate: an axis without extent is all zeros.
+    // Casts saturate: all coordinates along an axis without extent are 0.
     let key = |&v: &u32| {
         let cell = (at(v) - bounds.low) * scale;
         spread_bits(cell.x as u32)
@@ -275,7 +276,7 @@ fn sort_along_curve(points: &[DVec3], vertices: &mut [u32]) {
     vertices.sort_by_cached_key(key);
 }
 
-/// The lowest 21 bits, two places apart.
+/// Spreads the lowest 21 bits so that two zero bits separate them.
 fn spread_bits(bits: u32) -> u64 {
     let mut x = u64::from(bits) & 0x1f_ffff;
     x = (x | x << 32) & 0x1f_0000_0000_ffff;
@@ -285,7 +286,7 @@ fn spread_bits(bits: u32) -> u64 {
     (x | x << 2) & 0x1249_2492_4924_9249
 }
 
-/// The faces in the order of their lowest vertices.
+/// Sorts the faces by their lowest vertices.
 fn sorted_by_vertex(face_start: &[u32], face_vertices: &[u32]) -> (Vec<u32>, Vec<u32>) {
     let face = |f: u32| {
         &face_vertices[face_start[f as usize] as usize..face_start[f as usize + 1] as usize]

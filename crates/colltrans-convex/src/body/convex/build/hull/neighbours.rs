@@ -1,8 +1,9 @@
-//! The best of the neighbours of a face: one by one, or for a face of many by a tree over them.
+//! Search for the best neighbour of a face: by a scan, or by a tree for a face with many neighbours.
 //!
-//! Both caps of a prism have all other faces as neighbours, so a walk over the faces would take quadratic time.
+//! Each cap of a prism is adjacent to all other faces. Therefore a walk over the faces would take quadratic time if
+//! it scanned them.
 //!
-//! Invariant. The result is that of a loop over the neighbours in their order, bit for bit: floating-point sums and
+//! Invariant. The result is that of a loop over the neighbours in their order, bit for bit. Floating-point sums and
 //! products are monotone, so a bound is never below a value that is computed in the same way.
 
 use std::collections::HashMap;
@@ -12,39 +13,40 @@ use glam::DVec3;
 
 use colltrans_kernel::work;
 
-/// Maximum number of neighbours that are looked at one by one.
+/// Maximum number of neighbours that are scanned one by one.
 const MAX_SCANNED: usize = 32;
-/// Neighbours of a leaf.
+/// Maximum number of neighbours in a leaf.
 const LEAF_SIZE: usize = 8;
 
-/// The faces around each face.
+/// The faces adjacent to each face.
 pub(super) struct Neighbours {
     start: Vec<u32>,
     faces: Vec<u32>,
-    /// The trees of faces with many neighbours, each node before its children.
+    /// Trees of the faces with many neighbours, each node before its children.
     trees: HashMap<usize, Vec<PlaneNode>>,
 }
 
-/// Neighbours that follow each other, and bounds of their planes.
+/// Consecutive neighbours, and bounds of their planes.
 pub(super) struct PlaneNode {
     range: Range<usize>,
     low: DVec3,
     high: DVec3,
     pub(super) min_offset: f64,
     pub(super) max_offset: f64,
-    /// The position of the first node that is not below this one.
+    /// Position of the first node outside the subtree of this one.
     end: usize,
 }
 
 impl PlaneNode {
-    /// Returns an upper bound of the products of the normals with a vector.
+    /// Returns an upper bound of the products of the normals with `ray`.
     pub(super) fn max_product(&self, ray: DVec3) -> f64 {
         DVec3::select(ray.cmpge(DVec3::ZERO), self.high, self.low).dot(ray)
     }
 }
 
 impl Neighbours {
-    /// Takes the neighbours of all faces in one list, where each begins, and the plane of each face.
+    /// Builds the trees. `start` contains the position of each face's first neighbour in `faces`, and `planes` the
+    /// normal and offset of each face.
     pub(super) fn new(start: Vec<u32>, faces: Vec<u32>, planes: &[(DVec3, f64)]) -> Self {
         let mut trees = HashMap::new();
         for (face, ends) in start.windows(2).enumerate() {
@@ -58,8 +60,8 @@ impl Neighbours {
         Self { start, faces, trees }
     }
 
-    /// Returns the first neighbour of a face with the greatest value, and this value, if that is greater than
-    /// `best`, else `best`. `bound` is an upper bound of the values of a node.
+    /// Returns the first neighbour of a face with the largest value, and this value, if it exceeds that of `best`,
+    /// else `best`. `bound` must return an upper bound of the values of a node.
     pub(super) fn best_neighbour(
         &self,
         face: usize,
@@ -98,6 +100,7 @@ impl Neighbours {
     }
 }
 
+/// Appends the nodes of a range of neighbours.
 fn build_nodes(
     nodes: &mut Vec<PlaneNode>,
     range: Range<usize>,

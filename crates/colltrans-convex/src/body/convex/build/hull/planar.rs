@@ -9,6 +9,7 @@ use colltrans_kernel::predicates::orient2d as orientation;
 use colltrans_kernel::topology::Topology;
 use colltrans_kernel::work;
 
+/// Computes the hull of points whose affine hull is `flat`.
 pub(super) fn flat_hull(points: &[DVec3], kept: &[u32], flat: Flat, tolerance: f64) -> IndexedHull {
     match flat {
         Flat::Point(a) => without_faces(points, kept, &[a], tolerance),
@@ -17,7 +18,7 @@ pub(super) fn flat_hull(points: &[DVec3], kept: &[u32], flat: Flat, tolerance: f
     }
 }
 
-/// A point, or a segment between two.
+/// Builds the hull that is a point, or a segment between two points.
 fn without_faces(points: &[DVec3], kept: &[u32], vertices: &[u32], tolerance: f64) -> IndexedHull {
     let mut vertices = vertices.to_vec();
     vertices.sort_unstable();
@@ -37,14 +38,15 @@ fn without_faces(points: &[DVec3], kept: &[u32], vertices: &[u32], tolerance: f6
     }
 }
 
-/// Whether a point lies on a segment, exactly.
+/// Checks whether a point lies on a segment, exactly.
 fn is_on_segment(p: DVec3, a: DVec3, b: DVec3) -> bool {
     let is_between = p.cmpge(a.min(b)).all() && p.cmple(a.max(b)).all();
     let in_line = |q: &dyn Fn(DVec3) -> DVec2| orientation(q(a), q(b), q(p)) == 0.0;
     is_between && in_line(&|v| v.xy()) && in_line(&|v| v.yz()) && in_line(&|v| v.zx())
 }
 
-/// A polygon without corners that are within the tolerance of an edge, unless that leaves some far away.
+/// Computes a polygon without corners within the tolerance of an edge. If this leaves a point too far away, these
+/// corners are kept.
 fn polygon_hull(points: &[DVec3], kept: &[u32], normal: DVec3, tolerance: f64) -> IndexedHull {
     let plane = PlanarPoints { points, projection: Projection::for_normal(normal) };
     let chain = plane.corner_chain(kept);
@@ -56,7 +58,7 @@ fn polygon_hull(points: &[DVec3], kept: &[u32], normal: DVec3, tolerance: f64) -
     }
 }
 
-/// Points in a plane, by their projections.
+/// Points in a plane, and their projection.
 struct PlanarPoints<'a> {
     points: &'a [DVec3],
     projection: Projection,
@@ -71,7 +73,7 @@ impl PlanarPoints<'_> {
         self.projection.project(self.point_at(i))
     }
 
-    /// The polygon of these corners as a front and a back face; a segment if there are two.
+    /// Builds the polygon with these corners as a front and a back face; a segment if there are two.
     fn hull_of_corners(&self, kept: &[u32], corners: &[u32], tolerance: f64) -> IndexedHull {
         if corners.len() < 3 {
             return without_faces(self.points, kept, corners, tolerance);
@@ -90,8 +92,8 @@ impl PlanarPoints<'_> {
         with_violation(self.points, hull, kept.iter().copied(), tolerance).0
     }
 
-    /// The corners, counter-clockwise around the normal from the one with least `x`: a monotone
-    /// chain on exact orientations.
+    /// Returns the corners, counter-clockwise around the normal, starting at the one with the smallest `x`. This is
+    /// the monotone chain algorithm with exact orientations.
     fn corner_chain(&self, kept: &[u32]) -> Vec<u32> {
         let project = |i: u32| self.projected_point(i);
         let mut order = kept.to_vec();
@@ -107,9 +109,9 @@ impl PlanarPoints<'_> {
         chain
     }
 
-    /// Without corners within the tolerance of the edge between their neighbours.
+    /// Returns the chain without corners within the tolerance of the edge between their neighbours.
     fn drop_collinear(&self, chain: &[u32], tolerance: f64) -> Vec<u32> {
-        // Not of its line: the tip of a needle is near that of its neighbours.
+        // Measured from the edge, not from its line: the tip of a needle is near the line through its neighbours.
         let is_on_edge = |a: u32, b: u32, c: u32| {
             distance_to_segment(self.point_at(b), self.point_at(a), self.point_at(c)) <= tolerance
         };
@@ -124,7 +126,7 @@ impl PlanarPoints<'_> {
             }
             corners.push(c);
         }
-        // The chain starts at a corner for its least `x`, which only its tolerance can dispute.
+        // The chain starts at the corner with the smallest `x`, which can be redundant only within the tolerance.
         while let [first, .., a, b] = corners[..] {
             if corners.len() <= 3 || !is_on_edge(a, b, first) {
                 break;
@@ -140,6 +142,7 @@ impl PlanarPoints<'_> {
     }
 }
 
+/// Returns one half of the monotone chain, for points in the given order.
 fn half_chain(order: impl Iterator<Item = u32>, project: &dyn Fn(u32) -> DVec2) -> Vec<u32> {
     let mut chain: Vec<u32> = Vec::new();
     for i in order {

@@ -1,15 +1,13 @@
-//! Quickhull on exact decisions.
+//! Quickhull with exact decisions (Barber, Dobkin, Huhdanpaa, "The quickhull algorithm for convex hulls", ACM TOMS
+//! 22(4), 1996, for the conflict lists).
 //!
-//! Invariant: the triangles are the boundary of the exact convex hull of the points inserted so far.
-//! A point is inserted if it lies more than the tolerance outside a triangle's plane; the triangles
-//! it sees, decided by exact orientations, are replaced by a cone from their rim to the point. A
-//! triangle whose plane contains the point counts as hidden, so a planar cap is not torn down for
-//! each of its corners. A point collinear with a rim edge would lie in the plane of the triangle
-//! seen there and not see it, so no degenerate triangle is ever made; and what is seen is what a
-//! point moved slightly inwards sees, so it is one disk.
-//!
-//! Barber, Dobkin, Huhdanpaa, "The quickhull algorithm for convex hulls", ACM TOMS 22(4), 1996, for
-//! the conflict lists.
+//! Invariants:
+//! - The triangles are the boundary of the exact convex hull of the inserted points.
+//! - A point is inserted if it lies more than the tolerance outside a triangle's plane. The triangles visible from
+//!   it, by exact orientations, are replaced by a cone from their rim to the point.
+//! - A triangle whose plane contains the point counts as hidden. Therefore a planar cap is not rebuilt for each of
+//!   its corners.
+//! - No degenerate triangle occurs, and the visible triangles form one disk; see `docs/theory/hulls.md`.
 
 use std::collections::VecDeque;
 
@@ -21,6 +19,7 @@ use crate::body::Aabb;
 use colltrans_kernel::plane::triangle_normal;
 use colltrans_kernel::work;
 
+/// Marks the end of a list, and a missing number.
 const NONE: u32 = u32::MAX;
 
 /// A triangle of a hull.
@@ -33,22 +32,22 @@ pub(super) struct Triangle {
     pub(super) normal: DVec3,
 }
 
-/// A triangle of a hull that grows.
+/// A triangle of a hull under construction.
 #[derive(Debug, Clone)]
 struct GrowingTriangle {
     corners: [u32; 3],
     neighbours: [u32; 3],
     normal: DVec3,
-    /// Its first corner.
+    /// The first corner.
     origin: DVec3,
-    /// Distance below which a rounded distance from the plane may have the wrong sign.
+    /// Distance from the plane up to which the rounded distance may have the wrong sign.
     sign_error: f64,
     /// Head of the list of points outside.
     outside: u32,
-    /// The farthest of them, and how far.
+    /// Distance and number of the farthest of them.
     farthest: (f64, u32),
     alive: bool,
-    /// The last insertion that looked at this triangle, and whether it was seen.
+    /// The last insertion that examined this triangle; `is_visible` is its result.
     stamp: u32,
     is_visible: bool,
 }
@@ -57,42 +56,45 @@ struct GrowingTriangle {
 #[derive(Debug)]
 pub(super) struct Simplicial {
     pub(super) triangles: Vec<Triangle>,
-    /// Points not inserted that are outside by up to, or inside by less than, the tolerance. All others
-    /// are inside, exactly.
+    /// Points that were not inserted and are within the tolerance of the surface, inside or outside. All other
+    /// points that were not inserted are inside, exactly.
     pub(super) near: Vec<u32>,
 }
 
 impl Simplicial {
-    /// The points that are corners, ascending.
+    /// Returns the points that are corners, in ascending order.
     pub(super) fn sorted_vertices(&self) -> Vec<u32> {
         distinct_sorted(self.triangles.iter().flat_map(|t| t.corners))
     }
 }
 
-/// A point set without volume: what spans it.
+/// A point set without volume, by its affine hull.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Flat {
     Point(u32),
     Segment([u32; 2]),
-    /// With the unit normal of the plane.
+    /// Contains the unit normal of the plane.
     Plane(DVec3),
 }
 
-/// Refinement goes in breadth until this many points are left for each one inserted, then in depth.
+/// Number of points per inserted point at which insertion changes from breadth first to depth first.
 ///
-/// In depth, what is looked at is still in the cache (spheres of 200,000 points: 1.5 times faster).
-/// But of two rings, one would be finished before the other: then every point of the other one sees
-/// a fan over half the ring, and each of its orphans is held against the new fan, which is quadratic.
-/// In breadth both rings grow together. Patches of a bounded number of points cannot do much harm.
+/// Depth first, the triangles examined are still in the cache (1.5 times faster for spheres of 200,000 points). But
+/// of two rings, one would be completed before the other. Then every point of the other ring sees a fan over half
+/// of the first one, and each orphan is compared with the new fan, which is quadratic. Breadth first, both rings
+/// grow together. Patches with a bounded number of points limit the cost.
 const POINTS_PER_PATCH: u32 = 128;
 
-/// Of a new cone with more triangles the one that an orphan sees is found by its [`Fan`]: of two rings close
-/// together, as along a chamfer, a patch of one is still finished before the other's. Of smaller cones all are
-/// looked at, and an orphan goes where it is farthest outside.
+/// Maximum number of triangles of a new cone that are all compared with each orphan, which joins the one it is
+/// farthest outside of. In a larger cone, [`ConeSectors`] finds the visible triangle. Such cones occur for two
+/// rings close together, as along a chamfer, where a patch of one ring is still completed before that of the other.
 const MAX_SCANNED_CONE: usize = 16;
 
-/// The hull of the points in `kept`, or what dimension they have instead. Points within the tolerance
-/// of a triangle and outside none by more are left out, unless they are in `forced` (ascending).
+/// Computes the hull of the points in `kept`. Points within the tolerance of a triangle, and outside none by more,
+/// are left out unless they are in `forced` (ascending).
+///
+/// # Errors
+/// The affine hull of the points, if they have no volume.
 pub(super) fn simplicial_hull(
     points: &[DVec3],
     kept: &[u32],
@@ -114,8 +116,11 @@ pub(super) fn simplicial_hull(
     Ok(builder.into_simplicial())
 }
 
-/// Four points that span a volume, the first three counter-clockwise as seen from the outside, away
-/// from the fourth.
+/// Selects four points that span a volume. The first three are counter-clockwise as seen from outside, opposite the
+/// fourth.
+///
+/// # Errors
+/// The affine hull of the points, if they have no volume.
 fn first_simplex(points: &[DVec3], kept: &[u32], tolerance: f64) -> Result<[u32; 4], Flat> {
     let at = |i: u32| points[i as usize];
     let farthest = |from: &dyn Fn(DVec3) -> f64| {
@@ -146,13 +151,13 @@ fn first_simplex(points: &[DVec3], kept: &[u32], tolerance: f64) -> Result<[u32;
 
 pub(super) use colltrans_kernel::predicates::orient3d as orientation;
 
-/// Where a point went.
+/// Result of the assignment of a point to a triangle.
 enum Assigned {
-    /// On the list of a triangle.
+    /// The point is on the list of this triangle.
     To(u32),
-    /// Within the tolerance of a triangle, outside none by more.
+    /// The point is within the tolerance of a triangle, and outside none by more.
     Near,
-    /// Nowhere: it is inside of all, exactly.
+    /// The point is inside all triangles, exactly.
     Inside,
 }
 
@@ -160,12 +165,12 @@ struct HullBuilder<'a> {
     points: &'a [DVec3],
     forced: &'a [u32],
     tolerance: f64,
-    /// Bound on the distance between two points.
+    /// Upper bound of the distance of two points.
     extent: f64,
     triangles: Vec<GrowingTriangle>,
     /// Triangles that may have points outside.
     pending: VecDeque<u32>,
-    /// For each point, the next in its list.
+    /// For each point, the next one in its list.
     next: Vec<u32>,
     /// For each point, the new triangle whose rim edge starts there.
     rim_start: Vec<u32>,
@@ -197,6 +202,7 @@ impl<'a> HullBuilder<'a> {
         }
     }
 
+    /// Returns the next triangle to process, breadth first or depth first.
     fn next_pending(&mut self, in_breadth: bool) -> Option<u32> {
         if in_breadth { self.pending.pop_front() } else { self.pending.pop_back() }
     }
@@ -205,6 +211,7 @@ impl<'a> HullBuilder<'a> {
         self.points[i as usize]
     }
 
+    /// Adds the first four triangles, and assigns all other points.
     fn add_simplex(&mut self, [a, b, c, e]: [u32; 4], kept: &[u32]) {
         let faces = [[a, b, c], [b, a, e], [c, b, e], [a, c, e]];
         let neighbours = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
@@ -220,13 +227,13 @@ impl<'a> HullBuilder<'a> {
         self.pending.extend([0, 1, 2, 3]);
     }
 
-    /// A new triangle without neighbours.
+    /// Adds a triangle without neighbours. Returns its number.
     fn add_triangle(&mut self, corners: [u32; 3]) -> u32 {
         let [a, b, c] = corners.map(|i| self.point_at(i));
         let normal = triangle_normal([a, b, c]);
         let area = normal.length();
-        // The product of the two shorter edges, and the distance of a point `extent` away, are off
-        // by a few roundings.
+        // The relative rounding errors of the product of the two shorter edges, and of the distance of a point
+        // `extent` away, are a few units in the last place.
         let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(p, q)| p.distance_squared(q));
         let product = (ab * bc).min(bc * ca).min(ca * ab).sqrt();
         let sign_error = 16.0 * f64::EPSILON * product * self.extent / area;
@@ -251,15 +258,14 @@ impl<'a> HullBuilder<'a> {
         }
     }
 
-    /// Signed distance of a point from a triangle's plane, rounded.
+    /// Returns the signed distance of a point from a triangle's plane, rounded.
     fn plane_distance(&self, face: u32, p: DVec3) -> f64 {
         let triangle = &self.triangles[face as usize];
         triangle.normal.dot(p - triangle.origin)
     }
 
-    /// Puts a point on the list of the triangle it is farthest outside of, if by more than the
-    /// tolerance or the point is forced: then the exact sign alone decides, whatever the rounded
-    /// distance says.
+    /// Adds a point to the list of the triangle that it is farthest outside of, if the distance exceeds the
+    /// tolerance. A forced point only needs an exact sign, independent of the rounded distance.
     fn assign_point(&mut self, i: u32, faces: impl Iterator<Item = u32>) -> Assigned {
         let p = self.point_at(i);
         let is_forced = self.forced.binary_search(&i).is_ok();
@@ -271,7 +277,7 @@ impl<'a> HullBuilder<'a> {
             if distance > best.0 && self.is_outside(face, p, distance) {
                 best = (distance, face);
             }
-            // The rounded distance from a sliver's plane says little.
+            // The rounded distance from the plane of a sliver is unreliable.
             is_near = is_near || distance > -self.tolerance || self.is_outside(face, p, distance);
         }
         let (distance, face) = best;
@@ -287,8 +293,8 @@ impl<'a> HullBuilder<'a> {
         Assigned::To(face)
     }
 
-    /// Whether a point at a rounded distance is really outside: slivers have arbitrary rounded
-    /// normals.
+    /// Checks whether a point with a rounded `distance` is outside a triangle, exactly. Rounded normals of slivers
+    /// are arbitrary.
     fn is_outside(&self, face: u32, p: DVec3, distance: f64) -> bool {
         let triangle = &self.triangles[face as usize];
         if distance.abs() > triangle.sign_error {
@@ -298,11 +304,11 @@ impl<'a> HullBuilder<'a> {
         orientation(a, b, c, p) > 0.0
     }
 
-    /// Assigns a point that lost its triangle.
+    /// Assigns a point that has lost its triangle.
     ///
-    /// In exact arithmetic one of the new triangles sees it if any triangle does. But it may be
-    /// within the tolerance of that one and far outside an older one (a corner of a box in the
-    /// planes of its faces): then the triangles that see it are searched from the rim on.
+    /// In exact arithmetic, one of the new triangles is visible from it if any triangle is. But the point may be
+    /// within the tolerance of that triangle and far outside an older one, for example a corner of a box in the
+    /// planes of its faces. Therefore the visible triangles are searched from the rim on.
     fn reassign_orphan(&mut self, i: u32, cone: &[u32], sectors: Option<&ConeSectors>) {
         let guess = sectors.map(|sectors| sectors.candidates(self.point_at(i)));
         if guess
@@ -333,7 +339,7 @@ impl<'a> HullBuilder<'a> {
         self.near.push(i);
     }
 
-    /// Whether a point sees a triangle, strictly; exact.
+    /// Checks whether a triangle is strictly visible from a point, exactly.
     fn is_visible_from(&self, face: u32, p: DVec3) -> bool {
         self.is_outside(face, p, self.plane_distance(face, p))
     }
@@ -370,7 +376,7 @@ impl<'a> HullBuilder<'a> {
         self.free.append(&mut self.visible);
     }
 
-    /// Collects the triangles that `p` sees and the rim edges `(from, to, hidden triangle)`.
+    /// Collects the triangles visible from `p` and the rim edges `(from, to, hidden triangle)`.
     fn find_rim(&mut self, first: u32, p: DVec3) {
         self.insertion += 1;
         self.rim.clear();
@@ -398,12 +404,13 @@ impl<'a> HullBuilder<'a> {
         }
     }
 
+    /// Marks a triangle as examined in the current insertion.
     fn set_visibility(&mut self, face: u32, is_visible: bool) {
         let triangle = &mut self.triangles[face as usize];
         (triangle.stamp, triangle.is_visible) = (self.insertion, is_visible);
     }
 
-    /// The triangles from the rim to the new point, linked to each other and to the hidden ones.
+    /// Builds the triangles from the rim to the new point, linked to each other and to the hidden ones.
     fn build_cone(&mut self, apex: u32) -> Vec<u32> {
         let rim = std::mem::take(&mut self.rim);
         let mut cone = Vec::with_capacity(rim.len());
@@ -425,14 +432,14 @@ impl<'a> HullBuilder<'a> {
         cone
     }
 
-    /// The triangles of a cone by their sectors.
+    /// Builds the index of a cone's triangles by sector.
     fn cone_sectors(&self, apex: DVec3, cone: &[u32]) -> ConeSectors {
         work::count(cone.len());
         let start = |&face: &u32| (self.point_at(self.triangles[face as usize].corners[0]), face);
         ConeSectors::new(apex, cone.iter().map(start))
     }
 
-    /// Drops the dead triangles and renumbers the rest.
+    /// Drops the dead triangles, and renumbers the others.
     fn into_simplicial(self) -> Simplicial {
         let mut number = vec![NONE; self.triangles.len()];
         let alive = || self.triangles.iter().enumerate().filter(|(_, t)| t.alive);

@@ -1,10 +1,9 @@
-//! How far from itself a hull leaves the points it was made of.
+//! Upper bounds of the distances between a hull and the points from which it was made.
 //!
-//! The distance of a point from a body is bounded from above by that from a *witness*, a point of a
-//! triangle of the body's corners. Whatever chose the triangle and the weights, a walk that rounding
-//! misled or a projection of a sliver, a bad choice makes the bound larger and never wrong. So it does
-//! not depend on how thin the body is, as distances from face planes do: within a rounding of two of
-//! them, a point can be a body's width away from it.
+//! The distance of a point from a body is at most its distance from a *witness*, a point of a triangle of the
+//! body's corners. A poor choice of triangle and weights, by a walk that rounding misled or by a projection of a
+//! sliver, makes the bound larger but never wrong. Therefore the bound does not depend on the thickness of the
+//! body. In contrast, a point within rounding error of two face planes can be a body's width away from it.
 
 use glam::{DVec2, DVec3};
 
@@ -16,14 +15,13 @@ use colltrans_kernel::predicates::orient2d as orientation_in_plane;
 use colltrans_kernel::topology::Topology;
 use colltrans_kernel::work;
 
-/// Finds the face that the ray from an inner point to a given point passes, by walking from face to
-/// face.
+/// Locator of the face that a ray from an inner point passes. It walks from face to face.
 ///
-/// With the inner point as origin, faces are the points `n / o` of the polar polytope and the face
-/// sought is its support point, so a walk to ever better neighbours ends at it.
+/// With the inner point as origin, the faces are the points `n / o` of the polar polytope, and the required face is
+/// its support point. Therefore a walk to better and better neighbours ends there.
 pub(in crate::body::convex) struct Locator {
     center: DVec3,
-    /// Unit normal and offset from the centre of each face.
+    /// Unit normal of each face, and its offset from the centre.
     planes: Vec<(DVec3, f64)>,
     neighbours: Neighbours,
 }
@@ -40,7 +38,7 @@ impl Locator {
         Self { center, neighbours: Neighbours::new(start, neighbours, &planes), planes }
     }
 
-    /// The faces of a polyhedron.
+    /// Builds the locator of a polyhedron.
     pub(in crate::body::convex) fn of_faces(vertices: &[DVec3], topology: &Topology) -> Self {
         let center = vertices.iter().sum::<DVec3>() / vertices.len() as f64;
         let plane = |face: u32| {
@@ -65,8 +63,9 @@ impl Locator {
         Self { center, planes, neighbours }
     }
 
-    /// How far a point is outside the face its ray passes and that face's neighbours (negative:
-    /// inside). `near`: where the walk starts, and where it ended.
+    /// Returns the largest signed distance of a point outside the face that its ray passes and the neighbours of
+    /// this face; negative if it is inside them all. `near` is the face where the walk starts, and then the face
+    /// where it ended.
     pub(super) fn distance_outside(&self, point: DVec3, near: &mut usize) -> f64 {
         let ray = point - self.center;
         self.walk_to_face(ray, near);
@@ -75,7 +74,7 @@ impl Locator {
         self.neighbours.best_neighbour(*near, (outside(*near), *near), outside, bound).0
     }
 
-    /// Unit normals and offsets from the origin of the coordinates.
+    /// Returns the unit normals of the faces and their offsets from the origin of the coordinates.
     pub(in crate::body::convex) fn planes_from_origin(
         &self,
     ) -> impl Iterator<Item = (DVec3, f64)> + '_ {
@@ -94,7 +93,7 @@ impl Locator {
             highest / offset.max(f64::MIN_POSITIVE)
         };
         let mut value = passing(*near);
-        // Every step increases the value; the bound is for rounding.
+        // Every step increases the value. The limit is for rounding errors.
         for _ in 0..self.planes.len() {
             let better = self.neighbours.best_neighbour(*near, (value, *near), passing, bound);
             if better.1 == *near {
@@ -105,8 +104,7 @@ impl Locator {
     }
 }
 
-/// The largest distance of a hull's vertex outside a face plane: polygons are flat only up to
-/// rounding.
+/// Returns the largest distance of a hull's vertex outside a face plane. Polygons are flat only up to rounding.
 fn max_unevenness(locator: &Locator, vertices: &[DVec3], topology: &Topology) -> f64 {
     let mut worst = 0.0_f64;
     for (face, (normal, offset)) in locator.planes.iter().enumerate() {
@@ -117,33 +115,34 @@ fn max_unevenness(locator: &Locator, vertices: &[DVec3], topology: &Topology) ->
     worst
 }
 
-/// Triangles looked at one by one, in multiples of the number of edges and points.
+/// Number of triangles per edge or point that may be examined one by one.
 const TRIANGLES_PER_ELEMENT: usize = 128;
 
-/// Triangles looked at to see that points are inside, at most.
+/// Maximum number of triangles examined to find whether points are inside.
 const MAX_INSIDE_TRIANGLES: usize = 1 << 16;
 
-/// How far points are from a body, bounded from above.
+/// Measures upper bounds of the distances of points from a body.
 pub(super) struct Gauge<'a> {
     locator: Locator,
     vertices: &'a [DVec3],
     topology: &'a Topology,
-    /// Bound on the rounding errors of a witness.
+    /// Upper bound of the rounding error of a witness.
     rounding: f64,
-    /// How far the locator's centre is from the body: rounding can leave it outside of a thin one.
+    /// Upper bound of the distance of the locator's centre from the body, once it is computed. Rounding can place
+    /// the centre outside a thin body.
     center_bound: Option<f64>,
-    /// The largest bound so far, at first the unevenness of the faces.
+    /// The largest bound found, initially the unevenness of the faces.
     pub(super) violation: f64,
-    /// The largest bound so far on the distance of a point that is not seen to be inside.
+    /// The largest bound found for a point that is not proven to be inside.
     pub(super) input_excess: f64,
-    /// Triangles that may still be looked at for points of which the walk does not tell enough.
+    /// Remaining number of triangles that may be examined for points for which the walk gives no good bound.
     triangle_budget: usize,
-    /// Triangles that may still be looked at to see that a point is inside.
+    /// Remaining number of triangles that may be examined to prove that a point is inside.
     inside_budget: usize,
 }
 
 impl<'a> Gauge<'a> {
-    /// For so many points; `rounding` is that of a witness at their size.
+    /// Prepares the measurement of `points` points. `rounding` is the rounding error of a witness at their size.
     pub(super) fn new(
         vertices: &'a [DVec3],
         topology: &'a Topology,
@@ -165,9 +164,9 @@ impl<'a> Gauge<'a> {
         }
     }
 
-    /// A bound on the distance of a point from the body; more than `enough` only if no witness is
-    /// nearer than that, or too many points have taken a look at all faces.
-    /// `near`: where the walk starts, and where it ended.
+    /// Returns an upper bound of the distance of a point from the body, and records it. The bound exceeds `enough`
+    /// only if no witness is that near, or if the triangle budget is exhausted. `near` is the face where the walk
+    /// starts, and then the face where it ended.
     pub(super) fn distance_bound(&mut self, p: DVec3, enough: f64, near: &mut usize) -> f64 {
         let bound = self.unrecorded_bound(p, enough, near);
         self.violation = self.violation.max(bound);
@@ -177,7 +176,8 @@ impl<'a> Gauge<'a> {
         bound
     }
 
-    /// Whether a point is seen to be inside the body, as far as there are looks left for that.
+    /// Checks whether a point is proven to be inside the body. Returns `false` for a flat polygon, or if the budget
+    /// for this test is exhausted.
     fn is_inside(&mut self, p: DVec3) -> bool {
         let count = 2 * self.topology.edge_count();
         let has_budget = self.inside_budget >= count && self.topology.face_count() > 2;
@@ -188,8 +188,9 @@ impl<'a> Gauge<'a> {
         has_budget && self.contains_exactly(p)
     }
 
+    /// Computes the bound of [`Self::distance_bound`].
     fn unrecorded_bound(&mut self, p: DVec3, enough: f64, near: &mut usize) -> f64 {
-        // The front of a flat polygon is where its back is.
+        // The front and the back of a flat polygon coincide, so the walk is not needed.
         let is_solid = self.topology.face_count() > 2;
         if is_solid {
             self.locator.walk_to_face(p - self.locator.center, near);
@@ -207,9 +208,9 @@ impl<'a> Gauge<'a> {
         self.bound_by_all_faces(p).min(inside)
     }
 
-    /// The bound of a point that its face leaves inside: on the way from the centre to where its ray
-    /// passes the face, the distance from a convex body is at most the weighted mean of that at
-    /// both ends.
+    /// Returns the bound for a point that its face leaves inside; infinity if the point is not between the centre
+    /// and the face. From the centre to the point where its ray passes the face, the distance from a convex body is
+    /// at most the weighted mean of the distances at both ends.
     fn bound_by_ray(&mut self, p: DVec3, face: usize) -> f64 {
         let ray = p - self.locator.center;
         let (normal, offset) = self.locator.planes[face];
@@ -221,13 +222,13 @@ impl<'a> Gauge<'a> {
             self.center_bound.unwrap_or_else(|| self.bound_by_all_faces(self.locator.center));
         self.center_bound = Some(center_bound);
         let exit = self.locator.center + ray / share;
-        // Scaling the ray is off by as little as a witness.
+        // Scaling the ray has at most the rounding error of a witness.
         (1.0 - share) * center_bound
             + self.bound_by_face(exit, face, FanSearch::Foot)
             + self.rounding
     }
 
-    /// The bound from all triangles: 0 inside, exactly.
+    /// Returns the smallest bound from all triangles; 0 if the point is inside, exactly.
     fn bound_by_all_faces(&self, p: DVec3) -> f64 {
         if self.contains_exactly(p) {
             return 0.0;
@@ -237,9 +238,8 @@ impl<'a> Gauge<'a> {
         faces.map(|face| self.bound_by_face(p, face, FanSearch::All)).fold(f64::INFINITY, f64::min)
     }
 
-    /// Whether a point is above none of the triangles of the faces' fans, and below some; exact.
-    ///
-    /// All of them turn the same way around it then: the closed surface winds around the point.
+    /// Checks whether a point is above no triangle of the faces' fans and below at least one, exactly. Then all
+    /// triangles turn the same way around the point, so the closed surface winds around it.
     fn contains_exactly(&self, p: DVec3) -> bool {
         let mut is_below_some = false;
         for face in 0..self.topology.face_count() as u32 {
@@ -256,8 +256,8 @@ impl<'a> Gauge<'a> {
         is_below_some
     }
 
-    /// The bound from triangles of a face's fan. 0 if the point lies in one of them, exactly, which is
-    /// looked at where it makes a difference.
+    /// Returns the smallest bound from triangles of a face's fan. It is 0 if the point lies in one of them, exactly;
+    /// this is tested only where it makes a difference.
     fn bound_by_face(&self, p: DVec3, face: usize, search: FanSearch) -> f64 {
         let range = self.topology.face(face as u32);
         let corner =
@@ -282,21 +282,23 @@ impl<'a> Gauge<'a> {
         if found <= 2.0 * self.rounding {
             return found;
         }
-        // Of a needle, the rounding of the foot can be as much as its width.
+        // For a needle, the rounding error of the foot can be as large as its width.
         let adjacent = (at - 1).max(1)..(at + 2).min(count - 1);
         adjacent.map(bound).fold(found, f64::min)
     }
 }
 
-/// Which triangles of a face's fan are looked at.
+/// Selection of the triangles of a face's fan to examine.
 #[derive(Clone, Copy)]
 enum FanSearch {
-    /// The one where the foot of the perpendicular falls, and its neighbours.
+    /// The triangle that contains the foot of the perpendicular, and its neighbours.
     Foot,
+    /// All triangles.
     All,
 }
 
-/// The last corner `k`, not the last of all, that the foot is not clockwise of, as seen from the first one.
+/// Finds the last corner `k`, except the last of all, for which the foot is not clockwise of it, seen from the
+/// first corner.
 fn fan_triangle(first: DVec2, count: usize, foot: DVec2, corner: impl Fn(usize) -> DVec2) -> usize {
     let (mut low, mut high) = (1, count - 1);
     while low + 1 < high {
@@ -311,7 +313,8 @@ fn fan_triangle(first: DVec2, count: usize, foot: DVec2, corner: impl Fn(usize) 
     low
 }
 
-/// The distance of a point from the point of a triangle above `foot`, or from one on its edges.
+/// Returns the distance of a point from the point of a triangle above `foot`, or from the nearest point of its
+/// edges if `foot` is outside.
 fn distance_to_triangle(
     p: DVec3,
     [a, b, c]: [DVec3; 3],
@@ -327,16 +330,17 @@ fn distance_to_triangle(
     distance_to_segment(p, a, b).min(distance_to_segment(p, b, c)).min(distance_to_segment(p, c, a))
 }
 
-/// The distance of a point from the nearest one of a segment.
+/// Returns the distance of a point from the nearest point of a segment.
 pub(super) fn distance_to_segment(p: DVec3, a: DVec3, b: DVec3) -> f64 {
     let edge = b - a;
     let share = (p - a).dot(edge) / edge.length_squared();
-    // A segment without length has no share.
+    // The share of a segment without length is not a number.
     let share = if share > 0.0 { share.min(1.0) } else { 0.0 };
     ((p - a) - edge * share).length()
 }
 
-/// Whether a point lies in a triangle, exactly; its projection must not be flat.
+/// Checks whether a point lies in a triangle, exactly. Returns `false` if the projection of the triangle is not
+/// counter-clockwise.
 fn is_in_triangle(p: DVec3, [a, b, c]: [DVec3; 3], projection: Projection) -> bool {
     let [u, v, w, q] = [a, b, c, p].map(|point| projection.project(point));
     let is_left = |from: DVec2, to: DVec2| orientation_in_plane(from, to, q) >= 0.0;
@@ -347,8 +351,8 @@ fn is_in_triangle(p: DVec3, [a, b, c]: [DVec3; 3], projection: Projection) -> bo
         && orientation(a, b, c, p) == 0.0
 }
 
-/// Points on the two coordinates orthogonal to a normal's largest component, so that what is
-/// counter-clockwise around the normal stays so.
+/// Projection along the coordinate axis of a normal's largest component. It preserves the orientation:
+/// counter-clockwise around the normal remains counter-clockwise.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Projection {
     axes: [usize; 2],

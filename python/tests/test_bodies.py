@@ -178,7 +178,7 @@ def test_a_face_too_small_to_stay_is_named() -> None:
 
 def test_bodies_that_cannot_shrink_or_grow() -> None:
     plate = ConvexPolyhedron.cuboid([0, 0, 0], [4, 4, 1])
-    with pytest.raises(BuildError, match=r"shrunk by 0\.75 nothing is left.* radius 0\.5 it does"):
+    with pytest.raises(BuildError, match=r"shrunk by 0\.75: it contains no ball.* of radius 0\.5"):
         plate.shrunk(0.75)
     sheet = ConvexPolyhedron.cuboid([0, 0, 0], [4, 4, 0])
     segment = ConvexPolyhedron([[0, 0, 0], [1, 0, 0]])
@@ -193,7 +193,7 @@ def test_bodies_that_cannot_shrink_or_grow() -> None:
         segment.grown(0.125)
     for amount in (-1, np.nan, np.inf):
         for move in (plate.shrunk, plate.grown):
-            with pytest.raises(BuildError, match="the amount (-1|NaN|inf) to shrink or grow by"):
+            with pytest.raises(BuildError, match="invalid amount (-1|NaN|inf) to shrink or grow by"):
                 move(amount)
     with pytest.raises(BuildError, match="out of range"):
         plate.grown(1e75)

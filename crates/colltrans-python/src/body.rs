@@ -275,7 +275,7 @@ impl ConvexPolyhedron {
     /// ...     plate.shrunk(0.75)
     /// ... except BuildError as error:
     /// ...     print(error)
-    /// shrunk by 0.75 nothing is left of the body: it holds no ball of this radius, one of radius 0.5 it does
+    /// nothing remains of the body shrunk by 0.75: it contains no ball of this radius, but one of radius 0.5
     fn shrunk(&self, py: Python<'_>, amount: f64) -> PyResult<(Self, OffsetReport)> {
         let (body, report) = py.detach(|| self.0.shrunk(amount)).or_raise()?;
         Ok((body.into(), report.into()))

@@ -10,8 +10,8 @@
 //! The tolerance is [`noise::COPLANAR`] times the largest coordinate; points within it of a face count as on the
 //! face. Dropped points are within [`MAX_DISTANCE_FACTOR`] tolerances of the body. Details: `docs/theory/hulls.md`.
 
+mod cone_sectors;
 mod convex_mesh;
-mod fan;
 mod merge;
 mod neighbours;
 mod planar;

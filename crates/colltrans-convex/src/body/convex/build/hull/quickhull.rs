@@ -13,8 +13,8 @@ use std::collections::VecDeque;
 
 use glam::DVec3;
 
+use super::cone_sectors::ConeSectors;
 use super::distinct_sorted;
-use super::fan::ConeSectors;
 use crate::body::Aabb;
 use colltrans_kernel::plane::triangle_normal;
 use colltrans_kernel::work;

@@ -2,7 +2,7 @@
 //!
 //! Data flow:
 //! 1. [`build`] selects vertices and faces from points, a mesh or two opposite corners.
-//! 2. [`topology`](crate::body::topology) stores the half-edges, without coordinates.
+//! 2. [`Topology`] stores the half-edges, without coordinates.
 //! 3. [`support`] indexes both for support point queries, at construction.
 //! 4. [`sections`] indexes both for planar sections, when the paper's algorithm first needs them.
 

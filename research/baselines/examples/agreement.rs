@@ -14,6 +14,7 @@ use colltrans_baselines::hwalk::{HWalk, Hierarchy};
 use colltrans_baselines::pqp::{Pqp, Soup};
 use colltrans_baselines::vclip::{Shell, VClip};
 use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::reach;
 use glam::DVec3;
 
 /// Pairs of places for one pair of bodies.
@@ -103,9 +104,7 @@ impl<'a> Contest<'a> {
         let (mut egjk, mut vclip) = (Egjk::new(p, q), VClip::new(&self.shells[0], &self.shells[1]));
         let mut hwalk = HWalk::new(&self.hierarchies[0], &self.hierarchies[1]).with_patience(5);
         let mut pqp = Pqp::new(&self.soups[0], &self.soups[1]);
-        let reach =
-            |b: &ConvexPolyhedron| b.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
-        let size = reach(p) + reach(q);
+        let size = reach(p.vertices()) + reach(q.vertices());
         for place in 0..PLACES {
             let kind = place as usize % KINDS.len();
             let at = rng.direction() * size * rng.range(1.0, 2.0);

@@ -87,6 +87,11 @@ impl Mesh {
     }
 }
 
+/// Returns the largest distance of points from the origin.
+pub fn reach(points: &[DVec3]) -> f64 {
+    points.iter().map(|v| v.length()).fold(0.0, f64::max)
+}
+
 /// Points by the bits of their coordinates: cases that were found once, to the last digit.
 pub fn of_bits(bits: &[[u64; 3]]) -> Vec<DVec3> {
     bits.iter().map(|point| DVec3::from_array(point.map(f64::from_bits))).collect()
@@ -161,6 +166,12 @@ pub fn ring(sides: usize, radius: f64, z: f64) -> impl Iterator<Item = DVec3> + 
         let (sine, cosine) = (TAU * k as f64 / sides as f64).sin_cos();
         DVec3::new(radius * cosine, radius * sine, z)
     })
+}
+
+/// The corners of regular polygons about `z`, each by its radius and height, and tips on the axis: the hull is meant.
+pub fn revolved(rings: &[[f64; 2]], tips: &[f64], sides: usize) -> Mesh {
+    let corners = rings.iter().flat_map(|&[radius, z]| ring(sides, radius, z));
+    Mesh::of_points(corners.chain(tips.iter().map(|&z| DVec3::Z * z)).collect())
 }
 
 /// A prism over a regular polygon with `sides` corners of radius 1, from `z = -half_height` to

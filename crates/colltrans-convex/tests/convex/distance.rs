@@ -3,6 +3,7 @@
 use colltrans_convex::{
     ConvexPolyhedron, Distance, NearPoints, Pair, PlaneGap, Pose, QueryError, VertexId, Within,
 };
+use colltrans_testkit::bodies::{at_xyz as at, block as cuboid, body};
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::nearest::Judge;
 use colltrans_testkit::oracle::settings::{FAMILIES, near_contact, setting};
@@ -10,20 +11,8 @@ use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::random_hull;
 use glam::{DMat3, DQuat, DVec3};
 
-fn body(points: &[DVec3]) -> ConvexPolyhedron {
-    ConvexPolyhedron::from_points(points).expect("points")
-}
-
-fn cuboid(low: DVec3, high: DVec3) -> ConvexPolyhedron {
-    ConvexPolyhedron::cuboid(low, high).expect("a box")
-}
-
 fn pose(rotation: DQuat, at: DVec3) -> Pose {
     Pose::new(rotation, at).expect("a pose")
-}
-
-fn at(x: f64, y: f64, z: f64) -> Pose {
-    pose(DQuat::IDENTITY, DVec3::new(x, y, z))
 }
 
 /// The judged distance, and how many noises its bounds are apart.

@@ -5,6 +5,7 @@ use colltrans_convex::{
     Cast, Clearance, Contact, ConvexPolyhedron, Outcome, Pose, QueryError, Solver, StartedFrom,
     Tracker, WhyFree,
 };
+use colltrans_testkit::bodies::{at_xyz as at, body};
 use colltrans_testkit::cases;
 use colltrans_testkit::oracle::keep::Judge;
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
@@ -13,16 +14,8 @@ use colltrans_testkit::shapes::random_hull;
 use glam::{DQuat, DVec3};
 use proptest::prelude::*;
 
-fn body(points: &[DVec3]) -> ConvexPolyhedron {
-    ConvexPolyhedron::from_points(points).expect("points")
-}
-
 fn cube() -> ConvexPolyhedron {
     ConvexPolyhedron::cuboid(DVec3::splat(-0.5), DVec3::splat(0.5)).expect("a box")
-}
-
-fn at(x: f64, y: f64, z: f64) -> Pose {
-    Pose::from_translation(DVec3::new(x, y, z)).expect("a pose")
 }
 
 /// The judged first contact, if there is one.

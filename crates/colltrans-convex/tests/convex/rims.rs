@@ -3,7 +3,7 @@
 
 use colltrans_convex::{Cast, ConvexPolyhedron, Outcome, Pose, Solver};
 use colltrans_testkit::random::Random;
-use colltrans_testkit::shapes::{cuboid, ring};
+use colltrans_testkit::shapes::{cuboid, revolved};
 use glam::{DQuat, DVec3};
 
 /// Casts of each pair of bodies.
@@ -26,10 +26,8 @@ const KINDS: [Kind; 7] = [
 ];
 
 fn body(rings: &[[f64; 2]], tips: &[f64], sides: usize, stretch: DVec3) -> ConvexPolyhedron {
-    let rings = rings.iter().flat_map(|&[radius, z]| ring(sides, radius, z));
-    let points: Vec<_> = rings.chain(tips.iter().map(|&z| DVec3::Z * z)).collect();
-    let points: Vec<_> = points.into_iter().map(|p| p * stretch).collect();
-    ConvexPolyhedron::from_points(&points).expect("a body")
+    let mesh = revolved(rings, tips, sides).mapped(|p| p * stretch);
+    ConvexPolyhedron::from_points(&mesh.vertices).expect("a body")
 }
 
 /// A rotation, a place beside the axis and a direction: anything, or lined up with the other body.

@@ -10,7 +10,9 @@ use std::f64::consts::TAU;
 use colltrans::{ConvexPolyhedron, Pose};
 use colltrans_baselines::Proximity;
 use colltrans_baselines::egjk::{Egjk, Steps, SupportSearch};
+use colltrans_testkit::bodies::body;
 use colltrans_testkit::oracle::distance::{Distance, distance_of_bodies, distance_of_point};
+use colltrans_testkit::oracle::scene::size;
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{cuboid, ring_sphere};
@@ -23,9 +25,7 @@ type Placed<'a> = (&'a ConvexPolyhedron, &'a Pose);
 const GOAL: f64 = 1e-12;
 
 fn noise(moving: Placed, fixed: Placed) -> f64 {
-    let reach = |(body, _): Placed| body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
-    let offset = moving.1.translation().distance(fixed.1.translation());
-    16.0 * f64::EPSILON * (reach(moving) + reach(fixed) + offset)
+    16.0 * f64::EPSILON * size([moving.0.vertices(), fixed.0.vertices()], [moving.1, fixed.1])
 }
 
 fn check(name: &str, answer: &Proximity<Steps>, moving: Placed, fixed: Placed) -> Distance {
@@ -53,10 +53,6 @@ fn check_from_scratch(name: &str, moving: Placed, fixed: Placed) -> Distance {
     let mut linear = egjk().with_support_search(SupportSearch::Linear);
     check(name, &linear.distance(moving.1, fixed.1), moving, fixed);
     check(name, &egjk().distance(moving.1, fixed.1), moving, fixed)
-}
-
-fn body(points: &[DVec3]) -> ConvexPolyhedron {
-    ConvexPolyhedron::from_points(points).unwrap()
 }
 
 /// From 4 to 20 points, in a box or on an ellipsoid, stretched by up to `stretch`.

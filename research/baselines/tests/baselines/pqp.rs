@@ -5,6 +5,7 @@
 
 use colltrans::{ConvexPolyhedron, Pose};
 use colltrans_baselines::pqp::{Pqp, Soup, SoupError};
+use colltrans_testkit::bodies::body;
 use colltrans_testkit::oracle::distance::{distance, distance_of_bodies};
 use colltrans_testkit::oracle::exact::{Vector, place};
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
@@ -189,10 +190,6 @@ fn convex_bodies_of_all_families() {
         }
     }
     assert!(apart > 200, "{apart}");
-}
-
-fn body(points: &[DVec3]) -> ConvexPolyhedron {
-    ConvexPolyhedron::from_points(points).unwrap()
 }
 
 fn prism(sides: u32, axes: DVec3) -> ConvexPolyhedron {

@@ -6,8 +6,10 @@ use std::f64::consts::TAU;
 
 use colltrans::{ConvexPolyhedron, Pose};
 use colltrans_testkit::oracle::distance::{distance_of_bodies, distance_of_point};
+use colltrans_testkit::oracle::scene::size;
 use colltrans_testkit::oracle::settings::{FAMILIES, setting};
 use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::reach;
 use glam::{DQuat, DVec2, DVec3};
 
 /// Two solids in place.
@@ -23,12 +25,8 @@ pub struct Placed {
 impl Placed {
     /// Reaches of both bodies and the distance of their frames.
     pub fn size(&self) -> f64 {
-        let reach = |body: &ConvexPolyhedron| {
-            body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max)
-        };
-        reach(&self.moving)
-            + reach(&self.fixed)
-            + self.moving_pose.translation().distance(self.fixed_pose.translation())
+        let vertices = [self.moving.vertices(), self.fixed.vertices()];
+        size(vertices, [&self.moving_pose, &self.fixed_pose])
     }
 
     /// Moved along the shortest vector so that about `gap` is left of it.
@@ -183,7 +181,7 @@ pub fn large(n: usize, seed: u64) -> Placed {
 pub fn coherent(placed: &Placed, share: f64, steps: u32, seed: u64) -> Vec<Pose> {
     let mut rng = Random::new(seed);
     let (axis, along) = (rng.direction(), rng.direction());
-    let reach = placed.moving.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
+    let reach = reach(placed.moving.vertices());
     let poses = (0..steps).map(|k| {
         let turn = DQuat::from_axis_angle(axis, share * f64::from(k));
         let rotation = (turn * placed.moving_pose.rotation()).normalize();

@@ -25,6 +25,7 @@ use super::scene::Scene;
 use super::simplex::collision_translation;
 use crate::random::Random;
 use crate::shapes::random_hull;
+use crate::tally::Tally;
 
 /// Sorts of scenes, by name.
 pub const FAMILIES: [&str; 6] = ["rows", "coincident", "hulls", "thin", "far", "mixed"];
@@ -32,21 +33,19 @@ pub const FAMILIES: [&str; 6] = ["rows", "coincident", "hulls", "thin", "far", "
 /// One linear programme in so many settings.
 const PROGRAMME_EVERY: u64 = 8;
 
-/// What came out, for statistics.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Seen {
-    /// Obstacles that there were.
-    pub obstacles: usize,
-    /// Those that were asked about, for the nearest one.
-    pub asked: usize,
-    /// Whether one overlapped the moving body.
-    pub overlapped: bool,
-    /// Whether several had the least upper bound.
-    pub tied: bool,
-    /// Whether the moving body was stopped.
-    pub stopped: bool,
-    /// Changed proofs that were refused.
-    pub refused: usize,
+/// What is counted: scenes, obstacles that there were, and those that were asked about for the nearest one; scenes in which
+/// one overlapped the moving body, several had the least upper bound, and the moving body was stopped; changed proofs
+/// that were refused.
+pub const COLUMNS: &[&str] =
+    &["scenes", "obstacles", "asked", "overlapped", "tied", "stopped", "refused"];
+
+/// Draws a scene, asks everything, and judges it.
+///
+/// # Errors
+/// What is wrong.
+pub fn examine(family: &str, seed: u64, tally: &mut Tally) -> Result<(), String> {
+    tally.count("scenes");
+    Setting::draw(family, seed)?.examine(tally)
 }
 
 /// A body, and obstacles that came, moved and went.
@@ -138,14 +137,13 @@ impl Setting {
     ///
     /// # Errors
     /// What is wrong.
-    pub fn examine(&self) -> Result<Seen, String> {
+    pub fn examine(&self, tally: &mut Tally) -> Result<(), String> {
         let asked = self.asked().map_err(|e| text(&e))?;
-        let mut seen = Seen { obstacles: self.obstacles.len(), ..Seen::default() };
-        self.judge(&asked, &|_| false, &mut seen)?;
+        tally.add("obstacles", self.obstacles.len() as u64);
+        self.judge(&asked, &|_| false, tally)?;
         let ignored = |id: ObstacleId| (id.0 ^ self.seed).is_multiple_of(3);
-        self.judge(&asked.ignoring(&ignored), &ignored, &mut Seen::default())?;
-        self.compare_anew(&asked)?;
-        Ok(seen)
+        self.judge(&asked.ignoring(&ignored), &ignored, &mut Tally::default())?;
+        self.compare_anew(&asked)
     }
 
     /// All obstacles but those that are ignored, in the order in which they came.
@@ -164,14 +162,14 @@ impl Setting {
         &self,
         asked: &Among,
         ignored: &dyn Fn(ObstacleId) -> bool,
-        seen: &mut Seen,
+        tally: &mut Tally,
     ) -> Result<(), String> {
         let all = self.all(ignored);
         let own = self.moving.at(self.pose);
         let squares: Vec<Option<Ratio>> = all.iter().map(|(_, one)| square(&own, one)).collect();
-        self.judge_nearest(asked, &all, &squares, seen).map_err(|e| format!("nearest: {e}"))?;
+        self.judge_nearest(asked, &all, &squares, tally).map_err(|e| format!("nearest: {e}"))?;
         self.judge_within(asked, &all, &squares).map_err(|e| format!("within: {e}"))?;
-        self.judge_clearance(asked, &all, seen).map_err(|e| format!("clearance: {e}"))
+        self.judge_clearance(asked, &all, tally).map_err(|e| format!("clearance: {e}"))
     }
 
     fn judge_nearest(
@@ -179,17 +177,19 @@ impl Setting {
         asked: &Among,
         all: &[(ObstacleId, AnyPlaced)],
         squares: &[Option<Ratio>],
-        seen: &mut Seen,
+        tally: &mut Tally,
     ) -> Result<(), String> {
         let mut best: Option<(Answer, AnyDistance)> = None;
+        let mut tied = false;
         for (id, one) in all {
             let distance = distance_of(self.moving.at(self.pose), *one).map_err(|e| text(&e))?;
             let key = (distance.upper(), *id);
-            seen.tied |= best.is_some_and(|(first, _)| first.0 == key.0);
+            tied |= best.is_some_and(|(first, _)| first.0 == key.0);
             if best.is_none_or(|(first, _)| key < first) {
                 best = Some((key, distance));
             }
         }
+        tally.count_if("tied", tied);
         let found = asked.certified_nearest().map_err(|e| text(&e))?;
         let (Some((answer, proof)), Some(((upper, id), distance))) = (&found, &best) else {
             require!(found.is_none() && best.is_none(), "an answer about nothing");
@@ -211,10 +211,10 @@ impl Setting {
         {
             require!(!is_square_below(upper.next_up(), &square) || square.is_zero(), "farther");
         }
-        seen.asked = answer.steps.bodies as usize;
-        seen.overlapped = distance.lower() == 0.0;
+        tally.add("asked", answer.steps.bodies.into());
+        tally.count_if("overlapped", distance.lower() == 0.0);
         asked.verify(proof).map_err(|e| text(&e))?;
-        seen.refused += refused(asked, proof)?;
+        tally.add("refused", refused(asked, proof)?);
         Ok(())
     }
 
@@ -255,7 +255,7 @@ impl Setting {
         &self,
         asked: &Among,
         all: &[(ObstacleId, AnyPlaced)],
-        seen: &mut Seen,
+        tally: &mut Tally,
     ) -> Result<(), String> {
         let direction = self.direction;
         let mut best: Option<(Answer, AnyClearance)> = None;
@@ -286,7 +286,7 @@ impl Setting {
         }
         require!(answer.lower >= least, "{} and not {least}", answer.lower);
         require!(proof.lower <= answer.lower, "a proof of more");
-        seen.stopped = answer.stop.is_some();
+        tally.count_if("stopped", answer.stop.is_some());
         asked.verify(&proof).map_err(|e| text(&e))?;
         if proof.lower < f64::INFINITY {
             let [mut higher, mut without] = [proof.clone(), proof.clone()];
@@ -294,7 +294,7 @@ impl Setting {
             without.passed.retain(|(id, _)| Some(*id) != proof.stop);
             let refused = [higher, without].map(|changed| asked.verify(&changed).is_err());
             require!(refused == [true; 2], "a changed proof passes: {refused:?}");
-            seen.refused += 2;
+            tally.add("refused", 2);
         }
         if self.seed.is_multiple_of(PROGRAMME_EVERY) && answer.distance().is_some() {
             self.judge_translations(all, answer.lower)?;
@@ -380,7 +380,7 @@ impl Setting {
 }
 
 /// Changes a proof, and counts how many changed ones are refused: all that do not hold.
-fn refused(asked: &Among, proof: &NearestProof) -> Result<usize, String> {
+fn refused(asked: &Among, proof: &NearestProof) -> Result<u64, String> {
     let changes: [&dyn Fn(&mut NearestProof); 4] = [
         &|proof| proof.lower = proof.lower * 1.001 + 0.001,
         &|proof| proof.lower = f64::NAN,
@@ -396,7 +396,7 @@ fn refused(asked: &Among, proof: &NearestProof) -> Result<usize, String> {
         }
         let refused = asked.verify(&changed).is_err();
         require!(refused || k == 3 && boxes_tell(asked, proof), "change {k} passes");
-        count += usize::from(refused);
+        count += u64::from(refused);
     }
     Ok(count)
 }

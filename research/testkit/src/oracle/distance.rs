@@ -286,17 +286,10 @@ fn point_to_segment(point: DVec3, [a, b]: [DVec3; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bodies::{at_xyz as at, body};
     use crate::oracle::settings::{FAMILIES, setting};
     use crate::shapes::cuboid;
     use glam::DQuat;
-
-    fn body(points: &[DVec3]) -> ConvexPolyhedron {
-        ConvexPolyhedron::from_points(points).unwrap()
-    }
-
-    fn at(x: f64, y: f64, z: f64) -> Pose {
-        Pose::from_translation(DVec3::new(x, y, z)).unwrap()
-    }
 
     fn cubes(pose: &Pose) -> Distance {
         let cube = body(&cuboid(DVec3::splat(0.5)).vertices);

@@ -18,6 +18,7 @@ use colltrans::{
 use glam::{DQuat, DVec3};
 
 use crate::oracle::input;
+use crate::oracle::scene::size;
 use crate::oracle::settings::{Bodies, Setting};
 use crate::oracle::solids::encloses;
 use crate::oracle::solids::facets::{rule, triangles};
@@ -236,8 +237,7 @@ pub fn solids(bytes: &[u8]) {
     if !few || tolerance != 0.0 || matches!(certificate.start, StartProof::Overlapping(_)) {
         return;
     }
-    let reach = |s: &Solid| s.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
-    let size = reach(&a) + reach(&b) + (t.translation() - s.translation()).length();
+    let size = size([a.vertices(), b.vertices()], [&s, &t]);
     // The distance of facets that are steep is accurate to so much of the size.
     let slack = 1e-9 * size / direction.length();
     approve(&cast, &certificate, slack).unwrap_or_else(|e| panic!("{answer:?}: {e}"));

@@ -10,12 +10,13 @@
 //! - *Apart.* `m > g`, and the plane says so.
 //! - Which of them it is, is for `m` to say, to within what rounding may decide.
 
-use colltrans::{Cast, Clearance, Contact, ConvexPolyhedron, Outcome, Separation, WhyFree};
+use colltrans::{Cast, Clearance, Contact, Outcome, Separation, WhyFree};
 use glam::DVec3;
 
 use crate::oracle::check::Objection;
 use crate::oracle::distance::distance;
 use crate::oracle::exact::{Dyadic, Ratio, Vector, place};
+use crate::oracle::scene::size;
 
 macro_rules! require {
     ($condition:expr, $($text:tt)+) => {
@@ -55,12 +56,8 @@ impl<'a> Judge<'a> {
         let [p, q] = [cast.moving_pose(), cast.fixed_pose()];
         let moving = place(p.matrix(), p.translation(), cast.moving().vertices());
         let fixed = place(q.matrix(), q.translation(), cast.fixed().vertices());
-        let reach = |body: &ConvexPolyhedron| {
-            body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max)
-        };
-        let offset = (q.translation() - p.translation()).length();
         let keep = cast.options().keep;
-        let size = reach(cast.moving()) + reach(cast.fixed()) + offset + keep;
+        let size = size([cast.moving().vertices(), cast.fixed().vertices()], [&p, &q]) + keep;
         let noise = 16.0 * f64::EPSILON * size.max(colltrans::MIN_MAGNITUDE);
         let shadows = shadows(&moving, &fixed, cast.direction());
         Self { cast, keep, moving, fixed, shadows, noise }

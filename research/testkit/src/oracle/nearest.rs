@@ -9,15 +9,14 @@
 //! - *Depth.* `M` has a face across one of the products of two differences of vertices, of `P`, of `Q` or
 //!   one of each; so the least of `max_M n.m / |n|` over all of them, both ways, is the depth.
 
-use colltrans::{
-    ConvexPolyhedron, Depth, Distance, NearPoints, Pair, PlaneGap, VertexPair, Within,
-};
+use colltrans::{Depth, Distance, NearPoints, Pair, PlaneGap, VertexPair, Within};
 
 use glam::DVec3;
 
 use crate::oracle::check::Objection;
 use crate::oracle::distance::{self, distance};
 use crate::oracle::exact::{Dyadic, Ratio, Vector, place};
+use crate::oracle::scene::size;
 
 macro_rules! require {
     ($condition:expr, $($text:tt)+) => {
@@ -46,11 +45,7 @@ impl<'a> Judge<'a> {
         let [p, q] = [pair.moving_pose(), pair.fixed_pose()];
         let moving = place(p.matrix(), p.translation(), pair.moving().vertices());
         let fixed = place(q.matrix(), q.translation(), pair.fixed().vertices());
-        let reach = |body: &ConvexPolyhedron| {
-            body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max)
-        };
-        let offset = (q.translation() - p.translation()).length();
-        let size = reach(pair.moving()) + reach(pair.fixed()) + offset;
+        let size = size([pair.moving().vertices(), pair.fixed().vertices()], [&p, &q]);
         let truth = distance(&moving, &fixed);
         let noise = 16.0 * f64::EPSILON * size.max(colltrans::MIN_MAGNITUDE);
         Self { pair, moving, fixed, truth, noise }

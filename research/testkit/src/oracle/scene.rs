@@ -11,6 +11,7 @@ use dashu_int::IBig;
 use glam::DVec3;
 
 use crate::oracle::exact::{Dyadic, Vector, place};
+use crate::shapes::reach;
 
 /// Two bodies in the world and a direction.
 #[derive(Debug, Clone)]
@@ -39,9 +40,7 @@ impl Scene {
         (fixed, fixed_pose): (&[DVec3], &Pose),
         direction: DVec3,
     ) -> Self {
-        let reach = |points: &[DVec3]| points.iter().map(|v| v.length()).fold(0.0, f64::max);
-        let offset = fixed_pose.translation() - moving_pose.translation();
-        let size = reach(moving) + reach(fixed) + offset.length();
+        let size = size([moving, fixed], [moving_pose, fixed_pose]);
         let sizes = direction.abs().to_array();
         let main_axis = (0..3).fold(0, |k, i| if sizes[i] > sizes[k] { i } else { k });
         let noise = 16.0 * f64::EPSILON * size.max(colltrans::MIN_MAGNITUDE);
@@ -84,6 +83,12 @@ impl Scene {
     pub(crate) fn height_unit(&self) -> Dyadic {
         self.direction.0[self.main_axis].clone().abs()
     }
+}
+
+/// Returns the size `S` of two placed bodies by their vertices: the sum of how far they reach and how far they are apart.
+pub fn size(vertices: [&[DVec3]; 2], poses: [&Pose; 2]) -> f64 {
+    let offset = poses[1].translation() - poses[0].translation();
+    reach(vertices[0]) + reach(vertices[1]) + offset.length()
 }
 
 /// The numbers as integers in one common unit `2^exponent`.

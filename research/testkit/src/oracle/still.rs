@@ -10,6 +10,7 @@ use crate::oracle::check::{Judge, Objection};
 use crate::oracle::settings::{Bodies, Setting};
 use crate::oracle::tracked::{Agreement, judge_answer};
 use crate::random::Random;
+use crate::shapes::reach;
 
 /// What is asked of one setting, itself among them.
 pub const CASTS: usize = 8;
@@ -89,10 +90,7 @@ pub fn cast<'a>(
     };
     // From whose frames the line through a point of `M` is the axis.
     let through = |point: DVec3| fixed_pose.translation() + point;
-    let size = |body: &colltrans::ConvexPolyhedron| {
-        body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max)
-    };
-    let size = size(p) + size(q);
+    let size = reach(p.vertices()) + reach(q.vertices());
     let (place, along) = match which {
         0 => (moving_pose.translation(), direction),
         1 => (moving_pose.translation(), -direction),

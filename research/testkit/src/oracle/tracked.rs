@@ -10,6 +10,7 @@ use colltrans::{
 
 use crate::oracle::check::{Judge, Objection, Proof, same};
 use crate::oracle::settings::{Bodies, Setting};
+use crate::shapes::reach;
 
 /// A tracker's solver and focus.
 #[derive(Debug, Clone, Copy)]
@@ -79,7 +80,6 @@ impl<'a> Lanes<'a> {
     /// # Panics
     /// Never: the regions have a size.
     pub fn new(bodies: &'a Bodies) -> Self {
-        let reach = |points: &[glam::DVec3]| points.iter().map(|v| v.length()).fold(0.0, f64::max);
         let reach = reach(bodies.moving.vertices()).max(reach(bodies.fixed.vertices()));
         let tracker = |lane: Lane| {
             let tracker = Tracker::new().with_focus(lane.focus);

@@ -2,10 +2,9 @@
 //! by the input points too.
 
 use colltrans_testkit::oracle::settings::{Setting, setting};
+use colltrans_testkit::tally::Tally;
 
 use crate::{Asked, casts};
-
-use crate::tally::Tally;
 
 /// What is counted: bodies by dimension, points that were dropped, and, in multiples of the largest coordinate, how
 /// far from the body the farthest one is and the largest hull error; then what casts count.
@@ -29,10 +28,10 @@ pub(crate) const COLUMNS: &[&str] = &[
 ];
 
 /// Examines the fixed body of a setting, and a cast onto it that is solved again.
-pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) {
+pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     let setting = setting(asked.family, asked.seed);
     examine_body(&setting, tally);
-    casts::examine_setting(&setting, true, tally);
+    casts::examine_setting(&setting, true, tally)
 }
 
 fn examine_body(setting: &Setting, tally: &mut Tally) {

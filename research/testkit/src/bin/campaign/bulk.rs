@@ -5,8 +5,8 @@ use colltrans::{FixedRotations, StartedFrom};
 use colltrans_testkit::oracle::settings::setting;
 use colltrans_testkit::oracle::still::{CASTS, ask, cast};
 use colltrans_testkit::random::Random;
+use colltrans_testkit::tally::Tally;
 
-use crate::tally::Tally;
 use crate::{Asked, casts};
 
 /// One of so many is solved by the linear programme, whatever its certificate proves.

@@ -3,8 +3,8 @@
 
 use colltrans::{Options, Outcome, QueryError, Solver, cta};
 use colltrans_testkit::oracle::settings::{Bodies, Setting, setting};
+use colltrans_testkit::tally::Tally;
 
-use crate::tally::Tally;
 use crate::{Asked, print};
 
 /// Who answers: every solver, and the collision translation algorithm as a first guess alone.
@@ -42,9 +42,9 @@ pub(crate) const COLUMNS: &[&str] = &[
 ];
 
 /// Examines the setting of a family with a seed; one in `asked.every` is solved again.
-pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) {
+pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     let with_oracle = asked.index().is_multiple_of(asked.every);
-    examine_setting(&setting(asked.family, asked.seed), with_oracle, tally);
+    examine_setting(&setting(asked.family, asked.seed), with_oracle, tally)
 }
 
 /// Returns the name of an outcome in tables.
@@ -57,15 +57,13 @@ pub(crate) fn kind(outcome: &Outcome) -> &'static str {
 }
 
 /// Casts with every solver, checks every answer, and compares the answers.
-pub(crate) fn examine_setting(setting: &Setting, with_oracle: bool, tally: &mut Tally) {
+pub(crate) fn examine_setting(
+    setting: &Setting,
+    with_oracle: bool,
+    tally: &mut Tally,
+) -> Result<(), String> {
     tally.count("settings");
-    let bodies = match setting.bodies() {
-        Ok(bodies) => bodies,
-        Err(error) => {
-            tally.disagree(format!("{setting} no body: {error}"));
-            return;
-        }
-    };
+    let bodies = setting.bodies().map_err(|error| format!("no body: {error}"))?;
     if let Err(objection) = setting.judge_bodies(&bodies) {
         tally.disagree(format!("{setting} {objection}"));
     }
@@ -98,6 +96,7 @@ pub(crate) fn examine_setting(setting: &Setting, with_oracle: bool, tally: &mut 
         }
     }
     tally.count_if("lp", oracle_asked);
+    Ok(())
 }
 
 /// One setting, with all its numbers.
@@ -108,7 +107,9 @@ pub(crate) fn replay(family: &str, seed: u64) -> bool {
         print_answers(&setting, &bodies);
     }
     let mut tally = Tally::default();
-    examine_setting(&setting, true, &mut tally);
+    if let Err(what) = examine_setting(&setting, true, &mut tally) {
+        tally.disagree(format!("{setting} {what}"));
+    }
     print(family, &tally, COLUMNS)
 }
 

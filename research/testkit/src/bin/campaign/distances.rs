@@ -6,9 +6,9 @@ use colltrans_testkit::oracle::check::Objection;
 use colltrans_testkit::oracle::nearest::Judge;
 use colltrans_testkit::oracle::settings::{Bodies, Setting, near_contact, setting};
 use colltrans_testkit::random::Random;
+use colltrans_testkit::tally::Tally;
 
 use crate::Asked;
-use crate::tally::Tally;
 
 /// Vertices of both bodies up to which depths are compared with the exact one.
 const SMALL: usize = 24;
@@ -30,17 +30,14 @@ pub(crate) const COLUMNS: &[&str] = &[
 ];
 
 /// Asks for the distance of a setting's bodies, and judges it.
-pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) {
+pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     let Asked { family, seed, .. } = *asked;
     let setting = setting(family, seed);
     tally.count("settings");
-    let Ok(bodies) = setting.bodies() else { return };
+    let Ok(bodies) = setting.bodies() else { return Ok(()) };
     let mut random = Random::new(seed ^ 0x5eed);
     let moving = near_contact(&setting, &bodies, &mut random).unwrap_or(setting.moving_pose);
-    let verdict = judge(&setting, &bodies, moving, &mut random, tally);
-    if let Err(objection) = verdict {
-        tally.disagree(format!("{setting} {objection}"));
-    }
+    Ok(judge(&setting, &bodies, moving, &mut random, tally)?)
 }
 
 fn judge(

@@ -6,11 +6,11 @@ use colltrans_testkit::oracle::check::Objection;
 use colltrans_testkit::oracle::keep::Judge;
 use colltrans_testkit::oracle::settings::setting;
 use colltrans_testkit::random::Random;
-use colltrans_testkit::shapes::random_hull;
+use colltrans_testkit::shapes::{random_hull, reach};
+use colltrans_testkit::tally::Tally;
 use glam::{DQuat, DVec3};
 
 use crate::Asked;
-use crate::tally::Tally;
 
 /// Boxes and hulls with a flat side over another, which slide along it at the gap but for some noises and a tilt
 /// of about as many, against each other.
@@ -35,24 +35,22 @@ pub(crate) const COLUMNS: &[&str] = &[
 ];
 
 /// Casts the bodies of a setting, and judges the answers.
-pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) {
+pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     let Asked { family, seed, .. } = *asked;
     if family == GLIDING {
         return glide(seed, tally);
     }
     let setting = setting(family, seed);
     tally.count("settings");
-    let Ok(bodies) = setting.bodies() else { return };
+    let Ok(bodies) = setting.bodies() else { return Ok(()) };
     let mut random = Random::new(seed ^ 0x6a9);
-    let Ok(cast) = setting.query(&bodies) else { return };
+    let Ok(cast) = setting.query(&bodies) else { return Ok(()) };
     let gap = gap(&cast, &mut random);
-    if let Err(objection) = judge(&cast, gap, tally) {
-        tally.disagree(format!("{setting} {gap:e} {objection}"));
-    }
+    judge(&cast, gap, tally).map_err(|objection| format!("{gap:e} {objection}"))
 }
 
 /// One setting of [`GLIDING`].
-fn glide(seed: u64, tally: &mut Tally) {
+fn glide(seed: u64, tally: &mut Tally) -> Result<(), String> {
     let mut random = Random::new(seed ^ 0x61de);
     tally.count("settings");
     let size = 10.0_f64.powf(random.range(-3.0, 3.0));
@@ -75,7 +73,7 @@ fn glide(seed: u64, tally: &mut Tally) {
     };
     let [(moving, low), (fixed, high)] = [flat(&mut random, -1.0), flat(&mut random, 1.0)];
     let bodies = [moving, fixed].map(|points| ConvexPolyhedron::from_points(&points));
-    let [Ok(moving), Ok(fixed)] = bodies else { return };
+    let [Ok(moving), Ok(fixed)] = bodies else { return Ok(()) };
     let gap = size * 10.0_f64.powf(random.range(-6.0, 0.5));
     let noise = 16.0 * f64::EPSILON * (6.0 * size + gap);
     let tilt = DQuat::from_axis_angle(
@@ -84,19 +82,15 @@ fn glide(seed: u64, tally: &mut Tally) {
     );
     let start = DVec3::new(random.range(-4.0, 4.0), random.range(-0.4, 0.4), 0.0) * size;
     let height = low + high + gap - random.range(-2.0, 24.0) * noise;
-    let Ok(pose) = Pose::new(tilt, start + DVec3::Z * height) else { return };
-    let Ok(cast) = Cast::new(moving.at(pose), fixed.at(Pose::IDENTITY), DVec3::X) else { return };
-    if let Err(objection) = judge(&cast, gap, tally) {
-        tally.disagree(format!("{GLIDING}:{seed} {gap:e} {objection}"));
-    }
+    let Ok(pose) = Pose::new(tilt, start + DVec3::Z * height) else { return Ok(()) };
+    let cast = Cast::new(moving.at(pose), fixed.at(Pose::IDENTITY), DVec3::X);
+    let Ok(cast) = cast else { return Ok(()) };
+    judge(&cast, gap, tally).map_err(|objection| format!("{gap:e} {objection}"))
 }
 
 /// None, of rounding errors, a share or a multiple of the size, or one at which something is tied.
 fn gap(cast: &Cast, random: &mut Random) -> f64 {
-    let reach = |body: &colltrans::ConvexPolyhedron| {
-        body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max)
-    };
-    let size = (reach(cast.moving()) + reach(cast.fixed())).max(1e-50);
+    let size = (reach(cast.moving().vertices()) + reach(cast.fixed().vertices())).max(1e-50);
     let gap = match random.index(10) {
         0 => 0.0,
         1 => size * f64::EPSILON * random.range(0.0, 400.0),

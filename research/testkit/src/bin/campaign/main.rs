@@ -16,16 +16,13 @@ mod bodies;
 mod bulk;
 mod casts;
 mod distances;
-mod free;
 mod keeping;
 mod motions;
 mod paths;
 mod play;
 mod proofs;
-mod scenes;
 mod sequences;
 mod solids;
-mod tally;
 mod ways;
 
 use std::process::ExitCode;
@@ -33,19 +30,21 @@ use std::str::FromStr;
 use std::time::Instant;
 
 use colltrans_testkit::oracle::among;
-use colltrans_testkit::oracle::proofs::KINDS;
+use colltrans_testkit::oracle::proofs::{self as forged, KINDS};
 use colltrans_testkit::oracle::settings::{FAMILIES, NEARLY_FLAT};
+use colltrans_testkit::oracle::solids::free;
 use colltrans_testkit::oracle::still::CASTS;
+use colltrans_testkit::tally::{Tally, header};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::prelude::*;
-
-use crate::tally::{Tally, header};
 
 /// Disagreements printed for each family; all are counted.
 const SHOWN: usize = 12;
 /// Settings of casts, if nothing is asked for, and how many of them the linear programme solves.
 const SETTINGS: u64 = 20_000;
 const LP: u64 = 1_000;
+/// Free directions judged of each setting.
+const DIRECTIONS: u64 = 500;
 
 /// One kind of campaign.
 struct Campaign {
@@ -56,8 +55,11 @@ struct Campaign {
     each: u64,
     families: fn() -> Vec<String>,
     columns: &'static [&'static str],
-    examine: fn(&Asked<'_>, &mut Tally),
+    examine: Examine,
 }
+
+/// Examines a setting; what disagrees is an error, or noted in the tally.
+type Examine = fn(&Asked<'_>, &mut Tally) -> Result<(), String>;
 
 /// One setting to be examined.
 struct Asked<'a> {
@@ -74,11 +76,33 @@ impl Asked<'_> {
     }
 }
 
+impl Campaign {
+    fn examine(&self, asked: &Asked<'_>, tally: &mut Tally) {
+        if let Err(what) = (self.examine)(asked, tally) {
+            tally.disagree(format!("{}:{} {what}", asked.family, asked.seed));
+        }
+    }
+}
+
+/// Returns the column in which an outcome of a motion or of a path is counted.
+macro_rules! column_of {
+    ($outcome:expr, $Outcome:ident, $undecided:literal) => {
+        match $outcome {
+            $Outcome::Contact(_) => "contacts",
+            $Outcome::Grazing(_) => "grazing",
+            $Outcome::Overlapping(_) => "overlapping",
+            $Outcome::Undecided(_) => $undecided,
+            _ => "free",
+        }
+    };
+}
+use column_of;
+
 const fn campaign(
     option: &'static str,
     families: fn() -> Vec<String>,
     columns: &'static [&'static str],
-    examine: fn(&Asked<'_>, &mut Tally),
+    examine: Examine,
 ) -> Campaign {
     Campaign { option, counts: "N", each: 1, families, columns, examine }
 }
@@ -97,12 +121,22 @@ const CAMPAIGNS: [Campaign; 17] = [
     campaign("--solid-motions", solids::motion_families, solids::MOTIONS, solids::motions),
     Campaign {
         counts: "DIRECTIONS",
-        each: free::DIRECTIONS,
-        ..campaign("--free", || names(&free::FAMILIES), free::COLUMNS, free::examine)
+        each: DIRECTIONS,
+        ..campaign(
+            "--free",
+            || names(&free::FAMILIES),
+            free::COLUMNS,
+            |asked, tally| free::examine(asked.family, asked.seed, DIRECTIONS, tally),
+        )
     },
     campaign("--bodies", || names(NEARLY_FLAT), bodies::COLUMNS, bodies::examine),
     campaign("--distances", settings, distances::COLUMNS, distances::examine),
-    campaign("--scenes", || names(&among::FAMILIES), scenes::COLUMNS, scenes::examine),
+    campaign(
+        "--scenes",
+        || names(&among::FAMILIES),
+        among::COLUMNS,
+        |asked, tally| among::examine(asked.family, asked.seed, tally),
+    ),
     campaign("--keeping", keeping_families, keeping::COLUMNS, keeping::examine),
     campaign("--motions", settings, motions::COLUMNS, motions::examine),
     campaign("--paths", || names(&paths::FAMILIES), paths::COLUMNS, paths::examine),
@@ -111,12 +145,15 @@ const CAMPAIGNS: [Campaign; 17] = [
     Campaign {
         counts: "MUTANTS",
         each: proofs::MUTANTS,
-        ..campaign("--proofs", proof_kinds, proofs::COLUMNS, proofs::examine)
+        ..campaign("--proofs", proof_kinds, forged::COLUMNS, proofs::examine)
     },
     Campaign {
         counts: "CASTS",
         each: CASTS as u64,
-        ..campaign("--bulk", settings, bulk::COLUMNS, bulk::examine)
+        ..campaign("--bulk", settings, bulk::COLUMNS, |asked, tally| {
+            bulk::examine(asked, tally);
+            Ok(())
+        })
     },
 ];
 
@@ -230,7 +267,7 @@ fn carry_out(arguments: &Arguments) -> Result<bool, String> {
             return Err(unknown(family, &families));
         }
         let mut tally = Tally::default();
-        (campaign.examine)(&Asked { family, seed: *seed, every: 1 }, &mut tally);
+        campaign.examine(&Asked { family, seed: *seed, every: 1 }, &mut tally);
         return Ok(print(family, &tally, campaign.columns));
     }
     let chosen: Vec<&String> = families
@@ -258,7 +295,7 @@ fn run(campaign: &Campaign, families: &[&String], count: u64, arguments: &Argume
             .into_par_iter()
             .fold(Tally::default, |mut tally, index| {
                 let seed = arguments.seed << 32 | index;
-                (campaign.examine)(&Asked { family: name, seed, every }, &mut tally);
+                campaign.examine(&Asked { family: name, seed, every }, &mut tally);
                 bar.inc(1);
                 tally
             })

@@ -3,15 +3,16 @@
 //! as a real function. So are those of how far the body can go, and depths and distances on the way there.
 
 use colltrans::motion::{Motion, MotionCast, MotionClearance, MotionOutcome, MotionStop};
-use colltrans::{ConvexPolyhedron, MIN_MAGNITUDE, Pair, Pose, QueryError};
+use colltrans::{MIN_MAGNITUDE, Pair, Pose, QueryError};
 use colltrans_testkit::oracle::check::Objection;
 use colltrans_testkit::oracle::motion::{Judge, Spin};
 use colltrans_testkit::oracle::settings::setting;
 use colltrans_testkit::random::Random;
+use colltrans_testkit::shapes::reach;
+use colltrans_testkit::tally::Tally;
 use glam::DVec3;
 
-use crate::Asked;
-use crate::tally::Tally;
+use crate::{Asked, column_of};
 
 /// One setting in so many is judged in whole numbers.
 const SAMPLE: u64 = 100;
@@ -34,37 +35,31 @@ pub(crate) const COLUMNS: &[&str] = &[
 ];
 
 /// Lets the bodies of a setting move, and judges the answer.
-pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) {
+pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     let Asked { family, seed, .. } = *asked;
     let setting = setting(family, seed);
     tally.count("settings");
-    let Ok(bodies) = setting.bodies() else { return };
-    let Ok(cast) = setting.query(&bodies) else { return };
+    let Ok(bodies) = setting.bodies() else { return Ok(()) };
+    let Ok(cast) = setting.query(&bodies) else { return Ok(()) };
     let mut random = Random::new(seed ^ 0x0710_7104);
     let poses = [cast.moving_pose(), cast.fixed_pose()];
     let [p, q] = [cast.moving(), cast.fixed()];
-    let size = reach(p) + reach(q);
+    let size = reach(p.vertices()) + reach(q.vertices());
     let way = cast.direction().normalize_or_zero() * size;
-    let Some(moving) = spin(poses[0], poses[1], way, size, &mut random) else { return };
+    let Some(moving) = spin(poses[0], poses[1], way, size, &mut random) else { return Ok(()) };
     let fixed = if random.one_in(3) {
         spin(poses[1], poses[0], -way, size, &mut random)
     } else {
         Some(rest(poses[1]))
     };
-    let Some(fixed) = fixed else { return };
+    let Some(fixed) = fixed else { return Ok(()) };
     let keep = match random.index(6) {
         0 => size * 10.0_f64.powf(random.range(-12.0, -0.5)),
         1 => -size * 10.0_f64.powf(random.range(-12.0, -1.0)),
         _ => 0.0,
     };
     let judge = Judge { bodies: [p, q], spins: [moving, fixed], keep };
-    if let Err(Objection(what)) = examined(&judge, seed.is_multiple_of(SAMPLE), tally) {
-        tally.disagree(format!("{family}:{seed} {what}"));
-    }
-}
-
-fn reach(body: &ConvexPolyhedron) -> f64 {
-    body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max)
+    Ok(examined(&judge, seed.is_multiple_of(SAMPLE), tally)?)
 }
 
 fn rest(start: Pose) -> Spin {
@@ -108,21 +103,12 @@ fn examined(judge: &Judge, in_whole_numbers: bool, tally: &mut Tally) -> Result<
         if judge.keep < 0.0 { cast.tolerating(-judge.keep) } else { cast.keeping(judge.keep) }
     });
     let cast = kept.map_err(|e| Objection(e.to_string()))?;
-    let outcome = match cast.first_contact() {
-        Ok(outcome) => outcome,
-        Err(e) => return Err(Objection(e.to_string())),
-    };
+    let outcome = cast.first_contact().map_err(|e| Objection(e.to_string()))?;
     cast.verify(outcome.proof()).map_err(|e| Objection(e.to_string()))?;
     let looks = outcome.steps().looks;
     tally.mean("looks", looks);
     tally.largest("most looks", looks);
-    match &outcome {
-        MotionOutcome::Contact(_) => tally.count("contacts"),
-        MotionOutcome::Grazing(_) => tally.count("grazing"),
-        MotionOutcome::Overlapping(_) => tally.count("overlapping"),
-        MotionOutcome::Undecided(_) => tally.count("open"),
-        _ => tally.count("free"),
-    }
+    tally.count(column_of!(&outcome, MotionOutcome, "open"));
     let planes: usize = outcome.proof().spans.iter().map(Vec::len).sum();
     let judged = in_whole_numbers && judge.bodies.iter().all(|b| b.vertices().len() < 60);
     if judged && planes < 60 && outcome.proof().solids.is_none() {
@@ -208,7 +194,7 @@ fn on_the_way(cast: &MotionCast, until: f64, keep: f64) -> Result<(), Objection>
         let pair = Pair::new(moving.at(p), fixed.at(q)).map_err(|e| Objection(e.to_string()))?;
         // Poses in the world are rounded where they are, and have no coordinates that are hardly any.
         let far = [p, q].map(|pose| pose.translation().length());
-        let size = far[0] + far[1] + reach(moving) + reach(fixed);
+        let size = far[0] + far[1] + reach(moving.vertices()) + reach(fixed.vertices());
         let off = 256.0 * f64::EPSILON * size + 4.0 * MIN_MAGNITUDE;
         let wrong = match (pair.depth(), pair.distance()) {
             (Ok(depth), _) if keep <= 0.0 && depth.lower > off - keep => Some(-depth.lower),

@@ -2,11 +2,10 @@
 //! answers by plain matrices at many times.
 
 use colltrans::motion::path::PathOutcome;
-use colltrans_testkit::oracle::check::Objection;
 use colltrans_testkit::oracle::path::Arm;
+use colltrans_testkit::tally::Tally;
 
-use crate::Asked;
-use crate::tally::Tally;
+use crate::{Asked, column_of};
 
 /// With convex bodies alone, and with solids that are not.
 pub(crate) const FAMILIES: [&str; 2] = ["arms", "arms of solids"];
@@ -28,26 +27,16 @@ pub(crate) const COLUMNS: &[&str] = &[
 ];
 
 /// Asks about an arm, and judges the answer.
-pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) {
-    let Asked { family, seed, .. } = *asked;
+pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     tally.count("settings");
-    let solids = family == FAMILIES[1];
-    match Arm::random(seed, solids).judge(SAMPLES[usize::from(solids)]) {
-        Err(Objection(what)) => tally.disagree(format!("{family}:{seed} {what}")),
-        Ok(outcome) => {
-            let looks = outcome.steps().looks;
-            tally.mean("looks", looks);
-            tally.largest("most looks", looks);
-            match outcome {
-                PathOutcome::Contact(of) => {
-                    tally.count("contacts");
-                    tally.largest("widest", of.upper - of.lower);
-                }
-                PathOutcome::Grazing(_) => tally.count("grazing"),
-                PathOutcome::Overlapping(_) => tally.count("overlapping"),
-                PathOutcome::Undecided(_) => tally.count("open"),
-                _ => tally.count("free"),
-            }
-        }
+    let solids = asked.family == FAMILIES[1];
+    let outcome = Arm::random(asked.seed, solids).judge(SAMPLES[usize::from(solids)])?;
+    let looks = outcome.steps().looks;
+    tally.mean("looks", looks);
+    tally.largest("most looks", looks);
+    tally.count(column_of!(&outcome, PathOutcome, "open"));
+    if let PathOutcome::Contact(of) = outcome {
+        tally.largest("widest", of.upper - of.lower);
     }
+    Ok(())
 }

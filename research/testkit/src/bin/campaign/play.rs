@@ -3,11 +3,10 @@
 
 use colltrans::motion::MotionOutcome;
 use colltrans::motion::path::PathOutcome;
-use colltrans_testkit::oracle::check::Objection;
 use colltrans_testkit::oracle::play::{KINDS, Screw, chain, slider};
+use colltrans_testkit::tally::Tally;
 
-use crate::Asked;
-use crate::tally::Tally;
+use crate::{Asked, column_of};
 
 /// Families of arms; the others are kinds of screws.
 const ARMS: [&str; 2] = ["arms with a pin", "arms over a table"];
@@ -33,38 +32,22 @@ pub(crate) fn families() -> Vec<&'static str> {
 }
 
 /// Asks about one setting, and judges the answer.
-pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) {
+pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     let Asked { family, seed, .. } = *asked;
     tally.count("settings");
-    let found = match KINDS.iter().position(|kind| *kind == family) {
-        Some(kind) => Screw::random(kind, seed).judge().map(|outcome| {
-            tally.count(match outcome {
-                MotionOutcome::Contact(_) => "contacts",
-                MotionOutcome::Grazing(_) => "grazing",
-                MotionOutcome::Overlapping(_) => "overlapping",
-                MotionOutcome::Undecided(_) => "undecided",
-                _ => "free",
-            });
-            (outcome.proof().solids.is_some(), outcome.steps())
-        }),
-        None => if family == ARMS[0] { chain(seed) } else { slider(seed) }.judge(SAMPLES).map(
-            |outcome| {
-                tally.count(match outcome {
-                    PathOutcome::Contact(_) => "contacts",
-                    PathOutcome::Grazing(_) => "grazing",
-                    PathOutcome::Overlapping(_) => "overlapping",
-                    PathOutcome::Undecided(_) => "undecided",
-                    _ => "free",
-                });
-                (!outcome.proof().solids.is_empty(), outcome.steps())
-            },
-        ),
+    let (column, solids, steps) = if let Some(kind) = KINDS.iter().position(|kind| *kind == family)
+    {
+        let outcome = Screw::random(kind, seed).judge()?;
+        let solids = outcome.proof().solids.is_some();
+        (column_of!(outcome, MotionOutcome, "undecided"), solids, outcome.steps())
+    } else {
+        let arm = if family == ARMS[0] { chain(seed) } else { slider(seed) };
+        let outcome = arm.judge(SAMPLES)?;
+        let solids = !outcome.proof().solids.is_empty();
+        (column_of!(outcome, PathOutcome, "undecided"), solids, outcome.steps())
     };
-    match found {
-        Ok((solids, steps)) => {
-            tally.count_if("solids", solids);
-            tally.largest("most looks", steps.looks);
-        }
-        Err(Objection(what)) => tally.disagree(format!("{family}:{seed} {what}")),
-    }
+    tally.count(column);
+    tally.count_if("solids", solids);
+    tally.largest("most looks", steps.looks);
+    Ok(())
 }

@@ -6,11 +6,10 @@ use std::mem::discriminant;
 use colltrans::{Outcome, StartedFrom};
 use colltrans_testkit::oracle::sequences::Walk;
 use colltrans_testkit::oracle::tracked::{Finding, Lanes};
+use colltrans_testkit::tally::Tally;
 
 use crate::casts::{self, print_answers};
 use crate::{Asked, print};
-
-use crate::tally::Tally;
 
 /// Steps of a sequence, with the first setting.
 const STEPS: u32 = 60;
@@ -63,16 +62,10 @@ pub(crate) const COLUMNS: &[&str] = &[
 ];
 
 /// Examines the sequence of a family with a seed.
-pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) {
+pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     let Asked { family, seed, .. } = *asked;
     let mut walk = Walk::new(family, seed);
-    let bodies = match walk.setting.bodies() {
-        Ok(bodies) => bodies,
-        Err(error) => {
-            tally.disagree(format!("{walk} no body: {error}"));
-            return;
-        }
-    };
+    let bodies = walk.setting.bodies().map_err(|error| format!("no body: {error}"))?;
     if let Err(objection) = walk.setting.judge_bodies(&bodies) {
         tally.disagree(format!("{walk} {objection}"));
     }
@@ -90,6 +83,7 @@ pub(crate) fn examine(asked: &Asked<'_>, tally: &mut Tally) {
         before = findings;
         walk.advance();
     }
+    Ok(())
 }
 
 fn is_flip(before: &Finding, after: &Finding) -> bool {

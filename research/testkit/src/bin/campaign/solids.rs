@@ -4,9 +4,9 @@
 use colltrans_testkit::oracle::settings;
 use colltrans_testkit::oracle::solids::settings::{FAMILIES, Setting};
 use colltrans_testkit::oracle::solids::{Seen, as_solids, keep, nearest, sheets, turning};
+use colltrans_testkit::tally::Tally;
 
 use crate::Asked;
-use crate::tally::Tally;
 
 /// One proof in so many is judged in fractions, if the bodies are small.
 const FRACTIONS_EVERY: u64 = 64;
@@ -46,11 +46,11 @@ fn families(more: &[&str]) -> Vec<String> {
 }
 
 /// Casts bodies of cubes, sheets, or one convex pair in [`CONVEX_EVERY`].
-pub(crate) fn casts(asked: &Asked<'_>, tally: &mut Tally) {
+pub(crate) fn casts(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     let Asked { family, seed, .. } = *asked;
     let found = if let Some(convex) = family.strip_prefix("convex-") {
         if !asked.index().is_multiple_of(CONVEX_EVERY) {
-            return;
+            return Ok(());
         }
         as_solids(&settings::setting(convex, seed))
     } else if sheets::FAMILIES.contains(&family) {
@@ -60,56 +60,52 @@ pub(crate) fn casts(asked: &Asked<'_>, tally: &mut Tally) {
         let setting = Setting::draw(family, seed).ok_or_else(|| "no such family".to_owned());
         setting.and_then(|setting| setting.examine(in_fractions)).map(Some)
     };
-    note(asked, found, tally, |seen| match seen {
+    note(found, tally, |seen| match seen {
         Seen::Overlapping => "overlapping",
         Seen::Free => "free",
         Seen::BlockedNow => "touching",
         Seen::Blocked => "blocked",
-    });
+    })
 }
 
 /// Asks for distances.
-pub(crate) fn distances(asked: &Asked<'_>, tally: &mut Tally) {
+pub(crate) fn distances(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
     let setting = nearest::Setting::draw(asked.family, asked.seed);
     let found = setting.and_then(|found| found.map(|setting| setting.examine()).transpose());
-    note(asked, found, tally, |seen| match seen {
+    note(found, tally, |seen| match seen {
         nearest::Seen::Touching => "touching",
         nearest::Seen::Inside => "inside",
         nearest::Seen::Near => "near",
         nearest::Seen::Apart => "apart",
-    });
+    })
 }
 
 /// Casts with a gap.
-pub(crate) fn keeping(asked: &Asked<'_>, tally: &mut Tally) {
-    note(asked, keep::examine(asked.family, asked.seed), tally, |seen| match seen {
+pub(crate) fn keeping(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
+    note(keep::examine(asked.family, asked.seed), tally, |seen| match seen {
         keep::Seen::Nearer => "nearer",
         keep::Seen::Free => "free",
         keep::Seen::Blocked => "blocked",
-    });
+    })
 }
 
 /// Lets solids turn.
-pub(crate) fn motions(asked: &Asked<'_>, tally: &mut Tally) {
-    note(asked, turning::examine(asked.family, asked.seed), tally, |seen| match seen {
+pub(crate) fn motions(asked: &Asked<'_>, tally: &mut Tally) -> Result<(), String> {
+    note(turning::examine(asked.family, asked.seed), tally, |seen| match seen {
         turning::Seen::Overlapping => "overlapping",
         turning::Seen::Free => "free",
         turning::Seen::Grazing => "grazing",
         turning::Seen::Contact => "contact",
-    });
+    })
 }
 
 /// Counts what was seen of a setting; bodies that are no solids are skipped.
 fn note<S>(
-    asked: &Asked<'_>,
     found: Result<Option<S>, String>,
     tally: &mut Tally,
     name: impl Fn(S) -> &'static str,
-) {
+) -> Result<(), String> {
     tally.count("settings");
-    match found {
-        Ok(None) => tally.count("skipped"),
-        Ok(Some(seen)) => tally.count(name(seen)),
-        Err(error) => tally.disagree(format!("{}:{}: {error}", asked.family, asked.seed)),
-    }
+    tally.count(found?.map_or("skipped", name));
+    Ok(())
 }

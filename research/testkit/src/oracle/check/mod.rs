@@ -52,6 +52,12 @@ impl fmt::Display for Objection {
 
 impl std::error::Error for Objection {}
 
+impl From<Objection> for String {
+    fn from(objection: Objection) -> Self {
+        objection.0
+    }
+}
+
 /// `Err` with a formatted [`Objection`] unless the condition holds; a comparison with NaN does not.
 macro_rules! require {
     ($condition:expr, $($text:tt)+) => {

@@ -11,6 +11,7 @@ use super::{MOST_JUDGED, Reader, read_setting, read_solid};
 use crate::oracle::settings::{Bodies, Setting};
 use crate::oracle::solids::{keep as solids_keep, nearest as solids};
 use crate::oracle::{among, keep as convex_keep, nearest};
+use crate::tally::Tally;
 
 /// Pairs of facets that are judged in fractions: more would only make a run slower.
 const MOST_PAIRS: usize = 600;
@@ -169,7 +170,7 @@ pub fn among(bytes: &[u8]) {
     let refused = Among::new(moving.at(pose), &obstacles).is_err();
     if is_asked && !refused && (1e-9..1e9).contains(&direction.length()) {
         among::Setting::of(obstacles, moving, pose, direction, length)
-            .examine()
+            .examine(&mut Tally::default())
             .unwrap_or_else(|e| panic!("{e}"));
     }
 }

@@ -1,6 +1,6 @@
 //! Proofs of contacts, slides and separations of convex bodies, with and without a gap to be kept.
 
-use colltrans::{Cast, ContactRange, ConvexPolyhedron, Pose, ProofFile};
+use colltrans::{Cast, ContactRange, ConvexPolyhedron, ProofFile};
 use glam::DVec3;
 use serde_json::Value;
 
@@ -8,6 +8,7 @@ use super::file::{Bodies, differences, is_at_limit, numbers, scene, square, vect
 use super::mutants::{number, with};
 use super::{Claim, Kind, Who};
 use crate::oracle::exact::Ratio;
+use crate::oracle::scene::size;
 use crate::oracle::settings::{Bodies as Convex, FAMILIES, Setting, near_contact, setting};
 use crate::oracle::shadow::SignedDistance;
 use crate::random::Random;
@@ -121,9 +122,8 @@ fn cast(seed: u64, with_gap: bool) -> Option<String> {
 
 /// A gap of some noises, or of any size beside that of the bodies.
 fn gap(cast: &Cast, random: &mut Random) -> f64 {
-    let [p, q] = [cast.moving_pose(), cast.fixed_pose()].map(|pose: Pose| pose.translation());
-    let reach = |points: &[DVec3]| points.iter().map(|v| v.length()).fold(0.0, f64::max);
-    let size = reach(cast.moving().vertices()) + reach(cast.fixed().vertices()) + (q - p).length();
+    let poses = [&cast.moving_pose(), &cast.fixed_pose()];
+    let size = size([cast.moving().vertices(), cast.fixed().vertices()], poses);
     if random.one_in(3) {
         16.0 * f64::EPSILON * size * random.range(0.0, 20.0)
     } else {

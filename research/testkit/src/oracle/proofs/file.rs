@@ -9,6 +9,7 @@ use crate::oracle::exact::{Dyadic, Ratio, Vector, place};
 use crate::oracle::scene::Scene;
 use crate::oracle::shadow::{SignedDistance, sideways_overlap};
 use crate::oracle::simplex::collision_translation;
+use crate::shapes::reach;
 
 /// Factor by which a rounded noise is made one for certain.
 const CERTAIN: f64 = 1.0 + 1e-6;
@@ -55,7 +56,7 @@ impl Bodies {
                 entries.iter().map(|x| if x.abs() < MIN_MAGNITUDE { 0.0 } else { *x }).collect();
             let matrix = DMat3::from_cols_array(&entries.try_into().ok()?);
             origins[k] = vector(pose.get("translation")?)?;
-            size += vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
+            size += reach(&vertices);
             points[k] = place(matrix, origins[k], &vertices);
         }
         let direction = file.pointer("/query/cast/direction").map(vector);

@@ -25,6 +25,7 @@ pub mod solids;
 use serde_json::Value;
 
 use crate::random::Random;
+use crate::tally::Tally;
 use checkers::{Fractions, Verdict, verify};
 use mutants::{number, with};
 
@@ -96,28 +97,12 @@ pub const KINDS: [Kind; 11] = [
     free::FREE,
 ];
 
-/// What became of proofs.
-#[derive(Debug, Clone, Default)]
-pub struct Tally {
-    /// Proofs of the library.
-    pub proofs: u64,
-    /// Files that both checkers have judged.
-    pub mutants: u64,
-    /// Files that the library alone has judged, on the way to the end of a claim.
-    pub steps: u64,
-    /// Of the mutants, those that both accept.
-    pub accepted: u64,
-    /// Those that the library refuses within the specified rounding.
-    pub rounded: u64,
-    /// Those that `check.py` has checked in part, and the library refuses.
-    pub partly: u64,
-    /// Claims pushed to the end of a checker.
-    pub ends: u64,
-    /// False claims that were accepted.
-    pub false_claims: Vec<String>,
-    /// Files of which one checker says what the other does not.
-    pub disagreements: Vec<String>,
-}
+/// What is counted: proofs of the library; files that both checkers have judged, and those that the library alone has on
+/// the way to the end of a claim; of the former those that both accept, that the library refuses within the specified
+/// rounding, and that `check.py` has checked in part and the library refuses; claims pushed to the end of a checker; false
+/// claims that were accepted; files of which one checker says what the other does not.
+pub const COLUMNS: &[&str] =
+    &["proofs", "mutants", "steps", "accepted", "rounded", "partly", "ends", "false", "disagree"];
 
 /// One thread's share of a campaign.
 #[derive(Debug)]
@@ -140,15 +125,12 @@ impl<'a> Campaign<'a> {
         let Some(text) = (kind.base)(seed) else { return };
         let name = format!("{}:{seed}", kind.name);
         let mut campaign = Self { kind, fractions, tally, name };
-        campaign.tally.proofs += 1;
+        campaign.tally.count("proofs");
         let random = &mut Random::stream(seed, &[0xf0_26ed]);
         // Also where `check.py` has checked it in part.
         if !campaign.judge(&text, "as written") || !verify(&text).accepts() {
-            campaign
-                .tally
-                .disagreements
-                .push(format!("{}: a proof is refused: {text}", campaign.name));
-            return;
+            let line = format!("{}: a proof is refused: {text}", campaign.name);
+            return campaign.object("disagree", line);
         }
         let Ok(file) = serde_json::from_str::<Value>(&text) else { return };
         for _ in 0..BLIND {
@@ -175,6 +157,11 @@ impl<'a> Campaign<'a> {
         }
     }
 
+    fn object(&mut self, column: &'static str, line: String) {
+        self.tally.count(column);
+        self.tally.disagree(line);
+    }
+
     /// Pushes one claim of a file, the others being the weakest there are.
     fn push_one(&mut self, file: &Value, random: &mut Random) {
         let claims = (self.kind.claims)(file);
@@ -197,21 +184,21 @@ impl<'a> Campaign<'a> {
             steps += 1;
             verify(&at(x)).accepts()
         });
-        self.tally.steps += steps;
-        self.tally.ends += 1;
+        self.tally.add("steps", steps);
+        self.tally.count("ends");
         let Some(end) = end else { return };
         self.judge(&at(end), "pushed");
         self.judge(&at(toward(end, pushed.strongest)), "pushed over");
         if random.one_in(TO_THE_END) && self.fractions.is_some() {
             let last = limit_near(end, pushed.strongest, |x| self.judge(&at(x), "pushed on"));
-            self.tally.ends += 1;
+            self.tally.count("ends");
             self.judge(&at(last), "pushed to the end");
         }
     }
 
     /// Has both checkers judge a file, and what they accept judged by the truth. Returns whether one accepts it.
     fn judge(&mut self, text: &str, what: &str) -> bool {
-        self.tally.mutants += 1;
+        self.tally.count("mutants");
         let library = verify(text);
         let fractions = match &mut self.fractions {
             Some(fractions) => fractions.check(text),
@@ -222,29 +209,28 @@ impl<'a> Campaign<'a> {
         let reason = match (library.accepts(), fractions.accepts()) {
             _ if failed(&library) || failed(&fractions) => Some("a checker fails"),
             (true, true) => {
-                self.tally.accepted += 1;
+                self.tally.count("accepted");
                 None
             }
             (true, false) => Some("check.py alone refuses"),
             (false, true) if fractions == Verdict::HoldsPartly => {
-                self.tally.partly += 1;
+                self.tally.count("partly");
                 None
             }
-            (false, true) if library.is_about_a_tree() => {
-                self.tally.rounded += 1;
-                None
-            }
-            (false, true) if file.as_ref().is_some_and(|file| self.is_rounded(file)) => {
-                self.tally.rounded += 1;
+            (false, true)
+                if library.is_about_a_tree()
+                    || file.as_ref().is_some_and(|file| self.is_rounded(file)) =>
+            {
+                self.tally.count("rounded");
                 None
             }
             (false, true) => Some("the library alone refuses"),
             (false, false) => None,
         };
-        let name = &self.name;
+        let name = self.name.clone();
         if let Some(reason) = reason {
             let line = format!("{name}, {what}: {reason}: {library:?}, {fractions:?}: {text}");
-            self.tally.disagreements.push(line);
+            self.object("disagree", line);
         }
         for (verdict, who) in [(&library, Who::Library), (&fractions, Who::Fractions)] {
             if verdict.accepts() {
@@ -253,7 +239,7 @@ impl<'a> Campaign<'a> {
                     file.as_ref().map_or_else(unreadable, |f| (self.kind.falsehood)(f, who));
                 if let Some(why) = found {
                     let line = format!("{name}, {what}: {who:?} accepts: {why}: {text}");
-                    self.tally.false_claims.push(line);
+                    self.object("false", line);
                 }
             }
         }

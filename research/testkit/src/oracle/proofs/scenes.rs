@@ -13,6 +13,7 @@ use super::{Claim, Kind, Who};
 use crate::oracle::exact::{Ratio, place};
 use crate::oracle::nearest::depth;
 use crate::random::Random;
+use crate::shapes::reach;
 
 /// The nearest obstacle, those within a length, and what stops the body.
 pub const SCENES: Kind =
@@ -190,8 +191,8 @@ fn pairs(file: &Value) -> Option<Vec<Bodies>> {
         let body = body_at(file, at)?;
         let points = vectors(body.pointer("/convex/vertices")?)?;
         let pose: Pose = pose(at.get("pose")?)?;
-        let reach = points.iter().map(|v| v.length()).fold(0.0, f64::max);
-        Some((place(pose.matrix(), pose.translation(), &points), reach, pose.translation()))
+        let placed = place(pose.matrix(), pose.translation(), &points);
+        Some((placed, reach(&points), pose.translation()))
     };
     let [moving, obstacles @ ..] = &file.pointer("/placement/poses")?.as_array()?[..] else {
         return None;

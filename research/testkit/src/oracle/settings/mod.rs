@@ -29,6 +29,7 @@ use self::tied::{
     boxes, cylinders, edge_edge_parallel, face_face, grid, identical, nearly, peg, prisms, rim,
     turned_boxes, vertex_over_vertex,
 };
+use crate::shapes::reach;
 
 /// Two bodies by their points, where they are, and where one is going.
 #[derive(Debug, Clone)]
@@ -217,8 +218,7 @@ pub fn near_contact(setting: &Setting, bodies: &Bodies, random: &mut Random) -> 
     let cast = setting.query(bodies).ok()?;
     let Outcome::Contact(contact) = cast.first_contact().ok()? else { return None };
     let way = cast.direction() * contact.translation;
-    let size = [&bodies.moving, &bodies.fixed]
-        .map(|body| body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max));
+    let size = [&bodies.moving, &bodies.fixed].map(|body| reach(body.vertices()));
     let gap = 10.0_f64.powf(-random.range(3.0, 15.0)) * (size[0] + size[1]);
     let back = cast.direction().normalize()
         * match kind {

@@ -8,6 +8,7 @@ use super::facets::{rule, triangles};
 use super::settings::Seen;
 use super::{encloses, exactly};
 use crate::oracle::exact::Ratio;
+use crate::oracle::scene::size;
 use crate::oracle::settings::{NEARLY_FLAT, Setting};
 
 /// More pairs of facets than this are not judged by the rule.
@@ -76,9 +77,7 @@ struct Limits {
 
 /// The rounding error of a coordinate, in multiples of the direction.
 fn noise(setting: &Setting, a: &Solid, b: &Solid) -> f64 {
-    let reach = |s: &Solid| s.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
-    let offset = setting.fixed_pose.translation() - setting.moving_pose.translation();
-    let size = reach(a) + reach(b) + offset.length();
+    let size = size([a.vertices(), b.vertices()], [&setting.moving_pose, &setting.fixed_pose]);
     16.0 * f64::EPSILON * size / setting.direction.length()
 }
 

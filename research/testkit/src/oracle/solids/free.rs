@@ -16,6 +16,7 @@ use glam::DVec3;
 
 use super::facets::{Judge, Triangle, triangles};
 use crate::random::Random;
+use crate::tally::Tally;
 pub use bodies::FAMILIES;
 use bodies::{Bodies, draw};
 
@@ -31,45 +32,29 @@ const THIN: usize = 4_000;
 /// Cells whose facets are changed, each as often as directions are asked.
 const CELLS: usize = 6;
 
-/// What came out of one setting.
-#[derive(Debug, Clone, Copy, Default)]
-pub struct Judged {
-    /// Directions judged, and of these free and undecided.
-    pub directions: u64,
-    /// Free ones.
-    pub free: u64,
-    /// Undecided ones.
-    pub undecided: u64,
-    /// Those of them that were judged in fractions too, over all pairs of facets.
-    pub fractions: u64,
-    /// Arcs and points judged in fractions.
-    pub thin: u64,
-    /// Compared with bodies that are turned together, or with a larger tolerance.
-    pub compared: u64,
-    /// Changed proofs that were refused, as they should be.
-    pub refused: u64,
-    /// Cells of which another facet is said to block them and does not, which was refused.
-    pub cells: u64,
-}
+/// What is counted: settings, and those that overlap; directions judged, free ones, undecided ones, and those judged in
+/// fractions too, over all pairs of facets; arcs and points judged in fractions; directions compared with bodies that
+/// are turned together, or with a larger tolerance; changed proofs that were refused, as they should be, and cells of
+/// which another facet is said to block them and does not.
+pub const COLUMNS: &[&str] = &[
+    "settings",
+    "overlapping",
+    "judged",
+    "free",
+    "undecided",
+    "fractions",
+    "thin",
+    "compared",
+    "refused",
+    "cells",
+];
 
-impl std::ops::AddAssign for Judged {
-    fn add_assign(&mut self, other: Self) {
-        self.directions += other.directions;
-        self.free += other.free;
-        self.undecided += other.undecided;
-        self.fractions += other.fractions;
-        self.thin += other.thin;
-        self.compared += other.compared;
-        self.refused += other.refused;
-        self.cells += other.cells;
-    }
-}
-
-/// Asks about the bodies of a setting along so many directions; `None` where they overlap.
+/// Asks about the bodies of a setting along so many directions.
 ///
 /// # Errors
 /// What disagrees.
-pub fn examine(family: &str, seed: u64, count: u64) -> Result<Option<Judged>, String> {
+pub fn examine(family: &str, seed: u64, count: u64, tally: &mut Tally) -> Result<(), String> {
+    tally.count("settings");
     let bodies = draw(family, seed)?.ok_or("no such family")?;
     let Bodies { solids: [a, b], poses: [p, q] } = &bodies;
     let (p, q) = (*p, *q);
@@ -79,29 +64,30 @@ pub fn examine(family: &str, seed: u64, count: u64) -> Result<Option<Judged>, St
     let options =
         FreeOptions::DEFAULT.with_tolerance(tolerance).with_start_overlap(start).with_looks(LOOKS);
     let all = match FreeDirections::of(&a.at(p), &b.at(q), options) {
-        Err(FreeError::Overlapping { .. }) => return Ok(None),
+        Err(FreeError::Overlapping { .. }) => {
+            tally.count("overlapping");
+            return Ok(());
+        }
         all => all.map_err(|e| e.to_string())?,
     };
     all.verify().map_err(|e| e.to_string())?;
     let mut rng = Random::new(seed ^ 0xf4ee);
-    let mut judged = Judged {
-        refused: changed(&all, [a.at(p), b.at(q)], &mut rng)?,
-        cells: changed_cells([a, b], [p, q], (options, count), &mut rng)?,
-        ..Judged::default()
-    };
+    tally.add("refused", changed(&all, [a.at(p), b.at(q)], &mut rng)?);
+    tally.add("cells", changed_cells([a, b], [p, q], (options, count), &mut rng)?);
     let pairs = a.triangles().len() * b.triangles().len();
     if start == StartOverlap::Refuse && tolerance == 0.0 && pairs <= THIN {
-        judged.thin += thin::judge(&all, [a.at(p), b.at(q)])?;
+        tally.add("thin", thin::judge(&all, [a.at(p), b.at(q)])?);
     }
-    judged += along(&all, [a.at(p), b.at(q)], count, &mut rng)?;
+    along(&all, [a.at(p), b.at(q)], count, &mut rng, tally)?;
     if seed % 4 == 2 {
-        judged += alike::turned(&all, &bodies, &mut rng)?;
+        tally.add("compared", alike::turned(&all, &bodies, &mut rng)?);
     }
     // What overlaps and is ignored does so less with a larger tolerance, and then blocks.
     if seed.is_multiple_of(4) && start == StartOverlap::Refuse {
-        judged += alike::larger(&all, &bodies, tolerance + 0.015_625, &mut rng)?;
+        let larger = alike::larger(&all, &bodies, tolerance + 0.015_625, &mut rng)?;
+        tally.add("compared", larger);
     }
-    Ok(Some(judged))
+    Ok(())
 }
 
 /// What is said along so many directions is what casts say, and fractions.
@@ -110,19 +96,19 @@ fn along(
     bodies: [Placed<'_, Solid>; 2],
     count: u64,
     rng: &mut Random,
-) -> Result<Judged, String> {
+    tally: &mut Tally,
+) -> Result<(), String> {
     let options = all.options();
     let exactly = options.start_overlap == StartOverlap::Refuse && all.tolerance() == 0.0;
     let facets = exactly.then(|| facets(bodies));
     let pairs = bodies.map(|placed| placed.body.triangles().len());
     let in_fractions = (PAIRS / (pairs[0] * pairs[1])).max(1) as u64;
-    let mut judged = Judged::default();
     for k in 0..count {
         let d = direction(all, rng);
         let says = all.says(d).map_err(|e| e.to_string())?;
         let free = by_cast(bodies, options, d)?;
         if let Some(facets) = facets.as_ref().filter(|_| k < in_fractions) {
-            judged.fractions += 1;
+            tally.count("fractions");
             if is_free(facets, d) != free {
                 return Err(format!(
                     "along {d:?} the cast says free: {free}, the union of all cones not"
@@ -134,13 +120,13 @@ fn along(
             Verdict::Blocked(pair) if free => {
                 return Err(format!("blocked along {d:?} by {pair:?}, but a cast is free"));
             }
-            Verdict::Undecided => judged.undecided += 1,
-            Verdict::Free => judged.free += 1,
+            Verdict::Undecided => tally.count("undecided"),
+            Verdict::Free => tally.count("free"),
             Verdict::Blocked(_) => {}
         }
-        judged.directions += 1;
+        tally.count("judged");
     }
-    Ok(judged)
+    Ok(())
 }
 
 /// Another facet in the place of one that blocks a cell is refused, or the middle of the cell is blocked all the same.

@@ -11,6 +11,7 @@ use glam::DVec3;
 use super::facets::{Triangle, triangles};
 use super::nearest::{Setting, surfaces};
 use crate::oracle::exact::{Dyadic, Ratio, Vector};
+use crate::oracle::scene::size;
 use crate::random::Random;
 
 /// How many noises facets may pass each other below the gap, and a little for what is computed here.
@@ -86,10 +87,9 @@ impl<'a> Judge<'a> {
         let placed = bodies.map(|(solid, pose)| {
             triangles(solid.vertices(), solid.triangles(), (pose.matrix(), pose.translation()))
         });
-        let reach = |s: &Solid| s.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
-        let offset = cast.fixed_pose().translation() - cast.moving_pose().translation();
         let gap = cast.options().keep;
-        let size = reach(cast.moving()) + reach(cast.fixed()) + offset.length() + gap;
+        let poses = [&cast.moving_pose(), &cast.fixed_pose()];
+        let size = size([cast.moving().vertices(), cast.fixed().vertices()], poses) + gap;
         Self { cast: *cast, gap, noise: 16.0 * f64::EPSILON * size, placed }
     }
 

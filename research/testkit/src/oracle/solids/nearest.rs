@@ -15,6 +15,7 @@ use super::settings as cubes;
 use super::sheets;
 use crate::oracle::distance::distance;
 use crate::oracle::exact::{Dyadic, Ratio, Vector};
+use crate::oracle::scene::size;
 use crate::oracle::settings as convex;
 use crate::random::Random;
 use crate::shapes::{Mesh, prism};
@@ -144,9 +145,8 @@ impl Setting {
 
     /// One noise, `32 u S`.
     fn noise(&self) -> f64 {
-        let reach = |s: &Solid| s.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
-        let offset = self.poses[1].translation() - self.poses[0].translation();
-        16.0 * f64::EPSILON * (reach(&self.solids[0]) + reach(&self.solids[1]) + offset.length())
+        let vertices = self.solids.each_ref().map(Solid::vertices);
+        16.0 * f64::EPSILON * size(vertices, self.poses.each_ref())
     }
 
     /// Whether one body, whose surfaces are apart, holds a part of the other.

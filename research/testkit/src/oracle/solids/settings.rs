@@ -8,6 +8,7 @@ use super::cells::{Cells, Motion, motion};
 use super::proof::{MOST_PAIRS, approve};
 use super::{encloses, exactly};
 use crate::oracle::exact::{Ratio, Vector};
+use crate::oracle::scene::size;
 use crate::random::Random;
 
 /// The families, by name.
@@ -195,9 +196,7 @@ impl Setting {
     }
 
     fn tolerance(&self) -> f64 {
-        let reach = |k: usize| self.surfaces[k].0.iter().map(|v| v.length()).fold(0.0, f64::max);
-        let offset = self.poses[1].translation() - self.poses[0].translation();
-        let size = reach(0) + reach(1) + offset.length();
+        let size = size(self.surfaces.each_ref().map(|s| &s.0[..]), self.poses.each_ref());
         AGREEMENT * 16.0 * f64::EPSILON * size / self.direction.length()
     }
 }

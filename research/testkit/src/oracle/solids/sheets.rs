@@ -9,6 +9,7 @@ use super::settings::{AGREEMENT, Seen, any_rotation, sheared, way};
 use super::squares::{Crossing, Mixed, Squares};
 use super::{encloses, exactly};
 use crate::oracle::exact::{Ratio, Vector};
+use crate::oracle::scene::size;
 use crate::random::Random;
 
 /// The families, by name.
@@ -140,10 +141,7 @@ impl Setting {
     }
 
     fn tolerance(&self) -> f64 {
-        let reach =
-            |k: usize| self.solids[k].vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
-        let offset = self.poses[1].translation() - self.poses[0].translation();
-        let size = reach(0) + reach(1) + offset.length();
+        let size = size(self.solids.each_ref().map(Solid::vertices), self.poses.each_ref());
         AGREEMENT * 16.0 * f64::EPSILON * size / self.direction.length()
     }
 }

@@ -4,7 +4,7 @@ use colltrans::free::{FreeDirections, FreeError, FreeOptions, Verdict};
 use colltrans::{Pose, QueryError, Solid};
 use glam::{DMat3, DVec3};
 
-use super::{Judged, bodies::Bodies, direction};
+use super::{bodies::Bodies, direction};
 use crate::random::Random;
 
 /// Directions of each.
@@ -18,20 +18,20 @@ pub(super) fn larger(
     bodies: &Bodies,
     tolerance: f64,
     rng: &mut Random,
-) -> Result<Judged, String> {
+) -> Result<u64, String> {
     let options = all.options().with_tolerance(tolerance);
     let [a, b] = [0, 1].map(|k| bodies.solids[k].at(bodies.poses[k]));
     // Bodies that are thinner than that cannot be asked about.
     if let Err(FreeError::Query(QueryError::NothingLeft { .. })) =
         FreeDirections::of(&a, &b, options)
     {
-        return Ok(Judged::default());
+        return Ok(0);
     }
     let loose = asked(&bodies.solids, bodies.poses, options)?;
     if loose.free_area()[1] + loose.undecided_area() < all.free_area()[0] {
         return Err(format!("less is free with the tolerance {tolerance}"));
     }
-    compare(DIRECTIONS, rng, all, &loose, |d| d, |tight, loose| !tight || loose)
+    compare(rng, all, &loose, |d| d, |tight, loose| !tight || loose)
 }
 
 /// The same of bodies that are turned by quarter turns, exactly, and in any way, nearly.
@@ -39,7 +39,7 @@ pub(super) fn turned(
     all: &FreeDirections,
     bodies: &Bodies,
     rng: &mut Random,
-) -> Result<Judged, String> {
+) -> Result<u64, String> {
     // An even permutation of the axes, two of them reversed.
     let mut quarter = [DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X), DMat3::IDENTITY]
         [usize::from(rng.one_in(3))];
@@ -47,7 +47,7 @@ pub(super) fn turned(
     let signs = DVec3::from([0, 1, 2].map(|axis| if axis == kept { 1.0 } else { -1.0 }));
     quarter = DMat3::from_diagonal(signs) * quarter;
     let same = asked(&bodies.solids, by(quarter, bodies.poses)?, all.options())?;
-    let judged = compare(DIRECTIONS, rng, all, &same, |d| quarter * d, |one, other| one == other)?;
+    let compared = compare(rng, all, &same, |d| quarter * d, |one, other| one == other)?;
     if all.tolerance() > 0.0 {
         let turn = Pose::new(rng.rotation(), DVec3::ZERO).map_err(|e| e.to_string())?;
         let same = asked(&bodies.solids, by(turn.matrix(), bodies.poses)?, all.options())?;
@@ -57,7 +57,7 @@ pub(super) fn turned(
             return Err(format!("{here:?} is free, and turned {there:?}"));
         }
     }
-    Ok(judged)
+    Ok(compared)
 }
 
 fn by(turn: DMat3, poses: [Pose; 2]) -> Result<[Pose; 2], String> {
@@ -78,17 +78,16 @@ fn asked(
     Ok(all)
 }
 
-/// Whether what is said of directions here and there goes together.
+/// Counts directions of which what is said here and there goes together.
 fn compare(
-    count: u64,
     rng: &mut Random,
     here: &FreeDirections,
     there: &FreeDirections,
     map: impl Fn(DVec3) -> DVec3,
     fits: impl Fn(bool, bool) -> bool,
-) -> Result<Judged, String> {
-    let mut judged = Judged::default();
-    for _ in 0..count {
+) -> Result<u64, String> {
+    let mut compared = 0;
+    for _ in 0..DIRECTIONS {
         let d = direction(here, rng);
         let says = [here.says(d), there.says(map(d))].map(|says| says.map_err(|e| e.to_string()));
         let [one, other] = says;
@@ -99,7 +98,7 @@ fn compare(
         if !fits(one == Verdict::Free, other == Verdict::Free) {
             return Err(format!("{one:?} along {d:?}, but {other:?} along {:?}", map(d)));
         }
-        judged.compared += 1;
+        compared += 1;
     }
-    Ok(judged)
+    Ok(compared)
 }

@@ -1,13 +1,13 @@
-//! What became of the settings of one family: named numbers, and what is wrong.
+//! What became of the settings of one family of a campaign: named numbers, and what is wrong.
 
 use std::collections::BTreeMap;
 
 /// The numbers of one family.
 #[derive(Debug, Default)]
-pub(crate) struct Tally {
+pub struct Tally {
     numbers: BTreeMap<&'static str, Number>,
-    /// A line for each disagreement.
-    pub(crate) disagreements: Vec<String>,
+    /// Lines that say what disagrees.
+    pub disagreements: Vec<String>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -19,37 +19,46 @@ enum Number {
 
 impl Tally {
     /// Adds one to a count.
-    pub(crate) fn count(&mut self, name: &'static str) {
+    pub fn count(&mut self, name: &'static str) {
         self.add(name, 1);
     }
 
     /// Adds one to a count where something holds.
-    pub(crate) fn count_if(&mut self, name: &'static str, holds: bool) {
+    pub fn count_if(&mut self, name: &'static str, holds: bool) {
         self.add(name, u64::from(holds));
     }
 
     /// Adds to a count.
-    pub(crate) fn add(&mut self, name: &'static str, more: u64) {
+    pub fn add(&mut self, name: &'static str, more: u64) {
         self.note(name, Number::Count(more));
     }
 
     /// Keeps the larger one of a number and those before.
-    pub(crate) fn largest(&mut self, name: &'static str, value: impl Into<f64>) {
+    pub fn largest(&mut self, name: &'static str, value: impl Into<f64>) {
         self.note(name, Number::Largest(value.into()));
     }
 
     /// Takes a number into a mean.
-    pub(crate) fn mean(&mut self, name: &'static str, value: impl Into<f64>) {
+    pub fn mean(&mut self, name: &'static str, value: impl Into<f64>) {
         self.note(name, Number::Mean { sum: value.into(), count: 1 });
     }
 
+    /// Returns a count; 0 of what has not been counted.
+    pub fn get(&self, name: &str) -> u64 {
+        match self.numbers.get(name) {
+            Some(Number::Count(count)) => *count,
+            _ => 0,
+        }
+    }
+
     /// Notes a disagreement.
-    pub(crate) fn disagree(&mut self, what: String) {
+    pub fn disagree(&mut self, what: String) {
         self.disagreements.push(what);
     }
 
     /// Returns the numbers and disagreements of both.
-    pub(crate) fn merged(mut self, other: Self) -> Self {
+    #[must_use]
+    pub fn merged(mut self, other: Self) -> Self {
         for (name, number) in other.numbers {
             self.note(name, number);
         }
@@ -65,7 +74,7 @@ impl Tally {
     ///
     /// # Panics
     /// If a number has been noted that has no column.
-    pub(crate) fn line(&self, columns: &[&str]) -> String {
+    pub fn line(&self, columns: &[&str]) -> String {
         let without = self.numbers.keys().find(|name| !columns.contains(name));
         assert!(without.is_none(), "{without:?} has no column");
         let cells = columns.iter().map(|name| {
@@ -103,7 +112,7 @@ impl Number {
 }
 
 /// Returns the names of the columns as a line.
-pub(crate) fn header(columns: &[&str]) -> String {
+pub fn header(columns: &[&str]) -> String {
     let names = columns.iter().map(|name| format!("{name:>width$} ", width = width(name)));
     format!("{}{:>6}", names.collect::<String>(), "wrong")
 }

@@ -10,10 +10,6 @@ use colltrans_lab::shapes::Bodies;
 use colltrans_testkit::random::Random;
 use criterion::{Criterion, criterion_group, criterion_main};
 
-fn pair(shape: Shape, n: usize, random: &mut Random) -> Bodies {
-    Bodies::new([(); 2].map(|()| shape.draw(n, random).expect("a body")))
-}
-
 fn cast(criterion: &mut Criterion) {
     for (shape, n, meeting, name) in [
         (Shape::Ellipsoid, 8, Meeting::Colliding, "colliding"),
@@ -23,7 +19,7 @@ fn cast(criterion: &mut Criterion) {
         (Shape::Needle(100.0), 2_000, Meeting::Colliding, "colliding"),
     ] {
         let mut random = Random::stream(1, &[n as u64]);
-        let bodies = pair(shape, n, &mut random);
+        let bodies = Bodies::new(shape.pair(n, &mut random).expect("bodies"));
         let [moving, fixed] = &bodies.pair;
         let settings: Vec<_> =
             (0..256).map(|_| Setting::draw(&bodies, meeting, &mut random)).collect();
@@ -55,7 +51,7 @@ fn cast(criterion: &mut Criterion) {
 fn track(criterion: &mut Criterion) {
     for (n, delta) in [(200, 0.01), (2_000, 0.01), (2_000, 0.0013), (20_000, 0.0013)] {
         let mut random = Random::stream(1, &[n as u64]);
-        let bodies = pair(Shape::Ellipsoid, n, &mut random);
+        let bodies = Bodies::new(Shape::Ellipsoid.pair(n, &mut random).expect("bodies"));
         let [moving, fixed] = &bodies.pair;
         let settings = Setting::sequence(&bodies, Meeting::Colliding, delta, 1_000, &mut random);
         let options = Options::default();

@@ -1,12 +1,12 @@
 //! Measurements of `colltrans` beside `parry3d-f64`.
 //!
-//! Data flow: [`shapes`], [`meshes`] and [`ties`] (on what) -> `colltrans_lab::settings` (where it is) ->
-//! [`parry`] (the same in the other library) -> [`report`]. The programs `table`, `coherence` and
-//! `solids` go that way.
+//! A program is one file in `bin`: it declares the columns of its table, draws cases, and has [`times`] let contestants
+//! answer them in turns; [`harness`] reads arguments, prints rows and writes them. Cases are bodies ([`shapes`], [`meshes`],
+//! [`ties`]) in settings (`colltrans_lab::settings`), the same in the other library by [`parry`].
 
-pub mod arguments;
+pub mod harness;
 pub mod meshes;
 pub mod parry;
-pub mod report;
 pub mod shapes;
 pub mod ties;
+pub mod times;

@@ -11,7 +11,7 @@ use parry3d_f64::query::{self, ShapeCastOptions, cast_shapes};
 pub use parry3d_f64::shape::ConvexPolyhedron as ParryPolyhedron;
 use parry3d_f64::shape::{Compound, Shape, SharedShape, TriMesh};
 
-use crate::report::Times;
+use crate::times::Times;
 
 /// Our vertices and faces, the latter cut into fans of triangles; `None` if parry refuses them.
 pub fn body(body: &ConvexPolyhedron) -> Option<ParryPolyhedron> {

@@ -60,6 +60,14 @@ impl Shape {
         }
     }
 
+    /// Two bodies with about `n` vertices each.
+    ///
+    /// # Errors
+    /// As the constructors of [`ConvexPolyhedron`].
+    pub fn pair(self, n: usize, random: &mut Random) -> Result<[ConvexPolyhedron; 2], BuildError> {
+        Ok([self.draw(n, random)?, self.draw(n, random)?])
+    }
+
     /// One body with about `n` vertices.
     ///
     /// # Errors
@@ -71,10 +79,7 @@ impl Shape {
         let round = DVec3::new(semi_axes.x, semi_axes.x, semi_axes.z);
         // About as many vertices on so many rings of these radii and heights.
         let turned = |rings: &[[f64; 2]], apexes: &[f64]| {
-            let sides = (n / rings.len()).max(3);
-            let rings = rings.iter().flat_map(|&[radius, z]| shapes::ring(sides, radius, z));
-            let tips = apexes.iter().map(|&z| DVec3::Z * z);
-            scaled(Mesh::of_points(rings.chain(tips).collect()), round)
+            scaled(shapes::revolved(rings, apexes, (n / rings.len()).max(3)), round)
         };
         let inner = 1.0 - CHAMFER;
         body(&match self {

@@ -9,23 +9,14 @@
 use std::process::ExitCode;
 use std::sync::Arc;
 
-use clap::Parser;
 use colltrans::{Among, ConvexPolyhedron, ObstacleId, Obstacles, Pose};
-use colltrans_bench::arguments::Arguments;
+use colltrans_bench::harness::{self, Run};
 use colltrans_bench::parry::{self, ParrySetting};
-use colltrans_bench::report::{self, Times};
+use colltrans_bench::times::{Beside, Clock, Times};
 use colltrans_testkit::random::Random;
-use colltrans_testkit::timing::Stopwatch;
 use glam::DVec3;
 use parry3d_f64::shape::{Compound, Cuboid};
 use serde_json::{Value, json};
-
-/// Measures one body among many boxes beside parry3d-f64; prints a table
-#[derive(Debug, Parser)]
-struct Command {
-    #[command(flatten)]
-    arguments: Arguments,
-}
 
 const SIZES: [usize; 4] = [100, 1_000, 10_000, 100_000];
 
@@ -42,19 +33,16 @@ const FILLED: f64 = 0.02;
 const CLOSE: f64 = 0.5;
 
 fn main() -> ExitCode {
-    let Command { arguments } = Command::parse();
-    let count = if arguments.quick { 200 } else { 2_000 };
-    let mut rows = Vec::new();
-    let names =
-        ["boxes", "build ms", "parry", "nearest", "parry", "ratio", "cast", "parry", "ratio"];
-    let more = ["within", "move", "nearest", "wrong"];
-    let heads: Vec<String> =
-        names.into_iter().chain(more).map(|name| format!("{name:>9}")).collect();
-    println!("{}", heads.concat());
-    for &n in arguments.sizes.as_deref().unwrap_or(&SIZES) {
-        rows.push(row(n, count, arguments.seed));
-    }
-    report::write("among", &arguments, &rows)
+    let about = "Measures one body among many boxes beside parry3d-f64; prints a table";
+    harness::run("among", about, |run, (): &()| {
+        let columns = "boxes:>9; build ms:>8.2=build_ms; parry:>8.2=parry_build_ms;
+            nearest:>8.0=nearest/0; parry:>8.0=nearest/1; ratio:>8.2=nearest/2;
+            cast:>8.0=cast/0; parry:>8.0=cast/1; ratio:>8.2=cast/2;
+            within:>8.0; move:>8.0; nearest:>8.0=nearest_after; wrong:>8";
+        run.table("", columns);
+        run.sizes(&SIZES).into_iter().for_each(|n| run.add(row(n, run)));
+        Ok(())
+    })
 }
 
 /// A scene, for both.
@@ -84,6 +72,10 @@ impl Scene {
             obstacles.insert_all(self.poses.iter().enumerate().map(|(k, pose)| (body(k), *pose)));
         (obstacles, ids)
     }
+
+    fn theirs(&self) -> Compound {
+        parry::compound(&self.poses, |k| self.halves[k % SHAPES])
+    }
 }
 
 fn anywhere(side: f64, random: &mut Random) -> Pose {
@@ -91,66 +83,37 @@ fn anywhere(side: f64, random: &mut Random) -> Pose {
     Pose::new(random.rotation(), at).expect("a pose")
 }
 
-/// The times of one kind of query.
-#[derive(Default)]
-struct Beside {
-    ours: Times,
-    parry: Times,
-    ratio: Times,
-}
-
-impl Beside {
-    fn add(&mut self, ours: f64, parry: f64) {
-        self.ours.add(ours);
-        self.parry.add(parry);
-        self.ratio.add(parry / ours);
-    }
-
-    fn medians(&mut self) -> [f64; 3] {
-        [&mut self.ours, &mut self.parry, &mut self.ratio].map(|times| {
-            times.sort();
-            times.median()
-        })
-    }
-}
-
-fn row(n: usize, count: usize, seed: u64) -> Value {
-    let random = &mut Random::stream(seed, &[n as u64]);
-    let stopwatch = Stopwatch::new();
+fn row(n: usize, run: &Run) -> Value {
+    let count = run.choose(200, 2_000);
+    let random = &mut run.random(&[n as u64]);
+    let clock = Clock::new(1);
     let scene = Scene::draw(n, random);
-    let (obstacles, ids) = scene.ours();
-    let compound = parry::compound(&scene.poses, |k| scene.halves[k % SHAPES]);
-    let ours = spent(stopwatch, || drop(scene.ours())) / 1e6;
-    let parrys = || drop(parry::compound(&scene.poses, |k| scene.halves[k % SHAPES]));
-    let theirs = spent(stopwatch, parrys) / 1e6;
-    let mut obstacles = obstacles;
-    let mut asked = Asked { scene: &scene, stopwatch, random, wrong: 0 };
-    let [mut nearest, mut cast] = asked.beside(&obstacles, &compound, count);
-    let within = asked.within(&obstacles, count);
+    let (mut obstacles, ids) = scene.ours();
+    let compound = scene.theirs();
+    let build = |build: &dyn Fn()| {
+        own_time(clock, || (0..BUILDS).for_each(|_| build())) / f64::from(BUILDS) / 1e6
+    };
+    let ours = build(&|| drop(scene.ours()));
+    let theirs = build(&|| drop(scene.theirs()));
+    let mut asked = Asked { scene: &scene, clock, random, wrong: 0 };
+    let [nearest, cast] = asked.beside(&obstacles, &compound, count);
+    let within = asked.median(count, &obstacles, |asked| asked.within(CLOSE).is_ok());
     let moves = asked.moves(&mut obstacles, &ids, count);
-    let after = asked.nearest(&obstacles, count);
-    let wrong = asked.wrong;
-    let (nearest, cast) = (nearest.medians(), cast.medians());
-    println!(
-        "{n:>9}{:>9.2}{:>9.2}{:>9.0}{:>9.0}{:>9.2}{:>9.0}{:>9.0}{:>9.2}{within:>9.0}{moves:>9.0}{after:>9.0}{wrong:>9}",
-        ours, theirs, nearest[0], nearest[1], nearest[2], cast[0], cast[1], cast[2],
-    );
+    let after = asked.median(count, &obstacles, |asked| asked.nearest().is_ok());
     json!({
-        "boxes": n, "build_ms": ours, "parry_build_ms": theirs,
-        "nearest": nearest, "cast": cast, "within": within, "move": moves, "nearest_after": after,
-        "wrong": wrong,
+        "boxes": n, "build_ms": ours, "parry_build_ms": theirs, "nearest": nearest.medians(),
+        "cast": cast.medians(), "within": within, "move": moves, "nearest_after": after,
+        "wrong": asked.wrong,
     })
 }
 
-/// What a thread does in nanoseconds on a processor, the mean of nine times: others are on the machine as well.
-fn spent(stopwatch: Stopwatch, work: impl Fn()) -> f64 {
-    let all = || (0..BUILDS).for_each(|_| work());
-    let (before, ((), wall)) = (on_processor(), stopwatch.time(all));
-    let own = before.zip(on_processor()).map(|(before, after)| after - before);
-    own.unwrap_or(wall) / f64::from(BUILDS)
+/// Returns for how long this thread is on a processor with some work, in nanoseconds; others are on the machine as well.
+fn own_time(clock: Clock, work: impl FnMut()) -> f64 {
+    let (before, ((), wall)) = (on_processor(), clock.time(work));
+    before.zip(on_processor()).map_or(wall, |(before, after)| after - before)
 }
 
-/// For how long this thread has been on a processor, where the system tells.
+/// Returns for how long this thread has been on a processor, where the system tells.
 fn on_processor() -> Option<f64> {
     let stat = std::fs::read_to_string("/proc/thread-self/schedstat").ok()?;
     stat.split(' ').next()?.parse().ok()
@@ -159,7 +122,7 @@ fn on_processor() -> Option<f64> {
 /// Who asks.
 struct Asked<'a> {
     scene: &'a Scene,
-    stopwatch: Stopwatch,
+    clock: Clock,
     random: &'a mut Random,
     /// Answers of parry's that are not between our bounds, by more than a millionth.
     wrong: u32,
@@ -175,44 +138,34 @@ impl Asked<'_> {
             let pose = anywhere(self.scene.side, self.random);
             let direction = self.random.direction();
             let setting = ParrySetting::placed([&pose, &Pose::IDENTITY], direction);
-            let (ours, spent) = self
-                .stopwatch
-                .time(|| Among::new(shape.at(pose), obstacles).and_then(|a| a.nearest()));
-            let (other, theirs) = self.stopwatch.time(|| setting.distance(&cuboid, compound));
-            nearest.add(spent, theirs);
+            let (ours, other) = nearest.ask(
+                self.clock,
+                || Among::new(shape.at(pose), obstacles).and_then(|a| a.nearest()),
+                || setting.distance(&cuboid, compound),
+            );
             let ours = ours.expect("an answer").expect("there are some");
-            let is_off = |x: f64, [lower, upper]: [f64; 2]| x < lower - 1e-6 || x > upper + 1e-6;
-            let bounds = [ours.lower, ours.distance.upper()];
-            self.wrong += u32::from(other.is_none_or(|x| is_off(x, bounds)));
-            let (ours, spent) = self.stopwatch.time(|| {
-                Among::new(shape.at(pose), obstacles).and_then(|a| a.clearance(direction))
-            });
-            let (_, theirs) = self.stopwatch.time(|| setting.cast(&cuboid, compound));
+            let is_off = |x: f64| x < ours.lower - 1e-6 || x > ours.distance.upper() + 1e-6;
+            self.wrong += u32::from(other.is_none_or(is_off));
+            let (ours, _) = casts.ask(
+                self.clock,
+                || Among::new(shape.at(pose), obstacles).and_then(|a| a.clearance(direction)),
+                || setting.cast(&cuboid, compound),
+            );
             assert!(ours.is_ok(), "an answer");
-            casts.add(spent, theirs);
         }
         [nearest, casts]
     }
 
-    fn nearest(&mut self, obstacles: &Obstacles, count: usize) -> f64 {
-        self.median(count, |asked| asked.nearest().is_ok(), obstacles)
-    }
-
-    fn within(&mut self, obstacles: &Obstacles, count: usize) -> f64 {
-        self.median(count, |asked| asked.within(CLOSE).is_ok(), obstacles)
-    }
-
-    fn median(&mut self, count: usize, ask: impl Fn(&Among) -> bool, obstacles: &Obstacles) -> f64 {
+    fn median(&mut self, count: usize, obstacles: &Obstacles, ask: impl Fn(&Among) -> bool) -> f64 {
         let mut times = Times::default();
         for _ in 0..count {
             let pose = anywhere(self.scene.side, self.random);
             let shape = &self.scene.shapes[0];
             let question = || Among::new(shape.at(pose), obstacles).is_ok_and(|a| ask(&a));
-            let (answered, spent) = self.stopwatch.time(question);
+            let (answered, spent) = self.clock.time(question);
             assert!(answered, "an answer");
             times.add(spent);
         }
-        times.sort();
         times.median()
     }
 
@@ -228,10 +181,11 @@ impl Asked<'_> {
                 (id, if k % 2 == 0 { near } else { anywhere(self.scene.side, self.random) })
             })
             .collect();
-        let set = || moves.iter().try_for_each(|(id, pose)| obstacles.set_pose(*id, *pose));
-        let (before, (moved, wall)) = (on_processor(), self.stopwatch.time(set));
-        moved.expect("they are there");
-        let own = before.zip(on_processor()).map(|(before, after)| after - before);
-        own.unwrap_or(wall) / moves.len() as f64
+        let set = || {
+            for (id, pose) in &moves {
+                obstacles.set_pose(*id, *pose).expect("it is there");
+            }
+        };
+        own_time(self.clock, set) / moves.len() as f64
     }
 }

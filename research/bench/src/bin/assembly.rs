@@ -1,12 +1,9 @@
-//! How assemblies grow: parts, facets, directions; and a folder of meshes, if one is given.
-//!
-//! `cargo run --release -p colltrans-bench --bin assembly -- [FOLDER TOLERANCE] [--json FILE]`
+//! `assembly`: how assemblies grow: parts, facets, directions; and a folder of meshes, if one is given.
 
-use std::error::Error;
 use std::path::PathBuf;
-use std::time::Instant;
+use std::process::ExitCode;
 
-use clap::Parser;
+use clap::Args;
 use colltrans::solid::StartOverlap;
 use colltrans_assembly::candidates::{Choice, candidates};
 use colltrans_assembly::liaisons::liaisons;
@@ -16,46 +13,46 @@ use colltrans_assembly::rooms::rooms;
 use colltrans_assembly::sphere::Sphere;
 use colltrans_assembly::{Assembly, Bodies, Fit, Part, Piece, Watch};
 use colltrans_assembly_io::read::{ReadOptions, read};
+use colltrans_bench::harness::{self, Failure};
+use colltrans_bench::times::Clock;
 use colltrans_testkit::shapes::{Mesh, ring_sphere};
 use glam::{DAffine3, DVec3};
 use serde_json::{Value, json};
 
-#[derive(Parser)]
-struct Arguments {
+#[derive(Debug, Args)]
+struct Own {
     /// A folder of meshes
     folder: Option<PathBuf>,
     /// Its tolerance
     #[arg(default_value_t = 0.0)]
     tolerance: f64,
-    /// Also write the figures to this file
-    #[arg(long)]
-    json: Option<PathBuf>,
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let arguments = Arguments::parse();
-    let mut rows = Vec::new();
-    for side in [3, 5, 8] {
-        rows.push(measured("parts", &spheres(side, 12, 5)?, 1e-6, 42)?);
-    }
-    for rings in [5, 11, 23, 47] {
-        rows.push(measured("facets", &spheres(3, 2 * rings + 2, rings)?, 1e-6, 42)?);
-    }
-    for directions in [12, 42, 162, 642] {
-        rows.push(measured("directions", &spheres(3, 12, 5)?, 1e-6, directions)?);
-    }
-    if let Some(folder) = &arguments.folder {
-        let assembly = read(folder, &ReadOptions::default())?;
-        rows.push(measured("folder", &assembly, arguments.tolerance, 500)?);
-    }
-    if let Some(path) = &arguments.json {
-        std::fs::write(path, serde_json::to_string_pretty(&rows)?)?;
-    }
-    Ok(())
+fn main() -> ExitCode {
+    let about = "Measures how assemblies grow: parts, facets, directions; prints a table";
+    harness::run("assembly", about, |run, own: &Own| {
+        let columns = "series:>10; parts:>5; facets:>7; directions:>10; ready, s:>9.3=ready_s; rooms, s:>9.3=rooms_s;
+            contacts to plan, s:>19.3=plan_s; steps:>5";
+        run.table("", columns);
+        for side in [3, 5, 8] {
+            run.add(measured("parts", &spheres(side, 12, 5)?, 1e-6, 42)?);
+        }
+        for rings in [5, 11, 23, 47] {
+            run.add(measured("facets", &spheres(3, 2 * rings + 2, rings)?, 1e-6, 42)?);
+        }
+        for directions in [12, 42, 162, 642] {
+            run.add(measured("directions", &spheres(3, 12, 5)?, 1e-6, directions)?);
+        }
+        if let Some(folder) = &own.folder {
+            let assembly = read(folder, &ReadOptions::default())?;
+            run.add(measured("folder", &assembly, own.tolerance, 500)?);
+        }
+        Ok(())
+    })
 }
 
 /// Unit spheres in a cube of rows, a little apart.
-fn spheres(side: u32, around: u32, rings: u32) -> Result<Assembly, Box<dyn Error>> {
+fn spheres(side: u32, around: u32, rings: u32) -> Result<Assembly, Failure> {
     let Mesh { vertices, faces, .. } = ring_sphere(around, rings);
     let mut parts = Vec::new();
     for k in 0..side * side * side {
@@ -75,33 +72,27 @@ fn measured(
     assembly: &Assembly,
     tolerance: f64,
     directions: usize,
-) -> Result<Value, Box<dyn Error>> {
+) -> Result<Value, Failure> {
     let watch = Watch::default();
-    let clock = Instant::now();
-    let bodies = Bodies::new(assembly, Fit::Tolerance(tolerance))?;
-    let ready = clock.elapsed().as_secs_f64();
+    let clock = Clock::new(1);
+    let (bodies, ready) = clock.time(|| Bodies::new(assembly, Fit::Tolerance(tolerance)));
+    let bodies = bodies?;
     let sphere = Sphere::with_directions(directions).directions;
-    let clock = Instant::now();
-    rooms(&bodies, &sphere, StartOverlap::Ignore, watch)?;
-    let rooms_s = clock.elapsed().as_secs_f64();
-    let clock = Instant::now();
-    let touching = liaisons(&bodies, watch)?;
-    let found = candidates(&bodies, &touching, &Choice::default())?;
-    let all = vec![true; bodies.len()];
-    let start = StartOverlap::Refuse;
-    let matrix = Matrix::new(&bodies, &found.directions(), &all, start, watch)?;
-    let plan = disassemble(&bodies, &matrix, &found.finer, PlanOptions::default(), watch)?;
-    let plan_s = clock.elapsed().as_secs_f64();
+    let (found, rooms_ns) = clock.time(|| rooms(&bodies, &sphere, StartOverlap::Ignore, watch));
+    found?;
+    let plan = || -> Result<_, Failure> {
+        let touching = liaisons(&bodies, watch)?;
+        let found = candidates(&bodies, &touching, &Choice::default())?;
+        let all = vec![true; bodies.len()];
+        let start = StartOverlap::Refuse;
+        let matrix = Matrix::new(&bodies, &found.directions(), &all, start, watch)?;
+        Ok(disassemble(&bodies, &matrix, &found.finer, PlanOptions::default(), watch)?)
+    };
+    let (plan, plan_ns) = clock.time(plan);
     let facets: usize = assembly.parts().iter().map(Part::facets).sum();
-    println!(
-        "{series:>10}: {:5} parts {facets:7} facets {:4} directions: ready {ready:.3} s, rooms \
-         {rooms_s:.3} s, contacts to plan {plan_s:.3} s ({} steps)",
-        bodies.len(),
-        sphere.len(),
-        plan.steps.len()
-    );
     Ok(json!({
         "series": series, "parts": bodies.len(), "facets": facets, "directions": sphere.len(),
-        "ready_s": ready, "rooms_s": rooms_s, "plan_s": plan_s, "steps": plan.steps.len(),
+        "ready_s": ready / 1e9, "rooms_s": rooms_ns / 1e9, "plan_s": plan_ns / 1e9,
+        "steps": plan?.steps.len(),
     }))
 }

@@ -8,24 +8,15 @@ use std::hint::black_box;
 use std::process::ExitCode;
 use std::time::Instant;
 
-use clap::Parser;
 use colltrans::{
     BuildError, Cast, ConvexPolyhedron, FixedRotations, Outcome, Pose, QueryError, StartedFrom,
     Tracker,
 };
-use colltrans_bench::arguments::Arguments;
-use colltrans_bench::report;
+use colltrans_bench::harness::{self, Run, naming};
 use colltrans_bench::shapes::Shape;
 use colltrans_testkit::random::Random;
 use glam::DVec3;
-use serde_json::{Value, json};
-
-/// Measures casts of bodies that do not turn beside ordinary ones and a tracker; prints a table
-#[derive(Debug, Parser)]
-struct Command {
-    #[command(flatten)]
-    arguments: Arguments,
-}
+use serde_json::{Map, Value, json};
 
 const SIZES: [usize; 5] = [8, 16, 32, 64, 128];
 
@@ -90,51 +81,30 @@ impl Set {
 const WHO: [&str; 4] = ["cast", "tracker", "any direction", "one direction"];
 
 fn main() -> ExitCode {
-    let Command { arguments } = Command::parse();
-    println!(
-        "ns a cast, the least of all turns; times as fast as the ordinary cast; us to make the faces and the map; \
-         casts after which they have paid (any direction, one direction); % not answered by the faces"
-    );
-    println!(
-        "{:<8} {:<12} {:>4} {:>4} | {:>6} {:>7} {:>6} {:>6} | {:>5} {:>5} | {:>6} {:>5} | {:>6} {:>6} | {:>5} {:>5} {:>5}",
-        "set",
-        "body",
-        "n",
-        "hit%",
-        "cast",
-        "tracker",
-        "any",
-        "one",
-        "any",
-        "one",
-        "faces",
-        "map",
-        "any",
-        "one",
-        "any",
-        "one",
-        "looks"
-    );
-    let mut rows = Vec::new();
-    let sizes = arguments.sizes.as_deref().unwrap_or(&SIZES);
-    let mut sets: Vec<_> = Vec::new();
-    for set in [Set::Places, Set::Rays] {
-        sets.push((set, Shape::Box, 8));
-        for shape in [Shape::RandomHull, Shape::Ellipsoid] {
-            sets.extend(sizes.iter().map(|&n| (set, shape, n)));
-        }
-    }
-    sets.extend([Set::Upright, Set::Tied].map(|set| (set, Shape::Box, 8)));
-    for (set, shape, n) in sets {
-        match measure(set, shape, n, &arguments) {
-            Ok(row) => rows.push(row),
-            Err(error) => {
-                eprintln!("error: {} of {n} vertices: {error}", shape.name());
-                return ExitCode::FAILURE;
+    let about = "Measures casts of bodies that do not turn beside ordinary ones and a tracker; prints a table";
+    harness::run("bulk", about, |run, (): &()| {
+        let columns = "set:<8; body:<12=shape; n:>4=vertices; hit%:>4.0=hits × 100;
+            |cast:>6.0=ns/cast; tracker:>7.0=ns/tracker; any:>6.0=ns/any direction; one:>6.0=ns/one direction;
+            |any:>5.2=ns/cast ÷ ns/any direction; one:>5.2=ns/cast ÷ ns/one direction;
+            |faces:>6.0=make_ns × 1e-3; map:>5.0=map_ns × 1e-3; |any:>6.0=pays/0; one:>6.0=pays/1;
+            |any:>5.1=left/0 × 100; one:>5.1=left/1 × 100; looks:>5.2";
+        let legend = "ns a cast, the least of all turns; times as fast as the ordinary cast; us to make the faces and the map; \
+             casts after which they have paid (any direction, one direction); % not answered by the faces";
+        run.table(legend, columns);
+        let mut sets = Vec::new();
+        for set in [Set::Places, Set::Rays] {
+            sets.push((set, Shape::Box, 8));
+            for shape in [Shape::RandomHull, Shape::Ellipsoid] {
+                sets.extend(run.sizes(&SIZES).into_iter().map(|n| (set, shape, n)));
             }
         }
-    }
-    report::write("bulk", &arguments, &rows)
+        sets.extend([Set::Upright, Set::Tied].map(|set| (set, Shape::Box, 8)));
+        for (set, shape, n) in sets {
+            let failed = naming(format!("{} of {n} vertices", shape.name()));
+            run.add(measure(set, shape, n, run).map_err(failed)?);
+        }
+        Ok(())
+    })
 }
 
 fn bodies(
@@ -147,15 +117,15 @@ fn bodies(
         let cube = ConvexPolyhedron::cuboid(-DVec3::ONE, DVec3::ONE)?;
         return Ok([cube.clone(), cube]);
     }
-    Ok([shape.draw(n, random)?, shape.draw(n, random)?])
+    shape.pair(n, random)
 }
 
-fn measure(set: Set, shape: Shape, n: usize, arguments: &Arguments) -> Result<Value, BuildError> {
-    let mut random = Random::stream(arguments.seed, &[n as u64, set as u64]);
+fn measure(set: Set, shape: Shape, n: usize, run: &Run) -> Result<Value, BuildError> {
+    let mut random = run.random(&[n as u64, set as u64]);
     let [p, q] = bodies(set, shape, n, &mut random)?;
     let (casts, world) = set.draw(&mut random);
     let cast = |(pose, along): &(Pose, DVec3)| Cast::new(p.at(*pose), q.at(world), *along);
-    let turns = if arguments.quick { 5 } else { 25 };
+    let turns = run.choose(5, 25);
     let (mut make, mut map) = (f64::INFINITY, f64::INFINITY);
     let made = || FixedRotations::new(p.at(casts[0].0), q.at(world));
     let rotations = made();
@@ -189,60 +159,27 @@ fn measure(set: Set, shape: Shape, n: usize, arguments: &Arguments) -> Result<Va
     if set == Set::Rays {
         least[3] = f64::NAN;
     }
-    Ok(row(set, shape, n, least, [make, map].map(|s| s * 1e9), &answers))
+    let share = |who: usize, of: &dyn Fn(&Outcome) -> bool| {
+        let count = answers[who].iter().flatten().filter(|outcome| of(outcome)).count();
+        count as f64 / CASTS as f64
+    };
+    let looks: u32 = answers[2].iter().flatten().map(|outcome| outcome.steps().pivots).sum();
+    let [make, map] = [make, map].map(|s| s * 1e9);
+    let left = |who: usize| share(who, &|o| o.steps().started_from != StartedFrom::Difference);
+    let ns = WHO.iter().zip(least).map(|(who, ns)| ((*who).into(), json!(ns)));
+    Ok(json!({
+        "set": set.name(), "shape": shape.name(), "vertices": n,
+        "hits": share(0, &|outcome| matches!(outcome, Outcome::Contact(_))),
+        "ns": ns.collect::<Map<_, _>>(),
+        "make_ns": make, "map_ns": map,
+        "pays": [make / (least[0] - least[2]), (make + map) / (least[0] - least[3])],
+        "left": [left(2), left(3)],
+        "looks": f64::from(looks) / CASTS as f64,
+    }))
 }
 
 fn seconds(run: impl FnOnce()) -> f64 {
     let started = Instant::now();
     run();
     started.elapsed().as_secs_f64()
-}
-
-/// Prints a row, and keeps it.
-fn row(
-    set: Set,
-    shape: Shape,
-    n: usize,
-    ns: [f64; 4],
-    [make, map]: [f64; 2],
-    answers: &[Vec<Result<Outcome, QueryError>>; 4],
-) -> Value {
-    let share = |who: usize, of: &dyn Fn(&Outcome) -> bool| {
-        let count = answers[who].iter().flatten().filter(|outcome| of(outcome)).count();
-        100.0 * count as f64 / CASTS as f64
-    };
-    let hits = share(0, &|outcome| matches!(outcome, Outcome::Contact(_)));
-    let left = [2, 3].map(|who| share(who, &|o| o.steps().started_from != StartedFrom::Difference));
-    let looks: u32 = answers[2].iter().flatten().map(|outcome| outcome.steps().pivots).sum();
-    let looks = f64::from(looks) / CASTS as f64;
-    let gain = [2, 3].map(|who| ns[0] / ns[who]);
-    let pays = [make / (ns[0] - ns[2]), (make + map) / (ns[0] - ns[3])];
-    println!(
-        "{:<8} {:<12} {n:>4} {hits:>4.0} | {:>6.0} {:>7.0} {:>6.0} {:>6.0} | {:>5.2} {:>5.2} | {:>6.0} {:>5.0} | {:>6.0} {:>6.0} | {:>5.1} {:>5.1} {looks:>5.2}",
-        set.name(),
-        shape.name(),
-        ns[0],
-        ns[1],
-        ns[2],
-        ns[3],
-        gain[0],
-        gain[1],
-        make / 1e3,
-        map / 1e3,
-        pays[0],
-        pays[1],
-        left[0],
-        left[1],
-    );
-    json!({
-        "set": set.name(),
-        "shape": shape.name(),
-        "vertices": n,
-        "hits": hits / 100.0,
-        "ns": WHO.iter().zip(ns).map(|(who, ns)| ((*who).into(), json!(ns))).collect::<serde_json::Map<_, _>>(),
-        "make_ns": make,
-        "map_ns": map,
-        "left": left.map(|left| left / 100.0),
-        "looks": looks,
-    })
 }

@@ -6,25 +6,16 @@
 
 use std::process::ExitCode;
 
-use clap::Parser;
-use colltrans::{Focus, Options, Outcome, QueryError, Solver, Tracker, cta};
-use colltrans_bench::arguments::Arguments;
+use colltrans::{BuildError, Focus, Options, Outcome, QueryError, Solver, Tracker, cta};
+use colltrans_bench::harness::{self, Run, naming};
 use colltrans_bench::parry::Scale;
-use colltrans_bench::report::{self, Measured, Times};
 use colltrans_bench::shapes::{Shape, body};
+use colltrans_bench::times::{Block, Measured, blocks, in_rotation};
 use colltrans_lab::settings::{Meeting, Setting};
 use colltrans_lab::shapes::Bodies;
-use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::{even_rings, ring_sphere};
 use colltrans_testkit::timing::Stopwatch;
-use serde_json::{Value, json};
-
-/// Measures trackers against casts from scratch on the same sequences; prints tables
-#[derive(Debug, Parser)]
-struct Command {
-    #[command(flatten)]
-    arguments: Arguments,
-}
+use serde_json::{Map, json};
 
 const SIZES: [usize; 4] = [200, 2_000, 20_000, 200_000];
 
@@ -73,69 +64,92 @@ const BOTH: Focus = Focus::NONE.with_features(true).with_region(cta::Region::Aut
 const PAPER: cta::Options = cta::Options::new(cta::Start::Center, cta::Until::Exit);
 
 fn main() -> ExitCode {
-    let Command { arguments } = Command::parse();
-    let mut rows = Vec::new();
-    for &n in arguments.sizes.as_deref().unwrap_or(&SIZES) {
-        match measure_size(n, &arguments, &mut rows) {
-            Ok(()) => {}
-            Err(error) => {
-                eprintln!("error: ellipsoids with {n} vertices: {error}");
-                return ExitCode::FAILURE;
-            }
+    let about = "Measures trackers against casts from scratch on the same sequences; prints tables";
+    harness::run("coherence", about, |run, (): &()| {
+        for n in run.sizes(&SIZES) {
+            measure_size(n, run).map_err(naming(format!("ellipsoids with {n} vertices")))?;
         }
-    }
-    report::write("coherence", &arguments, &rows)
+        Ok(())
+    })
+}
+
+fn begin_table(run: &mut Run) {
+    let solver = |compared: &Compared| {
+        let name = compared.name;
+        format!(
+            "|{name}:>11.0=solvers/{name}/median_ns; mean:>6.0=solvers/{name}/mean_ns; \
+             %:>3.0=solvers/{name}/by_features × 100; planar:>6.2=solvers/{name}/planar_problems; \
+             sup:>5.2=solvers/{name}/supports; piv:>5.2=solvers/{name}/pivots; "
+        )
+    };
+    let failures =
+        COMPARED.map(|compared| format!("solvers/{}/failures", compared.name)).join(" + ");
+    let columns = format!(
+        "sequences:<18; n:>7=vertices; {}
+        |ratio:>5.2=solvers/tracker/median_ns ÷ solvers/scratch/median_ns;
+        means:>5.2=solvers/tracker/mean_ns ÷ solvers/scratch/mean_ns;
+        parry:>5.2=solvers/tracker/mean_ns ÷ parry_8/mean_ns; diff:>4=differences; fail:>4.0={failures}",
+        COMPARED.iter().map(solver).collect::<String>(),
+    );
+    let legend = "\nmedian ns, and mean without the slowest hundredth; % = answered by feature focus; \
+         planar problems, supports and pivots on average; tracker over scratch by medians and by \
+         means; mean of the tracker over parry's mean at 8 vertices";
+    run.table(legend, &columns);
 }
 
 /// All rows of a size.
-fn measure_size(
-    n: usize,
-    arguments: &Arguments,
-    rows: &mut Vec<Value>,
-) -> Result<(), colltrans::BuildError> {
-    let mut random = Random::stream(arguments.seed, &[n as u64]);
-    let mut pair = |n| -> Result<Bodies, colltrans::BuildError> {
-        let mut one = || Shape::Ellipsoid.draw(n, &mut random);
-        Ok(Bodies::new([one()?, one()?]))
-    };
+fn measure_size(n: usize, run: &mut Run) -> Result<(), BuildError> {
+    let mut random = run.random(&[n as u64]);
+    let mut pair = |n| Shape::Ellipsoid.pair(n, &mut random).map(Bodies::new);
     let bodies = [pair(n)?, pair(n)?];
     let [around, rings] = even_rings(n);
     let sphere = body(&ring_sphere(around, rings))?;
     let spheres = [Bodies::new([sphere.clone(), sphere])];
     let small = pair(8)?;
-    let count = if arguments.quick { 12 } else { 60 };
-    let mut table = Table { n, scale: Scale::new(&small, LENGTH, &mut random), rows };
-    print_header();
+    let count = run.choose(12, 60);
+    let scale = Scale::new(&small, LENGTH, &mut random);
+    begin_table(run);
+    let mut add = |name: &str, sequences: &[Block]| follow_all(n, name, sequences, &scale, run);
     for (name, meeting) in
         [("colliding", Meeting::Colliding), ("separated", Meeting::PassingWithin(0.2))]
     {
         for delta in DELTAS {
-            let draw =
-                |bodies: &Bodies| Setting::sequence(bodies, meeting, delta, LENGTH, &mut random);
-            let sequences = in_turn(&bodies, count, draw);
-            table.add(&format!("{:.2} %, {name}", 100.0 * delta), &sequences);
+            let sequences = blocks(&bodies, count, |bodies| {
+                Setting::sequence(bodies, meeting, delta, LENGTH, &mut random)
+            });
+            add(&format!("{:.2} %, {name}", 100.0 * delta), &sequences);
         }
-        let draw = |bodies: &Bodies| {
-            (0..LENGTH).map(|_| Setting::draw(bodies, meeting, &mut random)).collect()
-        };
-        let sequences = in_turn(&bodies, count, draw);
-        table.add(&format!("random, {name}"), &sequences);
+        let mut draw = |bodies: &Bodies| Setting::draw(bodies, meeting, &mut random);
+        let sequences =
+            blocks(&bodies, count, |bodies| (0..LENGTH).map(|_| draw(bodies)).collect());
+        add(&format!("random, {name}"), &sequences);
     }
     for alpha in ALPHAS_DEG {
         let draw = |bodies: &Bodies| Setting::orbit(bodies, alpha, LENGTH, &mut random);
-        let sequences = in_turn(&spheres, count, draw);
-        table.add(&format!("orbit {alpha} deg"), &sequences);
+        add(&format!("orbit {alpha} deg"), &blocks(&spheres, count, draw));
     }
     Ok(())
 }
 
-/// Sequences of several pairs in turn, each with its bodies.
-fn in_turn(
-    bodies: &[Bodies],
-    count: usize,
-    mut draw: impl FnMut(&Bodies) -> Vec<Setting>,
-) -> Vec<(&Bodies, Vec<Setting>)> {
-    bodies.iter().cycle().take(count).map(|bodies| (bodies, draw(bodies))).collect()
+/// Lets every solver follow every sequence, and adds the row.
+fn follow_all(n: usize, name: &str, sequences: &[Block], scale: &Scale, run: &mut Run) {
+    let mut differences = 0;
+    let (measured, parry) = in_rotation::<Vec<_>, { COMPARED.len() }>(
+        sequences,
+        scale,
+        |who, (bodies, sequence), measured| follow(measured, &COMPARED[who], bodies, sequence),
+        |[reference, others @ ..]| {
+            let differs = |answers: &Vec<_>| {
+                answers.iter().zip(reference).filter(|(a, b)| !agree(a, b)).count()
+            };
+            differences += others.iter().map(differs).sum::<usize>();
+        },
+    );
+    let solvers = COMPARED.iter().zip(&measured).map(|(who, m)| (who.name.into(), json!(m)));
+    run.add(json!({
+        "sequences": name, "vertices": n, "queries": measured[0].times.count(),
+        "solvers": solvers.collect::<Map<_, _>>(), "parry_8": parry, "differences": differences,
+    }));
 }
 
 /// Lets a solver follow a sequence.
@@ -168,56 +182,6 @@ fn follow(
     outcomes
 }
 
-/// The rows of one size.
-struct Table<'a> {
-    n: usize,
-    scale: Scale,
-    rows: &'a mut Vec<Value>,
-}
-
-impl Table<'_> {
-    /// Lets every solver follow every sequence, prints a row and keeps it.
-    fn add(&mut self, name: &str, sequences: &[(&Bodies, Vec<Setting>)]) {
-        let mut measured: [Measured; COMPARED.len()] = Default::default();
-        let mut parry = Times::default();
-        let mut differences = 0;
-        for (turn, (bodies, sequence)) in sequences.iter().enumerate() {
-            let mut answers: [Vec<_>; COMPARED.len()] = Default::default();
-            for k in 0..COMPARED.len() {
-                let who = (turn + k) % COMPARED.len();
-                answers[who] = follow(&mut measured[who], &COMPARED[who], bodies, sequence);
-            }
-            self.scale.measure(&mut parry);
-            let [reference, others @ ..] = &answers;
-            let differs = |answers: &Vec<_>| {
-                answers.iter().zip(reference).filter(|(a, b)| !agree(a, b)).count()
-            };
-            differences += others.iter().map(differs).sum::<usize>();
-        }
-        parry.sort();
-        for measured in &mut measured {
-            measured.times.sort();
-        }
-        print_row(name, self.n, &measured, &parry, differences);
-        let solvers: serde_json::Map<String, Value> = COMPARED
-            .iter()
-            .zip(&measured)
-            .map(|(compared, measured)| {
-                let by_features = [("by_features", measured.by_features)];
-                (compared.name.into(), measured.to_json(&by_features).into())
-            })
-            .collect();
-        self.rows.push(json!({
-            "sequences": name,
-            "vertices": self.n,
-            "queries": measured[0].times.count(),
-            "solvers": solvers,
-            "parry_8": parry.to_json(),
-            "differences": differences,
-        }));
-    }
-}
-
 /// Whether two answers are the same, within what their certificates leave open.
 fn agree(a: &Result<Outcome, QueryError>, b: &Result<Outcome, QueryError>) -> bool {
     match (a, b) {
@@ -229,43 +193,4 @@ fn agree(a: &Result<Outcome, QueryError>, b: &Result<Outcome, QueryError>) -> bo
         | (Ok(Outcome::Grazing(_)), Ok(Outcome::Grazing(_))) => true,
         _ => false,
     }
-}
-
-fn print_header() {
-    println!(
-        "\nmedian ns, and mean without the slowest hundredth; % = answered by feature focus; \
-         planar problems, supports and pivots on average; tracker over scratch by medians and by \
-         means; mean of the tracker over parry's mean at 8 vertices"
-    );
-    print!("{:<18} {:>7}", "sequences", "n");
-    for compared in &COMPARED {
-        print!(
-            " | {:>11} {:>6} {:>3} {:>6} {:>5} {:>5}",
-            compared.name, "mean", "%", "planar", "sup", "piv"
-        );
-    }
-    println!(" | ratio means parry, diff fail");
-}
-
-fn print_row(name: &str, n: usize, measured: &[Measured], parry: &Times, differences: usize) {
-    print!("{name:<18} {n:>7}");
-    for m in measured {
-        print!(
-            " | {:>11.0} {:>6.0} {:>3.0} {:>6.2} {:>5.2} {:>5.2}",
-            m.times.median(),
-            m.times.mean(),
-            100.0 * m.average(m.by_features),
-            m.average(m.steps.planar_problems),
-            m.average(m.steps.supports),
-            m.average(m.steps.pivots),
-        );
-    }
-    let [scratch, tracker, ..] = measured else { return };
-    let failures: u32 = measured.iter().map(|m| m.failures).sum();
-    println!(
-        " | {:.2} {:.2} {:.2}, {differences} {failures}",
-        tracker.times.median() / scratch.times.median(),
-        tracker.times.mean() / scratch.times.mean(),
-        tracker.times.mean() / parry.mean(),
-    );
 }

@@ -6,25 +6,21 @@
 //! times and of the settings' ratios. *Wrong* are answers of parry's that differ from our bounds by more than a share of the
 //! gap.
 
-use std::hint::black_box;
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::Args;
 use colltrans::{ConvexPolyhedron, Pair, Pose, Tracker};
-use colltrans_bench::arguments::Arguments;
+use colltrans_bench::harness::{self, Run};
 use colltrans_bench::parry::{self, ParrySetting};
-use colltrans_bench::report::{self, Times};
 use colltrans_bench::shapes::Shape;
+use colltrans_bench::times::{Beside, Clock, Times};
+use colltrans_testkit::oracle::scene::size;
 use colltrans_testkit::random::Random;
-use colltrans_testkit::timing::Stopwatch;
 use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
 
-/// Measures distances and depths beside parry3d-f64; prints a table
-#[derive(Debug, Parser)]
-struct Command {
-    #[command(flatten)]
-    arguments: Arguments,
+#[derive(Debug, Args)]
+struct Own {
     /// Times each query so many times in a row, and takes the mean
     #[arg(long, value_name = "N", default_value_t = 1)]
     repeat: u32,
@@ -42,97 +38,58 @@ const SHARE: f64 = 1e-2;
 const STEP: f64 = 0.01;
 
 fn main() -> ExitCode {
-    let Command { arguments, repeat } = Command::parse();
-    let clock = Clock { stopwatch: Stopwatch::new(), repeat: repeat.max(1) };
-    let count = if arguments.quick { 200 } else { 1_000 };
-    let mut rows = Vec::new();
-    println!(
-        "{:>8} {:>8} {:>9} {:>9} {:>7} {:>7} {:>9} {:>9}",
-        "vertices", "gap", "ours ns", "parry ns", "ratio", "wrong", "noises", "coherent"
-    );
-    for &n in arguments.sizes.as_deref().unwrap_or(&SIZES) {
-        for gap in GAPS {
-            rows.push(row(n, gap, count, arguments.seed, clock));
+    let about = "Measures distances and depths beside parry3d-f64; prints a table";
+    harness::run("distance", about, |run, own: &Own| {
+        let columns =
+            "vertices:>8; gap:>8.0e; ours ns:>9.0=ours/median_ns; parry ns:>9.0=parry/median_ns;
+            ratio:>7.2; wrong:>7; noises:>9.2; coherent:>9.2";
+        run.table("", columns);
+        for n in run.sizes(&SIZES) {
+            for gap in GAPS {
+                run.add(row(n, gap, run, Clock::new(own.repeat)));
+            }
         }
-    }
-    report::write("distance", &arguments, &rows)
+        Ok(())
+    })
 }
 
 /// Two bodies of a size at a gap, so many times.
-fn row(n: usize, gap: f64, count: usize, seed: u64, clock: Clock) -> Value {
-    let mut random = Random::stream(seed, &[n as u64]);
+fn row(n: usize, gap: f64, run: &Run, clock: Clock) -> Value {
+    let mut random = run.random(&[n as u64]);
     let pairs: Vec<[ConvexPolyhedron; 2]> = (0..if n > 1_000 { 2 } else { 8 })
-        .map(|_| [(); 2].map(|()| Shape::Ellipsoid.draw(n, &mut random).expect("a body")))
+        .map(|_| Shape::Ellipsoid.pair(n, &mut random).expect("bodies"))
         .collect();
     let theirs: Vec<_> = pairs
         .iter()
         .map(|pair| pair.each_ref().map(|one| parry::body(one).expect("a body of parry's")))
         .collect();
-    let [mut ours, mut parrys, mut ratios, mut coherent] = [(); 4].map(|()| Times::default());
+    let (mut times, mut coherent) = (Beside::default(), Times::default());
     let (mut wrong, mut widest) = (0_u32, 0.0_f64);
-    for index in 0..count {
+    for index in 0..run.choose(200, 1_000) {
         let which = index % pairs.len();
-        let [p, q] = &pairs[which];
+        let ([p, q], [x, y]) = (&pairs[which], &theirs[which]);
         let Some([a, b]) = at_gap(p, q, gap, &mut random) else { continue };
         let setting = ParrySetting::placed([&a, &b], DVec3::X);
-        let [x, y] = &theirs[which];
         let pair = Pair::new(p.at(a), q.at(b)).expect("a pair");
         let parry = || if gap > 0.0 { setting.distance(x, y) } else { setting.depth(x, y) };
         let us = || {
             let bounds = |d: colltrans::Distance| d.bounds();
             if gap > 0.0 { pair.distance().map(bounds) } else { pair.depth().map(|d| d.bounds()) }
         };
-        let ((mine, spent), (other, theirs)) = if index % 2 == 0 {
-            let first = clock.time(us);
-            (first, clock.time(parry))
-        } else {
-            let first = clock.time(parry);
-            (clock.time(us), first)
-        };
+        let (mine, other) = times.ask(clock, us, parry);
         let [lower, upper] = mine.expect("an answer");
         wrong += u32::from(other.is_none_or(|other| (other - lower).abs() > SHARE * gap.abs()));
         widest = widest.max((upper - lower) / noise(&pair));
-        ours.add(spent);
-        parrys.add(theirs);
-        ratios.add(theirs / spent);
         if gap > 0.0 {
             coherent.add(followed(&pair, clock, &mut random));
         }
     }
-    for times in [&mut ours, &mut parrys, &mut ratios, &mut coherent] {
-        times.sort();
-    }
-    let (mine, other) = (ours.median(), parrys.median());
-    println!(
-        "{n:>8} {gap:>8.0e} {mine:>9.0} {other:>9.0} {:>7.2} {wrong:>7} {widest:>9.2} {:>9.2}",
-        ratios.median(),
-        coherent.median()
-    );
     json!({
-        "vertices": n, "gap": gap, "ours": ours.to_json(), "parry": parrys.to_json(),
-        "ratio": ratios.median(), "wrong": wrong, "noises": widest, "coherent": coherent.median(),
+        "vertices": n, "gap": gap, "ours": times.ours, "parry": times.theirs,
+        "ratio": times.ratios.median(), "wrong": wrong, "noises": widest,
+        "coherent": coherent.median(),
     })
 }
-
-/// Times queries.
-#[derive(Debug, Clone, Copy)]
-struct Clock {
-    stopwatch: Stopwatch,
-    /// Times in a row.
-    repeat: u32,
-}
-
-impl Clock {
-    fn time<T>(self, mut query: impl FnMut() -> T) -> (T, f64) {
-        let all = || {
-            (1..self.repeat).for_each(|_| drop(black_box(query())));
-            query()
-        };
-        let (answer, spent) = self.stopwatch.time(all);
-        (answer, spent / f64::from(self.repeat))
-    }
-}
-
 /// The time of a tracked distance after a small change, beside that of the same one from scratch.
 fn followed(pair: &Pair, clock: Clock, random: &mut Random) -> f64 {
     let mut tracker = Tracker::new();
@@ -166,8 +123,6 @@ fn at_gap(
 
 /// What the library states as its rounding error, `32 u S`.
 fn noise(pair: &Pair) -> f64 {
-    let reach =
-        |body: &ConvexPolyhedron| body.vertices().iter().map(|v| v.length()).fold(0.0, f64::max);
-    let offset = pair.fixed_pose().translation() - pair.moving_pose().translation();
-    16.0 * f64::EPSILON * (reach(pair.moving()) + reach(pair.fixed()) + offset.length())
+    let vertices = [pair.moving().vertices(), pair.fixed().vertices()];
+    16.0 * f64::EPSILON * size(vertices, [&pair.moving_pose(), &pair.fixed_pose()])
 }

@@ -10,25 +10,21 @@
 use std::f64::consts::TAU;
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::Args;
 use colltrans::motion::{Motion, MotionCast, MotionOutcome};
 use colltrans::{ConvexPolyhedron, Pose, Solid};
-use colltrans_bench::arguments::Arguments;
-use colltrans_bench::parry::{self, ParryPolyhedron, Spin};
-use colltrans_bench::report::{self, Times};
+use colltrans_bench::harness::{self, Run};
+use colltrans_bench::parry::{self, Spin};
 use colltrans_bench::shapes::Shape;
+use colltrans_bench::times::{Beside, Clock};
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::Mesh;
 use colltrans_testkit::solids::thread;
-use colltrans_testkit::timing::Stopwatch;
 use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
 
-/// Measures first contacts of bodies that turn beside parry3d-f64; prints a table
-#[derive(Debug, Parser)]
-struct Command {
-    #[command(flatten)]
-    arguments: Arguments,
+#[derive(Debug, Args)]
+struct Own {
     /// A bolt of 1,200 triangles in a nut of 576 instead
     #[arg(long)]
     threads: bool,
@@ -48,136 +44,92 @@ struct Turning {
 }
 
 fn main() -> ExitCode {
-    let Command { arguments, threads } = Command::parse();
-    if threads {
-        return report::write("threads", &arguments, &bolts(arguments.quick));
-    }
-    let count = if arguments.quick { 60 } else { 400 };
-    let mut rows = Vec::new();
-    println!(
-        "{:<28} {:>9} {:>9} {:>7} {:>7} {:>6} {:>6} {:>9} {:>7} {:>6} {:>6}",
-        "family",
-        "ours ns",
-        "parry ns",
-        "ratio",
-        "contact",
-        "looks",
-        "most",
-        "width",
-        "missed",
-        "late",
-        "false"
-    );
-    for &n in arguments.sizes.as_deref().unwrap_or(&[8, 32, 128, 2_000]) {
-        let draw = |random: &mut Random| spinning(n, random);
-        rows.push(row(&format!("random {n}"), count, arguments.seed, draw));
+    let about = "Measures first contacts of bodies that turn beside parry3d-f64; prints a table";
+    harness::run("motions", about, |run, own: &Own| {
+        if own.threads {
+            bolts(run);
+        } else {
+            families(run);
+        }
+        Ok(())
+    })
+}
+
+fn families(run: &mut Run) {
+    let columns = "family:<28; ours ns:>9.0=ours/median_ns; parry ns:>9.0=parry/median_ns; ratio:>7.2; contact:>7=contacts;
+        looks:>6; most:>6=most_looks; width:>9.1e; missed:>7; late:>6; false:>6";
+    run.table("", columns);
+    for n in run.sizes(&[8, 32, 128, 2_000]) {
+        run.add(row(&format!("random {n}"), run, |random| spinning(n, random)));
     }
     for gap in [1e-3, 1e-6, -1e-3, -1e-6] {
-        let draw = |random: &mut Random| blade(gap, random);
-        rows.push(row(&format!("blade and tip {gap:e}"), count, arguments.seed, draw));
+        run.add(row(&format!("blade and tip {gap:e}"), run, |random| blade(gap, random)));
     }
-    rows.push(row("blade through a cube", count, arguments.seed, |random| blade(-0.2, random)));
-    rows.push(row("door on its frame", count, arguments.seed, door));
+    run.add(row("blade through a cube", run, |random| blade(-0.2, random)));
+    run.add(row("door on its frame", run, door));
     for gap in [1e-3, 1e-9] {
-        let draw = |random: &mut Random| table(gap, random);
-        rows.push(row(&format!("box above a table {gap:e}"), count, arguments.seed, draw));
+        run.add(row(&format!("box above a table {gap:e}"), run, |random| table(gap, random)));
     }
     for gap in [1e-2, 1e-4] {
-        let draw = |random: &mut Random| pin(gap, random);
-        rows.push(row(&format!("pin beside a wall {gap:e}"), count, arguments.seed, draw));
+        run.add(row(&format!("pin beside a wall {gap:e}"), run, |random| pin(gap, random)));
     }
-    report::write("motions", &arguments, &rows)
 }
 
 /// A bolt in a nut; parry is not asked in a quick run.
-fn bolts(quick: bool) -> Vec<Value> {
+fn bolts(run: &mut Run) {
+    run.program = "threads".into();
     let solid = |mesh: &Mesh| Solid::from_mesh(&mesh.vertices, &mesh.faces).expect("a solid");
     let bolt = solid(&thread([1.0, 0.1, 0.5], [0.0, 2.0], [24, 24], None));
     let nut = solid(&thread([1.04, 0.1, 0.5], [0.6, 1.4], [24, 9], Some(1.5)));
     let [a, b] = [&bolt, &nut].map(|s| parry::triangle_mesh(s.vertices(), s.triangles()));
-    let stopwatch = Stopwatch::new();
-    println!(
-        "{:<20} {:>9} {:>9} {:>7} {:>8} {:>7} {:>20} {:>9} {:>20}",
-        "bolt and nut",
-        "ours ms",
-        "parry ms",
-        "ratio",
-        "nodes",
-        "leaves",
-        "lower",
-        "width",
-        "parry"
-    );
-    let pitches = [("its pitch", 1.0), ("5 % wrong", 0.95), ("no rise", 0.0)];
-    pitches
-        .into_iter()
-        .map(|(name, factor)| {
-            let (here, rise) = (Pose::IDENTITY, 0.5 * factor);
-            let turn = Motion::screw(here, DVec3::ZERO, DVec3::Z, TAU, rise).expect("a motion");
-            let cast = MotionCast::new(bolt.along(&turn), nut.at(here)).expect("a cast");
-            let asked = (0..5).map(|_| stopwatch.time(|| cast.first_contact()));
-            let (found, ours) = asked.min_by(|a, b| a.1.total_cmp(&b.1)).expect("five answers");
-            let found = found.expect("an answer");
-            let spin = Spin::new(&here, DVec3::ZERO, DVec3::Z * rise, DVec3::Z * TAU, &here);
-            let theirs = (!quick).then(|| stopwatch.time(|| spin.cast(&a, &b)));
-            let [lower, upper] = match &found {
-                MotionOutcome::Contact(of) => [of.lower, of.upper],
-                _ => [1.0, f64::INFINITY],
-            };
-            let steps = found.steps();
-            let (hit, parry) = theirs.unwrap_or((None, f64::NAN));
-            let (ratio, width) = (parry / ours, upper - lower);
-            println!(
-                "{name:<20} {:>9.0} {:>9.0} {ratio:>7.0} {:>8} {:>7} {lower:>20.15} {width:>9.1e} {:>20}",
-                ours * 1e-6,
-                parry * 1e-6,
-                steps.nodes,
-                steps.leaves,
-                hit.map_or("none".into(), |t| t.to_string()),
-            );
-            json!({
-                "name": name, "ours_ns": ours, "parry_ns": parry, "ratio": ratio, "nodes": steps.nodes,
-                "leaves": steps.leaves, "lower": lower, "width": width, "parry": hit,
-            })
-        })
-        .collect()
+    let clock = Clock::new(1);
+    let columns = "bolt and nut:<20=name; ours ms:>9.0=ours_ns × 1e-6; parry ms:>9.0=parry_ns × 1e-6; ratio:>7.0; nodes:>8;
+        leaves:>7; lower:>20.15; width:>9.1e?inf; parry:>20?none";
+    run.table("", columns);
+    for (name, factor) in [("its pitch", 1.0), ("5 % wrong", 0.95), ("no rise", 0.0)] {
+        let (here, rise) = (Pose::IDENTITY, 0.5 * factor);
+        let turn = Motion::screw(here, DVec3::ZERO, DVec3::Z, TAU, rise).expect("a motion");
+        let cast = MotionCast::new(bolt.along(&turn), nut.at(here)).expect("a cast");
+        let asked = (0..5).map(|_| clock.time(|| cast.first_contact()));
+        let (found, ours) = asked.min_by(|a, b| a.1.total_cmp(&b.1)).expect("five answers");
+        let found = found.expect("an answer");
+        let spin = Spin::new(&here, DVec3::ZERO, DVec3::Z * rise, DVec3::Z * TAU, &here);
+        let theirs = run.choose(None, Some(())).map(|()| clock.time(|| spin.cast(&a, &b)));
+        let [lower, upper] = match &found {
+            MotionOutcome::Contact(of) => [of.lower, of.upper],
+            _ => [1.0, f64::INFINITY],
+        };
+        let steps = found.steps();
+        let (hit, parry) = theirs.unwrap_or((None, f64::NAN));
+        run.add(json!({
+            "name": name, "ours_ns": ours, "parry_ns": parry, "ratio": parry / ours,
+            "nodes": steps.nodes, "leaves": steps.leaves, "lower": lower, "width": upper - lower,
+            "parry": hit,
+        }));
+    }
 }
 
-fn row(
-    name: &str,
-    count: usize,
-    seed: u64,
-    draw: impl Fn(&mut Random) -> Option<Turning>,
-) -> Value {
-    let mut random = Random::stream(seed, &[name.len() as u64]);
-    let stopwatch = Stopwatch::new();
-    let [mut ours, mut parrys, mut ratios] = [(); 3].map(|()| Times::default());
+fn row(name: &str, run: &Run, draw: impl Fn(&mut Random) -> Option<Turning>) -> Value {
+    let mut random = run.random(&[name.len() as u64]);
+    let (clock, mut times) = (Clock::new(1), Beside::default());
     let (mut looks, mut widths) = (Vec::new(), Vec::new());
     let [mut missed, mut late, mut wrongly] = [0_u32; 3];
-    for index in 0..count {
+    for turn in 0..run.choose(60, 400) {
         let Some(turning) = draw(&mut random) else { continue };
         let Turning { bodies: [p, q], start, center, velocity, spin, there } = &turning;
-        let Some([a, b]) = parry_bodies([p, q]) else { continue };
+        let [Some(a), Some(b)] = [p, q].map(parry::body) else { continue };
         let motion = Motion::thrown(*start, *center, *velocity, *spin).expect("a motion");
         let cast = MotionCast::new(p.along(&motion), q.at(*there)).expect("a cast");
         let spin = Spin::new(start, *center, *velocity, *spin, there);
-        let us = || cast.first_contact();
-        let ((mine, spent), (other, theirs)) = if index % 2 == 0 {
-            let first = stopwatch.time(us);
-            (first, stopwatch.time(|| spin.cast(&a, &b)))
-        } else {
-            let first = stopwatch.time(|| spin.cast(&a, &b));
-            (stopwatch.time(us), first)
-        };
+        let ((mine, ours), (other, theirs)) =
+            clock.both(turn, || cast.first_contact(), || spin.cast(&a, &b));
         let (bounds, steps) = match mine.expect("an answer") {
             MotionOutcome::Contact(found) => (Some([found.lower, found.upper]), found.steps),
             MotionOutcome::Free(free) => (None, free.steps),
             _ => continue,
         };
         looks.push(steps.looks);
-        ours.add(spent);
-        parrys.add(theirs);
-        ratios.add(theirs / spent);
+        times.add(ours, theirs);
         match (bounds, other) {
             (Some([lower, upper]), other) => {
                 widths.push(upper - lower);
@@ -188,31 +140,14 @@ fn row(
             (None, other) => wrongly += u32::from(other.is_some()),
         }
     }
-    for times in [&mut ours, &mut parrys, &mut ratios] {
-        times.sort();
-    }
     looks.sort_unstable();
     widths.sort_by(f64::total_cmp);
-    let width = widths.get(widths.len() / 2).copied().unwrap_or(f64::NAN);
-    let (middle, most) = (looks.get(looks.len() / 2), looks.last());
-    let (middle, most) = (middle.copied().unwrap_or(0), most.copied().unwrap_or(0));
-    println!(
-        "{name:<28} {:>9.0} {:>9.0} {:>7.2} {:>7} {middle:>6} {most:>6} {width:>9.1e} {missed:>7} {late:>6} {wrongly:>6}",
-        ours.median(),
-        parrys.median(),
-        ratios.median(),
-        widths.len(),
-    );
     json!({
-        "family": name, "ours": ours.to_json(), "parry": parrys.to_json(), "ratio": ratios.median(),
-        "contacts": widths.len(), "looks": middle, "most_looks": most, "width": width,
+        "family": name, "ours": times.ours, "parry": times.theirs, "ratio": times.ratios.median(),
+        "contacts": widths.len(), "looks": looks.get(looks.len() / 2).unwrap_or(&0),
+        "most_looks": looks.last().unwrap_or(&0), "width": widths.get(widths.len() / 2),
         "missed": missed, "late": late, "false": wrongly,
     })
-}
-
-fn parry_bodies(bodies: [&ConvexPolyhedron; 2]) -> Option<[ParryPolyhedron; 2]> {
-    let [a, b] = bodies.map(parry::body);
-    Some([a?, b?])
 }
 
 fn cuboid(half: [f64; 3]) -> Option<ConvexPolyhedron> {

@@ -9,12 +9,12 @@
 
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::Args;
 use colltrans::{BuildError, Focus, Options, Solver, Tracker, cta, observe};
-use colltrans_bench::arguments::Arguments;
+use colltrans_bench::harness::{self, Run, merged, naming};
 use colltrans_bench::parry::Scale;
-use colltrans_bench::report::{self, Measured, Times};
 use colltrans_bench::shapes::{Shape, body};
+use colltrans_bench::times::{Block, Measured, Times, blocks, in_rotation};
 use colltrans_lab::settings::{Meeting, Setting};
 use colltrans_lab::shapes::Bodies;
 use colltrans_testkit::random::Random;
@@ -23,11 +23,8 @@ use colltrans_testkit::timing::Stopwatch;
 use glam::DVec3;
 use serde_json::{Map, Value, json};
 
-/// Measures the collision translation algorithm against portal refinement; prints tables
-#[derive(Debug, Parser)]
-struct Command {
-    #[command(flatten)]
-    arguments: Arguments,
+#[derive(Debug, Args)]
+struct Own {
     /// Leave out the sequences for region focus
     #[arg(long)]
     no_focus: bool,
@@ -48,6 +45,13 @@ const COMPARED: [(&str, Option<cta::Options>); 4] = [
     ("rough", Some(cta::Options::ROUGH)),
     ("centre 1%", Some(to(cta::Until::Gap(0.01)))),
     ("centre end", Some(to(cta::Until::Exit))),
+];
+
+/// The same in sequences: to where, and what the tracker remembers.
+const FOLLOWED: [(&str, cta::Until, Focus); 3] = [
+    ("focus 1%", cta::Until::Gap(0.01), REGION),
+    ("focus end", cta::Until::Exit, REGION),
+    ("centre end", cta::Until::Exit, Focus::NONE),
 ];
 
 /// From the centre to here, across cells where little of the region is left.
@@ -105,91 +109,92 @@ impl Kind {
 }
 
 fn main() -> ExitCode {
-    let Command { arguments, no_focus } = Command::parse();
-    let mut rows = Vec::new();
-    for &n in arguments.sizes.as_deref().unwrap_or(&SIZES) {
-        if let Err(error) = measure_size(n, &arguments, !no_focus, &mut rows) {
-            eprintln!("error: bodies with {n} vertices: {error}");
-            return ExitCode::FAILURE;
+    let about =
+        "Measures the collision translation algorithm against portal refinement; prints tables";
+    harness::run("paper", about, |run, own: &Own| {
+        for n in run.sizes(&SIZES) {
+            measure_size(n, !own.no_focus, run)
+                .map_err(naming(format!("bodies with {n} vertices")))?;
         }
-    }
-    report::write("paper", &arguments, &rows)
+        Ok(())
+    })
 }
 
-fn measure_size(
-    n: usize,
-    arguments: &Arguments,
-    focus: bool,
-    rows: &mut Vec<Value>,
-) -> Result<(), BuildError> {
-    let mut random = Random::stream(arguments.seed, &[n as u64]);
-    let mut one = || Shape::Ellipsoid.draw(8, &mut random);
-    let small = Bodies::new([one()?, one()?]);
+fn columns(names: &[&str]) -> String {
+    let solver = |who: &&str| {
+        format!(
+            "|:>10=\"{who}\"; :>6.2=solvers/{who}/ratio; :>5.2=solvers/{who}/planar_problems; \
+             :>5.2=solvers/{who}/pivots; "
+        )
+    };
+    let failures = names.iter().map(|who| format!("solvers/{who}/failures")).collect::<Vec<_>>();
+    format!(
+        ":<28=settings; :>7=vertices; {}
+        |:>5.0=solvers/{first}/median_ns ÷ solvers/{first}/ratio; :>5.0=parry_8/median_ns; :>1.0={}",
+        names.iter().map(solver).collect::<String>(),
+        failures.join(" + "),
+        first = names[0],
+    )
+}
+
+fn measure_size(n: usize, focus: bool, run: &mut Run) -> Result<(), BuildError> {
+    let mut random = run.random(&[n as u64]);
+    let small = Bodies::new(Shape::Ellipsoid.pair(8, &mut random)?);
     let scale = Scale::new(&small, BLOCK, &mut random);
-    let count = if arguments.quick { 200 } else { 1000 };
-    println!(
-        "\nmedian ns over portal's on the colliding settings; planar problems and exchanges on \
-         average; parry's median ns at 8 vertices"
-    );
+    let count = run.choose(200, 1000);
+    let legend = "\nmedian ns over portal's on the colliding settings; planar problems and exchanges on \
+         average; parry's median ns at 8 vertices";
+    let (names, followed) = (COMPARED.map(|c| c.0), FOLLOWED.map(|c| c.0));
+    run.table(legend, &columns(&names));
     for kind in KINDS {
         let bodies = [kind.bodies(n, &mut random)?, kind.bodies(n, &mut random)?];
         let mut unit = None;
+        run.table("", &columns(&names));
         for (name, meeting) in
             [("colliding", Meeting::Colliding), ("near miss", Meeting::PassingWithin(0.05))]
         {
-            let blocks = blocks(&bodies, meeting, count, &mut random);
-            let (measured, parry) = one_off(&blocks, &scale);
+            let mut draw = |bodies: &Bodies| Setting::draw(bodies, meeting, &mut random);
+            let blocks =
+                blocks(&bodies, count / BLOCK, |bodies| (0..BLOCK).map(|_| draw(bodies)).collect());
+            let (measured, parry) = in_rotation(&blocks, &scale, one_off, |_: &[(); 4]| ());
             let unit = *unit.get_or_insert(measured[0].times.median());
             let name = format!("{}, {name}", kind.name());
-            let mut row = row(&name, n, &COMPARED.map(|c| c.0), &measured, (unit, &parry));
-            row["phases"] = phases(&blocks);
-            rows.push(row);
+            run.add(row(&name, n, (&names, &measured), unit, &parry, &phases(&blocks, false)));
         }
-        if focus && matches!(kind, Kind::Balanced | Kind::Thin) {
-            for change in CHANGES {
-                let sequences = sequences(&bodies, change, count / LENGTH, &mut random);
-                let (measured, parry) = tracked(&sequences, &scale);
-                let name = format!("{}, change {:.4} %", kind.name(), 100.0 * change);
-                let unit = unit.unwrap_or(f64::NAN);
-                let names = ["focus 1%", "focus end", "centre end"];
-                let mut row = row(&name, n, &names, &measured, (unit, &parry));
-                row["phases"] = focused_phases(&sequences);
-                rows.push(row);
-            }
+        if !focus || !matches!(kind, Kind::Balanced | Kind::Thin) {
+            continue;
+        }
+        run.table("", &columns(&followed));
+        for change in CHANGES {
+            let sequences = blocks(&bodies, (count / LENGTH).max(2), |bodies| {
+                Setting::sequence(bodies, Meeting::Colliding, change, LENGTH, &mut random)
+            });
+            let (measured, parry) = in_rotation(&sequences, &scale, tracked, |_: &[(); 3]| ());
+            let name = format!("{}, change {:.4} %", kind.name(), 100.0 * change);
+            let (unit, phases) = (unit.unwrap_or(f64::NAN), phases(&sequences, true));
+            run.add(row(&name, n, (&followed, &measured), unit, &parry, &phases));
         }
     }
     Ok(())
 }
 
-/// Bodies in turn, each with settings to answer one after the other.
-type Blocks<'a> = Vec<(&'a Bodies, Vec<Setting>)>;
-
-fn blocks<'a>(
-    bodies: &'a [Bodies],
-    meeting: Meeting,
-    count: usize,
-    random: &mut Random,
-) -> Blocks<'a> {
-    let in_turn = bodies.iter().cycle().take(count / BLOCK);
-    let mut draw = |bodies| (0..BLOCK).map(|_| Setting::draw(bodies, meeting, random)).collect();
-    in_turn.map(|bodies| (bodies, draw(bodies))).collect()
-}
-
-fn sequences<'a>(
-    bodies: &'a [Bodies],
-    change: f64,
-    count: usize,
-    random: &mut Random,
-) -> Blocks<'a> {
-    let in_turn = bodies.iter().cycle().take(count.max(2));
-    let mut draw = |b| Setting::sequence(b, Meeting::Colliding, change, LENGTH, random);
-    in_turn.map(|bodies| (bodies, draw(bodies))).collect()
-}
-
-fn to_json(measured: &Measured, unit: f64) -> Value {
-    let mut json = measured.to_json(&[("iterations", measured.steps.iterations)]);
-    json.insert("ratio".into(), json!(measured.times.median() / unit));
-    json.into()
+/// The row of solvers, with their medians over a unit.
+fn row(
+    name: &str,
+    n: usize,
+    (names, measured): (&[&str], &[Measured]),
+    unit: f64,
+    parry: &Times,
+    phases: &Value,
+) -> Value {
+    let solvers = names
+        .iter()
+        .zip(measured)
+        .map(|(who, m)| ((*who).into(), merged(m, json!({ "ratio": m.times.median() / unit }))));
+    json!({
+        "settings": name, "vertices": n, "queries": measured[0].times.count(),
+        "solvers": solvers.collect::<Map<_, _>>(), "parry_8": parry, "phases": phases,
+    })
 }
 
 fn options(narrowing: Option<cta::Options>) -> Options {
@@ -199,150 +204,62 @@ fn options(narrowing: Option<cta::Options>) -> Options {
     }
 }
 
-/// All solvers on all blocks, without a memory.
-fn one_off(blocks: &Blocks, scale: &Scale) -> (Vec<Measured>, Times) {
+/// Lets a solver answer a block twice without a memory, and times the second pass.
+fn one_off(who: usize, (bodies, settings): &Block, measured: &mut Measured) {
     let stopwatch = Stopwatch::new();
-    let mut measured: Vec<Measured> = COMPARED.iter().map(|_| Measured::default()).collect();
-    let mut parry = Times::default();
-    for (turn, (bodies, settings)) in blocks.iter().enumerate() {
-        for k in 0..COMPARED.len() {
-            let who = (turn + k) % COMPARED.len();
-            let options = options(COMPARED[who].1);
-            let cast = |s: &Setting| s.cast(bodies, &options)?.first_contact();
-            for setting in settings {
-                std::hint::black_box(cast(setting).is_ok());
-            }
-            for setting in settings {
-                let (outcome, spent) = stopwatch.time(|| cast(setting));
-                measured[who].note(spent, &outcome);
-            }
-        }
-        scale.measure(&mut parry);
+    let options = options(COMPARED[who].1);
+    let cast = |s: &Setting| s.cast(bodies, &options)?.first_contact();
+    for setting in settings {
+        std::hint::black_box(cast(setting).is_ok());
     }
-    sorted(measured, parry)
+    for setting in settings {
+        let (outcome, spent) = stopwatch.time(|| cast(setting));
+        measured.note(spent, &outcome);
+    }
 }
 
-/// Median nanoseconds of each phase of a search from the centre to the end, on all blocks.
-fn phases(blocks: &Blocks) -> Value {
-    let options = options(COMPARED[COMPARED.len() - 1].1);
-    let mut spent = Spent::default();
+/// Lets a tracker follow a sequence.
+fn tracked(who: usize, (bodies, sequence): &Block, measured: &mut Measured) {
+    let stopwatch = Stopwatch::new();
+    let (_, until, focus) = FOLLOWED[who];
+    let options = options(Some(to(until)));
+    let mut tracker = Tracker::new().with_focus(focus).expect("a focus");
+    for setting in sequence {
+        let (outcome, spent) =
+            stopwatch.time(|| tracker.first_contact(&setting.cast(bodies, &options)?));
+        measured.note(spent, &outcome);
+    }
+}
+
+/// Median nanoseconds of each phase of a search from the centre to the end: in second passes over blocks, or, with region
+/// focus, in sequences.
+fn phases(blocks: &[Block], is_focused: bool) -> Value {
+    let options = options(Some(to(cta::Until::Exit)));
+    let mut spent: Vec<(&str, Times)> = Vec::new();
     for (bodies, settings) in blocks {
-        for pass in 0..2 {
+        let mut tracker = Tracker::new().with_focus(REGION).expect("a focus");
+        for pass in usize::from(is_focused)..2 {
             for setting in settings {
                 let mut clock = observe::Clock::new();
                 let cast = setting.cast(bodies, &options);
-                let found = cast.and_then(|cast| cast.first_contact_observed(&mut clock));
+                let found = cast.and_then(|cast| {
+                    if is_focused {
+                        tracker.first_contact_observed(&cast, &mut clock)
+                    } else {
+                        cast.first_contact_observed(&mut clock)
+                    }
+                });
                 if pass == 1 && found.is_ok() {
-                    spent.add(&clock);
+                    let phases = clock.profile().phases();
+                    spent.resize_with(phases.len(), Default::default);
+                    for ((name, times), (phase, nanoseconds)) in spent.iter_mut().zip(phases) {
+                        *name = phase;
+                        times.add(nanoseconds);
+                    }
                 }
             }
         }
     }
-    spent.medians()
-}
-
-/// The same with region focus, in sequences.
-fn focused_phases(sequences: &Blocks) -> Value {
-    let options = options(Some(to(cta::Until::Exit)));
-    let mut spent = Spent::default();
-    for (bodies, sequence) in sequences {
-        let mut tracker = Tracker::new().with_focus(REGION).expect("a focus");
-        for setting in sequence {
-            let mut clock = observe::Clock::new();
-            let cast = setting.cast(bodies, &options);
-            let found = cast.and_then(|cast| tracker.first_contact_observed(&cast, &mut clock));
-            if found.is_ok() {
-                spent.add(&clock);
-            }
-        }
-    }
-    spent.medians()
-}
-
-/// Nanoseconds of each phase.
-#[derive(Default)]
-struct Spent(Vec<(&'static str, Times)>);
-
-impl Spent {
-    fn add(&mut self, clock: &observe::Clock) {
-        let phases = clock.profile().phases();
-        self.0.resize_with(phases.len(), || ("", Times::default()));
-        for ((name, times), (phase, nanoseconds)) in self.0.iter_mut().zip(phases) {
-            *name = phase;
-            times.add(nanoseconds);
-        }
-    }
-
-    fn medians(mut self) -> Value {
-        let mut median = |(name, times): &mut (&str, Times)| {
-            times.sort();
-            ((*name).to_owned(), json!(times.median()))
-        };
-        self.0.iter_mut().map(&mut median).collect::<Map<_, _>>().into()
-    }
-}
-
-/// Region focus to a gap of 1 % and to the end, and the same without focus.
-fn tracked(sequences: &Blocks, scale: &Scale) -> (Vec<Measured>, Times) {
-    let stopwatch = Stopwatch::new();
-    let compared = [
-        (cta::Until::Gap(0.01), REGION),
-        (cta::Until::Exit, REGION),
-        (cta::Until::Exit, Focus::NONE),
-    ];
-    let mut measured: Vec<Measured> = compared.iter().map(|_| Measured::default()).collect();
-    let mut parry = Times::default();
-    for (turn, (bodies, sequence)) in sequences.iter().enumerate() {
-        for k in 0..compared.len() {
-            let who = (turn + k) % compared.len();
-            let (until, focus) = compared[who];
-            let options = options(Some(to(until)));
-            let mut tracker = Tracker::new().with_focus(focus).expect("a focus");
-            for setting in sequence {
-                let (outcome, spent) =
-                    stopwatch.time(|| tracker.first_contact(&setting.cast(bodies, &options)?));
-                measured[who].note(spent, &outcome);
-            }
-        }
-        scale.measure(&mut parry);
-    }
-    sorted(measured, parry)
-}
-
-fn sorted(mut measured: Vec<Measured>, mut parry: Times) -> (Vec<Measured>, Times) {
-    for m in &mut measured {
-        m.times.sort();
-    }
-    parry.sort();
-    (measured, parry)
-}
-
-/// Prints a row and makes it JSON.
-fn row(
-    name: &str,
-    n: usize,
-    names: &[&str],
-    measured: &[Measured],
-    (unit, parry): (f64, &Times),
-) -> Value {
-    print!("{name:<28} {n:>7}");
-    let mut solvers = Map::new();
-    for (who, m) in names.iter().zip(measured) {
-        let exchanges = m.average(m.steps.pivots);
-        print!(
-            " | {who:>10} {:>6.2} {:>5.2} {exchanges:>5.2}",
-            m.times.median() / unit,
-            m.average(m.steps.planar_problems)
-        );
-        solvers.insert((*who).into(), to_json(m, unit));
-    }
-    let failures: u32 = measured.iter().map(|m| m.failures).sum();
-    println!(" | {unit:>5.0} {:>5.0} {failures}", parry.median());
-    json!({
-        "settings": name,
-        "vertices": n,
-        "queries": measured[0].times.count(),
-        "solvers": solvers,
-        "parry_8": parry.to_json(),
-    })
+    let medians = spent.iter().map(|(name, times)| ((*name).into(), json!(times.median())));
+    medians.collect::<Map<_, _>>().into()
 }

@@ -11,11 +11,14 @@ use colltrans::motion::path::{
     Frame, Joint, JointPath, Mechanism, PathBody, PathCast, PathError, PathOutcome,
 };
 use colltrans::{AnyBody, ConvexPolyhedron, Pose, Solid};
+use colltrans_bench::harness::{self, naming};
+use colltrans_bench::times::Clock;
 use colltrans_testkit::random::Random;
 use colltrans_testkit::shapes::random_hull;
 use colltrans_testkit::solids::bumpy_ball;
-use colltrans_testkit::timing::{Stopwatch, median};
+use colltrans_testkit::timing;
 use glam::DVec3;
+use serde_json::{Value, json};
 
 /// Rows of the path, obstacles, and how often each is measured.
 const ROWS: usize = 1_000;
@@ -23,20 +26,20 @@ const OBSTACLES: usize = 50;
 const TIMES: usize = 11;
 
 fn main() -> ExitCode {
-    println!(
-        "{:<10} {:>8} {:>8} {:>8} {:>10} {:>10}",
-        "obstacles", "pairs", "looks", "planes", "ms", "check, ms"
-    );
-    for (name, solids) in [("convex", false), ("solids", true)] {
-        if let Err(error) = measured(name, solids) {
-            eprintln!("{name}: {error}");
-            return ExitCode::FAILURE;
+    let about = "Measures a six-axis arm on a path among obstacles, with the proof and its check; prints a table";
+    harness::run("paths", about, |run, (): &()| {
+        run.table(
+            "",
+            "obstacles:<10; pairs:>8; looks:>8; planes:>8; ms:>10.1; check, ms:>10.1=check_ms",
+        );
+        for (name, solids) in [("convex", false), ("solids", true)] {
+            run.add(measured(name, solids, run.choose(3, TIMES)).map_err(naming(name))?);
         }
-    }
-    ExitCode::SUCCESS
+        Ok(())
+    })
 }
 
-fn measured(name: &str, solids: bool) -> Result<(), PathError> {
+fn measured(name: &str, solids: bool, times: usize) -> Result<Value, PathError> {
     let mut random = Random::new(5);
     let (arm, links) = (arm()?, links(&mut random));
     let path = JointPath::evenly(rows())?;
@@ -56,19 +59,16 @@ fn measured(name: &str, solids: bool) -> Result<(), PathError> {
                 obstacles.remove(hit);
             }
             _ => {
-                let time = || Stopwatch::new().time(|| cast.first_contact().map(drop)).1;
-                let check = || Stopwatch::new().time(|| cast.verify(outcome.proof()).is_ok()).1;
-                let [taken, checked] = [
-                    (0..TIMES).map(|_| time()).collect::<Vec<_>>(),
-                    (0..TIMES).map(|_| check()).collect(),
-                ]
-                .map(|all| 1e-6 * median(&all));
-                let (pairs, planes) = (cast.pairs().len(), outcome.proof().planes());
-                let looks = outcome.steps().looks;
-                println!(
-                    "{name:<10} {pairs:>8} {looks:>8} {planes:>8} {taken:>10.1} {checked:>10.1}"
-                );
-                return Ok(());
+                let median = |call: &dyn Fn()| {
+                    let all = (0..times).map(|_| Clock::new(1).time(call).1);
+                    1e-6 * timing::median(&all.collect::<Vec<_>>())
+                };
+                return Ok(json!({
+                    "obstacles": name, "pairs": cast.pairs().len(), "looks": outcome.steps().looks,
+                    "planes": outcome.proof().planes(),
+                    "ms": median(&|| drop(cast.first_contact())),
+                    "check_ms": median(&|| drop(cast.verify(outcome.proof()))),
+                }));
             }
         }
     }

@@ -15,28 +15,18 @@
 
 use std::process::ExitCode;
 
-use clap::Parser;
 use colltrans::solid::{SolidCast, Workspace};
 use colltrans::{Cast, Clearance, ConvexPolyhedron, Pose, Solid};
-use colltrans_bench::arguments::Arguments;
+use colltrans_bench::harness::{self, Run, merged};
 use colltrans_bench::meshes::{MeshArguments, solid};
 use colltrans_bench::parry::{ParrySetting, triangle_mesh};
-use colltrans_bench::report::{self, Times};
+use colltrans_bench::times::Beside;
 use colltrans_testkit::random::Random;
-use colltrans_testkit::shapes::{Mesh, ring_sphere};
+use colltrans_testkit::shapes::{Mesh, reach, ring_sphere};
 use colltrans_testkit::solids::{bolt, bumpy_ball, perforated_plate, slab};
 use colltrans_testkit::timing::Stopwatch;
 use glam::{DQuat, DVec3};
 use serde_json::{Value, json};
-
-/// Measures solids and parry3d-f64's triangle meshes on the same settings; prints a table
-#[derive(Debug, Parser)]
-struct Command {
-    #[command(flatten)]
-    arguments: Arguments,
-    #[command(flatten)]
-    meshes: MeshArguments,
-}
 
 /// Two answers agree when they differ by less than this share of the bodies' size.
 const AGREEMENT: f64 = 1e-4;
@@ -50,44 +40,26 @@ const SUNK: f64 = 1e-6;
 const BLOCK: usize = 50;
 
 fn main() -> ExitCode {
-    let command = Command::parse();
-    let mut rows = Vec::new();
-    println!(
-        "{:<48} {:>9} {:>11} {:>11} {:>9} {:>11} {:>8} {:>5}",
-        "what", "facets", "ours", "mean", "p99", "parry", "ratio", "hits"
-    );
-    for pair in pairs(&command) {
-        for start in Start::ALL {
-            rows.push(pair.measure(&command.arguments, start));
+    let about =
+        "Measures solids and parry3d-f64's triangle meshes on the same settings; prints a table";
+    harness::run("solids", about, |run, meshes: &MeshArguments| {
+        let columns = "what:<48=name; facets:>9; ours:>11.2=median_ns × 1e-3 us; mean:>11.2=mean_ns × 1e-3 us;
+            p99:>9.0=p99_ns × 1e-3 us; parry:>11.1=parry_median_ns × 1e-3 us; ratio:>8.2=ratio_of_medians; hits:>5";
+        run.table("", columns);
+        let convex = meshes.wants("convex").then(convex_pairs).into_iter().flatten();
+        for pair in pairs(meshes).into_iter().chain(convex) {
+            for start in Start::ALL {
+                pair.measure(start, run);
+            }
         }
-    }
-    if command.meshes.wants("convex") {
-        for pair in convex_pairs() {
-            rows.extend(Start::ALL.map(|start| pair.measure(&command.arguments, start)));
+        if meshes.wants("growth") {
+            growth(run);
         }
-    }
-    if command.meshes.wants("growth") {
-        rows.extend(growth(&command.arguments));
-    }
-    if command.meshes.wants("flat") {
-        rows.extend(flat(&command.arguments));
-    }
-    report::write("solids", &command.arguments, &rows)
-}
-
-fn print(row: &Value) {
-    let number = |name: &str| row[name].as_f64().unwrap_or(f64::NAN);
-    println!(
-        "{:<48} {:>9} {:>8.2} us {:>8.2} us {:>6.0} us {:>8.1} us {:>8.2} {:>5}",
-        row["name"].as_str().unwrap_or(""),
-        row["facets"],
-        number("median_ns") / 1e3,
-        number("mean_ns") / 1e3,
-        number("p99_ns") / 1e3,
-        number("parry_median_ns") / 1e3,
-        number("ratio_of_medians"),
-        row["hits"],
-    );
+        if meshes.wants("flat") {
+            flat(run);
+        }
+        Ok(())
+    })
 }
 
 /// Two meshes to measure with.
@@ -113,7 +85,7 @@ fn convex_pairs() -> Vec<Pair> {
         .collect()
 }
 
-fn pairs(command: &Command) -> Vec<Pair> {
+fn pairs(meshes: &MeshArguments) -> Vec<Pair> {
     let ball = || bumpy_ball(16_000);
     let plate = || perforated_plate([6, 4], 0.4, 32);
     let made = vec![
@@ -133,12 +105,8 @@ fn pairs(command: &Command) -> Vec<Pair> {
         ["../gearbox/key.stl", "../gearbox/gear.stl"],
         ["../gearbox/front_outer.stl", "../gearbox/front_ball_0.stl"],
     ];
-    let pairs = command.meshes.pairs(made, &files).into_iter();
+    let pairs = meshes.pairs(made, &files).into_iter();
     pairs.map(|(name, bodies)| Pair { group: "pairs", name, bodies }).collect()
-}
-
-fn radius(mesh: &Mesh) -> f64 {
-    mesh.vertices.iter().map(|v| v.length()).fold(0.0, f64::max)
 }
 
 /// How a pair starts: see the module's head.
@@ -180,10 +148,15 @@ impl Placement {
         Self { poses, direction }
     }
 
+    /// The question about two bodies here.
+    fn cast<'a>(&self, p: &'a Solid, q: &'a Solid) -> Cast<'a, Solid> {
+        let [moving, fixed] = self.poses;
+        Cast::new(p.at(moving), q.at(fixed), self.direction).expect("poses in range")
+    }
+
     /// The distance after which the bodies meet, if they do.
     fn distance(&self, [p, q]: [&Solid; 2], workspace: &mut Workspace) -> Option<f64> {
-        let cast = Cast::new(p.at(self.poses[0]), q.at(self.poses[1]), self.direction).ok()?;
-        cast.clearance_in(workspace).ok()?.distance().filter(|d| d.is_finite())
+        self.cast(p, q).clearance_in(workspace).ok()?.distance().filter(|d| d.is_finite())
     }
 
     /// Of bodies that meet the same, the moving one put aside until they do not.
@@ -213,12 +186,12 @@ impl Pair {
         bodies: [&Solid; 2],
         start: Start,
         count: usize,
-        seed: u64,
+        run: &Run,
     ) -> Vec<Placement> {
-        let radii = [radius(&self.bodies[0]), radius(&self.bodies[1])];
-        let reach = radii[0] + radii[1];
+        let radii = self.bodies.each_ref().map(|mesh| reach(&mesh.vertices));
+        let size = radii[0] + radii[1];
         let facets = bodies[0].triangles().len();
-        let mut random = Random::stream(seed, &[self.name.len() as u64, facets as u64]);
+        let mut random = run.random(&[self.name.len() as u64, facets as u64]);
         let mut workspace = Workspace::default();
         let mut draw = || {
             let placement = Placement::draw(radii, &mut random);
@@ -227,67 +200,69 @@ impl Pair {
             }
             let distance = placement.distance(bodies, &mut workspace)?;
             let forward =
-                |by: f64| Some(placement.moved(placement.direction * (distance + by * reach)));
+                |by: f64| Some(placement.moved(placement.direction * (distance + by * size)));
             match start {
                 Start::Near => return forward(-NEAR),
                 Start::Touching => return forward(SUNK),
                 Start::Far | Start::NearMiss => {}
             }
             let aside = random.direction().reject_from_normalized(placement.direction);
-            Some(placement.missing(aside.normalize_or_zero() * reach, bodies, &mut workspace))
+            Some(placement.missing(aside.normalize_or_zero() * size, bodies, &mut workspace))
         };
         // Not all that are drawn meet.
         (0..100 * count).filter_map(|_| draw()).take(count).collect()
     }
 
-    fn measure(&self, arguments: &Arguments, start: Start) -> Value {
-        let [a, b] = &self.bodies;
-        let (Some(p), Some(q)) = (solid(a), solid(b)) else { return Value::Null };
-        let count = if arguments.quick || start != Start::Far { 60 } else { 300 };
+    fn measure(&self, start: Start, run: &mut Run) {
+        let (Some(p), Some(q)) = (solid(&self.bodies[0]), solid(&self.bodies[1])) else { return };
+        let count = if start == Start::Far { run.choose(60, 300) } else { 60 };
         let name = match start {
             Start::Far => self.name.clone(),
             _ => format!("{}, {}", self.name, start.name()),
         };
-        let placements = self.placements([&p, &q], start, count, arguments.seed);
-        let mut row = compare(self.group, &name, [&p, &q], &placements);
-        row["start"] = json!(start.name());
-        if self.group == "convex" {
-            as_convex(&mut row, [&p, &q], &placements);
-        }
-        row
+        let placements = self.placements([&p, &q], start, count, run);
+        let row = compare(self.group, &name, [&p, &q], &placements);
+        let mut row = merged(row, json!({ "start": start.name() }));
+        let convex = (self.group == "convex").then(|| as_convex([&p, &q], &placements)).flatten();
+        let Some(times) = convex else { return run.add(row) };
+        let [ours, theirs] = [&times.ours, &times.theirs].map(|times| times.median() / 1e3);
+        row["convex_median_ns"] = json!(times.theirs.median());
+        row["times_convex"] = json!(ours / theirs);
+        run.add(row);
+        println!(
+            "    as solids {ours:.2} us, as convex polyhedra {theirs:.2} us: {:.1}",
+            ours / theirs
+        );
     }
 }
 
-/// Times both libraries on the same settings; the row is printed too.
+/// Times both libraries on the same settings.
 fn compare(group: &str, name: &str, [p, q]: [&Solid; 2], placements: &[Placement]) -> Value {
     let meshes = [p, q].map(|body| triangle_mesh(body.vertices(), body.triangles()));
     let size: f64 = [p, q].map(|body| body.bounds().size().length()).into_iter().sum();
     let stopwatch = Stopwatch::new();
-    let (mut ours, mut theirs) = (Times::default(), Times::default());
     let (mut hits, mut apart) = (0, 0);
     let mut workspace = Workspace::default();
     // What a solid prepares in its first query is no part of the others.
     placements.first().and_then(|first| first.distance([p, q], &mut workspace));
-    for block in placements.chunks(BLOCK) {
-        let mut distances = Vec::with_capacity(BLOCK);
-        for Placement { poses: [s, t], direction } in block {
-            let Ok(cast) = Cast::new(p.at(*s), q.at(*t), *direction) else {
-                distances.push(None);
-                continue;
-            };
+    let times = Beside::in_blocks(
+        placements,
+        BLOCK,
+        |placement| {
+            let cast = placement.cast(p, q);
             let (answer, time) = stopwatch.time(|| cast.clearance_in(&mut workspace));
-            ours.add(time);
             let distance = match answer {
                 Ok(Clearance::Overlapping(_)) => Some(0.0),
                 Ok(answer) => answer.distance().filter(|d| d.is_finite()),
                 Err(_) => None,
             };
-            distances.push(distance);
-        }
-        for (Placement { poses: [s, t], direction }, distance) in block.iter().zip(distances) {
+            (distance, time)
+        },
+        |Placement { poses: [s, t], direction }| {
             let placed = ParrySetting::placed([s, t], *direction);
-            let (other, time) = stopwatch.time(|| placed.cast(&meshes[0], &meshes[1]));
-            theirs.add(time);
+            stopwatch.time(|| placed.cast(&meshes[0], &meshes[1]))
+        },
+        |distance, other| {
             hits += usize::from(distance.is_some());
             let agree = match (distance, other) {
                 (Some(x), Some(y)) => (x - y).abs() <= AGREEMENT * size,
@@ -295,80 +270,52 @@ fn compare(group: &str, name: &str, [p, q]: [&Solid; 2], placements: &[Placement
                 _ => false,
             };
             apart += usize::from(!agree);
-        }
-    }
-    ours.sort();
-    theirs.sort();
-    let mut row = ours.to_json();
-    row.insert("group".into(), json!(group));
-    row.insert("name".into(), json!(name));
-    row.insert("facets".into(), json!(p.triangles().len() + q.triangles().len()));
-    row.insert("settings".into(), json!(placements.len()));
-    row.insert("hits".into(), json!(hits));
-    row.insert("answers_apart".into(), json!(apart));
-    row.insert("parry_median_ns".into(), json!(theirs.median()));
-    row.insert("parry_mean_ns".into(), json!(theirs.mean()));
-    row.insert("ratio".into(), json!(theirs.mean() / ours.mean()));
-    row.insert("ratio_of_medians".into(), json!(theirs.median() / ours.median()));
-    let row = Value::Object(row);
-    print(&row);
-    row
+        },
+    );
+    let row = json!({
+        "group": group, "name": name, "facets": p.triangles().len() + q.triangles().len(),
+        "settings": placements.len(), "hits": hits, "answers_apart": apart,
+    });
+    merged(times.to_json(), row)
 }
 
-/// Times the same bodies as solids and as convex polyhedra, in turns, and adds that to a row.
-fn as_convex(row: &mut Value, [p, q]: [&Solid; 2], placements: &[Placement]) {
-    let hull = |body: &Solid| ConvexPolyhedron::from_points(body.vertices());
-    let (Ok(a), Ok(b)) = (hull(p), hull(q)) else { return };
+/// Times the same bodies as solids and as convex polyhedra.
+fn as_convex([p, q]: [&Solid; 2], placements: &[Placement]) -> Option<Beside> {
+    let hull = |body: &Solid| ConvexPolyhedron::from_points(body.vertices()).ok();
+    let (a, b) = (hull(p)?, hull(q)?);
     let stopwatch = Stopwatch::new();
-    let (mut solids, mut polyhedra) = (Times::default(), Times::default());
     let mut workspace = Workspace::default();
-    for block in placements.chunks(BLOCK) {
-        for Placement { poses: [s, t], direction } in block {
-            let Ok(cast) = Cast::new(p.at(*s), q.at(*t), *direction) else { continue };
-            solids.add(stopwatch.time(|| cast.clearance_in(&mut workspace)).1);
-        }
-        for Placement { poses: [s, t], direction } in block {
-            let Ok(cast) = Cast::new(a.at(*s), b.at(*t), *direction) else { continue };
-            polyhedra.add(stopwatch.time(|| cast.clearance()).1);
-        }
-    }
-    solids.sort();
-    polyhedra.sort();
-    row["convex_median_ns"] = json!(polyhedra.median());
-    row["times_convex"] = json!(solids.median() / polyhedra.median());
-    let [ours, theirs] = [&solids, &polyhedra].map(|times| times.median() / 1e3);
-    println!(
-        "    as solids {ours:.2} us, as convex polyhedra {theirs:.2} us: {:.1}",
-        ours / theirs
-    );
+    let solids = |placement: &Placement| {
+        let cast = placement.cast(p, q);
+        ((), stopwatch.time(|| cast.clearance_in(&mut workspace)).1)
+    };
+    let polyhedra = |placement: &Placement| {
+        let ([s, t], direction) = (placement.poses, placement.direction);
+        let cast = Cast::new(a.at(s), b.at(t), direction).expect("poses in range");
+        ((), stopwatch.time(|| cast.clearance()).1)
+    };
+    Some(Beside::in_blocks(placements, BLOCK, solids, polyhedra, |(), ()| ()))
 }
 
 /// The same body in more and more facets.
-fn growth(arguments: &Arguments) -> Vec<Value> {
-    let sizes: &[usize] =
-        if arguments.quick { &[16_000, 1_000_000] } else { &[16_000, 64_000, 256_000, 1_000_000] };
-    let stopwatch = Stopwatch::new();
-    let mut rows = Vec::new();
-    for &size in sizes {
+fn growth(run: &mut Run) {
+    let sizes = [16_000, 64_000, 256_000, 1_000_000];
+    for size in run.choose(vec![sizes[0], sizes[3]], sizes.into()) {
         let mesh = bumpy_ball(size);
-        let (body, build) = stopwatch.time(|| solid(&mesh));
+        let (body, build) = Stopwatch::new().time(|| solid(&mesh));
         let Some(body) = body else { continue };
-        let mut random = Random::stream(arguments.seed, &[7]);
-        let count = if arguments.quick { 20 } else { 100 };
+        let mut random = run.random(&[7]);
         let placements: Vec<Placement> =
-            (0..count).map(|_| Placement::draw([1.2, 1.2], &mut random)).collect();
-        let mut row = compare("growth", "bumpy ball", [&body, &body], &placements);
+            (0..run.choose(20, 100)).map(|_| Placement::draw([1.2, 1.2], &mut random)).collect();
+        let row = compare("growth", "bumpy ball", [&body, &body], &placements);
         let bytes = body.memory_bytes() as f64 / body.triangles().len() as f64;
+        run.add(merged(row, json!({ "build_ns": build, "bytes_per_facet": bytes })));
         println!("    built in {:.1} ms, {bytes:.0} bytes a facet", build / 1e6);
-        row["build_ns"] = json!(build);
-        row["bytes_per_facet"] = json!(bytes);
-        rows.push(row);
     }
-    rows
 }
 
 /// A slab on another one, at random places.
-fn flat(arguments: &Arguments) -> Vec<Value> {
+fn flat(run: &mut Run) {
     let oblique = DQuat::from_xyzw(0.1, 0.7, -0.2, 0.3).normalize();
     let cases = [
         ("resting", 0.25, DVec3::NEG_Z),
@@ -379,24 +326,22 @@ fn flat(arguments: &Arguments) -> Vec<Value> {
         ("gap 1e-3", 0.251, DVec3::NEG_Z),
         ("passing over at 1e-6", 0.250_001, DVec3::X),
     ];
-    let mut rows = Vec::new();
     for parts in [[1, 1, 1], [4, 4, 1], [40, 40, 2], [180, 180, 4]] {
         let mesh = slab(DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.25), parts);
         let Some(body) = solid(&mesh) else { continue };
         for (name, height, direction) in cases {
             for (turned, rotation) in [("", DQuat::IDENTITY), (", turned", oblique)] {
-                let mut random = Random::stream(arguments.seed, &[9]);
+                let mut random = run.random(&[9]);
                 let pose = |at| Pose::new(rotation, rotation * at).unwrap_or(Pose::IDENTITY);
                 let mut aside = || random.range(-0.4, 0.4);
-                let placements: Vec<Placement> = (0..if arguments.quick { 50 } else { 200 })
+                let placements: Vec<Placement> = (0..run.choose(50, 200))
                     .map(|_| Placement {
                         poses: [pose(DVec3::new(aside(), aside(), height)), pose(DVec3::ZERO)],
                         direction: rotation * direction,
                     })
                     .collect();
-                rows.push(compare("flat", &format!("{name}{turned}"), [&body; 2], &placements));
+                run.add(compare("flat", &format!("{name}{turned}"), [&body; 2], &placements));
             }
         }
     }
-    rows
 }

@@ -10,24 +10,20 @@ use std::hint::black_box;
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-use clap::{Parser, ValueEnum};
+use clap::{Args, ValueEnum};
 use colltrans::{BuildError, ConvexPolyhedron, Options, Outcome, QueryError, Solver};
-use colltrans_bench::arguments::Arguments;
-use colltrans_bench::parry::{self, ParrySetting};
-use colltrans_bench::report::{self, Measured};
+use colltrans_bench::harness::{self, Run, naming};
+use colltrans_bench::parry::{self, ParryPolyhedron, ParrySetting};
 use colltrans_bench::shapes::Shape;
 use colltrans_bench::ties::{Placement, Tie};
+use colltrans_bench::times::Measured;
 use colltrans_lab::settings::{Meeting, Setting};
 use colltrans_lab::shapes::Bodies;
-use colltrans_testkit::random::Random;
 use colltrans_testkit::timing::Stopwatch;
 use serde_json::{Value, json};
 
-/// Measures all solvers and parry3d-f64 on the same settings; prints a table
-#[derive(Debug, Parser)]
-struct Command {
-    #[command(flatten)]
-    arguments: Arguments,
+#[derive(Debug, Args)]
+struct Own {
     /// Only these rows
     #[arg(long, value_enum)]
     group: Option<Group>,
@@ -62,42 +58,44 @@ const COMPARED: usize = SOLVERS.len() + 1;
 const AGREEMENT: f64 = 1e-4;
 
 fn main() -> ExitCode {
-    let Command { arguments, group, shape: only } = Command::parse();
-    let mut rows = Vec::new();
-    let mut note = |row: Row| {
-        row.print();
-        rows.push(row.to_json());
-    };
-    print_header();
-    if group.is_none_or(|group| group == Group::General) {
-        for (shape, n) in plan(arguments.sizes.as_deref().unwrap_or(&SIZES)) {
-            if only.as_ref().is_some_and(|part| !shape.name().contains(part)) {
-                continue;
-            }
-            match general(shape, n, &arguments) {
-                Ok(two) => two.into_iter().for_each(&mut note),
-                Err(error) => {
-                    eprintln!("error: {} with {n} vertices: {error}", shape.name());
-                    return ExitCode::FAILURE;
+    let about = "Measures all solvers and parry3d-f64 on the same settings; prints a table";
+    harness::run("table", about, |run, own: &Own| {
+        let legend = "ns: median and 99th percentile; x: parry's median over ours, mx: parry's mean over ours \
+             (means without the slowest hundredth); planar problems and supports on average";
+        run.table(legend, COLUMNS);
+        let wants = |group| own.group.is_none_or(|only| only == group);
+        if wants(Group::General) {
+            for (shape, n) in plan(&run.sizes(&SIZES)) {
+                if own.shape.as_ref().is_none_or(|part| shape.name().contains(part)) {
+                    let failed = naming(format!("{} with {n} vertices", shape.name()));
+                    general(shape, n, run).map_err(failed)?;
                 }
             }
         }
-    }
-    if group.is_none_or(|group| group == Group::Ties) {
-        for tie in Tie::ALL {
-            for placement in Placement::ALL {
-                note(tied(tie, placement, placement.name(), None, &arguments));
+        if wants(Group::Ties) {
+            for (tie, placement) in
+                Tie::ALL.into_iter().flat_map(|tie| Placement::ALL.map(|placed| (tie, placed)))
+            {
+                run.add(tied(tie, placement, placement.name(), None, run));
             }
         }
-    }
-    if group.is_none_or(|group| group == Group::Cold) {
-        for tie in Tie::ALL {
-            let other = Some(RefCell::new(vec![0; OTHER / size_of::<u64>()]));
-            note(tied(tie, Placement::Rotated, "rotated, cold", other, &arguments));
+        if wants(Group::Cold) {
+            for tie in Tie::ALL {
+                let other = Some(RefCell::new(vec![0; OTHER / size_of::<u64>()]));
+                run.add(tied(tie, Placement::Rotated, "rotated, cold", other, run));
+            }
         }
-    }
-    report::write("table", &arguments, &rows)
+        Ok(())
+    })
 }
+
+const COLUMNS: &str = "shape:<18; n:>6=vertices; :<16=meeting; build ms:>8.2=build_ms; B/n:>4.0=bytes_per_vertex;
+    cta:>7.0=cta/median_ns; p99:>7.0=cta/p99_ns; portal:>7.0=portal/median_ns; p99:>7.0=portal/p99_ns;
+    auto:>7.0=auto/median_ns; p99:>7.0=auto/p99_ns; parry:>8.0=parry/median_ns; p99:>8.0=parry/p99_ns;
+    x cta:>7.2=parry_over/cta/median; x port:>7.2=parry_over/portal/median; x auto:>7.2=parry_over/auto/median;
+    mx auto:>7.2=parry_over/auto/mean; planar:>6.1=cta/planar_problems; s cta:>6.1=cta/supports;
+    s port:>6.1=portal/supports; fail:>4.0=cta/failures + portal/failures + auto/failures;
+    diff:>4.0=parry_disagreements + parry/failures";
 
 /// Which shapes in which sizes: all sizes of ellipsoids; of the others some.
 fn plan(sizes: &[usize]) -> Vec<(Shape, usize)> {
@@ -153,24 +151,18 @@ impl Cases {
     }
 }
 
-/// Both rows of a shape and a size.
-fn general(shape: Shape, n: usize, arguments: &Arguments) -> Result<[Row; 2], BuildError> {
-    let mut random = Random::stream(arguments.seed, &[n as u64]);
+/// Adds both rows of a shape and a size.
+fn general(shape: Shape, n: usize, run: &mut Run) -> Result<(), BuildError> {
+    let mut random = run.random(&[n as u64]);
     let count = if n >= 50_000 { 2 } else { 4 };
     let started = Instant::now();
-    let mut pair = || -> Result<Bodies, BuildError> {
-        Ok(Bodies::new([shape.draw(n, &mut random)?, shape.draw(n, &mut random)?]))
-    };
-    let pairs = (0..count).map(|_| pair()).collect::<Result<Vec<_>, _>>()?;
+    let pairs = (0..count).map(|_| shape.pair(n, &mut random).map(Bodies::new));
+    let pairs = pairs.collect::<Result<Vec<_>, _>>()?;
     let build = started.elapsed() / (2 * count);
     let mut cases = Cases { pairs, settings: Vec::new(), build, other: None };
-    let settings = match (arguments.quick, n >= 100_000) {
-        (true, true) => 100,
-        (true, false) | (false, true) => 200,
-        (false, false) => 1000,
-    };
-    Ok(["colliding", "separated"].map(|meeting| {
-        let mut random = Random::stream(arguments.seed, &[n as u64, meeting.len() as u64, 1]);
+    let settings = if n >= 100_000 { run.choose(100, 200) } else { run.choose(200, 1000) };
+    for meeting in ["colliding", "separated"] {
+        let mut random = run.random(&[n as u64, meeting.len() as u64, 1]);
         let draw = |k: usize| {
             let bodies = &cases.pairs[k % cases.pairs.len()];
             let meeting = match meeting {
@@ -180,28 +172,28 @@ fn general(shape: Shape, n: usize, arguments: &Arguments) -> Result<[Row; 2], Bu
             (k % cases.pairs.len(), Setting::draw(bodies, meeting, &mut random))
         };
         cases.settings = (0..settings).map(draw).collect();
-        Row::measure((shape.name(), n), meeting, &cases, arguments)
-    }))
+        run.add(row((shape.name(), n), meeting, &cases, run));
+    }
+    Ok(())
 }
 
 /// A row of tied settings.
 fn tied(
     tie: Tie,
     placement: Placement,
-    name: &'static str,
+    name: &str,
     other: Option<RefCell<Vec<u64>>>,
-    arguments: &Arguments,
-) -> Row {
-    let mut random = Random::stream(arguments.seed, &[tie as u64, placement as u64, 2]);
+    run: &Run,
+) -> Value {
+    let mut random = run.random(&[tie as u64, placement as u64, 2]);
     let started = Instant::now();
     let pairs: Vec<_> = (0..8).map(|_| tie.bodies(&mut random)).collect();
     let build = started.elapsed() / 16;
-    let count = if arguments.quick { 200 } else { 1000 };
-    let settings = (0..count)
+    let settings = (0..run.choose(200, 1000))
         .map(|k| (k % pairs.len(), tie.draw(&pairs[k % pairs.len()], placement, &mut random)))
         .collect();
     let cases = Cases { pairs, settings, build, other };
-    Row::measure((tie.name().into(), 0), name, &cases, arguments)
+    row((tie.name().into(), 0), name, &cases, run)
 }
 
 /// Asks `colltrans`.
@@ -221,175 +213,75 @@ fn measure(measured: &mut Measured, cases: &Cases, solver: Solver, block: &[(usi
     }
 }
 
-struct Row {
-    shape: String,
-    asked: usize,
-    meeting: &'static str,
-    vertices: usize,
-    build: Duration,
-    bytes_per_vertex: f64,
-    ours: [Measured; SOLVERS.len()],
-    theirs: Measured,
-    /// Settings to which parry gave another answer.
-    disagreements: u32,
-    settings: usize,
+/// Measures all solvers and parry on cases.
+fn row((shape, asked): (String, usize), meeting: &str, cases: &Cases, run: &Run) -> Value {
+    let all = || cases.pairs.iter().flat_map(|bodies| &bodies.pair);
+    let vertices = all().map(|b| b.vertices().len()).sum::<usize>();
+    let bytes = all().map(ConvexPolyhedron::memory_bytes).sum::<usize>();
+    let mean_vertices = vertices / all().count();
+    let ([ours @ .., theirs], disagreements) = take_turns(cases, mean_vertices, run.choose(2, 5));
+    let over = |of: &Measured| {
+        let (theirs, ours) = (&theirs.times, &of.times);
+        json!({ "median": theirs.median() / ours.median(), "mean": theirs.mean() / ours.mean() })
+    };
+    let [cta, portal, auto] = &ours;
+    json!({
+        "shape": shape, "vertices_asked": asked, "vertices": mean_vertices, "meeting": meeting,
+        "settings": cases.settings.len(), "build_ms": cases.build.as_secs_f64() * 1e3,
+        "bytes_per_vertex": bytes as f64 / vertices as f64,
+        "cta": cta, "portal": portal, "auto": auto, "parry": theirs,
+        "parry_disagreements": disagreements,
+        "parry_over": { "cta": over(cta), "portal": over(portal), "auto": over(auto) },
+    })
 }
 
-impl Row {
-    fn measure(
-        (shape, asked): (String, usize),
-        meeting: &'static str,
-        cases: &Cases,
-        arguments: &Arguments,
-    ) -> Self {
-        let all = || cases.pairs.iter().flat_map(|bodies| &bodies.pair);
-        let vertices = all().map(|b| b.vertices().len()).sum::<usize>();
-        let bytes = all().map(ConvexPolyhedron::memory_bytes).sum::<usize>();
-        let mut row = Self {
-            shape,
-            asked,
-            meeting,
-            vertices: vertices / all().count(),
-            build: cases.build,
-            bytes_per_vertex: bytes as f64 / vertices as f64,
-            ours: Default::default(),
-            theirs: Measured::default(),
-            disagreements: 0,
-            settings: cases.settings.len(),
-        };
-        row.take_turns(cases, if arguments.quick { 2 } else { 5 });
-        for measured in row.ours.iter_mut().chain([&mut row.theirs]) {
-            measured.times.sort();
-        }
-        row
-    }
-
-    fn take_turns(&mut self, cases: &Cases, passes: usize) {
-        let theirs: Vec<_> =
-            cases.pairs.iter().map(|bodies| bodies.pair.each_ref().map(parry::body)).collect();
-        let blocks: Vec<_> = cases.settings.chunks(BLOCK).collect();
-        for pass in 0..passes {
-            for turn in 0..blocks.len() {
-                let block = |compared: usize| {
-                    blocks[(turn + compared * blocks.len() / COMPARED) % blocks.len()]
-                };
-                for (index, (_, solver)) in SOLVERS.into_iter().enumerate() {
-                    measure(&mut self.ours[index], cases, solver, block(index));
-                }
-                // Parry's linear support search at these sizes needs no second look.
-                if pass == 0 || self.vertices < 9_000 {
-                    self.measure_parry(cases, &theirs, block(SOLVERS.len()), pass == 0);
-                }
-            }
-        }
-    }
-
-    fn measure_parry(
-        &mut self,
-        cases: &Cases,
-        theirs: &[[Option<parry3d_f64::shape::ConvexPolyhedron>; 2]],
-        block: &[(usize, Setting)],
-        compare: bool,
-    ) {
-        let stopwatch = Stopwatch::new();
-        for (pair, setting) in block {
-            let [Some(moving), Some(fixed)] = &theirs[*pair] else {
-                self.theirs.failures += 1;
-                continue;
+/// Measures all solvers and parry, and counts the settings to which parry gave another answer.
+fn take_turns(cases: &Cases, vertices: usize, passes: usize) -> ([Measured; COMPARED], u32) {
+    let (mut measured, mut disagreements) = (<[Measured; COMPARED]>::default(), 0);
+    let theirs: Vec<_> =
+        cases.pairs.iter().map(|bodies| bodies.pair.each_ref().map(parry::body)).collect();
+    let blocks: Vec<_> = cases.settings.chunks(BLOCK).collect();
+    for pass in 0..passes {
+        for turn in 0..blocks.len() {
+            let block = |compared: usize| {
+                blocks[(turn + compared * blocks.len() / COMPARED) % blocks.len()]
             };
-            let converted = ParrySetting::new(setting);
-            cases.other_work();
-            let (answer, spent) = stopwatch.time(|| converted.cast(moving, fixed));
-            self.theirs.times.add(spent);
-            if compare && !agrees(setting, &cases.pairs[*pair], answer) {
-                self.disagreements += 1;
+            let [ours @ .., parry] = &mut measured;
+            for (index, (_, solver)) in SOLVERS.into_iter().enumerate() {
+                measure(&mut ours[index], cases, solver, block(index));
+            }
+            // Parry's linear support search at these sizes needs no second look.
+            if pass == 0 || vertices < 9_000 {
+                let differ = measure_parry(parry, cases, &theirs, block(SOLVERS.len()), pass == 0);
+                disagreements += differ;
             }
         }
     }
-
-    /// Parry's median and mean over ours.
-    fn ratios(&self, solver: usize) -> [f64; 2] {
-        let (theirs, ours) = (&self.theirs.times, &self.ours[solver].times);
-        [theirs.median() / ours.median(), theirs.mean() / ours.mean()]
-    }
-
-    fn print(&self) {
-        print!("{:<18} {:>6} {:<16}", self.shape, self.vertices, self.meeting);
-        print!(" {:>8.2} {:>4.0}", self.build.as_secs_f64() * 1e3, self.bytes_per_vertex);
-        for measured in &self.ours {
-            let times = &measured.times;
-            print!(" {:>7.0} {:>7.0}", times.median(), times.quantile(0.99));
-        }
-        print!(" {:>8.0} {:>8.0}", self.theirs.times.median(), self.theirs.times.quantile(0.99));
-        print!(" {:>7.2} {:>7.2}", self.ratios(0)[0], self.ratios(1)[0]);
-        let [median, mean] = self.ratios(2);
-        print!(" {median:>7.2} {mean:>7.2}");
-        let [cta, portal, _] = &self.ours;
-        print!(
-            " {:>6.1} {:>6.1} {:>6.1}",
-            cta.average(cta.steps.planar_problems),
-            cta.average(cta.steps.supports),
-            portal.average(portal.steps.supports),
-        );
-        let failures: u32 = self.ours.iter().map(|m| m.failures).sum();
-        println!(" {failures:>4} {:>4}", self.disagreements + self.theirs.failures);
-    }
-
-    fn to_json(&self) -> Value {
-        let [cta, portal, auto] = &self.ours;
-        let ratio = |k: usize| {
-            let [median, mean] = self.ratios(k);
-            json!({ "median": median, "mean": mean })
-        };
-        json!({
-            "shape": self.shape,
-            "vertices_asked": self.asked,
-            "vertices": self.vertices,
-            "meeting": self.meeting,
-            "settings": self.settings,
-            "build_ms": self.build.as_secs_f64() * 1e3,
-            "bytes_per_vertex": self.bytes_per_vertex,
-            "cta": cta.to_json(&[]),
-            "portal": portal.to_json(&[]),
-            "auto": auto.to_json(&[]),
-            "parry": self.theirs.to_json(&[]),
-            "parry_disagreements": self.disagreements,
-            "parry_over": { "cta": ratio(0), "portal": ratio(1), "auto": ratio(2) },
-        })
-    }
+    (measured, disagreements)
 }
 
-fn print_header() {
-    println!(
-        "ns: median and 99th percentile; x: parry's median over ours, mx: parry's mean over ours \
-         (means without the slowest hundredth); planar problems and supports on average"
-    );
-    println!(
-        "{:<18} {:>6} {:<16} {:>8} {:>4} {:>7} {:>7} {:>7} {:>7} {:>7} {:>7} {:>8} {:>8} {:>7} \
-         {:>7} {:>7} {:>7} {:>6} {:>6} {:>6} {:>4} {:>4}",
-        "shape",
-        "n",
-        "",
-        "build ms",
-        "B/n",
-        "cta",
-        "p99",
-        "portal",
-        "p99",
-        "auto",
-        "p99",
-        "parry",
-        "p99",
-        "x cta",
-        "x port",
-        "x auto",
-        "mx auto",
-        "planar",
-        "s cta",
-        "s port",
-        "fail",
-        "diff"
-    );
+/// Asks parry all settings of a block, and counts those to which it gives another answer if they are compared.
+fn measure_parry(
+    measured: &mut Measured,
+    cases: &Cases,
+    theirs: &[[Option<ParryPolyhedron>; 2]],
+    block: &[(usize, Setting)],
+    compare: bool,
+) -> u32 {
+    let stopwatch = Stopwatch::new();
+    let mut disagreements = 0;
+    for (pair, setting) in block {
+        let [Some(moving), Some(fixed)] = &theirs[*pair] else {
+            measured.failures += 1;
+            continue;
+        };
+        let converted = ParrySetting::new(setting);
+        cases.other_work();
+        let (answer, spent) = stopwatch.time(|| converted.cast(moving, fixed));
+        measured.times.add(spent);
+        disagreements += u32::from(compare && !agrees(setting, &cases.pairs[*pair], answer));
+    }
+    disagreements
 }
 
 /// Whether parry's answer is ours, within what parry promises.

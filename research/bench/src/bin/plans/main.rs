@@ -1,22 +1,20 @@
 //! Plans that a mechanic would follow: machines whose right order is known, and real ones where they are. How far each comes
 //! apart, with which reason if not wholly; how much longer its ways are than the shortest that are free, and what rays say
 //! of them ([`judge`]); and how long it takes.
-//!
-//! `cargo run --release -p colltrans-bench --bin plans -- [--data DIR] [--only NAME] [--turned] [--fine] [--parts DIR]
-//! [--json FILE]`
 
 mod judge;
 
-use std::error::Error;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
-use clap::Parser;
+use clap::Args;
 use colltrans_assembly::{
     Assembly, Bodies, Findings, Fit, Part, Piece, Question, Stage, Watch, suggest,
 };
 use colltrans_assembly_io::read::{ReadOptions, read};
+use colltrans_bench::harness::{self, Failure};
 use colltrans_mesh::Mesh;
 use colltrans_testkit::machines::{
     NamedPart, flange, radial_engine, screwed_table, threaded_block,
@@ -27,8 +25,8 @@ use serde_json::{Value, json};
 
 use judge::Judged;
 
-#[derive(Parser)]
-struct Arguments {
+#[derive(Debug, Args)]
+struct Own {
     /// Where real assemblies are
     #[arg(long, default_value = "../shared/data")]
     data: PathBuf,
@@ -44,45 +42,32 @@ struct Arguments {
     /// Also write the parts of the machines that are made here, for other judges
     #[arg(long)]
     parts: Option<PathBuf>,
-    /// Also write the figures to this file
-    #[arg(long)]
-    json: Option<PathBuf>,
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
-    let arguments = Arguments::parse();
-    let mut rows = Vec::new();
-    let wanted = |name: &str| name.starts_with(&arguments.only);
-    if arguments.turned {
-        for (name, parts) in machines().into_iter().filter(|(name, _)| wanted(name)) {
-            rows.push(turned(&name, &parts)?);
-        }
-    } else if arguments.fine {
-        for (name, parts) in fine().into_iter().filter(|(name, _)| wanted(name)) {
-            if let Some(folder) = &arguments.parts {
+fn main() -> ExitCode {
+    let about = "Plans how machines come apart, and judges the plans";
+    harness::run("plans", about, |run, own: &Own| {
+        let made = if own.fine && !own.turned { fine() } else { machines() };
+        for (name, parts) in made.into_iter().filter(|(name, _)| name.starts_with(&own.only)) {
+            if own.turned {
+                run.add(turned(&name, &parts)?);
+                continue;
+            }
+            if let Some(folder) = &own.parts {
                 written(&folder.join(&name), &parts)?;
             }
-            rows.push(row(&name, &assembly(&parts, DAffine3::IDENTITY)?, false)?);
+            run.add(row(&name, &assembly(&parts, DAffine3::IDENTITY)?, !own.fine)?);
         }
-    } else {
-        for (name, parts) in machines().into_iter().filter(|(name, _)| wanted(name)) {
-            if let Some(folder) = &arguments.parts {
-                written(&folder.join(&name), &parts)?;
-            }
-            rows.push(row(&name, &assembly(&parts, DAffine3::IDENTITY)?, true)?);
-        }
-        for (name, path) in real(&arguments.data).into_iter().filter(|(name, _)| wanted(name)) {
+        let real = if own.turned || own.fine { Vec::new() } else { real(&own.data) };
+        for (name, path) in real.into_iter().filter(|(name, _)| name.starts_with(&own.only)) {
             if !path.exists() {
                 println!("{name:>16}: not there");
                 continue;
             }
-            rows.push(row(&name, &read(path, &ReadOptions::default())?, true)?);
+            run.add(row(&name, &read(path, &ReadOptions::default())?, true)?);
         }
-    }
-    if let Some(path) = &arguments.json {
-        std::fs::write(path, serde_json::to_string_pretty(&rows)?)?;
-    }
-    Ok(())
+        Ok(())
+    })
 }
 
 fn machines() -> Vec<(String, Vec<NamedPart>)> {
@@ -124,8 +109,8 @@ fn real(data: &Path) -> Vec<(String, PathBuf)> {
     all
 }
 
-fn assembly(parts: &[NamedPart], placed: DAffine3) -> Result<Assembly, Box<dyn Error>> {
-    let part = |(name, bodies): &NamedPart| -> Result<Part, Box<dyn Error>> {
+fn assembly(parts: &[NamedPart], placed: DAffine3) -> Result<Assembly, Failure> {
+    let part = |(name, bodies): &NamedPart| -> Result<Part, Failure> {
         let piece = |mesh: &colltrans_testkit::shapes::Mesh| Piece {
             mesh: Mesh::new(mesh.vertices.clone(), mesh.faces.clone()),
             world_from_piece: placed,
@@ -137,7 +122,7 @@ fn assembly(parts: &[NamedPart], placed: DAffine3) -> Result<Assembly, Box<dyn E
 }
 
 /// Each body as a file, and a manifest of all parts.
-fn written(folder: &Path, parts: &[NamedPart]) -> Result<(), Box<dyn Error>> {
+fn written(folder: &Path, parts: &[NamedPart]) -> Result<(), Failure> {
     std::fs::create_dir_all(folder)?;
     let mut entries = Vec::new();
     for (name, bodies) in parts {
@@ -155,7 +140,7 @@ fn written(folder: &Path, parts: &[NamedPart]) -> Result<(), Box<dyn Error>> {
 }
 
 /// A plan without options, and if it is not whole another one with what is suggested.
-fn row(name: &str, assembly: &Assembly, judged: bool) -> Result<Value, Box<dyn Error>> {
+fn row(name: &str, assembly: &Assembly, judged: bool) -> Result<Value, Failure> {
     let question = Question::default();
     let fit = Fit::default_for(assembly);
     let clock = Clock::start();
@@ -178,7 +163,7 @@ fn asked<'a>(
     question: &Question,
     bodies: &'a Bodies<'a>,
     clock: &Clock,
-) -> Result<(Findings<'a>, String), Box<dyn Error>> {
+) -> Result<(Findings<'a>, String), Failure> {
     let stages = Mutex::new(vec![("bodies", 0.0), ("", clock.seconds())]);
     let known = || stages.lock().unwrap_or_else(PoisonError::into_inner);
     let reached = |stage: Stage, _: usize, _: usize| {
@@ -232,7 +217,7 @@ fn said(name: &str, options: &str, found: &Findings, seconds: f64, judged: bool)
 }
 
 /// The same machine as it is and turned anyhow, in turns.
-fn turned(name: &str, parts: &[NamedPart]) -> Result<Value, Box<dyn Error>> {
+fn turned(name: &str, parts: &[NamedPart]) -> Result<Value, Failure> {
     let mut random = Random::new(31);
     let mut ratios = Vec::new();
     let mut seconds = [0.0; 2];

@@ -6,7 +6,7 @@ use colltrans_lab::claims::{READINGS, Verdict};
 use colltrans_lab::statistics::Estimate;
 use serde_json::Value;
 
-use super::{Failure, number, text};
+use super::{Failure, number, string};
 
 /// The verdicts in the order in which they are counted.
 const VERDICTS: [Verdict; 4] =
@@ -22,10 +22,10 @@ pub(super) fn claims(run: &Value, again: &Value, all: usize) -> Result<String, F
         writeln!(
             page,
             "| {} (`{}`) | {}; {} | {} | {} |",
-            text(claim, "statement"),
-            text(claim, "id"),
-            text(claim, "paper"),
-            text(claim, "place"),
+            string(claim, "statement"),
+            string(claim, "id"),
+            string(claim, "paper"),
+            string(claim, "place"),
             measured(claim),
             verdict(claim, again),
         )?;
@@ -37,7 +37,7 @@ pub(super) fn claims(run: &Value, again: &Value, all: usize) -> Result<String, F
     );
     for claim in list(run) {
         if let Some(why) = claim["why"].as_str() {
-            writeln!(page, "- `{}`, {}: {why}", text(claim, "id"), text(claim, "reason"))?;
+            writeln!(page, "- `{}`, {}: {why}", string(claim, "id"), string(claim, "reason"))?;
         }
     }
     Ok(page)
@@ -46,11 +46,11 @@ pub(super) fn claims(run: &Value, again: &Value, all: usize) -> Result<String, F
 /// The claims about thin faces, with what both readings of "thin" make of them.
 fn readings(page: &mut String, run: &Value) -> Result<(), Failure> {
     let [(first, _), (second, _)] = READINGS;
-    let of = |id: &str| list(run).iter().find(|claim| text(claim, "id") == id);
+    let of = |id: &str| list(run).iter().find(|claim| string(claim, "id") == id);
     let pairs: Vec<_> = list(run)
         .iter()
         .filter_map(|claim| {
-            let name = text(claim, "id").strip_suffix(first)?;
+            let name = string(claim, "id").strip_suffix(first)?;
             Some((name, [claim, of(&format!("{name}{second}"))?]))
         })
         .collect();
@@ -66,14 +66,14 @@ fn readings(page: &mut String, run: &Value) -> Result<(), Failure> {
     for (name, claims) in &pairs {
         let [a, b] = claims.map(|claim| {
             let first = claim["measured"].as_array().and_then(|all| all.first());
-            format!("{}, {}", first.map_or(String::new(), estimate), text(claim, "verdict"))
+            format!("{}, {}", first.map_or(String::new(), estimate), string(claim, "verdict"))
         });
         writeln!(page, "| `{name}` | {a} | {b} |")?;
     }
     let kept = |which: usize| {
         let holds = [Verdict::Holds, Verdict::Better].map(|verdict| verdict.to_string());
         let is_kept =
-            |claims: &[&Value; 2]| holds.contains(&text(claims[which], "verdict").to_owned());
+            |claims: &[&Value; 2]| holds.contains(&string(claims[which], "verdict").to_owned());
         pairs.iter().filter(|(_, claims)| is_kept(claims)).count()
     };
     let all = pairs.len();
@@ -86,8 +86,8 @@ fn list(run: &Value) -> &[Value] {
 }
 
 fn of_again<'v>(claim: &Value, again: &'v Value) -> Option<&'v str> {
-    let same = list(again).iter().find(|other| text(other, "id") == text(claim, "id"))?;
-    Some(text(same, "verdict"))
+    let same = list(again).iter().find(|other| string(other, "id") == string(claim, "id"))?;
+    Some(string(same, "verdict"))
 }
 
 fn origin(page: &mut String, run: &Value, again: &Value, all: usize) -> Result<(), Failure> {
@@ -99,25 +99,25 @@ fn origin(page: &mut String, run: &Value, again: &Value, all: usize) -> Result<(
         }
     }
     let counts = VERDICTS.map(|verdict| verdict.to_string()).map(|verdict| {
-        let count = list(run).iter().filter(|claim| text(claim, "verdict") == verdict).count();
+        let count = list(run).iter().filter(|claim| string(claim, "verdict") == verdict).count();
         format!("{count} {verdict}")
     });
-    let is_same = |claim: &&Value| of_again(claim, again) == Some(text(claim, "verdict"));
+    let is_same = |claim: &&Value| of_again(claim, again) == Some(string(claim, "verdict"));
     let machine = &run["machine"];
     writeln!(
         page,
         "From a {} run with seed {} ({}) on {} cores of an {}, {}. Of {} claims: {}. A \
          {} run with seed {} gives the same verdict on {}; where it differs, its own is beside it. The intervals of \
          both runs overlap in all numbers of {} claims.",
-        text(run, "scale"),
+        string(run, "scale"),
         run["seed"],
-        text(run, "date"),
-        text(machine, "cores"),
-        text(machine, "cpu"),
-        text(run, "versions"),
+        string(run, "date"),
+        string(machine, "cores"),
+        string(machine, "cpu"),
+        string(run, "versions"),
         list(run).len(),
         counts.join(", "),
-        text(again, "scale"),
+        string(again, "scale"),
         again["seed"],
         list(run).iter().filter(is_same).count(),
         list(run).iter().filter(|claim| overlap(claim, again)).count(),
@@ -127,10 +127,10 @@ fn origin(page: &mut String, run: &Value, again: &Value, all: usize) -> Result<(
 
 /// Whether the intervals of a claim's numbers overlap with those of the other run.
 fn overlap(claim: &Value, again: &Value) -> bool {
-    let same = list(again).iter().find(|other| text(other, "id") == text(claim, "id"));
+    let same = list(again).iter().find(|other| string(other, "id") == string(claim, "id"));
     let Some(same) = same else { return false };
     numbers(claim).iter().zip(numbers(same)).all(|(one, other)| {
-        let [[a, b], [c, d]] = [one, other].map(|e| ["low", "high"].map(|key| number(e, &[key])));
+        let [[a, b], [c, d]] = [one, other].map(|e| ["low", "high"].map(|key| number(e, key)));
         a <= d && c <= b
     })
 }
@@ -140,17 +140,18 @@ fn numbers(claim: &Value) -> &[Value] {
 }
 
 fn estimate(one: &Value) -> String {
-    let [value, low, high] = ["value", "low", "high"].map(|key| number(one, &[key]));
+    let [value, low, high] = ["value", "low", "high"].map(|key| number(one, key));
     Estimate { value, low, high }.to_string()
 }
 
 fn measured(claim: &Value) -> String {
-    let each = numbers(claim).iter().map(|one| format!("{} {}", estimate(one), text(one, "what")));
+    let each =
+        numbers(claim).iter().map(|one| format!("{} {}", estimate(one), string(one, "what")));
     each.collect::<Vec<_>>().join("; ")
 }
 
 fn verdict(claim: &Value, again: &Value) -> String {
-    let first = text(claim, "verdict");
+    let first = string(claim, "verdict");
     match of_again(claim, again) {
         Some(second) if second != first => format!("{first} (again: {second})"),
         _ => first.into(),

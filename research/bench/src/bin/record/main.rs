@@ -18,6 +18,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use clap::Parser;
+use colltrans_bench::harness::markdown;
 use colltrans_lab::claims::CLAIMS;
 use colltrans_lab::draw::draw;
 use colltrans_lab::finding::{Axis, Figure, Point, Series};
@@ -58,6 +59,9 @@ fn main() -> ExitCode {
 
 type Failure = Box<dyn Error>;
 
+/// Makes a section of the page from a run.
+type Section = fn(&Value) -> String;
+
 /// The newest run of each kind, by the kind: the file's name without date and ending.
 fn newest(folder: &Path) -> Result<BTreeMap<String, (String, String)>, Failure> {
     let mut runs = BTreeMap::new();
@@ -93,21 +97,18 @@ fn run(command: &Command) -> Result<Vec<String>, Failure> {
          in [measurements/](measurements/); no number here is typed by hand. Times are of shared \
          virtual machines: ratios within one run hold better than times.\n",
     );
-    general(&mut page, &table)?;
-    ties(&mut page, &table)?;
-    if let Some(run) = parsed("paper")? {
-        algorithm::write(&mut page, &run)?;
+    page += &general(&table);
+    page += &ties(&table);
+    let sections: [(&str, Section); 4] = [
+        ("paper", algorithm::section),
+        ("coherence", coherence),
+        ("bulk", bulk::section),
+        ("solids", solids),
+    ];
+    for (kind, section) in sections {
+        page += &parsed(kind)?.as_ref().map_or_else(String::new, section);
     }
-    if let Some(run) = parsed("coherence")? {
-        coherence(&mut page, &run)?;
-    }
-    if let Some(run) = parsed("bulk")? {
-        bulk::write(&mut page, &run)?;
-    }
-    if let Some(run) = parsed("solids")? {
-        solids(&mut page, &run)?;
-    }
-    building(&mut page, &table)?;
+    page += &building(&table);
     for (kind, (name, text)) in &runs {
         if Path::new(name).extension().is_some_and(|ending| ending == "txt") {
             write!(
@@ -158,54 +159,37 @@ fn rows(run: &Value) -> &[Value] {
     run["rows"].as_array().map_or(&[], Vec::as_slice)
 }
 
-fn text<'v>(row: &'v Value, key: &str) -> &'v str {
+fn string<'v>(row: &'v Value, key: &str) -> &'v str {
     row[key].as_str().unwrap_or("?")
 }
 
-fn number(row: &Value, path: &[&str]) -> f64 {
-    path.iter().fold(row, |value, key| &value[*key]).as_f64().unwrap_or(f64::NAN)
+/// The figure at a JSON pointer without its first slash; NaN if there is none.
+fn number(row: &Value, path: &str) -> f64 {
+    row.pointer(&format!("/{path}")).and_then(Value::as_f64).unwrap_or(f64::NAN)
 }
 
-/// A number for people: no digits that a noisy machine does not know.
-fn rounded(x: f64) -> String {
-    match x {
-        _ if x.is_nan() => "-".into(),
-        _ if x < 9.95 => format!("{x:.2}"),
-        _ if x < 99.5 => format!("{x:.1}"),
-        _ => thousands(x),
-    }
+/// The sum of the figures at these places in all rows that have them.
+fn sum(run: &Value, paths: &[String]) -> f64 {
+    let figures = rows(run).iter().flat_map(|row| paths.iter().map(|path| number(row, path)));
+    figures.filter(|figure| !figure.is_nan()).sum()
 }
 
-fn thousands(x: f64) -> String {
-    let digits = format!("{x:.0}");
-    let mut grouped = String::new();
-    for (k, digit) in digits.chars().enumerate() {
-        if k > 0 && (digits.len() - k).is_multiple_of(3) {
-            grouped.push(',');
-        }
-        grouped.push(digit);
-    }
-    grouped
-}
-
-fn provenance(page: &mut String, run: &Value) -> Result<(), Failure> {
+fn provenance(run: &Value) -> String {
     let machine = &run["machine"];
-    writeln!(
-        page,
-        "\n{}, {} with {} cores, {}; {}.\n\n```sh\n{}\n```\n",
-        text(run, "date"),
-        text(machine, "cpu"),
-        text(machine, "cores"),
-        text(machine, "system"),
-        text(run, "versions"),
+    format!(
+        "\n{}, {} with {} cores, {}; {}.\n\n```sh\n{}\n```\n\n",
+        string(run, "date"),
+        string(machine, "cpu"),
+        string(machine, "cores"),
+        string(machine, "system"),
+        string(run, "versions"),
         cargo_command(run),
-    )?;
-    Ok(())
+    )
 }
 
 /// The command as one types it in the repository, without folders of the machine it ran on.
 fn cargo_command(run: &Value) -> String {
-    let mut words = text(run, "command").split_whitespace();
+    let mut words = string(run, "command").split_whitespace();
     let program = words.next().unwrap_or_default();
     let mut line = format!("cargo run --release -p colltrans-bench --bin {program} --");
     for word in words {
@@ -222,202 +206,113 @@ fn paper(run: &Value) -> (&'static str, &'static str) {
 }
 
 fn is_tied(row: &Value) -> bool {
-    !["colliding", "separated"].contains(&text(row, "meeting"))
+    !["colliding", "separated"].contains(&string(row, "meeting"))
 }
 
-fn general(page: &mut String, run: &Value) -> Result<(), Failure> {
-    page.push_str("\n## Casts from scratch, general position\n");
-    provenance(page, run)?;
+fn general(run: &Value) -> String {
     let (paper, name) = paper(run);
-    writeln!(
-        page,
-        "Each query timed alone; medians (99th percentiles) in ns. *x* is the median of parry3d-f64's \
+    let columns = format!(
+        "shape:<; vertices:,; :<=meeting; {name}:,={paper}/median_ns (,={paper}/p99_ns);
+        `portal`:,=portal/median_ns (,=portal/p99_ns); `auto`:,=auto/median_ns (,=auto/p99_ns);
+        parry:,=parry/median_ns (,=parry/p99_ns); x:~=parry_over/auto/median; planar:>.1={paper}/planar_problems"
+    );
+    let failures = sum(run, &[paper, "portal", "auto"].map(|who| format!("{who}/failures")));
+    let differ = sum(run, &["parry_disagreements".into()]);
+    format!(
+        "\n## Casts from scratch, general position\n{}Each query timed alone; medians (99th percentiles) in ns. *x* is the median of parry3d-f64's \
          `cast_shapes` over that of `auto`, on the same settings in the same run; *planar* the \
-         planar problems that {name} solves, on average.\n\n\
-         | shape | vertices | | {name} | `portal` | `auto` | parry | x | planar |\n\
-         |---|---:|---|---:|---:|---:|---:|---:|---:|"
-    )?;
-    for row in rows(run).iter().filter(|row| !is_tied(row)) {
-        let pair = |who: &str| {
-            let [median, p99] =
-                ["median_ns", "p99_ns"].map(|key| thousands(number(row, &[who, key])));
-            format!("{median} ({p99})")
-        };
-        writeln!(
-            page,
-            "| {} | {} | {} | {} | {} | {} | {} | {} | {:.1} |",
-            text(row, "shape"),
-            thousands(number(row, &["vertices"])),
-            text(row, "meeting"),
-            pair(paper),
-            pair("portal"),
-            pair("auto"),
-            pair("parry"),
-            rounded(number(row, &["parry_over", "auto", "median"])),
-            number(row, &[paper, "planar_problems"]),
-        )?;
-    }
-    let sum = |key: &dyn Fn(&Value) -> f64| rows(run).iter().map(key).sum::<f64>();
-    let failures = sum(&|row| {
-        [paper, "portal", "auto"].iter().map(|who| number(row, &[who, "failures"])).sum()
-    });
-    let differ = sum(&|row| number(row, &["parry_disagreements"]));
-    writeln!(
-        page,
-        "\nQueries without an answer: {failures}. Answers that differ from parry's by more than 1e-4, \
-         ties included: {differ}."
-    )?;
-    Ok(())
+         planar problems that {name} solves, on average.\n\n{}\n\
+         Queries without an answer: {failures}. Answers that differ from parry's by more than 1e-4, \
+         ties included: {differ}.\n",
+        provenance(run),
+        markdown(&columns, rows(run).iter().filter(|row| !is_tied(row))),
+    )
 }
 
-fn ties(page: &mut String, run: &Value) -> Result<(), Failure> {
-    let tied: Vec<&Value> = rows(run).iter().filter(|row| is_tied(row)).collect();
+fn ties(run: &Value) -> String {
+    let mut tied: Vec<Value> = rows(run).iter().filter(|row| is_tied(row)).cloned().collect();
     if tied.is_empty() {
-        return Ok(());
+        return String::new();
     }
-    page.push_str(
+    let general: BTreeMap<String, Value> = tied
+        .iter()
+        .filter(|row| string(row, "meeting") == "general position")
+        .map(|row| (string(row, "shape").into(), row["auto"]["mean_ns"].clone()))
+        .collect();
+    for row in &mut tied {
+        row["general"] = general.get(string(row, "shape")).cloned().unwrap_or_default();
+    }
+    let columns = "tie:<=shape; placement:<=meeting; `auto`:,=auto/mean_ns; 99 %:,=auto/p99_ns; parry:,=parry/mean_ns;
+        x:~=parry_over/auto/mean; own:~=auto/mean_ns ÷ general; supports:>.1=auto/supports";
+    format!(
         "\n## Casts from scratch, ties\n\nThe same run. Means without the slowest hundredth, in ns: \
          ties are the case in which the mean tells. *x* is parry's mean over ours, *own* our mean \
-         over our mean for the same bodies in general position; *cold*: 4 MiB of other data before each query.\n\n\
-         | tie | placement | `auto` | 99 % | parry | x | own | supports |\n\
-         |---|---|---:|---:|---:|---:|---:|---:|\n",
-    );
-    for row in &tied {
-        let general = tied.iter().find(|other| {
-            text(other, "shape") == text(row, "shape")
-                && text(other, "meeting") == "general position"
-        });
-        let own = general.map_or(f64::NAN, |g| {
-            number(row, &["auto", "mean_ns"]) / number(g, &["auto", "mean_ns"])
-        });
-        writeln!(
-            page,
-            "| {} | {} | {} | {} | {} | {} | {} | {:.1} |",
-            text(row, "shape"),
-            text(row, "meeting"),
-            thousands(number(row, &["auto", "mean_ns"])),
-            thousands(number(row, &["auto", "p99_ns"])),
-            thousands(number(row, &["parry", "mean_ns"])),
-            rounded(number(row, &["parry_over", "auto", "mean"])),
-            rounded(own),
-            number(row, &["auto", "supports"]),
-        )?;
-    }
-    Ok(())
+         over our mean for the same bodies in general position; *cold*: 4 MiB of other data before each query.\n\n{}",
+        markdown(columns, &tied),
+    )
 }
 
-fn coherence(page: &mut String, run: &Value) -> Result<(), Failure> {
-    page.push_str("\n## Coherence\n");
-    provenance(page, run)?;
+fn coherence(run: &Value) -> String {
     let is_whole = rows(run).iter().any(|row| row["solvers"]["cta"].is_object());
     let (paper, until) =
         if is_whole { ("cta", "the exit test") } else { ("cta 1%", "a gap of 1 %") };
-    writeln!(
-        page,
-        "Queries of sequences of 100 configurations, each timed alone. *tracker* and *scratch*: \
+    let columns = format!(
+        "vertices:,; sequence:<=sequences; scratch:,=solvers/scratch/median_ns; tracker:,=solvers/tracker/median_ns;
+        ratio:>.2=solvers/tracker/median_ns ÷ solvers/scratch/median_ns \
+        (>.2=solvers/tracker/mean_ns ÷ solvers/scratch/mean_ns);
+        of parry:>.2=solvers/tracker/mean_ns ÷ parry_8/mean_ns; planar:>.1=solvers/{paper}/planar_problems;
+        with focus:>.2=solvers/{paper} region/planar_problems"
+    );
+    format!(
+        "\n## Coherence\n{}Queries of sequences of 100 configurations, each timed alone. *tracker* and *scratch*: \
          medians in ns on the same sequences; *ratio* that of medians (of means). *of parry* is the \
          tracker's mean over the mean of parry's casts of bodies of 8 vertices in the same run. \
          *planar*: planar problems of the paper's algorithm from the centre of the levels to {until}, \
-         from scratch and with region focus alone.\n\n\
-         | vertices | sequence | scratch | tracker | ratio | of parry | planar | with focus |\n\
-         |---:|---|---:|---:|---:|---:|---:|---:|"
-    )?;
-    for row in rows(run) {
-        let of = |who: &str, key: &str| number(row, &["solvers", who, key]);
-        let ratio = |key: &str| of("tracker", key) / of("scratch", key);
-        writeln!(
-            page,
-            "| {} | {} | {} | {} | {:.2} ({:.2}) | {:.2} | {:.1} | {:.2} |",
-            thousands(number(row, &["vertices"])),
-            text(row, "sequences"),
-            thousands(of("scratch", "median_ns")),
-            thousands(of("tracker", "median_ns")),
-            ratio("median_ns"),
-            ratio("mean_ns"),
-            of("tracker", "mean_ns") / number(row, &["parry_8", "mean_ns"]),
-            of(paper, "planar_problems"),
-            of(&format!("{paper} region"), "planar_problems"),
-        )?;
-    }
-    let differ: f64 = rows(run).iter().map(|row| number(row, &["differences"])).sum();
-    writeln!(
-        page,
-        "\nAnswers that differ from those from scratch beyond both tolerances: {differ}."
-    )?;
-    Ok(())
+         from scratch and with region focus alone.\n\n{}\n\
+         Answers that differ from those from scratch beyond both tolerances: {}.\n",
+        provenance(run),
+        markdown(&columns, rows(run)),
+        sum(run, &["differences".into()]),
+    )
 }
 
-fn solids(page: &mut String, run: &Value) -> Result<(), Failure> {
-    page.push_str("\n## Solids that are not convex\n");
-    provenance(page, run)?;
-    page.push_str(
-        "Times in µs. *x* is parry3d-f64's `cast_shapes` of two `TriMesh` over ours, on the \
-         same settings in the same run, by medians (by means): the least first, and those without \
-         first of all. *flat*: a plate on another, as its name says.\n\n\
-         | what | facets | median | mean | parry, median | x |\n\
-         |---|---:|---:|---:|---:|---:|\n",
-    );
-    let micros = |row: &Value, key: &str| rounded(number(row, &[key]) / 1e3);
+fn solids(run: &Value) -> String {
     let ratio_of = |row: &Value| row["ratio_of_medians"].as_f64().unwrap_or(0.0);
-    let mut sorted: Vec<&Value> = rows(run).iter().collect();
+    let mut sorted: Vec<Value> = rows(run).to_vec();
     sorted.sort_by(|a, b| ratio_of(a).total_cmp(&ratio_of(b)));
-    for row in sorted {
-        let group = text(row, "group");
-        let name = if group == "pairs" {
-            text(row, "name").into()
-        } else {
-            format!("{group}: {}", text(row, "name"))
-        };
-        let is_pair = row["ratio_of_medians"].is_number();
-        let ratio = || {
-            format!(
-                "{} ({})",
-                rounded(number(row, &["ratio_of_medians"])),
-                rounded(number(row, &["ratio"]))
-            )
-        };
-        writeln!(
-            page,
-            "| {} | {} | {} | {} | {} | {} |",
-            name.trim_end_matches(": ?"),
-            thousands(number(row, &["facets"])),
-            micros(row, "median_ns"),
-            micros(row, "mean_ns"),
-            micros(row, "parry_median_ns"),
-            if is_pair { ratio() } else { "-".into() },
-        )?;
+    for row in &mut sorted {
+        let (group, name) = (string(row, "group"), string(row, "name"));
+        if group != "pairs" {
+            row["name"] = format!("{group}: {name}").trim_end_matches(": ?").into();
+        }
     }
-    let differ: f64 = rows(run).iter().filter_map(|row| row["answers_apart"].as_f64()).sum();
-    writeln!(page, "\nAnswers that differ from parry's: {differ}.")?;
-    if rows(run).iter().any(|row| text(row, "start") == "near") {
-        page.push_str(
-            "\n*Near*: settings that meet, started 0.02 times the sum of the radii before. *Near miss*: such \
-             settings moved aside until they miss, by at most 0.01 times the sum. *Touching*: put \
-             forward until they meet, and a millionth of the sum more. All others: 1.05 times it before each \
-             other, and up to 0.7 times it aside.\n",
-        );
-    }
-    Ok(())
+    let columns = "what:<=name; facets:,; median:~=median_ns × 1e-3; mean:~=mean_ns × 1e-3;
+        parry, median:~=parry_median_ns × 1e-3; x:~=ratio_of_medians (~=ratio)";
+    let starts = "\n*Near*: settings that meet, started 0.02 times the sum of the radii before. *Near miss*: such \
+         settings moved aside until they miss, by at most 0.01 times the sum. *Touching*: put \
+         forward until they meet, and a millionth of the sum more. All others: 1.05 times it before each \
+         other, and up to 0.7 times it aside.\n";
+    let has_starts = rows(run).iter().any(|row| string(row, "start") == "near");
+    format!(
+        "\n## Solids that are not convex\n{}Times in µs. *x* is parry3d-f64's `cast_shapes` of two `TriMesh` over ours, on the \
+         same settings in the same run, by medians (by means): the least first, and those without \
+         first of all. *flat*: a plate on another, as its name says.\n\n{}\n\
+         Answers that differ from parry's: {}.\n{}",
+        provenance(run),
+        markdown(columns, &sorted),
+        sum(run, &["answers_apart".into()]),
+        if has_starts { starts } else { "" },
+    )
 }
 
-fn building(page: &mut String, run: &Value) -> Result<(), Failure> {
-    page.push_str(
+fn building(run: &Value) -> String {
+    let columns = "shape:<; vertices:,; bytes a vertex:>.0=bytes_per_vertex; ms:~=build_ms";
+    format!(
         "\n## Memory and building\n\nOf the run of casts from scratch: everything a polyhedron \
          carries, the sections of `cta` included; built from points or faces, drawing them and making \
-         the sections included. The program `memory` tells what sections take.\n\n\
-         | shape | vertices | bytes a vertex | ms |\n|---|---:|---:|---:|\n",
-    );
-    for row in rows(run).iter().filter(|row| text(row, "meeting") == "colliding") {
-        writeln!(
-            page,
-            "| {} | {} | {:.0} | {} |",
-            text(row, "shape"),
-            thousands(number(row, &["vertices"])),
-            number(row, &["bytes_per_vertex"]),
-            rounded(number(row, &["build_ms"])),
-        )?;
-    }
-    Ok(())
+         the sections included. The program `memory` tells what sections take.\n\n{}",
+        markdown(columns, rows(run).iter().filter(|row| string(row, "meeting") == "colliding")),
+    )
 }
 
 /// Median times of colliding ellipsoids against the number of vertices.
@@ -426,11 +321,13 @@ fn speed(run: &Value) -> Figure {
         name: name.into(),
         points: rows(run)
             .iter()
-            .filter(|row| text(row, "shape") == "ellipsoid" && text(row, "meeting") == "colliding")
+            .filter(|row| {
+                string(row, "shape") == "ellipsoid" && string(row, "meeting") == "colliding"
+            })
             .map(|row| {
-                let y = number(row, &[who, "median_ns"]) / 1e3;
-                let count = number(row, &["settings"]) as usize;
-                Point { x: number(row, &["vertices"]), y, low: y, high: y, count }
+                let y = number(row, &format!("{who}/median_ns")) / 1e3;
+                let count = number(row, "settings") as usize;
+                Point { x: number(row, "vertices"), y, low: y, high: y, count }
             })
             .collect(),
     };
@@ -463,30 +360,20 @@ const SMALL: [(&str, u64, &str); 9] = [
 ];
 
 fn small_table(run: &Value) -> Result<String, Failure> {
-    let mut table = format!(
-        "Medians in ns, {} ({}, rustc's release profile); *x* is parry's over ours.\n\n\
-         | bodies | vertices | | colltrans | parry3d-f64 | x |\n|---|---:|---|---:|---:|---:|\n",
-        text(run, "date").get(..10).unwrap_or("?"),
-        text(&run["machine"], "cpu"),
-    );
-    for (shape, asked, meeting) in SMALL {
-        let row = rows(run).iter().find(|row| {
-            text(row, "shape") == shape
-                && row["vertices_asked"].as_u64() == Some(asked)
-                && text(row, "meeting") == meeting
-        });
-        let row =
-            row.ok_or_else(|| format!("the run of `table` has no row {shape} {asked} {meeting}"))?;
-        writeln!(
-            table,
-            "| {shape} | {} | {meeting} | {} | {} | {} |",
-            thousands(number(row, &["vertices"])),
-            thousands(number(row, &["auto", "median_ns"])),
-            thousands(number(row, &["parry", "median_ns"])),
-            rounded(number(row, &["parry_over", "auto", "median"])),
-        )?;
-    }
-    Ok(table)
+    let row = |(shape, asked, meeting): (&str, u64, &str)| {
+        let mut of_shape = rows(run).iter().filter(|row| string(row, "shape") == shape);
+        let row = of_shape
+            .find(|row| row["vertices_asked"] == asked && string(row, "meeting") == meeting);
+        row.ok_or_else(|| format!("the run of `table` has no row {shape} {asked} {meeting}"))
+    };
+    let columns = "bodies:<=shape; vertices:,; :<=meeting; colltrans:,=auto/median_ns; parry3d-f64:,=parry/median_ns;
+        x:~=parry_over/auto/median";
+    Ok(format!(
+        "Medians in ns, {} ({}, rustc's release profile); *x* is parry's over ours.\n\n{}",
+        string(run, "date").get(..10).unwrap_or("?"),
+        string(&run["machine"], "cpu"),
+        markdown(columns, SMALL.into_iter().map(row).collect::<Result<Vec<_>, _>>()?),
+    ))
 }
 
 /// A page with other text between the markers `NAME: begin` and `NAME: end`.
@@ -501,13 +388,6 @@ fn between(name: &str, page: &str, text: &str) -> Result<String, Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn numbers_for_people() {
-        assert_eq!(thousands(1_234_567.0), "1,234,567");
-        assert_eq!(thousands(999.4), "999");
-        assert_eq!([0.333, 12.34, 345.6].map(rounded), ["0.33", "12.3", "346"]);
-    }
 
     #[test]
     fn text_is_replaced_between_its_markers() {

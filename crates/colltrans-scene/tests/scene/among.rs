@@ -6,8 +6,9 @@ use colltrans_convex::{CertificateError, ConvexPolyhedron, ObstacleId, Options, 
 use colltrans_scene::{Among, Obstacles};
 use colltrans_solid::{ByKind, Solid};
 use colltrans_testkit::cases;
-use colltrans_testkit::oracle::among::{FAMILIES, Setting};
+use colltrans_testkit::oracle::among::{FAMILIES, examine};
 use colltrans_testkit::random::Random;
+use colltrans_testkit::tally::Tally;
 use glam::{DQuat, DVec3};
 
 fn cuboid(low: DVec3, high: DVec3) -> ConvexPolyhedron {
@@ -20,17 +21,14 @@ fn at(x: f64, y: f64, z: f64) -> Pose {
 
 #[test]
 fn all_families_are_right() {
-    let (mut stopped, mut tied, mut overlapped, mut refused) = (0, 0, 0, 0);
+    let mut tally = Tally::default();
     for family in FAMILIES {
         for seed in 0..cases(60) {
-            let setting = Setting::draw(family, seed).expect("a setting");
-            let seen = setting.examine().unwrap_or_else(|e| panic!("{family}:{seed}: {e}"));
-            stopped += u32::from(seen.stopped);
-            tied += u32::from(seen.tied);
-            overlapped += u32::from(seen.overlapped);
-            refused += seen.refused;
+            examine(family, seed, &mut tally).unwrap_or_else(|e| panic!("{family}:{seed}: {e}"));
         }
     }
+    let [stopped, tied, overlapped, refused] =
+        ["stopped", "tied", "overlapped", "refused"].map(|name| tally.get(name));
     assert!([stopped, tied, overlapped].iter().all(|&n| n > cases(50)) && refused > cases(500));
 }
 

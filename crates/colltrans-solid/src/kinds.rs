@@ -1,4 +1,4 @@
-//! Bodies, answers and proofs of either kind under one type.
+//! Bodies, answers and proofs of either kind in one type.
 
 use std::sync::Arc;
 
@@ -9,10 +9,10 @@ use crate::solve::nearest::SolidNear;
 use colltrans_convex::answer::{Clearance, Distance, NearPoints};
 use colltrans_convex::body::{ConvexPolyhedron, Features, Placed, Pose};
 
-/// Something of convex bodies, or of solids: a body, an answer, a proof.
+/// A body, an answer or a proof of either kind: convex bodies or solids.
 ///
-/// Answers are of the first kind if both bodies are convex: those are exact to a few roundings and carry
-/// their proofs. Of a solid and a convex body they are those of two solids.
+/// Answers are of the convex kind if both bodies are convex. Those are exact to a few roundings and carry their
+/// proofs. Answers for a solid and a convex body are of the solid kind.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -20,29 +20,29 @@ use colltrans_convex::body::{ConvexPolyhedron, Features, Placed, Pose};
     serde(rename_all = "snake_case")
 )]
 pub enum ByKind<C, S> {
-    /// Of convex bodies.
+    /// The value for convex bodies.
     Convex(C),
-    /// Of solids.
+    /// The value for solids.
     Solid(S),
 }
 
-/// A body of either kind that is kept: many obstacles may share one.
+/// A shared body of either kind; several obstacles may refer to one body.
 pub type AnyBody = ByKind<Arc<ConvexPolyhedron>, Arc<Solid>>;
 
 /// A placed body of either kind.
 pub type AnyPlaced<'a> = ByKind<Placed<'a>, Placed<'a, Solid>>;
 
-/// The distance of two bodies.
+/// The distance of two bodies of either kind.
 pub type AnyDistance = ByKind<Distance, Distance<Solid>>;
 
-/// How far a body can move before another one stops it.
+/// The clearance of a body of either kind: how far it can move before it touches another body.
 pub type AnyClearance = ByKind<Clearance, Clearance<Solid>>;
 
-/// What proves that two bodies are not farther from each other than a number.
+/// Proof of an upper bound on the distance of two bodies of either kind.
 pub type AnyNear = ByKind<NearPoints, SolidNear>;
 
 impl AnyBody {
-    /// The body in a pose.
+    /// Returns the body in a pose.
     pub fn at(&self, pose: Pose) -> AnyPlaced<'_> {
         match self {
             Self::Convex(body) => ByKind::Convex(body.at(pose)),
@@ -51,7 +51,7 @@ impl AnyBody {
     }
 }
 
-/// Reads a field that both kinds have.
+/// Implements getters of [`AnyDistance`] for fields that both kinds have.
 macro_rules! of_both {
     ($($(#[$doc:meta])* $name:ident: $type:ty;)+) => {
         impl AnyDistance {$(
@@ -67,22 +67,22 @@ macro_rules! of_both {
 }
 
 of_both! {
-    /// [`Distance::lower`].
+    /// Returns [`Distance::lower`].
     lower: f64;
-    /// [`Distance::upper`].
+    /// Returns [`Distance::upper`].
     upper: f64;
-    /// [`Distance::on_moving`].
+    /// Returns [`Distance::on_moving`].
     on_moving: DVec3;
-    /// [`Distance::on_fixed`].
+    /// Returns [`Distance::on_fixed`].
     on_fixed: DVec3;
-    /// [`Distance::normal`].
+    /// Returns [`Distance::normal`].
     normal: Option<DVec3>;
-    /// [`Distance::features`].
+    /// Returns [`Distance::features`].
     features: Option<Features>;
 }
 
 impl AnyPlaced<'_> {
-    /// Where the body is.
+    /// Returns the pose of the body.
     pub const fn pose(&self) -> Pose {
         match self {
             Self::Convex(placed) => placed.pose,
@@ -92,7 +92,7 @@ impl AnyPlaced<'_> {
 }
 
 impl AnyDistance {
-    /// What proves the upper bound.
+    /// Returns the proof of the upper bound.
     pub const fn near(&self) -> AnyNear {
         match self {
             Self::Convex(distance) => ByKind::Convex(distance.near),
@@ -102,7 +102,7 @@ impl AnyDistance {
 }
 
 impl AnyClearance {
-    /// [`Clearance::distance`].
+    /// Returns [`Clearance::distance`].
     pub fn distance(&self) -> Option<f64> {
         match self {
             Self::Convex(clearance) => clearance.distance(),
@@ -110,7 +110,8 @@ impl AnyClearance {
         }
     }
 
-    /// The upper bound of where it stops the body: minus infinity if they overlap, infinite if it does not.
+    /// Returns the upper bound of the contact translation: minus infinity if the bodies overlap, infinity if the
+    /// motion is free.
     #[doc(hidden)]
     #[inline]
     pub fn upper(&self) -> f64 {
@@ -126,7 +127,7 @@ impl AnyClearance {
 }
 
 impl AnyNear {
-    /// The distance that is proven not to be exceeded.
+    /// Returns the proven upper bound on the distance.
     pub const fn distance(&self) -> f64 {
         match self {
             Self::Convex(near) => near.distance,

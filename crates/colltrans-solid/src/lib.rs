@@ -1,21 +1,19 @@
-//! Solids that need not be convex: bodies, their casts and distances, and the proofs.
+//! Solids that need not be convex: bodies, casts, distances and proofs.
 //!
-//! [`Solid`] is a body that `colltrans_convex::Cast` and `Pair` accept as they accept a convex polyhedron; what only
-//! solids answer are the methods of [`SolidCast`] and [`SolidPair`]. [`AnyBody`] is a body of either kind.
-//!
-//! The modules, each using only those before it: [`body`] (surfaces and their trees), [`solve`] (the search), [`cast`] and
-//! [`pair`] (the questions), [`kinds`] (bodies and answers of either kind).
-//!
-//! In `body`, `validate` makes a checked surface, `shells` its parts, `tree` a tree of boxes; `shrink` (facets moved inwards)
-//! and `self_intersection` (thin walls) follow when first asked for. In `solve`, `scene` is the setting of two solids,
-//! `overlap` asks about the start, `thin` has points and segments, `fan` the facets around a vertex, `leaf` asks about two
-//! facets, `search` goes best first through both trees, `separate` looks for a plane between the bodies along the direction,
-//! `parted` for one anywhere; `nearest` is the distance. In `cast`, `boxes` tell what passes, `hulls` what is convex,
-//! `tolerance` finds the least tolerance, `proof` and `verify` make and check proofs.
+//! `colltrans_convex::Cast` and `Pair` accept a [`Solid`] as they accept a convex polyhedron. Queries that only
+//! solids answer are methods of [`SolidCast`] and [`SolidPair`]. [`AnyBody`] is a body of either kind. The modules,
+//! in the order of dependence:
+//! - [`body`]: surfaces (`validate`, `shells`), trees of boxes (`tree`), offsets (`shrink`) and thin walls
+//!   (`self_intersection`)
+//! - [`solve`]: the search between two placed solids, separating planes (`separate`, `parted`) and distances
+//!   (`nearest`)
+//! - [`cast`]: clearance by boxes and convex hulls, least tolerances, proofs and their verification
+//! - [`pair`]: distances and their proofs
+//! - [`kinds`]: bodies and answers of either kind
 
 #![allow(
     rustdoc::private_intra_doc_links,
-    reason = "hidden modules are read with their private parts"
+    reason = "the docs of hidden modules link to private items"
 )]
 
 #[doc(hidden)]
@@ -29,7 +27,7 @@ pub mod pair;
 #[doc(hidden)]
 pub mod solve;
 
-/// Proofs of answers between solids: what they hold, and why a pair of nodes matters no more.
+/// Proofs of answers for solids: their entries, and the reasons why a pair of nodes is dismissed.
 pub mod proof {
     pub use crate::cast::{Claim, Cover, SolidCertificate, SolidProof, StartProof, StopProof};
     pub use crate::pair::{DistanceCertificate, SolidPairProof};

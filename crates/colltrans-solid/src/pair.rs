@@ -1,9 +1,10 @@
-//! How far two solids are apart, and the proof of it.
+//! The distance of two solids, and its proof.
 //!
-//! *Surfaces.* The search goes through pairs of facets; its cover is the proof that none is nearer. *Bodies.* They
-//! meet if facets have a point in common or a shell lies inside, which is decided exactly; the first is asked only
-//! where surfaces may be 0 apart, the second only where they are not. The tolerance of a cast plays no part: bodies
-//! are as they are.
+//! - Surfaces: a best-first search compares pairs of facets. Its cover proves that no pair of facets is nearer.
+//! - Bodies: they meet if facets have a common point or if a shell lies inside the other body. Both are decided
+//!   exactly. Common points are searched only if the distance of the surfaces may be 0, enclosed shells only if the
+//!   surfaces are apart.
+//! - A tolerance of a cast has no effect. Distances are those of the nominal bodies.
 
 use std::collections::HashMap;
 
@@ -28,8 +29,9 @@ use colltrans_convex::pair::{Pair, PairBody};
 use colltrans_convex::setting::error::QueryError;
 use colltrans_convex::setting::{Setting, check_length};
 
-/// A proof of the distance of two solids, checked by [`Pair::verify`] without a search: every pair of facets lies
-/// under one entry of a cover, and every entry is looked at by itself.
+/// A proof of the distance of two solids, verified by [`Pair::verify`] without a search.
+///
+/// Each pair of facets is covered by one entry of the cover, and each entry is verified by itself.
 #[derive(Debug, Clone, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -37,29 +39,29 @@ use colltrans_convex::setting::{Setting, check_length};
     serde(deny_unknown_fields)
 )]
 pub struct DistanceCertificate {
-    /// No two points of the bodies are nearer, in world units: the least that an entry of the cover proves. 0 where
+    /// Proven lower bound on the distance, in world units: the least that an entry of the cover proves. It is 0 if
     /// nothing is proven.
     pub lower: f64,
-    /// Why they are not farther apart.
+    /// Proof of the upper bound.
     pub near: SolidNear,
-    /// Why they are not nearer. That no shell is inside the other body is checked anew.
+    /// Proof of the lower bound. Verification checks separately that no shell lies inside the other body.
     pub cover: Cover<Apart>,
 }
 
 impl DistanceCertificate {
-    /// That the bodies are not farther apart than some points; that they are not nearer is not said.
+    /// Returns a proof of the upper bound only; the lower bound is 0.
     pub fn of_near(near: SolidNear) -> Self {
         Self { lower: 0.0, near, cover: Cover::default() }
     }
 }
 
-/// A proof to check about two solids where they are.
+/// A proof to verify about two solids in their poses.
 #[derive(Debug, Clone, Copy)]
 #[non_exhaustive]
 pub enum SolidPairProof<'a> {
-    /// Of both bounds.
+    /// Proof of both bounds of the distance.
     Distance(&'a DistanceCertificate),
-    /// That they are not farther from each other than a number.
+    /// Proof of an upper bound on the distance.
     Near(&'a SolidNear),
 }
 
@@ -70,74 +72,73 @@ checked_as!(SolidPairProof { Distance(DistanceCertificate), Near(SolidNear) });
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[non_exhaustive]
 pub struct OverlapDepth {
-    /// Whether the bodies have a point in common, as they are and exactly.
+    /// Whether the nominal bodies have a common point, decided exactly.
     pub meets: bool,
-    /// As [`SolidCast::least_tolerance`](crate::SolidCast::least_tolerance) says: 0 if the bodies do not overlap, `None` if
-    /// there is none.
+    /// Least tolerance at which the bodies do not overlap, as in
+    /// [`SolidCast::least_tolerance`](crate::SolidCast::least_tolerance). It is 0 if the bodies do not overlap, and
+    /// `None` if no tolerance ends the overlap.
     pub least_tolerance: Option<f64>,
-    /// How much work it was.
+    /// Number of steps of the search.
     #[cfg_attr(feature = "serde", serde(default))]
     pub steps: SolidSteps,
 }
 
 impl Cover<Apart> {
-    /// What the cover says of which facets; `None` if it does not fit the bodies.
+    /// Returns the claim of each entry with its facets, or `None` if the cover does not fit the bodies.
     pub fn claims(&self, pair: &Pair<'_, Solid>) -> Option<Vec<Claim<Apart>>> {
         self.claims_of([pair.moving(), pair.fixed()])
     }
 }
 
-/// What a search says.
+/// Result of a search for the nearest facets.
 struct Said {
     spot: Option<Spot>,
-    /// No two facets are nearer.
+    /// Lower bound on the distance of all facets.
     lower: f64,
-    /// If it was asked for.
+    /// Cover of all pairs of nodes, if a proof was requested and the lower bound is positive.
     cover: Option<Cover<Apart>>,
     steps: SolidSteps,
 }
 
-/// What a search leaves of which a proof is made: points of the bodies, and what covers all pairs of facets, where
-/// they are apart.
+/// Data for a proof: points of the bodies, and a cover of all pairs of facets if the bodies are apart.
 pub struct Unproven {
     near: SolidNear,
     cover: Option<Cover<Apart>>,
 }
 
-/// What a [`Pair`] of two [`Solid`]s answers besides what every pair does.
+/// Queries of a [`Pair`] of two [`Solid`]s that pairs of other bodies do not have.
 pub trait SolidPair<'a>: Sized {
-    /// Of bodies of either kind, as solids: a solid and a convex polyhedron, say.
+    /// Returns the pair of two bodies as solids, for example of a solid and a convex polyhedron.
     ///
     /// # Errors
-    /// A convex body whose facets [`Solid::from_mesh`] refuses.
+    /// Returns an error for a convex body whose facets [`Solid::from_mesh`] rejects.
     fn between<A: AsSolid, B: AsSolid>(
         moving: Placed<'a, A>,
         fixed: Placed<'a, B>,
     ) -> Result<Self, QueryError>;
 
-    /// Computes [`Pair::distance`] and the proof of it. The proof takes a pass over all that the search left out, and a byte for each pair
-    /// of nodes.
+    /// Computes [`Pair::distance`] and its proof. The proof takes an additional pass over the cover, and one byte per
+    /// pair of nodes.
     ///
     /// # Errors
-    /// As [`Pair::distance`].
+    /// Returns an error in the same cases as [`Pair::distance`].
     fn certified_distance(&self) -> Result<(Distance<Solid>, DistanceCertificate), QueryError>;
 
-    /// Computes [`Pair::within`], and the proof of it if they are not closer, or hardly so: of how far apart they are at
-    /// least. That
-    /// they are closer is proven by what the answer holds.
+    /// Computes [`Pair::within`] and a proof of a lower bound on the distance. The proof is `None` if the answer is
+    /// `Closer`, which contains its own proof, or if the search finds no positive lower bound.
     ///
     /// # Errors
-    /// As [`Pair::within`].
+    /// Returns an error in the same cases as [`Pair::within`].
     fn certified_within(
         &self,
         length: f64,
     ) -> Result<(Within<Solid>, Option<DistanceCertificate>), QueryError>;
 
-    /// Do the bodies overlap, and how deep, by the measure that solids have: the least tolerance with which they
-    /// would not. That is no translation; convex bodies have one, [`Pair::depth`].
+    /// Checks whether the bodies overlap, and computes the depth as the least tolerance at which they do not. This
+    /// depth is not a translation; for convex bodies [`Pair::depth`] returns one.
     ///
     /// # Errors
-    /// None at present.
+    /// Returns no error at present.
     ///
     /// ```
     /// # use colltrans::glam::DVec3;
@@ -152,28 +153,29 @@ pub trait SolidPair<'a>: Sized {
     fn overlap_depth(&self) -> Result<OverlapDepth, QueryError>;
 }
 
-/// A search and its proof, apart: for the crates that write files.
+/// Search and proof in separate steps, for the crates that write files.
 #[doc(hidden)]
 pub trait SolidPairSearch {
-    /// The distance, and what a proof is made of, where that is wanted.
+    /// Computes the distance, with the data for a proof if `prove` is set.
     fn ask(&self, prove: bool) -> Result<(Distance<Solid>, Unproven), QueryError>;
 
-    /// The proof by what was found: its lower bound is what the cover proves, at least that of the search.
+    /// Builds the proof from the data of a search. Its lower bound is the one that the cover proves, or 0 if there is
+    /// no cover or it proves nothing.
     fn prove(&self, found: Unproven) -> Result<DistanceCertificate, QueryError>;
 
-    /// [`Pair::within_counted`], and what a proof is made of, where that is wanted.
+    /// Computes [`Pair::within_counted`], with the data for a proof if `prove` is set.
     fn decide(
         &self,
         length: f64,
         prove: bool,
     ) -> Result<((Within<Solid>, SolidSteps), Unproven), QueryError>;
 
-    /// Points of the moving and of the fixed body, in the world, rounded, that are as near to each other as is
-    /// said.
+    /// Returns points of the moving and of the fixed body, rounded, in world coordinates, whose distance `near`
+    /// claims.
     #[cfg(feature = "serde")]
     fn points(&self, near: &SolidNear) -> Result<[DVec3; 2], QueryError>;
 
-    /// Whether a shell of one body lies inside the other one, of bodies whose surfaces do not cross.
+    /// Checks whether a shell of one body lies inside the other one. The surfaces of the bodies must not cross.
     fn is_nested(&self) -> Result<bool, QueryError>;
 }
 
@@ -217,7 +219,7 @@ impl<'a> SolidPair<'a> for Pair<'a, Solid> {
 
     fn overlap_depth(&self) -> Result<OverlapDepth, QueryError> {
         let bodies = [self.bodies.moving_placed(), self.bodies.fixed_placed()];
-        // Neither question knows of a direction.
+        // Neither query depends on the direction.
         let cast = Cast::new(bodies[0], bodies[1], DVec3::Z)?;
         let found = cast.intersects()?;
         let (meets, mut steps) = (found.meets, found.evidence.steps);
@@ -255,7 +257,8 @@ impl SolidPairSearch for Pair<'_, Solid> {
         check_length(length)?;
         let scene = scene(self)?;
         let until = Until {
-            // What is a little farther is far enough, by more than a bound may be lowered.
+            // Pairs beyond this distance count as farther. The margin exceeds the amount by which a bound may be
+            // lowered.
             beyond: length + 0.125 * scene.noise,
             enough: length - triangle::LENGTH * scene.noise,
         };
@@ -323,7 +326,7 @@ impl PairBody for Solid {
         pair: &Pair<'_, Self>,
         proof: SolidPairProof<'_>,
     ) -> Result<f64, CertificateError> {
-        // A direction that is no part of the proof.
+        // The scene has a direction, which the proof does not use.
         let scene = scene(pair).map_err(|_| CertificateError::Start)?;
         match proof {
             SolidPairProof::Near(near) => verify_near(&scene, near),
@@ -336,11 +339,13 @@ impl PairBody for Solid {
     }
 }
 
+/// Returns the nominal bodies in a common frame; its direction `z` has no meaning.
 fn scene<'a>(pair: &Pair<'a, Solid>) -> Result<Scene<'a>, QueryError> {
     let setting = Setting::of(pair.bodies, DVec3::Z)?;
     Ok(Scene::new(&setting, [0.0; 2], 0.0))
 }
 
+/// Searches for the nearest facets, and records the cover if `prove` is set.
 fn search(pair: &Pair<'_, Solid>, scene: &Scene, until: Until, prove: bool) -> Said {
     let mut cuts = HashMap::new();
     let mut search = Search::new(scene, until, |nodes, reason| {
@@ -349,11 +354,12 @@ fn search(pair: &Pair<'_, Solid>, scene: &Scene, until: Until, prove: bool) -> S
         }
     });
     let ((found, lower), steps) = (search.run(), search.steps);
-    // An early end leaves pairs that nothing was said of, and no bound.
+    // After an early end some pairs have no reason, and there is no bound.
     let cover = (prove && lower > 0.0).then(|| Cover::new([pair.moving(), pair.fixed()], &cuts));
     Said { spot: found.map(Spot::from), lower, cover, steps }
 }
 
+/// Returns the distance of the bodies from the result for their surfaces.
 fn answer(pair: &Pair<'_, Solid>, scene: &Scene, said: &Said) -> Distance<Solid> {
     let origin = pair.bodies.translations[0];
     let mut steps = said.steps;
@@ -379,7 +385,11 @@ fn answer(pair: &Pair<'_, Solid>, scene: &Scene, said: &Said) -> Distance<Solid>
     }
 }
 
-/// The least that the entries of a cover prove.
+/// Returns the smallest distance that the entries of a cover prove.
+///
+/// # Errors
+/// Returns [`CertificateError::Cover`] if the cover does not fit the bodies, or for an entry that proves no positive
+/// distance or is marked as examined without being a pair of leaves.
 fn least_proven(scene: &Scene, cover: &Cover<Apart>) -> Result<f64, CertificateError> {
     let bodies = [scene.moving.solid, scene.fixed.solid];
     let axes = Axes::new(scene);
@@ -396,7 +406,7 @@ fn least_proven(scene: &Scene, cover: &Cover<Apart>) -> Result<f64, CertificateE
     Ok(least)
 }
 
-/// The distance that is proven not to be exceeded.
+/// Verifies the upper bound, and returns the distance of the points that prove it.
 fn verify_near(scene: &Scene, near: &SolidNear) -> Result<f64, CertificateError> {
     match *near {
         SolidNear::Meeting(place) if is_touch(scene, place) => Ok(0.0),
@@ -417,7 +427,7 @@ fn verify_near(scene: &Scene, near: &SolidNear) -> Result<f64, CertificateError>
     }
 }
 
-/// The distance that no two points are below.
+/// Verifies the lower bound, and returns the distance that the cover proves.
 fn verify_cover(scene: &Scene, certificate: &DistanceCertificate) -> Result<f64, CertificateError> {
     let DistanceCertificate { lower: claimed, near, cover } = certificate;
     if *claimed == 0.0 && cover.is_empty() {

@@ -1,8 +1,8 @@
-//! Which shells are one body: a shell, and the cavities in it.
+//! Bodies of a solid: a shell with its cavities.
 //!
-//! A cavity, a closed shell with a negative volume, belongs to the smallest closed shell of a positive one that contains
-//! it. Containment is decided as in [`shells`], exactly, down the tree of boxes: a vertex of the cavity, and the line
-//! through it along `z`.
+//! A cavity is a closed shell with a negative volume. It belongs to the smallest closed shell of positive volume that
+//! contains it. As in [`shells`], containment is decided exactly by the ray along `z` from a vertex of the cavity,
+//! with the tree of boxes.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,8 @@ use super::Solid;
 use super::shells::{self, TRIED, crossing, lies_on};
 
 impl Solid {
-    /// For each of [`Self::triangles`] the body that it is of: a closed shell with the cavities in it, or an open shell.
+    /// Returns the body of each of [`Self::triangles`]: a closed shell with its cavities, or an open shell.
+    ///
     /// Bodies are numbered from 0, in the order of their first facets in the input.
     ///
     /// ```
@@ -54,8 +55,10 @@ impl Solid {
         shell_of.iter().map(|&shell| number[body_of[shell as usize]]).collect()
     }
 
-    /// Returns the smallest shell of the same piece around a cavity; the cavity itself if there is none. Shells touch:
-    /// a vertex of the cavity is looked at that lies on no other shell, if there is such a vertex.
+    /// Returns the smallest closed shell of the same piece around a cavity, or the cavity itself if there is none.
+    ///
+    /// The vertex that is tested lies on no other shell, if one of the first [`TRIED`] triangles has such a vertex,
+    /// because shells may touch.
     fn container(&self, cavity: usize, shell_of: &[u32], volumes: &[f64]) -> usize {
         let corners = |t: usize| self.triangles[t].map(|v| self.vertices[v as usize]);
         let first = self.spans[cavity].triangle as usize;
@@ -104,7 +107,7 @@ mod tests {
         block(DVec3::splat(low), DVec3::splat(high))
     }
 
-    /// The bodies of the facets, by their numbers in the input.
+    /// Returns the body of each input facet.
     fn bodies(mesh: &Mesh) -> Vec<u32> {
         let solid = Solid::from_open_mesh(&mesh.vertices, &mesh.faces).unwrap();
         let mut of_facet = vec![u32::MAX; mesh.faces.len()];
@@ -116,20 +119,20 @@ mod tests {
         of_facet
     }
 
-    /// So many facets of each.
+    /// Returns each number six times.
     fn runs(numbers: &[u32]) -> Vec<u32> {
         numbers.iter().flat_map(|&n| [n; 6]).collect()
     }
 
     #[test]
     fn cavities_belong_to_what_is_around_them() {
-        // A nut in a hollow ball in a hollow box, the file in an order of its own; beside them, inside out, another box.
+        // A nut in a hollow ball in a hollow box, with the facets out of order, next to a reversed box.
         let mesh = cube(2.0, 3.0)
             .joined(&cube(0.5, 4.5).reversed())
             .joined(&cube(1.0, 4.0))
             .joined(&cube(1.5, 3.5).reversed())
             .joined(&cube(0.0, 5.0));
-        // All of it inside out is the same.
+        // Reversing all shells changes no body.
         assert_eq!(bodies(&mesh.clone().reversed()), runs(&[0, 1, 2, 2, 1]));
         assert_eq!(bodies(&mesh.joined(&cube(6.0, 7.0).reversed())), runs(&[0, 1, 2, 2, 1, 3]));
     }
@@ -141,7 +144,7 @@ mod tests {
         assert_eq!(bodies(&face_to_face), runs(&[0, 1]));
         let edge = block(DVec3::new(1.0, 1.0, 0.0), DVec3::new(2.0, 2.0, 1.0));
         assert_eq!(bodies(&side(0.0).joined(&edge)), runs(&[0, 1]));
-        // They overlap, or one lies in the other and is no cavity.
+        // Overlapping shells, and a shell inside another one that is not a cavity.
         assert_eq!(bodies(&side(0.0).joined(&side(0.5))), runs(&[0, 1]));
         assert_eq!(bodies(&cube(0.0, 3.0).joined(&cube(1.0, 2.0))), runs(&[0, 1]));
     }

@@ -1,9 +1,9 @@
-//! A convex polyhedron as a solid, made when it is first asked for and kept.
+//! Convex polyhedra as solids, built on first use and stored with the polyhedron.
 
 use super::{AsSolid, Solid, SolidError};
 use colltrans_convex::body::{ConvexPolyhedron, Keepable};
 
-/// The solid of a convex polyhedron, kept with it.
+/// The solid of a convex polyhedron, stored with it.
 #[derive(Debug)]
 struct KeptSolid(Result<Solid, SolidError>);
 
@@ -14,12 +14,13 @@ impl Keepable for KeptSolid {
 }
 
 impl Solid {
-    /// A convex polyhedron, its faces cut into triangles. Vertices keep the numbers of its input, and
-    /// faces their numbers. A flat polygon becomes a sheet with two sides and no volume; it overlaps
-    /// what it is inside of.
+    /// Builds a solid from a convex polyhedron by triangulating its faces. Vertices keep their input indices, and
+    /// faces their numbers.
+    ///
+    /// A flat polygon becomes a surface with two sides and no volume. It overlaps bodies that contain it.
     ///
     /// # Errors
-    /// A point or a segment, which has no area.
+    /// Returns [`SolidError::NoArea`] for a point or a segment.
     pub fn from_convex(body: &ConvexPolyhedron) -> Result<Self, SolidError> {
         check_area(body)?;
         let facets: Vec<Vec<u32>> =
@@ -41,7 +42,7 @@ impl AsSolid for ConvexPolyhedron {
             _ => Solid::from_convex(self),
         };
         let made = self.kept().get_or_make(|| KeptSolid(make()));
-        let KeptSolid(made) = made.expect("nothing else is kept with a convex polyhedron");
+        let KeptSolid(made) = made.expect("no other type is stored with a convex polyhedron");
         made.as_ref().map_err(Clone::clone)
     }
 }

@@ -1,25 +1,25 @@
-//! Corners and edges cut off a box: a polytope of 26 sides around facets (Klosowski et al., "Efficient
-//! collision detection using bounding volume hierarchies of k-DOPs", IEEE TVCG 4(1), 1998).
+//! Boxes with cut corners and edges: a polytope with 26 sides around facets (Klosowski et al., "Efficient collision
+//! detection using bounding volume hierarchies of k-DOPs", IEEE TVCG 4(1), 1998).
 //!
-//! A corner of a box is named by its signs `s = (+-1, +-1, +-1)`, an edge by the same with one sign 0.
-//! Along `s` no facet reaches as far as the box by a *depth*, which is kept as a share of the box's
-//! extents along `s`, in steps of `1/256`, rounded down.
-//!
-//! A normal with `|n_i| >= |n_j| >= |n_k|` is the sum of `|n_i| - |n_j|` times an axis, `|n_j| - |n_k|`
-//! times an edge and `|n_k|` times a corner. So no facet reaches farther along it than the box, less
-//! the last two times the depths there.
+//! - A corner of a box is named by its signs `s = (+-1, +-1, +-1)`, an edge by signs of which one is 0.
+//! - The *depth* of a corner or edge is the difference of the support values of the box and of the facets along `s`.
+//!   It is stored as a share of the extent of the box along `s`, in steps of `1/256`, rounded down.
+//! - A normal with `|n_i| >= |n_j| >= |n_k|` is a sum of `|n_i| - |n_j|` times an axis, `|n_j| - |n_k|` times an edge
+//!   and `|n_k|` times a corner. Therefore the support value of the facets along the normal is at most that of the
+//!   box, minus the depths of this edge and corner times their weights. Derivation: `docs/theory/solid-bounds.md`.
 
 use colltrans_convex::body::Aabb;
 use glam::{BVec3, DVec3};
 
-/// Eight corners, and four edges along each axis.
+/// Number of cuts: eight corners, and four edges along each axis.
 pub(crate) const CUTS: usize = 20;
+/// Number of steps of a share.
 const STEPS: f64 = 256.0;
-/// For the roundings of a share on its way in and out; those of coordinates are up to whoever reads
-/// it.
+/// Factor of shares. It covers the rounding errors of their computation and use, but not those of coordinates, which
+/// callers add.
 const SHARE: f64 = 1.0 - 1e-9;
 
-/// How far points reach along the signs of all corners and edges.
+/// Maxima of points along the signs of all corners and edges.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Reach([f64; CUTS]);
 
@@ -54,7 +54,7 @@ impl Reach {
         }
     }
 
-    /// The depths below the corners and edges of a box, as shares.
+    /// Returns the depths of points below the corners and edges of their box, as shares in steps.
     pub(super) fn below(&self, bounds: &Aabb) -> [u8; CUTS] {
         let sums = extents(bounds.size());
         let mut ends = Self::NONE;
@@ -64,13 +64,13 @@ impl Reach {
         }
         std::array::from_fn(|k| {
             let depth = ends.0[k] - self.0[k];
-            // Saturates, and is 0 where the box has no extent.
+            // The conversion saturates, and yields 0 if the box has no extent (a quotient that is not a number).
             (depth / sums[k] * (STEPS * SHARE)) as u8
         })
     }
 }
 
-/// The extents of a box along the signs of corners and edges.
+/// Returns the extents of a box along the signs of corners and edges.
 fn extents(e: DVec3) -> [f64; CUTS] {
     let mut sums = [e.element_sum(); CUTS];
     for axis in 0..3 {
@@ -79,18 +79,19 @@ fn extents(e: DVec3) -> [f64; CUTS] {
     sums
 }
 
-/// A table of depths, with places to spare so that no index is out of bounds.
+/// Depths of all corners and edges. The length 32 makes bounds checks of 5-bit indices unnecessary.
 pub(crate) type Depths = [f64; 32];
 
-/// One depth, by a step of its extent, of facets that have moved by at most `moved`: the box's sides as
-/// much, three of them at a corner, and what is below it by no more than `sqrt(3)` times that.
+/// Computes a depth from its share, the extent of one step, and the distance by which facets may have moved. A corner
+/// of the box moves by at most 3 times that distance along its signs, and the facets below it by at most `sqrt(3)`
+/// times.
 #[inline]
 fn depth(cut: f64, step: f64, moved: f64) -> f64 {
     let rest = step * cut - 5.0 * moved;
     if rest > 0.0 { rest } else { 0.0 }
 }
 
-/// All depths of a box with these extents.
+/// Returns all depths of a box with these side lengths, of which the facets have moved by at most `moved`.
 #[inline]
 pub(crate) fn depths(cuts: &[u8; CUTS], size: DVec3, moved: f64) -> Depths {
     let extents = extents(size * STEPS.recip());
@@ -102,45 +103,46 @@ pub(crate) fn depths(cuts: &[u8; CUTS], size: DVec3, moved: f64) -> Depths {
     depths
 }
 
-/// A normal as a sum of an axis, an edge and a corner; see the module's head.
+/// A normal as a sum of an axis, an edge and a corner, as defined in the head of the module.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Parts {
     corner: u8,
     edge: u8,
-    /// How much of each.
+    /// Weights of the corner and of the edge.
     weights: [f64; 2],
 }
 
 impl Parts {
     #[inline]
     pub(crate) fn new(n: DVec3) -> Self {
-        // Without branches, which would be guessed.
+        // Without branches, because they would be mispredicted.
         let DVec3 { x, y, z } = n.abs();
         let lower = |a: f64, b: f64| if a < b { a } else { b };
         let upper = |a: f64, b: f64| if a < b { b } else { a };
         let (low, high) = (lower(x, y), upper(x, y));
         let (least, second) = (lower(low, z), lower(high, upper(low, z)));
         let axis = if z < low { 2 } else { u32::from(y < x) };
-        // A corner's negative signs are bits; an edge's are those of the two other axes, in cyclic order.
+        // The bits of a corner are its negative signs. Those of an edge belong to the two other axes, in cyclic
+        // order.
         let corner = n.is_negative_bitmask();
         let edge = 8 + 4 * axis + ((corner | corner << 3) >> (axis + 1) & 3);
         Self { corner: corner as u8, edge: edge as u8, weights: [least, second - least] }
     }
 
-    /// What depths take from the box's reach along the normal.
+    /// Returns the amount by which the depths lower the support value of the box along the normal.
     #[inline]
     pub(crate) fn gain(&self, depths: &Depths) -> f64 {
         let [w, v] = self.weights;
         w * depths[usize::from(self.corner & 31)] + v * depths[usize::from(self.edge & 31)]
     }
 
-    /// Less than that, by the edge alone.
+    /// Returns the part of [`Self::gain`] that the edge contributes.
     #[inline]
     pub(crate) fn edge_gain(&self, depths: &Depths) -> f64 {
         self.weights[1] * depths[usize::from(self.edge & 31)]
     }
 
-    /// The same of a node's cuts, as for [`depths`], without a table.
+    /// Returns [`Self::gain`] for the cuts of a node, with the parameters of [`depths`], without computing a table.
     #[inline]
     pub(crate) fn gain_of(&self, cuts: &[u8; CUTS], size: DVec3, moved: f64) -> f64 {
         let [w, v] = self.weights;
@@ -157,7 +159,7 @@ mod tests {
 
     #[test]
     fn no_point_is_beyond_its_box_less_the_cuts() {
-        // Points of a tilted ring, which leaves all corners of its box free but touches its sides.
+        // Points of a tilted ring. It touches the sides of its box, and not the corners.
         let points: Vec<DVec3> = (0..60)
             .map(|k| {
                 let (s, c) = (0.1 * f64::from(k)).sin_cos();

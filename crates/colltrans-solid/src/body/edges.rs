@@ -1,8 +1,8 @@
-//! Which facet lies across each edge.
+//! Adjacency of triangles across edges, in linear time.
 //!
-//! Half-edges `3 t + k`, from corner `k` of triangle `t` to the next one, are put into a bucket by
-//! the smaller of their two vertices: linear in the size of the mesh. Where more than two facets meet
-//! at an edge, they are paired so that every pair bounds a wedge of material with no facet in it.
+//! Half-edge `3 t + k` goes from corner `k` of triangle `t` to the next corner. Half-edges are sorted into buckets by
+//! their smaller vertex. At an edge with more than two facets, facets are paired such that each pair bounds a wedge
+//! of material that contains no other facet.
 
 use std::cmp::Ordering;
 
@@ -11,22 +11,22 @@ use glam::DVec3;
 use super::exact;
 use super::wedge::{Axis, Ray, Wedge};
 
-/// No facet lies across this edge.
+/// Marks a side of a triangle without a neighbour.
 pub(crate) const NONE: u32 = u32::MAX;
 
-/// What the half-edges of a mesh make of each other.
+/// The pairs of half-edges of a mesh, and the half-edges without a partner.
 pub(super) struct Edges {
     /// The triangle across each half-edge, or [`NONE`].
     pub(super) neighbours: Vec<[u32; 3]>,
-    /// Half-edges that nothing lies across, at edges used an odd number of times.
+    /// Half-edges without a partner, at edges with an odd number of facets.
     pub(super) open: Vec<u32>,
-    /// Half-edges without a partner in the opposite direction, at edges used an even number of times.
+    /// Half-edges without a partner in the opposite direction, at edges with an even number of facets.
     pub(super) inconsistent: Vec<u32>,
-    /// Edges at which more than two facets meet.
+    /// Number of edges with more than two facets, as many in each direction.
     pub(super) crowded: usize,
 }
 
-/// The two ends of a half-edge.
+/// Returns the start and end vertex of a half-edge.
 pub(super) fn ends(triangles: &[[u32; 3]], half_edge: u32) -> [u32; 2] {
     let (t, k) = (half_edge as usize / 3, half_edge as usize % 3);
     [triangles[t][k], triangles[t][(k + 1) % 3]]
@@ -55,7 +55,7 @@ impl Edges {
         edges
     }
 
-    /// Pairs the half-edges of one edge; `1` in an entry's middle marks the backward ones.
+    /// Pairs the half-edges of one edge. The middle of an entry is 1 for backward half-edges, which come last.
     fn match_up(&mut self, vertices: &[DVec3], triangles: &[[u32; 3]], edge: &[(u32, u8, u32)]) {
         let (forward, backward) = edge.split_at(edge.partition_point(|e| e.1 == 0));
         if let ([f], [b]) = (forward, backward) {
@@ -85,7 +85,8 @@ impl Edges {
     }
 }
 
-/// Half-edges by their smaller vertex: the larger one, whether it runs backwards, and its number.
+/// Returns the half-edges by their smaller vertex: the start of each bucket, and entries of the larger vertex, 1 for
+/// a backward half-edge, and the half-edge.
 fn buckets(vertices: usize, triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<(u32, u8, u32)>) {
     let half_edges = || (0..3 * triangles.len() as u32).map(|h| (h, ends(triangles, h)));
     let mut starts = vec![0_u32; vertices + 1];
@@ -105,7 +106,7 @@ fn buckets(vertices: usize, triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<(u32, u8, 
     (starts, entries)
 }
 
-/// The facets around one edge, by the points opposite to it.
+/// The facets around one edge, represented by their vertices opposite to the edge.
 struct Fan {
     p: DVec3,
     q: DVec3,
@@ -119,8 +120,9 @@ impl Fan {
         Self { p, q, apexes: edge.iter().map(apex).collect() }
     }
 
-    /// Of the backward facets the one that bounds the material of forward facet `f`: one that lies on it, as where two
-    /// bodies touch face to face, is the farthest.
+    /// Returns the backward facet that bounds the material of forward facet `f`: the nearest one clockwise. A
+    /// backward facet that coincides with `f` counts as the farthest, for example between two bodies in face-to-face
+    /// contact.
     fn nearest_clockwise(&self, f: usize, forward: usize) -> usize {
         let mut best = forward;
         for b in forward + 1..self.apexes.len() {

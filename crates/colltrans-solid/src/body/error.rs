@@ -1,32 +1,36 @@
-//! Why no solid could be built.
+//! Errors of the construction of solids.
 
 use glam::DVec3;
 use thiserror::Error;
 
 use colltrans_convex::setting::error::QueryError;
 
-/// Why a [`Solid`](super::Solid) was refused: what is wrong, where, and how often.
+/// Why a [`Solid`](super::Solid) could not be built: the defect, its place, and the number of such defects.
 #[derive(Debug, Clone, PartialEq, Error)]
 #[non_exhaustive]
 pub enum SolidError {
-    /// There are no facets with an area.
-    #[error("the mesh has no facets with an area")]
-    Empty,
-    /// A point or a segment in place of a body with facets.
+    /// The mesh has no facet with an area.
     #[error(
-        "a {what} has no area, which this question needs; casts, distances, motions and scenes accept a \
-         {what} as it is, and a small box around it is accepted everywhere"
+        "the mesh has no facets with an area; accepted: at least one facet whose corners are not on one line"
+    )]
+    Empty,
+    /// A point or a segment, given to a query that requires facets.
+    #[error(
+        "a {what} has no area, which this query requires; casts, distances, motions and scenes accept a \
+         {what}, and all queries accept a small box around it"
     )]
     NoArea {
         /// `point` or `segment`.
         what: &'static str,
     },
-    /// More than 32-bit indices can number.
-    #[error("{count} facets were given; at most {limit} are supported")]
+    /// The mesh has more vertices, facets or corners than 32-bit indices support.
+    #[error(
+        "the mesh has {count} facets, triangles, vertices or corners; accepted: at most {limit}"
+    )]
     TooMany {
-        /// Number of facets given.
+        /// Largest of the numbers of vertices, facets, triangles and corners.
         count: usize,
-        /// Number of facets supported.
+        /// Maximum number that is supported.
         limit: usize,
     },
     /// A coordinate is NaN, infinite or outside the range in which the predicates are exact.
@@ -41,55 +45,61 @@ pub enum SolidError {
         /// The vertex as given.
         point: DVec3,
     },
-    /// A facet names a vertex that does not exist.
-    #[error("facet {facet} names vertex {vertex}, but there are only {vertices} vertices")]
+    /// A facet has a vertex index that does not exist.
+    #[error(
+        "facet {facet} names vertex {vertex}, but there are only {vertices} vertices, counted from 0"
+    )]
     UnknownVertex {
         /// Index of the facet.
         facet: usize,
-        /// The index that does not exist.
+        /// The invalid vertex index.
         vertex: usize,
         /// Number of vertices.
         vertices: usize,
     },
-    /// Edges with a facet on one side only: see [`Solid::from_open_mesh`](crate::Solid::from_open_mesh).
+    /// Edges with a facet on one side only; [`Solid::from_open_mesh`](crate::Solid::from_open_mesh) accepts them.
     #[error(
         "the surface is open: {count} edges have a facet on one side only, the first from vertex \
-         {from} to vertex {to} of facet {facet}; one that is open on purpose, as a scan is, has to be \
-         called open"
+         {from} to vertex {to} of facet {facet}; close it, or declare the surface as open if it is a \
+         sheet or a scan"
     )]
     Open {
-        /// How many edges.
+        /// Number of such edges.
         count: usize,
-        /// Start of the first one, along its facet.
+        /// Start vertex of the first such edge, along its facet.
         from: usize,
-        /// Its end.
+        /// End vertex of this edge.
         to: usize,
-        /// The facet on the side that has one.
+        /// The facet at this edge.
         facet: usize,
     },
-    /// Edges along which neighbouring facets run in the same direction.
+    /// Edges at which adjacent facets have inconsistent orientations.
     #[error(
-        "{count} edges have facets that are oriented against each other, the first between \
-         vertices {from} and {to} of facet {facet}"
+        "{count} edges have facets with inconsistent orientations, the first between vertices {from} \
+         and {to} of facet {facet}; accepted: all facets counter-clockwise as seen from outside"
     )]
     Inconsistent {
-        /// How many edges.
+        /// Number of such edges.
         count: usize,
-        /// One end of the first one.
+        /// One end of the first such edge.
         from: usize,
-        /// Its other end.
+        /// The other end of this edge.
         to: usize,
-        /// A facet at it.
+        /// A facet at this edge.
         facet: usize,
     },
-    /// A polygon that crosses itself: it has no triangulation.
-    #[error("facet {facet} is a polygon that crosses itself or folds back")]
+    /// A polygon that crosses itself and therefore has no triangulation.
+    #[error(
+        "facet {facet} is a polygon that crosses itself or folds back; divide it into simple polygons"
+    )]
     Polygon {
         /// Index of the facet.
         facet: usize,
     },
-    /// An amount to shrink or grow by that is negative, not finite or out of range.
-    #[error("the amount {amount} to shrink or grow by is negative, not finite or out of range")]
+    /// An offset that is negative, not finite, or moves coordinates out of range.
+    #[error(
+        "invalid amount {amount} to shrink or grow by; accepted: finite, not negative, in range"
+    )]
     Amount {
         /// The amount as given.
         amount: f64,

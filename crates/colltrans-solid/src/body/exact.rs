@@ -1,4 +1,4 @@
-//! Exact signs in a body's own frame, from coordinates as given.
+//! Exact signs of determinants in the frame of one body, from its given coordinates.
 
 use std::cmp::Ordering;
 
@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3, Vec3Swizzles};
 pub(crate) use colltrans_kernel::predicates::sign;
 use colltrans_kernel::predicates::{orient2d, orient3d};
 
-/// The point along one of the axes, counter-clockwise order kept.
+/// Projects a point along an axis, preserving counter-clockwise order.
 pub(super) fn drop_axis(p: DVec3, axis: usize) -> DVec2 {
     match axis {
         0 => p.yz(),
@@ -16,23 +16,23 @@ pub(super) fn drop_axis(p: DVec3, axis: usize) -> DVec2 {
     }
 }
 
-/// Sign of `det[b - a, c - a, e]` with `e` the unit vector of an axis.
+/// Returns the sign of `det[b - a, c - a, e]`, where `e` is the unit vector of an axis.
 pub(crate) fn turn(a: DVec3, b: DVec3, c: DVec3, axis: usize) -> Ordering {
     let [a, b, c] = [a, b, c].map(|p| drop_axis(p, axis));
     sign(orient2d(a, b, c))
 }
 
-/// Sign of `det[b - a, c - a, e - a]`.
+/// Returns the sign of `det[b - a, c - a, e - a]`.
 pub(crate) fn side(a: DVec3, b: DVec3, c: DVec3, e: DVec3) -> Ordering {
     sign(orient3d(a, b, c, e))
 }
 
-/// Whether three points lie on one line.
+/// Checks whether three points lie on one line.
 pub(super) fn collinear(a: DVec3, b: DVec3, c: DVec3) -> bool {
     (0..3).all(|axis| turn(a, b, c, axis) == Ordering::Equal)
 }
 
-/// Whether `m`, on the line of `p` and `q`, lies strictly between them.
+/// Checks whether `m`, a point on the line through `p` and `q`, lies strictly between them.
 pub(super) fn between(p: DVec3, q: DVec3, m: DVec3) -> bool {
     let axis = (q - p).abs().max_position();
     let (p, q, m) = (p[axis], q[axis], m[axis]);

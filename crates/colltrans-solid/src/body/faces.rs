@@ -1,16 +1,14 @@
-//! The polygonal faces that a solid's triangles make up, and what of them a place is part of.
+//! Polygonal faces made of triangles, and the feature of a face, edge or corner at a point.
 //!
-//! A face grows from its largest triangle, over edges, as long as the next triangle looks to the same
-//! side and its corners lie in the plane of the face so far, to within the precision of the
-//! coordinates; triangles of one input facet always belong together. That plane, through the centre
-//! and by the sum of the area vectors, is known the better the larger the face is, as small triangles
-//! of rounded corners need; and as it is not the neighbour's, the small angles of a cylinder do not
-//! add up. The precision is [`SINGLE`] of the body's reach where all coordinates are numbers of single precision,
-//! else [`DOUBLE`] of it. This only names: nothing that is measured depends on it.
-//!
-//! An edge of the mesh is *sharp* if it has no neighbour, or one of another face. Where exactly two
-//! sharp edges meet in a straight line, they are parts of one edge of the solid; where others meet is
-//! a corner; all other vertices of the mesh lie within a face.
+//! - A face grows from its largest triangle across edges. It takes neighbours of the same input facet, and neighbours
+//!   with the same orientation whose corners lie in the current plane of the face, within the precision.
+//! - This plane has the sum of the area vectors as normal and contains the weighted centroid. It is more accurate for
+//!   a larger face, which small triangles with rounded corners require. It is not the plane of the neighbour, so that
+//!   the small angles between facets of a cylinder do not accumulate.
+//! - The precision is [`SINGLE`] times the reach of the body if all coordinates are single-precision numbers, else
+//!   [`DOUBLE`] times the reach. Faces only name features. No length or bound depends on them.
+//! - An edge of the mesh is *sharp* if it has no neighbour or one of another face. Two sharp edges that alone meet in
+//!   a straight line belong to one edge of the solid. Other end points of sharp edges are corners.
 
 use glam::DVec3;
 
@@ -19,18 +17,19 @@ use super::edges::NONE;
 use super::tree;
 use colltrans_convex::body::{FaceId, Feature};
 
-/// Precision of coordinates, in multiples of the largest distance from the origin.
+/// Precision of single-precision coordinates, in multiples of the largest distance from the origin.
 const SINGLE: f64 = 1.0 / (1_u64 << 22) as f64;
+/// Precision of double-precision coordinates, in multiples of the largest distance from the origin.
 const DOUBLE: f64 = 1.0 / (1_u64 << 48) as f64;
 
-/// Of each triangle, its face.
+/// The face of each triangle.
 #[derive(Debug, Clone)]
 pub(crate) struct Faces {
-    /// The least number of the input facets that the face is made of.
+    /// Number of the face of each triangle: the smallest input facet of the face.
     of: Vec<u32>,
-    /// Of each vertex, whether more than two sharp edges end there.
+    /// Whether more than two sharp edges end at each vertex.
     corners: Vec<bool>,
-    /// How far apart coordinates may be that were meant to be one, a length.
+    /// Maximum difference of coordinates that were meant to be equal, a length.
     precision: f64,
 }
 
@@ -79,7 +78,7 @@ impl Faces {
         Self { of, corners, precision }
     }
 
-    /// Of the same triangles in another order.
+    /// Returns the faces for the same triangles in another order.
     pub(super) fn ordered(&self, order: &[u32]) -> Self {
         let of = order.iter().map(|&t| self.of[t as usize]).collect();
         Self { of, corners: self.corners.clone(), ..*self }
@@ -90,7 +89,7 @@ impl Faces {
     }
 }
 
-/// Of each vertex, whether more than two sharp edges end there.
+/// Returns for each vertex whether more than two sharp edges end there.
 fn corners(solid: &Solid, of: &[u32]) -> Vec<bool> {
     let mut ends = vec![0_u8; solid.vertices.len()];
     let mut count = |v: u32| ends[v as usize] = ends[v as usize].saturating_add(1);
@@ -98,7 +97,7 @@ fn corners(solid: &Solid, of: &[u32]) -> Vec<bool> {
         for (k, &n) in neighbours.iter().enumerate() {
             let rim = n == NONE;
             if rim || of[n as usize] != of[t] {
-                // What is across tells of its other end.
+                // The neighbour counts the other end.
                 count(solid.triangles[t][k]);
             }
             if rim {
@@ -109,7 +108,7 @@ fn corners(solid: &Solid, of: &[u32]) -> Vec<bool> {
     ends.into_iter().map(|count| count > 2).collect()
 }
 
-/// The plane of the triangles of a face: their area vector, and their centre.
+/// The plane of a face: the sum of the area vectors, and the weighted centroid of the triangles.
 #[derive(Debug, Clone, Copy, Default)]
 struct Plane {
     area: DVec3,
@@ -125,8 +124,8 @@ impl Plane {
         self.weight += weight;
     }
 
-    /// Whether a triangle lies in it, to within a length, and looks to the same side; one that is less
-    /// high than that length may look anywhere.
+    /// Checks whether a triangle lies in the plane within a length, and has the same orientation. The orientation of
+    /// a triangle whose height is at most this length is not checked.
     fn holds(&self, corners: [DVec3; 3], area: DVec3, precision: f64) -> bool {
         let (normal, center) = (self.area.normalize_or_zero(), self.weighted / self.weight);
         let [a, b, c] = corners;
@@ -136,11 +135,11 @@ impl Plane {
     }
 }
 
-/// The sharp edges at a vertex: the other end of each, and a triangle that it is a side of.
+/// The sharp edges at a vertex: for each one its other end and a triangle of which it is a side.
 #[derive(Default)]
 struct Sharp {
     ends: [[u32; 2]; 2],
-    /// Stops at three.
+    /// Number of sharp edges; counting stops at 3.
     count: usize,
 }
 
@@ -154,8 +153,8 @@ impl Sharp {
 }
 
 impl Solid {
-    /// For each of [`Self::triangles`], the number of the face that it is part of, as in
-    /// [`Feature::Face`]: the least number of the input's facets that make up its polygon.
+    /// Returns the number of the face of each of [`Self::triangles`], as in [`Feature::Face`]. It is the smallest
+    /// input facet of the face.
     pub fn face_numbers(&self) -> &[u32] {
         &self.faces().of
     }
@@ -168,14 +167,15 @@ impl Solid {
         self.triangles[triangle as usize].map(|v| self.vertices[v as usize])
     }
 
-    /// How far apart coordinates may be that were meant to be one, a length.
+    /// Returns the maximum difference of coordinates that were meant to be equal, a length.
     pub(crate) fn precision(&self) -> f64 {
         self.faces().precision
     }
 
-    /// What touches with a normal (of the body frame) at a point of a triangle: of all that holds the
-    /// point, to within `slack`, the face that lies in the contact plane, else the edge that does, else
-    /// the smallest.
+    /// Returns the feature of the body that touches at a point of a triangle, for a contact normal (body frame).
+    ///
+    /// Among the features that contain the point within `slack`, a face in the contact plane has precedence, then an
+    /// edge in this plane, then the smallest feature.
     pub(crate) fn feature_at(
         &self,
         triangle: u32,
@@ -234,7 +234,7 @@ impl Solid {
         Feature::Face(FaceId(self.faces().of[triangle as usize]))
     }
 
-    /// What side `k` of a triangle, from corner `k` to the next one, is part of: an edge or a face.
+    /// Returns the feature of side `k` of a triangle, from corner `k` to the next corner: an edge or a face.
     fn side_feature(&self, triangle: u32, k: usize) -> Feature {
         if !self.is_sharp(triangle, k) {
             return self.face_feature(triangle);
@@ -243,7 +243,7 @@ impl Solid {
         self.edge_between([own[k], own[(k + 1) % 3]], triangle)
     }
 
-    /// What corner `k` of a triangle is part of: a corner of the solid, an edge or a face.
+    /// Returns the feature of corner `k` of a triangle: a corner, an edge or a face of the solid.
     fn corner_feature(&self, triangle: u32, k: usize) -> Feature {
         let vertex = self.triangles[triangle as usize][k];
         let corner = Feature::Vertex(self.vertex_index[vertex as usize]);
@@ -259,24 +259,24 @@ impl Solid {
         }
     }
 
-    /// Whether side `k` of a triangle is an edge, and not within a face.
+    /// Checks whether side `k` of a triangle belongs to an edge of the solid, and not to the interior of a face.
     pub(crate) fn is_sharp(&self, triangle: u32, k: usize) -> bool {
         let n = self.neighbours[triangle as usize][k];
         let of = &self.faces().of;
         n == NONE || of[n as usize] != of[triangle as usize]
     }
 
-    /// Whether more than two sharp edges end at a vertex.
+    /// Checks whether more than two sharp edges end at a vertex.
     fn is_corner(&self, vertex: u32) -> bool {
         self.faces().corners[vertex as usize]
     }
 
-    /// Goes around a vertex of a triangle, or from rim to rim, until `visit` says stop: the triangles,
-    /// and which of their corners the vertex is.
+    /// Visits the triangles around a vertex, or from one boundary edge to the other, until `visit` returns true. The
+    /// second argument of `visit` is the position of the vertex in the triangle.
     fn around(&self, vertex: u32, triangle: u32, mut visit: impl FnMut(u32, usize) -> bool) {
         let place = |t: u32| self.triangles[t as usize].iter().position(|&v| v == vertex);
         let across = |t: u32, side: usize| self.neighbours[t as usize][side % 3];
-        // Over the side that leaves the vertex, then over the one that leads to it.
+        // First across the sides that start at the vertex, then across the sides that end there.
         for side in [0, 2] {
             let first = if side == 0 { Some(triangle) } else { None };
             let mut at = first.or_else(|| Some(across(triangle, place(triangle)? + side)));
@@ -296,7 +296,7 @@ impl Solid {
         }
     }
 
-    /// Whether no edge ends at a vertex of a triangle, nor runs through it.
+    /// Checks whether a vertex of a triangle has no sharp edges.
     pub(crate) fn is_within_face(&self, vertex: u32, triangle: u32) -> bool {
         let mut any = false;
         self.each_sharp(vertex, triangle, |_| {
@@ -306,17 +306,19 @@ impl Solid {
         !any
     }
 
-    /// The sharp edges with a vertex of a triangle, told until `visit` says stop.
+    /// Visits the sharp edges at a vertex of a triangle until `visit` returns true. Arguments are the other end and a
+    /// triangle.
     fn each_sharp(&self, vertex: u32, triangle: u32, mut visit: impl FnMut([u32; 2]) -> bool) {
         self.around(vertex, triangle, |t, k| {
             let own = self.triangles[t as usize];
             let arriving = (k + 2) % 3;
-            // An edge between two triangles is told by the one that it leaves in.
+            // An edge between two triangles is visited in the triangle in which it starts at the vertex.
             let rim = self.neighbours[t as usize][arriving] == NONE;
             self.is_sharp(t, k) && visit([own[(k + 1) % 3], t]) || rim && visit([own[arriving], t])
         });
     }
 
+    /// Returns the sharp edges at a vertex of a triangle; only the first two are stored.
     fn sharp_at(&self, vertex: u32, triangle: u32) -> Sharp {
         let mut sharp = Sharp::default();
         self.each_sharp(vertex, triangle, |edge| {
@@ -326,7 +328,7 @@ impl Solid {
         sharp
     }
 
-    /// Whether the middle one of three vertices lies between the others.
+    /// Checks whether the middle one of three vertices lies on the segment between the others, within the precision.
     fn is_straight(&self, [a, m, b]: [u32; 3]) -> bool {
         let [a, m, b] = [a, m, b].map(|v| self.vertices[v as usize]);
         let (to, whole) = (m - a, b - a);
@@ -335,15 +337,15 @@ impl Solid {
         off <= slack * slack && to.dot(whole) > 0.0 && (b - m).dot(whole) > 0.0
     }
 
-    /// The whole straight edge that a side of a triangle is part of.
+    /// Returns the complete straight edge that contains a side of a triangle.
     fn edge_between(&self, [a, b]: [u32; 2], triangle: u32) -> Feature {
         let far = self.end_of_edge(a, [a, b], triangle);
         let near = self.end_of_edge(far, [b, a], triangle);
         self.edge_of([near, far])
     }
 
-    /// The whole straight edge that runs through `a`, `m` and `b`, with a triangle at either end and `m`
-    /// between them.
+    /// Returns the complete straight edge through `a`, `m` and `b`, where `m` lies between the others. `s` and `t`
+    /// are triangles at the sides to `a` and `b`.
     fn edge_through(&self, [a, m, b]: [u32; 3], [s, t]: [u32; 2]) -> Feature {
         let far = self.end_of_edge(a, [m, b], t);
         let near = self.end_of_edge(far, [m, a], s);
@@ -356,8 +358,8 @@ impl Solid {
         Feature::Edge(ends)
     }
 
-    /// From a vertex `before` to the next one, a corner of the triangle, and on as far as the edge is
-    /// straight, as seen from its other `end`.
+    /// Returns the end of a straight edge: walks from vertex `before` through `at`, a corner of the triangle, as long
+    /// as the edge is straight from its other end `end`.
     fn end_of_edge(&self, end: u32, [mut before, mut at]: [u32; 2], mut triangle: u32) -> u32 {
         for _ in 0..self.vertices.len() {
             if self.is_corner(at) {
@@ -374,11 +376,11 @@ impl Solid {
         at
     }
 
-    /// The corners of a face, as positions in [`Self::vertices`]: loop by loop, each counter-clockwise
-    /// about the material, the one with the largest area first.
+    /// Returns the corners of a face, as positions in [`Self::vertices`]. They are listed loop by loop, each
+    /// counter-clockwise around the material. The loop with the largest area is first.
     pub(crate) fn face_corners(&self, face: u32) -> Vec<u32> {
         let of = &self.faces().of;
-        // Rims by where they start, and a triangle at each.
+        // Sharp sides of the face: start, end and triangle, sorted by start.
         let mut rims: Vec<[u32; 3]> = Vec::new();
         for t in (0..self.triangles.len() as u32).filter(|t| of[*t as usize] == face) {
             let own = self.triangles[t as usize];

@@ -1,8 +1,11 @@
 //! Solids that need not be convex, validated on input.
 //!
-//! Data flow: facets -> [`validate`] (one checked surface of triangles) -> [`shells`] (which parts
-//! there are, which are inside out) -> [`tree`] (what a search goes down). [`shrink`] is made when it
-//! is first asked for; [`self_intersection`] finds the walls that are too thin for it.
+//! - [`validate`] builds a checked surface of triangles from facets.
+//! - [`shells`] finds its connected parts, and reverses those that are inside out.
+//! - [`tree`] builds the tree of boxes that searches descend.
+//! - [`shrink`] computes offsets on first use, and [`self_intersection`] finds walls that are too thin for an offset.
+//! - [`faces`] joins triangles to polygonal faces on first use; [`bodies`] assigns cavities to the shells around
+//!   them.
 
 mod bodies;
 mod convex;
@@ -39,11 +42,11 @@ pub use shrink::{ShrinkReport, Shrinking, displace};
 use tree::Node;
 pub(crate) use validate::Surface;
 
-/// A solid in its own frame, bounded by triangles; it may have holes, cavities and several parts.
+/// A solid in its own frame, bounded by triangles. It may have holes, cavities and several parts.
 ///
-/// Closed and consistently oriented, or a surface some shells of which are open
-/// ([`Self::from_open_mesh`]). Several closed surfaces may overlap: the solid is what any of them
-/// encloses. Immutable, `Send` and `Sync`. Vertices and facets keep the numbers of the input.
+/// The surface is closed and consistently oriented, or has open shells ([`Self::from_open_mesh`]). Several closed
+/// surfaces may overlap. The solid is the union of the regions that they enclose. A solid is immutable, `Send` and
+/// `Sync`. Vertices and facets keep the indices of the input.
 ///
 /// ```
 /// use colltrans::Solid;
@@ -84,11 +87,11 @@ pub struct Solid {
     nodes: Vec<Node>,
     spans: Vec<Span>,
     reach: f64,
-    /// How many vertices and facets the input had.
+    /// Number of vertices and of facets of the input.
     input_counts: [u32; 2],
     report: SolidReport,
     shrinking: OnceLock<Shrinking>,
-    /// Made when a feature is first named.
+    /// Computed when a feature is first requested.
     faces: OnceLock<Box<Faces>>,
     groups: Box<Groups>,
     kept: Kept,
@@ -104,22 +107,23 @@ impl Numbered for Solid {
     }
 }
 
-/// What a [`Solid`] can be asked against, and made of.
+/// A body that can be used as a [`Solid`] in queries and as a piece of a solid.
 pub trait AsSolid: Numbered {
-    /// The body as a solid: itself, or a convex polyhedron's surface, made when it is first asked for
-    /// and kept.
+    /// Returns the body as a solid. The surface of a convex polyhedron is built on first use and stored with it. A
+    /// flat polygon becomes a surface with two sides and no volume.
     ///
     /// # Errors
-    /// A point or a segment. A flat polygon is a sheet with two sides and no volume.
+    /// Returns [`SolidError::NoArea`] for a point or a segment, and an error for a body whose facets
+    /// [`Solid::from_mesh`] rejects.
     fn as_solid(&self) -> Result<&Solid, SolidError>;
 
-    /// Returns the body as [`Self::as_solid`] does, and a point or a segment as one facet without area.
+    /// Returns the body as a solid, and a point or a segment as one facet without area.
     ///
-    /// Casts, distances, motions and scenes accept such a facet. It is an open shell: it has no inside, and
-    /// no tolerance shrinks it.
+    /// Casts, distances, motions and scenes accept such a facet. It is an open shell: it has no interior and no
+    /// offset.
     ///
     /// # Errors
-    /// A body whose facets [`Solid::from_mesh`] refuses.
+    /// Returns an error for a body whose facets [`Solid::from_mesh`] rejects.
     fn as_surface(&self) -> Result<&Solid, SolidError>;
 }
 
@@ -137,20 +141,20 @@ impl AsSolid for Solid {
     }
 }
 
-/// Where a shell is.
+/// The bounding box of a shell.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Span {
     pub(crate) bounds: Aabb,
-    /// One of its triangles.
+    /// Position of one triangle of the shell.
     pub(crate) triangle: u32,
 }
 
-/// How the facets are grouped.
+/// Groups of facets.
 #[derive(Debug, Clone, Default)]
 struct Groups {
-    /// The first input facet of each piece after the first one.
+    /// First input facet of each piece, without the first piece.
     piece_starts: Vec<u32>,
-    /// Made when a point or a segment lies on one of several shells.
+    /// Results of [`Solid::bodies`], computed when a point or a segment lies on one of several shells.
     body_of: OnceLock<Vec<u32>>,
 }
 
@@ -162,16 +166,16 @@ impl Groups {
 }
 
 impl Solid {
-    /// A solid from the polygons of a closed surface (body frame, any unit).
+    /// Builds a solid from the polygons of a closed surface (body frame, any unit).
     ///
-    /// Polygons run counter-clockwise as seen from outside and are cut into triangles. Vertices with
-    /// equal coordinates are one; facets without an area are left out; vertices that lie exactly on
-    /// an edge are joined to it. Shells that are inside out as a whole are turned.
-    /// [`Self::report`] says what was done.
+    /// Polygons are counter-clockwise as seen from outside, and are triangulated. Vertices with equal coordinates are
+    /// merged, facets without area removed, and vertices that lie exactly on an edge joined to it. Shells that are
+    /// inside out are reversed. [`Self::report`] lists these repairs.
     ///
     /// # Errors
-    /// A surface that is open, or whose facets are oriented against each other; a coordinate that is
-    /// not finite or out of range; a polygon that crosses itself; no facets.
+    /// Returns an error for an open surface and for facets with inconsistent orientations. It also rejects
+    /// coordinates that are not finite or out of range, invalid vertex indices, polygons that cross themselves, and
+    /// meshes with no facets or too many.
     pub fn from_mesh<F: AsRef<[u32]>>(
         vertices: &[DVec3],
         facets: &[F],
@@ -181,13 +185,14 @@ impl Solid {
         Ok(Self::assemble(surface, report))
     }
 
-    /// A surface shells of which may be open, as a scan or a sheet is. Closed shells keep their inside.
-    /// Open ones ([`ShellKind::Sided`], [`ShellKind::Sheet`]) have no side: their facets block from
-    /// both, and so do their rims, edge on. Nothing is inside them, but they overlap what they pass
-    /// through. [`Self::report`] says of what kind each shell is.
+    /// Builds a solid from a surface with open shells, such as a scan or a sheet.
+    ///
+    /// Closed shells keep their interior. Open shells ([`ShellKind::Sided`], [`ShellKind::Sheet`]) have no interior;
+    /// they block from both sides and with their boundary edges, and overlap bodies that they pass through.
+    /// [`Self::report`] lists the kind of each shell.
     ///
     /// # Errors
-    /// As [`Self::from_mesh`], except that edges may have a facet on one side only.
+    /// Returns an error in the same cases as [`Self::from_mesh`], except for edges with a facet on one side only.
     pub fn from_open_mesh<F: AsRef<[u32]>>(
         vertices: &[DVec3],
         facets: &[F],
@@ -197,11 +202,14 @@ impl Solid {
         Ok(Self::assemble(surface, report))
     }
 
-    /// The union of several solids or convex polyhedra, which may overlap. The inputs of the pieces are
-    /// numbered through, with all that they had ([`Self::input_counts`]), used or not.
+    /// Builds the union of several solids or convex polyhedra, which may overlap.
+    ///
+    /// The inputs of the pieces are numbered consecutively, including unused vertices and facets
+    /// ([`Self::input_counts`]).
     ///
     /// # Errors
-    /// No pieces, more facets than 32-bit indices can number, or a point or segment among them.
+    /// Returns an error if there are no pieces, more facets than 32-bit indices support, or a point or segment among
+    /// the pieces.
     pub fn from_pieces<'a, B: AsSolid + 'a>(
         pieces: impl IntoIterator<Item = &'a B>,
     ) -> Result<Self, SolidError> {
@@ -251,7 +259,7 @@ impl Solid {
         Ok(solid)
     }
 
-    /// Builds a surface of one facet without area: a point or a segment, by its corners.
+    /// Builds a surface with one facet without area: a point or a segment, given by corner positions.
     pub(crate) fn without_area(body: &ConvexPolyhedron, corners: [u32; 3]) -> Self {
         let surface = Surface {
             vertices: body.vertices().to_vec(),
@@ -276,7 +284,7 @@ impl Solid {
         Self::from_surface(surface, SolidReport { shells: vec![shell], ..SolidReport::default() })
     }
 
-    /// Checks whether a triangle is a point or a segment: two of its corners are one vertex.
+    /// Checks whether a triangle is a point or a segment. Its second and third corner are then the same vertex.
     #[doc(hidden)]
     #[inline]
     pub fn is_without_area(&self, triangle: usize) -> bool {
@@ -284,7 +292,7 @@ impl Solid {
         b == c
     }
 
-    /// The same, made of a body's vertices, which have numbers in that body's input.
+    /// Replaces vertex indices, and their number, by those of the input of the body from which the solid was built.
     pub(crate) fn renumbered(mut self, inputs: &[InputVertex]) -> Self {
         for v in &mut self.vertex_index {
             *v = inputs[v.index()];
@@ -293,12 +301,14 @@ impl Solid {
         self
     }
 
+    /// Orients the shells of a validated surface, separates its sheets and builds the solid.
     fn assemble(mut surface: Surface, mut report: SolidReport) -> Self {
         shells::orient(&mut surface, &mut report);
         surface.part_sheets();
         Self::from_surface(surface, report)
     }
 
+    /// Builds the tree, and orders the triangles by its leaves.
     fn from_surface(surface: Surface, report: SolidReport) -> Self {
         let (mut nodes, order) = tree::build(&surface.vertices, &surface.triangles);
         let mut place = vec![0; order.len()];
@@ -333,7 +343,7 @@ impl Solid {
         solid
     }
 
-    /// Boxes of the shells, by their connected triangles.
+    /// Computes the bounding boxes of the shells.
     fn find_spans(&self) -> Vec<Span> {
         let shell_of = shells::components(&self.neighbours);
         let mut spans: Vec<Span> = Vec::new();
@@ -348,8 +358,8 @@ impl Solid {
         spans
     }
 
-    /// Whether numbers of vertices, facets and nodes mean the same of another solid. What bounds a node may still
-    /// be rounded otherwise.
+    /// Checks whether indices of vertices, facets and nodes have the same meaning in another solid. The bounds of
+    /// nodes may differ by rounding.
     #[cfg(feature = "json")]
     #[doc(hidden)]
     #[inline]
@@ -361,88 +371,84 @@ impl Solid {
             && self.nodes.iter().map(place).eq(other.nodes.iter().map(place))
     }
 
-    /// The vertices in use, in the body frame.
+    /// Returns the vertices in use, in the body frame.
     pub fn vertices(&self) -> &[DVec3] {
         &self.vertices
     }
 
-    /// For each of [`Self::vertices`], its number in the input.
+    /// Returns the input index of each of [`Self::vertices`].
     pub fn vertex_indices(&self) -> &[InputVertex] {
         &self.vertex_index
     }
 
-    /// How many vertices and facets the input had, used or not; of a convex polyhedron, vertices up to
-    /// the last one in use.
+    /// Returns the number of vertices and of facets of the input, including unused ones. For a convex polyhedron,
+    /// vertices after the last used one are not counted.
     pub fn input_counts(&self) -> [u32; 2] {
         self.input_counts
     }
 
-    /// The triangles, as indices into [`Self::vertices`].
+    /// Returns the triangles, as indices into [`Self::vertices`].
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
 
-    /// For each of [`Self::triangles`], the facet of the input that it is a part of.
+    /// Returns the input facet to which each of [`Self::triangles`] belongs.
     pub fn facet_indices(&self) -> &[InputFacet] {
         &self.facet_index
     }
 
-    /// Whether all shells are closed; if not, the body is a *surface*, at least in part.
+    /// Checks whether all shells are closed.
     pub fn is_closed(&self) -> bool {
         !self.nodes[0].is_open()
     }
 
-    /// Whether a triangle belongs to an open shell: it has no side.
+    /// Checks whether a triangle belongs to an open shell.
     #[doc(hidden)]
     #[inline]
     pub fn is_open(&self, triangle: usize) -> bool {
         self.kinds[triangle] != ShellKind::Closed
     }
 
-    /// The same of a shell, in the order of [`Self::spans`].
+    /// Checks whether a shell is closed; shells are numbered as in [`Self::spans`].
     fn is_shell_closed(&self, shell: u32) -> bool {
         !self.is_open(self.spans[shell as usize].triangle as usize)
     }
 
-    /// Whether nothing is left of a closed body when it is shrunk by this amount, seen by its box alone:
-    /// then every point of it is at most as deep.
+    /// Checks whether a closed body vanishes under an inward offset by this amount, because the amount is at least
+    /// half of the smallest side of its box.
     pub(crate) fn vanishes(&self, amount: f64) -> bool {
         amount > 0.0 && 2.0 * amount >= self.thickness() && self.is_closed()
     }
 
-    /// The smallest side of its box.
+    /// Returns the smallest side of the bounding box.
     pub(crate) fn thickness(&self) -> f64 {
         self.bounds().size().min_element()
     }
 
-    /// Whether some shell is closed, so that there is an inside.
+    /// Checks whether the solid has an interior, that is, a closed shell.
     pub(crate) fn has_inside(&self) -> bool {
         self.report.count(ShellKind::Closed) > 0
     }
 
-    /// Whether a shell can be shrunk.
+    /// Checks whether any shell has an offset, that is, is not a sheet.
     #[doc(hidden)]
     #[inline]
     pub fn can_shrink(&self) -> bool {
         self.report.shells.iter().any(|s| s.kind != ShellKind::Sheet)
     }
 
-    /// What was noticed when it was built.
+    /// Returns the report of the construction: shells and repairs.
     pub fn report(&self) -> &SolidReport {
         &self.report
     }
 
-    /// The volume of all shells together, in cubic units; overlaps of pieces count twice.
+    /// Returns the sum of the volumes of all shells, in cubic units. Overlaps of pieces count twice.
     pub fn volume(&self) -> f64 {
         self.report.shells.iter().map(|s| s.volume).sum()
     }
 
-    /// At least and at most the volume, exactly; `None` with an open shell, which has no volume.
-    ///
-    /// The sum is that of `6 V = a . (b x c)` over all triangles, from one vertex. Each of the six products
-    /// of three differences that make a term is rounded 8 times at most, so a term is off by `10 u` of
-    /// their absolute sum, which is rounded itself; each addition by `u` of what comes out. The errors'
-    /// sum is rounded too, by far less than a hundredth.
+    /// Computes proven bounds on the volume, `[lower, upper]`; `None` if a shell is open. Derivation:
+    /// `docs/theory/solid-bounds.md`.
     pub fn volume_bounds(&self) -> Option<[f64; 2]> {
         const U: f64 = f64::EPSILON / 2.0;
         if !self.is_closed() {
@@ -463,35 +469,34 @@ impl Solid {
         Some([lower.min(value), upper.max(value)])
     }
 
-    /// Smallest and largest coordinates of all vertices.
+    /// Returns the bounding box of all vertices.
     pub fn bounds(&self) -> Aabb {
         self.nodes[0].bounds
     }
 
-    /// What shrinking it by this amount takes; `None` where it stays as it is.
+    /// Returns the offset field, or `None` if this amount changes nothing.
     fn shrinking_by(&self, amount: f64) -> Option<&Shrinking> {
         (amount != 0.0 && self.can_shrink()).then(|| self.shrinking())
     }
 
-    /// A box around the body, shrunk by this amount.
+    /// Returns a box around the body offset inwards by this amount.
     pub(crate) fn box_shrunk_by(&self, amount: f64) -> Aabb {
         let bounds = self.bounds();
         let shrinking = self.shrinking_by(amount);
         shrinking.map_or(bounds, |shrinking| shrinking.boxed(bounds, amount, 0))
     }
 
-    /// How far shrinking it by this amount moves a vertex, at most.
+    /// Returns an upper bound on the displacement of a vertex under an offset by this amount.
     pub(crate) fn moved_by(&self, amount: f64) -> f64 {
         self.shrinking_by(amount).map_or(0.0, |shrinking| shrinking.farthest * amount.abs())
     }
 
-    /// Bytes of memory that the solid occupies now, on the heap and in itself: what is made when it is first
-    /// asked for (shrunk facets, polygons) counts once it is there.
+    /// Returns the memory that the solid occupies now, in bytes. Lazily computed data (offset facets, polygons)
+    /// counts once it exists.
     pub fn memory_bytes(&self) -> usize {
         size_of::<Self>() + self.heap_bytes()
     }
 
-    /// Bytes on the heap.
     pub(crate) fn heap_bytes(&self) -> usize {
         self.vertices.capacity() * size_of::<DVec3>()
             + self.vertex_index.capacity() * size_of::<u32>()
@@ -509,12 +514,12 @@ impl Solid {
             + self.kept.heap_bytes()
     }
 
-    /// What a query keeps with the body.
+    /// Returns the slot for data that queries derive from the body.
     pub(crate) fn kept(&self) -> &Kept {
         &self.kept
     }
 
-    /// The largest distance of a vertex from the origin of the body frame.
+    /// Returns the largest distance of a vertex from the origin of the body frame.
     pub(crate) fn reach(&self) -> f64 {
         self.reach
     }
@@ -533,12 +538,12 @@ impl Solid {
         &self.spans
     }
 
-    /// Returns [`Self::bodies`], which are computed once.
+    /// Returns [`Self::bodies`], computed on first use.
     pub(crate) fn body_map(&self) -> &[u32] {
         self.groups.body_of.get_or_init(|| self.bodies())
     }
 
-    /// Returns the number of the piece that a triangle is of.
+    /// Returns the index of the piece to which a triangle belongs.
     fn piece_of(&self, triangle: usize) -> usize {
         let facet = self.facet_index[triangle].0;
         self.groups.piece_starts.partition_point(|start| *start <= facet)
@@ -546,7 +551,7 @@ impl Solid {
 }
 
 impl Solid {
-    /// This body and a motion, for a cast of bodies that turn.
+    /// Returns the body with a motion, for a cast of rotating bodies.
     pub fn along<'a>(&'a self, motion: &'a Motion) -> Moving<'a, Self> {
         Moving { body: self, motion: Cow::Borrowed(motion) }
     }

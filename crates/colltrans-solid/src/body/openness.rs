@@ -1,12 +1,13 @@
-//! What open shells are: all but closed, or sheets.
+//! Classification of open shells: sided (almost closed) or sheet.
 //!
-//! The generalised winding number of a shell at a point (Jacobson, Kavan and Sorkine-Hornung, "Robust
-//! inside-outside segmentation using generalized winding numbers", ACM Transactions on Graphics 32(4),
-//! 2013) is the solid angle at which its facets are seen, in multiples of the whole sphere: 1 inside of
-//! a closed one and 0 outside. Across a facet it falls by 1 from the inside to the outside, and on it,
-//! the facet itself left out, it is the mean of the two. So a shell is *sided* where that is near a half:
-//! above 0.9 inside and below 0.1 outside. Facets are asked at their centroids, spread evenly over the
-//! area. No function of libm but the square root is called, so a shell is of one kind everywhere.
+//! The generalised winding number of a shell at a point (Jacobson, Kavan and Sorkine-Hornung, "Robust inside-outside
+//! segmentation using generalized winding numbers", ACM Transactions on Graphics 32(4), 2013) is the solid angle that
+//! its facets subtend, as a share of the whole sphere. It is 1 inside a closed shell and 0 outside.
+//! - Across a facet it decreases by 1 from the inside to the outside. On the facet, without the facet itself, it is
+//!   the mean of both sides. Therefore a shell is *sided* where this value is near 1/2: above 0.9 inside and below
+//!   0.1 outside.
+//! - Samples are centroids of facets, spread evenly over the area.
+//! - No library function except the square root is called, so that a shell has the same kind on every platform.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -16,16 +17,17 @@ use super::report::{Shell, ShellKind};
 use super::tree;
 use super::validate::Surface;
 
-/// How far from a half the winding number on a facet may be.
+/// Maximum deviation of the winding number on a facet from 1/2 (exclusive).
 const FARTHEST: f64 = 0.1;
-/// One facet in so many may be farther, by area.
+/// Reciprocal of the share of samples that may deviate more.
 const EXCEPTIONS: usize = 100;
-/// Solid angles looked at for a shell, about, and facets asked, at least and at most.
+/// Approximate number of solid angles computed for a shell.
 const WORK: usize = 1 << 22;
+/// Minimum and maximum number of samples of a shell.
 const ASKED: [usize; 2] = [64, 512];
 
-/// Tells sided shells among the open ones, which are all said to be sheets so far, and says of every
-/// triangle of what kind it is.
+/// Finds the sided shells among the open ones, which must all have the kind `Sheet`, and sets the kind of each
+/// triangle.
 pub(super) fn classify(surface: &mut Surface, shell_of: &[u32], shells: &mut [Shell]) {
     if shells.iter().all(|s| s.kind == ShellKind::Closed) {
         return;
@@ -47,6 +49,7 @@ pub(super) fn classify(surface: &mut Surface, shell_of: &[u32], shells: &mut [Sh
     }
 }
 
+/// Checks whether the winding number is near 1/2 at all but a hundredth of the samples.
 fn is_sided(facets: &[[DVec3; 3]]) -> bool {
     let area = |f: &[DVec3; 3]| tree::normal(*f).0.length();
     let whole: f64 = facets.iter().map(area).sum();
@@ -54,7 +57,7 @@ fn is_sided(facets: &[[DVec3; 3]]) -> bool {
     let (mut passed, mut next, mut wrong) = (0.0, 0, 0);
     for (own, facet) in facets.iter().enumerate() {
         passed += area(facet);
-        // So many of the evenly spread places fall upon this facet.
+        // Number of the evenly spread samples on this facet.
         let mut places = 0;
         while next < count && (next as f64 + 0.5) * whole < passed * count as f64 {
             (next, places) = (next + 1, places + 1);
@@ -69,7 +72,7 @@ fn is_sided(facets: &[[DVec3; 3]]) -> bool {
     true
 }
 
-/// The winding number at the centroid of a facet, which is left out.
+/// Returns the winding number at the centroid of a facet, without the contribution of this facet.
 fn winding(facets: &[[DVec3; 3]], own: usize) -> f64 {
     let [a, b, c] = facets[own];
     let eye = (a + b + c) / 3.0;
@@ -77,7 +80,7 @@ fn winding(facets: &[[DVec3; 3]], own: usize) -> f64 {
     others.map(|(_, f)| half_solid_angle(f.map(|v| v - eye))).sum::<f64>() / (2.0 * PI)
 }
 
-/// Half of the solid angle of a triangle seen from the origin, positive from behind (Van Oosterom and
+/// Returns half of the solid angle of a triangle as seen from the origin, positive from behind (Van Oosterom and
 /// Strackee, IEEE Transactions on Biomedical Engineering 30(2), 1983).
 fn half_solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
     let [l, m, n] = [a, b, c].map(DVec3::length);
@@ -85,7 +88,7 @@ fn half_solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
     arc(volume, l * m * n + a.dot(b) * n + b.dot(c) * l + c.dot(a) * m)
 }
 
-/// The angle of `(x, y)`, to within 1e-4 of itself (Abramowitz and Stegun, 4.4.49).
+/// Returns the angle of `(x, y)`, with a relative error of at most 1e-4 (Abramowitz and Stegun, 4.4.49).
 fn arc(y: f64, x: f64) -> f64 {
     let (low, high) = (y.abs().min(x.abs()), y.abs().max(x.abs()));
     if high == 0.0 {
@@ -115,7 +118,7 @@ mod tests {
         assert!(arc(0.0, 0.0) == 0.0);
     }
 
-    /// A cube of `n` by `n` squares a side, without the first `missing` triangles.
+    /// Returns the triangles of a cube with `n` by `n` squares per side, without the first `missing` triangles.
     fn cube(n: usize, missing: usize) -> Vec<[DVec3; 3]> {
         let mesh = slab(DVec3::ZERO, DVec3::ONE, [n; 3]);
         let corners = |triangle: [u32; 3]| triangle.map(|v| mesh.vertices[v as usize]);

@@ -1,13 +1,13 @@
-//! Polygons into triangles.
+//! Triangulation of simple polygons by ear clipping.
 //!
-//! A polygon is looked at along the axis in which its area vector is largest; turns of the projected
-//! corners are decided exactly. Ears have an area and no other corner in them or on their rim, so
-//! triangles have areas and corners that lie on a side stay corners. A polygon of `k` corners gives
-//! `k - 2` triangles over its own corners.
-//!
-//! Of many corners those near an ear are found in a grid over the ones that are left, about one to a
-//! cell, which is made anew whenever half of them have gone: an ear of a round or a jagged polygon
-//! looks at a few, so that `k` corners take about `k log k` steps.
+//! - A polygon is projected along the axis in which its area vector is largest. Orientations of projected corners are
+//!   exact.
+//! - An ear has a positive area, and no other corner in it or on its boundary. Therefore triangles have areas, and
+//!   corners that lie on a side remain corners.
+//! - A polygon with `k` corners has `k - 2` triangles.
+//! - For many corners, a grid over the remaining corners finds those near an ear, about one per cell. It is rebuilt
+//!   when half of them have been removed. An ear of a round or jagged polygon tests few corners, so that the
+//!   triangulation takes about `k log k` steps.
 
 use glam::{DVec2, DVec3, Vec3Swizzles};
 
@@ -15,10 +15,10 @@ use colltrans_kernel::predicates::orient2d as turn;
 
 use colltrans_kernel::work;
 
-/// Fewer corners than this are looked at one by one.
+/// Minimum number of corners for a grid.
 const MANY: usize = 64;
 
-/// Triangles over the polygon's corners, as positions in it; `None` if it crosses itself.
+/// Triangulates a polygon: triangles of positions in `corners`. Returns `None` if the polygon crosses itself.
 pub(super) fn triangulate(corners: &[DVec3]) -> Option<Vec<[usize; 3]>> {
     let mut ring = Ring::new(project(corners));
     let mut triangles = Vec::with_capacity(corners.len().saturating_sub(2));
@@ -26,7 +26,7 @@ pub(super) fn triangulate(corners: &[DVec3]) -> Option<Vec<[usize; 3]>> {
     while ring.count > 3 {
         let ear = ring.from(start).find(|&k| ring.is_ear(k))?;
         triangles.push([ring.before[ear], ear, ring.after[ear]]);
-        // The next ear is looked for beyond: fans would have the thinnest triangles.
+        // The search continues after this ear, because fans would have the thinnest triangles.
         start = ring.after[ring.after[ear]];
         ring.remove(ear);
     }
@@ -39,13 +39,13 @@ pub(super) fn triangulate(corners: &[DVec3]) -> Option<Vec<[usize; 3]>> {
     Some(triangles)
 }
 
-/// The corners that are left, each with those before and after it.
+/// The remaining corners, in a doubly linked ring.
 struct Ring {
     flat: Vec<DVec2>,
     before: Vec<usize>,
     after: Vec<usize>,
     count: usize,
-    /// Where there are many.
+    /// Present for at least [`MANY`] corners.
     grid: Option<Grid>,
 }
 
@@ -58,15 +58,16 @@ impl Ring {
         Self { flat, before, after, count: n, grid }
     }
 
-    /// The corners, beginning with one of them.
+    /// Iterates over the remaining corners, from `start`.
     fn from(&self, start: usize) -> impl Iterator<Item = usize> + '_ {
         std::iter::successors(Some(start), |&k| Some(self.after[k])).take(self.count)
     }
 
+    /// Removes a corner, and rebuilds the grid if half of its corners are removed.
     fn remove(&mut self, k: usize) {
         let (i, l) = (self.before[k], self.after[k]);
         (self.after[i], self.before[l]) = (l, i);
-        // A corner that is gone is its own neighbour.
+        // A removed corner is its own neighbour.
         (self.before[k], self.after[k]) = (k, k);
         self.count -= 1;
         if self.grid.as_ref().is_some_and(|grid| 2 * self.count < grid.corners.len()) {
@@ -75,6 +76,7 @@ impl Ring {
         }
     }
 
+    /// Checks whether a corner and its neighbours form an ear.
     fn is_ear(&self, j: usize) -> bool {
         let (i, l) = (self.before[j], self.after[j]);
         let [a, b, c] = [i, j, l].map(|m| self.flat[m]);
@@ -86,7 +88,7 @@ impl Ring {
         let leaves_free = |m: usize| {
             work::count(1);
             let p = self.flat[m];
-            // A corner passed twice (a slit to a hole) lies on the ear without being in it.
+            // A corner that occurs twice (at a slit to a hole) touches the ear only in a corner of the ear.
             p == a || p == b || p == c || !inside(p)
         };
         match &self.grid {
@@ -99,13 +101,14 @@ impl Ring {
     }
 }
 
-/// Corners by the squares in which they lie, row by row.
+/// Corners sorted into square cells, row by row.
 struct Grid {
     low: DVec2,
-    /// Squares to a unit of length, and to a row; rows.
+    /// Cells per unit of length.
     scale: f64,
+    /// Number of columns and of rows.
     size: [usize; 2],
-    /// Where the corners of a square begin.
+    /// Position of the first corner of each cell.
     starts: Vec<u32>,
     corners: Vec<usize>,
 }
@@ -133,7 +136,7 @@ impl Grid {
         grid
     }
 
-    /// The column and the row of a point; never falling where coordinates rise.
+    /// Returns the column and the row of a point. Both are monotonic in the coordinates.
     fn place(&self, p: DVec2) -> [usize; 2] {
         let at = (p - self.low) * self.scale;
         [(at.x as usize).min(self.size[0] - 1), (at.y as usize).min(self.size[1] - 1)]
@@ -144,7 +147,7 @@ impl Grid {
         row * self.size[0] + column
     }
 
-    /// All corners in a box, and some around it.
+    /// Iterates over all corners in a box, and some corners around it.
     fn near(&self, low: DVec2, high: DVec2) -> impl Iterator<Item = usize> + '_ {
         let ([left, bottom], [right, top]) = (self.place(low), self.place(high));
         let row = move |r: usize| {
@@ -155,7 +158,7 @@ impl Grid {
     }
 }
 
-/// The corners along the axis in which the area vector is largest, running counter-clockwise.
+/// Projects corners along the axis in which the area vector is largest, such that they run counter-clockwise.
 fn project(corners: &[DVec3]) -> Vec<DVec2> {
     let first = corners[0];
     let area: DVec3 = corners.windows(2).map(|pair| (pair[0] - first).cross(pair[1] - first)).sum();
@@ -193,7 +196,7 @@ mod tests {
         assert_eq!(area(&reversed, &triangulate(&reversed).unwrap()), -3.0);
     }
 
-    /// Corners at these distances from the origin, at equal angles.
+    /// Returns corners at equal angles, and at the distances `radius` from the origin.
     fn round(sides: usize, radius: impl Fn(usize) -> f64) -> Vec<DVec3> {
         let corner = |k: usize| {
             let (sine, cosine) = (std::f64::consts::TAU * k as f64 / sides as f64).sin_cos();
@@ -202,17 +205,17 @@ mod tests {
         (0..sides).map(corner).collect()
     }
 
-    /// No triangle is empty or turned, together they have the polygon's area, and every side of one is
-    /// the polygon's or another one's the other way round.
+    /// Asserts that all triangles have a positive area, and that these sum to the area of the polygon. Each side of a
+    /// triangle must be a side of the polygon or, reversed, of another triangle.
     fn check(corners: &[DVec3]) {
-        let triangles = triangulate(corners).expect("a polygon");
+        let triangles = triangulate(corners).expect("the polygon is simple");
         assert_eq!(triangles.len(), corners.len() - 2);
         let mut sides = std::collections::BTreeSet::new();
         for t in &triangles {
             let [a, b, c] = t.map(|k| corners[k].truncate());
             assert!(turn(a, b, c) > 0.0);
             for k in 0..3 {
-                assert!(sides.insert((t[k], t[(k + 1) % 3])), "twice");
+                assert!(sides.insert((t[k], t[(k + 1) % 3])), "side of two triangles");
             }
         }
         let own = |&(a, b): &(usize, usize)| (a + 1) % corners.len() == b;
@@ -230,7 +233,7 @@ mod tests {
             check(&round(sides, |k| [1.0, 0.5][k % 2]));
             check(&round(sides, |k| 1.0 + 0.3 * (k as f64 * 0.7).sin()));
         }
-        // A band that winds three times around the origin.
+        // A band with three turns around the origin.
         let turns = |k: usize, r: f64| {
             let angle = std::f64::consts::TAU * 3.0 * k as f64 / 1_000.0;
             DVec3::new(angle.cos(), angle.sin(), 0.0) * (r + 0.001 * k as f64)

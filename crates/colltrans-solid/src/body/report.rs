@@ -1,23 +1,23 @@
-//! What was noticed when a mesh was read.
+//! Report of the construction of a solid: shells and repairs.
 
-/// What a shell is to others: an inside, a side, or neither.
+/// The kind of a shell. It determines whether the shell has an interior and an offset.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum ShellKind {
-    /// Every edge has a facet on either side: it has an inside.
+    /// Every edge has a facet on both sides. The shell has an interior.
     Closed,
-    /// Open, but all but closed: just inside of 99 % of its area the generalised winding number is above
-    /// 0.9. It blocks from both sides, and with its rim, and is shrunk and grown as closed ones are.
+    /// Open, but just inside 99 % of its area the generalised winding number is above 0.9. The shell blocks from both
+    /// sides and with its boundary edges. It has an offset.
     Sided,
-    /// Open, and without an inside to speak of. It blocks from both sides, and with its rim, and is
-    /// neither shrunk nor grown: there is no side to go to.
+    /// Any other open shell. It blocks from both sides and with its boundary edges. It has no offset, because it has
+    /// no inner side.
     Sheet,
 }
 
 impl ShellKind {
-    /// All kinds.
+    /// All kinds of shells.
     pub const ALL: [Self; 3] = [Self::Closed, Self::Sided, Self::Sheet];
 
-    /// `closed`, `sided` or `sheet`.
+    /// Returns `closed`, `sided` or `sheet`.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Closed => "closed",
@@ -27,52 +27,52 @@ impl ShellKind {
     }
 }
 
-/// A connected part of a surface: facets that are joined across edges.
+/// A connected part of a surface. Its facets are joined across edges.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shell {
     /// Number of triangles.
     pub triangles: usize,
-    /// The volume it encloses, in cubic units; negative for the wall of a cavity, meaningless for
-    /// an open shell.
+    /// Enclosed volume, in cubic units. It is negative for the wall of a cavity, and has no meaning for an open
+    /// shell.
     pub volume: f64,
-    /// Holes through it (its genus); `None` for an open shell, or one that touches itself in
-    /// vertices.
+    /// Number of through holes (the genus). It is `None` for an open shell, for a shell that shares a vertex with
+    /// another one, and for an odd Euler characteristic, which occurs if the shell touches itself in vertices.
     pub holes_through: Option<u32>,
-    /// Whether it was inside out, and turned.
+    /// Whether the shell was inside out and has been reversed.
     pub turned: bool,
-    /// Whether it has an inside, or a side to which it could be shrunk.
+    /// The kind of the shell.
     pub kind: ShellKind,
 }
 
-/// What was noticed, and mended, when a solid was built.
+/// Shells and repairs of a solid, recorded during its construction.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct SolidReport {
-    /// The connected parts.
+    /// The connected parts of the surface.
     pub shells: Vec<Shell>,
-    /// Vertices that had the same coordinates as another one.
+    /// Number of vertices with the coordinates of an earlier vertex.
     pub vertices_merged: usize,
-    /// Facets left out because they have no area, exactly.
+    /// Number of removed facets, whose area is exactly 0.
     pub facets_without_area: usize,
-    /// Edges subdivided because vertices of their other side lie on them, exactly.
+    /// Number of edges that are subdivided because vertices of the opposite side lie exactly on them.
     pub slits_closed: usize,
-    /// Edges at which more than two facets meet.
+    /// Number of edges with more than two facets, as many in each direction.
     pub crowded_edges: usize,
-    /// Edges with a facet on one side only; none for a closed solid.
+    /// Number of edges with a facet on one side only; 0 for a closed solid.
     pub open_edges: usize,
 }
 
 impl SolidReport {
-    /// How many shells were inside out.
+    /// Returns the number of shells that have been reversed.
     pub fn turned(&self) -> usize {
         self.shells.iter().filter(|s| s.turned).count()
     }
 
-    /// How many shells are of a kind.
+    /// Returns the number of shells of a kind.
     pub fn count(&self, kind: ShellKind) -> usize {
         self.shells.iter().filter(|s| s.kind == kind).count()
     }
 
-    /// What a body with open shells is taken for, in words; `None` if all are closed.
+    /// Describes the open shells of the body in words; `None` if all shells are closed.
     pub fn surface(&self) -> Option<String> {
         let [closed, sided, sheets] = ShellKind::ALL.map(|kind| self.count(kind));
         let of = |count: usize, one: &str, many: &str| match count {
@@ -95,7 +95,7 @@ impl SolidReport {
         })
     }
 
-    /// Holes through all shells together, where they are known.
+    /// Returns the number of through holes of all shells for which it is known.
     pub fn holes_through(&self) -> u32 {
         self.shells.iter().filter_map(|s| s.holes_through).sum()
     }

@@ -1,19 +1,14 @@
-//! Walls whose two sides pass through each other when facets move.
+//! Facets that pass through each other under an offset, because a wall is too thin.
 //!
-//! While facets move by more and more, a surface stays the rim of its material until facets touch that
-//! were apart. After that some cross, or one shell has passed another one all round: a cavity around
-//! what it was a cavity in. Either is looked for where the facets end up, exactly, among facets without a
-//! common vertex (others only fold, which turns them) of one shell, or of two of which one is a
-//! cavity's: shells around material may overlap, as pieces do. What crosses before anything has moved
-//! is left out, pair by pair within a shell, and else shell by shell, for there curves of crossing
-//! wander.
+//! - *Crossing facets* belong to one shell, or to two shells of which one is a cavity. Shells around material may
+//!   overlap, as pieces do.
+//! - *Enclosed shells*: the offset moves a cavity around a shell that it did not contain.
+//! - Both are tested exactly at the final positions. Facets with a common vertex only fold, which reverses them, and
+//!   are not compared.
+//! - Existing crossings are ignored: within one shell by pairs of facets, between two shells by pairs of shells.
 //!
-//! The sides of a wall face away from each other, so facets of one plane that look the same way are no
-//! wall's, whatever rounding does to them. Nodes of such facets are dismissed together: thin triangles
-//! of a large face have boxes that overlap by the thousand. The box of a thin triangle also overlaps
-//! those of the walls beside it, for example of all teeth of a comb. Therefore the longer of two nodes is
-//! opened first, and the triangles themselves are compared with the boxes of much shorter nodes. Nodes
-//! whose facets all have a vertex in common, as in a fan, are dismissed, because such facets only fold.
+//! A descent of the tree with itself finds the pairs. [`Fences`] dismisses pairs of nodes. Reasons:
+//! `docs/theory/offsets.md`.
 
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
@@ -29,8 +24,8 @@ mod fences;
 
 use fences::Fences;
 
-/// The facets, as positions in the triangles, that pass through others when vertices go from where
-/// they are to `moved`, in increasing order. `shell_of` and `volumes` tell the shells as they are.
+/// Returns the triangles, in increasing order, that pass through others when the vertices move to `moved`. `shell_of`
+/// and `volumes` are those before the move.
 pub(super) fn facets(
     solid: &Solid,
     moved: &[DVec3],
@@ -67,7 +62,7 @@ pub(super) fn facets(
     found
 }
 
-/// Which facets belong together.
+/// The shells of a solid.
 struct Shells<'a> {
     solid: &'a Solid,
     shell_of: &'a [u32],
@@ -75,6 +70,7 @@ struct Shells<'a> {
 }
 
 impl Shells<'_> {
+    /// Returns the shells of two facets, the smaller number first.
     fn of(&self, pair: [usize; 2]) -> [u32; 2] {
         let [a, b] = pair.map(|t| self.shell_of[t]);
         [a.min(b), a.max(b)]
@@ -85,15 +81,17 @@ impl Shells<'_> {
         a == b
     }
 
+    /// Checks whether a shell is the wall of a cavity.
     fn is_cavity(&self, shell: u32) -> bool {
         self.solid.is_shell_closed(shell) && self.volumes[shell as usize] < 0.0
     }
 
+    /// Checks whether a crossing of two facets is a defect: they belong to one shell, or one of them to a cavity.
     fn may_pass(&self, pair: [usize; 2]) -> bool {
         self.is_one(pair) || self.of(pair).into_iter().any(|shell| self.is_cavity(shell))
     }
 
-    /// The facets of cavities that are now around shells that they were not around, and of those.
+    /// Returns the facets of cavities that newly contain another shell, and the facets of that shell.
     fn swallowed(&self, before: &Placing, after: &Placing) -> Vec<usize> {
         let count = self.volumes.len() as u32;
         let cavities: Vec<u32> = (0..count).filter(|&s| self.is_cavity(s)).collect();
@@ -126,7 +124,7 @@ impl Shells<'_> {
         boxes
     }
 
-    /// Whether a corner of one shell is inside another one.
+    /// Checks whether the first corner of one shell is inside another shell.
     fn is_inside(&self, placing: &Placing, inner: u32, outer: u32) -> bool {
         let of = |shell| (0..self.shell_of.len()).filter(move |&t| self.shell_of[t] == shell);
         let Some(first) = of(inner).next() else { return false };
@@ -135,7 +133,7 @@ impl Shells<'_> {
     }
 }
 
-/// The facets with their vertices in some places.
+/// The facets of a solid with other positions of the vertices.
 struct Placing<'a> {
     solid: &'a Solid,
     vertices: &'a [DVec3],
@@ -173,7 +171,7 @@ impl Placing<'_> {
         }
     }
 
-    /// Whether two facets without a common vertex have a point in common.
+    /// Checks whether two facets without a common vertex have a common point.
     fn touch(&self, pair: [usize; 2]) -> bool {
         self.meet(pair, |ends, turns| {
             ends[0] != ends[1]
@@ -181,7 +179,7 @@ impl Placing<'_> {
         })
     }
 
-    /// Whether an edge of one runs through the inside of the other.
+    /// Checks whether an edge of one facet passes through the interior of the other one.
     fn cross(&self, pair: [usize; 2]) -> bool {
         self.meet(pair, |ends, turns| {
             ends[0] == ends[1].reverse()
@@ -191,8 +189,10 @@ impl Placing<'_> {
         })
     }
 
-    /// Whether of an edge of either facet, and the other facet, this holds: on which sides of its plane
-    /// the ends are, and how the edge's line turns around its sides.
+    /// Checks whether the condition `holds` is true for an edge of one facet and the other facet. Its first argument
+    /// is the sides of the plane of the facet on which the ends of the edge lie. Its second argument is the
+    /// orientations of the line of the edge with the sides of the facet. Returns false for facets with a common
+    /// vertex, in one plane, or on one side of the plane of the other.
     fn meet(
         &self,
         [s, t]: [usize; 2],
@@ -210,7 +210,7 @@ impl Placing<'_> {
             let sides = f.map(|p| side(a, b, c, p));
             (sides[0] != sides[1] || sides[0] != sides[2]).then_some(sides)
         };
-        // Of one plane, or one beside the other's.
+        // `None` if the facets lie in one plane, or one of them strictly on one side of the plane of the other.
         let (Some(of_f), Some(of_g)) = (sides(f, g), sides(g, f)) else { return false };
         let pierces = |f: [DVec3; 3], sides: [Ordering; 3], [a, b, c]: [DVec3; 3]| {
             (0..3).any(|k| {
@@ -224,8 +224,9 @@ impl Placing<'_> {
     }
 }
 
-/// Whether one of the planes of the sides of two facets, upright on them, has the facets on different sides for certain.
-/// Any vector may say so; products with it are off by less than `4 u` of its sum norm times the largest coordinate.
+/// Checks whether a plane that is perpendicular to one facet and parallel to one of its sides certainly separates the
+/// facets. The normal may be rounded, because any vector can prove separation. Its products have an error below `4 u`
+/// times its sum norm and the largest coordinate.
 fn are_apart(f: &[DVec3; 3], g: &[DVec3; 3]) -> bool {
     let size = |t: &[DVec3; 3]| t.iter().fold(0.0_f64, |most, p| most.max(p.abs().max_element()));
     let size = size(f).max(size(g));
@@ -252,7 +253,7 @@ mod tests {
 
     use super::*;
 
-    /// Solids of thin triangles, of facets that touch without a common vertex, and of none of these.
+    /// Returns solids with thin triangles, with facets that touch without a common vertex, and with neither.
     fn solids(random: &mut Random) -> Vec<Mesh> {
         let phase = random.range(0.0, 6.0);
         let star = |k: usize, p: DVec3| p * [1.0, 0.3][k % 2];
@@ -265,7 +266,7 @@ mod tests {
             extruded(&star, [0.0, 0.05]),
             perforated_plate([2, 2], 0.1, 12),
             cube(-1.0, 1.0).joined(&cube(-0.9, 0.9).reversed()),
-            // Shells that touch, and that overlap.
+            // Shells that touch, and shells that overlap.
             cube(0.0, 1.0).joined(&cube(1.0, 2.0)).joined(&cube(0.5, 1.5)),
             bumpy_ball(300).mapped(|p| p * (1.0 + 0.2 * (40.0 * p.x + phase).sin())),
         ]
@@ -289,7 +290,7 @@ mod tests {
         assert!(found > 2_000, "{found} pairs");
     }
 
-    /// Compares the pairs that touch among those visited with those among all, and returns their number.
+    /// Asserts that visited pairs include all touching pairs, and returns the number of these.
     fn assert_all_pairs(solid: &Solid, by: f64) -> usize {
         let field = &solid.shrinking().field;
         let vertices: Vec<DVec3> =
@@ -310,7 +311,8 @@ mod tests {
         touching
     }
 
-    /// Checks whether two facets lie in one plane to rounding and look the same way. Rounding may let them touch.
+    /// Checks whether two facets lie in one plane within rounding and have the same orientation. Rounding may make
+    /// such facets touch.
     fn is_one_plane(placing: &Placing, pair: [usize; 2]) -> bool {
         let [f, g] = pair.map(|t| placing.corners(t));
         let [m, n] = [f, g].map(|[a, b, c]| (b - a).cross(c - a));

@@ -1,8 +1,10 @@
-//! Shells: which there are, how they are nested, which are inside out.
+//! Connected shells of a surface: their nesting and orientation.
 //!
-//! A shell with a negative volume is the wall of a cavity if another shell contains it; if none does,
-//! it is inside out. If every outermost shell is, all shells are turned. Containment is decided by a
-//! vertex and a line through it along `z`, shifted by an infinitesimal amount, in exact arithmetic.
+//! - A shell with a negative volume is the wall of a cavity if another shell contains it, else it is inside out.
+//! - If all outermost shells are inside out, all shells are reversed, else only the outermost shells that are inside
+//!   out.
+//! - Containment is decided by a vertex of the shell and a ray along `z` from this vertex, shifted by an
+//!   infinitesimal amount, in exact arithmetic.
 
 use std::cmp::Ordering;
 
@@ -15,7 +17,7 @@ use super::report::{Shell, ShellKind, SolidReport};
 use super::validate::Surface;
 use colltrans_convex::body::Aabb;
 
-/// Finds the shells, turns those that are inside out, tells the kinds of open ones apart, and reports.
+/// Finds the shells, reverses those that are inside out, classifies open shells, and adds all shells to the report.
 pub(super) fn orient(surface: &mut Surface, report: &mut SolidReport) {
     let shell_of = components(&surface.neighbours);
     let count = shell_of.iter().max().map_or(0, |&s| s as usize + 1);
@@ -46,7 +48,7 @@ fn is_closed(shell: &Shell) -> bool {
     shell.kind == ShellKind::Closed
 }
 
-/// Numbers the connected parts in the order of their first triangles.
+/// Returns the shell of each triangle. Shells are numbered in the order of their first triangles.
 pub(super) fn components(neighbours: &[[u32; 3]]) -> Vec<u32> {
     let mut shell_of = vec![NONE; neighbours.len()];
     let mut stack = Vec::new();
@@ -70,6 +72,7 @@ pub(super) fn components(neighbours: &[[u32; 3]]) -> Vec<u32> {
     shell_of
 }
 
+/// Computes triangle count, volume, genus and closedness of each shell.
 fn describe(surface: &Surface, shell_of: &[u32], count: usize) -> Vec<Shell> {
     let empty = Shell {
         triangles: 0,
@@ -80,7 +83,7 @@ fn describe(surface: &Surface, shell_of: &[u32], count: usize) -> Vec<Shell> {
     };
     let mut shells = vec![empty; count];
     let mut origins = vec![None; count];
-    // Vertices of shells that share a vertex are counted for each.
+    // A vertex that several shells share is counted for each of them.
     let mut vertices = vec![0_i64; count];
     let mut seen = vec![NONE; surface.vertices.len()];
     let mut shared = vec![false; count];
@@ -105,7 +108,8 @@ fn describe(surface: &Surface, shell_of: &[u32], count: usize) -> Vec<Shell> {
         }
     }
     for (s, shell) in shells.iter_mut().enumerate() {
-        // V - E + F with three half-edges a facet; odd where the shell touches itself in vertices.
+        // The Euler characteristic `V - E + F`, with three half-edges per facet. It is odd if the shell touches
+        // itself in a vertex.
         let doubled = 2 * vertices[s] - shell.triangles as i64;
         let euler = doubled / 2;
         if is_closed(shell) && !shared[s] && doubled % 2 == 0 && euler % 2 == 0 && euler <= 2 {
@@ -115,7 +119,7 @@ fn describe(surface: &Surface, shell_of: &[u32], count: usize) -> Vec<Shell> {
     shells
 }
 
-/// The volume of each shell, its vertices being where `vertex` says.
+/// Returns the volume of each shell, with the positions of vertices given by `vertex`.
 pub(super) fn volumes(
     shell_of: &[u32],
     triangles: &[[u32; 3]],
@@ -132,7 +136,8 @@ pub(super) fn volumes(
     volumes
 }
 
-/// Reverses the triangles of turned shells: corners `a c b`, and their edges in that order.
+/// Reverses the triangles of shells that are marked as turned: corners `a c b`, and neighbours in the corresponding
+/// order.
 fn turn_over(surface: &mut Surface, shell_of: &[u32], shells: &[Shell]) {
     for (t, &s) in shell_of.iter().enumerate() {
         if shells[s as usize].turned {
@@ -142,16 +147,16 @@ fn turn_over(surface: &mut Surface, shell_of: &[u32], shells: &[Shell]) {
     }
 }
 
-/// What decides which shell contains which.
+/// Data for containment tests of shells.
 struct Nesting<'a> {
     surface: &'a Surface,
     shell_of: &'a [u32],
-    /// The last triangles of each shell, the last one first.
+    /// The last triangles of each shell, at most [`TRIED`], in decreasing order.
     last: Vec<Vec<usize>>,
     boxes: Vec<Aabb>,
 }
 
-/// So many triangles of a shell are looked at for a vertex that lies on no other shell.
+/// Maximum number of triangles of a shell that are searched for a vertex on no other shell.
 pub(super) const TRIED: usize = 64;
 
 impl<'a> Nesting<'a> {
@@ -170,8 +175,8 @@ impl<'a> Nesting<'a> {
         Self { surface, shell_of, last, boxes }
     }
 
-    /// Checks whether no other shell contains this one, by a vertex of it that lies on no other one, if there is such
-    /// a vertex.
+    /// Checks whether no other shell contains this shell. The test uses a vertex that lies on no other shell, if the
+    /// search finds one.
     fn is_outermost(&self, shell: usize) -> bool {
         let corners = |t: &usize| self.surface.triangles[*t].into_iter().rev();
         let vertices = self.last[shell].iter().flat_map(corners);
@@ -191,6 +196,7 @@ impl<'a> Nesting<'a> {
         (!is_on).then(|| self.is_outside(shell, p))
     }
 
+    /// Checks whether the ray from a point of a shell gives winding number 0 for all other shells.
     fn is_outside(&self, shell: usize, p: DVec3) -> bool {
         let boxed = |s: usize| self.boxes[s].holds(&Aabb { low: p, high: p });
         let candidates: Vec<bool> = (0..self.boxes.len()).map(|s| s != shell && boxed(s)).collect();
@@ -221,7 +227,8 @@ pub(super) fn lies_on(p: DVec3, [a, b, c]: [DVec3; 3]) -> bool {
     })
 }
 
-/// How the triangle is crossed by the ray from `p` along `z`: 1 outwards, -1 inwards, 0 not at all.
+/// Returns 1 if the ray from `p` along `z` leaves through the triangle, -1 if it enters, and 0 if it misses the
+/// triangle.
 #[inline]
 pub fn crossing(p: DVec3, [a, b, c]: [DVec3; 3]) -> i32 {
     let facing = exact::turn(a, b, c, 2);
@@ -236,8 +243,8 @@ pub fn crossing(p: DVec3, [a, b, c]: [DVec3; 3]) -> i32 {
     if facing == Ordering::Greater { 1 } else { -1 }
 }
 
-/// On which side of the line from `u` to `v`, looked at along `z`, the point `p + (e, e^2)` lies, for
-/// an infinitesimal `e`.
+/// Returns the side of the line from `u` to `v` on which the point `p + (e, e^2)` lies, seen along `z`, for an
+/// infinitesimal `e > 0`.
 fn turn_beside(u: DVec3, v: DVec3, p: DVec3) -> Ordering {
     let sign = |x: f64| exact::sign(x);
     // det[v - u, p - u + (e, e^2)] = det[v - u, p - u] + e^2 (v - u).x - e (v - u).y.

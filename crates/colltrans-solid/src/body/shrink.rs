@@ -1,23 +1,15 @@
-//! Solids made smaller: every facet plane moves inwards.
+//! Offsets of solids: each facet plane moves inwards, or outwards for a negative amount.
 //!
-//! Shrunk by `e`, vertex `v` goes to `v + e x`, with `x` the shortest vector for which `n.x <= -1` for
-//! the unit normals `n` of all facets around it. If `w` is the point nearest to the origin in the
-//! convex hull of the normals, `x = -w / |w|^2`; if the origin is in the hull (a saddle) there is no
-//! solution, and the vertex stays. `x` does not depend on `e`, so one field of displacements serves
-//! all amounts, and growing is shrinking by a negative one. The sum `v + e x` is rounded once; the
-//! rounded vertices *are* the shrunk body.
+//! - Under an offset by `e`, vertex `v` moves to `v + e x`. Here `x` is the shortest vector with `n.x <= -1` for the
+//!   unit normals `n` of all facets around the vertex. If no such vector exists (at a saddle), the vertex stays.
+//! - `x` does not depend on `e`, so one field of displacements serves all amounts. The sum `v + e x` is rounded once.
+//!   The rounded vertices define the offset body.
+//! - Sheets have no inner side. Their vertices, which they do not share, stay.
+//! - Facets with a height below a millionth of the body size are ignored if the vertex has others, because in single
+//!   precision their normals are noise.
+//! - A [`NodeMotion`] bounds the changes of the facets of a node.
 //!
-//! Sheets have no side to go to: their vertices, which are theirs alone, stay.
-//!
-//! Facets less high than a millionth of the body's size have no say if their vertex has others: in
-//! single precision their normals are noise.
-//!
-//! A [`NodeMotion`] bounds what shrinking does to the facets of a node. The least coordinate
-//! `min (v + e x)` is a concave function of `e`, so up to a fixed amount `E` it is not below its chord:
-//! the rates of the chords say how sides of boxes and slabs move, inwards where the facets do. Normals
-//! turn by an angle whose sine is at most `e turn + rough`: with edges `u, v` of a facet,
-//! displacements that differ by at most `f`, and area vector `N = u x v`, `N` changes by at most
-//! `e f (|u| + |v|) + e^2 f^2 <= 2 e f (|u| + |v|)` (or by more than itself).
+//! Derivations: `docs/theory/offsets.md`.
 
 use std::thread;
 
@@ -31,60 +23,66 @@ use super::{self_intersection, shells};
 use colltrans_convex::body::{Aabb, InputFacet, InputVertex};
 use colltrans_kernel::range::{in_exact_range, without_traces};
 
-/// Facets less high than this share of the body's size are noise.
+/// Height below which the normal of a facet is noise, in multiples of the reach of the body.
 const NOISE: f64 = 1e-6;
-/// Rates hold up to this share of the body's size.
+/// Maximum amount for which the rates of nodes hold, in multiples of the reach of the body.
 const MOST: f64 = 1.0 / 1024.0;
-/// Displacements longer than this many times the amount count as no solution.
+/// Maximum length of a displacement for amount 1; longer ones count as no solution.
 const FARTHEST: f64 = 64.0;
-/// Rounds of the search for the nearest point; each adds a normal that was violated.
+/// Maximum number of rounds of the search for the nearest point. Each round adds a violated normal.
 const MOST_ROUNDS: usize = 64;
 
-/// How the vertices of a solid move when it is shrunk by 1.
+/// Displacements of the vertices of a solid under an offset.
 #[derive(Debug, Clone)]
 pub struct Shrinking {
-    /// Displacement of each vertex.
+    /// Displacement of each vertex for an amount of 1.
     pub field: Vec<DVec3>,
-    /// For each node of the tree what its facets do, at most.
+    /// Bounds on the changes of each node of the tree.
     pub nodes: Vec<NodeMotion>,
-    /// The amount up to which the rates of the nodes hold.
+    /// Maximum amount for which the rates of the nodes hold.
     pub(crate) most: f64,
-    /// The longest displacement.
+    /// Length of the longest displacement.
     pub(crate) farthest: f64,
-    /// Vertices that stay, because they have no solution.
+    /// Vertices that stay because no displacement satisfies all their facets.
     pub(crate) stuck: Vec<u32>,
 }
 
-/// What shrinking does to the facets of a node; see the module's head.
+/// Bounds on the changes of the facets of a node under an offset, as derived in `docs/theory/offsets.md`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NodeMotion {
-    /// Rates of the sides of the box, and of the slab.
+    /// Rates at which the lower sides of the box move, per unit of the amount.
     pub(crate) low: [f32; 3],
+    /// Rates at which the upper sides of the box move.
     pub(crate) high: [f32; 3],
+    /// Rates at which the sides of the slab move.
     pub(crate) slab: [f32; 2],
+    /// Rate of the sine of the angle by which a normal turns.
     pub turn: f32,
+    /// Part of this sine that is due to rounding, for any amount.
     pub rough: f32,
 }
 
-/// What could not be shrunk, or grown, as it should.
+/// Vertices and facets for which an offset is not exact.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct ShrinkReport {
-    /// The largest displacement of a vertex, in the units of the body.
+    /// Largest displacement of a vertex, in the units of the body.
     pub farthest: f64,
-    /// Vertices that stay, because no displacement is inwards for all facets around them; indices of
-    /// the input.
+    /// Vertices that stay because no displacement is inwards for all facets around them; indices of the input.
     pub stuck: Vec<InputVertex>,
-    /// Facets that turned inside out, or passed through others, because the body (or a gap in it that
-    /// grows shut) is thinner than twice the amount there; indices of the input, in increasing order.
+    /// Facets that turned inside out or passed through others, because the body is thinner there than twice the
+    /// amount, or a gap that grows shut is. Indices of the input, in increasing order.
     pub inverted: Vec<InputFacet>,
 }
 
 impl Solid {
-    /// The solid with every facet plane moved inwards by `amount`, in the units of the body, and what
-    /// could not be moved so. The vertices keep their numbers; those of [sheets](ShellKind::Sheet) stay.
+    /// Returns the solid with each facet plane moved inwards by `amount`, in the units of the body, and a report of
+    /// vertices and facets for which this is not exact.
+    ///
+    /// Vertices keep their indices. Vertices of [sheets](ShellKind::Sheet) stay.
     ///
     /// # Errors
-    /// An amount that is negative, not finite, or so large that coordinates leave the exact range.
+    /// Returns [`SolidError::Amount`] for an amount that is negative, not finite, or moves coordinates out of the
+    /// exact range.
     ///
     /// ```
     /// use colltrans::{Aabb, ConvexPolyhedron, Solid};
@@ -105,14 +103,16 @@ impl Solid {
         self.displaced(amount, amount)
     }
 
-    /// The solid with every facet plane moved outwards by `amount`: for a margin to be kept.
+    /// Returns the solid with each facet plane moved outwards by `amount`, for example to reserve a margin, with the
+    /// report of [`Self::shrunk`].
     ///
     /// # Errors
-    /// As [`Self::shrunk`].
+    /// Returns an error in the same cases as [`Self::shrunk`].
     pub fn grown(&self, amount: f64) -> Result<(Self, ShrinkReport), SolidError> {
         self.displaced(amount, -amount)
     }
 
+    /// Returns the offset solid for an amount and its signed value, which is negative for a growing solid.
     fn displaced(&self, amount: f64, signed: f64) -> Result<(Self, ShrinkReport), SolidError> {
         if !(amount.is_finite() && amount >= 0.0) {
             return Err(SolidError::Amount { amount });
@@ -144,8 +144,8 @@ impl Solid {
         Ok((Self::from_surface(surface, noticed), report))
     }
 
-    /// The volumes of the shells with other vertices, in the order of the report: that of the first
-    /// facets.
+    /// Returns the volumes of the shells for other vertex positions. The shells are in the order of the report, that
+    /// is, of their first facets.
     fn volumes_of(&self, vertices: &[DVec3]) -> Vec<f64> {
         let shell_of = shells::components(&self.neighbours);
         let volumes = shells::volumes(&shell_of, &self.triangles, |v| vertices[v as usize]);
@@ -158,11 +158,11 @@ impl Solid {
         order.into_iter().map(|shell| volumes[shell]).collect()
     }
 
-    /// What shrinking by `amount` (or growing, if negative) cannot do as it should.
+    /// Returns the vertices and facets for which an inward offset by `amount` (outward if negative) is not exact.
     pub fn shrink_report(&self, amount: f64) -> ShrinkReport {
         let shrinking = self.shrinking();
-        // A ball or a cube that is thinner in all directions is mirrored in a point: its facets look
-        // where they did, and only its volume tells.
+        // A ball or cube that is thinner than twice the amount is mirrored in a point. Its facets keep their
+        // orientations, and only the sign of the volume changes.
         let shell_of = shells::components(&self.neighbours);
         let fields = self.vertices.iter().zip(&shrinking.field);
         let moved: Vec<DVec3> = fields.map(|(v, x)| displace(*v, *x, amount)).collect();
@@ -191,7 +191,7 @@ impl Solid {
         }
     }
 
-    /// The displacements, computed when they are first needed.
+    /// Returns the displacements, computed on first use.
     #[doc(hidden)]
     #[inline]
     pub fn shrinking(&self) -> &Shrinking {
@@ -199,7 +199,7 @@ impl Solid {
     }
 }
 
-/// A vertex of the shrunk body. Coordinates too small for the exact range are zero.
+/// Returns a vertex of the offset body. Coordinates too small for the exact range are replaced by 0.
 #[inline]
 pub fn displace(vertex: DVec3, field: DVec3, amount: f64) -> DVec3 {
     without_traces(vertex + field * amount)
@@ -219,7 +219,7 @@ impl Shrinking {
             }
         };
         if field.len() <= chunk {
-            // Also where there are no threads, as in a browser.
+            // This path also serves platforms without threads, such as browsers.
             fill(0, &mut field);
         } else {
             thread::scope(|scope| {
@@ -238,7 +238,7 @@ impl Shrinking {
         Self { field, nodes, most, farthest, stuck }
     }
 
-    /// What a node's box becomes.
+    /// Returns a box around the offset facets of a node, from the box of the node. The amount must not be negative.
     pub(crate) fn boxed(&self, bounds: Aabb, amount: f64, node: usize) -> Aabb {
         if amount <= self.most {
             let motion = &self.nodes[node];
@@ -256,7 +256,7 @@ impl Shrinking {
     }
 }
 
-/// The planes of all facets, by vertex.
+/// The facets with an offset, by vertex.
 struct Planes<'a> {
     solid: &'a Solid,
     starts: Vec<u32>,
@@ -284,12 +284,13 @@ impl<'a> Planes<'a> {
         Self { solid, starts, facets }
     }
 
-    /// Whether a vertex has facets that move.
+    /// Checks whether a vertex has facets with an offset.
     fn has_any(&self, v: usize) -> bool {
         self.starts[v] < self.starts[v + 1]
     }
 
-    /// Unit normals of the facets around a vertex, without those that are noise.
+    /// Collects the unit normals of the facets around a vertex. Facets with noisy normals are omitted if there are
+    /// others.
     fn around(&self, v: usize, normals: &mut Vec<DVec3>) {
         let facets = &self.facets[self.starts[v] as usize..self.starts[v + 1] as usize];
         for least in [NOISE * self.solid.reach, 0.0] {
@@ -314,7 +315,8 @@ impl<'a> Planes<'a> {
     }
 }
 
-/// The shortest `x` with `n.x <= -1` for all normals, if there is one that is not too long.
+/// Returns the shortest `x` with `n.x <= -1` for all normals; `None` if there is none with a length of at most
+/// [`FARTHEST`].
 fn shortest(normals: &[DVec3]) -> Option<DVec3> {
     let mut simplex = vec![*normals.first()?];
     for _ in 0..MOST_ROUNDS {
@@ -326,7 +328,7 @@ fn shortest(normals: &[DVec3]) -> Option<DVec3> {
         let lowest = normals.iter().min_by(|a, b| a.dot(w).total_cmp(&b.dot(w)))?;
         let depth = lowest.dot(w);
         if depth >= size * (1.0 - 1e-12) || simplex.contains(lowest) {
-            // By the lowest normal itself, so that rounding leaves none above -1.
+            // Scaled by the lowest normal, so that rounding leaves no product above -1.
             return (depth * FARTHEST > w.length()).then(|| w / -depth);
         }
         simplex.push(*lowest);
@@ -336,7 +338,7 @@ fn shortest(normals: &[DVec3]) -> Option<DVec3> {
     (depth > 0.0 && depth * FARTHEST > w.length()).then(|| w / -depth)
 }
 
-/// The point nearest to the origin in the convex hull of up to four points, which are reduced to
+/// Returns the point of the convex hull of up to four points that is nearest to the origin, and reduces the points to
 /// those that span it.
 fn nearest(points: &mut Vec<DVec3>) -> DVec3 {
     let mut best: Option<(f64, DVec3, u32)> = None;
@@ -357,7 +359,7 @@ fn nearest(points: &mut Vec<DVec3>) -> DVec3 {
     w
 }
 
-/// The point nearest to the origin in the affine hull, if it lies in the convex hull.
+/// Returns the point of the affine hull that is nearest to the origin; `None` if it is outside the convex hull.
 fn affine_nearest(points: &[DVec3]) -> Option<DVec3> {
     match *points {
         [a] => Some(a),
@@ -385,6 +387,7 @@ fn affine_nearest(points: &[DVec3]) -> Option<DVec3> {
     }
 }
 
+/// Computes the bounds on the changes of a node.
 fn bound_node(solid: &Solid, field: &[DVec3], most: f64, at: usize) -> NodeMotion {
     let node: &Node = &solid.nodes[at];
     let mut bounds = Aabb::EMPTY;
@@ -397,13 +400,13 @@ fn bound_node(solid: &Solid, field: &[DVec3], most: f64, at: usize) -> NodeMotio
             let level = node.axis.dot(moved);
             slab = [slab[0].min(level), slab[1].max(level)];
         }
-        // What looks to all sides has no normals to be turned.
+        // A node with all orientations has no cone of normals that could turn.
         if node.slab[1] < f64::INFINITY {
             let [x, y] = bound_facet(solid, field, t);
             (turn, rough) = (turn.max(x), rough.max(y));
         }
     }
-    // Rounded outwards, by more than the rounding of the chords' ends.
+    // Rounds outwards, by more than the rounding errors of the ends of the chords.
     let slack = 16.0 * f64::EPSILON * solid.reach / most;
     let down = |end: f64, start: f64| ((end - start) / most - slack) as f32;
     let up = |end: f64, start: f64| ((end - start) / most + slack) as f32;
@@ -420,7 +423,7 @@ fn bound_node(solid: &Solid, field: &[DVec3], most: f64, at: usize) -> NodeMotio
     }
 }
 
-/// How fast a facet's normal turns, and what rounding adds.
+/// Returns the rate at which the normal of a facet turns, and the sine that rounding adds.
 fn bound_facet(solid: &Solid, field: &[DVec3], t: usize) -> [f64; 2] {
     let corners = solid.triangles[t].map(|v| v as usize);
     let [a, b, c] = corners.map(|v| solid.vertices[v]);

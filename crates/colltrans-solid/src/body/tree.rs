@@ -1,15 +1,15 @@
-//! A binary tree over the facets of a solid.
+//! A binary tree of boxes over the facets of a solid, in the body frame.
 //!
-//! A node covers consecutive facets and holds what bounds them, in the body frame: a box; how much of
-//! its corners and edges can be [cut off](super::cuts); an axis `n` (the mean unit normal) with the
-//! sine of the largest angle between it and a facet's normal; and the slab `low <= n . x <= high` of
-//! all their vertices. Boxes are exact. The sine is an upper bound, and exactly 0 for facets whose
-//! computed normals are exact and equal; slabs are rounded, and whoever reads them allows for that.
+//! A node covers consecutive facets and stores:
+//! - an exact bounding box, with [cut corners and edges](super::cuts)
+//! - an axis `n` (the mean unit normal), with an upper bound on the sine of the largest angle to a normal of a facet.
+//!   It is exactly 0 for facets whose computed normals are exact and equal.
+//! - the slab `low <= n . x <= high` of all vertices. It is rounded, and users of the slab account for the error.
 //!
-//! Built from the top ([`split`](mod@colltrans_kernel::split)). The children of node `i` are at `i + skip` and the place behind, for a search
-//! reads both; then comes all that is below the first, and all that is below the second. As `skip` is
-//! relative, subtrees are built apart, on several threads, and joined end to end: the tree is the same
-//! on any number of threads.
+//! The tree is built from the top ([`split`](mod@colltrans_kernel::split)). The children of node `i` are adjacent, at
+//! `i + skip` and `i + skip + 1`, because a search reads both. The nodes below the first child follow, then those
+//! below the second. `skip` is relative, so that threads build subtrees that are joined end to end. The tree does not
+//! depend on the number of threads.
 
 use std::thread;
 
@@ -20,37 +20,37 @@ use colltrans_convex::body::Aabb;
 use colltrans_kernel::descent::{node_to_split, replaced};
 use colltrans_kernel::split::{Boxed, Rule, split};
 
-/// Facets of a leaf, at most.
+/// Maximum number of facets of a leaf.
 pub(crate) const LEAF: usize = 4;
-/// Subtrees with fewer facets are not worth a thread.
+/// Minimum number of facets of each of two subtrees that are built on two threads.
 const FORK: usize = 1 << 14;
-/// A sine that stands for "any angle".
+/// Sine that represents an unbounded angle.
 pub const ANY: f64 = 2.0;
-/// A sine that stands for facets without a side.
+/// Sine that represents facets of open shells, which have no orientation.
 pub(crate) const OPEN: f32 = f32::INFINITY;
 
-/// What bounds consecutive facets.
+/// Bounds of consecutive facets.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Node {
     pub bounds: Aabb,
     pub(crate) axis: DVec3,
     pub(crate) slab: [f64; 2],
-    /// Sine of the largest angle of a facet's normal with `axis`; [`ANY`] from a right angle on, [`OPEN`] where one
-    /// has no side.
+    /// Upper bound on the sine of the largest angle between `axis` and the normal of a facet. It is [`ANY`] from a
+    /// right angle, and [`OPEN`] if a facet belongs to an open shell.
     pub spread: f32,
-    /// The first child is so far behind; 0 for a leaf.
+    /// Offset to the first child; 0 for a leaf.
     pub skip: u32,
-    /// The first of its facets.
+    /// Position of the first facet.
     pub first: u32,
-    /// How many.
+    /// Number of facets.
     pub count: u32,
-    /// What the facets leave free of the box's corners and edges.
+    /// Depths of the facets below the corners and edges of the box.
     pub(crate) cuts: [u8; CUTS],
-    /// Which of the box's six sides, the lower ones first, may hold a facet that looks into the box.
+    /// Bits of the sides of the box, the lower ones first, in which a facet may lie that faces the inside of the box.
     pub(crate) inward: u8,
 }
 
-/// All six sides.
+/// Bits of all six sides.
 const ALL_SIDES: u8 = 0b11_1111;
 
 impl Node {
@@ -59,18 +59,18 @@ impl Node {
         self.skip == 0
     }
 
-    /// Whether it has facets of open shells.
+    /// Checks whether the node contains facets of open shells.
     pub(crate) fn is_open(&self) -> bool {
         self.spread == OPEN
     }
 
-    /// The children of this node, which is the one at `at`.
+    /// Returns the positions of the children of this node, which is at position `at`.
     #[inline]
     pub(crate) fn children(&self, at: u32) -> [u32; 2] {
         [at + self.skip, at + self.skip + 1]
     }
 
-    /// The square of its box's diagonal.
+    /// Returns the squared diagonal of the box.
     #[inline]
     pub(crate) fn size(&self) -> f64 {
         self.bounds.size().length_squared()
@@ -82,7 +82,7 @@ impl Node {
     }
 }
 
-/// Returns the pairs that two nodes, each of a tree of its own, are split into; `None` of two leaves.
+/// Splits a pair of nodes of two trees into two pairs; returns `None` for two leaves.
 #[inline]
 pub(crate) fn split_pair(trees: [&[Node]; 2], pair: [u32; 2]) -> Option<[[u32; 2]; 2]> {
     let nodes = [0, 1].map(|k| &trees[k][pair[k] as usize]);
@@ -90,15 +90,16 @@ pub(crate) fn split_pair(trees: [&[Node]; 2], pair: [u32; 2]) -> Option<[[u32; 2
     Some(nodes[which].children(pair[which]).map(|child| replaced(pair, which, child)))
 }
 
-/// What the builder needs of one facet.
+/// Data of one facet for the builder.
 #[derive(Clone, Copy)]
 struct Item {
     facet: u32,
     bounds: Aabb,
-    /// Unit normal, and twice the area.
+    /// Unit normal; zero for a facet without area.
     normal: DVec3,
+    /// Twice the area.
     area: f64,
-    /// How far rounding may have turned that normal, a sine.
+    /// Upper bound on the sine of the angle by which rounding turns the normal.
     doubt: f64,
 }
 
@@ -110,7 +111,8 @@ impl Item {
         Self { facet, bounds: Aabb::of_points(corners), normal, area, doubt }
     }
 
-    /// Of the sides of a box that holds it, the one that it lies in if it looks into the box, or may do so.
+    /// Returns the sides of an enclosing box in which the facet lies, without those from which it certainly faces
+    /// away, as bits.
     fn inward(&self, bounds: &Aabb) -> u8 {
         let Aabb { low, high } = self.bounds;
         let flat = low.cmpeq(high);
@@ -136,11 +138,11 @@ impl Boxed for Item {
     }
 }
 
-/// Twice the area times the unit normal, and how far rounding may have turned it, as a sine.
+/// Returns the area vector of a triangle (twice the area times the unit normal), and an upper bound on the sine of
+/// the angle by which rounding turns this vector.
 ///
-/// The error of each component is at most 8 roundings of the terms it is made of; what of it lies
-/// along the normal turns nothing, if it cannot turn it around. Facets in planes of the axes have terms that
-/// vanish, and no error.
+/// The bound is 0 for facets in planes of the axes, and [`ANY`] if the error may be as large as the vector.
+/// Derivation: `docs/theory/solid-bounds.md`.
 #[inline]
 pub fn normal([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
     let (u, v) = (b - a, c - a);
@@ -153,7 +155,7 @@ pub fn normal([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
         return (area, ANY);
     }
     let size = area.abs();
-    // |error x area|, the worst signs.
+    // `|error x area|` for the worst signs.
     let across = DVec3::new(
         error.y * size.z + error.z * size.y,
         error.z * size.x + error.x * size.z,
@@ -162,7 +164,7 @@ pub fn normal([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
     (area, (across.length() / length).min(ANY))
 }
 
-/// The tree's nodes, and the order in which it lists the facets.
+/// Builds the tree. Returns its nodes, and the order in which they list the facets.
 pub(super) fn build(vertices: &[DVec3], triangles: &[[u32; 3]]) -> (Vec<Node>, Vec<u32>) {
     let threads = thread::available_parallelism().map_or(1, usize::from);
     build_on(threads, vertices, triangles)
@@ -183,7 +185,7 @@ fn build_on(threads: usize, vertices: &[DVec3], triangles: &[[u32; 3]]) -> (Vec<
     (nodes, items.iter().map(|i| i.facet).collect())
 }
 
-/// Marks the nodes that have facets of open shells: where those look says nothing.
+/// Marks the nodes with facets of open shells, because the orientation of these facets has no meaning.
 pub(super) fn open_nodes(nodes: &mut [Node], is_open: impl Fn(usize) -> bool) {
     for at in (0..nodes.len()).rev() {
         let node = &nodes[at];
@@ -206,8 +208,8 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    /// Appends what is below node `at`, which covers `items`, the first of them at `first`, and cuts
-    /// its box; how far they reach.
+    /// Appends the nodes below node `at`, which covers `items` from facet position `first`, and sets the cuts of its
+    /// box. Returns the maxima of the vertices along the signs.
     fn grow(
         &self,
         items: &mut [Item],
@@ -226,7 +228,7 @@ impl Builder<'_> {
         reach
     }
 
-    /// How far facets reach.
+    /// Returns the maxima of the vertices of facets along the signs of corners and edges.
     fn reach(&self, items: &[Item]) -> Reach {
         let mut reach = Reach::NONE;
         for v in items.iter().flat_map(|item| self.triangles[item.facet as usize]) {
@@ -235,6 +237,8 @@ impl Builder<'_> {
         reach
     }
 
+    /// Splits the items of a node, appends both children with their descendants, on two threads if there are enough
+    /// facets.
     fn grow_children(
         &self,
         items: &mut [Item],
@@ -261,7 +265,7 @@ impl Builder<'_> {
                 reach = self.grow(left, child, first, threads - threads / 2, nodes);
             });
             reach.join(&other);
-            // The second child goes to its place, the rest to the end.
+            // The second child is stored next to the first, its descendants at the end.
             let root = &mut behind[0];
             if root.skip != 0 {
                 root.skip += (nodes.len() - 1 - (child + 1)) as u32;
@@ -277,6 +281,7 @@ impl Builder<'_> {
         }
     }
 
+    /// Returns a leaf node with the bounds of `items`, without cuts.
     fn node(&self, items: &[Item], first: u32) -> Node {
         let mut bounds = Aabb::EMPTY;
         let (mut sum, mut total) = (DVec3::ZERO, 0.0);
@@ -296,7 +301,7 @@ impl Builder<'_> {
             cuts: [0; CUTS],
             inward: items.iter().fold(0, |sides, item| sides | item.inward(&bounds)),
         };
-        // A surface that looks to all sides has no axis to speak of.
+        // Only a surface with a dominant orientation has an axis.
         if sum.length() > 0.25 * total {
             node.axis = sum.normalize_or_zero();
             self.add_cone(items, &mut node);
@@ -304,18 +309,19 @@ impl Builder<'_> {
         node
     }
 
+    /// Sets the spread and the slab of a node, or removes its axis if a normal may be perpendicular to it.
     fn add_cone(&self, items: &[Item], node: &mut Node) {
         let (mut squared, mut doubt) = (0.0_f64, 0.0_f64);
         for item in items {
             let [x, y] = deviation(node.axis, item);
             (squared, doubt) = (squared.max(x), doubt.max(y));
             if squared >= 1.0 || doubt >= 1.0 {
-                // No facing can be told from it, and its slab is hardly thinner than the box.
+                // Such a node bounds no orientation, and its slab is hardly thinner than the box.
                 node.axis = DVec3::ZERO;
                 return;
             }
         }
-        // Sines that add up to less than 1 belong to angles that add up to less than a right one.
+        // Angles whose sines have a sum below 1 have a sum below a right angle.
         let spread = squared.sqrt() + doubt;
         if spread >= 1.0 {
             node.axis = DVec3::ZERO;
@@ -333,8 +339,8 @@ impl Builder<'_> {
     }
 }
 
-/// The square of the sine of the angle between a unit axis and a normal, at least 1 from a right angle
-/// on, and how far rounding may be off, a sine.
+/// Returns the squared sine of the angle between a unit axis and the normal of a facet, and an upper bound on its
+/// error, a sine. Returns [`ANY`] for both if the angle may be a right angle or more.
 fn deviation(axis: DVec3, item: &Item) -> [f64; 2] {
     if item.doubt >= 1.0 || axis.dot(item.normal) <= 0.0 {
         return [ANY; 2];
@@ -345,7 +351,7 @@ fn deviation(axis: DVec3, item: &Item) -> [f64; 2] {
     [squared, item.doubt + 4.0 * f64::EPSILON * terms.element_sum()]
 }
 
-/// The next single-precision number that is not smaller.
+/// Returns the smallest single-precision number that is not smaller.
 fn round_up(x: f64) -> f32 {
     let near = x as f32;
     if f64::from(near) < x { near.next_up() } else { near }
@@ -357,7 +363,7 @@ mod tests {
 
     #[test]
     fn the_tree_is_the_same_on_any_number_of_threads() {
-        // Facets of a wavy sheet, several times as many as are worth a thread.
+        // Facets of a wavy sheet, more than five times the number from which threads are used.
         let side = 220_u32;
         let at = |i: u32, j: u32| {
             let (x, y) = (f64::from(i), f64::from(j));

@@ -1,11 +1,12 @@
-//! From a list of polygons to a checked surface.
+//! Validation: from a list of polygons to a checked surface.
 //!
-//! Data flow: equal vertices become one; polygons become triangles; triangles without an area
-//! are taken out; slits that they, or vertices on an edge, leave are closed by exact subdivision;
-//! facets are joined across their edges; shells are found, and turned where inside out.
+//! 1. Merge vertices with equal coordinates.
+//! 2. Triangulate polygons, and drop polygons without area.
+//! 3. Close slits, which these polygons or vertices on an edge leave, by exact subdivision.
+//! 4. Join triangles across edges.
 //!
-//! Invariant of a [`Surface`]: no triangle is without area. A closed one has a neighbour across every
-//! edge, and neighbours run along their edge in opposite directions.
+//! Invariants of a [`Surface`]: each triangle has an area. In a closed surface each side has a neighbour, and
+//! neighbours traverse their common edge in opposite directions.
 
 use glam::DVec3;
 
@@ -19,29 +20,30 @@ use super::weld::first_equals;
 use colltrans_convex::body::{InputFacet, InputVertex};
 use colltrans_kernel::range::in_exact_range;
 
-/// Rounds of subdivision: each joins at least one pair of edges in every slit that can be closed.
+/// Maximum number of subdivision rounds. Each round joins at least one pair of edges in every slit that can be
+/// closed.
 const MOST_ROUNDS: usize = 64;
 
-/// A triangle mesh, checked.
+/// A validated triangle mesh.
 pub(crate) struct Surface {
-    /// The vertices in use.
+    /// Vertices in use.
     pub(crate) vertices: Vec<DVec3>,
-    /// Their indices in the input.
+    /// Input indices of the vertices.
     pub(crate) vertex_index: Vec<InputVertex>,
     pub(crate) triangles: Vec<[u32; 3]>,
-    /// The input facet of each triangle.
+    /// Input facet of each triangle.
     pub(crate) facet_index: Vec<InputFacet>,
     pub(crate) neighbours: Vec<[u32; 3]>,
-    /// How many vertices and facets the input had.
+    /// Number of vertices and of facets of the input.
     pub(crate) input_counts: [u32; 2],
-    /// Where they are known: those of a body that was shrunk.
+    /// Polygonal faces, known only for an offset solid.
     pub(crate) faces: Option<Faces>,
-    /// What kind of shell each triangle belongs to; closed until the shells are known.
+    /// Kind of the shell of each triangle; `Closed` until shells are classified.
     pub(crate) kinds: Vec<ShellKind>,
 }
 
 impl Surface {
-    /// Gives the sheets vertices of their own: they stay where others are moved.
+    /// Gives sheets their own copies of shared vertices, because an offset moves the vertices of other shells only.
     pub(super) fn part_sheets(&mut self) {
         const TAKEN: u32 = u32::MAX;
         let sheet = |k: &ShellKind| *k == ShellKind::Sheet;
@@ -73,7 +75,8 @@ impl Surface {
     }
 }
 
-/// Checks and joins; a surface that is `open` on purpose may have edges without a neighbour.
+/// Builds a checked surface from polygons. If `open` is set, slits are not closed, and edges may have a facet on one
+/// side only.
 pub(super) fn surface<F: AsRef<[u32]>>(
     vertices: &[DVec3],
     facets: &[F],
@@ -124,13 +127,14 @@ fn check_input<F: AsRef<[u32]>>(vertices: &[DVec3], facets: &[F]) -> Result<(), 
     Ok(())
 }
 
-/// Triangles with areas, over the input's vertices.
+/// Triangles with area, with positions in the input vertices as corners.
 struct Soup {
     triangles: Vec<[u32; 3]>,
     facet_index: Vec<InputFacet>,
 }
 
 impl Soup {
+    /// Adds the triangles of a polygon with merged vertices, or counts the polygon if it has no area.
     fn push_facet(
         &mut self,
         vertices: &[DVec3],
@@ -171,8 +175,8 @@ impl Soup {
         Ok(())
     }
 
-    /// Subdivides triangles at open edges' ends that lie exactly on their own open edges; whether
-    /// anything was done.
+    /// Subdivides triangles at ends of open edges that lie exactly on their own open sides. Returns whether any
+    /// triangle was subdivided.
     fn close_slits(&mut self, vertices: &[DVec3], open: &[u32], report: &mut SolidReport) -> bool {
         let mut leaving: Vec<(u32, u32)> = Vec::with_capacity(open.len());
         let mut arriving = leaving.clone();
@@ -200,7 +204,8 @@ impl Soup {
         !cuts.is_empty()
     }
 
-    /// Puts points into the sides of triangles; `cuts` are in the order of half-edges.
+    /// Inserts vertices into sides of triangles, and triangulates these again. `cuts` lists half-edges with their
+    /// vertices.
     fn subdivide(&mut self, vertices: &[DVec3], cuts: &[(u32, Vec<u32>)]) {
         let mut cuts = cuts.to_vec();
         cuts.sort_by_key(|c| c.0);
@@ -228,6 +233,7 @@ impl Soup {
         }
     }
 
+    /// Returns an error for edges with inconsistent orientations, and for open edges unless `open` is set.
     fn check_edges(&self, edges: &Edges, open: bool) -> Result<(), SolidError> {
         let name = |h: u32| {
             let [from, to] = edges::ends(&self.triangles, h).map(|v| v as usize);
@@ -249,6 +255,7 @@ impl Soup {
         Ok(())
     }
 
+    /// Builds the surface, without unused vertices.
     fn compact(
         self,
         vertices: &[DVec3],
@@ -269,7 +276,7 @@ impl Soup {
             position[v.index()] = k as u32;
         }
         Surface {
-            // Adding 0 turns -0 into 0 and changes nothing else.
+            // Adding 0 replaces -0 by 0 and changes no other number.
             vertices: vertex_index.iter().map(|v| vertices[v.index()] + 0.0).collect(),
             triangles: self.triangles.iter().map(|t| t.map(|v| position[v as usize])).collect(),
             vertex_index,
@@ -282,13 +289,13 @@ impl Soup {
     }
 }
 
-/// Whether the corners do not all lie on one line.
+/// Checks whether the corners are not all on one line.
 fn has_area(vertices: &[DVec3], ring: &[u32]) -> bool {
     let at = |k: usize| vertices[ring[k] as usize];
     ring.len() >= 3 && (2..ring.len()).any(|k| !collinear(at(0), at(1), at(k)))
 }
 
-/// Ends of open edges, one after the other from `start`, while they lie strictly inside the edge.
+/// Returns the vertices strictly inside the edge from `p` to `q` that a chain of open edges from `start` visits.
 fn walk(vertices: &[DVec3], next: &[(u32, u32)], start: u32, [p, q]: [u32; 2]) -> Vec<u32> {
     let [a, b] = [p, q].map(|v| vertices[v as usize]);
     let inside = |v: u32| {
@@ -316,7 +323,8 @@ mod tests {
 
     use super::*;
 
-    /// A cube whose top edge from (0, 0, 1) to (1, 0, 1) has a vertex on one side only.
+    /// Returns a cube whose top edge from (0, 0, 1) to (1, 0, 1) has vertices on one side only. If `degenerate` is
+    /// set, facets without area fill the slit.
     fn cube_with_a_slit(degenerate: bool) -> (Vec<DVec3>, Vec<Vec<u32>>) {
         let Mesh { mut vertices, faces: mut facets } = block(DVec3::ZERO, DVec3::ONE);
         vertices.push(DVec3::new(0.25, 0.0, 1.0));
@@ -337,7 +345,7 @@ mod tests {
             assert_eq!(report.slits_closed, 1);
             assert_eq!(report.facets_without_area, if degenerate { 2 } else { 0 });
             assert!(surface.neighbours.iter().flatten().all(|&n| n != edges::NONE));
-            assert_eq!(surface.triangles.len(), 16, "10 vertices of a sphere");
+            assert_eq!(surface.triangles.len(), 16, "a sphere with 10 vertices has 16 triangles");
         }
     }
 

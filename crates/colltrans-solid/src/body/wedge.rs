@@ -1,17 +1,17 @@
-//! Wedges of material around an edge, compared by signs alone.
+//! Wedges of material around an edge, compared by signs only.
 //!
-//! Around an axis `u` directions are ordered counter-clockwise, as seen with `u` pointing at the
-//! eye. A facet that runs along `u` has its material clockwise of itself, one that runs against it
-//! counter-clockwise: the wedge of an edge is the open arc from its backward to its forward facet.
-//! Directions are those of points; a flat surface has a second direction opposite to a point's.
+//! - Directions around an axis `u` are ordered counter-clockwise, as seen with `u` pointing at the viewer.
+//! - A facet that runs along `u` has its material on its clockwise side, a facet that runs against `u` on its
+//!   counter-clockwise side. Therefore the wedge of an edge is the open arc from its backward to its forward facet.
+//! - Directions are those of points. The second direction of a flat surface is opposite to that of a point.
 
 use std::cmp::Ordering;
 
-/// Signs of points around an axis; points are named by numbers.
+/// Signs of determinants of points around an axis. Points are given by indices.
 pub(crate) trait Axis {
-    /// Sign of `det[u, x, y]`.
+    /// Returns the sign of `det[u, x, y]`.
     fn det(&self, x: usize, y: usize) -> Ordering;
-    /// Whether `x` and `y`, in one plane with the axis, lie on the same side of it.
+    /// Checks whether `x` and `y`, in one plane with the axis, lie on the same side of the axis.
     fn same_half(&self, x: usize, y: usize) -> bool;
 }
 
@@ -23,12 +23,13 @@ pub(crate) struct Ray {
 }
 
 impl Ray {
+    /// Returns the ray towards a point.
     pub(crate) fn to(point: usize) -> Self {
         Self { point, opposite: false }
     }
 }
 
-/// An open arc of material, counter-clockwise.
+/// An open arc of material, from `start` counter-clockwise to `end`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Wedge {
     pub(crate) start: Ray,
@@ -36,25 +37,24 @@ pub(crate) struct Wedge {
 }
 
 impl Wedge {
-    /// Whether two wedges have an interior point in common. A wedge whose facets fold onto each
-    /// other has no interior.
+    /// Checks whether two wedges have a common interior point. A wedge between coincident facets has no interior.
     pub(crate) fn meets(&self, other: &Self, axis: &impl Axis) -> bool {
         !self.is_empty(axis)
             && !other.is_empty(axis)
             && (self.contains(other.start, axis) || other.contains(self.start, axis))
     }
 
-    /// Whether its facets fold onto each other.
+    /// Checks whether the facets of the wedge coincide.
     pub(crate) fn is_empty(&self, axis: &impl Axis) -> bool {
         sector(self.start, self.end, axis) == 0
     }
 
-    /// Whether a ray lies in the arc.
+    /// Checks whether a ray lies in the open arc.
     pub(crate) fn holds(&self, ray: Ray, axis: &impl Axis) -> bool {
         sector(self.start, ray, axis) != 0 && self.contains(ray, axis)
     }
 
-    /// Whether a ray lies in the arc, its start included.
+    /// Checks whether a ray lies in the arc, including its start.
     pub(crate) fn contains(&self, ray: Ray, axis: &impl Axis) -> bool {
         match (sector(self.start, ray, axis), sector(self.start, self.end, axis)) {
             (0, _) => true,
@@ -65,12 +65,13 @@ impl Wedge {
     }
 }
 
+/// Returns the sign of `det[u, x, y]` for two rays.
 fn det(x: Ray, y: Ray, axis: &impl Axis) -> Ordering {
     let sign = axis.det(x.point, y.point);
     if x.opposite == y.opposite { sign } else { sign.reverse() }
 }
 
-/// The angle from `x` to `y`: 0, below a half turn, a half turn, above.
+/// Returns the class of the angle from `x` to `y`: 0 for zero, 1 below a half turn, 2 for a half turn, 3 above.
 fn sector(x: Ray, y: Ray, axis: &impl Axis) -> u8 {
     match det(x, y, axis) {
         Ordering::Greater => 1,
@@ -106,7 +107,7 @@ mod tests {
     fn wedges_meet_where_their_arcs_do() {
         for (a, b, c, d) in (0..4096).map(|i| (i & 7, i >> 3 & 7, i >> 6 & 7, i >> 9 & 7)) {
             let wedge = |s, e| Wedge { start: Ray::to(s), end: Ray::to(e) };
-            // Eighths of the circle that the arcs cover.
+            // Eighths of the circle in the arc, as bits.
             let cover = |s: usize, e: usize| {
                 (0..(e + 8 - s) % 8).fold(0_u8, |mask, k| mask | 1 << ((s + k) % 8))
             };

@@ -1,10 +1,11 @@
-//! Vertices with equal coordinates become one, without sorting.
+//! Merging of vertices with equal coordinates, by a hash table.
 
 use glam::DVec3;
 
+/// Marks an empty slot of the table.
 const FREE: u32 = u32::MAX;
 
-/// For each vertex the first one with the same coordinates (`-0` equals `0`).
+/// Returns the first vertex with the same coordinates for each vertex (`-0` equals `0`).
 pub(super) fn first_equals(vertices: &[DVec3]) -> Vec<u32> {
     let slots = (2 * vertices.len()).next_power_of_two().max(2);
     let mut table = vec![FREE; slots];
@@ -22,7 +23,8 @@ pub(super) fn first_equals(vertices: &[DVec3]) -> Vec<u32> {
     first
 }
 
-/// Equal for equal coordinates; the upper bits of a product depend on all bits of its factors.
+/// Returns a hash that is equal for equal coordinates. The upper half of a product depends on all bits of its
+/// factors.
 fn hash(point: DVec3) -> u64 {
     let mix = |h: u64, c: f64| {
         let bits = u128::from(h ^ (c + 0.0).to_bits());

@@ -8,32 +8,33 @@ use crate::body::tree::{self, Node};
 use colltrans_convex::body::Aabb;
 use colltrans_kernel::work;
 
-/// Facets within so many roundings of the largest coordinate of a plane lie in it.
+/// Maximum distance of facets from their common plane, in multiples of the reach of the body.
 const FLAT: f64 = 64.0 * f64::EPSILON;
-/// Facets whose normals differ by more than this sine lie in no plane: a first look.
+/// Maximum spread (sine) of a node that is tested for a common plane of its facets.
 const TURNED: f32 = 0.5;
-/// Facets of a leaf are compared with the box of another node if the leaf is longer than it by this factor.
+/// Factor by which a leaf must be longer than another node, so that its facets are compared with the box of this
+/// node.
 const LONG: f64 = 4.0;
 
-/// Bounds of the facets of each node. They show that facets of two nodes do not touch, or need not be compared.
+/// Bounds of the facets of each node, which prove that facets of two nodes do not touch or need not be compared.
 pub(super) struct Fences<'a> {
     placing: &'a Placing<'a>,
     /// Maximum rounding error of the product of a vertex with a vector, as a multiple of the sum norm of that vector.
     rounding: f64,
     boxes: Vec<Aabb>,
-    /// For nodes whose facets lie in a plane and look the same way.
+    /// The planes of nodes whose facets lie in one plane with the same orientation.
     flats: Vec<Option<Flat>>,
-    /// Vertices that all facets of a node have in common, then [`NONE`].
+    /// Vertices common to all facets of a node, followed by [`NONE`].
     tips: Vec<[u32; 3]>,
 }
 
-/// A plane, and the farthest vertices of the facets in it along the axes.
+/// A plane, with the extreme vertices of its facets along the axes.
 struct Flat {
     normal: DVec3,
     on: DVec3,
     rim: [DVec3; 6],
-    /// How far rounding may put points off the plane, and how far more for each unit of distance, by
-    /// tilting it.
+    /// Maximum distance of a point of the plane due to rounding, and its increase per unit of distance from `on` due
+    /// to tilt.
     tolerance: f64,
     tilt: f64,
 }
@@ -76,12 +77,13 @@ impl Flat {
         lies.then_some(flat)
     }
 
+    /// Checks whether a point lies in the plane within the tolerance.
     fn holds(&self, point: DVec3) -> bool {
         let away = point - self.on;
         self.normal.dot(away).abs() <= self.tolerance + self.tilt * away.length()
     }
 
-    /// Whether both lie in one plane and look the same way.
+    /// Checks whether both lie in one plane with the same orientation.
     fn is_one_with(&self, other: &Self) -> bool {
         let holds = |f: &Self, g: &Self| g.rim.iter().all(|p| f.holds(*p));
         self.normal.dot(other.normal) > 0.0 && (holds(self, other) || holds(other, self))
@@ -100,7 +102,7 @@ impl<'a> Fences<'a> {
             flats: nodes.iter().map(|node| Flat::new(placing, node, tolerance)).collect(),
             tips: vec![[NONE; 3]; nodes.len()],
         };
-        // Children come after their node.
+        // Children follow their node, so reverse order visits them first.
         for (k, node) in nodes.iter().enumerate().rev() {
             (fences.boxes[k], fences.tips[k]) = if node.is_leaf() {
                 let triangles = node.facets().map(|t| placing.solid.triangles[t]);
@@ -114,8 +116,7 @@ impl<'a> Fences<'a> {
         fences
     }
 
-    /// Checks whether the facets of two nodes cannot touch, lie in one plane, or all have a vertex in common, as those of
-    /// a fan do.
+    /// Checks whether the facets of two nodes cannot touch, lie in one plane, or all have a common vertex (a fan).
     pub(super) fn separate(&self, a: usize, b: usize) -> bool {
         let one_plane = || match (&self.flats[a], &self.flats[b]) {
             (Some(f), Some(g)) => a == b || f.is_one_with(g),
@@ -133,8 +134,8 @@ impl<'a> Fences<'a> {
         self.boxes[node].size().max_element()
     }
 
-    /// Checks whether the first node is a leaf, longer than the second node by [`LONG`], whose facets avoid the box of
-    /// that node.
+    /// Checks whether the first node is a leaf that is longer than the second node by [`LONG`], and whose facets
+    /// avoid the box of the second node.
     ///
     /// This dismisses long triangles, because their boxes contain large parts of the solid.
     fn leaf_avoids(&self, leaf: usize, node: usize) -> bool {
@@ -144,8 +145,8 @@ impl<'a> Fences<'a> {
             && leaf_node.facets().all(|t| self.avoids(t, &self.boxes[node]))
     }
 
-    /// Checks whether a plane separates a facet from a box for certain: one that is parallel to a side of the box, to
-    /// the facet, or to an edge of each.
+    /// Checks whether a plane certainly separates a facet from a box: a plane parallel to a side of the box, to the
+    /// facet, or to an edge of each.
     fn avoids(&self, triangle: usize, bounds: &Aabb) -> bool {
         let corners = self.placing.corners(triangle);
         if !Aabb::of_triangle(corners).meets(bounds) {
@@ -165,7 +166,7 @@ impl<'a> Fences<'a> {
     }
 }
 
-/// Returns the numbers that are in both lists, then [`NONE`].
+/// Returns the elements of both lists, followed by [`NONE`].
 fn common(a: [u32; 3], b: [u32; 3]) -> [u32; 3] {
     let mut both = a.map(|v| if b.contains(&v) { v } else { NONE });
     both.sort_unstable();

@@ -20,9 +20,9 @@ use super::{Solid, shells};
 use colltrans_convex::body::Aabb;
 use colltrans_kernel::work;
 
-mod fences;
+mod pair_filter;
 
-use fences::Fences;
+use pair_filter::Fences;
 
 /// Returns the triangles, in increasing order, that pass through others when the vertices move to `moved`. `shell_of`
 /// and `volumes` are those before the move.

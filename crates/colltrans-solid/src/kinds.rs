@@ -52,7 +52,7 @@ impl AnyBody {
 }
 
 /// Implements getters of [`AnyDistance`] for fields that both kinds have.
-macro_rules! of_both {
+macro_rules! impl_distance_getters {
     ($($(#[$doc:meta])* $name:ident: $type:ty;)+) => {
         impl AnyDistance {$(
             $(#[$doc])*
@@ -66,7 +66,7 @@ macro_rules! of_both {
     };
 }
 
-of_both! {
+impl_distance_getters! {
     /// Returns [`Distance::lower`].
     lower: f64;
     /// Returns [`Distance::upper`].

@@ -91,7 +91,7 @@ impl Cover<Apart> {
 }
 
 /// Result of a search for the nearest facets.
-struct Said {
+struct NearestFacets {
     spot: Option<Spot>,
     /// Lower bound on the distance of all facets.
     lower: f64,
@@ -232,10 +232,10 @@ impl<'a> SolidPair<'a> for Pair<'a, Solid> {
 impl SolidPairSearch for Pair<'_, Solid> {
     #[inline]
     fn ask(&self, prove: bool) -> Result<(Distance<Solid>, Unproven), QueryError> {
-        let scene = scene(self)?;
-        let said = search(self, &scene, Until::LEAST, prove);
-        let distance = answer(self, &scene, &said);
-        let cover = said.cover.filter(|_| distance.lower > 0.0);
+        let scene = pair_scene(self)?;
+        let nearest = search_nearest(self, &scene, Until::LEAST, prove);
+        let distance = distance_answer(self, &scene, &nearest);
+        let cover = nearest.cover.filter(|_| distance.lower > 0.0);
         Ok((distance, Unproven { near: distance.near, cover }))
     }
 
@@ -243,7 +243,7 @@ impl SolidPairSearch for Pair<'_, Solid> {
     fn prove(&self, found: Unproven) -> Result<DistanceCertificate, QueryError> {
         let Unproven { near, cover } = found;
         let Some(cover) = cover else { return Ok(DistanceCertificate::of_near(near)) };
-        Ok(match least_proven(&scene(self)?, &cover) {
+        Ok(match least_proven_distance(&pair_scene(self)?, &cover) {
             Ok(lower) if lower > 0.0 => DistanceCertificate { lower, near, cover },
             _ => DistanceCertificate::of_near(near),
         })
@@ -255,15 +255,15 @@ impl SolidPairSearch for Pair<'_, Solid> {
         prove: bool,
     ) -> Result<((Within<Solid>, SolidSteps), Unproven), QueryError> {
         check_length(length)?;
-        let scene = scene(self)?;
+        let scene = pair_scene(self)?;
         let until = Until {
             // Pairs beyond this distance count as farther. The margin exceeds the amount by which a bound may be
             // lowered.
             beyond: length + 0.125 * scene.noise,
             enough: length - triangle::LENGTH * scene.noise,
         };
-        let Said { spot, lower, cover, mut steps } =
-            search(self, &scene, until, prove && until.beyond.is_finite());
+        let NearestFacets { spot, lower, cover, mut steps } =
+            search_nearest(self, &scene, until, prove && until.beyond.is_finite());
         let near = spot.map(|spot| spot.near(&scene));
         let meeting = || nested(&scene).map(SolidNear::Meeting);
         let closer = near.map_or_else(meeting, |near| (near.distance() <= length).then_some(near));
@@ -291,7 +291,7 @@ impl SolidPairSearch for Pair<'_, Solid> {
     #[cfg(feature = "serde")]
     #[inline]
     fn points(&self, near: &SolidNear) -> Result<[DVec3; 2], QueryError> {
-        let scene = scene(self)?;
+        let scene = pair_scene(self)?;
         let origin = self.bodies.translations[0];
         let points = match *near {
             SolidNear::Meeting(place) => shared_points(&scene, place),
@@ -304,7 +304,7 @@ impl SolidPairSearch for Pair<'_, Solid> {
 
     #[inline]
     fn is_nested(&self) -> Result<bool, QueryError> {
-        Ok(nested(&scene(self)?).is_some())
+        Ok(nested(&pair_scene(self)?).is_some())
     }
 }
 
@@ -327,7 +327,7 @@ impl PairBody for Solid {
         proof: SolidPairProof<'_>,
     ) -> Result<f64, CertificateError> {
         // The scene has a direction, which the proof does not use.
-        let scene = scene(pair).map_err(|_| CertificateError::Start)?;
+        let scene = pair_scene(pair).map_err(|_| CertificateError::Start)?;
         match proof {
             SolidPairProof::Near(near) => verify_near(&scene, near),
             SolidPairProof::Distance(certificate) => {
@@ -340,13 +340,18 @@ impl PairBody for Solid {
 }
 
 /// Returns the nominal bodies in a common frame; its direction `z` has no meaning.
-fn scene<'a>(pair: &Pair<'a, Solid>) -> Result<Scene<'a>, QueryError> {
+fn pair_scene<'a>(pair: &Pair<'a, Solid>) -> Result<Scene<'a>, QueryError> {
     let setting = Setting::of(pair.bodies, DVec3::Z)?;
     Ok(Scene::new(&setting, [0.0; 2], 0.0))
 }
 
 /// Searches for the nearest facets, and records the cover if `prove` is set.
-fn search(pair: &Pair<'_, Solid>, scene: &Scene, until: Until, prove: bool) -> Said {
+fn search_nearest(
+    pair: &Pair<'_, Solid>,
+    scene: &Scene,
+    until: Until,
+    prove: bool,
+) -> NearestFacets {
     let mut cuts = HashMap::new();
     let mut search = Search::new(scene, until, |nodes, reason| {
         if prove {
@@ -356,20 +361,24 @@ fn search(pair: &Pair<'_, Solid>, scene: &Scene, until: Until, prove: bool) -> S
     let ((found, lower), steps) = (search.run(), search.steps);
     // After an early end some pairs have no reason, and there is no bound.
     let cover = (prove && lower > 0.0).then(|| Cover::new([pair.moving(), pair.fixed()], &cuts));
-    Said { spot: found.map(Spot::from), lower, cover, steps }
+    NearestFacets { spot: found.map(Spot::from), lower, cover, steps }
 }
 
 /// Returns the distance of the bodies from the result for their surfaces.
-fn answer(pair: &Pair<'_, Solid>, scene: &Scene, said: &Said) -> Distance<Solid> {
+fn distance_answer(
+    pair: &Pair<'_, Solid>,
+    scene: &Scene,
+    nearest: &NearestFacets,
+) -> Distance<Solid> {
     let origin = pair.bodies.translations[0];
-    let mut steps = said.steps;
-    let place = meeting(scene, said.lower, &mut steps);
-    let spot = said.spot.unwrap_or_else(|| Spot::of(scene, [0, 0]));
+    let mut steps = nearest.steps;
+    let place = meeting(scene, nearest.lower, &mut steps);
+    let spot = nearest.spot.unwrap_or_else(|| Spot::of(scene, [0, 0]));
     let (near, points) = match place {
         Some(place) => (SolidNear::Meeting(place), shared_points(scene, place)),
         None => (spot.near(scene), spot.points(scene)),
     };
-    let lower = if place.is_some() { 0.0 } else { said.lower };
+    let lower = if place.is_some() { 0.0 } else { nearest.lower };
     let spot = (lower > 0.0).then_some(spot);
     let features = spot.map(|spot| spot.features(scene));
     Distance {
@@ -390,7 +399,7 @@ fn answer(pair: &Pair<'_, Solid>, scene: &Scene, said: &Said) -> Distance<Solid>
 /// # Errors
 /// Returns [`CertificateError::Cover`] if the cover does not fit the bodies, or for an entry that proves no positive
 /// distance or is marked as examined without being a pair of leaves.
-fn least_proven(scene: &Scene, cover: &Cover<Apart>) -> Result<f64, CertificateError> {
+fn least_proven_distance(scene: &Scene, cover: &Cover<Apart>) -> Result<f64, CertificateError> {
     let bodies = [scene.moving.solid, scene.fixed.solid];
     let axes = Axes::new(scene);
     let mut least = f64::INFINITY;
@@ -433,7 +442,7 @@ fn verify_cover(scene: &Scene, certificate: &DistanceCertificate) -> Result<f64,
     if *claimed == 0.0 && cover.is_empty() {
         return Ok(0.0);
     }
-    let proven = least_proven(scene, cover)?;
+    let proven = least_proven_distance(scene, cover)?;
     let met = matches!(near, SolidNear::Meeting(_));
     if !(0.0..=proven).contains(claimed) || met {
         return Err(CertificateError::Bound { proven, claimed: *claimed });

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use glam::DVec3;
 
 use super::Solid;
-use super::shells::{self, TRIED, crossing, lies_on};
+use super::shells::{self, MAX_TRIED_TRIANGLES, crossing, lies_on};
 
 impl Solid {
     /// Returns the body of each of [`Self::triangles`]: a closed shell with its cavities, or an open shell.
@@ -33,12 +33,12 @@ impl Solid {
     /// # Ok::<(), colltrans::solid::SolidError>(())
     /// ```
     pub fn bodies(&self) -> Vec<u32> {
-        let shell_of = shells::components(&self.neighbours);
+        let shell_of = shells::shell_numbers(&self.neighbours);
         let corner = |v: u32| self.vertices[v as usize];
-        let volumes = shells::volumes(&shell_of, &self.triangles, corner);
+        let volumes = shells::shell_volumes(&shell_of, &self.triangles, corner);
         let body_of = |shell: usize| {
             let is_cavity = volumes[shell] < 0.0 && self.is_shell_closed(shell as u32);
-            if is_cavity { self.container(shell, &shell_of, &volumes) } else { shell }
+            if is_cavity { self.enclosing_shell(shell, &shell_of, &volumes) } else { shell }
         };
         let body_of: Vec<usize> = (0..volumes.len()).map(body_of).collect();
         let mut first = vec![u32::MAX; volumes.len()];
@@ -57,9 +57,9 @@ impl Solid {
 
     /// Returns the smallest closed shell of the same piece around a cavity, or the cavity itself if there is none.
     ///
-    /// The vertex that is tested lies on no other shell, if one of the first [`TRIED`] triangles has such a vertex,
-    /// because shells may touch.
-    fn container(&self, cavity: usize, shell_of: &[u32], volumes: &[f64]) -> usize {
+    /// The tested vertex lies on no other shell, if one of the first [`MAX_TRIED_TRIANGLES`] triangles has such a
+    /// vertex, because shells may touch.
+    fn enclosing_shell(&self, cavity: usize, shell_of: &[u32], volumes: &[f64]) -> usize {
         let corners = |t: usize| self.triangles[t].map(|v| self.vertices[v as usize]);
         let first = self.spans[cavity].triangle as usize;
         let others = (0..shell_of.len()).filter(|&t| t != first && shell_of[t] as usize == cavity);
@@ -69,7 +69,7 @@ impl Solid {
             !(0..shell_of.len()).any(is_on)
         };
         let [on_first, ..] = corners(first);
-        let p = points().take(3 * TRIED).find(is_off).unwrap_or(on_first);
+        let p = points().take(3 * MAX_TRIED_TRIANGLES).find(is_off).unwrap_or(on_first);
         let piece = self.piece_of(first);
         let mut windings: BTreeMap<usize, i32> = BTreeMap::new();
         let mut open = vec![0];
@@ -103,12 +103,12 @@ mod tests {
 
     use super::*;
 
-    fn cube(low: f64, high: f64) -> Mesh {
+    fn cube_between(low: f64, high: f64) -> Mesh {
         block(DVec3::splat(low), DVec3::splat(high))
     }
 
     /// Returns the body of each input facet.
-    fn bodies(mesh: &Mesh) -> Vec<u32> {
+    fn bodies_of_facets(mesh: &Mesh) -> Vec<u32> {
         let solid = Solid::from_open_mesh(&mesh.vertices, &mesh.faces).unwrap();
         let mut of_facet = vec![u32::MAX; mesh.faces.len()];
         for (body, facet) in solid.bodies().into_iter().zip(solid.facet_indices()) {
@@ -120,39 +120,47 @@ mod tests {
     }
 
     /// Returns each number six times.
-    fn runs(numbers: &[u32]) -> Vec<u32> {
+    fn six_of_each(numbers: &[u32]) -> Vec<u32> {
         numbers.iter().flat_map(|&n| [n; 6]).collect()
     }
 
     #[test]
-    fn cavities_belong_to_what_is_around_them() {
+    fn cavities_belong_to_the_enclosing_shell() {
         // A nut in a hollow ball in a hollow box, with the facets out of order, next to a reversed box.
-        let mesh = cube(2.0, 3.0)
-            .joined(&cube(0.5, 4.5).reversed())
-            .joined(&cube(1.0, 4.0))
-            .joined(&cube(1.5, 3.5).reversed())
-            .joined(&cube(0.0, 5.0));
+        let mesh = cube_between(2.0, 3.0)
+            .joined(&cube_between(0.5, 4.5).reversed())
+            .joined(&cube_between(1.0, 4.0))
+            .joined(&cube_between(1.5, 3.5).reversed())
+            .joined(&cube_between(0.0, 5.0));
         // Reversing all shells changes no body.
-        assert_eq!(bodies(&mesh.clone().reversed()), runs(&[0, 1, 2, 2, 1]));
-        assert_eq!(bodies(&mesh.joined(&cube(6.0, 7.0).reversed())), runs(&[0, 1, 2, 2, 1, 3]));
+        assert_eq!(bodies_of_facets(&mesh.clone().reversed()), six_of_each(&[0, 1, 2, 2, 1]));
+        assert_eq!(
+            bodies_of_facets(&mesh.joined(&cube_between(6.0, 7.0).reversed())),
+            six_of_each(&[0, 1, 2, 2, 1, 3])
+        );
     }
 
     #[test]
-    fn bodies_that_touch_are_two() {
+    fn touching_or_overlapping_shells_are_two_bodies() {
         let side = |at: f64| block(DVec3::new(at, 0.0, 0.0), DVec3::new(at + 1.0, 1.0, 1.0));
         let face_to_face = side(0.0).joined(&side(1.0));
-        assert_eq!(bodies(&face_to_face), runs(&[0, 1]));
+        assert_eq!(bodies_of_facets(&face_to_face), six_of_each(&[0, 1]));
         let edge = block(DVec3::new(1.0, 1.0, 0.0), DVec3::new(2.0, 2.0, 1.0));
-        assert_eq!(bodies(&side(0.0).joined(&edge)), runs(&[0, 1]));
+        assert_eq!(bodies_of_facets(&side(0.0).joined(&edge)), six_of_each(&[0, 1]));
         // Overlapping shells, and a shell inside another one that is not a cavity.
-        assert_eq!(bodies(&side(0.0).joined(&side(0.5))), runs(&[0, 1]));
-        assert_eq!(bodies(&cube(0.0, 3.0).joined(&cube(1.0, 2.0))), runs(&[0, 1]));
+        assert_eq!(bodies_of_facets(&side(0.0).joined(&side(0.5))), six_of_each(&[0, 1]));
+        assert_eq!(
+            bodies_of_facets(&cube_between(0.0, 3.0).joined(&cube_between(1.0, 2.0))),
+            six_of_each(&[0, 1])
+        );
     }
 
     #[test]
-    fn open_shells_are_bodies_of_their_own() {
-        let mut mesh = cube(0.0, 3.0).joined(&cube(1.0, 2.0).reversed()).joined(&cube(5.0, 6.0));
+    fn open_shell_is_a_separate_body() {
+        let mut mesh = cube_between(0.0, 3.0)
+            .joined(&cube_between(1.0, 2.0).reversed())
+            .joined(&cube_between(5.0, 6.0));
         mesh.faces.pop();
-        assert_eq!(bodies(&mesh), runs(&[0, 0, 1])[..17]);
+        assert_eq!(bodies_of_facets(&mesh), six_of_each(&[0, 0, 1])[..17]);
     }
 }

@@ -5,9 +5,9 @@ use colltrans_convex::body::{ConvexPolyhedron, Keepable};
 
 /// The solid of a convex polyhedron, stored with it.
 #[derive(Debug)]
-struct KeptSolid(Result<Solid, SolidError>);
+struct StoredSolid(Result<Solid, SolidError>);
 
-impl Keepable for KeptSolid {
+impl Keepable for StoredSolid {
     fn heap_bytes(&self) -> usize {
         size_of::<Self>() + self.0.as_ref().map_or(0, Solid::heap_bytes)
     }
@@ -25,7 +25,7 @@ impl Solid {
         check_area(body)?;
         let facets: Vec<Vec<u32>> =
             (0..body.face_count() as u32).map(|f| body.face_vertices(f).collect()).collect();
-        Ok(Self::from_mesh(body.vertices(), &facets)?.renumbered(body.input_indices()))
+        Ok(Self::from_mesh(body.vertices(), &facets)?.with_input_numbers(body.input_indices()))
     }
 }
 
@@ -37,12 +37,12 @@ impl AsSolid for ConvexPolyhedron {
 
     fn as_surface(&self) -> Result<&Solid, SolidError> {
         let make = || match self.dimension() {
-            0 => Ok(Solid::without_area(self, [0, 0, 0])),
-            1 => Ok(Solid::without_area(self, [0, 1, 1])),
+            0 => Ok(Solid::from_degenerate_facet(self, [0, 0, 0])),
+            1 => Ok(Solid::from_degenerate_facet(self, [0, 1, 1])),
             _ => Solid::from_convex(self),
         };
-        let made = self.kept().get_or_make(|| KeptSolid(make()));
-        let KeptSolid(made) = made.expect("no other type is stored with a convex polyhedron");
+        let made = self.kept().get_or_make(|| StoredSolid(make()));
+        let StoredSolid(made) = made.expect("no other type is stored with a convex polyhedron");
         made.as_ref().map_err(Clone::clone)
     }
 }

@@ -14,49 +14,49 @@ use glam::{BVec3, DVec3};
 /// Number of cuts: eight corners, and four edges along each axis.
 pub(crate) const CUTS: usize = 20;
 /// Number of steps of a share.
-const STEPS: f64 = 256.0;
+const SHARE_STEPS: f64 = 256.0;
 /// Factor of shares. It covers the rounding errors of their computation and use, but not those of coordinates, which
 /// callers add.
-const SHARE: f64 = 1.0 - 1e-9;
+const SHARE_ROUNDING: f64 = 1.0 - 1e-9;
 
 /// Maxima of points along the signs of all corners and edges.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Reach([f64; CUTS]);
+pub(super) struct SignMaxima([f64; CUTS]);
 
-impl Reach {
+impl SignMaxima {
     pub(super) const NONE: Self = Self([f64::NEG_INFINITY; CUTS]);
 
     pub(super) fn add(&mut self, p: DVec3) {
         let DVec3 { x, y, z } = p;
         let along = [x + y + z, -x + y + z, x - y + z, -x - y + z];
         for (k, h) in along.into_iter().enumerate() {
-            self.raise(k, h);
-            self.raise(7 - k, -h);
+            self.raise_to(k, h);
+            self.raise_to(7 - k, -h);
         }
         for (axis, [a, b]) in [[y, z], [z, x], [x, y]].into_iter().enumerate() {
             let first = 8 + 4 * axis;
             for (k, h) in [a + b, b - a].into_iter().enumerate() {
-                self.raise(first + k, h);
-                self.raise(first + 3 - k, -h);
+                self.raise_to(first + k, h);
+                self.raise_to(first + 3 - k, -h);
             }
         }
     }
 
-    pub(super) fn join(&mut self, other: &Self) {
+    pub(super) fn include_maxima(&mut self, other: &Self) {
         for (k, h) in other.0.into_iter().enumerate() {
-            self.raise(k, h);
+            self.raise_to(k, h);
         }
     }
 
-    fn raise(&mut self, k: usize, height: f64) {
+    fn raise_to(&mut self, k: usize, height: f64) {
         if height > self.0[k] {
             self.0[k] = height;
         }
     }
 
     /// Returns the depths of points below the corners and edges of their box, as shares in steps.
-    pub(super) fn below(&self, bounds: &Aabb) -> [u8; CUTS] {
-        let sums = extents(bounds.size());
+    pub(super) fn depth_shares(&self, bounds: &Aabb) -> [u8; CUTS] {
+        let sums = extents_along_signs(bounds.size());
         let mut ends = Self::NONE;
         for c in 0..8 {
             let lower = BVec3::new(c & 1 != 0, c & 2 != 0, c & 4 != 0);
@@ -65,13 +65,13 @@ impl Reach {
         std::array::from_fn(|k| {
             let depth = ends.0[k] - self.0[k];
             // The conversion saturates, and yields 0 if the box has no extent (a quotient that is not a number).
-            (depth / sums[k] * (STEPS * SHARE)) as u8
+            (depth / sums[k] * (SHARE_STEPS * SHARE_ROUNDING)) as u8
         })
     }
 }
 
 /// Returns the extents of a box along the signs of corners and edges.
-fn extents(e: DVec3) -> [f64; CUTS] {
+fn extents_along_signs(e: DVec3) -> [f64; CUTS] {
     let mut sums = [e.element_sum(); CUTS];
     for axis in 0..3 {
         sums[8 + 4 * axis..12 + 4 * axis].fill(e[(axis + 1) % 3] + e[(axis + 2) % 3]);
@@ -86,7 +86,7 @@ pub(crate) type Depths = [f64; 32];
 /// of the box moves by at most 3 times that distance along its signs, and the facets below it by at most `sqrt(3)`
 /// times.
 #[inline]
-fn depth(cut: f64, step: f64, moved: f64) -> f64 {
+fn reduced_depth(cut: f64, step: f64, moved: f64) -> f64 {
     let rest = step * cut - 5.0 * moved;
     if rest > 0.0 { rest } else { 0.0 }
 }
@@ -94,11 +94,11 @@ fn depth(cut: f64, step: f64, moved: f64) -> f64 {
 /// Returns all depths of a box with these side lengths, of which the facets have moved by at most `moved`.
 #[inline]
 pub(crate) fn depths(cuts: &[u8; CUTS], size: DVec3, moved: f64) -> Depths {
-    let extents = extents(size * STEPS.recip());
+    let extents = extents_along_signs(size * SHARE_STEPS.recip());
     let shares = cuts.map(f64::from);
     let mut depths = [0.0; 32];
     for k in 0..CUTS {
-        depths[k] = depth(shares[k], extents[k], moved);
+        depths[k] = reduced_depth(shares[k], extents[k], moved);
     }
     depths
 }
@@ -148,7 +148,9 @@ impl Parts {
         let [w, v] = self.weights;
         let (corner, edge) = (usize::from(self.corner), usize::from(self.edge));
         let all = size.element_sum();
-        let of = |k: usize, extent: f64| depth(f64::from(cuts[k]), extent * STEPS.recip(), moved);
+        let of = |k: usize, extent: f64| {
+            reduced_depth(f64::from(cuts[k]), extent * SHARE_STEPS.recip(), moved)
+        };
         w * of(corner, all) + v * of(edge, all - size[(edge - 8) / 4])
     }
 }
@@ -158,7 +160,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn no_point_is_beyond_its_box_less_the_cuts() {
+    fn points_stay_inside_box_with_cuts() {
         // Points of a tilted ring. It touches the sides of its box, and not the corners.
         let points: Vec<DVec3> = (0..60)
             .map(|k| {
@@ -168,11 +170,11 @@ mod tests {
             .collect();
         let bounds = Aabb::of_points(points.iter().copied());
         let Aabb { low, high } = bounds;
-        let mut reach = Reach::NONE;
+        let mut reach = SignMaxima::NONE;
         for p in &points {
             reach.add(*p);
         }
-        let cuts = reach.below(&bounds);
+        let cuts = reach.depth_shares(&bounds);
         assert!(cuts.iter().any(|&c| c > 64));
         let depths = depths(&cuts, high - low, 0.0);
         let mut gained = 0.0;

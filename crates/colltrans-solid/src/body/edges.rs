@@ -27,12 +27,12 @@ pub(super) struct Edges {
 }
 
 /// Returns the start and end vertex of a half-edge.
-pub(super) fn ends(triangles: &[[u32; 3]], half_edge: u32) -> [u32; 2] {
+pub(super) fn half_edge_ends(triangles: &[[u32; 3]], half_edge: u32) -> [u32; 2] {
     let (t, k) = (half_edge as usize / 3, half_edge as usize % 3);
     [triangles[t][k], triangles[t][(k + 1) % 3]]
 }
 
-fn apex(triangles: &[[u32; 3]], half_edge: u32) -> u32 {
+fn opposite_vertex(triangles: &[[u32; 3]], half_edge: u32) -> u32 {
     triangles[half_edge as usize / 3][(half_edge as usize + 2) % 3]
 }
 
@@ -44,22 +44,27 @@ impl Edges {
             inconsistent: Vec::new(),
             crowded: 0,
         };
-        let (starts, mut entries) = buckets(vertices.len(), triangles);
+        let (starts, mut entries) = half_edges_by_vertex(vertices.len(), triangles);
         for v in 0..vertices.len() {
             let bucket = &mut entries[starts[v] as usize..starts[v + 1] as usize];
             bucket.sort_unstable();
             for edge in bucket.chunk_by(|a, b| a.0 == b.0) {
-                edges.match_up(vertices, triangles, edge);
+                edges.pair_half_edges(vertices, triangles, edge);
             }
         }
         edges
     }
 
     /// Pairs the half-edges of one edge. The middle of an entry is 1 for backward half-edges, which come last.
-    fn match_up(&mut self, vertices: &[DVec3], triangles: &[[u32; 3]], edge: &[(u32, u8, u32)]) {
+    fn pair_half_edges(
+        &mut self,
+        vertices: &[DVec3],
+        triangles: &[[u32; 3]],
+        edge: &[(u32, u8, u32)],
+    ) {
         let (forward, backward) = edge.split_at(edge.partition_point(|e| e.1 == 0));
         if let ([f], [b]) = (forward, backward) {
-            self.join(f.2, b.2);
+            self.make_neighbours(f.2, b.2);
             return;
         }
         if forward.len() == backward.len() {
@@ -67,19 +72,19 @@ impl Edges {
             let fan = Fan::new(vertices, triangles, edge);
             for f in 0..forward.len() {
                 let b = fan.nearest_clockwise(f, forward.len());
-                self.join(edge[f].2, edge[b].2);
+                self.make_neighbours(edge[f].2, edge[b].2);
             }
             return;
         }
         let shared = forward.len().min(backward.len());
         for (f, b) in forward.iter().zip(backward) {
-            self.join(f.2, b.2);
+            self.make_neighbours(f.2, b.2);
         }
         let rest = forward[shared..].iter().chain(&backward[shared..]).map(|e| e.2);
         if edge.len() % 2 == 1 { self.open.extend(rest) } else { self.inconsistent.extend(rest) }
     }
 
-    fn join(&mut self, f: u32, b: u32) {
+    fn make_neighbours(&mut self, f: u32, b: u32) {
         self.neighbours[f as usize / 3][f as usize % 3] = b / 3;
         self.neighbours[b as usize / 3][b as usize % 3] = f / 3;
     }
@@ -87,8 +92,11 @@ impl Edges {
 
 /// Returns the half-edges by their smaller vertex: the start of each bucket, and entries of the larger vertex, 1 for
 /// a backward half-edge, and the half-edge.
-fn buckets(vertices: usize, triangles: &[[u32; 3]]) -> (Vec<u32>, Vec<(u32, u8, u32)>) {
-    let half_edges = || (0..3 * triangles.len() as u32).map(|h| (h, ends(triangles, h)));
+fn half_edges_by_vertex(
+    vertices: usize,
+    triangles: &[[u32; 3]],
+) -> (Vec<u32>, Vec<(u32, u8, u32)>) {
+    let half_edges = || (0..3 * triangles.len() as u32).map(|h| (h, half_edge_ends(triangles, h)));
     let mut starts = vec![0_u32; vertices + 1];
     for (_, [from, to]) in half_edges() {
         starts[from.min(to) as usize + 1] += 1;
@@ -115,9 +123,9 @@ struct Fan {
 
 impl Fan {
     fn new(vertices: &[DVec3], triangles: &[[u32; 3]], edge: &[(u32, u8, u32)]) -> Self {
-        let [p, q] = ends(triangles, edge[0].2).map(|v| vertices[v as usize]);
-        let apex = |e: &(u32, u8, u32)| vertices[apex(triangles, e.2) as usize];
-        Self { p, q, apexes: edge.iter().map(apex).collect() }
+        let [p, q] = half_edge_ends(triangles, edge[0].2).map(|v| vertices[v as usize]);
+        let apex_of = |e: &(u32, u8, u32)| vertices[opposite_vertex(triangles, e.2) as usize];
+        Self { p, q, apexes: edge.iter().map(apex_of).collect() }
     }
 
     /// Returns the backward facet that bounds the material of forward facet `f`: the nearest one clockwise. A

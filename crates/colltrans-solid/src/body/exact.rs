@@ -28,12 +28,12 @@ pub(crate) fn side(a: DVec3, b: DVec3, c: DVec3, e: DVec3) -> Ordering {
 }
 
 /// Checks whether three points lie on one line.
-pub(super) fn collinear(a: DVec3, b: DVec3, c: DVec3) -> bool {
+pub(super) fn are_collinear(a: DVec3, b: DVec3, c: DVec3) -> bool {
     (0..3).all(|axis| turn(a, b, c, axis) == Ordering::Equal)
 }
 
 /// Checks whether `m`, a point on the line through `p` and `q`, lies strictly between them.
-pub(super) fn between(p: DVec3, q: DVec3, m: DVec3) -> bool {
+pub(super) fn is_strictly_between(p: DVec3, q: DVec3, m: DVec3) -> bool {
     let axis = (q - p).abs().max_position();
     let (p, q, m) = (p[axis], q[axis], m[axis]);
     (p < m && m < q) || (q < m && m < p)

@@ -5,8 +5,8 @@
 //! - This plane has the sum of the area vectors as normal and contains the weighted centroid. It is more accurate for
 //!   a larger face, which small triangles with rounded corners require. It is not the plane of the neighbour, so that
 //!   the small angles between facets of a cylinder do not accumulate.
-//! - The precision is [`SINGLE`] times the reach of the body if all coordinates are single-precision numbers, else
-//!   [`DOUBLE`] times the reach. Faces only name features. No length or bound depends on them.
+//! - The precision is [`SINGLE_PRECISION`] or [`DOUBLE_PRECISION`] times the reach of the body, by the precision of
+//!   all coordinates. Faces only name features. No length or bound depends on them.
 //! - An edge of the mesh is *sharp* if it has no neighbour or one of another face. Two sharp edges that alone meet in
 //!   a straight line belong to one edge of the solid. Other end points of sharp edges are corners.
 
@@ -18,15 +18,15 @@ use super::tree;
 use colltrans_convex::body::{FaceId, Feature};
 
 /// Precision of single-precision coordinates, in multiples of the largest distance from the origin.
-const SINGLE: f64 = 1.0 / (1_u64 << 22) as f64;
+const SINGLE_PRECISION: f64 = 1.0 / (1_u64 << 22) as f64;
 /// Precision of double-precision coordinates, in multiples of the largest distance from the origin.
-const DOUBLE: f64 = 1.0 / (1_u64 << 48) as f64;
+const DOUBLE_PRECISION: f64 = 1.0 / (1_u64 << 48) as f64;
 
 /// The face of each triangle.
 #[derive(Debug, Clone)]
 pub(crate) struct Faces {
     /// Number of the face of each triangle: the smallest input facet of the face.
-    of: Vec<u32>,
+    face_of: Vec<u32>,
     /// Whether more than two sharp edges end at each vertex.
     corners: Vec<bool>,
     /// Maximum difference of coordinates that were meant to be equal, a length.
@@ -36,71 +36,78 @@ pub(crate) struct Faces {
 impl Faces {
     fn new(solid: &Solid) -> Self {
         let single = |v: &DVec3| v.as_vec3().as_dvec3() == *v;
-        let share = if solid.vertices.iter().all(single) { SINGLE } else { DOUBLE };
+        let share =
+            if solid.vertices.iter().all(single) { SINGLE_PRECISION } else { DOUBLE_PRECISION };
         let precision = share * solid.reach;
         let areas: Vec<DVec3> = (0..solid.triangles.len() as u32)
-            .map(|t| tree::normal(solid.corners_of(t)).0)
+            .map(|t| tree::normal(solid.triangle_corners(t)).0)
             .collect();
         let mut order: Vec<u32> = (0..areas.len() as u32).collect();
         let size = |t: &u32| areas[*t as usize].length_squared();
         order.sort_by(|a, b| size(b).total_cmp(&size(a)));
-        let mut of = vec![NONE; areas.len()];
+        let mut face_of = vec![NONE; areas.len()];
         let mut members: Vec<u32> = Vec::new();
         for seed in order {
-            if of[seed as usize] != NONE {
+            if face_of[seed as usize] != NONE {
                 continue;
             }
-            let mut plane = Plane::default();
-            let mut take = |t: u32, members: &mut Vec<u32>, of: &mut Vec<u32>| {
-                plane.add(solid.corners_of(t), areas[t as usize]);
-                of[t as usize] = solid.facet_index[t as usize].0;
+            let mut plane = FacePlane::default();
+            let mut take = |t: u32, members: &mut Vec<u32>, face_of: &mut Vec<u32>| {
+                plane.add(solid.triangle_corners(t), areas[t as usize]);
+                face_of[t as usize] = solid.facet_index[t as usize].0;
                 members.push(t);
                 plane
             };
-            let mut plane = take(seed, &mut members, &mut of);
+            let mut plane = take(seed, &mut members, &mut face_of);
             let mut next = 0;
             while let Some(&t) = members.get(next) {
                 next += 1;
                 for n in solid.neighbours[t as usize] {
-                    if n == NONE || of[n as usize] != NONE {
+                    if n == NONE || face_of[n as usize] != NONE {
                         continue;
                     }
                     let same = solid.facet_index[n as usize] == solid.facet_index[t as usize];
-                    if same || plane.holds(solid.corners_of(n), areas[n as usize], precision) {
-                        plane = take(n, &mut members, &mut of);
+                    if same
+                        || plane.contains_triangle(
+                            solid.triangle_corners(n),
+                            areas[n as usize],
+                            precision,
+                        )
+                    {
+                        plane = take(n, &mut members, &mut face_of);
                     }
                 }
             }
-            let number = members.iter().map(|&t| of[t as usize]).min().unwrap_or(NONE);
-            members.drain(..).for_each(|t| of[t as usize] = number);
+            let number = members.iter().map(|&t| face_of[t as usize]).min().unwrap_or(NONE);
+            members.drain(..).for_each(|t| face_of[t as usize] = number);
         }
-        let corners = corners(solid, &of);
-        Self { of, corners, precision }
+        let corners = corner_vertices(solid, &face_of);
+        Self { face_of, corners, precision }
     }
 
     /// Returns the faces for the same triangles in another order.
-    pub(super) fn ordered(&self, order: &[u32]) -> Self {
-        let of = order.iter().map(|&t| self.of[t as usize]).collect();
-        Self { of, corners: self.corners.clone(), ..*self }
+    pub(super) fn reordered(&self, order: &[u32]) -> Self {
+        let face_of = order.iter().map(|&t| self.face_of[t as usize]).collect();
+        Self { face_of, corners: self.corners.clone(), ..*self }
     }
 
     pub(crate) fn heap_bytes(&self) -> usize {
-        self.of.capacity() * size_of::<u32>() + self.corners.capacity()
+        self.face_of.capacity() * size_of::<u32>() + self.corners.capacity()
     }
 }
 
 /// Returns for each vertex whether more than two sharp edges end there.
-fn corners(solid: &Solid, of: &[u32]) -> Vec<bool> {
+fn corner_vertices(solid: &Solid, face_of: &[u32]) -> Vec<bool> {
     let mut ends = vec![0_u8; solid.vertices.len()];
     let mut count = |v: u32| ends[v as usize] = ends[v as usize].saturating_add(1);
     for (t, neighbours) in solid.neighbours.iter().enumerate() {
         for (k, &n) in neighbours.iter().enumerate() {
-            let rim = n == NONE;
-            if rim || of[n as usize] != of[t] {
+            let on_boundary = n == NONE;
+            if on_boundary || face_of[n as usize] != face_of[t] {
                 // The neighbour counts the other end.
                 count(solid.triangles[t][k]);
             }
-            if rim {
+            if on_boundary {
                 count(solid.triangles[t][(k + 1) % 3]);
             }
         }
@@ -110,13 +117,13 @@ fn corners(solid: &Solid, of: &[u32]) -> Vec<bool> {
 
 /// The plane of a face: the sum of the area vectors, and the weighted centroid of the triangles.
 #[derive(Debug, Clone, Copy, Default)]
-struct Plane {
+struct FacePlane {
     area: DVec3,
     weighted: DVec3,
     weight: f64,
 }
 
-impl Plane {
+impl FacePlane {
     fn add(&mut self, [a, b, c]: [DVec3; 3], area: DVec3) {
         let weight = area.length();
         self.area += area;
@@ -126,7 +133,7 @@ impl Plane {
 
     /// Checks whether a triangle lies in the plane within a length, and has the same orientation. The orientation of
     /// a triangle whose height is at most this length is not checked.
-    fn holds(&self, corners: [DVec3; 3], area: DVec3, precision: f64) -> bool {
+    fn contains_triangle(&self, corners: [DVec3; 3], area: DVec3, precision: f64) -> bool {
         let (normal, center) = (self.area.normalize_or_zero(), self.weighted / self.weight);
         let [a, b, c] = corners;
         let longest = (b - a).length().max((c - b).length()).max((a - c).length());
@@ -137,13 +144,13 @@ impl Plane {
 
 /// The sharp edges at a vertex: for each one its other end and a triangle of which it is a side.
 #[derive(Default)]
-struct Sharp {
+struct SharpEdges {
     ends: [[u32; 2]; 2],
     /// Number of sharp edges; counting stops at 3.
     count: usize,
 }
 
-impl Sharp {
+impl SharpEdges {
     fn add(&mut self, edge: [u32; 2]) {
         if let Some(free) = self.ends.get_mut(self.count) {
             *free = edge;
@@ -156,14 +163,14 @@ impl Solid {
     /// Returns the number of the face of each of [`Self::triangles`], as in [`Feature::Face`]. It is the smallest
     /// input facet of the face.
     pub fn face_numbers(&self) -> &[u32] {
-        &self.faces().of
+        &self.faces().face_of
     }
 
     pub(super) fn faces(&self) -> &Faces {
         self.faces.get_or_init(|| Box::new(Faces::new(self)))
     }
 
-    fn corners_of(&self, triangle: u32) -> [DVec3; 3] {
+    fn triangle_corners(&self, triangle: u32) -> [DVec3; 3] {
         self.triangles[triangle as usize].map(|v| self.vertices[v as usize])
     }
 
@@ -201,19 +208,19 @@ impl Solid {
         }
         if let Some(k) = (0..3).find(|&k| place(own[k]).distance(point) <= slack) {
             let (mut face, mut edge) = (None, None);
-            self.around(own[k], triangle, |t, _| {
+            self.visit_around(own[k], triangle, |t, _| {
                 face = face.or(lies(t).then_some(t));
                 face.is_some()
             });
             if let Some(t) = face {
                 return self.face_feature(t);
             }
-            self.each_sharp(own[k], triangle, |[end, t]| {
+            self.visit_sharp_edges(own[k], triangle, |[end, t]| {
                 edge = edge.or(touches(end).then_some([end, t]));
                 edge.is_some()
             });
             return match edge {
-                Some([end, t]) => self.edge_between([own[k], end], t),
+                Some([end, t]) => self.edge_along_side([own[k], end], t),
                 None => self.corner_feature(triangle, k),
             };
         }
@@ -231,7 +238,7 @@ impl Solid {
     }
 
     fn face_feature(&self, triangle: u32) -> Feature {
-        Feature::Face(FaceId(self.faces().of[triangle as usize]))
+        Feature::Face(FaceId(self.faces().face_of[triangle as usize]))
     }
 
     /// Returns the feature of side `k` of a triangle, from corner `k` to the next corner: an edge or a face.
@@ -240,7 +247,7 @@ impl Solid {
             return self.face_feature(triangle);
         }
         let own = self.triangles[triangle as usize];
-        self.edge_between([own[k], own[(k + 1) % 3]], triangle)
+        self.edge_along_side([own[k], own[(k + 1) % 3]], triangle)
     }
 
     /// Returns the feature of corner `k` of a triangle: a corner, an edge or a face of the solid.
@@ -250,7 +257,7 @@ impl Solid {
         if self.is_corner(vertex) {
             return corner;
         }
-        let sharp = self.sharp_at(vertex, triangle);
+        let sharp = self.sharp_edges_at(vertex, triangle);
         let [[a, s], [b, t]] = sharp.ends;
         match sharp.count {
             0 => self.face_feature(triangle),
@@ -262,8 +269,8 @@ impl Solid {
     /// Checks whether side `k` of a triangle belongs to an edge of the solid, and not to the interior of a face.
     pub(crate) fn is_sharp(&self, triangle: u32, k: usize) -> bool {
         let n = self.neighbours[triangle as usize][k];
-        let of = &self.faces().of;
-        n == NONE || of[n as usize] != of[triangle as usize]
+        let face_of = &self.faces().face_of;
+        n == NONE || face_of[n as usize] != face_of[triangle as usize]
     }
 
     /// Checks whether more than two sharp edges end at a vertex.
@@ -273,7 +280,7 @@ impl Solid {
 
     /// Visits the triangles around a vertex, or from one boundary edge to the other, until `visit` returns true. The
     /// second argument of `visit` is the position of the vertex in the triangle.
-    fn around(&self, vertex: u32, triangle: u32, mut visit: impl FnMut(u32, usize) -> bool) {
+    fn visit_around(&self, vertex: u32, triangle: u32, mut visit: impl FnMut(u32, usize) -> bool) {
         let place = |t: u32| self.triangles[t as usize].iter().position(|&v| v == vertex);
         let across = |t: u32, side: usize| self.neighbours[t as usize][side % 3];
         // First across the sides that start at the vertex, then across the sides that end there.
@@ -299,7 +306,7 @@ impl Solid {
     /// Checks whether a vertex of a triangle has no sharp edges.
     pub(crate) fn is_within_face(&self, vertex: u32, triangle: u32) -> bool {
         let mut any = false;
-        self.each_sharp(vertex, triangle, |_| {
+        self.visit_sharp_edges(vertex, triangle, |_| {
             any = true;
             any
         });
@@ -308,20 +315,26 @@ impl Solid {
 
     /// Visits the sharp edges at a vertex of a triangle until `visit` returns true. Arguments are the other end and a
     /// triangle.
-    fn each_sharp(&self, vertex: u32, triangle: u32, mut visit: impl FnMut([u32; 2]) -> bool) {
-        self.around(vertex, triangle, |t, k| {
+    fn visit_sharp_edges(
+        &self,
+        vertex: u32,
+        triangle: u32,
+        mut visit: impl FnMut([u32; 2]) -> bool,
+    ) {
+        self.visit_around(vertex, triangle, |t, k| {
             let own = self.triangles[t as usize];
             let arriving = (k + 2) % 3;
             // An edge between two triangles is visited in the triangle in which it starts at the vertex.
-            let rim = self.neighbours[t as usize][arriving] == NONE;
-            self.is_sharp(t, k) && visit([own[(k + 1) % 3], t]) || rim && visit([own[arriving], t])
+            let on_boundary = self.neighbours[t as usize][arriving] == NONE;
+            self.is_sharp(t, k) && visit([own[(k + 1) % 3], t])
+                || on_boundary && visit([own[arriving], t])
         });
     }
 
     /// Returns the sharp edges at a vertex of a triangle; only the first two are stored.
-    fn sharp_at(&self, vertex: u32, triangle: u32) -> Sharp {
-        let mut sharp = Sharp::default();
-        self.each_sharp(vertex, triangle, |edge| {
+    fn sharp_edges_at(&self, vertex: u32, triangle: u32) -> SharpEdges {
+        let mut sharp = SharpEdges::default();
+        self.visit_sharp_edges(vertex, triangle, |edge| {
             sharp.add(edge);
             sharp.count > 2
         });
@@ -338,10 +351,10 @@ impl Solid {
     }
 
     /// Returns the complete straight edge that contains a side of a triangle.
-    fn edge_between(&self, [a, b]: [u32; 2], triangle: u32) -> Feature {
+    fn edge_along_side(&self, [a, b]: [u32; 2], triangle: u32) -> Feature {
         let far = self.end_of_edge(a, [a, b], triangle);
         let near = self.end_of_edge(far, [b, a], triangle);
-        self.edge_of([near, far])
+        self.edge_feature([near, far])
     }
 
     /// Returns the complete straight edge through `a`, `m` and `b`, where `m` lies between the others. `s` and `t`
@@ -349,10 +362,10 @@ impl Solid {
     fn edge_through(&self, [a, m, b]: [u32; 3], [s, t]: [u32; 2]) -> Feature {
         let far = self.end_of_edge(a, [m, b], t);
         let near = self.end_of_edge(far, [m, a], s);
-        self.edge_of([near, far])
+        self.edge_feature([near, far])
     }
 
-    fn edge_of(&self, ends: [u32; 2]) -> Feature {
+    fn edge_feature(&self, ends: [u32; 2]) -> Feature {
         let mut ends = ends.map(|v| self.vertex_index[v as usize]);
         ends.sort_unstable();
         Feature::Edge(ends)
@@ -365,7 +378,7 @@ impl Solid {
             if self.is_corner(at) {
                 break;
             }
-            let sharp = self.sharp_at(at, triangle);
+            let sharp = self.sharp_edges_at(at, triangle);
             let ahead = sharp.ends.into_iter().find(|[next, _]| *next != before);
             let Some([next, t]) = ahead.filter(|_| sharp.count == 2) else { break };
             if !self.is_straight([end, at, next]) {
@@ -379,21 +392,21 @@ impl Solid {
     /// Returns the corners of a face, as positions in [`Self::vertices`]. They are listed loop by loop, each
     /// counter-clockwise around the material. The loop with the largest area is first.
     pub(crate) fn face_corners(&self, face: u32) -> Vec<u32> {
-        let of = &self.faces().of;
+        let face_of = &self.faces().face_of;
         // Sharp sides of the face: start, end and triangle, sorted by start.
-        let mut rims: Vec<[u32; 3]> = Vec::new();
-        for t in (0..self.triangles.len() as u32).filter(|t| of[*t as usize] == face) {
+        let mut sharp_sides: Vec<[u32; 3]> = Vec::new();
+        for t in (0..self.triangles.len() as u32).filter(|t| face_of[*t as usize] == face) {
             let own = self.triangles[t as usize];
             let sharp = (0..3).filter(|&k| self.is_sharp(t, k));
-            rims.extend(sharp.map(|k| [own[k], own[(k + 1) % 3], t]));
+            sharp_sides.extend(sharp.map(|k| [own[k], own[(k + 1) % 3], t]));
         }
-        rims.sort_unstable();
+        sharp_sides.sort_unstable();
         let mut loops: Vec<(f64, Vec<u32>)> = Vec::new();
-        while let Some(mut rim) = rims.pop() {
-            let (first, mut around, mut area) = (rim[0], Vec::new(), DVec3::ZERO);
+        while let Some(mut side) = sharp_sides.pop() {
+            let (first, mut around, mut area) = (side[0], Vec::new(), DVec3::ZERO);
             let origin = self.vertices[first as usize];
             loop {
-                let [from, to, triangle] = rim;
+                let [from, to, triangle] = side;
                 let own = self.triangles[triangle as usize];
                 let k = own.iter().position(|&v| v == from).unwrap_or(0);
                 if matches!(self.corner_feature(triangle, k), Feature::Vertex(_)) {
@@ -401,11 +414,11 @@ impl Solid {
                 }
                 let [p, q] = [from, to].map(|v| self.vertices[v as usize] - origin);
                 area += p.cross(q);
-                let next = rims.partition_point(|r| r[0] < to);
-                if to == first || rims.get(next).is_none_or(|r| r[0] != to) {
+                let next = sharp_sides.partition_point(|r| r[0] < to);
+                if to == first || sharp_sides.get(next).is_none_or(|r| r[0] != to) {
                     break;
                 }
-                rim = rims.remove(next);
+                side = sharp_sides.remove(next);
             }
             loops.push((area.length_squared(), around));
         }

@@ -181,8 +181,8 @@ impl Solid {
         facets: &[F],
     ) -> Result<Self, SolidError> {
         let mut report = SolidReport::default();
-        let surface = validate::surface(vertices, facets, false, &mut report)?;
-        Ok(Self::assemble(surface, report))
+        let surface = validate::validated_surface(vertices, facets, false, &mut report)?;
+        Ok(Self::from_validated(surface, report))
     }
 
     /// Builds a solid from a surface with open shells, such as a scan or a sheet.
@@ -198,8 +198,8 @@ impl Solid {
         facets: &[F],
     ) -> Result<Self, SolidError> {
         let mut report = SolidReport::default();
-        let surface = validate::surface(vertices, facets, true, &mut report)?;
-        Ok(Self::assemble(surface, report))
+        let surface = validate::validated_surface(vertices, facets, true, &mut report)?;
+        Ok(Self::from_validated(surface, report))
     }
 
     /// Builds the union of several solids or convex polyhedra, which may overlap.
@@ -241,7 +241,7 @@ impl Solid {
             let shift = |n: u32| if n == edges::NONE { n } else { n + t };
             all.neighbours.extend(piece.neighbours.iter().map(|n| n.map(shift)));
             all.kinds.extend_from_slice(&piece.kinds);
-            report.absorb(&piece.report);
+            report.add_counts(&piece.report);
             let inputs =
                 [0, 1].map(|k| all.input_counts[k] as usize + piece.input_counts[k] as usize);
             let limit = u32::MAX as usize / 8;
@@ -260,7 +260,7 @@ impl Solid {
     }
 
     /// Builds a surface with one facet without area: a point or a segment, given by corner positions.
-    pub(crate) fn without_area(body: &ConvexPolyhedron, corners: [u32; 3]) -> Self {
+    pub(crate) fn from_degenerate_facet(body: &ConvexPolyhedron, corners: [u32; 3]) -> Self {
         let surface = Surface {
             vertices: body.vertices().to_vec(),
             vertex_index: body.input_indices().to_vec(),
@@ -293,7 +293,7 @@ impl Solid {
     }
 
     /// Replaces vertex indices, and their number, by those of the input of the body from which the solid was built.
-    pub(crate) fn renumbered(mut self, inputs: &[InputVertex]) -> Self {
+    pub(crate) fn with_input_numbers(mut self, inputs: &[InputVertex]) -> Self {
         for v in &mut self.vertex_index {
             *v = inputs[v.index()];
         }
@@ -302,15 +302,15 @@ impl Solid {
     }
 
     /// Orients the shells of a validated surface, separates its sheets and builds the solid.
-    fn assemble(mut surface: Surface, mut report: SolidReport) -> Self {
-        shells::orient(&mut surface, &mut report);
-        surface.part_sheets();
+    fn from_validated(mut surface: Surface, mut report: SolidReport) -> Self {
+        shells::orient_shells(&mut surface, &mut report);
+        surface.separate_sheets();
         Self::from_surface(surface, report)
     }
 
     /// Builds the tree, and orders the triangles by its leaves.
     fn from_surface(surface: Surface, report: SolidReport) -> Self {
-        let (mut nodes, order) = tree::build(&surface.vertices, &surface.triangles);
+        let (mut nodes, order) = tree::build_tree(&surface.vertices, &surface.triangles);
         let mut place = vec![0; order.len()];
         for (k, &t) in order.iter().enumerate() {
             place[t as usize] = k as u32;
@@ -318,10 +318,10 @@ impl Solid {
         let shift = |n: u32| if n == edges::NONE { n } else { place[n as usize] };
         let old = |k: &u32| *k as usize;
         let kinds: Vec<ShellKind> = order.iter().map(|k| surface.kinds[old(k)]).collect();
-        tree::open_nodes(&mut nodes, |t| kinds[t] != ShellKind::Closed);
+        tree::mark_open_nodes(&mut nodes, |t| kinds[t] != ShellKind::Closed);
         let reach = surface.vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
         let faces =
-            surface.faces.map_or_else(OnceLock::new, |f| Box::new(f.ordered(&order)).into());
+            surface.faces.map_or_else(OnceLock::new, |f| Box::new(f.reordered(&order)).into());
         let mut solid = Self {
             triangles: order.iter().map(|k| surface.triangles[old(k)]).collect(),
             facet_index: order.iter().map(|k| surface.facet_index[old(k)]).collect(),
@@ -339,13 +339,13 @@ impl Solid {
             groups: Box::default(),
             kept: Kept::default(),
         };
-        solid.spans = solid.find_spans();
+        solid.spans = solid.shell_spans();
         solid
     }
 
     /// Computes the bounding boxes of the shells.
-    fn find_spans(&self) -> Vec<Span> {
-        let shell_of = shells::components(&self.neighbours);
+    fn shell_spans(&self) -> Vec<Span> {
+        let shell_of = shells::shell_numbers(&self.neighbours);
         let mut spans: Vec<Span> = Vec::new();
         for (t, &shell) in shell_of.iter().enumerate() {
             if shell as usize == spans.len() {
@@ -426,7 +426,7 @@ impl Solid {
     }
 
     /// Checks whether the solid has an interior, that is, a closed shell.
-    pub(crate) fn has_inside(&self) -> bool {
+    pub(crate) fn has_interior(&self) -> bool {
         self.report.count(ShellKind::Closed) > 0
     }
 
@@ -480,14 +480,14 @@ impl Solid {
     }
 
     /// Returns a box around the body offset inwards by this amount.
-    pub(crate) fn box_shrunk_by(&self, amount: f64) -> Aabb {
+    pub(crate) fn offset_bounds(&self, amount: f64) -> Aabb {
         let bounds = self.bounds();
         let shrinking = self.shrinking_by(amount);
         shrinking.map_or(bounds, |shrinking| shrinking.boxed(bounds, amount, 0))
     }
 
     /// Returns an upper bound on the displacement of a vertex under an offset by this amount.
-    pub(crate) fn moved_by(&self, amount: f64) -> f64 {
+    pub(crate) fn max_offset_displacement(&self, amount: f64) -> f64 {
         self.shrinking_by(amount).map_or(0.0, |shrinking| shrinking.farthest * amount.abs())
     }
 
@@ -539,7 +539,7 @@ impl Solid {
     }
 
     /// Returns [`Self::bodies`], computed on first use.
-    pub(crate) fn body_map(&self) -> &[u32] {
+    pub(crate) fn body_numbers(&self) -> &[u32] {
         self.groups.body_of.get_or_init(|| self.bodies())
     }
 

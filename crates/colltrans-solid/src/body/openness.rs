@@ -18,17 +18,17 @@ use super::tree;
 use super::validate::Surface;
 
 /// Maximum deviation of the winding number on a facet from 1/2 (exclusive).
-const FARTHEST: f64 = 0.1;
+const MAX_DEVIATION: f64 = 0.1;
 /// Reciprocal of the share of samples that may deviate more.
-const EXCEPTIONS: usize = 100;
+const EXCEPTION_RECIPROCAL: usize = 100;
 /// Approximate number of solid angles computed for a shell.
-const WORK: usize = 1 << 22;
+const SOLID_ANGLES: usize = 1 << 22;
 /// Minimum and maximum number of samples of a shell.
-const ASKED: [usize; 2] = [64, 512];
+const SAMPLE_RANGE: [usize; 2] = [64, 512];
 
 /// Finds the sided shells among the open ones, which must all have the kind `Sheet`, and sets the kind of each
 /// triangle.
-pub(super) fn classify(surface: &mut Surface, shell_of: &[u32], shells: &mut [Shell]) {
+pub(super) fn classify_shells(surface: &mut Surface, shell_of: &[u32], shells: &mut [Shell]) {
     if shells.iter().all(|s| s.kind == ShellKind::Closed) {
         return;
     }
@@ -53,7 +53,7 @@ pub(super) fn classify(surface: &mut Surface, shell_of: &[u32], shells: &mut [Sh
 fn is_sided(facets: &[[DVec3; 3]]) -> bool {
     let area = |f: &[DVec3; 3]| tree::normal(*f).0.length();
     let whole: f64 = facets.iter().map(area).sum();
-    let count = (WORK / facets.len()).clamp(ASKED[0], ASKED[1]);
+    let count = (SOLID_ANGLES / facets.len()).clamp(SAMPLE_RANGE[0], SAMPLE_RANGE[1]);
     let (mut passed, mut next, mut wrong) = (0.0, 0, 0);
     for (own, facet) in facets.iter().enumerate() {
         passed += area(facet);
@@ -62,9 +62,9 @@ fn is_sided(facets: &[[DVec3; 3]]) -> bool {
         while next < count && (next as f64 + 0.5) * whole < passed * count as f64 {
             (next, places) = (next + 1, places + 1);
         }
-        if places > 0 && (winding(facets, own) - 0.5).abs() >= FARTHEST {
+        if places > 0 && (winding_number(facets, own) - 0.5).abs() >= MAX_DEVIATION {
             wrong += places;
-            if wrong * EXCEPTIONS > count {
+            if wrong * EXCEPTION_RECIPROCAL > count {
                 return false;
             }
         }
@@ -73,7 +73,7 @@ fn is_sided(facets: &[[DVec3; 3]]) -> bool {
 }
 
 /// Returns the winding number at the centroid of a facet, without the contribution of this facet.
-fn winding(facets: &[[DVec3; 3]], own: usize) -> f64 {
+fn winding_number(facets: &[[DVec3; 3]], own: usize) -> f64 {
     let [a, b, c] = facets[own];
     let eye = (a + b + c) / 3.0;
     let others = facets.iter().enumerate().filter(|(k, _)| *k != own);
@@ -85,11 +85,11 @@ fn winding(facets: &[[DVec3; 3]], own: usize) -> f64 {
 fn half_solid_angle([a, b, c]: [DVec3; 3]) -> f64 {
     let [l, m, n] = [a, b, c].map(DVec3::length);
     let volume = a.dot(b.cross(c));
-    arc(volume, l * m * n + a.dot(b) * n + b.dot(c) * l + c.dot(a) * m)
+    approximate_angle(volume, l * m * n + a.dot(b) * n + b.dot(c) * l + c.dot(a) * m)
 }
 
 /// Returns the angle of `(x, y)`, with a relative error of at most 1e-4 (Abramowitz and Stegun, 4.4.49).
-fn arc(y: f64, x: f64) -> f64 {
+fn approximate_angle(y: f64, x: f64) -> f64 {
     let (low, high) = (y.abs().min(x.abs()), y.abs().max(x.abs()));
     if high == 0.0 {
         return 0.0;
@@ -110,28 +110,31 @@ mod tests {
     use super::*;
 
     #[test]
-    fn arcs_all_around() {
+    fn approximate_angles_agree_in_all_quadrants() {
         for k in -314..=314 {
             let angle = f64::from(k) / 100.0;
-            assert!((arc(angle.sin(), angle.cos()) - angle).abs() < 1.2e-5, "{angle}");
+            assert!(
+                (approximate_angle(angle.sin(), angle.cos()) - angle).abs() < 1.2e-5,
+                "{angle}"
+            );
         }
-        assert!(arc(0.0, 0.0) == 0.0);
+        assert!(approximate_angle(0.0, 0.0) == 0.0);
     }
 
     /// Returns the triangles of a cube with `n` by `n` squares per side, without the first `missing` triangles.
-    fn cube(n: usize, missing: usize) -> Vec<[DVec3; 3]> {
+    fn cube_without(n: usize, missing: usize) -> Vec<[DVec3; 3]> {
         let mesh = slab(DVec3::ZERO, DVec3::ONE, [n; 3]);
         let corners = |triangle: [u32; 3]| triangle.map(|v| mesh.vertices[v as usize]);
         mesh.triangles().map(corners).skip(missing).collect()
     }
 
     #[test]
-    fn what_lacks_little_has_sides() {
-        assert!(is_sided(&cube(8, 0)));
-        assert!(is_sided(&cube(8, 2)), "a 384th of the area is missing");
-        assert!(!is_sided(&cube(8, 128)), "a whole side is missing");
-        assert!(!is_sided(&cube(8, 760)), "four squares");
-        let turned: Vec<_> = cube(8, 2).into_iter().map(|[a, b, c]| [a, c, b]).collect();
+    fn nearly_closed_shells_are_sided() {
+        assert!(is_sided(&cube_without(8, 0)));
+        assert!(is_sided(&cube_without(8, 2)), "a 384th of the area is missing");
+        assert!(!is_sided(&cube_without(8, 128)), "a whole side is missing");
+        assert!(!is_sided(&cube_without(8, 760)), "four squares");
+        let turned: Vec<_> = cube_without(8, 2).into_iter().map(|[a, b, c]| [a, c, b]).collect();
         assert!(!is_sided(&turned), "inside out");
     }
 }

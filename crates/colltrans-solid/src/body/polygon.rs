@@ -16,19 +16,19 @@ use colltrans_kernel::predicates::orient2d as turn;
 use colltrans_kernel::work;
 
 /// Minimum number of corners for a grid.
-const MANY: usize = 64;
+const MIN_GRID_CORNERS: usize = 64;
 
 /// Triangulates a polygon: triangles of positions in `corners`. Returns `None` if the polygon crosses itself.
 pub(super) fn triangulate(corners: &[DVec3]) -> Option<Vec<[usize; 3]>> {
-    let mut ring = Ring::new(project(corners));
+    let mut ring = Ring::new(projected_corners(corners));
     let mut triangles = Vec::with_capacity(corners.len().saturating_sub(2));
     let mut start = 0;
     while ring.count > 3 {
-        let ear = ring.from(start).find(|&k| ring.is_ear(k))?;
+        let ear = ring.corners_from(start).find(|&k| ring.is_ear(k))?;
         triangles.push([ring.before[ear], ear, ring.after[ear]]);
         // The search continues after this ear, because fans would have the thinnest triangles.
         start = ring.after[ring.after[ear]];
-        ring.remove(ear);
+        ring.remove_corner(ear);
     }
     let mut last = [start, ring.after[start], ring.before[start]];
     last.sort_unstable();
@@ -45,7 +45,7 @@ struct Ring {
     before: Vec<usize>,
     after: Vec<usize>,
     count: usize,
-    /// Present for at least [`MANY`] corners.
+    /// Present for at least [`MIN_GRID_CORNERS`] corners.
     grid: Option<Grid>,
 }
 
@@ -54,25 +54,25 @@ impl Ring {
         let n = flat.len();
         let before = (0..n).map(|k| (k + n - 1) % n).collect();
         let after = (0..n).map(|k| (k + 1) % n).collect();
-        let grid = (n >= MANY).then(|| Grid::new(&flat, (0..n).collect()));
+        let grid = (n >= MIN_GRID_CORNERS).then(|| Grid::new(&flat, (0..n).collect()));
         Self { flat, before, after, count: n, grid }
     }
 
     /// Iterates over the remaining corners, from `start`.
-    fn from(&self, start: usize) -> impl Iterator<Item = usize> + '_ {
+    fn corners_from(&self, start: usize) -> impl Iterator<Item = usize> + '_ {
         std::iter::successors(Some(start), |&k| Some(self.after[k])).take(self.count)
     }
 
     /// Removes a corner, and rebuilds the grid if half of its corners are removed.
-    fn remove(&mut self, k: usize) {
+    fn remove_corner(&mut self, k: usize) {
         let (i, l) = (self.before[k], self.after[k]);
         (self.after[i], self.before[l]) = (l, i);
         // A removed corner is its own neighbour.
         (self.before[k], self.after[k]) = (k, k);
         self.count -= 1;
         if self.grid.as_ref().is_some_and(|grid| 2 * self.count < grid.corners.len()) {
-            let left: Vec<usize> = self.from(l).collect();
-            self.grid = (left.len() >= MANY).then(|| Grid::new(&self.flat, left));
+            let left: Vec<usize> = self.corners_from(l).collect();
+            self.grid = (left.len() >= MIN_GRID_CORNERS).then(|| Grid::new(&self.flat, left));
         }
     }
 
@@ -92,9 +92,9 @@ impl Ring {
             p == a || p == b || p == c || !inside(p)
         };
         match &self.grid {
-            None => self.from(l).skip(1).take(self.count - 3).all(leaves_free),
+            None => self.corners_from(l).skip(1).take(self.count - 3).all(leaves_free),
             Some(grid) => {
-                let mut near = grid.near(a.min(b).min(c), a.max(b).max(c));
+                let mut near = grid.corners_in_box(a.min(b).min(c), a.max(b).max(c));
                 near.all(|m| self.after[m] == m || leaves_free(m))
             }
         }
@@ -123,33 +123,34 @@ impl Grid {
         let size = (extent * scale).to_array().map(|side| side as usize + 1);
         let mut grid =
             Self { low, scale, size, starts: vec![0; size[0] * size[1] + 1], corners: members };
-        let mut squares: Vec<(usize, usize)> =
-            grid.corners.iter().map(|&m| (grid.square(flat[m]), m)).collect();
-        squares.sort_unstable();
-        for &(square, _) in &squares {
-            grid.starts[square + 1] += 1;
+        let mut cells: Vec<(usize, usize)> =
+            grid.corners.iter().map(|&m| (grid.cell_index(flat[m]), m)).collect();
+        cells.sort_unstable();
+        for &(cell, _) in &cells {
+            grid.starts[cell + 1] += 1;
         }
-        for square in 0..grid.starts.len() - 1 {
-            grid.starts[square + 1] += grid.starts[square];
+        for cell in 0..grid.starts.len() - 1 {
+            grid.starts[cell + 1] += grid.starts[cell];
         }
-        grid.corners = squares.into_iter().map(|(_, m)| m).collect();
+        grid.corners = cells.into_iter().map(|(_, m)| m).collect();
         grid
     }
 
     /// Returns the column and the row of a point. Both are monotonic in the coordinates.
-    fn place(&self, p: DVec2) -> [usize; 2] {
+    fn cell_coordinates(&self, p: DVec2) -> [usize; 2] {
         let at = (p - self.low) * self.scale;
         [(at.x as usize).min(self.size[0] - 1), (at.y as usize).min(self.size[1] - 1)]
     }
 
-    fn square(&self, p: DVec2) -> usize {
-        let [column, row] = self.place(p);
+    fn cell_index(&self, p: DVec2) -> usize {
+        let [column, row] = self.cell_coordinates(p);
         row * self.size[0] + column
     }
 
     /// Iterates over all corners in a box, and some corners around it.
-    fn near(&self, low: DVec2, high: DVec2) -> impl Iterator<Item = usize> + '_ {
-        let ([left, bottom], [right, top]) = (self.place(low), self.place(high));
+    fn corners_in_box(&self, low: DVec2, high: DVec2) -> impl Iterator<Item = usize> + '_ {
+        let ([left, bottom], [right, top]) =
+            (self.cell_coordinates(low), self.cell_coordinates(high));
         let row = move |r: usize| {
             let first = self.starts[r * self.size[0] + left] as usize;
             &self.corners[first..self.starts[r * self.size[0] + right + 1] as usize]
@@ -159,7 +160,7 @@ impl Grid {
 }
 
 /// Projects corners along the axis in which the area vector is largest, such that they run counter-clockwise.
-fn project(corners: &[DVec3]) -> Vec<DVec2> {
+fn projected_corners(corners: &[DVec3]) -> Vec<DVec2> {
     let first = corners[0];
     let area: DVec3 = corners.windows(2).map(|pair| (pair[0] - first).cross(pair[1] - first)).sum();
     let flat = |p: &DVec3| match area.abs().max_position() {
@@ -176,7 +177,7 @@ fn project(corners: &[DVec3]) -> Vec<DVec2> {
 mod tests {
     use super::*;
 
-    fn area(corners: &[DVec3], triangles: &[[usize; 3]]) -> f64 {
+    fn total_area(corners: &[DVec3], triangles: &[[usize; 3]]) -> f64 {
         let double = |t: &[usize; 3]| {
             let [a, b, c] = t.map(|k| corners[k]);
             (b - a).cross(c - a).z
@@ -185,19 +186,19 @@ mod tests {
     }
 
     #[test]
-    fn polygons_that_are_not_convex_keep_their_area() {
+    fn nonconvex_polygons_keep_their_area() {
         let l: Vec<DVec3> = [(0, 0), (2, 0), (2, 1), (1, 1), (1, 2), (0, 2), (0, 1)]
             .map(|(x, y)| DVec3::new(f64::from(x), f64::from(y), 1.0))
             .to_vec();
         let triangles = triangulate(&l).unwrap();
         assert_eq!(triangles.len(), 5);
-        assert_eq!(area(&l, &triangles), 3.0);
+        assert_eq!(total_area(&l, &triangles), 3.0);
         let reversed: Vec<DVec3> = l.iter().rev().copied().collect();
-        assert_eq!(area(&reversed, &triangulate(&reversed).unwrap()), -3.0);
+        assert_eq!(total_area(&reversed, &triangulate(&reversed).unwrap()), -3.0);
     }
 
     /// Returns corners at equal angles, and at the distances `radius` from the origin.
-    fn round(sides: usize, radius: impl Fn(usize) -> f64) -> Vec<DVec3> {
+    fn polygon_at_radii(sides: usize, radius: impl Fn(usize) -> f64) -> Vec<DVec3> {
         let corner = |k: usize| {
             let (sine, cosine) = (std::f64::consts::TAU * k as f64 / sides as f64).sin_cos();
             DVec3::new(cosine, sine, 0.0) * radius(k)
@@ -207,7 +208,7 @@ mod tests {
 
     /// Asserts that all triangles have a positive area, and that these sum to the area of the polygon. Each side of a
     /// triangle must be a side of the polygon or, reversed, of another triangle.
-    fn check(corners: &[DVec3]) {
+    fn assert_triangulated(corners: &[DVec3]) {
         let triangles = triangulate(corners).expect("the polygon is simple");
         assert_eq!(triangles.len(), corners.len() - 2);
         let mut sides = std::collections::BTreeSet::new();
@@ -223,15 +224,15 @@ mod tests {
         assert_eq!(sides.iter().filter(|s| own(s)).count(), corners.len());
         let polygon: f64 = corners.windows(2).map(|w| w[0].cross(w[1]).z).sum::<f64>()
             + corners[corners.len() - 1].cross(corners[0]).z;
-        assert!((area(corners, &triangles) / (0.5 * polygon) - 1.0).abs() < 1e-12);
+        assert!((total_area(corners, &triangles) / (0.5 * polygon) - 1.0).abs() < 1e-12);
     }
 
     #[test]
-    fn many_corners_round_jagged_and_wound() {
+    fn large_round_jagged_and_spiral_polygons_are_triangulated() {
         for sides in [63, 64, 65, 200, 20_000] {
-            check(&round(sides, |_| 1.0));
-            check(&round(sides, |k| [1.0, 0.5][k % 2]));
-            check(&round(sides, |k| 1.0 + 0.3 * (k as f64 * 0.7).sin()));
+            assert_triangulated(&polygon_at_radii(sides, |_| 1.0));
+            assert_triangulated(&polygon_at_radii(sides, |k| [1.0, 0.5][k % 2]));
+            assert_triangulated(&polygon_at_radii(sides, |k| 1.0 + 0.3 * (k as f64 * 0.7).sin()));
         }
         // A band with three turns around the origin.
         let turns = |k: usize, r: f64| {
@@ -242,17 +243,20 @@ mod tests {
             .map(|k| turns(k, 1.1))
             .chain((0..=1_000).rev().map(|k| turns(k, 1.0)))
             .collect();
-        check(&band);
+        assert_triangulated(&band);
     }
 
     #[test]
-    fn a_grid_changes_no_triangle() {
+    fn grid_finds_the_ears_of_a_full_scan() {
         for sides in [64, 150, 1_001] {
-            for corners in [round(sides, |_| 1.0), round(sides, |k| 1.0 + 0.4 * (k as f64).sin())] {
-                let mut plain = Ring::new(project(&corners));
+            for corners in [
+                polygon_at_radii(sides, |_| 1.0),
+                polygon_at_radii(sides, |k| 1.0 + 0.4 * (k as f64).sin()),
+            ] {
+                let mut plain = Ring::new(projected_corners(&corners));
                 plain.grid = None;
                 let plain_ears: Vec<bool> = (0..sides).map(|k| plain.is_ear(k)).collect();
-                let ring = Ring::new(project(&corners));
+                let ring = Ring::new(projected_corners(&corners));
                 assert!(ring.grid.is_some());
                 assert_eq!((0..sides).map(|k| ring.is_ear(k)).collect::<Vec<_>>(), plain_ears);
             }
@@ -260,18 +264,18 @@ mod tests {
     }
 
     #[test]
-    fn a_bow_tie_has_no_triangulation() {
+    fn bow_tie_has_no_triangulation() {
         let tie = [DVec3::ZERO, DVec3::X + DVec3::Y, DVec3::X, DVec3::Y * 2.0];
         assert!(triangulate(&tie).is_none());
     }
 
     #[test]
-    fn a_hole_reached_by_a_slit() {
+    fn hole_connected_by_slit_is_left_out() {
         let corners: Vec<DVec3> =
             [(0, 0), (4, 0), (4, 4), (0, 4), (0, 0), (1, 1), (1, 2), (2, 2), (2, 1), (1, 1)]
                 .map(|(x, y)| DVec3::new(f64::from(x), f64::from(y), 0.0))
                 .to_vec();
         let triangles = triangulate(&corners).unwrap();
-        assert_eq!(area(&corners, &triangles), 15.0);
+        assert_eq!(total_area(&corners, &triangles), 15.0);
     }
 }

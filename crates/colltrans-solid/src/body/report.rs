@@ -100,7 +100,7 @@ impl SolidReport {
         self.shells.iter().filter_map(|s| s.holes_through).sum()
     }
 
-    pub(super) fn absorb(&mut self, other: &Self) {
+    pub(super) fn add_counts(&mut self, other: &Self) {
         self.shells.extend_from_slice(&other.shells);
         self.vertices_merged += other.vertices_merged;
         self.facets_without_area += other.facets_without_area;

@@ -7,7 +7,7 @@
 //!   are not compared.
 //! - Existing crossings are ignored: within one shell by pairs of facets, between two shells by pairs of shells.
 //!
-//! A descent of the tree with itself finds the pairs. [`Fences`] dismisses pairs of nodes. Reasons:
+//! A descent of the tree with itself finds the pairs. [`PairFilter`] dismisses pairs of nodes. Reasons:
 //! `docs/theory/offsets.md`.
 
 use std::cmp::Ordering;
@@ -22,41 +22,45 @@ use colltrans_kernel::work;
 
 mod pair_filter;
 
-use pair_filter::Fences;
+use pair_filter::PairFilter;
 
 /// Returns the triangles, in increasing order, that pass through others when the vertices move to `moved`. `shell_of`
 /// and `volumes` are those before the move.
-pub(super) fn facets(
+pub(super) fn crossing_facets(
     solid: &Solid,
     moved: &[DVec3],
     shell_of: &[u32],
     volumes: &[f64],
 ) -> Vec<usize> {
     let shells = Shells { solid, shell_of, volumes };
-    let [before, after] = [&solid.vertices[..], moved].map(|vertices| Placing { solid, vertices });
+    let [before, after] =
+        [&solid.vertices[..], moved].map(|vertices| PlacedFacets { solid, vertices });
     let mut crossing: Vec<[usize; 2]> = Vec::new();
-    after.each_pair(&mut |pair| {
-        if shells.may_pass(pair) && after.touch(pair) {
+    after.visit_pairs(&mut |pair| {
+        if shells.is_defect(pair) && after.have_common_point(pair) {
             crossing.push(pair);
         }
     });
-    let mut wandering = BTreeSet::new();
-    if crossing.iter().any(|&pair| !shells.is_one(pair)) {
-        before.each_pair(&mut |pair| {
-            if !shells.is_one(pair) && shells.may_pass(pair) && before.cross(pair) {
-                wandering.insert(shells.of(pair));
+    let mut crossing_shells = BTreeSet::new();
+    if crossing.iter().any(|&pair| !shells.is_one_shell(pair)) {
+        before.visit_pairs(&mut |pair| {
+            if !shells.is_one_shell(pair)
+                && shells.is_defect(pair)
+                && before.edge_pierces_facet(pair)
+            {
+                crossing_shells.insert(shells.shells_of_pair(pair));
             }
         });
     }
     crossing.retain(|&pair| {
-        if shells.is_one(pair) {
-            !before.touch(pair)
+        if shells.is_one_shell(pair) {
+            !before.have_common_point(pair)
         } else {
-            !wandering.contains(&shells.of(pair))
+            !crossing_shells.contains(&shells.shells_of_pair(pair))
         }
     });
     let mut found = crossing.into_flattened();
-    found.extend(shells.swallowed(&before, &after));
+    found.extend(shells.newly_enclosed_facets(&before, &after));
     found.sort_unstable();
     found.dedup();
     found
@@ -71,13 +75,13 @@ struct Shells<'a> {
 
 impl Shells<'_> {
     /// Returns the shells of two facets, the smaller number first.
-    fn of(&self, pair: [usize; 2]) -> [u32; 2] {
+    fn shells_of_pair(&self, pair: [usize; 2]) -> [u32; 2] {
         let [a, b] = pair.map(|t| self.shell_of[t]);
         [a.min(b), a.max(b)]
     }
 
-    fn is_one(&self, pair: [usize; 2]) -> bool {
-        let [a, b] = self.of(pair);
+    fn is_one_shell(&self, pair: [usize; 2]) -> bool {
+        let [a, b] = self.shells_of_pair(pair);
         a == b
     }
 
@@ -87,18 +91,19 @@ impl Shells<'_> {
     }
 
     /// Checks whether a crossing of two facets is a defect: they belong to one shell, or one of them to a cavity.
-    fn may_pass(&self, pair: [usize; 2]) -> bool {
-        self.is_one(pair) || self.of(pair).into_iter().any(|shell| self.is_cavity(shell))
+    fn is_defect(&self, pair: [usize; 2]) -> bool {
+        self.is_one_shell(pair)
+            || self.shells_of_pair(pair).into_iter().any(|shell| self.is_cavity(shell))
     }
 
     /// Returns the facets of cavities that newly contain another shell, and the facets of that shell.
-    fn swallowed(&self, before: &Placing, after: &Placing) -> Vec<usize> {
+    fn newly_enclosed_facets(&self, before: &PlacedFacets, after: &PlacedFacets) -> Vec<usize> {
         let count = self.volumes.len() as u32;
         let cavities: Vec<u32> = (0..count).filter(|&s| self.is_cavity(s)).collect();
         if cavities.is_empty() {
             return Vec::new();
         }
-        let [old, new] = [before, after].map(|placing| self.boxes(placing));
+        let [old, new] = [before, after].map(|placed| self.shell_boxes(placed));
         let within = |boxes: &[Aabb], inner: u32, outer: u32| {
             boxes[outer as usize].holds(&boxes[inner as usize])
         };
@@ -116,41 +121,41 @@ impl Shells<'_> {
         (0..self.shell_of.len()).filter(belongs).collect()
     }
 
-    fn boxes(&self, placing: &Placing) -> Vec<Aabb> {
+    fn shell_boxes(&self, placed: &PlacedFacets) -> Vec<Aabb> {
         let mut boxes = vec![Aabb::EMPTY; self.volumes.len()];
         for (t, &shell) in self.shell_of.iter().enumerate() {
-            placing.corners(t).into_iter().for_each(|p| boxes[shell as usize].add(p));
+            placed.facet_corners(t).into_iter().for_each(|p| boxes[shell as usize].add(p));
         }
         boxes
     }
 
     /// Checks whether the first corner of one shell is inside another shell.
-    fn is_inside(&self, placing: &Placing, inner: u32, outer: u32) -> bool {
+    fn is_inside(&self, placed: &PlacedFacets, inner: u32, outer: u32) -> bool {
         let of = |shell| (0..self.shell_of.len()).filter(move |&t| self.shell_of[t] == shell);
         let Some(first) = of(inner).next() else { return false };
-        let [point, ..] = placing.corners(first);
-        of(outer).map(|t| shells::crossing(point, placing.corners(t))).sum::<i32>() != 0
+        let [point, ..] = placed.facet_corners(first);
+        of(outer).map(|t| shells::crossing(point, placed.facet_corners(t))).sum::<i32>() != 0
     }
 }
 
 /// The facets of a solid with other positions of the vertices.
-struct Placing<'a> {
+struct PlacedFacets<'a> {
     solid: &'a Solid,
     vertices: &'a [DVec3],
 }
 
-impl Placing<'_> {
-    fn corners(&self, triangle: usize) -> [DVec3; 3] {
+impl PlacedFacets<'_> {
+    fn facet_corners(&self, triangle: usize) -> [DVec3; 3] {
         self.solid.triangles[triangle].map(|v| self.vertices[v as usize])
     }
 
-    /// Visits all pairs of facets, except those whose nodes [`Fences`] separate.
-    fn each_pair(&self, visit: &mut impl FnMut([usize; 2])) {
-        let fences = Fences::new(self);
+    /// Visits all pairs of facets, except those whose nodes [`PairFilter`] separate.
+    fn visit_pairs(&self, visit: &mut impl FnMut([usize; 2])) {
+        let pair_filter = PairFilter::new(self);
         let mut stack = vec![[0, 0]];
         while let Some([a, b]) = stack.pop() {
             work::count(1);
-            if fences.separate(a, b) {
+            if pair_filter.excludes_pair(a, b) {
                 continue;
             }
             let [m, n] = [a, b].map(|k| &self.solid.nodes[k]);
@@ -163,7 +168,9 @@ impl Placing<'_> {
             } else if a == b {
                 let [x, y] = halves(a);
                 stack.extend([[x, x], [y, y], [x, y]]);
-            } else if n.is_leaf() || (!m.is_leaf() && fences.length(a) >= fences.length(b)) {
+            } else if n.is_leaf()
+                || (!m.is_leaf() && pair_filter.longest_side(a) >= pair_filter.longest_side(b))
+            {
                 stack.extend(halves(a).map(|x| [x, b]));
             } else {
                 stack.extend(halves(b).map(|y| [a, y]));
@@ -172,16 +179,16 @@ impl Placing<'_> {
     }
 
     /// Checks whether two facets without a common vertex have a common point.
-    fn touch(&self, pair: [usize; 2]) -> bool {
-        self.meet(pair, |ends, turns| {
+    fn have_common_point(&self, pair: [usize; 2]) -> bool {
+        self.any_edge_satisfies(pair, |ends, turns| {
             ends[0] != ends[1]
                 && !(turns.contains(&Ordering::Less) && turns.contains(&Ordering::Greater))
         })
     }
 
     /// Checks whether an edge of one facet passes through the interior of the other one.
-    fn cross(&self, pair: [usize; 2]) -> bool {
-        self.meet(pair, |ends, turns| {
+    fn edge_pierces_facet(&self, pair: [usize; 2]) -> bool {
+        self.any_edge_satisfies(pair, |ends, turns| {
             ends[0] == ends[1].reverse()
                 && ends[0] != Ordering::Equal
                 && turns[0] != Ordering::Equal
@@ -193,7 +200,7 @@ impl Placing<'_> {
     /// is the sides of the plane of the facet on which the ends of the edge lie. Its second argument is the
     /// orientations of the line of the edge with the sides of the facet. Returns false for facets with a common
     /// vertex, in one plane, or on one side of the plane of the other.
-    fn meet(
+    fn any_edge_satisfies(
         &self,
         [s, t]: [usize; 2],
         holds: impl Fn([Ordering; 2], [Ordering; 3]) -> bool,
@@ -202,8 +209,8 @@ impl Placing<'_> {
         if f.iter().any(|v| g.contains(v)) {
             return false;
         }
-        let (f, g) = (self.corners(s), self.corners(t));
-        if !Aabb::of_points(f).meets(&Aabb::of_points(g)) || are_apart(&f, &g) {
+        let (f, g) = (self.facet_corners(s), self.facet_corners(t));
+        if !Aabb::of_points(f).meets(&Aabb::of_points(g)) || are_certainly_separated(&f, &g) {
             return false;
         }
         let sides = |f: [DVec3; 3], [a, b, c]: [DVec3; 3]| {
@@ -227,7 +234,7 @@ impl Placing<'_> {
 /// Checks whether a plane that is perpendicular to one facet and parallel to one of its sides certainly separates the
 /// facets. The normal may be rounded, because any vector can prove separation. Its products have an error below `4 u`
 /// times its sum norm and the largest coordinate.
-fn are_apart(f: &[DVec3; 3], g: &[DVec3; 3]) -> bool {
+fn are_certainly_separated(f: &[DVec3; 3], g: &[DVec3; 3]) -> bool {
     let size = |t: &[DVec3; 3]| t.iter().fold(0.0_f64, |most, p| most.max(p.abs().max_element()));
     let size = size(f).max(size(g));
     [f, g].into_iter().any(|t| {
@@ -254,7 +261,7 @@ mod tests {
     use super::*;
 
     /// Returns solids with thin triangles, with facets that touch without a common vertex, and with neither.
-    fn solids(random: &mut Random) -> Vec<Mesh> {
+    fn test_meshes(random: &mut Random) -> Vec<Mesh> {
         let phase = random.range(0.0, 6.0);
         let star = |k: usize, p: DVec3| p * [1.0, 0.3][k % 2];
         let star: Vec<DVec3> = ring(40, 1.0, 0.0).enumerate().map(|(k, p)| star(k, p)).collect();
@@ -273,12 +280,12 @@ mod tests {
     }
 
     #[test]
-    fn pairs_that_touch_are_those_of_all_pairs() {
+    fn visited_pairs_include_all_touching_pairs() {
         let mut random = Random::new(21);
         let mut found = 0;
         for _ in 0..3 {
             let turn = random.rotation();
-            for mesh in solids(&mut random) {
+            for mesh in test_meshes(&mut random) {
                 for mesh in [mesh.clone(), mesh.mapped(|p| turn * p)] {
                     let solid = Solid::from_mesh(&mesh.vertices, &mesh.faces).expect("a solid");
                     for by in [0.0, 0.02, 0.06, 0.2, -0.1] {
@@ -295,16 +302,16 @@ mod tests {
         let field = &solid.shrinking().field;
         let vertices: Vec<DVec3> =
             solid.vertices.iter().zip(field).map(|(v, x)| *v + *x * by).collect();
-        let placing = Placing { solid, vertices: &vertices };
+        let placed = PlacedFacets { solid, vertices: &vertices };
         let mut visited = BTreeSet::new();
-        placing.each_pair(&mut |[s, t]| {
+        placed.visit_pairs(&mut |[s, t]| {
             assert!(visited.insert([s.min(t), s.max(t)]), "{s} and {t} are visited twice");
         });
         let mut touching = 0;
         for t in 0..solid.triangles.len() {
-            for s in (0..t).filter(|&s| placing.touch([s, t])) {
+            for s in (0..t).filter(|&s| placed.have_common_point([s, t])) {
                 let known = visited.contains(&[s, t]);
-                assert!(known || is_one_plane(&placing, [s, t]), "{s} and {t}, moved by {by}");
+                assert!(known || are_coplanar(&placed, [s, t]), "{s} and {t}, moved by {by}");
                 touching += usize::from(known);
             }
         }
@@ -313,8 +320,8 @@ mod tests {
 
     /// Checks whether two facets lie in one plane within rounding and have the same orientation. Rounding may make
     /// such facets touch.
-    fn is_one_plane(placing: &Placing, pair: [usize; 2]) -> bool {
-        let [f, g] = pair.map(|t| placing.corners(t));
+    fn are_coplanar(placed: &PlacedFacets, pair: [usize; 2]) -> bool {
+        let [f, g] = pair.map(|t| placed.facet_corners(t));
         let [m, n] = [f, g].map(|[a, b, c]| (b - a).cross(c - a));
         let near =
             |n: DVec3, p: DVec3, q: DVec3| n.dot(q - p).abs() <= 1e-12 * n.length().max(1e-3);

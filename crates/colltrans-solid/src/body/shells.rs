@@ -18,10 +18,10 @@ use super::validate::Surface;
 use colltrans_convex::body::Aabb;
 
 /// Finds the shells, reverses those that are inside out, classifies open shells, and adds all shells to the report.
-pub(super) fn orient(surface: &mut Surface, report: &mut SolidReport) {
-    let shell_of = components(&surface.neighbours);
+pub(super) fn orient_shells(surface: &mut Surface, report: &mut SolidReport) {
+    let shell_of = shell_numbers(&surface.neighbours);
     let count = shell_of.iter().max().map_or(0, |&s| s as usize + 1);
-    let mut shells = describe(surface, &shell_of, count);
+    let mut shells = describe_shells(surface, &shell_of, count);
     if shells.iter().any(|s| is_closed(s) && s.volume < 0.0) {
         let nesting = Nesting::new(surface, &shell_of, count);
         let closed = |s: &usize| is_closed(&shells[*s]);
@@ -38,9 +38,9 @@ pub(super) fn orient(surface: &mut Surface, report: &mut SolidReport) {
             shells[s].turned = true;
             shells[s].volume = -shells[s].volume;
         }
-        turn_over(surface, &shell_of, &shells);
+        reverse_turned_shells(surface, &shell_of, &shells);
     }
-    openness::classify(surface, &shell_of, &mut shells);
+    openness::classify_shells(surface, &shell_of, &mut shells);
     report.shells.extend(shells);
 }
 
@@ -49,7 +49,7 @@ fn is_closed(shell: &Shell) -> bool {
 }
 
 /// Returns the shell of each triangle. Shells are numbered in the order of their first triangles.
-pub(super) fn components(neighbours: &[[u32; 3]]) -> Vec<u32> {
+pub(super) fn shell_numbers(neighbours: &[[u32; 3]]) -> Vec<u32> {
     let mut shell_of = vec![NONE; neighbours.len()];
     let mut stack = Vec::new();
     let mut count = 0;
@@ -73,7 +73,7 @@ pub(super) fn components(neighbours: &[[u32; 3]]) -> Vec<u32> {
 }
 
 /// Computes triangle count, volume, genus and closedness of each shell.
-fn describe(surface: &Surface, shell_of: &[u32], count: usize) -> Vec<Shell> {
+fn describe_shells(surface: &Surface, shell_of: &[u32], count: usize) -> Vec<Shell> {
     let empty = Shell {
         triangles: 0,
         volume: 0.0,
@@ -120,7 +120,7 @@ fn describe(surface: &Surface, shell_of: &[u32], count: usize) -> Vec<Shell> {
 }
 
 /// Returns the volume of each shell, with the positions of vertices given by `vertex`.
-pub(super) fn volumes(
+pub(super) fn shell_volumes(
     shell_of: &[u32],
     triangles: &[[u32; 3]],
     vertex: impl Fn(u32) -> DVec3,
@@ -138,7 +138,7 @@ pub(super) fn volumes(
 
 /// Reverses the triangles of shells that are marked as turned: corners `a c b`, and neighbours in the corresponding
 /// order.
-fn turn_over(surface: &mut Surface, shell_of: &[u32], shells: &[Shell]) {
+fn reverse_turned_shells(surface: &mut Surface, shell_of: &[u32], shells: &[Shell]) {
     for (t, &s) in shell_of.iter().enumerate() {
         if shells[s as usize].turned {
             surface.triangles[t].swap(1, 2);
@@ -151,13 +151,13 @@ fn turn_over(surface: &mut Surface, shell_of: &[u32], shells: &[Shell]) {
 struct Nesting<'a> {
     surface: &'a Surface,
     shell_of: &'a [u32],
-    /// The last triangles of each shell, at most [`TRIED`], in decreasing order.
+    /// The last triangles of each shell, at most [`MAX_TRIED_TRIANGLES`], in decreasing order.
     last: Vec<Vec<usize>>,
     boxes: Vec<Aabb>,
 }
 
 /// Maximum number of triangles of a shell that are searched for a vertex on no other shell.
-pub(super) const TRIED: usize = 64;
+pub(super) const MAX_TRIED_TRIANGLES: usize = 64;
 
 impl<'a> Nesting<'a> {
     fn new(surface: &'a Surface, shell_of: &'a [u32], count: usize) -> Self {
@@ -165,7 +165,7 @@ impl<'a> Nesting<'a> {
         let mut boxes = vec![Aabb::EMPTY; count];
         for (t, corners) in surface.triangles.iter().enumerate().rev() {
             let s = shell_of[t] as usize;
-            if last[s].len() < TRIED {
+            if last[s].len() < MAX_TRIED_TRIANGLES {
                 last[s].push(t);
             }
             for &v in corners {
@@ -236,7 +236,7 @@ pub fn crossing(p: DVec3, [a, b, c]: [DVec3; 3]) -> i32 {
         return 0;
     }
     let edges = [[a, b], [b, c], [c, a]];
-    let inside = edges.into_iter().all(|[u, v]| turn_beside(u, v, p) == facing);
+    let inside = edges.into_iter().all(|[u, v]| perturbed_turn(u, v, p) == facing);
     if !inside || exact::side(a, b, c, p) != facing.reverse() {
         return 0;
     }
@@ -245,7 +245,7 @@ pub fn crossing(p: DVec3, [a, b, c]: [DVec3; 3]) -> i32 {
 
 /// Returns the side of the line from `u` to `v` on which the point `p + (e, e^2)` lies, seen along `z`, for an
 /// infinitesimal `e > 0`.
-fn turn_beside(u: DVec3, v: DVec3, p: DVec3) -> Ordering {
+fn perturbed_turn(u: DVec3, v: DVec3, p: DVec3) -> Ordering {
     let sign = |x: f64| exact::sign(x);
     // det[v - u, p - u + (e, e^2)] = det[v - u, p - u] + e^2 (v - u).x - e (v - u).y.
     exact::turn(u, v, p, 2).then(sign(u.y - v.y)).then(sign(v.x - u.x))

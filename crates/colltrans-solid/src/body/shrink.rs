@@ -24,13 +24,13 @@ use colltrans_convex::body::{Aabb, InputFacet, InputVertex};
 use colltrans_kernel::range::{in_exact_range, without_traces};
 
 /// Height below which the normal of a facet is noise, in multiples of the reach of the body.
-const NOISE: f64 = 1e-6;
+const MIN_HEIGHT: f64 = 1e-6;
 /// Maximum amount for which the rates of nodes hold, in multiples of the reach of the body.
-const MOST: f64 = 1.0 / 1024.0;
+const MAX_RATE_AMOUNT: f64 = 1.0 / 1024.0;
 /// Maximum length of a displacement for amount 1; longer ones count as no solution.
-const FARTHEST: f64 = 64.0;
+const MAX_DISPLACEMENT: f64 = 64.0;
 /// Maximum number of rounds of the search for the nearest point. Each round adds a violated normal.
-const MOST_ROUNDS: usize = 64;
+const MAX_ROUNDS: usize = 64;
 
 /// Displacements of the vertices of a solid under an offset.
 #[derive(Debug, Clone)]
@@ -100,7 +100,7 @@ impl Solid {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn shrunk(&self, amount: f64) -> Result<(Self, ShrinkReport), SolidError> {
-        self.displaced(amount, amount)
+        self.offset_by(amount, amount)
     }
 
     /// Returns the solid with each facet plane moved outwards by `amount`, for example to reserve a margin, with the
@@ -109,11 +109,11 @@ impl Solid {
     /// # Errors
     /// Returns an error in the same cases as [`Self::shrunk`].
     pub fn grown(&self, amount: f64) -> Result<(Self, ShrinkReport), SolidError> {
-        self.displaced(amount, -amount)
+        self.offset_by(amount, -amount)
     }
 
     /// Returns the offset solid for an amount and its signed value, which is negative for a growing solid.
-    fn displaced(&self, amount: f64, signed: f64) -> Result<(Self, ShrinkReport), SolidError> {
+    fn offset_by(&self, amount: f64, signed: f64) -> Result<(Self, ShrinkReport), SolidError> {
         if !(amount.is_finite() && amount >= 0.0) {
             return Err(SolidError::Amount { amount });
         }
@@ -137,18 +137,20 @@ impl Solid {
             faces: Some(self.faces().clone()),
             kinds: self.kinds.clone(),
         };
-        let mut noticed = self.report.clone();
-        for (shell, volume) in noticed.shells.iter_mut().zip(self.volumes_of(&surface.vertices)) {
+        let mut solid_report = self.report.clone();
+        for (shell, volume) in
+            solid_report.shells.iter_mut().zip(self.volumes_of(&surface.vertices))
+        {
             shell.volume = volume;
         }
-        Ok((Self::from_surface(surface, noticed), report))
+        Ok((Self::from_surface(surface, solid_report), report))
     }
 
     /// Returns the volumes of the shells for other vertex positions. The shells are in the order of the report, that
     /// is, of their first facets.
     fn volumes_of(&self, vertices: &[DVec3]) -> Vec<f64> {
-        let shell_of = shells::components(&self.neighbours);
-        let volumes = shells::volumes(&shell_of, &self.triangles, |v| vertices[v as usize]);
+        let shell_of = shells::shell_numbers(&self.neighbours);
+        let volumes = shells::shell_volumes(&shell_of, &self.triangles, |v| vertices[v as usize]);
         let mut first = vec![InputFacet(NONE); volumes.len()];
         for (&shell, &facet) in shell_of.iter().zip(&self.facet_index) {
             first[shell as usize] = facet.min(first[shell as usize]);
@@ -163,11 +165,12 @@ impl Solid {
         let shrinking = self.shrinking();
         // A ball or cube that is thinner than twice the amount is mirrored in a point. Its facets keep their
         // orientations, and only the sign of the volume changes.
-        let shell_of = shells::components(&self.neighbours);
+        let shell_of = shells::shell_numbers(&self.neighbours);
         let fields = self.vertices.iter().zip(&shrinking.field);
         let moved: Vec<DVec3> = fields.map(|(v, x)| displace(*v, *x, amount)).collect();
-        let before = shells::volumes(&shell_of, &self.triangles, |v| self.vertices[v as usize]);
-        let after = shells::volumes(&shell_of, &self.triangles, |v| moved[v as usize]);
+        let before =
+            shells::shell_volumes(&shell_of, &self.triangles, |v| self.vertices[v as usize]);
+        let after = shells::shell_volumes(&shell_of, &self.triangles, |v| moved[v as usize]);
         let inverted = |t: &usize| {
             let corners = self.triangles[*t].map(|v| v as usize);
             let before = tree::normal(corners.map(|v| self.vertices[v])).0;
@@ -179,7 +182,7 @@ impl Solid {
         };
         let mut facets: Vec<InputFacet> = (0..self.triangles.len())
             .filter(|t| mirrored(t) || inverted(t))
-            .chain(self_intersection::facets(self, &moved, &shell_of, &before))
+            .chain(self_intersection::crossing_facets(self, &moved, &shell_of, &before))
             .map(|t| self.facet_index[t])
             .collect();
         facets.sort_unstable();
@@ -207,15 +210,15 @@ pub fn displace(vertex: DVec3, field: DVec3, amount: f64) -> DVec3 {
 
 impl Shrinking {
     fn new(solid: &Solid) -> Self {
-        let planes = Planes::new(solid);
+        let vertex_facets = VertexFacets::new(solid);
         let mut field = vec![DVec3::ZERO; solid.vertices.len()];
         let threads = thread::available_parallelism().map_or(1, usize::from);
         let chunk = field.len().div_ceil(threads).max(4_096);
         let fill = |first: usize, part: &mut [DVec3]| {
             let mut normals = Vec::new();
             for (k, x) in part.iter_mut().enumerate() {
-                planes.around(first + k, &mut normals);
-                *x = shortest(&normals).unwrap_or(DVec3::ZERO);
+                vertex_facets.normals_around(first + k, &mut normals);
+                *x = shortest_displacement(&normals).unwrap_or(DVec3::ZERO);
             }
         };
         if field.len() <= chunk {
@@ -230,10 +233,12 @@ impl Shrinking {
             });
         }
         let stuck = (0..field.len() as u32)
-            .filter(|&v| field[v as usize] == DVec3::ZERO && planes.has_any(v as usize))
+            .filter(|&v| {
+                field[v as usize] == DVec3::ZERO && vertex_facets.has_moving_facets(v as usize)
+            })
             .collect();
-        let most = MOST * solid.reach;
-        let nodes = (0..solid.nodes.len()).map(|k| bound_node(solid, &field, most, k)).collect();
+        let most = MAX_RATE_AMOUNT * solid.reach;
+        let nodes = (0..solid.nodes.len()).map(|k| node_motion(solid, &field, most, k)).collect();
         let farthest = field.iter().map(|x| x.length()).fold(0.0, f64::max);
         Self { field, nodes, most, farthest, stuck }
     }
@@ -257,13 +262,13 @@ impl Shrinking {
 }
 
 /// The facets with an offset, by vertex.
-struct Planes<'a> {
+struct VertexFacets<'a> {
     solid: &'a Solid,
     starts: Vec<u32>,
     facets: Vec<u32>,
 }
 
-impl<'a> Planes<'a> {
+impl<'a> VertexFacets<'a> {
     fn new(solid: &'a Solid) -> Self {
         let mut starts = vec![0_u32; solid.vertices.len() + 1];
         let moved = |t: &usize| solid.kinds[*t] != ShellKind::Sheet;
@@ -285,15 +290,15 @@ impl<'a> Planes<'a> {
     }
 
     /// Checks whether a vertex has facets with an offset.
-    fn has_any(&self, v: usize) -> bool {
+    fn has_moving_facets(&self, v: usize) -> bool {
         self.starts[v] < self.starts[v + 1]
     }
 
     /// Collects the unit normals of the facets around a vertex. Facets with noisy normals are omitted if there are
     /// others.
-    fn around(&self, v: usize, normals: &mut Vec<DVec3>) {
+    fn normals_around(&self, v: usize, normals: &mut Vec<DVec3>) {
         let facets = &self.facets[self.starts[v] as usize..self.starts[v + 1] as usize];
-        for least in [NOISE * self.solid.reach, 0.0] {
+        for least in [MIN_HEIGHT * self.solid.reach, 0.0] {
             normals.clear();
             for &t in facets {
                 let corners = self.solid.triangles[t as usize].map(|v| v as usize);
@@ -316,36 +321,36 @@ impl<'a> Planes<'a> {
 }
 
 /// Returns the shortest `x` with `n.x <= -1` for all normals; `None` if there is none with a length of at most
-/// [`FARTHEST`].
-fn shortest(normals: &[DVec3]) -> Option<DVec3> {
+/// [`MAX_DISPLACEMENT`].
+fn shortest_displacement(normals: &[DVec3]) -> Option<DVec3> {
     let mut simplex = vec![*normals.first()?];
-    for _ in 0..MOST_ROUNDS {
-        let w = nearest(&mut simplex);
+    for _ in 0..MAX_ROUNDS {
+        let w = nearest_in_hull(&mut simplex);
         let size = w.length_squared();
-        if size * FARTHEST * FARTHEST < 1.0 {
+        if size * MAX_DISPLACEMENT * MAX_DISPLACEMENT < 1.0 {
             return None;
         }
         let lowest = normals.iter().min_by(|a, b| a.dot(w).total_cmp(&b.dot(w)))?;
         let depth = lowest.dot(w);
         if depth >= size * (1.0 - 1e-12) || simplex.contains(lowest) {
             // Scaled by the lowest normal, so that rounding leaves no product above -1.
-            return (depth * FARTHEST > w.length()).then(|| w / -depth);
+            return (depth * MAX_DISPLACEMENT > w.length()).then(|| w / -depth);
         }
         simplex.push(*lowest);
     }
-    let w = nearest(&mut simplex);
+    let w = nearest_in_hull(&mut simplex);
     let depth = normals.iter().map(|n| n.dot(w)).fold(f64::INFINITY, f64::min);
-    (depth > 0.0 && depth * FARTHEST > w.length()).then(|| w / -depth)
+    (depth > 0.0 && depth * MAX_DISPLACEMENT > w.length()).then(|| w / -depth)
 }
 
 /// Returns the point of the convex hull of up to four points that is nearest to the origin, and reduces the points to
 /// those that span it.
-fn nearest(points: &mut Vec<DVec3>) -> DVec3 {
+fn nearest_in_hull(points: &mut Vec<DVec3>) -> DVec3 {
     let mut best: Option<(f64, DVec3, u32)> = None;
     for mask in 1..1_u32 << points.len() {
         let chosen: Vec<DVec3> =
             (0..points.len()).filter(|k| mask >> k & 1 == 1).map(|k| points[k]).collect();
-        let Some(w) = affine_nearest(&chosen) else { continue };
+        let Some(w) = nearest_in_affine_hull(&chosen) else { continue };
         if best.is_none_or(|b| w.length_squared() < b.0) {
             best = Some((w.length_squared(), w, mask));
         }
@@ -360,7 +365,7 @@ fn nearest(points: &mut Vec<DVec3>) -> DVec3 {
 }
 
 /// Returns the point of the affine hull that is nearest to the origin; `None` if it is outside the convex hull.
-fn affine_nearest(points: &[DVec3]) -> Option<DVec3> {
+fn nearest_in_affine_hull(points: &[DVec3]) -> Option<DVec3> {
     match *points {
         [a] => Some(a),
         [a, b] => {
@@ -388,7 +393,7 @@ fn affine_nearest(points: &[DVec3]) -> Option<DVec3> {
 }
 
 /// Computes the bounds on the changes of a node.
-fn bound_node(solid: &Solid, field: &[DVec3], most: f64, at: usize) -> NodeMotion {
+fn node_motion(solid: &Solid, field: &[DVec3], most: f64, at: usize) -> NodeMotion {
     let node: &Node = &solid.nodes[at];
     let mut bounds = Aabb::EMPTY;
     let mut slab = [f64::INFINITY, f64::NEG_INFINITY];
@@ -402,7 +407,7 @@ fn bound_node(solid: &Solid, field: &[DVec3], most: f64, at: usize) -> NodeMotio
         }
         // A node with all orientations has no cone of normals that could turn.
         if node.slab[1] < f64::INFINITY {
-            let [x, y] = bound_facet(solid, field, t);
+            let [x, y] = normal_turn_rate(solid, field, t);
             (turn, rough) = (turn.max(x), rough.max(y));
         }
     }
@@ -424,7 +429,7 @@ fn bound_node(solid: &Solid, field: &[DVec3], most: f64, at: usize) -> NodeMotio
 }
 
 /// Returns the rate at which the normal of a facet turns, and the sine that rounding adds.
-fn bound_facet(solid: &Solid, field: &[DVec3], t: usize) -> [f64; 2] {
+fn normal_turn_rate(solid: &Solid, field: &[DVec3], t: usize) -> [f64; 2] {
     let corners = solid.triangles[t].map(|v| v as usize);
     let [a, b, c] = corners.map(|v| solid.vertices[v]);
     let [x, y, z] = corners.map(|v| field[v]);
@@ -438,27 +443,27 @@ mod tests {
     use super::*;
 
     #[test]
-    fn displacements_of_corners_edges_and_saddles() {
-        let x = shortest(&[DVec3::X]).unwrap();
+    fn displacements_exist_for_faces_edges_and_corners_only() {
+        let x = shortest_displacement(&[DVec3::X]).unwrap();
         assert_eq!(x, DVec3::NEG_X);
-        let x = shortest(&[DVec3::X, DVec3::Y, DVec3::X]).unwrap();
+        let x = shortest_displacement(&[DVec3::X, DVec3::Y, DVec3::X]).unwrap();
         assert!((x - DVec3::new(-1.0, -1.0, 0.0)).length() < 1e-15);
-        let x = shortest(&[DVec3::X, DVec3::Y, DVec3::Z]).unwrap();
+        let x = shortest_displacement(&[DVec3::X, DVec3::Y, DVec3::Z]).unwrap();
         assert!((x + DVec3::ONE).length() < 1e-15);
-        assert!(shortest(&[DVec3::X, DVec3::NEG_X]).is_none());
+        assert!(shortest_displacement(&[DVec3::X, DVec3::NEG_X]).is_none());
         let saddle =
             [DVec3::X, DVec3::Y, DVec3::new(-1.0, -1.0, 1.0), DVec3::new(-1.0, -1.0, -1.0)];
-        assert!(shortest(&saddle.map(DVec3::normalize)).is_none());
+        assert!(shortest_displacement(&saddle.map(DVec3::normalize)).is_none());
     }
 
     #[test]
-    fn cones_of_many_normals() {
+    fn cones_of_normals_have_axial_displacements() {
         for n in [3, 7, 40, 1_000] {
             let normals: Vec<DVec3> = (0..n)
                 .map(|k| f64::from(k) * std::f64::consts::TAU / f64::from(n))
                 .map(|a| DVec3::new(a.cos(), a.sin(), 0.75).normalize())
                 .collect();
-            let x = shortest(&normals).unwrap();
+            let x = shortest_displacement(&normals).unwrap();
             assert!((x - DVec3::new(0.0, 0.0, -1.25 / 0.75)).length() < 1e-6, "{n}: {x}");
             assert!(normals.iter().all(|m| m.dot(x) <= -1.0 + 1e-15));
         }

@@ -15,7 +15,7 @@ use std::thread;
 
 use glam::{BVec3, DVec3, Vec3Swizzles};
 
-use super::cuts::{CUTS, Reach};
+use super::cuts::{CUTS, SignMaxima};
 use colltrans_convex::body::Aabb;
 use colltrans_kernel::descent::{node_to_split, replaced};
 use colltrans_kernel::split::{Boxed, Rule, split};
@@ -23,7 +23,7 @@ use colltrans_kernel::split::{Boxed, Rule, split};
 /// Maximum number of facets of a leaf.
 pub(crate) const LEAF: usize = 4;
 /// Minimum number of facets of each of two subtrees that are built on two threads.
-const FORK: usize = 1 << 14;
+const MIN_THREAD_FACETS: usize = 1 << 14;
 /// Sine that represents an unbounded angle.
 pub const ANY: f64 = 2.0;
 /// Sine that represents facets of open shells, which have no orientation.
@@ -113,7 +113,7 @@ impl Item {
 
     /// Returns the sides of an enclosing box in which the facet lies, without those from which it certainly faces
     /// away, as bits.
-    fn inward(&self, bounds: &Aabb) -> u8 {
+    fn inward_sides(&self, bounds: &Aabb) -> u8 {
         let Aabb { low, high } = self.bounds;
         let flat = low.cmpeq(high);
         let away = |way: f64| {
@@ -165,12 +165,16 @@ pub fn normal([a, b, c]: [DVec3; 3]) -> (DVec3, f64) {
 }
 
 /// Builds the tree. Returns its nodes, and the order in which they list the facets.
-pub(super) fn build(vertices: &[DVec3], triangles: &[[u32; 3]]) -> (Vec<Node>, Vec<u32>) {
+pub(super) fn build_tree(vertices: &[DVec3], triangles: &[[u32; 3]]) -> (Vec<Node>, Vec<u32>) {
     let threads = thread::available_parallelism().map_or(1, usize::from);
-    build_on(threads, vertices, triangles)
+    build_tree_on(threads, vertices, triangles)
 }
 
-fn build_on(threads: usize, vertices: &[DVec3], triangles: &[[u32; 3]]) -> (Vec<Node>, Vec<u32>) {
+fn build_tree_on(
+    threads: usize,
+    vertices: &[DVec3],
+    triangles: &[[u32; 3]],
+) -> (Vec<Node>, Vec<u32>) {
     let corners = |t: &[u32; 3]| t.map(|v| vertices[v as usize]);
     let mut items: Vec<Item> = triangles
         .iter()
@@ -179,14 +183,14 @@ fn build_on(threads: usize, vertices: &[DVec3], triangles: &[[u32; 3]]) -> (Vec<
         .collect();
     let builder = Builder { vertices, triangles };
     let mut nodes = Vec::with_capacity(items.len());
-    nodes.push(builder.node(&items, 0));
-    builder.grow(&mut items, 0, 0, threads, &mut nodes);
+    nodes.push(builder.bounding_node(&items, 0));
+    builder.build_subtree(&mut items, 0, 0, threads, &mut nodes);
     nodes.shrink_to_fit();
     (nodes, items.iter().map(|i| i.facet).collect())
 }
 
 /// Marks the nodes with facets of open shells, because the orientation of these facets has no meaning.
-pub(super) fn open_nodes(nodes: &mut [Node], is_open: impl Fn(usize) -> bool) {
+pub(super) fn mark_open_nodes(nodes: &mut [Node], is_open: impl Fn(usize) -> bool) {
     for at in (0..nodes.len()).rev() {
         let node = &nodes[at];
         let open = if node.is_leaf() {
@@ -210,61 +214,61 @@ struct Builder<'a> {
 impl Builder<'_> {
     /// Appends the nodes below node `at`, which covers `items` from facet position `first`, and sets the cuts of its
     /// box. Returns the maxima of the vertices along the signs.
-    fn grow(
+    fn build_subtree(
         &self,
         items: &mut [Item],
         at: usize,
         first: u32,
         threads: usize,
         nodes: &mut Vec<Node>,
-    ) -> Reach {
-        let reach = if items.len() <= LEAF {
-            self.reach(items)
+    ) -> SignMaxima {
+        let maxima = if items.len() <= LEAF {
+            self.facet_maxima(items)
         } else {
-            self.grow_children(items, at, first, threads, nodes)
+            self.build_children(items, at, first, threads, nodes)
         };
         let Node { bounds, cuts, .. } = &mut nodes[at];
-        *cuts = reach.below(bounds);
-        reach
+        *cuts = maxima.depth_shares(bounds);
+        maxima
     }
 
     /// Returns the maxima of the vertices of facets along the signs of corners and edges.
-    fn reach(&self, items: &[Item]) -> Reach {
-        let mut reach = Reach::NONE;
+    fn facet_maxima(&self, items: &[Item]) -> SignMaxima {
+        let mut maxima = SignMaxima::NONE;
         for v in items.iter().flat_map(|item| self.triangles[item.facet as usize]) {
-            reach.add(self.vertices[v as usize]);
+            maxima.add(self.vertices[v as usize]);
         }
-        reach
+        maxima
     }
 
     /// Splits the items of a node, appends both children with their descendants, on two threads if there are enough
     /// facets.
-    fn grow_children(
+    fn build_children(
         &self,
         items: &mut [Item],
         at: usize,
         first: u32,
         threads: usize,
         nodes: &mut Vec<Node>,
-    ) -> Reach {
+    ) -> SignMaxima {
         let middle = split(items, Rule { least: 1, longest: false });
         let (left, right) = items.split_at_mut(middle);
         let second = first + middle as u32;
         let child = nodes.len();
         nodes[at].skip = (child - at) as u32;
-        if threads > 1 && left.len().min(right.len()) >= FORK {
+        if threads > 1 && left.len().min(right.len()) >= MIN_THREAD_FACETS {
             let mut behind = Vec::with_capacity(right.len());
-            let mut reach = Reach::NONE;
-            let mut other = Reach::NONE;
+            let mut maxima = SignMaxima::NONE;
+            let mut other = SignMaxima::NONE;
             thread::scope(|scope| {
                 scope.spawn(|| {
-                    behind.push(self.node(right, second));
-                    other = self.grow(right, 0, second, threads / 2, &mut behind);
+                    behind.push(self.bounding_node(right, second));
+                    other = self.build_subtree(right, 0, second, threads / 2, &mut behind);
                 });
-                nodes.extend([self.node(left, first); 2]);
-                reach = self.grow(left, child, first, threads - threads / 2, nodes);
+                nodes.extend([self.bounding_node(left, first); 2]);
+                maxima = self.build_subtree(left, child, first, threads - threads / 2, nodes);
             });
-            reach.join(&other);
+            maxima.include_maxima(&other);
             // The second child is stored next to the first, its descendants at the end.
             let root = &mut behind[0];
             if root.skip != 0 {
@@ -272,17 +276,17 @@ impl Builder<'_> {
             }
             nodes[child + 1] = *root;
             nodes.extend_from_slice(&behind[1..]);
-            reach
+            maxima
         } else {
-            nodes.extend([self.node(left, first), self.node(right, second)]);
-            let mut reach = self.grow(left, child, first, 1, nodes);
-            reach.join(&self.grow(right, child + 1, second, 1, nodes));
-            reach
+            nodes.extend([self.bounding_node(left, first), self.bounding_node(right, second)]);
+            let mut maxima = self.build_subtree(left, child, first, 1, nodes);
+            maxima.include_maxima(&self.build_subtree(right, child + 1, second, 1, nodes));
+            maxima
         }
     }
 
     /// Returns a leaf node with the bounds of `items`, without cuts.
-    fn node(&self, items: &[Item], first: u32) -> Node {
+    fn bounding_node(&self, items: &[Item], first: u32) -> Node {
         let mut bounds = Aabb::EMPTY;
         let (mut sum, mut total) = (DVec3::ZERO, 0.0);
         for item in items {
@@ -299,7 +303,7 @@ impl Builder<'_> {
             first,
             count: items.len() as u32,
             cuts: [0; CUTS],
-            inward: items.iter().fold(0, |sides, item| sides | item.inward(&bounds)),
+            inward: items.iter().fold(0, |sides, item| sides | item.inward_sides(&bounds)),
         };
         // Only a surface with a dominant orientation has an axis.
         if sum.length() > 0.25 * total {
@@ -313,7 +317,7 @@ impl Builder<'_> {
     fn add_cone(&self, items: &[Item], node: &mut Node) {
         let (mut squared, mut doubt) = (0.0_f64, 0.0_f64);
         for item in items {
-            let [x, y] = deviation(node.axis, item);
+            let [x, y] = normal_deviation(node.axis, item);
             (squared, doubt) = (squared.max(x), doubt.max(y));
             if squared >= 1.0 || doubt >= 1.0 {
                 // Such a node bounds no orientation, and its slab is hardly thinner than the box.
@@ -341,7 +345,7 @@ impl Builder<'_> {
 
 /// Returns the squared sine of the angle between a unit axis and the normal of a facet, and an upper bound on its
 /// error, a sine. Returns [`ANY`] for both if the angle may be a right angle or more.
-fn deviation(axis: DVec3, item: &Item) -> [f64; 2] {
+fn normal_deviation(axis: DVec3, item: &Item) -> [f64; 2] {
     if item.doubt >= 1.0 || axis.dot(item.normal) <= 0.0 {
         return [ANY; 2];
     }
@@ -362,7 +366,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_tree_is_the_same_on_any_number_of_threads() {
+    fn tree_is_equal_for_all_thread_counts() {
         // Facets of a wavy sheet, more than five times the number from which threads are used.
         let side = 220_u32;
         let at = |i: u32, j: u32| {
@@ -374,10 +378,10 @@ mod tests {
             .filter(|k| k % side + 1 < side && k / side + 1 < side)
             .flat_map(|k| [[k, k + 1, k + side], [k + 1, k + side + 1, k + side]])
             .collect();
-        assert!(triangles.len() > 5 * FORK);
-        let alone = build_on(1, &vertices, &triangles);
+        assert!(triangles.len() > 5 * MIN_THREAD_FACETS);
+        let alone = build_tree_on(1, &vertices, &triangles);
         for threads in [2, 3, 8, 64] {
-            assert!(build_on(threads, &vertices, &triangles) == alone, "{threads} threads");
+            assert!(build_tree_on(threads, &vertices, &triangles) == alone, "{threads} threads");
         }
     }
 }

@@ -12,17 +12,17 @@ use glam::DVec3;
 
 use super::edges::{self, Edges};
 use super::error::SolidError;
-use super::exact::{between, collinear};
+use super::exact::{are_collinear, is_strictly_between};
 use super::faces::Faces;
 use super::polygon::triangulate;
 use super::report::{ShellKind, SolidReport};
-use super::weld::first_equals;
+use super::weld::first_equal_vertices;
 use colltrans_convex::body::{InputFacet, InputVertex};
 use colltrans_kernel::range::in_exact_range;
 
 /// Maximum number of subdivision rounds. Each round joins at least one pair of edges in every slit that can be
 /// closed.
-const MOST_ROUNDS: usize = 64;
+const MAX_ROUNDS: usize = 64;
 
 /// A validated triangle mesh.
 pub(crate) struct Surface {
@@ -44,8 +44,9 @@ pub(crate) struct Surface {
 
 impl Surface {
     /// Gives sheets their own copies of shared vertices, because an offset moves the vertices of other shells only.
-    pub(super) fn part_sheets(&mut self) {
-        const TAKEN: u32 = u32::MAX;
+    pub(super) fn separate_sheets(&mut self) {
+        /// Marks a vertex of a shell that is not a sheet.
+        const OTHER_SHELL: u32 = u32::MAX;
         let sheet = |k: &ShellKind| *k == ShellKind::Sheet;
         if self.kinds.iter().all(sheet) || !self.kinds.iter().any(sheet) {
             return;
@@ -54,7 +55,7 @@ impl Surface {
         for (t, kind) in self.triangles.iter().zip(&self.kinds) {
             if !sheet(kind) {
                 for &v in t {
-                    copies[v as usize] = TAKEN;
+                    copies[v as usize] = OTHER_SHELL;
                 }
             }
         }
@@ -64,7 +65,7 @@ impl Surface {
                 if copies[old] == 0 {
                     continue;
                 }
-                if copies[old] == TAKEN {
+                if copies[old] == OTHER_SHELL {
                     copies[old] = self.vertices.len() as u32;
                     self.vertices.push(self.vertices[old]);
                     self.vertex_index.push(self.vertex_index[old]);
@@ -77,20 +78,20 @@ impl Surface {
 
 /// Builds a checked surface from polygons. If `open` is set, slits are not closed, and edges may have a facet on one
 /// side only.
-pub(super) fn surface<F: AsRef<[u32]>>(
+pub(super) fn validated_surface<F: AsRef<[u32]>>(
     vertices: &[DVec3],
     facets: &[F],
     open: bool,
     report: &mut SolidReport,
 ) -> Result<Surface, SolidError> {
     check_input(vertices, facets)?;
-    let first = first_equals(vertices);
+    let first = first_equal_vertices(vertices);
     let mut soup = Soup { triangles: Vec::new(), facet_index: Vec::new() };
     for (facet, corners) in facets.iter().enumerate() {
         soup.push_facet(vertices, &first, facet, corners.as_ref(), report)?;
     }
     let mut edges = Edges::new(vertices, &soup.triangles);
-    for _ in 0..MOST_ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         if open || !soup.close_slits(vertices, &edges.open, report) {
             break;
         }
@@ -103,7 +104,7 @@ pub(super) fn surface<F: AsRef<[u32]>>(
     report.open_edges += edges.open.len();
     soup.check_edges(&edges, open)?;
     let input_counts = [vertices.len() as u32, facets.len() as u32];
-    Ok(Surface { input_counts, ..soup.compact(vertices, &first, edges.neighbours, report) })
+    Ok(Surface { input_counts, ..soup.into_surface(vertices, &first, edges.neighbours, report) })
 }
 
 fn check_input<F: AsRef<[u32]>>(vertices: &[DVec3], facets: &[F]) -> Result<(), SolidError> {
@@ -181,7 +182,7 @@ impl Soup {
         let mut leaving: Vec<(u32, u32)> = Vec::with_capacity(open.len());
         let mut arriving = leaving.clone();
         for &h in open {
-            let [from, to] = edges::ends(&self.triangles, h);
+            let [from, to] = edges::half_edge_ends(&self.triangles, h);
             leaving.push((from, to));
             arriving.push((to, from));
         }
@@ -189,9 +190,9 @@ impl Soup {
         arriving.sort_unstable();
         let mut cuts: Vec<(u32, Vec<u32>)> = Vec::new();
         for &h in open {
-            let [p, q] = edges::ends(&self.triangles, h);
-            let mut points = walk(vertices, &leaving, q, [p, q]);
-            points.extend(walk(vertices, &arriving, p, [p, q]));
+            let [p, q] = edges::half_edge_ends(&self.triangles, h);
+            let mut points = vertices_inside_edge(vertices, &leaving, q, [p, q]);
+            points.extend(vertices_inside_edge(vertices, &arriving, p, [p, q]));
             let along = |v: &u32| (vertices[*v as usize] - vertices[p as usize]).length_squared();
             points.sort_by(|a, b| along(a).total_cmp(&along(b)));
             points.dedup();
@@ -200,13 +201,13 @@ impl Soup {
             }
         }
         report.slits_closed += cuts.len();
-        self.subdivide(vertices, &cuts);
+        self.subdivide_triangles(vertices, &cuts);
         !cuts.is_empty()
     }
 
     /// Inserts vertices into sides of triangles, and triangulates these again. `cuts` lists half-edges with their
     /// vertices.
-    fn subdivide(&mut self, vertices: &[DVec3], cuts: &[(u32, Vec<u32>)]) {
+    fn subdivide_triangles(&mut self, vertices: &[DVec3], cuts: &[(u32, Vec<u32>)]) {
         let mut cuts = cuts.to_vec();
         cuts.sort_by_key(|c| c.0);
         for group in cuts.chunk_by(|a, b| a.0 / 3 == b.0 / 3) {
@@ -236,7 +237,7 @@ impl Soup {
     /// Returns an error for edges with inconsistent orientations, and for open edges unless `open` is set.
     fn check_edges(&self, edges: &Edges, open: bool) -> Result<(), SolidError> {
         let name = |h: u32| {
-            let [from, to] = edges::ends(&self.triangles, h).map(|v| v as usize);
+            let [from, to] = edges::half_edge_ends(&self.triangles, h).map(|v| v as usize);
             (from, to, self.facet_index[h as usize / 3].index())
         };
         if let Some(&h) = edges.inconsistent.first() {
@@ -256,7 +257,7 @@ impl Soup {
     }
 
     /// Builds the surface, without unused vertices.
-    fn compact(
+    fn into_surface(
         self,
         vertices: &[DVec3],
         first: &[u32],
@@ -292,15 +293,20 @@ impl Soup {
 /// Checks whether the corners are not all on one line.
 fn has_area(vertices: &[DVec3], ring: &[u32]) -> bool {
     let at = |k: usize| vertices[ring[k] as usize];
-    ring.len() >= 3 && (2..ring.len()).any(|k| !collinear(at(0), at(1), at(k)))
+    ring.len() >= 3 && (2..ring.len()).any(|k| !are_collinear(at(0), at(1), at(k)))
 }
 
 /// Returns the vertices strictly inside the edge from `p` to `q` that a chain of open edges from `start` visits.
-fn walk(vertices: &[DVec3], next: &[(u32, u32)], start: u32, [p, q]: [u32; 2]) -> Vec<u32> {
+fn vertices_inside_edge(
+    vertices: &[DVec3],
+    next: &[(u32, u32)],
+    start: u32,
+    [p, q]: [u32; 2],
+) -> Vec<u32> {
     let [a, b] = [p, q].map(|v| vertices[v as usize]);
     let inside = |v: u32| {
         let m = vertices[v as usize];
-        between(a, b, m) && collinear(a, b, m)
+        is_strictly_between(a, b, m) && are_collinear(a, b, m)
     };
     let mut found = Vec::new();
     let mut at = start;
@@ -337,11 +343,11 @@ mod tests {
     }
 
     #[test]
-    fn slits_are_closed_with_and_without_facets_in_them() {
+    fn slits_with_and_without_facets_are_closed() {
         for degenerate in [false, true] {
             let (vertices, facets) = cube_with_a_slit(degenerate);
             let mut report = SolidReport::default();
-            let surface = surface(&vertices, &facets, false, &mut report).unwrap();
+            let surface = validated_surface(&vertices, &facets, false, &mut report).unwrap();
             assert_eq!(report.slits_closed, 1);
             assert_eq!(report.facets_without_area, if degenerate { 2 } else { 0 });
             assert!(surface.neighbours.iter().flatten().all(|&n| n != edges::NONE));
@@ -350,11 +356,11 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_counted_and_named() {
+    fn invalid_surfaces_are_rejected_with_count_and_place() {
         let (vertices, mut facets) = cube_with_a_slit(false);
         facets.pop();
         let refused = |facets: &[Vec<u32>]| {
-            surface(&vertices, facets, false, &mut SolidReport::default()).err().unwrap()
+            validated_surface(&vertices, facets, false, &mut SolidReport::default()).err().unwrap()
         };
         assert!(matches!(refused(&facets), SolidError::Open { count: 4, .. }));
         facets.push(vec![5, 7, 3, 1]);

@@ -46,34 +46,34 @@ impl Wedge {
 
     /// Checks whether the facets of the wedge coincide.
     pub(crate) fn is_empty(&self, axis: &impl Axis) -> bool {
-        sector(self.start, self.end, axis) == 0
+        angle_class(self.start, self.end, axis) == 0
     }
 
     /// Checks whether a ray lies in the open arc.
     pub(crate) fn holds(&self, ray: Ray, axis: &impl Axis) -> bool {
-        sector(self.start, ray, axis) != 0 && self.contains(ray, axis)
+        angle_class(self.start, ray, axis) != 0 && self.contains(ray, axis)
     }
 
     /// Checks whether a ray lies in the arc, including its start.
     pub(crate) fn contains(&self, ray: Ray, axis: &impl Axis) -> bool {
-        match (sector(self.start, ray, axis), sector(self.start, self.end, axis)) {
+        match (angle_class(self.start, ray, axis), angle_class(self.start, self.end, axis)) {
             (0, _) => true,
             (a, b) if a != b => a < b,
             (2, _) => false,
-            _ => det(ray, self.end, axis) == Ordering::Greater,
+            _ => ray_determinant(ray, self.end, axis) == Ordering::Greater,
         }
     }
 }
 
 /// Returns the sign of `det[u, x, y]` for two rays.
-fn det(x: Ray, y: Ray, axis: &impl Axis) -> Ordering {
+fn ray_determinant(x: Ray, y: Ray, axis: &impl Axis) -> Ordering {
     let sign = axis.det(x.point, y.point);
     if x.opposite == y.opposite { sign } else { sign.reverse() }
 }
 
 /// Returns the class of the angle from `x` to `y`: 0 for zero, 1 below a half turn, 2 for a half turn, 3 above.
-fn sector(x: Ray, y: Ray, axis: &impl Axis) -> u8 {
-    match det(x, y, axis) {
+fn angle_class(x: Ray, y: Ray, axis: &impl Axis) -> u8 {
+    match ray_determinant(x, y, axis) {
         Ordering::Greater => 1,
         Ordering::Less => 3,
         Ordering::Equal => {
@@ -104,7 +104,7 @@ mod tests {
     }
 
     #[test]
-    fn wedges_meet_where_their_arcs_do() {
+    fn wedges_intersect_where_their_arcs_overlap() {
         for (a, b, c, d) in (0..4096).map(|i| (i & 7, i >> 3 & 7, i >> 6 & 7, i >> 9 & 7)) {
             let wedge = |s, e| Wedge { start: Ray::to(s), end: Ray::to(e) };
             // Eighths of the circle in the arc, as bits.

@@ -3,19 +3,19 @@
 use glam::DVec3;
 
 /// Marks an empty slot of the table.
-const FREE: u32 = u32::MAX;
+const EMPTY_SLOT: u32 = u32::MAX;
 
 /// Returns the first vertex with the same coordinates for each vertex (`-0` equals `0`).
-pub(super) fn first_equals(vertices: &[DVec3]) -> Vec<u32> {
+pub(super) fn first_equal_vertices(vertices: &[DVec3]) -> Vec<u32> {
     let slots = (2 * vertices.len()).next_power_of_two().max(2);
-    let mut table = vec![FREE; slots];
+    let mut table = vec![EMPTY_SLOT; slots];
     let mut first = Vec::with_capacity(vertices.len());
     for (v, point) in vertices.iter().enumerate() {
-        let mut slot = hash(*point) as usize & (slots - 1);
-        while table[slot] != FREE && vertices[table[slot] as usize] != *point {
+        let mut slot = hash_point(*point) as usize & (slots - 1);
+        while table[slot] != EMPTY_SLOT && vertices[table[slot] as usize] != *point {
             slot = (slot + 1) & (slots - 1);
         }
-        if table[slot] == FREE {
+        if table[slot] == EMPTY_SLOT {
             table[slot] = v as u32;
         }
         first.push(table[slot]);
@@ -25,7 +25,7 @@ pub(super) fn first_equals(vertices: &[DVec3]) -> Vec<u32> {
 
 /// Returns a hash that is equal for equal coordinates. The upper half of a product depends on all bits of its
 /// factors.
-fn hash(point: DVec3) -> u64 {
+fn hash_point(point: DVec3) -> u64 {
     let mix = |h: u64, c: f64| {
         let bits = u128::from(h ^ (c + 0.0).to_bits());
         let wide = bits.wrapping_mul(0x9e37_79b9_7f4a_7c15_f39c_c060_5ced_c835);

@@ -61,7 +61,7 @@ pub(super) fn leaves_behind(cast: &Cast<'_, Solid>, amount: f64) -> bool {
 /// The boxes of the bodies, shrunk by an amount, and the noise then.
 fn shrunk_boxes<'c>(cast: &'c Cast<'_, Solid>, amount: f64) -> (Boxes<'c, 'c>, f64) {
     let bodies = [cast.moving(), cast.fixed()];
-    let moved: f64 = bodies.map(|body| body.moved_by(amount)).iter().sum();
+    let moved: f64 = bodies.map(|body| body.max_offset_displacement(amount)).iter().sum();
     let noise = Noise::of(cast.setting.scale() + moved).point();
-    (Boxes::new(&cast.setting, &bodies.map(|body| body.box_shrunk_by(amount))), noise)
+    (Boxes::new(&cast.setting, &bodies.map(|body| body.offset_bounds(amount))), noise)
 }

@@ -29,7 +29,7 @@ pub(crate) const WEIGHTS: [[f64; 3]; 4] =
 /// A triangle of a shell of one body that lies inside the other.
 pub(crate) fn shell_inside(scene: &Scene, moving: bool) -> Option<u32> {
     let (own, other) = (scene.side(moving), scene.side(!moving));
-    if !other.solid.has_inside() {
+    if !other.solid.has_interior() {
         return None;
     }
     let room = Projected::new(scene, other, 0);

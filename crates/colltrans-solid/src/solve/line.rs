@@ -387,7 +387,7 @@ fn is_around(solid: &Solid, ahead: &[(usize, i32)], on: &[usize]) -> bool {
     if solid.spans().len() == 1 {
         return false;
     }
-    let bodies = solid.body_map();
+    let bodies = solid.body_numbers();
     let on: Vec<u32> = on.iter().map(|&t| bodies[t]).collect();
     let others = ahead.iter().filter(|(t, _)| !on.contains(&bodies[*t]));
     others.map(|(_, count)| count).sum::<i32>() > 0

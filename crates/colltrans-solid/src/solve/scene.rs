@@ -185,12 +185,12 @@ impl<'a> Side<'a> {
 
     /// How far shrinking moves a vertex, at most.
     pub(crate) fn moved(&self) -> f64 {
-        self.solid.moved_by(self.amount)
+        self.solid.max_offset_displacement(self.amount)
     }
 
     /// The box around the body, shrunk, in its frame.
     pub(crate) fn boxed(&self) -> Aabb {
-        self.solid.box_shrunk_by(self.amount)
+        self.solid.offset_bounds(self.amount)
     }
 
     pub(crate) fn vertex(&self, v: u32) -> DVec3 {

@@ -2,65 +2,65 @@
 
 use glam::DVec3;
 
-use super::Placing;
+use super::PlacedFacets;
 use crate::body::edges::NONE;
 use crate::body::tree::{self, Node};
 use colltrans_convex::body::Aabb;
 use colltrans_kernel::work;
 
 /// Maximum distance of facets from their common plane, in multiples of the reach of the body.
-const FLAT: f64 = 64.0 * f64::EPSILON;
+const PLANE_TOLERANCE: f64 = 64.0 * f64::EPSILON;
 /// Maximum spread (sine) of a node that is tested for a common plane of its facets.
-const TURNED: f32 = 0.5;
+const MAX_PLANE_SPREAD: f32 = 0.5;
 /// Factor by which a leaf must be longer than another node, so that its facets are compared with the box of this
 /// node.
-const LONG: f64 = 4.0;
+const LENGTH_FACTOR: f64 = 4.0;
 
 /// Bounds of the facets of each node, which prove that facets of two nodes do not touch or need not be compared.
-pub(super) struct Fences<'a> {
-    placing: &'a Placing<'a>,
+pub(super) struct PairFilter<'a> {
+    placed: &'a PlacedFacets<'a>,
     /// Maximum rounding error of the product of a vertex with a vector, as a multiple of the sum norm of that vector.
     rounding: f64,
     boxes: Vec<Aabb>,
     /// The planes of nodes whose facets lie in one plane with the same orientation.
-    flats: Vec<Option<Flat>>,
+    planes: Vec<Option<FacetPlane>>,
     /// Vertices common to all facets of a node, followed by [`NONE`].
-    tips: Vec<[u32; 3]>,
+    shared_vertices: Vec<[u32; 3]>,
 }
 
 /// A plane, with the extreme vertices of its facets along the axes.
-struct Flat {
+struct FacetPlane {
     normal: DVec3,
-    on: DVec3,
-    rim: [DVec3; 6],
-    /// Maximum distance of a point of the plane due to rounding, and its increase per unit of distance from `on` due
-    /// to tilt.
+    origin: DVec3,
+    extremes: [DVec3; 6],
+    /// Maximum distance of a point of the plane due to rounding, and its increase per unit of distance from `origin`
+    /// due to tilt.
     tolerance: f64,
     tilt: f64,
 }
 
-impl Flat {
-    fn new(placing: &Placing, node: &Node, tolerance: f64) -> Option<Self> {
-        if node.spread > TURNED {
+impl FacetPlane {
+    fn new(placed: &PlacedFacets, node: &Node, tolerance: f64) -> Option<Self> {
+        if node.spread > MAX_PLANE_SPREAD {
             return None;
         }
-        let corners = || node.facets().flat_map(|t| placing.corners(t));
+        let corners = || node.facets().flat_map(|t| placed.facet_corners(t));
         let first = corners().next()?;
-        let mut rim = [first; 6];
+        let mut extremes = [first; 6];
         for p in corners() {
             for k in 0..3 {
-                if p[k] < rim[k][k] {
-                    rim[k] = p;
+                if p[k] < extremes[k][k] {
+                    extremes[k] = p;
                 }
-                if p[k] > rim[k + 3][k] {
-                    rim[k + 3] = p;
+                if p[k] > extremes[k + 3][k] {
+                    extremes[k + 3] = p;
                 }
             }
         }
         let (mut area, mut longest) = (DVec3::ZERO, 0.0_f64);
         for i in 1..6 {
             for j in 0..i {
-                let [u, v] = [rim[i] - rim[0], rim[j] - rim[0]];
+                let [u, v] = [extremes[i] - extremes[0], extremes[j] - extremes[0]];
                 let product = u.cross(v);
                 longest = longest.max(u.length()).max(v.length());
                 if product.length_squared() > area.length_squared() {
@@ -68,87 +68,90 @@ impl Flat {
                 }
             }
         }
-        let facing = node.facets().map(|t| tree::normal(placing.corners(t)).0).sum::<DVec3>();
+        let facing = node.facets().map(|t| tree::normal(placed.facet_corners(t)).0).sum::<DVec3>();
         let normal = (area * area.dot(facing).signum()).try_normalize()?;
         let tilt = tolerance * longest / area.length();
-        let flat = Self { normal, on: rim[0], rim, tolerance, tilt };
-        let alike = |t: usize| tree::normal(placing.corners(t)).0.dot(normal) > 0.0;
-        let lies = corners().all(|p| flat.holds(p)) && node.facets().all(alike);
-        lies.then_some(flat)
+        let plane = Self { normal, origin: extremes[0], extremes, tolerance, tilt };
+        let alike = |t: usize| tree::normal(placed.facet_corners(t)).0.dot(normal) > 0.0;
+        let lies = corners().all(|p| plane.contains_point(p)) && node.facets().all(alike);
+        lies.then_some(plane)
     }
 
     /// Checks whether a point lies in the plane within the tolerance.
-    fn holds(&self, point: DVec3) -> bool {
-        let away = point - self.on;
+    fn contains_point(&self, point: DVec3) -> bool {
+        let away = point - self.origin;
         self.normal.dot(away).abs() <= self.tolerance + self.tilt * away.length()
     }
 
     /// Checks whether both lie in one plane with the same orientation.
-    fn is_one_with(&self, other: &Self) -> bool {
-        let holds = |f: &Self, g: &Self| g.rim.iter().all(|p| f.holds(*p));
+    fn is_coplanar_with(&self, other: &Self) -> bool {
+        let holds = |f: &Self, g: &Self| g.extremes.iter().all(|p| f.contains_point(*p));
         self.normal.dot(other.normal) > 0.0 && (holds(self, other) || holds(other, self))
     }
 }
 
-impl<'a> Fences<'a> {
-    pub(super) fn new(placing: &'a Placing) -> Self {
-        let nodes = &placing.solid.nodes;
-        let tolerance = FLAT * placing.solid.reach;
-        let farthest = placing.vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
-        let mut fences = Self {
-            placing,
+impl<'a> PairFilter<'a> {
+    pub(super) fn new(placed: &'a PlacedFacets) -> Self {
+        let nodes = &placed.solid.nodes;
+        let tolerance = PLANE_TOLERANCE * placed.solid.reach;
+        let farthest = placed.vertices.iter().map(|v| v.length()).fold(0.0, f64::max);
+        let mut filter = Self {
+            placed,
             rounding: 16.0 * f64::EPSILON * farthest,
             boxes: vec![Aabb::EMPTY; nodes.len()],
-            flats: nodes.iter().map(|node| Flat::new(placing, node, tolerance)).collect(),
-            tips: vec![[NONE; 3]; nodes.len()],
+            planes: nodes.iter().map(|node| FacetPlane::new(placed, node, tolerance)).collect(),
+            shared_vertices: vec![[NONE; 3]; nodes.len()],
         };
         // Children follow their node, so reverse order visits them first.
         for (k, node) in nodes.iter().enumerate().rev() {
-            (fences.boxes[k], fences.tips[k]) = if node.is_leaf() {
-                let triangles = node.facets().map(|t| placing.solid.triangles[t]);
-                let points = node.facets().flat_map(|t| placing.corners(t));
-                (Aabb::of_points(points), triangles.reduce(common).unwrap_or([NONE; 3]))
+            (filter.boxes[k], filter.shared_vertices[k]) = if node.is_leaf() {
+                let triangles = node.facets().map(|t| placed.solid.triangles[t]);
+                let points = node.facets().flat_map(|t| placed.facet_corners(t));
+                (Aabb::of_points(points), triangles.reduce(common_vertices).unwrap_or([NONE; 3]))
             } else {
                 let [m, n] = [0, 1].map(|n| k + node.skip as usize + n);
-                (fences.boxes[m].join(&fences.boxes[n]), common(fences.tips[m], fences.tips[n]))
+                (
+                    filter.boxes[m].join(&filter.boxes[n]),
+                    common_vertices(filter.shared_vertices[m], filter.shared_vertices[n]),
+                )
             };
         }
-        fences
+        filter
     }
 
     /// Checks whether the facets of two nodes cannot touch, lie in one plane, or all have a common vertex (a fan).
-    pub(super) fn separate(&self, a: usize, b: usize) -> bool {
-        let one_plane = || match (&self.flats[a], &self.flats[b]) {
-            (Some(f), Some(g)) => a == b || f.is_one_with(g),
+    pub(super) fn excludes_pair(&self, a: usize, b: usize) -> bool {
+        let one_plane = || match (&self.planes[a], &self.planes[b]) {
+            (Some(f), Some(g)) => a == b || f.is_coplanar_with(g),
             _ => false,
         };
         !self.boxes[a].meets(&self.boxes[b])
             || one_plane()
-            || common(self.tips[a], self.tips[b])[0] != NONE
-            || self.leaf_avoids(a, b)
-            || self.leaf_avoids(b, a)
+            || common_vertices(self.shared_vertices[a], self.shared_vertices[b])[0] != NONE
+            || self.leaf_avoids_box(a, b)
+            || self.leaf_avoids_box(b, a)
     }
 
     /// Returns the longest side of the box of a node.
-    pub(super) fn length(&self, node: usize) -> f64 {
+    pub(super) fn longest_side(&self, node: usize) -> f64 {
         self.boxes[node].size().max_element()
     }
 
-    /// Checks whether the first node is a leaf that is longer than the second node by [`LONG`], and whose facets
-    /// avoid the box of the second node.
+    /// Checks whether the first node is a leaf that is longer than the second node by [`LENGTH_FACTOR`], and whose
+    /// facets avoid the box of the second node.
     ///
     /// This dismisses long triangles, because their boxes contain large parts of the solid.
-    fn leaf_avoids(&self, leaf: usize, node: usize) -> bool {
-        let leaf_node = &self.placing.solid.nodes[leaf];
+    fn leaf_avoids_box(&self, leaf: usize, node: usize) -> bool {
+        let leaf_node = &self.placed.solid.nodes[leaf];
         leaf_node.is_leaf()
-            && self.length(leaf) > LONG * self.length(node)
-            && leaf_node.facets().all(|t| self.avoids(t, &self.boxes[node]))
+            && self.longest_side(leaf) > LENGTH_FACTOR * self.longest_side(node)
+            && leaf_node.facets().all(|t| self.facet_avoids_box(t, &self.boxes[node]))
     }
 
     /// Checks whether a plane certainly separates a facet from a box: a plane parallel to a side of the box, to the
     /// facet, or to an edge of each.
-    fn avoids(&self, triangle: usize, bounds: &Aabb) -> bool {
-        let corners = self.placing.corners(triangle);
+    fn facet_avoids_box(&self, triangle: usize, bounds: &Aabb) -> bool {
+        let corners = self.placed.facet_corners(triangle);
         if !Aabb::of_triangle(corners).meets(bounds) {
             return true;
         }
@@ -167,7 +170,7 @@ impl<'a> Fences<'a> {
 }
 
 /// Returns the elements of both lists, followed by [`NONE`].
-fn common(a: [u32; 3], b: [u32; 3]) -> [u32; 3] {
+fn common_vertices(a: [u32; 3], b: [u32; 3]) -> [u32; 3] {
     let mut both = a.map(|v| if b.contains(&v) { v } else { NONE });
     both.sort_unstable();
     both

@@ -140,7 +140,7 @@ impl<'h, 'a> Told<'h, 'a> {
         }
         let amount = 0.5 * tolerance;
         let side = |surface: Surface<'a>, matrix: DMat3, ahead: DVec3| {
-            let moved = surface.solid.moved_by(amount);
+            let moved = surface.solid.max_offset_displacement(amount);
             Side { surface, matrix, amount, moved, ahead: matrix.transpose() * ahead }
         };
         let [p, q] = hulls.bodies;

@@ -111,8 +111,8 @@ impl Item {
         Self { facet, bounds: Aabb::of_points(corners), normal, area, doubt }
     }
 
-    /// Returns the sides of an enclosing box in which the facet lies, without those from which it certainly faces
-    /// away, as bits.
+    /// Returns the sides of an enclosing box in which the facet lies, as bits, without sides where it certainly faces
+    /// out of the box.
     fn inward_sides(&self, bounds: &Aabb) -> u8 {
         let Aabb { low, high } = self.bounds;
         let flat = low.cmpeq(high);

@@ -4,19 +4,19 @@
 //! overlap: how much has a file of its own, [`tolerance`].
 
 mod answer;
-mod ask;
 mod boxes;
+#[cfg(feature = "serde")]
+mod encoding;
 mod hulls;
 mod proof;
-#[cfg(feature = "serde")]
-mod saved;
+mod queries;
 pub(crate) mod tolerance;
 mod verify;
 #[cfg(all(test, debug_assertions))]
 mod work;
 
-pub use ask::{SolidCast, SolidScene};
 pub use proof::{Claim, Cover, SolidCertificate, StartProof, StopProof};
+pub use queries::{SolidCast, SolidScene};
 pub use verify::SolidProof;
 
 use crate::body::Solid;

@@ -53,7 +53,7 @@ pub struct SolidCertificate {
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(into = "super::saved::Start", from = "super::saved::Start")
+    serde(into = "super::encoding::Start", from = "super::encoding::Start")
 )]
 pub enum StartProof {
     /// The caller has said it: [`SolidOptions::overlapping`].
@@ -88,7 +88,7 @@ pub struct StopProof {
 #[cfg_attr(
     feature = "serde",
     derive(serde::Serialize, serde::Deserialize),
-    serde(into = "String", try_from = "String", bound = "R: super::saved::Letters")
+    serde(into = "String", try_from = "String", bound = "R: super::encoding::Letters")
 )]
 pub struct Cover<R = Reason>(pub(crate) Vec<Option<R>>);
 

@@ -1,7 +1,7 @@
 //! Convex solids by the cast of their hulls, before any search: nearly all of them are told by it.
 //!
-//! [`certain`] takes the answer of that cast as it is, where its certificate is one of the solids as well.
-//! [`guessed`] only takes a normal and a place on either body from it, and proves those of the solids:
+//! [`transferred`] takes the answer of that cast as it is, where its certificate is one of the solids as well.
+//! [`contact_facets`] only takes a normal and a place on either body from it, and proves those of the solids:
 //!
 //! - *Nothing is earlier.* A plane with that normal, all of the moving body (shrunk, if there is a tolerance) below it
 //!   and all of the fixed one above, bounds all gaps of facets. How far each reaches is told by the vertices that may
@@ -14,9 +14,9 @@
 //! So it does not matter how the hull was rounded, nor whether the solid is quite as convex as it is taken for. What
 //! neither tells is searched.
 
-mod certain;
-mod guessed;
+mod contact_facets;
 mod surface;
+mod transferred;
 
 use std::cell::OnceCell;
 
@@ -29,7 +29,7 @@ use colltrans_convex::body::Keepable;
 use colltrans_convex::cast::Cast;
 use colltrans_convex::setting::Setting;
 use colltrans_convex::solve::options::Options;
-pub(super) use guessed::Guessed;
+pub(super) use contact_facets::Guessed;
 use surface::{Spot, Surface};
 
 /// A facet may rise so far, as a share of the size, beyond the plane of the next one in a body that counts as convex.

@@ -18,7 +18,7 @@
 
 use glam::{DMat3, DVec3};
 
-use super::guessed::least_gap;
+use super::contact_facets::least_gap;
 use super::{Hulls, Spot, Surface};
 use crate::body::Solid;
 use crate::cast::SolidFree;
